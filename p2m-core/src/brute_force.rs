@@ -1,0 +1,46 @@
+//! The oracle of everything else: every primitive, every time.
+
+use crate::{
+    Best, BuildError, BuildIndex, ClosestPoint, Collector, Primitive, PrimitiveId, PrimitiveSet, Real, check_set,
+};
+use nalgebra::Point3;
+
+/// No index at all. Kept plain, so that it is right by inspection.
+///
+/// # Complexity
+/// Build O(n) (a check), query O(n), no memory beyond the set.
+#[derive(Clone, Debug)]
+pub struct BruteForce<S> {
+    set: S,
+}
+
+impl<S> BruteForce<S> {
+    /// Checks the set and keeps it.
+    ///
+    /// # Errors
+    /// [`BuildError`] for a coordinate that is not finite and for too many primitives.
+    pub fn new<T: Real>(set: S) -> Result<Self, BuildError>
+    where
+        S: PrimitiveSet<T>,
+    {
+        check_set(&set)?;
+        Ok(Self { set })
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>> ClosestPoint<T> for BruteForce<S> {
+    fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
+        for id in (0..self.set.len()).map(PrimitiveId::new) {
+            best.offer(id, self.set.get(id).project(query));
+        }
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>> BuildIndex<T, S> for BruteForce<S> {
+    type Options = ();
+    type Error = BuildError;
+
+    fn build(set: S, _options: &()) -> Result<Self, BuildError> {
+        Self::new(set)
+    }
+}

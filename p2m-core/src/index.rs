@@ -1,0 +1,94 @@
+//! The traits that backends implement.
+
+use crate::{Best, Closest, PrimitiveSet, QueryOptions, Real};
+use nalgebra::Point3;
+
+/// Closest points of a scene. A backend writes one method, [`search`](Self::search).
+///
+/// # Contract
+///
+/// u is [`Real::UNIT_ROUNDOFF`], eta the smallest subnormal, d the true distance, d^ the computed one, M(t) the largest
+/// distance from the query to a vertex of primitive t, *key* the number by which candidates are compared ([`Key`](crate::Key)).
+///
+/// - **N1 distance**: for all finite input, |d^ - d| <= [`ERROR_CONSTANT`](crate::kernel::ERROR_CONSTANT) u M + eta (proved, see
+///   docs/accuracy.md; at most 4 u M was ever observed), for points 4 u d + eta. Infinite only if d exceeds the scalar's range.
+/// - **N2 identity**: the true distance of the returned primitive exceeds d by at most the sum of both error bounds.
+/// - **N3 agreement**: every exact backend returns the same bits for distance and primitive. Ties go to the lowest id
+///   among equal keys.
+/// - **N4 invariance**: the same bits under permutation of primitives (up to ids) and of a primitive's vertices, and under
+///   scaling by powers of two while input and results stay normal.
+/// - **N5 point**: a vertex is answered verbatim; any other point lies in the primitive's box and within
+///   4 u |q| + 8 u M of the primitive.
+/// - **N6 totality**: `None` for an empty set, when nothing lies within the (inclusive) radius, and for a query that is not
+///   finite. No query panics. A degenerate primitive is the set it spans.
+/// - **N7 approximation**: `lower_bound` <= d always; with epsilon, d^ <= (1 + epsilon) d up to the error of N1.
+///
+/// Usable as a generic bound and as `dyn ClosestPoint<T>`:
+///
+/// ```
+/// use p2m_core::{BruteForce, ClosestPoint, Point, QueryOptions};
+/// use nalgebra::Point3;
+///
+/// let index = BruteForce::new([Point::new(Point3::new(1.0, 0.0, 0.0))]).unwrap();
+/// let index: &dyn ClosestPoint<f64> = &index;
+/// assert_eq!(index.closest_point(&Point3::origin()).unwrap().distance, 1.0);
+/// let near = QueryOptions::default().with_max_distance(0.5);
+/// assert!(index.closest_point_with(&Point3::origin(), &near).is_none());
+/// ```
+pub trait ClosestPoint<T: Real> {
+    /// Offers to `best` every primitive that could win. `query` is finite.
+    fn search(&self, query: &Point3<T>, best: &mut Best<T>);
+
+    /// The closest point within what `options` ask.
+    fn closest_point_with(&self, query: &Point3<T>, options: &QueryOptions<T>) -> Option<Closest<T>> {
+        if !query.iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        let mut best = Best::new(options);
+        self.search(query, &mut best);
+        best.finish()
+    }
+
+    /// The closest point.
+    fn closest_point(&self, query: &Point3<T>) -> Option<Closest<T>> {
+        self.closest_point_with(query, &QueryOptions::default())
+    }
+
+    /// Answers `queries` one by one into `out`, in their order.
+    ///
+    /// # Panics
+    /// If the slices differ in length.
+    fn closest_points_into(&self, queries: &[Point3<T>], options: &QueryOptions<T>, out: &mut [Option<Closest<T>>]) {
+        assert_eq!(queries.len(), out.len(), "one answer for each query");
+        for (query, answer) in queries.iter().zip(out) {
+            *answer = self.closest_point_with(query, options);
+        }
+    }
+}
+
+/// How an index is built; apart from [`ClosestPoint`] so that the latter stays usable as `dyn`.
+///
+/// ```
+/// use p2m_core::{BruteForce, BuildIndex, ClosestPoint, PrimitiveSet};
+/// use nalgebra::Point3;
+///
+/// fn height<S: PrimitiveSet<f64>, I: BuildIndex<f64, S>>(scene: S) -> Result<Option<f64>, I::Error> {
+///     let index = I::build(scene, &I::Options::default())?;
+///     Ok(index.closest_point(&Point3::new(0.0, 0.0, 10.0)).map(|c| c.distance))
+/// }
+///
+/// let scene = [p2m_core::Point::new(Point3::new(0.0, 0.0, 4.0))];
+/// assert_eq!(height::<_, BruteForce<_>>(&scene).unwrap(), Some(6.0));
+/// ```
+pub trait BuildIndex<T: Real, S: PrimitiveSet<T>>: ClosestPoint<T> + Sized {
+    /// What can be chosen.
+    type Options: Default;
+    /// Why it can fail.
+    type Error: std::error::Error;
+
+    /// Builds the index over `set`.
+    ///
+    /// # Errors
+    /// At least for a coordinate that is not finite and for more primitives than ids.
+    fn build(set: S, options: &Self::Options) -> Result<Self, Self::Error>;
+}

@@ -1,0 +1,162 @@
+//! The one number by which every comparison is decided.
+
+use super::vector::{V3, largest, norm_squared, power_of_two, scale_by_power};
+use std::cmp::Ordering;
+
+/// Squares below 2^-800 and above 2^800 leave the plain tier.
+const TIER_BITS: i32 = 800;
+pub(super) const SQUARE_MIN: f64 = power_of_two(-TIER_BITS);
+const SQUARE_MAX: f64 = power_of_two(TIER_BITS);
+/// Keys of neighbouring tiers differ by this power of two.
+const TIER_SHIFT: i32 = 2 * TIER_BITS;
+
+/// The squared length of the offset from the query to the nearest point, with more range than an f64 has.
+///
+/// It decides between primitives, in pruning and in ties: several squares share one square root, so a tie on
+/// distances is not a tie on keys. A key is a plain square while that lies in [2^-800, 2^800]; tiny and huge
+/// lengths move to a tier of their own, where the square is kept times 2^1600 or 2^-1600. Which tier holds a value
+/// depends on the value alone, and its bits are those of the plain computation, so neither the route by which a key
+/// was found nor the scale of the scene shows in a comparison.
+///
+/// Ordered by value; never NaN.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Key {
+    square: f64,
+    tier: i32,
+}
+
+impl Key {
+    /// Length zero.
+    pub const ZERO: Self = Self { square: 0.0, tier: 0 };
+    /// Longer than every length.
+    pub const INFINITY: Self = Self { square: f64::INFINITY, tier: 1 };
+
+    /// The key of an offset, in units of the scene. A NaN component gives [`Key::INFINITY`]: NaN loses.
+    #[inline]
+    #[must_use]
+    pub fn of_offset(offset: [f64; 3]) -> Self {
+        let square = norm_squared(offset);
+        Self::plain(square).unwrap_or_else(|| Self::of_scaled_offset(offset, 0))
+    }
+
+    /// The key of a square that needs no other tier. `None` for zero as well: a square of zero may be an underflow.
+    #[inline(always)]
+    pub(super) fn plain(square: f64) -> Option<Self> {
+        (SQUARE_MIN..=SQUARE_MAX).contains(&square).then_some(Self { square, tier: 0 })
+    }
+
+    /// The key of `offset` * 2^`exponent`.
+    #[cold]
+    pub(super) fn of_scaled_offset(offset: V3, exponent: i32) -> Self {
+        if !offset.iter().all(|x| x.is_finite()) {
+            return Self::INFINITY;
+        }
+        let size = largest(&[offset]);
+        if size == 0.0 {
+            return Self::ZERO;
+        }
+        let own = super::vector::exponent(size);
+        // In [1, 12), with the rounding that any other power-of-two scale without underflow would give.
+        let square = norm_squared(offset.map(|x| scale_by_power(x, -own)));
+        let shift = 2 * (own + exponent);
+        let tier = match shift + super::vector::exponent(square) {
+            s if s < -TIER_BITS => -1,
+            s if s >= TIER_BITS => 1,
+            _ => 0,
+        };
+        Self { square: scale_by_power(square, shift - tier * TIER_SHIFT), tier }
+    }
+
+    /// The length itself, rounded to nearest: the square root of the key. Infinite when it exceeds every f64.
+    #[inline]
+    #[must_use]
+    pub fn distance(self) -> f64 {
+        let root = self.square.sqrt();
+        if self.tier == 0 { root } else { scale_by_power(root, self.tier * TIER_BITS) }
+    }
+
+    /// A square that is not below the key, for pruning by bounds computed in plain f64: the key itself in the plain
+    /// range, 2^-800 below it (where squares of f64 lose their digits), infinity above it.
+    #[inline]
+    #[must_use]
+    pub fn square_above(self) -> f64 {
+        match self.tier {
+            0 => self.square.max(SQUARE_MIN),
+            1 => f64::INFINITY,
+            _ => SQUARE_MIN,
+        }
+    }
+
+    #[cold]
+    fn compare_tiers(self, other: Self) -> Ordering {
+        match (self.square == 0.0, other.square == 0.0) {
+            (true, true) => Ordering::Equal,
+            (true, false) => Ordering::Less,
+            (false, true) => Ordering::Greater,
+            (false, false) => self.tier.cmp(&other.tier),
+        }
+    }
+}
+
+impl Eq for Key {}
+
+impl PartialOrd for Key {
+    #[inline]
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Key {
+    #[inline]
+    fn cmp(&self, other: &Self) -> Ordering {
+        // Squares are never NaN, and -0.0 cannot arise from a sum of squares.
+        if self.tier == other.tier { self.square.total_cmp(&other.square) } else { self.compare_tiers(*other) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn key(x: f64) -> Key {
+        Key::of_offset([x, 0.0, 0.0])
+    }
+
+    #[test]
+    fn keys_are_ordered_by_length_over_the_whole_range_of_f64() {
+        let mut lengths = vec![0.0, f64::from_bits(1), f64::from_bits(3), f64::MIN_POSITIVE, f64::MAX];
+        lengths.extend((-1070..1023).step_by(7).map(|e| scale_by_power(1.0, e)));
+        lengths.extend([-401, -400, -399, 399, 400, 401].map(|e| 1.1 * power_of_two(e)));
+        lengths.sort_by(f64::total_cmp);
+        for (i, &a) in lengths.iter().enumerate() {
+            assert_eq!(key(a).distance(), a);
+            for (j, &b) in lengths.iter().enumerate() {
+                assert_eq!(key(a).cmp(&key(b)), a.total_cmp(&b), "{a:e} {b:e} {i} {j}");
+            }
+        }
+        assert!(key(f64::MAX) < Key::of_offset([f64::MAX; 3]));
+        assert!(Key::of_offset([f64::MAX; 3]) < Key::INFINITY);
+        assert_eq!(Key::of_offset([f64::MAX; 3]).distance(), f64::INFINITY);
+        assert_eq!(Key::of_offset([f64::NAN, 1.0, 2.0]), Key::INFINITY);
+    }
+
+    #[test]
+    fn a_key_does_not_depend_on_the_scale_it_was_computed_in() {
+        for o in [[0.3, -0.7, 0.1], [1e-9, 1.0, 3.0], [1.0 / 3.0; 3]] {
+            for e in [-1000, -500, -402, -400, -398, -30, 0, 30, 398, 400, 402, 500, 1000] {
+                let scaled = o.map(|x| scale_by_power(x, e));
+                let at_one = Key::of_offset(o);
+                assert_eq!(Key::of_offset(scaled), Key::of_scaled_offset(o, e));
+                assert_eq!(Key::of_offset(scaled).distance(), scale_by_power(at_one.distance(), e));
+            }
+        }
+    }
+
+    #[test]
+    fn the_square_for_pruning_is_never_below_the_key() {
+        for x in [0.0, 1e-320, 1e-170, 1e-100, 1.0, 1e100, 1e170, 1e300] {
+            assert!(key(x).square_above() >= x * x);
+        }
+    }
+}

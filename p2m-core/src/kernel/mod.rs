@@ -1,0 +1,82 @@
+//! The contract kernel: what the distance from a query to a primitive is, bit for bit.
+//!
+//! [`scalar`] is the reference and the finish of every filter; [`key`](Key) is the number by which it compares.
+//! See docs/accuracy.md for the error bound and its proof.
+
+mod double;
+mod key;
+pub(crate) mod scalar;
+pub(crate) mod vector;
+
+pub use key::Key;
+
+use vector::{V3, clamp_between, larger, scale_by_power, smaller};
+
+/// Bound on the error of a distance in units of u M, where M is the largest distance from the query to a vertex of
+/// the primitive: |computed - true| <= `ERROR_CONSTANT` u M + eta. Proved in docs/accuracy.md; the largest error ever
+/// observed is below 2.
+pub const ERROR_CONSTANT: f64 = 8.0;
+
+/// The winner among the features of one primitive.
+#[derive(Clone, Copy)]
+pub(crate) struct Nearest {
+    pub(crate) key: Key,
+    /// From the query to the nearest point, divided by 2^`exponent`.
+    pub(crate) offset: V3,
+    pub(crate) exponent: i32,
+    pub(crate) feature: NearestFeature,
+    /// The largest component of an offset to a vertex.
+    pub(crate) size: f64,
+}
+
+/// The feature that holds the nearest point, with the weights of its vertices.
+#[derive(Clone, Copy)]
+pub(crate) enum NearestFeature {
+    Vertex(usize),
+    /// Edge i, weights of vertices i and i + 1.
+    Edge(usize, [f64; 2]),
+    Face([f64; 3]),
+}
+
+impl Nearest {
+    /// The nearest point of a primitive with these vertices, in its box; a vertex is given verbatim.
+    #[inline(always)]
+    pub(crate) fn point(&self, query: V3, vertices: &[V3]) -> V3 {
+        match self.feature {
+            NearestFeature::Vertex(i) => vertices[i],
+            NearestFeature::Edge(i, _) => {
+                clamp_between(self.landing(query), vertices[i], vertices[(i + 1) % vertices.len()])
+            }
+            NearestFeature::Face(_) => {
+                let x = self.landing(query);
+                std::array::from_fn(|k| {
+                    let low = vertices.iter().fold(f64::INFINITY, |m, v| smaller(v[k], m));
+                    let high = vertices.iter().fold(f64::NEG_INFINITY, |m, v| larger(v[k], m));
+                    larger(smaller(x[k], high), low)
+                })
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn landing(&self, query: V3) -> V3 {
+        if self.exponent == 0 {
+            std::array::from_fn(|k| query[k] + self.offset[k])
+        } else {
+            // At an eighth of the scale nothing overflows, at its own scale nothing is lost to underflow.
+            let offset = self.offset.map(|x| scale_by_power(x, self.exponent));
+            let eighth = self.offset.map(|x| scale_by_power(x, self.exponent - 3));
+            std::array::from_fn(|k| {
+                if offset[k].is_finite() { query[k] + offset[k] } else { (query[k] * 0.125 + eighth[k]) * 8.0 }
+            })
+        }
+    }
+
+    /// How far the computed distance may be from the true one (without eta): `ERROR_CONSTANT` u M, M <= sqrt(3) size.
+    #[inline(always)]
+    pub(crate) fn error(&self) -> f64 {
+        /// Above sqrt(3) 2^-53 by more than the rounding of the product.
+        const SQRT_3_U: f64 = 1.7321 * (f64::EPSILON / 2.0);
+        (ERROR_CONSTANT * SQRT_3_U) * self.size
+    }
+}

@@ -1,0 +1,41 @@
+//! Closest points of scenes made of triangles, segments and points.
+//!
+//! This crate holds what every p2m backend shares: the accuracy contract (stated on [`ClosestPoint`]),
+//! the kernel that keeps it ([`kernel`]), the primitives, the [`Soup`] that mixes them, the running best
+//! ([`Best`]) that decides radius, ties, epsilon and hint in one place, the plain [`BruteForce`] oracle and
+//! the [`hierarchy`] that trees are made of.
+//!
+//! ```
+//! use p2m_core::{BruteForce, ClosestPoint, Feature, Triangle};
+//! use nalgebra::Point3;
+//!
+//! let scene = [Triangle::new(Point3::new(0.0, 0.0, 0.0), Point3::new(2.0, 0.0, 0.0), Point3::new(0.0, 2.0, 0.0))];
+//! let answer = BruteForce::new(&scene).unwrap().closest_point(&Point3::new(0.5, 0.25, 3.0)).unwrap();
+//! assert_eq!(answer.point, Point3::new(0.5, 0.25, 0.0));
+//! assert_eq!(answer.distance, 3.0);
+//! assert_eq!(answer.feature, Feature::Face);
+//! ```
+
+mod aabb;
+mod approximate;
+mod brute_force;
+mod error;
+pub mod hierarchy;
+mod index;
+pub mod kernel;
+mod primitive;
+mod query;
+mod real;
+mod set;
+mod soup;
+
+pub use aabb::Aabb;
+pub use brute_force::BruteForce;
+pub use error::BuildError;
+pub use index::{BuildIndex, ClosestPoint};
+pub use kernel::Key;
+pub use primitive::{Feature, Point, Primitive, Projection, Segment, Shape, Triangle};
+pub use query::{Best, Closest, Collector, QueryOptions};
+pub use real::Real;
+pub use set::{PrimitiveId, PrimitiveSet, check_set};
+pub use soup::{Element, Soup};

@@ -1,0 +1,168 @@
+//! The primitives of a scene, and what a primitive of your own has to bring.
+
+mod point;
+mod segment;
+mod shape;
+mod triangle;
+
+pub use point::Point;
+pub use segment::Segment;
+pub use shape::Shape;
+pub use triangle::Triangle;
+
+use crate::kernel::{Key, Nearest, NearestFeature};
+use crate::real::wide;
+use crate::{Aabb, Real};
+use nalgebra::Point3;
+
+/// The part of a primitive that holds its nearest point; numbered locally to the primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Feature {
+    /// Vertex i.
+    Vertex(u8),
+    /// The inside of edge i, which runs from vertex i to vertex i + 1 (cyclically).
+    Edge(u8),
+    /// The inside of the face.
+    Face,
+}
+
+impl std::fmt::Display for Feature {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Vertex(i) => write!(f, "vertex{i}"),
+            Self::Edge(i) => write!(f, "edge{i}"),
+            Self::Face => f.write_str("face"),
+        }
+    }
+}
+
+/// The nearest point of one primitive, before it is rounded to the scalar of the scene.
+///
+/// Everything is in f64 and in units of the scene, whatever its scalar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projection {
+    /// What decides between primitives: the squared length of the offset from the query.
+    pub key: Key,
+    /// The nearest point.
+    pub point: Point3<f64>,
+    /// The lowest-dimensional feature that holds it.
+    pub feature: Feature,
+    /// Weights of the primitive's vertices, >= 0, adding up to 1 within 4 u; unused ones are 0.
+    pub barycentric: [f64; 3],
+    /// Bound on the error of [`Key::distance`], apart from one smallest subnormal.
+    pub error: f64,
+}
+
+impl Projection {
+    /// A projection for a primitive of your own, from the query and its nearest point.
+    ///
+    /// The key is computed from `point - query`, componentwise, which makes it never less than the lower bound of any
+    /// box that contains `point`. `error` is your bound on how far the distance may be from the true one; certified
+    /// lower bounds are as good as it is.
+    ///
+    /// ```
+    /// use p2m_core::{Feature, Projection};
+    /// use nalgebra::Point3;
+    ///
+    /// let p = Projection::new(&Point3::new(0.0f64, 3.0, 4.0), Point3::origin(), Feature::Face, [1.0, 0.0, 0.0], 0.0);
+    /// assert_eq!(p.key.distance(), 5.0);
+    /// ```
+    #[must_use]
+    pub fn new<T: Real>(
+        query: &Point3<T>,
+        point: Point3<f64>,
+        feature: Feature,
+        barycentric: [f64; 3],
+        error: f64,
+    ) -> Self {
+        let q = wide(query);
+        let key = Key::of_offset(std::array::from_fn(|k| point[k] - q[k]));
+        Self { key, point, feature, barycentric, error }
+    }
+
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "a primitive has at most three vertices")]
+    fn from_nearest(nearest: &Nearest, query: [f64; 3], vertices: &[[f64; 3]]) -> Self {
+        let mut barycentric = [0.0; 3];
+        let feature = match nearest.feature {
+            NearestFeature::Vertex(i) => {
+                barycentric[i] = 1.0;
+                Feature::Vertex(i as u8)
+            }
+            NearestFeature::Edge(i, weights) => {
+                barycentric[i] = weights[0];
+                barycentric[(i + 1) % vertices.len()] = weights[1];
+                Feature::Edge(i as u8)
+            }
+            NearestFeature::Face(weights) => {
+                barycentric = weights;
+                Feature::Face
+            }
+        };
+        let point = Point3::from(nearest.point(query, vertices));
+        Self { key: nearest.key, point, feature, barycentric, error: nearest.error() }
+    }
+}
+
+/// Something that has a nearest point to any query.
+///
+/// [`Point`], [`Segment`], [`Triangle`] and [`Shape`] keep the whole contract of [`ClosestPoint`](crate::ClosestPoint).
+/// For a primitive of your own, every index of this project still finds the primitive of the smallest key, lowest id
+/// first, and agrees bitwise with [`BruteForce`](crate::BruteForce) (N3, and N6 for totality), provided that
+///
+/// - `project` is a pure function that returns for every finite query,
+/// - its point lies in `aabb()`, and its key is made by [`Projection::new`].
+///
+/// N1, N2 and N5 (accuracy) then hold with your own `error` in place of 4 u M, N4 (invariance) as far as your
+/// arithmetic has it.
+///
+/// ```
+/// use p2m_core::{Aabb, BruteForce, ClosestPoint, Feature, Primitive, Projection};
+/// use nalgebra::Point3;
+///
+/// struct Ball { centre: Point3<f64>, radius: f64 }
+///
+/// impl Primitive<f64> for Ball {
+///     fn aabb(&self) -> Aabb<f64> {
+///         let r = nalgebra::Vector3::repeat(self.radius);
+///         Aabb::of_points(&[self.centre - r, self.centre + r])
+///     }
+///     fn project(&self, query: &Point3<f64>) -> Projection {
+///         let v = query - self.centre;
+///         let point = if v.norm() <= self.radius { *query } else { self.centre + v * (self.radius / v.norm()) };
+///         let point = self.aabb().clamp(point);
+///         Projection::new(query, point, Feature::Face, [1.0, 0.0, 0.0], 1e-15 * (v.norm() + self.radius))
+///     }
+/// }
+///
+/// let scene = [Ball { centre: Point3::origin(), radius: 1.0 }, Ball { centre: Point3::new(5.0, 0.0, 0.0), radius: 2.0 }];
+/// let answer = BruteForce::new(&scene).unwrap().closest_point(&Point3::new(2.5, 0.0, 0.0)).unwrap();
+/// assert_eq!(answer.primitive.index(), 1);
+/// ```
+pub trait Primitive<T: Real> {
+    /// The smallest box that holds the primitive; not finite if a coordinate is not.
+    fn aabb(&self) -> Aabb<T>;
+
+    /// The nearest point to a finite query.
+    fn project(&self, query: &Point3<T>) -> Projection;
+
+    /// Whether all coordinates are finite.
+    fn is_finite(&self) -> bool {
+        self.aabb().is_finite()
+    }
+}
+
+impl<T: Real, P: Primitive<T>> Primitive<T> for &P {
+    #[inline(always)]
+    fn aabb(&self) -> Aabb<T> {
+        (*self).aabb()
+    }
+    #[inline(always)]
+    fn project(&self, query: &Point3<T>) -> Projection {
+        (*self).project(query)
+    }
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        (*self).is_finite()
+    }
+}

@@ -1,0 +1,33 @@
+use super::{Primitive, Projection};
+use crate::kernel::scalar;
+use crate::real::wide;
+use crate::{Aabb, Real};
+use nalgebra::Point3;
+
+/// A line segment. Two equal vertices make it a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment<T: Real> {
+    /// Its end points.
+    pub vertices: [Point3<T>; 2],
+}
+
+impl<T: Real> Segment<T> {
+    /// The segment from `a` to `b`.
+    #[must_use]
+    pub fn new(a: Point3<T>, b: Point3<T>) -> Self {
+        Self { vertices: [a, b] }
+    }
+}
+
+impl<T: Real> Primitive<T> for Segment<T> {
+    #[inline(always)]
+    fn aabb(&self) -> Aabb<T> {
+        Aabb::of_points(&self.vertices)
+    }
+
+    #[inline(always)]
+    fn project(&self, query: &Point3<T>) -> Projection {
+        let (q, v) = (wide(query), self.vertices.each_ref().map(wide));
+        Projection::from_nearest(&scalar::segment(q, v), q, &v)
+    }
+}

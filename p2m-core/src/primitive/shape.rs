@@ -1,0 +1,65 @@
+use super::{Point, Primitive, Projection, Segment, Triangle};
+use crate::{Aabb, Real};
+use nalgebra::Point3;
+
+/// One primitive of a mixed scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Shape<T: Real> {
+    /// A point.
+    Point(Point<T>),
+    /// A segment.
+    Segment(Segment<T>),
+    /// A triangle.
+    Triangle(Triangle<T>),
+}
+
+impl<T: Real> Shape<T> {
+    /// The vertices, one to three.
+    #[must_use]
+    pub fn vertices(&self) -> &[Point3<T>] {
+        match self {
+            Self::Point(p) => std::slice::from_ref(&p.position),
+            Self::Segment(s) => &s.vertices,
+            Self::Triangle(t) => &t.vertices,
+        }
+    }
+}
+
+impl<T: Real> Primitive<T> for Shape<T> {
+    #[inline(always)]
+    fn aabb(&self) -> Aabb<T> {
+        match self {
+            Self::Point(p) => p.aabb(),
+            Self::Segment(s) => s.aabb(),
+            Self::Triangle(t) => t.aabb(),
+        }
+    }
+
+    #[inline(always)]
+    fn project(&self, query: &Point3<T>) -> Projection {
+        match self {
+            Self::Point(p) => p.project(query),
+            Self::Segment(s) => s.project(query),
+            Self::Triangle(t) => t.project(query),
+        }
+    }
+}
+
+impl<T: Real> From<Point<T>> for Shape<T> {
+    fn from(point: Point<T>) -> Self {
+        Self::Point(point)
+    }
+}
+
+impl<T: Real> From<Segment<T>> for Shape<T> {
+    fn from(segment: Segment<T>) -> Self {
+        Self::Segment(segment)
+    }
+}
+
+impl<T: Real> From<Triangle<T>> for Shape<T> {
+    fn from(triangle: Triangle<T>) -> Self {
+        Self::Triangle(triangle)
+    }
+}

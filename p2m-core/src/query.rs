@@ -1,0 +1,180 @@
+//! What a query asks and gets, and the running best that decides everything between them.
+
+use crate::real::narrow;
+use crate::{Feature, Key, PrimitiveId, Projection, Real};
+use nalgebra::Point3;
+
+/// What a query may ask beyond the closest point. Built from the default by the `with_` methods.
+///
+/// ```
+/// use p2m_core::QueryOptions;
+///
+/// let options = QueryOptions::default().with_max_distance(2.5f64).with_epsilon(0.01);
+/// assert_eq!(options.max_distance, 2.5);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct QueryOptions<T: Real> {
+    /// Answers farther than this are no answers; the bound is inclusive. Unlimited by default. With a negative or NaN
+    /// bound nothing is near enough.
+    pub max_distance: T,
+    /// A primitive that is probably near: the previous answer along a path, say. It changes the work, never an exact
+    /// answer. Ignored if there is no such primitive.
+    pub hint: Option<PrimitiveId>,
+    /// The reported distance may exceed the true one by this fraction of it: reported <= (1 + epsilon) true, apart from
+    /// rounding (contract N7). 0 by default; a negative or NaN value counts as 0.
+    pub epsilon: T,
+}
+
+impl<T: Real> Default for QueryOptions<T> {
+    fn default() -> Self {
+        Self { max_distance: T::INFINITY, hint: None, epsilon: T::zero() }
+    }
+}
+
+impl<T: Real> QueryOptions<T> {
+    /// With answers up to this distance only.
+    #[must_use]
+    pub fn with_max_distance(self, max_distance: T) -> Self {
+        Self { max_distance, ..self }
+    }
+    /// With a primitive to look at first.
+    #[must_use]
+    pub fn with_hint(self, hint: PrimitiveId) -> Self {
+        Self { hint: Some(hint), ..self }
+    }
+    /// With a relative error that is good enough.
+    #[must_use]
+    pub fn with_epsilon(self, epsilon: T) -> Self {
+        Self { epsilon, ..self }
+    }
+}
+
+/// The answer to a query. Lengths are in units of the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Closest<T: Real> {
+    /// The closest point. It lies in the primitive's box, on a vertex verbatim; how ill-conditioned it is depends on the
+    /// scene, not on the library.
+    pub point: Point3<T>,
+    /// Its distance, from the unrounded offset rather than from `point`.
+    pub distance: T,
+    /// Certified: the true distance of the scene is not below this. Exact answers: `distance` less its error bound.
+    pub lower_bound: T,
+    /// The primitive that holds it; among equally near ones (equal keys) the lowest id.
+    pub primitive: PrimitiveId,
+    /// The part of that primitive that holds it.
+    pub feature: Feature,
+    /// Weights of that primitive's vertices, >= 0, adding up to 1 within 4 u; unused ones are 0.
+    pub barycentric: [T; 3],
+}
+
+/// What a search reports to: it says how far is still of interest and takes candidates.
+///
+/// [`Best`] keeps the single closest one. All primitives within a distance, the k nearest ones and filters by id are
+/// other collectors for the same traversals.
+pub trait Collector {
+    /// The square above which a lower bound is of no interest: skip what lies strictly above it, keep equals. It never
+    /// rises during a search.
+    fn prune_above(&self) -> f64;
+
+    /// Takes a candidate.
+    fn offer(&mut self, id: PrimitiveId, projection: Projection);
+
+    /// Called once for every node of a tree that is visited. Does nothing unless somebody counts.
+    #[inline(always)]
+    fn visit_node(&mut self) {}
+}
+
+/// The running minimum of a search. Radius, ties, epsilon and lower bound are decided here and nowhere else.
+#[derive(Clone, Debug)]
+pub struct Best<T: Real> {
+    options: QueryOptions<T>,
+    /// (1 + epsilon)^-2, rounded down
+    shrink: f64,
+    /// The square that `max_distance` allows, rounded up, after shrinking.
+    prune: f64,
+    best: Option<(PrimitiveId, Projection)>,
+    key: Key,
+    /// The smallest `distance - error` among all candidates.
+    certified: f64,
+}
+
+/// Relative errors of a few roundings are absorbed by this factor: 1 + 16 u of f64.
+const ROUND_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
+const ROUND_DOWN: f64 = 1.0 - 8.0 * f64::EPSILON;
+
+impl<T: Real> Best<T> {
+    /// Nothing found yet.
+    #[must_use]
+    pub fn new(options: &QueryOptions<T>) -> Self {
+        let epsilon = options.epsilon.to_f64();
+        let factor = 1.0 + if epsilon > 0.0 { epsilon } else { 0.0 };
+        let shrink = if factor > 1.0 { ROUND_DOWN / (factor * factor) } else { 1.0 };
+        // A distance rounds to max_distance as long as it is within u of it; then up for the roundings of this line.
+        let radius = options.max_distance.to_f64() * (1.0 + 2.0 * T::UNIT_ROUNDOFF) + T::SMALLEST_SUBNORMAL;
+        let prune = Key::of_offset([radius, 0.0, 0.0]).square_above() * ROUND_UP * shrink;
+        Self { options: *options, shrink, prune, best: None, key: Key::INFINITY, certified: f64::INFINITY }
+    }
+
+    /// The primitive to look at first, if the caller named one and a set of `len` has it.
+    #[must_use]
+    pub fn hint(&self, len: usize) -> Option<PrimitiveId> {
+        self.options.hint.filter(|id| id.index() < len)
+    }
+
+    /// The answer.
+    #[must_use]
+    pub fn finish(self) -> Option<Closest<T>> {
+        let (primitive, p) = self.best?;
+        let distance = T::of_f64(p.key.distance());
+        // NaN is not within any radius.
+        if !(distance <= self.options.max_distance) {
+            return None;
+        }
+        // What was pruned is farther than the bound it was pruned by, the bound itself being within 5 u on the square.
+        let exact = p.key.distance();
+        let pruned = exact * self.shrink.sqrt() * ROUND_DOWN;
+        let bound = if self.certified < pruned { self.certified } else { pruned };
+        // One smallest subnormal for each rounding near zero; an infinite error leaves nothing to certify.
+        let bound = bound * ROUND_DOWN - 2.0 * f64::from_bits(1);
+        let lower_bound = if bound > 0.0 { T::of_f64_below(bound) } else { T::zero() };
+        Some(Closest {
+            point: narrow(p.point.coords.into()),
+            distance,
+            lower_bound,
+            primitive,
+            feature: p.feature,
+            barycentric: p.barycentric.map(T::of_f64),
+        })
+    }
+}
+
+impl<T: Real> Collector for Best<T> {
+    #[inline(always)]
+    fn prune_above(&self) -> f64 {
+        self.prune
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, id: PrimitiveId, projection: Projection) {
+        let p = projection;
+        // Only a candidate within its error of the certified bound can lower it; the square tells most without a root.
+        let reach = self.certified + p.error;
+        if p.key.square_above() * ROUND_DOWN <= reach * reach {
+            let bound = p.key.distance() - p.error;
+            if bound < self.certified {
+                self.certified = bound;
+            }
+        }
+        let closer = p.key < self.key;
+        if closer || (p.key == self.key && self.best.is_some_and(|(held, _)| id < held)) {
+            self.best = Some((id, p));
+            self.key = p.key;
+            let square = p.key.square_above() * self.shrink;
+            if square < self.prune {
+                self.prune = square;
+            }
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! The two scalar types of scenes, f32 and f64.
+//!
+//! Every decision is taken in f64, whatever the scalar of the scene: f32 coordinates convert to f64 exactly,
+//! squares of their differences neither overflow nor underflow there, and the answer is rounded once, at the end.
+//! So there is one kernel, and a new scalar has only to say how it converts.
+
+use nalgebra::{Point3, RealField};
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// Scalar type of coordinates: `f32` or `f64`.
+///
+/// Sealed: the accuracy contract is proved for these two, and its proof needs exact conversion to f64.
+pub trait Real: RealField + Copy + Default + sealed::Sealed {
+    /// Positive infinity.
+    const INFINITY: Self;
+    /// u, half the distance from 1 to the next larger number: 2^-24 for f32, 2^-53 for f64.
+    const UNIT_ROUNDOFF: f64;
+    /// eta, the smallest positive number: 2^-149 for f32, 2^-1074 for f64.
+    const SMALLEST_SUBNORMAL: f64;
+
+    /// Converts to f64, exactly.
+    fn to_f64(self) -> f64;
+    /// Rounds to the nearest number of this type, ties to even.
+    fn of_f64(value: f64) -> Self;
+    /// The largest number of this type that is not above `value`. NaN stays NaN.
+    fn of_f64_below(value: f64) -> Self;
+}
+
+impl Real for f64 {
+    const INFINITY: Self = f64::INFINITY;
+    const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+    const SMALLEST_SUBNORMAL: f64 = 5e-324;
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn of_f64(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn of_f64_below(value: f64) -> Self {
+        value
+    }
+}
+
+impl Real for f32 {
+    const INFINITY: Self = f32::INFINITY;
+    const UNIT_ROUNDOFF: f64 = f32::EPSILON as f64 / 2.0;
+    const SMALLEST_SUBNORMAL: f64 = 1.401_298_464_324_817e-45;
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "rounding to nearest is what this function promises")]
+    fn of_f64(value: f64) -> Self {
+        value as f32
+    }
+    fn of_f64_below(value: f64) -> Self {
+        let nearest = Self::of_f64(value);
+        if f64::from(nearest) > value { nearest.next_down() } else { nearest }
+    }
+}
+
+/// The point as an array of f64, exactly.
+#[inline(always)]
+pub(crate) fn wide<T: Real>(point: &Point3<T>) -> [f64; 3] {
+    [point.x.to_f64(), point.y.to_f64(), point.z.to_f64()]
+}
+
+/// Rounds an array of f64 to the nearest point.
+#[inline(always)]
+pub(crate) fn narrow<T: Real>(point: [f64; 3]) -> Point3<T> {
+    Point3::new(T::of_f64(point[0]), T::of_f64(point[1]), T::of_f64(point[2]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn constants_are_what_they_are_named() {
+        assert_eq!(f64::UNIT_ROUNDOFF, 2f64.powi(-53));
+        assert_eq!(f32::UNIT_ROUNDOFF, 2f64.powi(-24));
+        assert_eq!(<f64 as Real>::SMALLEST_SUBNORMAL, f64::from_bits(1));
+        assert_eq!(<f32 as Real>::SMALLEST_SUBNORMAL, f64::from(f32::from_bits(1)));
+    }
+
+    #[test]
+    fn rounding_down_never_rises() {
+        assert_eq!(f32::of_f64_below(1.0), 1.0);
+        assert_eq!(f32::of_f64_below(1.0 + 1e-9), 1.0);
+        assert_eq!(f32::of_f64_below(1.0 - 1e-9), 1.0f32.next_down());
+        assert_eq!(f32::of_f64_below(1e300), f32::MAX);
+        assert_eq!(f32::of_f64_below(1e-300), 0.0);
+    }
+}

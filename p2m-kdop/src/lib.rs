@@ -1,0 +1,1 @@
+//! k-DOP tree: bounding volumes of K slab directions, following the design of the package of CGAL.
