@@ -1,1 +1,97 @@
+//! What every tree of this project shares: how primitives are split, how nodes are numbered, how they are searched.
+//!
+//! A [`Hierarchy`] is a binary tree over a permutation of the primitives and knows nothing of volumes: an AABB tree
+//! keeps a box beside each node, a k-DOP tree its heights. Searching takes two closures, the lower bound of a node and
+//! the visit of a leaf, and leaves every decision to a [`Collector`](crate::Collector).
 
+mod search;
+mod split;
+
+pub use split::SplitOptions;
+
+use crate::{Aabb, PrimitiveId, Real};
+
+/// A node: a leaf with `count` primitives from place `first`, or, with `count` 0, the parent of nodes `first` and
+/// `first + 1`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Node {
+    first: u32,
+    count: u32,
+}
+
+impl Node {
+    /// The children of an inner node, `None` for a leaf.
+    #[inline(always)]
+    #[must_use]
+    pub fn children(self) -> Option<[usize; 2]> {
+        (self.count == 0).then_some([self.first as usize, self.first as usize + 1])
+    }
+
+    /// The places in [`Hierarchy::order`] of a leaf's primitives; empty for an inner node.
+    #[inline(always)]
+    #[must_use]
+    pub fn places(self) -> std::ops::Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+}
+
+/// A binary tree over a set of primitives. Node 0 is the root; there is none over an empty set.
+///
+/// No node lies deeper than [`Hierarchy::MAX_DEPTH`], whatever the input, so searches keep their stack in an array.
+#[derive(Clone, Debug)]
+pub struct Hierarchy {
+    nodes: Vec<Node>,
+    order: Vec<PrimitiveId>,
+}
+
+impl Hierarchy {
+    /// No node lies deeper below the root than this: splits by cost until half of it, by halving from there on, and
+    /// sets have at most 2^30 primitives.
+    pub const MAX_DEPTH: usize = 96;
+
+    /// Splits primitives with these boxes, which are finite.
+    ///
+    /// # Complexity
+    /// O(n log n) time expected, O(n) memory: at most 2 n - 1 nodes of 8 bytes.
+    #[must_use]
+    pub fn build<T: Real>(boxes: &[Aabb<T>], options: &SplitOptions) -> Self {
+        split::build(boxes, options)
+    }
+
+    /// The nodes, parents before children.
+    #[must_use]
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// The primitives in the order of the leaves.
+    #[must_use]
+    pub fn order(&self) -> &[PrimitiveId] {
+        &self.order
+    }
+
+    /// The volumes of all nodes, bottom-up: `of_primitive` gives a primitive's, `join` that of two together.
+    ///
+    /// # Complexity
+    /// O(n).
+    pub fn volumes<V: Copy>(&self, of_primitive: impl Fn(PrimitiveId) -> V, join: impl Fn(&V, &V) -> V) -> Vec<V> {
+        let mut volumes: Vec<Option<V>> = vec![None; self.nodes.len()];
+        for i in (0..self.nodes.len()).rev() {
+            let node = self.nodes[i];
+            // Children come after their parent, so theirs are there already.
+            volumes[i] = match node.children() {
+                Some([a, b]) => volumes[a].zip(volumes[b]).map(|(a, b)| join(&a, &b)),
+                None => self.order[node.places()].iter().map(|id| of_primitive(*id)).reduce(|a, b| join(&a, &b)),
+            };
+        }
+        volumes.into_iter().map(|v| v.expect("every node has a primitive below it")).collect()
+    }
+
+    /// Heap memory it owns, in bytes.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.nodes.capacity() * size_of::<Node>() + self.order.capacity() * size_of::<PrimitiveId>()
+    }
+}
+
+const _: () = assert!(size_of::<Node>() == 8);
