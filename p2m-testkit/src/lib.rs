@@ -1,1 +1,39 @@
-//! p2m-testkit
+//! What the tests hold p2m against: distances in exact rational arithmetic, families of hard cases, random scenes.
+//!
+//! Not published. Everything random comes from a seed that a failing test prints.
+#![forbid(unsafe_code)]
+#![allow(clippy::missing_panics_doc, reason = "a test kit panics where a test should fail")]
+
+pub mod counting;
+pub mod families;
+pub mod oracle;
+pub mod scenes;
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+/// The generator of case number `case` of the test `name`: cases are independent of each other and of their order.
+#[must_use]
+pub fn rng(name: &str, case: u64) -> ChaCha8Rng {
+    // FNV-1a, so that two tests with the same case number draw different numbers.
+    let name = name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+    let mut seed = [0; 32];
+    seed[..8].copy_from_slice(&name.to_le_bytes());
+    seed[8..16].copy_from_slice(&case.to_le_bytes());
+    ChaCha8Rng::from_seed(seed)
+}
+
+/// The folder of real meshes: `P2M_MODELS`, by default `../shared/models` beside the workspace. `None`, with a message,
+/// where there is none.
+#[must_use]
+pub fn models() -> Option<std::path::PathBuf> {
+    let folder = std::env::var_os("P2M_MODELS").map_or_else(
+        || std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/models"),
+        std::path::PathBuf::from,
+    );
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    eprintln!("skipped: no models in {} (set P2M_MODELS to a folder of meshes)", folder.display());
+    None
+}

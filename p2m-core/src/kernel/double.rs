@@ -44,8 +44,6 @@ fn two_product(a: f64, b: f64) -> Double {
 }
 
 impl Double {
-    pub(super) const ZERO: Self = Self { high: 0.0, low: 0.0 };
-
     /// a - b without error.
     pub(super) fn difference(a: f64, b: f64) -> Self {
         two_sum(a, -b)

@@ -33,6 +33,8 @@ const SLIVER_SINE_SQUARED: f64 = power_of_two(-20);
 /// Triangles whose height is below 2^-57 of their longest edge are their edges: no face point is further from the
 /// edges than that height, which is at most u M / 8.
 const NEEDLE_SINE_SQUARED: f64 = power_of_two(-114);
+/// Weights below 2^-49 may owe their sign to rounding.
+const UNDECIDED_WEIGHT: f64 = power_of_two(-49);
 /// Edges shorter than 2^-100 of the distance to the query are their end points, with an error of 2^-100 M.
 const SPECK: f64 = power_of_two(-100);
 /// Plain arithmetic demands a little more than `SPECK`, so that the two lanes agree on what a speck is.
@@ -116,7 +118,8 @@ fn face_foot(vertices: [V3; 3], lines: &[LineFoot; 3]) -> Option<Foot<3>> {
     let mut along = dot(side, d) * line.inverse;
     let mut height = add_scaled(side, -along, d);
     let mut height_squared = norm_squared(height);
-    if height_squared * line.inverse < SLIVER_SINE_SQUARED {
+    let sliver = height_squared * line.inverse < SLIVER_SINE_SQUARED;
+    if sliver {
         (along, height) = sliver_height(n, f, a);
         height_squared = norm_squared(height);
         if !(height_squared * line.inverse >= NEEDLE_SINE_SQUARED) {
@@ -135,7 +138,8 @@ fn face_foot(vertices: [V3; 3], lines: &[LineFoot; 3]) -> Option<Foot<3>> {
     let wa = wa + step_h;
     let wf = wf + (step_d - along * step_h);
     let wn = (1.0 - wf) - wa;
-    if !(wn > 0.0 && wf > 0.0 && wa > 0.0) {
+    let least = smaller(smaller(wn, wf), wa);
+    if !(least > 0.0) || (least < UNDECIDED_WEIGHT && !sliver && !strictly_inside(n, f, a)) {
         return None;
     }
     let point = add_scaled(add_scaled(point, step_d, d), step_h, height);
@@ -180,6 +184,24 @@ fn sliver_height(n: V3, f: V3, a: V3) -> (f64, V3) {
     (along.round(), std::array::from_fn(|k| (side[k] - along * d[k]).round()))
 }
 
+/// Whether the foot on the face has three positive weights, in double-double: a foot exactly on an edge belongs to the
+/// edge, which rounding of the weights alone would not show.
+#[cold]
+fn strictly_inside(n: V3, f: V3, a: V3) -> bool {
+    let edge = |to: V3| -> [Double; 3] { std::array::from_fn(|k| Double::difference(to[k], n[k])) };
+    let (e, s) = (edge(f), edge(a));
+    let to_query = n.map(|x| Double::difference(0.0, x));
+    let [ee, es, ss] = [double::dot(e, e), double::dot(e, s), double::dot(s, s)];
+    let [qe, qs] = [double::dot(to_query, e), double::dot(to_query, s)];
+    // Cramer's rule; every weight times the determinant.
+    let wf = ss * qe - es * qs;
+    let wa = ee * qs - es * qe;
+    let wn = (ee * ss - es * es) - (wf + wa);
+    // Products of four lengths, of which `e` is the longest edge, with at least 95 good bits.
+    let noise = power_of_two(-95) * ee.round() * (ee.round() + (ee.round() * norm_squared(n)).sqrt());
+    wn.round() > noise && wf.round() > noise && wa.round() > noise
+}
+
 /// Whether the features of these offsets can be computed in plain f64: the largest component `size` and the shortest
 /// edge, given by the inverse of its square, are of ordinary size. A zero edge is not.
 #[inline(always)]
@@ -193,7 +215,7 @@ fn plain_result(square: f64, offset: V3) -> bool {
     square >= SQUARE_MIN || offset == [0.0; 3]
 }
 
-/// The nearest vertex among `vertices` with squared lengths `squares`; ties by lexicographic order.
+/// The nearest of `vertices`, whose offsets have the squared lengths `squares`; ties by lexicographic order.
 #[inline(always)]
 fn nearest_vertex<const N: usize>(vertices: [V3; N], squares: [f64; N]) -> usize {
     let mut best = 0;
@@ -205,6 +227,18 @@ fn nearest_vertex<const N: usize>(vertices: [V3; N], squares: [f64; N]) -> usize
         }
     }
     best
+}
+
+/// Whether edge i goes before a feature with the same key: never before a vertex, and before another edge if its end
+/// points come first in lexicographic order.
+#[cold]
+fn edge_precedes(vertices: &[V3; 3], i: usize, other: NearestFeature) -> bool {
+    let NearestFeature::Edge(j, _) = other else { return false };
+    let sorted = |i: usize| {
+        let [a, b] = EDGES[i].map(|k| vertices[k]);
+        if lexicographically_less(b, a) { [b, a] } else { [a, b] }
+    };
+    sorted(i) < sorted(j)
 }
 
 /// The nearest feature of a single point.
@@ -225,7 +259,7 @@ pub(crate) fn segment(query: V3, vertices: [V3; 2]) -> Nearest {
     let squares = offsets.map(norm_squared);
     let line = line_foot(offsets, squares);
     if plain_scale(size, line.inverse) {
-        let vertex = nearest_vertex(offsets, squares);
+        let vertex = nearest_vertex(vertices, squares);
         let mut best = (squares[vertex], offsets[vertex], NearestFeature::Vertex(vertex));
         if let Some(foot) = line.inside(offsets)
             && foot.square < best.0
@@ -248,11 +282,11 @@ pub(crate) fn triangle(query: V3, vertices: [V3; 3]) -> Nearest {
     let squares = offsets.map(norm_squared);
     let lines = EDGES.map(|[i, j]| line_foot([offsets[i], offsets[j]], [squares[i], squares[j]]));
     if plain_scale(size, larger(larger(lines[0].inverse, lines[1].inverse), lines[2].inverse)) {
-        let vertex = nearest_vertex(offsets, squares);
+        let vertex = nearest_vertex(vertices, squares);
         let mut best = (squares[vertex], offsets[vertex], NearestFeature::Vertex(vertex));
         for (i, [j, k]) in EDGES.into_iter().enumerate() {
             if let Some(foot) = lines[i].inside([offsets[j], offsets[k]])
-                && foot.square < best.0
+                && (foot.square < best.0 || (foot.square == best.0 && edge_precedes(&vertices, i, best.2)))
             {
                 best = (foot.square, foot.offset, NearestFeature::Edge(i, foot.weights));
             }
@@ -313,7 +347,6 @@ fn nearest_vertex_candidate(query: V3, vertices: &[V3], size: f64) -> Nearest {
     let mut at = 0;
     for (i, v) in vertices.iter().enumerate().skip(1) {
         let candidate = vertex_candidate(query, i, *v, size);
-        // The order of the vertices is the order of their offsets, rounding being monotone.
         if candidate.key < best.key || (candidate.key == best.key && lexicographically_less(*v, vertices[at])) {
             (best, at) = (candidate, i);
         }
@@ -362,14 +395,15 @@ fn face_candidate(query: V3, vertices: [V3; 3], size: f64) -> Option<Nearest> {
 fn scaled_triangle(query: V3, vertices: [V3; 3]) -> Nearest {
     let size = size_of(query, &vertices);
     let mut best = nearest_vertex_candidate(query, &vertices, size);
-    let edges = EDGES
-        .into_iter()
-        .enumerate()
-        .filter_map(|(i, [j, k])| edge_candidate(query, i, [vertices[j], vertices[k]], size));
-    for candidate in edges.chain(face_candidate(query, vertices, size)) {
-        if candidate.key < best.key {
-            best = candidate;
+    for (i, [j, k]) in EDGES.into_iter().enumerate() {
+        if let Some(edge) = edge_candidate(query, i, [vertices[j], vertices[k]], size)
+            && (edge.key < best.key || (edge.key == best.key && edge_precedes(&vertices, i, best.feature)))
+        {
+            best = edge;
         }
     }
-    best
+    match face_candidate(query, vertices, size) {
+        Some(face) if face.key < best.key => face,
+        _ => best,
+    }
 }

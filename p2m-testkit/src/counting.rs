@@ -1,0 +1,35 @@
+//! A collector that counts what a search does.
+
+use p2m_core::{Best, Collector, PrimitiveId, Projection, Real};
+
+/// [`Best`] with counters: they are deterministic, so tests can hold a search to them where times only vary.
+#[derive(Clone, Debug)]
+pub struct Counting<T: Real> {
+    /// What decides.
+    pub best: Best<T>,
+    /// Nodes visited.
+    pub nodes: usize,
+    /// Primitives whose kernel ran.
+    pub primitives: usize,
+}
+
+impl<T: Real> Counting<T> {
+    /// Counts from zero around `best`.
+    #[must_use]
+    pub fn new(best: Best<T>) -> Self {
+        Self { best, nodes: 0, primitives: 0 }
+    }
+}
+
+impl<T: Real> Collector for Counting<T> {
+    fn prune_above(&self) -> f64 {
+        self.best.prune_above()
+    }
+    fn offer(&mut self, id: PrimitiveId, projection: Projection) {
+        self.primitives += 1;
+        self.best.offer(id, projection);
+    }
+    fn visit_node(&mut self) {
+        self.nodes += 1;
+    }
+}

@@ -1,0 +1,137 @@
+//! Families of single primitives that break kernels: every scale, offset, sine and query position of the contract.
+
+use rand::{Rng, RngExt};
+
+type V = [f64; 3];
+
+/// One isolated primitive and a query.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Which family it belongs to, for reports.
+    pub family: String,
+    /// The query.
+    pub query: V,
+    /// One to three vertices.
+    pub vertices: Vec<V>,
+}
+
+/// Exponents of the power-of-two scales: from subnormal coordinates to the edge of overflow.
+pub const SCALES: [i32; 9] = [-1070, -1000, -500, -270, 0, 250, 500, 1000, 1020];
+/// Distances of the primitive from the origin, before scaling.
+pub const OFFSETS: [f64; 4] = [0.0, 1e3, 1e8, 1e15];
+/// Sines of the smallest angle.
+pub const SINES: [f64; 8] = [1.0, 1e-2, 1e-3, 1e-4, 1e-8, 1e-12, 1e-15, 0.0];
+
+fn unit(rng: &mut impl Rng) -> V {
+    loop {
+        let v: V = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
+        let n = norm(v);
+        if (0.1..1.0).contains(&n) {
+            return v.map(|x| x / n);
+        }
+    }
+}
+
+fn norm(v: V) -> f64 {
+    (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
+}
+
+fn cross(a: V, b: V) -> V {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn combine<const N: usize>(terms: [(f64, V); N]) -> V {
+    std::array::from_fn(|k| terms.iter().map(|(w, v)| w * v[k]).sum())
+}
+
+fn pick<T: Copy>(rng: &mut impl Rng, from: &[T]) -> T {
+    from[rng.random_range(0..from.len())]
+}
+
+/// A triangle of size about one whose height over its longest side is about `sine` times that side.
+fn triangle(rng: &mut impl Rng, sine: f64) -> [V; 3] {
+    if sine == 0.0 && rng.random_bool(0.5) {
+        // Exactly collinear or with repeated vertices: small integers along one direction.
+        let direction: V = std::array::from_fn(|_| f64::from(rng.random_range(-3..=3)));
+        return std::array::from_fn(|_| direction.map(|x| x * f64::from(rng.random_range(-2..=2))));
+    }
+    let base = unit(rng);
+    let up = loop {
+        let u = cross(base, unit(rng));
+        let n = norm(u);
+        if n > 0.1 {
+            break u.map(|x| x / n);
+        }
+    };
+    let start = unit(rng);
+    let length = 2f64.powf(rng.random_range(-1.0..1.0));
+    let along = rng.random_range(0.0..1.0);
+    let height = sine * rng.random_range(0.3..0.9);
+    let a = start;
+    let b = combine([(1.0, start), (length, base)]);
+    let c = combine([(1.0, start), (length * along, base), (length * height, up)]);
+    // Any vertex may be the apex.
+    let mut t = [a, b, c];
+    t.rotate_left(rng.random_range(0..3));
+    t
+}
+
+/// Case `rng` of all families, with 1 to 3 vertices.
+pub fn case(rng: &mut impl Rng) -> Case {
+    let kinds = rng.random_range(0..10);
+    let count = if kinds == 0 { 1 } else if kinds < 4 { 2 } else { 3 };
+    let sine = pick(rng, &SINES);
+    let scale = if rng.random_bool(0.5) { 0 } else { pick(rng, &SCALES) };
+    let offset = if rng.random_bool(0.5) { 0.0 } else { pick(rng, &OFFSETS) };
+    let shift = unit(rng).map(|x| x * offset);
+    let mut vertices: Vec<V> = triangle(rng, sine)[..count].iter().map(|v| combine([(1.0, *v), (1.0, shift)])).collect();
+    if count == 2 && sine < 1e-3 {
+        // A short segment in place of a flat triangle.
+        vertices[1] = std::array::from_fn(|k| vertices[0][k] + sine * (vertices[1][k] - vertices[0][k]));
+    }
+    let (place, query) = query(rng, &vertices);
+    let factor = |x: f64| if scale >= -500 { x * 2f64.powi(scale) } else { x * 2f64.powi(-500) * 2f64.powi(scale + 500) };
+    // Offsets times the largest scales would overflow: they stay at the edge of the range.
+    let clip = |v: V| v.map(|x| factor(x).clamp(-f64::MAX, f64::MAX));
+    Case {
+        family: format!("{count} vertices, sine {sine:e}, scale 2^{scale}, offset {offset:e}, query {place}"),
+        query: clip(query),
+        vertices: vertices.into_iter().map(clip).collect(),
+    }
+}
+
+fn query(rng: &mut impl Rng, vertices: &[V]) -> (&'static str, V) {
+    let n = vertices.len();
+    let mut weights: Vec<f64> = (0..n).map(|_| rng.random_range(0.0..1.0)).collect();
+    let sum: f64 = weights.iter().sum();
+    weights.iter_mut().for_each(|w| *w /= sum);
+    let weighted = |w: &[f64]| -> V { std::array::from_fn(|k| (0..n).map(|i| w[i] * vertices[i][k]).sum()) };
+    let inside = weighted(&weights);
+    let direction = unit(rng);
+    let (i, j) = (rng.random_range(0..n), rng.random_range(0..n));
+    let t = rng.random_range(0.0..1.0);
+    let on_edge = combine([(1.0 - t, vertices[i]), (t, vertices[j])]);
+    let small = 10f64.powi(-rng.random_range(0..20));
+    match rng.random_range(0..10) {
+        0 => ("on a vertex", vertices[i]),
+        1 => ("on an edge", on_edge),
+        2 => ("in the face", inside),
+        3 => ("near the face", combine([(1.0, inside), (small, direction)])),
+        4 if n == 3 => {
+            let e = |k: usize| std::array::from_fn(|c| vertices[k][c] - vertices[0][c]);
+            let up = cross(e(1), e(2));
+            let length = norm(up).max(f64::MIN_POSITIVE);
+            ("above the face", combine([(1.0, inside), (small / length, up)]))
+        }
+        5 => ("near an edge", combine([(1.0, on_edge), (small, direction)])),
+        6 => {
+            // As far from one vertex as from another, but for rounding.
+            let middle = combine([(0.5, vertices[i]), (0.5, vertices[j])]);
+            let along: V = std::array::from_fn(|k| vertices[j][k] - vertices[i][k]);
+            ("equidistant", combine([(1.0, middle), (1.0, cross(along, direction))]))
+        }
+        7 => ("far", combine([(1.0, inside), (10f64.powi(rng.random_range(1..12)), direction)])),
+        8 => ("near a vertex", combine([(1.0, vertices[i]), (small, direction)])),
+        _ => ("around", combine([(1.0, inside), (2.0, direction)])),
+    }
+}

@@ -1,0 +1,247 @@
+//! Distances in exact rational arithmetic.
+//!
+//! Coordinates are integers in units of a common power of two, so everything up to the squared distance is exact:
+//! a fraction of two integers. Only where a bound on the distance itself is to be checked is its root taken, in fixed
+//! point with at least 60 bits below u M, and rounded so that a check can only be too strict.
+
+use dashu_int::{IBig, UBig, ops::SquareRoot};
+use std::cmp::Ordering;
+
+type V = [IBig; 3];
+
+/// A finite f64 as mantissa and exponent.
+fn decompose(x: f64) -> (i64, i64) {
+    let bits = x.to_bits();
+    let exponent = i64::try_from((bits >> 52) & 0x7ff).expect("eleven bits");
+    let fraction = i64::try_from(bits & ((1 << 52) - 1)).expect("52 bits");
+    let (mantissa, exponent) = if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) };
+    (if x.is_sign_negative() { -mantissa } else { mantissa }, exponent)
+}
+
+/// The exponent of the lowest set bit; a large one for zero.
+fn lowest_bit(x: f64) -> i64 {
+    let (mantissa, exponent) = decompose(x);
+    if mantissa == 0 { 2000 } else { exponent + i64::from(mantissa.trailing_zeros()) }
+}
+
+/// x as a multiple of 2^unit, which must divide it.
+fn integer(x: f64, unit: i64) -> IBig {
+    let (mantissa, exponent) = decompose(x);
+    let shift = exponent - unit;
+    let up = |n: i64| usize::try_from(n).expect("not negative");
+    if shift >= 0 { IBig::from(mantissa) << up(shift) } else { IBig::from(mantissa) >> up(-shift) }
+}
+
+fn sub(a: &V, b: &V) -> V {
+    std::array::from_fn(|k| &a[k] - &b[k])
+}
+
+fn dot(a: &V, b: &V) -> IBig {
+    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
+}
+
+fn cross(a: &V, b: &V) -> V {
+    std::array::from_fn(|k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        &a[i] * &b[j] - &a[j] * &b[i]
+    })
+}
+
+/// A non-negative fraction.
+#[derive(Clone, Debug)]
+struct Fraction {
+    numerator: IBig,
+    denominator: IBig,
+}
+
+impl Fraction {
+    fn cmp(&self, other: &Self) -> Ordering {
+        (&self.numerator * &other.denominator).cmp(&(&other.numerator * &self.denominator))
+    }
+}
+
+/// The exact squared distance from a query to the convex hull of one to three vertices.
+#[derive(Clone, Debug)]
+pub struct Distance {
+    square: Fraction,
+    /// The largest squared distance from the query to a vertex.
+    reach: IBig,
+    /// Lengths are in units of 2^unit.
+    unit: i64,
+}
+
+impl Distance {
+    /// The distance from `query` to the point, segment or triangle of `vertices`, degenerate or not; all finite.
+    #[must_use]
+    pub fn new(query: [f64; 3], vertices: &[[f64; 3]]) -> Self {
+        let unit = vertices.as_flattened().iter().chain(&query).map(|x| lowest_bit(*x)).min().expect("coordinates");
+        let exact = |p: [f64; 3]| p.map(|x| integer(x, unit));
+        let q = exact(query);
+        let offsets: Vec<V> = vertices.iter().map(|v| sub(&exact(*v), &q)).collect();
+        let squares: Vec<IBig> = offsets.iter().map(|v| dot(v, v)).collect();
+        let mut candidates: Vec<Fraction> =
+            squares.iter().map(|s| Fraction { numerator: s.clone(), denominator: IBig::ONE }).collect();
+        let n = offsets.len();
+        let edges = match n {
+            1 => 0,
+            2 => 1,
+            _ => 3,
+        };
+        for i in 0..edges {
+            let (a, b) = (&offsets[i], &offsets[(i + 1) % n]);
+            let d = sub(b, a);
+            let length = dot(&d, &d);
+            let along = -dot(a, &d);
+            if along > IBig::ZERO && along < length {
+                let numerator = &squares[i] * &length - &along * &along;
+                candidates.push(Fraction { numerator, denominator: length });
+            }
+        }
+        if n == 3 {
+            let normal = cross(&sub(&offsets[1], &offsets[0]), &sub(&offsets[2], &offsets[0]));
+            let inside = (0..3).all(|i| {
+                let (a, b) = (&offsets[i], &offsets[(i + 1) % 3]);
+                // The query is the origin: (b - a) x (0 - a) must not point against the normal.
+                dot(&normal, &cross(a, &sub(b, a))) >= IBig::ZERO
+            });
+            let denominator = dot(&normal, &normal);
+            if inside && denominator > IBig::ZERO {
+                let height = dot(&normal, &offsets[0]);
+                candidates.push(Fraction { numerator: &height * &height, denominator });
+            }
+        }
+        let square = candidates.into_iter().min_by(Fraction::cmp).expect("at least one vertex");
+        let reach = squares.into_iter().max().expect("at least one vertex");
+        Self { square, reach, unit }
+    }
+
+    /// Compares two exact distances.
+    #[must_use]
+    pub fn compare(&self, other: &Self) -> Ordering {
+        let unit = self.unit.min(other.unit);
+        let at = |d: &Self| Fraction {
+            numerator: &d.square.numerator << usize::try_from(2 * (d.unit - unit)).expect("not negative"),
+            denominator: d.square.denominator.clone(),
+        };
+        at(self).cmp(&at(other))
+    }
+
+    /// Distance and reach, each rounded down, as multiples of 2^fine.
+    fn fixed(&self, fine: i64) -> (UBig, UBig) {
+        let shift = usize::try_from(2 * (self.unit - fine)).expect("finer than the input");
+        let root = |x: IBig| UBig::try_from(x).expect("squares are not negative").sqrt();
+        let square = (&self.square.numerator << shift) / &self.square.denominator;
+        (root(square), root(&self.reach << shift))
+    }
+
+    /// |computed - true| in units of u M, M being the largest distance from the query to a vertex, after `eta` has been
+    /// taken off; rounded up. Infinite if `computed` is infinite or NaN although the true distance is below 2^1024.
+    ///
+    /// `bits` is 53 for u = 2^-53.
+    #[must_use]
+    pub fn error(&self, computed: f64, bits: u32, eta: f64) -> f64 {
+        self.error_per(computed, bits, eta, false)
+    }
+
+    /// The same in units of u d.
+    #[must_use]
+    pub fn relative_error(&self, computed: f64, bits: u32, eta: f64) -> f64 {
+        self.error_per(computed, bits, eta, true)
+    }
+
+    fn error_per(&self, computed: f64, bits: u32, eta: f64, relative: bool) -> f64 {
+        if !computed.is_finite() {
+            let limit = Self::new([0.0; 3], &[[f64::MAX, 0.0, 0.0]]);
+            return if computed > 0.0 && self.compare(&limit) == Ordering::Greater { 0.0 } else { f64::INFINITY };
+        }
+        let eta = if self.unit < -900 { eta } else { 0.0 };
+        // 2 max(bits, 64) bits below the lowest bit of anything: u M is at least 2^(unit - 53).
+        let fine = self.unit.min(lowest_bit(computed)).min(lowest_bit(eta)) - 160;
+        let (distance, reach) = self.fixed(fine);
+        let computed = integer(computed, fine);
+        let difference = (computed - IBig::from(distance.clone())).into_parts().1 + UBig::ONE;
+        let eta = UBig::try_from(integer(eta, fine)).expect("not negative");
+        if difference <= eta {
+            return 0.0;
+        }
+        let per = if relative { distance } else { reach };
+        if per == UBig::ZERO {
+            return if difference <= UBig::ONE { 0.0 } else { f64::INFINITY };
+        }
+        // In 2^-20 of u M, rounded up.
+        let ratio = ((difference - eta) << (20 + bits as usize)) / per + UBig::ONE;
+        ratio.to_f64().value() / f64::from(1 << 20)
+    }
+
+    /// Whether the true distance is at least `bound`.
+    #[must_use]
+    pub fn is_at_least(&self, bound: f64) -> bool {
+        if bound <= 0.0 {
+            return true;
+        }
+        self.compare(&Self::new([0.0; 3], &[[bound, 0.0, 0.0]])) != Ordering::Less
+    }
+
+    /// The largest distance from the query to a vertex, rounded to f64.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        let (_, reach) = self.fixed(self.unit - 64);
+        let bits = i32::try_from(self.unit - 64).expect("small");
+        // Two steps, so that neither factor leaves the range of f64.
+        let value = UBig::from(reach.clone() >> reach.bit_len_excess()).to_f64().value();
+        let exponent = bits + i32::try_from(reach.bit_len_excess()).expect("small");
+        value * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2)
+    }
+}
+
+/// How many low bits a number has beyond 64.
+trait BitLenExcess {
+    fn bit_len_excess(&self) -> usize;
+}
+
+impl BitLenExcess for UBig {
+    fn bit_len_excess(&self) -> usize {
+        use dashu_int::ops::BitTest;
+        self.bit_len().saturating_sub(64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const T: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+
+    fn is(query: [f64; 3], vertices: &[[f64; 3]], expected: f64) -> bool {
+        Distance::new(query, vertices).relative_error(expected, 53, 0.0) < 1e-5
+    }
+
+    #[test]
+    fn closed_forms() {
+        assert!(is([1.0, 1.0, -7.0], &T, 7.0));
+        assert!(is([-3.0, -4.0, 0.0], &T, 5.0));
+        assert!(is([2.0, -3.0, 4.0], &T, 5.0));
+        assert!(!is([5.0, 5.0, 0.0], &T, 0.0));
+        // The root of 8 is no f64: its rounding is seen, and is within half an ulp.
+        assert!((0.1..1.0).contains(&Distance::new([4.0, 4.0, 0.0], &T).relative_error(8f64.sqrt(), 53, 0.0)));
+        assert!(is([1.0, 5.0, 0.0], &T[..2], 5.0));
+        assert!(is([7.0, 4.0, 0.0], &T[..2], 5.0));
+        assert!(is([3e-300, 4e-300 - 4e-300, 0.0], &T[..1], 3e-300));
+        assert!(is([0.0, 0.0, -1e308], &T, 1e308));
+        let flat = [[0.0; 3], [1.0, 1.0, 1.0], [3.0, 3.0, 3.0]];
+        assert!(is([4.0, 3.0, 3.0], &flat, 1.0));
+    }
+
+    #[test]
+    fn errors_are_measured_in_units_of_u_m() {
+        let d = Distance::new([0.0, 0.0, 1.0], &T);
+        let one_off = 1.0 + f64::EPSILON;
+        // M = sqrt(17), u = eps / 2
+        let expected = 2.0 / 17f64.sqrt();
+        assert!((d.error(one_off, 53, 0.0) - expected).abs() < 1e-5);
+        assert_eq!(d.error(f64::NAN, 53, 0.0), f64::INFINITY);
+        assert_eq!(d.error(f64::INFINITY, 53, 0.0), f64::INFINITY);
+        assert!((d.reach() - 17f64.sqrt()).abs() < 1e-14);
+        assert!(d.is_at_least(1.0) && !d.is_at_least(one_off));
+    }
+}

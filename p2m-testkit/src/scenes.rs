@@ -1,0 +1,137 @@
+//! Random scenes and queries for tests that hold backends against each other.
+
+use nalgebra::Point3;
+use p2m_core::{Element, Soup};
+use rand::{Rng, RngExt};
+
+/// Which primitives a random scene has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kinds {
+    /// Points only.
+    Points,
+    /// Segments only.
+    Segments,
+    /// Triangles only.
+    Triangles,
+    /// All three, in random order.
+    Mixed,
+}
+
+/// All of them.
+pub const KINDS: [Kinds; 4] = [Kinds::Points, Kinds::Segments, Kinds::Triangles, Kinds::Mixed];
+
+/// How coordinates are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// Uniform in a cube, primitives of any size.
+    Uniform,
+    /// Small primitives strewn over a cube.
+    Strewn,
+    /// A small integer lattice: ties, duplicates and degenerate primitives are common.
+    Lattice,
+    /// A curved grid with shared vertices: most nearest features are shared.
+    Sheet,
+    /// Sizes over ten orders of magnitude.
+    Sizes,
+    /// Far from the origin.
+    Far,
+}
+
+/// All of them.
+pub const LAYOUTS: [Layout; 6] =
+    [Layout::Uniform, Layout::Strewn, Layout::Lattice, Layout::Sheet, Layout::Sizes, Layout::Far];
+
+/// Positions and elements of a random scene with up to `len` primitives.
+pub fn scene(rng: &mut impl Rng, kinds: Kinds, layout: Layout, len: usize) -> (Vec<[f64; 3]>, Vec<Element>) {
+    let mut positions: Vec<[f64; 3]> = Vec::new();
+    let mut corners: Vec<[u32; 3]> = Vec::new();
+    if layout == Layout::Sheet {
+        let side = len.isqrt().max(2);
+        for i in 0..side {
+            for j in 0..side {
+                let (x, y) = (i as f64 / 4.0, j as f64 / 4.0);
+                positions.push([x, y, (x * 1.3).sin() * (y * 0.7).cos()]);
+            }
+        }
+        let at = |i: usize, j: usize| u32::try_from(i * side + j).expect("small");
+        for i in 0..side - 1 {
+            for j in 0..side - 1 {
+                corners.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+                corners.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+            }
+        }
+        corners.truncate(len);
+    } else {
+        let far = if layout == Layout::Far { [9e4, 4.4e5, -1e6] } else { [0.0; 3] };
+        for _ in 0..len {
+            let centre: [f64; 3] = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
+            let size = match layout {
+                Layout::Uniform => 1.0,
+                Layout::Sizes => 10f64.powf(rng.random_range(-10.0..0.0)),
+                _ => 0.05,
+            };
+            let first = u32::try_from(positions.len()).expect("small");
+            for _ in 0..3 {
+                positions.push(if layout == Layout::Lattice {
+                    std::array::from_fn(|_| f64::from(rng.random_range(0..4)))
+                } else {
+                    std::array::from_fn(|k| far[k] + centre[k] + size * rng.random_range(-1.0..1.0))
+                });
+            }
+            corners.push([first, first + 1, first + 2]);
+        }
+    }
+    let elements = corners
+        .into_iter()
+        .map(|[a, b, c]| {
+            let kind = match kinds {
+                Kinds::Points => 0,
+                Kinds::Segments => 1,
+                Kinds::Triangles => 2,
+                Kinds::Mixed => rng.random_range(0..3),
+            };
+            match kind {
+                0 => Element::Point(a),
+                1 => Element::Segment([a, b]),
+                _ => Element::Triangle([a, b, c]),
+            }
+        })
+        .collect();
+    (positions, elements)
+}
+
+/// The scene as a soup of f64.
+pub fn soup(rng: &mut impl Rng, kinds: Kinds, layout: Layout, len: usize) -> Soup<f64> {
+    let (positions, elements) = scene(rng, kinds, layout, len);
+    Soup::new(positions.into_iter().map(Point3::from).collect(), elements).expect("random scenes are valid")
+}
+
+/// The same soup in f32.
+#[must_use]
+#[allow(clippy::cast_possible_truncation, reason = "rounding to f32 is what is asked for")]
+pub fn narrow(soup: &Soup<f64>) -> Soup<f32> {
+    let positions = soup.positions().iter().map(|p| p.map(|x| x as f32)).collect();
+    Soup::new(positions, soup.elements()).expect("coordinates of random scenes fit f32")
+}
+
+/// A query around a scene: on a position, between two, near, uniform in the box, on a half-integer lattice, or far.
+pub fn query(rng: &mut impl Rng, positions: &[Point3<f64>]) -> Point3<f64> {
+    let any = |rng: &mut dyn FnMut(usize) -> usize| positions[rng(positions.len())];
+    let mut choose = |n: usize| rng.random_range(0..n);
+    if positions.is_empty() {
+        return Point3::origin();
+    }
+    let (a, b) = (any(&mut choose), any(&mut choose));
+    let noise = |rng: &mut dyn FnMut() -> f64, size: f64| nalgebra::Vector3::from_fn(|_, _| size * rng());
+    let mut uniform = || rng.random_range(-1.0..1.0);
+    let kind = (uniform() * 4.0 + 4.0) as usize;
+    match kind {
+        0 => a,
+        1 => a + (b - a) * 0.5,
+        2 => a + noise(&mut uniform, 1e-3),
+        3 => a + noise(&mut uniform, 1e-9),
+        4 => a + noise(&mut uniform, 1e5),
+        5 => (a + noise(&mut uniform, 2.0)).map(|x| (2.0 * x).round() / 2.0),
+        _ => a + (b - a) * uniform() + noise(&mut uniform, 0.5),
+    }
+}

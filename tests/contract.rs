@@ -1,0 +1,340 @@
+//! The accuracy contract (N1, N4, N5, N6 of `ClosestPoint`) on isolated primitives, against exact rational arithmetic.
+//!
+//! Isolated, because in a mesh the neighbours hide the errors of a kernel. A failure prints the seed of its case.
+#![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
+#![allow(clippy::cast_possible_truncation, reason = "rounding to f32 is meant")]
+
+use nalgebra::Point3;
+use p2m::{Closest, ClosestPoint, Feature, Point, Primitive, PrimitiveSet, Projection, QueryOptions, Real, Segment, Triangle};
+use p2m::{BruteForce, Key, Shape};
+use p2m_testkit::families::{self, Case};
+use p2m_testkit::{oracle::Distance, rng};
+
+/// Largest error ever observed must stay below this many u M; `ERROR_CONSTANT` is what is proved.
+const OBSERVED: f64 = 4.0;
+
+fn shape<T: Real>(vertices: &[[T; 3]]) -> Shape<T> {
+    match *vertices {
+        [a] => Point::new(a.into()).into(),
+        [a, b] => Segment::new(a.into(), b.into()).into(),
+        [a, b, c] => Triangle::new(a.into(), b.into(), c.into()).into(),
+        _ => unreachable!("one to three vertices"),
+    }
+}
+
+fn project<T: Real>(query: [T; 3], vertices: &[[T; 3]]) -> Projection {
+    shape(vertices).project(&query.into())
+}
+
+fn answer<T: Real>(query: [T; 3], vertices: &[[T; 3]]) -> Closest<T> {
+    BruteForce::new([shape(vertices)]).expect("finite").closest_point(&query.into()).expect("one primitive")
+}
+
+fn case(name: &str, seed: u64) -> Case {
+    families::case(&mut rng(name, seed))
+}
+
+/// The case in f32, if its coordinates survive the conversion.
+fn narrow(case: &Case) -> Option<([f32; 3], Vec<[f32; 3]>)> {
+    let all = |v: [f64; 3]| v.map(|x| x as f32);
+    let (q, v) = (all(case.query), case.vertices.iter().map(|v| all(*v)).collect::<Vec<_>>());
+    (q.iter().chain(v.as_flattened()).all(|x| x.is_finite())).then_some((q, v))
+}
+
+fn widen(v: [f32; 3]) -> [f64; 3] {
+    v.map(f64::from)
+}
+
+/// Fails with everything one needs to reproduce a case.
+macro_rules! require {
+    ($condition:expr, $seed:expr, $case:expr, $($detail:tt)+) => {
+        assert!($condition, "seed {}: {}\n{:?}", $seed, format_args!($($detail)+), $case);
+    };
+}
+
+/// N1, N5 and the certified bound for one answer; everything in f64 except the roundings of `T`.
+fn check_answer<T: Real>(seed: u64, case: &Case, query: [f64; 3], vertices: &[[f64; 3]], found: &Closest<T>) -> f64 {
+    let bits = if T::UNIT_ROUNDOFF == f64::UNIT_ROUNDOFF { 53 } else { 24 };
+    let exact = Distance::new(query, vertices);
+    let distance = found.distance.to_f64();
+    let eta = T::SMALLEST_SUBNORMAL;
+    if distance == f64::INFINITY {
+        let limit = if bits == 53 { f64::MAX } else { f64::from(f32::MAX) };
+        require!(exact.is_at_least(limit), seed, case, "N1: infinite below the range of the scalar");
+        return 0.0;
+    }
+    let error = exact.error(distance, bits, eta);
+    require!(error <= OBSERVED, seed, case, "N1: error of {error} u M");
+    if vertices.len() == 1 {
+        let relative = exact.relative_error(distance, bits, eta);
+        require!(relative <= 4.0, seed, case, "N1: relative error of {relative} u for a point");
+    }
+    let lower = found.lower_bound.to_f64();
+    require!(lower <= distance && exact.is_at_least(lower), seed, case, "N7: lower bound {lower:e} of {distance:e}");
+
+    let point: [f64; 3] = found.point.map(Real::to_f64).coords.into();
+    for k in 0..3 {
+        let low = vertices.iter().map(|v| v[k]).fold(f64::INFINITY, f64::min);
+        let high = vertices.iter().map(|v| v[k]).fold(f64::NEG_INFINITY, f64::max);
+        require!((low..=high).contains(&point[k]), seed, case, "N5: point outside the box on axis {k}");
+    }
+    let weights = found.barycentric.map(Real::to_f64);
+    let sum: f64 = weights.iter().sum();
+    require!(weights.iter().all(|w| *w >= 0.0), seed, case, "negative weights {weights:?}");
+    require!((sum - 1.0).abs() <= 4.0 * T::UNIT_ROUNDOFF, seed, case, "weights {weights:?} add up to {sum}");
+    let used = match found.feature {
+        Feature::Vertex(i) => {
+            require!(point == vertices[usize::from(i)], seed, case, "N5: vertex {i} is not answered verbatim");
+            1
+        }
+        Feature::Edge(_) => 2,
+        Feature::Face => 3,
+    };
+    require!(weights.iter().filter(|w| **w > 0.0).count() <= used, seed, case, "{:?}: {weights:?}", found.feature);
+
+    // N5: how far the point is from the primitive it should lie on.
+    let off = Distance::new(point, vertices);
+    let reach = exact.reach();
+    let slack = 4.0 * query.iter().fold(0.0, |m: f64, x| m.max(x.abs())) + 8.0 * reach;
+    let slack = slack * T::UNIT_ROUNDOFF + 2.0 * eta;
+    if slack.is_finite() {
+        // "At most the slack" is "not at least the next larger number".
+        require!(!off.is_at_least(slack.next_up()), seed, case, "N5: point off the primitive by more than {slack:e}");
+    }
+    error
+}
+
+#[test]
+fn n1_n5_hold_for_every_family_in_f64() {
+    let mut worst = (0.0, 0);
+    for seed in 0..400_000 {
+        let case = case("contract f64", seed);
+        let found = answer(case.query, &case.vertices);
+        let error = check_answer(seed, &case, case.query, &case.vertices, &found);
+        if error > worst.0 {
+            worst = (error, seed);
+        }
+    }
+    println!("400000 cases in f64, largest error {:.3} u M (seed {})", worst.0, worst.1);
+}
+
+#[test]
+fn n1_n5_hold_for_every_family_in_f32() {
+    let mut worst = (0.0, 0);
+    let mut count = 0;
+    for seed in 0..300_000 {
+        let case = case("contract f32", seed);
+        let Some((query, vertices)) = narrow(&case) else { continue };
+        let found = answer(query, &vertices);
+        let wide: Vec<_> = vertices.iter().map(|v| widen(*v)).collect();
+        let error = check_answer(seed, &case, widen(query), &wide, &found);
+        count += 1;
+        if error > worst.0 {
+            worst = (error, seed);
+        }
+    }
+    println!("{count} cases in f32, largest error {:.3} u M (seed {})", worst.0, worst.1);
+    assert!(count > 150_000, "most families fit f32: {count}");
+}
+
+/// Scaling by 2^e changes nothing but the exponents, as long as everything stays normal.
+#[test]
+fn n4_scaling_by_powers_of_two_changes_no_bit() {
+    let normal = |x: f64| x == 0.0 || x.is_normal();
+    let mut compared = 0;
+    for seed in 0..60_000 {
+        let mut case = case("contract scaling", seed);
+        // Bring the case to scale one, whatever family it is from.
+        let size = case.vertices.as_flattened().iter().chain(&case.query).fold(0.0, |m: f64, x| m.max(x.abs()));
+        if !size.is_normal() {
+            continue;
+        }
+        let to_one = size.log2().floor() as i32;
+        let scale = |v: [f64; 3], e: i32| v.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
+        case.query = scale(case.query, -to_one);
+        case.vertices = case.vertices.iter().map(|v| scale(*v, -to_one)).collect();
+        let here = answer(case.query, &case.vertices);
+        for e in [-900, -510, -300, -251, -249, -40, 1, 40, 248, 252, 300, 510, 900] {
+            let query = scale(case.query, e);
+            let vertices: Vec<_> = case.vertices.iter().map(|v| scale(*v, e)).collect();
+            let there = answer(query, &vertices);
+            let results = there.point.iter().chain([&there.distance]).chain(&there.barycentric);
+            let inputs = query.iter().chain(vertices.as_flattened()).chain(case.query.iter()).chain(case.vertices.as_flattened());
+            if !results.chain(inputs).all(|x| normal(*x)) {
+                continue;
+            }
+            compared += 1;
+            let expected = scale([here.distance, 0.0, 0.0], e)[0];
+            require!(there.distance == expected, seed, case, "2^{e}: distance {:e}, not {expected:e}", there.distance);
+            require!(there.feature == here.feature, seed, case, "2^{e}: {:?}, not {:?}", there.feature, here.feature);
+            let point: [f64; 3] = here.point.coords.into();
+            require!(there.point == scale(point, e).into(), seed, case, "2^{e}: another point");
+            require!(there.barycentric == here.barycentric, seed, case, "2^{e}: other weights");
+        }
+    }
+    assert!(compared > 300_000, "{compared}");
+}
+
+#[test]
+fn n4_the_order_of_vertices_changes_no_bit() {
+    for seed in 0..100_000 {
+        let case = case("contract permutation", seed);
+        let here = answer(case.query, &case.vertices);
+        let n = case.vertices.len();
+        let permutations: &[[usize; 3]] = &[[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
+        for p in permutations.iter().filter(|p| p[n..].iter().all(|i| *i >= n)) {
+            let vertices: Vec<_> = p[..n].iter().map(|i| case.vertices[*i]).collect();
+            let there = answer(case.query, &vertices);
+            require!(there.distance == here.distance, seed, case, "{p:?}: {:e}, not {:e}", there.distance, here.distance);
+            require!(there.point == here.point, seed, case, "{p:?}: {} is not {}", there.point, here.point);
+        }
+    }
+}
+
+/// K1: values of vertices and edges are the same bits in every primitive that contains them.
+#[test]
+fn shared_features_have_the_same_key_in_every_primitive() {
+    let mut faces = 0;
+    for seed in 0..200_000 {
+        let case = case("contract features", seed);
+        let [a, b, c] = case.vertices[..] else { continue };
+        let triangle = project(case.query, &[a, b, c]);
+        let edges = [[a, b], [b, c], [c, a]].map(|e| project(case.query, &e).key);
+        let points = [a, b, c].map(|v| project(case.query, &[v]).key);
+        let least = |keys: &[Key]| *keys.iter().min().expect("three keys");
+        let expected = match triangle.feature {
+            Feature::Vertex(i) => points[usize::from(i)],
+            Feature::Edge(i) => edges[usize::from(i)],
+            Feature::Face => triangle.key,
+        };
+        faces += usize::from(triangle.feature == Feature::Face);
+        require!(triangle.key == expected, seed, case, "key of {:?} differs", triangle.feature);
+        require!(triangle.key <= least(&edges), seed, case, "an edge is nearer");
+        require!(least(&edges) <= least(&points), seed, case, "a vertex is nearer");
+    }
+    assert!(faces > 10_000, "{faces}");
+}
+
+#[test]
+fn a_point_is_a_degenerate_segment_and_a_degenerate_triangle() {
+    for seed in 0..100_000 {
+        let case = case("contract degenerate", seed);
+        let (q, v) = (case.query, case.vertices[0]);
+        let one = project(q, &[v]);
+        for same in [vec![v; 2], vec![v; 3]] {
+            let other = project(q, &same);
+            require!(other.key == one.key && other.point == one.point, seed, case, "{same:?}");
+        }
+        if let [a, b, ..] = case.vertices[..] {
+            let segment = project(q, &[a, b]);
+            for flat in [[a, b, a], [a, b, b], [b, a, a], [a, a, b]] {
+                let other = project(q, &flat);
+                require!(other.key == segment.key && other.point == segment.point, seed, case, "{flat:?}");
+            }
+        }
+    }
+}
+
+/// All triangles on a 3x3x3 lattice with all queries on it, in integers.
+#[test]
+fn every_triangle_of_a_small_lattice_is_answered_exactly() {
+    let lattice: Vec<[f64; 3]> =
+        (0..27).map(|i| [f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9)]).collect();
+    let mut worst = 0.0f64;
+    let mut count = 0;
+    for i in 0..27 {
+        for j in i..27 {
+            for k in j..27 {
+                let t = [lattice[i], lattice[j], lattice[k]];
+                for q in &lattice {
+                    count += 1;
+                    let found = answer(*q, &t);
+                    let exact = Distance::new(*q, &t);
+                    worst = worst.max(exact.error(found.distance, 53, 0.0));
+                    // Squares of these distances are fractions with small denominators: a wrong region would be off by
+                    // a hundredth at least, so the nearest feature of exact arithmetic must have been found.
+                    let feature: Vec<[f64; 3]> = match found.feature {
+                        Feature::Vertex(v) => vec![t[usize::from(v)]],
+                        Feature::Edge(e) => vec![t[usize::from(e)], t[(usize::from(e) + 1) % 3]],
+                        Feature::Face => t.to_vec(),
+                    };
+                    assert!(Distance::new(*q, &feature).compare(&exact).is_eq(), "{q:?} {t:?} {:?}", found.feature);
+                    let lower: Vec<Vec<[f64; 3]>> = match found.feature {
+                        Feature::Vertex(_) => vec![],
+                        Feature::Edge(_) => t.iter().map(|v| vec![*v]).collect(),
+                        Feature::Face => (0..3).map(|e| vec![t[e], t[(e + 1) % 3]]).collect(),
+                    };
+                    for f in lower {
+                        assert!(Distance::new(*q, &f).compare(&exact).is_gt(), "{q:?} {t:?}: {f:?} holds the point");
+                    }
+                    // Moving everything by integers, mirroring and turning it moves nothing else.
+                    let moved = |v: [f64; 3]| [v[0] + 1048576.0, v[1] - 4096.0, v[2] + 3.0];
+                    let turned = |v: [f64; 3]| [2.0 - v[1], v[2], v[0]];
+                    assert_eq!(answer(moved(*q), &t.map(moved)).distance, found.distance);
+                    let other = answer(turned(*q), &t.map(turned)).distance;
+                    assert!(exact.error(other, 53, 0.0) <= OBSERVED, "{q:?} {t:?}");
+                }
+            }
+        }
+    }
+    println!("{count} lattice queries, largest error {worst:.3} u M");
+    assert_eq!(count, 27 * 3654);
+    assert!(worst <= OBSERVED);
+}
+
+/// The examples that others got wrong, by name.
+#[test]
+fn known_failures_of_other_projects_are_answered() {
+    // A unit triangle and a query at 1e-170 from its corner: squares underflow.
+    let t = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let d = answer([-1e-170, -1e-170, 0.0], &t).distance;
+    assert!((d / 1e-170 - 2f64.sqrt()).abs() < 1e-15, "{d:e}");
+    // Coordinates at both ends of the range: the difference overflows, the distance does not.
+    let ends = [[-f64::MAX, 0.0, 0.0], [f64::MAX, 0.0, 0.0]];
+    let found = answer([f64::MAX, 3e300, 0.0], &ends);
+    assert_eq!(found.distance, 3e300);
+    let found = answer([1e307, 3e300, 0.0], &ends);
+    assert!((found.distance / 3e300 - 1.0).abs() < 1e-3 || found.distance <= 4.0 * f64::EPSILON * f64::MAX);
+    assert!(found.point.iter().all(|x| x.is_finite()));
+    // No representable distance: infinite, but the primitive is still the nearer one.
+    let far = [Point::new(Point3::new(f64::MAX, f64::MAX, f64::MAX)), Point::new(Point3::new(f64::MAX, f64::MAX, 0.0))];
+    let index = BruteForce::new(far).expect("finite");
+    let found = index.closest_point(&Point3::new(-f64::MAX, -f64::MAX, 0.0)).expect("not empty");
+    assert_eq!((found.distance, found.primitive.index()), (f64::INFINITY, 1));
+    // A collinear triangle is its edges.
+    let flat = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [3.0, 3.0, 3.0]];
+    assert_eq!(answer([4.0, 3.0, 3.0], &flat).distance, 1.0);
+}
+
+#[test]
+fn n6_queries_that_are_not_finite_have_no_answer() {
+    let index = BruteForce::new([shape(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])]).expect("finite");
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for axis in 0..3 {
+            let mut q = Point3::new(1.0, 2.0, 3.0);
+            q[axis] = bad;
+            assert_eq!(index.closest_point(&q), None);
+        }
+    }
+    let none = BruteForce::new(Vec::<Shape<f64>>::new()).expect("empty sets are fine");
+    assert_eq!(none.closest_point(&Point3::origin()), None);
+    let set: &dyn Fn() -> usize = &|| PrimitiveSet::<f64>::len(&Vec::<Shape<f64>>::new());
+    assert_eq!(set(), 0);
+}
+
+#[test]
+fn the_radius_is_inclusive_on_the_reported_distance() {
+    for seed in 0..50_000 {
+        let case = case("contract radius", seed);
+        let index = BruteForce::new([shape(&case.vertices)]).expect("finite");
+        let q = Point3::from(case.query);
+        let found = index.closest_point(&q).expect("one primitive");
+        let at = |r: f64| index.closest_point_with(&q, &QueryOptions::default().with_max_distance(r));
+        require!(at(found.distance) == Some(found), seed, case, "lost at its own distance {:e}", found.distance);
+        if found.distance > 0.0 {
+            let below = found.distance.next_down();
+            require!(at(below).is_none(), seed, case, "found beyond {below:e}");
+        }
+        require!(at(f64::NAN).is_none() && at(-1.0).is_none(), seed, case, "no radius at all");
+    }
+}
