@@ -1,0 +1,376 @@
+//! Every backend against brute force, bit for bit (N3), and sets against the exact oracle (N2, N7).
+//!
+//! One generic suite; a new backend adds a line to `backends!`.
+#![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
+
+use nalgebra::Point3;
+use p2m::{
+    AabbTree, Best, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Feature, Key, Point, Primitive,
+    PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment, Shape, Soup, Triangle,
+};
+use p2m_testkit::counting::Counting;
+use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};
+use p2m_testkit::{oracle::Distance, rng};
+use rand::RngExt;
+use std::fmt::Debug;
+
+/// Runs a generic test for every exact backend, each with both scalars.
+macro_rules! backends {
+    ($($name:ident: $index:ident),+ $(,)?) => {
+        $(mod $name {
+            use super::*;
+
+            #[test]
+            fn agrees_on_random_scenes_in_f64() {
+                for (seed, soup) in random_soups("f64") {
+                    agrees::<f64, &Soup<f64>, $index<f64, _>>(seed, &soup, &queries(seed, &soup));
+                }
+            }
+
+            #[test]
+            fn agrees_on_random_scenes_in_f32() {
+                for (seed, soup) in random_soups("f32") {
+                    let queries: Vec<_> = queries(seed, &soup).into_iter().map(to_f32).collect();
+                    agrees::<f32, &Soup<f32>, $index<f32, _>>(seed, &scenes::narrow(&soup), &queries);
+                }
+            }
+
+            #[test]
+            fn agrees_on_homogeneous_slices() {
+                for (seed, soup) in random_soups("slices") {
+                    let queries = queries(seed, &soup);
+                    let triangles: Vec<Triangle<f64>> = soup.triangles().iter().map(|t| Triangle { vertices: corners(&soup, t) }).collect();
+                    let segments: Vec<Segment<f64>> = soup.segments().iter().map(|s| Segment { vertices: corners(&soup, s) }).collect();
+                    let points: Vec<Point<f64>> = soup.points().iter().map(|p| Point::new(soup.positions()[*p as usize])).collect();
+                    agrees::<f64, &[Triangle<f64>], $index<f64, _>>(seed, &triangles[..], &queries);
+                    agrees::<f64, &[Segment<f64>], $index<f64, _>>(seed, &segments[..], &queries);
+                    agrees::<f64, &[Point<f64>], $index<f64, _>>(seed, &points[..], &queries);
+                }
+            }
+
+            #[test]
+            fn agrees_at_extreme_scales() {
+                for (seed, soup) in random_soups("scales") {
+                    let e = [-1060, -1000, -600, -400, 400, 600, 1000, 1021][seed as usize % 8];
+                    let scale = |p: &Point3<f64>| p.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
+                    let queries: Vec<_> = queries(seed, &soup).iter().map(scale).filter(|q| q.iter().all(|x| x.is_finite())).collect();
+                    let Ok(soup) = Soup::new(soup.positions().iter().map(scale).collect(), soup.elements()) else { continue };
+                    agrees::<f64, &Soup<f64>, $index<f64, _>>(seed, &soup, &queries);
+                }
+            }
+
+            #[test]
+            fn bad_and_tiny_sets_have_stated_answers() {
+                stated_answers::<$index<f64, Vec<Shape<f64>>>>();
+            }
+
+            #[test]
+            fn thousands_of_identical_triangles_are_answered_with_the_first() {
+                let t = Triangle::new(Point3::new(0.0, 0.0, 0.0), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0));
+                let index = <$index<f64, _>>::build(vec![t; 10_000], &Default::default()).expect("finite");
+                for q in [Point3::new(0.2, 0.2, 1.0), Point3::new(-1.0, -1.0, 0.0), Point3::new(1e9, 3.0, 0.0)] {
+                    assert_eq!(index.closest_point(&q).map(|c| c.primitive), Some(PrimitiveId::new(0)));
+                }
+            }
+
+            #[test]
+            fn adversarial_depth_is_survived() {
+                // Centres and sizes in geometric progression.
+                let points: Vec<Point<f64>> = (-1000..1000).map(|e| Point::new(Point3::new(2f64.powi(e), -2f64.powi(e / 2), 0.0))).collect();
+                let queries: Vec<_> = points.iter().step_by(7).map(|p| p.position * 1.3).collect();
+                agrees::<f64, &[Point<f64>], $index<f64, _>>(0, &points[..], &queries);
+            }
+
+            #[test]
+            fn a_primitive_of_ones_own_agrees() {
+                let balls: Vec<Ball> = (0..200).map(|i| {
+                    let mut r = rng("balls", i);
+                    Ball { centre: Point3::from(std::array::from_fn(|_| r.random_range(-5.0..5.0))), radius: r.random_range(0.0..1.0) }
+                }).collect();
+                let queries: Vec<_> = (0..300).map(|i| {
+                    let mut r = rng("ball queries", i);
+                    Point3::from(std::array::from_fn(|_| r.random_range(-9.0..9.0)))
+                }).collect();
+                agrees::<f64, &[Ball], $index<f64, _>>(0, &balls[..], &queries);
+            }
+        })+
+    };
+}
+
+/// `BruteForce` with the type parameters that the other backends have.
+type Brute<T, S> = BruteForceOf<T, S>;
+
+backends! { aabb: AabbTree, brute: Brute }
+
+/// Brute force takes no scalar; this gives it one, so that the suite is tested on itself.
+struct BruteForceOf<T, S>(BruteForce<S>, std::marker::PhantomData<T>);
+
+impl<T: Real, S: PrimitiveSet<T>> ClosestPoint<T> for BruteForceOf<T, S> {
+    fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
+        self.0.search(query, best);
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>> BuildIndex<T, S> for BruteForceOf<T, S> {
+    type Options = ();
+    type Error = BuildError;
+    fn build(set: S, _: &()) -> Result<Self, BuildError> {
+        Ok(Self(BruteForce::new(set)?, std::marker::PhantomData))
+    }
+}
+
+/// A user's primitive.
+struct Ball {
+    centre: Point3<f64>,
+    radius: f64,
+}
+
+impl Primitive<f64> for Ball {
+    fn aabb(&self) -> p2m::Aabb<f64> {
+        let r = nalgebra::Vector3::repeat(self.radius);
+        p2m::Aabb::of_points(&[self.centre - r, self.centre + r])
+    }
+    fn project(&self, query: &Point3<f64>) -> p2m::Projection {
+        let v = query - self.centre;
+        let outside = v.norm() > self.radius;
+        let point = if outside { self.centre + v * (self.radius / v.norm()) } else { *query };
+        let error = 1e-14 * (v.norm() + self.radius);
+        p2m::Projection::new(query, self.aabb().clamp(point), Feature::Face, [1.0, 0.0, 0.0], error)
+    }
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "rounding to f32 is meant")]
+fn to_f32(p: Point3<f64>) -> Point3<f32> {
+    p.map(|x| x as f32)
+}
+
+fn corners<const N: usize>(soup: &Soup<f64>, indices: &[u32; N]) -> [Point3<f64>; N] {
+    indices.map(|i| soup.positions()[i as usize])
+}
+
+/// Random scenes of every kind and layout, of sizes from none to several hundred.
+fn random_soups(name: &'static str) -> impl Iterator<Item = (u64, Soup<f64>)> {
+    (0..240).map(move |seed| {
+        let mut rng = rng(name, seed);
+        let kinds = KINDS[seed as usize % 4];
+        let layout = LAYOUTS[seed as usize / 4 % 6];
+        let len = [0, 1, 2, 5, 30, 300, 700][rng.random_range(0..7)];
+        (seed, scenes::soup(&mut rng, kinds, layout, len))
+    })
+}
+
+fn queries(seed: u64, soup: &Soup<f64>) -> Vec<Point3<f64>> {
+    let mut rng = rng("queries", seed);
+    (0..60).map(|_| scenes::query(&mut rng, soup.positions())).collect()
+}
+
+fn agrees<T: Real, S: PrimitiveSet<T> + Copy, I: BuildIndex<T, S>>(seed: u64, set: S, queries: &[Point3<T>])
+where
+    I::Error: Debug,
+{
+    let brute = BruteForce::new(set).expect("valid scene");
+    let index = I::build(set, &I::Options::default()).expect("valid scene");
+    let mut rng = rng("options", seed);
+    // Everything but the certified bound, which depends on what was evaluated, is the same.
+    let without_bound = |c: Option<Closest<T>>| c.map(|c| (c.point, c.distance, c.primitive, c.feature, c.barycentric));
+    let mut batch = vec![None; queries.len()];
+    index.closest_points_into(queries, &QueryOptions::default(), &mut batch);
+    for (i, q) in queries.iter().enumerate() {
+        let expected = brute.closest_point(q);
+        let say = || format!("seed {seed}, query {i} {q:?}");
+        let found = index.closest_point(q);
+        assert_eq!(without_bound(found), without_bound(expected), "{}", say());
+        assert_eq!(found, batch[i], "{}: batch", say());
+        let (Some(found), Some(expected)) = (found, expected) else {
+            assert_eq!(set.len(), 0, "{}", say());
+            continue;
+        };
+        assert!(found.lower_bound <= found.distance, "{}", say());
+        // A hint, good or bad or out of range, changes nothing.
+        let hint = PrimitiveId::new(rng.random_range(0..set.len() + 1));
+        let hinted = index.closest_point_with(q, &QueryOptions::default().with_hint(hint));
+        assert_eq!(without_bound(hinted), without_bound(Some(expected)), "{}: hint {hint}", say());
+        // A radius changes whether, not what.
+        let at = |r: T| index.closest_point_with(q, &QueryOptions::default().with_max_distance(r));
+        assert_eq!(without_bound(at(found.distance)), without_bound(Some(expected)), "{}: at its distance", say());
+        let factor = T::of_f64(rng.random_range(0.0..2.0));
+        let limited = at(found.distance * factor);
+        let within = found.distance <= found.distance * factor;
+        assert_eq!(without_bound(limited), without_bound(Some(expected)).filter(|_| within), "{}: radius", say());
+        // Epsilon bounds the distance.
+        let epsilon = [0.001, 0.1, 3.0][rng.random_range(0..3)];
+        let rough = index.closest_point_with(q, &QueryOptions::default().with_epsilon(T::of_f64(epsilon))).expect("found");
+        let (rough_distance, distance) = (rough.distance.to_f64(), expected.distance.to_f64());
+        let slack = 1.0 + 8.0 * T::UNIT_ROUNDOFF;
+        assert!(rough_distance >= distance, "{}: epsilon {epsilon}", say());
+        assert!(
+            rough_distance <= distance * (1.0 + epsilon) * slack + T::SMALLEST_SUBNORMAL,
+            "{}: epsilon {epsilon}: {rough_distance:e}, not {distance:e}",
+            say()
+        );
+        assert!(rough.lower_bound <= expected.distance, "{}: epsilon {epsilon}", say());
+    }
+}
+
+fn stated_answers<I: BuildIndex<f64, Vec<Shape<f64>>, Error = BuildError>>()
+where
+    I::Options: Default,
+{
+    let build = |set: Vec<Shape<f64>>| I::build(set, &I::Options::default());
+    let segment = |a: f64, b: f64| Shape::from(Segment::new(Point3::new(a, 0.0, 0.0), Point3::new(b, 0.0, 0.0)));
+    // Empty.
+    let index = build(vec![]).expect("an empty scene is a scene");
+    assert_eq!(index.closest_point(&Point3::origin()), None);
+    // One primitive.
+    let index = build(vec![segment(0.0, 2.0)]).expect("finite");
+    let found = index.closest_point(&Point3::new(1.0, 3.0, 4.0)).expect("there is one");
+    assert_eq!((found.distance, found.feature, found.barycentric), (5.0, Feature::Edge(0), [0.5, 0.5, 0.0]));
+    // Queries that are not finite.
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert_eq!(index.closest_point(&Point3::new(0.0, bad, 0.0)), None);
+    }
+    // Coordinates that are not finite, anywhere.
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for at in 0..3 {
+            let mut set = vec![segment(0.0, 1.0), segment(1.0, 2.0), segment(2.0, 3.0)];
+            set[at] = segment(5.0, bad);
+            let error = build(set).err();
+            assert_eq!(error, Some(BuildError::NonFinite { id: PrimitiveId::new(at) }), "{bad} at {at}");
+        }
+    }
+    // Ties: the lowest id, wherever it lies in the tree.
+    let set: Vec<_> = (0..100).map(|i| segment(f64::from(i % 10), f64::from(i % 10))).collect();
+    let index = build(set).expect("finite");
+    for i in 0..10 {
+        let found = index.closest_point(&Point3::new(f64::from(i), 0.0, 1.0)).expect("not empty");
+        assert_eq!(found.primitive.index(), usize::try_from(i).expect("small"));
+    }
+    // The mismatch of slices is the one documented panic.
+    let mut out = [None; 2];
+    let short = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+        index.closest_points_into(&[Point3::origin()], &QueryOptions::default(), &mut out);
+    }));
+    assert!(short.is_err());
+}
+
+/// N2 and N7 of whole scenes, against the nearest primitive of exact arithmetic.
+#[test]
+fn the_returned_primitive_is_nearest_within_rounding() {
+    let mut wrong = 0;
+    let mut cases = 0;
+    for seed in 0..200 {
+        let mut rng = rng("identity", seed);
+        let (kinds, layout) = (KINDS[seed as usize % 4], LAYOUTS[seed as usize / 4 % 6]);
+        let soup = scenes::soup(&mut rng, kinds, layout, 25);
+        let index = AabbTree::build(&soup, &Default::default()).expect("valid");
+        for i in 0..20 {
+            let q = scenes::query(&mut rng, soup.positions());
+            let found = index.closest_point(&q).expect("not empty");
+            let exact: Vec<Distance> = (0..soup.len())
+                .map(|i| {
+                    let shape = soup.get(PrimitiveId::new(i));
+                    let vertices: Vec<[f64; 3]> = shape.vertices().iter().map(|v| v.coords.into()).collect();
+                    Distance::new(q.coords.into(), &vertices)
+                })
+                .collect();
+            let nearest = (0..exact.len()).min_by(|a, b| exact[*a].compare(&exact[*b])).expect("not empty");
+            let returned = &exact[found.primitive.index()];
+            let say = || format!("seed {seed}, query {i}");
+            // N1 for the scene: one side by the returned primitive's M, the other by the nearest one's.
+            assert!(returned.error(found.distance, 53, 0.0) <= 4.0, "{}: N1", say());
+            assert!(exact.iter().all(|d| d.is_at_least(found.lower_bound)), "{}: N7", say());
+            if returned.compare(&exact[nearest]).is_gt() {
+                wrong += 1;
+                let slack = 4.0 * f64::EPSILON / 2.0 * (returned.reach() + exact[nearest].reach());
+                let allowed = (found.distance - 2.0 * slack).max(0.0);
+                assert!(exact[nearest].is_at_least(allowed), "{}: N2", say());
+            }
+            cases += 1;
+        }
+    }
+    println!("{cases} queries, {wrong} answered with a primitive that is farther by rounding");
+    assert!(wrong < cases / 50, "{wrong} of {cases}");
+}
+
+/// Permuting, duplicating and adding far geometry does what it should.
+#[test]
+fn scenes_can_be_permuted_duplicated_and_extended() {
+    for seed in 0..60 {
+        let mut rng = rng("metamorphic", seed);
+        let soup = scenes::soup(&mut rng, KINDS[seed as usize % 4], LAYOUTS[seed as usize / 4 % 6], 80);
+        let elements: Vec<_> = soup.elements().collect();
+        let mut order: Vec<usize> = (0..elements.len()).collect();
+        for i in (1..order.len()).rev() {
+            order.swap(i, rng.random_range(0..=i));
+        }
+        let of = |elements: Vec<_>| Soup::new(soup.positions().to_vec(), elements).expect("valid");
+        let shuffled = of(order.iter().map(|i| elements[*i]).collect());
+        let doubled = of(elements.iter().chain(&elements).copied().collect());
+        let mut with_far = soup.positions().to_vec();
+        with_far.push(Point3::new(1e9, 1e9, 1e9));
+        let far = u32::try_from(with_far.len() - 1).expect("small");
+        let extended = Soup::new(with_far, elements.iter().copied().chain([p2m::Element::Point(far)])).expect("valid");
+        let build = |soup| AabbTree::build(soup, &Default::default()).expect("valid");
+        let [plain, shuffled, doubled, extended] = [&soup, &shuffled, &doubled, &extended].map(build);
+        for _ in 0..40 {
+            let q = scenes::query(&mut rng, soup.positions());
+            let a = plain.closest_point(&q).expect("not empty");
+            let b = shuffled.closest_point(&q).expect("not empty");
+            assert_eq!(a.distance, b.distance, "seed {seed}: permuted");
+            let key = |e: usize| soup.get(PrimitiveId::new(e)).project(&q).key;
+            assert_eq!(key(order[b.primitive.index()]), key(a.primitive.index()), "seed {seed}: permuted, another key");
+            let c = doubled.closest_point(&q).expect("not empty");
+            assert_eq!((c.distance, c.point, c.primitive), (a.distance, a.point, a.primitive), "seed {seed}: doubled");
+            let d = extended.closest_point(&q).expect("not empty");
+            if a.distance < 1e8 {
+                assert_eq!((d.distance, d.point, d.primitive), (a.distance, a.point, a.primitive), "seed {seed}: extended");
+            }
+        }
+    }
+}
+
+/// The bound of a box never exceeds the key of what is in it: pruning without slack rests on this.
+#[test]
+fn box_bounds_never_exceed_the_keys_inside() {
+    for seed in 0..300_000 {
+        let case = p2m_testkit::families::case(&mut rng("bounds", seed));
+        let vertices: Vec<Point3<f64>> = case.vertices.iter().map(|v| Point3::from(*v)).collect();
+        let shape: Shape<f64> = match vertices[..] {
+            [a] => Point::new(a).into(),
+            [a, b] => Segment::new(a, b).into(),
+            _ => Triangle::new(vertices[0], vertices[1], vertices[2]).into(),
+        };
+        let q = Point3::from(case.query);
+        let key: Key = shape.project(&q).key;
+        let bound = shape.aabb().lower_bound(&q);
+        assert!(bound <= key.square_above(), "seed {seed}: {bound:e} > {key:?}\n{case:?}");
+    }
+}
+
+/// Work is bounded: lost pruning or a lost best-so-far would show here first.
+#[test]
+fn searches_visit_few_nodes() {
+    let mut rng = rng("counters", 0);
+    let soup = scenes::soup(&mut rng, Kinds::Triangles, Layout::Sheet, 20_000);
+    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let (mut nodes, mut primitives, mut hinted) = (0, 0, 0);
+    for _ in 0..1000 {
+        let i = rng.random_range(0..soup.positions().len());
+        let q = soup.positions()[i] + nalgebra::Vector3::new(0.01, 0.02, 0.3);
+        let mut counting = Counting::<f64>::new(Best::new(&QueryOptions::default()));
+        tree.visit(&q, &mut counting);
+        nodes += counting.nodes;
+        primitives += counting.primitives;
+        let found = counting.best.finish().expect("not empty");
+        // With the answer known from the start, less is left to visit.
+        let mut best = Best::<f64>::new(&QueryOptions::default());
+        best.offer(found.primitive, soup.get(found.primitive).project(&q));
+        let mut counting = Counting::new(best);
+        tree.visit(&q, &mut counting);
+        hinted += counting.nodes;
+    }
+    println!("per query: {} nodes, {} primitives; with the answer as hint {} nodes", nodes / 1000, primitives / 1000, hinted / 1000);
+    assert!(nodes <= 60_000, "{nodes}");
+    assert!(primitives <= 20_000, "{primitives}");
+    assert!(hinted < nodes, "{hinted}");
+}
