@@ -46,9 +46,8 @@ impl<T: Real, S: PrimitiveSet<T>> AabbTree<T, S> {
 
     #[inline(always)]
     fn offer<C: Collector>(&self, query: &Point3<T>, id: PrimitiveId, collector: &mut C) {
-        let primitive = self.set.get(id);
-        if primitive.aabb().lower_bound(query) <= collector.prune_above() {
-            collector.offer(id, primitive.project(query));
+        if let Some(projection) = self.set.get(id).project_within(query, collector.prune_above()) {
+            collector.offer(id, projection);
         }
     }
 }

@@ -128,8 +128,9 @@ impl<T: Real> Best<T> {
     pub fn finish(self) -> Option<Closest<T>> {
         let (primitive, p) = self.best?;
         let distance = T::of_f64(p.key.distance());
-        // NaN is not within any radius.
-        if !(distance <= self.options.max_distance) {
+        // Nothing is within a radius of NaN.
+        let within = distance <= self.options.max_distance;
+        if !within {
             return None;
         }
         // What was pruned is farther than the bound it was pruned by, the bound itself being within 5 u on the square.

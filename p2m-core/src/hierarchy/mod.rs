@@ -72,19 +72,26 @@ impl Hierarchy {
 
     /// The volumes of all nodes, bottom-up: `of_primitive` gives a primitive's, `join` that of two together.
     ///
+    /// # Panics
+    /// Never: every leaf has a primitive.
+    ///
     /// # Complexity
     /// O(n).
-    pub fn volumes<V: Copy>(&self, of_primitive: impl Fn(PrimitiveId) -> V, join: impl Fn(&V, &V) -> V) -> Vec<V> {
-        let mut volumes: Vec<Option<V>> = vec![None; self.nodes.len()];
-        for i in (0..self.nodes.len()).rev() {
-            let node = self.nodes[i];
-            // Children come after their parent, so theirs are there already.
-            volumes[i] = match node.children() {
-                Some([a, b]) => volumes[a].zip(volumes[b]).map(|(a, b)| join(&a, &b)),
-                None => self.order[node.places()].iter().map(|id| of_primitive(*id)).reduce(|a, b| join(&a, &b)),
-            };
+    pub fn volumes<V: Clone>(&self, of_primitive: impl Fn(PrimitiveId) -> V, join: impl Fn(&V, &V) -> V) -> Vec<V> {
+        // From the last node to the first, so that children come before their parents: node i lands at `last - i`.
+        let last = self.nodes.len().wrapping_sub(1);
+        let mut volumes: Vec<V> = Vec::with_capacity(self.nodes.len());
+        for node in self.nodes.iter().rev() {
+            volumes.push(match node.children() {
+                Some([a, b]) => join(&volumes[last - a], &volumes[last - b]),
+                None => {
+                    let all = self.order[node.places()].iter().map(|id| of_primitive(*id));
+                    all.reduce(|a, b| join(&a, &b)).expect("every leaf has a primitive")
+                }
+            });
         }
-        volumes.into_iter().map(|v| v.expect("every node has a primitive below it")).collect()
+        volumes.reverse();
+        volumes
     }
 
     /// Heap memory it owns, in bytes.

@@ -22,7 +22,7 @@ impl Hierarchy {
         if self.nodes.is_empty() {
             return;
         }
-        let mut stack = [(0.0f64, 0u32); Self::MAX_DEPTH];
+        let mut stack = [(0.0f64, 0usize); Self::MAX_DEPTH];
         let mut waiting = 0;
         let mut at = 0;
         loop {
@@ -35,7 +35,7 @@ impl Hierarchy {
                 let limit = collector.prune_above();
                 if far_bound <= limit {
                     // One entry for each level above, at most.
-                    stack[waiting] = (far_bound, u32::try_from(far).expect("nodes are numbered by u32"));
+                    stack[waiting] = (far_bound, far);
                     waiting += 1;
                 }
                 if near_bound <= limit {
@@ -56,7 +56,7 @@ impl Hierarchy {
                 waiting -= 1;
                 let (bound, node) = stack[waiting];
                 if bound <= limit {
-                    at = node as usize;
+                    at = node;
                     break;
                 }
             }

@@ -3,14 +3,19 @@
 //! [`scalar`] is the reference and the finish of every filter; [`key`](Key) is the number by which it compares.
 //! See docs/accuracy.md for the error bound and its proof.
 
+#![allow(clippy::float_cmp, reason = "ties are equality of bits, and are decided here")]
+
 mod double;
 mod key;
+mod line;
+mod plane;
 pub(crate) mod scalar;
+mod scaled;
 pub(crate) mod vector;
 
 pub use key::Key;
 
-use vector::{V3, clamp_between, larger, scale_by_power, smaller};
+use vector::{V3, bounds, clamp, scale_by_power};
 
 /// Bound on the error of a distance in units of u M, where M is the largest distance from the query to a vertex of
 /// the primitive: |computed - true| <= `ERROR_CONSTANT` u M + eta. Proved in docs/accuracy.md; the largest error ever
@@ -41,19 +46,16 @@ pub(crate) enum NearestFeature {
 impl Nearest {
     /// The nearest point of a primitive with these vertices, in its box; a vertex is given verbatim.
     #[inline(always)]
-    pub(crate) fn point(&self, query: V3, vertices: &[V3]) -> V3 {
+    pub(crate) fn point<const N: usize>(&self, query: V3, vertices: &[V3; N]) -> V3 {
         match self.feature {
             NearestFeature::Vertex(i) => vertices[i],
             NearestFeature::Edge(i, _) => {
-                clamp_between(self.landing(query), vertices[i], vertices[(i + 1) % vertices.len()])
+                let [low, high] = bounds(&[vertices[i], vertices[(i + 1) % N]]);
+                clamp(self.landing(query), low, high)
             }
             NearestFeature::Face(_) => {
-                let x = self.landing(query);
-                std::array::from_fn(|k| {
-                    let low = vertices.iter().fold(f64::INFINITY, |m, v| smaller(v[k], m));
-                    let high = vertices.iter().fold(f64::NEG_INFINITY, |m, v| larger(v[k], m));
-                    larger(smaller(x[k], high), low)
-                })
+                let [low, high] = bounds(vertices);
+                clamp(self.landing(query), low, high)
             }
         }
     }
@@ -61,7 +63,7 @@ impl Nearest {
     #[inline(always)]
     fn landing(&self, query: V3) -> V3 {
         if self.exponent == 0 {
-            std::array::from_fn(|k| query[k] + self.offset[k])
+            [query[0] + self.offset[0], query[1] + self.offset[1], query[2] + self.offset[2]]
         } else {
             // At an eighth of the scale nothing overflows, at its own scale nothing is lost to underflow.
             let offset = self.offset.map(|x| scale_by_power(x, self.exponent));

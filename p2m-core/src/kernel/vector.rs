@@ -21,6 +21,17 @@ pub(crate) fn norm_squared(a: V3) -> f64 {
     dot(a, a)
 }
 
+#[inline(always)]
+pub(crate) fn add(a: V3, b: V3) -> V3 {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// s a + t b
+#[inline(always)]
+pub(crate) fn combine(s: f64, a: V3, t: f64, b: V3) -> V3 {
+    [s * a[0] + t * b[0], s * a[1] + t * b[1], s * a[2] + t * b[2]]
+}
+
 /// a + s b
 #[inline(always)]
 pub(crate) fn add_scaled(a: V3, s: f64, b: V3) -> V3 {
@@ -38,10 +49,24 @@ pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// `x` moved into the box of `a` and `b`, componentwise.
+/// `x` moved into the box from `low` to `high`.
 #[inline(always)]
-pub(crate) fn clamp_between(x: V3, a: V3, b: V3) -> V3 {
-    std::array::from_fn(|k| larger(smaller(x[k], larger(a[k], b[k])), smaller(a[k], b[k])))
+pub(crate) fn clamp(x: V3, low: V3, high: V3) -> V3 {
+    let one = |k: usize| larger(smaller(x[k], high[k]), low[k]);
+    [one(0), one(1), one(2)]
+}
+
+/// The corners of the smallest box around some vectors.
+#[inline(always)]
+pub(crate) fn bounds<const N: usize>(vectors: &[V3; N]) -> [V3; 2] {
+    let (mut low, mut high) = (vectors[0], vectors[0]);
+    for v in &vectors[1..] {
+        for k in 0..3 {
+            low[k] = smaller(v[k], low[k]);
+            high[k] = larger(v[k], high[k]);
+        }
+    }
+    [low, high]
 }
 
 /// The largest magnitude of any component; components are never NaN.

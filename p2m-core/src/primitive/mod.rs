@@ -82,7 +82,7 @@ impl Projection {
 
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "a primitive has at most three vertices")]
-    fn from_nearest(nearest: &Nearest, query: [f64; 3], vertices: &[[f64; 3]]) -> Self {
+    fn from_nearest<const N: usize>(nearest: &Nearest, query: [f64; 3], vertices: &[[f64; 3]; N]) -> Self {
         let mut barycentric = [0.0; 3];
         let feature = match nearest.feature {
             NearestFeature::Vertex(i) => {
@@ -91,7 +91,7 @@ impl Projection {
             }
             NearestFeature::Edge(i, weights) => {
                 barycentric[i] = weights[0];
-                barycentric[(i + 1) % vertices.len()] = weights[1];
+                barycentric[(i + 1) % N] = weights[1];
                 Feature::Edge(i as u8)
             }
             NearestFeature::Face(weights) => {
@@ -146,11 +146,22 @@ pub trait Primitive<T: Real> {
     /// The nearest point to a finite query.
     fn project(&self, query: &Point3<T>) -> Projection;
 
+    /// The nearest point, or `None` if its key certainly exceeds `square`: a search passes what it would prune above,
+    /// and a primitive that can tell cheaply saves the work. `project` by default.
+    #[inline]
+    fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
+        let _ = square;
+        Some(self.project(query))
+    }
+
     /// Whether all coordinates are finite.
     fn is_finite(&self) -> bool {
         self.aabb().is_finite()
     }
 }
+
+/// Nothing is beyond an infinite bound.
+const UNBOUNDED: &str = "no key exceeds infinity";
 
 impl<T: Real, P: Primitive<T>> Primitive<T> for &P {
     #[inline(always)]
@@ -160,6 +171,10 @@ impl<T: Real, P: Primitive<T>> Primitive<T> for &P {
     #[inline(always)]
     fn project(&self, query: &Point3<T>) -> Projection {
         (*self).project(query)
+    }
+    #[inline(always)]
+    fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
+        (*self).project_within(query, square)
     }
     #[inline(always)]
     fn is_finite(&self) -> bool {

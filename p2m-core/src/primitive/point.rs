@@ -1,4 +1,4 @@
-use super::{Primitive, Projection};
+use super::{Primitive, Projection, UNBOUNDED};
 use crate::kernel::scalar;
 use crate::real::wide;
 use crate::{Aabb, Real};
@@ -29,7 +29,12 @@ impl<T: Real> Primitive<T> for Point<T> {
     /// The distance has a relative error of at most 4 u (+ eta).
     #[inline(always)]
     fn project(&self, query: &Point3<T>) -> Projection {
+        self.project_within(query, f64::INFINITY).expect(UNBOUNDED)
+    }
+
+    #[inline(always)]
+    fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
         let (q, v) = (wide(query), wide(&self.position));
-        Projection::from_nearest(&scalar::point(q, v), q, &[v])
+        Some(Projection::from_nearest(&scalar::point(q, v, square)?, q, &[v]))
     }
 }

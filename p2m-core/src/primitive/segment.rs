@@ -1,4 +1,4 @@
-use super::{Primitive, Projection};
+use super::{Primitive, Projection, UNBOUNDED};
 use crate::kernel::scalar;
 use crate::real::wide;
 use crate::{Aabb, Real};
@@ -27,7 +27,12 @@ impl<T: Real> Primitive<T> for Segment<T> {
 
     #[inline(always)]
     fn project(&self, query: &Point3<T>) -> Projection {
-        let (q, v) = (wide(query), self.vertices.each_ref().map(wide));
-        Projection::from_nearest(&scalar::segment(q, v), q, &v)
+        self.project_within(query, f64::INFINITY).expect(UNBOUNDED)
+    }
+
+    #[inline(always)]
+    fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
+        let (q, v) = (wide(query), [wide(&self.vertices[0]), wide(&self.vertices[1])]);
+        Some(Projection::from_nearest(&scalar::segment(q, v, square)?, q, &v))
     }
 }

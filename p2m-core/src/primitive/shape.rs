@@ -44,6 +44,15 @@ impl<T: Real> Primitive<T> for Shape<T> {
             Self::Triangle(t) => t.project(query),
         }
     }
+
+    #[inline(always)]
+    fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
+        match self {
+            Self::Point(p) => p.project_within(query, square),
+            Self::Segment(s) => s.project_within(query, square),
+            Self::Triangle(t) => t.project_within(query, square),
+        }
+    }
 }
 
 impl<T: Real> From<Point<T>> for Shape<T> {
