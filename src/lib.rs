@@ -1,4 +1,59 @@
-//! p2m: closest points of scenes.
-pub use p2m_core::*;
+//! What is the closest point of this scene?
+//!
+//! A scene is any mix of triangles, segments and points. An index answers closest-point queries over it; which index, is
+//! a type. All of them implement [`ClosestPoint`], keep one accuracy contract (stated there, derived in
+//! docs/accuracy.md) and return the same bits.
+//!
+//! ```
+//! use nalgebra::Point3;
+//! use p2m::{AabbTree, BuildIndex, ClosestPoint, Element, Feature, QueryOptions, Soup};
+//!
+//! // A roof of two triangles and a cable beside it, over shared positions.
+//! let positions = vec![
+//!     Point3::new(0.0, 0.0, 0.0),
+//!     Point3::new(4.0, 0.0, 0.0),
+//!     Point3::new(4.0, 3.0, 0.0),
+//!     Point3::new(0.0, 3.0, 0.0),
+//!     Point3::new(5.0, 0.0, 2.0),
+//!     Point3::new(5.0, 3.0, 2.0),
+//! ];
+//! let scene = Soup::new(
+//!     positions,
+//!     [Element::Triangle([0, 1, 2]), Element::Triangle([0, 2, 3]), Element::Segment([4, 5])],
+//! )?;
+//! let index = AabbTree::build(&scene, &Default::default())?;
+//!
+//! let answer = index.closest_point(&Point3::new(3.0, 1.0, 2.0)).expect("the scene is not empty");
+//! assert_eq!(answer.distance, 2.0);
+//! assert_eq!(answer.primitive.index(), 0); // the lowest id among equals: the cable is as near
+//! assert_eq!(answer.feature, Feature::Face);
+//!
+//! // Nothing within 1: no answer. The bound is inclusive.
+//! let near = QueryOptions::default().with_max_distance(1.0);
+//! assert!(index.closest_point_with(&Point3::new(3.0, 1.0, 2.0), &near).is_none());
+//! # Ok::<(), p2m::BuildError>(())
+//! ```
+//!
+//! # Which index
+//!
+//! | type | what it is | feature |
+//! |---|---|---|
+//! | [`BruteForce`] | every primitive, every time: the oracle, and right for a handful of queries | |
+//! | [`AabbTree`] | boxes split by surface area, searched nearest first | `bvh` |
+//!
+//! Write functions over `I: ClosestPoint<T>` to leave the choice to the caller, or take `&dyn ClosestPoint<T>`.
+//!
+//! # Cargo features
+//!
+//! | feature | adds | default |
+//! |---|---|---|
+//! | `bvh` | [`AabbTree`] | yes |
+//! | `mixed` | [`scene`]: reading scenes and points from files | yes |
+#![forbid(unsafe_code)]
+
 #[cfg(feature = "bvh")]
-pub use p2m_bvh::*;
+pub use p2m_bvh::{AabbOptions, AabbTree};
+pub use p2m_core::*;
+/// Scenes from files and generators.
+#[cfg(feature = "mixed")]
+pub use p2m_mixed as scene;
