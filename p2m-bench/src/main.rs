@@ -1,1 +1,186 @@
-fn main() {}
+//! Measures p2m and its rivals: speed, memory, agreement.
+//!
+//! `p2m-bench query` builds every contender over a scene and lets them answer sets of queries in turns, in one process,
+//! on one thread, one call at a time; `p2m-bench verify` compares our exact backends with brute force, bit for bit.
+//!
+//! The default build is portable. Figures of rivals that need compile-time target features come from
+//! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p p2m-bench -- query ...`; the line above the tables, and the
+//! column `label` of a record, say which build it was.
+#![forbid(unsafe_code)]
+
+mod agree;
+mod backends;
+mod contender;
+mod measure;
+mod memory;
+mod provenance;
+mod queries;
+mod report;
+mod rivals;
+mod scene;
+mod surface;
+mod table;
+mod verify;
+
+use crate::contender::{Backend, ScalarKind};
+use crate::measure::Effort;
+use crate::provenance::Provenance;
+use crate::queries::QuerySet;
+use crate::scene::Scene;
+use anyhow::Result;
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Measures p2m and its rivals.
+#[derive(Parser)]
+#[command(after_help = "\
+The default release build is portable. For the native rows of the rivals:\n  \
+RUSTFLAGS=\"-C target-cpu=native\" cargo run --release -p p2m-bench -- query ...\n\
+Both can add to the same --csv file; its column `label` tells them apart.\n\
+Times are thread CPU times; pin the process as well: taskset -c 1 p2m-bench query ...")]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Build, memory, time per query and agreement of all contenders
+    Query(QueryArguments),
+    /// Our exact backends against brute force, bit for bit, in f64 and f32; fails on any difference
+    Verify(VerifyArguments),
+}
+
+/// What both commands take.
+#[derive(Args)]
+struct Common {
+    /// Files of scenes
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    /// Query sets
+    #[arg(long, value_enum, value_delimiter = ',', default_values_t = QuerySet::ALL)]
+    sets: Vec<QuerySet>,
+    /// Scalars of contenders
+    #[arg(long, value_enum, value_delimiter = ',', default_values_t = [ScalarKind::Single, ScalarKind::Double])]
+    scalar: Vec<ScalarKind>,
+    /// Seed of the query sets
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+#[derive(Args)]
+struct QueryArguments {
+    #[command(flatten)]
+    common: Common,
+    /// Contenders
+    #[arg(long, value_delimiter = ',', default_value = backends::DEFAULT, value_parser = backend_names())]
+    backends: Vec<String>,
+    /// Rounds; every contender begins one in turn
+    #[arg(long, default_value_t = 5)]
+    rounds: usize,
+    /// Queries a round; contenders slower than 20 us a query get 20,000 at most, brute force what takes a second
+    #[arg(long, default_value_t = 200_000)]
+    queries: usize,
+    /// Builds of each index
+    #[arg(long, default_value_t = 5)]
+    builds: usize,
+    /// Record to make or to add to, as comma-separated values; a file with other columns is refused
+    #[arg(long)]
+    csv: Option<PathBuf>,
+    /// Name of this build in tables and record [default: native with AVX2 at compile time, else portable]
+    #[arg(long)]
+    label: Option<String>,
+}
+
+#[derive(Args)]
+struct VerifyArguments {
+    #[command(flatten)]
+    common: Common,
+    /// Backends [default: all exact ones of ours]
+    #[arg(long, value_delimiter = ',', value_parser = backend_names())]
+    backends: Vec<String>,
+    /// Queries of each set
+    #[arg(long, default_value_t = 5000)]
+    queries: usize,
+}
+
+fn backend_names() -> PossibleValuesParser {
+    backends::ALL.iter().map(|backend| backend.name).collect::<Vec<_>>().into()
+}
+
+fn main() -> Result<ExitCode> {
+    let good = match Cli::parse().command {
+        Command::Query(arguments) => query(&arguments)?,
+        Command::Verify(arguments) => verify_all(&arguments)?,
+    };
+    Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Those of the named contenders that have one of the scalars, in the order of the list.
+fn select(common: &Common, wanted: impl Fn(&Backend) -> bool) -> Vec<&'static Backend> {
+    backends::ALL.iter().filter(|b| common.scalar.contains(&b.scalar) && wanted(b)).collect()
+}
+
+/// Whether our backends agree; what rivals answer is for the reader of the table.
+fn query(arguments: &QueryArguments) -> Result<bool> {
+    let common = &arguments.common;
+    let selected = select(common, |b| arguments.backends.iter().any(|name| name == b.name));
+    let provenance = Provenance::collect(arguments.label.as_deref());
+    let effort =
+        Effort { rounds: arguments.rounds, queries: arguments.queries, builds: arguments.builds, seed: common.seed };
+    let mut record = arguments.csv.as_deref().map(report::Record::open).transpose()?;
+    println!("{provenance}");
+    println!(
+        "One thread, thread CPU time, {} rounds in turns, {} queries a round, seed {}.",
+        effort.rounds, effort.queries, effort.seed
+    );
+    let mut good = true;
+    for path in &common.scenes {
+        let scene = Scene::read(path)?;
+        let mut entries = measure::build_all(&scene, &selected, effort.builds);
+        for set in &common.sets {
+            measure::measure_set(&scene, *set, &mut entries, &effort);
+        }
+        report::print_scene(&scene, &common.sets, &entries, &provenance.label);
+        if let Some(record) = &mut record {
+            record.add(&provenance, &scene, &common.sets, &entries, effort.seed)?;
+        }
+        good &= entries
+            .iter()
+            .filter(|entry| entry.backend.ours)
+            .all(|entry| entry.sets.iter().flatten().all(|set| set.agreement.is_clean()));
+    }
+    Ok(good)
+}
+
+fn verify_all(arguments: &VerifyArguments) -> Result<bool> {
+    let common = &arguments.common;
+    let oracles = select(common, |b| b.ours && b.exhaustive);
+    let named = |b: &Backend| arguments.backends.is_empty() || arguments.backends.iter().any(|name| name == b.name);
+    let contenders = select(common, |b| b.ours && !b.exhaustive && named(b));
+    println!("{}", Provenance::collect(None));
+    println!(
+        "{} queries of each set, seed {}: how many answers equal those of brute force.",
+        arguments.queries, common.seed
+    );
+    let mut equal = true;
+    for path in &common.scenes {
+        let scene = Scene::read(path)?;
+        equal &= verify::verify(&scene, &oracles, &contenders, &common.sets, arguments.queries, common.seed);
+    }
+    println!("\n{}", if equal { "All equal." } else { "DIFFERENCES, see above." });
+    Ok(equal)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+}

@@ -13,8 +13,7 @@ use p2m_core::{
 #[derive(Clone, Debug)]
 pub struct AabbTree<T: Real, S> {
     set: S,
-    hierarchy: Hierarchy,
-    boxes: Vec<Aabb<T>>,
+    hierarchy: Hierarchy<Aabb<T>>,
 }
 
 impl<T: Real, S: PrimitiveSet<T>> AabbTree<T, S> {
@@ -25,12 +24,12 @@ impl<T: Real, S: PrimitiveSet<T>> AabbTree<T, S> {
 
     /// The box around everything, `None` for an empty set.
     pub fn bounds(&self) -> Option<&Aabb<T>> {
-        self.boxes.first()
+        self.hierarchy.nodes().first().map(|root| &root.volume)
     }
 
     /// Heap memory that the tree owns besides its set, in bytes.
     pub fn memory(&self) -> usize {
-        self.hierarchy.memory() + self.boxes.capacity() * size_of::<Aabb<T>>()
+        self.hierarchy.memory()
     }
 
     /// Offers to any collector every primitive that it could want; [`ClosestPoint::search`] with [`Best`].
@@ -39,7 +38,7 @@ impl<T: Real, S: PrimitiveSet<T>> AabbTree<T, S> {
     pub fn visit<C: Collector>(&self, query: &Point3<T>, collector: &mut C) {
         self.hierarchy.search(
             collector,
-            |node| self.boxes[node].lower_bound(query),
+            |bounds| bounds.lower_bound(query),
             |collector, id| self.offer(query, id, collector),
         );
     }
@@ -68,8 +67,7 @@ impl<T: Real, S: PrimitiveSet<T>> BuildIndex<T, S> for AabbTree<T, S> {
     fn build(set: S, options: &AabbOptions) -> Result<Self, BuildError> {
         check_set(&set)?;
         let boxes: Vec<Aabb<T>> = (0..set.len()).map(|i| set.get(PrimitiveId::new(i)).aabb()).collect();
-        let hierarchy = Hierarchy::build(&boxes, options);
-        let boxes = hierarchy.volumes(|id| boxes[id.index()], Aabb::union);
-        Ok(Self { set, hierarchy, boxes })
+        let hierarchy = Hierarchy::build(&boxes, options, |id| boxes[id.index()], Aabb::union);
+        Ok(Self { set, hierarchy })
     }
 }

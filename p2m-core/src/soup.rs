@@ -202,6 +202,7 @@ impl<T: Real> Soup<T> {
     ///
     /// # Panics
     /// If there is no such primitive.
+    #[inline(always)]
     #[must_use]
     pub fn element(&self, id: PrimitiveId) -> Element {
         let slot = self.slot(id);

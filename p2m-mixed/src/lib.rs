@@ -1,1 +1,39 @@
-//! p2m-mixed
+//! Scenes of triangles, segments and points from files, and a synthetic one.
+//!
+//! [`read_scene`] reads OBJ and PLY files into a [`Scene`], [`read_points`] reads query points from XYZ and CSV files.
+//! Both tell where and why a file is refused ([`ReadError`]), and a scene tells what it left out ([`Scene::skipped`]).
+//! [`write_obj`] is the way back, [`generate`] makes scenes from nothing.
+//!
+//! ```
+//! use p2m_core::{BruteForce, ClosestPoint};
+//! use nalgebra::Point3;
+//!
+//! let text = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 5\nf 1 2 3 4\nl 1 5 # a pole\n";
+//! let scene = p2m_mixed::read_obj(text.as_bytes(), "court.obj")?;
+//! assert_eq!((scene.soup.triangles().len(), scene.soup.segments().len()), (2, 1));
+//! assert_eq!(scene.sources, [0, 0, 0]); // both triangles are of the first face, the segment is of the first line
+//!
+//! let index = BruteForce::new(&scene.soup).unwrap();
+//! assert_eq!(index.closest_point(&Point3::new(0.0, -1.0, 4.0)).unwrap().primitive.index(), 2);
+//! # Ok::<(), p2m_mixed::ReadError>(())
+//! ```
+
+#![forbid(unsafe_code)]
+
+mod error;
+pub mod generate;
+mod obj;
+mod ply;
+mod points;
+mod polygon;
+mod scene;
+mod text;
+mod write;
+
+pub use error::{HeaderProblem, Place, ReadError, Reason};
+pub use obj::read_obj;
+pub use ply::read_ply;
+pub use points::read_points;
+pub use polygon::MAX_CORNERS;
+pub use scene::{Scene, Skipped, read_scene};
+pub use write::write_obj;

@@ -13,54 +13,80 @@ use crate::{Aabb, PrimitiveId, Real};
 
 /// A node: a leaf with `count` primitives from place `first`, or, with `count` 0, the parent of nodes `first` and
 /// `first + 1`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Node {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Node<V> {
+    /// Contains everything below the node.
+    pub volume: V,
     first: u32,
     count: u32,
 }
 
-impl Node {
+impl<V> Node<V> {
     /// The children of an inner node, `None` for a leaf.
     #[inline(always)]
     #[must_use]
-    pub fn children(self) -> Option<[usize; 2]> {
+    pub fn children(&self) -> Option<[usize; 2]> {
         (self.count == 0).then_some([self.first as usize, self.first as usize + 1])
     }
 
     /// The places in [`Hierarchy::order`] of a leaf's primitives; empty for an inner node.
     #[inline(always)]
     #[must_use]
-    pub fn places(self) -> std::ops::Range<usize> {
+    pub fn places(&self) -> std::ops::Range<usize> {
         self.first as usize..(self.first + self.count) as usize
     }
 }
 
-/// A binary tree over a set of primitives. Node 0 is the root; there is none over an empty set.
+/// A binary tree of volumes over a set of primitives. Node 0 is the root; there is none over an empty set.
 ///
-/// No node lies deeper than [`Hierarchy::MAX_DEPTH`], whatever the input, so searches keep their stack in an array.
+/// No node lies deeper than [`MAX_DEPTH`], whatever the input, so searches keep their stack in an array.
 #[derive(Clone, Debug)]
-pub struct Hierarchy {
-    nodes: Vec<Node>,
+pub struct Hierarchy<V> {
+    nodes: Vec<Node<V>>,
     order: Vec<PrimitiveId>,
 }
 
-impl Hierarchy {
-    /// No node lies deeper below the root than this: splits by cost until half of it, by halving from there on, and
-    /// sets have at most 2^30 primitives.
-    pub const MAX_DEPTH: usize = 96;
+/// No node lies deeper below the root than this: splits by cost until half of it, by halving from there on, and sets
+/// have at most 2^30 primitives.
+pub const MAX_DEPTH: usize = 96;
 
-    /// Splits primitives with these boxes, which are finite.
+impl<V> Hierarchy<V> {
+    /// Splits primitives with these boxes, which are finite. A leaf's volume joins those of its primitives, a parent's
+    /// those of its children.
+    ///
+    /// # Panics
+    /// Never: every leaf has a primitive.
     ///
     /// # Complexity
-    /// O(n log n) time expected, O(n) memory: at most 2 n - 1 nodes of 8 bytes.
+    /// O(n log n) time expected, O(n) memory: at most 2 n - 1 nodes.
     #[must_use]
-    pub fn build<T: Real>(boxes: &[Aabb<T>], options: &SplitOptions) -> Self {
-        split::build(boxes, options)
+    pub fn build<T: Real>(
+        boxes: &[Aabb<T>],
+        options: &SplitOptions,
+        of_primitive: impl Fn(PrimitiveId) -> V,
+        join: impl Fn(&V, &V) -> V,
+    ) -> Self {
+        let (topology, order) = split::build(boxes, options);
+        // From the last node to the first, so that children come before their parents: node i lands at `last - i`.
+        let last = topology.len().wrapping_sub(1);
+        let mut nodes: Vec<Node<V>> = Vec::with_capacity(topology.len());
+        for node in topology.iter().rev() {
+            let volume = match node.children() {
+                Some([a, b]) => join(&nodes[last - a].volume, &nodes[last - b].volume),
+                None => {
+                    let all = order[node.places()].iter().map(|id| of_primitive(*id));
+                    all.reduce(|a, b| join(&a, &b)).expect("every leaf has a primitive")
+                }
+            };
+            nodes.push(Node { volume, first: node.first, count: node.count });
+        }
+        nodes.reverse();
+        Self { nodes, order }
     }
 
-    /// The nodes, parents before children.
+    /// The nodes, parents before children, siblings side by side.
     #[must_use]
-    pub fn nodes(&self) -> &[Node] {
+    pub fn nodes(&self) -> &[Node<V>] {
         &self.nodes
     }
 
@@ -70,35 +96,9 @@ impl Hierarchy {
         &self.order
     }
 
-    /// The volumes of all nodes, bottom-up: `of_primitive` gives a primitive's, `join` that of two together.
-    ///
-    /// # Panics
-    /// Never: every leaf has a primitive.
-    ///
-    /// # Complexity
-    /// O(n).
-    pub fn volumes<V: Clone>(&self, of_primitive: impl Fn(PrimitiveId) -> V, join: impl Fn(&V, &V) -> V) -> Vec<V> {
-        // From the last node to the first, so that children come before their parents: node i lands at `last - i`.
-        let last = self.nodes.len().wrapping_sub(1);
-        let mut volumes: Vec<V> = Vec::with_capacity(self.nodes.len());
-        for node in self.nodes.iter().rev() {
-            volumes.push(match node.children() {
-                Some([a, b]) => join(&volumes[last - a], &volumes[last - b]),
-                None => {
-                    let all = self.order[node.places()].iter().map(|id| of_primitive(*id));
-                    all.reduce(|a, b| join(&a, &b)).expect("every leaf has a primitive")
-                }
-            });
-        }
-        volumes.reverse();
-        volumes
-    }
-
     /// Heap memory it owns, in bytes.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.nodes.capacity() * size_of::<Node>() + self.order.capacity() * size_of::<PrimitiveId>()
+        self.nodes.capacity() * size_of::<Node<V>>() + self.order.capacity() * size_of::<PrimitiveId>()
     }
 }
-
-const _: () = assert!(size_of::<Node>() == 8);

@@ -1,12 +1,12 @@
 //! Nearest-first search.
 
-use super::Hierarchy;
+use super::{Hierarchy, MAX_DEPTH};
 use crate::{Collector, PrimitiveId};
 
-impl Hierarchy {
+impl<V> Hierarchy<V> {
     /// Visits, nearest first, every leaf whose lower bound does not exceed what `collector` still wants.
     ///
-    /// `lower_bound` gives a node's, as a square, `leaf` offers a primitive to the collector. The farther child of a
+    /// `lower_bound` is that of a volume, as a square; `leaf` offers a primitive to the collector. The farther child of a
     /// node waits on a stack with its bound, which is compared again when its turn comes.
     ///
     /// # Complexity
@@ -16,28 +16,28 @@ impl Hierarchy {
     pub fn search<C: Collector>(
         &self,
         collector: &mut C,
-        lower_bound: impl Fn(usize) -> f64,
+        lower_bound: impl Fn(&V) -> f64,
         leaf: impl Fn(&mut C, PrimitiveId),
     ) {
         if self.nodes.is_empty() {
             return;
         }
-        let mut stack = [(0.0f64, 0usize); Self::MAX_DEPTH];
+        let mut stack = [(0.0f64, 0usize); MAX_DEPTH];
         let mut waiting = 0;
         let mut at = 0;
         loop {
             collector.visit_node();
-            let node = self.nodes[at];
+            let node = &self.nodes[at];
             if let Some([a, b]) = node.children() {
-                let (bound_a, bound_b) = (lower_bound(a), lower_bound(b));
-                let ((near, near_bound), (far, far_bound)) =
-                    if bound_b < bound_a { ((b, bound_b), (a, bound_a)) } else { ((a, bound_a), (b, bound_b)) };
+                let (bound_a, bound_b) = (lower_bound(&self.nodes[a].volume), lower_bound(&self.nodes[b].volume));
+                // Which child is nearer is a coin toss: selected, not branched on. Siblings lie side by side.
+                let swap = bound_b < bound_a;
+                let (near_bound, far_bound) = if swap { (bound_b, bound_a) } else { (bound_a, bound_b) };
+                let (near, far) = (a + usize::from(swap), b - usize::from(swap));
                 let limit = collector.prune_above();
-                if far_bound <= limit {
-                    // One entry for each level above, at most.
-                    stack[waiting] = (far_bound, far);
-                    waiting += 1;
-                }
+                // One entry for each level above, at most; one that is not wanted is overwritten.
+                stack[waiting] = (far_bound, far);
+                waiting += usize::from(far_bound <= limit);
                 if near_bound <= limit {
                     at = near;
                     continue;

@@ -3,9 +3,9 @@
 //! A node is split along the axis and at the bin border that minimise n_left A_left + n_right A_right, A being the
 //! surface areas of the children's boxes, unless testing all its primitives is cheaper. Where boxes or their centres
 //! tell nothing apart (identical primitives, extents that overflow), the node is halved by order; below half of
-//! [`Hierarchy::MAX_DEPTH`] every node is, so that no input makes the tree deep.
+//! [`MAX_DEPTH`] every node is, so that no input makes the tree deep.
 
-use super::{Hierarchy, Node};
+use super::{MAX_DEPTH, Node};
 use crate::{Aabb, PrimitiveId, Real};
 use nalgebra::Point3;
 
@@ -15,13 +15,13 @@ use nalgebra::Point3;
 pub struct SplitOptions {
     /// Nodes with at most this many primitives may be leaves, larger ones are always split.
     pub max_leaf: usize,
-    /// Cost of visiting a node, in units of the cost of testing a primitive.
+    /// Cost of visiting an inner node, in units of the cost of testing a primitive.
     pub node_cost: f64,
 }
 
 impl Default for SplitOptions {
     fn default() -> Self {
-        Self { max_leaf: 4, node_cost: 0.5 }
+        Self { max_leaf: 8, node_cost: 4.0 }
     }
 }
 
@@ -81,31 +81,31 @@ struct Cut {
     cost: f64,
 }
 
-pub(super) fn build<T: Real>(boxes: &[Aabb<T>], options: &SplitOptions) -> Hierarchy {
+/// The nodes without volumes, and the order of the primitives in their leaves.
+pub(super) fn build<T: Real>(boxes: &[Aabb<T>], options: &SplitOptions) -> (Vec<Node<()>>, Vec<PrimitiveId>) {
     let mut items: Vec<Item> = boxes.iter().enumerate().map(|(i, b)| Item::new(b, PrimitiveId::new(i))).collect();
     let mut nodes = Vec::new();
     if items.is_empty() {
-        return Hierarchy { nodes, order: Vec::new() };
+        return (nodes, Vec::new());
     }
-    nodes.push(Node { first: 0, count: 0 });
+    nodes.push(Node { volume: (), first: 0, count: 0 });
     // Nodes whose fate is open: number, places, depth. Last in, first out keeps children of one region together.
     let mut open = vec![(0usize, 0..items.len(), 0usize)];
     while let Some((at, places, depth)) = open.pop() {
         let here = &mut items[places.clone()];
         match divide(here, depth, options) {
-            None => nodes[at] = Node { first: index(places.start), count: index(places.len()) },
+            None => nodes[at] = Node { volume: (), first: index(places.start), count: index(places.len()) },
             Some(left) => {
-                nodes[at] = Node { first: index(nodes.len()), count: 0 };
+                nodes[at] = Node { volume: (), first: index(nodes.len()), count: 0 };
                 let middle = places.start + left;
                 let child = nodes.len();
-                nodes.extend([Node { first: 0, count: 0 }; 2]);
+                nodes.extend([Node { volume: (), first: 0, count: 0 }; 2]);
                 open.push((child + 1, middle..places.end, depth + 1));
                 open.push((child, places.start..middle, depth + 1));
             }
         }
     }
-    nodes.shrink_to_fit();
-    Hierarchy { nodes, order: items.into_iter().map(|i| i.id).collect() }
+    (nodes, items.into_iter().map(|i| i.id).collect())
 }
 
 fn index(n: usize) -> u32 {
@@ -125,9 +125,9 @@ fn divide(items: &mut [Item], depth: usize, options: &SplitOptions) -> Option<us
         centres.add(&centre, &centre);
     }
     let whole = items.len() <= options.max_leaf;
-    let cut = if depth < Hierarchy::MAX_DEPTH / 2 { best_cut(items, &bounds, &centres) } else { None };
+    let cut = if depth < MAX_DEPTH / 2 { best_cut(items, &bounds, &centres) } else { None };
     match cut {
-        Some(cut) if whole && cut.cost + options.node_cost * 2.0 >= count(items.len()) => None,
+        Some(cut) if whole && cut.cost + options.node_cost >= count(items.len()) => None,
         Some(cut) => {
             let bin = Binning::new(&centres, cut.axis);
             let left = partition(items, |item| bin.of(item) < cut.bin);
@@ -244,30 +244,35 @@ fn partition(items: &mut [Item], left: impl Fn(&Item) -> bool) -> usize {
 mod tests {
     use super::*;
 
-    fn depth(h: &Hierarchy) -> usize {
+    struct Topology {
+        nodes: Vec<Node<()>>,
+        order: Vec<PrimitiveId>,
+    }
+
+    fn depth(h: &Topology) -> usize {
         let mut deepest = 0;
         let mut open = vec![(0, 0)];
         while let Some((at, depth)) = open.pop() {
             deepest = deepest.max(depth);
-            if let Some(children) = h.nodes()[at].children() {
+            if let Some(children) = h.nodes[at].children() {
                 open.extend(children.map(|c| (c, depth + 1)));
             }
         }
         deepest
     }
 
-    fn check(boxes: &[Aabb<f64>]) -> Hierarchy {
-        let h = Hierarchy::build(boxes, &SplitOptions::default());
-        let mut ids: Vec<usize> = h.order().iter().map(|id| id.index()).collect();
+    fn check(boxes: &[Aabb<f64>]) -> Topology {
+        let (nodes, order) = build(boxes, &SplitOptions::default());
+        let h = Topology { nodes, order };
+        let mut ids: Vec<usize> = h.order.iter().map(|id| id.index()).collect();
         ids.sort_unstable();
         assert!(ids.iter().copied().eq(0..boxes.len()), "every primitive once");
-        let mut covered: Vec<usize> =
-            h.nodes().iter().flat_map(|n| n.children().map_or(n.places(), |_| 0..0)).collect();
+        let mut covered: Vec<usize> = h.nodes.iter().flat_map(|n| n.children().map_or(n.places(), |_| 0..0)).collect();
         covered.sort_unstable();
         assert!(covered.into_iter().eq(0..boxes.len()), "every place in one leaf");
-        assert!(depth(&h) <= Hierarchy::MAX_DEPTH);
-        for node in h.nodes().iter().filter(|n| n.children().is_none()) {
-            assert!((1..=4).contains(&node.places().len()));
+        assert!(depth(&h) <= MAX_DEPTH);
+        for node in h.nodes.iter().filter(|n| n.children().is_none()) {
+            assert!((1..=8).contains(&node.places().len()));
         }
         h
     }

@@ -43,6 +43,9 @@ const PLAIN_MAX: f64 = power_of_two(250);
 /// Rough squares of edges and faces of ordinary shape err by less than 2^-37 of the square of the offsets' size; what is
 /// farther than the best rough one by more than this cannot win.
 const ROUGH_MARGIN: f64 = power_of_two(-34);
+/// A foot that is accepted wrongly, by rounding, is within 2^-40 of the squared size of a foot that is right.
+const OUTWARD_MARGIN: f64 = power_of_two(-38);
+
 /// Whether the features of these offsets can be computed in plain f64: the largest component `size` and the shortest
 /// edge, given by the inverse of its square, are of ordinary size. A zero edge is not.
 #[inline(always)]
@@ -148,19 +151,24 @@ fn triangle_features(query: V3, vertices: &[V3; 3], offsets: &[V3; 3], bounds: [
     let size = largest(&bounds);
     let squares = [norm_squared(offsets[0]), norm_squared(offsets[1]), norm_squared(offsets[2])];
     let vertex = nearest_vertex(vertices, &squares);
-    let margin = ROUGH_MARGIN * (size * size);
-    if squares[vertex] - margin > prune {
-        // Where both edges of the nearest vertex lead away from the query, so does the whole triangle.
-        let leads_away = |other: usize| dot(offsets[vertex], sub(offsets[other], offsets[vertex])) >= 0.0;
-        if leads_away((vertex + 1) % 3) && leads_away((vertex + 2) % 3) {
-            return None;
-        }
+    // Where both edges at the nearest vertex clearly lead away from the query, no foot is accepted on them or on the
+    // face, and one on the third edge is longer: the vertex is the answer.
+    let outward = |other: usize| dot(offsets[vertex], sub(offsets[other], offsets[vertex]));
+    let least = smaller(outward((vertex + 1) % 3), outward((vertex + 2) % 3));
+    if least > OUTWARD_MARGIN * (size * size)
+        && (PLAIN_MIN..=PLAIN_MAX).contains(&size)
+        && let Some(key) = Key::plain(squares[vertex])
+    {
+        let offset = offsets[vertex];
+        let nearest = Nearest { key, offset, exponent: 0, feature: NearestFeature::Vertex(vertex), size };
+        return (squares[vertex] <= prune).then_some(nearest);
     }
     let line = |i: usize, j: usize| Line::new([offsets[i], offsets[j]], [squares[i], squares[j]]);
     let lines = [line(0, 1), line(1, 2), line(2, 0)];
     if !plain_scale(size, larger(larger(lines[0].inverse, lines[1].inverse), lines[2].inverse)) {
         return Some(scaled::triangle(query, *vertices));
     }
+    let margin = ROUGH_MARGIN * (size * size);
     let plane = Plane::new(*offsets, &lines, size);
     let mut rough = squares[vertex];
     for line in &lines {

@@ -1,0 +1,140 @@
+//! Whether contenders answer the same.
+//!
+//! Ours of one scalar have to agree bitwise, in distance and id, and are compared with the first of them. Rivals, and
+//! ours in f32, are compared in distance with our first index in f64; input rounded to f32 is part of the difference.
+
+use crate::contender::{Answer, Backend, ScalarKind};
+
+/// The answers of a contender in a round.
+#[derive(Clone, Copy)]
+pub(crate) struct Answers<'a> {
+    /// Whose.
+    pub(crate) backend: &'static Backend,
+    /// Places of its queries in the set, increasing.
+    pub(crate) chosen: &'a [usize],
+    /// One answer for each.
+    pub(crate) answers: &'a [Answer],
+}
+
+/// How the answers of a contender compare.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Agreement {
+    /// Answers compared bitwise with another contender of ours.
+    pub(crate) compared: usize,
+    /// Of those, how many have another distance.
+    pub(crate) other_distance: usize,
+    /// How many have the same distance and another id.
+    pub(crate) other_id: usize,
+    /// Queries without a (finite) answer.
+    pub(crate) failed: usize,
+    /// The largest difference of a distance from the reference, in units of the scene; NaN without a reference.
+    pub(crate) difference: f64,
+}
+
+impl Agreement {
+    /// Whether nothing is wrong: bitwise equal where that is promised, and all queries answered.
+    pub(crate) fn is_clean(&self) -> bool {
+        self.other_distance == 0 && self.other_id == 0 && self.failed == 0
+    }
+
+    /// Adds a round.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.compared += other.compared;
+        self.other_distance += other.other_distance;
+        self.other_id += other.other_id;
+        self.failed += other.failed;
+        self.difference = if self.difference > other.difference { self.difference } else { other.difference };
+    }
+}
+
+/// Compares all contenders of a round; one result for each, in their order.
+pub(crate) fn compare_round(round: &[Option<Answers<'_>>], total: usize) -> Vec<Agreement> {
+    let first = |scalar: ScalarKind| {
+        let of_scalar = || round.iter().flatten().filter(move |a| a.backend.ours && a.backend.scalar == scalar);
+        of_scalar().find(|a| !a.backend.exhaustive).or_else(|| of_scalar().next())
+    };
+    let [double, single] = [ScalarKind::Double, ScalarKind::Single].map(|s| first(s).map(|a| (a, by_query(a, total))));
+    let compare = |a: &Answers<'_>| {
+        let mut agreement = Agreement { difference: f64::NAN, ..Agreement::default() };
+        agreement.failed = a.answers.iter().filter(|answer| !answer.distance.is_finite()).count();
+        let peer = if a.backend.scalar == ScalarKind::Double { &double } else { &single };
+        if let Some((_, expected)) = peer.as_ref().filter(|_| a.backend.ours) {
+            bitwise(a, expected, &mut agreement);
+        }
+        if let Some((_, expected)) = &double {
+            agreement.difference = largest_difference(a, expected);
+        }
+        agreement
+    };
+    round.iter().map(|answers| answers.as_ref().map(compare).unwrap_or_default()).collect()
+}
+
+/// The answers at the places of their queries in the set.
+fn by_query(answers: &Answers<'_>, total: usize) -> Vec<Option<Answer>> {
+    let mut all = vec![None; total];
+    answers.chosen.iter().zip(answers.answers).for_each(|(&place, answer)| all[place] = Some(*answer));
+    all
+}
+
+/// The answers beside those of the same queries in `expected`.
+fn pairs<'a>(a: &Answers<'a>, expected: &'a [Option<Answer>]) -> impl Iterator<Item = (&'a Answer, Answer)> {
+    a.answers.iter().zip(a.chosen).filter_map(|(answer, &place)| expected[place].map(|e| (answer, e)))
+}
+
+fn bitwise(a: &Answers<'_>, expected: &[Option<Answer>], agreement: &mut Agreement) {
+    for (answer, expected) in pairs(a, expected) {
+        agreement.compared += 1;
+        if !answer.same_distance(&expected) {
+            agreement.other_distance += 1;
+        } else if answer.id != expected.id {
+            agreement.other_id += 1;
+        }
+    }
+}
+
+/// Answers that failed are counted elsewhere.
+fn largest_difference(a: &Answers<'_>, expected: &[Option<Answer>]) -> f64 {
+    pairs(a, expected)
+        .map(|(answer, expected)| (answer.distance - expected.distance).abs())
+        .filter(|difference| difference.is_finite())
+        .fold(f64::NAN, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::backends;
+
+    fn answers<'a>(name: &str, chosen: &'a [usize], answers: &'a [Answer]) -> Option<Answers<'a>> {
+        let backend = backends::ALL.iter().find(|b| b.name == name).unwrap();
+        Some(Answers { backend, chosen, answers })
+    }
+
+    #[test]
+    fn each_kind_of_disagreement_is_counted_as_such() {
+        let expected = [1.0, 2.0, 3.0].map(|distance| Answer { distance, id: 7 });
+        let ours = [Answer { distance: 2.0, id: 6 }, Answer { distance: 3.5, id: 7 }];
+        let rival = [Answer { distance: 1.25, id: 0 }, Answer::NONE, Answer { distance: 3.0, id: 1 }];
+        let round = [
+            answers("brute", &[1, 2], &ours),
+            answers("aabb", &[0, 1, 2], &expected),
+            answers("parry3d", &[0, 1, 2], &rival),
+            None,
+        ];
+        let [brute, aabb, parry, none] = compare_round(&round, 3).try_into().unwrap();
+        let clean = Agreement::default();
+        assert_eq!(aabb, Agreement { compared: 3, ..clean });
+        assert_eq!(brute, Agreement { compared: 2, other_distance: 1, other_id: 1, difference: 0.5, ..clean });
+        assert_eq!(parry, Agreement { failed: 1, difference: 0.25, ..clean });
+        assert_eq!(none, clean);
+        assert!(aabb.is_clean() && !brute.is_clean() && !parry.is_clean());
+    }
+
+    #[test]
+    fn rounds_add_up() {
+        let mut sum = Agreement { difference: f64::NAN, ..Agreement::default() };
+        sum.add(&Agreement { compared: 2, other_id: 1, difference: 0.5, ..Agreement::default() });
+        sum.add(&Agreement { compared: 3, failed: 1, difference: 0.25, ..Agreement::default() });
+        assert_eq!(sum, Agreement { compared: 5, other_distance: 0, other_id: 1, failed: 1, difference: 0.5 });
+    }
+}

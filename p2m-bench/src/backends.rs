@@ -1,0 +1,110 @@
+//! Our contenders, and the list of all. A new backend is one entry of [`ALL`].
+
+use crate::contender::{Absent, Answer, Backend, Contender, Prepared, Ready, Scalar, ScalarKind};
+use crate::rivals::{parry_double, parry_single};
+use crate::scene::Scene;
+use nalgebra::Point3;
+use p2m_bvh::AabbTree;
+use p2m_core::{BruteForce, BuildIndex, ClosestPoint, PrimitiveId, PrimitiveSet, Shape, Soup, Triangle};
+use std::marker::PhantomData;
+
+/// Every contender, in the order of the tables.
+pub(crate) const ALL: &[Backend] = &[
+    Backend { name: "brute", exhaustive: true, prepare: |s| over_soup::<f64, BruteForce<_>>(s), ..OURS },
+    Backend { name: "aabb", prepare: |s| over_soup::<f64, AabbTree<_, _>>(s), ..OURS },
+    Backend { name: "aabb-tri", prepare: |s| over_triangles::<AabbTree<_, _>>(s), ..OURS },
+    Backend { name: "brute-f32", exhaustive: true, prepare: |s| over_soup::<f32, BruteForce<_>>(s), ..OURS_SINGLE },
+    Backend { name: "aabb-f32", prepare: |s| over_soup::<f32, AabbTree<_, _>>(s), ..OURS_SINGLE },
+    Backend { name: YARDSTICK, scalar: ScalarKind::Single, prepare: parry_single, ..RIVAL },
+    Backend { name: YARDSTICK_DOUBLE, prepare: parry_double, ..RIVAL },
+];
+
+/// What `query` measures unless told otherwise.
+pub(crate) const DEFAULT: &str = "brute,aabb,aabb-tri,aabb-f32,parry3d,parry3d-f64";
+
+/// The rival that ratios refer to.
+pub(crate) const YARDSTICK: &str = "parry3d";
+
+/// The rival of our precision, to which ratios are given as well.
+pub(crate) const YARDSTICK_DOUBLE: &str = "parry3d-f64";
+
+const OURS: Backend = Backend {
+    name: "",
+    scalar: ScalarKind::Double,
+    ours: true,
+    exhaustive: false,
+    prepare: |_| Err(Absent("an entry without a contender".to_owned())),
+};
+const OURS_SINGLE: Backend = Backend { scalar: ScalarKind::Single, ..OURS };
+const RIVAL: Backend = Backend { ours: false, ..OURS };
+
+/// An index of ours, asked through the trait.
+struct Ours<T, I>(I, PhantomData<fn() -> T>);
+
+impl<T: Scalar, I: ClosestPoint<T> + Sync> Contender for Ours<T, I> {
+    type Scalar = T;
+
+    #[inline(always)]
+    fn query(&self, query: &Point3<T>) -> Answer {
+        match self.0.closest_point(query) {
+            Some(closest) => Answer { distance: closest.distance.to_f64(), id: id_of(closest.primitive) },
+            None => Answer::NONE,
+        }
+    }
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "ids are below 2^30")]
+fn id_of(primitive: PrimitiveId) -> u32 {
+    primitive.index() as u32
+}
+
+/// An index with default options over a set.
+fn build<'a, T, I, S>(set: S) -> Result<Ready<'a>, Absent>
+where
+    T: Scalar,
+    S: PrimitiveSet<T>,
+    I: BuildIndex<T, S> + Sync + 'a,
+{
+    let index = I::build(set, &I::Options::default()).map_err(|error| Absent(error.to_string()))?;
+    Ok(Box::new(Ours(index, PhantomData::<fn() -> T>)))
+}
+
+/// An index that borrows the scene as it is.
+fn over_soup<'a, T, I>(scene: &'a Scene) -> Result<Prepared<'a>, Absent>
+where
+    T: Scalar,
+    I: BuildIndex<T, &'a Soup<T>> + Sync + 'a,
+{
+    let (soup, borrowed) = T::soup(scene)?;
+    Ok(Prepared { build: Box::new(|| build::<T, I, _>(soup)), borrowed })
+}
+
+/// An index over the triangles written out, where there is nothing else: shows what a set of mixed kinds costs.
+fn over_triangles<'a, I>(scene: &'a Scene) -> Result<Prepared<'a>, Absent>
+where
+    I: BuildIndex<f64, Vec<Triangle<f64>>> + Sync + 'a,
+{
+    let triangles: Option<Vec<Triangle<f64>>> = (0..scene.len())
+        .map(|i| match scene.double.get(PrimitiveId::new(i)) {
+            Shape::Triangle(triangle) => Some(triangle),
+            _ => None,
+        })
+        .collect();
+    let triangles = triangles.ok_or_else(|| Absent("the scene has other primitives than triangles".to_owned()))?;
+    Ok(Prepared { build: Box::new(|| build::<f64, I, _>(triangles)), borrowed: 0 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_distinct_and_defaults_exist() {
+        for (i, backend) in ALL.iter().enumerate() {
+            assert!(!backend.name.is_empty() && ALL[..i].iter().all(|other| other.name != backend.name));
+        }
+        for name in DEFAULT.split(',') {
+            assert!(ALL.iter().any(|backend| backend.name == name), "{name}");
+        }
+    }
+}

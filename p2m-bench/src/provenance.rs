@@ -1,0 +1,113 @@
+//! Where a figure comes from: machine, compiler, flags, commit, command.
+
+use std::process::Command;
+
+/// What is said above every table and in every line of a record.
+#[derive(Clone, Debug)]
+pub(crate) struct Provenance {
+    /// Which build this is: `portable` or `native` unless the user says otherwise.
+    pub(crate) label: String,
+    /// UTC.
+    pub(crate) date: String,
+    /// Of the checkout, with a mark if files differ from it.
+    pub(crate) commit: String,
+    /// Model, and which instruction sets it has.
+    pub(crate) cpu: String,
+    /// Version.
+    pub(crate) rustc: String,
+    /// Profile, optimisation and RUSTFLAGS.
+    pub(crate) flags: String,
+    /// Instruction sets that the compiler was allowed to use everywhere.
+    pub(crate) target_features: String,
+    /// The command line.
+    pub(crate) command: String,
+}
+
+/// The names of those features for which a macro says so, at compile time or at run time.
+macro_rules! features {
+    ($has:ident) => {
+        features!($has: "sse2", "sse4.1", "avx", "avx2", "fma", "bmi2", "avx512f", "avx512dq", "avx512vl")
+    };
+    ($has:ident: $($name:tt),+) => {
+        [$(($name, $has!($name))),+].iter().filter(|(_, has)| *has).map(|(name, _)| *name).collect::<Vec<_>>().join(" ")
+    };
+}
+
+/// Whether the compiler may use a feature everywhere.
+macro_rules! compiled {
+    ($name:tt) => {
+        cfg!(target_feature = $name)
+    };
+}
+
+/// Whether the processor has a feature.
+#[cfg(target_arch = "x86_64")]
+macro_rules! detected {
+    ($name:tt) => {
+        std::arch::is_x86_feature_detected!($name)
+    };
+}
+#[cfg(not(target_arch = "x86_64"))]
+macro_rules! detected {
+    ($name:tt) => {
+        false
+    };
+}
+
+impl Provenance {
+    /// Of this program, now.
+    pub(crate) fn collect(label: Option<&str>) -> Self {
+        let native = cfg!(target_feature = "avx2");
+        let root = env!("CARGO_MANIFEST_DIR");
+        let git = |arguments: &[&str]| output("git", &[&["-C", root], arguments].concat());
+        let mut commit = git(&["rev-parse", "--short", "HEAD"]).unwrap_or_else(|| "unknown".to_owned());
+        if git(&["status", "--porcelain", "--untracked-files=no"]).is_some_and(|changes| !changes.is_empty()) {
+            commit.push_str("+changes");
+        }
+        let rustflags = env!("P2M_BENCH_RUSTFLAGS");
+        Self {
+            label: label.unwrap_or(if native { "native" } else { "portable" }).to_owned(),
+            date: output("date", &["-u", "+%Y-%m-%dT%H:%MZ"]).unwrap_or_default(),
+            commit,
+            cpu: format!("{} (has {})", cpu_model(), features!(detected)),
+            rustc: env!("P2M_BENCH_RUSTC").to_owned(),
+            flags: format!(
+                "{} opt-level {} RUSTFLAGS \"{rustflags}\"",
+                env!("P2M_BENCH_PROFILE"),
+                env!("P2M_BENCH_OPT_LEVEL")
+            ),
+            target_features: features!(compiled),
+            command: std::env::args().collect::<Vec<_>>().join(" "),
+        }
+    }
+
+    /// The columns that [`Provenance::fields`] fills.
+    pub(crate) const COLUMNS: [&'static str; 7] =
+        ["label", "date", "commit", "cpu", "rustc", "flags", "target_features"];
+
+    /// For a record.
+    pub(crate) fn fields(&self) -> [String; 7] {
+        let Self { label, date, commit, cpu, rustc, flags, target_features, .. } = self.clone();
+        [label, date, commit, cpu, rustc, flags, target_features]
+    }
+}
+
+impl std::fmt::Display for Provenance {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        writeln!(f, "Build `{}`: {}, {}, compiled for {}.", self.label, self.rustc, self.flags, self.target_features)?;
+        writeln!(f, "CPU: {}. Commit {}, {}.", self.cpu, self.commit, self.date)?;
+        writeln!(f, "Command: `{}`", self.command)
+    }
+}
+
+fn cpu_model() -> String {
+    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = info.lines().find(|line| line.starts_with("model name")).and_then(|line| line.split(": ").nth(1));
+    model.unwrap_or(std::env::consts::ARCH).trim().to_owned()
+}
+
+/// What a command prints, `None` if it fails.
+fn output(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok().filter(|output| output.status.success())?;
+    Some(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}

@@ -1,0 +1,169 @@
+//! Every exact backend of ours against brute force, bit for bit.
+
+use crate::agree::{Agreement, Answers, compare_round};
+use crate::contender::{Absent, Answer, Backend, Ready, ScalarKind};
+use crate::queries::{Queries, QuerySet};
+use crate::scene::Scene;
+use crate::table::Table;
+use std::thread;
+
+/// Compares `backends` with the oracle of their scalar on every set; prints counts and says whether all is equal.
+pub(crate) fn verify(
+    scene: &Scene,
+    oracles: &[&'static Backend],
+    backends: &[&'static Backend],
+    sets: &[QuerySet],
+    count: usize,
+    seed: u64,
+) -> bool {
+    println!("\n## {}\n", scene.describe());
+    let mut table = Table::new(["", "scalar"].into_iter().chain(sets.iter().map(|set| set.name())));
+    let (mut equal, mut notes) = (true, Vec::new());
+    for scalar in [ScalarKind::Double, ScalarKind::Single] {
+        let of_scalar = |list: &[&'static Backend]| -> Vec<&'static Backend> {
+            list.iter().copied().filter(|b| b.scalar == scalar).collect()
+        };
+        let (oracles, contenders) = (of_scalar(oracles), of_scalar(backends));
+        let mut rows: Vec<Vec<String>> =
+            contenders.iter().map(|b| vec![b.name.to_owned(), scalar.name().to_owned()]).collect();
+        let built: Vec<_> = oracles.iter().chain(&contenders).map(|b| build(scene, b)).collect();
+        for (backend, index) in oracles.iter().chain(&contenders).zip(&built) {
+            if let Err(Absent(why)) = index {
+                notes.push(format!("{} is left out: {why}", backend.name));
+            }
+        }
+        for set in sets {
+            let queries = Queries::new(set.generate(scene, count, seed));
+            let expected = oracles.iter().zip(&built).find_map(|(b, i)| Some((*b, answer(i.as_ref().ok()?, &queries))));
+            for ((backend, index), row) in contenders.iter().zip(&built[oracles.len()..]).zip(&mut rows) {
+                let cell = match (&expected, index) {
+                    (Some((oracle, Ok(expected))), Ok(index)) => match answer(index, &queries) {
+                        Ok(answers) => {
+                            let agreement = compare((oracle, expected), (backend, &answers));
+                            if !agreement.is_clean() {
+                                notes.extend(example(backend, *set, &queries, expected, &answers));
+                            }
+                            equal &= agreement.is_clean();
+                            counts(&agreement)
+                        }
+                        Err(Absent(why)) => {
+                            equal = false;
+                            why
+                        }
+                    },
+                    (Some((_, Err(Absent(why)))), _) => {
+                        equal = false;
+                        format!("oracle: {why}")
+                    }
+                    _ => "-".to_owned(),
+                };
+                row.push(cell);
+            }
+        }
+        rows.into_iter().for_each(|row| table.push(row));
+    }
+    println!("{table}");
+    notes.iter().for_each(|note| println!("- {note}"));
+    equal
+}
+
+fn build<'a>(scene: &'a Scene, backend: &Backend) -> Result<Ready<'a>, Absent> {
+    crate::contender::catch(|| ((backend.prepare)(scene)?.build)())
+}
+
+/// The answers to all queries, by all threads that the machine runs at a time.
+fn answer(index: &Ready<'_>, queries: &Queries) -> Result<Vec<Answer>, Absent> {
+    let mut answers = vec![Answer::NONE; queries.len()];
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    let length = queries.len().div_ceil(threads).max(1);
+    thread::scope(|scope| {
+        let parts: Vec<_> = answers
+            .chunks_mut(length)
+            .enumerate()
+            .map(|(i, part)| {
+                let range = i * length..i * length + part.len();
+                scope.spawn(move || index.answer(queries.slice(range), part))
+            })
+            .collect();
+        parts
+            .into_iter()
+            .try_for_each(|part| part.join().unwrap_or_else(|_| Err(Absent("a thread panicked".to_owned()))))
+    })?;
+    Ok(answers)
+}
+
+/// Bitwise; `compare_round` takes the contender that is not exhaustive as its reference, which is as good.
+fn compare(oracle: (&'static Backend, &[Answer]), contender: (&'static Backend, &[Answer])) -> Agreement {
+    let all: Vec<usize> = (0..oracle.1.len()).collect();
+    let round = [oracle, contender].map(|(backend, answers)| Some(Answers { backend, chosen: &all, answers }));
+    compare_round(&round, all.len())[0]
+}
+
+fn counts(a: &Agreement) -> String {
+    if a.is_clean() {
+        format!("{} =", a.compared)
+    } else {
+        format!("{} distances, {} ids, {} failures of {}", a.other_distance, a.other_id, a.failed, a.compared)
+    }
+}
+
+/// The first query that is answered otherwise, to the last bit.
+fn example(
+    backend: &Backend,
+    set: QuerySet,
+    queries: &Queries,
+    expected: &[Answer],
+    answers: &[Answer],
+) -> Option<String> {
+    let wrong = |(e, a): (&Answer, &Answer)| !e.same_distance(a) || e.id != a.id;
+    let at = expected.iter().zip(answers).position(wrong)?;
+    let [x, y, z]: [f64; 3] = queries.all().double[at].coords.into();
+    let (e, a) = (expected[at], answers[at]);
+    Some(format!(
+        "{} on {}: query {at} ({x:e}, {y:e}, {z:e}) should be {:e} at {}, is {:e} at {}",
+        backend.name,
+        set.name(),
+        e.distance,
+        e.id,
+        a.distance,
+        a.id
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::backends;
+    use crate::contender::{Contender, Prepared};
+    use nalgebra::Point3;
+    use p2m_core::{Element, Soup};
+
+    /// Right but for the id.
+    struct Wrong;
+
+    impl Contender for Wrong {
+        type Scalar = f64;
+        fn query(&self, query: &Point3<f64>) -> Answer {
+            Answer { distance: query.coords.norm(), id: 1 }
+        }
+    }
+
+    static WRONG: Backend = Backend {
+        name: "wrong",
+        scalar: ScalarKind::Double,
+        ours: true,
+        exhaustive: false,
+        prepare: |_| Ok(Prepared { build: Box::new(|| Ok(Box::new(Wrong))), borrowed: 0 }),
+    };
+
+    #[test]
+    fn our_backends_pass_and_a_wrong_one_does_not() {
+        let soup = Soup::new(vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0)], [Element::Point(0)]).unwrap();
+        let scene = Scene::new("test".into(), soup).unwrap();
+        let (oracles, contenders): (Vec<_>, Vec<_>) =
+            backends::ALL.iter().filter(|b| b.ours).partition(|b| b.exhaustive);
+        let run = |backends: &[&'static Backend]| verify(&scene, &oracles, backends, &QuerySet::ALL, 100, 1);
+        assert!(run(&contenders));
+        assert!(!run(&[&WRONG]));
+    }
+}

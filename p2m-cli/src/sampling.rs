@@ -1,0 +1,185 @@
+//! Where to ask: given points, a grid, or random points around the scene.
+
+use nalgebra::Point3;
+use p2m_core::Soup;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// A box to ask in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Region {
+    min: [f64; 3],
+    max: [f64; 3],
+}
+
+impl Region {
+    /// The box of the primitives of `soup`, scaled about its centre; the unit cube around the origin for an empty scene.
+    ///
+    /// An axis without extent would put every query into the plane of the scene: it is widened to each side by what the
+    /// scale adds to the longest axis, and for a single point by what it would add to one of length 1.
+    pub(crate) fn around(soup: &Soup<f64>, scale: f64) -> Self {
+        let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for element in soup.elements() {
+            for &i in element.indices() {
+                let position = soup.positions()[i as usize];
+                for k in 0..3 {
+                    min[k] = min[k].min(position[k]);
+                    max[k] = max[k].max(position[k]);
+                }
+            }
+        }
+        if min[0] > max[0] {
+            (min, max) = ([-0.5; 3], [0.5; 3]);
+        }
+        // Halves first: the sum and the difference of two finite numbers may not be finite.
+        let half: [f64; 3] = std::array::from_fn(|k| max[k] / 2.0 - min[k] / 2.0);
+        let longest = half.iter().fold(0.0f64, |a, &b| a.max(b));
+        let reference = if longest > 0.0 { longest } else { 0.5 };
+        let side = |k: usize, sign: f64| {
+            let reach = if half[k] > 0.0 { half[k] * scale } else { reference * (scale - 1.0).max(0.0) };
+            (min[k] / 2.0 + max[k] / 2.0 + sign * reach).clamp(f64::MIN, f64::MAX)
+        };
+        Self { min: std::array::from_fn(|k| side(k, -1.0)), max: std::array::from_fn(|k| side(k, 1.0)) }
+    }
+
+    /// The point at fractions `t` of the sides, exact at 0 and 1.
+    fn at(&self, t: [f64; 3]) -> Point3<f64> {
+        Point3::from(std::array::from_fn(|k| self.min[k] * (1.0 - t[k]) + self.max[k] * t[k]))
+    }
+}
+
+/// A sequence of queries, made as they are needed.
+pub(crate) enum Queries {
+    /// These points.
+    List(std::vec::IntoIter<Point3<f64>>),
+    /// The points of a grid from number `next` on.
+    Grid { region: Region, side: u64, next: u64 },
+    /// So many random points.
+    Random { region: Region, left: u64, rng: Box<ChaCha8Rng> },
+}
+
+impl Queries {
+    pub(crate) fn list(points: Vec<Point3<f64>>) -> Self {
+        Self::List(points.into_iter())
+    }
+
+    /// `side` points along each axis, the ends included; z runs fastest, then y. `side` is at most 2^21.
+    pub(crate) fn grid(region: Region, side: u64) -> Self {
+        Self::Grid { region, side, next: 0 }
+    }
+
+    /// `count` points from a uniform distribution, the same ones for the same seed everywhere.
+    pub(crate) fn random(region: Region, count: u64, seed: u64) -> Self {
+        Self::Random { region, left: count, rng: Box::new(ChaCha8Rng::seed_from_u64(seed)) }
+    }
+
+    /// How many are left.
+    pub(crate) fn len(&self) -> u64 {
+        match self {
+            Self::List(points) => points.len() as u64,
+            Self::Grid { side, next, .. } => side * side * side - next,
+            Self::Random { left, .. } => *left,
+        }
+    }
+
+    /// Replaces the content of `chunk` by the next queries, up to `most`.
+    pub(crate) fn fill(&mut self, most: usize, chunk: &mut Vec<Point3<f64>>) {
+        chunk.clear();
+        let take = self.len().min(most as u64);
+        match self {
+            Self::List(points) => chunk.extend(points.take(most)),
+            Self::Grid { region, side, next } => {
+                let side = *side;
+                chunk.extend((*next..*next + take).map(|i| {
+                    let t = |place: u64| if side > 1 { fraction(place, side - 1) } else { 0.5 };
+                    region.at([t(i / (side * side)), t(i / side % side), t(i % side)])
+                }));
+                *next += take;
+            }
+            Self::Random { region, left, rng } => {
+                chunk.extend((0..take).map(|_| {
+                    let mut unit = || fraction(rng.next_u64() >> 11, 1 << 53);
+                    region.at([unit(), unit(), unit()])
+                }));
+                *left -= take;
+            }
+        }
+    }
+}
+
+/// `a / b` for numbers up to 2^53.
+#[allow(clippy::cast_precision_loss, reason = "exact up to 2^53")]
+fn fraction(a: u64, b: u64) -> f64 {
+    a as f64 / b as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use p2m_core::Element;
+
+    fn soup(points: &[[f64; 3]]) -> Soup<f64> {
+        let count = u32::try_from(points.len()).unwrap();
+        // One more position, which nothing uses and which therefore does not count.
+        let mut positions: Vec<_> = points.iter().map(|&p| Point3::from(p)).collect();
+        positions.push(Point3::new(1e9, 1e9, 1e9));
+        Soup::new(positions, (0..count).map(Element::Point)).unwrap()
+    }
+
+    fn all(mut queries: Queries, chunk_size: usize) -> Vec<Point3<f64>> {
+        let (mut chunk, mut all) = (Vec::new(), Vec::new());
+        while queries.len() > 0 {
+            queries.fill(chunk_size, &mut chunk);
+            assert!(!chunk.is_empty() && chunk.len() <= chunk_size);
+            all.extend_from_slice(&chunk);
+        }
+        all
+    }
+
+    #[test]
+    fn the_box_is_scaled_about_its_centre() {
+        let region = Region::around(&soup(&[[0.0, 0.0, 0.0], [2.0, 4.0, 8.0]]), 1.5);
+        assert_eq!(region, Region { min: [-0.5, -1.0, -2.0], max: [2.5, 5.0, 10.0] });
+    }
+
+    #[test]
+    fn an_axis_without_extent_is_widened() {
+        let region = Region::around(&soup(&[[0.0, 7.0, 0.0], [2.0, 7.0, 8.0]]), 1.5);
+        assert_eq!(region, Region { min: [-0.5, 5.0, -2.0], max: [2.5, 9.0, 10.0] });
+        let region = Region::around(&soup(&[[3.0, 3.0, 3.0]]), 1.5);
+        assert_eq!(region, Region { min: [2.75; 3], max: [3.25; 3] });
+        let region = Region::around(&Soup::default(), 1.0);
+        assert_eq!(region, Region { min: [-0.5; 3], max: [0.5; 3] });
+    }
+
+    #[test]
+    fn boxes_of_any_size_give_finite_queries() {
+        let far = Region::around(&soup(&[[f64::MIN; 3], [f64::MAX; 3]]), 1.05);
+        let queries = all(Queries::random(far, 100, 0), 7);
+        assert!(queries.iter().flat_map(|p| p.iter()).all(|x| x.is_finite()));
+    }
+
+    #[test]
+    fn grids_run_along_z_first_and_hit_the_corners() {
+        let region = Region { min: [0.1, 0.2, 0.3], max: [1.1, 2.2, 3.3] };
+        for chunk in [1, 5, 100] {
+            let points = all(Queries::grid(region, 3), chunk);
+            assert_eq!(points.len(), 27);
+            assert_eq!(points[0], Point3::new(0.1, 0.2, 0.3));
+            assert_eq!(points[2], Point3::new(0.1, 0.2, 3.3));
+            assert_eq!(points[26], Point3::new(1.1, 2.2, 3.3));
+        }
+        assert_eq!(all(Queries::grid(Region { min: [0.0; 3], max: [2.0; 3] }, 1), 9), [Point3::new(1.0, 1.0, 1.0)]);
+    }
+
+    #[test]
+    fn random_points_depend_on_the_seed_alone() {
+        let region = Region { min: [-1.0; 3], max: [1.0; 3] };
+        let points = all(Queries::random(region, 1000, 5), 1000);
+        assert_eq!(all(Queries::random(region, 1000, 5), 13), points);
+        assert_ne!(all(Queries::random(region, 1000, 6), 1000), points);
+        assert!(points.iter().flat_map(|p| p.iter()).all(|x| x.abs() <= 1.0));
+        let mean: f64 = points.iter().map(|p| p.x + p.y + p.z).sum::<f64>() / 3000.0;
+        assert!(mean.abs() < 0.05, "{mean}");
+    }
+}

@@ -1,0 +1,76 @@
+//! What a run was about, for the standard error.
+
+use p2m_core::Closest;
+use p2m_mixed::Scene;
+use std::fmt;
+use std::time::Duration;
+
+/// Numbers of a run.
+pub(crate) struct Summary<'a> {
+    pub(crate) scene_name: String,
+    pub(crate) scene: &'a Scene,
+    pub(crate) backend: &'static str,
+    pub(crate) threads: usize,
+    pub(crate) build: Duration,
+    pub(crate) query: Duration,
+    pub(crate) answers: Answers,
+}
+
+/// Statistics of the answers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Answers {
+    queries: u64,
+    answered: u64,
+    min: f64,
+    max: f64,
+    sum: f64,
+}
+
+impl Answers {
+    pub(crate) fn none() -> Self {
+        Self { queries: 0, answered: 0, min: f64::INFINITY, max: 0.0, sum: 0.0 }
+    }
+
+    pub(crate) fn add(&mut self, answer: Option<&Closest<f64>>) {
+        self.queries += 1;
+        if let Some(closest) = answer {
+            self.answered += 1;
+            self.min = self.min.min(closest.distance);
+            self.max = self.max.max(closest.distance);
+            self.sum += closest.distance;
+        }
+    }
+}
+
+#[allow(clippy::cast_precision_loss, reason = "counts for people to read")]
+impl fmt::Display for Summary<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let soup = &self.scene.soup;
+        let (triangles, segments, points) = (soup.triangles().len(), soup.segments().len(), soup.points().len());
+        writeln!(f, "scene    {}", self.scene_name)?;
+        writeln!(f, "         {triangles} triangles, {segments} segments, {points} points")?;
+        if triangles + segments + points == 0 {
+            writeln!(f, "note     the scene is empty: no query has an answer")?;
+        }
+        if !self.scene.skipped.is_empty() {
+            let list: Vec<String> = self.scene.skipped.iter().map(|s| format!("{} x {}", s.count, s.what)).collect();
+            writeln!(f, "skipped  {}", list.join(", "))?;
+        }
+        let threads = if self.threads == 1 { "thread" } else { "threads" };
+        writeln!(f, "backend  {}, built in {:.3?}", self.backend, self.build)?;
+        let answers = &self.answers;
+        let seconds = self.query.as_secs_f64();
+        write!(f, "queries  {} in {:.3?} on {} {threads}", answers.queries, self.query, self.threads)?;
+        if answers.queries > 0 && seconds > 0.0 {
+            let count = answers.queries as f64;
+            write!(f, ": {:.0} ns per query, {:.0} queries/s", seconds * 1e9 / count, count / seconds)?;
+        }
+        writeln!(f)?;
+        writeln!(f, "answers  {}, without answer {}", answers.answered, answers.queries - answers.answered)?;
+        if answers.answered > 0 {
+            let mean = answers.sum / answers.answered as f64;
+            writeln!(f, "distance min {:?}, max {:?}, mean {mean:?}", answers.min, answers.max)?;
+        }
+        Ok(())
+    }
+}

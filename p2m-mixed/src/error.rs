@@ -1,0 +1,177 @@
+//! Why a file cannot be read, and where it goes wrong.
+
+use p2m_core::BuildError;
+use std::fmt;
+
+/// A file that cannot be read.
+///
+/// ```
+/// let error = p2m_mixed::read_obj("v 0 0 0\np 2\n".as_bytes(), "two.obj").unwrap_err();
+/// assert_eq!(error.to_string(), "two.obj:2: vertex index 2 is out of range, the file has 1 vertices so far");
+/// assert!(matches!(error.reason, p2m_mixed::Reason::IndexOutOfRange { index: 2, count: 1 }));
+/// ```
+#[derive(Debug, thiserror::Error)]
+#[error("{file}{place}: {reason}")]
+#[non_exhaustive]
+pub struct ReadError {
+    /// The name of the file as the caller gave it.
+    pub file: String,
+    /// Where in the file.
+    pub place: Place,
+    /// What is wrong there.
+    pub reason: Reason,
+}
+
+impl ReadError {
+    pub(crate) fn new(file: &str, place: Place, reason: Reason) -> Self {
+        Self { file: file.to_owned(), place, reason }
+    }
+}
+
+/// A place in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// The file as a whole.
+    File,
+    /// A line of text, from 1.
+    Line(u64),
+    /// An offset in bytes from the start of the file, from 0.
+    Byte(u64),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File => Ok(()),
+            Self::Line(line) => write!(f, ":{line}"),
+            Self::Byte(byte) => write!(f, " at byte {byte}"),
+        }
+    }
+}
+
+/// What is wrong with a file. Texts quoted from it are shortened and escaped.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Reason {
+    /// The operating system says no.
+    #[error("cannot be read: {0}")]
+    Io(std::io::Error),
+    /// The primitives do not make a scene: there are too many.
+    #[error("no scene can be made of it: {0}")]
+    Build(BuildError),
+    /// The name of the file does not tell its format.
+    #[error("unknown extension '{extension}', expected one of {}", supported.join(", "))]
+    UnknownExtension {
+        /// What follows the last dot of the name, if anything.
+        extension: String,
+        /// What could have followed.
+        supported: &'static [&'static str],
+    },
+    /// The file ends in the middle of something.
+    #[error("unexpected end of file")]
+    UnexpectedEnd,
+    /// A number was expected.
+    #[error("'{text}' is not a number that fits here")]
+    BadNumber {
+        /// What stands there.
+        text: String,
+    },
+    /// A coordinate is NaN or infinite, or too large for a number of double precision.
+    #[error("coordinate '{text}' is not finite")]
+    NonFinite {
+        /// What stands there.
+        text: String,
+    },
+    /// A point has fewer than three coordinates.
+    #[error("a point needs 3 coordinates, found {found}")]
+    TooFewCoordinates {
+        /// How many it has.
+        found: usize,
+    },
+    /// OBJ numbers vertices from 1 (or -1, backwards).
+    #[error("vertex index 0, but vertices are numbered from 1")]
+    IndexZero,
+    /// A vertex that does not exist. OBJ counts from 1 or, backwards, from -1; PLY counts from 0.
+    #[error("vertex index {index} is out of range, the file has {count} vertices so far")]
+    IndexOutOfRange {
+        /// The index as it stands in the file.
+        index: i64,
+        /// How many vertices there are: for OBJ before this line, for PLY in the whole file.
+        count: u64,
+    },
+    /// A face of fewer than three vertices, a line of fewer than two, a point statement of none.
+    #[error("{needed} or more vertices expected, found {found}")]
+    TooFewVertices {
+        /// How many there are.
+        found: u64,
+        /// How many it takes.
+        needed: u64,
+    },
+    /// A list in a PLY file has a negative length.
+    #[error("list of {count} items")]
+    BadListCount {
+        /// The length.
+        count: i64,
+    },
+    /// A face of more vertices than [`MAX_CORNERS`](crate::MAX_CORNERS), or more than 2^32 - 1 vertices.
+    #[error("{count} vertices are more than the {limit} that are supported here")]
+    ElementTooLarge {
+        /// How many there are.
+        count: u64,
+        /// How many there may be.
+        limit: u64,
+    },
+    /// The header of a PLY file makes no sense.
+    #[error("bad header: {0}")]
+    BadHeader(HeaderProblem),
+    /// A PLY file in a format or version other than `ascii`, `binary_little_endian` and `binary_big_endian` 1.0.
+    #[error("unsupported format '{text}'")]
+    UnsupportedFormat {
+        /// What the header says.
+        text: String,
+    },
+    /// A CSV record with a quote that is not closed.
+    #[error("a quote is not closed on this line")]
+    BadRecord,
+}
+
+/// What is wrong with the header of a PLY file.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum HeaderProblem {
+    /// The first line is not `ply`.
+    #[error("the file does not start with 'ply'")]
+    NotPly,
+    /// A line is longer than any sensible one.
+    #[error("line too long")]
+    LineTooLong,
+    /// A line that is not of the header's grammar.
+    #[error("'{text}' is not understood")]
+    BadLine {
+        /// The line.
+        text: String,
+    },
+    /// There is no `format` line.
+    #[error("no format line")]
+    NoFormat,
+    /// A property of a type that does not exist, or whose type cannot serve its purpose.
+    #[error("type of property '{name}' is unknown or does not fit")]
+    BadType {
+        /// The property.
+        name: String,
+    },
+    /// Two elements, or two properties of an element, have the same name.
+    #[error("'{name}' is declared twice")]
+    Duplicate {
+        /// The name.
+        name: String,
+    },
+    /// An element lacks a property without which it means nothing.
+    #[error("element '{element}' has no property '{property}'")]
+    MissingProperty {
+        /// The element.
+        element: &'static str,
+        /// The property.
+        property: &'static str,
+    },
+}

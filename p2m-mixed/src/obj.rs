@@ -1,0 +1,140 @@
+//! Wavefront OBJ: the geometry of it.
+
+use crate::polygon::MAX_CORNERS;
+use crate::scene::Builder;
+use crate::text::{Lines, Words, finite, integer, quote};
+use crate::{Place, ReadError, Reason, Scene};
+use nalgebra::Point3;
+use p2m_core::Element;
+use std::io::BufRead;
+
+/// Reads an OBJ file; `name` is for messages.
+///
+/// Understood are `v` (three coordinates; weights or colours behind them are ignored), `f` (and its old name `fo`) with
+/// polygons of any shape, `l` polylines, whose n vertices make n - 1 segments, and `p` points. References may be `a`,
+/// `a/b`, `a//c` or `a/b/c`, where `a` counts vertices from 1, or backwards from -1; only vertices further up can be
+/// referred to. Everything else, free-form curves and surfaces included, is counted in [`Scene::skipped`] by keyword.
+/// A file without any `f`, `l` and `p` is a point cloud: each of its vertices is a point.
+///
+/// A backslash at the end of a line continues it, except in a comment. Comments may follow data. Bytes outside of the
+/// statements above are never interpreted, so any encoding of names will do. The file is read line by line.
+///
+/// A face that repeats vertices is kept: it is the degenerate triangle or polygon that it says.
+///
+/// # Errors
+/// [`ReadError`] with the line for numbers that are none or not finite, indices of no vertex, statements with too few
+/// vertices, faces beyond [`MAX_CORNERS`], and for what goes wrong in reading.
+pub fn read_obj(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
+    let mut lines = Lines::new(reader, 0);
+    let mut parser = Parser::default();
+    loop {
+        match lines.read_continued() {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(e) => return Err(ReadError::new(name, Place::Line(lines.line()), Reason::Io(e))),
+        }
+        let mut words = Words::new(lines.bytes());
+        parser
+            .statement(&mut words)
+            .map_err(|reason| ReadError::new(name, Place::Line(lines.line() + words.lines_down()), reason))?;
+    }
+    if parser.faces + parser.lines + parser.points == 0 {
+        parser.builder.point_cloud();
+    }
+    parser.builder.finish().map_err(|reason| ReadError::new(name, Place::File, reason))
+}
+
+#[derive(Default)]
+struct Parser {
+    builder: Builder,
+    /// Statements so far, of each kind.
+    faces: usize,
+    lines: usize,
+    points: usize,
+    /// The vertices of the statement at hand.
+    vertices: Vec<u32>,
+}
+
+impl Parser {
+    /// `words` is left at the word that an error is about.
+    fn statement(&mut self, words: &mut Words<'_>) -> Result<(), Reason> {
+        let Some(keyword) = words.next() else { return Ok(()) };
+        match keyword {
+            b"v" => self.vertex(words),
+            b"f" | b"fo" => {
+                self.vertices(words, 3)?;
+                let found = self.vertices.len();
+                if found > MAX_CORNERS {
+                    return Err(Reason::ElementTooLarge { count: found as u64, limit: MAX_CORNERS as u64 });
+                }
+                self.builder.polygon(&self.vertices, self.faces);
+                self.faces += 1;
+                Ok(())
+            }
+            b"l" => {
+                self.vertices(words, 2)?;
+                for ends in self.vertices.windows(2) {
+                    self.builder.push(Element::Segment([ends[0], ends[1]]), self.lines);
+                }
+                self.lines += 1;
+                Ok(())
+            }
+            b"p" => {
+                self.vertices(words, 1)?;
+                for &vertex in &self.vertices {
+                    self.builder.push(Element::Point(vertex), self.points);
+                }
+                self.points += 1;
+                Ok(())
+            }
+            [b'#', ..] => Ok(()),
+            other => {
+                self.builder.skips.add(other, 1);
+                Ok(())
+            }
+        }
+    }
+
+    fn vertex(&mut self, words: &mut Words<'_>) -> Result<(), Reason> {
+        words.end_at_comment();
+        let mut position = [0.0; 3];
+        for (found, x) in position.iter_mut().enumerate() {
+            *x = finite(words.next().ok_or(Reason::TooFewCoordinates { found })?)?;
+        }
+        let count = self.builder.positions.len() as u64;
+        if count >= u64::from(u32::MAX) {
+            return Err(Reason::ElementTooLarge { count: count + 1, limit: u64::from(u32::MAX) });
+        }
+        self.builder.positions.push(Point3::from(position));
+        Ok(())
+    }
+
+    /// Reads the references of a statement, `needed` or more, into `self.vertices`.
+    fn vertices(&mut self, words: &mut Words<'_>, needed: u64) -> Result<(), Reason> {
+        words.end_at_comment();
+        self.vertices.clear();
+        while let Some(word) = words.next() {
+            self.vertices.push(vertex_of(word, self.builder.positions.len())?);
+        }
+        let found = self.vertices.len() as u64;
+        if found < needed { Err(Reason::TooFewVertices { found, needed }) } else { Ok(()) }
+    }
+}
+
+/// The number, from 0, of the vertex that a reference like `7/1/2` names when `count` are known.
+fn vertex_of(word: &[u8], count: usize) -> Result<u32, Reason> {
+    let split = word.iter().position(|&b| b == b'/').unwrap_or(word.len());
+    let (vertex, rest) = word.split_at(split);
+    // Texture and normal are not looked up, but they should be numbers.
+    let index = match integer(vertex) {
+        Ok(index) if rest.iter().all(|b| matches!(b, b'/' | b'-' | b'+' | b'0'..=b'9')) => index,
+        _ => return Err(Reason::BadNumber { text: quote(word) }),
+    };
+    let count = count as u64;
+    let place = match index {
+        0 => return Err(Reason::IndexZero),
+        1.. => Some(index.unsigned_abs() - 1).filter(|&i| i < count),
+        _ => count.checked_sub(index.unsigned_abs()),
+    };
+    place.and_then(|i| u32::try_from(i).ok()).ok_or(Reason::IndexOutOfRange { index, count })
+}

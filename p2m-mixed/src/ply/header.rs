@@ -1,0 +1,211 @@
+//! The header of a PLY file: what elements there are, and of what properties.
+
+use crate::text::{Words, integer, quote};
+use crate::{HeaderProblem, Place, ReadError, Reason};
+use std::collections::HashSet;
+use std::io::{BufRead, Read};
+
+/// No line of a sensible header is longer. A file of other data may have no line ends at all.
+const LONGEST_LINE: u64 = 1 << 16;
+
+/// How numbers are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Ascii,
+    Little,
+    Big,
+}
+
+/// The types of numbers, under two names each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    fn named(name: &[u8]) -> Option<Self> {
+        Some(match name {
+            b"char" | b"int8" => Self::I8,
+            b"uchar" | b"uint8" => Self::U8,
+            b"short" | b"int16" => Self::I16,
+            b"ushort" | b"uint16" => Self::U16,
+            b"int" | b"int32" => Self::I32,
+            b"uint" | b"uint32" => Self::U32,
+            b"float" | b"float32" => Self::F32,
+            b"double" | b"float64" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    /// Size in bytes.
+    pub(super) fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    pub(super) fn is_integer(self) -> bool {
+        !matches!(self, Self::F32 | Self::F64)
+    }
+}
+
+/// One number, or a list of them behind their count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Layout {
+    Scalar(Scalar),
+    List { count: Scalar, item: Scalar },
+}
+
+#[derive(Debug)]
+pub(super) struct Property {
+    pub(super) name: Vec<u8>,
+    pub(super) layout: Layout,
+}
+
+#[derive(Debug)]
+pub(super) struct Element {
+    pub(super) name: Vec<u8>,
+    /// As the header claims.
+    pub(super) count: u64,
+    pub(super) properties: Vec<Property>,
+}
+
+impl Element {
+    /// Where the property of one of these names is, if it exists.
+    pub(super) fn find(&self, names: &[&str]) -> Option<usize> {
+        self.properties.iter().position(|p| names.iter().any(|n| n.as_bytes() == p.name))
+    }
+}
+
+#[derive(Debug)]
+pub(super) struct Header {
+    pub(super) encoding: Encoding,
+    pub(super) elements: Vec<Element>,
+    /// Lines and bytes of the header.
+    pub(super) lines: u64,
+    pub(super) bytes: u64,
+}
+
+/// Reads up to the end of the line `end_header`.
+pub(super) fn read_header(reader: &mut impl BufRead, file: &str) -> Result<Header, ReadError> {
+    let mut header = Header { encoding: Encoding::Ascii, elements: Vec::new(), lines: 0, bytes: 0 };
+    let mut parser = Parser::default();
+    let mut line = Vec::new();
+    loop {
+        line.clear();
+        let read = reader.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut line);
+        header.lines += 1;
+        let fail = |reason| Err(ReadError::new(file, Place::Line(header.lines), reason));
+        match read {
+            Err(e) => return fail(Reason::Io(e)),
+            Ok(read) => header.bytes += read as u64,
+        }
+        if header.lines == 1 {
+            if line.trim_ascii_end() != b"ply" {
+                return fail(Reason::BadHeader(HeaderProblem::NotPly));
+            }
+            continue;
+        }
+        if line.last() != Some(&b'\n') {
+            let too_long = line.len() as u64 == LONGEST_LINE;
+            let reason = if too_long { Reason::BadHeader(HeaderProblem::LineTooLong) } else { Reason::UnexpectedEnd };
+            return fail(reason);
+        }
+        match parser.line(&line, &mut header.elements) {
+            Err(reason) => return fail(reason),
+            Ok(false) => {}
+            Ok(true) => {
+                header.encoding = match parser.encoding {
+                    Some(encoding) => encoding,
+                    None => return fail(Reason::BadHeader(HeaderProblem::NoFormat)),
+                };
+                return Ok(header);
+            }
+        }
+    }
+}
+
+/// What has been seen so far.
+#[derive(Default)]
+struct Parser {
+    encoding: Option<Encoding>,
+    element_names: HashSet<Vec<u8>>,
+    /// Of the last element.
+    property_names: HashSet<Vec<u8>>,
+}
+
+impl Parser {
+    /// Takes a line; `true` if it ends the header.
+    fn line(&mut self, line: &[u8], elements: &mut Vec<Element>) -> Result<bool, Reason> {
+        let bad_line = || Reason::BadHeader(HeaderProblem::BadLine { text: quote(line.trim_ascii()) });
+        let mut words = Words::new(line);
+        match words.next() {
+            None | Some(b"comment" | b"obj_info") => return Ok(false),
+            Some(b"end_header") => return Ok(true),
+            Some(b"format") => {
+                let encoding = match (words.next(), words.next()) {
+                    (Some(b"ascii"), Some(b"1.0")) => Encoding::Ascii,
+                    (Some(b"binary_little_endian"), Some(b"1.0")) => Encoding::Little,
+                    (Some(b"binary_big_endian"), Some(b"1.0")) => Encoding::Big,
+                    _ => {
+                        let text = line.trim_ascii().strip_prefix(b"format").unwrap_or(line);
+                        return Err(Reason::UnsupportedFormat { text: quote(text.trim_ascii()) });
+                    }
+                };
+                if self.encoding.replace(encoding).is_some() {
+                    return Err(bad_line());
+                }
+            }
+            Some(b"element") => {
+                let (Some(name), Some(count)) = (words.next(), words.next()) else { return Err(bad_line()) };
+                let count = integer(count).ok().and_then(|c| u64::try_from(c).ok()).ok_or_else(bad_line)?;
+                if !self.element_names.insert(name.to_vec()) {
+                    return Err(duplicate(name));
+                }
+                self.property_names.clear();
+                elements.push(Element { name: name.to_vec(), count, properties: Vec::new() });
+            }
+            Some(b"property") => {
+                let element = elements.last_mut().ok_or_else(bad_line)?;
+                let property = property(&mut words).ok_or_else(bad_line)??;
+                if !self.property_names.insert(property.name.clone()) {
+                    return Err(duplicate(&property.name));
+                }
+                element.properties.push(property);
+            }
+            Some(_) => return Err(bad_line()),
+        }
+        // A word too many means that the line says something else.
+        if words.next().is_some() { Err(bad_line()) } else { Ok(false) }
+    }
+}
+
+fn duplicate(name: &[u8]) -> Reason {
+    Reason::BadHeader(HeaderProblem::Duplicate { name: quote(name) })
+}
+
+/// The property that the words behind `property` declare; `None` if there are too few of them.
+fn property(words: &mut Words<'_>) -> Option<Result<Property, Reason>> {
+    let first = words.next()?;
+    let (layout, name) = if first == b"list" {
+        let (count, item, name) = (words.next()?, words.next()?, words.next()?);
+        let count = Scalar::named(count).filter(|s| s.is_integer());
+        (count.zip(Scalar::named(item)).map(|(count, item)| Layout::List { count, item }), name)
+    } else {
+        (Scalar::named(first).map(Layout::Scalar), words.next()?)
+    };
+    Some(match layout {
+        Some(layout) => Ok(Property { name: name.to_vec(), layout }),
+        None => Err(Reason::BadHeader(HeaderProblem::BadType { name: quote(name) })),
+    })
+}

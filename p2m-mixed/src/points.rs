@@ -1,0 +1,194 @@
+//! Points to ask about, from tables of text.
+
+use crate::scene::{extension, open, unknown_extension};
+use crate::text::{Lines, Words, finite};
+use crate::{Place, ReadError, Reason};
+use nalgebra::Point3;
+use std::io::BufRead;
+use std::path::Path;
+
+/// The extensions of point files.
+const EXTENSIONS: &[&str] = &["xyz", "txt", "csv"];
+
+/// Reads points from a table, in the format that the extension of its name says, in any case.
+///
+/// `xyz` and `txt`: the first three columns, separated by white space, are x, y and z; further ones are ignored, as are
+/// blank lines and lines that begin with `#` or `//`. There is no line with the number of points in front, as chemists
+/// have it.
+///
+/// `csv`: separated by semicolons if the first line has one, otherwise by commas; fields may be quoted, but not run
+/// over several lines; blank lines and lines that begin with `#` are passed over. If the first record has columns named `qx`, `qy`, `qz` (in any case), or else `x`, `y`, `z`,
+/// these are used: so the output of `p2m query` asks the same questions again. If it has not, but none of its first
+/// three fields is a number, it is a header too. Without names the first three columns are used.
+///
+/// # Errors
+/// [`ReadError`] with the line for numbers that are none or not finite, and for fewer than three of them.
+pub fn read_points(path: &Path) -> Result<Vec<Point3<f64>>, ReadError> {
+    let name = path.display().to_string();
+    match extension(path).as_str() {
+        "xyz" | "txt" => read_xyz(open(path, &name)?, &name),
+        "csv" => read_csv(open(path, &name)?, &name),
+        _ => Err(unknown_extension(path, &name, EXTENSIONS)),
+    }
+}
+
+fn read_xyz(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
+    let mut lines = Lines::new(reader, 0);
+    let mut points = Vec::new();
+    loop {
+        match lines.read() {
+            Ok(true) => {}
+            Ok(false) => return Ok(points),
+            Err(e) => return Err(ReadError::new(name, Place::Line(lines.line()), Reason::Io(e))),
+        }
+        let mut words = Words::new(lines.bytes());
+        let Some(first) = words.next() else { continue };
+        if first.starts_with(b"#") || first.starts_with(b"//") {
+            continue;
+        }
+        let point = point([Some(first), words.next(), words.next()]);
+        points.push(point.map_err(|reason| ReadError::new(name, Place::Line(lines.line()), reason))?);
+    }
+}
+
+fn point(fields: [Option<&[u8]>; 3]) -> Result<Point3<f64>, Reason> {
+    let mut point = Point3::origin();
+    for (k, field) in fields.into_iter().enumerate() {
+        match field {
+            None => return Err(Reason::TooFewCoordinates { found: k }),
+            Some(field) => point[k] = finite(field)?,
+        }
+    }
+    Ok(point)
+}
+
+fn read_csv(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
+    let mut lines = Lines::new(reader, 0);
+    let mut format = None;
+    let mut points = Vec::new();
+    loop {
+        let fail = |line, reason| Err(ReadError::new(name, Place::Line(line), reason));
+        match lines.read() {
+            Ok(true) => {}
+            Ok(false) => return Ok(points),
+            Err(e) => return fail(lines.line(), Reason::Io(e)),
+        }
+        let line = lines.bytes().trim_ascii();
+        if line.is_empty() || line.starts_with(b"#") {
+            continue;
+        }
+        let (delimiter, columns) = match format {
+            Some(format) => format,
+            None => {
+                let delimiter = if line.contains(&b';') { b';' } else { b',' };
+                let Some(fields) = split(line, delimiter) else { return fail(lines.line(), Reason::BadRecord) };
+                let (columns, is_header) = header(&fields);
+                format = Some((delimiter, columns));
+                if is_header {
+                    continue;
+                }
+                (delimiter, columns)
+            }
+        };
+        let Some(fields) = split(line, delimiter) else { return fail(lines.line(), Reason::BadRecord) };
+        match point(columns.map(|c| fields.get(c).copied())) {
+            Ok(point) => points.push(point),
+            Err(reason) => return fail(lines.line(), reason),
+        }
+    }
+}
+
+/// The fields of a record, without blanks and quotes around them; `None` if a quote is not closed.
+///
+/// A quote doubled inside of quotes stays doubled: no number and no name of a column has any.
+fn split(line: &[u8], delimiter: u8) -> Option<Vec<&[u8]>> {
+    let mut fields = Vec::new();
+    let mut quoted = false;
+    let ends = line.split(|&b| {
+        quoted ^= b == b'"';
+        b == delimiter && !quoted
+    });
+    for field in ends {
+        let field = field.trim_ascii();
+        let inner = field.strip_prefix(b"\"").and_then(|f| f.strip_suffix(b"\""));
+        fields.push(inner.map_or(field, <[u8]>::trim_ascii));
+    }
+    (!quoted).then_some(fields)
+}
+
+/// The columns to use, by the first record, and whether it is a header.
+fn header(fields: &[&[u8]]) -> ([usize; 3], bool) {
+    for names in [["qx", "qy", "qz"], ["x", "y", "z"]] {
+        let [x, y, z] = names.map(|n| fields.iter().position(|field| field.eq_ignore_ascii_case(n.as_bytes())));
+        if let (Some(x), Some(y), Some(z)) = (x, y, z) {
+            return ([x, y, z], true);
+        }
+    }
+    let is_number = |field: &[u8]| !matches!(finite(field), Err(Reason::BadNumber { .. }));
+    ([0, 1, 2], !fields.iter().take(3).any(|f| is_number(f)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn xyz(text: &str) -> Result<Vec<[f64; 3]>, String> {
+        let points = read_xyz(text.as_bytes(), "q.xyz").map_err(|e| e.to_string())?;
+        Ok(points.into_iter().map(|p| p.coords.into()).collect())
+    }
+
+    fn csv(text: &str) -> Result<Vec<[f64; 3]>, String> {
+        let points = read_csv(text.as_bytes(), "q.csv").map_err(|e| e.to_string())?;
+        Ok(points.into_iter().map(|p| p.coords.into()).collect())
+    }
+
+    #[test]
+    fn xyz_takes_three_columns_of_every_line_with_data() {
+        let text = "\u{feff}# head\n1 2 3\r\n\n  // more\n\t-4e-1\t5 6 7 8 colour\n0 0 1e300";
+        assert_eq!(xyz(text).unwrap(), [[1.0, 2.0, 3.0], [-0.4, 5.0, 6.0], [0.0, 0.0, 1e300]]);
+        assert_eq!(xyz("").unwrap(), [] as [[f64; 3]; 0]);
+    }
+
+    #[test]
+    fn xyz_errors_tell_the_line() {
+        assert_eq!(xyz("1 2 3\n\n1 2\n").unwrap_err(), "q.xyz:3: a point needs 3 coordinates, found 2");
+        assert_eq!(xyz("1 2 x\n").unwrap_err(), "q.xyz:1: 'x' is not a number that fits here");
+        assert_eq!(xyz("1 2 3\n1 nan 3").unwrap_err(), "q.xyz:2: coordinate 'nan' is not finite");
+        assert_eq!(xyz("1 2 3\n1 2 1e999").unwrap_err(), "q.xyz:2: coordinate '1e999' is not finite");
+    }
+
+    #[test]
+    fn csv_finds_its_separator_and_columns() {
+        let expected = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]];
+        for text in [
+            "1,2,3\n4,5,6\n",
+            "1;2;3;name, with comma\n4;5;6",
+            "\u{feff}X,Y,Z\r\n1,2,3\r\n\r\n4,5,6\r\n",
+            "# made by hand\n\nname,Qz,qy,QX,x,y,z\na,3,2,1,9,9,9\n\"b, or \"\"c\"\"\",6,5,4,9,9,9\n",
+            "longitude,latitude,height,x\n1,2,3,7\n4,5,6,7\n",
+            "\"1\", \"2\", \"3\"\n  \n# between\n4 ,5 ,6\n",
+        ] {
+            assert_eq!(csv(text).unwrap(), expected, "{text}");
+        }
+        assert_eq!(csv("x,y,z\n").unwrap(), [] as [[f64; 3]; 0]);
+        assert_eq!(csv("").unwrap(), [] as [[f64; 3]; 0]);
+    }
+
+    #[test]
+    fn csv_errors_tell_the_line() {
+        assert_eq!(csv("x,y,z\n1,2,3\n1,2\n").unwrap_err(), "q.csv:3: a point needs 3 coordinates, found 2");
+        assert_eq!(csv("1,2,3\n\n# so\n1,b,3\n").unwrap_err(), "q.csv:4: 'b' is not a number that fits here");
+        assert_eq!(csv("1,2,b\n").unwrap_err(), "q.csv:1: 'b' is not a number that fits here");
+        assert_eq!(csv("x,y,z\n1,,3\n").unwrap_err(), "q.csv:2: '' is not a number that fits here");
+        assert_eq!(csv("1,2,3,\"a\n").unwrap_err(), "q.csv:1: a quote is not closed on this line");
+        assert_eq!(csv("nan,nan,nan\n").unwrap_err(), "q.csv:1: coordinate 'nan' is not finite");
+        assert_eq!(csv("1,2,3\n-inf,0,0\n").unwrap_err(), "q.csv:2: coordinate '-inf' is not finite");
+    }
+
+    #[test]
+    fn extensions_decide() {
+        let error = read_points(Path::new("queries.las")).unwrap_err();
+        assert_eq!(error.to_string(), "queries.las: unknown extension 'las', expected one of xyz, txt, csv");
+        assert!(matches!(read_points(Path::new("/nonexistent/q.XYZ")).unwrap_err().reason, Reason::Io(_)));
+    }
+}

@@ -1,0 +1,186 @@
+//! Polygons to triangles.
+
+use earcut::Earcut;
+use nalgebra::Point3;
+
+/// The largest polygon that is cut into triangles: 2^17 vertices. A concave one takes quadratic time (seconds at this
+/// size), so this is a limit of patience rather than of memory.
+pub const MAX_CORNERS: usize = 1 << 17;
+
+/// Cuts polygons into triangles; keeps its buffers between them.
+///
+/// The polygon is projected along the axis on which its normal (by Newell's sum) is largest, and cut there:
+///
+/// - A simple planar polygon, convex or concave, is covered exactly and without overlap, up to rounding of the
+///   orientation of three points; on small integer coordinates there is no rounding.
+/// - A polygon that is not planar is cut as its projection is; if that is simple, into a patch without gaps.
+/// - A polygon without area is cut as a fan, and so is one whose triangles do not add up to its area, because it crosses
+///   itself: there is no right answer.
+///
+/// In every case each edge of the polygon is an edge of a triangle, so that nothing of the outline is lost.
+///
+/// Triangles have the winding of the polygon, in the projection.
+#[derive(Default)]
+pub(crate) struct Triangulator {
+    offsets: Vec<[f64; 3]>,
+    flat: Vec<[f64; 2]>,
+    cutter: Option<Earcut<f64>>,
+    indices: Vec<u32>,
+    edges: Vec<[u32; 2]>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Triangulator {
+    /// The triangles of the polygon with these corners, three or more, by the numbers of the corners.
+    pub(crate) fn triangulate(&mut self, corners: &[Point3<f64>]) -> &[[u32; 3]] {
+        let n = corners.len();
+        if n == 3 || !self.project(corners) || self.fan_covers(0) {
+            self.fan(0, n);
+        } else if n == 4 {
+            // One of the two diagonals of a simple quadrilateral is inside.
+            self.fan(u32::from(self.fan_covers(1)), n);
+        } else {
+            self.cut();
+            if !self.covers() {
+                self.fan(0, n);
+            }
+        }
+        &self.triangles
+    }
+
+    /// Projects into `flat`, with the first corner at the origin and the extent near 1. `false` if there is no area.
+    fn project(&mut self, corners: &[Point3<f64>]) -> bool {
+        // Powers of two, so that nothing is rounded by them: first to make differences safe from overflow, then to make
+        // products of differences safe from underflow.
+        let scale = Scale::to_unit(corners.iter().flat_map(|p| p.iter().copied()));
+        let first = scale.apply3(corners[0].coords.into());
+        self.offsets.clear();
+        self.offsets.extend(corners.iter().map(|p| {
+            let p = scale.apply3(p.coords.into());
+            [p[0] - first[0], p[1] - first[1], p[2] - first[2]]
+        }));
+        let scale = Scale::to_unit(self.offsets.iter().flatten().copied());
+        for offset in &mut self.offsets {
+            *offset = scale.apply3(*offset);
+        }
+
+        let mut normal = [0.0; 3];
+        for pair in self.offsets.windows(2) {
+            for (k, sum) in normal.iter_mut().enumerate() {
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                *sum += pair[0][i] * pair[1][j] - pair[0][j] * pair[1][i];
+            }
+        }
+        let axis = (1..3).fold(0, |best, k| if normal[k].abs() > normal[best].abs() { k } else { best });
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        self.flat.clear();
+        self.flat.extend(self.offsets.iter().map(|o| [o[i], o[j]]));
+        normal[axis] != 0.0
+    }
+
+    /// Whether the fan around corner `apex` is a triangulation.
+    ///
+    /// The oriented triangles of a fan add up to the winding number of the polygon wherever its apex is. If all have the
+    /// same orientation, those of a simple polygon therefore cover the inside once and nothing else. A convex polygon
+    /// passes with any apex.
+    fn fan_covers(&self, apex: u32) -> bool {
+        let n = self.flat.len();
+        let (mut left, mut right) = (false, false);
+        for triangle in fan(apex, n) {
+            let area = area(&self.flat, triangle);
+            left |= area > 0.0;
+            right |= area < 0.0;
+        }
+        !(left && right)
+    }
+
+    fn fan(&mut self, apex: u32, n: usize) {
+        self.triangles.clear();
+        self.triangles.extend(fan(apex, n));
+    }
+
+    /// Cuts ears; then puts back what the cutter leaves out.
+    fn cut(&mut self) {
+        let cutter = self.cutter.get_or_insert_with(Earcut::new);
+        cutter.earcut_slice::<u32>(&self.flat, &[], &mut self.indices);
+        let positive = outline_area(&self.flat) > 0.0;
+        self.triangles.clear();
+        for t in self.indices.chunks_exact(3) {
+            let triangle = [t[0], t[1], t[2]];
+            let turned = (area(&self.flat, triangle) > 0.0) != positive;
+            self.triangles.push(if turned { [t[0], t[2], t[1]] } else { triangle });
+        }
+        self.add_missing_edges();
+    }
+
+    /// Adds each edge of the polygon that no triangle has as a triangle of two corners. The cutter leaves out spikes and
+    /// parts of polygons that cross or touch themselves; of a simple polygon it keeps every corner.
+    #[allow(clippy::cast_possible_truncation, reason = "at most MAX_CORNERS corners")]
+    fn add_missing_edges(&mut self) {
+        let edge = |a: u32, b: u32| [a.min(b), a.max(b)];
+        self.edges.clear();
+        self.edges.extend(self.triangles.iter().flat_map(|&[a, b, c]| [edge(a, b), edge(b, c), edge(c, a)]));
+        self.edges.sort_unstable();
+        let n = self.flat.len() as u32;
+        for a in 0..n {
+            let b = (a + 1) % n;
+            if self.edges.binary_search(&edge(a, b)).is_err() {
+                self.triangles.push([a, b, b]);
+            }
+        }
+    }
+
+    /// Whether the areas of the triangles add up to that of the polygon.
+    #[allow(clippy::cast_precision_loss, reason = "at most MAX_CORNERS corners")]
+    fn covers(&self) -> bool {
+        let n = self.flat.len();
+        let outline = outline_area(&self.flat).abs();
+        let inside: f64 = self.triangles.iter().map(|&t| area(&self.flat, t).abs()).sum();
+        // Rounding: a sum of m terms errs by m u times the sum of their sizes (u = EPSILON / 2), to first order. Terms
+        // come from coordinates of size up to 2, differences up to 4, so each errs by less than 64 u on its own. The
+        // products of the outline are at most 8 each.
+        let terms = (n + self.triangles.len()) as f64;
+        let sizes = inside + 8.0 * n as f64;
+        (inside - outline).abs() <= 0.5 * f64::EPSILON * terms * (sizes + 64.0)
+    }
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "at most MAX_CORNERS corners")]
+fn fan(apex: u32, n: usize) -> impl Iterator<Item = [u32; 3]> {
+    let n = n as u32;
+    (1..n - 1).map(move |i| [apex, (apex + i) % n, (apex + i + 1) % n])
+}
+
+/// Twice the area, positive if counter-clockwise.
+fn area(flat: &[[f64; 2]], [a, b, c]: [u32; 3]) -> f64 {
+    let [a, b, c] = [a, b, c].map(|i| flat[i as usize]);
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// Twice the area of the polygon, whose first corner is the origin.
+fn outline_area(flat: &[[f64; 2]]) -> f64 {
+    flat.windows(2).map(|p| p[0][0] * p[1][1] - p[0][1] * p[1][0]).sum()
+}
+
+/// Multiplication by a power of two, in two factors because the inverse of a tiny number may exceed the range.
+struct Scale([f64; 2]);
+
+impl Scale {
+    /// Makes the largest of some finite numbers lie in [1, 2), or nearly so where it is subnormal.
+    #[allow(clippy::cast_possible_truncation, reason = "11 bits")]
+    fn to_unit(numbers: impl Iterator<Item = f64>) -> Self {
+        let largest = numbers.fold(0.0f64, |m, x| m.max(x.abs()));
+        let exponent = (largest.to_bits() >> 52) as i32 - 1023;
+        let half = -exponent / 2;
+        Self([power_of_two(half), power_of_two(-exponent - half)])
+    }
+
+    fn apply3(&self, v: [f64; 3]) -> [f64; 3] {
+        v.map(|x| x * self.0[0] * self.0[1])
+    }
+}
+
+/// 2^e for e in -1022..=1023.
+fn power_of_two(e: i32) -> f64 {
+    f64::from_bits((i64::from(e) + 1023).cast_unsigned() << 52)
+}

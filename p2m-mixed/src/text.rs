@@ -1,0 +1,197 @@
+//! Lines, words and numbers of text files, as bytes: names and comments need not be UTF-8.
+
+use crate::Reason;
+use std::io::BufRead;
+
+/// Words longer than this are shortened in messages.
+const QUOTED: usize = 40;
+
+/// `bytes` as a message may show them: short, printable, on one line.
+pub(crate) fn quote(bytes: &[u8]) -> String {
+    if bytes.len() > QUOTED {
+        format!("{}..", bytes[..QUOTED].escape_ascii())
+    } else {
+        bytes.escape_ascii().to_string()
+    }
+}
+
+/// A finite number.
+pub(crate) fn finite(word: &[u8]) -> Result<f64, Reason> {
+    match std::str::from_utf8(word).ok().and_then(|s| s.parse::<f64>().ok()) {
+        None => Err(Reason::BadNumber { text: quote(word) }),
+        // Overflow parses as infinity.
+        Some(x) if !x.is_finite() => Err(Reason::NonFinite { text: quote(word) }),
+        Some(x) => Ok(x),
+    }
+}
+
+/// A decimal integer with an optional sign. What exceeds the range saturates: as an index it is out of range anyway.
+pub(crate) fn integer(word: &[u8]) -> Result<i64, Reason> {
+    let (negative, digits) = match word {
+        [b'-', rest @ ..] => (true, rest),
+        [b'+', rest @ ..] => (false, rest),
+        _ => (false, word),
+    };
+    if digits.is_empty() || !digits.iter().all(u8::is_ascii_digit) {
+        return Err(Reason::BadNumber { text: quote(word) });
+    }
+    let value = digits.iter().fold(0i64, |v, d| v.saturating_mul(10).saturating_add(i64::from(d - b'0')));
+    Ok(if negative { -value } else { value })
+}
+
+pub(crate) fn is_space(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\t' | b'\r' | b'\n' | 0x0b | 0x0c)
+}
+
+/// The words of a statement, with the line that each stands on.
+pub(crate) struct Words<'a> {
+    bytes: &'a [u8],
+    /// Where the last word starts and where the rest begins.
+    start: usize,
+    end: usize,
+}
+
+impl<'a> Words<'a> {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
+        Self { bytes, start: 0, end: 0 }
+    }
+
+    #[inline]
+    pub(crate) fn next(&mut self) -> Option<&'a [u8]> {
+        let mut start = self.end;
+        while start < self.bytes.len() && is_space(self.bytes[start]) {
+            start += 1;
+        }
+        let mut end = start;
+        while end < self.bytes.len() && !is_space(self.bytes[end]) {
+            end += 1;
+        }
+        (self.start, self.end) = (start, end);
+        (start < end).then(|| &self.bytes[start..end])
+    }
+
+    /// Ends the statement where a comment begins.
+    pub(crate) fn end_at_comment(&mut self) {
+        if let Some(at) = self.bytes[self.end..].iter().position(|&b| b == b'#') {
+            self.bytes = &self.bytes[..self.end + at];
+        }
+    }
+
+    /// How many lines below the first line of the statement the last word stands.
+    pub(crate) fn lines_down(&self) -> u64 {
+        self.bytes[..self.start].iter().filter(|&&b| b == b'\n').count() as u64
+    }
+}
+
+/// Reads a text line by line into one buffer.
+pub(crate) struct Lines<R> {
+    reader: R,
+    buffer: Vec<u8>,
+    /// Number of the first line in `buffer`, from 1, and of the line to come.
+    line: u64,
+    next: u64,
+}
+
+impl<R: BufRead> Lines<R> {
+    /// `lines_before` have been read already.
+    pub(crate) fn new(reader: R, lines_before: u64) -> Self {
+        Self { reader, buffer: Vec::new(), line: lines_before, next: lines_before + 1 }
+    }
+
+    /// Number of the first line of the statement that was read last.
+    pub(crate) fn line(&self) -> u64 {
+        self.line
+    }
+
+    /// The statement that was read last.
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.buffer
+    }
+
+    /// Reads the next line; `false` at the end of the text.
+    pub(crate) fn read(&mut self) -> std::io::Result<bool> {
+        self.buffer.clear();
+        self.line = self.next;
+        self.append()
+    }
+
+    /// Reads the next statement of a text in which a backslash at the end of a line continues it on the next one.
+    ///
+    /// Lines are joined by a newline. A comment ends with its line: a path name in it may well end in a backslash.
+    pub(crate) fn read_continued(&mut self) -> std::io::Result<bool> {
+        if !self.read()? {
+            return Ok(false);
+        }
+        let mut start = 0;
+        while self.buffer.last() == Some(&b'\\') && !self.buffer[start..].contains(&b'#') {
+            self.buffer.pop();
+            self.buffer.push(b'\n');
+            start = self.buffer.len();
+            if !self.append()? {
+                break;
+            }
+        }
+        Ok(true)
+    }
+
+    /// Appends the next line without its end.
+    fn append(&mut self) -> std::io::Result<bool> {
+        let start = self.buffer.len();
+        if self.reader.read_until(b'\n', &mut self.buffer)? == 0 {
+            return Ok(false);
+        }
+        if self.next == 1 && self.buffer.starts_with(b"\xef\xbb\xbf") {
+            self.buffer.drain(..3); // the mark that some editors put in front of UTF-8
+        }
+        self.next += 1;
+        if self.buffer[start..].last() == Some(&b'\n') {
+            self.buffer.pop();
+        }
+        if self.buffer[start..].last() == Some(&b'\r') {
+            self.buffer.pop();
+        }
+        Ok(true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_know_their_line_across_continuations() {
+        let mut lines = Lines::new("\u{feff}a b\\\r\n c\\\nd # e\\\nf\\".as_bytes(), 0);
+        assert!(lines.read_continued().unwrap());
+        let mut words = Words::new(lines.bytes());
+        words.end_at_comment();
+        let mut seen = Vec::new();
+        while let Some(word) = words.next() {
+            seen.push((word.to_vec(), lines.line() + words.lines_down()));
+        }
+        assert_eq!(seen, [(b"a".to_vec(), 1), (b"b".to_vec(), 1), (b"c".to_vec(), 2), (b"d".to_vec(), 3)]);
+        assert!(lines.read_continued().unwrap());
+        assert_eq!((lines.bytes(), lines.line()), (&b"f\n"[..], 4));
+        assert!(!lines.read_continued().unwrap());
+    }
+
+    #[test]
+    fn integers_have_a_sign_at_most_and_saturate() {
+        assert_eq!(integer(b"-12").unwrap(), -12);
+        assert_eq!(integer(b"+7").unwrap(), 7);
+        assert_eq!(integer(b"99999999999999999999").unwrap(), i64::MAX);
+        for bad in [&b""[..], b"-", b"1.0", b"0x1", b"--1", b"1e3"] {
+            assert!(matches!(integer(bad), Err(Reason::BadNumber { .. })), "{bad:?}");
+        }
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_are_told_from_those_that_are_none() {
+        assert_eq!(finite(b"-1.5e3").unwrap(), -1500.0);
+        for bad in ["nan", "inf", "-Infinity", "1e999"] {
+            assert!(matches!(finite(bad.as_bytes()), Err(Reason::NonFinite { .. })), "{bad}");
+        }
+        for bad in [&b""[..], b"x", b"1,5", b"1.#QNAN", b"\xff"] {
+            assert!(matches!(finite(bad), Err(Reason::BadNumber { .. })), "{bad:?}");
+        }
+    }
+}

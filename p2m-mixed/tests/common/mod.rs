@@ -1,0 +1,144 @@
+//! Files for the tests of the readers.
+#![allow(dead_code, reason = "each test binary uses a part of this")]
+
+use p2m_core::Element;
+use p2m_mixed::{ReadError, Scene, read_obj, read_ply};
+
+pub(crate) fn obj(text: impl AsRef<[u8]>) -> Result<Scene, ReadError> {
+    read_obj(text.as_ref(), "t.obj")
+}
+
+pub(crate) fn ply(bytes: impl AsRef<[u8]>) -> Result<Scene, ReadError> {
+    read_ply(bytes.as_ref(), "t.ply")
+}
+
+pub(crate) fn elements(scene: &Scene) -> Vec<Element> {
+    scene.soup.elements().collect()
+}
+
+pub(crate) fn skipped(scene: &Scene) -> Vec<(&str, u64)> {
+    scene.skipped.iter().map(|s| (s.what.as_str(), s.count)).collect()
+}
+
+pub(crate) fn t(a: u32, b: u32, c: u32) -> Element {
+    Element::Triangle([a, b, c])
+}
+
+pub(crate) fn s(a: u32, b: u32) -> Element {
+    Element::Segment([a, b])
+}
+
+pub(crate) fn p(a: u32) -> Element {
+    Element::Point(a)
+}
+
+/// An encoding of PLY files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Encoding {
+    Ascii,
+    Little,
+    Big,
+}
+
+pub(crate) const ENCODINGS: [Encoding; 3] = [Encoding::Ascii, Encoding::Little, Encoding::Big];
+
+/// A number of a PLY file.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum N {
+    I8(i8),
+    U8(u8),
+    I16(i16),
+    U16(u16),
+    I32(i32),
+    U32(u32),
+    F32(f32),
+    F64(f64),
+}
+
+/// A PLY file under construction.
+pub(crate) struct Ply {
+    encoding: Encoding,
+    pub(crate) bytes: Vec<u8>,
+}
+
+impl Ply {
+    /// With this header, apart from the first, the format and the last line.
+    pub(crate) fn new(encoding: Encoding, header: &str) -> Self {
+        Self::with_line_end(encoding, header, "\n")
+    }
+
+    pub(crate) fn with_line_end(encoding: Encoding, header: &str, end: &str) -> Self {
+        let format = match encoding {
+            Encoding::Ascii => "ascii",
+            Encoding::Little => "binary_little_endian",
+            Encoding::Big => "binary_big_endian",
+        };
+        let text = format!("ply\nformat {format} 1.0\n{header}\nend_header\n");
+        Self { encoding, bytes: text.replace('\n', end).into_bytes() }
+    }
+
+    pub(crate) fn row(mut self, numbers: &[N]) -> Self {
+        macro_rules! each {
+            ($n:expr, $($kind:ident)*) => {
+                match (self.encoding, $n) {
+                    $((Encoding::Ascii, N::$kind(x)) => self.bytes.extend(format!("{x} ").bytes()),
+                    (Encoding::Little, N::$kind(x)) => self.bytes.extend(x.to_le_bytes()),
+                    (Encoding::Big, N::$kind(x)) => self.bytes.extend(x.to_be_bytes()),)*
+                }
+            };
+        }
+        for &n in numbers {
+            each!(n, I8 U8 I16 U16 I32 U32 F32 F64);
+        }
+        if self.encoding == Encoding::Ascii {
+            self.bytes.push(b'\n');
+        }
+        self
+    }
+
+    pub(crate) fn float_row(self, numbers: [f32; 3]) -> Self {
+        self.row(&numbers.map(N::F32))
+    }
+
+    pub(crate) fn list(self, indices: &[i32]) -> Self {
+        let count = N::U8(u8::try_from(indices.len()).unwrap());
+        let row: Vec<N> = std::iter::once(count).chain(indices.iter().map(|&i| N::I32(i))).collect();
+        self.row(&row)
+    }
+
+    pub(crate) fn read(&self) -> Result<Scene, ReadError> {
+        ply(&self.bytes)
+    }
+}
+
+/// A file with a bit of everything.
+pub(crate) fn rich_ply(encoding: Encoding) -> Vec<u8> {
+    let header = "comment all of it\nobj_info here\nelement face 3\nproperty uchar flags\n\
+        property list uchar int vertex_indices\nelement vertex 6\nproperty float x\nproperty list uchar short bones\n\
+        property double y\nproperty int z\nelement edge 2\nproperty ushort vertex1\nproperty float weight\n\
+        property uint vertex2\nelement material 2\nproperty list uint double colours\nelement tristrips 1\n\
+        property list int int vertex_indices";
+    let mut file = Ply::new(encoding, header)
+        .row(&[N::U8(1)])
+        .list(&[0, 1, 2])
+        .row(&[N::U8(2)])
+        .list(&[0, 1, 2, 3])
+        .row(&[N::U8(3)])
+        .list(&[0, 4, 1, 2, 3]);
+    for (i, (x, y, z)) in
+        (0i16..).zip([(0.0, 0.0, 0), (4.0, 0.0, 0), (4.0, 4.0, 0), (0.0, 4.0, 0), (2.0, 1.0, 0), (0.5, 0.5, 7)])
+    {
+        file = file.row(&[N::F32(x), N::U8(2), N::I16(i), N::I16(-i), N::F64(y), N::I32(z)]);
+    }
+    file.row(&[N::U16(0), N::F32(0.5), N::U32(5)])
+        .row(&[N::U16(5), N::F32(0.25), N::U32(1)])
+        .row(&[N::U32(0)])
+        .row(&[N::U32(2), N::F64(0.5), N::F64(1.5)])
+        .row(&[N::I32(8), N::I32(0), N::I32(1), N::I32(2), N::I32(3), N::I32(-1), N::I32(3), N::I32(4), N::I32(5)])
+        .bytes
+}
+
+/// An OBJ file with a bit of everything.
+pub(crate) const RICH_OBJ: &str = "# caf\u{e9}\r\nmtllib x.mtl\r\nv 0 0 0\nv 4 0 0 1.0\n  v\t4 4 0 1 0 0 # red\nv 0 4 0\nv 2 1 0\n\
+    v .5 5e-1 -7.\nvt 0 0\nvn 0 0 1\nusemtl a\\\nb\nf 1 2 3\nf 1/1 2/1/1 3//1 4 # quad\nf -6 5 -5 \\\n -4 -3\nl 1 6 2\n\
+    l 1/1 2/2\np 1 6\nfo 1 1 2\ncurv 0 1 1 2\n";
