@@ -5,8 +5,8 @@
 
 use nalgebra::Point3;
 use p2m::{
-    AabbTree, Best, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Feature, Key, Point, Primitive,
-    PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment, Shape, Soup, Triangle,
+    AabbTree, Best, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Feature, Key, Point,
+    Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment, Shape, Soup, Triangle,
 };
 use p2m_testkit::counting::Counting;
 use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};
@@ -199,7 +199,8 @@ where
         assert_eq!(without_bound(limited), without_bound(Some(expected)).filter(|_| within), "{}: radius", say());
         // Epsilon bounds the distance.
         let epsilon = [0.001, 0.1, 3.0][rng.random_range(0..3)];
-        let rough = index.closest_point_with(q, &QueryOptions::default().with_epsilon(T::of_f64(epsilon))).expect("found");
+        let rough =
+            index.closest_point_with(q, &QueryOptions::default().with_epsilon(T::of_f64(epsilon))).expect("found");
         let (rough_distance, distance) = (rough.distance.to_f64(), expected.distance.to_f64());
         let slack = 1.0 + 8.0 * T::UNIT_ROUNDOFF;
         assert!(rough_distance >= distance, "{}: epsilon {epsilon}", say());
@@ -323,7 +324,11 @@ fn scenes_can_be_permuted_duplicated_and_extended() {
             assert_eq!((c.distance, c.point, c.primitive), (a.distance, a.point, a.primitive), "seed {seed}: doubled");
             let d = extended.closest_point(&q).expect("not empty");
             if a.distance < 1e8 {
-                assert_eq!((d.distance, d.point, d.primitive), (a.distance, a.point, a.primitive), "seed {seed}: extended");
+                assert_eq!(
+                    (d.distance, d.point, d.primitive),
+                    (a.distance, a.point, a.primitive),
+                    "seed {seed}: extended"
+                );
             }
         }
     }
@@ -369,7 +374,12 @@ fn searches_visit_few_nodes() {
         tree.visit(&q, &mut counting);
         hinted += counting.nodes;
     }
-    println!("per query: {} nodes, {} primitives; with the answer as hint {} nodes", nodes / 1000, primitives / 1000, hinted / 1000);
+    println!(
+        "per query: {} nodes, {} primitives; with the answer as hint {} nodes",
+        nodes / 1000,
+        primitives / 1000,
+        hinted / 1000
+    );
     assert!(nodes <= 60_000, "{nodes}");
     assert!(primitives <= 20_000, "{primitives}");
     assert!(hinted < nodes, "{hinted}");

@@ -5,8 +5,10 @@
 #![allow(clippy::cast_possible_truncation, reason = "rounding to f32 is meant")]
 
 use nalgebra::Point3;
-use p2m::{Closest, ClosestPoint, Feature, Point, Primitive, PrimitiveSet, Projection, QueryOptions, Real, Segment, Triangle};
 use p2m::{BruteForce, Key, Shape};
+use p2m::{
+    Closest, ClosestPoint, Feature, Point, Primitive, PrimitiveSet, Projection, QueryOptions, Real, Segment, Triangle,
+};
 use p2m_testkit::families::{self, Case};
 use p2m_testkit::{oracle::Distance, rng};
 
@@ -159,7 +161,11 @@ fn n4_scaling_by_powers_of_two_changes_no_bit() {
             let vertices: Vec<_> = case.vertices.iter().map(|v| scale(*v, e)).collect();
             let there = answer(query, &vertices);
             let results = there.point.iter().chain([&there.distance]).chain(&there.barycentric);
-            let inputs = query.iter().chain(vertices.as_flattened()).chain(case.query.iter()).chain(case.vertices.as_flattened());
+            let inputs = query
+                .iter()
+                .chain(vertices.as_flattened())
+                .chain(case.query.iter())
+                .chain(case.vertices.as_flattened());
             if !results.chain(inputs).all(|x| normal(*x)) {
                 continue;
             }
@@ -185,7 +191,14 @@ fn n4_the_order_of_vertices_changes_no_bit() {
         for p in permutations.iter().filter(|p| p[n..].iter().all(|i| *i >= n)) {
             let vertices: Vec<_> = p[..n].iter().map(|i| case.vertices[*i]).collect();
             let there = answer(case.query, &vertices);
-            require!(there.distance == here.distance, seed, case, "{p:?}: {:e}, not {:e}", there.distance, here.distance);
+            require!(
+                there.distance == here.distance,
+                seed,
+                case,
+                "{p:?}: {:e}, not {:e}",
+                there.distance,
+                here.distance
+            );
             require!(there.point == here.point, seed, case, "{p:?}: {} is not {}", there.point, here.point);
         }
     }
@@ -238,8 +251,7 @@ fn a_point_is_a_degenerate_segment_and_a_degenerate_triangle() {
 /// All triangles on a 3x3x3 lattice with all queries on it, in integers.
 #[test]
 fn every_triangle_of_a_small_lattice_is_answered_exactly() {
-    let lattice: Vec<[f64; 3]> =
-        (0..27).map(|i| [f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9)]).collect();
+    let lattice: Vec<[f64; 3]> = (0..27).map(|i| [f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9)]).collect();
     let mut worst = 0.0f64;
     let mut count = 0;
     for i in 0..27 {

@@ -18,18 +18,17 @@ mod queries;
 mod report;
 mod rivals;
 mod scene;
-mod surface;
 mod table;
 mod verify;
 
 use crate::contender::{Backend, ScalarKind};
 use crate::measure::Effort;
 use crate::provenance::Provenance;
-use crate::queries::QuerySet;
 use crate::scene::Scene;
 use anyhow::Result;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
+use p2m_testkit::queries::QuerySet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -60,7 +59,7 @@ struct Common {
     #[arg(required = true)]
     scenes: Vec<PathBuf>,
     /// Query sets
-    #[arg(long, value_enum, value_delimiter = ',', default_values_t = QuerySet::ALL)]
+    #[arg(long, value_delimiter = ',', default_values_t = QuerySet::ALL)]
     sets: Vec<QuerySet>,
     /// Scalars of contenders
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = [ScalarKind::Single, ScalarKind::Double])]

@@ -3,9 +3,10 @@
 use crate::agree::{Agreement, compare_round};
 use crate::contender::{Absent, Answer, Backend, Ready, catch};
 use crate::memory;
-use crate::queries::{Queries, QuerySet, spread};
+use crate::queries::{Queries, spread};
 use crate::scene::Scene;
 use cpu_time::ThreadTime;
+use p2m_testkit::queries::QuerySet;
 use std::hint::black_box;
 
 /// A contender slower than this gets [`SLOW_QUERIES`].
@@ -136,7 +137,7 @@ fn build_once<'a>(scene: &'a Scene, entry: &mut Entry<'a>) {
 
 /// Measures one query set and appends its figures to every entry.
 pub(crate) fn measure_set(scene: &Scene, set: QuerySet, entries: &mut [Entry<'_>], effort: &Effort) {
-    let queries = Queries::new(set.generate(scene, effort.queries, effort.seed));
+    let queries = Queries::new(set.generate(&scene.double, effort.queries, effort.seed));
     let mut runs: Vec<Run> = entries.iter().map(|entry| Run::new(entry, &queries)).collect();
     for round in 0..effort.rounds {
         for at in rotated(entries.len(), round) {

@@ -3,7 +3,8 @@
 use crate::memory;
 use anyhow::{Result, bail};
 use nalgebra::Point3;
-use p2m_core::{Aabb, Primitive, PrimitiveId, PrimitiveSet, Real, Soup};
+use p2m_core::{PrimitiveSet, Real, Soup};
+use p2m_testkit::queries::diagonal;
 use std::path::Path;
 
 /// A scene and what the harness has to know about it.
@@ -14,8 +15,6 @@ pub(crate) struct Scene {
     pub(crate) double: Soup<f64>,
     /// Rounded to f32; `None` if that overflows.
     pub(crate) single: Option<Soup<f32>>,
-    /// The box around all primitives.
-    pub(crate) bounds: Aabb<f64>,
     /// Heap bytes of `double`, trimmed: what an index that borrows the scene depends on.
     pub(crate) double_bytes: usize,
     /// Heap bytes of `single`, trimmed.
@@ -32,23 +31,19 @@ impl Scene {
 
     /// A scene of that name.
     pub(crate) fn new(name: String, soup: Soup<f64>) -> Result<Self> {
-        let bounds = (0..soup.len())
-            .map(|i| soup.get(PrimitiveId::new(i)).aabb())
-            .fold(Aabb::empty(), |all: Aabb<f64>, b| all.union(&b));
-        if !bounds.is_finite() {
+        if soup.is_empty() {
             bail!("{name} has no primitives");
         }
         let (double, double_bytes) = trimmed(&soup);
         let single = to_single(&soup).as_ref().map(trimmed);
         let single_bytes = single.as_ref().map_or(0, |(_, bytes)| *bytes);
         let single = single.map(|(soup, _)| soup);
-        Ok(Self { name, double, single, bounds, double_bytes, single_bytes })
+        Ok(Self { name, double, single, double_bytes, single_bytes })
     }
 
-    /// The diagonal of the box, 1 for a scene that is one point: the unit of offsets and differences.
+    /// The unit of differences.
     pub(crate) fn diagonal(&self) -> f64 {
-        let diagonal = (self.bounds.max - self.bounds.min).norm();
-        if diagonal > 0.0 { diagonal } else { 1.0 }
+        diagonal(&self.double)
     }
 
     /// How many primitives it has.

@@ -2,9 +2,10 @@
 
 use crate::agree::{Agreement, Answers, compare_round};
 use crate::contender::{Absent, Answer, Backend, Ready, ScalarKind};
-use crate::queries::{Queries, QuerySet};
+use crate::queries::Queries;
 use crate::scene::Scene;
 use crate::table::Table;
+use p2m_testkit::queries::QuerySet;
 use std::thread;
 
 /// Compares `backends` with the oracle of their scalar on every set; prints counts and says whether all is equal.
@@ -33,7 +34,7 @@ pub(crate) fn verify(
             }
         }
         for set in sets {
-            let queries = Queries::new(set.generate(scene, count, seed));
+            let queries = Queries::new(set.generate(&scene.double, count, seed));
             let expected = oracles.iter().zip(&built).find_map(|(b, i)| Some((*b, answer(i.as_ref().ok()?, &queries))));
             for ((backend, index), row) in contenders.iter().zip(&built[oracles.len()..]).zip(&mut rows) {
                 let cell = match (&expected, index) {

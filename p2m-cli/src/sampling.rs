@@ -1,7 +1,7 @@
 //! Where to ask: given points, a grid, or random points around the scene.
 
 use nalgebra::Point3;
-use p2m_core::Soup;
+use p2m_core::{PrimitiveSet, Soup};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -18,19 +18,9 @@ impl Region {
     /// An axis without extent would put every query into the plane of the scene: it is widened to each side by what the
     /// scale adds to the longest axis, and for a single point by what it would add to one of length 1.
     pub(crate) fn around(soup: &Soup<f64>, scale: f64) -> Self {
-        let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for element in soup.elements() {
-            for &i in element.indices() {
-                let position = soup.positions()[i as usize];
-                for k in 0..3 {
-                    min[k] = min[k].min(position[k]);
-                    max[k] = max[k].max(position[k]);
-                }
-            }
-        }
-        if min[0] > max[0] {
-            (min, max) = ([-0.5; 3], [0.5; 3]);
-        }
+        let bounds = soup.aabb();
+        let (min, max): ([f64; 3], [f64; 3]) =
+            if soup.is_empty() { ([-0.5; 3], [0.5; 3]) } else { (bounds.min.coords.into(), bounds.max.coords.into()) };
         // Halves first: the sum and the difference of two finite numbers may not be finite.
         let half: [f64; 3] = std::array::from_fn(|k| max[k] / 2.0 - min[k] / 2.0);
         let longest = half.iter().fold(0.0f64, |a, &b| a.max(b));

@@ -1,6 +1,6 @@
 //! Sets of primitives, which indexes are built over.
 
-use crate::{BuildError, Primitive, Real};
+use crate::{Aabb, BuildError, Primitive, Real};
 
 /// Number of a primitive in its set, from 0, in the order in which the user gave them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -59,6 +59,14 @@ pub trait PrimitiveSet<T: Real> {
     /// Whether there are none.
     fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// The box around all of them; the empty box if there are none.
+    ///
+    /// # Complexity
+    /// O(n).
+    fn aabb(&self) -> Aabb<T> {
+        (0..self.len()).map(|i| self.get(PrimitiveId::new(i)).aabb()).fold(Aabb::empty(), |all, one| all.union(&one))
     }
 }
 

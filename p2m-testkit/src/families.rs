@@ -79,18 +79,26 @@ fn triangle(rng: &mut impl Rng, sine: f64) -> [V; 3] {
 /// Case `rng` of all families, with 1 to 3 vertices.
 pub fn case(rng: &mut impl Rng) -> Case {
     let kinds = rng.random_range(0..10);
-    let count = if kinds == 0 { 1 } else if kinds < 4 { 2 } else { 3 };
+    let count = if kinds == 0 {
+        1
+    } else if kinds < 4 {
+        2
+    } else {
+        3
+    };
     let sine = pick(rng, &SINES);
     let scale = if rng.random_bool(0.5) { 0 } else { pick(rng, &SCALES) };
     let offset = if rng.random_bool(0.5) { 0.0 } else { pick(rng, &OFFSETS) };
     let shift = unit(rng).map(|x| x * offset);
-    let mut vertices: Vec<V> = triangle(rng, sine)[..count].iter().map(|v| combine([(1.0, *v), (1.0, shift)])).collect();
+    let mut vertices: Vec<V> =
+        triangle(rng, sine)[..count].iter().map(|v| combine([(1.0, *v), (1.0, shift)])).collect();
     if count == 2 && sine < 1e-3 {
         // A short segment in place of a flat triangle.
         vertices[1] = std::array::from_fn(|k| vertices[0][k] + sine * (vertices[1][k] - vertices[0][k]));
     }
     let (place, query) = query(rng, &vertices);
-    let factor = |x: f64| if scale >= -500 { x * 2f64.powi(scale) } else { x * 2f64.powi(-500) * 2f64.powi(scale + 500) };
+    let factor =
+        |x: f64| if scale >= -500 { x * 2f64.powi(scale) } else { x * 2f64.powi(-500) * 2f64.powi(scale + 500) };
     // Offsets times the largest scales would overflow: they stay at the edge of the range.
     let clip = |v: V| v.map(|x| factor(x).clamp(-f64::MAX, f64::MAX));
     Case {

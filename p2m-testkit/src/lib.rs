@@ -7,7 +7,9 @@
 pub mod counting;
 pub mod families;
 pub mod oracle;
+pub mod queries;
 pub mod scenes;
+mod surface;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

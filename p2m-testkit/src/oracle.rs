@@ -4,7 +4,8 @@
 //! a fraction of two integers. Only where a bound on the distance itself is to be checked is its root taken, in fixed
 //! point with at least 60 bits below u M, and rounded so that a check can only be too strict.
 
-use dashu_int::{IBig, UBig, ops::SquareRoot};
+use dashu_int::ops::{BitTest, SquareRoot};
+use dashu_int::{IBig, UBig};
 use std::cmp::Ordering;
 
 type V = [IBig; 3];
@@ -182,27 +183,16 @@ impl Distance {
         self.compare(&Self::new([0.0; 3], &[[bound, 0.0, 0.0]])) != Ordering::Less
     }
 
-    /// The largest distance from the query to a vertex, rounded to f64.
+    /// The largest distance from the query to a vertex, within a few roundings.
     #[must_use]
     pub fn reach(&self) -> f64 {
-        let (_, reach) = self.fixed(self.unit - 64);
-        let bits = i32::try_from(self.unit - 64).expect("small");
-        // Two steps, so that neither factor leaves the range of f64.
-        let value = UBig::from(reach.clone() >> reach.bit_len_excess()).to_f64().value();
-        let exponent = bits + i32::try_from(reach.bit_len_excess()).expect("small");
-        value * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2)
-    }
-}
-
-/// How many low bits a number has beyond 64.
-trait BitLenExcess {
-    fn bit_len_excess(&self) -> usize;
-}
-
-impl BitLenExcess for UBig {
-    fn bit_len_excess(&self) -> usize {
-        use dashu_int::ops::BitTest;
-        self.bit_len().saturating_sub(64)
+        let fine = self.unit - 64;
+        let (_, reach) = self.fixed(fine);
+        let excess = reach.bit_len().saturating_sub(64);
+        let leading = (reach >> excess).to_f64().value();
+        let exponent = i32::try_from(fine).expect("small") + i32::try_from(excess).expect("small");
+        // In two steps, so that neither factor leaves the range of f64.
+        leading * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Random scenes and queries for tests that hold backends against each other.
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use p2m_core::{Element, Soup};
 use rand::{Rng, RngExt};
 
@@ -116,22 +116,19 @@ pub fn narrow(soup: &Soup<f64>) -> Soup<f32> {
 
 /// A query around a scene: on a position, between two, near, uniform in the box, on a half-integer lattice, or far.
 pub fn query(rng: &mut impl Rng, positions: &[Point3<f64>]) -> Point3<f64> {
-    let any = |rng: &mut dyn FnMut(usize) -> usize| positions[rng(positions.len())];
-    let mut choose = |n: usize| rng.random_range(0..n);
     if positions.is_empty() {
         return Point3::origin();
     }
-    let (a, b) = (any(&mut choose), any(&mut choose));
-    let noise = |rng: &mut dyn FnMut() -> f64, size: f64| nalgebra::Vector3::from_fn(|_, _| size * rng());
-    let mut uniform = || rng.random_range(-1.0..1.0);
-    let kind = (uniform() * 4.0 + 4.0) as usize;
-    match kind {
+    let a = positions[rng.random_range(0..positions.len())];
+    let b = positions[rng.random_range(0..positions.len())];
+    let noise: Vector3<f64> = Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0));
+    match rng.random_range(0..8) {
         0 => a,
         1 => a + (b - a) * 0.5,
-        2 => a + noise(&mut uniform, 1e-3),
-        3 => a + noise(&mut uniform, 1e-9),
-        4 => a + noise(&mut uniform, 1e5),
-        5 => (a + noise(&mut uniform, 2.0)).map(|x| (2.0 * x).round() / 2.0),
-        _ => a + (b - a) * uniform() + noise(&mut uniform, 0.5),
+        2 => a + noise * 1e-3,
+        3 => a + noise * 1e-9,
+        4 => a + noise * 1e5,
+        5 => (a + noise * 2.0).map(|x| (2.0 * x).round() / 2.0),
+        _ => a + (b - a) * rng.random_range(0.0..1.0) + noise * 0.5,
     }
 }

@@ -48,7 +48,7 @@ pub struct Hierarchy<V> {
 
 /// No node lies deeper below the root than this: splits by cost until half of it, by halving from there on, and sets
 /// have at most 2^30 primitives.
-pub const MAX_DEPTH: usize = 96;
+pub const MAX_DEPTH: usize = 64;
 
 impl<V> Hierarchy<V> {
     /// Splits primitives with these boxes, which are finite. A leaf's volume joins those of its primitives, a parent's

@@ -298,6 +298,6 @@ mod tests {
     fn geometric_progressions_do_not_make_the_tree_deep() {
         // Equal bins cut off one primitive at a time: 1900 levels if nothing stopped it.
         let boxes: Vec<_> = (-950..950).map(|e| point(2f64.powi(e), 0.0, 0.0)).collect();
-        assert!(depth(&check(&boxes)) > 40);
+        assert!(depth(&check(&boxes)) > MAX_DEPTH / 2);
     }
 }

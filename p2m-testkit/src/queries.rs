@@ -1,0 +1,254 @@
+//! The query sets. All are drawn in f64 from a fixed seed, each set from a stream of its own, so that leaving one out
+//! changes no other.
+
+use crate::surface::{SurfaceSampler, direction, normal};
+use nalgebra::{Point3, Vector3};
+use p2m_core::{PrimitiveSet, Soup};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// A distribution of queries. Lengths in percent are of the diagonal of the scene's box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum QuerySet {
+    /// uniform in the box scaled by 10 about its centre
+    Box10,
+    /// uniform in the box scaled by 1.05
+    Box1,
+    /// a random point of the scene, offset along the normal by a normal distribution of sigma 1 %
+    Near,
+    /// the same with sigma 0.1 %
+    Nearer,
+    /// a random point of the scene
+    Surface,
+    /// a regular lattice over the box of 1x, z fastest; about as many points as asked for, never more
+    Grid,
+    /// uniform on the sphere of 100 diagonals about the centre
+    Far,
+    /// around 8 random points of the scene in random turn, normal in each coordinate with sigma 0.5 %
+    Cluster,
+}
+
+/// How many clusters there are.
+const CLUSTERS: usize = 8;
+
+impl QuerySet {
+    /// All of them, in the order of the tables.
+    pub const ALL: [Self; 8] =
+        [Self::Box10, Self::Box1, Self::Near, Self::Nearer, Self::Surface, Self::Grid, Self::Far, Self::Cluster];
+
+    /// Its name in tables and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Box10 => "10x",
+            Self::Box1 => "1x",
+            Self::Near => "near",
+            Self::Nearer => "near0.1",
+            Self::Surface => "surface",
+            Self::Grid => "grid",
+            Self::Far => "far",
+            Self::Cluster => "cluster",
+        }
+    }
+
+    /// `count` queries for a scene that is not empty (a lattice may have fewer).
+    #[must_use]
+    pub fn generate(self, soup: &Soup<f64>, count: usize, seed: u64) -> Vec<Point3<f64>> {
+        let scene = &Frame::new(soup);
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        rng.set_stream(self as u64);
+        let rng = &mut rng;
+        let unit = scene.diagonal;
+        match self {
+            Self::Box10 => in_box(scene, 10.0, count, rng),
+            Self::Box1 => in_box(scene, 1.05, count, rng),
+            Self::Near => near(scene, 0.01 * unit, count, rng),
+            Self::Nearer => near(scene, 0.001 * unit, count, rng),
+            Self::Surface => near(scene, 0.0, count, rng),
+            Self::Grid => lattice(scene, count),
+            Self::Far => {
+                let centre = scene.centre;
+                (0..count).map(|_| centre + direction(rng) * (100.0 * unit)).collect()
+            }
+            Self::Cluster => {
+                let sampler = SurfaceSampler::new(scene.soup);
+                let centres: [Point3<f64>; CLUSTERS] = std::array::from_fn(|_| sampler.draw(rng).0);
+                (0..count)
+                    .map(|_| {
+                        let centre = centres[rng.random_range(0..CLUSTERS)];
+                        centre + Vector3::from_fn(|_, _| normal(rng)) * (0.005 * unit)
+                    })
+                    .collect()
+            }
+        }
+    }
+}
+
+impl std::fmt::Display for QuerySet {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl std::str::FromStr for QuerySet {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        Self::ALL.into_iter().find(|set| set.name() == name).ok_or_else(|| {
+            let names: Vec<&str> = Self::ALL.iter().map(|set| set.name()).collect();
+            format!("the query sets are {}", names.join(", "))
+        })
+    }
+}
+
+/// The diagonal of a scene's box, 1 for a scene that is one point: the unit of offsets and differences.
+#[must_use]
+pub fn diagonal(soup: &Soup<f64>) -> f64 {
+    Frame::new(soup).diagonal
+}
+
+/// A scene and the measures of its box.
+struct Frame<'a> {
+    soup: &'a Soup<f64>,
+    centre: Point3<f64>,
+    half_sides: Vector3<f64>,
+    diagonal: f64,
+}
+
+impl<'a> Frame<'a> {
+    fn new(soup: &'a Soup<f64>) -> Self {
+        let bounds = soup.aabb();
+        // Halves first: sums and differences of finite numbers may not be finite.
+        let (min, max) = (bounds.min.coords * 0.5, bounds.max.coords * 0.5);
+        let diagonal = (bounds.max - bounds.min).norm();
+        let diagonal = if diagonal > 0.0 { diagonal } else { 1.0 };
+        Self { soup, centre: Point3::from(min + max), half_sides: max - min, diagonal }
+    }
+}
+
+fn in_box(scene: &Frame<'_>, scale: f64, count: usize, rng: &mut ChaCha8Rng) -> Vec<Point3<f64>> {
+    let (centre, half) = (scene.centre, scene.half_sides * scale);
+    (0..count).map(|_| centre + Vector3::from_fn(|_, _| rng.random_range(-1.0..=1.0)).component_mul(&half)).collect()
+}
+
+fn near(scene: &Frame<'_>, sigma: f64, count: usize, rng: &mut ChaCha8Rng) -> Vec<Point3<f64>> {
+    let sampler = SurfaceSampler::new(scene.soup);
+    (0..count)
+        .map(|_| {
+            let (point, unit) = sampler.draw(rng);
+            if sigma > 0.0 { point + unit * (sigma * normal(rng)) } else { point }
+        })
+        .collect()
+}
+
+/// The finest lattice of equal spacing on all axes (as nearly as whole numbers allow) with at most `count` points, ends
+/// included. A side of no length takes one layer.
+fn lattice(scene: &Frame<'_>, count: usize) -> Vec<Point3<f64>> {
+    let (centre, half) = (scene.centre, scene.half_sides * 1.05);
+    let [nx, ny, nz] = lattice_sides((half * 2.0).into(), count);
+    let place = |k: usize, i: usize, n: usize| match n {
+        1 => centre[k],
+        _ => centre[k] + half[k] * (2.0 * (i as f64 / (n - 1) as f64) - 1.0),
+    };
+    let mut points = Vec::with_capacity(nx * ny * nz);
+    for x in 0..nx {
+        for y in 0..ny {
+            points.extend((0..nz).map(|z| Point3::new(place(0, x, nx), place(1, y, ny), place(2, z, nz))));
+        }
+    }
+    points
+}
+
+/// How many points a lattice has along each side, found by bisection of its spacing.
+fn lattice_sides(sides: [f64; 3], count: usize) -> [usize; 3] {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is not negative")]
+    let layers = |side: f64, spacing: f64| if side > 0.0 { (side / spacing) as usize + 1 } else { 1 };
+    let at = |spacing: f64| sides.map(|side| layers(side, spacing));
+    let points = |spacing: f64| at(spacing).iter().fold(1usize, |all, n| all.saturating_mul(*n));
+    // Always too fine, and always coarse enough.
+    let (mut fine, mut coarse) = (0.0, sides.iter().fold(0.0, |a: f64, b| a.max(*b)) * 2.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (fine + coarse);
+        if points(middle) > count {
+            fine = middle;
+        } else {
+            coarse = middle;
+        }
+    }
+    at(coarse)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use p2m_core::{BruteForce, ClosestPoint, Element};
+
+    fn scene() -> Soup<f64> {
+        let p = [[1.0, 0.0, 0.0], [2.0, 0.0, 1.0], [1.0, 3.0, 0.0], [5.0, 1.0, 2.0]].map(Point3::from).to_vec();
+        Soup::new(p, [Element::Triangle([0, 1, 2]), Element::Segment([2, 3]), Element::Point(0)]).unwrap()
+    }
+
+    #[test]
+    fn names_read_back() {
+        for set in QuerySet::ALL {
+            assert_eq!(set.to_string().parse(), Ok(set));
+        }
+        assert!("10".parse::<QuerySet>().unwrap_err().contains("10x, 1x, near"));
+    }
+
+    #[test]
+    fn sets_are_deterministic_and_differ_by_seed() {
+        for set in QuerySet::ALL {
+            let queries = set.generate(&scene(), 100, 1);
+            assert_eq!(queries, set.generate(&scene(), 100, 1), "{set:?}");
+            assert!(set == QuerySet::Grid || queries != set.generate(&scene(), 100, 2), "{set:?}");
+            assert!(set == QuerySet::Grid || queries.len() == 100);
+        }
+    }
+
+    /// The largest coordinate of any query relative to the half sides of the box.
+    fn reach(set: QuerySet) -> f64 {
+        let (scene, count) = (scene(), 2000);
+        let frame = Frame::new(&scene);
+        let (centre, half) = (frame.centre, frame.half_sides);
+        let queries = set.generate(&scene, count, 1);
+        queries.iter().map(|q| (q - centre).component_div(&half).amax()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn boxes_are_filled_and_not_left() {
+        for (set, scale) in [(QuerySet::Box10, 10.0), (QuerySet::Box1, 1.05), (QuerySet::Grid, 1.05)] {
+            let reach = reach(set);
+            assert!(reach > 0.99 * scale && reach <= scale * (1.0 + 1e-15), "{set:?} {reach}");
+        }
+    }
+
+    #[test]
+    fn distances_to_the_scene_are_as_named() {
+        let scene = scene();
+        let index = BruteForce::new(&scene).unwrap();
+        // Root mean square over the diagonal.
+        let spread = |set: QuerySet| {
+            let queries = set.generate(&scene, 4000, 1);
+            let sum: f64 = queries.iter().map(|q| index.closest_point(q).unwrap().distance.powi(2)).sum();
+            (sum / 4000.0).sqrt() / diagonal(&scene)
+        };
+        assert!(spread(QuerySet::Surface) < 1e-15);
+        assert!((spread(QuerySet::Near) / 0.01 - 1.0).abs() < 0.05);
+        assert!((spread(QuerySet::Nearer) / 0.001 - 1.0).abs() < 0.05);
+        assert!(spread(QuerySet::Cluster) < 0.005 * 3f64.sqrt() * 1.05);
+        let centre = Frame::new(&scene).centre;
+        for q in QuerySet::Far.generate(&scene, 100, 1) {
+            assert!(((q - centre).norm() / diagonal(&scene) - 100.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_lattice_runs_along_z_first_and_is_about_as_large_as_asked() {
+        let queries = QuerySet::Grid.generate(&scene(), 10_000, 1);
+        assert!((9_000..=10_000).contains(&queries.len()), "{}", queries.len());
+        assert!(queries[0].z < queries[1].z && queries[0].xy() == queries[1].xy());
+        assert_eq!(lattice_sides([1.0, 1.0, 1.0], 1000), [10, 10, 10]);
+        assert_eq!(lattice_sides([1.0, 1.0, 0.0], 10_000), [100, 100, 1]);
+        assert_eq!(lattice_sides([0.0; 3], 10_000), [1, 1, 1]);
+    }
+}

@@ -1,0 +1,81 @@
+//! Agreement with brute force, bit for bit, on real meshes: far from the origin, non-manifold, degenerate, lines, mixed.
+//! Skips, and says so, where there is no folder of models.
+
+use p2m::{AabbTree, BruteForce, BuildIndex, ClosestPoint, PrimitiveSet, Real, Soup};
+use p2m_testkit::queries::QuerySet;
+use p2m_testkit::scenes::narrow;
+use std::path::PathBuf;
+
+const QUERIES: usize = 200;
+
+/// Every model in a format that can be read, smallest first.
+fn models() -> Vec<PathBuf> {
+    let Some(folder) = p2m_testkit::models() else { return Vec::new() };
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
+        .expect("the folder is there")
+        .map(|entry| entry.expect("readable").path())
+        .filter(|path| path.extension().is_some_and(|e| e == "obj" || e == "ply"))
+        .collect();
+    files.sort_by_key(|path| std::fs::metadata(path).map_or(0, |m| m.len()));
+    files
+}
+
+/// Distance bits and primitive of each answer, computed by two threads.
+fn answers<T: Real, I: ClosestPoint<T> + Sync>(index: &I, queries: &[nalgebra::Point3<T>]) -> Vec<(u64, usize)> {
+    let one =
+        |q| index.closest_point(q).map(|c| (c.distance.to_f64().to_bits(), c.primitive.index())).expect("an answer");
+    std::thread::scope(|scope| {
+        let (left, right) = queries.split_at(queries.len() / 2);
+        let left = scope.spawn(move || left.iter().map(one).collect::<Vec<_>>());
+        let mut right: Vec<_> = right.iter().map(one).collect();
+        let mut all = left.join().expect("no panic");
+        all.append(&mut right);
+        all
+    })
+}
+
+fn agrees<T: Real>(
+    name: &str,
+    set: QuerySet,
+    soup: &Soup<T>,
+    tree: &AabbTree<T, &Soup<T>>,
+    queries: &[nalgebra::Point3<T>],
+) {
+    let brute = BruteForce::new(soup).expect("valid");
+    let (expected, found) = (answers(&brute, queries), answers(tree, queries));
+    for (i, (e, f)) in expected.iter().zip(&found).enumerate() {
+        assert_eq!(e, f, "{name}, {set}, query {i}: {:?}", queries[i]);
+    }
+}
+
+#[test]
+fn trees_agree_with_brute_force_on_every_model_in_f64() {
+    let mut count = 0;
+    for path in models() {
+        let name = path.file_name().expect("a file").to_string_lossy().into_owned();
+        let soup = p2m::scene::read_scene(&path).expect("readable").soup;
+        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        for set in QuerySet::ALL {
+            let queries = set.generate(&soup, QUERIES, 1);
+            agrees(&name, set, &soup, &tree, &queries);
+            count += queries.len();
+        }
+        println!("{name}: {} primitives agree", soup.len());
+    }
+    println!("{count} queries");
+}
+
+#[test]
+fn trees_agree_with_brute_force_on_every_model_in_f32() {
+    for path in models() {
+        let name = path.file_name().expect("a file").to_string_lossy().into_owned();
+        let wide = p2m::scene::read_scene(&path).expect("readable").soup;
+        let soup = narrow(&wide);
+        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        for set in QuerySet::ALL {
+            // A quarter of the queries: the scalar changes the boxes, not the kernel.
+            let queries: Vec<_> = set.generate(&wide, QUERIES / 4, 2).iter().map(|q| q.map(f32::of_f64)).collect();
+            agrees(&name, set, &soup, &tree, &queries);
+        }
+    }
+}
