@@ -3,7 +3,7 @@
 use super::double::{self, Double};
 use super::line::{Foot, Line};
 use super::vector::{
-    V3, add, add_scaled, clamp, combine, dot, lexicographically_less, norm_squared, power_of_two, smaller, sub,
+    V3, add, add_scaled, clamp, combine, dot, larger, lexicographically_less, norm_squared, power_of_two, smaller, sub,
 };
 
 /// Triangles whose height is below 2^-10 of their longest edge get that height in double-double.
@@ -14,37 +14,61 @@ const NEEDLE_SINE_SQUARED: f64 = power_of_two(-114);
 /// Weights below 2^-49 may owe their sign to rounding.
 const UNDECIDED_WEIGHT: f64 = power_of_two(-49);
 /// First weights of ordinary faces err by less than 2^-38 of the offsets' size over the height; this is the square of a
-/// wider margin.
+/// wider margin. A sliver's errors are as many times larger as its height is too small.
 const REJECT_MARGIN_SQUARED: f64 = power_of_two(-72);
-
+/// Below a height of 2^-22 of the longest edge nothing is estimated.
+const UNKNOWN_DOUBT: f64 = power_of_two(24);
 /// Edge i runs from vertex i to vertex i + 1.
 pub(super) const EDGES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 
-/// An orthogonal frame of a triangle, and a first estimate of the foot of the perpendicular from the origin.
+/// The axes of a triangle: the longest edge and the height over it.
 ///
-/// The longest edge and the height over it are the axes. The weights decouple there, so a sliver's error is not
-/// multiplied by the inverse of its sine; the height alone needs care, see [`sliver_height`].
-pub(super) struct Plane {
-    /// Nearer and farther end of the longest edge, and the vertex opposite to it.
-    corners: [usize; 3],
+/// They are orthogonal, so the weights decouple and a sliver's error is not multiplied by the inverse of its sine; the
+/// height alone needs care, see [`sliver_axes`].
+#[derive(Clone, Copy)]
+struct Axes {
+    /// From the nearer end of the longest edge to the farther one.
     direction: V3,
+    /// 1 / |direction|^2
     inverse: f64,
-    /// From the nearer end to the apex.
-    side: V3,
     /// From the longest edge to the apex.
     height: V3,
+    /// 1 / |height|^2
     inverse_height: f64,
     /// Where the height stands on the edge: 0 at the nearer end.
     along: f64,
-    /// First weights of the corners.
-    pub(super) weights: [f64; 3],
-    /// The squared length of the foot, or 0 where a sliver makes it unreliable.
-    pub(super) square: f64,
-    pub(super) sliver: bool,
+}
+
+impl Axes {
+    /// First weights of the foot for the nearer end `n`, the farther one and the apex, `t` being the position of the foot
+    /// on the longest edge; and n . height.
+    #[inline(always)]
+    fn weights(&self, n: V3, t: f64) -> ([f64; 3], f64) {
+        let projected = dot(n, self.height);
+        let wa = -(projected * self.inverse_height);
+        let wf = t - self.along * wa;
+        ([(1.0 - wf) - wa, wf, wa], projected)
+    }
+}
+
+/// The plane of a triangle, and a first estimate of the foot of the perpendicular from the origin.
+pub(super) struct Plane {
+    /// Nearer and farther end of the longest edge, and the vertex opposite to it.
+    corners: [usize; 3],
+    /// As plain arithmetic has them: good enough for estimates, and for the foot unless the triangle is a sliver.
+    axes: Axes,
+    /// From the nearer end to the apex.
+    side: V3,
+    /// Position of the foot on the longest edge.
+    t: f64,
+    weights: [f64; 3],
+    square: f64,
+    /// 1, for slivers the square of how many times their height is too small: the factor by which estimates are worse.
+    doubt: f64,
 }
 
 impl Plane {
-    /// `None` if the foot is certainly not inside, or if the triangle is but its edges.
+    /// `None` if the foot is certainly not inside.
     #[inline(always)]
     pub(super) fn new(vertices: [V3; 3], lines: &[Line; 3], size: f64) -> Option<Self> {
         let base = longest_edge(vertices, lines);
@@ -52,66 +76,82 @@ impl Plane {
         let near = EDGES[base][line.near];
         let far = EDGES[base][1 - line.near];
         let apex = 3 - near - far;
-        let (n, f, a) = (vertices[near], vertices[far], vertices[apex]);
+        let n = vertices[near];
 
-        let side = sub(a, n);
-        let mut along = dot(side, line.direction) * line.inverse;
-        let mut height = add_scaled(side, -along, line.direction);
-        let mut height_squared = norm_squared(height);
-        let sliver = height_squared * line.inverse < SLIVER_SINE_SQUARED;
-        if sliver {
-            (along, height) = sliver_height(n, f, a);
-            height_squared = norm_squared(height);
-            if height_squared * line.inverse < NEEDLE_SINE_SQUARED {
-                return None;
-            }
-        }
-        let inverse_height = 1.0 / height_squared;
-        let projected = dot(n, height);
-        let wa = -(projected * inverse_height);
-        let wf = line.t - along * wa;
-        let wn = (1.0 - wf) - wa;
-        let least = smaller(smaller(wn, wf), wa);
-        if least < 0.0 && !sliver && least * least * height_squared > REJECT_MARGIN_SQUARED * (size * size) {
-            return None;
-        }
-        let square = if sliver { 0.0 } else { line.square + wa * projected };
-        Some(Self {
-            corners: [near, far, apex],
+        let side = sub(vertices[apex], n);
+        let along = dot(side, line.direction) * line.inverse;
+        let height = add_scaled(side, -along, line.direction);
+        let height_squared = norm_squared(height);
+        let doubt = larger(SLIVER_SINE_SQUARED / (height_squared * line.inverse), 1.0);
+        let axes = Axes {
             direction: line.direction,
             inverse: line.inverse,
-            side,
             height,
-            inverse_height,
+            inverse_height: 1.0 / height_squared,
             along,
-            weights: [wn, wf, wa],
-            square,
-            sliver,
-        })
+        };
+        let (weights, projected) = axes.weights(n, line.t);
+        let least = smaller(smaller(weights[0], weights[1]), weights[2]);
+        let plane = Self {
+            corners: [near, far, apex],
+            axes,
+            side,
+            t: line.t,
+            weights,
+            square: line.square + weights[2] * projected,
+            doubt,
+        };
+        let outside = plane.can_estimate()
+            && least < 0.0
+            && least * least * height_squared > REJECT_MARGIN_SQUARED * doubt * (size * size);
+        (!outside).then_some(plane)
+    }
+
+    /// Whether weights and square are estimates at all: a height that is rounding error alone gives none.
+    #[inline(always)]
+    fn can_estimate(&self) -> bool {
+        self.doubt <= UNKNOWN_DOUBT
+    }
+
+    /// The squared length of the foot, infinite if it seems to be outside, and the factor by which margins have to be
+    /// wider than usual. Without an estimate the foot may be anywhere.
+    #[inline(always)]
+    pub(super) fn estimate(&self) -> (f64, f64) {
+        if !self.can_estimate() {
+            return (0.0, f64::INFINITY);
+        }
+        let inside = smaller(smaller(self.weights[0], self.weights[1]), self.weights[2]) > 0.0;
+        (if inside { self.square } else { f64::INFINITY }, self.doubt)
+    }
+
+    /// Whether the foot, inside or not, may have a square up to `limit`.
+    #[inline(always)]
+    pub(super) fn may_be_within(&self, limit: f64) -> bool {
+        self.square <= limit || !self.can_estimate()
     }
 
     /// The foot, if it lies strictly inside: the point of the first weights, and one step on its residual.
     #[inline(always)]
     pub(super) fn foot(&self, vertices: [V3; 3], [low, high]: [V3; 2]) -> Option<Foot<3>> {
-        let [n, f, a] = self.corners.map(|i| vertices[i]);
-        let [_, wf, wa] = self.weights;
-        let point = add(n, combine(wf, self.direction, wa, self.side));
-        let step_d = -(dot(point, self.direction) * self.inverse);
-        let step_h = -(dot(point, self.height) * self.inverse_height);
+        let [n, f, a] = [vertices[self.corners[0]], vertices[self.corners[1]], vertices[self.corners[2]]];
+        let sliver = self.doubt > 1.0;
+        let axes = if sliver { sliver_axes(&self.axes, n, f, a)? } else { self.axes };
+        let [_, wf, wa] = if sliver { axes.weights(n, self.t).0 } else { self.weights };
+        let point = add(n, combine(wf, axes.direction, wa, self.side));
+        let step_d = -(dot(point, axes.direction) * axes.inverse);
+        let step_h = -(dot(point, axes.height) * axes.inverse_height);
         let wa = wa + step_h;
-        let wf = wf + (step_d - self.along * step_h);
+        let wf = wf + (step_d - axes.along * step_h);
         let wn = (1.0 - wf) - wa;
         let least = smaller(smaller(wn, wf), wa);
-        let inside = least > 0.0 && (least >= UNDECIDED_WEIGHT || self.sliver || strictly_inside(n, f, a));
+        let inside = least > 0.0 && (least >= UNDECIDED_WEIGHT || sliver || strictly_inside(n, f, a));
         if !inside {
             return None;
         }
-        let point = add(point, combine(step_d, self.direction, step_h, self.height));
+        let point = add(point, combine(step_d, axes.direction, step_h, axes.height));
         let offset = clamp(point, low, high);
         let mut weights = [0.0; 3];
-        for (corner, weight) in self.corners.into_iter().zip([wn, wf, wa]) {
-            weights[corner] = weight;
-        }
+        (weights[self.corners[0]], weights[self.corners[1]], weights[self.corners[2]]) = (wn, wf, wa);
         Some(Foot { offset, square: norm_squared(offset), weights })
     }
 }
@@ -131,15 +171,17 @@ fn longest_edge(vertices: [V3; 3], lines: &[Line; 3]) -> usize {
     best
 }
 
-/// The height of the triangle over its base `n`-`f`, as the vector from the base line to the apex `a`, and the
-/// position of its foot on the base, both rounded from double-double: relative error below 2^-44 of the height for
-/// every height that is not a needle's.
+/// The axes with the height from double-double: relative error below 2^-43 for every height that is not a needle's.
+/// `None` for a needle, which is its edges.
 #[cold]
-fn sliver_height(n: V3, f: V3, a: V3) -> (f64, V3) {
+fn sliver_axes(plain: &Axes, n: V3, f: V3, a: V3) -> Option<Axes> {
     let d: [Double; 3] = std::array::from_fn(|k| Double::difference(f[k], n[k]));
     let side: [Double; 3] = std::array::from_fn(|k| Double::difference(a[k], n[k]));
     let along = double::dot(side, d) / double::dot(d, d);
-    (along.round(), std::array::from_fn(|k| (side[k] - along * d[k]).round()))
+    let height = std::array::from_fn(|k| (side[k] - along * d[k]).round());
+    let height_squared = norm_squared(height);
+    let needle = height_squared * plain.inverse < NEEDLE_SINE_SQUARED;
+    (!needle).then_some(Axes { height, inverse_height: 1.0 / height_squared, along: along.round(), ..*plain })
 }
 
 /// Whether the foot on the face has three positive weights, in double-double: a foot exactly on an edge belongs to the

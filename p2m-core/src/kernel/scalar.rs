@@ -168,22 +168,17 @@ fn triangle_features(query: V3, vertices: &[V3; 3], offsets: &[V3; 3], bounds: [
     if !plain_scale(size, larger(larger(lines[0].inverse, lines[1].inverse), lines[2].inverse)) {
         return Some(scaled::triangle(query, *vertices));
     }
-    let margin = ROUGH_MARGIN * (size * size);
     let plane = Plane::new(*offsets, &lines, size);
-    let mut rough = squares[vertex];
+    let (face, doubt) = plane.as_ref().map_or((f64::INFINITY, 1.0), Plane::estimate);
+    let mut rough = smaller(squares[vertex], face);
     for line in &lines {
         rough = if line.t > 0.0 { smaller(line.square, rough) } else { rough };
     }
-    if let Some(plane) = &plane
-        && (plane.sliver || smaller(smaller(plane.weights[0], plane.weights[1]), plane.weights[2]) > 0.0)
-    {
-        rough = smaller(plane.square, rough);
-    }
+    let margin = ROUGH_MARGIN * doubt * (size * size);
     if rough - margin > prune {
         return None;
     }
-    // A sliver's face has no rough square that could rule others out.
-    let limit = if plane.as_ref().is_some_and(|p| p.sliver) { f64::INFINITY } else { rough + margin };
+    let limit = rough + margin;
 
     let mut best = (squares[vertex], offsets[vertex], NearestFeature::Vertex(vertex));
     for (i, [j, k]) in EDGES.into_iter().enumerate() {
@@ -196,7 +191,7 @@ fn triangle_features(query: V3, vertices: &[V3; 3], offsets: &[V3; 3], bounds: [
         }
     }
     if let Some(plane) = plane
-        && plane.square <= limit
+        && plane.may_be_within(limit)
         && let Some(foot) = plane.foot(*offsets, bounds)
         && foot.square < best.0
     {
