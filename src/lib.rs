@@ -57,3 +57,8 @@ pub use p2m_core::*;
 /// Scenes from files and generators.
 #[cfg(feature = "mixed")]
 pub use p2m_mixed as scene;
+
+/// The README's example, compiled and run.
+#[cfg(all(doctest, feature = "bvh", feature = "mixed"))]
+#[doc = include_str!("../README.md")]
+struct Readme;

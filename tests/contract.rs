@@ -228,6 +228,34 @@ fn shared_features_have_the_same_key_in_every_primitive() {
     assert!(faces > 10_000, "{faces}");
 }
 
+/// Searches pass what they prune above: it may end the work, it never changes a value.
+#[test]
+fn a_bound_ends_the_work_only_beyond_the_key() {
+    let (mut ended, mut beyond) = (0, 0);
+    for seed in 0..200_000 {
+        let case = case("contract within", seed);
+        let (shape, query) = (shape(&case.vertices), Point3::from(case.query));
+        let full = shape.project(&query);
+        let square = full.key.square_above();
+        for factor in [0.0, 0.5, 1.0 - 1e-9, 1.0 - f64::EPSILON, 1.0, 1.0 + f64::EPSILON, 2.0, f64::INFINITY] {
+            let bound = if factor == 0.0 { 0.0 } else { square * factor };
+            match shape.project_within(&query, bound) {
+                Some(found) => {
+                    require!(found == full, seed, case, "bound {factor}: {found:?}, not {full:?}");
+                }
+                None => {
+                    require!(square > bound, seed, case, "ended below the bound, factor {factor}");
+                    ended += 1;
+                }
+            }
+            beyond += usize::from(square > bound);
+        }
+    }
+    println!("{ended} of {beyond} ended early");
+    // The scaled lane ends nothing early, and bounds within the margin of an estimate end nothing either.
+    assert!(ended > beyond / 4, "the bound saves little: {ended} of {beyond}");
+}
+
 #[test]
 fn a_point_is_a_degenerate_segment_and_a_degenerate_triangle() {
     for seed in 0..100_000 {
