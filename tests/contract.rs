@@ -346,6 +346,18 @@ fn known_failures_of_other_projects_are_answered() {
     assert_eq!(answer([4.0, 3.0, 3.0], &flat).distance, 1.0);
 }
 
+/// Cases that this kernel once got wrong.
+#[test]
+fn past_failures_stay_mended() {
+    // All three vertices round to the same distance, so the nearer end of an edge is mistaken, and the estimate of a foot
+    // far beyond its farther end must not rule out the edge that holds the answer.
+    let (q, t) = (
+        [1.351079888211149e16, -562949953421315.0, -5629499534213118.0],
+        [[-1.0, 3.0, -4.0], [3.0, -1.0, 6.0], [2.0, -5.0, 4.0]],
+    );
+    assert_eq!(project(q, &t).key, project(q, &t[..2]).key);
+}
+
 #[test]
 fn n6_queries_that_are_not_finite_have_no_answer() {
     let index = BruteForce::new([shape(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])]).expect("finite");

@@ -76,8 +76,20 @@ fn triangle(rng: &mut impl Rng, sine: f64) -> [V; 3] {
     t
 }
 
+/// Small integers, and a query at integers of any size: exact ties, and far away lengths that round to ties.
+fn lattice(rng: &mut impl Rng) -> Case {
+    let count = rng.random_range(1..=3);
+    let vertices = (0..count).map(|_| std::array::from_fn(|_| f64::from(rng.random_range(-6..=6)))).collect();
+    let far = if rng.random_bool(0.5) { rng.random_range(0..50) } else { rng.random_range(50..56) };
+    let query = std::array::from_fn(|_| (2f64.powi(far) * rng.random_range(-6.0..6.0f64)).round());
+    Case { family: format!("{count} vertices, lattice, query at 2^{far}"), query, vertices }
+}
+
 /// Case `rng` of all families, with 1 to 3 vertices.
 pub fn case(rng: &mut impl Rng) -> Case {
+    if rng.random_bool(0.1) {
+        return lattice(rng);
+    }
     let kinds = rng.random_range(0..10);
     let count = if kinds == 0 {
         1
@@ -138,7 +150,7 @@ fn query(rng: &mut impl Rng, vertices: &[V]) -> (&'static str, V) {
             let along: V = std::array::from_fn(|k| vertices[j][k] - vertices[i][k]);
             ("equidistant", combine([(1.0, middle), (1.0, cross(along, direction))]))
         }
-        7 => ("far", combine([(1.0, inside), (10f64.powi(rng.random_range(1..12)), direction)])),
+        7 => ("far", combine([(1.0, inside), (10f64.powi(rng.random_range(1..20)), direction)])),
         8 => ("near a vertex", combine([(1.0, vertices[i]), (small, direction)])),
         _ => ("around", combine([(1.0, inside), (2.0, direction)])),
     }

@@ -172,7 +172,8 @@ fn triangle_features(query: V3, vertices: &[V3; 3], offsets: &[V3; 3], bounds: [
     let (face, doubt) = plane.as_ref().map_or((f64::INFINITY, 1.0), Plane::estimate);
     let mut rough = smaller(squares[vertex], face);
     for line in &lines {
-        rough = if line.t > 0.0 { smaller(line.square, rough) } else { rough };
+        // Far away, rounding can mistake the nearer end, and the foot then lies beyond the farther one.
+        rough = if line.t > 0.0 && line.t < 1.0 { smaller(line.square, rough) } else { rough };
     }
     let margin = ROUGH_MARGIN * doubt * (size * size);
     if rough - margin > prune {
