@@ -85,10 +85,48 @@ fn lattice(rng: &mut impl Rng) -> Case {
     Case { family: format!("{count} vertices, lattice, query at 2^{far}"), query, vertices }
 }
 
+/// Coordinates of any magnitude, each for itself, from a small pool so that some coincide.
+fn wild(rng: &mut impl Rng) -> Case {
+    let (low, high) = [(-1074, 1023), (-1074, 0), (0, 1023), (-300, 300)][rng.random_range(0..4)];
+    let pool: [f64; 6] = std::array::from_fn(|_| match rng.random_range(0..10) {
+        0 => 0.0,
+        1 => f64::MAX,
+        _ => {
+            let e: i32 = rng.random_range(low..=high);
+            let mantissa: f64 = if rng.random_bool(0.5) { 1.0 } else { rng.random_range(1.0..2.0) };
+            mantissa * 2f64.powi(e / 2) * 2f64.powi(e - e / 2)
+        }
+    });
+    let mut coordinate = || pool[rng.random_range(0..6)] * if rng.random_bool(0.5) { 1.0 } else { -1.0 };
+    let query = std::array::from_fn(|_| coordinate());
+    let vertices: [V; 3] = std::array::from_fn(|_| std::array::from_fn(|_| coordinate()));
+    let count = rng.random_range(1..=3);
+    Case {
+        family: format!("{count} vertices, coordinates of 2^{low} to 2^{high}"),
+        query,
+        vertices: vertices[..count].to_vec(),
+    }
+}
+
+/// Edges and faces that are almost parallel to the axes: their box is thin, and a foot easily leaves it by rounding.
+fn almost_flat(rng: &mut impl Rng) -> Case {
+    let (count, axis) = (rng.random_range(2..=3), rng.random_range(0..3));
+    let level = rng.random_range(-1.0..1.0);
+    let mut vertices: Vec<V> = (0..count).map(|_| unit(rng)).collect();
+    for v in &mut vertices {
+        v[axis] = level * (1.0 + f64::from(rng.random_range(-3..=3)) * f64::EPSILON);
+    }
+    let query = std::array::from_fn(|_| rng.random_range(-2.0..2.0));
+    Case { family: format!("{count} vertices, almost parallel to axis {axis}"), query, vertices }
+}
+
 /// Case `rng` of all families, with 1 to 3 vertices.
 pub fn case(rng: &mut impl Rng) -> Case {
-    if rng.random_bool(0.1) {
-        return lattice(rng);
+    match rng.random_range(0..100) {
+        0..10 => return lattice(rng),
+        10..13 => return wild(rng),
+        13..18 => return almost_flat(rng),
+        _ => {}
     }
     let kinds = rng.random_range(0..10);
     let count = if kinds == 0 {

@@ -155,7 +155,8 @@ impl Distance {
             let limit = Self::new([0.0; 3], &[[f64::MAX, 0.0, 0.0]]);
             return if computed > 0.0 && self.compare(&limit) == Ordering::Greater { 0.0 } else { f64::INFINITY };
         }
-        let eta = if self.unit < -900 { eta } else { 0.0 };
+        // Where it cannot matter it would only make numbers longer.
+        let eta = if self.unit < lowest_bit(eta) + 174 { eta } else { 0.0 };
         // 2 max(bits, 64) bits below the lowest bit of anything: u M is at least 2^(unit - 53).
         let fine = self.unit.min(lowest_bit(computed)).min(lowest_bit(eta)) - 160;
         let (distance, reach) = self.fixed(fine);

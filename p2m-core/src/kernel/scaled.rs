@@ -5,34 +5,60 @@
 //! vertices, and for distances that are tiny beside the primitive.
 
 use super::key::Key;
-use super::line::Line;
+use super::line::{Foot, Line};
 use super::plane::{EDGES, Plane};
 use super::scalar::edge_precedes;
 use super::vector::{
-    V3, bounds, exponent, larger, largest, lexicographically_less, norm_squared, power_of_two, scale_by_power, sub,
+    V3, bounds, clamp, exponent, larger, largest, lexicographically_less, norm_squared, power_of_two, scale_by_power,
+    sub,
 };
 use super::{Nearest, NearestFeature};
 
 /// Edges shorter than 2^-100 of the distance to the query are their end points, with an error of 2^-100 M.
 const SPECK: f64 = power_of_two(-100);
 
-/// Offsets divided by a power of two that brings their largest component into [1, 2), and the exponent of that power.
-/// `None` if all are zero.
-fn scaled_offsets<const N: usize>(query: V3, vertices: [V3; N]) -> Option<([V3; N], i32)> {
-    let mut offsets = vertices.map(|v| sub(v, query));
-    let mut base = 0;
-    if largest(&offsets) == f64::INFINITY {
-        // Coordinates at the edge of the range: subtract at an eighth of the scale. What a component may lose to
-        // underflow there is below 2^-2000 of the offset.
-        base = 3;
-        offsets = vertices.map(|v| sub(v.map(|x| x * 0.125), query.map(|x| x * 0.125)));
+/// The offsets of some vertices, scaled.
+struct Scaled<const N: usize> {
+    /// Divided by 2^`base`: 1, unless coordinates are at the edge of the range, where differences overflow.
+    raw: [V3; N],
+    base: i32,
+    /// `raw` divided by 2^`exponent`, which brings the largest component into [1, 2).
+    offsets: [V3; N],
+    exponent: i32,
+}
+
+impl<const N: usize> Scaled<N> {
+    /// `None` if all offsets are zero.
+    fn new(query: V3, vertices: [V3; N]) -> Option<Self> {
+        let mut raw = vertices.map(|v| sub(v, query));
+        let mut base = 0;
+        if largest(&raw) == f64::INFINITY {
+            // What a component loses to underflow by this division is below 2^-2000 of the offset.
+            base = 3;
+            raw = vertices.map(|v| sub(v.map(|x| x * 0.125), query.map(|x| x * 0.125)));
+        }
+        let size = largest(&raw);
+        if size == 0.0 {
+            return None;
+        }
+        let exponent = exponent(size);
+        Some(Self { raw, base, offsets: raw.map(|v| v.map(|x| scale_by_power(x, -exponent))), exponent })
     }
-    let size = largest(&offsets);
-    if size == 0.0 {
-        return None;
+
+    /// A foot computed from `offsets`, as a candidate.
+    ///
+    /// Scaling down may have lost small components, and with them the promise that the key is not below the bound of the
+    /// box: such a foot is scaled back and moved into the box of the offsets as they were. (Scaling up loses nothing,
+    /// scaling back would.)
+    fn candidate<const M: usize>(&self, foot: &Foot<M>, feature: NearestFeature, size: f64) -> Nearest {
+        let (offset, exponent) = if self.exponent > 0 {
+            let [low, high] = bounds(&self.raw);
+            (clamp(foot.offset.map(|x| scale_by_power(x, self.exponent)), low, high), self.base)
+        } else {
+            (foot.offset, self.base + self.exponent)
+        };
+        Nearest { key: Key::of_scaled_offset(offset, exponent), offset, exponent, feature, size }
     }
-    let e = exponent(size);
-    Some((offsets.map(|v| v.map(|x| scale_by_power(x, -e))), base + e))
 }
 
 /// An upper bound of the largest component of the offsets, infinite if it exceeds f64.
@@ -48,7 +74,7 @@ pub(super) fn point(query: V3, vertex: V3) -> Nearest {
 }
 
 fn vertex_candidate(query: V3, index: usize, vertex: V3, size: f64) -> Nearest {
-    let ([offset], exponent) = scaled_offsets(query, [vertex]).unwrap_or(([[0.0; 3]], 0));
+    let (offset, exponent) = Scaled::new(query, [vertex]).map_or(([0.0; 3], 0), |s| (s.raw[0], s.base));
     let key = Key::of_scaled_offset(offset, exponent);
     Nearest { key, offset, exponent, feature: NearestFeature::Vertex(index), size }
 }
@@ -67,13 +93,13 @@ fn nearest_vertex_candidate(query: V3, vertices: &[V3], size: f64) -> Nearest {
 }
 
 fn edge_candidate(query: V3, index: usize, ends: [V3; 2], size: f64) -> Option<Nearest> {
-    let (ends, exponent) = scaled_offsets(query, ends)?;
+    let scaled = Scaled::new(query, ends)?;
+    let ends = scaled.offsets;
     if largest(&[sub(ends[1], ends[0])]) < SPECK {
         return None;
     }
     let foot = Line::new(ends, ends.map(norm_squared)).foot(ends)?;
-    let key = Key::of_scaled_offset(foot.offset, exponent);
-    Some(Nearest { key, offset: foot.offset, exponent, feature: NearestFeature::Edge(index, foot.weights), size })
+    Some(scaled.candidate(&foot, NearestFeature::Edge(index, foot.weights), size))
 }
 
 #[cold]
@@ -88,16 +114,16 @@ pub(super) fn segment(query: V3, vertices: [V3; 2]) -> Nearest {
 }
 
 fn face_candidate(query: V3, vertices: [V3; 3], size: f64) -> Option<Nearest> {
-    let (offsets, exponent) = scaled_offsets(query, vertices)?;
-    let longest = EDGES.map(|[i, j]| largest(&[sub(offsets[j], offsets[i])]));
-    if larger(larger(longest[0], longest[1]), longest[2]) < SPECK {
+    let scaled = Scaled::new(query, vertices)?;
+    let offsets = scaled.offsets;
+    let edges = EDGES.map(|[i, j]| largest(&[sub(offsets[j], offsets[i])]));
+    if larger(larger(edges[0], edges[1]), edges[2]) < SPECK {
         return None;
     }
     let squares = offsets.map(norm_squared);
     let lines = EDGES.map(|[i, j]| Line::new([offsets[i], offsets[j]], [squares[i], squares[j]]));
     let foot = Plane::new(offsets, &lines, largest(&offsets))?.foot(offsets, bounds(&offsets))?;
-    let key = Key::of_scaled_offset(foot.offset, exponent);
-    Some(Nearest { key, offset: foot.offset, exponent, feature: NearestFeature::Face(foot.weights), size })
+    Some(scaled.candidate(&foot, NearestFeature::Face(foot.weights), size))
 }
 
 #[cold]
