@@ -1,6 +1,7 @@
 //! Every backend against brute force, bit for bit (N3), and sets against the exact oracle (N2, N7).
 //!
 //! One generic suite; a new backend adds a line to `backends!`.
+#![cfg(feature = "bvh")]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::Point3;
@@ -79,6 +80,25 @@ macro_rules! backends {
                 let points: Vec<Point<f64>> = (-1000..1000).map(|e| Point::new(Point3::new(2f64.powi(e), -2f64.powi(e / 2), 0.0))).collect();
                 let queries: Vec<_> = points.iter().step_by(7).map(|p| p.position * 1.3).collect();
                 agrees::<f64, &[Point<f64>], $index<f64, _>>(0, &points[..], &queries);
+            }
+
+            #[test]
+            fn magnitudes_may_mix_in_one_scene_and_in_one_primitive() {
+                for seed in 0..1500 {
+                    let mut r = rng("magnitudes", seed);
+                    let cases: Vec<_> = (0..12).map(|_| p2m_testkit::families::wild(&mut r)).collect();
+                    let shapes: Vec<Shape<f64>> = cases.iter().map(|c| shape(&c.vertices)).collect();
+                    // Queries of their own, and near a vertex of another's.
+                    let vertex = |c: &p2m_testkit::families::Case| Point3::from(c.vertices[0].map(|x| x * (1.0 + 1e-13)));
+                    let queries: Vec<Point3<f64>> = cases.iter().map(|c| Point3::from(c.query)).chain(cases.iter().map(vertex))
+                        .filter(|q| q.iter().all(|x| x.is_finite())).collect();
+                    agrees::<f64, &[Shape<f64>], $index<f64, _>>(seed, &shapes[..], &queries);
+                }
+            }
+
+            #[test]
+            fn past_failures_stay_mended() {
+                past_failures::<$index<f64, Vec<Shape<f64>>>>();
             }
 
             #[test]
@@ -213,6 +233,62 @@ where
     }
 }
 
+fn shape(vertices: &[[f64; 3]]) -> Shape<f64> {
+    match *vertices {
+        [a] => Point::new(a.into()).into(),
+        [a, b] => Segment::new(a.into(), b.into()).into(),
+        [a, b, c] => Triangle::new(a.into(), b.into(), c.into()).into(),
+        _ => unreachable!("one to three vertices"),
+    }
+}
+
+/// Scenes that were once answered wrongly.
+fn past_failures<I: BuildIndex<f64, Vec<Shape<f64>>, Error = BuildError>>() {
+    let build = |set: Vec<Shape<f64>>| I::build(set, &I::Options::default()).expect("finite");
+    // Scaling down by 1e300 lost the distance of the foot, and the key fell below the bound of the box.
+    let set = vec![shape(&[[0.0, 0.0, 1.1e-100]]), shape(&[[-1e300, 0.0, 0.0], [1e300, 0.0, 0.0]])];
+    let q = Point3::new(0.0, 0.0, 1e-100);
+    let expected = BruteForce::new(&set[..]).expect("finite").closest_point(&q).expect("not empty");
+    assert_eq!(
+        build(set).closest_point(&q).map(|c| (c.primitive, c.distance)),
+        Some((expected.primitive, expected.distance))
+    );
+    // The certified bound of keys outside the plain range.
+    let point = [-7.528623501410492e140, -1.5628541052992638e141, 1.5027718543271175e141];
+    let q = Point3::new(-7.528623501410494e140, -1.5628541052992638e141, 1.5027718543271175e141);
+    let segment = [
+        [-3.0485825683102407e141, -2.667486116741718e141, 6.458994849699129e140],
+        [2.7944990166126107e141, 1.4403024883833572e140, 2.8268164461896628e141],
+    ];
+    let found = build(vec![shape(&[point]), shape(&segment)]).closest_point(&q).expect("not empty");
+    assert!(Distance::new(q.coords.into(), &segment).is_at_least(found.lower_bound), "{found:?}");
+    // Any epsilon, alone and with a radius.
+    let row = |from: i32| (from..from + 100).map(|i| shape(&[[f64::from(i), 0.0, 0.0]])).collect::<Vec<_>>();
+    let index = build(row(7));
+    for epsilon in [1.0, 1e30, 1e154, 1e200, f64::MAX, f64::INFINITY] {
+        let options = QueryOptions::default().with_epsilon(epsilon);
+        let found = index.closest_point_with(&Point3::new(0.3, 1.0, 0.0), &options).expect("not empty");
+        assert!(found.lower_bound <= 6.775, "{found:?}");
+        let limited = options.with_max_distance(10.0);
+        assert!(index.closest_point_with(&Point3::origin(), &limited).is_some(), "epsilon {epsilon}");
+        let beyond = options.with_max_distance(6.9);
+        assert!(index.closest_point_with(&Point3::origin(), &beyond).is_none(), "epsilon {epsilon}");
+    }
+    // A hint is looked at first: it is all that a search with unlimited epsilon needs.
+    let hinted = QueryOptions::default().with_epsilon(f64::INFINITY).with_hint(PrimitiveId::new(60));
+    let found = index.closest_point_with(&Point3::origin(), &hinted).expect("not empty");
+    assert!(found.primitive.index() == 60 || found.primitive.index() == 0, "{found:?}");
+}
+
+/// A distance of 1.41 eta is reported as eta, and is within a radius of eta.
+#[test]
+fn the_radius_is_inclusive_for_subnormal_distances_in_f32() {
+    let eta = f32::from_bits(1);
+    let index = AabbTree::build([Point::new(Point3::new(eta, eta, 0.0))], &Default::default()).expect("finite");
+    let found = index.closest_point_with(&Point3::origin(), &QueryOptions::default().with_max_distance(eta));
+    assert_eq!(found.map(|c| c.distance), Some(eta));
+}
+
 fn stated_answers<I: BuildIndex<f64, Vec<Shape<f64>>, Error = BuildError>>()
 where
     I::Options: Default,
@@ -339,13 +415,7 @@ fn scenes_can_be_permuted_duplicated_and_extended() {
 fn box_bounds_never_exceed_the_keys_inside() {
     for seed in 0..300_000 {
         let case = p2m_testkit::families::case(&mut rng("bounds", seed));
-        let vertices: Vec<Point3<f64>> = case.vertices.iter().map(|v| Point3::from(*v)).collect();
-        let shape: Shape<f64> = match vertices[..] {
-            [a] => Point::new(a).into(),
-            [a, b] => Segment::new(a, b).into(),
-            _ => Triangle::new(vertices[0], vertices[1], vertices[2]).into(),
-        };
-        let q = Point3::from(case.query);
+        let (shape, q) = (shape(&case.vertices), Point3::from(case.query));
         let key: Key = shape.project(&q).key;
         let bound = shape.aabb().lower_bound(&q);
         assert!(bound <= key.square_above(), "seed {seed}: {bound:e} > {key:?}\n{case:?}");
@@ -380,7 +450,7 @@ fn searches_visit_few_nodes() {
         primitives / 1000,
         hinted / 1000
     );
-    assert!(nodes <= 60_000, "{nodes}");
-    assert!(primitives <= 20_000, "{primitives}");
+    assert!(nodes <= 22_000, "{nodes}");
+    assert!(primitives <= 6_000, "{primitives}");
     assert!(hinted < nodes, "{hinted}");
 }

@@ -345,16 +345,46 @@ fn known_failures_of_other_projects_are_answered() {
     assert_eq!(answer([4.0, 3.0, 3.0], &flat).distance, 1.0);
 }
 
-/// Cases that this kernel once got wrong.
+/// Cases that this kernel once got wrong, and cases that would go wrong without one of its steps.
 #[test]
 fn past_failures_stay_mended() {
-    // All three vertices round to the same distance, so the nearer end of an edge is mistaken, and the estimate of a foot
-    // far beyond its farther end must not rule out the edge that holds the answer.
+    let error = |q: [f64; 3], v: &[[f64; 3]]| Distance::new(q, v).error(project(q, v).key.distance(), 53, 0.0);
+    let origin = [0.0; 3];
+    // Both ends of a tiny edge round to the same distance, so the nearer one is mistaken: the estimate of a foot far beyond
+    // the other must not rule out the edge that holds the answer. Once 1e14 u M.
+    assert!(error([1.0, -5.0, 0.0], &[origin, [2f64.powi(-53), 0.0, 0.0], [2.0, 0.1, 0.0]]) <= OBSERVED);
     let (q, t) = (
         [1.351079888211149e16, -562949953421315.0, -5629499534213118.0],
         [[-1.0, 3.0, -4.0], [3.0, -1.0, 6.0], [2.0, -5.0, 4.0]],
     );
     assert_eq!(project(q, &t).key, project(q, &t[..2]).key);
+    // Heights of 2^-55 to 2^-50 of the longest edge: first weights are far off and must not be multiplied by long sides.
+    // Once 30 u M.
+    let q = [-0.015273819676656053, -0.2878166238002008, 0.28597550426703106];
+    let a = [-0.037468572102620945, -0.7088830678307931, 0.7043301088604648];
+    assert!(error(q, &[a, origin, [-0.037468571763492366, -0.7088830614146825, 0.7043301024855632]]) <= OBSERVED);
+    let q = [0.22352065081639855, 0.14915974621314368, 0.18765167798631388];
+    let a = [0.681975043702849, 0.4550954199125677, 0.5725366351082702];
+    assert!(error(q, &[origin, a, [0.6819542314761735, 0.45508153150253616, 0.5725191626767789]]) <= OBSERVED);
+    let q = [0.032630187874821345, 0.28102950424171574, 0.37507717682698066];
+    let a = [0.06945341662019783, 0.5981718314202142, 0.7983524804340297];
+    assert!(error(q, &[origin, a, [0.033614149441385084, 0.2895039338804641, 0.3863876089920929]]) <= OBSERVED);
+    // The second projection on an edge: 3.2 u M without it.
+    let q = [-216365.202532822, -104996.10677091136, 86085.36384840212];
+    let a = [0.05437519627965304, 0.8861508897723058, -0.25455041204516715];
+    assert!(error(q, &[a, [-444089.36260986526, -215505.30942860627, 176690.36866632823]]) < 3.0);
+    // Whether a weight is zero is decided at the scale of the triangle: products of four lengths underflow at 2^-249.
+    let q = [0.40714549371745673, -0.9133631636166474, 0.0005275355512286034];
+    let t = [
+        origin,
+        [0.40714549371745673, -0.9133631636166474, 0.000527535551228604],
+        [0.40820166434240773, -0.9128927466441797, -0.0010466019827892192],
+    ];
+    let at = |e: i32| project(q.map(|x| x * 2f64.powi(e)), &t.map(|v| v.map(|x| x * 2f64.powi(e))));
+    assert_eq!((at(-249).feature, at(-249).key.distance()), (at(0).feature, at(0).key.distance() * 2f64.powi(-249)));
+    // One key for one length at the end of the plain range.
+    let x = [2f64.powi(400), 0.0, 0.0];
+    assert_eq!(project(origin, &[x]).key, project(origin, &[x, x]).key);
 }
 
 #[test]

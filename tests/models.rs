@@ -1,6 +1,8 @@
 //! Agreement with brute force, bit for bit, on real meshes: far from the origin, non-manifold, degenerate, lines, mixed.
 //! Skips, and says so, where there is no folder of models.
 
+#![cfg(all(feature = "bvh", feature = "mixed"))]
+
 use p2m::{AabbTree, BruteForce, BuildIndex, ClosestPoint, PrimitiveSet, Real, Soup};
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::scenes::narrow;

@@ -11,7 +11,7 @@ use nalgebra::Point3;
 /// distance from the query to a vertex of primitive t, *key* the number by which candidates are compared ([`Key`](crate::Key)).
 ///
 /// - **N1 distance**: for all finite input, |d^ - d| <= [`ERROR_CONSTANT`](crate::kernel::ERROR_CONSTANT) u M + eta (proved, see
-///   docs/accuracy.md; at most 4 u M was ever observed), for points 4 u d + eta. Infinite only if d exceeds the scalar's range.
+///   docs/accuracy.md; at most 4 u M was ever observed), for points 4 u d + eta. Infinite only if d, or d plus that error, exceeds the scalar's range.
 /// - **N2 identity**: the true distance of the returned primitive exceeds d by at most the sum of both error bounds.
 /// - **N3 agreement**: every exact backend returns the same bits for distance and primitive. Ties go to the lowest id
 ///   among equal keys.

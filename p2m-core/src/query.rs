@@ -92,7 +92,7 @@ pub struct Best<T: Real> {
     options: QueryOptions<T>,
     /// (1 + epsilon)^-2, rounded down
     shrink: f64,
-    /// The square that `max_distance` allows, rounded up, after shrinking.
+    /// The square of `max_distance`, rounded up; from the first answer within it, the key times `shrink`.
     prune: f64,
     best: Option<(PrimitiveId, Projection)>,
     key: Key,
@@ -103,6 +103,8 @@ pub struct Best<T: Real> {
 /// Relative errors of a few roundings are absorbed by this factor: 1 + 16 u of f64.
 const ROUND_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 const ROUND_DOWN: f64 = 1.0 - 8.0 * f64::EPSILON;
+/// 2^100
+const LARGEST_FACTOR: f64 = 1.267_650_600_228_229_4e30;
 
 impl<T: Real> Best<T> {
     /// Nothing found yet.
@@ -110,11 +112,18 @@ impl<T: Real> Best<T> {
     pub fn new(options: &QueryOptions<T>) -> Self {
         let epsilon = options.epsilon.to_f64();
         let factor = 1.0 + if epsilon > 0.0 { epsilon } else { 0.0 };
+        // Beyond 2^100 any answer will do, and squares stay in range.
+        let factor = if factor > LARGEST_FACTOR { LARGEST_FACTOR } else { factor };
         let shrink = if factor > 1.0 { ROUND_DOWN / (factor * factor) } else { 1.0 };
         // A distance rounds to max_distance as long as it is within u of it; then up for the roundings of this line.
         let radius = options.max_distance.to_f64() * (1.0 + 2.0 * T::UNIT_ROUNDOFF) + T::SMALLEST_SUBNORMAL;
-        let prune = Key::of_offset([radius, 0.0, 0.0]).square_above() * ROUND_UP * shrink;
+        let prune = Key::of_offset([radius, 0.0, 0.0]).square_above() * ROUND_UP;
         Self { options: *options, shrink, prune, best: None, key: Key::INFINITY, certified: f64::INFINITY }
+    }
+
+    /// Whether a distance is within the radius, as it will be reported. Nothing is within a radius of NaN.
+    fn within(&self, key: Key) -> bool {
+        T::of_f64(key.distance()) <= self.options.max_distance
     }
 
     /// The primitive to look at first, if the caller named one and a set of `len` has it.
@@ -127,12 +136,10 @@ impl<T: Real> Best<T> {
     #[must_use]
     pub fn finish(self) -> Option<Closest<T>> {
         let (primitive, p) = self.best?;
-        let distance = T::of_f64(p.key.distance());
-        // Nothing is within a radius of NaN.
-        let within = distance <= self.options.max_distance;
-        if !within {
+        if !self.within(p.key) {
             return None;
         }
+        let distance = T::of_f64(p.key.distance());
         // What was pruned is farther than the bound it was pruned by, the bound itself being within 5 u on the square.
         let exact = p.key.distance();
         let pruned = exact * self.shrink.sqrt() * ROUND_DOWN;
@@ -162,8 +169,11 @@ impl<T: Real> Collector for Best<T> {
         let p = projection;
         // Only a candidate within its error of the certified bound can lower it; the square tells most without a root.
         let reach = self.certified + p.error;
-        if p.key.square_above() * ROUND_DOWN <= reach * reach {
-            let bound = p.key.distance() - p.error;
+        let beyond = p.key.plain_square().is_some_and(|square| square * ROUND_DOWN > reach * reach);
+        if !beyond {
+            // A distance above the range is at least its end; an error above the range leaves nothing to certify.
+            let distance = if p.key.distance() < f64::MAX { p.key.distance() } else { f64::MAX };
+            let bound = if p.error < f64::INFINITY { distance - p.error } else { f64::NEG_INFINITY };
             if bound < self.certified {
                 self.certified = bound;
             }
@@ -173,7 +183,8 @@ impl<T: Real> Collector for Best<T> {
             self.best = Some((id, p));
             self.key = p.key;
             let square = p.key.square_above() * self.shrink;
-            if square < self.prune {
+            // What is beyond the radius is no answer that others may be compared with.
+            if square < self.prune && (self.shrink >= 1.0 || self.within(p.key)) {
                 self.prune = square;
             }
         }

@@ -16,11 +16,11 @@ pub struct Case {
 }
 
 /// Exponents of the power-of-two scales: from subnormal coordinates to the edge of overflow.
-pub const SCALES: [i32; 9] = [-1070, -1000, -500, -270, 0, 250, 500, 1000, 1020];
+pub const SCALES: [i32; 12] = [-1070, -1000, -500, -270, -249, -240, 0, 248, 250, 500, 1000, 1020];
 /// Distances of the primitive from the origin, before scaling.
 pub const OFFSETS: [f64; 4] = [0.0, 1e3, 1e8, 1e15];
 /// Sines of the smallest angle.
-pub const SINES: [f64; 8] = [1.0, 1e-2, 1e-3, 1e-4, 1e-8, 1e-12, 1e-15, 0.0];
+pub const SINES: [f64; 11] = [1.0, 1e-2, 1e-3, 1e-4, 1e-8, 1e-12, 1e-15, 2e-16, 6e-17, 1e-17, 0.0];
 
 fn unit(rng: &mut impl Rng) -> V {
     loop {
@@ -65,7 +65,9 @@ fn triangle(rng: &mut impl Rng, sine: f64) -> [V; 3] {
     };
     let start = unit(rng);
     let length = 2f64.powf(rng.random_range(-1.0..1.0));
-    let along = rng.random_range(0.0..1.0);
+    // Anywhere over the base, or close to one of its ends.
+    let along = if rng.random_bool(0.7) { rng.random_range(0.0..1.0) } else { 2f64.powi(-rng.random_range(1..50)) };
+    let along = if rng.random_bool(0.5) { along } else { 1.0 - along };
     let height = sine * rng.random_range(0.3..0.9);
     let a = start;
     let b = combine([(1.0, start), (length, base)]);
@@ -86,7 +88,8 @@ fn lattice(rng: &mut impl Rng) -> Case {
 }
 
 /// Coordinates of any magnitude, each for itself, from a small pool so that some coincide.
-fn wild(rng: &mut impl Rng) -> Case {
+#[must_use]
+pub fn wild(rng: &mut impl Rng) -> Case {
     let (low, high) = [(-1074, 1023), (-1074, 0), (0, 1023), (-300, 300)][rng.random_range(0..4)];
     let pool: [f64; 6] = std::array::from_fn(|_| match rng.random_range(0..10) {
         0 => 0.0,

@@ -13,7 +13,7 @@ const TIER_SHIFT: i32 = 2 * TIER_BITS;
 /// The squared length of the offset from the query to the nearest point, with more range than an f64 has.
 ///
 /// It decides between primitives, in pruning and in ties: several squares share one square root, so a tie on
-/// distances is not a tie on keys. A key is a plain square while that lies in [2^-800, 2^800]; tiny and huge
+/// distances is not a tie on keys. A key is a plain square while that lies in [2^-800, 2^800); tiny and huge
 /// lengths move to a tier of their own, where the square is kept times 2^1600 or 2^-1600. Which tier holds a value
 /// depends on the value alone, and its bits are those of the plain computation, so neither the route by which a key
 /// was found nor the scale of the scene shows in a comparison.
@@ -42,7 +42,7 @@ impl Key {
     /// The key of a square that needs no other tier. `None` for zero as well: a square of zero may be an underflow.
     #[inline(always)]
     pub(super) fn plain(square: f64) -> Option<Self> {
-        (SQUARE_MIN..=SQUARE_MAX).contains(&square).then_some(Self { square, tier: 0 })
+        (SQUARE_MIN..SQUARE_MAX).contains(&square).then_some(Self { square, tier: 0 })
     }
 
     /// The key of `offset` * 2^`exponent`.
@@ -85,6 +85,12 @@ impl Key {
             1 => f64::INFINITY,
             _ => SQUARE_MIN,
         }
+    }
+
+    /// The key itself, if it is a plain square.
+    #[inline]
+    pub(crate) fn plain_square(self) -> Option<f64> {
+        (self.tier == 0).then_some(self.square)
     }
 
     #[cold]
@@ -149,6 +155,16 @@ mod tests {
                 let at_one = Key::of_offset(o);
                 assert_eq!(Key::of_offset(scaled), Key::of_scaled_offset(o, e));
                 assert_eq!(Key::of_offset(scaled).distance(), scale_by_power(at_one.distance(), e));
+            }
+        }
+    }
+
+    #[test]
+    fn the_ends_of_the_plain_range_have_one_key_by_either_route() {
+        for e in [-400, 400] {
+            let at = power_of_two(e);
+            for x in [at.next_down(), at, at.next_up()] {
+                assert_eq!(key(x), Key::of_scaled_offset([x, 0.0, 0.0], 0), "{x:e}");
             }
         }
     }

@@ -3,7 +3,8 @@
 use super::double::{self, Double};
 use super::line::{Foot, Line};
 use super::vector::{
-    V3, add, add_scaled, clamp, combine, dot, larger, lexicographically_less, norm_squared, power_of_two, smaller, sub,
+    V3, add, add_scaled, clamp, combine, dot, exponent, larger, largest, lexicographically_less, norm_squared,
+    power_of_two, scale_by_power, smaller, sub,
 };
 
 /// Triangles whose height is below 2^-10 of their longest edge get that height in double-double.
@@ -136,12 +137,16 @@ impl Plane {
         let [n, f, a] = [vertices[self.corners[0]], vertices[self.corners[1]], vertices[self.corners[2]]];
         let sliver = self.doubt > 1.0;
         let axes = if sliver { sliver_axes(&self.axes, n, f, a)? } else { self.axes };
-        let [_, wf, wa] = if sliver { axes.weights(n, self.t).0 } else { self.weights };
-        let point = add(n, combine(wf, axes.direction, wa, self.side));
+        // The first weights of a sliver are as uncertain as its height is small, and by the sides of the triangle they would
+        // add up to large vectors that cancel; along the orthogonal axes nothing cancels.
+        let (t, [_, wf, wa]) = (self.t, if sliver { axes.weights(n, self.t).0 } else { self.weights });
+        let (first, second) = if sliver { (t, axes.height) } else { (wf, self.side) };
+        let point = add(n, combine(first, axes.direction, wa, second));
         let step_d = -(dot(point, axes.direction) * axes.inverse);
         let step_h = -(dot(point, axes.height) * axes.inverse_height);
-        let wa = wa + step_h;
-        let wf = wf + (step_d - axes.along * step_h);
+        let last = wa + step_h;
+        let wf = if sliver { (t + step_d) - axes.along * last } else { wf + (step_d - axes.along * step_h) };
+        let wa = last;
         let wn = (1.0 - wf) - wa;
         let least = smaller(smaller(wn, wf), wa);
         let inside = least > 0.0 && (least >= UNDECIDED_WEIGHT || sliver || strictly_inside(n, f, a));
@@ -188,6 +193,9 @@ fn sliver_axes(plain: &Axes, n: V3, f: V3, a: V3) -> Option<Axes> {
 /// edge, which rounding of the weights alone would not show.
 #[cold]
 fn strictly_inside(n: V3, f: V3, a: V3) -> bool {
+    // Products of four lengths: at the scale of the triangle they cannot leave the range.
+    let scale = -exponent(largest(&[sub(f, n)]));
+    let [n, f, a] = [n, f, a].map(|v| v.map(|x| scale_by_power(x, scale)));
     let edge = |to: V3| -> [Double; 3] { std::array::from_fn(|k| Double::difference(to[k], n[k])) };
     let (e, s) = (edge(f), edge(a));
     let to_query = n.map(|x| Double::difference(0.0, x));
