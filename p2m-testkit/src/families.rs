@@ -149,13 +149,27 @@ pub fn case(rng: &mut impl Rng) -> Case {
         // A short segment in place of a flat triangle.
         vertices[1] = std::array::from_fn(|k| vertices[0][k] + sine * (vertices[1][k] - vertices[0][k]));
     }
-    let (place, query) = query(rng, &vertices);
+    if count == 3 && rng.random_bool(0.1) {
+        // A needle: one edge is tiny.
+        let tiny = 2f64.powi(-rng.random_range(1..60));
+        vertices[2] = combine([(1.0, vertices[0]), (tiny, unit(rng))]);
+    }
+    let (place, mut query) = query(rng, &vertices);
+    let short = rng.random_bool(0.2);
+    if short {
+        // Few digits: components that are equal, sums that are exact, feet that are on the box.
+        let few = |v: V| v.map(|x| if x == 0.0 { x } else { (x * 2f64.powi(20)).round() * 2f64.powi(-20) });
+        vertices.iter_mut().for_each(|v| *v = few(*v));
+        query = few(query);
+    }
     let factor =
         |x: f64| if scale >= -500 { x * 2f64.powi(scale) } else { x * 2f64.powi(-500) * 2f64.powi(scale + 500) };
     // Offsets times the largest scales would overflow: they stay at the edge of the range.
     let clip = |v: V| v.map(|x| factor(x).clamp(-f64::MAX, f64::MAX));
     Case {
-        family: format!("{count} vertices, sine {sine:e}, scale 2^{scale}, offset {offset:e}, query {place}"),
+        family: format!(
+            "{count} vertices, sine {sine:e}, scale 2^{scale}, offset {offset:e}, few digits {short}, query {place}"
+        ),
         query: clip(query),
         vertices: vertices.into_iter().map(clip).collect(),
     }
@@ -192,6 +206,13 @@ fn query(rng: &mut impl Rng, vertices: &[V]) -> (&'static str, V) {
             ("equidistant", combine([(1.0, middle), (1.0, cross(along, direction))]))
         }
         7 => ("far", combine([(1.0, inside), (10f64.powi(rng.random_range(1..20)), direction)])),
+        8 if n > 1 && rng.random_bool(0.5) => {
+            // Almost perpendicular above a vertex: does an edge there lead towards the query or away from it?
+            let along: V = std::array::from_fn(|k| vertices[(i + 1) % n][k] - vertices[i][k]);
+            let lean = if rng.random_bool(0.5) { small } else { -small };
+            let aside = cross(along, direction);
+            ("beside a vertex", combine([(1.0, vertices[i]), (rng.random_range(0.1..3.0), aside), (lean, along)]))
+        }
         8 => ("near a vertex", combine([(1.0, vertices[i]), (small, direction)])),
         _ => ("around", combine([(1.0, inside), (2.0, direction)])),
     }

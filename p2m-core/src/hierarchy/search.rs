@@ -30,14 +30,16 @@ impl<V> Hierarchy<V> {
             let node = &self.nodes[at];
             if let Some([a, b]) = node.children() {
                 let (bound_a, bound_b) = (lower_bound(&self.nodes[a].volume), lower_bound(&self.nodes[b].volume));
-                // Which child is nearer is a coin toss: selected, not branched on. Siblings lie side by side.
-                let swap = bound_b < bound_a;
-                let (near_bound, far_bound) = if swap { (bound_b, bound_a) } else { (bound_a, bound_b) };
-                let (near, far) = (a + usize::from(swap), b - usize::from(swap));
+                // A branch, although a coin toss: half of the time the nearer child is being fetched before its bound is known,
+                // which is worth more on large scenes than what the other half costs.
+                let ((near, near_bound), (far, far_bound)) =
+                    if bound_b < bound_a { ((b, bound_b), (a, bound_a)) } else { ((a, bound_a), (b, bound_b)) };
                 let limit = collector.prune_above();
-                // One entry for each level above, at most; one that is not wanted is overwritten.
-                stack[waiting] = (far_bound, far);
-                waiting += usize::from(far_bound <= limit);
+                if far_bound <= limit {
+                    // One entry for each level above, at most.
+                    stack[waiting] = (far_bound, far);
+                    waiting += 1;
+                }
                 if near_bound <= limit {
                     at = near;
                     continue;

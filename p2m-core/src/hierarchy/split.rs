@@ -94,7 +94,11 @@ pub(super) fn build<T: Real>(boxes: &[Aabb<T>], options: &SplitOptions) -> (Vec<
     while let Some((at, places, depth)) = open.pop() {
         let here = &mut items[places.clone()];
         match divide(here, depth, options) {
-            None => nodes[at] = Node { volume: (), first: index(places.start), count: index(places.len()) },
+            None => {
+                // Neighbours in the user's order tend to be neighbours in memory.
+                here.sort_unstable_by_key(|item| item.id);
+                nodes[at] = Node { volume: (), first: index(places.start), count: index(places.len()) };
+            }
             Some(left) => {
                 nodes[at] = Node { volume: (), first: index(nodes.len()), count: 0 };
                 let middle = places.start + left;
