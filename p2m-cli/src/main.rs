@@ -12,13 +12,19 @@ use clap::{Parser, Subcommand};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-/// Closest points of scenes of triangles, segments and points.
+/// Closest points of scenes of triangles, segments and points
 #[derive(Parser)]
-#[command(name = "p2m", version, about, after_help = "Example:\n  p2m query scene.obj --random 1000 --out answers.csv")]
+#[command(name = "p2m", version, after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
 }
+
+const EXAMPLES: &str = "\
+Example:
+  p2m query scene.obj --random 1000 --out answers.csv
+
+The exit code is 0 for success, 1 for what could not be read, written or done, and 2 for wrong usage.";
 
 #[derive(Subcommand)]
 enum Command {

@@ -1,12 +1,13 @@
 //! Where results go: the standard output, or a file that appears when it is complete.
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, StdoutLock, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// A buffered destination. Nothing is left of it unless [`finish`](Self::finish) is reached.
+/// A buffered destination. Dropped before [`finish`](Self::finish), a file is as it was before; a process that is killed
+/// (or interrupted from the keyboard) leaves its unfinished work under the name `.p2m-*` in the same folder.
 pub(crate) struct Output {
     sink: Sink,
     name: String,
@@ -26,7 +27,21 @@ enum Sink {
 const BUFFER: usize = 1 << 16;
 
 impl Output {
-    /// Opens `path`; the standard output if there is none or it is `-`.
+    /// Refuses to write over any of `inputs`, by whatever name or link `path` reaches it.
+    ///
+    /// A hard link is harmless: a new file takes its name, the input keeps its content under its own.
+    pub(crate) fn refuse_inputs(path: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
+        // Nothing is there, so no input is.
+        let Ok(target) = fs::canonicalize(path) else { return Ok(()) };
+        for input in inputs {
+            if path != Path::new("-") && fs::canonicalize(input).is_ok_and(|input| input == target) {
+                bail!("{}: would be written over, but it is an input: choose another name for --out", path.display());
+            }
+        }
+        Ok(())
+    }
+
+    /// Opens `path`; the standard output if there is none or it is `-`. A link is followed; one to nothing is refused.
     pub(crate) fn open(path: Option<&Path>) -> anyhow::Result<Self> {
         let Some(path) = path.filter(|p| *p != Path::new("-")) else {
             let sink = Sink::Stdout(BufWriter::with_capacity(BUFFER, io::stdout().lock()));
@@ -73,7 +88,14 @@ impl Write for Output {
 impl Sink {
     fn open(path: &Path) -> io::Result<Self> {
         // A link is followed, so that it goes on pointing where it does.
-        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let target = match fs::canonicalize(path) {
+            Ok(target) => target,
+            // Renaming would replace the link.
+            Err(_) if fs::symlink_metadata(path).is_ok_and(|m| m.is_symlink()) => {
+                return Err(io::Error::new(io::ErrorKind::NotFound, "it is a link to nothing"));
+            }
+            Err(_) => path.to_owned(),
+        };
         let mut builder = tempfile::Builder::new();
         builder.prefix(".p2m-");
         match fs::metadata(&target) {
@@ -96,7 +118,12 @@ impl Sink {
             Some(parent) if parent != Path::new("") => parent,
             _ => Path::new("."),
         };
-        let temporary = BufWriter::with_capacity(BUFFER, builder.tempfile_in(directory)?);
+        // The error of a temporary file names that file, of which the user knows nothing.
+        let temporary = builder.tempfile_in(directory).map_err(|e| {
+            let folder = directory.display();
+            io::Error::new(e.kind(), format!("no file can be made in the folder '{folder}': {}", e.kind()))
+        })?;
+        let temporary = BufWriter::with_capacity(BUFFER, temporary);
         Ok(Self::File { temporary, target })
     }
 

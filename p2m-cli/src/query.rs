@@ -12,15 +12,27 @@ use p2m_core::{BruteForce, BuildIndex, Closest, ClosestPoint, QueryOptions, Soup
 use p2m_mixed::{Scene, read_points, read_scene};
 use rayon::prelude::*;
 use std::io::{self, Write};
-use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
+/// Each paragraph is one line, so that it wraps at the width of the terminal.
 const EXAMPLES: &str = "\
-The table has the columns qx,qy,qz,x,y,z,distance,primitive,feature: the query, its closest point in the scene, their
-distance, the number of the primitive from 0 and the part of it that holds the point. The last six are empty where
+The table has the columns qx,qy,qz,x,y,z,distance,primitive,feature: the query, its closest point in the scene, their \
+distance, the number of the primitive from 0 and the part of it that holds the point. The last six are empty where \
 there is no answer. Numbers are the shortest that read back the same. A summary goes to the standard error.
+
+Primitives are numbered in the order of the file. Polygons are cut into triangles, and it is the triangles that count.
+
+The feature is face, edge0, edge1 or edge2 (edge0 from the first vertex of the primitive to the second, and so on), or \
+vertex0, vertex1 or vertex2.
+
+Points from a CSV file are taken from its columns qx, qy, qz, or else x, y, z (also like 'X [m]'), or else Points:0, \
+Points:1, Points:2, or else from the first three columns; so the table itself can be asked about again. XYZ and TXT \
+files have three or more columns separated by blanks.
+
+The exit code is 0 for success, with or without answers; 1 for what could not be read, written or done; and 2 for \
+wrong usage.
 
 Examples:
   p2m query bunny.obj --points scan.xyz --max-distance 0.5 --out answers.csv
@@ -40,39 +52,42 @@ pub(crate) struct Args {
     points: Option<PathBuf>,
 
     /// Ask about a grid of N x N x N points that fills the scaled box of the scene, ends included; z runs fastest
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 21))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 21), allow_negative_numbers = true)]
     grid: Option<u64>,
 
     /// Ask about N uniformly distributed points in the scaled box of the scene
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
     random: Option<u64>,
 
     /// Scale the box of the scene about its centre by this factor before filling it.
     ///
     /// Along an axis on which the scene is flat, the box is widened to each side by as much as the factor adds to its
     /// longest side.
-    #[arg(long, value_name = "S", default_value_t = 1.05, value_parser = positive, conflicts_with = "points")]
+    #[arg(long, value_name = "S", default_value_t = 1.05, value_parser = positive, allow_negative_numbers = true, conflicts_with = "points")]
     box_scale: f64,
 
-    /// Choose other random points
-    #[arg(long, value_name = "K", default_value_t = 0, conflicts_with_all = ["points", "grid"])]
+    /// Seed of the random points
+    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole, allow_negative_numbers = true, conflicts_with_all = ["points", "grid"])]
     seed: u64,
 
     /// How to search
     #[arg(long, value_enum, default_value_t = Backend::Aabb)]
     backend: Backend,
 
-    /// Give no answers farther than this
+    /// Give no answers farther than this, in the unit of the scene; at exactly this distance there is one
     #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true)]
     max_distance: Option<f64>,
 
-    /// Where to write the table; `-` is the standard output
+    /// Where to write the table; `-` is the standard output.
+    ///
+    /// The file appears under this name when it is complete; a killed run may leave a file `.p2m-*` beside it. A link is
+    /// followed, one to nothing is refused, and so is the name of an input.
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
 
-    /// How many threads to use; all cores by default
-    #[arg(long, value_name = "N")]
-    threads: Option<NonZeroUsize>,
+    /// How many threads to use, up to 1024; all cores by default
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
+    threads: Option<u16>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -99,6 +114,10 @@ impl Backend {
     }
 }
 
+fn whole(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("not a whole number from 0 to {}", u64::MAX))
+}
+
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
@@ -119,6 +138,8 @@ const CHUNK: usize = 1 << 14;
 const SHARE: usize = 32;
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+    let inputs: Vec<&Path> = std::iter::once(&args.scene).chain(&args.points).map(PathBuf::as_path).collect();
+    Output::refuse_inputs(&args.out, &inputs)?;
     let scene = read_scene(&args.scene)?;
     let queries = queries(args, &scene)?;
     // Before any work, so that it is not lost to a wrong name.
@@ -128,12 +149,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let index = args.backend.build(&scene.soup).with_context(|| args.scene.display().to_string())?;
     let build = start.elapsed();
 
-    let threads = args.threads.map_or(0, NonZeroUsize::get); // 0 is all of them
+    let threads = args.threads.map_or(0, usize::from); // 0 is all of them
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
-        .map_err(|e| anyhow!(e))
-        .context("cannot start threads")?;
+        .map_err(|e| anyhow!("cannot start threads: {e}"))?; // as text: its source says the same again
     let mut options = QueryOptions::default();
     if let Some(max_distance) = args.max_distance {
         options = options.with_max_distance(max_distance);

@@ -10,6 +10,8 @@ use rand_chacha::ChaCha8Rng;
 pub(crate) struct Region {
     min: [f64; 3],
     max: [f64; 3],
+    /// That of the scene: the middle of the rounded ends need not be the same.
+    centre: [f64; 3],
 }
 
 impl Region {
@@ -25,11 +27,12 @@ impl Region {
         let half: [f64; 3] = std::array::from_fn(|k| max[k] / 2.0 - min[k] / 2.0);
         let longest = half.iter().fold(0.0f64, |a, &b| a.max(b));
         let reference = if longest > 0.0 { longest } else { 0.5 };
+        let centre: [f64; 3] = std::array::from_fn(|k| middle(min[k], max[k]));
         let side = |k: usize, sign: f64| {
             let reach = if half[k] > 0.0 { half[k] * scale } else { reference * (scale - 1.0).max(0.0) };
-            (min[k] / 2.0 + max[k] / 2.0 + sign * reach).clamp(f64::MIN, f64::MAX)
+            (centre[k] + sign * reach).clamp(f64::MIN, f64::MAX)
         };
-        Self { min: std::array::from_fn(|k| side(k, -1.0)), max: std::array::from_fn(|k| side(k, 1.0)) }
+        Self { min: std::array::from_fn(|k| side(k, -1.0)), max: std::array::from_fn(|k| side(k, 1.0)), centre }
     }
 
     /// The point at fractions `t` of the sides, exact at 0 and 1.
@@ -81,7 +84,10 @@ impl Queries {
             Self::Grid { region, side, next } => {
                 let side = *side;
                 chunk.extend((*next..*next + take).map(|i| {
-                    let t = |place: u64| if side > 1 { fraction(place, side - 1) } else { 0.5 };
+                    if side == 1 {
+                        return Point3::from(region.centre);
+                    }
+                    let t = |place: u64| fraction(place, side - 1);
                     region.at([t(i / (side * side)), t(i / side % side), t(i % side)])
                 }));
                 *next += take;
@@ -95,6 +101,12 @@ impl Queries {
             }
         }
     }
+}
+
+/// The number halfway between two others, rounded once unless it is subnormal or the sum would overflow.
+fn middle(a: f64, b: f64) -> f64 {
+    let sum = a + b;
+    if sum.is_finite() { sum / 2.0 } else { a / 2.0 + b / 2.0 }
 }
 
 /// `a / b` for numbers up to 2^53.
@@ -129,17 +141,17 @@ mod tests {
     #[test]
     fn the_box_is_scaled_about_its_centre() {
         let region = Region::around(&soup(&[[0.0, 0.0, 0.0], [2.0, 4.0, 8.0]]), 1.5);
-        assert_eq!(region, Region { min: [-0.5, -1.0, -2.0], max: [2.5, 5.0, 10.0] });
+        assert_eq!(region, Region { min: [-0.5, -1.0, -2.0], max: [2.5, 5.0, 10.0], centre: [1.0, 2.0, 4.0] });
     }
 
     #[test]
     fn an_axis_without_extent_is_widened() {
         let region = Region::around(&soup(&[[0.0, 7.0, 0.0], [2.0, 7.0, 8.0]]), 1.5);
-        assert_eq!(region, Region { min: [-0.5, 5.0, -2.0], max: [2.5, 9.0, 10.0] });
+        assert_eq!(region, Region { min: [-0.5, 5.0, -2.0], max: [2.5, 9.0, 10.0], centre: [1.0, 7.0, 4.0] });
         let region = Region::around(&soup(&[[3.0, 3.0, 3.0]]), 1.5);
-        assert_eq!(region, Region { min: [2.75; 3], max: [3.25; 3] });
+        assert_eq!(region, Region { min: [2.75; 3], max: [3.25; 3], centre: [3.0; 3] });
         let region = Region::around(&Soup::default(), 1.0);
-        assert_eq!(region, Region { min: [-0.5; 3], max: [0.5; 3] });
+        assert_eq!(region, Region { min: [-0.5; 3], max: [0.5; 3], centre: [0.0; 3] });
     }
 
     #[test]
@@ -151,7 +163,7 @@ mod tests {
 
     #[test]
     fn grids_run_along_z_first_and_hit_the_corners() {
-        let region = Region { min: [0.1, 0.2, 0.3], max: [1.1, 2.2, 3.3] };
+        let region = Region { min: [0.1, 0.2, 0.3], max: [1.1, 2.2, 3.3], centre: [0.6, 1.2, 1.8] };
         for chunk in [1, 5, 100] {
             let points = all(Queries::grid(region, 3), chunk);
             assert_eq!(points.len(), 27);
@@ -159,12 +171,23 @@ mod tests {
             assert_eq!(points[2], Point3::new(0.1, 0.2, 3.3));
             assert_eq!(points[26], Point3::new(1.1, 2.2, 3.3));
         }
-        assert_eq!(all(Queries::grid(Region { min: [0.0; 3], max: [2.0; 3] }, 1), 9), [Point3::new(1.0, 1.0, 1.0)]);
+    }
+
+    #[test]
+    fn a_grid_of_one_is_the_centre_of_the_scene() {
+        for (a, b) in [(0.0, 2.0), (0.1, 0.3), (1.0, 1.0 + 4.0 * f64::EPSILON), (1e300, 1.5e300), (f64::MAX, f64::MAX)]
+        {
+            for scale in [0.3, 1.0, 1.05, 7.7] {
+                let region = Region::around(&soup(&[[a; 3], [b; 3]]), scale);
+                let expected = if a == f64::MAX { f64::MAX } else { (a + b) / 2.0 };
+                assert_eq!(all(Queries::grid(region, 1), 9), [Point3::from([expected; 3])], "{a} {b} {scale}");
+            }
+        }
     }
 
     #[test]
     fn random_points_depend_on_the_seed_alone() {
-        let region = Region { min: [-1.0; 3], max: [1.0; 3] };
+        let region = Region { min: [-1.0; 3], max: [1.0; 3], centre: [0.0; 3] };
         let points = all(Queries::random(region, 1000, 5), 1000);
         assert_eq!(all(Queries::random(region, 1000, 5), 13), points);
         assert_ne!(all(Queries::random(region, 1000, 6), 1000), points);

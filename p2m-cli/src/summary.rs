@@ -53,7 +53,7 @@ impl fmt::Display for Summary<'_> {
             writeln!(f, "note     the scene is empty: no query has an answer")?;
         }
         if !self.scene.skipped.is_empty() {
-            let list: Vec<String> = self.scene.skipped.iter().map(|s| format!("{} x {}", s.count, s.what)).collect();
+            let list: Vec<String> = self.scene.skipped.iter().map(ToString::to_string).collect();
             writeln!(f, "skipped  {}", list.join(", "))?;
         }
         let threads = if self.threads == 1 { "thread" } else { "threads" };

@@ -1,6 +1,5 @@
 //! The program from outside: what it prints, what it leaves behind, and how it ends.
 
-use std::fmt::Write as _;
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -91,6 +90,57 @@ fn the_summary_tells_what_was_done() {
     ] {
         assert!(summary.contains(part), "{part}: {summary}");
     }
+}
+
+/// What stands behind `start` in a line of the summary.
+fn after<'a>(summary: &'a str, start: &str) -> &'a str {
+    summary.lines().find_map(|line| line.strip_prefix(start)).unwrap_or_else(|| panic!("{start}: {summary}"))
+}
+
+#[test]
+#[allow(clippy::cast_precision_loss, reason = "a small count")]
+fn the_summary_agrees_with_the_table() {
+    let output = p2m(&["query", SCENE, "--random", "500", "--max-distance", "0.7", "--threads", "3"]);
+    let (table, summary) = (text(&output.stdout), text(&output.stderr));
+    let distances: Vec<f64> =
+        table.lines().skip(1).filter_map(|line| line.split(',').nth(6).unwrap().parse().ok()).collect();
+    let answered = distances.len();
+    assert!((1..500).contains(&answered), "{answered}");
+    assert!(after(&summary, "queries  500 in ").contains(" on 3 threads: "), "{summary}");
+    assert_eq!(after(&summary, "answers  "), format!("{answered}, without answer {}", 500 - answered));
+    let min = distances.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+    let max = distances.iter().fold(0.0f64, |a, &b| a.max(b));
+    let mean = distances.iter().sum::<f64>() / answered as f64;
+    assert_eq!(after(&summary, "distance "), format!("min {min:?}, max {max:?}, mean {mean:?}"));
+}
+
+#[test]
+fn wrong_numbers_are_told_why() {
+    for (option, value, why) in [
+        ("--box-scale", "-1", "not a positive number"),
+        ("--seed", "-1", "not a whole number"),
+        ("--random", "-1", "not a whole number"),
+        ("--threads", "0", "is not in 1..=1024"),
+        ("--threads", "1025", "is not in 1..=1024"),
+        ("--threads", "99999999", "is not in 1..=1024"),
+        ("--max-distance", "-1", "not a number from 0 up"),
+    ] {
+        let rest = if option == "--random" { &[][..] } else { &["--random", "1"] };
+        let message = failure(&[&["query", SCENE, option, value], rest].concat(), 2);
+        assert!(message.contains(why) && message.contains(option), "{message}");
+    }
+}
+
+#[test]
+fn causes_are_told_once() {
+    let folder = TempDir::new().unwrap();
+    let missing = path(&folder, "missing.obj");
+    let message = failure(&["query", &missing, "--grid", "1"], 1);
+    assert_eq!(message.matches("o such file").count(), if cfg!(unix) { 1 } else { 0 }, "{message}");
+    let directory = path(&folder, "folder.obj");
+    fs::create_dir(&directory).unwrap();
+    let message = failure(&["query", &directory, "--grid", "1"], 1);
+    assert_eq!(message, format!("error: {directory}: cannot be read: is a directory\n"));
 }
 
 #[test]
@@ -231,6 +281,52 @@ fn what_cannot_be_done_is_code_1_and_leaves_nothing() {
     assert_eq!(names(folder.path()), before);
 }
 
+#[test]
+fn inputs_are_not_written_over() {
+    let folder = TempDir::new().unwrap();
+    let scene = write(&folder, "s.obj", "v 0 0 0\n");
+    let points = write(&folder, "q.xyz", "1 2 3\n");
+    fs::create_dir(folder.path().join("sub")).unwrap();
+    let mut outs = vec![scene.clone(), points.clone(), path(&folder, "sub/../s.obj"), path(&folder, "./q.xyz")];
+    #[cfg(unix)]
+    for (target, name) in [(&scene, "to_scene"), (&points, "to_points")] {
+        std::os::unix::fs::symlink(target, folder.path().join(name)).unwrap();
+        outs.push(path(&folder, name));
+    }
+    for out in &outs {
+        let message = failure(&["query", &scene, "--points", &points, "--out", out], 1);
+        assert!(message.contains("it is an input"), "{message}");
+    }
+    assert_eq!(fs::read_to_string(&scene).unwrap(), "v 0 0 0\n");
+    assert_eq!(fs::read_to_string(&points).unwrap(), "1 2 3\n");
+    // Before any work: this scene cannot even be read.
+    let broken = write(&folder, "broken.obj", "v x\n");
+    assert!(failure(&["query", &broken, "--grid", "1", "--out", &broken], 1).contains("it is an input"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_to_nothing_is_refused_and_stays() {
+    let folder = TempDir::new().unwrap();
+    let link = path(&folder, "link.csv");
+    std::os::unix::fs::symlink(folder.path().join("nothing.csv"), &link).unwrap();
+    let message = failure(&["query", SCENE, "--grid", "1", "--out", &link], 1);
+    assert!(message.contains("link.csv: cannot be written: it is a link to nothing"), "{message}");
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert_eq!(names(folder.path()), [PathBuf::from("link.csv")]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_folder_that_takes_no_files_is_named() {
+    let message = failure(&["query", SCENE, "--grid", "1", "--out", "/proc/new.csv"], 1);
+    assert!(
+        message.contains("/proc/new.csv: cannot be written: no file can be made in the folder '/proc'"),
+        "{message}"
+    );
+    assert!(!message.contains(".p2m-"), "{message}");
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_an_error() {
@@ -272,6 +368,11 @@ fn help_has_examples() {
     {
         let help = table(arguments);
         assert!(help.contains("Example") && help.contains("  p2m "), "{help}");
+    }
+    assert!(table(&["--help"]).starts_with("Closest points of scenes of triangles, segments and points\n"));
+    let help = table(&["query", "--help"]);
+    for part in ["edge0", "vertex2", "exit code", "Points:0", "cut into triangles", "unit of the scene"] {
+        assert!(help.contains(part), "{part}: {help}");
     }
     assert!(table(&["--version"]).starts_with("p2m "));
 }
@@ -318,9 +419,7 @@ fn the_generator_writes_the_scene_of_this_repository() {
 #[test]
 fn flat_scenes_are_asked_about_from_both_sides() {
     let folder = TempDir::new().unwrap();
-    let mut scene = String::from("v 0 0 3\nv 4 0 3\nv 0 4 3\nf 1 2 3\n");
-    writeln!(scene, "# flat").unwrap();
-    let scene = write(&folder, "flat.obj", scene);
+    let scene = write(&folder, "flat.obj", "v 0 0 3\nv 4 0 3\nv 0 4 3\nf 1 2 3\n");
     let table = table(&["query", &scene, "--random", "100", "--box-scale", "1.5"]);
     let z: Vec<f64> = table.lines().skip(1).map(|l| l.split(',').nth(2).unwrap().parse().unwrap()).collect();
     assert!(

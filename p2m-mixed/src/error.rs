@@ -10,8 +10,9 @@ use std::fmt;
 /// assert_eq!(error.to_string(), "two.obj:2: vertex index 2 is out of range, the file has 1 vertices so far");
 /// assert!(matches!(error.reason, p2m_mixed::Reason::IndexOutOfRange { index: 2, count: 1 }));
 /// ```
-#[derive(Debug, thiserror::Error)]
-#[error("{file}{place}: {reason}")]
+///
+/// What the operating system says is not part of the message, but its [`source`](std::error::Error::source).
+#[derive(Debug)]
 #[non_exhaustive]
 pub struct ReadError {
     /// The name of the file as the caller gave it.
@@ -25,6 +26,19 @@ pub struct ReadError {
 impl ReadError {
     pub(crate) fn new(file: &str, place: Place, reason: Reason) -> Self {
         Self { file: file.to_owned(), place, reason }
+    }
+}
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}: {}", self.file, self.place, self.reason)
+    }
+}
+
+impl std::error::Error for ReadError {
+    /// That of the reason, which is itself in the message already.
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.reason.source()
     }
 }
 
@@ -54,11 +68,11 @@ impl fmt::Display for Place {
 #[non_exhaustive]
 pub enum Reason {
     /// The operating system says no.
-    #[error("cannot be read: {0}")]
-    Io(std::io::Error),
+    #[error("cannot be read")]
+    Io(#[source] std::io::Error),
     /// The primitives do not make a scene: there are too many.
-    #[error("no scene can be made of it: {0}")]
-    Build(BuildError),
+    #[error("no scene can be made of it")]
+    Build(#[source] BuildError),
     /// The name of the file does not tell its format.
     #[error("unknown extension '{extension}', expected one of {}", supported.join(", "))]
     UnknownExtension {
@@ -76,10 +90,33 @@ pub enum Reason {
         /// What stands there.
         text: String,
     },
-    /// A coordinate is NaN or infinite, or too large for a number of double precision.
+    /// A number was expected in a table whose columns are separated by blanks.
+    #[error("'{text}' is not a number that fits here (a table with commas or semicolons should be named .csv)")]
+    SeparatorInNumber {
+        /// What stands there.
+        text: String,
+    },
+    /// A coordinate of a query is NaN or infinite, or too large for a number of double precision.
     #[error("coordinate '{text}' is not finite")]
     NonFinite {
         /// What stands there.
+        text: String,
+    },
+    /// A primitive has a vertex with a coordinate that is NaN or infinite, or too large for a number of double precision.
+    /// OBJ counts vertices from 1, PLY from 0. The place is that of the primitive in an OBJ file, of the vertex in a PLY
+    /// file.
+    #[error("vertex {index} is part of a primitive, but has a coordinate that is not finite")]
+    NonFiniteVertex {
+        /// The number of the vertex.
+        index: u64,
+    },
+    /// A file that should be OBJ has statements that OBJ does not know, and no vertex.
+    #[error("no vertex in it, is this an OBJ file?")]
+    NoVertex,
+    /// A line of a text PLY file has more words than the element that ends on it.
+    #[error("'{text}' is more than the header declares for the element on this line")]
+    ExtraWord {
+        /// The first word too many.
         text: String,
     },
     /// A point has fewer than three coordinates.
@@ -91,12 +128,20 @@ pub enum Reason {
     /// OBJ numbers vertices from 1 (or -1, backwards).
     #[error("vertex index 0, but vertices are numbered from 1")]
     IndexZero,
-    /// A vertex that does not exist. OBJ counts from 1 or, backwards, from -1; PLY counts from 0.
+    /// A vertex that an OBJ file does not have, at least not before this line. Counted from 1 or, backwards, from -1.
     #[error("vertex index {index} is out of range, the file has {count} vertices so far")]
     IndexOutOfRange {
         /// The index as it stands in the file.
         index: i64,
-        /// How many vertices there are: for OBJ before this line, for PLY in the whole file.
+        /// How many vertices there are before this line.
+        count: u64,
+    },
+    /// A vertex that a PLY file does not have. Counted from 0.
+    #[error("vertex index {index} is out of range, the file has {count} vertices, counted from 0")]
+    NoSuchVertex {
+        /// The index as it stands in the file.
+        index: i64,
+        /// How many vertices there are in the whole file.
         count: u64,
     },
     /// A face of fewer than three vertices, a line of fewer than two, a point statement of none.
@@ -108,7 +153,7 @@ pub enum Reason {
         needed: u64,
     },
     /// A list in a PLY file has a negative length.
-    #[error("list of {count} items")]
+    #[error("a list cannot have {count} items")]
     BadListCount {
         /// The length.
         count: i64,
@@ -129,6 +174,16 @@ pub enum Reason {
     UnsupportedFormat {
         /// What the header says.
         text: String,
+    },
+    /// The names of a CSV file's columns do not tell which of them are coordinates.
+    #[error(
+        "no coordinates among the columns {}; they may be named qx, qy, qz or x, y, z (or like 'X [m]') or Points:0, \
+        Points:1, Points:2",
+        names.join(", ")
+    )]
+    UnknownColumns {
+        /// The names, of the first columns if there are many.
+        names: Vec<String>,
     },
     /// A CSV record with a quote that is not closed.
     #[error("a quote is not closed on this line")]
@@ -155,10 +210,12 @@ pub enum HeaderProblem {
     #[error("no format line")]
     NoFormat,
     /// A property of a type that does not exist, or whose type cannot serve its purpose.
-    #[error("type of property '{name}' is unknown or does not fit")]
+    #[error("property '{name}' is of type '{declared}', which is unknown or does not fit")]
     BadType {
         /// The property.
         name: String,
+        /// Its type in the words of the header.
+        declared: String,
     },
     /// Two elements, or two properties of an element, have the same name.
     #[error("'{name}' is declared twice")]

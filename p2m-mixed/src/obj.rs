@@ -2,7 +2,7 @@
 
 use crate::polygon::MAX_CORNERS;
 use crate::scene::Builder;
-use crate::text::{Lines, Words, finite, integer, quote};
+use crate::text::{Lines, Words, integer, number, quote};
 use crate::{Place, ReadError, Reason, Scene};
 use nalgebra::Point3;
 use p2m_core::Element;
@@ -10,20 +10,27 @@ use std::io::BufRead;
 
 /// Reads an OBJ file; `name` is for messages.
 ///
-/// Understood are `v` (three coordinates; weights or colours behind them are ignored), `f` (and its old name `fo`) with
-/// polygons of any shape, `l` polylines, whose n vertices make n - 1 segments, and `p` points. References may be `a`,
-/// `a/b`, `a//c` or `a/b/c`, where `a` counts vertices from 1, or backwards from -1; only vertices further up can be
-/// referred to. Everything else, free-form curves and surfaces included, is counted in [`Scene::skipped`] by keyword.
-/// A file without any `f`, `l` and `p` is a point cloud: each of its vertices is a point.
+/// Understood are `v` (three coordinates; weights or colours behind them are ignored, but must be numbers), `f` (and
+/// its old name `fo`) with polygons of any shape, `l` polylines, whose n vertices make n - 1 segments, and `p` points.
+/// References may be `a`, `a/b`, `a//c` or `a/b/c`, where `a` counts vertices from 1, or backwards from -1; only
+/// vertices further up can be referred to. Everything else, free-form curves and surfaces included, is counted in
+/// [`Scene::skipped`] by keyword. A file without any `f`, `l` and `p` is a point cloud: each of its vertices is a
+/// point, unless it has statements of free-form geometry (`cstype`, `curv`, `surf`, ...). Then its vertices are control
+/// points, and the scene is empty.
 ///
-/// A backslash at the end of a line continues it, except in a comment. Comments may follow data. Bytes outside of the
-/// statements above are never interpreted, so any encoding of names will do. The file is read line by line.
+/// Coordinates that are not finite are no error as long as no primitive uses the vertex. A point cloud leaves such
+/// vertices out and counts them in [`Scene::skipped`].
+///
+/// Lines end at `\n`, `\r\n` or `\r`. A backslash at the end of a line continues it, except in a comment. Comments may
+/// follow data. Bytes outside of the statements above are never interpreted, so any encoding of names will do. The file
+/// is read line by line.
 ///
 /// A face that repeats vertices is kept: it is the degenerate triangle or polygon that it says.
 ///
 /// # Errors
-/// [`ReadError`] with the line for numbers that are none or not finite, indices of no vertex, statements with too few
-/// vertices, faces beyond [`MAX_CORNERS`], and for what goes wrong in reading.
+/// [`ReadError`] with the line for numbers that are none, indices of no vertex or of one that is not finite, statements
+/// with too few vertices, faces beyond [`MAX_CORNERS`], and for what goes wrong in reading. A file without any vertex,
+/// but with statements that are unknown to OBJ, is refused as none.
 pub fn read_obj(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     let mut lines = Lines::new(reader, 0);
     let mut parser = Parser::default();
@@ -38,7 +45,10 @@ pub fn read_obj(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
             .statement(&mut words)
             .map_err(|reason| ReadError::new(name, Place::Line(lines.line() + words.lines_down()), reason))?;
     }
-    if parser.faces + parser.lines + parser.points == 0 {
+    if parser.has_unknown && parser.builder.positions.is_empty() {
+        return Err(ReadError::new(name, Place::File, Reason::NoVertex));
+    }
+    if parser.faces + parser.lines + parser.points == 0 && !parser.has_free_form {
         parser.builder.point_cloud();
     }
     parser.builder.finish().map_err(|reason| ReadError::new(name, Place::File, reason))
@@ -51,6 +61,9 @@ struct Parser {
     faces: usize,
     lines: usize,
     points: usize,
+    /// Whether there are statements that OBJ does not know, and such of free-form geometry.
+    has_unknown: bool,
+    has_free_form: bool,
     /// The vertices of the statement at hand.
     vertices: Vec<u32>,
 }
@@ -89,6 +102,8 @@ impl Parser {
             }
             [b'#', ..] => Ok(()),
             other => {
+                self.has_free_form |= is_free_form(other);
+                self.has_unknown |= !is_known(other) && !is_free_form(other);
                 self.builder.skips.add(other, 1);
                 Ok(())
             }
@@ -99,7 +114,11 @@ impl Parser {
         words.end_at_comment();
         let mut position = [0.0; 3];
         for (found, x) in position.iter_mut().enumerate() {
-            *x = finite(words.next().ok_or(Reason::TooFewCoordinates { found })?)?;
+            *x = number(words.next().ok_or(Reason::TooFewCoordinates { found })?)?;
+        }
+        // Anything else behind the coordinates means that the line is not what it seems.
+        while let Some(word) = words.next() {
+            number(word)?;
         }
         let count = self.builder.positions.len() as u64;
         if count >= u64::from(u32::MAX) {
@@ -114,22 +133,85 @@ impl Parser {
         words.end_at_comment();
         self.vertices.clear();
         while let Some(word) = words.next() {
-            self.vertices.push(vertex_of(word, self.builder.positions.len())?);
+            let vertex = vertex_of(word, self.builder.positions.len())?;
+            if !self.builder.is_finite(vertex) {
+                return Err(Reason::NonFiniteVertex { index: u64::from(vertex) + 1 });
+            }
+            self.vertices.push(vertex);
         }
         let found = self.vertices.len() as u64;
         if found < needed { Err(Reason::TooFewVertices { found, needed }) } else { Ok(()) }
     }
 }
 
+/// Keywords of free-form curves and surfaces, superseded ones included.
+fn is_free_form(keyword: &[u8]) -> bool {
+    matches!(
+        keyword,
+        b"cstype"
+            | b"deg"
+            | b"bmat"
+            | b"step"
+            | b"curv"
+            | b"curv2"
+            | b"surf"
+            | b"parm"
+            | b"trim"
+            | b"hole"
+            | b"scrv"
+            | b"sp"
+            | b"end"
+            | b"con"
+            | b"bzp"
+            | b"bsp"
+            | b"cdc"
+            | b"cdp"
+            | b"res"
+    )
+}
+
+/// Other keywords of OBJ that say nothing of the geometry.
+fn is_known(keyword: &[u8]) -> bool {
+    matches!(
+        keyword,
+        b"vt"
+            | b"vn"
+            | b"vp"
+            | b"g"
+            | b"s"
+            | b"o"
+            | b"mg"
+            | b"usemtl"
+            | b"mtllib"
+            | b"usemap"
+            | b"maplib"
+            | b"bevel"
+            | b"c_interp"
+            | b"d_interp"
+            | b"lod"
+            | b"shadow_obj"
+            | b"trace_obj"
+            | b"ctech"
+            | b"stech"
+            | b"call"
+            | b"csh"
+    )
+}
+
 /// The number, from 0, of the vertex that a reference like `7/1/2` names when `count` are known.
 fn vertex_of(word: &[u8], count: usize) -> Result<u32, Reason> {
-    let split = word.iter().position(|&b| b == b'/').unwrap_or(word.len());
-    let (vertex, rest) = word.split_at(split);
-    // Texture and normal are not looked up, but they should be numbers.
-    let index = match integer(vertex) {
-        Ok(index) if rest.iter().all(|b| matches!(b, b'/' | b'-' | b'+' | b'0'..=b'9')) => index,
-        _ => return Err(Reason::BadNumber { text: quote(word) }),
-    };
+    let bad = || Reason::BadNumber { text: quote(word) };
+    let mut parts = word.split(|&b| b == b'/');
+    let index = parts.next().and_then(|part| integer(part).ok()).ok_or_else(bad)?;
+    // Texture and normal are not looked up, but they should be numbers, if they are there.
+    for part in parts.by_ref().take(2) {
+        if !part.is_empty() {
+            integer(part).map_err(|_| bad())?;
+        }
+    }
+    if parts.next().is_some() {
+        return Err(bad());
+    }
     let count = count as u64;
     let place = match index {
         0 => return Err(Reason::IndexZero),

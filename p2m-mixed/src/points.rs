@@ -1,7 +1,7 @@
 //! Points to ask about, from tables of text.
 
 use crate::scene::{extension, open, unknown_extension};
-use crate::text::{Lines, Words, finite};
+use crate::text::{Lines, Words, finite, number, quote};
 use crate::{Place, ReadError, Reason};
 use nalgebra::Point3;
 use std::io::BufRead;
@@ -17,12 +17,15 @@ const EXTENSIONS: &[&str] = &["xyz", "txt", "csv"];
 /// have it.
 ///
 /// `csv`: separated by semicolons if the first line has one, otherwise by commas; fields may be quoted, but not run
-/// over several lines; blank lines and lines that begin with `#` are passed over. If the first record has columns named `qx`, `qy`, `qz` (in any case), or else `x`, `y`, `z`,
-/// these are used: so the output of `p2m query` asks the same questions again. If it has not, but none of its first
-/// three fields is a number, it is a header too. Without names the first three columns are used.
+/// over several lines; blank lines and lines that begin with `#` are passed over. If the first record has columns named
+/// `qx`, `qy`, `qz`, or else `x`, `y`, `z`, or else `Points:0`, `Points:1`, `Points:2`, these are used: so the output of
+/// `p2m query` asks the same questions again. Case does not matter, nor does what follows a name behind a blank or a
+/// bracket, as in `X [m]`. Without such names the first three columns are used. A first record with other names, that is
+/// one with none of its first three fields starting like a number, is passed over if it has exactly three fields.
 ///
 /// # Errors
-/// [`ReadError`] with the line for numbers that are none or not finite, and for fewer than three of them.
+/// [`ReadError`] with the line for numbers that are none or not finite, for fewer than three of them, and for names of
+/// more than three columns that do not tell which are the coordinates.
 pub fn read_points(path: &Path) -> Result<Vec<Point3<f64>>, ReadError> {
     let name = path.display().to_string();
     match extension(path).as_str() {
@@ -46,8 +49,16 @@ fn read_xyz(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f64>>, ReadEr
         if first.starts_with(b"#") || first.starts_with(b"//") {
             continue;
         }
-        let point = point([Some(first), words.next(), words.next()]);
-        points.push(point.map_err(|reason| ReadError::new(name, Place::Line(lines.line()), reason))?);
+        match point([Some(first), words.next(), words.next()]) {
+            Ok(point) => points.push(point),
+            Err(reason) => {
+                let reason = match reason {
+                    Reason::BadNumber { text } if text.contains([',', ';']) => Reason::SeparatorInNumber { text },
+                    other => other,
+                };
+                return Err(ReadError::new(name, Place::Line(lines.line()), reason));
+            }
+        }
     }
 }
 
@@ -82,7 +93,10 @@ fn read_csv(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f64>>, ReadEr
             None => {
                 let delimiter = if line.contains(&b';') { b';' } else { b',' };
                 let Some(fields) = split(line, delimiter) else { return fail(lines.line(), Reason::BadRecord) };
-                let (columns, is_header) = header(&fields);
+                let (columns, is_header) = match header(&fields) {
+                    Ok(header) => header,
+                    Err(reason) => return fail(lines.line(), reason),
+                };
                 format = Some((delimiter, columns));
                 if is_header {
                     continue;
@@ -100,13 +114,24 @@ fn read_csv(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f64>>, ReadEr
 
 /// The fields of a record, without blanks and quotes around them; `None` if a quote is not closed.
 ///
-/// A quote doubled inside of quotes stays doubled: no number and no name of a column has any.
+/// A quote opens at the start of a field only: elsewhere it is a letter, as in `5'11"`. A quote doubled inside of quotes
+/// stays doubled: no number and no name of a column has any.
 fn split(line: &[u8], delimiter: u8) -> Option<Vec<&[u8]>> {
     let mut fields = Vec::new();
-    let mut quoted = false;
+    let (mut quoted, mut started) = (false, false);
     let ends = line.split(|&b| {
-        quoted ^= b == b'"';
-        b == delimiter && !quoted
+        if quoted {
+            // The second one of a doubled quote opens it again: the field counts as not started behind the first.
+            (quoted, started) = (b != b'"', b != b'"' && started);
+            return false;
+        }
+        if b == delimiter {
+            started = false;
+            return true;
+        }
+        quoted = b == b'"' && !started;
+        started |= !b.is_ascii_whitespace();
+        false
     });
     for field in ends {
         let field = field.trim_ascii();
@@ -117,15 +142,34 @@ fn split(line: &[u8], delimiter: u8) -> Option<Vec<&[u8]>> {
 }
 
 /// The columns to use, by the first record, and whether it is a header.
-fn header(fields: &[&[u8]]) -> ([usize; 3], bool) {
-    for names in [["qx", "qy", "qz"], ["x", "y", "z"]] {
-        let [x, y, z] = names.map(|n| fields.iter().position(|field| field.eq_ignore_ascii_case(n.as_bytes())));
+fn header(fields: &[&[u8]]) -> Result<([usize; 3], bool), Reason> {
+    for names in [["qx", "qy", "qz"], ["x", "y", "z"], ["points:0", "points:1", "points:2"]] {
+        let [x, y, z] = names.map(|n| fields.iter().position(|f| first_word(f).eq_ignore_ascii_case(n.as_bytes())));
         if let (Some(x), Some(y), Some(z)) = (x, y, z) {
-            return ([x, y, z], true);
+            return Ok(([x, y, z], true));
         }
     }
-    let is_number = |field: &[u8]| !matches!(finite(field), Err(Reason::BadNumber { .. }));
-    ([0, 1, 2], !fields.iter().take(3).any(|f| is_number(f)))
+    // What merely starts like a number is one in a form that we do not read, such as `1D0` or `0,5`: an error, no name.
+    let like_number = |field: &[u8]| {
+        matches!(field.first(), Some(b'0'..=b'9' | b'+' | b'-' | b'.')) || number(field).is_ok() // `nan`
+    };
+    let is_header = !fields.iter().take(3).any(|f| like_number(f));
+    if is_header && fields.len() > 3 {
+        return Err(Reason::UnknownColumns { names: fields.iter().take(LISTED).map(|f| quote(f)).collect() });
+    }
+    if is_header && fields.len() < 3 {
+        return Err(Reason::TooFewCoordinates { found: fields.len() });
+    }
+    Ok(([0, 1, 2], is_header))
+}
+
+/// No message lists more columns.
+const LISTED: usize = 16;
+
+/// The name of a column without the unit behind it.
+fn first_word(field: &[u8]) -> &[u8] {
+    let end = field.iter().position(|b| b.is_ascii_whitespace() || matches!(b, b'[' | b'('));
+    &field[..end.unwrap_or(field.len())]
 }
 
 #[cfg(test)]
@@ -165,7 +209,7 @@ mod tests {
             "1;2;3;name, with comma\n4;5;6",
             "\u{feff}X,Y,Z\r\n1,2,3\r\n\r\n4,5,6\r\n",
             "# made by hand\n\nname,Qz,qy,QX,x,y,z\na,3,2,1,9,9,9\n\"b, or \"\"c\"\"\",6,5,4,9,9,9\n",
-            "longitude,latitude,height,x\n1,2,3,7\n4,5,6,7\n",
+            "longitude,latitude,height\n1,2,3\n4,5,6,7\n",
             "\"1\", \"2\", \"3\"\n  \n# between\n4 ,5 ,6\n",
         ] {
             assert_eq!(csv(text).unwrap(), expected, "{text}");
@@ -180,9 +224,54 @@ mod tests {
         assert_eq!(csv("1,2,3\n\n# so\n1,b,3\n").unwrap_err(), "q.csv:4: 'b' is not a number that fits here");
         assert_eq!(csv("1,2,b\n").unwrap_err(), "q.csv:1: 'b' is not a number that fits here");
         assert_eq!(csv("x,y,z\n1,,3\n").unwrap_err(), "q.csv:2: '' is not a number that fits here");
+        assert_eq!(csv("1,2,3,\"a\"\"\n").unwrap_err(), "q.csv:1: a quote is not closed on this line");
         assert_eq!(csv("1,2,3,\"a\n").unwrap_err(), "q.csv:1: a quote is not closed on this line");
         assert_eq!(csv("nan,nan,nan\n").unwrap_err(), "q.csv:1: coordinate 'nan' is not finite");
         assert_eq!(csv("1,2,3\n-inf,0,0\n").unwrap_err(), "q.csv:2: coordinate '-inf' is not finite");
+    }
+
+    #[test]
+    fn csv_names_of_columns() {
+        for header in
+            ["id,X [m],Y [m],Z [m]", "t;x(mm);y(mm);z(mm)", "a,Points:0,Points:1,Points:2", "\"no, so\",x,Y,z"]
+        {
+            let row = if header.contains(';') { "9;1;2;3" } else { "9,1,2,3" };
+            assert_eq!(csv(&format!("{header}\n{row}\n")).unwrap(), [[1.0, 2.0, 3.0]], "{header}");
+        }
+        assert_eq!(
+            csv("id,easting,northing,height\n1,2,3,4\n").unwrap_err(),
+            "q.csv:1: no coordinates among the columns id, easting, northing, height; they may be named qx, qy, qz or x, \
+            y, z (or like 'X [m]') or Points:0, Points:1, Points:2"
+        );
+        assert_eq!(csv("x,y\n").unwrap_err(), "q.csv:1: a point needs 3 coordinates, found 2");
+    }
+
+    #[test]
+    fn csv_numbers_in_other_forms_are_no_header() {
+        assert_eq!(csv("1D0,2D0,3D0\n1,2,3\n").unwrap_err(), "q.csv:1: '1D0' is not a number that fits here");
+        assert_eq!(csv("\n1,5;2,5;3,5\n").unwrap_err(), "q.csv:2: '1,5' is not a number that fits here");
+        assert_eq!(csv("a,b,-x\n").unwrap_err(), "q.csv:1: 'a' is not a number that fits here");
+    }
+
+    #[test]
+    fn csv_quotes_open_at_the_start_of_a_field() {
+        assert_eq!(csv("1,2,3,5'11\"\n4,5,6,\"a\"\"b,c\"\n").unwrap(), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+        assert_eq!(csv("name,x,y,z\n6\",1,2,3\n \"a,b\" ,4,5,6\n").unwrap(), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    }
+
+    #[test]
+    fn lines_may_end_in_a_return_alone() {
+        let expected = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]];
+        assert_eq!(xyz("1 2 3\r4 5 6\r").unwrap(), expected);
+        assert_eq!(csv("x,y,z\r1,2,3\r4,5,6").unwrap(), expected);
+        assert_eq!(xyz("1 2 3\r\r4 5\r").unwrap_err(), "q.xyz:3: a point needs 3 coordinates, found 2");
+    }
+
+    #[test]
+    fn xyz_with_commas_suggests_csv() {
+        for text in ["1,2,3\n", "1, 2, 3\n", "1;2;3\n"] {
+            assert!(xyz(text).unwrap_err().contains("should be named .csv"), "{text}");
+        }
     }
 
     #[test]

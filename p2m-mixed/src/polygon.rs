@@ -3,9 +3,12 @@
 use earcut::Earcut;
 use nalgebra::Point3;
 
-/// The largest polygon that is cut into triangles: 2^17 vertices. A concave one takes quadratic time (seconds at this
-/// size), so this is a limit of patience rather than of memory.
-pub const MAX_CORNERS: usize = 1 << 17;
+/// The largest polygon that is cut into triangles: 2^15 vertices. A simple concave one takes quadratic time (observed:
+/// two to three seconds for a spiral of this size), so this is a limit of patience rather than of memory.
+pub const MAX_CORNERS: usize = 1 << 15;
+
+/// Polygons of more corners are checked for running over themselves before they are cut.
+const MANY_CORNERS: usize = 256;
 
 /// Cuts polygons into triangles; keeps its buffers between them.
 ///
@@ -16,10 +19,13 @@ pub const MAX_CORNERS: usize = 1 << 17;
 /// - A polygon that is not planar is cut as its projection is; if that is simple, into a patch without gaps.
 /// - A polygon without area is cut as a fan, and so is one whose triangles do not add up to its area, because it crosses
 ///   itself: there is no right answer.
+/// - So is a large polygon with less than half of its corners at distinct places: it runs over itself, and cutting ears
+///   would take cubic time.
 ///
 /// In every case each edge of the polygon is an edge of a triangle, so that nothing of the outline is lost.
 ///
-/// Triangles have the winding of the polygon, in the projection.
+/// Triangles have the winding of the polygon, in the projection; but not all of those in the fan of a polygon that
+/// crosses itself or runs over itself.
 #[derive(Default)]
 pub(crate) struct Triangulator {
     offsets: Vec<[f64; 3]>,
@@ -27,6 +33,7 @@ pub(crate) struct Triangulator {
     cutter: Option<Earcut<f64>>,
     indices: Vec<u32>,
     edges: Vec<[u32; 2]>,
+    places: Vec<[u64; 2]>,
     triangles: Vec<[u32; 3]>,
 }
 
@@ -39,6 +46,8 @@ impl Triangulator {
         } else if n == 4 {
             // One of the two diagonals of a simple quadrilateral is inside.
             self.fan(u32::from(self.fan_covers(1)), n);
+        } else if n > MANY_CORNERS && 2 * self.distinct() < n {
+            self.fan(0, n);
         } else {
             self.cut();
             if !self.covers() {
@@ -92,6 +101,16 @@ impl Triangulator {
             right |= area < 0.0;
         }
         !(left && right)
+    }
+
+    /// How many distinct places the projected corners have.
+    fn distinct(&mut self) -> usize {
+        self.places.clear();
+        // Adding zero turns -0 into 0, which is the same place with other bits.
+        self.places.extend(self.flat.iter().map(|p| p.map(|x| (x + 0.0).to_bits())));
+        self.places.sort_unstable();
+        self.places.dedup();
+        self.places.len()
     }
 
     fn fan(&mut self, apex: u32, n: usize) {

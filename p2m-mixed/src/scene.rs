@@ -5,8 +5,9 @@ use crate::text::quote;
 use crate::{Place, ReadError, Reason, read_obj, read_ply};
 use nalgebra::Point3;
 use p2m_core::{Element, Soup};
+use std::fmt;
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{self, BufReader};
 use std::path::Path;
 
 /// A scene and what its file says beyond it.
@@ -28,14 +29,23 @@ pub struct Scene {
     pub skipped: Vec<Skipped>,
 }
 
-/// Something in a file that is no part of the scene.
+/// Something in a file that is no part of the scene. It displays as a list may show it: `2 x usemtl`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Skipped {
-    /// What it is: the keyword of an OBJ statement, or an element, property or rest of a PLY file.
+    /// What it is: the keyword of an OBJ statement, an element or a property of a PLY file, `bytes after the last element`
+    /// (`words` in a text) of a PLY file, or `vertices that are not finite` in a point cloud.
     pub what: String,
-    /// How often it occurs.
+    /// How often it occurs, or how many of them there are.
     pub count: u64,
+    /// Whether `what` is a plural to put behind the count, rather than a name.
+    is_plural: bool,
+}
+
+impl fmt::Display for Skipped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}{}", self.count, if self.is_plural { "" } else { "x " }, self.what)
+    }
 }
 
 /// Kinds of skipped things that are counted one by one. A file of noise has more: they share one count.
@@ -52,14 +62,18 @@ pub(crate) struct Skips {
 }
 
 impl Skips {
+    /// Adds to the count of a name; nothing if `count` is 0.
     pub(crate) fn add(&mut self, key: &[u8], count: u64) {
+        if count == 0 {
+            return;
+        }
         if self.keys.get(self.last).is_none_or(|k| k != key) {
             match self.keys.iter().position(|k| k == key) {
                 Some(at) => self.last = at,
                 None if self.keys.len() < MAX_KINDS => {
                     self.last = self.keys.len();
                     self.keys.push(key.to_vec());
-                    self.list.push(Skipped { what: quote(key), count: 0 });
+                    self.list.push(Skipped { what: quote(key), count: 0, is_plural: false });
                 }
                 None => {
                     self.others += count;
@@ -70,15 +84,22 @@ impl Skips {
         self.list[self.last].count += count;
     }
 
-    fn finish(mut self) -> Vec<Skipped> {
-        if self.others > 0 {
-            self.list.push(Skipped { what: "other statements".to_owned(), count: self.others });
+    /// Adds so many of what `what` is the plural of, unless there are none.
+    pub(crate) fn add_many(&mut self, count: u64, what: &str) {
+        if count > 0 {
+            self.keys.push(what.as_bytes().to_vec());
+            self.list.push(Skipped { what: what.to_owned(), count, is_plural: true });
         }
+    }
+
+    fn finish(mut self) -> Vec<Skipped> {
+        let others = self.others;
+        self.add_many(others, "other statements");
         self.list
     }
 }
 
-/// A scene under construction; whoever adds to it has checked indices and coordinates.
+/// A scene under construction; whoever adds to it has checked indices, and that what they name is finite.
 #[derive(Default)]
 pub(crate) struct Builder {
     pub(crate) positions: Vec<Point3<f64>>,
@@ -110,12 +131,23 @@ impl Builder {
         }
     }
 
-    /// Makes every vertex a point.
+    /// Whether a vertex may be part of a primitive.
+    pub(crate) fn is_finite(&self, vertex: u32) -> bool {
+        self.positions[vertex as usize].iter().all(|x| x.is_finite())
+    }
+
+    /// Makes every vertex a point, except those that are not finite.
     #[allow(clippy::cast_possible_truncation, reason = "readers refuse vertices beyond the range of u32")]
     pub(crate) fn point_cloud(&mut self) {
+        let mut left_out = 0;
         for i in 0..self.positions.len() {
-            self.push(Element::Point(i as u32), i);
+            if self.is_finite(i as u32) {
+                self.push(Element::Point(i as u32), i);
+            } else {
+                left_out += 1;
+            }
         }
+        self.skips.add_many(left_out, "vertices that are not finite");
     }
 
     pub(crate) fn finish(self) -> Result<Scene, Reason> {
@@ -150,6 +182,11 @@ pub(crate) fn unknown_extension(path: &Path, name: &str, supported: &'static [&'
 }
 
 pub(crate) fn open(path: &Path, name: &str) -> Result<BufReader<File>, ReadError> {
-    let file = File::open(path).map_err(|e| ReadError::new(name, Place::File, Reason::Io(e)))?;
+    let fail = |e| ReadError::new(name, Place::File, Reason::Io(e));
+    let file = File::open(path).map_err(fail)?;
+    // Some systems open a directory and fail only at its first line.
+    if file.metadata().is_ok_and(|m| m.is_dir()) {
+        return Err(fail(io::ErrorKind::IsADirectory.into()));
+    }
     Ok(BufReader::with_capacity(1 << 16, file))
 }

@@ -1,7 +1,7 @@
 //! Lines, words and numbers of text files, as bytes: names and comments need not be UTF-8.
 
 use crate::Reason;
-use std::io::BufRead;
+use std::io::{self, BufRead, ErrorKind};
 
 /// Words longer than this are shortened in messages.
 const QUOTED: usize = 40;
@@ -15,14 +15,15 @@ pub(crate) fn quote(bytes: &[u8]) -> String {
     }
 }
 
+/// A number, or NaN or an infinity; overflow parses as infinity.
+pub(crate) fn number(word: &[u8]) -> Result<f64, Reason> {
+    let number = std::str::from_utf8(word).ok().and_then(|s| s.parse::<f64>().ok());
+    number.ok_or_else(|| Reason::BadNumber { text: quote(word) })
+}
+
 /// A finite number.
 pub(crate) fn finite(word: &[u8]) -> Result<f64, Reason> {
-    match std::str::from_utf8(word).ok().and_then(|s| s.parse::<f64>().ok()) {
-        None => Err(Reason::BadNumber { text: quote(word) }),
-        // Overflow parses as infinity.
-        Some(x) if !x.is_finite() => Err(Reason::NonFinite { text: quote(word) }),
-        Some(x) => Ok(x),
-    }
+    number(word).and_then(|x| if x.is_finite() { Ok(x) } else { Err(Reason::NonFinite { text: quote(word) }) })
 }
 
 /// A decimal integer with an optional sign. What exceeds the range saturates: as an index it is out of range anyway.
@@ -41,6 +42,41 @@ pub(crate) fn integer(word: &[u8]) -> Result<i64, Reason> {
 
 pub(crate) fn is_space(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\r' | b'\n' | 0x0b | 0x0c)
+}
+
+/// What `reader` has at hand; nothing at the end of the text.
+pub(crate) fn at_hand(reader: &mut impl BufRead) -> io::Result<&[u8]> {
+    loop {
+        match reader.fill_buf() {
+            Err(e) if e.kind() == ErrorKind::Interrupted => {}
+            Err(e) => return Err(e),
+            Ok(_) => break,
+        }
+    }
+    reader.fill_buf() // the same again: a borrow cannot leave the loop
+}
+
+/// Appends what comes up to and including the next byte that `ends`, at most `most` bytes; how many there were.
+pub(crate) fn read_until(
+    reader: &mut impl BufRead,
+    ends: impl Fn(u8) -> bool,
+    most: usize,
+    buffer: &mut Vec<u8>,
+) -> io::Result<usize> {
+    let mut read = 0;
+    while read < most {
+        let bytes = at_hand(reader)?;
+        let bytes = &bytes[..bytes.len().min(most - read)];
+        let end = bytes.iter().position(|&b| ends(b));
+        let take = end.map_or(bytes.len(), |end| end + 1);
+        buffer.extend_from_slice(&bytes[..take]);
+        reader.consume(take);
+        read += take;
+        if end.is_some() || take == 0 {
+            break;
+        }
+    }
+    Ok(read)
 }
 
 /// The words of a statement, with the line that each stands on.
@@ -83,19 +119,21 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Reads a text line by line into one buffer.
+/// Reads a text line by line into one buffer. A line ends at `\n`, `\r\n` or, as on old Macs, `\r`.
 pub(crate) struct Lines<R> {
     reader: R,
     buffer: Vec<u8>,
     /// Number of the first line in `buffer`, from 1, and of the line to come.
     line: u64,
     next: u64,
+    /// Whether the last line ended at `\r`: a `\n` right behind is of the same end.
+    after_return: bool,
 }
 
 impl<R: BufRead> Lines<R> {
     /// `lines_before` have been read already.
     pub(crate) fn new(reader: R, lines_before: u64) -> Self {
-        Self { reader, buffer: Vec::new(), line: lines_before, next: lines_before + 1 }
+        Self { reader, buffer: Vec::new(), line: lines_before, next: lines_before + 1, after_return: false }
     }
 
     /// Number of the first line of the statement that was read last.
@@ -136,18 +174,20 @@ impl<R: BufRead> Lines<R> {
 
     /// Appends the next line without its end.
     fn append(&mut self) -> std::io::Result<bool> {
+        // Only now, not behind the `\r`: a line is not held back until the next one is there.
+        if std::mem::take(&mut self.after_return) && at_hand(&mut self.reader)?.first() == Some(&b'\n') {
+            self.reader.consume(1);
+        }
         let start = self.buffer.len();
-        if self.reader.read_until(b'\n', &mut self.buffer)? == 0 {
+        if read_until(&mut self.reader, |b| matches!(b, b'\n' | b'\r'), usize::MAX, &mut self.buffer)? == 0 {
             return Ok(false);
         }
         if self.next == 1 && self.buffer.starts_with(b"\xef\xbb\xbf") {
             self.buffer.drain(..3); // the mark that some editors put in front of UTF-8
         }
         self.next += 1;
-        if self.buffer[start..].last() == Some(&b'\n') {
-            self.buffer.pop();
-        }
-        if self.buffer[start..].last() == Some(&b'\r') {
+        if let Some(end @ (b'\n' | b'\r')) = self.buffer[start..].last() {
+            self.after_return = *end == b'\r';
             self.buffer.pop();
         }
         Ok(true)
@@ -172,6 +212,22 @@ mod tests {
         assert!(lines.read_continued().unwrap());
         assert_eq!((lines.bytes(), lines.line()), (&b"f\n"[..], 4));
         assert!(!lines.read_continued().unwrap());
+    }
+
+    #[test]
+    fn lines_end_in_three_ways() {
+        let text = "a\r\nb\rc\nd\r\re\r\n\nf\r";
+        let expected = ["a", "b", "c", "d", "", "e", "", "f"];
+        // With a buffer of one byte, `\r` and `\n` are never at hand together.
+        for room in [1, 2, 100] {
+            let mut lines = Lines::new(std::io::BufReader::with_capacity(room, text.as_bytes()), 0);
+            let mut seen = Vec::new();
+            while lines.read().unwrap() {
+                seen.push(String::from_utf8(lines.bytes().to_vec()).unwrap());
+                assert_eq!(lines.line(), seen.len() as u64);
+            }
+            assert_eq!(seen, expected);
+        }
     }
 
     #[test]

@@ -6,6 +6,7 @@ use common::{RICH_OBJ, elements, obj, p, s, skipped, t};
 use nalgebra::Point3;
 use p2m_core::{Element, Soup};
 use p2m_mixed::{MAX_CORNERS, Place, Reason, read_scene, write_obj};
+use std::error::Error;
 use std::path::Path;
 
 const FOUR: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -78,6 +79,50 @@ fn vertices_alone_are_a_point_cloud() {
 }
 
 #[test]
+fn vertices_that_are_not_finite_may_stay_unused() {
+    let scene = obj("v 0 0 0\nv nan 0 0\nv 1 1e999 0\nv 1 0 0\nl 1 4\n").unwrap();
+    assert_eq!((elements(&scene), skipped(&scene)), (vec![s(0, 3)], vec![]));
+    let scene = obj("v 0 0 0\nv nan 0 0\nv 1 1e999 0\nv 1 0 0\n").unwrap();
+    assert_eq!(elements(&scene), [p(0), p(3)]);
+    assert_eq!(scene.sources, [0, 3]);
+    assert_eq!(skipped(&scene), [("vertices that are not finite", 2)]);
+    assert_eq!(scene.skipped[0].to_string(), "2 vertices that are not finite");
+}
+
+#[test]
+fn control_points_are_no_point_cloud() {
+    for statement in ["cstype bspline", "curv 0 1 1 2", "curv2 1 2", "surf 0 1 0 1 1 2", "bzp 1 2"] {
+        let scene = obj(format!("v 0 0 0\nv 1 0 0\n{statement}\n")).unwrap();
+        assert_eq!(elements(&scene), [], "{statement}");
+        assert_eq!(skipped(&scene), [(statement.split(' ').next().unwrap(), 1)]);
+        // What else there is stays.
+        assert_eq!(elements(&obj(format!("v 0 0 0\n{statement}\np 1")).unwrap()), [p(0)]);
+    }
+}
+
+#[test]
+fn files_of_other_formats_are_refused() {
+    for text in [
+        &b"<!DOCTYPE html>\n<p>not found</p>\n"[..],
+        b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendloop\n",
+        b"\x1f\x8b\x08\x00\x01\x02\x03",
+        b"# a comment\ng\nword\n",
+    ] {
+        let error = obj(text).unwrap_err();
+        assert!(matches!((&error.place, &error.reason), (Place::File, Reason::NoVertex)), "{error}");
+    }
+}
+
+#[test]
+fn lines_may_end_in_a_return_alone() {
+    let text = format!("# head\n{FOUR}f 1 2 3\nl 1 \\\n 4 # more\n");
+    let scene = obj(&text).unwrap();
+    assert_eq!(elements(&scene), [t(0, 1, 2), s(0, 3)]);
+    assert_eq!(obj(text.replace('\n', "\r")).unwrap(), scene);
+    assert_eq!(obj("v 0 0 0\r\rp 2\r").unwrap_err().place, Place::Line(3));
+}
+
+#[test]
 fn empty_files_are_empty_scenes() {
     for text in ["", "\n", "# nothing\n", "g\nvn 0 0 1\n"] {
         assert_eq!(elements(&obj(text).unwrap()), [], "{text:?}");
@@ -86,7 +131,8 @@ fn empty_files_are_empty_scenes() {
 
 #[test]
 fn noise_is_counted_in_bounded_room() {
-    let text: String = (0..1000).map(|i| format!("word{i} x\n")).collect();
+    let text: String =
+        std::iter::once("v 0 0 0\n".to_owned()).chain((0..1000).map(|i| format!("word{i} x\n"))).collect();
     let scene = obj(text).unwrap();
     assert_eq!(scene.skipped.len(), 65);
     assert_eq!(scene.skipped.iter().map(|s| s.count).sum::<u64>(), 1000);
@@ -127,9 +173,21 @@ fn errors_tell_line_and_reason() {
     assert_refused!("p\n", 5, Reason::TooFewVertices { found: 0, needed: 1 });
     assert_refused!("# \\\nv 1 2 # 3\n", 6, Reason::TooFewCoordinates { found: 2 });
     assert_refused!("f 1 \\\n 2 \\\r\n 9\n", 7, Reason::IndexOutOfRange { index: 9, count: 4 });
-    for (word, line) in
-        [("x", 6), ("1.5", 6), ("/1/1", 6), ("1/x", 6), ("1/2.0/3", 6), ("--1", 6), ("0x1", 6), ("-", 6)]
-    {
+    for (word, line) in [
+        ("x", 6),
+        ("1.5", 6),
+        ("/1/1", 6),
+        ("1/x", 6),
+        ("1/2.0/3", 6),
+        ("--1", 6),
+        ("0x1", 6),
+        ("-", 6),
+        ("1/+-+", 6),
+        ("2/---", 6),
+        ("1/2/3/4", 6),
+        ("1/2/3/", 6),
+        ("1/-", 6),
+    ] {
         assert_refused!(&format!("o name\nf 1 2 {word}\n"), line, Reason::BadNumber { .. });
     }
     for word in ["x", "1,5", "1e", "\u{e9}", "0x10", "1_000"] {
@@ -138,7 +196,10 @@ fn errors_tell_line_and_reason() {
     // How some C libraries print NaN: what follows `#` is a comment, so it comes out as a missing number.
     assert_refused!("v 1 2 1.#QNAN\nv 1 1.#QNAN 2\n", 6, Reason::TooFewCoordinates { found: 2 });
     for word in ["nan", "NaN", "-nan", "inf", "-Infinity", "1e999", "-1e400"] {
-        assert_refused!(&format!("v 1 {word} 2\n"), 5, Reason::NonFinite { .. });
+        assert_refused!(&format!("v 1 {word} 2\nf 1 2 3\nl 1 5\n"), 7, Reason::NonFiniteVertex { index: 5 });
+    }
+    for words in ["x", "1 red", "0 0 0,5", "1 v"] {
+        assert_refused!(&format!("v 1 2 3 {words}\n"), 5, Reason::BadNumber { .. });
     }
     let text = refused(&format!("v 1 2 {}\n", "x\u{7}".repeat(1000))).1.to_string();
     assert!(text.len() < 150 && !text.contains('\u{7}'), "{text}");
@@ -159,7 +220,11 @@ fn messages_read_well() {
         "t.obj:5: vertex index 99 is out of range, the file has 4 vertices so far"
     );
     assert_eq!(message("f 0 1 2"), "t.obj:1: vertex index 0, but vertices are numbered from 1");
-    assert_eq!(message("v 1 2 1e999"), "t.obj:1: coordinate '1e999' is not finite");
+    assert_eq!(
+        message("v 1 2 1e999\np 1"),
+        "t.obj:2: vertex 1 is part of a primitive, but has a coordinate that is not finite"
+    );
+    assert_eq!(message("<html>\n"), "t.obj: no vertex in it, is this an OBJ file?");
     assert_eq!(message("\nv 1 2"), "t.obj:2: a point needs 3 coordinates, found 2");
     assert_eq!(message("v 0 0 0\nf 1 1"), "t.obj:2: 3 or more vertices expected, found 2");
 }
@@ -175,8 +240,16 @@ fn files_are_told_by_their_extension() {
     for name in ["/nonexistent/a.OBJ", "/nonexistent/a.Ply"] {
         let error = read_scene(Path::new(name)).unwrap_err();
         assert!(matches!(&error.reason, Reason::Io(e) if e.kind() == std::io::ErrorKind::NotFound), "{error}");
-        assert!(error.to_string().starts_with(&format!("{name}: cannot be read: ")), "{error}");
+        assert_eq!(error.to_string(), format!("{name}: cannot be read"));
+        assert!(error.source().is_some_and(|e| e.is::<std::io::Error>()));
     }
+    // Not a line of it, whatever the system says when one is read.
+    let folder = std::env::temp_dir().join(format!("p2m-mixed-{}.obj", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let error = read_scene(&folder).unwrap_err();
+    std::fs::remove_dir(&folder).unwrap();
+    assert_eq!(error.place, Place::File);
+    assert!(matches!(&error.reason, Reason::Io(e) if e.kind() == std::io::ErrorKind::IsADirectory), "{error}");
 }
 
 #[test]

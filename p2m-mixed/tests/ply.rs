@@ -166,15 +166,17 @@ fn what_follows_the_last_element_is_reported() {
     for encoding in ENCODINGS {
         let mut file = square(encoding, &[&[0, 1, 2]]);
         file.bytes.extend(b"more\n");
-        let count = if encoding == Encoding::Ascii { 1 } else { 5 };
-        assert_eq!(skipped(&file.read().unwrap()), [("data after the last element", count)]);
+        let (what, count) = if encoding == Encoding::Ascii { ("words", 1) } else { ("bytes", 5) };
+        let scene = file.read().unwrap();
+        assert_eq!(skipped(&scene), [(format!("{what} after the last element").as_str(), count)]);
+        assert_eq!(scene.skipped[0].to_string(), format!("{count} {what} after the last element"));
     }
 }
 
 #[test]
-fn text_may_break_lines_anywhere() {
+fn text_may_break_lines_within_an_element() {
     let text = format!(
-        "ply\nformat ascii 1.0\nelement vertex 3\n{XYZ}\nelement face 1\n{LIST}\nend_header\n0 0\n0 1 0 0 \r\n\n 1 1\t0 3 0\n1\n2"
+        "ply\nformat ascii 1.0\nelement vertex 3\n{XYZ}\nelement face 1\n{LIST}\nend_header\n0 0\n0 \n1 0 \r\n\n0\r1 1\t0\n3 0\n1\n2"
     );
     assert_eq!(elements(&ply(text).unwrap()), [t(0, 1, 2)]);
 }
@@ -212,12 +214,13 @@ fn bad_headers() {
         assert_eq!(header_error(&format!("{start}{line}\n")), (Place::Line(3), problem));
     }
     let vertex = format!("{start}element vertex 1\n");
+    let bad_type = |declared: &str| HeaderProblem::BadType { name: "x".to_owned(), declared: declared.to_owned() };
     for (line, problem) in [
         ("property float", HeaderProblem::BadLine { text: "property float".to_owned() }),
         ("property list uchar int", HeaderProblem::BadLine { text: "property list uchar int".to_owned() }),
-        ("property half x", HeaderProblem::BadType { name: "x".to_owned() }),
-        ("property list float int x", HeaderProblem::BadType { name: "x".to_owned() }),
-        ("property list uchar half x", HeaderProblem::BadType { name: "x".to_owned() }),
+        ("property half x", bad_type("half")),
+        ("property list float int x", bad_type("list float int")),
+        ("property list uchar half x", bad_type("list uchar half")),
     ] {
         assert_eq!(header_error(&format!("{vertex}{line}\n")), (Place::Line(4), problem));
     }
@@ -237,13 +240,13 @@ fn bad_headers() {
         let problem = HeaderProblem::MissingProperty { element, property };
         assert_eq!(header_error(&format!("{start}{header}\nend_header\n")), (Place::File, problem));
     }
-    for (header, name) in [
-        ("element vertex 1\nproperty list uchar float x\nproperty float y\nproperty float z", "x"),
-        ("element face 1\nproperty list uchar float vertex_indices", "vertex_indices"),
-        ("element face 1\nproperty int vertex_index", "vertex_index"),
-        ("element edge 1\nproperty float vertex1\nproperty int vertex2", "vertex1"),
+    for (header, name, declared) in [
+        ("element vertex 1\nproperty list uchar float x\nproperty float y\nproperty float z", "x", "list uchar float"),
+        ("element face 1\nproperty list uchar float vertex_indices", "vertex_indices", "list uchar float"),
+        ("element face 1\nproperty int vertex_index", "vertex_index", "int"),
+        ("element edge 1\nproperty float vertex1\nproperty int vertex2", "vertex1", "float"),
     ] {
-        let problem = HeaderProblem::BadType { name: name.to_owned() };
+        let problem = HeaderProblem::BadType { name: name.to_owned(), declared: declared.to_owned() };
         assert_eq!(header_error(&format!("{start}{header}\nend_header\n")), (Place::File, problem));
     }
 }
@@ -276,9 +279,9 @@ fn errors_tell_place_and_reason() {
     for e in ENCODINGS {
         // 48 bytes of vertices on 4 lines; a face of three has 13 bytes.
         let faces: [&[i32]; 2] = [&[0, 1, 2], &[0, 4, 1]];
-        check(e, &square(e, &faces), (48 + 13 + 5, 6), |r| matches!(r, Reason::IndexOutOfRange { index: 4, count: 4 }));
+        check(e, &square(e, &faces), (48 + 13 + 5, 6), |r| matches!(r, Reason::NoSuchVertex { index: 4, count: 4 }));
         let faces: [&[i32]; 1] = [&[0, 1, -1]];
-        check(e, &square(e, &faces), (48 + 9, 5), |r| matches!(r, Reason::IndexOutOfRange { index: -1, count: 4 }));
+        check(e, &square(e, &faces), (48 + 9, 5), |r| matches!(r, Reason::NoSuchVertex { index: -1, count: 4 }));
         for face in [&[0, 1][..], &[0], &[]] {
             let found = face.len() as u64;
             let file = square(e, &[face]);
@@ -292,26 +295,136 @@ fn errors_tell_place_and_reason() {
         check(e, &file, (48, 5), |r| matches!(r, Reason::ElementTooLarge { count: 4_000_000_000, .. }));
         let header = format!("element vertex 4\n{XYZ}\nelement edge 1\nproperty int vertex1\nproperty int vertex2");
         let file = vertices(&header).row(&[N::I32(0), N::I32(4)]);
-        check(e, &file, (52, 5), |r| matches!(r, Reason::IndexOutOfRange { index: 4, count: 4 }));
+        check(e, &file, (52, 5), |r| matches!(r, Reason::NoSuchVertex { index: 4, count: 4 }));
         let header = format!("element vertex 4\n{XYZ}\nelement tristrips 1\n{LIST}");
         let file = vertices(&header).list(&[0, 1, -2]);
-        check(e, &file, (57, 5), |r| matches!(r, Reason::IndexOutOfRange { index: -2, count: 4 }));
+        check(e, &file, (57, 5), |r| matches!(r, Reason::NoSuchVertex { index: -2, count: 4 }));
 
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-            let file = Ply::new(e, &format!("element vertex 2\n{XYZ}")).float_row([1.0; 3]).float_row([0.0, bad, 0.0]);
-            check(e, &file, (16, 2), |r| matches!(r, Reason::NonFinite { .. }));
+            let file = Ply::new(e, &format!("element vertex 2\n{XYZ}\nelement face 1\n{LIST}"))
+                .float_row([1.0; 3])
+                .float_row([0.0, bad, 0.0]);
+            // The place is that of the vertex.
+            check(e, &file.list(&[0, 0, 1]), (16, 2), |r| matches!(r, Reason::NonFiniteVertex { index: 1 }));
+            // The same with the face in front.
+            let header = format!("element face 1\n{LIST}\nelement vertex 2\n{XYZ}");
+            let file = Ply::new(e, &header).list(&[0, 0, 1]).float_row([1.0; 3]).float_row([0.0, bad, 0.0]);
+            check(e, &file, (13 + 16, 3), |r| matches!(r, Reason::NonFiniteVertex { index: 1 }));
         }
         // Faces in front of vertices: the header tells how many there are.
         let file = Ply::new(e, &format!("element face 1\n{LIST}\nelement vertex 3\n{XYZ}")).list(&[0, 1, 3]);
-        check(e, &file, (9, 1), |r| matches!(r, Reason::IndexOutOfRange { index: 3, count: 3 }));
+        check(e, &file, (9, 1), |r| matches!(r, Reason::NoSuchVertex { index: 3, count: 3 }));
     }
     let text = |rows: &str| {
         ply(format!("ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nproperty float y\nproperty float z\nend_header\n{rows}")).unwrap_err()
     };
     assert_eq!(text("1.5 0 0\n").to_string(), "t.ply:8: '1.5' is not a number that fits here");
-    assert_eq!(text("1 0 1e999\n").to_string(), "t.ply:8: coordinate '1e999' is not finite");
     assert_eq!(text("1 0 x\n").to_string(), "t.ply:8: 'x' is not a number that fits here");
     assert!(matches!(text("1 0\n").reason, Reason::UnexpectedEnd));
+}
+
+#[test]
+fn vertices_that_are_not_finite_may_stay_unused() {
+    for e in ENCODINGS {
+        let vertices = |more: &str| {
+            Ply::new(e, &format!("element vertex 4\n{XYZ}{more}"))
+                .float_row([0.0; 3])
+                .float_row([f32::NAN, 0.0, 0.0])
+                .float_row([1.0; 3])
+                .float_row([2.0; 3])
+        };
+        let scene = vertices(&format!("\nelement face 1\n{LIST}")).list(&[0, 2, 3]).read().unwrap();
+        assert_eq!(elements(&scene), [t(0, 2, 3)], "{e:?}");
+        assert_eq!(skipped(&scene), []);
+        let scene = vertices("").read().unwrap();
+        assert_eq!(elements(&scene), [p(0), p(2), p(3)], "{e:?}");
+        assert_eq!(scene.sources, [0, 2, 3]);
+        assert_eq!(skipped(&scene), [("vertices that are not finite", 1)]);
+    }
+}
+
+#[test]
+fn text_with_more_columns_than_declared_is_refused() {
+    let read = |rest: &str, data: &str| {
+        let text = format!("ply\nformat ascii 1.0\nelement vertex 3\n{XYZ}{rest}\nend_header\n{data}");
+        ply(text).unwrap_err().to_string()
+    };
+    let extra = |line: u32, word: &str| {
+        format!("t.ply:{line}: '{word}' is more than the header declares for the element on this line")
+    };
+    assert_eq!(read("", "0 0 0 7\n1 0 0 8\n0 1 0 9\n"), extra(8, "7"));
+    let vertices = "0 0 0\n1 0 0\n0 1 0 \n";
+    assert_eq!(read(&format!("\nelement face 1\n{LIST}"), &format!("{vertices}3 0 1 2 255\n")), extra(13, "255"));
+    let edges = "\nelement edge 1\nproperty int vertex1\nproperty int vertex2";
+    assert_eq!(read(edges, &format!("{vertices}\n0 1 2\n")), extra(15, "2"));
+    let other = "\nelement camera 1\nproperty float a";
+    assert_eq!(read(other, &format!("{vertices}0 1\n")), extra(13, "1"));
+}
+
+#[test]
+fn unknown_connectivity_is_no_point_cloud() {
+    for e in ENCODINGS {
+        for name in ["vertex_indices", "vertex_index", "vertex_indexes"] {
+            let header = format!("element vertex 1\n{XYZ}\nelement tetra 1\nproperty list uchar int {name}");
+            let scene = Ply::new(e, &header).float_row([0.0; 3]).list(&[0, 0, 0, 0]).read().unwrap();
+            assert_eq!(elements(&scene), [], "{e:?} {name}");
+            assert_eq!(skipped(&scene), [("element tetra", 1)]);
+        }
+        // None of them, or something else of them.
+        let header = format!("element vertex 1\n{XYZ}\nelement tetra 0\nproperty list uchar int vertex_indices");
+        assert_eq!(elements(&Ply::new(e, &header).float_row([0.0; 3]).read().unwrap()), [p(0)]);
+    }
+}
+
+#[test]
+fn elements_of_which_there_are_none_need_no_properties() {
+    for e in ENCODINGS {
+        let header = format!("element vertex 1\n{XYZ}\nelement face 0\nelement edge 0");
+        let scene = Ply::new(e, &header).float_row([0.0; 3]).read().unwrap();
+        assert_eq!((elements(&scene), skipped(&scene)), (vec![p(0)], vec![]), "{e:?}");
+    }
+}
+
+#[test]
+fn headers_end_lines_as_their_first_one_does() {
+    // The first byte of the data is a line feed, or a carriage return, as a number.
+    for (end, first) in [("\n", 10), ("\n", 13), ("\r\n", 10), ("\r\n", 13), ("\r", 10), ("\r", 13)] {
+        for e in ENCODINGS {
+            let header = "element vertex 1\nproperty uchar x\nproperty uchar y\nproperty uchar z";
+            let scene = Ply::with_line_end(e, header, end).row(&[N::U8(first), N::U8(2), N::U8(3)]).read().unwrap();
+            assert_eq!(scene.soup.positions(), [Point3::new(f64::from(first), 2.0, 3.0)], "{e:?} {end:?}");
+        }
+    }
+    let text =
+        format!("ply\nformat ascii 1.0\nelement vertex 2\n{XYZ}\nend_header\n1 2 3\n4 x 6\n").replace('\n', "\r");
+    assert_eq!(ply(text).unwrap_err().place, Place::Line(9));
+}
+
+#[test]
+fn a_mark_of_utf8_may_come_first() {
+    for e in ENCODINGS {
+        let mut bytes = b"\xef\xbb\xbf".to_vec();
+        bytes.extend(&square(e, &[&[0, 1, 2]]).bytes);
+        assert_eq!(elements(&ply(&bytes).unwrap()), [t(0, 1, 2)]);
+    }
+}
+
+#[test]
+fn messages_read_well() {
+    let message = |header: &str, data: &str| {
+        ply(format!("ply\nformat ascii 1.0\n{header}\nend_header\n{data}")).unwrap_err().to_string()
+    };
+    let header = format!("element vertex 1\n{XYZ}\nelement face 1\nproperty list char int vertex_indices");
+    assert_eq!(
+        message(&header, "0 0 0\n3 0 0 1\n"),
+        "t.ply:11: vertex index 1 is out of range, the file has 1 vertices, counted from 0"
+    );
+    assert_eq!(message(&header, "0 0 0\n-3 0 0 1\n"), "t.ply:11: a list cannot have -3 items");
+    assert_eq!(
+        message("element vertex 1\nproperty half x", ""),
+        "t.ply:4: bad header: property 'x' is of type 'half', which is unknown or does not fit"
+    );
+    assert_eq!(message(&header, "0 0 0\n1 0\n"), "t.ply:11: 3 or more vertices expected, found 1");
 }
 
 #[test]

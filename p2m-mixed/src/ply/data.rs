@@ -1,7 +1,7 @@
 //! The numbers behind the header of a PLY file, in any of its encodings.
 
 use super::header::{Encoding, Header, Layout, Scalar};
-use crate::text::{Lines, finite, integer, is_space};
+use crate::text::{Lines, Words, integer, is_space, number, quote};
 use crate::{Place, ReadError, Reason};
 use std::io::{BufRead, ErrorKind};
 
@@ -43,31 +43,42 @@ impl<'n, R: BufRead> Data<'n, R> {
         Self { file, source }
     }
 
-    /// The error that `reason` makes at the number that was read last.
-    pub(super) fn error(&self, reason: Reason) -> ReadError {
-        let place = match &self.source {
+    /// Where the number stands that was read last.
+    pub(super) fn place(&self) -> Place {
+        match &self.source {
             Source::Text(text) => Place::Line(text.lines.line()),
             Source::Binary(binary) => Place::Byte(binary.start),
-        };
-        ReadError::new(self.file, place, reason)
+        }
     }
 
-    /// A finite coordinate.
+    /// The error that `reason` makes at the number that was read last.
+    pub(super) fn error(&self, reason: Reason) -> ReadError {
+        ReadError::new(self.file, self.place(), reason)
+    }
+
+    /// Checks that nothing follows an element on its line of a text. Otherwise the header declares fewer numbers than
+    /// there are, and what follows would be read as something that it is not.
+    pub(super) fn end_element(&self) -> Result<(), ReadError> {
+        if let Source::Text(text) = &self.source
+            && let Some(word) = Words::new(&text.lines.bytes()[text.at..]).next()
+        {
+            return Err(self.error(Reason::ExtraWord { text: quote(word) }));
+        }
+        Ok(())
+    }
+
+    /// A coordinate, finite or not.
     pub(super) fn coordinate(&mut self, scalar: Scalar) -> Result<f64, ReadError> {
         let value = match &mut self.source {
             Source::Text(text) => text.word().and_then(|word| {
                 if scalar.is_integer() {
                     integer(word)?; // refuses what is a number, but no integer
                 }
-                finite(word)
+                number(word)
             }),
             Source::Binary(binary) => binary.number(scalar),
         };
-        match value {
-            Ok(x) if x.is_finite() => Ok(x),
-            Ok(x) => Err(self.error(Reason::NonFinite { text: x.to_string() })),
-            Err(reason) => Err(self.error(reason)),
-        }
+        value.map_err(|reason| self.error(reason))
     }
 
     /// An integer; `scalar` is of an integer type.
@@ -94,14 +105,18 @@ impl<'n, R: BufRead> Data<'n, R> {
         };
         let skipped = match &mut self.source {
             Source::Text(text) => (0..numbers).try_for_each(|_| text.word().map(|_| ())),
-            // Saturation is safe: no file is that long.
-            Source::Binary(binary) => binary.skip(numbers.saturating_mul(scalar.size() as u64)),
+            // No overflow: the longest list of a binary file has 2^32 - 1 items of 8 bytes.
+            Source::Binary(binary) => binary.skip(numbers * scalar.size() as u64),
         };
         skipped.map_err(|reason| self.error(reason))
     }
 
-    /// Reads to the end of the file; how many bytes (binary) or words (text) there are.
-    pub(super) fn rest(mut self) -> Result<u64, ReadError> {
+    /// Reads to the end of the file; how many bytes (binary) or words (text) there are, and what they are called.
+    pub(super) fn rest(mut self) -> Result<(u64, &'static str), ReadError> {
+        let what = match &self.source {
+            Source::Text(_) => "words after the last element",
+            Source::Binary(_) => "bytes after the last element",
+        };
         let mut rest = 0u64;
         loop {
             let more = match &mut self.source {
@@ -116,7 +131,7 @@ impl<'n, R: BufRead> Data<'n, R> {
                 },
             };
             if more == 0 {
-                return Ok(rest);
+                return Ok((rest, what));
             }
             rest += more;
         }

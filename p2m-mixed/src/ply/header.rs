@@ -1,12 +1,12 @@
 //! The header of a PLY file: what elements there are, and of what properties.
 
-use crate::text::{Words, integer, quote};
+use crate::text::{Words, at_hand, integer, quote, read_until};
 use crate::{HeaderProblem, Place, ReadError, Reason};
 use std::collections::HashSet;
-use std::io::{BufRead, Read};
+use std::io::{self, BufRead};
 
 /// No line of a sensible header is longer. A file of other data may have no line ends at all.
-const LONGEST_LINE: u64 = 1 << 16;
+const LONGEST_LINE: usize = 1 << 16;
 
 /// How numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,6 +70,8 @@ pub(super) enum Layout {
 pub(super) struct Property {
     pub(super) name: Vec<u8>,
     pub(super) layout: Layout,
+    /// The type in the words of the header, for messages.
+    pub(super) declared: String,
 }
 
 #[derive(Debug)]
@@ -101,9 +103,16 @@ pub(super) fn read_header(reader: &mut impl BufRead, file: &str) -> Result<Heade
     let mut header = Header { encoding: Encoding::Ascii, elements: Vec::new(), lines: 0, bytes: 0 };
     let mut parser = Parser::default();
     let mut line = Vec::new();
+    let mut end = None;
     loop {
         line.clear();
-        let read = reader.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut line);
+        let read = match end {
+            Some(end) => read_until(reader, |b| b == end, LONGEST_LINE, &mut line),
+            None => first_line(reader, &mut line).map(|found| {
+                end = Some(found);
+                line.len()
+            }),
+        };
         header.lines += 1;
         let fail = |reason| Err(ReadError::new(file, Place::Line(header.lines), reason));
         match read {
@@ -111,13 +120,15 @@ pub(super) fn read_header(reader: &mut impl BufRead, file: &str) -> Result<Heade
             Ok(read) => header.bytes += read as u64,
         }
         if header.lines == 1 {
-            if line.trim_ascii_end() != b"ply" {
+            // Some editors put a mark in front of UTF-8.
+            let text = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&line);
+            if text.trim_ascii_end() != b"ply" {
                 return fail(Reason::BadHeader(HeaderProblem::NotPly));
             }
             continue;
         }
-        if line.last() != Some(&b'\n') {
-            let too_long = line.len() as u64 == LONGEST_LINE;
+        if line.last().copied() != end {
+            let too_long = line.len() == LONGEST_LINE;
             let reason = if too_long { Reason::BadHeader(HeaderProblem::LineTooLong) } else { Reason::UnexpectedEnd };
             return fail(reason);
         }
@@ -133,6 +144,23 @@ pub(super) fn read_header(reader: &mut impl BufRead, file: &str) -> Result<Heade
             }
         }
     }
+}
+
+/// Reads the first line, and tells the byte that ends it and the other lines of the header.
+///
+/// That is `\n`, also in `\r\n`, unless the first line ends at `\r` alone. The first line decides because the last one
+/// cannot: the byte behind `end_header` and `\r` may be a `\n` or the number 10, the first of the data.
+fn first_line(reader: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<u8> {
+    read_until(reader, |b| matches!(b, b'\n' | b'\r'), LONGEST_LINE, line)?;
+    if line.last() != Some(&b'\r') {
+        return Ok(b'\n');
+    }
+    if at_hand(reader)?.first() != Some(&b'\n') {
+        return Ok(b'\r');
+    }
+    reader.consume(1);
+    line.push(b'\n');
+    Ok(b'\n')
 }
 
 /// What has been seen so far.
@@ -197,15 +225,16 @@ fn duplicate(name: &[u8]) -> Reason {
 /// The property that the words behind `property` declare; `None` if there are too few of them.
 fn property(words: &mut Words<'_>) -> Option<Result<Property, Reason>> {
     let first = words.next()?;
-    let (layout, name) = if first == b"list" {
+    let (layout, name, declared) = if first == b"list" {
         let (count, item, name) = (words.next()?, words.next()?, words.next()?);
+        let declared = format!("list {} {}", quote(count), quote(item));
         let count = Scalar::named(count).filter(|s| s.is_integer());
-        (count.zip(Scalar::named(item)).map(|(count, item)| Layout::List { count, item }), name)
+        (count.zip(Scalar::named(item)).map(|(count, item)| Layout::List { count, item }), name, declared)
     } else {
-        (Scalar::named(first).map(Layout::Scalar), words.next()?)
+        (Scalar::named(first).map(Layout::Scalar), words.next()?, quote(first))
     };
     Some(match layout {
-        Some(layout) => Ok(Property { name: name.to_vec(), layout }),
-        None => Err(Reason::BadHeader(HeaderProblem::BadType { name: quote(name) })),
+        Some(layout) => Ok(Property { name: name.to_vec(), layout, declared }),
+        None => Err(Reason::BadHeader(HeaderProblem::BadType { name: quote(name), declared })),
     })
 }

@@ -19,15 +19,20 @@ use std::io::BufRead;
 /// `vertex_index`; in strips -1 starts a new one, and every other triangle is turned so that all have the winding of the
 /// first), and `edge` (`vertex1`, `vertex2`). Elements and properties may come in any order. Other elements and
 /// properties, and whatever follows the last element, are counted in [`Scene::skipped`]. Without any face, strip or edge
-/// the file is a point cloud: each vertex is a point.
+/// the file is a point cloud: each vertex is a point. But not if there are other elements with a list of vertices (named
+/// `vertex_ind..`), such as polygons or tetrahedra under a name of their own: they are skipped, and the scene is empty.
 ///
-/// In a text file, numbers are taken as they are written, in double precision, even if the header says `float`; line
-/// ends are as good as blanks.
+/// Coordinates that are not finite are no error as long as no primitive uses the vertex. A point cloud leaves such
+/// vertices out and counts them in [`Scene::skipped`].
+///
+/// In a text file, numbers are taken as they are written, in double precision, even if the header says `float`. An element
+/// may go on over several lines, but nothing may follow it on its last one. Lines end at `\n`, `\r\n` or `\r`; those of a
+/// header before binary data as its first one does.
 ///
 /// # Errors
 /// [`ReadError`] with the line (header, text) or the offset of the number in bytes (binary) for a header that makes no
-/// sense, an early end, numbers that are none or not finite, indices of no vertex, faces of fewer than three vertices or
-/// more than [`MAX_CORNERS`], and for what goes wrong in reading. No memory is taken for data that is merely announced.
+/// sense, an early end, numbers that are none or too many for their line, indices of no vertex, vertices of primitives
+/// that are not finite (with the place of the vertex), faces of fewer than three vertices or more than [`MAX_CORNERS`], and for what goes wrong in reading. No memory is taken for data that is merely announced.
 pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     let header = read_header(&mut reader, name)?;
     let bad_header = |problem| ReadError::new(name, Place::File, Reason::BadHeader(problem));
@@ -37,11 +42,15 @@ pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
     let mut vertex_count = 0;
     let mut is_cloud = true;
     for element in &header.elements {
-        let plan = plan(element).map_err(bad_header)?;
+        let plan = match plan(element) {
+            // Of what there is none, no property is missing.
+            Err(_) if element.count == 0 => Plan::Skip,
+            plan => plan.map_err(bad_header)?,
+        };
         match plan {
             Plan::Vertices(_) => vertex_count = element.count,
             Plan::Faces(..) | Plan::Strips(..) | Plan::Edges(..) => is_cloud &= element.count == 0,
-            Plan::Skip => {}
+            Plan::Skip => is_cloud &= element.count == 0 || !has_vertex_list(element),
         }
         plans.push(plan);
     }
@@ -55,15 +64,15 @@ pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
         builder: Builder::default(),
         vertex_count,
         batches: Vec::new(),
+        not_finite: Vec::new(),
     };
     for (element, plan) in header.elements.iter().zip(&plans) {
         reader.element(element, plan)?;
     }
+    reader.check_finite(name)?;
     let Elements { data, mut builder, batches, .. } = reader;
-    match data.rest()? {
-        0 => {}
-        rest => builder.skips.add(b"data after the last element", rest),
-    }
+    let (rest, what) = data.rest()?;
+    builder.skips.add_many(rest, what);
     if is_cloud {
         builder.point_cloud();
     }
@@ -85,6 +94,11 @@ enum Plan {
 struct List {
     count: Scalar,
     item: Scalar,
+}
+
+/// Whether the members of an element are made of vertices, by the usual names of such a list.
+fn has_vertex_list(element: &header::Element) -> bool {
+    element.properties.iter().any(|p| matches!(p.layout, Layout::List { .. }) && p.name.starts_with(b"vertex_ind"))
 }
 
 fn plan(element: &header::Element) -> Result<Plan, HeaderProblem> {
@@ -116,7 +130,9 @@ fn scalar(
     let at = element.find(&[property]).ok_or(HeaderProblem::MissingProperty { element: name, property })?;
     match element.properties[at].layout {
         Layout::Scalar(scalar) if scalar.is_integer() || !integer => Ok((at, scalar)),
-        _ => Err(HeaderProblem::BadType { name: property.to_owned() }),
+        _ => {
+            Err(HeaderProblem::BadType { name: property.to_owned(), declared: element.properties[at].declared.clone() })
+        }
     }
 }
 
@@ -126,7 +142,10 @@ fn list(element: &header::Element, name: &'static str) -> Result<(usize, List), 
         element.find(&[property, "vertex_index"]).ok_or(HeaderProblem::MissingProperty { element: name, property })?;
     match element.properties[at].layout {
         Layout::List { count, item } if item.is_integer() => Ok((at, List { count, item })),
-        _ => Err(HeaderProblem::BadType { name: quote(&element.properties[at].name) }),
+        _ => {
+            let header::Property { name, declared, .. } = &element.properties[at];
+            Err(HeaderProblem::BadType { name: quote(name), declared: declared.clone() })
+        }
     }
 }
 
@@ -152,6 +171,8 @@ struct Elements<'n, R> {
     builder: Builder,
     vertex_count: u64,
     batches: Vec<Batch>,
+    /// Vertices that are not finite, in ascending order, and where they stand.
+    not_finite: Vec<(u32, Place)>,
 }
 
 impl<R: BufRead> Elements<'_, R> {
@@ -162,6 +183,7 @@ impl<R: BufRead> Elements<'_, R> {
                 if !element.properties.is_empty() {
                     for _ in 0..element.count {
                         self.skip(&element.properties)?;
+                        self.data.end_element()?;
                     }
                 }
                 self.builder.skips.add(&[b"element ", element.name.as_slice()].concat(), element.count);
@@ -184,6 +206,7 @@ impl<R: BufRead> Elements<'_, R> {
                             None => self.data.skip(property.layout)?,
                         }
                     }
+                    self.data.end_element()?;
                     batch.vertices.extend(edge);
                     batch.lengths.push(2);
                 }
@@ -200,6 +223,20 @@ impl<R: BufRead> Elements<'_, R> {
         properties.iter().try_for_each(|p| self.data.skip(p.layout))
     }
 
+    /// Checks that what the primitives use is finite. Faces may precede the vertices, so this comes last.
+    fn check_finite(&self, name: &str) -> Result<(), ReadError> {
+        if self.not_finite.is_empty() {
+            return Ok(());
+        }
+        for &vertex in self.batches.iter().flat_map(|batch| &batch.vertices) {
+            if let Ok(at) = self.not_finite.binary_search_by_key(&vertex, |&(v, _)| v) {
+                let reason = Reason::NonFiniteVertex { index: u64::from(vertex) };
+                return Err(ReadError::new(name, self.not_finite[at].1, reason));
+            }
+        }
+        Ok(())
+    }
+
     /// Notes the properties other than those `used`.
     fn report(&mut self, element: &header::Element, used: &[usize]) {
         for (_, property) in element.properties.iter().enumerate().filter(|(k, _)| !used.contains(k)) {
@@ -210,11 +247,23 @@ impl<R: BufRead> Elements<'_, R> {
 
     fn vertex(&mut self, properties: &[header::Property], xyz: &[(usize, Scalar); 3]) -> Result<(), ReadError> {
         let mut position = Point3::origin();
+        let mut bad = None;
         for (k, property) in properties.iter().enumerate() {
             match xyz.iter().position(|&(at, _)| at == k) {
-                Some(axis) => position[axis] = self.data.coordinate(xyz[axis].1)?,
+                Some(axis) => {
+                    position[axis] = self.data.coordinate(xyz[axis].1)?;
+                    if !position[axis].is_finite() {
+                        bad = Some(self.data.place());
+                    }
+                }
                 None => self.data.skip(property.layout)?,
             }
+        }
+        self.data.end_element()?;
+        if let Some(place) = bad {
+            // read_ply refuses more vertices than u32 can count.
+            let vertex = u32::try_from(self.builder.positions.len()).unwrap_or(u32::MAX);
+            self.not_finite.push((vertex, place));
         }
         self.builder.positions.push(position);
         Ok(())
@@ -226,6 +275,7 @@ impl<R: BufRead> Elements<'_, R> {
             self.skip(&element.properties[..at])?;
             self.list(list, &mut batch)?;
             self.skip(&element.properties[at + 1..])?;
+            self.data.end_element()?;
         }
         self.batches.push(batch);
         self.report(element, &[at]);
@@ -268,7 +318,7 @@ impl<R: BufRead> Elements<'_, R> {
         u32::try_from(index)
             .ok()
             .filter(|&i| u64::from(i) < count)
-            .ok_or_else(|| self.data.error(Reason::IndexOutOfRange { index, count }))
+            .ok_or_else(|| self.data.error(Reason::NoSuchVertex { index, count }))
     }
 }
 
