@@ -44,6 +44,12 @@ fn combine<const N: usize>(terms: [(f64, V); N]) -> V {
     std::array::from_fn(|k| terms.iter().map(|(w, v)| w * v[k]).sum())
 }
 
+/// Across the first three vertices, of any length.
+fn normal(vertices: &[V]) -> V {
+    let edge = |k: usize| std::array::from_fn(|c| vertices[k][c] - vertices[0][c]);
+    cross(edge(1), edge(2))
+}
+
 fn pick<T: Copy>(rng: &mut impl Rng, from: &[T]) -> T {
     from[rng.random_range(0..from.len())]
 }
@@ -81,7 +87,16 @@ fn triangle(rng: &mut impl Rng, sine: f64) -> [V; 3] {
 /// Small integers, and a query at integers of any size: exact ties, and far away lengths that round to ties.
 fn lattice(rng: &mut impl Rng) -> Case {
     let count = rng.random_range(1..=3);
-    let vertices = (0..count).map(|_| std::array::from_fn(|_| f64::from(rng.random_range(-6..=6)))).collect();
+    let vertices: Vec<V> = (0..count).map(|_| std::array::from_fn(|_| f64::from(rng.random_range(-6..=6)))).collect();
+    if count == 3 && rng.random_bool(0.5) {
+        // Exactly above a quarter point of an edge, or beyond its end.
+        let (i, j) = (rng.random_range(0..3), rng.random_range(0..3));
+        let quarters = f64::from(rng.random_range(-1..=5)) * 0.25;
+        let base = combine([(1.0 - quarters, vertices[i]), (quarters, vertices[j])]);
+        let height = 2f64.powi(rng.random_range(-10..58));
+        let query = combine([(1.0, base), (height, normal(&vertices))]);
+        return Case { family: format!("3 vertices, lattice, query {height:e} normals above"), query, vertices };
+    }
     let far = if rng.random_bool(0.5) { rng.random_range(0..50) } else { rng.random_range(50..56) };
     let query = std::array::from_fn(|_| (2f64.powi(far) * rng.random_range(-6.0..6.0f64)).round());
     Case { family: format!("{count} vertices, lattice, query at 2^{far}"), query, vertices }
@@ -123,12 +138,33 @@ fn almost_flat(rng: &mut impl Rng) -> Case {
     Case { family: format!("{count} vertices, almost parallel to axis {axis}"), query, vertices }
 }
 
+/// Vertices and query within a few units in the last place of one point, whose coordinates are any f32.
+fn neighbours(rng: &mut impl Rng) -> Case {
+    let anchor: [f32; 3] = std::array::from_fn(|_| {
+        loop {
+            let x = f32::from_bits(rng.random());
+            if x.abs() < f32::MAX / 2.0 {
+                break x;
+            }
+        }
+    });
+    let mut near = || -> V {
+        std::array::from_fn(|k| {
+            let steps: i8 = rng.random_range(-32..32);
+            f64::from(anchor[k] * (1.0 + f32::from(steps) * f32::EPSILON))
+        })
+    };
+    let vertices = vec![near(), near(), near()];
+    Case { family: "3 vertices, neighbours of an f32".to_owned(), query: near(), vertices }
+}
+
 /// Case `rng` of all families, with 1 to 3 vertices.
 pub fn case(rng: &mut impl Rng) -> Case {
     match rng.random_range(0..100) {
         0..10 => return lattice(rng),
         10..13 => return wild(rng),
         13..18 => return almost_flat(rng),
+        18..23 => return neighbours(rng),
         _ => {}
     }
     let kinds = rng.random_range(0..10);
@@ -193,10 +229,23 @@ fn query(rng: &mut impl Rng, vertices: &[V]) -> (&'static str, V) {
         2 => ("in the face", inside),
         3 => ("near the face", combine([(1.0, inside), (small, direction)])),
         4 if n == 3 => {
-            let e = |k: usize| std::array::from_fn(|c| vertices[k][c] - vertices[0][c]);
-            let up = cross(e(1), e(2));
-            let length = norm(up).max(f64::MIN_POSITIVE);
-            ("above the face", combine([(1.0, inside), (small / length, up)]))
+            let up = normal(vertices);
+            let up = up.map(|x| x / norm(up).max(f64::MIN_POSITIVE));
+            let height = 2f64.powi(rng.random_range(-60..60));
+            match rng.random_range(0..3) {
+                0 => ("above the face", combine([(1.0, inside), (height, up)])),
+                1 => ("above a vertex", combine([(1.0, vertices[i]), (height, up)])),
+                _ => {
+                    // Above an edge, a little to its inner or outer side.
+                    let along: V = std::array::from_fn(|k| vertices[j][k] - vertices[i][k]);
+                    let aside = 2f64.powi(-rng.random_range(20..70)) * if rng.random_bool(0.5) { 1.0 } else { -1.0 };
+                    ("above an edge", combine([(1.0, on_edge), (height, up), (aside, cross(up, along))]))
+                }
+            }
+        }
+        5 if rng.random_bool(0.3) => {
+            let beyond = 1.0 + 2f64.powi(rng.random_range(-55..5));
+            ("on the extension of an edge", combine([(1.0 - beyond, vertices[i]), (beyond, vertices[j])]))
         }
         5 => ("near an edge", combine([(1.0, on_edge), (small, direction)])),
         6 => {

@@ -65,13 +65,25 @@ impl Nearest {
         if self.exponent == 0 {
             [query[0] + self.offset[0], query[1] + self.offset[1], query[2] + self.offset[2]]
         } else {
-            // At an eighth of the scale nothing overflows, at its own scale nothing is lost to underflow.
-            let offset = self.offset.map(|x| scale_by_power(x, self.exponent));
-            let eighth = self.offset.map(|x| scale_by_power(x, self.exponent - 3));
-            std::array::from_fn(|k| {
-                if offset[k].is_finite() { query[k] + offset[k] } else { (query[k] * 0.125 + eighth[k]) * 8.0 }
-            })
+            self.scaled_landing(query)
         }
+    }
+
+    #[cold]
+    fn scaled_landing(&self, query: V3) -> V3 {
+        std::array::from_fn(|k| {
+            let at =
+                |shift: i32| scale_by_power(query[k], shift) + scale_by_power(self.offset[k], self.exponent + shift);
+            // The sum is rounded once: at an eighth of the scale where the offset overflows, far up where it is subnormal.
+            let offset = scale_by_power(self.offset[k], self.exponent);
+            if !offset.is_finite() {
+                at(-3) * 8.0
+            } else if offset.abs() < f64::MIN_POSITIVE && query[k].abs() < 1.0 {
+                scale_by_power(at(600), -600)
+            } else {
+                query[k] + offset
+            }
+        })
     }
 
     /// How far the computed distance may be from the true one (without eta): `ERROR_CONSTANT` u M, M <= sqrt(3) size.
