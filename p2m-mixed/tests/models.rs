@@ -1,7 +1,6 @@
 //! Files of the wild, with the counts that their list states.
 
 use p2m_mixed::read_scene;
-use std::path::PathBuf;
 
 /// Name, triangles, segments.
 const MODELS: &[(&str, usize, usize)] = &[
@@ -28,12 +27,7 @@ const MODELS: &[(&str, usize, usize)] = &[
 
 #[test]
 fn models_have_the_counts_of_their_list() {
-    let folder = std::env::var_os("P2M_MODELS")
-        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/models")), PathBuf::from);
-    if !folder.is_dir() {
-        println!("skipped: no models in {}", folder.display());
-        return;
-    }
+    let Some(folder) = p2m_testkit::models() else { return };
     for &(name, triangles, segments) in MODELS {
         let scene = read_scene(&folder.join(name)).unwrap();
         let found = (scene.soup.triangles().len(), scene.soup.segments().len(), scene.soup.points().len());
