@@ -1,6 +1,6 @@
 //! The contract kernel: what the distance from a query to a primitive is, bit for bit.
 //!
-//! [`scalar`] is the reference and the finish of every filter; [`key`](Key) is the number by which it compares.
+//! `scalar` is the reference and the finish of every filter; a [`Key`] is the number by which it compares.
 //! See docs/accuracy.md for the error bound and its proof.
 
 #![allow(clippy::float_cmp, reason = "ties are equality of bits, and are decided here")]
