@@ -10,6 +10,7 @@ use p2m::{
     Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment, Shape, Soup, Triangle,
 };
 use p2m_testkit::counting::Counting;
+use p2m_testkit::families::shape;
 use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};
 use p2m_testkit::{oracle::Distance, rng};
 use rand::RngExt;
@@ -32,7 +33,7 @@ macro_rules! backends {
             fn agrees_on_random_scenes_in_f32() {
                 for (seed, soup) in random_soups("f32") {
                     let queries: Vec<_> = queries(seed, &soup).into_iter().map(to_f32).collect();
-                    agrees::<f32, &Soup<f32>, $index<f32, _>>(seed, &scenes::narrow(&soup), &queries);
+                    agrees::<f32, &Soup<f32>, $index<f32, _>>(seed, &scenes::narrow(&soup).expect("fits f32"), &queries);
                 }
             }
 
@@ -230,15 +231,6 @@ where
             say()
         );
         assert!(rough.lower_bound <= expected.distance, "{}: epsilon {epsilon}", say());
-    }
-}
-
-fn shape(vertices: &[[f64; 3]]) -> Shape<f64> {
-    match *vertices {
-        [a] => Point::new(a.into()).into(),
-        [a, b] => Segment::new(a.into(), b.into()).into(),
-        [a, b, c] => Triangle::new(a.into(), b.into(), c.into()).into(),
-        _ => unreachable!("one to three vertices"),
     }
 }
 

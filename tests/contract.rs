@@ -6,23 +6,12 @@
 
 use nalgebra::Point3;
 use p2m::{BruteForce, Key, Shape};
-use p2m::{
-    Closest, ClosestPoint, Feature, Point, Primitive, PrimitiveSet, Projection, QueryOptions, Real, Segment, Triangle,
-};
-use p2m_testkit::families::{self, Case};
+use p2m::{Closest, ClosestPoint, Feature, Point, Primitive, PrimitiveSet, Projection, QueryOptions, Real};
+use p2m_testkit::families::{self, Case, shape};
 use p2m_testkit::{oracle::Distance, rng};
 
 /// Largest error ever observed must stay below this many u M; `ERROR_CONSTANT` is what is proved.
 const OBSERVED: f64 = 4.0;
-
-fn shape<T: Real>(vertices: &[[T; 3]]) -> Shape<T> {
-    match *vertices {
-        [a] => Point::new(a.into()).into(),
-        [a, b] => Segment::new(a.into(), b.into()).into(),
-        [a, b, c] => Triangle::new(a.into(), b.into(), c.into()).into(),
-        _ => unreachable!("one to three vertices"),
-    }
-}
 
 fn project<T: Real>(query: [T; 3], vertices: &[[T; 3]]) -> Projection {
     shape(vertices).project(&query.into())

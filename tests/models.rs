@@ -72,7 +72,7 @@ fn trees_agree_with_brute_force_on_every_model_in_f32() {
     for path in models() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
         let wide = p2m::scene::read_scene(&path).expect("readable").soup;
-        let soup = narrow(&wide);
+        let soup = narrow(&wide).expect("models fit f32");
         let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
         for set in QuerySet::ALL {
             // A quarter of the queries: the scalar changes the boxes, not the kernel.

@@ -5,6 +5,7 @@ use anyhow::{Result, bail};
 use nalgebra::Point3;
 use p2m_core::{PrimitiveSet, Real, Soup};
 use p2m_testkit::queries::diagonal;
+use p2m_testkit::scenes::narrow;
 use std::path::Path;
 
 /// A scene and what the harness has to know about it.
@@ -35,7 +36,7 @@ impl Scene {
             bail!("{name} has no primitives");
         }
         let (double, double_bytes) = trimmed(&soup);
-        let single = to_single(&soup).as_ref().map(trimmed);
+        let single = narrow(&soup).as_ref().map(trimmed);
         let single_bytes = single.as_ref().map_or(0, |(_, bytes)| *bytes);
         let single = single.map(|(soup, _)| soup);
         Ok(Self { name, double, single, double_bytes, single_bytes })
@@ -67,11 +68,6 @@ impl Scene {
 /// The point in f32, to nearest.
 pub(crate) fn single_point(p: &Point3<f64>) -> Point3<f32> {
     Point3::new(f32::of_f64(p.x), f32::of_f64(p.y), f32::of_f64(p.z))
-}
-
-fn to_single(soup: &Soup<f64>) -> Option<Soup<f32>> {
-    let positions = soup.positions().iter().map(single_point).collect();
-    Soup::new(positions, soup.elements()).ok()
 }
 
 /// The soup without spare capacity, and its heap bytes.

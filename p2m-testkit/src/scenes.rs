@@ -1,7 +1,7 @@
 //! Random scenes and queries for tests that hold backends against each other.
 
 use nalgebra::{Point3, Vector3};
-use p2m_core::{Element, Soup};
+use p2m_core::{Element, Real, Soup};
 use rand::{Rng, RngExt};
 
 /// Which primitives a random scene has.
@@ -106,12 +106,11 @@ pub fn soup(rng: &mut impl Rng, kinds: Kinds, layout: Layout, len: usize) -> Sou
     Soup::new(positions.into_iter().map(Point3::from).collect(), elements).expect("random scenes are valid")
 }
 
-/// The same soup in f32.
+/// The same soup in f32; `None` if a coordinate that it uses overflows.
 #[must_use]
-#[allow(clippy::cast_possible_truncation, reason = "rounding to f32 is what is asked for")]
-pub fn narrow(soup: &Soup<f64>) -> Soup<f32> {
-    let positions = soup.positions().iter().map(|p| p.map(|x| x as f32)).collect();
-    Soup::new(positions, soup.elements()).expect("coordinates of random scenes fit f32")
+pub fn narrow(soup: &Soup<f64>) -> Option<Soup<f32>> {
+    let positions = soup.positions().iter().map(|p| p.map(f32::of_f64)).collect();
+    Soup::new(positions, soup.elements()).ok()
 }
 
 /// A query around a scene: on a position, between two, near, uniform in the box, on a half-integer lattice, or far.
