@@ -22,6 +22,10 @@ use vector::{V3, bounds, clamp, scale_by_power};
 /// observed is below 3.5.
 pub const ERROR_CONSTANT: f64 = 8.0;
 
+/// Triangles whose height is below this part of their longest edge are slivers: they get that height in double-double,
+/// which takes longer. 2^-10.
+pub const SLIVER_SINE: f64 = 1.0 / 1024.0;
+
 /// The winner among the features of one primitive.
 #[derive(Clone, Copy)]
 pub(crate) struct Nearest {

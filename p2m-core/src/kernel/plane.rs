@@ -7,7 +7,7 @@ use super::vector::{
     power_of_two, scale_by_power, smaller, sub,
 };
 
-/// Triangles whose height is below 2^-10 of their longest edge get that height in double-double.
+/// The square of [`SLIVER_SINE`](super::SLIVER_SINE).
 const SLIVER_SINE_SQUARED: f64 = power_of_two(-20);
 /// Triangles whose height is below 2^-57 of their longest edge are their edges: no face point is further from the
 /// edges than that height, which is at most u M / 8.
