@@ -52,7 +52,7 @@
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "bvh")]
-pub use p2m_bvh::{AabbOptions, AabbTree};
+pub use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
 pub use p2m_core::*;
 /// Scenes from files and generators.
 #[cfg(feature = "mixed")]

@@ -4,23 +4,11 @@
 #![cfg(all(feature = "bvh", feature = "mixed"))]
 
 use p2m::{AabbTree, BruteForce, BuildIndex, ClosestPoint, PrimitiveSet, Real, Soup};
+use p2m_testkit::model_files;
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::scenes::narrow;
-use std::path::PathBuf;
 
 const QUERIES: usize = 200;
-
-/// Every model in a format that can be read, smallest first.
-fn models() -> Vec<PathBuf> {
-    let Some(folder) = p2m_testkit::models() else { return Vec::new() };
-    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
-        .expect("the folder is there")
-        .map(|entry| entry.expect("readable").path())
-        .filter(|path| path.extension().is_some_and(|e| e == "obj" || e == "ply"))
-        .collect();
-    files.sort_by_key(|path| std::fs::metadata(path).map_or(0, |m| m.len()));
-    files
-}
 
 /// Distance bits and primitive of each answer, computed by two threads.
 fn answers<T: Real, I: ClosestPoint<T> + Sync>(index: &I, queries: &[nalgebra::Point3<T>]) -> Vec<(u64, usize)> {
@@ -53,7 +41,7 @@ fn agrees<T: Real>(
 #[test]
 fn trees_agree_with_brute_force_on_every_model_in_f64() {
     let mut count = 0;
-    for path in models() {
+    for path in model_files() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
         let soup = p2m::scene::read_scene(&path).expect("readable").soup;
         let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
@@ -69,7 +57,7 @@ fn trees_agree_with_brute_force_on_every_model_in_f64() {
 
 #[test]
 fn trees_agree_with_brute_force_on_every_model_in_f32() {
-    for path in models() {
+    for path in model_files() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
         let wide = p2m::scene::read_scene(&path).expect("readable").soup;
         let soup = narrow(&wide).expect("models fit f32");

@@ -21,5 +21,5 @@
 
 mod tree;
 
-pub use p2m_core::hierarchy::SplitOptions as AabbOptions;
-pub use tree::AabbTree;
+pub use p2m_core::hierarchy::{SplitOptions as AabbOptions, SplitRule};
+pub use tree::{AabbTree, NodeBox};

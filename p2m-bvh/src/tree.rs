@@ -1,9 +1,23 @@
 use crate::AabbOptions;
 use nalgebra::Point3;
-use p2m_core::hierarchy::Hierarchy;
+use p2m_core::hierarchy::{Hierarchy, Overlap};
 use p2m_core::{
-    Aabb, Best, BuildError, BuildIndex, ClosestPoint, Collector, Primitive, PrimitiveId, PrimitiveSet, Real, check_set,
+    Aabb, Best, BoxQuery, BuildError, BuildIndex, Closest, ClosestLeaf, ClosestPoint, Collector, Primitive,
+    PrimitiveId, PrimitiveSet, QueryOptions, Real, check_set,
 };
+use std::ops::ControlFlow;
+
+/// The box of a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct NodeBox<T: Real> {
+    /// Around everything below the node.
+    pub bounds: Aabb<T>,
+    /// How far below the root, which is at 0.
+    pub depth: usize,
+    /// How many primitives it has as a leaf; 0 for an inner node.
+    pub primitives: usize,
+}
 
 /// An AABB tree over a set of primitives, which it keeps.
 ///
@@ -25,6 +39,16 @@ impl<T: Real, S: PrimitiveSet<T>> AabbTree<T, S> {
     /// The box around everything, `None` for an empty set.
     pub fn bounds(&self) -> Option<&Aabb<T>> {
         self.hierarchy.nodes().first().map(|root| &root.volume)
+    }
+
+    /// The boxes of all nodes, parents before children: for pictures and statistics.
+    pub fn boxes(&self) -> impl Iterator<Item = NodeBox<T>> + '_ {
+        let of_node = |(node, depth): (&p2m_core::hierarchy::Node<Aabb<T>>, u8)| NodeBox {
+            bounds: node.volume,
+            depth: usize::from(depth),
+            primitives: node.places().len(),
+        };
+        self.hierarchy.nodes().iter().zip(self.hierarchy.depths()).map(of_node)
     }
 
     /// Heap memory that the tree owns besides its set, in bytes.
@@ -69,5 +93,37 @@ impl<T: Real, S: PrimitiveSet<T>> BuildIndex<T, S> for AabbTree<T, S> {
         let boxes: Vec<Aabb<T>> = (0..set.len()).map(|i| set.get(PrimitiveId::new(i)).aabb()).collect();
         let hierarchy = Hierarchy::build(&boxes, options, |id| boxes[id.index()], Aabb::union);
         Ok(Self { set, hierarchy })
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>> BoxQuery<T> for AabbTree<T, S> {
+    fn visit_box(&self, bounds: &Aabb<T>, visit: &mut dyn FnMut(PrimitiveId) -> ControlFlow<()>) -> ControlFlow<()> {
+        if bounds.is_empty() {
+            return ControlFlow::Continue(());
+        }
+        let of_node = |node: &Aabb<T>| {
+            if !bounds.meets(node) {
+                Overlap::None
+            } else if bounds.contains(node) {
+                Overlap::All
+            } else {
+                Overlap::Some
+            }
+        };
+        self.hierarchy.visit_overlapping(of_node, |id| self.set.get(id).meets_box(bounds), visit)
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>> ClosestLeaf<T> for AabbTree<T, S> {
+    fn closest_leaf(&self, query: &Point3<T>) -> Option<Closest<T>> {
+        if !query.iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        let mut best = Best::new(&QueryOptions::default());
+        let leaf = self.hierarchy.nearest_leaf(|bounds| bounds.lower_bound(query), |aside| best.forgo(aside));
+        for &id in leaf {
+            self.offer(query, id, &mut best);
+        }
+        best.finish()
     }
 }

@@ -59,6 +59,29 @@ impl<T: Real> Aabb<T> {
         (0..3).all(|k| self.min[k] <= other.min[k] && other.max[k] <= self.max[k])
     }
 
+    /// What both have in common; empty if that is nothing. NaN makes it empty or NaN on that axis.
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Self {
+        let low = |a: T, b: T| if a >= b { a } else { b };
+        let high = |a: T, b: T| if a <= b { a } else { b };
+        Self {
+            min: Point3::from(std::array::from_fn(|k| low(self.min[k], other.min[k]))),
+            max: Point3::from(std::array::from_fn(|k| high(self.max[k], other.max[k]))),
+        }
+    }
+
+    /// Whether there is no point in it; a box with a NaN coordinate has none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        !(0..3).all(|k| self.min[k] <= self.max[k])
+    }
+
+    /// Whether both have a point in common, be it of their boundaries.
+    #[must_use]
+    pub fn meets(&self, other: &Self) -> bool {
+        (0..3).all(|k| self.min[k] <= other.max[k] && other.min[k] <= self.max[k])
+    }
+
     /// The nearest point of the box.
     #[must_use]
     pub fn clamp(&self, point: Point3<T>) -> Point3<T> {

@@ -26,6 +26,11 @@ impl<S> BruteForce<S> {
         check_set(&set)?;
         Ok(Self { set })
     }
+
+    /// The set it was built over.
+    pub fn set(&self) -> &S {
+        &self.set
+    }
 }
 
 impl<T: Real, S: PrimitiveSet<T>> ClosestPoint<T> for BruteForce<S> {

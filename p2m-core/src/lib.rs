@@ -18,11 +18,13 @@
 
 mod aabb;
 mod approximate;
+mod box_query;
 mod brute_force;
 mod error;
 pub mod hierarchy;
 mod index;
 pub mod kernel;
+pub mod predicates;
 mod primitive;
 mod query;
 mod real;
@@ -30,6 +32,7 @@ mod set;
 mod soup;
 
 pub use aabb::Aabb;
+pub use box_query::{BoxQuery, ClosestLeaf};
 pub use brute_force::BruteForce;
 pub use error::BuildError;
 pub use index::{BuildIndex, ClosestPoint};

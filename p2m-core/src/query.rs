@@ -132,6 +132,18 @@ impl<T: Real> Best<T> {
         self.options.hint.filter(|id| id.index() < len)
     }
 
+    /// A part of the scene will not be searched although it may hold the answer; `square` is a lower bound as for
+    /// [`Collector::prune_above`]. The answer is then approximate, and its certified lower bound says so.
+    pub fn forgo(&mut self, square: f64) {
+        // A bound on a box is at most 5 u too large, and wrong by some subnormals near zero; above the range it is at
+        // least its end.
+        let square = if square < f64::MAX { square } else { f64::MAX };
+        let bound = (square * ROUND_DOWN - 4.0 * f64::from_bits(1)).max(0.0).sqrt();
+        if bound < self.certified {
+            self.certified = bound;
+        }
+    }
+
     /// The answer.
     #[must_use]
     pub fn finish(self) -> Option<Closest<T>> {

@@ -39,3 +39,16 @@ pub fn models() -> Option<std::path::PathBuf> {
     eprintln!("skipped: no models in {} (set P2M_MODELS to a folder of meshes)", folder.display());
     None
 }
+
+/// The files of the models, smallest first; none, with a message, where there is no folder of them.
+#[must_use]
+pub fn model_files() -> Vec<std::path::PathBuf> {
+    let Some(folder) = models() else { return Vec::new() };
+    let mut files: Vec<_> = std::fs::read_dir(folder)
+        .expect("the folder is there")
+        .map(|entry| entry.expect("readable").path())
+        .filter(|path| path.extension().is_some_and(|e| e == "obj" || e == "ply"))
+        .collect();
+    files.sort_by_key(|path| std::fs::metadata(path).map_or(0, |m| m.len()));
+    files
+}

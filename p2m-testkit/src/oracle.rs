@@ -197,6 +197,41 @@ impl Distance {
     }
 }
 
+/// Whether the convex hull of one to three vertices has a point in a closed box; all finite.
+///
+/// Clips the hull by the six half-spaces, one after the other, in homogeneous coordinates.
+#[must_use]
+pub fn meets_box(vertices: &[[f64; 3]], corners: &[[f64; 3]; 2]) -> bool {
+    let unit = vertices.iter().chain(corners).flatten().map(|x| lowest_bit(*x)).min().expect("coordinates");
+    let mut hull: Vec<[IBig; 4]> =
+        vertices.iter().map(|v| std::array::from_fn(|k| if k < 3 { integer(v[k], unit) } else { IBig::ONE })).collect();
+    for k in 0..3 {
+        let [low, high] = corners.each_ref().map(|corner| integer(corner[k], unit));
+        hull = clip(&hull, |p| &p[k] - &low * &p[3]);
+        hull = clip(&hull, |p| &high * &p[3] - &p[k]);
+    }
+    !hull.is_empty()
+}
+
+/// The part of a convex polygon (or segment, or point) on which `height`, which is linear, is not negative.
+fn clip(hull: &[[IBig; 4]], height: impl Fn(&[IBig; 4]) -> IBig) -> Vec<[IBig; 4]> {
+    let heights: Vec<IBig> = hull.iter().map(height).collect();
+    let mut rest = Vec::new();
+    for (i, p) in hull.iter().enumerate() {
+        let j = (i + 1) % hull.len();
+        let (at_p, at_q) = (&heights[i], &heights[j]);
+        if *at_p >= IBig::ZERO {
+            rest.push(p.clone());
+        }
+        if (*at_p > IBig::ZERO && *at_q < IBig::ZERO) || (*at_p < IBig::ZERO && *at_q > IBig::ZERO) {
+            // Both weights have the sign of at_p; the last coordinate has to stay positive.
+            let sign = if *at_p > IBig::ZERO { IBig::ONE } else { -IBig::ONE };
+            rest.push(std::array::from_fn(|k| (&hull[j][k] * at_p - &p[k] * at_q) * &sign));
+        }
+    }
+    rest
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -221,6 +256,16 @@ mod tests {
         assert!(is([0.0, 0.0, -1e308], &T, 1e308));
         let flat = [[0.0; 3], [1.0, 1.0, 1.0], [3.0, 3.0, 3.0]];
         assert!(is([4.0, 3.0, 3.0], &flat, 1.0));
+    }
+
+    #[test]
+    fn hulls_meet_boxes_in_closed_forms() {
+        let block = |x: f64| [[x, x, -1.0], [9.0, 9.0, 1.0]];
+        assert!(meets_box(&T, &block(2.0)) && !meets_box(&T, &block(2.0 + 4.0 * f64::EPSILON)));
+        assert!(meets_box(&T, &[[0.5, 0.5, -1.0], [0.6, 0.6, 1.0]]), "through the face");
+        assert!(!meets_box(&T, &[[0.5, 0.5, 0.1], [0.6, 0.6, 1.0]]), "above the face");
+        assert!(meets_box(&T[1..], &[[1.0, 3.0, 0.0], [1.0, 3.0, 0.0]]) && !meets_box(&T[1..], &block(2.1)));
+        assert!(meets_box(&T[..1], &[[-1.0; 3], [0.0; 3]]) && !meets_box(&T[..1], &[[-1.0; 3], [-1e-300; 3]]));
     }
 
     #[test]

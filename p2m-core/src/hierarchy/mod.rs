@@ -4,10 +4,13 @@
 //! keeps a box beside each node, a k-DOP tree its heights. Searching takes two closures, the lower bound of a node and
 //! the visit of a leaf, and leaves every decision to a [`Collector`](crate::Collector).
 
+mod cost;
+mod overlap;
 mod search;
 mod split;
 
-pub use split::SplitOptions;
+pub use overlap::Overlap;
+pub use split::{SplitOptions, SplitRule};
 
 use crate::{Aabb, PrimitiveId, Real};
 
@@ -94,6 +97,18 @@ impl<V> Hierarchy<V> {
     #[must_use]
     pub fn order(&self) -> &[PrimitiveId] {
         &self.order
+    }
+
+    /// How deep each node lies below the root, in the order of [`nodes`](Self::nodes).
+    #[must_use]
+    pub fn depths(&self) -> Vec<u8> {
+        let mut depths = vec![0; self.nodes.len()];
+        for (at, node) in self.nodes.iter().enumerate() {
+            for child in node.children().into_iter().flatten() {
+                depths[child] = depths[at] + 1;
+            }
+        }
+        depths
     }
 
     /// Heap memory it owns, in bytes.

@@ -1,15 +1,37 @@
-//! Top-down splits by a binned surface-area heuristic [Wald2007].
+//! Top-down splits.
 //!
-//! A node is split along the axis and at the bin border that minimise n_left A_left + n_right A_right, A being the
-//! surface areas of the children's boxes, unless testing all its primitives is cheaper. Where boxes or their centres
-//! tell nothing apart (identical primitives, extents that overflow), the node is halved by order; below half of
-//! [`MAX_DEPTH`] every node is, so that no input makes the tree deep.
+//! A node is cut in two by the [`SplitRule`] of the options, unless testing all its primitives is cheaper. Where boxes or
+//! their centres tell nothing apart (identical primitives, extents that overflow), the node is halved by order; below
+//! half of [`MAX_DEPTH`] every node is, so that no input makes the tree deep.
 
+use super::cost::{Bounds, Cut, best_cut, count};
 use super::{MAX_DEPTH, Node};
 use crate::{Aabb, PrimitiveId, Real};
 use nalgebra::Point3;
 
-/// How finely a set is split.
+/// Where nodes are split.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum SplitRule {
+    /// Where n_left A_left + n_right A_right is smallest, A being surface areas: the cost of random lines. 16 bins along each
+    /// axis \[Wald2007\].
+    #[default]
+    Sah,
+    /// The same cost along the longest side of the node alone, sampled coarsely first and then twice more finely around the
+    /// best position, as in \[Cavarga2021\]; but primitives go to one side only, by their centres.
+    AdaptiveSah,
+    /// The cost of random balls: A is the volume of the box dilated by `radius`, the distance (in units of the scene)
+    /// that most answers are expected to have. From volumes (0) it goes through surface areas to the sum of the sides
+    /// (large radii). A negative or NaN radius counts as 0. 16 bins along each axis.
+    Ball {
+        /// The expected distance.
+        radius: f64,
+    },
+    /// Half of the primitives to each side, along the axis on which their centres spread most.
+    Median,
+}
+
+/// How a set is split.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SplitOptions {
@@ -17,21 +39,29 @@ pub struct SplitOptions {
     pub max_leaf: usize,
     /// Cost of visiting an inner node, in units of the cost of testing a primitive.
     pub node_cost: f64,
+    /// Where nodes are split.
+    pub rule: SplitRule,
 }
 
 impl Default for SplitOptions {
     fn default() -> Self {
-        Self { max_leaf: 8, node_cost: 4.0 }
+        Self { max_leaf: 8, node_cost: 4.0, rule: SplitRule::Sah }
     }
 }
 
-const BINS: usize = 16;
+impl SplitOptions {
+    /// With this rule.
+    #[must_use]
+    pub fn with_rule(self, rule: SplitRule) -> Self {
+        Self { rule, ..self }
+    }
+}
 
 /// A primitive on its way into a leaf: its box and centre in f64, at half scale so that no sum overflows.
 #[derive(Clone, Copy)]
-struct Item {
-    min: [f64; 3],
-    max: [f64; 3],
+pub(super) struct Item {
+    pub(super) min: [f64; 3],
+    pub(super) max: [f64; 3],
     id: PrimitiveId,
 }
 
@@ -41,44 +71,9 @@ impl Item {
         Self { min: half(&b.min), max: half(&b.max), id }
     }
 
-    fn centre(&self, axis: usize) -> f64 {
+    pub(super) fn centre(&self, axis: usize) -> f64 {
         self.min[axis] + self.max[axis]
     }
-}
-
-/// A box that grows.
-#[derive(Clone, Copy)]
-struct Bounds {
-    min: [f64; 3],
-    max: [f64; 3],
-}
-
-impl Bounds {
-    const EMPTY: Self = Self { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };
-
-    fn add(&mut self, min: &[f64; 3], max: &[f64; 3]) {
-        for k in 0..3 {
-            self.min[k] = if min[k] < self.min[k] { min[k] } else { self.min[k] };
-            self.max[k] = if max[k] > self.max[k] { max[k] } else { self.max[k] };
-        }
-    }
-
-    /// Half the surface area, in units of `unit` squared.
-    fn area(&self, unit: f64) -> f64 {
-        let [x, y, z]: [f64; 3] = std::array::from_fn(|k| (self.max[k] - self.min[k]) / unit);
-        x * y + y * z + z * x
-    }
-
-    fn longest_side(&self) -> f64 {
-        (0..3).map(|k| self.max[k] - self.min[k]).fold(0.0, f64::max)
-    }
-}
-
-/// Where to cut a node: primitives whose centre falls into a bin below `bin` go left.
-struct Cut {
-    axis: usize,
-    bin: usize,
-    cost: f64,
 }
 
 /// The nodes without volumes, and the order of the primitives in their leaves.
@@ -129,107 +124,20 @@ fn divide(items: &mut [Item], depth: usize, options: &SplitOptions) -> Option<us
         centres.add(&centre, &centre);
     }
     let whole = items.len() <= options.max_leaf;
-    let cut = if depth < MAX_DEPTH / 2 { best_cut(items, &bounds, &centres) } else { None };
+    let cut = if depth < MAX_DEPTH / 2 { best_cut(items, &bounds, &centres, options.rule) } else { None };
     match cut {
-        Some(cut) if whole && cut.cost + options.node_cost >= count(items.len()) => None,
-        Some(cut) => {
-            let bin = Binning::new(&centres, cut.axis);
-            let left = partition(items, |item| bin.of(item) < cut.bin);
-            // Both sides of a cut have items, by the construction of `best_cut`.
-            Some(left)
-        }
+        Some(Cut { cost, .. }) if whole && cost + options.node_cost >= count(items.len()) => None,
+        // Both sides of a cut have items, by the construction of `best_cut`.
+        Some(Cut { binning, bin, .. }) => Some(partition(items, |item| binning.of(item) < bin)),
         None if whole => None,
         None => {
-            let axis = (0..3).max_by(|a, b| {
-                let side = |k: usize| centres.max[k] * 0.5 - centres.min[k] * 0.5;
-                side(*a).total_cmp(&side(*b))
-            });
-            let axis = axis.unwrap_or(0);
+            let axis = centres.longest_axis();
             let middle = items.len() / 2;
             items
                 .select_nth_unstable_by(middle, |a, b| a.centre(axis).total_cmp(&b.centre(axis)).then(a.id.cmp(&b.id)));
             Some(middle)
         }
     }
-}
-
-/// Which of the bins along an axis a centre falls into.
-struct Binning {
-    axis: usize,
-    low: f64,
-    scale: f64,
-}
-
-impl Binning {
-    fn new(centres: &Bounds, axis: usize) -> Self {
-        let low = centres.min[axis];
-        Self { axis, low, scale: count(BINS) * (1.0 - 1e-9) / (centres.max[axis] - low) }
-    }
-
-    /// Whether the axis tells anything apart and its arithmetic stays finite.
-    fn is_usable(&self) -> bool {
-        self.scale.is_finite() && self.scale > 0.0
-    }
-
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 <= value < BINS")]
-    fn of(&self, item: &Item) -> usize {
-        (((item.centre(self.axis) - self.low) * self.scale) as usize).min(BINS - 1)
-    }
-}
-
-#[allow(clippy::cast_precision_loss, reason = "counts are far below 2^53")]
-fn count(n: usize) -> f64 {
-    n as f64
-}
-
-/// The cheapest cut between two bins over all axes, in units of the cost of one primitive test; `None` if there is none.
-fn best_cut(items: &[Item], bounds: &Bounds, centres: &Bounds) -> Option<Cut> {
-    let unit = bounds.longest_side();
-    let whole = bounds.area(unit);
-    if !(unit > 0.0 && unit.is_finite() && whole.is_finite()) {
-        return None;
-    }
-    let mut best: Option<Cut> = None;
-    for axis in 0..3 {
-        let binning = Binning::new(centres, axis);
-        if !binning.is_usable() {
-            continue;
-        }
-        let mut bins = [(Bounds::EMPTY, 0usize); BINS];
-        for item in items {
-            let bin = &mut bins[binning.of(item)];
-            bin.0.add(&item.min, &item.max);
-            bin.1 += 1;
-        }
-        let mut right = [(0.0, 0usize); BINS];
-        let mut side = (Bounds::EMPTY, 0);
-        for (k, bin) in bins.iter().enumerate().skip(1).rev() {
-            if bin.1 > 0 {
-                side.0.add(&bin.0.min, &bin.0.max);
-                side.1 += bin.1;
-            }
-            right[k] = (if side.1 > 0 { side.0.area(unit) } else { 0.0 }, side.1);
-        }
-        let mut side = (Bounds::EMPTY, 0);
-        for k in 1..BINS {
-            let bin = &bins[k - 1];
-            if bin.1 > 0 {
-                side.0.add(&bin.0.min, &bin.0.max);
-                side.1 += bin.1;
-            }
-            let (right_area, right_count) = right[k];
-            if side.1 == 0 || right_count == 0 {
-                continue;
-            }
-            let sum = side.0.area(unit) * count(side.1) + right_area * count(right_count);
-            // On a line every area is zero: any balanced cut will do.
-            let cost = if whole > 0.0 { sum / whole } else { count(side.1.max(right_count)) };
-            if best.as_ref().is_none_or(|b| cost < b.cost) {
-                best = Some(Cut { axis, bin: k, cost });
-            }
-        }
-    }
-    best
 }
 
 /// Items for which `left` holds first, in place; returns how many those are. Deterministic.

@@ -15,6 +15,7 @@ pub(crate) mod vector;
 
 pub use key::Key;
 
+pub(crate) use vector::power_of_two;
 use vector::{V3, bounds, clamp, scale_by_power};
 
 /// Bound on the error of a distance in units of u M, where M is the largest distance from the query to a vertex of

@@ -1,5 +1,6 @@
 //! The primitives of a scene, and what a primitive of your own has to bring.
 
+mod in_box;
 mod point;
 mod segment;
 mod shape;
@@ -154,6 +155,12 @@ pub trait Primitive<T: Real> {
         Some(self.project(query))
     }
 
+    /// Whether it has a point in a closed box, for [`BoxQuery`](crate::BoxQuery). Exact for the primitives of this
+    /// project; by default, whether its own box does, which for a primitive of your own finds at least those that do.
+    fn meets_box(&self, bounds: &Aabb<T>) -> bool {
+        !bounds.is_empty() && bounds.meets(&self.aabb())
+    }
+
     /// Whether all coordinates are finite.
     fn is_finite(&self) -> bool {
         self.aabb().is_finite()
@@ -175,6 +182,9 @@ impl<T: Real, P: Primitive<T>> Primitive<T> for &P {
     #[inline(always)]
     fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
         (*self).project_within(query, square)
+    }
+    fn meets_box(&self, bounds: &Aabb<T>) -> bool {
+        (*self).meets_box(bounds)
     }
     #[inline(always)]
     fn is_finite(&self) -> bool {

@@ -1,4 +1,4 @@
-use super::{Primitive, Projection, UNBOUNDED};
+use super::{Primitive, Projection, UNBOUNDED, in_box};
 use crate::kernel::scalar;
 use crate::real::wide;
 use crate::{Aabb, Real};
@@ -36,5 +36,8 @@ impl<T: Real> Primitive<T> for Point<T> {
     fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
         let (q, v) = (wide(query), wide(&self.position));
         Some(Projection::from_nearest(&scalar::point(q, v, square)?, q, &[v]))
+    }
+    fn meets_box(&self, bounds: &Aabb<T>) -> bool {
+        in_box::meets(std::array::from_ref(&self.position), bounds)
     }
 }

@@ -53,6 +53,14 @@ impl<T: Real> Primitive<T> for Shape<T> {
             Self::Triangle(t) => t.project_within(query, square),
         }
     }
+
+    fn meets_box(&self, bounds: &Aabb<T>) -> bool {
+        match self {
+            Self::Point(p) => p.meets_box(bounds),
+            Self::Segment(s) => s.meets_box(bounds),
+            Self::Triangle(t) => t.meets_box(bounds),
+        }
+    }
 }
 
 impl<T: Real> From<Point<T>> for Shape<T> {

@@ -1,4 +1,4 @@
-use super::{Primitive, Projection, UNBOUNDED};
+use super::{Primitive, Projection, UNBOUNDED, in_box};
 use crate::kernel::scalar;
 use crate::real::wide;
 use crate::{Aabb, Real};
@@ -34,5 +34,8 @@ impl<T: Real> Primitive<T> for Triangle<T> {
     fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
         let (q, v) = (wide(query), [wide(&self.vertices[0]), wide(&self.vertices[1]), wide(&self.vertices[2])]);
         Some(Projection::from_nearest(&scalar::triangle(q, v, square)?, q, &v))
+    }
+    fn meets_box(&self, bounds: &Aabb<T>) -> bool {
+        in_box::meets(&self.vertices, bounds)
     }
 }

@@ -1,0 +1,148 @@
+//! Signs of determinants, exact for all finite input.
+//!
+//! Signs that decide topology cannot be left to rounding: on which side of a line or a plane a point lies. Where
+//! nothing can over- or underflow the adaptive predicates of Shewchuk \[Shewchuk1997\] (crate robust) decide; elsewhere
+//! integers of any length do (crate dashu-int), for every finite f64 is an integer times 2^-1074.
+//!
+//! ```
+//! use p2m_core::predicates::orientation_2d;
+//! use std::cmp::Ordering;
+//!
+//! // 0.1 + 0.2 is not 0.3, and the difference decides; so it does at a scale whose products underflow.
+//! for scale in [1.0, 2f64.powi(-1000)] {
+//!     let [a, b, c] = [[0.0, 0.0], [1.0, 1.0], [0.1 + 0.2, 0.3]].map(|p: [f64; 2]| p.map(|x| x * scale));
+//!     assert_eq!(orientation_2d(a, b, c), Ordering::Less);
+//! }
+//! ```
+
+use crate::kernel::power_of_two;
+use dashu_int::IBig;
+use robust::{Coord, Coord3D, orient2d, orient3d};
+use std::cmp::Ordering;
+
+/// Coordinates of this size are left to robust: their lowest bit is at least 2^-352, so products of three differences
+/// are multiples of 2^-1056, and they are below 2^910.
+const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-300)..=power_of_two(300);
+
+fn is_plain<const N: usize>(points: &[[f64; N]]) -> bool {
+    points.as_flattened().iter().all(|x| *x == 0.0 || PLAIN.contains(&x.abs()))
+}
+
+/// The sign of (b - a) x (c - a): [`Ordering::Greater`] if `c` is to the left of the line from `a` to `b`, `Equal` if the
+/// three are collinear. All finite.
+///
+/// # Complexity
+/// A few multiplications, but some microseconds for coordinates beyond 2^-300..2^300.
+///
+/// # References
+/// \[Shewchuk1997\]
+#[must_use]
+pub fn orientation_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Ordering {
+    if is_plain(&[a, b, c]) {
+        let coord = |[x, y]: [f64; 2]| Coord { x, y };
+        return sign(orient2d(coord(a), coord(b), coord(c)));
+    }
+    let [b, c] = [b, c].map(|p| difference(p, a));
+    (&b[0] * &c[1]).cmp(&(&b[1] * &c[0]))
+}
+
+/// The sign of the determinant of b - a, c - a, d - a: [`Ordering::Greater`] if `d` is on the side of the plane to which
+/// (b - a) x (c - a) points, `Equal` if the four are coplanar. All finite.
+///
+/// # Complexity
+/// As [`orientation_2d`].
+///
+/// # References
+/// \[Shewchuk1997\]
+#[must_use]
+pub fn orientation_3d(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> Ordering {
+    if is_plain(&[a, b, c, d]) {
+        let coord = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
+        // Positive below the plane, there.
+        return sign(orient3d(coord(a), coord(b), coord(c), coord(d))).reverse();
+    }
+    let [b, c, d] = [b, c, d].map(|p| difference(p, a));
+    let minor = |i: usize, j: usize| &b[i] * &c[j] - &b[j] * &c[i];
+    (minor(1, 2) * &d[0] + minor(2, 0) * &d[1] + minor(0, 1) * &d[2]).cmp(&IBig::ZERO)
+}
+
+fn sign(x: f64) -> Ordering {
+    x.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
+}
+
+/// p - a in units of 2^-1074.
+fn difference<const N: usize>(p: [f64; N], a: [f64; N]) -> [IBig; N] {
+    std::array::from_fn(|k| integer(p[k]) - integer(a[k]))
+}
+
+/// x in units of 2^-1074.
+fn integer(x: f64) -> IBig {
+    let bits = x.abs().to_bits();
+    let (exponent, fraction) = (bits >> 52, bits & ((1 << 52) - 1));
+    let magnitude = match exponent {
+        0 => IBig::from(fraction),
+        _ => IBig::from(fraction | 1 << 52) << usize::try_from(exponent - 1).expect("eleven bits"),
+    };
+    if x < 0.0 { -magnitude } else { magnitude }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Ordering::{Equal, Greater, Less};
+
+    #[test]
+    fn left_is_greater_and_so_is_the_side_of_the_normal() {
+        for scale in [1.0, 2f64.powi(-700), 2f64.powi(-1060), 2f64.powi(1000)] {
+            let at = |x: f64, y: f64| [x * scale, y * scale];
+            assert_eq!(orientation_2d(at(0.0, 0.0), at(4.0, 0.0), at(1.0, 1.0)), Greater);
+            assert_eq!(orientation_2d(at(0.0, 0.0), at(4.0, 0.0), at(1.0, -1.0)), Less);
+            assert_eq!(orientation_2d(at(1.0, 1.0), at(2.0, 3.0), at(5.0, 9.0)), Equal);
+            let at = |p: [f64; 3]| p.map(|x| x * scale);
+            let [a, b, c] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(at);
+            assert_eq!(orientation_3d(a, b, c, at([5.0, 5.0, 2.0])), Greater);
+            assert_eq!(orientation_3d(a, b, c, at([5.0, 5.0, -2.0])), Less);
+            assert_eq!(orientation_3d(a, b, c, at([-7.0, 3.0, 0.0])), Equal);
+        }
+    }
+
+    /// Cyclic shifts keep the sign, swaps turn it: both ways of computing have to know that, on the edge of what they
+    /// can tell, and have to say the same as each other on either side of the border between them.
+    #[test]
+    fn one_bit_decides_and_both_ways_agree() {
+        let [a, b] = [[0.5, 0.5], [12.0, 12.0]];
+        for i in 0..32 {
+            for j in 0..32 {
+                let c = [0.5 + f64::from(i) * f64::EPSILON, 0.5 + f64::from(j) * f64::EPSILON];
+                let expected = j.cmp(&i);
+                assert_eq!(orientation_2d(a, b, c), expected);
+                assert_eq!(orientation_2d(b, c, a), expected);
+                assert_eq!(orientation_2d(b, a, c), expected.reverse());
+                let small = |p: [f64; 2]| p.map(|x| x * 2f64.powi(-900));
+                assert_eq!(orientation_2d(small(a), small(b), small(c)), expected);
+                let lift = |p: [f64; 2], z: f64| [p[0], p[1], z];
+                let (p, q, r, s) = (lift(a, 0.0), lift(b, 0.0), lift(a, 1.0), lift(c, 3.0));
+                assert_eq!(orientation_3d(p, q, r, s), expected.reverse());
+                let small = |p: [f64; 3]| p.map(|x| x * 2f64.powi(-900));
+                assert_eq!(orientation_3d(small(p), small(q), small(r), small(s)), expected.reverse());
+            }
+        }
+    }
+
+    #[test]
+    fn integers_go_on_where_subnormals_end() {
+        let (subnormal, normal) = (f64::MIN_POSITIVE.next_down(), f64::MIN_POSITIVE);
+        assert_eq!(integer(normal) - integer(subnormal), IBig::ONE);
+        assert_eq!(integer(-normal.next_up()) + integer(normal), -IBig::ONE);
+        assert_eq!(integer(4.0) - integer(2.0), integer(2.0));
+        assert_eq!(integer(-0.0), IBig::ZERO);
+    }
+
+    #[test]
+    fn exponents_of_the_whole_range_may_meet() {
+        let tiny = f64::from_bits(1);
+        assert_eq!(orientation_2d([0.0, 0.0], [f64::MAX, 0.0], [-f64::MAX, tiny]), Greater);
+        assert_eq!(orientation_2d([-f64::MAX, -tiny], [f64::MAX, tiny], [0.0, 0.0]), Equal);
+        assert_eq!(orientation_3d([0.0; 3], [f64::MAX, 0.0, 0.0], [0.0, tiny, 0.0], [1.0, 1.0, -tiny]), Less);
+    }
+}
