@@ -28,7 +28,8 @@ pub(crate) const YARDSTICK: &str = "parry3d";
 /// The rival of our precision, to which ratios are given as well.
 pub(crate) const YARDSTICK_DOUBLE: &str = "parry3d-f64";
 
-const OURS: Backend = Backend {
+/// What entries of ours have in common.
+pub(crate) const OURS: Backend = Backend {
     name: "",
     scalar: ScalarKind::Double,
     ours: true,
@@ -58,25 +59,34 @@ fn id_of(primitive: PrimitiveId) -> u32 {
     primitive.index() as u32
 }
 
-/// An index with default options over a set.
-fn build<'a, T, I, S>(set: S) -> Result<Ready<'a>, Absent>
+/// An index over a set.
+fn build<'a, T, I, S>(set: S, options: &I::Options) -> Result<Ready<'a>, Absent>
 where
     T: Scalar,
     S: PrimitiveSet<T>,
     I: BuildIndex<T, S> + Sync + 'a,
 {
-    let index = I::build(set, &I::Options::default()).map_err(|error| Absent(error.to_string()))?;
+    let index = I::build(set, options).map_err(|error| Absent(error.to_string()))?;
     Ok(Box::new(Ours(index, PhantomData::<fn() -> T>)))
 }
 
-/// An index that borrows the scene as it is.
+/// An index with default options that borrows the scene as it is.
 fn over_soup<'a, T, I>(scene: &'a Scene) -> Result<Prepared<'a>, Absent>
 where
     T: Scalar,
     I: BuildIndex<T, &'a Soup<T>> + Sync + 'a,
 {
+    over_soup_with::<T, I>(scene, I::Options::default())
+}
+
+/// The same with other options.
+pub(crate) fn over_soup_with<'a, T, I>(scene: &'a Scene, options: I::Options) -> Result<Prepared<'a>, Absent>
+where
+    T: Scalar,
+    I: BuildIndex<T, &'a Soup<T>> + Sync + 'a,
+{
     let (soup, borrowed) = T::soup(scene)?;
-    Ok(Prepared { build: Box::new(|| build::<T, I, _>(soup)), borrowed })
+    Ok(Prepared { build: Box::new(move || build::<T, I, _>(soup, &options)), borrowed })
 }
 
 /// An index over the triangles written out, where there is nothing else: shows what a set of mixed kinds costs.
@@ -91,7 +101,7 @@ where
         })
         .collect();
     let triangles = triangles.ok_or_else(|| Absent("the scene has other primitives than triangles".to_owned()))?;
-    Ok(Prepared { build: Box::new(|| build::<f64, I, _>(triangles)), borrowed: 0 })
+    Ok(Prepared { build: Box::new(|| build::<f64, I, _>(triangles, &I::Options::default())), borrowed: 0 })
 }
 
 #[cfg(test)]

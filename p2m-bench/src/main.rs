@@ -18,6 +18,7 @@ mod queries;
 mod report;
 mod rivals;
 mod scene;
+mod splits;
 mod table;
 mod verify;
 
@@ -50,6 +51,8 @@ enum Command {
     Query(QueryArguments),
     /// Our exact backends against brute force, bit for bit, in f64 and f32; fails on any difference
     Verify(VerifyArguments),
+    /// The split rules of the AABB tree: build, nodes and primitives visited, time per query
+    Splits(SplitsArguments),
 }
 
 /// What both commands take.
@@ -105,6 +108,25 @@ struct VerifyArguments {
     queries: usize,
 }
 
+#[derive(Args)]
+struct SplitsArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    /// Query sets
+    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface])]
+    sets: Vec<QuerySet>,
+    /// Rounds; every rule begins one in turn
+    #[arg(long, default_value_t = 5)]
+    rounds: usize,
+    /// Queries a round
+    #[arg(long, default_value_t = 50_000)]
+    queries: usize,
+    /// Seed of the query sets
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
 fn backend_names() -> PossibleValuesParser {
     backends::ALL.iter().map(|backend| backend.name).collect::<Vec<_>>().into()
 }
@@ -113,6 +135,7 @@ fn main() -> Result<ExitCode> {
     let good = match Cli::parse().command {
         Command::Query(arguments) => query(&arguments)?,
         Command::Verify(arguments) => verify_all(&arguments)?,
+        Command::Splits(arguments) => splits(&arguments)?,
     };
     Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
@@ -150,6 +173,19 @@ fn query(arguments: &QueryArguments) -> Result<bool> {
             .iter()
             .filter(|entry| entry.backend.ours)
             .all(|entry| entry.sets.iter().flatten().all(|set| set.agreement.is_clean()));
+    }
+    Ok(good)
+}
+
+/// Whether all trees agree.
+fn splits(arguments: &SplitsArguments) -> Result<bool> {
+    let SplitsArguments { scenes, sets, rounds, queries, seed } = arguments;
+    let effort = Effort { rounds: *rounds, queries: *queries, builds: *rounds, seed: *seed };
+    println!("{}", Provenance::collect(None));
+    println!("One thread, thread CPU time, {rounds} rounds in turns, {queries} queries a round, seed {seed}.");
+    let mut good = true;
+    for path in scenes {
+        good &= splits::print(&Scene::read(path)?, sets, &effort);
     }
     Ok(good)
 }

@@ -1,0 +1,92 @@
+//! `p2m-bench splits`: what the split rules of the AABB tree cost and bring.
+
+use crate::backends::{OURS, over_soup_with};
+use crate::contender::Backend;
+use crate::measure::{Effort, Spread, build_all, measure_set};
+use crate::scene::Scene;
+use crate::table::Table;
+use nalgebra::Point3;
+use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
+use p2m_core::{Best, BuildIndex, QueryOptions};
+use p2m_testkit::counting::Counting;
+use p2m_testkit::queries::QuerySet;
+
+/// A rule, whose radius is in diagonals of the scene's box here.
+struct Rule {
+    backend: Backend,
+    rule: SplitRule,
+}
+
+macro_rules! rule {
+    ($name:literal, $rule:expr) => {
+        Rule {
+            backend: Backend {
+                name: $name,
+                prepare: |s| over_soup_with::<f64, AabbTree<_, _>>(s, options(s, $rule)),
+                ..OURS
+            },
+            rule: $rule,
+        }
+    };
+}
+
+const RULES: &[Rule] = &[
+    rule!("sah", SplitRule::Sah),
+    rule!("adaptive-sah", SplitRule::AdaptiveSah),
+    rule!("ball-0.001", SplitRule::Ball { radius: 0.001 }),
+    rule!("ball-0.01", SplitRule::Ball { radius: 0.01 }),
+    rule!("ball-0.1", SplitRule::Ball { radius: 0.1 }),
+    rule!("ball-1", SplitRule::Ball { radius: 1.0 }),
+    rule!("median", SplitRule::Median),
+];
+
+fn options(scene: &Scene, rule: SplitRule) -> AabbOptions {
+    AabbOptions::default().with_rule(match rule {
+        SplitRule::Ball { radius } => SplitRule::Ball { radius: radius * scene.diagonal() },
+        other => other,
+    })
+}
+
+/// Prints the tables of a scene; whether all trees agree.
+pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> bool {
+    let backends: Vec<&'static Backend> = RULES.iter().map(|r| &r.backend).collect();
+    let mut entries = build_all(scene, &backends, effort.builds);
+    for set in sets {
+        measure_set(scene, *set, &mut entries, effort);
+    }
+    let mut table = Table::new(["split", "build s", "nodes", "depth"].into_iter().chain(sets.iter().map(|s| s.name())));
+    let mut clean = true;
+    for (rule, entry) in RULES.iter().zip(&entries) {
+        let tree = AabbTree::build(&scene.double, &options(scene, rule.rule)).expect("built before");
+        let (nodes, depth) = tree.boxes().fold((0, 0), |(n, deepest), node| (n + 1, node.depth.max(deepest)));
+        let seconds = Spread::of(&entry.build.seconds).map_or(f64::NAN, |s| s.median);
+        let mut row =
+            vec![entry.backend.name.to_owned(), format!("{seconds:.4}"), nodes.to_string(), depth.to_string()];
+        for (set, figures) in sets.iter().zip(&entry.sets) {
+            let figures = figures.as_ref().expect("ours are never absent");
+            clean &= figures.agreement.is_clean();
+            let [nodes, primitives] = work(&tree, &set.generate(&scene.double, effort.queries, effort.seed));
+            let ns = Spread::of(&figures.nanoseconds).map_or(f64::NAN, |s| s.median);
+            row.push(format!("{nodes:.1} / {primitives:.1} / {ns:.0}"));
+        }
+        table.push(row);
+    }
+    println!("\n## {}\n", scene.describe());
+    println!(
+        "Per query: nodes visited / primitives offered / nanoseconds (median). Radii are in diagonals of the box.\n"
+    );
+    println!("{table}");
+    clean
+}
+
+/// Nodes visited and primitives offered per query: deterministic.
+fn work<S: p2m_core::PrimitiveSet<f64>>(tree: &AabbTree<f64, S>, queries: &[Point3<f64>]) -> [f64; 2] {
+    let mut sums = [0usize; 2];
+    for query in queries {
+        let mut counting: Counting<f64> = Counting::new(Best::new(&QueryOptions::default()));
+        tree.visit(query, &mut counting);
+        sums[0] += counting.nodes;
+        sums[1] += counting.primitives;
+    }
+    sums.map(|sum| sum as f64 / queries.len() as f64)
+}
