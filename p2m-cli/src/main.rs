@@ -2,6 +2,7 @@
 
 #![forbid(unsafe_code)]
 
+mod boxes;
 mod generate;
 mod output;
 mod query;
@@ -30,6 +31,7 @@ The exit code is 0 for success, 1 for what could not be read, written or done, a
 enum Command {
     Query(query::Args),
     Generate(generate::Args),
+    Boxes(boxes::Args),
 }
 
 fn main() -> ExitCode {
@@ -37,6 +39,7 @@ fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Query(args) => query::run(&args),
         Command::Generate(args) => generate::run(&args),
+        Command::Boxes(args) => boxes::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

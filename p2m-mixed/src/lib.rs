@@ -23,6 +23,7 @@
 mod error;
 pub mod generate;
 mod obj;
+pub mod picture;
 mod ply;
 mod points;
 mod polygon;

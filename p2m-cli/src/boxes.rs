@@ -1,0 +1,140 @@
+//! `p2m boxes`: a picture of the boxes of the AABB tree, level by level.
+
+use crate::output::Output;
+use anyhow::{Context, bail};
+use clap::ValueEnum;
+use nalgebra::Point3;
+use p2m_bvh::{AabbTree, NodeBox};
+use p2m_core::{BuildIndex, Soup};
+use p2m_mixed::picture::{Panel, View, box_edges, write_picture_ply, write_svg};
+use p2m_mixed::read_scene;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Each panel (in a PLY file: each value of the vertex property 'panel') shows one level of the tree: its nodes and the \
+leaves above it, which together hold the whole scene. The last one shows the leaves alone. Dots are vertices of the \
+scene, at most 4000 of them.
+
+Examples:
+  p2m boxes bunny.obj --out boxes.svg
+  p2m boxes scene.ply --levels 5 --view top --out boxes.svg
+  p2m boxes scene.ply --levels 12 --out boxes.ply";
+
+/// Draw the boxes of the AABB tree over a scene, level by level, as SVG or PLY
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// Scene: a file
+    scene: PathBuf,
+
+    /// Where to write the picture: a name that ends in .svg or .ply
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+
+    /// How many levels to draw, from the root on; deeper ones than the tree has are left out
+    #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u8).range(0..=64))]
+    levels: u8,
+
+    /// From where an SVG picture is seen
+    #[arg(long, value_enum, default_value_t = ViewName::Isometric)]
+    view: ViewName,
+
+    /// Which axis points up in an SVG picture
+    #[arg(long, value_enum, default_value_t = Up::Z)]
+    up: Up,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Up {
+    /// As in most scans and models for films and games; z then points to the viewer of the front
+    Y,
+    /// As in CAD and maps
+    Z,
+}
+
+impl Up {
+    /// Turns what has this axis up so that it has z up.
+    fn turn<'a>(self, points: impl Iterator<Item = &'a mut Point3<f64>>) {
+        if self == Self::Y {
+            points.for_each(|p| *p = Point3::new(p.x, -p.z, p.y));
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ViewName {
+    /// From a corner
+    Isometric,
+    /// Along y: x to the right
+    Front,
+    /// Along -x: y to the right
+    Side,
+    /// Along -z: x to the right, y up
+    Top,
+}
+
+impl From<ViewName> for View {
+    fn from(name: ViewName) -> Self {
+        match name {
+            ViewName::Isometric => Self::Isometric,
+            ViewName::Front => Self::Front,
+            ViewName::Side => Self::Side,
+            ViewName::Top => Self::Top,
+        }
+    }
+}
+
+const MAX_DOTS: usize = 4000;
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+    let is_ply = match args.out.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
+        Some("svg") => false,
+        Some("ply") => true,
+        _ => bail!("{}: the name of a picture ends in .svg or .ply", args.out.display()),
+    };
+    Output::refuse_inputs(&args.out, &[&args.scene])?;
+    let scene = read_scene(&args.scene)?;
+    let tree = AabbTree::build(&scene.soup, &Default::default()).with_context(|| args.scene.display().to_string())?;
+    let mut panels = panels(&tree.boxes().collect::<Vec<_>>(), usize::from(args.levels));
+    let mut output = Output::open(Some(&args.out))?;
+    let written = if is_ply {
+        write_picture_ply(&panels, &mut output)
+    } else {
+        let mut dots = dots(&scene.soup);
+        args.up.turn(panels.iter_mut().flat_map(|panel| &mut panel.lines).flatten().chain(&mut dots));
+        write_svg(&panels, &dots, args.view.into(), &mut output)
+    };
+    written.with_context(|| output.cannot_write())?;
+    output.finish()?;
+    for panel in &panels {
+        eprintln!("{}", panel.title);
+    }
+    Ok(())
+}
+
+/// One panel for each of the first levels, and one for the leaves.
+fn panels(boxes: &[NodeBox<f64>], levels: usize) -> Vec<Panel> {
+    let deepest = boxes.iter().map(|b| b.depth).max();
+    let panel = |title: &str, show: &dyn Fn(&NodeBox<f64>) -> bool| {
+        let shown: Vec<_> = boxes.iter().filter(|b| show(b)).collect();
+        let noun = if shown.len() == 1 { "box" } else { "boxes" };
+        Panel {
+            title: format!("{title}: {} {noun}", shown.len()),
+            lines: shown.iter().flat_map(|b| box_edges(&b.bounds)).collect(),
+        }
+    };
+    let is_leaf = |b: &NodeBox<f64>| b.primitives > 0;
+    let drawn = deepest.map_or(0, |deepest| levels.min(deepest + 1));
+    let mut panels: Vec<Panel> = (0..drawn)
+        .map(|level| panel(&format!("level {level}"), &|b| b.depth == level || (b.depth < level && is_leaf(b))))
+        .collect();
+    panels.push(panel("leaves", &is_leaf));
+    panels
+}
+
+/// Evenly chosen vertices of the primitives.
+fn dots(soup: &Soup<f64>) -> Vec<Point3<f64>> {
+    let used: Vec<u32> = soup.elements().flat_map(|e| e.indices().to_vec()).collect();
+    let step = used.len().div_ceil(MAX_DOTS).max(1);
+    used.iter().step_by(step).map(|&i| soup.positions()[i as usize]).collect()
+}

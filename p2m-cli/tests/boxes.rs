@@ -1,0 +1,60 @@
+//! `p2m boxes`, end to end.
+
+use std::process::{Command, Output};
+
+fn p2m(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_p2m")).args(args).output().unwrap()
+}
+
+const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/knot_and_cables.obj");
+
+#[test]
+fn levels_and_leaves_are_drawn_and_listed() {
+    let folder = tempfile::tempdir().unwrap();
+    for (levels, panels) in [("3", Some(4)), ("0", Some(1)), ("64", None)] {
+        let out = folder.path().join("boxes.svg");
+        let run =
+            p2m(&["boxes", SCENE, "--levels", levels, "--out", out.to_str().unwrap(), "--up", "y", "--view", "front"]);
+        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        let (titles, svg) = (String::from_utf8(run.stderr).unwrap(), std::fs::read_to_string(&out).unwrap());
+        let drawn = titles.lines().count();
+        assert_eq!((panels.unwrap_or(drawn), svg.matches("<text").count()), (drawn, drawn), "{titles}");
+        if panels.is_none() {
+            // The deepest level is the last, and shows the leaves.
+            let counts: Vec<_> = titles.lines().rev().map(|title| title.split(": ").nth(1)).collect();
+            assert!(counts[0] == counts[1] && counts[1] != counts[2], "{titles}");
+        }
+        for title in titles.lines() {
+            assert!(svg.contains(&format!(">{title}</text>")), "{title}");
+        }
+        assert!(levels != "3" || titles.contains("level 0: 1 box\nlevel 1: 2 boxes\nlevel 2: 4 boxes\nleaves: "));
+    }
+}
+
+#[test]
+fn the_boxes_of_a_level_hold_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("boxes.PLY");
+    assert!(p2m(&["boxes", SCENE, "--levels", "1", "--out", out.to_str().unwrap()]).status.success());
+    let [picture, scene] = [out.as_path(), SCENE.as_ref()].map(|p| p2m_mixed::read_scene(p).unwrap().soup);
+    let bounds = p2m_core::PrimitiveSet::aabb(&scene);
+    // The root first.
+    assert_eq!(p2m_core::Aabb::of_points(&picture.positions()[..24]), bounds);
+    assert_eq!(p2m_core::Aabb::of_points(&picture.positions()[24..]), bounds);
+    assert_eq!(picture.segments().len() % 12, 0);
+}
+
+#[test]
+fn other_extensions_and_the_scene_itself_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.ply");
+    std::fs::write(&scene, "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n").unwrap();
+    let before = std::fs::read(&scene).unwrap();
+    for (out, message) in [("x.png", ".svg or .ply"), ("x", ".svg or .ply"), ("scene.ply", "it is an input")] {
+        let run = p2m(&["boxes", scene.to_str().unwrap(), "--out", folder.path().join(out).to_str().unwrap()]);
+        assert_eq!(run.status.code(), Some(1));
+        assert!(String::from_utf8_lossy(&run.stderr).contains(message), "{out}");
+    }
+    assert_eq!(std::fs::read(&scene).unwrap(), before);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}

@@ -1,0 +1,182 @@
+//! Pictures of line drawings: the volumes of a tree, level by level.
+//!
+//! A [`Panel`] is a drawing of its own in an SVG file ([`write_svg`]), and a value of the property `panel` in a PLY file
+//! ([`write_picture_ply`]). Whoever has volumes turns them into lines; [`box_edges`] does so for boxes.
+
+use nalgebra::{Point3, Vector3};
+use p2m_core::Aabb;
+use std::io::{self, Write};
+
+/// A drawing under a title.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Panel {
+    /// What it shows.
+    pub title: String,
+    /// Line segments, in units of the scene; finite.
+    pub lines: Vec<[Point3<f64>; 2]>,
+}
+
+/// The twelve edges of a box.
+pub fn box_edges(bounds: &Aabb<f64>) -> impl Iterator<Item = [Point3<f64>; 2]> + use<> {
+    let corners = [bounds.min, bounds.max];
+    (0..12).map(move |edge: usize| {
+        // Along `axis`, at one of the four corners of the other two.
+        let (axis, at) = (edge / 4, edge % 4);
+        [0, 1].map(|end| {
+            let mut corner = corners[end];
+            corner[(axis + 1) % 3] = corners[at % 2][(axis + 1) % 3];
+            corner[(axis + 2) % 3] = corners[at / 2][(axis + 2) % 3];
+            corner
+        })
+    })
+}
+
+/// From where a picture is seen; z is up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum View {
+    /// From a corner, all three axes equally long.
+    #[default]
+    Isometric,
+    /// Along y: x to the right.
+    Front,
+    /// Along -x: y to the right.
+    Side,
+    /// Along -z: x to the right, y up.
+    Top,
+}
+
+impl View {
+    /// Right and up in the picture.
+    fn axes(self) -> [Vector3<f64>; 2] {
+        match self {
+            Self::Isometric => {
+                let (a, b) = (0.5f64.sqrt(), 6f64.sqrt().recip());
+                [Vector3::new(a, -a, 0.0), Vector3::new(-b, -b, 2.0 * b)]
+            }
+            Self::Front => [Vector3::x(), Vector3::z()],
+            Self::Side => [Vector3::y(), Vector3::z()],
+            Self::Top => [Vector3::x(), Vector3::y()],
+        }
+    }
+}
+
+/// Scales whatever is drawn to a cube of sides 1 around the origin, whatever its size and place.
+struct Frame {
+    centre: Point3<f64>,
+    /// Half of the longest side.
+    half: f64,
+}
+
+impl Frame {
+    fn around<'a>(points: impl Iterator<Item = &'a Point3<f64>>) -> Self {
+        let bounds = points.fold(Aabb::empty(), |b, p| b.union(&Aabb { min: *p, max: *p }));
+        if bounds.is_empty() {
+            return Self { centre: Point3::origin(), half: 1.0 };
+        }
+        // Halves first: the difference of two finite numbers may not be finite.
+        let half = (bounds.max.coords / 2.0 - bounds.min.coords / 2.0).max();
+        let centre = Point3::from(bounds.max.coords / 2.0 + bounds.min.coords / 2.0);
+        Self { centre, half: if half > 0.0 { half } else { 1.0 } }
+    }
+
+    fn place(&self, p: &Point3<f64>) -> Vector3<f64> {
+        (p.coords / 2.0 - self.centre.coords / 2.0) / self.half
+    }
+}
+
+/// Side of a panel in units of the picture, and what is left free around it.
+const SIDE: f64 = 300.0;
+const MARGIN: f64 = 24.0;
+const COLUMNS: usize = 4;
+
+/// Writes the panels side by side, each over `backdrop`, points of the scene that show what the lines are about.
+///
+/// Panels have the same scale. Coordinates are rounded to a tenth of a unit, 300 units being the side of a panel.
+///
+/// # Errors
+/// Those of `writer`.
+pub fn write_svg(panels: &[Panel], backdrop: &[Point3<f64>], view: View, mut writer: impl Write) -> io::Result<()> {
+    let lines = || panels.iter().flat_map(|panel| &panel.lines);
+    let frame = Frame::around(lines().flatten().chain(backdrop));
+    let [right, up] = view.axes();
+    // A cube of sides 1 standing on its corner is 1.634 high.
+    let scale = (SIDE - 2.0 * MARGIN) / if view == View::Isometric { 1.65 } else { 1.0 };
+    let at = |p: &Point3<f64>| {
+        let p = frame.place(p);
+        let middle = SIDE / 2.0;
+        format!("{:.1} {:.1}", middle + scale * right.dot(&p), middle - scale * up.dot(&p))
+    };
+    let (columns, rows) = (panels.len().clamp(1, COLUMNS), panels.len().div_ceil(COLUMNS));
+    let [width, height] = [columns, rows].map(|n| n as f64 * SIDE);
+    writeln!(
+        writer,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
+         font-family=\"sans-serif\" font-size=\"14\" fill=\"none\" stroke-width=\"0.6\" stroke-linecap=\"round\">"
+    )?;
+    writeln!(writer, "<rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>")?;
+    // Points are lines of no length with round ends.
+    write!(writer, "<defs><path id=\"scene\" stroke=\"#bbb\" stroke-width=\"1.2\" d=\"")?;
+    for p in backdrop {
+        write!(writer, "M{}h0", at(p))?;
+    }
+    writeln!(writer, "\"/></defs>")?;
+    for (number, panel) in panels.iter().enumerate() {
+        let [x, y] = [number % COLUMNS, number / COLUMNS].map(|n| n as f64 * SIDE);
+        let [r, g, b] = colour(number, panels.len());
+        writeln!(writer, "<g transform=\"translate({x} {y})\">")?;
+        writeln!(writer, "<use href=\"#scene\"/>")?;
+        write!(writer, "<path stroke=\"#{r:02x}{g:02x}{b:02x}\" stroke-opacity=\"0.7\" d=\"")?;
+        for [a, b] in &panel.lines {
+            write!(writer, "M{}L{}", at(a), at(b))?;
+        }
+        writeln!(writer, "\"/>")?;
+        writeln!(writer, "<text x=\"8\" y=\"18\" fill=\"#222\">{}</text>", escape(&panel.title))?;
+        writeln!(writer, "</g>")?;
+    }
+    writeln!(writer, "</svg>")?;
+    writer.flush()
+}
+
+/// Writes the lines of all panels as edges of a binary PLY file; vertices have a colour and the property `panel`, the
+/// number of their panel from 0.
+///
+/// # Errors
+/// Those of `writer`, and [`io::ErrorKind::InvalidInput`] for more than 2^31 - 1 vertices.
+pub fn write_picture_ply(panels: &[Panel], mut writer: impl Write) -> io::Result<()> {
+    let count: usize = panels.iter().map(|panel| panel.lines.len()).sum();
+    let edges = i32::try_from(count).ok().filter(|n| n.checked_mul(2).is_some());
+    let edges = edges.ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "too many lines for a PLY file"))?;
+    write!(
+        writer,
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
+         property uchar red\nproperty uchar green\nproperty uchar blue\nproperty int panel\n\
+         element edge {edges}\nproperty int vertex1\nproperty int vertex2\nend_header\n",
+        2 * edges
+    )?;
+    for (number, panel) in (0i32..).zip(panels) {
+        let colour = colour(usize::try_from(number).unwrap_or_default(), panels.len());
+        for p in panel.lines.iter().flatten() {
+            for x in p.iter() {
+                writer.write_all(&x.to_le_bytes())?;
+            }
+            writer.write_all(&colour)?;
+            writer.write_all(&number.to_le_bytes())?;
+        }
+    }
+    for edge in 0..edges {
+        writer.write_all(&(2 * edge).to_le_bytes())?;
+        writer.write_all(&(2 * edge + 1).to_le_bytes())?;
+    }
+    writer.flush()
+}
+
+/// From blue over green to red, dark enough for thin lines on white.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 255")]
+fn colour(number: usize, of: usize) -> [u8; 3] {
+    let t = if of > 1 { number as f64 / (of - 1) as f64 } else { 0.0 };
+    [40.0 + 170.0 * t, 90.0 + 160.0 * t * (1.0 - t), 200.0 - 160.0 * t].map(|x| x as u8)
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
