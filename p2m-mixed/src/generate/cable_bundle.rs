@@ -1,0 +1,94 @@
+//! A bundle of twisted strands along a knot: segments only.
+
+use super::error::{GenerateError, at_least, capacity};
+use super::knot::Frame;
+use super::portable::SinCos;
+use p2m_core::{Element, Soup};
+
+/// What [`cable_bundle`] makes: by default 64 strands of 256 segments.
+///
+/// ```
+/// use p2m_mixed::generate::{CableBundle, cable_bundle};
+///
+/// let bundle = cable_bundle(&CableBundle::default().with_strands(7).with_segments(100)).unwrap();
+/// assert_eq!((bundle.positions().len(), bundle.segments().len()), (707, 700));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct CableBundle {
+    /// Strands; at least 1.
+    pub strands: u32,
+    /// Segments of each strand; at least 1.
+    pub segments: u32,
+    /// How often the bundle turns about itself, from -1000 to 1000.
+    pub twists: f64,
+    /// The radius of the bundle, where the knot's torus has radii 2 and 0.8.
+    pub radius: f64,
+}
+
+impl Default for CableBundle {
+    fn default() -> Self {
+        Self { strands: 64, segments: 256, twists: 12.0, radius: 0.3 }
+    }
+}
+
+impl CableBundle {
+    /// With that many strands.
+    #[must_use]
+    pub fn with_strands(self, strands: u32) -> Self {
+        Self { strands, ..self }
+    }
+    /// With that many segments in a strand.
+    #[must_use]
+    pub fn with_segments(self, segments: u32) -> Self {
+        Self { segments, ..self }
+    }
+    /// Turning about itself that often.
+    #[must_use]
+    pub fn with_twists(self, twists: f64) -> Self {
+        Self { twists, ..self }
+    }
+    /// With that radius.
+    #[must_use]
+    pub fn with_radius(self, radius: f64) -> Self {
+        Self { radius, ..self }
+    }
+}
+
+/// The golden section of a turn: strands placed at its multiples fill a disc evenly.
+const GOLDEN_TURN: f64 = 0.381_966_011_250_105_1;
+/// How much of the trefoil the bundle follows. It does not close, since its strands would not.
+const LENGTH: f64 = 0.95;
+
+/// Strands that wind about a trefoil knot, strand after strand, each a polyline from end to end.
+///
+/// # Errors
+/// [`GenerateError`] if an option is not in its range or there are more primitives than ids.
+pub fn cable_bundle(options: &CableBundle) -> Result<Soup<f64>, GenerateError> {
+    let &CableBundle { strands, segments, twists, radius } = options;
+    at_least(1, "strands", strands)?;
+    at_least(1, "segments", segments)?;
+    if !(-1e3..=1e3).contains(&twists) {
+        return Err(GenerateError::OutOfRange { option: "twists", value: twists, range: "from -1000 to 1000" });
+    }
+    if !(radius > 0.0 && radius <= 1e3) {
+        let range = "above 0 and at most 1000";
+        return Err(GenerateError::OutOfRange { option: "radius", value: radius, range });
+    }
+    let len = capacity(u128::from(strands) * u128::from(segments))?;
+
+    let mut positions = Vec::with_capacity(len + strands as usize);
+    for strand in 0..strands {
+        let place = (f64::from(strand) + 0.5) / f64::from(strands);
+        let (distance, phase) = (radius * place.sqrt(), GOLDEN_TURN * f64::from(strand));
+        positions.extend((0..=segments).map(|step| {
+            let s = f64::from(step) / f64::from(segments);
+            Frame::at(2, 3, LENGTH * s).around(distance, SinCos::of_turns(phase + twists * s))
+        }));
+    }
+    let elements = (0..strands).flat_map(|strand| {
+        let first = strand * (segments + 1);
+        (first..first + segments).map(|i| Element::Segment([i, i + 1]))
+    });
+    Ok(Soup::new(positions, elements)?)
+}

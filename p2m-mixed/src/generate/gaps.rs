@@ -1,0 +1,84 @@
+//! Meshes torn into primitives without shared vertices, with gaps between them or through each other.
+//!
+//! The two hard cases of [Zong2023, section 5.5, Figure 19].
+
+use super::error::GenerateError;
+use nalgebra::{Point3, Vector3};
+use p2m_core::{Element, Soup};
+
+/// Each primitive shrunk about its centroid to `factor` of its size, with vertices of its own.
+///
+/// Points stay where they are. Triangles and segments that had at most their boundaries in common are apart.
+///
+/// ```
+/// use p2m_mixed::generate::{IcoSphere, gapped, ico_sphere};
+///
+/// let ball = ico_sphere(&IcoSphere::default()).unwrap();
+/// let shards = gapped(&ball, 0.8).unwrap();
+/// assert_eq!(shards.triangles().len(), ball.triangles().len());
+/// assert_eq!(shards.positions().len(), 3 * ball.triangles().len());
+/// ```
+///
+/// # Errors
+/// [`GenerateError::OutOfRange`] if the factor is not above 0 and below 1, [`GenerateError::Build`] if a coordinate
+/// overflows.
+pub fn gapped(scene: &Soup<f64>, factor: f64) -> Result<Soup<f64>, GenerateError> {
+    if !(factor > 0.0 && factor < 1.0) {
+        let range = "above 0 and below 1";
+        return Err(GenerateError::OutOfRange { option: "factor", value: factor, range });
+    }
+    about_centroids(scene, factor)
+}
+
+/// Each primitive enlarged about its centroid to `factor` of its size, with vertices of its own: on a curved mesh, each
+/// triangle crosses its neighbours.
+///
+/// A place of the surface is then under `factor`^2 triangles in the mean. Points stay where they are. On a planar part,
+/// triangles lie on each other.
+///
+/// ```
+/// use p2m_mixed::generate::{IcoSphere, ico_sphere, penetrating};
+///
+/// let ball = ico_sphere(&IcoSphere::default()).unwrap();
+/// let burr = penetrating(&ball, 2.0).unwrap();
+/// assert!(burr.positions().iter().all(|p| p.coords.norm() > 1.0));
+/// ```
+///
+/// # Errors
+/// [`GenerateError::OutOfRange`] if the factor is not above 1 and at most 1000, [`GenerateError::Build`] if a
+/// coordinate overflows.
+pub fn penetrating(scene: &Soup<f64>, factor: f64) -> Result<Soup<f64>, GenerateError> {
+    if !(factor > 1.0 && factor <= 1e3) {
+        let range = "above 1 and at most 1000";
+        return Err(GenerateError::OutOfRange { option: "factor", value: factor, range });
+    }
+    about_centroids(scene, factor)
+}
+
+fn about_centroids(scene: &Soup<f64>, factor: f64) -> Result<Soup<f64>, GenerateError> {
+    let corners = 3 * scene.triangles().len() + 2 * scene.segments().len() + scene.points().len();
+    let mut positions: Vec<Point3<f64>> = Vec::with_capacity(corners);
+    let mut elements = Vec::new();
+    // At most three times the number of ids, which is below 2^32.
+    let mut first = 0;
+    for element in scene.elements() {
+        let corners = element.indices().iter().map(|&i| scene.positions()[i as usize].coords);
+        let count = f64::from(u8::try_from(element.indices().len()).unwrap_or(u8::MAX));
+        let mut sum = Vector3::zeros();
+        for corner in corners.clone() {
+            sum += corner;
+        }
+        let centroid = sum / count;
+        elements.push(match element {
+            Element::Point(_) => Element::Point(first),
+            Element::Segment(_) => Element::Segment([first, first + 1]),
+            Element::Triangle(_) => Element::Triangle([first, first + 1, first + 2]),
+        });
+        for corner in corners {
+            let moved = if let Element::Point(_) = element { corner } else { centroid + (corner - centroid) * factor };
+            positions.push(Point3::from(moved));
+            first += 1;
+        }
+    }
+    Ok(Soup::new(positions, elements)?)
+}

@@ -1,0 +1,145 @@
+//! Torus knots: the curve, the frame along it, and a closed tube of triangles around it.
+
+use super::error::{GenerateError, at_least, capacity};
+use super::portable::SinCos;
+use nalgebra::{Point3, Vector3};
+use p2m_core::{Element, Soup};
+
+/// The torus on which the knot lies.
+const MAJOR_RADIUS: f64 = 2.0;
+const MINOR_RADIUS: f64 = 0.8;
+
+/// What [`torus_knot`] makes: by default 12,000 triangles along the trefoil.
+///
+/// ```
+/// use p2m_mixed::generate::{TorusKnot, torus_knot};
+///
+/// let knot = torus_knot(&TorusKnot::default().with_windings(3, 5).with_tube_radius(0.2)).unwrap();
+/// assert_eq!((knot.positions().len(), knot.triangles().len()), (6000, 12_000));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct TorusKnot {
+    /// Turns of the knot around the axis of its torus.
+    pub p: u32,
+    /// Turns around the tube of the torus; no common divisor with `p`.
+    pub q: u32,
+    /// Rings of vertices along the knot; at least 3.
+    pub rings: u32,
+    /// Vertices of each ring; at least 3. There are two triangles for each vertex.
+    pub sides: u32,
+    /// The radius of the tube, where those of the torus are 2 and 0.8. A tube thicker than the gaps of the knot meets itself.
+    pub tube_radius: f64,
+}
+
+impl Default for TorusKnot {
+    fn default() -> Self {
+        Self { p: 2, q: 3, rings: 300, sides: 20, tube_radius: 0.3 }
+    }
+}
+
+impl TorusKnot {
+    /// With `p` turns around the axis of the torus and `q` around its tube.
+    #[must_use]
+    pub fn with_windings(self, p: u32, q: u32) -> Self {
+        Self { p, q, ..self }
+    }
+    /// With that many rings.
+    #[must_use]
+    pub fn with_rings(self, rings: u32) -> Self {
+        Self { rings, ..self }
+    }
+    /// With that many vertices in a ring.
+    #[must_use]
+    pub fn with_sides(self, sides: u32) -> Self {
+        Self { sides, ..self }
+    }
+    /// With a tube that thick.
+    #[must_use]
+    pub fn with_tube_radius(self, tube_radius: f64) -> Self {
+        Self { tube_radius, ..self }
+    }
+}
+
+/// A closed tube of triangles along a torus knot: 2 `rings` `sides` triangles, outside counter-clockwise.
+///
+/// # Errors
+/// [`GenerateError`] if an option is not in its range or there are more primitives than ids.
+pub fn torus_knot(options: &TorusKnot) -> Result<Soup<f64>, GenerateError> {
+    let &TorusKnot { p, q, rings, sides, tube_radius } = options;
+    at_least(3, "rings", rings)?;
+    at_least(3, "sides", sides)?;
+    if greatest_common_divisor(p, q) != 1 {
+        return Err(GenerateError::CommonDivisor { p, q });
+    }
+    if !(tube_radius > 0.0 && tube_radius <= 1e3) {
+        return Err(GenerateError::OutOfRange {
+            option: "tube radius",
+            value: tube_radius,
+            range: "above 0 and at most 1000",
+        });
+    }
+    capacity(2 * u128::from(rings) * u128::from(sides))?;
+    let positions = tube(p, q, rings, sides, tube_radius).collect();
+    Ok(Soup::new(positions, tube_elements(rings, sides))?)
+}
+
+fn greatest_common_divisor(mut a: u32, mut b: u32) -> u32 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}
+
+/// The vertices of a tube, ring after ring.
+pub(super) fn tube(p: u32, q: u32, rings: u32, sides: u32, radius: f64) -> impl Iterator<Item = Point3<f64>> {
+    (0..rings).flat_map(move |ring| {
+        let along = |windings: u32| SinCos::of_fraction(u64::from(windings) * u64::from(ring), rings);
+        let frame = Frame::new(p, q, along(p), along(q));
+        (0..sides).map(move |side| frame.around(radius, SinCos::of_fraction(u64::from(side), sides)))
+    })
+}
+
+/// The triangles of a tube whose vertices come first in the scene.
+pub(super) fn tube_elements(rings: u32, sides: u32) -> impl Iterator<Item = Element> {
+    (0..rings).flat_map(move |ring| {
+        (0..sides).flat_map(move |side| {
+            let next = |i: u32, count: u32| if i + 1 == count { 0 } else { i + 1 };
+            let vertex = |ring: u32, side: u32| ring * sides + side;
+            let [a, b] = [vertex(ring, side), vertex(next(ring, rings), side)];
+            let [c, d] = [vertex(next(ring, rings), next(side, sides)), vertex(ring, next(side, sides))];
+            [Element::Triangle([a, d, c]), Element::Triangle([a, c, b])]
+        })
+    })
+}
+
+/// A point of the knot with two directions across it.
+pub(super) struct Frame {
+    origin: Point3<f64>,
+    outwards: Vector3<f64>,
+    sideways: Vector3<f64>,
+}
+
+impl Frame {
+    /// Where the knot has turned by `long` around the axis and by `short` around the tube of the torus.
+    ///
+    /// The normal of the torus is perpendicular to any curve on it, and closes up where the curve does.
+    pub(super) fn new(p: u32, q: u32, long: SinCos, short: SinCos) -> Self {
+        let radius = MAJOR_RADIUS + MINOR_RADIUS * short.cos;
+        let origin = Point3::new(radius * long.cos, radius * long.sin, MINOR_RADIUS * short.sin);
+        let outwards = Vector3::new(short.cos * long.cos, short.cos * long.sin, short.sin);
+        let around = Vector3::new(-long.sin, long.cos, 0.0) * (f64::from(p) * radius);
+        let across = Vector3::new(-short.sin * long.cos, -short.sin * long.sin, short.cos);
+        let sideways = (around + across * (f64::from(q) * MINOR_RADIUS)).normalize().cross(&outwards);
+        Self { origin, outwards, sideways }
+    }
+
+    /// After that many turns of the parameter, of which one leads along the whole knot.
+    pub(super) fn at(p: u32, q: u32, turns: f64) -> Self {
+        Self::new(p, q, SinCos::of_turns(f64::from(p) * turns), SinCos::of_turns(f64::from(q) * turns))
+    }
+
+    pub(super) fn around(&self, radius: f64, angle: SinCos) -> Point3<f64> {
+        self.origin + (self.outwards * angle.cos + self.sideways * angle.sin) * radius
+    }
+}

@@ -1,0 +1,101 @@
+//! A knotted tube of triangles with cables of segments around it.
+
+use super::error::capacity;
+use super::knot::{Frame, tube, tube_elements};
+use super::portable::SinCos;
+use nalgebra::Point3;
+use p2m_core::{BuildError, Element, Soup};
+
+/// How fine [`knot_and_cables`] is. The default is that of `scenes/knot_and_cables.obj`.
+///
+/// ```
+/// use p2m_mixed::generate::{KnotAndCables, knot_and_cables};
+///
+/// let scene = knot_and_cables(&KnotAndCables::default().with_cables(2)).unwrap();
+/// assert_eq!((scene.triangles().len(), scene.segments().len()), (3600, 192));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct KnotAndCables {
+    /// Rings along the knot; at least 3.
+    pub rings: u32,
+    /// Vertices of each ring; at least 3. There are two triangles for each vertex.
+    pub sides: u32,
+    /// Cables.
+    pub cables: u32,
+    /// Segments of each cable; at least 1.
+    pub cable_segments: u32,
+}
+
+impl Default for KnotAndCables {
+    fn default() -> Self {
+        Self { rings: 150, sides: 12, cables: 5, cable_segments: 96 }
+    }
+}
+
+impl KnotAndCables {
+    /// With that many rings.
+    #[must_use]
+    pub fn with_rings(self, rings: u32) -> Self {
+        Self { rings, ..self }
+    }
+    /// With that many vertices in a ring.
+    #[must_use]
+    pub fn with_sides(self, sides: u32) -> Self {
+        Self { sides, ..self }
+    }
+    /// With that many cables.
+    #[must_use]
+    pub fn with_cables(self, cables: u32) -> Self {
+        Self { cables, ..self }
+    }
+    /// With that many segments in a cable.
+    #[must_use]
+    pub fn with_cable_segments(self, cable_segments: u32) -> Self {
+        Self { cable_segments, ..self }
+    }
+}
+
+/// The knot and its thickness.
+const KNOT: (u32, u32) = (2, 3);
+const TUBE_RADIUS: f64 = 0.3;
+
+/// A closed tube of triangles along a (2, 3) torus knot, and free cables of segments that wind around it and leave it.
+///
+/// The tube's triangles come first, outside counter-clockwise; then the segments, cable after cable. Coordinates are
+/// within 4 of the origin and rounded to five decimals. Numbers below the least
+/// that makes sense count as that.
+///
+/// # Errors
+/// [`BuildError`] if there are more primitives than ids.
+pub fn knot_and_cables(options: &KnotAndCables) -> Result<Soup<f64>, BuildError> {
+    let (rings, sides) = (options.rings.max(3), options.sides.max(3));
+    let (cables, steps) = (options.cables, options.cable_segments.max(1));
+    capacity(2 * u128::from(rings) * u128::from(sides) + u128::from(cables) * u128::from(steps))?;
+
+    let (p, q) = KNOT;
+    let mut positions: Vec<_> = tube(p, q, rings, sides, TUBE_RADIUS).map(rounded).collect();
+    let mut elements: Vec<_> = tube_elements(rings, sides).collect();
+    let mut next = rings * sides;
+    for cable in 0..cables {
+        let phase = f64::from(cable) / f64::from(cables);
+        for step in 0..=steps {
+            // From near the tube, twice around it per third of the knot, and outwards ever faster.
+            let s = f64::from(step) / f64::from(steps);
+            let radius = TUBE_RADIUS * (1.15 + 0.15 * f64::from(cable % 3) + 2.0 * s * s * s);
+            let angle = SinCos::of_turns(phase + 4.0 * s);
+            positions.push(rounded(Frame::at(p, q, phase + 0.6 * s).around(radius, angle)));
+            if step > 0 {
+                elements.push(Element::Segment([next - 1, next]));
+            }
+            next += 1;
+        }
+    }
+    Soup::new(positions, elements)
+}
+
+/// To five decimals, which makes for short files.
+fn rounded(p: Point3<f64>) -> Point3<f64> {
+    // Adding zero turns -0 into 0.
+    p.map(|x| (x * 1e5).round() / 1e5 + 0.0)
+}

@@ -1,0 +1,43 @@
+//! Scenes made from nothing, so that everyone can repeat every measurement.
+//!
+//! Each kind of scene has a function and a struct of options; [`Kind`] lists them by name. [`Transform`], [`subdivide`],
+//! [`gapped`] and [`penetrating`] change any scene. All of it is the same on every platform, bit for bit: sines and
+//! random numbers are the module's own, and tests hold each kind to a checksum.
+//!
+//! ```
+//! use p2m_mixed::generate::{Kind, Subdivide, Transform, penetrating, subdivide};
+//!
+//! let gear = Kind::from_name("skewed-gear").unwrap().generate().unwrap();
+//! let gear = Transform::default().rotated_x(45.0).rotated_y(45.0).apply(&gear).unwrap();
+//! let rough = subdivide(&gear, &Subdivide::default().with_levels(2).with_amplitude(0.1)).unwrap();
+//! assert_eq!(rough.triangles().len(), 16 * 56_696);
+//! let burr = penetrating(&gear, 1.5).unwrap();
+//! assert_eq!(burr.positions().len(), 3 * 56_696);
+//! ```
+
+mod cable_bundle;
+mod error;
+mod gaps;
+mod gear;
+mod ico_sphere;
+mod kind;
+mod knot;
+mod knot_and_cables;
+mod mixed_sizes;
+mod portable;
+mod revolved;
+mod subdivide;
+mod transform;
+
+pub use cable_bundle::{CableBundle, cable_bundle};
+pub use error::GenerateError;
+pub use gaps::{gapped, penetrating};
+pub use gear::{SkewedGear, skewed_gear};
+pub use ico_sphere::{IcoSphere, ico_sphere};
+pub use kind::Kind;
+pub use knot::{TorusKnot, torus_knot};
+pub use knot_and_cables::{KnotAndCables, knot_and_cables};
+pub use mixed_sizes::{MixedSizes, mixed_sizes};
+pub use revolved::{Cone, Cylinder, Sphere, cone, cylinder, sphere};
+pub use subdivide::{Subdivide, subdivide};
+pub use transform::Transform;
