@@ -53,7 +53,7 @@ const TWIST: f64 = 0.05;
 /// A helical gear with a bore around the z axis, its lower face at z = 0 and its upper one at z = 24.
 ///
 /// Outline and bore have the same number of points, and every triangle spans the height of the gear or the way from
-/// bore to outline: by default nine of ten triangles are 380 to 1250 times as long as high, 1000 in the median. Closed,
+/// bore to outline: by default nine of ten triangles are 380 to 1250 times as long as high, 950 in the median. Closed,
 /// outside counter-clockwise, of genus 1. The faces are planar to the last bit.
 ///
 /// # Errors
