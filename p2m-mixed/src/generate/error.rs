@@ -51,8 +51,22 @@ pub(super) fn at_least(least: u32, option: &'static str, value: u32) -> Result<(
     if value < least { Err(GenerateError::TooFew { option, value, least }) } else { Ok(()) }
 }
 
-/// That many primitives, if there are ids for them. The product of three numbers of 32 bits fits the argument.
+/// That many primitives, if there are ids for them. Three numbers of 32 bits can be multiplied
+/// without overflow in the argument.
 pub(super) fn capacity(primitives: u128) -> Result<usize, BuildError> {
     let len = usize::try_from(primitives).unwrap_or(usize::MAX);
     if len > PrimitiveId::MAX_COUNT { Err(BuildError::TooMany { len }) } else { Ok(len) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_are_as_many_primitives_as_ids_and_no_more() {
+        assert_eq!(capacity(1 << 30), Ok(1 << 30));
+        assert_eq!(capacity((1 << 30) + 1), Err(BuildError::TooMany { len: (1 << 30) + 1 }));
+        let most = u128::from(u32::MAX);
+        assert_eq!(capacity(3 * most * most * most), Err(BuildError::TooMany { len: usize::MAX }));
+    }
 }
