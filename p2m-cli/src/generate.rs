@@ -46,6 +46,6 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         .with_cable_segments(*cable_segments);
     let soup = knot_and_cables(&options)?;
     let mut output = Output::open(Some(out))?;
-    p2m_mixed::write_obj(&soup, &mut output).with_context(|| output.cannot_write())?;
+    p2m_mixed::write_obj(&soup.into(), &mut output).with_context(|| output.cannot_write())?;
     output.finish()
 }

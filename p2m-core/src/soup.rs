@@ -157,6 +157,21 @@ impl<T: Real> Soup<T> {
         Ok(id)
     }
 
+    /// Adds a position that primitives to come may use; its number. It may be anything as long as none does.
+    pub fn push_position(&mut self, position: Point3<T>) -> usize {
+        self.positions.push(position);
+        self.positions.len() - 1
+    }
+
+    /// Gives back the memory that is held for more positions and primitives.
+    pub fn shrink_to_fit(&mut self) {
+        self.positions.shrink_to_fit();
+        self.points.shrink_to_fit();
+        self.segments.shrink_to_fit();
+        self.triangles.shrink_to_fit();
+        self.slots.shrink_to_fit();
+    }
+
     /// The kind of all primitives while `slots` is empty.
     #[inline(always)]
     fn only_kind(&self) -> u32 {
@@ -277,6 +292,20 @@ mod tests {
             Soup::from_triangles(positions(), triangles),
             Err(BuildError::IndexOutOfRange { id, index: 9, len: 4 })
         );
+    }
+
+    #[test]
+    fn a_soup_grows_by_positions_and_elements_in_turns() {
+        let elements = [Element::Point(0), Element::Segment([0, 1]), Element::Triangle([1, 0, 3])];
+        let mut soup = Soup::default();
+        for (i, p) in positions().into_iter().enumerate() {
+            assert_eq!(soup.push_position(p), i);
+            for &element in elements.iter().filter(|e| e.indices().iter().max() == Some(&(i as u32))) {
+                soup.push(element).unwrap();
+            }
+        }
+        soup.shrink_to_fit();
+        assert_eq!(soup, Soup::new(positions(), elements).unwrap());
     }
 
     #[test]

@@ -96,15 +96,15 @@ pub enum Reason {
         /// What stands there.
         text: String,
     },
-    /// A coordinate of a query is NaN or infinite, or too large for a number of double precision.
+    /// A coordinate of a query or of an STL facet is NaN or infinite, or too large for a number of double precision.
     #[error("coordinate '{text}' is not finite")]
     NonFinite {
         /// What stands there.
         text: String,
     },
     /// A primitive has a vertex with a coordinate that is NaN or infinite, or too large for a number of double precision.
-    /// OBJ counts vertices from 1, PLY from 0. The place is that of the primitive in an OBJ file, of the vertex in a PLY
-    /// file.
+    /// OBJ counts vertices from 1, PLY and OFF from 0. The place is that of the vertex in a PLY file, of the primitive in
+    /// the others.
     #[error("vertex {index} is part of a primitive, but has a coordinate that is not finite")]
     NonFiniteVertex {
         /// The number of the vertex.
@@ -113,7 +113,15 @@ pub enum Reason {
     /// A file that should be OBJ has statements that OBJ does not know, and no vertex.
     #[error("no vertex in it, is this an OBJ file?")]
     NoVertex,
-    /// A line of a text PLY file has more words than the element that ends on it.
+    /// A word that is not the keyword that should be there.
+    #[error("'{text}' is not {expected}, which should be here")]
+    UnexpectedWord {
+        /// The word.
+        text: String,
+        /// What should be there instead.
+        expected: &'static str,
+    },
+    /// A line of a text PLY or OFF file has more words than the element that ends on it.
     #[error("'{text}' is more than the header declares for the element on this line")]
     ExtraWord {
         /// The first word too many.
@@ -136,7 +144,7 @@ pub enum Reason {
         /// How many vertices there are before this line.
         count: u64,
     },
-    /// A vertex that a PLY file does not have. Counted from 0.
+    /// A vertex that a PLY or OFF file does not have. Counted from 0.
     #[error("vertex index {index} is out of range, the file has {count} vertices, counted from 0")]
     NoSuchVertex {
         /// The index as it stands in the file.
@@ -144,7 +152,7 @@ pub enum Reason {
         /// How many vertices there are in the whole file.
         count: u64,
     },
-    /// A face of fewer than three vertices, a line of fewer than two, a point statement of none.
+    /// A face of fewer than three vertices (in OFF: of none), a line of fewer than two, a point statement of none.
     #[error("{needed} or more vertices expected, found {found}")]
     TooFewVertices {
         /// How many there are.
@@ -152,7 +160,7 @@ pub enum Reason {
         /// How many it takes.
         needed: u64,
     },
-    /// A list in a PLY file has a negative length.
+    /// A list in a PLY file, or something in an OFF file, has a negative length or one that makes no sense.
     #[error("a list cannot have {count} items")]
     BadListCount {
         /// The length.
@@ -166,10 +174,25 @@ pub enum Reason {
         /// How many there may be.
         limit: u64,
     },
-    /// The header of a PLY file makes no sense.
+    /// The numbers that a PLY file gives its primitives (its properties `p2m_id`) are not 0, 1, 2, ... in some order.
+    #[error("primitive id {id} is out of range or there twice, the file has {count} primitives")]
+    BadPrimitiveId {
+        /// A number that is.
+        id: i64,
+        /// How many primitives there are.
+        count: u64,
+    },
+    /// More data than the header of an array announces.
+    #[error("{bytes} bytes follow the end of the array")]
+    TrailingBytes {
+        /// How many.
+        bytes: u64,
+    },
+    /// The header of a file makes no sense.
     #[error("bad header: {0}")]
     BadHeader(HeaderProblem),
-    /// A PLY file in a format or version other than `ascii`, `binary_little_endian` and `binary_big_endian` 1.0.
+    /// A PLY file in a format or version other than `ascii`, `binary_little_endian` and `binary_big_endian` 1.0, an OFF
+    /// file with vertices in another number of dimensions, an NPY file of an unknown version.
     #[error("unsupported format '{text}'")]
     UnsupportedFormat {
         /// What the header says.
@@ -190,13 +213,57 @@ pub enum Reason {
     BadRecord,
 }
 
-/// What is wrong with the header of a PLY file.
+/// What is wrong with the header of a file.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum HeaderProblem {
     /// The first line is not `ply`.
     #[error("the file does not start with 'ply'")]
     NotPly,
+    /// An STL file is text, but does not start with `solid`.
+    #[error("the file is text, but does not start with 'solid'")]
+    NotStl,
+    /// The first word is neither a count nor `OFF` behind known letters.
+    #[error("the file starts with '{text}', not with 'OFF'")]
+    NotOff {
+        /// The first word.
+        text: String,
+    },
+    /// The first bytes are not those of an NPY file.
+    #[error("the file does not start as an array of NumPy does (format .npy)")]
+    NotNpy,
+    /// The dictionary in the header of an NPY file is not what NumPy writes.
+    #[error("the description of the array is not understood near '{text}'")]
+    BadDescription {
+        /// What stands where it stops making sense.
+        text: String,
+    },
+    /// The description of an array lacks one of its parts.
+    #[error("the description of the array has no '{key}'")]
+    MissingKey {
+        /// Which part.
+        key: &'static str,
+    },
+    /// An array of something else than numbers, or of numbers too large or too small to be coordinates.
+    #[error("items of type {text} are no coordinates, expected integers or floats of 4 or 8 bytes")]
+    UnsupportedType {
+        /// The type in the words of the header.
+        text: String,
+    },
+    /// A structured array in which no fields are coordinates.
+    #[error("no coordinates among the fields {}; expected query of shape (3,), or x, y, z", names.join(", "))]
+    UnknownFields {
+        /// The names, of the first fields if there are many.
+        names: Vec<String>,
+    },
+    /// An array of a shape that no points have.
+    #[error("the array has the shape {text}, expected {expected}")]
+    BadShape {
+        /// The shape.
+        text: String,
+        /// What it should be.
+        expected: &'static str,
+    },
     /// A line is longer than any sensible one.
     #[error("line too long")]
     LineTooLong,
@@ -222,6 +289,12 @@ pub enum HeaderProblem {
     Duplicate {
         /// The name.
         name: String,
+    },
+    /// An element is missing.
+    #[error("there is no element '{element}'")]
+    MissingElement {
+        /// The element.
+        element: &'static str,
     },
     /// An element lacks a property without which it means nothing.
     #[error("element '{element}' has no property '{property}'")]

@@ -1,8 +1,9 @@
 //! Scenes of triangles, segments and points from files, and a synthetic one.
 //!
-//! [`read_scene`] reads OBJ and PLY files into a [`Scene`], [`read_points`] reads query points from XYZ and CSV files.
-//! Both tell where and why a file is refused ([`ReadError`]), and a scene tells what it left out ([`Scene::skipped`]).
-//! [`write_obj`] is the way back, [`generate`] makes scenes from nothing.
+//! [`read_scene`] reads OBJ, PLY, STL and OFF files into a [`Scene`], [`read_points`] reads query points from XYZ, CSV, NPY
+//! and PLY files. Both tell where and why a file is refused ([`ReadError`]), and a scene tells what it left out
+//! ([`Scene::skipped`]). [`write_scene`] is the way back, [`AnswerWriter`] writes what was answered, [`generate`] makes
+//! scenes from nothing.
 //!
 //! ```
 //! use p2m_core::{BruteForce, ClosestPoint};
@@ -20,21 +21,33 @@
 
 #![forbid(unsafe_code)]
 
+mod answers;
+mod builder;
+mod bytes;
 mod error;
+mod format;
 pub mod generate;
 mod obj;
 pub mod picture;
+mod off;
 mod ply;
 mod points;
 mod polygon;
 mod scene;
+mod stl;
 mod text;
 mod write;
 
+pub use answers::AnswerWriter;
 pub use error::{HeaderProblem, Place, ReadError, Reason};
+pub use format::{AnswerFormat, Format, PointFormat, UnknownFormat};
 pub use obj::read_obj;
+pub use off::read_off;
 pub use ply::read_ply;
-pub use points::read_points;
+pub use points::{read_points, read_points_from};
 pub use polygon::MAX_CORNERS;
-pub use scene::{Scene, Skipped, read_scene};
-pub use write::write_obj;
+pub use scene::{Object, Scene, Skipped, read_scene, read_scene_from};
+pub use stl::read_stl;
+pub use write::{
+    StlRounding, WriteError, stl_rounding, write_obj, write_off, write_ply, write_ply_ascii, write_scene, write_stl,
+};

@@ -1,7 +1,7 @@
 //! Wavefront OBJ: the geometry of it.
 
+use crate::builder::Builder;
 use crate::polygon::MAX_CORNERS;
-use crate::scene::Builder;
 use crate::text::{Lines, Words, integer, number, quote};
 use crate::{Place, ReadError, Reason, Scene};
 use nalgebra::Point3;
@@ -17,6 +17,9 @@ use std::io::BufRead;
 /// [`Scene::skipped`] by keyword. A file without any `f`, `l` and `p` is a point cloud: each of its vertices is a
 /// point, unless it has statements of free-form geometry (`cstype`, `curv`, `surf`, ...). Then its vertices are control
 /// points, and the scene is empty.
+///
+/// [`Scene::objects`] are made by the statements `o`; a file that has none of them takes `g` instead. The name is the rest
+/// of the line, a `#` included.
 ///
 /// Coordinates that are not finite are no error as long as no primitive uses the vertex. A point cloud leaves such
 /// vertices out and counts them in [`Scene::skipped`].
@@ -45,13 +48,7 @@ pub fn read_obj(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
             .statement(&mut words)
             .map_err(|reason| ReadError::new(name, Place::Line(lines.line() + words.lines_down()), reason))?;
     }
-    if parser.has_unknown && parser.builder.positions.is_empty() {
-        return Err(ReadError::new(name, Place::File, Reason::NoVertex));
-    }
-    if parser.faces + parser.lines + parser.points == 0 && !parser.has_free_form {
-        parser.builder.point_cloud();
-    }
-    parser.builder.finish().map_err(|reason| ReadError::new(name, Place::File, reason))
+    parser.finish().map_err(|reason| ReadError::new(name, Place::File, reason))
 }
 
 #[derive(Default)]
@@ -64,6 +61,7 @@ struct Parser {
     /// Whether there are statements that OBJ does not know, and such of free-form geometry.
     has_unknown: bool,
     has_free_form: bool,
+    has_objects: bool,
     /// The vertices of the statement at hand.
     vertices: Vec<u32>,
 }
@@ -80,14 +78,14 @@ impl Parser {
                 if found > MAX_CORNERS {
                     return Err(Reason::ElementTooLarge { count: found as u64, limit: MAX_CORNERS as u64 });
                 }
-                self.builder.polygon(&self.vertices, self.faces);
+                self.builder.polygon(&self.vertices, self.faces)?;
                 self.faces += 1;
                 Ok(())
             }
             b"l" => {
                 self.vertices(words, 2)?;
                 for ends in self.vertices.windows(2) {
-                    self.builder.push(Element::Segment([ends[0], ends[1]]), self.lines);
+                    self.builder.push(Element::Segment([ends[0], ends[1]]), self.lines)?;
                 }
                 self.lines += 1;
                 Ok(())
@@ -95,9 +93,21 @@ impl Parser {
             b"p" => {
                 self.vertices(words, 1)?;
                 for &vertex in &self.vertices {
-                    self.builder.push(Element::Point(vertex), self.points);
+                    self.builder.push(Element::Point(vertex), self.points)?;
                 }
                 self.points += 1;
+                Ok(())
+            }
+            b"o" | b"g" => {
+                // Whether it is passed over is known at the end.
+                self.builder.skips.add(keyword, 1);
+                if keyword == b"o" && !self.has_objects {
+                    self.builder.forget_objects(); // groups so far
+                    self.has_objects = true;
+                }
+                if keyword == b"o" || !self.has_objects {
+                    self.object(words.rest());
+                }
                 Ok(())
             }
             [b'#', ..] => Ok(()),
@@ -110,6 +120,29 @@ impl Parser {
         }
     }
 
+    fn object(&mut self, name: &[u8]) {
+        if name.contains(&b'\n') {
+            // A line that is continued.
+            let name: Vec<u8> = name.iter().map(|&b| if b == b'\n' { b' ' } else { b }).collect();
+            self.builder.object(&name);
+        } else {
+            self.builder.object(name);
+        }
+    }
+
+    fn finish(mut self) -> Result<Scene, Reason> {
+        if self.has_unknown && self.builder.positions().is_empty() {
+            return Err(Reason::NoVertex);
+        }
+        if self.faces + self.lines + self.points > 0 || self.has_free_form {
+            self.builder.skips.forget(if self.has_objects { b"o" } else { b"g" });
+        } else {
+            self.builder.forget_objects();
+            self.builder.point_cloud()?;
+        }
+        Ok(self.builder.finish())
+    }
+
     fn vertex(&mut self, words: &mut Words<'_>) -> Result<(), Reason> {
         words.end_at_comment();
         let mut position = [0.0; 3];
@@ -120,12 +153,7 @@ impl Parser {
         while let Some(word) = words.next() {
             number(word)?;
         }
-        let count = self.builder.positions.len() as u64;
-        if count >= u64::from(u32::MAX) {
-            return Err(Reason::ElementTooLarge { count: count + 1, limit: u64::from(u32::MAX) });
-        }
-        self.builder.positions.push(Point3::from(position));
-        Ok(())
+        self.builder.vertex(Point3::from(position)).map(|_| ())
     }
 
     /// Reads the references of a statement, `needed` or more, into `self.vertices`.
@@ -133,7 +161,7 @@ impl Parser {
         words.end_at_comment();
         self.vertices.clear();
         while let Some(word) = words.next() {
-            let vertex = vertex_of(word, self.builder.positions.len())?;
+            let vertex = vertex_of(word, self.builder.positions().len())?;
             if !self.builder.is_finite(vertex) {
                 return Err(Reason::NonFiniteVertex { index: u64::from(vertex) + 1 });
             }

@@ -1,13 +1,11 @@
 //! Scenes as they come from files.
 
-use crate::polygon::Triangulator;
-use crate::text::quote;
-use crate::{Place, ReadError, Reason, read_obj, read_ply};
-use nalgebra::Point3;
+use crate::{Format, Place, ReadError, Reason, read_obj, read_off, read_ply, read_stl};
 use p2m_core::{Element, Soup};
 use std::fmt;
 use std::fs::File;
-use std::io::{self, BufReader};
+use std::io::{self, BufRead, BufReader};
+use std::ops::Range;
 use std::path::Path;
 
 /// A scene and what its file says beyond it.
@@ -21,25 +19,58 @@ pub struct Scene {
     /// 0, in the order of the file. Kinds are counted apart.
     ///
     /// In an OBJ file a triangle counts `f` statements, a segment `l` statements, a point `p` statements. In a PLY file a
-    /// triangle counts the elements `face`, a segment the elements `edge`; a file that has both `face` and `tristrips`
-    /// goes on with the strips after the last face. In a point cloud (vertices alone, in either format) it is the number
-    /// of the vertex.
+    /// triangle counts the elements `face`, a segment the elements `edge`, a point the elements `point`; a file that has
+    /// both `face` and `tristrips` goes on with the strips after the last face. In STL files facets are counted, in OFF
+    /// files faces of any number of vertices. In a point cloud (vertices alone, in any format that has them) it is the
+    /// number of the vertex.
     pub sources: Vec<u32>,
+    /// The named parts of the scene, in ascending order and apart from each other; primitives may be in none.
+    ///
+    /// Those of an OBJ file are its statements `o` or, if it has none, `g`; those of a text STL file its solids. Other
+    /// formats have none, and neither has a point cloud. What has no name or no primitives is left out.
+    pub objects: Vec<Object>,
     /// What the reader recognised as no part of the geometry and left out, in the order of first appearance.
     pub skipped: Vec<Skipped>,
+}
+
+/// A scene made from nothing: each primitive is a statement of its own.
+impl From<Soup<f64>> for Scene {
+    fn from(soup: Soup<f64>) -> Self {
+        let mut counts = [0; 3];
+        let next = |element: Element| {
+            let count = &mut counts[element.indices().len() - 1];
+            *count += 1;
+            *count - 1
+        };
+        let sources = soup.elements().map(next).collect();
+        Self { soup, sources, objects: Vec::new(), skipped: Vec::new() }
+    }
+}
+
+/// Consecutive primitives under one name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Object {
+    /// The name as it stands in the file, without blanks around it. A file may use a name again, further down.
+    ///
+    /// What is not UTF-8 is replaced by U+FFFD. Names are those of the file's author: whoever shows them should expect
+    /// any characters.
+    pub name: String,
+    /// The ids of its primitives.
+    pub ids: Range<usize>,
 }
 
 /// Something in a file that is no part of the scene. It displays as a list may show it: `2 x usemtl`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Skipped {
-    /// What it is: the keyword of an OBJ statement, an element or a property of a PLY file, `bytes after the last element`
-    /// (`words` in a text) of a PLY file, or `vertices that are not finite` in a point cloud.
+    /// What it is: the keyword of an OBJ statement, an element or a property of a PLY file, or a plural such as
+    /// `bytes after the last element` (`words` in a text), `facets with attribute bytes`, `vertices with further numbers`,
+    /// `faces with a colour`, `vertices that are not finite` (of a point cloud).
     pub what: String,
     /// How often it occurs, or how many of them there are.
     pub count: u64,
     /// Whether `what` is a plural to put behind the count, rather than a name.
-    is_plural: bool,
+    pub(crate) is_plural: bool,
 }
 
 impl fmt::Display for Skipped {
@@ -48,137 +79,38 @@ impl fmt::Display for Skipped {
     }
 }
 
-/// Kinds of skipped things that are counted one by one. A file of noise has more: they share one count.
-const MAX_KINDS: usize = 64;
-
-/// Counts what is skipped.
-#[derive(Default)]
-pub(crate) struct Skips {
-    /// The same thing is often skipped many times in a row: the last one is tried first.
-    last: usize,
-    keys: Vec<Vec<u8>>,
-    list: Vec<Skipped>,
-    others: u64,
-}
-
-impl Skips {
-    /// Adds to the count of a name; nothing if `count` is 0.
-    pub(crate) fn add(&mut self, key: &[u8], count: u64) {
-        if count == 0 {
-            return;
-        }
-        if self.keys.get(self.last).is_none_or(|k| k != key) {
-            match self.keys.iter().position(|k| k == key) {
-                Some(at) => self.last = at,
-                None if self.keys.len() < MAX_KINDS => {
-                    self.last = self.keys.len();
-                    self.keys.push(key.to_vec());
-                    self.list.push(Skipped { what: quote(key), count: 0, is_plural: false });
-                }
-                None => {
-                    self.others += count;
-                    return;
-                }
-            }
-        }
-        self.list[self.last].count += count;
-    }
-
-    /// Adds so many of what `what` is the plural of, unless there are none.
-    pub(crate) fn add_many(&mut self, count: u64, what: &str) {
-        if count > 0 {
-            self.keys.push(what.as_bytes().to_vec());
-            self.list.push(Skipped { what: what.to_owned(), count, is_plural: true });
-        }
-    }
-
-    fn finish(mut self) -> Vec<Skipped> {
-        let others = self.others;
-        self.add_many(others, "other statements");
-        self.list
-    }
-}
-
-/// A scene under construction; whoever adds to it has checked indices, and that what they name is finite.
-#[derive(Default)]
-pub(crate) struct Builder {
-    pub(crate) positions: Vec<Point3<f64>>,
-    pub(crate) skips: Skips,
-    elements: Vec<Element>,
-    sources: Vec<u32>,
-    corners: Vec<Point3<f64>>,
-    triangulator: Triangulator,
-}
-
-impl Builder {
-    pub(crate) fn push(&mut self, element: Element, source: usize) {
-        self.elements.push(element);
-        // A scene of so many primitives is refused at the end.
-        self.sources.push(u32::try_from(source).unwrap_or(u32::MAX));
-    }
-
-    /// Adds the triangles of a polygon.
-    pub(crate) fn polygon(&mut self, vertices: &[u32], source: usize) {
-        if let &[a, b, c] = vertices {
-            return self.push(Element::Triangle([a, b, c]), source);
-        }
-        self.corners.clear();
-        self.corners.extend(vertices.iter().map(|&v| self.positions[v as usize]));
-        let source = u32::try_from(source).unwrap_or(u32::MAX);
-        for triangle in self.triangulator.triangulate(&self.corners) {
-            self.elements.push(Element::Triangle(triangle.map(|i| vertices[i as usize])));
-            self.sources.push(source);
-        }
-    }
-
-    /// Whether a vertex may be part of a primitive.
-    pub(crate) fn is_finite(&self, vertex: u32) -> bool {
-        self.positions[vertex as usize].iter().all(|x| x.is_finite())
-    }
-
-    /// Makes every vertex a point, except those that are not finite.
-    #[allow(clippy::cast_possible_truncation, reason = "readers refuse vertices beyond the range of u32")]
-    pub(crate) fn point_cloud(&mut self) {
-        let mut left_out = 0;
-        for i in 0..self.positions.len() {
-            if self.is_finite(i as u32) {
-                self.push(Element::Point(i as u32), i);
-            } else {
-                left_out += 1;
-            }
-        }
-        self.skips.add_many(left_out, "vertices that are not finite");
-    }
-
-    pub(crate) fn finish(self) -> Result<Scene, Reason> {
-        let soup = Soup::new(self.positions, self.elements).map_err(Reason::Build)?;
-        Ok(Scene { soup, sources: self.sources, skipped: self.skips.finish() })
-    }
-}
-
-/// The extensions of scene files.
-const EXTENSIONS: &[&str] = &["obj", "ply"];
-
-/// Reads a scene, in the format that the extension of its name says: `obj` or `ply`, in any case.
+/// Reads a scene, in the format that the extension of its name says, in any case.
 ///
 /// # Errors
 /// [`ReadError`] names file, place and reason. A file is read whole or not at all.
 pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
+    let format = Format::from_path(path)?;
     let name = path.display().to_string();
-    match extension(path).as_str() {
-        "obj" => read_obj(open(path, &name)?, &name),
-        "ply" => read_ply(open(path, &name)?, &name),
-        _ => Err(unknown_extension(path, &name, EXTENSIONS)),
+    read_scene_from(open(path, &name)?, format, &name)
+}
+
+/// Reads a scene from the standard input, say; `name` is for messages.
+///
+/// The file is read once from its beginning to its end. While it is, memory for three times the finished scene is
+/// needed at most, whatever the file announces.
+///
+/// ```
+/// use p2m_mixed::{Format, read_scene_from};
+///
+/// let scene = read_scene_from("OFF 3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n".as_bytes(), Format::Off, "standard input")?;
+/// assert_eq!(scene.soup.triangles(), [[0, 1, 2]]);
+/// # Ok::<(), p2m_mixed::ReadError>(())
+/// ```
+///
+/// # Errors
+/// As [`read_scene`].
+pub fn read_scene_from(reader: impl BufRead, format: Format, name: &str) -> Result<Scene, ReadError> {
+    match format {
+        Format::Obj => read_obj(reader, name),
+        Format::Ply => read_ply(reader, name),
+        Format::Stl => read_stl(reader, name),
+        Format::Off => read_off(reader, name),
     }
-}
-
-pub(crate) fn extension(path: &Path) -> String {
-    path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
-}
-
-pub(crate) fn unknown_extension(path: &Path, name: &str, supported: &'static [&'static str]) -> ReadError {
-    let extension = path.extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
-    ReadError::new(name, Place::File, Reason::UnknownExtension { extension, supported })
 }
 
 pub(crate) fn open(path: &Path, name: &str) -> Result<BufReader<File>, ReadError> {

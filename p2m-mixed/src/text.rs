@@ -40,6 +40,13 @@ pub(crate) fn integer(word: &[u8]) -> Result<i64, Reason> {
     Ok(if negative { -value } else { value })
 }
 
+/// Without white space around it.
+pub(crate) fn trim(bytes: &[u8]) -> &[u8] {
+    let start = bytes.iter().position(|&b| !is_space(b)).unwrap_or(bytes.len());
+    let end = bytes.iter().rposition(|&b| !is_space(b)).map_or(start, |last| last + 1);
+    &bytes[start..end]
+}
+
 pub(crate) fn is_space(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\r' | b'\n' | 0x0b | 0x0c)
 }
@@ -106,6 +113,11 @@ impl<'a> Words<'a> {
         (start < end).then(|| &self.bytes[start..end])
     }
 
+    /// What follows the last word.
+    pub(crate) fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.end..]
+    }
+
     /// Ends the statement where a comment begins.
     pub(crate) fn end_at_comment(&mut self) {
         if let Some(at) = self.bytes[self.end..].iter().position(|&b| b == b'#') {
@@ -128,12 +140,14 @@ pub(crate) struct Lines<R> {
     next: u64,
     /// Whether the last line ended at `\r`: a `\n` right behind is of the same end.
     after_return: bool,
+    /// Bytes that were read.
+    read: u64,
 }
 
 impl<R: BufRead> Lines<R> {
     /// `lines_before` have been read already.
     pub(crate) fn new(reader: R, lines_before: u64) -> Self {
-        Self { reader, buffer: Vec::new(), line: lines_before, next: lines_before + 1, after_return: false }
+        Self { reader, buffer: Vec::new(), line: lines_before, next: lines_before + 1, after_return: false, read: 0 }
     }
 
     /// Number of the first line of the statement that was read last.
@@ -146,11 +160,24 @@ impl<R: BufRead> Lines<R> {
         &self.buffer
     }
 
+    /// The reader behind the line that was read last, and how many bytes are before.
+    pub(crate) fn into_reader(mut self) -> io::Result<(R, u64)> {
+        self.end_line()?;
+        Ok((self.reader, self.read))
+    }
+
     /// Reads the next line; `false` at the end of the text.
     pub(crate) fn read(&mut self) -> std::io::Result<bool> {
         self.buffer.clear();
         self.line = self.next;
         self.append()
+    }
+
+    /// Ends the line where a comment begins.
+    fn end_at_comment(&mut self) {
+        if let Some(at) = self.buffer.iter().position(|&b| b == b'#') {
+            self.buffer.truncate(at);
+        }
     }
 
     /// Reads the next statement of a text in which a backslash at the end of a line continues it on the next one.
@@ -172,15 +199,23 @@ impl<R: BufRead> Lines<R> {
         Ok(true)
     }
 
-    /// Appends the next line without its end.
-    fn append(&mut self) -> std::io::Result<bool> {
-        // Only now, not behind the `\r`: a line is not held back until the next one is there.
+    /// Passes over the second byte of a line end. Not right behind the `\r`: no line is held back until the next one is
+    /// there.
+    fn end_line(&mut self) -> io::Result<()> {
         if std::mem::take(&mut self.after_return) && at_hand(&mut self.reader)?.first() == Some(&b'\n') {
             self.reader.consume(1);
+            self.read += 1;
         }
+        Ok(())
+    }
+
+    /// Appends the next line without its end.
+    fn append(&mut self) -> std::io::Result<bool> {
+        self.end_line()?;
         let start = self.buffer.len();
-        if read_until(&mut self.reader, |b| matches!(b, b'\n' | b'\r'), usize::MAX, &mut self.buffer)? == 0 {
-            return Ok(false);
+        match read_until(&mut self.reader, |b| matches!(b, b'\n' | b'\r'), usize::MAX, &mut self.buffer)? {
+            0 => return Ok(false),
+            read => self.read += read as u64,
         }
         if self.next == 1 && self.buffer.starts_with(b"\xef\xbb\xbf") {
             self.buffer.drain(..3); // the mark that some editors put in front of UTF-8
@@ -191,6 +226,69 @@ impl<R: BufRead> Lines<R> {
             self.buffer.pop();
         }
         Ok(true)
+    }
+}
+
+/// A text as a row of words, whatever lines they stand on.
+pub(crate) struct Stream<R> {
+    lines: Lines<R>,
+    /// Where the rest of the line begins.
+    at: usize,
+    /// Whether `#` begins a comment.
+    has_comments: bool,
+}
+
+impl<R: BufRead> Stream<R> {
+    pub(crate) fn new(lines: Lines<R>) -> Self {
+        Self { lines, at: 0, has_comments: false }
+    }
+
+    pub(crate) fn with_comments(lines: Lines<R>) -> Self {
+        Self { has_comments: true, ..Self::new(lines) }
+    }
+
+    /// Number of the line that the last word stands on.
+    pub(crate) fn line(&self) -> u64 {
+        self.lines.line()
+    }
+
+    /// The next word, on this line or further down.
+    pub(crate) fn word(&mut self) -> Result<&[u8], Reason> {
+        loop {
+            if let Some(word) = self.find() {
+                return Ok(&self.lines.bytes()[word]);
+            }
+            self.at = 0;
+            if !self.lines.read().map_err(Reason::Io)? {
+                return Err(Reason::UnexpectedEnd);
+            }
+            if self.has_comments {
+                self.lines.end_at_comment();
+            }
+        }
+    }
+
+    /// The next word on this line.
+    pub(crate) fn word_on_line(&mut self) -> Option<&[u8]> {
+        self.find().map(|word| &self.lines.bytes()[word])
+    }
+
+    fn find(&mut self) -> Option<std::ops::Range<usize>> {
+        let bytes = self.lines.bytes();
+        let start = self.at + bytes[self.at..].iter().take_while(|&&b| is_space(b)).count();
+        let end = start + bytes[start..].iter().take_while(|&&b| !is_space(b)).count();
+        self.at = end;
+        (start < end).then_some(start..end)
+    }
+
+    /// The rest of this line.
+    pub(crate) fn rest_of_line(&mut self) -> &[u8] {
+        let start = std::mem::replace(&mut self.at, self.lines.bytes().len());
+        &self.lines.bytes()[start..]
+    }
+
+    pub(crate) fn into_lines(self) -> Lines<R> {
+        self.lines
     }
 }
 

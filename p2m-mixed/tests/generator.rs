@@ -11,7 +11,7 @@ fn the_committed_scene_is_what_the_generator_makes() {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/knot_and_cables.obj"));
     let soup = knot_and_cables(&KnotAndCables::default()).unwrap();
     let mut text = Vec::new();
-    write_obj(&soup, &mut text).unwrap();
+    write_obj(&soup.clone().into(), &mut text).unwrap();
     assert!(text == std::fs::read(path).unwrap(), "p2m generate knot-and-cables --out scenes/knot_and_cables.obj");
     assert_eq!(read_scene(path).unwrap().soup, soup);
 }

@@ -1,9 +1,10 @@
 //! The numbers behind the header of a PLY file, in any of its encodings.
 
-use super::header::{Encoding, Header, Layout, Scalar};
-use crate::text::{Lines, Words, integer, is_space, number, quote};
+use super::header::{Encoding, Header, Layout};
+use crate::bytes::{Bytes, Scalar};
+use crate::text::{Lines, Stream, integer, number, quote};
 use crate::{Place, ReadError, Reason};
-use std::io::{BufRead, ErrorKind};
+use std::io::BufRead;
 
 /// Hands out one number after the other.
 pub(super) struct Data<'n, R> {
@@ -12,32 +13,21 @@ pub(super) struct Data<'n, R> {
 }
 
 enum Source<R> {
-    Text(Text<R>),
-    Binary(Binary<R>),
-}
-
-struct Text<R> {
-    lines: Lines<R>,
-    /// Where the rest of the line begins.
-    at: usize,
-}
-
-struct Binary<R> {
-    reader: R,
-    big_endian: bool,
-    /// Of the number that was read last, and of the one to come.
-    start: u64,
-    offset: u64,
+    /// Not every writer keeps an element on its line.
+    Text(Stream<R>),
+    Binary {
+        bytes: Bytes<R>,
+        big_endian: bool,
+    },
 }
 
 impl<'n, R: BufRead> Data<'n, R> {
     /// `reader` stands behind `header`.
     pub(super) fn new(reader: R, header: &Header, file: &'n str) -> Self {
         let source = match header.encoding {
-            Encoding::Ascii => Source::Text(Text { lines: Lines::new(reader, header.lines), at: 0 }),
+            Encoding::Ascii => Source::Text(Stream::new(Lines::new(reader, header.lines))),
             encoding => {
-                let big_endian = encoding == Encoding::Big;
-                Source::Binary(Binary { reader, big_endian, start: header.bytes, offset: header.bytes })
+                Source::Binary { bytes: Bytes::new(reader, header.bytes), big_endian: encoding == Encoding::Big }
             }
         };
         Self { file, source }
@@ -46,9 +36,14 @@ impl<'n, R: BufRead> Data<'n, R> {
     /// Where the number stands that was read last.
     pub(super) fn place(&self) -> Place {
         match &self.source {
-            Source::Text(text) => Place::Line(text.lines.line()),
-            Source::Binary(binary) => Place::Byte(binary.start),
+            Source::Text(text) => Place::Line(text.line()),
+            Source::Binary { bytes, .. } => Place::Byte(bytes.start()),
         }
+    }
+
+    /// The name of the file.
+    pub(super) fn file(&self) -> &'n str {
+        self.file
     }
 
     /// The error that `reason` makes at the number that was read last.
@@ -58,11 +53,12 @@ impl<'n, R: BufRead> Data<'n, R> {
 
     /// Checks that nothing follows an element on its line of a text. Otherwise the header declares fewer numbers than
     /// there are, and what follows would be read as something that it is not.
-    pub(super) fn end_element(&self) -> Result<(), ReadError> {
-        if let Source::Text(text) = &self.source
-            && let Some(word) = Words::new(&text.lines.bytes()[text.at..]).next()
+    pub(super) fn end_element(&mut self) -> Result<(), ReadError> {
+        if let Source::Text(text) = &mut self.source
+            && let Some(word) = text.word_on_line()
         {
-            return Err(self.error(Reason::ExtraWord { text: quote(word) }));
+            let text = quote(word);
+            return Err(self.error(Reason::ExtraWord { text }));
         }
         Ok(())
     }
@@ -76,7 +72,7 @@ impl<'n, R: BufRead> Data<'n, R> {
                 }
                 number(word)
             }),
-            Source::Binary(binary) => binary.number(scalar),
+            Source::Binary { bytes, big_endian } => bytes.number(scalar, *big_endian),
         };
         value.map_err(|reason| self.error(reason))
     }
@@ -86,7 +82,7 @@ impl<'n, R: BufRead> Data<'n, R> {
     pub(super) fn integer(&mut self, scalar: Scalar) -> Result<i64, ReadError> {
         let value = match &mut self.source {
             Source::Text(text) => text.word().and_then(integer),
-            Source::Binary(binary) => binary.number(scalar).map(|x| x as i64),
+            Source::Binary { bytes, big_endian } => bytes.number(scalar, *big_endian).map(|x| x as i64),
         };
         value.map_err(|reason| self.error(reason))
     }
@@ -106,111 +102,26 @@ impl<'n, R: BufRead> Data<'n, R> {
         let skipped = match &mut self.source {
             Source::Text(text) => (0..numbers).try_for_each(|_| text.word().map(|_| ())),
             // No overflow: the longest list of a binary file has 2^32 - 1 items of 8 bytes.
-            Source::Binary(binary) => binary.skip(numbers * scalar.size() as u64),
+            Source::Binary { bytes, .. } => bytes.skip(numbers * scalar.size() as u64),
         };
         skipped.map_err(|reason| self.error(reason))
     }
 
     /// Reads to the end of the file; how many bytes (binary) or words (text) there are, and what they are called.
     pub(super) fn rest(mut self) -> Result<(u64, &'static str), ReadError> {
-        let what = match &self.source {
-            Source::Text(_) => "words after the last element",
-            Source::Binary(_) => "bytes after the last element",
-        };
-        let mut rest = 0u64;
-        loop {
-            let more = match &mut self.source {
-                Source::Text(text) => match text.word() {
-                    Ok(_) => 1,
-                    Err(Reason::UnexpectedEnd) => 0,
-                    Err(reason) => return Err(self.error(reason)),
-                },
-                Source::Binary(binary) => match binary.discard(u64::MAX) {
-                    Ok(more) => more,
-                    Err(reason) => return Err(self.error(reason)),
-                },
-            };
-            if more == 0 {
-                return Ok((rest, what));
-            }
-            rest += more;
-        }
-    }
-}
-
-impl<R: BufRead> Text<R> {
-    /// The next word, on this line or further down: not every writer keeps an element on its line.
-    fn word(&mut self) -> Result<&[u8], Reason> {
-        loop {
-            let bytes = self.lines.bytes();
-            let start = self.at + bytes[self.at..].iter().take_while(|&&b| is_space(b)).count();
-            if start < bytes.len() {
-                let end = start + bytes[start..].iter().take_while(|&&b| !is_space(b)).count();
-                self.at = end;
-                return Ok(&self.lines.bytes()[start..end]);
-            }
-            self.at = 0;
-            if !self.lines.read().map_err(Reason::Io)? {
-                return Err(Reason::UnexpectedEnd);
-            }
-        }
-    }
-}
-
-impl<R: BufRead> Binary<R> {
-    fn bytes<const N: usize>(&mut self) -> Result<[u8; N], Reason> {
-        self.start = self.offset;
-        let mut bytes = [0; N];
-        self.reader.read_exact(&mut bytes).map_err(|e| match e.kind() {
-            ErrorKind::UnexpectedEof => Reason::UnexpectedEnd,
-            _ => Reason::Io(e),
-        })?;
-        self.offset += N as u64;
-        if self.big_endian {
-            bytes.reverse();
-        }
-        Ok(bytes)
-    }
-
-    /// Every number of a PLY file is one of double precision.
-    fn number(&mut self, scalar: Scalar) -> Result<f64, Reason> {
-        Ok(match scalar {
-            Scalar::I8 => f64::from(i8::from_le_bytes(self.bytes()?)),
-            Scalar::U8 => f64::from(u8::from_le_bytes(self.bytes()?)),
-            Scalar::I16 => f64::from(i16::from_le_bytes(self.bytes()?)),
-            Scalar::U16 => f64::from(u16::from_le_bytes(self.bytes()?)),
-            Scalar::I32 => f64::from(i32::from_le_bytes(self.bytes()?)),
-            Scalar::U32 => f64::from(u32::from_le_bytes(self.bytes()?)),
-            Scalar::F32 => f64::from(f32::from_le_bytes(self.bytes()?)),
-            Scalar::F64 => f64::from_le_bytes(self.bytes()?),
-        })
-    }
-
-    fn skip(&mut self, bytes: u64) -> Result<(), Reason> {
-        self.start = self.offset;
-        let mut left = bytes;
-        while left > 0 {
-            match self.discard(left)? {
-                0 => return Err(Reason::UnexpectedEnd),
-                passed => left -= passed,
-            }
-        }
-        Ok(())
-    }
-
-    /// Passes over what is at hand, up to `most` bytes; 0 at the end of the file.
-    fn discard(&mut self, most: u64) -> Result<u64, Reason> {
-        loop {
-            match self.reader.fill_buf() {
-                Ok(buffer) => {
-                    let passed = buffer.len().min(usize::try_from(most).unwrap_or(usize::MAX));
-                    self.reader.consume(passed);
-                    self.offset += passed as u64;
-                    return Ok(passed as u64);
+        let rest = match &mut self.source {
+            Source::Binary { bytes, .. } => bytes.rest().map(|rest| (rest, "bytes after the last element")),
+            Source::Text(text) => {
+                let mut rest = 0;
+                loop {
+                    match text.word() {
+                        Ok(_) => rest += 1,
+                        Err(Reason::UnexpectedEnd) => break Ok((rest, "words after the last element")),
+                        Err(reason) => break Err(reason),
+                    }
                 }
-                Err(e) if e.kind() == ErrorKind::Interrupted => {}
-                Err(e) => return Err(Reason::Io(e)),
             }
-        }
+        };
+        rest.map_err(|reason| self.error(reason))
     }
 }

@@ -1,5 +1,6 @@
 //! The header of a PLY file: what elements there are, and of what properties.
 
+use crate::bytes::Scalar;
 use crate::text::{Words, at_hand, integer, quote, read_until};
 use crate::{HeaderProblem, Place, ReadError, Reason};
 use std::collections::HashSet;
@@ -17,46 +18,18 @@ pub(super) enum Encoding {
 }
 
 /// The types of numbers, under two names each.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Scalar {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
-}
-
-impl Scalar {
-    fn named(name: &[u8]) -> Option<Self> {
-        Some(match name {
-            b"char" | b"int8" => Self::I8,
-            b"uchar" | b"uint8" => Self::U8,
-            b"short" | b"int16" => Self::I16,
-            b"ushort" | b"uint16" => Self::U16,
-            b"int" | b"int32" => Self::I32,
-            b"uint" | b"uint32" => Self::U32,
-            b"float" | b"float32" => Self::F32,
-            b"double" | b"float64" => Self::F64,
-            _ => return None,
-        })
-    }
-
-    /// Size in bytes.
-    pub(super) fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 => 8,
-        }
-    }
-
-    pub(super) fn is_integer(self) -> bool {
-        !matches!(self, Self::F32 | Self::F64)
-    }
+fn scalar_named(name: &[u8]) -> Option<Scalar> {
+    Some(match name {
+        b"char" | b"int8" => Scalar::I8,
+        b"uchar" | b"uint8" => Scalar::U8,
+        b"short" | b"int16" => Scalar::I16,
+        b"ushort" | b"uint16" => Scalar::U16,
+        b"int" | b"int32" => Scalar::I32,
+        b"uint" | b"uint32" => Scalar::U32,
+        b"float" | b"float32" => Scalar::F32,
+        b"double" | b"float64" => Scalar::F64,
+        _ => return None,
+    })
 }
 
 /// One number, or a list of them behind their count.
@@ -228,10 +201,10 @@ fn property(words: &mut Words<'_>) -> Option<Result<Property, Reason>> {
     let (layout, name, declared) = if first == b"list" {
         let (count, item, name) = (words.next()?, words.next()?, words.next()?);
         let declared = format!("list {} {}", quote(count), quote(item));
-        let count = Scalar::named(count).filter(|s| s.is_integer());
-        (count.zip(Scalar::named(item)).map(|(count, item)| Layout::List { count, item }), name, declared)
+        let count = scalar_named(count).filter(|s| s.is_integer());
+        (count.zip(scalar_named(item)).map(|(count, item)| Layout::List { count, item }), name, declared)
     } else {
-        (Scalar::named(first).map(Layout::Scalar), words.next()?, quote(first))
+        (scalar_named(first).map(Layout::Scalar), words.next()?, quote(first))
     };
     Some(match layout {
         Some(layout) => Ok(Property { name: name.to_vec(), layout, declared }),

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test binary uses a part of this")]
 
 use p2m_core::Element;
-use p2m_mixed::{ReadError, Scene, read_obj, read_ply};
+use p2m_mixed::{Format, ReadError, Scene, read_obj, read_off, read_ply, read_scene_from, read_stl, write_scene};
 
 pub(crate) fn obj(text: impl AsRef<[u8]>) -> Result<Scene, ReadError> {
     read_obj(text.as_ref(), "t.obj")
@@ -10,6 +10,30 @@ pub(crate) fn obj(text: impl AsRef<[u8]>) -> Result<Scene, ReadError> {
 
 pub(crate) fn ply(bytes: impl AsRef<[u8]>) -> Result<Scene, ReadError> {
     read_ply(bytes.as_ref(), "t.ply")
+}
+
+pub(crate) fn stl(bytes: impl AsRef<[u8]>) -> Result<Scene, ReadError> {
+    read_stl(bytes.as_ref(), "t.stl")
+}
+
+pub(crate) fn off(bytes: impl AsRef<[u8]>) -> Result<Scene, ReadError> {
+    read_off(bytes.as_ref(), "t.off")
+}
+
+pub(crate) fn written(scene: &Scene, format: Format) -> Vec<u8> {
+    let mut file = Vec::new();
+    write_scene(scene, format, &mut file).unwrap();
+    file
+}
+
+/// The scene after it has been in a file.
+pub(crate) fn read_back(scene: &Scene, format: Format) -> Scene {
+    read_scene_from(&written(scene, format)[..], format, "again").unwrap()
+}
+
+/// The coordinates, bit by bit.
+pub(crate) fn bits(scene: &Scene) -> Vec<[u64; 3]> {
+    scene.soup.positions().iter().map(|p| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits()]).collect()
 }
 
 pub(crate) fn elements(scene: &Scene) -> Vec<Element> {

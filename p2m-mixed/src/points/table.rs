@@ -1,41 +1,11 @@
-//! Points to ask about, from tables of text.
+//! Points from tables of text.
 
-use crate::scene::{extension, open, unknown_extension};
 use crate::text::{Lines, Words, finite, number, quote};
 use crate::{Place, ReadError, Reason};
 use nalgebra::Point3;
 use std::io::BufRead;
-use std::path::Path;
 
-/// The extensions of point files.
-const EXTENSIONS: &[&str] = &["xyz", "txt", "csv"];
-
-/// Reads points from a table, in the format that the extension of its name says, in any case.
-///
-/// `xyz` and `txt`: the first three columns, separated by white space, are x, y and z; further ones are ignored, as are
-/// blank lines and lines that begin with `#` or `//`. There is no line with the number of points in front, as chemists
-/// have it.
-///
-/// `csv`: separated by semicolons if the first line has one, otherwise by commas; fields may be quoted, but not run
-/// over several lines; blank lines and lines that begin with `#` are passed over. If the first record has columns named
-/// `qx`, `qy`, `qz`, or else `x`, `y`, `z`, or else `Points:0`, `Points:1`, `Points:2`, these are used: so the output of
-/// `p2m query` asks the same questions again. Case does not matter, nor does what follows a name behind a blank or a
-/// bracket, as in `X [m]`. Without such names the first three columns are used. A first record with other names, that is
-/// one with none of its first three fields starting like a number, is passed over if it has exactly three fields.
-///
-/// # Errors
-/// [`ReadError`] with the line for numbers that are none or not finite, for fewer than three of them, and for names of
-/// more than three columns that do not tell which are the coordinates.
-pub fn read_points(path: &Path) -> Result<Vec<Point3<f64>>, ReadError> {
-    let name = path.display().to_string();
-    match extension(path).as_str() {
-        "xyz" | "txt" => read_xyz(open(path, &name)?, &name),
-        "csv" => read_csv(open(path, &name)?, &name),
-        _ => Err(unknown_extension(path, &name, EXTENSIONS)),
-    }
-}
-
-fn read_xyz(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
+pub(super) fn read_xyz(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
     let mut lines = Lines::new(reader, 0);
     let mut points = Vec::new();
     loop {
@@ -73,7 +43,7 @@ fn point(fields: [Option<&[u8]>; 3]) -> Result<Point3<f64>, Reason> {
     Ok(point)
 }
 
-fn read_csv(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
+pub(super) fn read_csv(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
     let mut lines = Lines::new(reader, 0);
     let mut format = None;
     let mut points = Vec::new();
@@ -272,12 +242,5 @@ mod tests {
         for text in ["1,2,3\n", "1, 2, 3\n", "1;2;3\n"] {
             assert!(xyz(text).unwrap_err().contains("should be named .csv"), "{text}");
         }
-    }
-
-    #[test]
-    fn extensions_decide() {
-        let error = read_points(Path::new("queries.las")).unwrap_err();
-        assert_eq!(error.to_string(), "queries.las: unknown extension 'las', expected one of xyz, txt, csv");
-        assert!(matches!(read_points(Path::new("/nonexistent/q.XYZ")).unwrap_err().reason, Reason::Io(_)));
     }
 }

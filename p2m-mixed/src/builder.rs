@@ -1,0 +1,190 @@
+//! Scenes under construction.
+
+use crate::Reason;
+use crate::polygon::Triangulator;
+use crate::scene::{Object, Scene, Skipped};
+use crate::text::{quote, trim};
+use nalgebra::Point3;
+use p2m_core::{Element, PrimitiveSet, Soup};
+
+/// Kinds of skipped things that are counted one by one. A file of noise has more: they share one count.
+const MAX_KINDS: usize = 64;
+
+/// Counts what is skipped.
+#[derive(Default)]
+pub(crate) struct Skips {
+    /// The same thing is often skipped many times in a row: the last one is tried first.
+    last: usize,
+    keys: Vec<Vec<u8>>,
+    list: Vec<Skipped>,
+    others: u64,
+}
+
+impl Skips {
+    /// Adds to the count of a name; nothing if `count` is 0.
+    pub(crate) fn add(&mut self, key: &[u8], count: u64) {
+        if count == 0 {
+            return;
+        }
+        if self.keys.get(self.last).is_none_or(|k| k != key) {
+            match self.keys.iter().position(|k| k == key) {
+                Some(at) => self.last = at,
+                None if self.keys.len() < MAX_KINDS => {
+                    self.last = self.keys.len();
+                    self.keys.push(key.to_vec());
+                    self.list.push(Skipped { what: quote(key), count: 0, is_plural: false });
+                }
+                None => {
+                    self.others += count;
+                    return;
+                }
+            }
+        }
+        self.list[self.last].count += count;
+    }
+
+    /// Adds so many of what `what` is the plural of, unless there are none.
+    pub(crate) fn add_many(&mut self, count: u64, what: &str) {
+        if count > 0 {
+            self.keys.push(what.as_bytes().to_vec());
+            self.list.push(Skipped { what: what.to_owned(), count, is_plural: true });
+        }
+    }
+
+    /// Takes back what was added under a name.
+    pub(crate) fn forget(&mut self, key: &[u8]) {
+        if let Some(at) = self.keys.iter().position(|k| k == key) {
+            self.keys.remove(at);
+            self.list.remove(at);
+            self.last = 0;
+        }
+    }
+
+    fn finish(mut self) -> Vec<Skipped> {
+        let others = self.others;
+        self.add_many(others, "other statements");
+        self.list
+    }
+}
+
+/// Collects objects. A name costs memory only where it starts a run of primitives.
+#[derive(Default)]
+struct Objects {
+    list: Vec<Object>,
+    /// The name at hand, in the bytes of the file, and the first id under it.
+    name: Vec<u8>,
+    start: usize,
+}
+
+impl Objects {
+    /// What follows from id `next` on is of this name.
+    fn start(&mut self, name: &[u8], next: usize) {
+        if self.name != name {
+            self.end(next);
+            self.name.clear();
+            self.name.extend_from_slice(name);
+        }
+    }
+
+    fn end(&mut self, next: usize) {
+        if self.start < next && !self.name.is_empty() {
+            let name = String::from_utf8_lossy(&self.name);
+            match self.list.last_mut() {
+                Some(last) if last.ids.end == self.start && last.name == name => last.ids.end = next,
+                _ => self.list.push(Object { name: name.into_owned(), ids: self.start..next }),
+            }
+        }
+        self.start = next;
+    }
+}
+
+/// A scene under construction; whoever adds to it has checked indices, and that what they name is finite.
+#[derive(Default)]
+pub(crate) struct Builder {
+    pub(crate) skips: Skips,
+    soup: Soup<f64>,
+    sources: Vec<u32>,
+    objects: Objects,
+    corners: Vec<Point3<f64>>,
+    triangulator: Triangulator,
+}
+
+impl Builder {
+    pub(crate) fn positions(&self) -> &[Point3<f64>] {
+        self.soup.positions()
+    }
+
+    /// Adds a vertex, unless there are more than u32 can count.
+    pub(crate) fn vertex(&mut self, position: Point3<f64>) -> Result<u32, Reason> {
+        let count = self.positions().len() as u64;
+        let vertex = u32::try_from(count).ok().filter(|&vertex| vertex < u32::MAX);
+        let vertex = vertex.ok_or(Reason::ElementTooLarge { count: count + 1, limit: u64::from(u32::MAX) })?;
+        self.soup.push_position(position);
+        Ok(vertex)
+    }
+
+    pub(crate) fn push(&mut self, element: Element, source: usize) -> Result<(), Reason> {
+        self.soup.push(element).map_err(Reason::Build)?;
+        // There are no more statements than bytes; one beyond u32 has no primitive, since ids end before.
+        self.sources.push(u32::try_from(source).unwrap_or(u32::MAX));
+        Ok(())
+    }
+
+    /// Adds the triangles of a polygon.
+    pub(crate) fn polygon(&mut self, vertices: &[u32], source: usize) -> Result<(), Reason> {
+        if let &[a, b, c] = vertices {
+            return self.push(Element::Triangle([a, b, c]), source);
+        }
+        self.corners.clear();
+        self.corners.extend(vertices.iter().map(|&v| self.soup.positions()[v as usize]));
+        let source = u32::try_from(source).unwrap_or(u32::MAX);
+        for triangle in self.triangulator.triangulate(&self.corners) {
+            self.soup.push(Element::Triangle(triangle.map(|i| vertices[i as usize]))).map_err(Reason::Build)?;
+            self.sources.push(source);
+        }
+        Ok(())
+    }
+
+    /// Whether a vertex may be part of a primitive.
+    pub(crate) fn is_finite(&self, vertex: u32) -> bool {
+        self.positions()[vertex as usize].iter().all(|x| x.is_finite())
+    }
+
+    /// What follows belongs to the object of this name, or to none if it is empty.
+    pub(crate) fn object(&mut self, name: &[u8]) {
+        self.objects.start(trim(name), self.soup.len());
+    }
+
+    /// Forgets all objects.
+    pub(crate) fn forget_objects(&mut self) {
+        self.objects = Objects { start: self.soup.len(), ..Objects::default() };
+    }
+
+    /// Makes every vertex a point, except those that are not finite.
+    #[allow(clippy::cast_possible_truncation, reason = "there are no more vertices than u32 can count")]
+    pub(crate) fn point_cloud(&mut self) -> Result<(), Reason> {
+        let mut left_out = 0;
+        for i in 0..self.positions().len() {
+            if self.is_finite(i as u32) {
+                self.push(Element::Point(i as u32), i)?;
+            } else {
+                left_out += 1;
+            }
+        }
+        self.skips.add_many(left_out, "vertices that are not finite");
+        Ok(())
+    }
+
+    /// Gives back the memory that is held for more vertices and primitives.
+    pub(crate) fn shrink_to_fit(&mut self) {
+        self.soup.shrink_to_fit();
+        self.sources.shrink_to_fit();
+    }
+
+    pub(crate) fn finish(mut self) -> Scene {
+        self.shrink_to_fit();
+        self.objects.end(self.soup.len());
+        let Self { soup, sources, skips, objects, .. } = self;
+        Scene { soup, sources, objects: objects.list, skipped: skips.finish() }
+    }
+}

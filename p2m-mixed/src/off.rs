@@ -1,0 +1,269 @@
+//! OFF, the object file format of Geomview: text and binary.
+
+use crate::builder::Builder;
+use crate::bytes::{Bytes, Scalar};
+use crate::polygon::MAX_CORNERS;
+use crate::text::{Lines, Stream, integer, number, quote};
+use crate::{HeaderProblem, Place, ReadError, Reason, Scene};
+use nalgebra::Point3;
+use p2m_core::Element;
+use std::io::BufRead;
+
+/// Reads an OFF file; `name` is for messages.
+///
+/// Faces of three vertices or more are polygons of any shape, faces of two are segments, those of one are points. A file
+/// without faces is a point cloud: each vertex is a point. Faces count from 0 in [`Scene::sources`], whatever they are.
+///
+/// The first word is `OFF` behind any of `ST`, `C` and `N`, which announce texture coordinates, colours and normals of
+/// vertices; it may be missing, and the counts may follow it on the same line, even without a blank. The number of edges
+/// may be missing. A `#` begins a comment. Vertices and faces may go on over several lines. What follows the coordinates of
+/// a vertex on its line (colours, normals), and up to four numbers behind a face (its colour), are left out and counted in
+/// [`Scene::skipped`], as is what follows the last face. `OFF BINARY` files are read, too.
+///
+/// Vertices in other dimensions (`4OFF`, `nOFF`) are refused, unless `nOFF` says 3.
+///
+/// Coordinates that are not finite are no error as long as no primitive uses the vertex. A point cloud leaves such vertices
+/// out and counts them in [`Scene::skipped`].
+///
+/// # Errors
+/// [`ReadError`] with the line or (binary) the offset for a header that makes no sense, an early end, numbers that are none
+/// or too many for their line, indices of no vertex, vertices of primitives that are not finite (with the place of the
+/// primitive), faces of no vertex or of more than [`MAX_CORNERS`], and for what goes wrong in reading. No memory is taken
+/// for data that is merely announced.
+pub fn read_off(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
+    let mut words = Stream::with_comments(Lines::new(reader, 0));
+    let fail = |line, reason| ReadError::new(name, Place::Line(line), reason);
+    let header = read_header(&mut words).map_err(|reason| fail(words.line(), reason))?;
+    let Some(counts) = header.counts else {
+        let line = words.line();
+        let (reader, offset) = words.into_lines().into_reader().map_err(|e| fail(line, Reason::Io(e)))?;
+        let mut bytes = Bytes::new(reader, offset);
+        return read_binary(&mut bytes, header.extras)
+            .map_err(|reason| ReadError::new(name, Place::Byte(bytes.start()), reason));
+    };
+    read_text(&mut words, counts).map_err(|reason| fail(words.line(), reason))
+}
+
+struct Header {
+    /// How many vertices and faces there are; none if binary data follow.
+    counts: Option<[u64; 2]>,
+    /// Numbers behind the coordinates of a vertex, if they are binary.
+    extras: u64,
+}
+
+fn read_header(words: &mut Stream<impl BufRead>) -> Result<Header, Reason> {
+    let first = words.word()?.to_vec();
+    if first.iter().all(u8::is_ascii_digit) {
+        return Ok(Header { counts: Some([count(&first)?, faces_of_header(words)?]), extras: 0 });
+    }
+    let not_off = || Reason::BadHeader(HeaderProblem::NotOff { text: quote(&first) });
+    let unsupported = || Reason::UnsupportedFormat { text: quote(&first) };
+    let at = first.windows(3).position(|w| w == b"OFF" || w == b"off").ok_or_else(not_off)?;
+    let (mut prefix, glued) = (&first[..at], &first[at + 3..]);
+    let mut extras = 0;
+    let mut has_dimension = false;
+    while !prefix.is_empty() {
+        let (length, numbers) = match prefix {
+            [b'S', b'T', ..] => (2, 2),
+            [b'C', ..] => (1, 4),
+            [b'N', ..] => (1, 3),
+            [b'n', ..] => {
+                has_dimension = true;
+                (1, 0)
+            }
+            [b'4', ..] => return Err(unsupported()),
+            _ => return Err(not_off()),
+        };
+        extras += numbers;
+        prefix = &prefix[length..];
+    }
+    if !glued.is_empty() {
+        // As in `OFF490 518 0`, which a well-known collection has.
+        if has_dimension || !glued.iter().all(u8::is_ascii_digit) {
+            return Err(not_off());
+        }
+        return Ok(Header { counts: Some([count(glued)?, faces_of_header(words)?]), extras });
+    }
+    let mut next = words.word_on_line().map(<[u8]>::to_vec);
+    if next.as_ref().is_some_and(|word| word.eq_ignore_ascii_case(b"binary")) {
+        return if has_dimension { Err(unsupported()) } else { Ok(Header { counts: None, extras }) };
+    }
+    if has_dimension {
+        let dimension = next.take().map_or_else(|| words.word().map(<[u8]>::to_vec), Ok)?;
+        if count(&dimension)? != 3 {
+            return Err(unsupported());
+        }
+    }
+    let vertices = next.map_or_else(|| words.word().map(<[u8]>::to_vec), Ok)?;
+    Ok(Header { counts: Some([count(&vertices)?, faces_of_header(words)?]), extras })
+}
+
+/// The number of faces, and behind it on the same line perhaps that of edges.
+fn faces_of_header(words: &mut Stream<impl BufRead>) -> Result<u64, Reason> {
+    let faces = count(words.word()?)?;
+    if let Some(edges) = words.word_on_line() {
+        integer(edges)?; // not used, and often wrong
+    }
+    match words.word_on_line() {
+        Some(word) => Err(Reason::ExtraWord { text: quote(word) }),
+        None => Ok(faces),
+    }
+}
+
+fn count(word: &[u8]) -> Result<u64, Reason> {
+    u64::try_from(integer(word)?).map_err(|_| Reason::BadNumber { text: quote(word) })
+}
+
+/// Files hold no more numbers than this behind a face.
+const COLOUR: u64 = 4;
+
+fn read_text(words: &mut Stream<impl BufRead>, [vertices, faces]: [u64; 2]) -> Result<Scene, Reason> {
+    let mut off = Off::new([vertices, faces])?;
+    for _ in 0..vertices {
+        let mut position = Point3::origin();
+        position.x = number(words.word()?)?;
+        let mut is_wrapped = false;
+        for k in 1..3 {
+            position[k] = match words.word_on_line().map(number) {
+                Some(number) => number?,
+                None => {
+                    is_wrapped = true;
+                    number(words.word()?)?
+                }
+            };
+        }
+        let mut extras = 0;
+        while let Some(word) = words.word_on_line() {
+            number(word)?;
+            extras += 1;
+            if is_wrapped {
+                // A number is missing further up, rather.
+                return Err(Reason::ExtraWord { text: quote(word) });
+            }
+        }
+        off.vertex(position, extras)?;
+    }
+    for face in 0..faces {
+        let corners = integer(words.word()?)?;
+        for _ in 0..off.start_face(corners)? {
+            off.corner(integer(words.word()?)?)?;
+        }
+        let mut extras = 0;
+        while let Some(word) = words.word_on_line() {
+            number(word)?;
+            extras += 1;
+            if extras > COLOUR {
+                return Err(Reason::ExtraWord { text: quote(word) });
+            }
+        }
+        off.end_face(face, extras)?;
+    }
+    let mut rest = 0;
+    loop {
+        match words.word() {
+            Ok(_) => rest += 1,
+            Err(Reason::UnexpectedEnd) => break,
+            Err(reason) => return Err(reason),
+        }
+    }
+    off.finish(rest, "words after the last face")
+}
+
+fn read_binary(bytes: &mut Bytes<impl BufRead>, extras: u64) -> Result<Scene, Reason> {
+    let mut counts = [0; 3];
+    for count in &mut counts {
+        let number = i32::from_be_bytes(bytes.array()?);
+        *count = u64::try_from(number).map_err(|_| Reason::BadListCount { count: i64::from(number) })?;
+    }
+    let [vertices, faces, _] = counts;
+    let mut off = Off::new([vertices, faces])?;
+    for _ in 0..vertices {
+        let mut position = Point3::origin();
+        for x in position.iter_mut() {
+            *x = bytes.number(Scalar::F32, true)?;
+        }
+        bytes.skip(4 * extras)?;
+        off.vertex(position, extras)?;
+    }
+    for face in 0..faces {
+        let corners = i64::from(i32::from_be_bytes(bytes.array()?));
+        for _ in 0..off.start_face(corners)? {
+            off.corner(i64::from(i32::from_be_bytes(bytes.array()?)))?;
+        }
+        let colour = i32::from_be_bytes(bytes.array()?);
+        let numbers = u64::try_from(colour).ok().filter(|&n| n <= COLOUR);
+        let numbers = numbers.ok_or(Reason::BadListCount { count: i64::from(colour) })?;
+        bytes.skip(4 * numbers)?;
+        off.end_face(face, numbers)?;
+    }
+    let rest = bytes.rest()?;
+    off.finish(rest, "bytes after the last face")
+}
+
+/// A scene under construction.
+struct Off {
+    builder: Builder,
+    counts: [u64; 2],
+    /// Vertices and faces with numbers that are left out.
+    extras: [u64; 2],
+    corners: Vec<u32>,
+}
+
+impl Off {
+    fn new(counts: [u64; 2]) -> Result<Self, Reason> {
+        if counts[0] > u64::from(u32::MAX) {
+            return Err(Reason::ElementTooLarge { count: counts[0], limit: u64::from(u32::MAX) });
+        }
+        Ok(Self { builder: Builder::default(), counts, extras: [0; 2], corners: Vec::new() })
+    }
+
+    fn vertex(&mut self, position: Point3<f64>, extras: u64) -> Result<(), Reason> {
+        self.extras[0] += u64::from(extras > 0);
+        self.builder.vertex(position).map(|_| ())
+    }
+
+    /// How many corners there are to come.
+    fn start_face(&mut self, corners: i64) -> Result<u64, Reason> {
+        let count = u64::try_from(corners).map_err(|_| Reason::BadListCount { count: corners })?;
+        if count == 0 {
+            return Err(Reason::TooFewVertices { found: 0, needed: 1 });
+        }
+        if count > MAX_CORNERS as u64 {
+            return Err(Reason::ElementTooLarge { count, limit: MAX_CORNERS as u64 });
+        }
+        self.corners.clear();
+        Ok(count)
+    }
+
+    fn corner(&mut self, index: i64) -> Result<(), Reason> {
+        let count = self.counts[0];
+        let vertex = u32::try_from(index).ok().filter(|&v| u64::from(v) < count);
+        let vertex = vertex.ok_or(Reason::NoSuchVertex { index, count })?;
+        if !self.builder.is_finite(vertex) {
+            return Err(Reason::NonFiniteVertex { index: u64::from(vertex) });
+        }
+        self.corners.push(vertex);
+        Ok(())
+    }
+
+    fn end_face(&mut self, face: u64, extras: u64) -> Result<(), Reason> {
+        self.extras[1] += u64::from(extras > 0);
+        let face = usize::try_from(face).unwrap_or(usize::MAX);
+        match *self.corners.as_slice() {
+            [a] => self.builder.push(Element::Point(a), face),
+            [a, b] => self.builder.push(Element::Segment([a, b]), face),
+            _ => self.builder.polygon(&self.corners, face),
+        }
+    }
+
+    fn finish(mut self, rest: u64, what: &str) -> Result<Scene, Reason> {
+        let [vertices, faces] = self.extras;
+        self.builder.skips.add_many(vertices, "vertices with further numbers");
+        self.builder.skips.add_many(faces, "faces with a colour");
+        self.builder.skips.add_many(rest, what);
+        if self.counts[1] == 0 {
+            self.builder.point_cloud()?;
+        }
+        Ok(self.builder.finish())
+    }
+}

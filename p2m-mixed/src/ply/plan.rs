@@ -1,0 +1,167 @@
+//! What the elements of a PLY file are for, by its header.
+
+use super::{ID, header};
+use crate::HeaderProblem;
+use crate::bytes::Scalar;
+use crate::text::quote;
+use header::Layout;
+
+/// The places of x, y and z among the properties, and the types of their numbers.
+pub(super) type Coordinates = [(usize, Scalar); 3];
+
+/// What an element is for, with the places of its useful properties and the type of their numbers.
+pub(super) enum Plan {
+    Vertices(Coordinates),
+    Members(MemberPlan),
+    Skip,
+}
+
+/// An element that makes primitives.
+pub(super) struct MemberPlan {
+    pub(super) kind: Kind,
+    /// The property with the id.
+    pub(super) id: Option<(usize, Scalar)>,
+}
+
+/// What primitives an element makes.
+pub(super) enum Kind {
+    Face(usize, List),
+    Strip(usize, List),
+    Edge([(usize, Scalar); 2]),
+    Point((usize, Scalar)),
+}
+
+/// How members of an element become primitives.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Form {
+    Polygon,
+    Strip,
+    Segment,
+    Point,
+}
+
+/// Types of a list of vertices.
+#[derive(Clone, Copy)]
+pub(super) struct List {
+    pub(super) count: Scalar,
+    pub(super) item: Scalar,
+}
+
+impl Plan {
+    pub(super) fn of(element: &header::Element) -> Result<Self, HeaderProblem> {
+        let kind = match element.name.as_slice() {
+            b"vertex" => return Ok(Self::Vertices(coordinates(element)?)),
+            b"edge" => {
+                Kind::Edge([scalar(element, "edge", "vertex1", true)?, scalar(element, "edge", "vertex2", true)?])
+            }
+            b"face" => {
+                let (at, list) = list(element, "face")?;
+                Kind::Face(at, list)
+            }
+            b"tristrips" => {
+                let (at, list) = list(element, "tristrips")?;
+                Kind::Strip(at, list)
+            }
+            // Others may mean something else by the name.
+            b"point" => match scalar(element, "point", "vertex_index", true) {
+                Ok(vertex) => Kind::Point(vertex),
+                Err(_) => return Ok(Self::Skip),
+            },
+            _ => return Ok(Self::Skip),
+        };
+        let id = match element.find(&[ID]) {
+            Some(_) if !matches!(kind, Kind::Strip(..)) => Some(scalar(element, "face", ID, true)?),
+            _ => None,
+        };
+        Ok(Self::Members(MemberPlan { kind, id }))
+    }
+}
+
+impl MemberPlan {
+    pub(super) fn form(&self) -> Form {
+        match self.kind {
+            Kind::Face(..) => Form::Polygon,
+            Kind::Strip(..) => Form::Strip,
+            Kind::Edge(_) => Form::Segment,
+            Kind::Point(_) => Form::Point,
+        }
+    }
+
+    pub(super) fn is_point(&self) -> bool {
+        matches!(self.kind, Kind::Point(_))
+    }
+
+    /// The properties that are of use.
+    pub(super) fn used(&self) -> Vec<usize> {
+        let mut used = match self.kind {
+            Kind::Face(at, _) | Kind::Strip(at, _) | Kind::Point((at, _)) => vec![at],
+            Kind::Edge(ends) => ends.map(|(at, _)| at).to_vec(),
+        };
+        used.extend(self.id.map(|(at, _)| at));
+        used
+    }
+}
+
+/// How many primitives are numbered by an id of their own: all that the header announces, or none.
+pub(super) fn ids(elements: &[header::Element], plans: &[Plan]) -> Result<Option<u64>, HeaderProblem> {
+    let (mut with, mut without) = (0u64, None);
+    for (element, plan) in elements.iter().zip(plans) {
+        if let Plan::Members(members) = plan
+            && element.count > 0
+        {
+            match (&members.id, &members.kind) {
+                (Some(_), _) => with = with.saturating_add(element.count),
+                (None, Kind::Face(..)) => without = Some("face"),
+                (None, Kind::Strip(..)) => without = Some("tristrips"),
+                (None, Kind::Edge(_)) => without = Some("edge"),
+                (None, Kind::Point(_)) => without = Some("point"),
+            }
+        }
+    }
+    match without {
+        _ if with == 0 => Ok(None),
+        Some(element) => Err(HeaderProblem::MissingProperty { element, property: ID }),
+        None => Ok(Some(with)),
+    }
+}
+
+pub(super) fn coordinates(element: &header::Element) -> Result<Coordinates, HeaderProblem> {
+    Ok([
+        scalar(element, "vertex", "x", false)?,
+        scalar(element, "vertex", "y", false)?,
+        scalar(element, "vertex", "z", false)?,
+    ])
+}
+
+/// Whether the members of an element are made of vertices, by the usual names of such a list.
+pub(super) fn has_vertex_list(element: &header::Element) -> bool {
+    element.properties.iter().any(|p| matches!(p.layout, Layout::List { .. }) && p.name.starts_with(b"vertex_ind"))
+}
+
+fn scalar(
+    element: &header::Element,
+    name: &'static str,
+    property: &'static str,
+    integer: bool,
+) -> Result<(usize, Scalar), HeaderProblem> {
+    let at = element.find(&[property]).ok_or(HeaderProblem::MissingProperty { element: name, property })?;
+    match element.properties[at].layout {
+        Layout::Scalar(scalar) if scalar.is_integer() || !integer => Ok((at, scalar)),
+        _ => {
+            Err(HeaderProblem::BadType { name: property.to_owned(), declared: element.properties[at].declared.clone() })
+        }
+    }
+}
+
+fn list(element: &header::Element, name: &'static str) -> Result<(usize, List), HeaderProblem> {
+    let property = "vertex_indices";
+    let at =
+        element.find(&[property, "vertex_index"]).ok_or(HeaderProblem::MissingProperty { element: name, property })?;
+    match element.properties[at].layout {
+        Layout::List { count, item } if item.is_integer() => Ok((at, List { count, item })),
+        _ => {
+            let header::Property { name, declared, .. } = &element.properties[at];
+            Err(HeaderProblem::BadType { name: quote(name), declared: declared.clone() })
+        }
+    }
+}

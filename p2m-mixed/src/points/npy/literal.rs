@@ -1,0 +1,153 @@
+//! The part of Python's literals that describes an array.
+
+use std::fmt;
+
+/// Deeper nesting is no description of an array.
+const DEEPEST: usize = 16;
+
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Value<'a> {
+    /// What is between the quotes; escapes are not undone, no name that is looked for has any.
+    Text(&'a [u8]),
+    /// What exceeds the range is no integer of a description.
+    Integer(u64),
+    Boolean(bool),
+    Tuple(Vec<Value<'a>>),
+    List(Vec<Value<'a>>),
+    Dictionary(Vec<(Value<'a>, Value<'a>)>),
+}
+
+impl fmt::Display for Value<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let list = |f: &mut fmt::Formatter<'_>, items: &[Value<'_>]| {
+            for (i, item) in items.iter().enumerate() {
+                write!(f, "{}{item}", if i > 0 { ", " } else { "" })?;
+            }
+            Ok(())
+        };
+        match self {
+            Self::Text(text) => write!(f, "'{}'", crate::text::quote(text)),
+            Self::Integer(n) => write!(f, "{n}"),
+            Self::Boolean(b) => f.write_str(if *b { "True" } else { "False" }),
+            Self::Tuple(items) => {
+                f.write_str("(")?;
+                list(f, items)?;
+                f.write_str(if items.len() == 1 { ",)" } else { ")" })
+            }
+            Self::List(items) => {
+                f.write_str("[")?;
+                list(f, items)?;
+                f.write_str("]")
+            }
+            Self::Dictionary(_) => f.write_str("{..}"),
+        }
+    }
+}
+
+/// The value that a text is; where it stops being one otherwise.
+pub(super) fn parse(text: &[u8]) -> Result<Value<'_>, &[u8]> {
+    let mut parser = Parser { rest: text };
+    match parser.value(0) {
+        Some(value) if parser.peek().is_none() => Ok(value),
+        _ => Err(parser.rest),
+    }
+}
+
+struct Parser<'a> {
+    rest: &'a [u8],
+}
+
+impl<'a> Parser<'a> {
+    /// The next byte that is no blank.
+    fn peek(&mut self) -> Option<u8> {
+        self.rest = self.rest.trim_ascii_start();
+        self.rest.first().copied()
+    }
+
+    fn accept(&mut self, byte: u8) -> bool {
+        let found = self.peek() == Some(byte);
+        if found {
+            self.rest = &self.rest[1..];
+        }
+        found
+    }
+
+    fn value(&mut self, depth: usize) -> Option<Value<'a>> {
+        if depth > DEEPEST {
+            return None;
+        }
+        match self.peek()? {
+            quote @ (b'\'' | b'"') => self.text(quote),
+            b'0'..=b'9' => self.integer(),
+            b'(' => self.tuple(depth),
+            b'[' => {
+                self.accept(b'[');
+                Some(Value::List(self.items(b']', depth)?.0))
+            }
+            b'{' => self.dictionary(depth),
+            _ => [("True", true), ("False", false)].into_iter().find_map(|(word, value)| {
+                self.rest = self.rest.strip_prefix(word.as_bytes())?;
+                Some(Value::Boolean(value))
+            }),
+        }
+    }
+
+    fn text(&mut self, quote: u8) -> Option<Value<'a>> {
+        let inner = &self.rest[1..];
+        let mut is_escaped = false;
+        let end = inner.iter().position(|&b| {
+            let ends = b == quote && !is_escaped;
+            is_escaped = b == b'\\' && !is_escaped;
+            ends
+        })?;
+        self.rest = &inner[end + 1..];
+        Some(Value::Text(&inner[..end]))
+    }
+
+    fn integer(&mut self) -> Option<Value<'a>> {
+        let digits = self.rest.iter().take_while(|b| b.is_ascii_digit()).count();
+        let (number, rest) = self.rest.split_at(digits);
+        let number = std::str::from_utf8(number).ok()?.parse().ok()?;
+        self.rest = rest.strip_prefix(b"L").unwrap_or(rest); // as Python 2 wrote it
+        Some(Value::Integer(number))
+    }
+
+    /// A tuple, or a value in brackets.
+    fn tuple(&mut self, depth: usize) -> Option<Value<'a>> {
+        self.accept(b'(');
+        let (mut items, has_comma) = self.items(b')', depth)?;
+        if items.len() == 1 && !has_comma { items.pop() } else { Some(Value::Tuple(items)) }
+    }
+
+    /// Values up to a closing bracket, and whether a comma is behind the last one.
+    fn items(&mut self, close: u8, depth: usize) -> Option<(Vec<Value<'a>>, bool)> {
+        let mut items = Vec::new();
+        let mut has_comma = false;
+        while !self.accept(close) {
+            if !items.is_empty() && !has_comma {
+                return None;
+            }
+            items.push(self.value(depth + 1)?);
+            has_comma = self.accept(b',');
+        }
+        Some((items, has_comma))
+    }
+
+    fn dictionary(&mut self, depth: usize) -> Option<Value<'a>> {
+        self.accept(b'{');
+        let mut entries = Vec::new();
+        let mut has_comma = true;
+        while !self.accept(b'}') {
+            if !has_comma {
+                return None;
+            }
+            let key = self.value(depth + 1)?;
+            if !self.accept(b':') {
+                return None;
+            }
+            entries.push((key, self.value(depth + 1)?));
+            has_comma = self.accept(b',');
+        }
+        Some(Value::Dictionary(entries))
+    }
+}

@@ -1,0 +1,251 @@
+//! Points from arrays of NumPy.
+
+mod literal;
+
+use crate::bytes::{Bytes, Scalar};
+use crate::text::quote;
+use crate::{HeaderProblem, Place, ReadError, Reason};
+use literal::{Value, parse};
+use nalgebra::Point3;
+use std::io::BufRead;
+
+/// NumPy writes longer headers only for arrays of very many fields, and does not read them itself.
+const LONGEST_HEADER: u32 = 1 << 16;
+
+/// No message lists more fields.
+const LISTED: usize = 16;
+
+pub(super) fn read_npy(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
+    let mut bytes = Bytes::new(reader, 0);
+    let points = read_header(&mut bytes).and_then(|array| read_array(&mut bytes, &array));
+    points.map_err(|reason| ReadError::new(name, Place::Byte(bytes.start()), reason))
+}
+
+/// Where the coordinates of an array are.
+#[derive(Debug)]
+struct Array {
+    count: u64,
+    /// Bytes of an item, and where in it x, y and z are; the first of them, and their types.
+    size: u64,
+    coordinates: [Coordinate; 3],
+    /// Whether all x come first, then all y.
+    is_fortran: bool,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Coordinate {
+    offset: u64,
+    scalar: Scalar,
+    big_endian: bool,
+}
+
+fn bad(problem: HeaderProblem) -> Reason {
+    Reason::BadHeader(problem)
+}
+
+fn read_header(bytes: &mut Bytes<impl BufRead>) -> Result<Array, Reason> {
+    let not_npy = |reason| match reason {
+        Reason::UnexpectedEnd => bad(HeaderProblem::NotNpy),
+        other => other,
+    };
+    if bytes.array::<6>().map_err(not_npy)? != *b"\x93NUMPY" {
+        return Err(bad(HeaderProblem::NotNpy));
+    }
+    let [major, minor] = bytes.array()?;
+    let length = match major {
+        1 => u32::from(u16::from_le_bytes(bytes.array()?)),
+        2 | 3 => u32::from_le_bytes(bytes.array()?),
+        _ => return Err(Reason::UnsupportedFormat { text: format!("NPY {major}.{minor}") }),
+    };
+    if length > LONGEST_HEADER {
+        return Err(bad(HeaderProblem::LineTooLong));
+    }
+    let mut text = Vec::new();
+    for _ in 0..length {
+        text.push(u8::from_le_bytes(bytes.array()?));
+    }
+    array(&text)
+}
+
+/// What a description like `{'descr': '<f8', 'fortran_order': False, 'shape': (5, 3), }` says.
+fn array(text: &[u8]) -> Result<Array, Reason> {
+    let value = parse(text).map_err(|rest| bad(HeaderProblem::BadDescription { text: quote(rest) }))?;
+    let Value::Dictionary(entries) = value else {
+        return Err(bad(HeaderProblem::BadDescription { text: quote(text) }));
+    };
+    let find = |key: &'static str| {
+        let entry = entries.iter().find(|(k, _)| *k == Value::Text(key.as_bytes()));
+        entry.map(|(_, value)| value).ok_or(bad(HeaderProblem::MissingKey { key }))
+    };
+    let (descr, order, shape) = (find("descr")?, find("fortran_order")?, find("shape")?);
+    let unclear = |text: String| bad(HeaderProblem::BadDescription { text });
+    let Value::Boolean(is_fortran) = *order else { return Err(unclear(order.to_string())) };
+    let Value::Tuple(lengths) = shape else { return Err(unclear(shape.to_string())) };
+    match descr {
+        Value::Text(_) => {
+            let (scalar, big_endian) = scalar(descr)?;
+            let &[Value::Integer(count), Value::Integer(3)] = lengths.as_slice() else {
+                return Err(bad(HeaderProblem::BadShape { text: shape.to_string(), expected: "(n, 3)" }));
+            };
+            let size = scalar.size() as u64;
+            let coordinates = [0, 1, 2].map(|k| Coordinate { offset: k * size, scalar, big_endian });
+            Ok(Array { count, size: 3 * size, coordinates, is_fortran })
+        }
+        Value::List(fields) => {
+            let &[Value::Integer(count)] = lengths.as_slice() else {
+                return Err(bad(HeaderProblem::BadShape { text: shape.to_string(), expected: "(n,)" }));
+            };
+            let (coordinates, size) = structure(fields)?;
+            Ok(Array { count, size, coordinates, is_fortran: false })
+        }
+        other => Err(bad(HeaderProblem::UnsupportedType { text: other.to_string() })),
+    }
+}
+
+/// The coordinates among the fields of a structured array, and the size of an item.
+fn structure(fields: &[Value<'_>]) -> Result<([Coordinate; 3], u64), Reason> {
+    let mut offset = 0u64;
+    let mut query = None;
+    let mut xyz = [None; 3];
+    let mut names = Vec::new();
+    for field in fields {
+        let too_large = || bad(HeaderProblem::UnsupportedType { text: field.to_string() });
+        let (names_of_field, descr, shape) = match field {
+            Value::Tuple(parts) => match parts.as_slice() {
+                [name, descr] => (name, descr, None),
+                [name, descr, shape] => (name, descr, Some(shape)),
+                _ => return Err(too_large()),
+            },
+            _ => return Err(too_large()),
+        };
+        // A field may have a title in front of its name.
+        let name = match names_of_field {
+            Value::Text(name) => *name,
+            Value::Tuple(both) => match both.as_slice() {
+                [Value::Text(_), Value::Text(name)] => name,
+                _ => return Err(too_large()),
+            },
+            _ => return Err(too_large()),
+        };
+        let coordinate = scalar(descr).map(|(scalar, big_endian)| Coordinate { offset, scalar, big_endian });
+        let is_three = matches!(shape, Some(Value::Tuple(s)) if **s == [Value::Integer(3)])
+            || matches!(shape, Some(Value::Integer(3)));
+        if name == b"query" && is_three {
+            query = Some(coordinate?);
+        } else if let (Some(axis), None) = ([b"x", b"y", b"z"].iter().position(|n| *n == name), shape) {
+            xyz[axis] = coordinate.ok();
+        }
+        if names.len() < LISTED {
+            names.push(quote(name));
+        }
+        let size = size(descr, shape).ok_or_else(too_large)?;
+        offset = offset.checked_add(size).ok_or_else(too_large)?;
+    }
+    let coordinates = match (query, xyz) {
+        (Some(first), _) => {
+            let size = first.scalar.size() as u64;
+            [0, 1, 2].map(|k| Coordinate { offset: first.offset + k * size, ..first })
+        }
+        (None, [Some(x), Some(y), Some(z)]) => [x, y, z],
+        _ => return Err(bad(HeaderProblem::UnknownFields { names })),
+    };
+    Ok((coordinates, offset))
+}
+
+/// The type that a word like `<f8` stands for, and whether its bytes are big-endian.
+fn scalar(descr: &Value<'_>) -> Result<(Scalar, bool), Reason> {
+    let unsupported = || bad(HeaderProblem::UnsupportedType { text: descr.to_string() });
+    let Value::Text([order, kind @ ..]) = descr else { return Err(unsupported()) };
+    let scalar = match kind {
+        b"i1" => Scalar::I8,
+        b"u1" => Scalar::U8,
+        b"i2" => Scalar::I16,
+        b"u2" => Scalar::U16,
+        b"i4" => Scalar::I32,
+        b"u4" => Scalar::U32,
+        b"i8" => Scalar::I64,
+        b"u8" => Scalar::U64,
+        b"f4" => Scalar::F32,
+        b"f8" => Scalar::F64,
+        _ => return Err(unsupported()),
+    };
+    match order {
+        b'<' => Ok((scalar, false)),
+        b'>' => Ok((scalar, true)),
+        b'|' if scalar.size() == 1 => Ok((scalar, false)),
+        _ => Err(unsupported()),
+    }
+}
+
+/// The size in bytes of a field of any type; nothing for objects, which are not of a known size.
+fn size(descr: &Value<'_>, shape: Option<&Value<'_>>) -> Option<u64> {
+    let item = match descr {
+        Value::Text([_, kind, rest @ ..]) => {
+            let digits = &rest[..rest.iter().take_while(|b| b.is_ascii_digit()).count()];
+            let number = std::str::from_utf8(digits).ok()?.parse::<u64>().ok()?;
+            match kind {
+                b'O' => return None,
+                b'U' => number.checked_mul(4)?, // characters
+                _ => number,
+            }
+        }
+        Value::List(fields) => fields.iter().try_fold(0u64, |sum, field| {
+            let Value::Tuple(parts) = field else { return None };
+            sum.checked_add(size(parts.get(1)?, parts.get(2))?)
+        })?,
+        _ => return None,
+    };
+    match shape {
+        None => Some(item),
+        Some(&Value::Integer(length)) => item.checked_mul(length),
+        Some(Value::Tuple(lengths)) => lengths.iter().try_fold(item, |product, length| match length {
+            &Value::Integer(length) => product.checked_mul(length),
+            _ => None,
+        }),
+        Some(_) => None,
+    }
+}
+
+fn read_array(bytes: &mut Bytes<impl BufRead>, array: &Array) -> Result<Vec<Point3<f64>>, Reason> {
+    let mut points = Vec::new();
+    if array.is_fortran {
+        for (axis, c) in array.coordinates.iter().enumerate() {
+            for i in 0..array.count {
+                let x = coordinate(bytes, c)?;
+                if axis == 0 {
+                    points.push(Point3::new(x, 0.0, 0.0));
+                } else if let Some(point) = usize::try_from(i).ok().and_then(|i| points.get_mut(i)) {
+                    point[axis] = x;
+                }
+            }
+        }
+    } else {
+        let mut order = [0, 1, 2];
+        order.sort_by_key(|&axis| array.coordinates[axis].offset);
+        for _ in 0..array.count {
+            let mut point = Point3::origin();
+            let mut offset = 0;
+            for axis in order {
+                let c = &array.coordinates[axis];
+                if c.offset > offset {
+                    bytes.skip(c.offset - offset)?;
+                }
+                point[axis] = coordinate(bytes, c)?;
+                offset = c.offset + c.scalar.size() as u64;
+            }
+            if array.size > offset {
+                bytes.skip(array.size - offset)?;
+            }
+            points.push(point);
+        }
+    }
+    match bytes.rest()? {
+        0 => Ok(points),
+        bytes => Err(Reason::TrailingBytes { bytes }),
+    }
+}
+
+fn coordinate(bytes: &mut Bytes<impl BufRead>, c: &Coordinate) -> Result<f64, Reason> {
+    let x = bytes.number(c.scalar, c.big_endian)?;
+    if x.is_finite() { Ok(x) } else { Err(Reason::NonFinite { text: x.to_string() }) }
+}

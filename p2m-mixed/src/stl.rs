@@ -1,0 +1,214 @@
+//! STL: triangles and nothing else, as text or binary.
+
+use crate::builder::Builder;
+use crate::bytes::Bytes;
+use crate::polygon::MAX_CORNERS;
+use crate::text::{Lines, Stream, finite, is_space, quote};
+use crate::{HeaderProblem, Place, ReadError, Reason, Scene};
+use hashbrown::HashTable;
+use hashbrown::hash_table::Entry;
+use nalgebra::Point3;
+use std::hash::{BuildHasher, RandomState};
+use std::io::{BufRead, Cursor, Read};
+
+/// How much of a file is looked at to tell text from binary.
+const HEAD: u64 = 1024;
+
+/// Reads an STL file, text or binary; `name` is for messages.
+///
+/// What the file is, its first 1024 bytes tell: text begins with `solid`, perhaps behind blanks, and has no control
+/// characters; many binary files begin with `solid`, too, but they have zeros among the first facets.
+///
+/// Facets share vertices: corners with equal coordinates are one vertex, which is where the first of them is (0 and -0 are
+/// equal). No other corners are merged. Degenerate facets are kept. Facets count from 0 in [`Scene::sources`].
+///
+/// - Text: any number of solids, whose names are in [`Scene::objects`]; keywords in any case, numbers in double
+///   precision as they are written. Normals may be missing or anything. A facet of more than three vertices is cut like
+///   any polygon.
+/// - Binary: coordinates in single precision, which are exact in double precision. Attribute bytes that are not zero, and
+///   whatever follows the last facet, are counted in [`Scene::skipped`].
+///
+/// # Errors
+/// [`ReadError`] with the line (text) or the offset of the facet (binary) for coordinates that are not finite or no
+/// numbers, words that are out of place, an early end, and for what goes wrong in reading. No memory is taken for facets
+/// that are merely announced.
+pub fn read_stl(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
+    let fail = |reason| ReadError::new(name, Place::File, reason);
+    let mut head = Vec::new();
+    reader.by_ref().take(HEAD).read_to_end(&mut head).map_err(|e| fail(Reason::Io(e)))?;
+    let is_text = !head.iter().any(|&b| is_control(b));
+    let says_solid = starts_with_solid(&head);
+    if is_text && !says_solid && !head.is_empty() {
+        return Err(fail(Reason::BadHeader(HeaderProblem::NotStl)));
+    }
+    let reader = Cursor::new(head).chain(reader);
+    if is_text && says_solid {
+        let mut text = Text { words: Stream::new(Lines::new(reader, 0)), facets: Facets::default() };
+        match text.solids() {
+            Ok(()) => Ok(text.facets.builder.finish()),
+            Err(reason) => Err(ReadError::new(name, Place::Line(text.words.line()), reason)),
+        }
+    } else {
+        let mut bytes = Bytes::new(reader, 0);
+        read_binary(&mut bytes).map_err(|reason| ReadError::new(name, Place::Byte(bytes.start()), reason))
+    }
+}
+
+/// A byte that no text has; the end mark of old systems (0x1a) may be there.
+fn is_control(byte: u8) -> bool {
+    byte < b' ' && !is_space(byte) && byte != 0x1a
+}
+
+fn starts_with_solid(head: &[u8]) -> bool {
+    let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head); // the mark of UTF-8
+    let start = head.iter().position(|&b| !is_space(b)).unwrap_or(head.len());
+    let word = &head[start..];
+    word.len() >= 5 && word[..5].eq_ignore_ascii_case(b"solid") && word.get(5).is_none_or(|&b| is_space(b))
+}
+
+/// Facets with merged vertices.
+#[derive(Default)]
+struct Facets {
+    builder: Builder,
+    vertices: HashTable<u32>,
+    hasher: RandomState,
+    /// How many there are, and the vertices of the last.
+    count: usize,
+    corners: Vec<u32>,
+}
+
+impl Facets {
+    /// Adds a corner, which is finite, to the facet at hand.
+    fn corner(&mut self, corner: [f64; 3]) -> Result<(), Reason> {
+        let corner = Point3::from(corner);
+        // Adding zero turns -0 into 0, which is equal.
+        let hash = |p: &Point3<f64>| self.hasher.hash_one([p.x, p.y, p.z].map(|x| (x + 0.0).to_bits()));
+        let positions = self.builder.positions();
+        let equal = |&vertex: &u32| positions[vertex as usize] == corner;
+        let vertex = match self.vertices.entry(hash(&corner), equal, |&vertex| hash(&positions[vertex as usize])) {
+            Entry::Occupied(entry) => *entry.get(),
+            Entry::Vacant(entry) => {
+                let vertex = self.builder.vertex(corner)?;
+                entry.insert(vertex);
+                vertex
+            }
+        };
+        self.corners.push(vertex);
+        Ok(())
+    }
+
+    fn end_facet(&mut self) -> Result<(), Reason> {
+        let found = self.corners.len();
+        if found < 3 {
+            return Err(Reason::TooFewVertices { found: found as u64, needed: 3 });
+        }
+        if found > MAX_CORNERS {
+            return Err(Reason::ElementTooLarge { count: found as u64, limit: MAX_CORNERS as u64 });
+        }
+        self.builder.polygon(&self.corners, self.count)?;
+        self.corners.clear();
+        self.count += 1;
+        Ok(())
+    }
+}
+
+struct Text<R> {
+    words: Stream<R>,
+    facets: Facets,
+}
+
+impl<R: BufRead> Text<R> {
+    fn solids(&mut self) -> Result<(), Reason> {
+        let mut is_open = false;
+        loop {
+            let word = match self.words.word() {
+                Err(Reason::UnexpectedEnd) if !is_open => return Ok(()),
+                word => word?,
+            };
+            if is(word, "solid") {
+                self.facets.builder.object(self.words.rest_of_line());
+                is_open = true;
+            } else if is_open && is(word, "facet") {
+                self.facet()?;
+            } else if is_open && is(word, "endsolid") {
+                self.words.rest_of_line();
+                self.facets.builder.object(b"");
+                is_open = false;
+            } else if !is_open && word == b"\x1a" {
+                // The end mark of old systems.
+            } else {
+                let expected = if is_open { "'facet' or 'endsolid'" } else { "'solid'" };
+                return Err(Reason::UnexpectedWord { text: quote(word), expected });
+            }
+        }
+    }
+
+    /// Behind the word `facet`.
+    fn facet(&mut self) -> Result<(), Reason> {
+        // `normal` and three numbers, or what was written for numbers.
+        for _ in 0..4 {
+            if is(self.words.word()?, "outer") {
+                return self.corners();
+            }
+        }
+        self.expect("outer", "'outer loop'")?;
+        self.corners()
+    }
+
+    /// Behind the word `outer`.
+    fn corners(&mut self) -> Result<(), Reason> {
+        self.expect("loop", "'loop'")?;
+        loop {
+            let word = self.words.word()?;
+            if is(word, "endloop") {
+                break;
+            }
+            if !is(word, "vertex") {
+                return Err(Reason::UnexpectedWord { text: quote(word), expected: "'vertex' or 'endloop'" });
+            }
+            let mut corner = [0.0; 3];
+            for x in &mut corner {
+                *x = finite(self.words.word()?)?;
+            }
+            self.facets.corner(corner)?;
+        }
+        self.expect("endfacet", "'endfacet'")?;
+        self.facets.end_facet()
+    }
+
+    fn expect(&mut self, keyword: &str, expected: &'static str) -> Result<(), Reason> {
+        let word = self.words.word()?;
+        if is(word, keyword) { Ok(()) } else { Err(Reason::UnexpectedWord { text: quote(word), expected }) }
+    }
+}
+
+fn is(word: &[u8], keyword: &str) -> bool {
+    word.eq_ignore_ascii_case(keyword.as_bytes())
+}
+
+fn read_binary(bytes: &mut Bytes<impl BufRead>) -> Result<Scene, Reason> {
+    bytes.array::<80>()?;
+    let count = u32::from_le_bytes(bytes.array()?);
+    let mut facets = Facets::default();
+    let mut with_attribute = 0;
+    for _ in 0..count {
+        // The normal, three vertices, an attribute.
+        let facet: [u8; 50] = bytes.array()?;
+        for corner in facet[12..48].chunks_exact(12) {
+            let mut position = [0.0; 3];
+            for (x, number) in position.iter_mut().zip(corner.as_chunks().0) {
+                *x = f64::from(f32::from_le_bytes(*number));
+                if !x.is_finite() {
+                    return Err(Reason::NonFinite { text: x.to_string() });
+                }
+            }
+            facets.corner(position)?;
+        }
+        facets.end_facet()?;
+        with_attribute += u64::from(facet[48..] != [0, 0]);
+    }
+    let rest = bytes.rest()?;
+    facets.builder.skips.add_many(with_attribute, "facets with attribute bytes");
+    facets.builder.skips.add_many(rest, "bytes after the last facet");
+    Ok(facets.builder.finish())
+}

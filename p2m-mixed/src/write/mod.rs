@@ -1,0 +1,83 @@
+//! Scenes to files.
+
+mod obj;
+mod off;
+mod ply;
+mod stl;
+
+pub use obj::write_obj;
+pub use off::write_off;
+pub use ply::{write_ply, write_ply_ascii};
+pub use stl::{StlRounding, stl_rounding, write_stl};
+
+use crate::{Format, Scene};
+use p2m_core::PrimitiveId;
+use std::io::{self, Write};
+
+/// Why a scene cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// The operating system says no.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// STL files hold triangles only.
+    #[error("primitive {id} is no triangle, and an STL file holds nothing else")]
+    NotATriangle {
+        /// The first primitive that is none.
+        id: PrimitiveId,
+    },
+    /// STL files hold numbers of single precision only.
+    #[error("primitive {id} has a coordinate {coordinate:e}, which is beyond the single precision of an STL file")]
+    BeyondSinglePrecision {
+        /// The first such primitive.
+        id: PrimitiveId,
+        /// The coordinate.
+        coordinate: f64,
+    },
+    /// STL files hold up to 2^32 - 1 facets.
+    #[error("{count} triangles are more than an STL file can hold")]
+    TooMany {
+        /// How many there are.
+        count: usize,
+    },
+}
+
+/// Writes a scene.
+///
+/// A file in [`Obj`](Format::Obj), [`Ply`](Format::Ply) or [`Off`](Format::Off) reads back as the same scene: the same
+/// positions bit by bit, the same primitives with the same ids. [`Stl`](Format::Stl) holds triangles in single precision
+/// and no shared vertices, see [`write_stl`]. What else is lost:
+///
+/// | | OBJ | PLY | OFF | STL |
+/// |---|---|---|---|---|
+/// | [`Scene::objects`] | kept | lost | lost | lost |
+/// | positions of a scene without primitives | lost | kept | lost | lost |
+/// | positions that no primitive uses | kept | kept | kept | lost |
+/// | of those, such that are not finite | are the origin | kept | are the origin | lost |
+/// | polygons ([`Scene::sources`]) | triangles | triangles | triangles | triangles |
+///
+/// ```
+/// use p2m_mixed::{Format, read_obj, read_scene_from, write_scene};
+///
+/// let scene = read_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nf 1 2 3\np 3\n".as_bytes(), "scene.obj").unwrap();
+/// let mut file = Vec::new();
+/// write_scene(&scene, Format::Ply, &mut file).unwrap();
+/// assert_eq!(read_scene_from(&file[..], Format::Ply, "scene.ply").unwrap().soup, scene.soup);
+/// ```
+///
+/// # Errors
+/// [`WriteError`]: those of `writer`, and for STL what its files cannot hold. Then nothing has been written.
+pub fn write_scene(scene: &Scene, format: Format, writer: impl Write) -> Result<(), WriteError> {
+    match format {
+        Format::Obj => write_obj(scene, writer),
+        Format::Ply => write_ply(scene, writer),
+        Format::Stl => write_stl(scene, writer),
+        Format::Off => write_off(scene, writer),
+    }
+}
+
+/// A position as a text can hold it: one that is not finite becomes the origin. No primitive uses such a position.
+fn finite_or_origin(position: &nalgebra::Point3<f64>) -> nalgebra::Point3<f64> {
+    if position.iter().all(|x| x.is_finite()) { *position } else { nalgebra::Point3::origin() }
+}

@@ -1,0 +1,163 @@
+//! Scenes to PLY.
+
+use super::WriteError;
+use crate::Scene;
+use nalgebra::Point3;
+use p2m_core::{Element, PrimitiveSet, Soup};
+use std::io::{self, Write};
+
+/// Writes a scene as binary PLY, little-endian: the positions in double precision, triangles as `face`, segments as
+/// `edge`, points as `point`.
+///
+/// A PLY file groups primitives by kind. Ids survive all the same:
+///
+/// - Where the ids of each kind are consecutive, the elements come in the order of the ids; nothing else is needed.
+/// - Where kinds alternate, each primitive has a property `p2m_id`, its id, which [`read_ply`](crate::read_ply) honours.
+///   Other programs pass over it.
+/// - A scene whose primitives are exactly all of its positions in order is written as vertices alone, a point cloud for
+///   everybody. Otherwise points are an element of their own, `point` with the property `vertex_index`. It is there, with
+///   no member, if a scene has positions but no primitives.
+///
+/// [`read_ply`](crate::read_ply) gives the soup back, bit by bit; objects are lost.
+///
+/// # Errors
+/// Those of `writer`.
+pub fn write_ply(scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
+    write(&scene.soup, Rows { writer, is_text: false })
+}
+
+/// Writes a scene as [`write_ply`] does, but as text. Numbers are the shortest that read back as the same ones.
+///
+/// # Errors
+/// Those of `writer`.
+pub fn write_ply_ascii(scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
+    write(&scene.soup, Rows { writer, is_text: true })
+}
+
+/// Kinds of primitives are named by the number of their vertices.
+const POINT: usize = 1;
+const EDGE: usize = 2;
+const FACE: usize = 3;
+
+fn write(soup: &Soup<f64>, mut rows: Rows<impl Write>) -> Result<(), WriteError> {
+    let positions = soup.positions();
+    let kinds = if is_point_cloud(soup) { Some(Vec::new()) } else { kinds_in_order(soup) };
+    let with_ids = kinds.is_none();
+    let mut kinds = kinds.unwrap_or_else(|| {
+        let counts = [(FACE, soup.triangles().len()), (EDGE, soup.segments().len()), (POINT, soup.points().len())];
+        counts.into_iter().filter(|&(_, count)| count > 0).map(|(kind, _)| kind).collect()
+    });
+    if soup.len() == 0 && !positions.is_empty() {
+        kinds = vec![POINT];
+    }
+
+    let format = if rows.is_text { "ascii" } else { "binary_little_endian" };
+    let mut header = format!("ply\nformat {format} 1.0\nelement vertex {}\n", positions.len());
+    header += "property double x\nproperty double y\nproperty double z\n";
+    // Signed ones are more widely understood.
+    let index = if i32::try_from(positions.len()).is_ok() { "int" } else { "uint" };
+    for &kind in &kinds {
+        header += &match kind {
+            FACE => {
+                format!("element face {}\nproperty list uchar {index} vertex_indices\n", soup.triangles().len())
+            }
+            EDGE => {
+                format!("element edge {}\nproperty {index} vertex1\nproperty {index} vertex2\n", soup.segments().len())
+            }
+            _ => format!("element point {}\nproperty {index} vertex_index\n", soup.points().len()),
+        };
+        if with_ids {
+            header += "property int p2m_id\n";
+        }
+    }
+    rows.writer.write_all(header.as_bytes())?;
+    rows.writer.write_all(b"end_header\n")?;
+
+    for p in positions {
+        rows.position(p)?;
+    }
+    for kind in kinds {
+        if with_ids {
+            for (id, element) in (0..).zip(soup.elements()).filter(|(_, e)| e.indices().len() == kind) {
+                rows.primitive(element, Some(id))?;
+            }
+        } else {
+            match kind {
+                FACE => soup.triangles().iter().try_for_each(|&t| rows.primitive(Element::Triangle(t), None))?,
+                EDGE => soup.segments().iter().try_for_each(|&s| rows.primitive(Element::Segment(s), None))?,
+                _ => soup.points().iter().try_for_each(|&p| rows.primitive(Element::Point(p), None))?,
+            }
+        }
+    }
+    rows.writer.flush()?;
+    Ok(())
+}
+
+/// Whether the primitives are the positions, all of them in order.
+fn is_point_cloud(soup: &Soup<f64>) -> bool {
+    let points = soup.points();
+    points.len() == soup.len()
+        && points.len() == soup.positions().len()
+        && (0..).zip(points).all(|(i, &point): (u32, _)| i == point)
+}
+
+/// The kinds in the order of the ids; nothing if one comes back after another.
+fn kinds_in_order(soup: &Soup<f64>) -> Option<Vec<usize>> {
+    let mut kinds = Vec::new();
+    for element in soup.elements() {
+        let kind = element.indices().len();
+        if kinds.last() != Some(&kind) {
+            if kinds.contains(&kind) {
+                return None;
+            }
+            kinds.push(kind);
+        }
+    }
+    Some(kinds)
+}
+
+/// Rows of numbers in one of the encodings.
+struct Rows<W> {
+    writer: W,
+    is_text: bool,
+}
+
+impl<W: Write> Rows<W> {
+    fn position(&mut self, p: &Point3<f64>) -> io::Result<()> {
+        if self.is_text {
+            return writeln!(self.writer, "{:?} {:?} {:?}", p.x, p.y, p.z);
+        }
+        let mut row = [0; 24];
+        for (bytes, x) in row.as_chunks_mut().0.iter_mut().zip(p.iter()) {
+            *bytes = x.to_le_bytes();
+        }
+        self.writer.write_all(&row)
+    }
+
+    /// Signed and unsigned numbers have the same bytes where both are in range.
+    fn primitive(&mut self, element: Element, id: Option<u32>) -> io::Result<()> {
+        let indices = element.indices();
+        let is_face = indices.len() == FACE;
+        let numbers = indices.iter().copied().chain(id);
+        if self.is_text {
+            let mut blank = "";
+            if is_face {
+                write!(self.writer, "{FACE}")?;
+                blank = " ";
+            }
+            for number in numbers {
+                write!(self.writer, "{blank}{number}")?;
+                blank = " ";
+            }
+            return writeln!(self.writer);
+        }
+        let mut row = [0; 17];
+        let mut length = usize::from(is_face);
+        row[0] = 3; // if it is a face: the length of the list
+        for number in numbers {
+            row[length..length + 4].copy_from_slice(&number.to_le_bytes());
+            length += 4;
+        }
+        self.writer.write_all(&row[..length])
+    }
+}
