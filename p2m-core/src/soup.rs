@@ -147,19 +147,19 @@ impl<T: Real> Soup<T> {
             self.slots = (0..len).map(|i| Slot::new(kind, i)).collect();
         }
         if !self.slots.is_empty() {
-            self.slots.push(slot);
+            push_by_half(&mut self.slots, slot);
         }
         match element {
-            Element::Point(p) => self.points.push(p),
-            Element::Segment(s) => self.segments.push(s),
-            Element::Triangle(t) => self.triangles.push(t),
+            Element::Point(p) => push_by_half(&mut self.points, p),
+            Element::Segment(s) => push_by_half(&mut self.segments, s),
+            Element::Triangle(t) => push_by_half(&mut self.triangles, t),
         }
         Ok(id)
     }
 
     /// Adds a position that primitives to come may use; its number. It may be anything as long as none does.
     pub fn push_position(&mut self, position: Point3<T>) -> usize {
-        self.positions.push(position);
+        push_by_half(&mut self.positions, position);
         self.positions.len() - 1
     }
 
@@ -237,6 +237,14 @@ impl<T: Real> Soup<T> {
     fn position(&self, index: u32) -> Point3<T> {
         self.positions[index as usize]
     }
+}
+
+/// Grows by half instead of doubling, so that a soup that is filled one by one needs less memory at its peak.
+fn push_by_half<X>(list: &mut Vec<X>, item: X) {
+    if list.len() == list.capacity() {
+        list.reserve_exact(list.len() / 2 + 4);
+    }
+    list.push(item);
 }
 
 impl<T: Real> PrimitiveSet<T> for Soup<T> {

@@ -111,26 +111,26 @@ pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
 pub(crate) fn read_vertices(mut reader: impl BufRead, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
     let header = read_header(&mut reader, name)?;
     let fail = |problem| ReadError::new(name, Place::File, Reason::BadHeader(problem));
-    let mut data = Data::new(reader, &header, name);
-    for element in &header.elements {
-        if element.name != b"vertex" {
-            skip(&mut data, element)?;
-            continue;
-        }
-        let mut points = Vec::new();
-        if element.count > 0 {
-            let xyz = plan::coordinates(element).map_err(fail)?;
-            for _ in 0..element.count {
-                let (point, bad) = vertex(&mut data, &element.properties, &xyz)?;
-                if let Some((place, coordinate)) = bad {
-                    return Err(ReadError::new(name, place, Reason::NonFinite { text: coordinate.to_string() }));
-                }
-                points.push(point);
-            }
-        }
-        return Ok(points);
+    let at = header.elements.iter().position(|element| element.name == b"vertex");
+    let at = at.ok_or_else(|| fail(HeaderProblem::MissingElement { element: "vertex" }))?;
+    let vertices = &header.elements[at];
+    let mut points = Vec::new();
+    if vertices.count == 0 {
+        return Ok(points); // of what there is none, no property is missing
     }
-    Err(fail(HeaderProblem::MissingElement { element: "vertex" }))
+    let xyz = plan::coordinates(vertices).map_err(fail)?;
+    let mut data = Data::new(reader, &header, name);
+    for element in &header.elements[..at] {
+        skip(&mut data, element)?;
+    }
+    for _ in 0..vertices.count {
+        let (point, bad) = vertex(&mut data, &vertices.properties, &xyz)?;
+        if let Some((place, coordinate)) = bad {
+            return Err(ReadError::new(name, place, Reason::NonFinite { text: coordinate.to_string() }));
+        }
+        points.push(point);
+    }
+    Ok(points)
 }
 
 /// Passes over an element.

@@ -180,7 +180,7 @@ fn scalar(descr: &Value<'_>) -> Result<(Scalar, bool), Reason> {
 /// The size in bytes of a field of any type; nothing for objects, which are not of a known size.
 fn size(descr: &Value<'_>, shape: Option<&Value<'_>>) -> Option<u64> {
     let item = match descr {
-        Value::Text([_, kind, rest @ ..]) => {
+        Value::Text([b'<' | b'>' | b'|', kind, rest @ ..]) => {
             let digits = &rest[..rest.iter().take_while(|b| b.is_ascii_digit()).count()];
             let number = std::str::from_utf8(digits).ok()?.parse::<u64>().ok()?;
             match kind {

@@ -1,0 +1,136 @@
+//! How much memory reading takes: within three times what the scene holds, for large files of every format.
+//!
+//! One test, because memory is counted for the whole process.
+
+mod common;
+
+use common::written;
+use nalgebra::Point3;
+use p2m_core::{Element, PrimitiveSet, Soup};
+use p2m_mixed::{Format, Scene, read_scene, read_scene_from};
+use peak_alloc::PeakAlloc;
+
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
+
+/// Buffers of a fixed size.
+const FIXED: usize = 1 << 17;
+
+/// Reads a scene; what it holds, and how much was taken at most.
+fn measure(read: impl FnOnce() -> Scene) -> (Scene, usize, usize) {
+    let before = MEMORY.current_usage();
+    MEMORY.reset_peak_usage();
+    let scene = read();
+    (scene, MEMORY.current_usage() - before, MEMORY.peak_usage() - before)
+}
+
+/// What the scene holds according to its documentation, apart from names.
+fn holds(scene: &Scene) -> usize {
+    let soup = &scene.soup;
+    let kinds = [soup.points().len(), soup.segments().len(), soup.triangles().len()];
+    let slots = if kinds.iter().filter(|&&n| n > 0).count() > 1 { 4 * soup.len() } else { 0 };
+    let indices = 4 * (kinds[0] + 2 * kinds[1] + 3 * kinds[2]);
+    24 * soup.positions().len() + indices + slots + 4 * scene.sources.len()
+}
+
+fn check(what: &str, file: &[u8], format: Format) -> Scene {
+    let (scene, held, peak) = measure(|| read_scene_from(file, format, "large").unwrap());
+    check_peak(what, &scene, held, peak);
+    scene
+}
+
+fn check_peak(what: &str, scene: &Scene, held: usize, peak: usize) {
+    println!("{what}: {:.2} of {held} bytes", peak as f64 / held as f64);
+    assert!(peak <= 3 * held + FIXED, "{what}: {peak} bytes taken for {held}");
+    let least = holds(scene);
+    assert!(held >= least, "{what}");
+    let names: usize = scene.objects.iter().map(|o| o.name.len()).sum();
+    let objects = 2 * scene.objects.len() * size_of_val(scene.objects.first().map_or(&[][..], std::slice::from_ref));
+    assert!(held <= least + names + objects + 1000, "{what}: {held} bytes held, {least} needed");
+}
+
+/// A grid of n x n squares, each of two triangles; with every tenth edge and every tenth vertex, in turns, if mixed.
+fn grid(n: u32, is_mixed: bool) -> Scene {
+    let side = n + 1;
+    let positions = (0..side * side)
+        .map(|i| Point3::new(f64::from(i % side), f64::from(i / side), f64::from(i % 7) * 0.5))
+        .collect::<Vec<_>>();
+    let elements = (0..n * n).flat_map(|i| {
+        let a = i / n * side + i % n;
+        let triangles = [Element::Triangle([a, a + 1, a + side]), Element::Triangle([a + 1, a + side + 1, a + side])];
+        let others = [Element::Segment([a, a + 1]), Element::Point(a)];
+        triangles.into_iter().chain(others.into_iter().filter(move |_| is_mixed && i % 10 == 0))
+    });
+    Soup::new(positions, elements).unwrap().into()
+}
+
+#[test]
+fn reading_takes_no_more_than_three_times_the_scene() {
+    // Just behind a power of two, where vectors that grow are largest beside what they hold; and just before.
+    for n in [363, 361, 400, 460] {
+        let scene = grid(n, false);
+        for format in [Format::Obj, Format::Ply, Format::Stl, Format::Off] {
+            let again = check(&format!("{n}, {format}"), &written(&scene, format), format);
+            assert_eq!(again.soup.triangles().len(), scene.soup.triangles().len());
+        }
+        let scene = grid(n, true);
+        for format in [Format::Obj, Format::Ply, Format::Off] {
+            let again = check(&format!("{n}, mixed, {format}"), &written(&scene, format), format);
+            assert_eq!(again.soup, scene.soup);
+        }
+
+        // Faces in front of their vertices.
+        let soup = grid(n, false).soup;
+        let xyz = "property float x\nproperty float y\nproperty float z\n";
+        let header = format!(
+            "ply\nformat binary_little_endian 1.0\nelement face {}\nproperty list uchar int vertex_indices\n\
+            element vertex {}\n{xyz}end_header\n",
+            soup.triangles().len(),
+            soup.positions().len()
+        );
+        let mut file = header.into_bytes();
+        for triangle in soup.triangles() {
+            file.push(3);
+            triangle.iter().for_each(|i| file.extend(i.to_le_bytes()));
+        }
+        soup.positions().iter().flat_map(|p| p.iter()).for_each(|&x| file.extend((x as f32).to_le_bytes()));
+        assert_eq!(check(&format!("{n}, faces first"), &file, Format::Ply).soup, soup);
+
+        // Point clouds, and a group for each face.
+        let mut cloud = String::new();
+        let mut groups = String::from("v 0 0 0\n");
+        for i in 0..n * n {
+            cloud += &format!("v {i} 0.25 {}\n", i % 100);
+            groups += &format!("g part {}\nf 1 1 1\ng part {}\n", i / 2, i / 2);
+        }
+        assert_eq!(check(&format!("{n}, cloud"), cloud.as_bytes(), Format::Obj).soup.points().len(), (n * n) as usize);
+        let scene = check(&format!("{n}, groups"), groups.as_bytes(), Format::Obj);
+        assert_eq!(scene.objects.len(), (n * n).div_ceil(2) as usize);
+    }
+
+    // One strip that is the whole file, and facets that share nothing: just behind a power of two again.
+    for count in [262_147i32, 300_000] {
+        let mut strip = b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+            property float z\nelement tristrips 1\nproperty list int uchar vertex_indices\nend_header\n"
+            .to_vec();
+        strip.extend([0; 36]);
+        strip.extend(count.to_le_bytes());
+        strip.extend((0..count).map(|i| (i % 3) as u8));
+        check("strip", &strip, Format::Ply);
+    }
+    for count in [76_460u32, 87_382, 100_000] {
+        let positions = (0..3 * count).map(|i| Point3::new(f64::from(i), 0.0, f64::from(i % 17))).collect();
+        let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let apart: Scene = Soup::from_triangles(positions, triangles).unwrap().into();
+        assert_eq!(check("apart", &written(&apart, Format::Stl), Format::Stl).soup, apart.soup);
+    }
+
+    let Some(folder) = p2m_testkit::models() else { return };
+    for file in std::fs::read_dir(folder).unwrap() {
+        let path = file.unwrap().path();
+        if Format::from_path(&path).is_ok() {
+            let (scene, held, peak) = measure(|| read_scene(&path).unwrap());
+            check_peak(&path.display().to_string(), &scene, held, peak);
+        }
+    }
+}
