@@ -279,3 +279,38 @@ fn an_unused_position_that_a_file_cannot_hold_is_written_as_the_origin() {
     assert_eq!(elements(&again), [p(1)]);
     assert_eq!(again.soup.positions()[1], Point3::new(1.0, 2.0, 3.0));
 }
+
+#[test]
+fn objects_are_o_statements_or_else_groups() {
+    let objects = |statements: &str| -> Vec<(String, std::ops::Range<usize>)> {
+        let scene = obj(format!("{FOUR}{statements}")).unwrap();
+        scene.objects.into_iter().map(|o| (o.name, o.ids)).collect()
+    };
+    let named = |name: &str, ids| (name.to_owned(), ids);
+    assert_eq!(objects("o a\nf 1 2 3 4\no b\nl 1 2 3\np 1"), [named("a", 0..2), named("b", 2..5)]);
+    assert_eq!(objects("f 1 2 3\ng a b \nf 1 2 3\ng\nf 1 2 3\ng c\n"), [named("a b", 1..2)]);
+    assert_eq!(objects("g a\nf 1 2 3\no b\nf 1 2 3\ng c\nf 1 2 3"), [named("b", 1..3)]);
+    assert_eq!(objects("g a\nf 1 2 3\no\nf 1 2 3"), [], "an object without a name is one, too");
+    assert_eq!(objects("g a\nf 1 2 3\ng b\ng a\nf 1 2 3\ng c\nf 1 2 3"), [named("a", 0..2), named("c", 2..3)]);
+    assert_eq!(objects("o two \\\n words\nf 1 2 3\no #1 \t\nf 1 2 3"), [named("two   words", 0..1), named("#1", 1..2)]);
+    assert_eq!(objects("o caf\u{e9}\nf 1 2 3"), [named("caf\u{e9}", 0..1)]);
+
+    let skips = |statements: &str| {
+        obj(format!("{FOUR}{statements}")).unwrap().skipped.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    assert_eq!(skips("g a\nf 1 2 3\ng b"), [] as [&str; 0]);
+    assert_eq!(skips("g a\ns 1\nf 1 2 3\ng b\no c\no c"), ["2 x g", "1 x s"]);
+    // A point cloud has no objects.
+    assert_eq!(objects("o a\nv 1 1 1"), []);
+    assert_eq!(skips("g a\no b\no b"), ["1 x g", "2 x o"]);
+}
+
+#[test]
+fn a_million_groups_are_cheap() {
+    let mut text = String::from(FOUR);
+    for i in 0..1_000_000 {
+        text += if i % 2 == 0 { "g same name\nf 1 2 3\n" } else { "g other\ng same name\n" };
+    }
+    let scene = obj(&text).unwrap();
+    assert_eq!((scene.objects.len(), scene.objects[0].ids.clone()), (1, 0..500_000));
+}

@@ -1,9 +1,13 @@
-//! Broken files: an error or a scene, never a panic, and never much memory.
+//! Broken files: an error or a scene, never a panic, and never much memory. What is read is written and read back.
 
 mod common;
 
-use common::{ENCODINGS, RICH_OBJ, obj, ply, rich_ply};
-use p2m_mixed::{ReadError, Scene};
+use common::{
+    ENCODINGS, RICH_NPY, RICH_OBJ, RICH_OFF, RICH_STL, elements, npy, obj, off, ply, read_back, rich_binary_off,
+    rich_binary_stl, rich_ply, stl,
+};
+use nalgebra::Point3;
+use p2m_mixed::{AnswerFormat, AnswerWriter, Format, PointFormat, ReadError, Scene, read_points_from};
 use peak_alloc::PeakAlloc;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -14,11 +18,27 @@ static MEMORY: PeakAlloc = PeakAlloc;
 /// Far more than the files at hand need, far less than their headers can announce.
 const MEGABYTES: f32 = 64.0;
 
-type Reader = fn(&[u8]) -> Result<Scene, ReadError>;
+/// Reads a file and checks what comes of it; whether it is one.
+type Reader = fn(&[u8]) -> bool;
 
-fn files() -> Vec<(Vec<u8>, Reader)> {
-    let mut files: Vec<(Vec<u8>, Reader)> = vec![(RICH_OBJ.into(), |b| obj(b))];
-    files.extend(ENCODINGS.map(|e| (rich_ply(e), (|b| ply(b)) as Reader)));
+/// Files, how to read them, and at how many places they can be cut off without harm: where an end is no error.
+fn files() -> Vec<(Vec<u8>, Reader, usize)> {
+    let anywhere = usize::MAX;
+    let mut files: Vec<(Vec<u8>, Reader, usize)> = vec![
+        (RICH_OBJ.into(), |b| check(obj(b)), anywhere),
+        // A text needs no line end, nor what follows the word `endsolid`, twice there.
+        (RICH_STL.into(), |b| check(stl(b)), 9),
+        (rich_binary_stl(), |b| check(stl(b)), 0),
+        (RICH_OFF.into(), |b| check(off(b)), 1),
+        (rich_binary_off(), |b| check(off(b)), 0),
+        (npy(RICH_NPY, &[0; 2 * 44]), |b| check_points(read_points_from(b, PointFormat::Npy, "t")), 0),
+        (b"qx;qy;qz\n1;2;-0.0\n".into(), |b| check_points(read_points_from(b, PointFormat::Csv, "t")), anywhere),
+        (b"1 2 3\n# c\n4 5 6\n".into(), |b| check_points(read_points_from(b, PointFormat::Xyz, "t")), anywhere),
+    ];
+    files.extend(ENCODINGS.map(|e| (rich_ply(e), (|b| check(ply(b))) as Reader, 3)));
+    // What follows the vertices does not matter.
+    let points: Reader = |b| check_points(read_points_from(b, PointFormat::Ply, "t"));
+    files.extend(ENCODINGS.map(|e| (rich_ply(e), points, anywhere)));
     files
 }
 
@@ -29,8 +49,31 @@ fn check(scene: Result<Scene, ReadError>) -> bool {
             false
         }
         Ok(scene) => {
-            let elements = scene.soup.elements().count();
-            assert_eq!(scene.sources.len(), elements);
+            let expected = elements(&scene);
+            assert_eq!(scene.sources.len(), expected.len());
+            for format in [Format::Obj, Format::Ply, Format::Off] {
+                assert_eq!(elements(&read_back(&scene, format)), expected, "{format}");
+            }
+            assert_eq!(read_back(&scene, Format::Obj).objects, scene.objects);
+            true
+        }
+    }
+}
+
+fn check_points(points: Result<Vec<Point3<f64>>, ReadError>) -> bool {
+    match points {
+        Err(error) => {
+            assert!(!error.to_string().is_empty());
+            false
+        }
+        Ok(points) => {
+            assert!(points.iter().flat_map(|p| p.iter()).all(|x| x.is_finite()));
+            for format in [AnswerFormat::Csv, AnswerFormat::Npy, AnswerFormat::Ply] {
+                let mut writer = AnswerWriter::new(Vec::new(), format, points.len() as u64).unwrap();
+                points.iter().for_each(|p| writer.write(p, None).unwrap());
+                let file = writer.finish().unwrap();
+                assert_eq!(read_points_from(&file[..], format.name().parse().unwrap(), "t").unwrap(), points);
+            }
             true
         }
     }
@@ -38,13 +81,10 @@ fn check(scene: Result<Scene, ReadError>) -> bool {
 
 #[test]
 fn truncation_at_every_byte() {
-    for (bytes, read) in files() {
-        assert!(check(read(&bytes)));
-        let ends = (0..bytes.len()).filter(|&end| check(read(&bytes[..end]))).count();
-        // A PLY file says how long it is: only the line end of a text is not needed.
-        if bytes.starts_with(b"ply") {
-            assert!(ends <= 3, "{ends}");
-        }
+    for (bytes, read, most) in files() {
+        assert!(read(&bytes));
+        let ends = (0..bytes.len()).filter(|&end| read(&bytes[..end])).count();
+        assert!(ends <= most, "{ends}");
     }
     assert!(MEMORY.peak_usage_as_mb() < MEGABYTES, "{}", MEMORY.peak_usage_as_mb());
 }
@@ -54,7 +94,7 @@ fn random_damage() {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let mut read_well = 0;
     for round in 0..5000 {
-        for (mut bytes, read) in files() {
+        for (mut bytes, read, _) in files() {
             for _ in 0..=round % 4 {
                 let at = rng.random_range(0..bytes.len());
                 match rng.random_range(0..6) {
@@ -71,7 +111,7 @@ fn random_damage() {
                     }
                 }
             }
-            read_well += usize::from(check(read(&bytes)));
+            read_well += usize::from(read(&bytes));
         }
     }
     assert!(read_well > 500, "{read_well}: the damage should not always be noticed");
@@ -86,6 +126,14 @@ fn noise() {
         rng.fill_bytes(&mut bytes);
         check(obj(&bytes));
         check(ply(&bytes));
+        check(stl(&bytes));
+        check(off(&bytes));
+        for format in [PointFormat::Xyz, PointFormat::Csv, PointFormat::Npy, PointFormat::Ply] {
+            check_points(read_points_from(&bytes[..], format, "t"));
+        }
+        // Facets and faces without end, all of them of noise.
+        check(stl([&[0; 80][..], &[0xff; 4], &bytes].concat()));
+        check(off([b"OFF BINARY\n", &[0, 0, 0, 2, 0x7f, 0xff, 0xff, 0xff, 0, 0, 0, 0][..], &bytes].concat()));
         // Noise behind a header.
         for encoding in ENCODINGS {
             let mut file = rich_ply(encoding);
@@ -97,6 +145,7 @@ fn noise() {
         // Noise of the letters of the format.
         let text: Vec<u8> = bytes.iter().map(|b| b"vflp0123456789 -\n\n/#\\."[usize::from(*b) % 22]).collect();
         check(obj(&text));
+        check(off([b"OFF\n9 9 9\n", &text[..]].concat()));
     }
     assert!(MEMORY.peak_usage_as_mb() < MEGABYTES, "{}", MEMORY.peak_usage_as_mb());
 }

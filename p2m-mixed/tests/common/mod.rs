@@ -166,3 +166,48 @@ pub(crate) fn rich_ply(encoding: Encoding) -> Vec<u8> {
 pub(crate) const RICH_OBJ: &str = "# caf\u{e9}\r\nmtllib x.mtl\r\nv 0 0 0\nv 4 0 0 1.0\n  v\t4 4 0 1 0 0 # red\nv 0 4 0\nv 2 1 0\n\
     v .5 5e-1 -7.\nvt 0 0\nvn 0 0 1\nusemtl a\\\nb\nf 1 2 3\nf 1/1 2/1/1 3//1 4 # quad\nf -6 5 -5 \\\n -4 -3\nl 1 6 2\n\
     l 1/1 2/2\np 1 6\nfo 1 1 2\ncurv 0 1 1 2\n";
+
+/// A text STL file with a bit of everything.
+pub(crate) const RICH_STL: &str = "solid text\r\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   \
+    vertex 0 1 0\n  endloop\n endfacet\nendsolid text\n\nSOLID\nFACET NORMAL nan nan nan\nOUTER LOOP\nVERTEX 0 0 -0\n\
+    VERTEX 1e0 0 0\nVERTEX 5 .5 5\nVERTEX 0 1 0\nENDLOOP\nENDFACET\nENDSOLID\n";
+
+/// A binary STL file whose header is that of a text.
+pub(crate) fn rich_binary_stl() -> Vec<u8> {
+    let mut file = b"solid but binary".to_vec();
+    file.resize(80, b' ');
+    file.extend(3u32.to_le_bytes());
+    for facet in [[0.0f32; 9], [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, -0.0, 1.0, 2.0], [7.5; 9]] {
+        file.extend([0; 12]);
+        file.extend(facet.iter().flat_map(|x| x.to_le_bytes()));
+        file.extend([0, 1]);
+    }
+    file
+}
+
+/// A text OFF file with a bit of everything.
+pub(crate) const RICH_OFF: &str = "CNOFF # text\n5 5 0\n0 0 0 0 0 1 255 0 0 255\n1 0 0\n1 1 0\n0 1 0\n.5 .5 1e0\n\n4 0 1 2 3 \
+    255 0 0\n3 0 1 4 0.5 0.5 0.5 1\n2 0 4 7\n1 4\n5 0 1\n2 4 3\n";
+
+/// A binary OFF file with a bit of everything.
+pub(crate) fn rich_binary_off() -> Vec<u8> {
+    let mut file = b"NOFF BINARY\n".to_vec();
+    let counts = [4, 3, 0].iter().flat_map(|n: &i32| n.to_be_bytes());
+    file.extend(counts);
+    file.extend((0u8..24).flat_map(|i| f32::from(i).to_be_bytes()));
+    file.extend([4, 0, 1, 2, 3, 0, 2, 0, 2, 1, 9, 1, 3, 0].iter().flat_map(|n: &i32| n.to_be_bytes()));
+    file
+}
+
+/// What describes an array with a bit of everything.
+pub(crate) const RICH_NPY: &str = "{'descr': [('a', '<U2'), (('t', 'query'), '>f4', (3,)), ('b', [('c', '|V4'), \
+    ('d', '<i4', (2, 2))]), ('e', '|S4')], 'fortran_order': False, 'shape': (2,), }";
+
+/// A file with an array.
+pub(crate) fn npy(description: &str, data: &[u8]) -> Vec<u8> {
+    let mut file = b"\x93NUMPY\x01\x00".to_vec();
+    file.extend((description.len() as u16).to_le_bytes());
+    file.extend(description.bytes());
+    file.extend(data);
+    file
+}
