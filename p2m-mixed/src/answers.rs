@@ -5,7 +5,7 @@ use nalgebra::Point3;
 use p2m_core::{Closest, Feature};
 use std::io::{self, ErrorKind, Write};
 
-/// Writes answers one by one, in any [`AnswerFormat`]; the file is never in memory.
+/// Writes answers one by one, in any [`AnswerFormat`]; the file is never in memory, but the writer should have a buffer.
 ///
 /// Each file holds the queries, so [`read_points`](crate::read_points) asks the same questions again.
 ///

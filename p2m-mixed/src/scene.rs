@@ -91,8 +91,8 @@ pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
 
 /// Reads a scene from the standard input, say; `name` is for messages.
 ///
-/// The file is read once from its beginning to its end. While it is, memory for three times the finished scene is
-/// needed at most, whatever the file announces.
+/// The file is read once from its beginning to its end. While it is, at most three times the memory of the finished scene
+/// is needed, whatever the file announces, besides small buffers and the longest line of a text.
 ///
 /// ```
 /// use p2m_mixed::{Format, read_scene_from};

@@ -43,7 +43,7 @@ pub enum WriteError {
     },
 }
 
-/// Writes a scene.
+/// Writes a scene, number by number: `writer` should have a buffer.
 ///
 /// A file in [`Obj`](Format::Obj), [`Ply`](Format::Ply) or [`Off`](Format::Off) reads back as the same scene: the same
 /// positions bit by bit, the same primitives with the same ids. [`Stl`](Format::Stl) holds triangles in single precision
