@@ -16,7 +16,7 @@ static MEMORY: PeakAlloc = PeakAlloc;
 ///
 /// The largest that is needed is for a polygon whose corners are two bytes each.
 const PER_BYTE: usize = 256;
-const FIXED: usize = 1 << 20;
+const FIXED: usize = 1 << 17;
 
 fn measured<T>(file: &[u8], read: impl FnOnce() -> T) -> T {
     let before = MEMORY.current_usage();

@@ -132,7 +132,6 @@ impl<R: BufRead> Text<R> {
                 self.facet()?;
             } else if is_open && is(word, "endsolid") {
                 self.words.rest_of_line();
-                self.facets.builder.object(b"");
                 is_open = false;
             } else if !is_open && word == b"\x1a" {
                 // The end mark of old systems.
