@@ -79,11 +79,9 @@ struct Objects {
 impl Objects {
     /// What follows from id `next` on is of this name.
     fn start(&mut self, name: &[u8], next: usize) {
-        if self.name != name {
-            self.end(next);
-            self.name.clear();
-            self.name.extend_from_slice(name);
-        }
+        self.end(next);
+        self.name.clear();
+        self.name.extend_from_slice(name);
     }
 
     fn end(&mut self, next: usize) {
@@ -175,14 +173,10 @@ impl Builder {
         Ok(())
     }
 
-    /// Gives back the memory that is held for more vertices and primitives.
-    pub(crate) fn shrink_to_fit(&mut self) {
+    pub(crate) fn finish(mut self) -> Scene {
+        // Nothing is added any more.
         self.soup.shrink_to_fit();
         self.sources.shrink_to_fit();
-    }
-
-    pub(crate) fn finish(mut self) -> Scene {
-        self.shrink_to_fit();
         self.objects.end(self.soup.len());
         let Self { soup, sources, skips, objects, .. } = self;
         Scene { soup, sources, objects: objects.list, skipped: skips.finish() }

@@ -59,6 +59,7 @@ fn descriptions_in_other_hands() {
     for description in [
         "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }                 ",
         "{'shape': (2, 3), 'fortran_order': False, 'descr': '<f8'}",
+        "{'descr': ('<f8'), 'fortran_order': (False), 'shape': ((2), 3)}",
         "{\"descr\":\"<f8\",\"fortran_order\":False,\"shape\":(2,3)}",
         " {  'descr' : '<f8' ,\n'fortran_order' : False, 'shape' : ( 2L , 3L , ) , 'more': [(1, 'it\\'s')] } ",
     ] {
@@ -134,6 +135,7 @@ fn what_is_no_array_of_points_is_refused() {
         message("[('query', '|S8', (3,))]", "(2,)"),
         "items of type '|S8' are no coordinates, expected integers or floats of 4 or 8 bytes"
     );
+    assert!(message("[('o', '|O8'), ('query', '<f8', (3,))]", "(2,)").starts_with("items of type ('o', '|O8') are no"));
     // An object in any field: its size is not known, and what is stored is a pickle.
     assert_eq!(
         message("[('o', '|O'), ('query', '<f8', (3,))]", "(2,)"),

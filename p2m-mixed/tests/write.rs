@@ -132,10 +132,18 @@ fn objects_survive_in_obj() {
     assert_eq!(names, [("path\\", 0..1), ("two  lines", 1..2), ("\\", 2..3)]);
 
     // Nonsense that no reader makes is no reason to panic.
-    named.objects[0].ids = 2..9;
-    named.objects[1].ids = 1..1;
+    named.objects[0].ids = 1..9;
+    named.objects[1].ids = 2..2;
     named.objects[2].ids = 0..2;
     assert_eq!(read_back(&named, Format::Obj).soup, named.soup);
+    // What is in order is written all the same.
+    named.objects[0].ids = 0..0;
+    named.objects[1].ids = 0..1;
+    named.objects[2].ids = 2..3;
+    let again = read_back(&named, Format::Obj);
+    assert_eq!(again.soup, named.soup);
+    let ids: Vec<_> = again.objects.iter().map(|o| o.ids.clone()).collect();
+    assert_eq!(ids, [0..1, 2..3]);
 }
 
 #[test]
@@ -167,7 +175,7 @@ fn rounding_counts_each_coordinate_of_a_used_vertex_once() {
         Point3::new(0.3, 0.3, 1e300),        // not used by a triangle
         Point3::new(33_554_433.5, 0.0, 0.0), // 2^25 + 1.5: rounds to 2^25
     ];
-    let rounding = stl_rounding(&scene(positions.clone(), [t(0, 1, 1), t(1, 0, 3), s(2, 2)]));
+    let rounding = stl_rounding(&scene(positions.clone(), [t(3, 1, 1), t(1, 0, 3), s(2, 2)]));
     assert_eq!((rounding.count, rounding.largest), (4, 1.5));
     let rounding = stl_rounding(&scene(positions, [t(0, 1, 2)]));
     assert_eq!((rounding.count, rounding.largest), (6, f64::INFINITY));

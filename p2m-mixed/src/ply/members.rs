@@ -89,14 +89,9 @@ impl Members {
     /// Called when all vertices are there: what waited for them is added.
     pub(super) fn end_vertices(&mut self, name: &str) -> Result<(), ReadError> {
         if self.ids.is_some() {
-            self.builder.shrink_to_fit();
             return Ok(());
         }
-        let batches = std::mem::take(&mut self.batches);
-        if !batches.is_empty() {
-            self.builder.shrink_to_fit();
-        }
-        for batch in batches {
+        for batch in std::mem::take(&mut self.batches) {
             self.check_finite(&batch.vertices, name)?;
             let mut rest = batch.vertices.as_slice();
             for number in 0..batch.len() {
