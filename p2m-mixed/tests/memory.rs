@@ -96,6 +96,17 @@ fn reading_takes_no_more_than_three_times_the_scene() {
         soup.positions().iter().flat_map(|p| p.iter()).for_each(|&x| file.extend((x as f32).to_le_bytes()));
         assert_eq!(check(&format!("{n}, faces first"), &file, Format::Ply).soup, soup);
 
+        // The cloud of a scanner, in which every other point is none.
+        let count = 2 * n * n;
+        let header = format!("ply\nformat binary_little_endian 1.0\nelement vertex {count}\n{xyz}end_header\n");
+        let mut file = header.into_bytes();
+        for i in 0..count {
+            let x = if i % 2 == 0 { f32::NAN } else { i as f32 };
+            file.extend([x, x, x].iter().flat_map(|x| x.to_le_bytes()));
+        }
+        let scene = check(&format!("{n}, half a cloud"), &file, Format::Ply);
+        assert_eq!(scene.soup.points().len(), (n * n) as usize);
+
         // Point clouds, and a group for each face.
         let mut cloud = String::new();
         let mut groups = String::from("v 0 0 0\n");

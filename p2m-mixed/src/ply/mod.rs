@@ -84,6 +84,8 @@ pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
             Plan::Vertices(xyz) => {
                 for _ in 0..element.count {
                     let (position, bad) = vertex(&mut data, &element.properties, xyz)?;
+                    // Nothing uses the vertices of a cloud.
+                    let bad = bad.filter(|_| !is_cloud);
                     members.vertex(position, bad.map(|(place, _)| place)).map_err(|reason| data.error(reason))?;
                 }
                 members.end_vertices(name)?;
