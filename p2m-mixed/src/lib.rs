@@ -35,6 +35,7 @@ mod points;
 mod polygon;
 mod scene;
 mod stl;
+pub mod statistics;
 mod text;
 mod write;
 

@@ -1,0 +1,253 @@
+//! Sentences about scenes, each where the figures warrant it.
+
+use super::figure::{Count, Figure, Share};
+use super::{Statistics, THIN_ASPECT};
+use std::fmt;
+
+/// Something that a person should know about a scene. It displays as a sentence without a stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Note {
+    /// There are no primitives.
+    Empty,
+    /// Distances of this scene may be beyond 1e-120..1e120, where trees do not prune: a coordinate or an edge is.
+    ExtremeScale,
+    /// A coordinate is beyond the range of f32.
+    BeyondF32,
+    /// The scene is [`FAR`] times its own size from the origin, or more.
+    FarFromOrigin {
+        /// The distance of its centre.
+        distance: f64,
+        /// How many times its diagonal that is; infinite for a single point is not reported.
+        times: f64,
+        /// How far the numbers of f32 are apart there, if they reach it.
+        f32_step: Option<f64>,
+        /// How far the numbers of f64 are apart there.
+        f64_step: f64,
+    },
+    /// At least 1 % of the triangles are slivers.
+    Slivers {
+        /// How many, of how many.
+        share: Share,
+    },
+    /// At least half of the triangles are thin.
+    Thin {
+        /// How many, of how many.
+        share: Share,
+        /// The median aspect.
+        median: f64,
+    },
+    /// There are triangles without area.
+    ZeroArea {
+        /// How many.
+        count: u64,
+    },
+    /// There are segments without length.
+    ZeroLength {
+        /// How many.
+        count: u64,
+    },
+    /// There are primitives that repeat others.
+    Duplicates {
+        /// How many.
+        count: u64,
+    },
+    /// There are edges of more than two triangles.
+    NonManifold {
+        /// How many.
+        count: u64,
+    },
+    /// There are edges of two triangles that face opposite sides.
+    Inconsistent {
+        /// How many.
+        count: u64,
+    },
+    /// The longest edge is [`SPREAD`] orders of magnitude longer than the shortest, or more.
+    Spread {
+        /// How many.
+        orders: f64,
+    },
+    /// The scene has no extent along one axis.
+    Flat {
+        /// 0 is x.
+        axis: usize,
+        /// Its coordinate there.
+        at: f64,
+    },
+    /// Positions are repeated, on the average at least once: primitives do not share them.
+    Unshared {
+        /// Positions that are used.
+        used: u64,
+        /// Different ones among them.
+        distinct: u64,
+    },
+    /// Positions that no primitive uses.
+    Unused {
+        /// How many.
+        count: u64,
+    },
+}
+
+/// From this multiple of a scene's size on its distance from the origin is worth a word: two digits are lost.
+pub const FAR: f64 = 100.0;
+/// So many orders of magnitude between the longest and the shortest edge are worth a word.
+pub const SPREAD: f64 = 6.0;
+
+/// The notes of a scene.
+pub(super) fn notes(s: &Statistics) -> Vec<Note> {
+    let mut notes = Vec::new();
+    let mut note_if = |warranted: bool, note: Note| {
+        if warranted {
+            notes.push(note);
+        }
+    };
+    let Some(bounds) = &s.bounds else {
+        note_if(true, Note::Empty);
+        note_if(s.positions.total > 0, Note::Unused { count: s.positions.total });
+        return notes;
+    };
+    let (location, sizes, shapes) = (&s.location, &s.sizes, &s.shapes);
+    let longest = sizes.edge.map_or(0.0, |e| e.max);
+    let extreme = |x: f64| x > 1e120 || (x > 0.0 && x < 1e-120);
+    note_if(extreme(location.largest_coordinate) || extreme(sizes.diagonal) || extreme(longest), Note::ExtremeScale);
+    note_if(location.f32_step().is_none(), Note::BeyondF32);
+    let distance = location.distance_from_origin;
+    let times = distance / sizes.diagonal;
+    let (f32_step, f64_step) = (location.f32_step(), location.f64_step());
+    note_if(times >= FAR && times.is_finite(), Note::FarFromOrigin { distance, times, f32_step, f64_step });
+    let triangles = s.primitives.triangles;
+    let slivers = Share { part: shapes.slivers, whole: triangles };
+    note_if(shapes.slivers > 0 && slivers.part * 100 >= triangles, Note::Slivers { share: slivers });
+    let thin = Share { part: shapes.thin, whole: triangles };
+    if let Some(median) = shapes.median_aspect {
+        note_if(thin.part * 2 >= triangles, Note::Thin { share: thin, median });
+    }
+    note_if(shapes.zero_area > 0, Note::ZeroArea { count: shapes.zero_area });
+    note_if(shapes.zero_length > 0, Note::ZeroLength { count: shapes.zero_length });
+    note_if(s.duplicates.total() > 0, Note::Duplicates { count: s.duplicates.total() });
+    note_if(s.edges.non_manifold > 0, Note::NonManifold { count: s.edges.non_manifold });
+    note_if(s.edges.inconsistent > 0, Note::Inconsistent { count: s.edges.inconsistent });
+    if let Some(orders) = sizes.edge.map(|e| e.orders_of_magnitude()) {
+        note_if(orders >= SPREAD, Note::Spread { orders });
+    }
+    for axis in 0..3 {
+        let is_flat = bounds.min[axis] >= bounds.max[axis];
+        note_if(is_flat && sizes.diagonal > 0.0, Note::Flat { axis, at: bounds.min[axis] });
+    }
+    let (used, distinct) = (s.positions.used, s.positions.distinct);
+    note_if(used >= 2 * distinct, Note::Unshared { used, distinct });
+    note_if(s.positions.total > used, Note::Unused { count: s.positions.total - used });
+    notes
+}
+
+/// `one` or `many` behind a count.
+fn counted(count: u64, one: &str, many: &str) -> String {
+    format!("{} {}", Count(count), if count == 1 { one } else { many })
+}
+
+impl Note {
+    /// A word for programs; it stays the same in later versions.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Empty => "empty",
+            Self::ExtremeScale => "extreme_scale",
+            Self::BeyondF32 => "beyond_f32",
+            Self::FarFromOrigin { .. } => "far_from_origin",
+            Self::Slivers { .. } => "slivers",
+            Self::Thin { .. } => "thin",
+            Self::ZeroArea { .. } => "zero_area",
+            Self::ZeroLength { .. } => "zero_length",
+            Self::Duplicates { .. } => "duplicates",
+            Self::NonManifold { .. } => "non_manifold",
+            Self::Inconsistent { .. } => "inconsistent",
+            Self::Spread { .. } => "spread",
+            Self::Flat { .. } => "flat",
+            Self::Unshared { .. } => "unshared",
+            Self::Unused { .. } => "unused",
+        }
+    }
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Empty => f.write_str("the scene is empty: no query has an answer"),
+            Self::ExtremeScale => f.write_str(
+                "the scene has sizes beyond 1e-120..1e120: answers are right there, but trees are no faster than brute force",
+            ),
+            Self::BeyondF32 => f.write_str("the coordinates are beyond the range of f32: keep this scene in f64"),
+            Self::FarFromOrigin { distance, times, f32_step, f64_step } => {
+                write!(
+                    f,
+                    "the scene lies {} units from the origin, {} times its size: ",
+                    Figure(distance),
+                    Figure(round(times))
+                )?;
+                if let Some(step) = f32_step {
+                    write!(f, "f32 has steps of {} units there, ", Figure(round(step)))?;
+                }
+                write!(f, "f64 of {}; move it to the origin, or keep it in f64", Figure(round(f64_step)))
+            }
+            Self::Slivers { share } => write!(
+                f,
+                "{share} of the triangles are slivers (height below 1/1024 of the longest edge): expect the exact lane of \
+                the kernel, which takes longer"
+            ),
+            Self::Thin { share, median } => write!(
+                f,
+                "{share} of the triangles are thin (longest edge above {THIN_ASPECT} heights, median {}): boxes around \
+                them are mostly empty, which slows trees down",
+                Figure(median)
+            ),
+            Self::ZeroArea { count: 1 } => {
+                f.write_str("1 triangle has no area: it counts as the segment or point that it covers")
+            }
+            Self::ZeroArea { count } => {
+                write!(f, "{} triangles have no area: they count as the segments or points that they cover", Count(count))
+            }
+            Self::ZeroLength { count } => {
+                let they = counted(count, "segment has no length: it counts as a point", "segments have no length: they count as points");
+                f.write_str(&they)
+            }
+            Self::Duplicates { count } => {
+                let they = counted(count, "primitive repeats another one", "primitives repeat others");
+                write!(f, "{they}: among equals the lowest number is the answer")
+            }
+            Self::NonManifold { count } => {
+                let they = counted(count, "edge belongs", "edges belong");
+                write!(f, "{they} to more than two triangles: closest points are not affected, inside and outside are")
+            }
+            Self::Inconsistent { count } => {
+                let they = counted(count, "edge lies", "edges lie");
+                write!(f, "{they} between triangles that face opposite sides: closest points are not affected, normals are")
+            }
+            Self::Spread { orders } => {
+                write!(f, "edge lengths span {orders:.0} orders of magnitude: very small and very large primitives are mixed")
+            }
+            Self::Flat { axis, at } => {
+                let name = ["x", "y", "z"].get(axis).copied().unwrap_or("?");
+                write!(f, "the scene is flat: {name} is {at:?} everywhere")
+            }
+            Self::Unshared { used, distinct } => write!(
+                f,
+                "primitives do not share positions: {} of them are at {}",
+                Count(used),
+                counted(distinct, "place", "different places")
+            ),
+            Self::Unused { count } => {
+                let they = counted(
+                    count,
+                    "position belongs to no primitive and counts",
+                    "positions belong to no primitive and count",
+                );
+                write!(f, "{they} for nothing")
+            }
+        }
+    }
+}
+
+/// To two digits.
+fn round(x: f64) -> f64 {
+    format!("{x:.1e}").parse().unwrap_or(x)
+}

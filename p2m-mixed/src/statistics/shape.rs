@@ -1,0 +1,256 @@
+//! Lengths, areas and shapes of primitives at any scale, and whether a triangle has an area at all.
+//!
+//! Plain arithmetic where it is good to 2^-20, scaled arithmetic where squares would leave the range, exact integers where
+//! a triangle is so flat that its area is mostly rounding error. Results that f64 cannot hold are given as the nearest
+//! number that it can.
+
+use dashu_int::{IBig, ops::BitTest};
+use nalgebra::Point3;
+
+/// Triangles whose height is below 2^-26 of the longest edge are measured in integers: plain arithmetic has that ratio with an
+/// absolute error below 2^-48, so what is zero is among them, and what is above is good to 2^-22.
+const UNCERTAIN_SINE: f64 = power_of_two(-26);
+/// Offsets from 2^-200 to 2^200 have fourth powers in the range of f64.
+const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-200)..=power_of_two(200);
+
+type V3 = [f64; 3];
+
+/// What a triangle measures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Measure {
+    /// The lengths of its edges; edge i runs from vertex i to vertex i + 1.
+    pub(super) edges: V3,
+    /// Zero if and only if its corners are on a line.
+    pub(super) area: f64,
+    /// Its height over its longest edge, divided by that edge. Zero if and only if the area is.
+    pub(super) sine: f64,
+}
+
+impl Measure {
+    pub(super) fn of(corners: [Point3<f64>; 3]) -> Self {
+        let corners = corners.map(|p| [p.x, p.y, p.z]);
+        let lengths = [0, 1, 2].map(|i| length(corners[i], corners[(i + 1) % 3]));
+        // The offsets divided by 2^exponent.
+        let edges =
+            |unit: f64| [0, 1, 2].map(|i| sub(corners[(i + 1) % 3].map(|x| x * unit), corners[i].map(|x| x * unit)));
+        let (mut offsets, mut exponent) = (edges(1.0), 0);
+        let mut size = largest(&offsets);
+        if size == 0.0 {
+            return Self { edges: lengths, area: 0.0, sine: 0.0 };
+        }
+        if !PLAIN.contains(&size) {
+            if size > 1.0 {
+                // Differences of quarters are finite; what they lose is nothing beside a size like this.
+                offsets = edges(0.25);
+                exponent = 2;
+                size = largest(&offsets);
+            }
+            let scale = exponent_of(size);
+            offsets = offsets.map(|v| v.map(|x| times_power_of_two(x, -scale)));
+            exponent += scale;
+        }
+        let longest = offsets.iter().fold(0.0f64, |a, v| a.max(norm_squared(*v)));
+        let cross = norm_squared(cross(offsets[0], offsets[1])).sqrt();
+        if cross > UNCERTAIN_SINE * longest {
+            let area = representable(times_power_of_two(cross / 2.0, 2 * exponent));
+            return Self { edges: lengths, area, sine: cross / longest };
+        }
+        match exact_cross(corners) {
+            None => Self { edges: lengths, area: 0.0, sine: 0.0 },
+            Some((cross, power)) => {
+                let area = representable(times_power_of_two(cross / 2.0, power));
+                let sine = representable(times_power_of_two(cross / longest, power - 2 * exponent));
+                Self { edges: lengths, area, sine }
+            }
+        }
+    }
+}
+
+/// The distance between two points; zero only if they are the same.
+pub(super) fn length(a: V3, b: V3) -> f64 {
+    let offset = sub(b, a);
+    let size = largest(&[offset]);
+    if PLAIN.contains(&size) || size == 0.0 {
+        return norm_squared(offset).sqrt();
+    }
+    let (offset, exponent) = if size > 1.0 { (sub(b.map(|x| x / 4.0), a.map(|x| x / 4.0)), 2) } else { (offset, 0) };
+    let scale = exponent_of(largest(&[offset]));
+    let scaled = offset.map(|x| times_power_of_two(x, -scale));
+    representable(times_power_of_two(norm_squared(scaled).sqrt(), scale + exponent))
+}
+
+/// The length of the cross product of two edges, as a number and a power of two to multiply it by; `None` if it is zero.
+#[cold]
+fn exact_cross(corners: [V3; 3]) -> Option<(f64, i32)> {
+    let parts = corners.map(|v| v.map(decompose));
+    let unit = parts.iter().flatten().filter(|p| p.0 != 0).map(|p| p.1).min()?;
+    let corners = parts.map(|v| {
+        v.map(|(mantissa, exponent)| {
+            // Zero has any exponent.
+            let shift = usize::try_from(exponent - unit).unwrap_or(0);
+            IBig::from(mantissa) << shift
+        })
+    });
+    let edge = |i: usize, k: usize| &corners[i][k] - &corners[0][k];
+    let (e, f): ([IBig; 3], [IBig; 3]) = ([0, 1, 2].map(|k| edge(1, k)), [0, 1, 2].map(|k| edge(2, k)));
+    let product = |a: usize, b: usize| &e[a] * &f[b] - &e[b] * &f[a];
+    let cross = [product(1, 2), product(2, 0), product(0, 1)];
+    let bits = cross.iter().map(BitTest::bit_len).max().unwrap_or(0);
+    if bits == 0 {
+        return None;
+    }
+    // The upper 60 bits are enough.
+    let drop = bits.saturating_sub(60);
+    #[allow(clippy::cast_precision_loss, reason = "a length to be rounded")]
+    let rounded = cross.map(|x| i64::try_from(x >> drop).map_or(f64::NAN, |x| x as f64));
+    let power = i32::try_from(drop).ok()? + 2 * unit;
+    Some((norm_squared(rounded).sqrt(), power))
+}
+
+/// An integer and the power of two by which it gives `x`, which is finite.
+fn decompose(x: f64) -> (i64, i32) {
+    let bits = x.to_bits();
+    let fraction = (bits & ((1 << 52) - 1)).cast_signed();
+    #[allow(clippy::cast_possible_truncation, reason = "eleven bits")]
+    let exponent = (bits >> 52 & 0x7ff) as i32;
+    let (magnitude, exponent) = if exponent == 0 { (fraction, 1) } else { (fraction | 1 << 52, exponent) };
+    (if x < 0.0 { -magnitude } else { magnitude }, exponent - 1075)
+}
+
+/// The nearest positive finite number to a positive one.
+fn representable(x: f64) -> f64 {
+    x.clamp(f64::from_bits(1), f64::MAX)
+}
+
+const fn power_of_two(e: i32) -> f64 {
+    f64::from_bits(((e + 1023) as u64) << 52)
+}
+
+/// The power of two below a positive number, or near it if that is subnormal.
+fn exponent_of(x: f64) -> i32 {
+    let (mantissa, exponent) = decompose(x);
+    exponent + 63 - i32::try_from(mantissa.leading_zeros()).unwrap_or(0)
+}
+
+/// x 2^e, rounded once unless subnormal.
+fn times_power_of_two(mut x: f64, mut e: i32) -> f64 {
+    while e > 1000 {
+        x *= power_of_two(1000);
+        e -= 1000;
+        if x.is_infinite() {
+            return x;
+        }
+    }
+    while e < -1000 {
+        x *= power_of_two(-1000);
+        e += 1000;
+        if x == 0.0 {
+            return x;
+        }
+    }
+    x * power_of_two(e)
+}
+
+fn sub(a: V3, b: V3) -> V3 {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn cross(a: V3, b: V3) -> V3 {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn norm_squared(a: V3) -> f64 {
+    a[0] * a[0] + a[1] * a[1] + a[2] * a[2]
+}
+
+fn largest(vectors: &[V3]) -> f64 {
+    vectors.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn measure(corners: [V3; 3]) -> Measure {
+        Measure::of(corners.map(Point3::from))
+    }
+
+    /// A 3-4-5 triangle at every scale, whose measures are exact there.
+    #[test]
+    fn measures_are_exact_at_every_scale() {
+        for e in [-1060, -1022, -600, -540, -201, -200, -30, 0, 30, 200, 201, 500, 540, 1019] {
+            let [s, t] = [3.0, 4.0].map(|x| times_power_of_two(x, e));
+            let found = measure([[s, 0.0, 0.0], [0.0, t, 0.0], [0.0, 0.0, 0.0]]);
+            assert_eq!(found.edges, [times_power_of_two(5.0, e), t, s], "{e}");
+            assert_eq!(found.sine, 12.0 / 25.0, "{e}");
+            let area = times_power_of_two(6.0, e);
+            assert_eq!(found.area, representable(times_power_of_two(area, e)), "{e}");
+        }
+        let huge = measure([[f64::MAX, 0.0, 0.0], [-f64::MAX, 0.0, 0.0], [0.0, f64::MAX, 0.0]]);
+        assert_eq!((huge.edges[0], huge.area, huge.sine), (f64::MAX, f64::MAX, 0.5));
+        let tiny = f64::from_bits(1);
+        let found = measure([[0.0; 3], [tiny, 0.0, 0.0], [0.0, tiny, 0.0]]);
+        assert_eq!((found.edges[0], found.edges[2], found.area, found.sine), (tiny, tiny, tiny, 0.5));
+    }
+
+    /// Against integers: every triangle on a lattice, moved and scaled so that nothing is rounded.
+    #[test]
+    fn zero_area_is_decided_as_integers_do() {
+        let at = |i: i64| [i % 3, i / 3 % 3, i / 9];
+        let mut zero = 0;
+        for code in 0..27 * 27 * 27 {
+            let v = [at(code % 27), at(code / 27 % 27), at(code / 729)];
+            let [e, f] = [1, 2].map(|i| [0, 1, 2].map(|k| v[i][k] - v[0][k]));
+            let cross = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];
+            let expected = cross.iter().map(|x| (x * x) as f64).sum::<f64>().sqrt() / 2.0;
+            zero += usize::from(expected == 0.0);
+            for (scale, offset) in [(1.0, 0.0), (power_of_two(-1000), 0.0), (power_of_two(900), 0.0), (0.25, 1e12)] {
+                let found = measure(v.map(|p| p.map(|x| x as f64 * scale + offset)));
+                assert_eq!(found.area == 0.0, expected == 0.0, "{v:?} {scale} {offset}");
+                assert_eq!(found.sine == 0.0, expected == 0.0, "{v:?} {scale} {offset}");
+            }
+            assert_eq!(measure(v.map(|p| p.map(|x| x as f64))).area, expected, "{v:?}");
+        }
+        assert!(zero > 27, "{zero}");
+    }
+
+    #[test]
+    fn collinear_corners_are_told_from_nearly_collinear_ones() {
+        let collinear = measure([[0.0; 3], [0.1, 0.2, 0.4], [0.2, 0.4, 0.8]]);
+        assert_eq!((collinear.area, collinear.sine), (0.0, 0.0));
+        let off = f64::from_bits(0.2f64.to_bits() + 1);
+        let found = measure([[0.0; 3], [0.1, 0.2, 0.4], [off, 0.4, 0.8]]);
+        // The cross product is one unit in the last place of 0.2 times |(0, 0.4, -0.2)|.
+        let ulp = off - 0.2;
+        assert!((found.area / (ulp * 0.2f64.sqrt() / 2.0) - 1.0).abs() < 1e-15, "{}", found.area);
+        assert!((found.sine / (ulp * 0.2f64.sqrt() / 0.84) - 1.0).abs() < 1e-15, "{}", found.sine);
+        // One corner has an exponent that is 2000 below that of the others.
+        let tiny = 1e-300;
+        assert_eq!(measure([[0.0; 3], [1e300, 0.0, 0.0], [tiny, 0.0, 0.0]]).area, 0.0);
+        let found = measure([[0.0; 3], [1e300, 0.0, 0.0], [1e300, tiny, 0.0]]);
+        assert_eq!((found.area, found.sine), (0.5, f64::from_bits(1)));
+        assert!(found.edges[1] == tiny, "{:?}", found.edges);
+    }
+
+    /// The needles just above and below the bound between plain and exact arithmetic.
+    #[test]
+    fn plain_and_exact_lanes_agree() {
+        for e in 10..40 {
+            let height = power_of_two(-e);
+            let found = measure([[1e3, 7.0, 1.0], [1e3 + 1.0, 7.0, 1.0], [1e3 + 0.5, 7.0 + height, 1.0]]);
+            assert_eq!((found.area, found.sine), (height / 2.0, height), "{e}");
+        }
+    }
+
+    #[test]
+    fn decomposition_is_the_number() {
+        for x in [0.0, 1.0, -1.5, 1e-320, f64::from_bits(1), f64::MIN_POSITIVE, f64::MAX, -0.1] {
+            let (mantissa, exponent) = decompose(x);
+            assert_eq!(times_power_of_two(mantissa as f64, exponent), x);
+            if x > 0.0 {
+                let scaled = times_power_of_two(x, -exponent_of(x));
+                assert!((1.0..2.0).contains(&scaled), "{x} {scaled}");
+            }
+        }
+    }
+}

@@ -1,0 +1,298 @@
+//! Figures of scenes small enough to count by hand, of real ones with known figures, and the sentences made of them.
+
+use nalgebra::Point3;
+use p2m_core::{Element, Soup};
+use p2m_mixed::read_scene;
+use p2m_mixed::statistics::figure::Share;
+use p2m_mixed::statistics::{Counts, Extremes, Note, Statistics};
+
+fn soup(positions: &[[f64; 3]], elements: &[Element]) -> Soup<f64> {
+    Soup::new(positions.iter().map(|&p| Point3::from(p)).collect(), elements.iter().copied()).unwrap()
+}
+
+fn obj(text: &str) -> Statistics {
+    Statistics::of(&p2m_mixed::read_obj(text.as_bytes(), "scene.obj").unwrap().soup)
+}
+
+/// A corner of a cube: three right triangles, one open side.
+const CORNER: &str = "v 0 0 0\nv 3 0 0\nv 0 4 0\nv 0 0 12\nf 1 3 2\nf 1 2 4\nf 1 4 3\n";
+
+fn names(statistics: &Statistics) -> Vec<&'static str> {
+    statistics.notes().iter().map(Note::name).collect()
+}
+
+/// The sentence of that name.
+fn sentence(statistics: &Statistics, name: &str) -> String {
+    let notes = statistics.notes();
+    notes.iter().find(|n| n.name() == name).unwrap_or_else(|| panic!("no note {name}: {notes:?}")).to_string()
+}
+
+#[test]
+fn a_small_scene_is_counted_by_hand() {
+    let s = obj(&format!("{CORNER}v 9 9 9\nv 0 0 -0\nl 2 3\nl 6 4\np 4\n"));
+    assert_eq!(s.primitives, Counts { triangles: 3, segments: 2, points: 1 });
+    assert_eq!((s.positions.total, s.positions.used, s.positions.distinct), (6, 5, 4)); // 0 and -0 are one place
+    let bounds = s.bounds.unwrap();
+    assert_eq!((bounds.min, bounds.max), (Point3::origin(), Point3::new(3.0, 4.0, 12.0)));
+    assert_eq!(s.duplicates, Counts::default());
+    assert_eq!((s.edges.total, s.edges.boundary, s.edges.non_manifold, s.edges.inconsistent), (6, 3, 0, 0));
+    assert_eq!(s.components, 1);
+    assert_eq!((s.shapes.zero_area, s.shapes.zero_length, s.shapes.slivers, s.shapes.thin), (0, 0, 0, 0));
+    assert_eq!(s.sizes.diagonal, 13.0);
+    assert_eq!(s.sizes.edge, Some(Extremes { min: 3.0, max: 160f64.sqrt() }));
+    assert_eq!(s.sizes.area, Some(Extremes { min: 6.0, max: 24.0 }));
+    // Aspects: c^2 / (a b) of legs (3, 4), (3, 12), (4, 12): 25/12, 153/36, 160/48.
+    assert_eq!(s.shapes.median_aspect, Some(160.0 / 48.0));
+    assert_eq!((s.location.distance_from_origin, s.location.largest_coordinate, s.location.beyond_f32), (6.5, 12.0, 0));
+    assert_eq!(s.location.f32_step(), Some(f64::from(12.0f32 - 12.0f32.next_down())));
+    assert_eq!(names(&s), ["unused"]);
+    assert_eq!(sentence(&s, "unused"), "1 position belongs to no primitive and counts for nothing");
+}
+
+#[test]
+fn closed_surfaces_are_closed_and_flips_are_seen() {
+    let closed = obj(&format!("{CORNER}f 2 3 4\n"));
+    assert!(closed.edges.is_closed() && names(&closed).is_empty());
+    assert!(!obj(CORNER).edges.is_closed() && names(&obj(CORNER)).is_empty(), "an open surface is nothing special");
+    let flipped = obj(&format!("{CORNER}f 2 4 3\n"));
+    assert_eq!((flipped.edges.inconsistent, flipped.edges.boundary), (3, 0));
+    assert!(!flipped.edges.is_closed());
+    assert!(sentence(&flipped, "inconsistent").starts_with("3 edges lie between triangles that face opposite sides"));
+    assert!(!obj("v 0 0 0\np 1\n").edges.is_closed(), "no triangles close nothing");
+}
+
+#[test]
+fn edges_are_matched_by_coordinates() {
+    // Three triangles around the z axis, without a shared position; and one that has no edges, two corners being equal.
+    let fin = |x: i32, y: i32| format!("v 0 0 0\nv 0 0 1\nv {x} {y} 0\nf -3 -2 -1\n");
+    let text = format!("{}{}{}v 5 0 0\nv 5 0 0\nv 6 0 0\nf -3 -2 -1\n", fin(1, 0), fin(0, 1), fin(-1, -1));
+    let s = obj(&text);
+    assert_eq!((s.edges.total, s.edges.boundary, s.edges.non_manifold), (7, 6, 1));
+    assert_eq!(s.components, 2);
+    assert!(sentence(&s, "non_manifold").starts_with("1 edge belongs to more than two triangles"));
+    assert!(sentence(&s, "zero_area").starts_with("1 triangle has no area"));
+}
+
+#[test]
+fn positions_that_are_not_shared_are_noted() {
+    let unshared: String = (0..4).map(|_| "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n").collect();
+    let s = obj(&unshared);
+    assert_eq!((s.positions.used, s.positions.distinct), (12, 3));
+    assert_eq!(sentence(&s, "unshared"), "primitives do not share positions: 12 of them are at 3 different places");
+    assert_eq!(s.duplicates.triangles, 3);
+    assert!(sentence(&s, "duplicates").starts_with("3 primitives repeat others"));
+    assert!(!names(&obj(CORNER)).contains(&"unshared"));
+}
+
+#[test]
+fn duplicates_have_the_same_corners_in_any_order() {
+    let s = soup(
+        &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, -0.0], [0.0, 0.0, 1.0]],
+        &[
+            Element::Triangle([0, 1, 2]),
+            Element::Triangle([2, 0, 3]),
+            Element::Triangle([0, 1, 4]),
+            Element::Triangle([2, 3, 0]),
+            Element::Segment([0, 1]),
+            Element::Segment([3, 0]),
+            Element::Segment([0, 2]),
+            Element::Point(1),
+            Element::Point(3),
+            Element::Point(2),
+            Element::Point(3),
+            // Not a duplicate of the point, although it covers the same.
+            Element::Segment([1, 3]),
+        ],
+    );
+    let s = Statistics::of(&s);
+    assert_eq!(s.duplicates, Counts { triangles: 2, segments: 1, points: 2 });
+    assert_eq!((s.shapes.zero_length, s.components), (1, 1));
+    assert!(sentence(&s, "zero_length").starts_with("1 segment has no length"));
+}
+
+#[test]
+fn parts_that_share_a_corner_are_one() {
+    let s = obj(
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nv 5 0 0\nl 4 2\nv 7 0 0\nv 8 0 0\nl 5 6\nv 9 0 0\np 7\nv 9 0 0\np 8\n",
+    );
+    assert_eq!(s.components, 3);
+}
+
+#[test]
+fn an_empty_scene_has_no_figures() {
+    let s = Statistics::of(&Soup::default());
+    assert_eq!((s.primitives.total(), s.bounds, s.components, s.sizes.edge), (0, None, 0, None));
+    assert_eq!(names(&s), ["empty"]);
+    let s = Statistics::of(&soup(&[[1.0; 3]], &[]));
+    assert_eq!((s.positions.total, s.positions.used), (1, 0));
+    assert_eq!(names(&s), ["empty", "unused"]);
+}
+
+#[test]
+fn unused_positions_may_be_anything() {
+    let positions = [[f64::NAN; 3], [0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [f64::INFINITY, 1e300, 0.0]];
+    let mut with = Statistics::of(&soup(&positions, &[Element::Triangle([1, 2, 3])]));
+    let without = Statistics::of(&soup(&positions[1..4], &[Element::Triangle([0, 1, 2])]));
+    assert_eq!((with.positions.total, with.positions.used), (5, 3));
+    with.positions = without.positions;
+    assert_eq!(with, without);
+}
+
+/// `count` triangles of base 1, of which the first `special` have that height and the others height 1.
+fn strip(count: u32, special: u32, height: f64) -> Statistics {
+    let mut positions = Vec::new();
+    for i in 0..count {
+        let (z, h) = (f64::from(i) * 2.0, if i < special { height } else { 1.0 });
+        positions.extend([[0.0, 0.0, z], [1.0, 0.0, z], [0.5, h, z]]);
+    }
+    let elements: Vec<_> = (0..count).map(|i| Element::Triangle([3 * i, 3 * i + 1, 3 * i + 2])).collect();
+    Statistics::of(&soup(&positions, &elements))
+}
+
+#[test]
+fn slivers_are_below_a_1024th_and_noted_from_one_percent_on() {
+    let limit = 1.0 / 1024.0;
+    assert_eq!(strip(10, 10, limit).shapes.slivers, 0);
+    assert_eq!(strip(10, 7, limit * (1.0 - f64::EPSILON)).shapes.slivers, 7);
+    let s = strip(200, 2, 1e-6);
+    assert_eq!((s.shapes.slivers, s.shapes.thin), (2, 2));
+    assert_eq!(
+        sentence(&s, "slivers"),
+        "1 % of the triangles are slivers (height below 1/1024 of the longest edge): expect the exact lane of the kernel, \
+        which takes longer"
+    );
+    assert!(s.notes().contains(&Note::Slivers { share: Share { part: 2, whole: 200 } }));
+    assert!(!names(&strip(201, 2, 1e-6)).contains(&"slivers"));
+    assert!(sentence(&strip(100, 41, 1e-9), "slivers").starts_with("41 % of the triangles are slivers"));
+    // No area, no sliver.
+    let s = strip(4, 2, 0.0);
+    assert_eq!((s.shapes.slivers, s.shapes.thin, s.shapes.zero_area), (0, 0, 2));
+    assert_eq!(s.shapes.median_aspect, Some(1.25), "of those with an area");
+}
+
+#[test]
+fn thin_triangles_are_noted_from_one_half_on() {
+    assert_eq!(strip(10, 10, 0.1).shapes.thin, 0);
+    assert_eq!(strip(10, 4, 0.099).shapes.thin, 4);
+    assert!(!names(&strip(10, 4, 0.099)).contains(&"thin"));
+    let s = strip(10, 6, 1.0 / 64.0);
+    assert_eq!(s.shapes.median_aspect, Some(64.0));
+    assert!(
+        sentence(&s, "thin").starts_with("60 % of the triangles are thin (longest edge above 10 heights, median 64)")
+    );
+    assert!(names(&strip(10, 5, 0.01)).contains(&"thin"));
+}
+
+/// A box of that size with one corner at `x`, as a segment.
+fn rod(x: f64, size: f64) -> Statistics {
+    Statistics::of(&soup(&[[x, 0.0, 0.0], [x + size, size, size]], &[Element::Segment([0, 1])]))
+}
+
+#[test]
+fn distance_from_the_origin_is_noted_from_a_hundred_sizes_on() {
+    let s = rod(524_288.0, 4.0);
+    assert_eq!(
+        sentence(&s, "far_from_origin"),
+        "the scene lies 5.243e5 units from the origin, 76,000 times its size: f32 has steps of 0.062 units there, f64 of \
+        1.2e-10; move it to the origin, or keep it in f64"
+    );
+    assert!(names(&rod(256.0, 1.0)).contains(&"far_from_origin"));
+    assert!(!names(&rod(128.0, 1.0)).contains(&"far_from_origin"));
+    // A single point has no size to compare with.
+    let point = Statistics::of(&soup(&[[1e9; 3]], &[Element::Point(0)]));
+    assert!(names(&point).is_empty(), "{:?}", point.notes());
+}
+
+#[test]
+fn sizes_that_trees_do_not_prune_are_noted() {
+    assert!(names(&rod(0.0, 1e121)).contains(&"extreme_scale"));
+    assert!(names(&rod(0.0, 1e-121)).contains(&"extreme_scale"));
+    for size in [1e119, 1e-119] {
+        assert!(!names(&rod(0.0, size)).contains(&"extreme_scale"), "{size}");
+    }
+    assert!(names(&rod(0.0, 1e39)).contains(&"beyond_f32"));
+    assert!(!names(&rod(0.0, 3e38)).contains(&"beyond_f32"));
+}
+
+#[test]
+fn lengths_that_differ_by_orders_of_magnitude_are_noted() {
+    let with = |tiny: f64| obj(&format!("v 0 0 0\nv 0 1 1\nv {tiny:?} 0 0\nl 1 2\nl 1 3\n"));
+    assert!(!names(&with(1e-5)).contains(&"spread"));
+    assert!(sentence(&with(1e-7), "spread").starts_with("edge lengths span 7 orders of magnitude"));
+}
+
+#[test]
+fn flat_scenes_say_where() {
+    assert_eq!(sentence(&obj("v 0 0.5 0\nv 1 0.5 1\nl 1 2\n"), "flat"), "the scene is flat: y is 0.5 everywhere");
+    assert!(names(&obj("v 0 0.5 0\np 1\n")).is_empty(), "a point is not flat");
+}
+
+#[test]
+fn f32_holds_what_it_holds() {
+    // 0.1 and 2^24 + 1 are no numbers of f32; a position used twice counts once, an unused one not.
+    let s = obj("v 0.1 16777217 0.5\nv 1 2 3\nv 0.3 0 0\nl 1 2\np 1\n");
+    assert_eq!(s.location.beyond_f32, 2);
+    assert_eq!(s.location.f32_step(), Some(1.0));
+    assert_eq!(rod(0.0, 1e300).location.f32_step(), None);
+    assert_eq!(rod(0.0, 1e300).location.beyond_f32, 3);
+}
+
+#[test]
+fn figures_are_finite_at_every_scale() {
+    for (scale, zero_area) in [(1e-300, 0), (1e300, 0), (5e-324, 0), (f64::MAX, 0), (0.0, 1)] {
+        let positions = [[-scale, 0.0, 0.0], [scale, 0.0, 0.0], [0.0, scale, 0.0], [0.0, 0.0, scale]];
+        let s = Statistics::of(&soup(&positions, &[Element::Triangle([0, 1, 2]), Element::Segment([1, 3])]));
+        assert_eq!(s.shapes.zero_area, zero_area, "{scale}");
+        let edge = s.sizes.edge.unwrap_or(Extremes { min: 1.0, max: 1.0 });
+        let area = s.sizes.area.unwrap_or(Extremes { min: 1.0, max: 1.0 });
+        let figures = [
+            s.sizes.diagonal,
+            edge.min,
+            edge.max,
+            edge.orders_of_magnitude(),
+            area.min,
+            area.max,
+            s.shapes.median_aspect.unwrap_or(1.0),
+            s.location.distance_from_origin,
+            s.location.largest_coordinate,
+            s.location.f64_step(),
+        ];
+        assert!(figures.iter().all(|x| x.is_finite()), "{scale}: {figures:?}");
+        assert!(edge.min > 0.0 && area.min > 0.0 && edge.min <= edge.max, "{scale}: {figures:?}");
+        if zero_area == 0 {
+            assert_eq!(s.shapes.median_aspect, Some(2.0), "{scale}");
+        }
+    }
+}
+
+/// Name, zero area, slivers, non-manifold edges, duplicates, parts; as the list of the models has the figures that it has.
+const MODELS: &[(&str, [u64; 5])] = &[
+    ("armadillo.obj", [0, 0, 0, 0, 1]),
+    ("mixed_armadillo_camel_wireframe.obj", [0, 0, 0, 0, 2]),
+    ("dragon_48k_nonmanifold.ply", [0, 0, 2094, 1254, 1]),
+    ("sponza_66k.obj", [6, 14, 481, 10, 79]),
+    ("gear_skewed_57k.ply", [0, 25_610, 0, 0, 1]),
+    ("rotterdam_city_far_from_origin.obj", [1243, 1639, 182, 123, 131]),
+    ("hotel_room_nonmanifold.ply", [0, 1794, 4919, 120, 60]),
+    ("heavily_nonmanifold.obj", [22, 6, 14_425, 9708, 56]),
+    ("political_borders_lines.obj", [0, 0, 0, 15_093, 816]),
+];
+
+#[test]
+fn models_have_the_figures_of_their_list() {
+    let Some(folder) = p2m_testkit::models() else { return };
+    for &(name, expected) in MODELS {
+        let s = Statistics::of(&read_scene(&folder.join(name)).unwrap().soup);
+        let found = [s.shapes.zero_area, s.shapes.slivers, s.edges.non_manifold, s.duplicates.total(), s.components];
+        assert_eq!(found, expected, "{name}");
+    }
+    for name in ["bunny.obj", "dragon_100k.obj", "lucy_100k.ply"] {
+        let s = Statistics::of(&read_scene(&folder.join(name)).unwrap().soup);
+        assert!(s.edges.is_closed() && s.notes().is_empty(), "{name}: {:?}", s.notes());
+    }
+    let city = Statistics::of(&read_scene(&folder.join("rotterdam_city_far_from_origin.obj")).unwrap().soup);
+    assert!(
+        sentence(&city, "far_from_origin")
+            .starts_with("the scene lies 4.452e5 units from the origin, 360 times its size")
+    );
+}
