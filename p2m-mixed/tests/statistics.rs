@@ -4,7 +4,7 @@ use nalgebra::Point3;
 use p2m_core::{Element, Soup};
 use p2m_mixed::read_scene;
 use p2m_mixed::statistics::figure::Share;
-use p2m_mixed::statistics::{Counts, Extremes, Note, Statistics};
+use p2m_mixed::statistics::{Counts, Extremes, Note, Statistics, objects};
 
 fn soup(positions: &[[f64; 3]], elements: &[Element]) -> Soup<f64> {
     Soup::new(positions.iter().map(|&p| Point3::from(p)).collect(), elements.iter().copied()).unwrap()
@@ -295,4 +295,20 @@ fn models_have_the_figures_of_their_list() {
         sentence(&city, "far_from_origin")
             .starts_with("the scene lies 4.452e5 units from the origin, 360 times its size")
     );
+}
+
+#[test]
+fn objects_are_counted_by_name() {
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\np 1\no b\nf 1 2 3\no a\nl 1 2 3\no b\np 2\nf 3 2 1\no\nl 1 3\n";
+    let scene = p2m_mixed::read_obj(text.as_bytes(), "scene.obj").unwrap();
+    let counts = |triangles, segments, points| Counts { triangles, segments, points };
+    let found: Vec<_> = objects(&scene).into_iter().map(|o| (o.name, o.primitives)).collect();
+    let name = |name: &str| Some(name.to_owned());
+    assert_eq!(found, [(name("b"), counts(2, 0, 1)), (name("a"), counts(0, 2, 0)), (None, counts(0, 1, 1))]);
+    let total: u64 = objects(&scene).iter().map(|o| o.primitives.total()).sum();
+    assert_eq!(total, Statistics::of(&scene.soup).primitives.total());
+    // All of it named: no rest. Nothing named: no list.
+    let named = p2m_mixed::read_obj("v 0 0 0\no x\np 1\n".as_bytes(), "scene.obj").unwrap();
+    assert_eq!(objects(&named).len(), 1);
+    assert!(objects(&p2m_mixed::read_obj("v 0 0 0\np 1\n".as_bytes(), "scene.obj").unwrap()).is_empty());
 }

@@ -7,14 +7,16 @@
 
 pub mod figure;
 mod notes;
+mod objects;
 mod places;
 mod shape;
 
 pub use notes::{FAR, Note, SPREAD};
+pub use objects::{ObjectCounts, objects};
 
 use nalgebra::Point3;
 use p2m_core::kernel::SLIVER_SINE;
-use p2m_core::{Aabb, PrimitiveSet, Soup};
+use p2m_core::{Aabb, Element, PrimitiveSet, Soup};
 use places::{Places, by_place};
 use shape::{Measure, length};
 
@@ -75,11 +77,21 @@ impl Counts {
         self.triangles + self.segments + self.points
     }
 
-    fn of_soup(soup: &Soup<f64>) -> Self {
+    /// Those of a soup.
+    #[must_use]
+    pub fn of(soup: &Soup<f64>) -> Self {
         Self {
             triangles: soup.triangles().len() as u64,
             segments: soup.segments().len() as u64,
             points: soup.points().len() as u64,
+        }
+    }
+
+    fn of_kind(&mut self, element: Element) -> &mut u64 {
+        match element {
+            Element::Triangle(_) => &mut self.triangles,
+            Element::Segment(_) => &mut self.segments,
+            Element::Point(_) => &mut self.points,
         }
     }
 }
@@ -207,7 +219,7 @@ impl Statistics {
         let (shapes, sizes) = measure(soup);
         let bounds = (!soup.is_empty()).then(|| soup.aabb());
         Self {
-            primitives: Counts::of_soup(soup),
+            primitives: Counts::of(soup),
             positions: Positions {
                 total: soup.positions().len() as u64,
                 used: places.used as u64,
