@@ -53,6 +53,19 @@ impl fmt::Display for Figure {
     }
 }
 
+/// All digits of a number, the shortest that read back the same: `500000.25`, `-2`, `1e300`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Exact(pub f64);
+
+impl fmt::Display for Exact {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Adding zero turns -0 into 0.
+        let x = self.0 + 0.0;
+        let is_plain = x == 0.0 || (1e-5..1e16).contains(&x.abs());
+        f.pad(&if is_plain { format!("{x}") } else { format!("{x:e}") })
+    }
+}
+
 /// Without zeros at the end of its decimals.
 fn trim(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
@@ -123,6 +136,15 @@ mod tests {
             (-4e-310, "-4e-310"),
         ] {
             assert_eq!(Figure(x).to_string(), expected);
+        }
+    }
+
+    #[test]
+    fn exact_numbers_keep_their_digits() {
+        for (x, expected) in
+            [(-0.0, "0"), (0.1, "0.1"), (500_000.25, "500000.25"), (-2.0, "-2"), (1e300, "1e300"), (-5e-324, "-5e-324")]
+        {
+            assert_eq!(Exact(x).to_string(), expected);
         }
     }
 

@@ -1,6 +1,6 @@
 //! Sentences about scenes, each where the figures warrant it.
 
-use super::figure::{Count, Figure, Share};
+use super::figure::{Count, Exact, Figure, Share};
 use super::{Statistics, THIN_ASPECT};
 use std::fmt;
 
@@ -227,7 +227,7 @@ impl fmt::Display for Note {
             }
             Self::Flat { axis, at } => {
                 let name = ["x", "y", "z"].get(axis).copied().unwrap_or("?");
-                write!(f, "the scene is flat: {name} is {at:?} everywhere")
+                write!(f, "the scene is flat: {name} is {} everywhere", Exact(at))
             }
             Self::Unshared { used, distinct } => write!(
                 f,
