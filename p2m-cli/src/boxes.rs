@@ -1,13 +1,17 @@
 //! `p2m boxes`: a picture of the boxes of the AABB tree, level by level.
 
+use crate::input::{self, read_scene, scene_format};
+use crate::json;
 use crate::output::Output;
+use crate::progress::{Progress, Unit};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use nalgebra::Point3;
 use p2m_bvh::{AabbTree, NodeBox};
 use p2m_core::{BuildIndex, Soup};
+use p2m_mixed::Format;
 use p2m_mixed::picture::{Panel, View, box_edges, write_picture_ply, write_svg};
-use p2m_mixed::read_scene;
+use serde_json::json;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -24,8 +28,12 @@ Examples:
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// Scene: a file
+    /// Scene: an OBJ, PLY, STL or OFF file; `-` is the standard input
     scene: PathBuf,
+
+    /// The format of the scene, if the extension of its name does not tell
+    #[arg(long, value_name = "FORMAT")]
+    format: Option<Format>,
 
     /// Where to write the picture: a name that ends in .svg or .ply
     #[arg(long, value_name = "FILE")]
@@ -42,6 +50,10 @@ pub(crate) struct Args {
     /// Which axis points up in an SVG picture
     #[arg(long, value_enum, default_value_t = Up::Z)]
     up: Up,
+
+    /// Report as one JSON object on the standard output, instead of the titles on the standard error
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -93,8 +105,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         _ => bail!("{}: the name of a picture ends in .svg or .ply", args.out.display()),
     };
     Output::refuse_inputs(&args.out, &[&args.scene])?;
-    let scene = read_scene(&args.scene)?;
-    let tree = AabbTree::build(&scene.soup, &Default::default()).with_context(|| args.scene.display().to_string())?;
+    let scene = read_scene(&args.scene, scene_format(&args.scene, args.format, "--format")?)?;
+    let progress = Progress::start("building", None, Unit::None);
+    let tree = AabbTree::build(&scene.soup, &Default::default()).with_context(|| input::name(&args.scene))?;
+    drop(progress);
     let mut panels = panels(&tree.boxes().collect::<Vec<_>>(), usize::from(args.levels));
     let mut output = Output::open(Some(&args.out))?;
     let written = if is_ply {
@@ -106,6 +120,14 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     };
     written.with_context(|| output.cannot_write())?;
     output.finish()?;
+    if args.json {
+        let panels: Vec<_> = panels.iter().map(|p| json!({"title": p.title, "lines": p.lines.len()})).collect();
+        let report = json!({
+            "p2m": "boxes", "version": json::VERSION, "scene": input::name(&args.scene),
+            "out": args.out.display().to_string(), "panels": panels,
+        });
+        return json::print(&report);
+    }
     for panel in &panels {
         eprintln!("{}", panel.title);
     }

@@ -1,15 +1,25 @@
-//! The command line of p2m: reads a scene, asks for closest points, writes a table.
+//! The command line of p2m: reads a scene, asks for closest points, writes a table; and what else one wants to do with
+//! scenes.
 
 #![forbid(unsafe_code)]
 
 mod boxes;
+mod convert;
 mod generate;
+mod info;
+mod input;
+mod interrupt;
+mod json;
+mod modify;
 mod output;
+mod progress;
 mod query;
 mod sampling;
+mod shell;
 mod summary;
+mod usage;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -22,37 +32,126 @@ struct Cli {
 }
 
 const EXAMPLES: &str = "\
-Example:
-  p2m query scene.obj --random 1000 --out answers.csv
+Scenes are OBJ, PLY, STL and OFF files. A `-` in place of a file is the standard input or output.
 
-The exit code is 0 for success, 1 for what could not be read, written or done, and 2 for wrong usage.";
+Examples:
+  p2m query scene.obj --random 1000 --out answers.csv
+  p2m info scene.obj
+  p2m convert scene.obj scene.ply
+  p2m generate torus-knot --out knot.obj
+
+The exit code is 0 for success, 1 for what could not be read, written or done, and 2 for wrong usage; 128 plus the number of \
+the signal after an interruption (130 for Ctrl-C), which leaves no half-written file.";
 
 #[derive(Subcommand)]
 enum Command {
     Query(query::Args),
+    Info(info::Args),
+    Convert(convert::Args),
     Generate(generate::Args),
     Boxes(boxes::Args),
+    Completions(shell::Completions),
+    Man(shell::Man),
+}
+
+impl Command {
+    /// The words that lead to it.
+    fn path(&self) -> String {
+        match self {
+            Self::Query(_) => "p2m query".to_owned(),
+            Self::Info(_) => "p2m info".to_owned(),
+            Self::Convert(_) => "p2m convert".to_owned(),
+            Self::Generate(args) => format!("p2m generate {}", args.name()),
+            Self::Boxes(_) => "p2m boxes".to_owned(),
+            Self::Completions(_) => "p2m completions".to_owned(),
+            Self::Man(_) => "p2m man".to_owned(),
+        }
+    }
 }
 
 fn main() -> ExitCode {
     // Wrong usage ends here, with code 2.
-    let result = match Cli::parse().command {
-        Command::Query(args) => query::run(&args),
-        Command::Generate(args) => generate::run(&args),
-        Command::Boxes(args) => boxes::run(&args),
-    };
-    match result {
+    let cli = Cli::parse();
+    match run(&cli.command) {
         Ok(()) => ExitCode::SUCCESS,
         // Whoever reads our output has seen enough, like `head`.
         Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             // If even this cannot be written there is nobody to tell.
             let _ = writeln!(io::stderr(), "error: {error:#}");
+            if error.is::<usage::Usage>() {
+                let _ = writeln!(io::stderr(), "\nFor more information, try '{} --help'.", cli.command.path());
+                return ExitCode::from(2);
+            }
             ExitCode::FAILURE
         }
     }
 }
 
+fn run(command: &Command) -> anyhow::Result<()> {
+    use anyhow::Context;
+    interrupt::listen().context("cannot listen for Ctrl-C")?;
+    match command {
+        Command::Query(args) => query::run(args),
+        Command::Info(args) => info::run(args),
+        Command::Convert(args) => convert::run(args),
+        Command::Generate(args) => generate::run(args),
+        Command::Boxes(args) => boxes::run(args),
+        Command::Completions(args) => shell::completions(args, Cli::command()),
+        Command::Man(args) => shell::man(args, Cli::command()),
+    }
+}
+
 fn is_closed_pipe(error: &anyhow::Error) -> bool {
     error.chain().any(|e| e.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every command of the tree with the words that lead to it.
+    fn walk(command: &clap::Command, path: &str, visit: &mut impl FnMut(&clap::Command, &str)) {
+        visit(command, path);
+        for sub in command.get_subcommands() {
+            walk(sub, &format!("{path} {}", sub.get_name()), visit);
+        }
+    }
+
+    /// The lines of examples in the help of a command.
+    fn examples(command: &clap::Command) -> Vec<String> {
+        let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+        let examples = help.lines().filter(|line| line.starts_with("  p2m "));
+        examples.map(|line| line.trim().to_owned()).collect()
+    }
+
+    #[test]
+    fn the_grammar_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_has_an_example_of_itself() {
+        let mut count = 0;
+        walk(&Cli::command(), "p2m", &mut |command, path| {
+            let examples = examples(command);
+            assert!(examples.iter().any(|e| e.contains(path)), "{path}: {examples:?}");
+            count += 1;
+        });
+        assert!(count > 15, "{count}");
+    }
+
+    /// Examples run as they stand: each program of a pipe is parsed.
+    #[test]
+    fn every_example_is_right_usage() {
+        walk(&Cli::command(), "p2m", &mut |command, path| {
+            for example in examples(command) {
+                let line = example.split(" > ").next().unwrap();
+                for words in line.split(" | ").map(str::split_whitespace).filter(|w| w.clone().next() == Some("p2m")) {
+                    let parsed = Cli::try_parse_from(words);
+                    assert!(parsed.is_ok(), "{path}: {example}: {}", parsed.err().unwrap());
+                }
+            }
+        });
+    }
 }

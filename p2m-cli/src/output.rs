@@ -1,16 +1,23 @@
 //! Where results go: the standard output, or a file that appears when it is complete.
 
+use crate::input::is_standard;
+use crate::interrupt::unfinished;
+use crate::progress::{Progress, Unit};
+use crate::usage::usage;
 use anyhow::{Context, bail};
 use std::fs::{self, File};
-use std::io::{self, BufWriter, StdoutLock, Write};
+use std::io::{self, BufWriter, IsTerminal, StdoutLock, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// A buffered destination. Dropped before [`finish`](Self::finish), a file is as it was before; a process that is killed
-/// (or interrupted from the keyboard) leaves its unfinished work under the name `.p2m-*` in the same folder.
+/// A buffered destination. Dropped before [`finish`](Self::finish), or interrupted, a file is as it was before; only a
+/// process that ends without any chance to clean up (SIGKILL) leaves its unfinished work under the name `.p2m-*` in the
+/// same folder.
 pub(crate) struct Output {
     sink: Sink,
     name: String,
+    bytes: u64,
+    progress: Option<Progress>,
 }
 
 enum Sink {
@@ -34,22 +41,44 @@ impl Output {
         // Nothing is there, so no input is.
         let Ok(target) = fs::canonicalize(path) else { return Ok(()) };
         for input in inputs {
-            if path != Path::new("-") && fs::canonicalize(input).is_ok_and(|input| input == target) {
-                bail!("{}: would be written over, but it is an input: choose another name for --out", path.display());
+            if !is_standard(path) && !is_standard(input) && fs::canonicalize(input).is_ok_and(|input| input == target) {
+                bail!(
+                    "{}: would be written over, but it is an input: choose another name for the output",
+                    path.display()
+                );
             }
+        }
+        Ok(())
+    }
+
+    /// Refuses to write bytes to a terminal.
+    pub(crate) fn refuse_terminal(path: &Path, format: &str) -> anyhow::Result<()> {
+        if is_standard(path) && io::stdout().is_terminal() {
+            return Err(usage(format!("{format} is no text for a terminal: name a file, or pipe the output on")));
         }
         Ok(())
     }
 
     /// Opens `path`; the standard output if there is none or it is `-`. A link is followed; one to nothing is refused.
     pub(crate) fn open(path: Option<&Path>) -> anyhow::Result<Self> {
-        let Some(path) = path.filter(|p| *p != Path::new("-")) else {
+        let Some(path) = path.filter(|p| !is_standard(p)) else {
             let sink = Sink::Stdout(BufWriter::with_capacity(BUFFER, io::stdout().lock()));
-            return Ok(Self { sink, name: "the standard output".to_owned() });
+            return Ok(Self { sink, name: "the standard output".to_owned(), bytes: 0, progress: None });
         };
         let name = path.display().to_string();
         let sink = Sink::open(path).with_context(|| cannot_write(&name))?;
-        Ok(Self { sink, name })
+        Ok(Self { sink, name, bytes: 0, progress: None })
+    }
+
+    /// Shows how much is written, if that takes long.
+    pub(crate) fn with_progress(mut self) -> Self {
+        self.progress = Some(Progress::start(&format!("writing {}", self.name), None, Unit::Bytes));
+        self
+    }
+
+    /// How many bytes are written so far.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.bytes
     }
 
     /// What to say when writing fails.
@@ -69,11 +98,16 @@ fn cannot_write(name: &str) -> String {
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match &mut self.sink {
+        let count = match &mut self.sink {
             Sink::Stdout(writer) => writer.write(bytes),
             Sink::File { temporary, .. } => temporary.write(bytes),
             Sink::Device(writer) => writer.write(bytes),
+        }?;
+        self.bytes += count as u64;
+        if let Some(progress) = &self.progress {
+            progress.add(count as u64);
         }
+        Ok(count)
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -118,11 +152,13 @@ impl Sink {
             Some(parent) if parent != Path::new("") => parent,
             _ => Path::new("."),
         };
+        let mut unfinished = unfinished();
         // The error of a temporary file names that file, of which the user knows nothing.
         let temporary = builder.tempfile_in(directory).map_err(|e| {
             let folder = directory.display();
             io::Error::new(e.kind(), format!("no file can be made in the folder '{folder}': {}", e.kind()))
         })?;
+        unfinished.push(temporary.path().to_owned());
         let temporary = BufWriter::with_capacity(BUFFER, temporary);
         Ok(Self::File { temporary, target })
     }
@@ -133,6 +169,8 @@ impl Sink {
             Self::Device(mut writer) => writer.flush(),
             Self::File { temporary, target } => {
                 let file = temporary.into_inner().map_err(io::IntoInnerError::into_error)?;
+                let mut unfinished = unfinished();
+                unfinished.retain(|path| path != file.path());
                 file.persist(target)?;
                 Ok(())
             }

@@ -1,23 +1,27 @@
 //! `p2m query`: closest points as a table.
 
+use crate::input::{self, is_standard, or_option, point_format, read_points, read_scene, scene_format};
+use crate::json;
 use crate::output::Output;
+use crate::progress::{Progress, Unit};
 use crate::sampling::{Queries, Region};
 use crate::summary::{Answers, Summary};
+use crate::usage::{not_negative, positive, usage, whole};
 use anyhow::{Context, anyhow};
 use clap::{ArgGroup, ValueEnum};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use nalgebra::Point3;
 use p2m_bvh::AabbTree;
-use p2m_core::{BruteForce, BuildIndex, Closest, ClosestPoint, QueryOptions, Soup};
-use p2m_mixed::{Scene, read_points, read_scene};
+use p2m_core::{BruteForce, BuildIndex, ClosestPoint, QueryOptions, Soup};
+use p2m_mixed::{AnswerFormat, AnswerWriter, Format, PointFormat, Scene};
 use rayon::prelude::*;
+use serde_json::{Value, json};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// Each paragraph is one line, so that it wraps at the width of the terminal.
-const EXAMPLES: &str = "\
+fn help() -> String {
+    format!(
+        "\
 The table has the columns qx,qy,qz,x,y,z,distance,primitive,feature: the query, its closest point in the scene, their \
 distance, the number of the primitive from 0 and the part of it that holds the point. The last six are empty where \
 there is no answer. Numbers are the shortest that read back the same. A summary goes to the standard error.
@@ -27,29 +31,48 @@ Primitives are numbered in the order of the file. Polygons are cut into triangle
 The feature is face, edge0, edge1 or edge2 (edge0 from the first vertex of the primitive to the second, and so on), or \
 vertex0, vertex1 or vertex2.
 
+Answers as NPY are an array of NumPy with the fields query, point, distance, lower_bound, barycentric, primitive, \
+feature_kind (0 a vertex, 1 an edge, 2 the face) and feature_number; as PLY a cloud of the queries that viewers can colour \
+by distance. Where there is no answer, numbers are NaN and -1.
+
 Points from a CSV file are taken from its columns qx, qy, qz, or else x, y, z (also like 'X [m]'), or else Points:0, \
 Points:1, Points:2, or else from the first three columns; so the table itself can be asked about again. XYZ and TXT \
-files have three or more columns separated by blanks.
+files have three or more columns separated by blanks. NPY files are arrays of three columns. Of PLY files the vertices are \
+asked about.
 
-The exit code is 0 for success, with or without answers; 1 for what could not be read, written or done; and 2 for \
-wrong usage.
+{}
+
+The exit code is 0 for success, with or without answers; 1 for what could not be read, written or done; 2 for wrong usage; \
+and 130 after Ctrl-C.
 
 Examples:
   p2m query bunny.obj --points scan.xyz --max-distance 0.5 --out answers.csv
   p2m query scene.ply --random 100000 --seed 7 --box-scale 1.5 --backend aabb > answers.csv
-  p2m query scene.obj --grid 64 --out field.csv";
+  p2m query scene.obj --grid 64 --out field.npy --json
+  p2m generate torus-knot | p2m query - --format obj --random 1000 --out distances.ply",
+        json::STABILITY
+    )
+}
 
 /// Find the closest points of a scene to given, regularly spaced or random points
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = help())]
 #[command(group = ArgGroup::new("queries").required(true).args(["points", "grid", "random"]))]
 pub(crate) struct Args {
-    /// Scene: an OBJ or PLY file
+    /// Scene: an OBJ, PLY, STL or OFF file; `-` is the standard input
     scene: PathBuf,
 
-    /// Ask about the points of this XYZ, TXT or CSV file
+    /// The format of the scene, if the extension of its name does not tell
+    #[arg(long, value_name = "FORMAT")]
+    format: Option<Format>,
+
+    /// Ask about the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
+
+    /// The format of the points, if the extension of their file does not tell
+    #[arg(long, value_name = "FORMAT", conflicts_with_all = ["grid", "random"])]
+    points_format: Option<PointFormat>,
 
     /// Ask about a grid of N x N x N points that fills the scaled box of the scene, ends included; z runs fastest
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 21), allow_negative_numbers = true)]
@@ -78,12 +101,21 @@ pub(crate) struct Args {
     #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true)]
     max_distance: Option<f64>,
 
-    /// Where to write the table; `-` is the standard output.
+    /// Where to write the answers; `-` is the standard output.
     ///
-    /// The file appears under this name when it is complete; a killed run may leave a file `.p2m-*` beside it. A link is
-    /// followed, one to nothing is refused, and so is the name of an input.
+    /// The file appears under this name when it is complete, and does not if the run is interrupted (one that is ended by
+    /// SIGKILL leaves a file `.p2m-*` beside it). A link is followed, one to nothing is refused, and so is the name of an
+    /// input.
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
+
+    /// The format of the answers, if the extension of their file does not tell: csv, npy or ply. CSV is the default
+    #[arg(long, value_name = "FORMAT")]
+    out_format: Option<AnswerFormat>,
+
+    /// Report the summary as one JSON object on the standard output; needs --out FILE
+    #[arg(long)]
+    json: bool,
 
     /// How many threads to use, up to 1024; all cores by default
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
@@ -114,39 +146,36 @@ impl Backend {
     }
 }
 
-fn whole(text: &str) -> Result<u64, String> {
-    text.parse().map_err(|_| format!("not a whole number from 0 to {}", u64::MAX))
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
-        _ => Err("not a positive number".to_owned()),
-    }
-}
-
-fn not_negative(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x >= 0.0 => Ok(x),
-        _ => Err("not a number from 0 up".to_owned()),
-    }
-}
-
 /// Queries that are asked before their answers are written: enough to keep all threads busy, few enough to hold.
 const CHUNK: usize = 1 << 14;
 /// Queries that one thread takes at a time. A brute-force query of a large scene takes milliseconds.
 const SHARE: usize = 32;
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+    if args.json && is_standard(&args.out) {
+        return Err(usage(
+            "--json reports on the standard output, so the answers have to go to a file: add --out FILE",
+        ));
+    }
+    if is_standard(&args.scene) && args.points.as_deref().is_some_and(is_standard) {
+        return Err(usage("the standard input cannot be both the scene and the points"));
+    }
     let inputs: Vec<&Path> = std::iter::once(&args.scene).chain(&args.points).map(PathBuf::as_path).collect();
     Output::refuse_inputs(&args.out, &inputs)?;
-    let scene = read_scene(&args.scene)?;
+    let format = scene_format(&args.scene, args.format, "--format")?;
+    let out_format = answer_format(args)?;
+    let start = Instant::now();
+    let scene = read_scene(&args.scene, format)?;
     let queries = queries(args, &scene)?;
+    let read = start.elapsed();
     // Before any work, so that it is not lost to a wrong name.
     let mut output = Output::open(Some(&args.out))?;
 
+    let name = input::name(&args.scene);
     let start = Instant::now();
-    let index = args.backend.build(&scene.soup).with_context(|| args.scene.display().to_string())?;
+    let progress = Progress::start("building the index", None, Unit::None);
+    let index = args.backend.build(&scene.soup).with_context(|| name.clone())?;
+    drop(progress);
     let build = start.elapsed();
 
     let threads = args.threads.map_or(0, usize::from); // 0 is all of them
@@ -158,26 +187,39 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     if let Some(max_distance) = args.max_distance {
         options = options.with_max_distance(max_distance);
     }
-    let (query, answers) = answer(&*index, &options, queries, &pool, &mut output)?;
+    let asked = ask(&*index, &options, queries, &pool, &mut output, out_format);
+    let (query, answers) = asked.with_context(|| output.cannot_write())?;
+    let bytes = output.bytes();
     output.finish()?;
 
-    let summary = Summary {
-        scene_name: args.scene.display().to_string(),
-        scene: &scene,
-        backend: args.backend.name(),
-        threads: pool.current_num_threads(),
-        build,
-        query,
-        answers,
-    };
-    // The table is complete; whether anybody reads this is not our concern.
+    let backend = args.backend.name();
+    let threads = pool.current_num_threads();
+    let summary = Summary { scene_name: name, scene: &scene, format, backend, threads, read, build, query, answers };
+    if args.json {
+        let out = json!({ "file": args.out.display().to_string(), "format": out_format.name(), "bytes": bytes });
+        return json::print(&summary.json(&asked_about(args), args.max_distance, &out));
+    }
+    // The answers are complete; whether anybody reads this is not our concern.
     let _ = write!(io::stderr(), "{summary}");
     Ok(())
 }
 
+/// The given format, or that of the extension; CSV for names that have none.
+fn answer_format(args: &Args) -> anyhow::Result<AnswerFormat> {
+    let format = match args.out_format {
+        Some(format) => format,
+        None if is_standard(&args.out) || args.out.extension().is_none() => AnswerFormat::Csv,
+        None => AnswerFormat::from_path(&args.out).map_err(|e| or_option(&e, "--out-format"))?,
+    };
+    if format != AnswerFormat::Csv {
+        Output::refuse_terminal(&args.out, format.name())?;
+    }
+    Ok(format)
+}
+
 fn queries(args: &Args, scene: &Scene) -> anyhow::Result<Queries> {
     if let Some(path) = &args.points {
-        return Ok(Queries::list(read_points(path)?));
+        return Ok(Queries::list(read_points(path, point_format(path, args.points_format, "--points-format")?)?));
     }
     let region = Region::around(&scene.soup, args.box_scale);
     Ok(match args.grid {
@@ -186,20 +228,30 @@ fn queries(args: &Args, scene: &Scene) -> anyhow::Result<Queries> {
     })
 }
 
-/// Asks chunk by chunk and writes the table; how long the asking took, and what came of it.
-fn answer(
+/// Which points were asked about, for the report.
+fn asked_about(args: &Args) -> Value {
+    match (&args.points, args.grid) {
+        (Some(path), _) => json!({ "points": input::name(path) }),
+        (_, Some(side)) => json!({ "grid": side, "box_scale": args.box_scale }),
+        _ => json!({ "random": args.random, "seed": args.seed, "box_scale": args.box_scale }),
+    }
+}
+
+/// Asks chunk by chunk and writes the answers; how long the asking took, and what came of it.
+fn ask(
     index: &(dyn ClosestPoint<f64> + Sync),
     options: &QueryOptions<f64>,
     mut queries: Queries,
     pool: &rayon::ThreadPool,
     output: &mut Output,
-) -> anyhow::Result<(Duration, Answers)> {
-    let progress = Progress::new(queries.len());
+    format: AnswerFormat,
+) -> io::Result<(Duration, Answers)> {
+    let progress = Progress::start("asking", Some(queries.len()), Unit::Queries);
     let mut statistics = Answers::none();
     let mut time = Duration::ZERO;
     let mut chunk = Vec::new();
     let mut answers = Vec::new();
-    writeln!(output, "qx,qy,qz,x,y,z,distance,primitive,feature").with_context(|| output.cannot_write())?;
+    let mut writer = AnswerWriter::new(output, format, queries.len())?;
     while queries.len() > 0 {
         queries.fill(CHUNK, &mut chunk);
         answers.clear();
@@ -208,53 +260,15 @@ fn answer(
         pool.install(|| {
             chunk.par_chunks(SHARE).zip(answers.par_chunks_mut(SHARE)).for_each(|(queries, answers)| {
                 index.closest_points_into(queries, options, answers);
-                progress.add(queries.len());
+                progress.add(queries.len() as u64);
             });
         });
         time += start.elapsed();
         for (query, answer) in chunk.iter().zip(&answers) {
             statistics.add(answer.as_ref());
-            row(output, query, answer.as_ref()).with_context(|| output.cannot_write())?;
+            writer.write(query, answer.as_ref())?;
         }
     }
-    progress.bar.finish_and_clear();
+    writer.finish()?;
     Ok((time, statistics))
-}
-
-/// `{:?}` writes the shortest number that reads back the same, with an exponent where it is far from 1.
-fn row(output: &mut Output, query: &Point3<f64>, answer: Option<&Closest<f64>>) -> io::Result<()> {
-    write!(output, "{:?},{:?},{:?},", query.x, query.y, query.z)?;
-    match answer {
-        None => writeln!(output, ",,,,,"),
-        Some(Closest { point, distance, primitive, feature, .. }) => {
-            writeln!(output, "{:?},{:?},{:?},{distance:?},{primitive},{feature}", point.x, point.y, point.z)
-        }
-    }
-}
-
-/// A bar on the standard error, if that is a terminal and the work takes long.
-struct Progress {
-    bar: ProgressBar,
-    done: AtomicU64,
-    start: Instant,
-}
-
-const PATIENCE: Duration = Duration::from_secs(1);
-
-impl Progress {
-    fn new(len: u64) -> Self {
-        // Hidden by itself where the standard error is no terminal; it draws nothing before it is told its position.
-        let bar = ProgressBar::with_draw_target(Some(len), ProgressDrawTarget::stderr());
-        if let Ok(style) = ProgressStyle::with_template("{bar:40} {human_pos}/{human_len} queries, {eta} left") {
-            bar.set_style(style);
-        }
-        Self { bar, done: AtomicU64::new(0), start: Instant::now() }
-    }
-
-    fn add(&self, count: usize) {
-        let done = self.done.fetch_add(count as u64, Ordering::Relaxed) + count as u64;
-        if self.start.elapsed() > PATIENCE {
-            self.bar.set_position(done);
-        }
-    }
 }

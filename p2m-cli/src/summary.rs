@@ -1,7 +1,10 @@
-//! What a run was about, for the standard error.
+//! What a run was about: for people on the standard error, or for programs as JSON.
 
+use crate::json;
 use p2m_core::Closest;
-use p2m_mixed::Scene;
+use p2m_mixed::statistics::Counts;
+use p2m_mixed::{Format, Scene};
+use serde_json::{Value, json};
 use std::fmt;
 use std::time::Duration;
 
@@ -9,8 +12,10 @@ use std::time::Duration;
 pub(crate) struct Summary<'a> {
     pub(crate) scene_name: String,
     pub(crate) scene: &'a Scene,
+    pub(crate) format: Format,
     pub(crate) backend: &'static str,
     pub(crate) threads: usize,
+    pub(crate) read: Duration,
     pub(crate) build: Duration,
     pub(crate) query: Duration,
     pub(crate) answers: Answers,
@@ -40,6 +45,46 @@ impl Answers {
             self.sum += closest.distance;
         }
     }
+
+    #[allow(clippy::cast_precision_loss, reason = "more answers than 2^53 are out of reach")]
+    fn mean(&self) -> Option<f64> {
+        (self.answered > 0).then(|| self.sum / self.answered as f64)
+    }
+}
+
+impl Summary<'_> {
+    /// The report: of queries that came from `asked_about`, within `max_distance`, with answers that went to `out`.
+    pub(crate) fn json(&self, asked_about: &Value, max_distance: Option<f64>, out: &Value) -> Value {
+        let answers = &self.answers;
+        let distance = answers.mean().map(|mean| {
+            // A mean of numbers near the end of the range may not be finite.
+            json!({ "min": json::number(answers.min), "max": json::number(answers.max), "mean": json::number(mean) })
+        });
+        json!({
+            "p2m": "query",
+            "version": json::VERSION,
+            "scene": {
+                "file": self.scene_name,
+                "format": self.format.name(),
+                "primitives": json::counts(&Counts::of(&self.scene.soup)),
+                "skipped": json::skipped(self.scene),
+            },
+            "backend": self.backend,
+            "threads": self.threads,
+            "max_distance": max_distance.map_or(Value::Null, json::number),
+            "asked_about": asked_about,
+            "queries": answers.queries,
+            "answered": answers.answered,
+            "unanswered": answers.queries - answers.answered,
+            "distance": distance,
+            "seconds": {
+                "read": self.read.as_secs_f64(),
+                "build": self.build.as_secs_f64(),
+                "query": self.query.as_secs_f64(),
+            },
+            "out": out,
+        })
+    }
 }
 
 #[allow(clippy::cast_precision_loss, reason = "counts for people to read")]
@@ -67,8 +112,7 @@ impl fmt::Display for Summary<'_> {
         }
         writeln!(f)?;
         writeln!(f, "answers  {}, without answer {}", answers.answered, answers.queries - answers.answered)?;
-        if answers.answered > 0 {
-            let mean = answers.sum / answers.answered as f64;
+        if let Some(mean) = answers.mean() {
             writeln!(f, "distance min {:?}, max {:?}, mean {mean:?}", answers.min, answers.max)?;
         }
         Ok(())

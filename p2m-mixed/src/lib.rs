@@ -28,14 +28,14 @@ mod error;
 mod format;
 pub mod generate;
 mod obj;
-pub mod picture;
 mod off;
+pub mod picture;
 mod ply;
 mod points;
 mod polygon;
 mod scene;
-mod stl;
 pub mod statistics;
+mod stl;
 mod text;
 mod write;
 

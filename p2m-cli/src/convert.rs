@@ -1,0 +1,254 @@
+//! `p2m convert`: scenes from one format to another, changed on the way.
+
+use crate::info::counted;
+use crate::input::{self, is_standard, or_option, read_scene, scene_format};
+use crate::json;
+use crate::modify::{self, Modifiers};
+use crate::output::Output;
+use crate::usage::usage;
+use anyhow::{Context, anyhow};
+use p2m_core::PrimitiveSet;
+use p2m_mixed::statistics::Counts;
+use p2m_mixed::statistics::figure::{Count, Figure};
+use p2m_mixed::{Format, Scene, WriteError, stl_rounding, write_scene};
+use serde_json::{Value, json};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// Write a scene in another format, or changed
+#[derive(clap::Args)]
+#[command(after_help = help())]
+pub(crate) struct Args {
+    /// Scene: an OBJ, PLY, STL or OFF file; `-` is the standard input
+    #[arg(value_name = "IN")]
+    from_file: PathBuf,
+
+    /// Where to write it; `-` is the standard output. The file appears under this name when it is complete
+    #[arg(value_name = "OUT")]
+    to_file: PathBuf,
+
+    /// The format of IN, if the extension of its name does not tell
+    #[arg(long, value_name = "FORMAT")]
+    from: Option<Format>,
+
+    /// The format of OUT, if the extension of its name does not tell
+    #[arg(long, value_name = "FORMAT")]
+    to: Option<Format>,
+
+    /// Report as one JSON object on the standard output; needs a file as OUT
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    modifiers: Modifiers,
+}
+
+fn help() -> String {
+    format!(
+        "\
+OBJ, PLY and OFF files hold the whole geometry: the same positions bit by bit, the same primitives in the same order. STL \
+files hold triangles alone, in single precision and without shared vertices. What a conversion loses is told on the standard \
+error; what a format cannot hold at all is an error.
+
+{}
+
+{}
+
+Examples:
+  p2m convert scene.obj scene.ply
+  p2m convert part.stl - --to obj --rotate-x 90 --scale 0.001 | p2m info - --format obj
+  p2m convert dragon.ply shards.ply --subdivide 1 --displace 0.1 --gap 0.8",
+        modify::ORDER,
+        json::STABILITY
+    )
+}
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+    let from = scene_format(&args.from_file, args.from, "--from")?;
+    let target = Target::new(&args.to_file, args.to, None)?;
+    target.check_report(args.json)?;
+    Output::refuse_inputs(&args.to_file, &[&args.from_file])?;
+    let read = read_scene(&args.from_file, from)?;
+    let before = Counts::of(&read.soup);
+    let scene = args.modifiers.apply(read)?;
+    let written = target.write(&scene)?;
+    if args.json {
+        return json::print(&json!({
+            "p2m": "convert",
+            "version": json::VERSION,
+            "in": { "file": input::name(&args.from_file), "format": from.name(), "primitives": json::counts(&before) },
+            "changes": args.modifiers.json(),
+            "out": written.json(),
+            "skipped": json::skipped(&scene),
+        }));
+    }
+    let mut text = format!("in       {} ({from}): {}\n", input::name(&args.from_file), counted(&before));
+    if !scene.skipped.is_empty() {
+        let list: Vec<String> = scene.skipped.iter().map(ToString::to_string).collect();
+        text += &format!("skipped  {}\n", list.join(", "));
+    }
+    text += &written.text();
+    // The file is complete; whether anybody reads this is not our concern.
+    let _ = write!(io::stderr(), "{text}");
+    Ok(())
+}
+
+/// Where a scene goes.
+pub(crate) struct Target<'a> {
+    path: &'a Path,
+    format: Format,
+}
+
+impl<'a> Target<'a> {
+    /// The format is the given one, or that of the extension; on the standard output `default`, if there is one.
+    pub(crate) fn new(path: &'a Path, given: Option<Format>, default: Option<Format>) -> anyhow::Result<Self> {
+        let format = match given.or_else(|| default.filter(|_| is_standard(path))) {
+            Some(format) => format,
+            None if is_standard(path) => {
+                let names = Format::NAMES.join("|");
+                return Err(usage(format!(
+                    "the standard output has no extension that tells its format: add --to {names}"
+                )));
+            }
+            None => Format::from_path(path).map_err(|e| or_option(&e, "--to"))?,
+        };
+        if matches!(format, Format::Ply | Format::Stl) {
+            Output::refuse_terminal(path, format.name())?;
+        }
+        Ok(Self { path, format })
+    }
+
+    /// A report and a scene do not both fit on the standard output.
+    pub(crate) fn check_report(&self, is_json: bool) -> anyhow::Result<()> {
+        if is_json && is_standard(self.path) {
+            return Err(usage("--json reports on the standard output, so the scene has to go to a file"));
+        }
+        Ok(())
+    }
+
+    pub(crate) fn write(&self, scene: &Scene) -> anyhow::Result<Written> {
+        let mut output = Output::open(Some(self.path))?.with_progress();
+        match write_scene(scene, self.format, &mut output) {
+            Ok(()) => {}
+            Err(e @ WriteError::NotATriangle { .. }) => {
+                return Err(anyhow!("{}: {e}: choose obj, ply or off", output.cannot_write()));
+            }
+            // The error of the system itself: whoever reads a pipe may have gone, which is no error.
+            Err(WriteError::Io(e)) => return Err(e).with_context(|| output.cannot_write()),
+            Err(e) => return Err(e).with_context(|| output.cannot_write()),
+        }
+        let bytes = output.bytes();
+        output.finish()?;
+        let file = if is_standard(self.path) { "standard output".to_owned() } else { self.path.display().to_string() };
+        let positions = scene.soup.positions().len() as u64;
+        Ok(Written {
+            file,
+            format: self.format,
+            bytes,
+            counts: Counts::of(&scene.soup),
+            positions,
+            losses: losses(scene, self.format),
+        })
+    }
+}
+
+/// What was written.
+pub(crate) struct Written {
+    file: String,
+    format: Format,
+    bytes: u64,
+    counts: Counts,
+    positions: u64,
+    losses: Vec<Loss>,
+}
+
+impl Written {
+    pub(crate) fn json(&self) -> Value {
+        json!({
+            "file": self.file,
+            "format": self.format.name(),
+            "bytes": self.bytes,
+            "primitives": json::counts(&self.counts),
+            "positions": self.positions,
+            "lost": self.losses.iter().map(Loss::json).collect::<Value>(),
+        })
+    }
+
+    pub(crate) fn text(&self) -> String {
+        let mut text = format!(
+            "out      {} ({}): {}, {} bytes\n",
+            self.file,
+            self.format,
+            counted(&self.counts),
+            Count(self.bytes)
+        );
+        for loss in &self.losses {
+            text += &format!("lost     {}\n", loss.text());
+        }
+        text
+    }
+}
+
+/// Something that the format of the output cannot hold.
+enum Loss {
+    Names(u64),
+    Rounding { count: u64, largest: f64 },
+    Unused(u64),
+    Sharing,
+}
+
+impl Loss {
+    fn json(&self) -> Value {
+        match *self {
+            Self::Names(count) => json!({ "what": "names", "count": count }),
+            Self::Rounding { count, largest } => {
+                json!({ "what": "precision", "count": count, "largest": json::number(largest) })
+            }
+            Self::Unused(count) => json!({ "what": "unused_positions", "count": count }),
+            Self::Sharing => json!({ "what": "shared_positions" }),
+        }
+    }
+
+    fn text(&self) -> String {
+        match *self {
+            Self::Names(count) => format!("names of {} objects", Count(count)),
+            Self::Rounding { count, largest } => {
+                format!("precision: {} coordinates are rounded to f32, by up to {}", Count(count), Figure(largest))
+            }
+            Self::Unused(count) => format!("{} positions that belong to no primitive", Count(count)),
+            Self::Sharing => "which corners are shared: each triangle has its own".to_owned(),
+        }
+    }
+}
+
+fn losses(scene: &Scene, format: Format) -> Vec<Loss> {
+    let mut losses = Vec::new();
+    if format != Format::Obj && !scene.objects.is_empty() {
+        losses.push(Loss::Names(scene.objects.len() as u64));
+    }
+    let unused = unused(scene);
+    let is_lost = format == Format::Stl || (format != Format::Ply && scene.soup.is_empty());
+    if unused > 0 && is_lost {
+        losses.push(Loss::Unused(unused));
+    }
+    if format == Format::Stl {
+        let rounding = stl_rounding(scene);
+        if rounding.count > 0 {
+            losses.push(Loss::Rounding { count: rounding.count, largest: rounding.largest });
+        }
+        if (scene.soup.positions().len() as u64 - unused) < 3 * scene.soup.triangles().len() as u64 {
+            losses.push(Loss::Sharing);
+        }
+    }
+    losses
+}
+
+fn unused(scene: &Scene) -> u64 {
+    let mut used = vec![false; scene.soup.positions().len()];
+    for element in scene.soup.elements() {
+        for &i in element.indices() {
+            used[i as usize] = true;
+        }
+    }
+    used.iter().filter(|used| !**used).count() as u64
+}

@@ -1,0 +1,106 @@
+//! Files to read, among them the standard input under the name `-`.
+
+use crate::progress::{Progress, Unit};
+use crate::usage::usage;
+use anyhow::{Context, anyhow};
+use nalgebra::Point3;
+use p2m_mixed::{Format, PointFormat, ReadError, Scene};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::Path;
+
+const BUFFER: usize = 1 << 16;
+/// The name of the standard input and the standard output.
+pub(crate) const STANDARD: &str = "-";
+
+/// Whether `path` stands for the standard input or output.
+pub(crate) fn is_standard(path: &Path) -> bool {
+    path == Path::new(STANDARD)
+}
+
+/// What to call an input in messages.
+pub(crate) fn name(path: &Path) -> String {
+    if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+/// The format of a scene: the given one, or else that of the extension.
+pub(crate) fn scene_format(path: &Path, given: Option<Format>, option: &str) -> anyhow::Result<Format> {
+    match given {
+        Some(format) => Ok(format),
+        None if is_standard(path) => Err(unnamed(option, Format::NAMES)),
+        None => Format::from_path(path).map_err(|e| or_option(&e, option)),
+    }
+}
+
+/// The format of points, likewise.
+pub(crate) fn point_format(path: &Path, given: Option<PointFormat>, option: &str) -> anyhow::Result<PointFormat> {
+    match given {
+        Some(format) => Ok(format),
+        None if is_standard(path) => Err(unnamed(option, PointFormat::NAMES)),
+        None => PointFormat::from_path(path).map_err(|e| or_option(&e, option)),
+    }
+}
+
+fn unnamed(option: &str, names: &[&str]) -> anyhow::Error {
+    usage(format!("the standard input has no extension that tells its format: add {option} {}", names.join("|")))
+}
+
+pub(crate) fn or_option(error: &ReadError, option: &str) -> anyhow::Error {
+    anyhow!("{error}, or name the format with {option}")
+}
+
+/// Reads a scene.
+pub(crate) fn read_scene(path: &Path, format: Format) -> anyhow::Result<Scene> {
+    Ok(p2m_mixed::read_scene_from(open(path)?, format, &name(path))?)
+}
+
+/// Reads points.
+pub(crate) fn read_points(path: &Path, format: PointFormat) -> anyhow::Result<Vec<Point3<f64>>> {
+    Ok(p2m_mixed::read_points_from(open(path)?, format, &name(path))?)
+}
+
+/// Opens a file, and shows how far it is read.
+fn open(path: &Path) -> anyhow::Result<Counted> {
+    let name = name(path);
+    let what = format!("reading {name}");
+    if is_standard(path) {
+        let reader: Box<dyn BufRead> = Box::new(BufReader::with_capacity(BUFFER, io::stdin()));
+        return Ok(Counted { reader, progress: Progress::start(&what, None, Unit::Bytes) });
+    }
+    let cannot_read = || format!("{name}: cannot be read");
+    let file = File::open(path).with_context(cannot_read)?;
+    let metadata = file.metadata().with_context(cannot_read)?;
+    // Some systems open a directory and fail only at its first line.
+    if metadata.is_dir() {
+        return Err(io::Error::from(io::ErrorKind::IsADirectory)).with_context(cannot_read);
+    }
+    // A pipe has no length.
+    let total = metadata.is_file().then_some(metadata.len());
+    let reader = Box::new(BufReader::with_capacity(BUFFER, file));
+    Ok(Counted { reader, progress: Progress::start(&what, total, Unit::Bytes) })
+}
+
+/// Counts what is read.
+struct Counted {
+    reader: Box<dyn BufRead>,
+    progress: Progress,
+}
+
+impl Read for Counted {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.reader.read(buffer)?;
+        self.progress.add(count as u64);
+        Ok(count)
+    }
+}
+
+impl BufRead for Counted {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        self.reader.fill_buf()
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.progress.add(count as u64);
+        self.reader.consume(count);
+    }
+}

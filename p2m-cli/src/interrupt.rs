@@ -1,0 +1,52 @@
+//! Ctrl-C and its like: unfinished files are removed, and the exit code is 128 plus the number of the signal.
+
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Files that do not have their final name yet.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// The list of unfinished files. It is held while one is made or renamed, so that a signal finds it either on the list or
+/// not there at all.
+pub(crate) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Starts to listen for SIGINT, SIGTERM and SIGHUP, as far as they are ours to handle (see [`is_ignored`]). Where there are
+/// no such signals, nothing happens.
+#[cfg(unix)]
+pub(crate) fn listen() -> std::io::Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let signals: Vec<i32> = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&s| !is_ignored(s)).collect();
+    let mut signals = signal_hook::iterator::Signals::new(signals)?;
+    std::thread::Builder::new().spawn(move || {
+        if let Some(signal) = signals.forever().next() {
+            // Kept until the end: nobody starts or finishes a file any more.
+            let files = unfinished();
+            for file in files.iter() {
+                // It may be finished by now; and if it cannot be removed, there is nothing left to try.
+                let _ = std::fs::remove_file(file);
+            }
+            std::process::exit(128 + signal);
+        }
+    })?;
+    Ok(())
+}
+
+#[cfg(not(unix))]
+pub(crate) fn listen() -> std::io::Result<()> {
+    Ok(())
+}
+
+/// Whether this process was started with that signal ignored, in which case it has to stay so: SIGHUP under `nohup`, SIGINT
+/// in the background of a script. Known on Linux only. Elsewhere SIGHUP counts as ignored: better a terminal that closes
+/// ends the program the hard way than that `nohup` has no effect.
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    match mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()) {
+        Some(mask) => mask >> (signal - 1) & 1 == 1,
+        None => signal == signal_hook::consts::SIGHUP,
+    }
+}

@@ -1,0 +1,85 @@
+//! What a long run is doing, on the standard error if that is a terminal, and not before a second has passed.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{self, IsTerminal};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// One piece of work. Its line disappears when it is dropped.
+pub(crate) struct Progress {
+    done: Arc<AtomicU64>,
+    /// What draws, and how to stop it; `None` where nobody is watching.
+    drawing: Option<(Sender<()>, JoinHandle<()>)>,
+}
+
+/// What is counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Unit {
+    Bytes,
+    Queries,
+    /// Work of which nothing is known but that it goes on.
+    None,
+}
+
+const PATIENCE: Duration = Duration::from_secs(1);
+const REFRESH: Duration = Duration::from_millis(100);
+
+impl Progress {
+    /// Work called `what`, like `reading scene.ply`, of so many units if that is known.
+    pub(crate) fn start(what: &str, total: Option<u64>, unit: Unit) -> Self {
+        let done = Arc::new(AtomicU64::new(0));
+        let is_watched = io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb");
+        if !is_watched {
+            return Self { done, drawing: None };
+        }
+        let (stop, stopped) = mpsc::channel();
+        let (position, what) = (Arc::clone(&done), what.to_owned());
+        let draw = move || {
+            if stopped.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
+                return;
+            }
+            let bar = ProgressBar::with_draw_target(total, ProgressDrawTarget::stderr());
+            if let Ok(style) = ProgressStyle::with_template(&template(total, unit)) {
+                bar.set_style(style.tick_chars("-\\|/ "));
+            }
+            bar.set_message(what);
+            while stopped.recv_timeout(REFRESH) == Err(RecvTimeoutError::Timeout) {
+                bar.set_position(position.load(Ordering::Relaxed));
+                bar.tick();
+            }
+            bar.finish_and_clear();
+        };
+        // Without a thread to draw there is no bar; the work goes on.
+        let drawing = std::thread::Builder::new().spawn(draw).ok().map(|thread| (stop, thread));
+        Self { done, drawing }
+    }
+
+    /// So much more is done.
+    pub(crate) fn add(&self, count: u64) {
+        self.done.fetch_add(count, Ordering::Relaxed);
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some((stop, thread)) = self.drawing.take() {
+            drop(stop);
+            // A bar that fails is no concern of the work.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn template(total: Option<u64>, unit: Unit) -> String {
+    let count = match (unit, total) {
+        (Unit::Bytes, Some(_)) => "{wide_bar} {bytes}/{total_bytes}, {eta} left",
+        (Unit::Bytes, None) => "{bytes}",
+        (Unit::Queries, _) => "{wide_bar} {human_pos}/{human_len} queries, {eta} left",
+        (Unit::None, _) => "{elapsed}",
+    };
+    let spinner = if total.is_none() { "{spinner} " } else { "" };
+    format!("{spinner}{{msg}} {count}")
+}

@@ -1,0 +1,64 @@
+//! `p2m completions` and `p2m man`: what shells and manuals want to know.
+
+use crate::output::Output;
+use anyhow::Context;
+use clap_complete::Shell;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Print the completions of a shell
+#[derive(clap::Args)]
+#[command(after_help = COMPLETIONS)]
+pub(crate) struct Completions {
+    /// The shell
+    #[arg(value_enum)]
+    shell: Shell,
+}
+
+const COMPLETIONS: &str = "\
+Example:
+  p2m completions bash > ~/.local/share/bash-completion/completions/p2m
+  p2m completions zsh > ~/.zfunc/_p2m
+  p2m completions fish > ~/.config/fish/completions/p2m.fish";
+
+/// Print the manual page, or write those of all commands
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  p2m man | man -l -\n  p2m man --out ~/.local/share/man/man1")]
+pub(crate) struct Man {
+    /// Write a page for each command into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+pub(crate) fn completions(args: &Completions, mut command: clap::Command) -> anyhow::Result<()> {
+    // It writes to memory: its own writing panics when the reader has gone.
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut command, "p2m", &mut script);
+    write(None, &script)
+}
+
+pub(crate) fn man(args: &Man, mut command: clap::Command) -> anyhow::Result<()> {
+    command.build();
+    let Some(folder) = &args.out else { return write(None, &page(&command)?) };
+    std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
+    write_pages(folder, &command)
+}
+
+/// The page of a command and those of its subcommands, named like `p2m-generate-knot.1`.
+fn write_pages(folder: &Path, command: &clap::Command) -> anyhow::Result<()> {
+    let name = command.get_display_name().unwrap_or_else(|| command.get_name());
+    write(Some(&folder.join(format!("{name}.1"))), &page(command)?)?;
+    command.get_subcommands().filter(|c| c.get_name() != "help").try_for_each(|c| write_pages(folder, c))
+}
+
+fn page(command: &clap::Command) -> anyhow::Result<Vec<u8>> {
+    let mut page = Vec::new();
+    clap_mangen::Man::new(command.clone()).render(&mut page).context("the manual page cannot be made")?;
+    Ok(page)
+}
+
+fn write(path: Option<&Path>, content: &[u8]) -> anyhow::Result<()> {
+    let mut output = Output::open(path)?;
+    output.write_all(content).with_context(|| output.cannot_write())?;
+    output.finish()
+}

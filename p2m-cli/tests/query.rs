@@ -1,0 +1,268 @@
+//! `p2m query`: tables, other forms of answers, summaries.
+
+mod common;
+
+use common::*;
+use std::fs;
+use tempfile::TempDir;
+
+#[test]
+fn backends_and_threads_give_the_same_table() {
+    for sample in [&["--random", "500"][..], &["--grid", "7"], &["--random", "300", "--seed", "9", "--box-scale", "30"]]
+    {
+        let run = |more: &[&str]| table(&[&["query", SCENE], sample, more].concat());
+        let expected = run(&["--backend", "brute"]);
+        assert!(expected.starts_with(&format!("{HEADER}\n")));
+        assert_eq!(run(&["--backend", "aabb"]), expected);
+        assert_eq!(run(&[]), expected);
+        assert_eq!(run(&["--threads", "1"]), expected);
+        assert_eq!(run(&["--threads", "3"]), expected);
+        assert_eq!(run(&["--out", "-"]), expected);
+    }
+    let seeds = ["0", "1"].map(|seed| table(&["query", SCENE, "--random", "5", "--seed", seed]));
+    assert_ne!(seeds[0], seeds[1]);
+    assert_eq!(seeds[0], table(&["query", SCENE, "--random", "5"]));
+}
+
+#[test]
+fn the_summary_tells_what_was_done() {
+    let folder = TempDir::new().unwrap();
+    let scene =
+        write(&folder, "s.obj", "vn 0 0 1\nusemtl a\nusemtl b\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\np 1\n");
+    let output = p2m(&["query", &scene, "--grid", "2", "--threads", "1", "--max-distance", "0.5"]);
+    let summary = text(&output.stderr);
+    for part in [
+        scene.as_str(),
+        "1 triangles, 1 segments, 1 points",
+        "1 x vn, 2 x usemtl",
+        "backend  aabb, built in ",
+        "queries  8 in ",
+        "on 1 thread: ",
+        "ns per query",
+        "queries/s",
+        "without answer ",
+        "distance min ",
+    ] {
+        assert!(summary.contains(part), "{part}: {summary}");
+    }
+}
+
+/// What stands behind `start` in a line of the summary.
+fn after<'a>(summary: &'a str, start: &str) -> &'a str {
+    summary.lines().find_map(|line| line.strip_prefix(start)).unwrap_or_else(|| panic!("{start}: {summary}"))
+}
+
+#[test]
+#[allow(clippy::cast_precision_loss, reason = "a small count")]
+fn the_summary_agrees_with_the_table() {
+    let output = p2m(&["query", SCENE, "--random", "500", "--max-distance", "0.7", "--threads", "3"]);
+    let (table, summary) = (text(&output.stdout), text(&output.stderr));
+    let distances: Vec<f64> =
+        table.lines().skip(1).filter_map(|line| line.split(',').nth(6).unwrap().parse().ok()).collect();
+    let answered = distances.len();
+    assert!((1..500).contains(&answered), "{answered}");
+    assert!(after(&summary, "queries  500 in ").contains(" on 3 threads: "), "{summary}");
+    assert_eq!(after(&summary, "answers  "), format!("{answered}, without answer {}", 500 - answered));
+    let min = distances.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+    let max = distances.iter().fold(0.0f64, |a, &b| a.max(b));
+    let mean = distances.iter().sum::<f64>() / answered as f64;
+    assert_eq!(after(&summary, "distance "), format!("min {min:?}, max {max:?}, mean {mean:?}"));
+}
+
+#[test]
+fn given_points_are_answered_in_their_order() {
+    let folder = TempDir::new().unwrap();
+    let scene = write(&folder, "s.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 5 5 1e300\nf 1 2 3\np 4\n");
+    let points = write(&folder, "q.xyz", "0.5 .25 3\n# so\n1 -2 0\n3 0 0\n5 5 1.5e300\n");
+    let expected = format!(
+        "{HEADER}\n0.5,0.25,3.0,0.5,0.25,0.0,3.0,0,face\n1.0,-2.0,0.0,1.0,0.0,0.0,2.0,0,edge0\n\
+        3.0,0.0,0.0,2.0,0.0,0.0,1.0,0,vertex1\n5.0,5.0,1.5e300,5.0,5.0,1e300,"
+    );
+    let answers = table(&["query", &scene, "--points", &points, "--backend", "brute"]);
+    assert_eq!(answers, table(&["query", &scene, "--points", &points]));
+    assert!(answers.starts_with(&expected), "{answers}");
+    assert!(answers.lines().last().unwrap().ends_with(",1,vertex0"), "{answers}");
+    // The table itself asks the same questions again.
+    let again = write(&folder, "q.csv", &answers);
+    assert_eq!(table(&["query", &scene, "--points", &again]), answers);
+}
+
+#[test]
+fn no_answer_leaves_empty_fields() {
+    let folder = TempDir::new().unwrap();
+    let scene = write(&folder, "s.obj", "v 0 0 0\np 1\n");
+    let points = write(&folder, "q.csv", "x,y,z\n1,0,0\n2,0,0\n3,0,0\n");
+    let expected = format!(
+        "{HEADER}\n1.0,0.0,0.0,0.0,0.0,0.0,1.0,0,vertex0\n2.0,0.0,0.0,0.0,0.0,0.0,2.0,0,vertex0\n3.0,0.0,0.0,,,,,,\n"
+    );
+    for backend in ["brute", "aabb"] {
+        assert_eq!(
+            table(&["query", &scene, "--points", &points, "--max-distance", "2", "--backend", backend]),
+            expected
+        );
+    }
+}
+
+#[test]
+fn an_empty_scene_has_no_answers() {
+    let folder = TempDir::new().unwrap();
+    let obj = write(&folder, "e.obj", "# nothing\n");
+    let ply = write(
+        &folder,
+        "e.ply",
+        "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n",
+    );
+    for scene in [obj, ply] {
+        for backend in ["brute", "aabb"] {
+            let output = p2m(&["query", &scene, "--grid", "2", "--backend", backend]);
+            assert_eq!(output.status.code(), Some(0));
+            let table = text(&output.stdout);
+            assert_eq!(table.lines().count(), 9);
+            assert!(table.lines().skip(1).all(|l| l.ends_with(",,,,,,")), "{table}");
+            assert!(text(&output.stderr).contains("the scene is empty"));
+        }
+    }
+    let scene = write(&folder, "p.obj", "v 0 0 0\n");
+    assert_eq!(table(&["query", &scene, "--random", "0"]), format!("{HEADER}\n"));
+}
+
+#[test]
+fn flat_scenes_are_asked_about_from_both_sides() {
+    let folder = TempDir::new().unwrap();
+    let scene = write(&folder, "flat.obj", "v 0 0 3\nv 4 0 3\nv 0 4 3\nf 1 2 3\n");
+    let table = table(&["query", &scene, "--random", "100", "--box-scale", "1.5"]);
+    let z: Vec<f64> = table.lines().skip(1).map(|l| l.split(',').nth(2).unwrap().parse().unwrap()).collect();
+    assert!(
+        z.iter().any(|&z| z > 3.5) && z.iter().any(|&z| z < 2.5) && z.iter().all(|z| (2.0..=4.0).contains(z)),
+        "{z:?}"
+    );
+}
+
+#[test]
+fn both_backends_print_the_same_table_for_every_model() {
+    let Some(folder) = p2m_testkit::models() else { return };
+    let mut count = 0;
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|e| e == "md") {
+            continue;
+        }
+        let scene = path.to_str().unwrap();
+        let with = |backend| table(&["query", scene, "--random", "40", "--box-scale", "1.5", "--backend", backend]);
+        assert!(with("aabb") == with("brute"), "{scene}");
+        count += 1;
+    }
+    assert!(count > 0, "the folder has no model in a format that can be read");
+}
+
+#[test]
+fn answers_come_in_every_format() {
+    let folder = TempDir::new().unwrap();
+    let expected = table(&["query", SCENE, "--random", "50", "--max-distance", "0.5"]);
+    assert!(expected.contains(",,,,,,\n"), "some have no answer");
+    for format in ["npy", "ply", "csv", "NPY"] {
+        let out = path(&folder, &format!("answers.{format}"));
+        assert_eq!(table(&["query", SCENE, "--random", "50", "--max-distance", "0.5", "--out", &out]), "");
+        // The file asks the same questions again.
+        assert_eq!(table(&["query", SCENE, "--points", &out, "--max-distance", "0.5"]), expected, "{format}");
+        // By option, whatever the name, and on the standard output.
+        let unnamed = path(&folder, "answers");
+        let arguments = ["query", SCENE, "--random", "50", "--max-distance", "0.5", "--out-format", format];
+        table(&[&arguments[..], &["--out", &unnamed]].concat());
+        assert_eq!(fs::read(&unnamed).unwrap(), fs::read(&out).unwrap(), "{format}");
+        assert_eq!(p2m(&arguments).stdout, fs::read(&out).unwrap(), "{format}");
+    }
+    let npy = fs::read(path(&folder, "answers.npy")).unwrap();
+    assert_eq!((&npy[..6], npy.len() % 64), (&b"\x93NUMPY"[..], 50 * 96 % 64));
+    let message = failure(&["query", SCENE, "--random", "50", "--out", &path(&folder, "a.vtk")], 1);
+    assert!(
+        message
+            .contains("unknown extension 'vtk', expected one of csv, npy, ply, or name the format with --out-format"),
+        "{message}"
+    );
+}
+
+#[test]
+fn scene_or_points_come_from_the_standard_input() {
+    let scene = fs::read(SCENE).unwrap();
+    let expected = table(&["query", SCENE, "--random", "20"]);
+    let output = p2m_with(&["query", "-", "--format", "obj", "--random", "20"], &scene);
+    assert_eq!(text(&output.stdout), expected);
+    assert!(text(&output.stderr).starts_with("scene    standard input\n"), "{}", text(&output.stderr));
+    let output = p2m_with(&["query", SCENE, "--points", "-", "--points-format", "csv"], &expected);
+    assert_eq!(text(&output.stdout), expected);
+    let output = p2m_with(&["query", SCENE, "--points", "-", "--points-format", "xyz"], "1 2 3\n1 x 3\n");
+    assert!(
+        text(&output.stderr).starts_with("error: standard input:2: 'x' is not a number"),
+        "{}",
+        text(&output.stderr)
+    );
+    for (arguments, why) in [
+        (&["query", "-", "--random", "1"][..], "add --format obj|ply|stl|off"),
+        (&["query", SCENE, "--points", "-"], "add --points-format xyz|txt|csv|npy|ply"),
+        (&["query", "-", "--format", "obj", "--points", "-", "--points-format", "csv"], "cannot be both"),
+        (&["query", SCENE, "--random", "1", "--points-format", "csv"], "--points"),
+        (&["query", SCENE, "--random", "1", "--json"], "add --out FILE"),
+    ] {
+        let message = failure(arguments, 2);
+        assert!(message.contains(why), "{arguments:?}: {message}");
+    }
+}
+
+#[test]
+fn the_json_summary_agrees_with_the_table() {
+    let folder = TempDir::new().unwrap();
+    let out = path(&folder, "answers.csv");
+    let arguments = ["query", SCENE, "--random", "200", "--seed", "3", "--max-distance", "0.7", "--threads", "2"];
+    let output = p2m(&[&arguments[..], &["--out", &out, "--json"]].concat());
+    assert_eq!(text(&output.stderr), "");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let table = fs::read_to_string(&out).unwrap();
+    let distances: Vec<f64> = table.lines().skip(1).filter_map(|l| l.split(',').nth(6).unwrap().parse().ok()).collect();
+    let answered = distances.len() as u64;
+    assert!((1..200).contains(&answered), "{answered}");
+    for time in ["read", "build", "query"] {
+        assert!(report["seconds"][time].as_f64().unwrap() > 0.0, "{report}");
+    }
+    let mut rest = report.clone();
+    rest.as_object_mut().unwrap().shift_remove("seconds");
+    let expected = serde_json::json!({
+        "p2m": "query",
+        "version": 1,
+        "scene": {
+            "file": SCENE,
+            "format": "obj",
+            "primitives": { "triangles": 3600, "segments": 480, "points": 0 },
+            "skipped": [],
+        },
+        "backend": "aabb",
+        "threads": 2,
+        "max_distance": 0.7,
+        "asked_about": { "random": 200, "seed": 3, "box_scale": 1.05 },
+        "queries": 200,
+        "answered": answered,
+        "unanswered": 200 - answered,
+        "distance": {
+            "min": distances.iter().fold(f64::INFINITY, |a, &b| a.min(b)),
+            "max": distances.iter().fold(0.0f64, |a, &b| a.max(b)),
+            "mean": distances.iter().sum::<f64>() / answered as f64,
+        },
+        "out": { "file": out, "format": "csv", "bytes": table.len() },
+    });
+    assert_eq!(rest, expected);
+}
+
+#[test]
+fn json_has_no_numbers_that_are_none() {
+    let folder = TempDir::new().unwrap();
+    let (scene, out) = (write(&folder, "s.obj", "v -1.7e308 0 0\np 1\n"), path(&folder, "a.npy"));
+    let points = write(&folder, "q.xyz", "1.7e308 0 0\n");
+    // The distance is beyond the range of f64.
+    let report = json(&["query", &scene, "--points", &points, "--max-distance", "inf", "--out", &out, "--json"]);
+    assert_eq!(report["max_distance"], serde_json::Value::Null);
+    assert_eq!(report["distance"], serde_json::json!({ "min": null, "max": null, "mean": null }));
+    assert_eq!(report["asked_about"], serde_json::json!({ "points": points }));
+    let report = json(&["query", &scene, "--grid", "2", "--max-distance", "0", "--out", &out, "--json"]);
+    assert_eq!((&report["distance"], &report["unanswered"]), (&serde_json::Value::Null, &8.into()));
+    assert_eq!(report["asked_about"], serde_json::json!({ "grid": 2, "box_scale": 1.05 }));
+}
