@@ -17,6 +17,7 @@ pub(crate) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
 #[cfg(unix)]
 pub(crate) fn listen() -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use std::io::{IsTerminal, Write};
     let signals: Vec<i32> = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&s| !is_ignored(s)).collect();
     let mut signals = signal_hook::iterator::Signals::new(signals)?;
     std::thread::Builder::new().spawn(move || {
@@ -26,6 +27,10 @@ pub(crate) fn listen() -> std::io::Result<()> {
             for file in files.iter() {
                 // It may be finished by now; and if it cannot be removed, there is nothing left to try.
                 let _ = std::fs::remove_file(file);
+            }
+            // The prompt of the shell goes below the bar, if there is one. If nobody reads it, nobody minds.
+            if std::io::stderr().is_terminal() {
+                let _ = writeln!(std::io::stderr());
             }
             std::process::exit(128 + signal);
         }

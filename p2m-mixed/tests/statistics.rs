@@ -229,8 +229,8 @@ fn flat_scenes_say_where() {
 
 #[test]
 fn f32_holds_what_it_holds() {
-    // 0.1 and 2^24 + 1 are no numbers of f32; a position used twice counts once, an unused one not.
-    let s = obj("v 0.1 16777217 0.5\nv 1 2 3\nv 0.3 0 0\nl 1 2\np 1\n");
+    // 0.1 and 2^24 + 1 are no numbers of f32; a position used or written twice counts once, an unused one not.
+    let s = obj("v 0.1 16777217 0.5\nv 1 2 3\nv 0.3 0 0\nv 0.1 16777217 0.5\nl 1 2\np 1\np 4\n");
     assert_eq!(s.location.beyond_f32, 2);
     assert_eq!(s.location.f32_step(), Some(1.0));
     assert_eq!(rod(0.0, 1e300).location.f32_step(), None);
@@ -239,6 +239,9 @@ fn f32_holds_what_it_holds() {
 
 #[test]
 fn figures_are_finite_at_every_scale() {
+    // Nor where the sum of two coordinates overflows.
+    let high = Statistics::of(&soup(&[[1.5e308, 0.0, 0.0], [1e308, 0.0, 0.0]], &[Element::Segment([0, 1])]));
+    assert_eq!((high.location.distance_from_origin, high.sizes.diagonal), (1.25e308, 0.5e308));
     for (scale, zero_area) in [(1e-300, 0), (1e300, 0), (5e-324, 0), (f64::MAX, 0), (0.0, 1)] {
         let positions = [[-scale, 0.0, 0.0], [scale, 0.0, 0.0], [0.0, scale, 0.0], [0.0, 0.0, scale]];
         let s = Statistics::of(&soup(&positions, &[Element::Triangle([0, 1, 2]), Element::Segment([1, 3])]));
