@@ -5,9 +5,9 @@ use crate::input::{self, is_standard, or_option, read_scene, scene_format};
 use crate::json;
 use crate::modify::{self, Modifiers};
 use crate::output::Output;
-use crate::usage::usage;
+use crate::usage::{one_of, usage};
 use anyhow::{Context, anyhow};
-use p2m_core::PrimitiveSet;
+use p2m_core::{Element, PrimitiveSet};
 use p2m_mixed::statistics::Counts;
 use p2m_mixed::statistics::figure::{Count, Figure};
 use p2m_mixed::{Format, Scene, WriteError, stl_rounding, write_scene};
@@ -28,11 +28,11 @@ pub(crate) struct Args {
     to_file: PathBuf,
 
     /// The format of IN, if the extension of its name does not tell
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     from: Option<Format>,
 
     /// The format of OUT, if the extension of its name does not tell
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     to: Option<Format>,
 
     /// Report as one JSON object on the standard output; needs a file as OUT
@@ -46,7 +46,8 @@ pub(crate) struct Args {
 fn help() -> String {
     format!(
         "\
-OBJ, PLY and OFF files hold the whole geometry: the same positions bit by bit, the same primitives in the same order. STL \
+OBJ, PLY and OFF files hold the whole geometry: the same positions bit by bit, the same primitives in the same order. Polygons are cut into \
+triangles. STL \
 files hold triangles alone, in single precision and without shared vertices. What a conversion loses is told on the standard \
 error; what a format cannot hold at all is an error.
 
@@ -70,8 +71,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     Output::refuse_inputs(&args.to_file, &[&args.from_file])?;
     let read = read_scene(&args.from_file, from)?;
     let before = Counts::of(&read.soup);
+    let polygons = polygons(&read);
     let scene = args.modifiers.apply(read)?;
-    let written = target.write(&scene)?;
+    let mut written = target.write(&scene)?;
+    written.lose_polygons(polygons);
     if args.json {
         return json::print(&json!({
             "p2m": "convert",
@@ -174,6 +177,12 @@ impl Written {
         })
     }
 
+    fn lose_polygons(&mut self, count: u64) {
+        if count > 0 {
+            self.losses.insert(0, Loss::Polygons(count));
+        }
+    }
+
     pub(crate) fn text(&self) -> String {
         let mut text = format!(
             "out      {} ({}): {}, {} bytes\n",
@@ -189,8 +198,9 @@ impl Written {
     }
 }
 
-/// Something that the format of the output cannot hold.
+/// Something that the file that was written does not hold.
 enum Loss {
+    Polygons(u64),
     Names(u64),
     Rounding { count: u64, largest: f64 },
     Unused(u64),
@@ -200,6 +210,7 @@ enum Loss {
 impl Loss {
     fn json(&self) -> Value {
         match *self {
+            Self::Polygons(count) => json!({ "what": "polygons", "count": count }),
             Self::Names(count) => json!({ "what": "names", "count": count }),
             Self::Rounding { count, largest } => {
                 json!({ "what": "precision", "count": count, "largest": json::number(largest) })
@@ -211,11 +222,14 @@ impl Loss {
 
     fn text(&self) -> String {
         match *self {
-            Self::Names(count) => format!("names of {} objects", Count(count)),
-            Self::Rounding { count, largest } => {
-                format!("precision: {} coordinates are rounded to f32, by up to {}", Count(count), Figure(largest))
+            Self::Polygons(count) => {
+                format!("polygons: {} are written as the triangles that they are cut into", Count(count))
             }
-            Self::Unused(count) => format!("{} positions that belong to no primitive", Count(count)),
+            Self::Names(count) => format!("names of objects: {}", Count(count)),
+            Self::Rounding { count, largest } => {
+                format!("precision: coordinates rounded to f32: {}, by up to {}", Count(count), Figure(largest))
+            }
+            Self::Unused(count) => format!("positions that belong to no primitive: {}", Count(count)),
             Self::Sharing => "which corners are shared: each triangle has its own".to_owned(),
         }
     }
@@ -241,6 +255,13 @@ fn losses(scene: &Scene, format: Format) -> Vec<Loss> {
         }
     }
     losses
+}
+
+/// Polygons of the file that are cut into triangles: runs of triangles from the same source.
+fn polygons(scene: &Scene) -> u64 {
+    let triangles = scene.soup.elements().zip(&scene.sources).filter(|(e, _)| matches!(e, Element::Triangle(_)));
+    let sources: Vec<u32> = triangles.map(|(_, &source)| source).collect();
+    sources.chunk_by(|a, b| a == b).filter(|run| run.len() > 1).count() as u64
 }
 
 fn unused(scene: &Scene) -> u64 {

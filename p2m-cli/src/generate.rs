@@ -5,7 +5,7 @@ use crate::input::is_standard;
 use crate::json;
 use crate::modify::{self, Modifiers};
 use crate::progress::{Progress, Unit};
-use crate::usage::{finite, whole};
+use crate::usage::{finite, one_of, whole};
 use clap::{Args as ClapArgs, Subcommand, value_parser};
 use p2m_mixed::generate::{
     CableBundle, Cone, Cylinder, IcoSphere, Kind, KnotAndCables, MixedSizes, SkewedGear, Sphere, TorusKnot,
@@ -54,7 +54,7 @@ struct Destination {
     out: PathBuf,
 
     /// The format, if the extension of the name does not tell; OBJ on the standard output
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     to: Option<Format>,
 
     /// Report as one JSON object on the standard output; needs --out FILE

@@ -4,6 +4,7 @@ use crate::input::{self, read_scene, scene_format};
 use crate::json;
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
+use crate::usage::one_of;
 use anyhow::Context;
 use p2m_mixed::statistics::figure::{Count, Exact, Figure, Share};
 use p2m_mixed::statistics::{Counts, Extremes, ObjectCounts, Statistics, objects};
@@ -21,7 +22,7 @@ pub(crate) struct Args {
     scene: PathBuf,
 
     /// The format of the scene, if the extension of its name does not tell
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     format: Option<Format>,
 
     /// Report as one JSON object

@@ -6,7 +6,7 @@ use crate::output::Output;
 use crate::progress::{Progress, Unit};
 use crate::sampling::{Queries, Region};
 use crate::summary::{Answers, Summary};
-use crate::usage::{not_negative, positive, usage, whole};
+use crate::usage::{not_negative, one_of, positive, usage, whole};
 use anyhow::{Context, anyhow};
 use clap::{ArgGroup, ValueEnum};
 use p2m_bvh::AabbTree;
@@ -63,7 +63,7 @@ pub(crate) struct Args {
     scene: PathBuf,
 
     /// The format of the scene, if the extension of its name does not tell
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     format: Option<Format>,
 
     /// Ask about the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
@@ -71,7 +71,7 @@ pub(crate) struct Args {
     points: Option<PathBuf>,
 
     /// The format of the points, if the extension of their file does not tell
-    #[arg(long, value_name = "FORMAT", conflicts_with_all = ["grid", "random"])]
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, conflicts_with_all = ["grid", "random"])]
     points_format: Option<PointFormat>,
 
     /// Ask about a grid of N x N x N points that fills the scaled box of the scene, ends included; z runs fastest
@@ -109,8 +109,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
 
-    /// The format of the answers, if the extension of their file does not tell: csv, npy or ply. CSV is the default
-    #[arg(long, value_name = "FORMAT")]
+    /// The format of the answers, if the extension of their file does not tell; CSV is the default
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<AnswerFormat>(AnswerFormat::NAMES), ignore_case = true)]
     out_format: Option<AnswerFormat>,
 
     /// Report the summary as one JSON object on the standard output; needs --out FILE

@@ -1,6 +1,8 @@
 //! Wrong usage that the grammar of the arguments does not show.
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::fmt;
+use std::str::FromStr;
 
 /// What is wrong with the arguments; ends the program with code 2.
 #[derive(Debug)]
@@ -16,6 +18,15 @@ impl std::error::Error for Usage {}
 
 pub(crate) fn usage(message: impl Into<String>) -> anyhow::Error {
     Usage(message.into()).into()
+}
+
+/// A parser of the names of formats, which shows them in the help and to the completions of shells.
+pub(crate) fn one_of<F>(names: &'static [&'static str]) -> impl TypedValueParser<Value = F>
+where
+    F: FromStr + Clone + Send + Sync + 'static,
+    F::Err: std::error::Error + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<F>())
 }
 
 /// Value parsers, each with what it expects as its message.

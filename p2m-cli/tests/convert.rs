@@ -61,9 +61,9 @@ fn losses_are_told() {
 in       {scene} (obj): 2 triangles
 skipped  1 x vn
 out      {stl} (stl): 2 triangles, 184 bytes
-lost     names of 2 objects
-lost     1 positions that belong to no primitive
-lost     precision: 2 coordinates are rounded to f32, by up to 1.192e-8
+lost     names of objects: 2
+lost     positions that belong to no primitive: 1
+lost     precision: coordinates rounded to f32: 2, by up to 1.192e-8
 lost     which corners are shared: each triangle has its own
 "
     );
@@ -95,6 +95,30 @@ lost     which corners are shared: each triangle has its own
         json(&["convert", &alone, &path(&folder, "alone.off"), "--json"])["out"]["lost"],
         json!([{ "what": "unused_positions", "count": 1 }])
     );
+}
+
+#[test]
+fn polygons_that_are_cut_are_told() {
+    let folder = TempDir::new().unwrap();
+    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 0\nf 1 2 3 4\nf 1 2 3\nl 1 2 3\nf 4 3 2 1\nf 1 2 3 5 4\n";
+    let (scene, out) = (write(&folder, "s.obj", text), path(&folder, "s.ply"));
+    let report = json(&["convert", &scene, &out, "--json"]);
+    assert_eq!(report["in"]["primitives"], json!({ "triangles": 8, "segments": 2, "points": 0 }));
+    assert_eq!(report["out"]["lost"], json!([{ "what": "polygons", "count": 3 }]));
+    // However they are changed on the way.
+    let report = json(&["convert", &scene, &out, "--subdivide", "1", "--json"]);
+    assert_eq!(report["out"]["lost"], json!([{ "what": "polygons", "count": 3 }]));
+    let message = text_of_error(&["convert", &scene, &out]);
+    assert!(
+        message.ends_with("\nlost     polygons: 3 are written as the triangles that they are cut into\n"),
+        "{message}"
+    );
+    // Triangles are no polygons any more.
+    assert_eq!(json(&["convert", &out, &path(&folder, "t.off"), "--json"])["out"]["lost"], json!([]));
+}
+
+fn text_of_error(arguments: &[&str]) -> String {
+    text(&p2m(arguments).stderr)
 }
 
 #[test]

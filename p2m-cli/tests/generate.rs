@@ -108,7 +108,7 @@ fn scenes_go_to_files_in_their_format() {
         text(&output.stderr),
         format!(
             "made     the unit sphere as a subdivided icosahedron\nout      {out} (stl): 80 triangles, 4,084 bytes\n\
-            lost     precision: 72 coordinates are rounded to f32, by up to 2.539e-8\n\
+            lost     precision: coordinates rounded to f32: 72, by up to 2.539e-8\n\
             lost     which corners are shared: each triangle has its own\n"
         )
     );
@@ -127,7 +127,7 @@ fn wrong_options_say_why() {
         (&["cable-bundle", "--twists", "1e9"], "must be"),
         (&["mixed-sizes", "--decades", "13"], "must be from 0 to 12"),
         (&["sphere", "--json"], "the scene has to go to a file"),
-        (&["sphere", "--to", "dwg"], "unknown format 'dwg'"),
+        (&["sphere", "--to", "dwg"], "[possible values: obj, ply, stl, off]"),
     ] {
         let message = failure(&[&["generate"], arguments].concat(), 2);
         assert!(message.contains(why), "{arguments:?}: {message}");

@@ -132,7 +132,10 @@ fn the_given_format_goes_before_the_extension() {
     );
     assert_eq!(json(&["info", &scene, "--format", "obj", "--json"])["primitives"]["points"], 1);
     let message = failure(&["info", &scene, "--format", "step"], 2);
-    assert!(message.contains("unknown format 'step', expected one of obj, ply, stl, off"), "{message}");
+    assert!(
+        message.contains("invalid value 'step' for '--format <FORMAT>'\n  [possible values: obj, ply, stl, off]"),
+        "{message}"
+    );
 }
 
 #[test]

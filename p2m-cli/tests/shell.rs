@@ -25,13 +25,21 @@ fn every_shell_gets_completions() {
 fn bash_completes() {
     let folder = TempDir::new().unwrap();
     let script = write(&folder, "p2m.bash", table(&["completions", "bash"]));
-    let ask = "source \"$1\"; COMP_WORDS=(p2m que); COMP_CWORD=1; _p2m p2m que p2m; echo \"${COMPREPLY[@]}\"";
-    let output = std::process::Command::new("bash").args(["-c", ask, "bash", &script]).output();
-    let Ok(output) = output else {
-        eprintln!("skipped: there is no bash");
-        return;
-    };
-    assert_eq!(text(&output.stdout), "query\n", "{}", text(&output.stderr));
+    let ask = "source \"$1\"; shift; COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); \
+        _p2m p2m \"${!#}\" \"${*: -2:1}\"; echo \"${COMPREPLY[@]}\"";
+    for (line, expected) in [
+        (&["p2m", "que"][..], "query"),
+        (&["p2m", "info", "--format", "o"], "obj off"),
+        (&["p2m", "query", "--out-format", ""], "csv npy ply"),
+        (&["p2m", "generate", "c"], "cone cylinder cable-bundle"),
+    ] {
+        let Ok(output) = std::process::Command::new("bash").args(["-c", ask, "bash", &script]).args(line).output()
+        else {
+            eprintln!("skipped: there is no bash");
+            return;
+        };
+        assert_eq!(text(&output.stdout).trim_end(), expected, "{line:?} {}", text(&output.stderr));
+    }
 }
 
 #[test]
