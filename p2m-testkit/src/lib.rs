@@ -47,7 +47,7 @@ pub fn model_files() -> Vec<std::path::PathBuf> {
     let mut files: Vec<_> = std::fs::read_dir(folder)
         .expect("the folder is there")
         .map(|entry| entry.expect("readable").path())
-        .filter(|path| path.extension().is_some_and(|e| e == "obj" || e == "ply"))
+        .filter(|path| path.extension().is_some_and(|e| ["obj", "ply", "stl", "off"].iter().any(|known| e == *known)))
         .collect();
     files.sort_by_key(|path| std::fs::metadata(path).map_or(0, |m| m.len()));
     files
