@@ -31,8 +31,8 @@ impl Progress {
     /// Work called `what`, like `reading scene.ply`, of so many units if that is known.
     pub(crate) fn start(what: &str, total: Option<u64>, unit: Unit) -> Self {
         let done = Arc::new(AtomicU64::new(0));
-        let is_watched = io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb");
-        if !is_watched {
+        // On a terminal that cannot move its cursor the bar hides itself.
+        if !io::stderr().is_terminal() {
             return Self { done, drawing: None };
         }
         let (stop, stopped) = mpsc::channel();

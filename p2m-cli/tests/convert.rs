@@ -81,6 +81,9 @@ lost     which corners are shared: each triangle has its own
     );
     assert_eq!(lost(&path(&folder, "s.ply")), json!([{ "what": "names", "count": 2 }]));
     assert_eq!(lost(&path(&folder, "t.obj")), json!([]));
+    // What was skipped is told whatever the changes.
+    let report = json(&["convert", &scene, &stl, "--json", "--subdivide", "1", "--gap", "0.5"]);
+    assert_eq!(report["skipped"], json!([{ "what": "vn", "count": 1 }]));
     // Nothing to lose.
     let plain = write(&folder, "plain.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     assert_eq!(json(&["convert", &plain, &stl, "--json"])["out"]["lost"], json!([]));

@@ -5,6 +5,7 @@
 mod common;
 
 use common::*;
+use std::collections::BTreeSet;
 use std::process::{Command, Stdio};
 
 /// What a terminal shows of a shell command; `None` without `script`.
@@ -27,7 +28,9 @@ const LONG: &str = "timeout 3 \"$P2M\" query \"$SCENE\" --random 100000000 --bac
 #[test]
 fn long_work_shows_a_bar_on_a_terminal_only() {
     let Some(shown) = on_terminal(LONG, &[]) else { return };
-    assert!(shown.contains("asking") && shown.contains("/100,000,000 queries"), "{shown:?}");
+    // It moves on.
+    let words: BTreeSet<_> = shown.split_whitespace().filter(|word| word.ends_with("/100,000,000")).collect();
+    assert!(shown.contains("asking") && words.len() > 3, "{shown:?}");
     let shown = on_terminal(&format!("{LONG} 2>/dev/null"), &[]).unwrap();
     assert_eq!(shown, "");
     // No bar, but the prompt of the shell goes to a line of its own after an interruption.
