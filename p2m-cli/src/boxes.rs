@@ -4,6 +4,7 @@ use crate::input::{self, read_scene, scene_format};
 use crate::json;
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
+use crate::usage::one_of;
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use nalgebra::Point3;
@@ -11,28 +12,37 @@ use p2m_bvh::{AabbTree, NodeBox};
 use p2m_core::{BuildIndex, Soup};
 use p2m_mixed::Format;
 use p2m_mixed::picture::{Panel, View, box_edges, write_picture_ply, write_svg};
+use p2m_mixed::statistics::figure::Count;
 use serde_json::json;
+use std::io::{self, Write};
 use std::path::PathBuf;
 
-const EXAMPLES: &str = "\
+fn help() -> String {
+    format!(
+        "\
 Each panel (in a PLY file: each value of the vertex property 'panel') shows one level of the tree: its nodes and the \
 leaves above it, which together hold the whole scene. The last one shows the leaves alone. Dots are vertices of the \
 scene, at most 4000 of them.
 
+{}
+
 Examples:
   p2m boxes bunny.obj --out boxes.svg
   p2m boxes scene.ply --levels 5 --view top --out boxes.svg
-  p2m boxes scene.ply --levels 12 --out boxes.ply";
+  p2m boxes scene.ply --levels 12 --out boxes.ply",
+        json::STABILITY
+    )
+}
 
 /// Draw the boxes of the AABB tree over a scene, level by level, as SVG or PLY
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = help())]
 pub(crate) struct Args {
     /// Scene: an OBJ, PLY, STL or OFF file; `-` is the standard input
     scene: PathBuf,
 
     /// The format of the scene, if the extension of its name does not tell
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     format: Option<Format>,
 
     /// Where to write the picture: a name that ends in .svg or .ply
@@ -105,11 +115,13 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         _ => bail!("{}: the name of a picture ends in .svg or .ply", args.out.display()),
     };
     Output::refuse_inputs(&args.out, &[&args.scene])?;
-    let scene = read_scene(&args.scene, scene_format(&args.scene, args.format, "--format")?)?;
+    let format = scene_format(&args.scene, args.format, "--format")?;
+    let scene = read_scene(&args.scene, format)?;
     let progress = Progress::start("building", None, Unit::None);
     let tree = AabbTree::build(&scene.soup, &Default::default()).with_context(|| input::name(&args.scene))?;
     drop(progress);
-    let mut panels = panels(&tree.boxes().collect::<Vec<_>>(), usize::from(args.levels));
+    let (drawn, mut panels): (Vec<Drawn>, Vec<Panel>) =
+        panels(&tree.boxes().collect::<Vec<_>>(), usize::from(args.levels)).into_iter().unzip();
     let mut output = Output::open(Some(&args.out))?;
     let written = if is_ply {
         write_picture_ply(&panels, &mut output)
@@ -121,36 +133,46 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     written.with_context(|| output.cannot_write())?;
     output.finish()?;
     if args.json {
-        let panels: Vec<_> = panels.iter().map(|p| json!({"title": p.title, "lines": p.lines.len()})).collect();
+        let panels: Vec<_> = drawn.iter().map(|d| json!({"level": d.level, "boxes": d.boxes})).collect();
         let report = json!({
-            "p2m": "boxes", "version": json::VERSION, "scene": input::name(&args.scene),
-            "out": args.out.display().to_string(), "panels": panels,
+            "p2m": "boxes",
+            "version": json::VERSION,
+            "scene": { "file": input::name(&args.scene), "format": format.name() },
+            "out": { "file": args.out.display().to_string() },
+            "panels": panels,
         });
         return json::print(&report);
     }
-    for panel in &panels {
-        eprintln!("{}", panel.title);
-    }
+    // The picture is complete; whether anybody reads this is not our concern.
+    let _ = panels.iter().try_for_each(|panel| writeln!(io::stderr(), "{}", panel.title));
     Ok(())
 }
 
+/// What a panel shows.
+struct Drawn {
+    /// `None` for the leaves.
+    level: Option<usize>,
+    boxes: usize,
+}
+
 /// One panel for each of the first levels, and one for the leaves.
-fn panels(boxes: &[NodeBox<f64>], levels: usize) -> Vec<Panel> {
+fn panels(boxes: &[NodeBox<f64>], levels: usize) -> Vec<(Drawn, Panel)> {
     let deepest = boxes.iter().map(|b| b.depth).max();
-    let panel = |title: &str, show: &dyn Fn(&NodeBox<f64>) -> bool| {
+    let panel = |level: Option<usize>, show: &dyn Fn(&NodeBox<f64>) -> bool| {
         let shown: Vec<_> = boxes.iter().filter(|b| show(b)).collect();
+        let title = level.map_or("leaves".to_owned(), |level| format!("level {level}"));
         let noun = if shown.len() == 1 { "box" } else { "boxes" };
-        Panel {
-            title: format!("{title}: {} {noun}", shown.len()),
+        let panel = Panel {
+            title: format!("{title}: {} {noun}", Count(shown.len() as u64)),
             lines: shown.iter().flat_map(|b| box_edges(&b.bounds)).collect(),
-        }
+        };
+        (Drawn { level, boxes: shown.len() }, panel)
     };
     let is_leaf = |b: &NodeBox<f64>| b.primitives > 0;
     let drawn = deepest.map_or(0, |deepest| levels.min(deepest + 1));
-    let mut panels: Vec<Panel> = (0..drawn)
-        .map(|level| panel(&format!("level {level}"), &|b| b.depth == level || (b.depth < level && is_leaf(b))))
-        .collect();
-    panels.push(panel("leaves", &is_leaf));
+    let mut panels: Vec<_> =
+        (0..drawn).map(|level| panel(Some(level), &|b| b.depth == level || (b.depth < level && is_leaf(b)))).collect();
+    panels.push(panel(None, &is_leaf));
     panels
 }
 

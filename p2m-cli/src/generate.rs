@@ -108,7 +108,7 @@ enum Command {
         destination: Destination,
     },
 
-    /// A helical gear around the z axis, of slivers alone
+    /// A helical gear around the z axis, of thin triangles alone
     #[command(after_help = "Example:\n  p2m generate skewed-gear --rotate-x 45 --rotate-y 45 --out gear.ply")]
     SkewedGear {
         /// Teeth

@@ -12,13 +12,13 @@ pub(crate) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Starts to listen for SIGINT, SIGTERM and SIGHUP, as far as they are ours to handle (see [`is_ignored`]). Where there are
+/// Starts to listen for SIGINT, SIGTERM, SIGHUP and SIGQUIT, as far as they are ours to handle (see [`is_ignored`]). Where there are
 /// no such signals, nothing happens.
 #[cfg(unix)]
 pub(crate) fn listen() -> std::io::Result<()> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
     use std::io::{IsTerminal, Write};
-    let signals: Vec<i32> = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&s| !is_ignored(s)).collect();
+    let signals: Vec<i32> = [SIGINT, SIGTERM, SIGHUP, SIGQUIT].into_iter().filter(|&s| !is_ignored(s)).collect();
     let mut signals = signal_hook::iterator::Signals::new(signals)?;
     std::thread::Builder::new().spawn(move || {
         if let Some(signal) = signals.forever().next() {

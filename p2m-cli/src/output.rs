@@ -8,10 +8,10 @@ use anyhow::{Context, bail};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, IsTerminal, StdoutLock, Write};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
+use tempfile::TempPath;
 
 /// A buffered destination. Dropped before [`finish`](Self::finish), or interrupted, a file is as it was before; only a
-/// process that ends without any chance to clean up (SIGKILL) leaves its unfinished work under the name `.p2m-*` in the
+/// process that ends without any chance to clean up (SIGKILL, or a limit of the system) leaves its unfinished work under the name `.p2m-*` in the
 /// same folder.
 pub(crate) struct Output {
     sink: Sink,
@@ -24,7 +24,8 @@ enum Sink {
     Stdout(BufWriter<StdoutLock<'static>>),
     /// Written under another name in the same directory, and renamed at the end.
     File {
-        temporary: BufWriter<NamedTempFile>,
+        temporary: BufWriter<File>,
+        path: TempPath,
         target: PathBuf,
     },
     /// A device or a pipe: renaming would replace it.
@@ -158,21 +159,21 @@ impl Sink {
             let folder = directory.display();
             io::Error::new(e.kind(), format!("no file can be made in the folder '{folder}': {}", e.kind()))
         })?;
-        unfinished.push(temporary.path().to_owned());
-        let temporary = BufWriter::with_capacity(BUFFER, temporary);
-        Ok(Self::File { temporary, target })
+        // Apart, for errors of the two together name the file, too.
+        let (temporary, path) = temporary.into_parts();
+        unfinished.push(path.to_path_buf());
+        Ok(Self::File { temporary: BufWriter::with_capacity(BUFFER, temporary), path, target })
     }
 
     fn finish(self) -> io::Result<()> {
         match self {
             Self::Stdout(mut writer) => writer.flush(),
             Self::Device(mut writer) => writer.flush(),
-            Self::File { temporary, target } => {
-                let file = temporary.into_inner().map_err(io::IntoInnerError::into_error)?;
+            Self::File { mut temporary, path, target } => {
+                temporary.flush()?;
                 let mut unfinished = unfinished();
-                unfinished.retain(|path| path != file.path());
-                file.persist(target)?;
-                Ok(())
+                unfinished.retain(|unfinished| *unfinished != *path);
+                path.persist(target).map_err(|e| e.error)
             }
         }
     }

@@ -21,6 +21,9 @@ pub(crate) struct Summary<'a> {
     pub(crate) answers: Answers,
 }
 
+/// 2^-64
+const SCALE: f64 = 1.0 / (1u128 << 64) as f64;
+
 /// Statistics of the answers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Answers {
@@ -29,11 +32,13 @@ pub(crate) struct Answers {
     min: f64,
     max: f64,
     sum: f64,
+    /// The sum of the distances times [`SCALE`], for those whose sum leaves the range.
+    scaled_sum: f64,
 }
 
 impl Answers {
     pub(crate) fn none() -> Self {
-        Self { queries: 0, answered: 0, min: f64::INFINITY, max: 0.0, sum: 0.0 }
+        Self { queries: 0, answered: 0, min: f64::INFINITY, max: 0.0, sum: 0.0, scaled_sum: 0.0 }
     }
 
     pub(crate) fn add(&mut self, answer: Option<&Closest<f64>>) {
@@ -43,12 +48,15 @@ impl Answers {
             self.min = self.min.min(closest.distance);
             self.max = self.max.max(closest.distance);
             self.sum += closest.distance;
+            self.scaled_sum += closest.distance * SCALE;
         }
     }
 
     #[allow(clippy::cast_precision_loss, reason = "more answers than 2^53 are out of reach")]
     fn mean(&self) -> Option<f64> {
-        (self.answered > 0).then(|| self.sum / self.answered as f64)
+        let count = self.answered as f64;
+        let mean = if self.sum.is_finite() { self.sum / count } else { self.scaled_sum / count / SCALE };
+        (self.answered > 0).then_some(mean)
     }
 }
 
@@ -57,7 +65,6 @@ impl Summary<'_> {
     pub(crate) fn json(&self, asked_about: &Value, max_distance: Option<f64>, out: &Value) -> Value {
         let answers = &self.answers;
         let distance = answers.mean().map(|mean| {
-            // A mean of numbers near the end of the range may not be finite.
             json!({ "min": json::number(answers.min), "max": json::number(answers.max), "mean": json::number(mean) })
         });
         json!({

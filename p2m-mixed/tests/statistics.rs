@@ -158,8 +158,8 @@ fn slivers_are_below_a_1024th_and_noted_from_one_percent_on() {
     assert_eq!((s.shapes.slivers, s.shapes.thin), (2, 2));
     assert_eq!(
         sentence(&s, "slivers"),
-        "1 % of the triangles are slivers (height below 1/1024 of the longest edge): expect the exact lane of the kernel, \
-        which takes longer"
+        "1 % of the triangles are slivers (height below 1/1024 of the longest edge): their distances take \
+        double-double arithmetic, which is slower"
     );
     assert!(s.notes().contains(&Note::Slivers { share: Share { part: 2, whole: 200 } }));
     assert!(!names(&strip(201, 2, 1e-6)).contains(&"slivers"));

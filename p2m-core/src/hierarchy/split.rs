@@ -22,7 +22,7 @@ pub enum SplitRule {
     AdaptiveSah,
     /// The cost of random balls: A is the volume of the box dilated by `radius`, the distance (in units of the scene)
     /// that most answers are expected to have. From volumes (0) it goes through surface areas to the sum of the sides
-    /// (large radii). A negative or NaN radius counts as 0. 16 bins along each axis.
+    /// (large radii). A negative or NaN radius counts as 0; an infinite one halves nodes as [`Median`](Self::Median) does. 16 bins along each axis.
     Ball {
         /// The expected distance.
         radius: f64,

@@ -85,7 +85,7 @@ impl Kind {
         match self {
             Self::KnotAndCables(_) => "a torus knot of triangles with cables of segments around it",
             Self::TorusKnot(_) => "a closed tube of triangles along a torus knot",
-            Self::SkewedGear(_) => "a helical gear of slivers around the z axis",
+            Self::SkewedGear(_) => "a helical gear of thin triangles around the z axis",
             Self::Sphere(_) => "the unit sphere by latitude and longitude",
             Self::IcoSphere(_) => "the unit sphere as a subdivided icosahedron",
             Self::Cone(_) => "a closed cone around the z axis",

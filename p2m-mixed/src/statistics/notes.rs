@@ -191,8 +191,8 @@ impl fmt::Display for Note {
             }
             Self::Slivers { share } => write!(
                 f,
-                "{share} of the triangles are slivers (height below 1/1024 of the longest edge): expect the exact lane of \
-                the kernel, which takes longer"
+                "{share} of the triangles are slivers (height below 1/1024 of the longest edge): their distances \
+                take double-double arithmetic, which is slower"
             ),
             Self::Thin { share, median } => write!(
                 f,
