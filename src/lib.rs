@@ -48,6 +48,7 @@
 //! | feature | adds | default |
 //! |---|---|---|
 //! | `bvh` | [`AabbTree`] | yes |
+//! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `mixed` | [`scene`]: reading scenes and points from files | yes |
 #![forbid(unsafe_code)]
 

@@ -4,17 +4,20 @@ use crate::contender::{Absent, Answer, Backend, Contender, Prepared, Ready, Scal
 use crate::rivals::{parry_double, parry_single};
 use crate::scene::Scene;
 use nalgebra::Point3;
-use p2m_bvh::AabbTree;
-use p2m_core::{BruteForce, BuildIndex, ClosestPoint, PrimitiveId, PrimitiveSet, Shape, Soup, Triangle};
+use p2m_bvh::{AabbOptions, AabbTree};
+use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Isa, PrimitiveId, PrimitiveSet, Shape, Soup, Triangle};
 use std::marker::PhantomData;
 
 /// Every contender, in the order of the tables.
 pub(crate) const ALL: &[Backend] = &[
     Backend { name: "brute", exhaustive: true, prepare: |s| over_soup::<f64, BruteForce<_>>(s), ..OURS },
-    Backend { name: "aabb", prepare: |s| over_soup::<f64, AabbTree<_, _>>(s), ..OURS },
-    Backend { name: "aabb-tri", prepare: |s| over_triangles::<AabbTree<_, _>>(s), ..OURS },
+    Backend { name: "aabb", prepare: |s| aabb::<f64>(s, None), ..OURS },
+    Backend { name: "aabb-avx512", prepare: |s| aabb::<f64>(s, Some("avx512")), ..OURS },
+    Backend { name: "aabb-avx2", prepare: |s| aabb::<f64>(s, Some("avx2")), ..OURS },
+    Backend { name: "aabb-portable", prepare: |s| aabb::<f64>(s, Some("portable")), ..OURS },
+    Backend { name: "aabb-tri", prepare: aabb_of_triangles, ..OURS },
     Backend { name: "brute-f32", exhaustive: true, prepare: |s| over_soup::<f32, BruteForce<_>>(s), ..OURS_SINGLE },
-    Backend { name: "aabb-f32", prepare: |s| over_soup::<f32, AabbTree<_, _>>(s), ..OURS_SINGLE },
+    Backend { name: "aabb-f32", prepare: |s| aabb::<f32>(s, None), ..OURS_SINGLE },
     Backend { name: YARDSTICK, scalar: ScalarKind::Single, prepare: parry_single, ..RIVAL },
     Backend { name: YARDSTICK_DOUBLE, prepare: parry_double, ..RIVAL },
 ];
@@ -89,11 +92,26 @@ where
     Ok(Prepared { build: Box::new(move || build::<T, I, _>(soup, &options)), borrowed })
 }
 
-/// An index over the triangles written out, where there is nothing else: shows what a set of mixed kinds costs.
-fn over_triangles<'a, I>(scene: &'a Scene) -> Result<Prepared<'a>, Absent>
-where
-    I: BuildIndex<f64, Vec<Triangle<f64>>> + Sync + 'a,
-{
+/// What is timed is one thread's work.
+fn aabb_options() -> AabbOptions {
+    AabbOptions::default().with_parallel(false)
+}
+
+/// The AABB tree, with the instruction set of that name or the best one.
+fn aabb<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'a>, Absent> {
+    let Some(name) = isa else { return over_soup_with::<T, AabbTree<T, _>>(scene, aabb_options()) };
+    let isa = Isa::available().into_iter().find(|isa| isa.name() == name);
+    let isa = isa.ok_or_else(|| Absent(format!("this processor has no {name}")))?;
+    let (soup, borrowed) = T::soup(scene)?;
+    let build = move || {
+        let tree = AabbTree::build(soup, &aabb_options()).map_err(|error| Absent(error.to_string()))?;
+        Ok(Box::new(Ours(tree.with_isa(isa), PhantomData::<fn() -> T>)) as Ready<'a>)
+    };
+    Ok(Prepared { build: Box::new(build), borrowed })
+}
+
+/// The AABB tree over the triangles written out, where there is nothing else: shows what a set of mixed kinds costs.
+fn aabb_of_triangles(scene: &Scene) -> Result<Prepared<'_>, Absent> {
     let triangles: Option<Vec<Triangle<f64>>> = (0..scene.len())
         .map(|i| match scene.double.get(PrimitiveId::new(i)) {
             Shape::Triangle(triangle) => Some(triangle),
@@ -101,7 +119,7 @@ where
         })
         .collect();
     let triangles = triangles.ok_or_else(|| Absent("the scene has other primitives than triangles".to_owned()))?;
-    Ok(Prepared { build: Box::new(|| build::<f64, I, _>(triangles, &I::Options::default())), borrowed: 0 })
+    Ok(Prepared { build: Box::new(|| build::<f64, AabbTree<_, _>, _>(triangles, &aabb_options())), borrowed: 0 })
 }
 
 #[cfg(test)]

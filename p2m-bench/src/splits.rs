@@ -41,7 +41,7 @@ const RULES: &[Rule] = &[
 ];
 
 fn options(scene: &Scene, rule: SplitRule) -> AabbOptions {
-    AabbOptions::default().with_rule(match rule {
+    AabbOptions::default().with_parallel(false).with_rule(match rule {
         SplitRule::Ball { radius } => SplitRule::Ball { radius: radius * scene.diagonal() },
         other => other,
     })
@@ -58,7 +58,7 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> bool {
     let mut clean = true;
     for (rule, entry) in RULES.iter().zip(&entries) {
         let tree = AabbTree::build(&scene.double, &options(scene, rule.rule)).expect("built before");
-        let (nodes, depth) = tree.boxes().fold((0, 0), |(n, deepest), node| (n + 1, node.depth.max(deepest)));
+        let (nodes, depth) = tree.tree().boxes().fold((0, 0), |(n, deepest), node| (n + 1, node.depth.max(deepest)));
         let seconds = Spread::of(&entry.build.seconds).map_or(f64::NAN, |s| s.median);
         let mut row =
             vec![entry.backend.name.to_owned(), format!("{seconds:.4}"), nodes.to_string(), depth.to_string()];

@@ -1,8 +1,9 @@
 //! AABB tree with surface-area splits.
 //!
-//! The first form, kept plain: a binary tree with a box of the scene's scalar beside each node, searched nearest first.
-//! Boxes bound the kernel's own arithmetic (see [`Aabb::lower_bound`](p2m_core::Aabb::lower_bound)), so pruning needs
-//! no slack and answers are bitwise those of [`BruteForce`](p2m_core::BruteForce).
+//! Nodes of eight boxes over packets of sixteen primitives ([`PacketTree`](p2m_core::hierarchy::PacketTree)), searched nearest first with
+//! the vector instructions that the processor turns out to have. Boxes and packets only bound distances, in f32 and with
+//! proof (docs/filter.md); what may be the answer is evaluated by the kernel of the contract, so answers are bitwise those
+//! of [`BruteForce`](p2m_core::BruteForce).
 //!
 //! ```
 //! use p2m_bvh::AabbTree;
@@ -21,5 +22,5 @@
 
 mod tree;
 
-pub use p2m_core::hierarchy::{SplitOptions as AabbOptions, SplitRule};
-pub use tree::{AabbTree, NodeBox};
+pub use p2m_core::hierarchy::{NodeBox, SplitOptions as AabbOptions, SplitRule};
+pub use tree::AabbTree;

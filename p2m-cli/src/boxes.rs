@@ -121,7 +121,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let tree = AabbTree::build(&scene.soup, &Default::default()).with_context(|| input::name(&args.scene))?;
     drop(progress);
     let (drawn, mut panels): (Vec<Drawn>, Vec<Panel>) =
-        panels(&tree.boxes().collect::<Vec<_>>(), usize::from(args.levels)).into_iter().unzip();
+        panels(&tree.tree().boxes().collect::<Vec<_>>(), usize::from(args.levels)).into_iter().unzip();
     let mut output = Output::open(Some(&args.out))?;
     let written = if is_ply {
         write_picture_ply(&panels, &mut output)
@@ -156,9 +156,9 @@ struct Drawn {
 }
 
 /// One panel for each of the first levels, and one for the leaves.
-fn panels(boxes: &[NodeBox<f64>], levels: usize) -> Vec<(Drawn, Panel)> {
+fn panels(boxes: &[NodeBox], levels: usize) -> Vec<(Drawn, Panel)> {
     let deepest = boxes.iter().map(|b| b.depth).max();
-    let panel = |level: Option<usize>, show: &dyn Fn(&NodeBox<f64>) -> bool| {
+    let panel = |level: Option<usize>, show: &dyn Fn(&NodeBox) -> bool| {
         let shown: Vec<_> = boxes.iter().filter(|b| show(b)).collect();
         let title = level.map_or("leaves".to_owned(), |level| format!("level {level}"));
         let noun = if shown.len() == 1 { "box" } else { "boxes" };
@@ -168,7 +168,7 @@ fn panels(boxes: &[NodeBox<f64>], levels: usize) -> Vec<(Drawn, Panel)> {
         };
         (Drawn { level, boxes: shown.len() }, panel)
     };
-    let is_leaf = |b: &NodeBox<f64>| b.primitives > 0;
+    let is_leaf = |b: &NodeBox| b.primitives > 0;
     let drawn = deepest.map_or(0, |deepest| levels.min(deepest + 1));
     let mut panels: Vec<_> =
         (0..drawn).map(|level| panel(Some(level), &|b| b.depth == level || (b.depth < level && is_leaf(b)))).collect();

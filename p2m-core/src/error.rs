@@ -26,4 +26,12 @@ pub enum BuildError {
         /// How many there are, or were when counting stopped.
         len: usize,
     },
+    /// An index is to be fitted to a set of another size.
+    #[error("{len} primitives, but the index was built over {expected}")]
+    OtherLength {
+        /// How many there are.
+        len: usize,
+        /// How many there were.
+        expected: usize,
+    },
 }

@@ -16,19 +16,24 @@
 //! assert_eq!(answer.feature, Feature::Face);
 //! ```
 
+#![deny(unsafe_code)]
+
 mod aabb;
 mod approximate;
+pub mod batch;
 mod box_query;
 mod brute_force;
 mod error;
 pub mod hierarchy;
 mod index;
 pub mod kernel;
+mod packet;
 pub mod predicates;
 mod primitive;
 mod query;
 mod real;
 mod set;
+mod simd;
 mod soup;
 
 pub use aabb::Aabb;
@@ -41,4 +46,5 @@ pub use primitive::{Feature, Point, Primitive, Projection, Segment, Shape, Trian
 pub use query::{Best, Closest, Collector, QueryOptions};
 pub use real::Real;
 pub use set::{PrimitiveId, PrimitiveSet, check_set};
+pub use simd::Isa;
 pub use soup::{Element, Soup};

@@ -78,12 +78,31 @@ pub trait Collector {
     /// rises during a search.
     fn prune_above(&self) -> f64;
 
+    /// The same if some primitive is known to have a key of at most `square`, without being offered yet. A collector that
+    /// looks for the nearest primitive alone may then skip more; others ignore it, as by default.
+    #[inline(always)]
+    fn prune_given(&self, square: f64) -> f64 {
+        let _ = square;
+        self.prune_above()
+    }
+
+    /// Whether only the nearest primitive counts, and ties with it: a candidate that is farther than some primitive need
+    /// not be offered. Not by default.
+    #[inline(always)]
+    fn is_nearest_only(&self) -> bool {
+        false
+    }
+
     /// Takes a candidate.
     fn offer(&mut self, id: PrimitiveId, projection: Projection);
 
     /// Called once for every node of a tree that is visited. Does nothing unless somebody counts.
     #[inline(always)]
     fn visit_node(&mut self) {}
+
+    /// Called once for every packet of primitives that is filtered. Does nothing unless somebody counts.
+    #[inline(always)]
+    fn visit_packet(&mut self) {}
 }
 
 /// The running minimum of a search. Radius, ties, epsilon and lower bound are decided here and nowhere else.
@@ -174,6 +193,18 @@ impl<T: Real> Collector for Best<T> {
     #[inline(always)]
     fn prune_above(&self) -> f64 {
         self.prune
+    }
+
+    #[inline(always)]
+    fn prune_given(&self, square: f64) -> f64 {
+        // The answer will be at most that far.
+        let square = square * self.shrink;
+        if square < self.prune { square } else { self.prune }
+    }
+
+    #[inline(always)]
+    fn is_nearest_only(&self) -> bool {
+        true
     }
 
     #[inline(always)]

@@ -9,6 +9,8 @@ pub struct Counting<T: Real> {
     pub best: Best<T>,
     /// Nodes visited.
     pub nodes: usize,
+    /// Packets filtered.
+    pub packets: usize,
     /// Primitives whose kernel ran.
     pub primitives: usize,
 }
@@ -17,7 +19,7 @@ impl<T: Real> Counting<T> {
     /// Counts from zero around `best`.
     #[must_use]
     pub fn new(best: Best<T>) -> Self {
-        Self { best, nodes: 0, primitives: 0 }
+        Self { best, nodes: 0, packets: 0, primitives: 0 }
     }
 }
 
@@ -25,11 +27,20 @@ impl<T: Real> Collector for Counting<T> {
     fn prune_above(&self) -> f64 {
         self.best.prune_above()
     }
+    fn prune_given(&self, square: f64) -> f64 {
+        self.best.prune_given(square)
+    }
+    fn is_nearest_only(&self) -> bool {
+        self.best.is_nearest_only()
+    }
     fn offer(&mut self, id: PrimitiveId, projection: Projection) {
         self.primitives += 1;
         self.best.offer(id, projection);
     }
     fn visit_node(&mut self) {
         self.nodes += 1;
+    }
+    fn visit_packet(&mut self) {
+        self.packets += 1;
     }
 }

@@ -1,7 +1,7 @@
 //! What a cut costs, and where it costs least.
 
-use super::SplitRule;
 use super::split::Item;
+use super::{SplitOptions, SplitRule};
 
 /// A box that grows.
 #[derive(Clone, Copy)]
@@ -109,11 +109,17 @@ pub(super) fn count(n: usize) -> f64 {
     n as f64
 }
 
+/// The cost of testing `n` primitives, `block` of which are tested at once, in units of that of one primitive.
+fn blocks(n: usize, block: usize) -> f64 {
+    count(n.div_ceil(block) * block)
+}
+
 /// How often the article's search for the best position starts anew around the best so far.
 const RESAMPLINGS: usize = 2;
 
 /// The cheapest cut that `rule` finds; `None` if there is none, or if it does not go by cost.
-pub(super) fn best_cut(items: &[Item], bounds: &Bounds, centres: &Bounds, rule: SplitRule) -> Option<Cut> {
+pub(super) fn best_cut(items: &[Item], bounds: &Bounds, centres: &Bounds, options: &SplitOptions) -> Option<Cut> {
+    let (rule, block) = (options.rule, options.block.max(1));
     if rule == SplitRule::Median {
         return None;
     }
@@ -125,18 +131,18 @@ pub(super) fn best_cut(items: &[Item], bounds: &Bounds, centres: &Bounds, rule: 
         (a, b) => a.or(b),
     };
     if rule == SplitRule::AdaptiveSah {
-        let mut best = cheapest_border(items, on_axis(bounds.longest_axis()), &measure, whole)?;
+        let mut best = cheapest_border(items, on_axis(bounds.longest_axis()), &measure, whole, block)?;
         for _ in 0..RESAMPLINGS {
-            let finer = cheapest_border(items, best.binning.around(best.bin), &measure, whole);
+            let finer = cheapest_border(items, best.binning.around(best.bin), &measure, whole, block);
             best = cheaper(Some(best), finer)?;
         }
         return Some(best);
     }
-    (0..3).map(|axis| cheapest_border(items, on_axis(axis), &measure, whole)).fold(None, cheaper)
+    (0..3).map(|axis| cheapest_border(items, on_axis(axis), &measure, whole, block)).fold(None, cheaper)
 }
 
 /// The cheapest border between two bins that has items on either side.
-fn cheapest_border(items: &[Item], binning: Binning, measure: &Measure, whole: f64) -> Option<Cut> {
+fn cheapest_border(items: &[Item], binning: Binning, measure: &Measure, whole: f64, block: usize) -> Option<Cut> {
     if !binning.is_usable() || !whole.is_finite() {
         return None;
     }
@@ -161,9 +167,9 @@ fn cheapest_border(items: &[Item], binning: Binning, measure: &Measure, whole: f
         if side.count == 0 || right_count == 0 {
             continue;
         }
-        let sum = side.measure(measure) * count(side.count) + right_measure * count(right_count);
+        let sum = side.measure(measure) * blocks(side.count, block) + right_measure * blocks(right_count, block);
         // On a line every area is zero: any balanced cut will do.
-        let cost = if whole > 0.0 { sum / whole } else { count(side.count.max(right_count)) };
+        let cost = if whole > 0.0 { sum / whole } else { blocks(side.count.max(right_count), block) };
         if best.as_ref().is_none_or(|b| cost < b.cost) {
             best = Some(Cut { binning, bin: k, cost });
         }

@@ -35,17 +35,24 @@ pub enum SplitRule {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SplitOptions {
-    /// Nodes with at most this many primitives may be leaves, larger ones are always split.
+    /// Nodes with at most this many primitives are leaves if testing them is not dearer than splitting; larger ones are
+    /// always split.
     pub max_leaf: usize,
+    /// How many primitives are tested at once: the cost of a leaf is that of as many blocks of this size as it fills.
+    pub block: usize,
     /// Cost of visiting an inner node, in units of the cost of testing a primitive.
     pub node_cost: f64,
     /// Where nodes are split.
     pub rule: SplitRule,
+    /// Whether to use all threads of the current pool; needs the feature `rayon`, without which nothing does. The tree is
+    /// the same for any number of threads.
+    pub parallel: bool,
 }
 
 impl Default for SplitOptions {
+    /// For leaves that are packets of sixteen.
     fn default() -> Self {
-        Self { max_leaf: 8, node_cost: 4.0, rule: SplitRule::Sah }
+        Self { max_leaf: 16, block: 16, node_cost: 16.0, rule: SplitRule::Sah, parallel: true }
     }
 }
 
@@ -54,6 +61,11 @@ impl SplitOptions {
     #[must_use]
     pub fn with_rule(self, rule: SplitRule) -> Self {
         Self { rule, ..self }
+    }
+    /// On one thread, or on all.
+    #[must_use]
+    pub fn with_parallel(self, parallel: bool) -> Self {
+        Self { parallel, ..self }
     }
 }
 
@@ -76,35 +88,67 @@ impl Item {
     }
 }
 
-/// The nodes without volumes, and the order of the primitives in their leaves.
+/// The nodes without volumes, and the order of the primitives in their leaves. Siblings are side by side, and what is
+/// below the left one comes before what is below the right one.
 pub(super) fn build<T: Real>(boxes: &[Aabb<T>], options: &SplitOptions) -> (Vec<Node<()>>, Vec<PrimitiveId>) {
     let mut items: Vec<Item> = boxes.iter().enumerate().map(|(i, b)| Item::new(b, PrimitiveId::new(i))).collect();
-    let mut nodes = Vec::new();
-    if items.is_empty() {
-        return (nodes, Vec::new());
+    let nodes = if items.is_empty() { Vec::new() } else { subtree(&mut items, 0, 0, options) };
+    (nodes, items.into_iter().map(|i| i.id).collect())
+}
+
+/// Subtrees of fewer primitives are left to one thread.
+#[cfg(feature = "rayon")]
+const FORK: usize = 1 << 12;
+
+/// The tree over `items`, which take the places from `first` on; its nodes are numbered from its root, which is 0.
+fn subtree(items: &mut [Item], first: usize, depth: usize, options: &SplitOptions) -> Vec<Node<()>> {
+    #[cfg(feature = "rayon")]
+    if options.parallel && items.len() >= FORK {
+        let Some(left) = divide(items, depth, options) else { return vec![leaf(items, first)] };
+        let (a, b) = items.split_at_mut(left);
+        let (a, b) =
+            rayon::join(|| subtree(a, first, depth + 1, options), || subtree(b, first + left, depth + 1, options));
+        return joined(&a, &b);
     }
-    nodes.push(Node { volume: (), first: 0, count: 0 });
-    // Nodes whose fate is open: number, places, depth. Last in, first out keeps children of one region together.
-    let mut open = vec![(0usize, 0..items.len(), 0usize)];
+    let mut nodes = vec![Node { volume: (), first: 0, count: 0 }];
+    // Nodes whose fate is open: number, places among the items, depth.
+    let mut open = vec![(0usize, 0..items.len(), depth)];
     while let Some((at, places, depth)) = open.pop() {
         let here = &mut items[places.clone()];
         match divide(here, depth, options) {
-            None => {
-                // Neighbours in the user's order tend to be neighbours in memory.
-                here.sort_unstable_by_key(|item| item.id);
-                nodes[at] = Node { volume: (), first: index(places.start), count: index(places.len()) };
-            }
+            None => nodes[at] = leaf(here, first + places.start),
             Some(left) => {
-                nodes[at] = Node { volume: (), first: index(nodes.len()), count: 0 };
-                let middle = places.start + left;
                 let child = nodes.len();
+                nodes[at] = Node { volume: (), first: index(child), count: 0 };
                 nodes.extend([Node { volume: (), first: 0, count: 0 }; 2]);
+                let middle = places.start + left;
                 open.push((child + 1, middle..places.end, depth + 1));
                 open.push((child, places.start..middle, depth + 1));
             }
         }
     }
-    (nodes, items.into_iter().map(|i| i.id).collect())
+    nodes
+}
+
+fn leaf(items: &mut [Item], first: usize) -> Node<()> {
+    // Neighbours in the user's order tend to be neighbours in memory.
+    items.sort_unstable_by_key(|item| item.id);
+    Node { volume: (), first: index(first), count: index(items.len()) }
+}
+
+/// The tree of two subtrees, in the order of [`build`].
+#[cfg(feature = "rayon")]
+fn joined(a: &[Node<()>], b: &[Node<()>]) -> Vec<Node<()>> {
+    let shifted = |node: &Node<()>, by: usize| match node.count {
+        0 => Node { first: node.first + index(by), ..*node },
+        _ => *node,
+    };
+    let (of_a, of_b) = (2, 1 + a.len());
+    let mut nodes = Vec::with_capacity(1 + a.len() + b.len());
+    nodes.extend([Node { volume: (), first: 1, count: 0 }, shifted(&a[0], of_a), shifted(&b[0], of_b)]);
+    nodes.extend(a[1..].iter().map(|node| shifted(node, of_a)));
+    nodes.extend(b[1..].iter().map(|node| shifted(node, of_b)));
+    nodes
 }
 
 fn index(n: usize) -> u32 {
@@ -124,9 +168,13 @@ fn divide(items: &mut [Item], depth: usize, options: &SplitOptions) -> Option<us
         centres.add(&centre, &centre);
     }
     let whole = items.len() <= options.max_leaf;
-    let cut = if depth < MAX_DEPTH / 2 { best_cut(items, &bounds, &centres, options.rule) } else { None };
+    let cut = if depth < MAX_DEPTH / 2 { best_cut(items, &bounds, &centres, options) } else { None };
     match cut {
-        Some(Cut { cost, .. }) if whole && cost + options.node_cost >= count(items.len()) => None,
+        Some(Cut { cost, .. })
+            if whole && cost + options.node_cost >= count(items.len().next_multiple_of(options.block.max(1))) =>
+        {
+            None
+        }
         // Both sides of a cut have items, by the construction of `best_cut`.
         Some(Cut { binning, bin, .. }) => Some(partition(items, |item| binning.of(item) < bin)),
         None if whole => None,
@@ -184,7 +232,7 @@ mod tests {
         assert!(covered.into_iter().eq(0..boxes.len()), "every place in one leaf");
         assert!(depth(&h) <= MAX_DEPTH);
         for node in h.nodes.iter().filter(|n| n.children().is_none()) {
-            assert!((1..=8).contains(&node.places().len()));
+            assert!((1..=SplitOptions::default().max_leaf).contains(&node.places().len()));
         }
         h
     }
@@ -211,5 +259,21 @@ mod tests {
         // Equal bins cut off one primitive at a time: 1900 levels if nothing stopped it.
         let boxes: Vec<_> = (-950..950).map(|e| point(2f64.powi(e), 0.0, 0.0)).collect();
         assert!(depth(&check(&boxes)) > MAX_DEPTH / 2);
+    }
+
+    #[cfg(feature = "rayon")]
+    #[test]
+    fn the_tree_is_the_same_for_any_number_of_threads() {
+        let mut state = 1u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 40) as f64
+        };
+        let boxes: Vec<Aabb<f64>> = (0..60_000).map(|_| point(next(), next(), next())).collect();
+        let expected = build(&boxes, &SplitOptions::default().with_parallel(false));
+        for threads in [1, 2, 5] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            assert!(pool.install(|| build(&boxes, &SplitOptions::default())) == expected, "{threads} threads");
+        }
     }
 }

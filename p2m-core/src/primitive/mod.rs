@@ -155,6 +155,12 @@ pub trait Primitive<T: Real> {
         Some(self.project(query))
     }
 
+    /// The one to three vertices of which it is the convex hull: indexes then filter it by more than its box. None by
+    /// default; a primitive that is no such hull leaves it so.
+    fn vertices(&self) -> &[Point3<T>] {
+        &[]
+    }
+
     /// Whether it has a point in a closed box, for [`BoxQuery`](crate::BoxQuery). Exact for the primitives of this
     /// project; by default, whether its own box does, which for a primitive of your own finds at least those that do.
     fn meets_box(&self, bounds: &Aabb<T>) -> bool {
@@ -182,6 +188,10 @@ impl<T: Real, P: Primitive<T>> Primitive<T> for &P {
     #[inline(always)]
     fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
         (*self).project_within(query, square)
+    }
+    #[inline(always)]
+    fn vertices(&self) -> &[Point3<T>] {
+        (*self).vertices()
     }
     fn meets_box(&self, bounds: &Aabb<T>) -> bool {
         (*self).meets_box(bounds)

@@ -37,6 +37,11 @@ impl<T: Real> Primitive<T> for Point<T> {
         let (q, v) = (wide(query), wide(&self.position));
         Some(Projection::from_nearest(&scalar::point(q, v, square)?, q, &[v]))
     }
+    #[inline(always)]
+    fn vertices(&self) -> &[Point3<T>] {
+        std::slice::from_ref(&self.position)
+    }
+
     fn meets_box(&self, bounds: &Aabb<T>) -> bool {
         in_box::meets(std::array::from_ref(&self.position), bounds)
     }

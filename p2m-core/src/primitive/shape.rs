@@ -54,6 +54,11 @@ impl<T: Real> Primitive<T> for Shape<T> {
         }
     }
 
+    #[inline(always)]
+    fn vertices(&self) -> &[Point3<T>] {
+        Self::vertices(self)
+    }
+
     fn meets_box(&self, bounds: &Aabb<T>) -> bool {
         match self {
             Self::Point(p) => p.meets_box(bounds),

@@ -35,6 +35,11 @@ impl<T: Real> Primitive<T> for Triangle<T> {
         let (q, v) = (wide(query), [wide(&self.vertices[0]), wide(&self.vertices[1]), wide(&self.vertices[2])]);
         Some(Projection::from_nearest(&scalar::triangle(q, v, square)?, q, &v))
     }
+    #[inline(always)]
+    fn vertices(&self) -> &[Point3<T>] {
+        &self.vertices
+    }
+
     fn meets_box(&self, bounds: &Aabb<T>) -> bool {
         in_box::meets(&self.vertices, bounds)
     }

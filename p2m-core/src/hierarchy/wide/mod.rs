@@ -1,0 +1,286 @@
+//! A tree of wide nodes over packets.
+//!
+//! A binary tree of splits is collapsed into nodes of eight children: the children of the root, then those of whichever
+//! has the largest surface area, until eight are together. A node is a few cache lines with eight boxes side by side
+//! ([`node`]), a leaf a [`Packet`] of up to sixteen primitives. Both are in f32 or less and only bound distances, from
+//! both sides and with proof; what may be the answer is evaluated in f64 by the kernel of the contract ([`search`]).
+
+mod node;
+mod overlap;
+mod search;
+
+use super::{Hierarchy, SplitOptions};
+use crate::packet::{Kind, LANES, Packet};
+use crate::real::wide;
+use crate::simd::Isa;
+use crate::{Aabb, Collector, Primitive, PrimitiveId, PrimitiveSet, Real};
+use nalgebra::Point3;
+use node::{Child, Frame, Node, WIDTH};
+use search::Search;
+
+/// No path from the root is longer: that of the binary tree, and one node more where a leaf has several kinds.
+const MAX_WIDE_DEPTH: usize = super::MAX_DEPTH + 2;
+
+/// A tree over a set of primitives, which it does not keep: every method that needs the set is given the same one.
+#[derive(Clone, Debug)]
+pub struct PacketTree {
+    isa: Isa,
+    frame: Frame,
+    bounds: Aabb<f64>,
+    root: Child,
+    /// Nodes on the longest path from the root.
+    depth: usize,
+    nodes: Vec<Node>,
+    packets: Vec<Packet>,
+    /// How many primitives there are.
+    len: usize,
+}
+
+/// The box of a node or a packet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct NodeBox {
+    /// Around everything below the node.
+    pub bounds: Aabb<f64>,
+    /// How far below the root, which is at 0.
+    pub depth: usize,
+    /// How many primitives it has as a packet; 0 for a node.
+    pub primitives: usize,
+}
+
+impl PacketTree {
+    /// The box around everything; the empty box for an empty set.
+    #[must_use]
+    pub fn bounds(&self) -> &Aabb<f64> {
+        &self.bounds
+    }
+
+    /// Builds the tree over a set whose boxes are finite.
+    ///
+    /// # Complexity
+    /// O(n log n) time expected, O(n) memory.
+    #[must_use]
+    pub fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, options: &SplitOptions) -> Self {
+        let of_id = |i: usize| {
+            let primitive = set.get(PrimitiveId::new(i));
+            (primitive.aabb(), Kind::of(&primitive))
+        };
+        let (boxes, kinds): (Vec<Aabb<T>>, Vec<Kind>) = (0..set.len()).map(of_id).unzip();
+        let mut binary = Hierarchy::build(&boxes, options, |id| double(&boxes[id.index()]), Aabb::union);
+        let bounds = binary.nodes.first().map_or(Aabb::empty(), |root| root.volume);
+        // One packet after the other for each leaf, kinds apart.
+        let mut ranges: Vec<(std::ops::Range<usize>, Kind)> = Vec::new();
+        let mut of_leaf = vec![0..0; binary.nodes.len()];
+        for (at, node) in binary.nodes.iter().enumerate() {
+            let places = node.places();
+            let ids = &mut binary.order[places.clone()];
+            ids.sort_unstable_by_key(|id| (kinds[id.index()], *id));
+            let first = ranges.len();
+            for run in ids.chunk_by(|a, b| kinds[a.index()] == kinds[b.index()]) {
+                let kind = kinds[run[0].index()];
+                for ids in run.chunks(LANES) {
+                    let from = ranges.last().filter(|_| ranges.len() > first).map_or(places.start, |(r, _)| r.end);
+                    ranges.push((from..from + ids.len(), kind));
+                }
+            }
+            of_leaf[at] = first..ranges.len();
+        }
+        let frame = Frame::around(&bounds);
+        let order = binary.order;
+        let pack = |(places, kind): &(std::ops::Range<usize>, Kind)| {
+            let ids = &order[places.clone()];
+            let bounds = ids.iter().map(|id| double(&boxes[id.index()])).fold(Aabb::empty(), |a, b| a.union(&b));
+            (Packet::new(set, ids, *kind, frame.unit * FINEST), bounds)
+        };
+        let (packets, packet_boxes): (Vec<Packet>, Vec<Aabb<f64>>) =
+            map(&ranges, options.parallel, pack).into_iter().unzip();
+        let mut tree = Self {
+            isa: Isa::best(),
+            frame,
+            bounds,
+            root: Child::NONE,
+            depth: 0,
+            nodes: Vec::new(),
+            packets,
+            len: set.len(),
+        };
+        tree.collapse(&binary.nodes, &of_leaf, &packet_boxes);
+        tree.nodes.shrink_to_fit();
+        tree
+    }
+
+    /// Fits the tree to another set of as many primitives: the same ones, moved. The tree keeps its shape, so searches get
+    /// slower the more primitives have moved apart; answers are those of a tree that is built anew. Boxes are finite.
+    ///
+    /// # Panics
+    /// If the set has another number of primitives.
+    ///
+    /// # Complexity
+    /// O(n).
+    pub fn refit<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(&mut self, set: &S, parallel: bool) {
+        assert_eq!(set.len(), self.len, "as many primitives as before");
+        let bounds_of = |packet: &Packet| {
+            let boxes = packet.ids().iter().map(|id| double(&set.get(*id).aabb()));
+            boxes.fold(Aabb::empty(), |a, b| a.union(&b))
+        };
+        let packet_boxes = map(&self.packets, parallel, bounds_of);
+        self.bounds = packet_boxes.iter().fold(Aabb::empty(), |a, b| a.union(b));
+        self.frame = Frame::around(&self.bounds);
+        let finest = self.frame.unit * FINEST;
+        let pack = |packet: &Packet| {
+            let ids = packet.ids();
+            // A primitive may have become one of another kind.
+            let mut kinds = ids.iter().map(|id| Kind::of(&set.get(*id)));
+            let first = kinds.next().unwrap_or(Kind::Box);
+            let kind = if kinds.all(|kind| kind == first) { first } else { Kind::Box };
+            Packet::new(set, ids, kind, finest)
+        };
+        self.packets = map(&self.packets, parallel, pack);
+        // Children come after their parents.
+        let mut node_boxes = vec![Aabb::empty(); self.nodes.len()];
+        for number in (0..self.nodes.len()).rev() {
+            let mut all = Aabb::empty();
+            for place in 0..WIDTH {
+                let child = self.nodes[number].children[place];
+                if child == Child::NONE {
+                    continue;
+                }
+                let bounds = if child.is_packet() { packet_boxes[child.number()] } else { node_boxes[child.number()] };
+                all = all.union(&bounds);
+                self.nodes[number].put(place, self.frame.enclose(&bounds), child);
+            }
+            node_boxes[number] = all;
+        }
+    }
+
+    fn collapse(
+        &mut self,
+        binary: &[super::Node<Aabb<f64>>],
+        of_leaf: &[std::ops::Range<usize>],
+        packet_boxes: &[Aabb<f64>],
+    ) {
+        if binary.is_empty() {
+            return;
+        }
+        // What a child of a wide node can be: a node of the binary tree or a packet.
+        #[derive(Clone, Copy)]
+        enum Part {
+            Binary(usize),
+            Packet(usize),
+        }
+        type Slot = (Part, Aabb<f64>);
+        let split = |(part, bounds): &Slot| -> Vec<Slot> {
+            match part {
+                Part::Packet(_) => vec![(*part, *bounds)],
+                Part::Binary(at) => match binary[*at].children() {
+                    Some(children) => children.map(|c| (Part::Binary(c), binary[c].volume)).to_vec(),
+                    None => of_leaf[*at].clone().map(|packet| (Part::Packet(packet), packet_boxes[packet])).collect(),
+                },
+            }
+        };
+        // Leaves of one packet are that packet.
+        let resolve = |slot: Slot| -> Slot {
+            let parts = split(&slot);
+            if let (Part::Binary(_), [only]) = (slot.0, parts.as_slice()) { *only } else { slot }
+        };
+        let root = resolve((Part::Binary(0), binary[0].volume));
+        if let (Part::Packet(packet), _) = root {
+            self.root = Child::packet(packet);
+            return;
+        }
+        self.root = Child::node(0);
+        self.nodes.push(Node::EMPTY);
+        let mut open = vec![(0, root, 1)];
+        while let Some((number, slot, depth)) = open.pop() {
+            self.depth = self.depth.max(depth);
+            let mut slots: Vec<Slot> = split(&slot).into_iter().map(resolve).collect();
+            // Leaves of more than eight packets: as many as fit into each child.
+            while slots.len() < WIDTH {
+                let area = |slot: &Slot| half_area(&slot.1);
+                let candidates = (0..slots.len()).filter(|&i| {
+                    let parts = split(&slots[i]).len();
+                    parts > 1 && slots.len() - 1 + parts <= WIDTH
+                });
+                let Some(widest) = candidates.max_by(|a, b| area(&slots[*a]).total_cmp(&area(&slots[*b]))) else {
+                    break;
+                };
+                let parts = split(&slots[widest]);
+                slots.splice(widest..=widest, parts.into_iter().map(resolve));
+            }
+            let mut node = Node::EMPTY;
+            for (place, slot) in slots.iter().enumerate() {
+                let child = match slot.0 {
+                    Part::Packet(packet) => Child::packet(packet),
+                    Part::Binary(_) => {
+                        self.nodes.push(Node::EMPTY);
+                        open.push((self.nodes.len() - 1, *slot, depth + 1));
+                        Child::node(self.nodes.len() - 1)
+                    }
+                };
+                node.put(place, self.frame.enclose(&slot.1), child);
+            }
+            self.nodes[number] = node;
+        }
+    }
+
+    /// Offers to `collector` every primitive of `set`, over which the tree was built, that it could want. `query` is
+    /// finite.
+    #[inline]
+    pub fn search<T: Real, S: PrimitiveSet<T>, C: Collector>(&self, set: &S, query: &Point3<T>, collector: &mut C) {
+        let evaluate = |collector: &mut C, id: PrimitiveId, square: f64| {
+            if let Some(projection) = set.get(id).project_within(query, square) {
+                collector.offer(id, projection);
+            }
+        };
+        let fetch = |id| set.prefetch(id);
+        self.isa.run(Search { tree: self, query: wide(query), collector, evaluate, fetch });
+    }
+
+    /// The instruction set it searches with.
+    #[must_use]
+    pub fn isa(&self) -> Isa {
+        self.isa
+    }
+
+    /// Searches with another instruction set: the work may differ in the last bits of its bounds, answers do not.
+    #[must_use]
+    pub fn with_isa(self, isa: Isa) -> Self {
+        Self { isa, ..self }
+    }
+
+    /// Heap memory it owns, in bytes.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.nodes.capacity() * size_of::<Node>() + self.packets.capacity() * size_of::<Packet>()
+    }
+
+    /// Packets, and lanes of them in use: how well they are filled.
+    #[must_use]
+    pub fn packets(&self) -> (usize, usize) {
+        (self.packets.len(), self.len)
+    }
+}
+
+/// Units of packets below this part of the scene's are not needed: 2^-36.
+const FINEST: f64 = 1.0 / (1u64 << 36) as f64;
+
+/// Maps in order, on all threads if asked to.
+fn map<A: Sync, B: Send>(all: &[A], parallel: bool, f: impl Fn(&A) -> B + Sync) -> Vec<B> {
+    #[cfg(feature = "rayon")]
+    if parallel {
+        use rayon::prelude::*;
+        return all.par_iter().map(&f).collect();
+    }
+    let _ = parallel;
+    all.iter().map(f).collect()
+}
+
+fn double<T: Real>(bounds: &Aabb<T>) -> Aabb<f64> {
+    Aabb { min: Point3::from(wide(&bounds.min)), max: Point3::from(wide(&bounds.max)) }
+}
+
+/// Infinite where it overflows.
+fn half_area(bounds: &Aabb<f64>) -> f64 {
+    let side = bounds.max - bounds.min;
+    side.x * side.y + side.y * side.z + side.z * side.x
+}

@@ -1,0 +1,89 @@
+//! Box queries, the way down to one leaf, and the boxes themselves.
+
+use super::node::Child;
+use super::search::STACK;
+use super::{NodeBox, PacketTree};
+use crate::{Aabb, PrimitiveId};
+use nalgebra::Point3;
+use std::ops::ControlFlow;
+
+impl PacketTree {
+    /// Visits the primitives that meet a box, in the order of the leaves, until `visit` breaks. `meets` tells whether a
+    /// primitive does, which is asked only where the box of a node or packet does not tell.
+    ///
+    /// # Complexity
+    /// O(log n + k) nodes expected for k primitives in a compact box, O(n) at worst. No allocation, no recursion.
+    pub fn visit_box(
+        &self,
+        bounds: &Aabb<f64>,
+        meets: impl Fn(PrimitiveId) -> bool,
+        visit: &mut dyn FnMut(PrimitiveId) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        if bounds.is_empty() {
+            return ControlFlow::Continue(());
+        }
+        // Children, and whether they are known from above to lie in the box.
+        let mut stack = [(self.root, false); STACK];
+        let mut waiting = usize::from(self.root != Child::NONE);
+        while waiting > 0 {
+            waiting -= 1;
+            let (child, inside) = stack[waiting];
+            if child.is_packet() {
+                let ids = self.packets[child.number()].ids();
+                ids.iter().filter(|id| inside || meets(**id)).copied().try_for_each(&mut *visit)?;
+                continue;
+            }
+            for (own, child) in self.nodes[child.number()].boxes() {
+                let own = self.frame.disclose(&own);
+                if inside || bounds.meets(&own) {
+                    stack[waiting] = (child, inside || bounds.contains(&own));
+                    waiting += 1;
+                }
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Goes down from the root to a leaf, to the child with the least lower bound each time, and returns the primitives of
+    /// that leaf; `aside` is told the bounds of all other children. Nothing for an empty set.
+    ///
+    /// # Complexity
+    /// O(depth).
+    pub fn nearest_leaf(&self, query: &Point3<f64>, mut aside: impl FnMut(f64)) -> &[PrimitiveId] {
+        let mut at = self.root;
+        while at != Child::NONE && !at.is_packet() {
+            let mut nearest = (f64::INFINITY, Child::NONE);
+            for (own, child) in self.nodes[at.number()].boxes() {
+                let bound = self.frame.disclose(&own).lower_bound(query);
+                let farther = if bound < nearest.0 || nearest.1 == Child::NONE {
+                    std::mem::replace(&mut nearest, (bound, child))
+                } else {
+                    (bound, child)
+                };
+                if farther.1 != Child::NONE {
+                    aside(farther.0);
+                }
+            }
+            at = nearest.1;
+        }
+        if at == Child::NONE { &[] } else { self.packets[at.number()].ids() }
+    }
+
+    /// The boxes of the tree, parents before children, rounded outwards by 2^-23 of the scene's size at most.
+    pub fn boxes(&self) -> impl Iterator<Item = NodeBox> + '_ {
+        let mut open = Vec::new();
+        if self.root != Child::NONE {
+            open.push((self.bounds, self.root, 0));
+        }
+        std::iter::from_fn(move || {
+            let (bounds, child, depth) = open.pop()?;
+            if child.is_packet() {
+                let primitives = self.packets[child.number()].ids().len();
+                return Some(NodeBox { bounds, depth, primitives });
+            }
+            let boxes = self.nodes[child.number()].boxes();
+            open.extend(boxes.map(|(own, child)| (self.frame.disclose(&own), child, depth + 1)));
+            Some(NodeBox { bounds, depth, primitives: 0 })
+        })
+    }
+}

@@ -1,0 +1,500 @@
+//! Packets: up to sixteen primitives of one kind, filtered at once.
+//!
+//! A packet keeps the vertices of its primitives as whole numbers of 16 bits in a frame of its own, lane beside lane: a
+//! third of the room of f32, and more precise, for the frame is as small as the packet. [`Packet::squares`] computes
+//! squared distances to all of them in f32. They decide nothing but which primitives cannot be the answer: everything
+//! within a proven band is evaluated by the kernel of the contract.
+//!
+//! # The band
+//!
+//! Lengths are in units of the frame, a power of two for which the box of the packet is less than 2^16 - 1 wide. Let q be the
+//! query in that frame, X = 2^16 + max |q_k| (so that no component of a difference between q and a vertex exceeds X),
+//! u = 2^-24. Then for every point, segment and triangle
+//!
+//! > d - 1 - 32 u X <= sqrt(square) <= d + 1 + 88 u X,
+//!
+//! where d is its distance, the true one as well as the one that the kernel of the contract computes; docs/filter.md
+//! proves it. For other primitives, which are filtered by their boxes, the right inequality holds.
+//!
+//! Two things make the band independent of the shape of a triangle: edges and normals are made of differences of whole
+//! numbers, which are exact, so the normal of a sliver is as good as any; and a face counts only where the foot is inside
+//! by more than the test can err, so that what is found is the distance of a point of the triangle in any case.
+
+use crate::kernel::power_of_two;
+use crate::real::wide;
+use crate::simd::{InstructionSet, Lanes, prefetch};
+use crate::{Aabb, Primitive, PrimitiveId, PrimitiveSet, Real};
+
+/// Lanes of a packet.
+pub(crate) const LANES: usize = 16;
+
+/// What the primitives of a packet are, by how many vertices span them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub(crate) enum Kind {
+    Point,
+    Segment,
+    Triangle,
+    /// Anything else, by its box.
+    Box,
+}
+
+impl Kind {
+    /// That of a primitive.
+    pub(crate) fn of<T: Real>(primitive: &impl Primitive<T>) -> Self {
+        match primitive.vertices().len() {
+            1 => Self::Point,
+            2 => Self::Segment,
+            3 => Self::Triangle,
+            _ => Self::Box,
+        }
+    }
+}
+
+/// Up to sixteen primitives in a frame of their own.
+///
+/// Unused lanes repeat the first primitive, so they need no mask while computing.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Packet {
+    /// Coordinate k of vertex v in row 3 v + k; boxes are two vertices.
+    rows: [[u16; LANES]; 9],
+    ids: [PrimitiveId; LANES],
+    origin: [f64; 3],
+    /// The unit of the frame; its inverse; both 0 if the box of the packet does not fit a frame of f64.
+    unit: f64,
+    per_unit: f64,
+    len: u8,
+    kind: Kind,
+}
+
+const _: () = assert!(size_of::<Packet>() == 448);
+
+/// The largest number of the rows.
+const TOP: f64 = 65535.0;
+/// Where a query stands in a frame: beyond this many units the filter lets everything pass.
+const FARTHEST: f64 = power_of_two(40);
+/// Frames with other units are not used: squares of lengths must stay in the plain range of keys.
+const UNITS: std::ops::RangeInclusive<f64> = power_of_two(-360)..=power_of_two(300);
+
+/// u of f32.
+const U: f32 = f32::EPSILON / 2.0;
+/// For bounds that are computed in f32 themselves, with some roundings.
+const ROUND_UP: f32 = 1.0 + 16.0 * f32::EPSILON;
+
+/// A query in the frame of a packet, with the band.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Local {
+    query: [f32; 3],
+    /// The distances that the filter finds are at most this much too large,
+    pub(crate) excess: f32,
+    /// and at most this much too small.
+    pub(crate) deficit: f32,
+    /// The margin by which the foot on a face has to be inside, squared.
+    margin_squared: f32,
+}
+
+impl Packet {
+    /// Packs the primitives `ids` of a set, at most sixteen of one kind. Units below `finest` are not needed.
+    ///
+    /// # Panics
+    /// For more than sixteen ids, or none.
+    pub(crate) fn new<T: Real, S: PrimitiveSet<T> + ?Sized>(
+        set: &S,
+        ids: &[PrimitiveId],
+        kind: Kind,
+        finest: f64,
+    ) -> Self {
+        let boxes = ids.iter().map(|id| set.get(*id).aabb());
+        let bounds = boxes.fold(Aabb::empty(), |all, one| all.union(&one));
+        let [min, max] = [wide(&bounds.min), wide(&bounds.max)];
+        let size = (0..3).map(|k| max[k] - min[k]).fold(0.0, f64::max);
+        let unit = frame_unit(size).max(finest);
+        let unit = if UNITS.contains(&unit) { unit } else { 0.0 };
+        let mut packet = Self {
+            rows: [[0; LANES]; 9],
+            origin: min,
+            unit,
+            per_unit: if unit > 0.0 { unit.recip() } else { 0.0 },
+            ids: [ids[0]; LANES],
+            len: u8::try_from(ids.len()).expect("at most sixteen"),
+            kind,
+        };
+        for lane in 0..LANES {
+            let id = ids[if lane < ids.len() { lane } else { 0 }];
+            packet.ids[lane] = id;
+            let primitive = set.get(id);
+            if kind == Kind::Box {
+                let bounds = primitive.aabb();
+                packet.put(lane, 0, wide(&bounds.min), f64::floor);
+                packet.put(lane, 1, wide(&bounds.max), f64::ceil);
+            } else {
+                for (v, vertex) in primitive.vertices().iter().enumerate() {
+                    packet.put(lane, v, wide(vertex), f64::round);
+                }
+            }
+        }
+        packet
+    }
+
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the range of u16")]
+    fn put(&mut self, lane: usize, vertex: usize, position: [f64; 3], round: impl Fn(f64) -> f64) {
+        for (k, x) in position.into_iter().enumerate() {
+            let x = round((x - self.origin[k]) * self.per_unit);
+            self.rows[3 * vertex + k][lane] = x.clamp(0.0, TOP) as u16;
+        }
+    }
+
+    /// Its primitives, lane by lane.
+    #[inline(always)]
+    pub(crate) fn ids(&self) -> &[PrimitiveId] {
+        &self.ids[..usize::from(self.len)]
+    }
+
+    /// One bit for each lane in use.
+    #[inline(always)]
+    pub(crate) fn lanes(&self) -> u32 {
+        (1 << self.len) - 1
+    }
+
+    /// Asks for all of it before it is read.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self) {
+        // Two rows are a cache line.
+        for row in [0, 2, 4, 6, 8] {
+            prefetch(&self.rows[row]);
+        }
+        prefetch(&self.ids[8]);
+        prefetch(&self.kind);
+    }
+
+    /// Whether the squares bound distances from above as well.
+    #[inline(always)]
+    pub(crate) fn bounds_above(&self) -> bool {
+        self.kind != Kind::Box
+    }
+
+    /// The unit of its frame.
+    #[inline(always)]
+    pub(crate) fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    /// The inverse of the unit.
+    #[inline(always)]
+    pub(crate) fn per_unit(&self) -> f64 {
+        self.per_unit
+    }
+
+    /// The query in the frame; `None` if the frame is not usable, or not for this query.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "rounding is part of the band")]
+    pub(crate) fn local(&self, query: &[f64; 3]) -> Option<Local> {
+        let q: [f64; 3] = std::array::from_fn(|k| (query[k] - self.origin[k]) * self.per_unit);
+        let largest = q[0].abs().max(q[1].abs()).max(q[2].abs());
+        // Not for NaN either, which comes of infinite differences.
+        if !(self.unit > 0.0 && largest <= FARTHEST) {
+            return None;
+        }
+        let ux = U * (largest as f32 + 65536.0) * ROUND_UP;
+        Some(Local {
+            query: q.map(|x| x as f32),
+            excess: (1.0 + 88.0 * ux) * ROUND_UP,
+            deficit: (1.0 + 32.0 * ux) * ROUND_UP,
+            margin_squared: (32.0 * ux) * (32.0 * ux),
+        })
+    }
+
+    /// Squared distances in the frame to the primitives in all lanes; for boxes, to the boxes.
+    #[inline(always)]
+    pub(crate) fn squares<I: InstructionSet>(&self, local: &Local, squares: &mut [f32; LANES]) {
+        let q = V3::splat(local.query);
+        let mut at = 0;
+        while at < LANES {
+            let result = match self.kind {
+                Kind::Triangle => {
+                    let vertices = [self.vertex(0, at), self.vertex(1, at), self.vertex(2, at)];
+                    triangle::<I::Wide>(&q, vertices, local.margin_squared)
+                }
+                Kind::Segment => {
+                    let (a, b) = (self.vertex(0, at), self.vertex(1, at));
+                    edge(&a.sub(&q), &b.sub(&a)).0
+                }
+                Kind::Point => self.vertex(0, at).sub(&q).square(),
+                Kind::Box => {
+                    let (below, above) = (self.vertex(0, at).sub(&q), q.sub(&self.vertex(1, at)));
+                    below.max(&above).max(&V3::splat([0.0; 3])).square()
+                }
+            };
+            result.store(&mut squares[at..]);
+            at += I::Wide::LEN;
+        }
+    }
+
+    /// Vertex v in the lanes from `at` on.
+    #[inline(always)]
+    fn vertex<L: Lanes>(&self, v: usize, at: usize) -> V3<L> {
+        let [x, y, z] = [&self.rows[3 * v], &self.rows[3 * v + 1], &self.rows[3 * v + 2]];
+        V3 { x: L::load_u16(&x[at..]), y: L::load_u16(&y[at..]), z: L::load_u16(&z[at..]) }
+    }
+}
+
+/// The smallest power of two of which `size` is at most 65534; 0 for 0.
+fn frame_unit(size: f64) -> f64 {
+    if size <= 0.0 {
+        return 0.0;
+    }
+    if !size.is_finite() {
+        return f64::INFINITY;
+    }
+    let mut e = crate::kernel::exponent(size) - 16;
+    while size * scale(-e) > TOP - 1.0 {
+        e += 1;
+    }
+    scale(e)
+}
+
+/// 2^e, as far as f64 has it.
+fn scale(e: i32) -> f64 {
+    2f64.powi(e)
+}
+
+/// Three coordinates, lane by lane.
+#[derive(Clone, Copy)]
+struct V3<L> {
+    x: L,
+    y: L,
+    z: L,
+}
+
+impl<L: Lanes> V3<L> {
+    #[inline(always)]
+    fn splat([x, y, z]: [f32; 3]) -> Self {
+        Self { x: L::splat(x), y: L::splat(y), z: L::splat(z) }
+    }
+    #[inline(always)]
+    fn sub(&self, other: &Self) -> Self {
+        Self { x: self.x.sub(other.x), y: self.y.sub(other.y), z: self.z.sub(other.z) }
+    }
+    #[inline(always)]
+    fn max(&self, other: &Self) -> Self {
+        Self { x: self.x.max(other.x), y: self.y.max(other.y), z: self.z.max(other.z) }
+    }
+    #[inline(always)]
+    fn scaled(&self, factor: L) -> Self {
+        Self { x: self.x.mul(factor), y: self.y.mul(factor), z: self.z.mul(factor) }
+    }
+    #[inline(always)]
+    fn dot(&self, other: &Self) -> L {
+        self.z.mul_add(other.z, self.y.mul_add(other.y, self.x.mul(other.x)))
+    }
+    #[inline(always)]
+    fn square(&self) -> L {
+        self.dot(self)
+    }
+    /// Of orthogonal vectors, for which nothing cancels badly.
+    #[inline(always)]
+    fn cross(&self, other: &Self) -> Self {
+        let zero = L::splat(0.0);
+        Self {
+            x: self.y.mul_add(other.z, zero.sub(self.z).mul(other.y)),
+            y: self.z.mul_add(other.x, zero.sub(self.x).mul(other.z)),
+            z: self.x.mul_add(other.y, zero.sub(self.y).mul(other.x)),
+        }
+    }
+    /// Of vectors of whole numbers, up to a power of two: exact but for its last bits, however nearly parallel they are.
+    #[inline(always)]
+    fn cross_of_whole(&self, other: &Self) -> Self {
+        Self {
+            x: L::difference_of_products(self.y, other.z, self.z, other.y),
+            y: L::difference_of_products(self.z, other.x, self.x, other.z),
+            z: L::difference_of_products(self.x, other.y, self.y, other.x),
+        }
+    }
+}
+
+/// The squared distance from the origin to the segment from `a` along `e`, and |e|^2.
+#[inline(always)]
+fn edge<L: Lanes>(a: &V3<L>, e: &V3<L>) -> (L, L) {
+    let length_squared = e.square();
+    let t = L::splat(0.0).sub(a.dot(e)).mul(length_squared.reciprocal());
+    // NaN, for an edge without length, becomes 0.
+    let t = t.max(L::splat(0.0)).min(L::splat(1.0));
+    let p = V3 { x: t.mul_add(e.x, a.x), y: t.mul_add(e.y, a.y), z: t.mul_add(e.z, a.z) };
+    (p.square(), length_squared)
+}
+
+/// The squared distance from `q` to triangles of whole numbers.
+#[inline(always)]
+fn triangle<L: Lanes>(q: &V3<L>, [a, b, c]: [V3<L>; 3], margin_squared: f32) -> L {
+    let edges = [b.sub(&a), c.sub(&b), a.sub(&c)];
+    let offsets = [a.sub(q), b.sub(q), c.sub(q)];
+    // Scaled so that no square of what follows overflows.
+    let normal = edges[0].scaled(L::splat(SCALE)).cross_of_whole(&edges[1]);
+    let normal_squared = normal.square();
+    let margin = L::splat(margin_squared).mul(normal_squared);
+    let mut nearest = L::splat(f32::INFINITY);
+    // Below zero where the foot on the plane is inside of all three edges by more than the margin.
+    let mut outside = L::splat(f32::NEG_INFINITY);
+    for (a, e) in offsets.iter().zip(&edges) {
+        let (square, length_squared) = edge(a, e);
+        nearest = square.min(nearest);
+        // The vertex lies ahead in the direction out of the triangle, if the query is inside.
+        let ahead = a.dot(&e.cross(&normal));
+        let beyond = margin.mul(length_squared).sub(ahead.mul(ahead.max(L::splat(0.0))));
+        outside = beyond.max(outside);
+    }
+    let height = offsets[0].dot(&normal);
+    let face = height.mul(height).mul(normal_squared.reciprocal());
+    outside.if_below(L::splat(0.0), face, nearest)
+}
+
+/// 2^-34: products of two edges are then about 1 at most.
+#[allow(clippy::cast_possible_truncation, reason = "a power of two")]
+const SCALE: f32 = power_of_two(-34) as f32;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::{Isa, Operation};
+    use crate::{Primitive, Shape};
+    use nalgebra::Point3;
+
+    struct Squares<'a>(&'a Packet, &'a Local);
+
+    impl Operation for Squares<'_> {
+        type Output = [f32; LANES];
+        #[inline(always)]
+        fn run<I: InstructionSet>(self) -> [f32; LANES] {
+            let mut squares = [0.0; LANES];
+            self.0.squares::<I>(self.1, &mut squares);
+            squares
+        }
+    }
+
+    /// A small generator of numbers, enough for these tests.
+    struct Random(u64);
+
+    impl Random {
+        fn bits(&mut self) -> u64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 ^ self.0 >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 11
+        }
+        fn below(&mut self, n: u64) -> u64 {
+            self.bits() % n
+        }
+        fn unit(&mut self) -> f64 {
+            self.bits() as f64 * 2f64.powi(-53)
+        }
+        fn point(&mut self) -> [f64; 3] {
+            [self.unit(), self.unit(), self.unit()]
+        }
+    }
+
+    fn along(a: [f64; 3], b: [f64; 3], t: f64) -> [f64; 3] {
+        [0, 1, 2].map(|k: usize| a[k] + t * (b[k] - a[k]))
+    }
+
+    /// Primitives of all shapes: a third of them large in the packet, slivers of every sine, collinear, repeated.
+    fn shape(random: &mut Random, kind: Kind) -> Shape<f64> {
+        let size = 2f64.powi(-(random.below(18) as i32));
+        let corner = random.point();
+        let [a, b, mut c] = [(); 3].map(|()| along(corner, random.point(), size));
+        match random.below(6) {
+            0 => c = along(a, b, random.unit()),
+            1 => c = along(along(a, b, 2.0 * random.unit() - 0.5), c, 2f64.powi(-(random.below(40) as i32))),
+            2 => c = a,
+            _ => {}
+        }
+        let [a, b, c] = [a, b, c].map(Point3::from);
+        match kind {
+            Kind::Point => crate::Point::new(a).into(),
+            Kind::Segment => crate::Segment::new(a, if random.below(8) == 0 { a } else { b }).into(),
+            _ => crate::Triangle::new(a, b, c).into(),
+        }
+    }
+
+    /// Near, on, between and far from the primitives of a packet.
+    fn query(random: &mut Random, shapes: &[Shape<f64>]) -> Point3<f64> {
+        let on = |random: &mut Random| {
+            let s = &shapes[random.below(shapes.len() as u64) as usize];
+            let v: Vec<[f64; 3]> = s.vertices().iter().map(|v| v.coords.into()).collect();
+            along(along(v[0], v[v.len() / 2], random.unit()), v[v.len() - 1], random.unit())
+        };
+        let target = on(random);
+        let away = 2f64.powi(random.below(70) as i32 - 40);
+        let direction = random.point().map(|x| 2.0 * x - 1.0);
+        match random.below(3) {
+            0 => Point3::from(target),
+            1 => Point3::from(along(target, on(random), random.unit())),
+            _ => Point3::from([0, 1, 2].map(|k: usize| target[k] + away * direction[k])),
+        }
+    }
+
+    #[test]
+    fn squares_are_within_the_band_on_every_instruction_set() {
+        let mut random = Random(1);
+        let mut worst = [0.0f64; 2];
+        for round in 0..6000 {
+            let kind = [Kind::Triangle, Kind::Triangle, Kind::Segment, Kind::Point][round % 4];
+            let len = random.below(16) as usize + 1;
+            let scale = 2f64.powi([0, 0, 40, -300, 250][round % 5]);
+            let shapes: Vec<Shape<f64>> = (0..len).map(|_| shape(&mut random, kind)).collect();
+            let queries: Vec<_> = (0..8).map(|_| query(&mut random, &shapes) * scale).collect();
+            let shapes: Vec<Shape<f64>> = shapes.iter().map(|s| scaled(s, scale)).collect();
+            let ids: Vec<PrimitiveId> = (0..len).map(PrimitiveId::new).collect();
+            let packet = Packet::new(&shapes, &ids, kind, scale * 2f64.powi(-36));
+            assert_eq!((packet.ids(), packet.lanes().count_ones() as usize), (ids.as_slice(), len));
+            for q in queries {
+                let Some(local) = packet.local(&q.coords.into()) else {
+                    let far = (q - Point3::from(packet.origin)).amax() > FARTHEST * packet.unit();
+                    assert!(far, "{q} {packet:?}: near queries have a place");
+                    continue;
+                };
+                for isa in Isa::available() {
+                    let squares = isa.run(Squares(&packet, &local));
+                    for (lane, shape) in shapes.iter().enumerate() {
+                        let distance = shape.project(&q).key.distance() / packet.unit();
+                        let off = f64::from(squares[lane]).sqrt() - distance;
+                        let (excess, deficit) = (f64::from(local.excess), f64::from(local.deficit));
+                        assert!(off <= excess && off >= -deficit, "{isa}: {off} of {distance}, {shape:?} {q}");
+                        worst = [worst[0].max(off / excess), worst[1].max(-off / deficit)];
+                    }
+                }
+            }
+        }
+        println!("largest part of the band: {worst:?}");
+        // The quantisation alone takes a good part of a unit.
+        assert!(worst[0] > 0.5 && worst[1] > 0.5, "{worst:?}");
+    }
+
+    fn scaled(shape: &Shape<f64>, factor: f64) -> Shape<f64> {
+        let v: Vec<Point3<f64>> = shape.vertices().iter().map(|p| p * factor).collect();
+        match *v.as_slice() {
+            [a] => crate::Point::new(a).into(),
+            [a, b] => crate::Segment::new(a, b).into(),
+            [a, b, c] => crate::Triangle::new(a, b, c).into(),
+            _ => unreachable!("one to three vertices"),
+        }
+    }
+
+    #[test]
+    fn frames_hold_their_packet_with_at_most_a_bit_lost() {
+        for size in [1.0, 65534.0, 65535.0, 0.1, 1e-100, 1e90] {
+            let unit = frame_unit(size);
+            assert!(size / unit <= 65534.0 && size / unit > 32766.0, "{size}");
+            assert_eq!(unit.log2().fract(), 0.0);
+        }
+        assert_eq!((frame_unit(0.0), frame_unit(f64::INFINITY)), (0.0, f64::INFINITY));
+    }
+
+    #[test]
+    fn packets_of_extreme_size_let_everything_pass() {
+        let ids = [PrimitiveId::new(0)];
+        for size in [1e-200, 1e200, f64::MAX] {
+            let set = [crate::Segment::new(Point3::from([-size; 3]), Point3::from([size; 3]))];
+            let packet = Packet::new(&set, &ids, Kind::Segment, 0.0);
+            assert!(packet.local(&[0.0; 3]).is_none(), "{size}");
+        }
+    }
+}

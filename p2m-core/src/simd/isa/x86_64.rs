@@ -1,0 +1,207 @@
+//! AVX2 with FMA, and AVX-512.
+//!
+//! The types are private to this folder and appear only as parameters of an [`Operation`] that one of the two entries
+//! runs; so wherever their methods run, the processor has been asked. That is the reason of every block below.
+
+use crate::simd::{EightLanes, InstructionSet, Lanes, Operation};
+use std::arch::x86_64::*;
+
+pub(super) fn has_avx2() -> bool {
+    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
+}
+
+pub(super) fn has_avx512() -> bool {
+    has_avx2() && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl")
+}
+
+/// # Safety
+/// The processor has AVX2 and FMA.
+#[target_feature(enable = "avx2,fma")]
+pub(super) unsafe fn run_avx2<O: Operation>(operation: O) -> O::Output {
+    operation.run::<Avx2>()
+}
+
+/// # Safety
+/// The processor has AVX2, FMA and AVX-512 F and VL.
+#[target_feature(enable = "avx2,fma,avx512f,avx512vl")]
+pub(super) unsafe fn run_avx512<O: Operation>(operation: O) -> O::Output {
+    operation.run::<Avx512>()
+}
+
+/// Every processor of this architecture can do this.
+#[inline(always)]
+pub(super) fn prefetch<T>(at: &T) {
+    // SAFETY: a prefetch reads nothing, whatever the address.
+    unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(at).cast()) }
+}
+
+/// Eight lanes in a 256-bit register.
+#[derive(Clone, Copy)]
+pub(super) struct Eight(__m256);
+
+/// Sixteen lanes in a 512-bit register.
+#[derive(Clone, Copy)]
+pub(super) struct Sixteen(__m512);
+
+pub(super) struct Avx2;
+pub(super) struct Avx512;
+
+impl InstructionSet for Avx2 {
+    type Eight = Eight;
+    type Wide = Eight;
+}
+
+impl InstructionSet for Avx512 {
+    type Eight = Eight;
+    type Wide = Sixteen;
+}
+
+/// A method of which the body is one expression of intrinsics.
+macro_rules! intrinsics {
+    ($($name:ident($($arg:ident: $type:ty),*) -> $result:ty { $body:expr })*) => {
+        $(
+            #[inline(always)]
+            fn $name($($arg: $type),*) -> $result {
+                // SAFETY: see the head of the file.
+                unsafe { $body }
+            }
+        )*
+    };
+}
+
+impl Lanes for Eight {
+    const LEN: usize = 8;
+
+    #[inline(always)]
+    fn load(from: &[f32]) -> Self {
+        let from: &[f32; 8] = from[..8].try_into().expect("eight numbers");
+        // SAFETY: as everywhere, and the array has 32 bytes to read.
+        Self(unsafe { _mm256_loadu_ps(from.as_ptr()) })
+    }
+    #[inline(always)]
+    fn load_u16(from: &[u16]) -> Self {
+        let from: &[u16; 8] = from[..8].try_into().expect("eight numbers");
+        // SAFETY: as everywhere, and the array has 16 bytes to read.
+        Self(unsafe { _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(_mm_loadu_si128(from.as_ptr().cast()))) })
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f32]) {
+        let to: &mut [f32; 8] = (&mut to[..8]).try_into().expect("room for eight numbers");
+        // SAFETY: as everywhere, and the array has 32 bytes to write.
+        unsafe { _mm256_storeu_ps(to.as_mut_ptr(), self.0) }
+    }
+    intrinsics! {
+        splat(x: f32) -> Self { Self(_mm256_set1_ps(x)) }
+        add(self: Self, other: Self) -> Self { Self(_mm256_add_ps(self.0, other.0)) }
+        sub(self: Self, other: Self) -> Self { Self(_mm256_sub_ps(self.0, other.0)) }
+        mul(self: Self, other: Self) -> Self { Self(_mm256_mul_ps(self.0, other.0)) }
+        mul_add(self: Self, factor: Self, summand: Self) -> Self { Self(_mm256_fmadd_ps(self.0, factor.0, summand.0)) }
+        min(self: Self, other: Self) -> Self { Self(_mm256_min_ps(self.0, other.0)) }
+        max(self: Self, other: Self) -> Self { Self(_mm256_max_ps(self.0, other.0)) }
+        difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {{
+            // Kahan's way: the rounding error of the second product is added to the difference.
+            let product = _mm256_mul_ps(c.0, d.0);
+            let error = _mm256_fnmadd_ps(c.0, d.0, product);
+            Self(_mm256_add_ps(_mm256_fmsub_ps(a.0, b.0, product), error))
+        }}
+        reciprocal(self: Self) -> Self {{
+            // An estimate to 2^-11, and one step of Newton's.
+            let estimate = _mm256_rcp_ps(self.0);
+            let rest = _mm256_fnmadd_ps(self.0, estimate, _mm256_set1_ps(1.0));
+            Self(_mm256_fmadd_ps(rest, estimate, estimate))
+        }}
+        if_below(self: Self, limit: Self, yes: Self, no: Self) -> Self {
+            Self(_mm256_blendv_ps(no.0, yes.0, _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, limit.0)))
+        }
+        at_most(self: Self, limit: Self) -> u32 {
+            _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, limit.0)).cast_unsigned()
+        }
+        smallest(self: Self) -> f32 {{
+            let four = _mm_min_ps(_mm256_castps256_ps128(self.0), _mm256_extractf128_ps::<1>(self.0));
+            let two = _mm_min_ps(four, _mm_movehl_ps(four, four));
+            _mm_cvtss_f32(_mm_min_ss(two, _mm_movehdup_ps(two)))
+        }}
+    }
+}
+
+impl EightLanes for Eight {
+    #[inline(always)]
+    fn sorted_keys(self, limit: f32, keys: &mut [u32; 8]) -> usize {
+        // SAFETY: see the head of the file; the array has 32 bytes to write.
+        unsafe {
+            let within = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, _mm256_set1_ps(limit)));
+            let bits = _mm256_andnot_si256(_mm256_set1_epi32(15), _mm256_castps_si256(self.0));
+            let lanes = _mm256_setr_epi32(8, 9, 10, 11, 12, 13, 14, 15);
+            let x = _mm256_and_si256(within, _mm256_or_si256(bits, lanes));
+            let count = _mm256_movemask_ps(_mm256_castsi256_ps(within)).count_ones() as usize;
+            // Batcher's bitonic network: each line compares lanes with their partners and keeps the larger one where
+            // the mask has no bit. Bits of numbers that are not negative are ordered as signed integers.
+            let x = exchange::<0b1001_1001>(x, _mm256_shuffle_epi32::<0b10_11_00_01>(x));
+            let x = exchange::<0b1100_0011>(x, _mm256_shuffle_epi32::<0b01_00_11_10>(x));
+            let x = exchange::<0b1010_0101>(x, _mm256_shuffle_epi32::<0b10_11_00_01>(x));
+            let x = exchange::<0b1111_0000>(x, _mm256_permute2x128_si256::<1>(x, x));
+            let x = exchange::<0b1100_1100>(x, _mm256_shuffle_epi32::<0b01_00_11_10>(x));
+            let x = exchange::<0b1010_1010>(x, _mm256_shuffle_epi32::<0b10_11_00_01>(x));
+            _mm256_storeu_si256(keys.as_mut_ptr().cast(), x);
+            count
+        }
+    }
+}
+
+/// The larger one of `x` and its partner, or the smaller one in the lanes of `SMALLER`.
+///
+/// # Safety
+/// The processor has AVX2.
+#[inline(always)]
+unsafe fn exchange<const SMALLER: i32>(x: __m256i, partner: __m256i) -> __m256i {
+    // SAFETY: that of this function.
+    unsafe { _mm256_blend_epi32::<SMALLER>(_mm256_max_epi32(x, partner), _mm256_min_epi32(x, partner)) }
+}
+
+impl Lanes for Sixteen {
+    const LEN: usize = 16;
+
+    #[inline(always)]
+    fn load(from: &[f32]) -> Self {
+        let from: &[f32; 16] = from[..16].try_into().expect("sixteen numbers");
+        // SAFETY: as everywhere, and the array has 64 bytes to read.
+        Self(unsafe { _mm512_loadu_ps(from.as_ptr()) })
+    }
+    #[inline(always)]
+    fn load_u16(from: &[u16]) -> Self {
+        let from: &[u16; 16] = from[..16].try_into().expect("sixteen numbers");
+        // SAFETY: as everywhere, and the array has 32 bytes to read.
+        Self(unsafe { _mm512_cvtepi32_ps(_mm512_cvtepu16_epi32(_mm256_loadu_si256(from.as_ptr().cast()))) })
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f32]) {
+        let to: &mut [f32; 16] = (&mut to[..16]).try_into().expect("room for sixteen numbers");
+        // SAFETY: as everywhere, and the array has 64 bytes to write.
+        unsafe { _mm512_storeu_ps(to.as_mut_ptr(), self.0) }
+    }
+    intrinsics! {
+        splat(x: f32) -> Self { Self(_mm512_set1_ps(x)) }
+        add(self: Self, other: Self) -> Self { Self(_mm512_add_ps(self.0, other.0)) }
+        sub(self: Self, other: Self) -> Self { Self(_mm512_sub_ps(self.0, other.0)) }
+        mul(self: Self, other: Self) -> Self { Self(_mm512_mul_ps(self.0, other.0)) }
+        mul_add(self: Self, factor: Self, summand: Self) -> Self { Self(_mm512_fmadd_ps(self.0, factor.0, summand.0)) }
+        min(self: Self, other: Self) -> Self { Self(_mm512_min_ps(self.0, other.0)) }
+        max(self: Self, other: Self) -> Self { Self(_mm512_max_ps(self.0, other.0)) }
+        difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {{
+            let product = _mm512_mul_ps(c.0, d.0);
+            let error = _mm512_fnmadd_ps(c.0, d.0, product);
+            Self(_mm512_add_ps(_mm512_fmsub_ps(a.0, b.0, product), error))
+        }}
+        reciprocal(self: Self) -> Self {{
+            // An estimate to 2^-14, and one step of Newton's.
+            let estimate = _mm512_rcp14_ps(self.0);
+            let rest = _mm512_fnmadd_ps(self.0, estimate, _mm512_set1_ps(1.0));
+            Self(_mm512_fmadd_ps(rest, estimate, estimate))
+        }}
+        if_below(self: Self, limit: Self, yes: Self, no: Self) -> Self {
+            Self(_mm512_mask_blend_ps(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, limit.0), no.0, yes.0))
+        }
+        at_most(self: Self, limit: Self) -> u32 { u32::from(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(self.0, limit.0)) }
+        smallest(self: Self) -> f32 { _mm512_reduce_min_ps(self.0) }
+    }
+}

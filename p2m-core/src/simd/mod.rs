@@ -1,0 +1,212 @@
+//! Lanes of f32, and the choice of an instruction set at run time.
+//!
+//! Algorithms are written once over [`Lanes`]. An [`Operation`] that is handed to [`Isa::run`] is compiled once for each
+//! instruction set, inside of a function that enables it; everything on the way is inlined, so nothing checks the
+//! processor again. Only the folder `isa` has `unsafe`.
+//!
+//! Results of lanes may differ between instruction sets in their last bits. So they are used in filters with a proven
+//! error band, never for an answer.
+
+mod isa;
+mod portable;
+
+pub use isa::Isa;
+pub(crate) use isa::prefetch;
+pub(crate) use portable::Portable;
+
+/// Several f32 that are computed with at once.
+///
+/// Addition, subtraction and multiplication round to nearest; [`mul_add`](Self::mul_add) rounds once or twice.
+pub(crate) trait Lanes: Copy {
+    /// How many.
+    const LEN: usize;
+    /// The same number in every lane.
+    fn splat(x: f32) -> Self;
+    /// The first [`LEN`](Self::LEN) numbers of a slice, which has that many.
+    fn load(from: &[f32]) -> Self;
+    /// The same of whole numbers.
+    fn load_u16(from: &[u16]) -> Self;
+    /// Writes the lanes to the front of a slice.
+    fn store(self, to: &mut [f32]);
+    fn add(self, other: Self) -> Self;
+    fn sub(self, other: Self) -> Self;
+    fn mul(self, other: Self) -> Self;
+    /// self * factor + summand.
+    fn mul_add(self, factor: Self, summand: Self) -> Self;
+    /// a b - c d with a relative error of at most 2^-22, if each product is a whole number times a power of two that is the
+    /// same for both, below 2^48 of it.
+    fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self;
+    /// The smaller one, `other` if either is NaN.
+    fn min(self, other: Self) -> Self;
+    /// The larger one, `other` if either is NaN.
+    fn max(self, other: Self) -> Self;
+    /// 1 / self with a relative error of at most 2^-22 for normal results; anything for 0 and for what is not finite.
+    fn reciprocal(self) -> Self;
+    /// `yes` where self < limit, `no` elsewhere and where either is NaN.
+    fn if_below(self, limit: Self, yes: Self, no: Self) -> Self;
+    /// One bit for each lane, the first one lowest: whether self <= limit; not if either is NaN.
+    fn at_most(self, limit: Self) -> u32;
+    /// The smallest of all lanes, none of which is NaN.
+    fn smallest(self) -> f32;
+}
+
+/// Eight lanes, which can be sorted.
+pub(crate) trait EightLanes: Lanes {
+    /// The lanes that are at most `limit`, none of which is negative, as keys in descending order at the front of `keys`;
+    /// the other keys are 0. Returns how many there are.
+    ///
+    /// A key is made of the bits of the number with the lowest four replaced by 8 + lane, so keys are ordered as their
+    /// numbers are and [`number_of_key`] is at most 15 units in the last place too small.
+    fn sorted_keys(self, limit: f32, keys: &mut [u32; 8]) -> usize;
+}
+
+/// A lower bound of the number that a key was made of.
+#[inline(always)]
+pub(crate) fn number_of_key(key: u32) -> f32 {
+    f32::from_bits(key & !15)
+}
+
+/// The lane of a key.
+#[inline(always)]
+pub(crate) fn lane_of_key(key: u32) -> usize {
+    (key & 7) as usize
+}
+
+/// An instruction set, as the two types of lanes that it computes with.
+pub(crate) trait InstructionSet {
+    /// Eight lanes.
+    type Eight: EightLanes;
+    /// As many lanes as are computed fastest: 8 or 16.
+    type Wide: Lanes;
+}
+
+/// Something to compute with an instruction set. `run` and everything it calls has to be `#[inline(always)]`, or it is
+/// compiled without the instruction set.
+pub(crate) trait Operation {
+    /// What comes of it.
+    type Output;
+    /// Computes it.
+    fn run<I: InstructionSet>(self) -> Self::Output;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What every method makes of the same numbers, eight at a time.
+    struct All<'a>(&'a [[f32; 16]; 4], &'a [u16; 16]);
+
+    impl Operation for All<'_> {
+        type Output = (Vec<[f32; 16]>, Vec<u32>);
+        #[inline(always)]
+        fn run<I: InstructionSet>(self) -> Self::Output {
+            let (mut numbers, mut masks) = chunks::<I::Wide>(self.0, self.1);
+            let (more_numbers, more_masks) = chunks::<I::Eight>(self.0, self.1);
+            numbers.extend(more_numbers);
+            masks.extend(more_masks);
+            for half in [0, 8] {
+                let mut keys = [0; 8];
+                let x = I::Eight::load(&self.0[0][half..]);
+                let x = x.max(I::Eight::splat(0.0).sub(x));
+                let limit = x.smallest() * 2.0;
+                masks.push(u32::try_from(x.sorted_keys(limit, &mut keys)).expect("eight"));
+                masks.extend(keys);
+                masks.push(u32::try_from(x.sorted_keys(f32::MAX, &mut keys)).expect("eight"));
+                masks.extend(keys);
+            }
+            (numbers, masks)
+        }
+    }
+
+    #[inline(always)]
+    fn chunks<L: Lanes>(x: &[[f32; 16]; 4], whole: &[u16; 16]) -> (Vec<[f32; 16]>, Vec<u32>) {
+        let mut numbers = vec![[0.0; 16]; 13];
+        let mut masks = vec![0; 1];
+        let mut least = f32::INFINITY;
+        let mut at = 0;
+        while at < 16 {
+            let [a, b, c, d] = [L::load(&x[0][at..]), L::load(&x[1][at..]), L::load(&x[2][at..]), L::load(&x[3][at..])];
+            let integers = L::load_u16(&whole[at..]);
+            let results = [
+                L::splat(x[0][3]),
+                integers,
+                a.add(b),
+                a.sub(b),
+                a.mul(b),
+                a.min(b),
+                a.max(b),
+                a.if_below(b, c, d),
+                a.mul_add(b, c),
+                a.reciprocal(),
+                L::difference_of_products(integers, integers.add(L::splat(1.0)), integers.sub(L::splat(2.0)), integers),
+                L::splat(f32::NAN).min(a),
+                L::splat(f32::NAN).max(a),
+            ];
+            for (to, from) in numbers.iter_mut().zip(results) {
+                from.store(&mut to[at..]);
+            }
+            masks[0] |= a.at_most(b) << at;
+            least = least.min(a.smallest());
+            at += L::LEN;
+        }
+        numbers.push([least; 16]);
+        (numbers, masks)
+    }
+
+    fn numbers(seed: u32) -> ([[f32; 16]; 4], [u16; 16]) {
+        let mut state = seed;
+        let mut next = || {
+            state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+            (state >> 8) as f32 / 8_388_608.0 - 1.0
+        };
+        let mut x = [[0.0; 16]; 4];
+        x.as_flattened_mut().fill_with(&mut next);
+        // Equal ones, zeros of both signs, large and small ones.
+        (x[1][2], x[0][5], x[1][5], x[0][7], x[0][9]) = (x[0][2], 0.0, -0.0, 1e30, -1e-30);
+        (x, std::array::from_fn(|_| (next().abs() * 65535.0) as u16))
+    }
+
+    #[test]
+    fn every_instruction_set_computes_what_the_portable_one_does() {
+        for seed in 0..2000 {
+            let (x, whole) = numbers(seed);
+            let (expected, expected_masks) = Isa::PORTABLE.run(All(&x, &whole));
+            for isa in Isa::available() {
+                let (found, masks) = isa.run(All(&x, &whole));
+                assert_eq!(masks, expected_masks, "{isa}");
+                for (method, (found, expected)) in found.iter().zip(&expected).enumerate() {
+                    for lane in 0..16 {
+                        let (f, e) = (f64::from(found[lane]), f64::from(expected[lane]));
+                        let exact = match method % 14 {
+                            // Fused or not: the products are at most 1e30 in size.
+                            8 => (f - e).abs() <= 2f64.powi(-23) * (f64::from(x[0][lane] * x[1][lane]).abs() + f.abs()),
+                            9 => x[0][lane] == 0.0 || (f - e).abs() <= 2f64.powi(-21) * e.abs(),
+                            10 => (f - e).abs() <= 2f64.powi(-22) * e.abs(),
+                            _ => f == e,
+                        };
+                        assert!(exact, "{isa}: method {method} lane {lane}: {f} for {e}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn differences_of_products_are_right_where_they_cancel() {
+        // (n)(n + 1) - (n - 2) n = 3 n, though both products have 32 bits.
+        let (x, whole) = numbers(7);
+        for isa in Isa::available() {
+            let (found, _) = isa.run(All(&x, &whole));
+            for lane in 0..16 {
+                assert_eq!(found[10][lane], 3.0 * f32::from(whole[lane]), "{isa}");
+            }
+        }
+    }
+
+    #[test]
+    fn keys_give_back_lane_and_a_lower_bound() {
+        let key = 1.5f32.to_bits() & !15 | 8 | 5;
+        assert_eq!((lane_of_key(key), number_of_key(key)), (5, 1.5));
+        assert!(number_of_key((1.5f32.next_up()).to_bits() & !15 | 15) <= 1.5f32.next_up());
+    }
+}

@@ -1,0 +1,231 @@
+//! Packets and wide nodes: every instruction set, other collectors, moved sets, batches, and how much work is done.
+#![cfg(feature = "bvh")]
+#![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
+
+use nalgebra::{Point3, Vector3};
+use p2m::{
+    AabbOptions, AabbTree, Best, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Isa, Primitive,
+    PrimitiveId, PrimitiveSet, Projection, QueryOptions, Real, Soup, batch,
+};
+use p2m_testkit::counting::Counting;
+use p2m_testkit::rng;
+use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};
+use rand::{Rng, RngExt};
+
+/// Near, inside, at vertices, on a lattice, far and very far.
+fn query(rng: &mut impl Rng, soup: &Soup<f64>) -> Point3<f64> {
+    let bounds = soup.aabb();
+    let size = bounds.max - bounds.min;
+    let vertex = soup.positions()[rng.random_range(0..soup.positions().len())];
+    let mut random = || Vector3::from_fn(|_, _| rng.random::<f64>() - 0.5);
+    let (a, b) = (random(), random());
+    match rng.random_range(0..6) {
+        0 => vertex,
+        1 => vertex + size.component_mul(&a) * 1e-3,
+        2 => nalgebra::center(&bounds.min, &bounds.max) + size.component_mul(&a) * 1.1,
+        3 => (vertex + size.component_mul(&a)).map(f64::round),
+        4 => vertex + b * size.norm() * 100.0,
+        _ => vertex + b * size.norm() * 10f64.powi(rng.random_range(3..18)),
+    }
+}
+
+fn same<T: Real>(a: Option<Closest<T>>, b: Option<Closest<T>>, what: &str) {
+    let bits =
+        |c: Closest<T>| (c.distance.to_f64().to_bits(), c.primitive, c.feature, c.point.map(|x| x.to_f64().to_bits()));
+    assert_eq!(a.map(bits), b.map(bits), "{what}");
+}
+
+#[test]
+fn every_instruction_set_answers_as_brute_force() {
+    let mut rng = rng("instruction sets", 0);
+    println!("{:?}", Isa::available());
+    for round in 0..6 {
+        for kinds in KINDS {
+            for layout in LAYOUTS {
+                let soup = scenes::soup(&mut rng, kinds, layout, 400);
+                let queries: Vec<_> = (0..100).map(|_| query(&mut rng, &soup)).collect();
+                let e = [0, 0, -340, 310, -900, 900][round];
+                if e != 0 && layout == Layout::Sizes {
+                    continue; // beyond the range of f64
+                }
+                let scale = |p: &Point3<f64>| p.map(|x| x * 2f64.powi(e));
+                let queries: Vec<_> = queries.iter().map(scale).filter(|q| q.iter().all(|x| x.is_finite())).collect();
+                let soup = Soup::new(soup.positions().iter().map(scale).collect(), soup.elements()).expect("finite");
+                let brute = BruteForce::new(&soup).expect("valid");
+                for isa in Isa::available() {
+                    let tree = AabbTree::build(&soup, &Default::default()).expect("valid").with_isa(isa);
+                    for q in &queries {
+                        let what = format!("{isa} {kinds:?} {layout:?} 2^{e} {q}");
+                        same(tree.closest_point(q), brute.closest_point(q), &what);
+                        let near =
+                            QueryOptions::default().with_max_distance(brute.closest_point(q).expect("one").distance);
+                        same(tree.closest_point_with(q, &near), brute.closest_point_with(q, &near), &what);
+                    }
+                }
+                let (Some(single), true) = (scenes::narrow(&soup), e == 0) else { continue };
+                let brute = BruteForce::new(&single).expect("valid");
+                for isa in Isa::available() {
+                    let tree = AabbTree::build(&single, &Default::default()).expect("valid").with_isa(isa);
+                    for q in queries.iter().map(|q| q.map(|x| x as f32)).filter(|q| q.iter().all(|x| x.is_finite())) {
+                        same(
+                            tree.closest_point(&q),
+                            brute.closest_point(&q),
+                            &format!("f32 {isa} {kinds:?} {layout:?} {q}"),
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Everything within a radius, but for some ids: what no shortcut for the nearest one may take away.
+struct Within {
+    square: f64,
+    found: Vec<(PrimitiveId, u64)>,
+}
+
+impl Collector for Within {
+    fn prune_above(&self) -> f64 {
+        self.square
+    }
+    fn offer(&mut self, id: PrimitiveId, projection: Projection) {
+        if !id.index().is_multiple_of(3) && projection.key.square_above() <= self.square {
+            self.found.push((id, projection.key.distance().to_bits()));
+        }
+    }
+}
+
+#[test]
+fn collectors_of_more_than_the_nearest_get_all() {
+    let mut rng = rng("collectors", 0);
+    let mut total = 0;
+    for kinds in KINDS {
+        for layout in LAYOUTS {
+            let soup = scenes::soup(&mut rng, kinds, layout, 400);
+            let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+            for _ in 0..50 {
+                let q = query(&mut rng, &soup);
+                let nearest = tree.closest_point(&q).expect("not empty").distance;
+                let radius = nearest * rng.random_range(1.0..3.0) + soup.aabb().max.coords.norm() * 0.01;
+                let mut collector = Within { square: radius * radius, found: Vec::new() };
+                tree.visit(&q, &mut collector);
+                let mut expected = Within { square: radius * radius, found: Vec::new() };
+                for id in (0..soup.len()).map(PrimitiveId::new) {
+                    expected.offer(id, soup.get(id).project(&q));
+                }
+                collector.found.sort();
+                assert_eq!(collector.found, expected.found, "{kinds:?} {layout:?} {q} {radius}");
+                total += expected.found.len();
+            }
+        }
+    }
+    assert!(total > 10_000, "{total}");
+}
+
+#[test]
+fn a_tree_that_is_refitted_answers_as_one_that_is_built() {
+    let mut rng = rng("refit", 0);
+    for layout in LAYOUTS {
+        let soup = scenes::soup(&mut rng, Kinds::Mixed, layout, 500);
+        let mut tree = AabbTree::build(soup.clone(), &Default::default()).expect("valid");
+        let size = (soup.aabb().max - soup.aabb().min).norm();
+        for step in 0..4 {
+            // A twist, a shift by the size of the scene, and noise.
+            let mut moved = |p: &Point3<f64>| {
+                let noise = Vector3::from_fn(|_, _| rng.random::<f64>() - 0.5) * size * 0.01 * f64::from(step);
+                Point3::new(p.x + p.y * 0.1, p.y - p.z * 0.2, p.z + size) + noise
+            };
+            let moved =
+                Soup::new(tree.set().positions().iter().map(&mut moved).collect(), soup.elements()).expect("valid");
+            tree.refit(moved.clone(), &AabbOptions::default()).expect("as many");
+            let brute = BruteForce::new(&moved).expect("valid");
+            for _ in 0..50 {
+                let q = query(&mut rng, &moved);
+                same(tree.closest_point(&q), brute.closest_point(&q), &format!("{layout:?} step {step} {q}"));
+            }
+        }
+        let fewer = scenes::soup(&mut rng, Kinds::Mixed, layout, 40);
+        let len = soup.len();
+        let before = tree.closest_point(&Point3::origin());
+        let error = tree.refit(fewer.clone(), &AabbOptions::default());
+        assert_eq!(error, Err(BuildError::OtherLength { len: fewer.len(), expected: len }));
+        same(tree.closest_point(&Point3::origin()), before, "as it was");
+    }
+}
+
+#[test]
+fn batches_are_single_queries() {
+    let mut rng = rng("batches", 0);
+    for layout in LAYOUTS {
+        let soup = scenes::soup(&mut rng, Kinds::Mixed, layout, 500);
+        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let mut queries: Vec<_> = (0..2000).map(|_| query(&mut rng, &soup)).collect();
+        (queries[3].y, queries[700].x) = (f64::NAN, f64::INFINITY);
+        let near = QueryOptions::default().with_max_distance((soup.aabb().max - soup.aabb().min).norm() * 0.1);
+        for options in [QueryOptions::default(), near, near.with_hint(PrimitiveId::new(7)), near.with_epsilon(0.1)] {
+            let expected: Vec<_> = queries.iter().map(|q| tree.closest_point_with(q, &options)).collect();
+            for bits in 0..8 {
+                let way = batch::BatchOptions::default()
+                    .with_reorder(bits & 1 != 0)
+                    .with_hints(bits & 2 != 0)
+                    .with_parallel(bits & 4 != 0);
+                let mut out = vec![None; queries.len()];
+                batch::closest_points_into(&tree, &queries, &options, &way, &mut out);
+                for (i, (found, expected)) in out.into_iter().zip(&expected).enumerate() {
+                    same(found, *expected, &format!("{layout:?} {way:?} query {i}"));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn trees_do_not_depend_on_the_number_of_threads() {
+    let mut rng = rng("threads", 0);
+    let soup = scenes::soup(&mut rng, Kinds::Triangles, Layout::Strewn, 30_000);
+    let boxes = |options| {
+        let tree = AabbTree::build(&soup, &options).expect("valid");
+        tree.tree().boxes().map(|b| (b.bounds.min.coords, b.bounds.max.coords, b.primitives)).collect::<Vec<_>>()
+    };
+    let expected = boxes(AabbOptions::default().with_parallel(false));
+    assert!(expected == boxes(AabbOptions::default().with_parallel(true)));
+    assert!(expected.len() > 2000);
+}
+
+/// Lost pruning, lost filters or a lost reach would show here first: these figures are the same on every run, and nearly
+/// so on every instruction set.
+#[test]
+fn searches_do_little() {
+    let mut rng = rng("counters", 0);
+    let soup = scenes::soup(&mut rng, Kinds::Triangles, Layout::Sheet, 20_000);
+    let queries: Vec<Point3<f64>> = (0..1000)
+        .map(|_| soup.positions()[rng.random_range(0..soup.positions().len())] + Vector3::new(0.01, 0.02, 0.3))
+        .collect();
+    for isa in Isa::available() {
+        let tree = AabbTree::build(&soup, &Default::default()).expect("valid").with_isa(isa);
+        let mut sums = [0; 3];
+        let mut hinted = 0;
+        for q in &queries {
+            let mut counting = Counting::<f64>::new(Best::new(&QueryOptions::default()));
+            tree.visit(q, &mut counting);
+            sums = [sums[0] + counting.nodes, sums[1] + counting.packets, sums[2] + counting.primitives];
+            // With the answer known from the start, less is left to visit.
+            let found = counting.best.finish().expect("not empty").primitive;
+            let mut best = Best::<f64>::new(&QueryOptions::default());
+            best.offer(found, soup.get(found).project(q));
+            let mut counting = Counting::new(best);
+            tree.visit(q, &mut counting);
+            hinted += counting.nodes + counting.packets;
+        }
+        println!("{isa}: per 1000 queries {sums:?} nodes, packets, primitives; with a hint {hinted} nodes and packets");
+        assert!(sums[0] <= NODES && sums[1] <= PACKETS && sums[2] <= PRIMITIVES, "{isa}: {sums:?}");
+        assert!(hinted < sums[0] + sums[1], "{hinted}");
+        let (packets, filled) = tree.tree().packets();
+        assert!(filled * 10 >= packets * 16 * 7, "{filled} lanes of {packets} packets");
+    }
+}
+
+const NODES: usize = 5_500;
+const PACKETS: usize = 2_500;
+const PRIMITIVES: usize = 1_300;
