@@ -10,6 +10,7 @@
 
 mod agree;
 mod backends;
+mod batch;
 mod contender;
 mod measure;
 mod memory;
@@ -53,6 +54,8 @@ enum Command {
     Verify(VerifyArguments),
     /// The split rules of the AABB tree: build, nodes and primitives visited, time per query
     Splits(SplitsArguments),
+    /// Batches on the AABB tree: order, hints and threads, in wall time
+    Batch(BatchArguments),
 }
 
 /// What both commands take.
@@ -127,6 +130,28 @@ struct SplitsArguments {
     seed: u64,
 }
 
+#[derive(Args)]
+struct BatchArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    /// Query sets
+    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface])]
+    sets: Vec<QuerySet>,
+    /// Numbers of threads
+    #[arg(long, value_delimiter = ',', default_values_t = [1, 2])]
+    threads: Vec<usize>,
+    /// Rounds, in which all ways take turns
+    #[arg(long, default_value_t = 5)]
+    rounds: usize,
+    /// Queries of a batch
+    #[arg(long, default_value_t = 1_000_000)]
+    queries: usize,
+    /// Seed of the query sets
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
 fn backend_names() -> PossibleValuesParser {
     backends::ALL.iter().map(|backend| backend.name).collect::<Vec<_>>().into()
 }
@@ -136,6 +161,7 @@ fn main() -> Result<ExitCode> {
         Command::Query(arguments) => query(&arguments)?,
         Command::Verify(arguments) => verify_all(&arguments)?,
         Command::Splits(arguments) => splits(&arguments)?,
+        Command::Batch(arguments) => batches(&arguments)?,
     };
     Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
@@ -174,6 +200,19 @@ fn query(arguments: &QueryArguments) -> Result<bool> {
             .filter(|entry| entry.backend.ours)
             .all(|entry| entry.sets.iter().flatten().all(|set| set.agreement.is_clean()));
     }
+    Ok(good)
+}
+
+/// Whether all batches agree with single queries.
+fn batches(arguments: &BatchArguments) -> Result<bool> {
+    let BatchArguments { scenes, sets, threads, rounds, queries, seed } = arguments;
+    println!("{}", Provenance::collect(None));
+    println!("Wall time, {rounds} rounds in turns, batches of {queries}, seed {seed}.");
+    let mut good = true;
+    for path in scenes {
+        good &= batch::print(&Scene::read(path)?, sets, *queries, threads, *rounds, *seed)?;
+    }
+    println!("{}", if good { "All answers are those of single queries." } else { "DIFFERENCES from single queries." });
     Ok(good)
 }
 

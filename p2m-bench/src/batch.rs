@@ -1,0 +1,77 @@
+//! `p2m-bench batch`: many queries at once, by order, hints and threads.
+
+use crate::scene::Scene;
+use crate::table::Table;
+use anyhow::{Context, Result};
+use nalgebra::Point3;
+use p2m_bvh::AabbTree;
+use p2m_core::batch::{BatchOptions, closest_points_into};
+use p2m_core::{BuildIndex, Closest, ClosestPoint};
+use p2m_testkit::queries::QuerySet;
+use std::time::Instant;
+
+/// Prints wall times of batches over a scene; whether all answers are those of single queries.
+pub(crate) fn print(
+    scene: &Scene,
+    sets: &[QuerySet],
+    queries: usize,
+    threads: &[usize],
+    rounds: usize,
+    seed: u64,
+) -> Result<bool> {
+    let tree = AabbTree::build(&scene.double, &Default::default()).context("the scene was checked when it was read")?;
+    let mut head = vec!["set".to_owned(), "one by one".to_owned()];
+    for n in threads {
+        head.extend(["in order", "curve", "curve, hints"].map(|way| format!("{way}, {n} thr")));
+    }
+    head.push("speed-up".to_owned());
+    let mut table = Table::new(head);
+    let ways = [(false, false), (true, false), (true, true)];
+    let mut equal = true;
+    for set in sets {
+        let queries = set.generate(&scene.double, queries, seed);
+        let mut out: Vec<Option<Closest<f64>>> = vec![None; queries.len()];
+        let single = |out: &mut [Option<Closest<f64>>]| tree.closest_points_into(&queries, &Default::default(), out);
+        single(&mut out);
+        let expected: Vec<_> = out.iter().map(answer).collect();
+        // One row of times for each way, so that ways take turns.
+        let mut times = vec![Vec::new(); 1 + ways.len() * threads.len()];
+        for _ in 0..rounds {
+            let start = Instant::now();
+            single(&mut out);
+            times[0].push(start.elapsed().as_secs_f64());
+            for (t, &count) in threads.iter().enumerate() {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build()?;
+                for (w, (reorder, hints)) in ways.iter().enumerate() {
+                    let options = BatchOptions::default().with_reorder(*reorder).with_hints(*hints);
+                    out.fill(None);
+                    let start = Instant::now();
+                    pool.install(|| closest_points_into(&tree, &queries, &Default::default(), &options, &mut out));
+                    times[1 + t * ways.len() + w].push(start.elapsed().as_secs_f64());
+                    equal &= out.iter().map(answer).eq(expected.iter().copied());
+                }
+            }
+        }
+        let medians: Vec<f64> = times
+            .iter_mut()
+            .map(|times| {
+                times.sort_by(f64::total_cmp);
+                times[times.len() / 2]
+            })
+            .collect();
+        let mut row = vec![set.name().to_owned()];
+        row.extend(medians.iter().map(|s| format!("{:.0}", s * 1e9 / queries.len() as f64)));
+        // Of the last way, from the first to the last number of threads.
+        row.push(format!("{:.2}", medians[ways.len()] / medians[medians.len() - 1]));
+        table.push(row);
+    }
+    println!("\n## {}\n\nNanoseconds of wall time per query, medians.\n\n{table}", scene.describe());
+    Ok(equal)
+}
+
+type Answer = Option<(u64, usize, Point3<u64>)>;
+
+/// What has to agree, bit for bit.
+fn answer(closest: &Option<Closest<f64>>) -> Answer {
+    closest.map(|c| (c.distance.to_bits(), c.primitive.index(), c.point.map(f64::to_bits)))
+}
