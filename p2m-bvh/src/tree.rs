@@ -97,8 +97,7 @@ impl<T: Real, S: PrimitiveSet<T> + Sync> BuildIndex<T, S> for AabbTree<T, S> {
 
 impl<T: Real, S: PrimitiveSet<T>> BoxQuery<T> for AabbTree<T, S> {
     fn visit_box(&self, bounds: &Aabb<T>, visit: &mut dyn FnMut(PrimitiveId) -> ControlFlow<()>) -> ControlFlow<()> {
-        let double = Aabb { min: bounds.min.map(T::to_f64), max: bounds.max.map(T::to_f64) };
-        self.tree.visit_box(&double, |id| self.set.get(id).meets_box(bounds), visit)
+        self.tree.visit_box(&bounds.to_f64(), |id| self.set.get(id).meets_box(bounds), visit)
     }
 }
 

@@ -47,6 +47,13 @@ impl<T: Real> Aabb<T> {
         }
     }
 
+    /// The same box in f64, exactly.
+    #[inline]
+    #[must_use]
+    pub fn to_f64(&self) -> Aabb<f64> {
+        Aabb { min: Point3::from(wide(&self.min)), max: Point3::from(wide(&self.max)) }
+    }
+
     /// Whether every corner coordinate is finite. The empty box is not.
     #[must_use]
     pub fn is_finite(&self) -> bool {

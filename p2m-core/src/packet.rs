@@ -95,7 +95,8 @@ pub(crate) struct Local {
 }
 
 impl Packet {
-    /// Packs the primitives `ids` of a set, at most sixteen of one kind. Units below `finest` are not needed.
+    /// Packs the primitives `ids` of a set, at most sixteen of one kind, with the box around all of
+    /// them. Units below `finest` are not needed.
     ///
     /// # Panics
     /// For more than sixteen ids, or none.
@@ -103,10 +104,9 @@ impl Packet {
         set: &S,
         ids: &[PrimitiveId],
         kind: Kind,
+        bounds: &Aabb<f64>,
         finest: f64,
     ) -> Self {
-        let boxes = ids.iter().map(|id| set.get(*id).aabb());
-        let bounds = boxes.fold(Aabb::empty(), |all, one| all.union(&one));
         let [min, max] = [wide(&bounds.min), wide(&bounds.max)];
         let size = (0..3).map(|k| max[k] - min[k]).fold(0.0, f64::max);
         let unit = frame_unit(size).max(finest);
@@ -443,7 +443,7 @@ mod tests {
             let queries: Vec<_> = (0..8).map(|_| query(&mut random, &shapes) * scale).collect();
             let shapes: Vec<Shape<f64>> = shapes.iter().map(|s| scaled(s, scale)).collect();
             let ids: Vec<PrimitiveId> = (0..len).map(PrimitiveId::new).collect();
-            let packet = Packet::new(&shapes, &ids, kind, scale * 2f64.powi(-36));
+            let packet = Packet::new(&shapes, &ids, kind, &shapes.aabb(), scale * 2f64.powi(-36));
             assert_eq!((packet.ids(), packet.lanes().count_ones() as usize), (ids.as_slice(), len));
             for q in queries {
                 let Some(local) = packet.local(&q.coords.into()) else {
@@ -493,7 +493,7 @@ mod tests {
         let ids = [PrimitiveId::new(0)];
         for size in [1e-200, 1e200, f64::MAX] {
             let set = [crate::Segment::new(Point3::from([-size; 3]), Point3::from([size; 3]))];
-            let packet = Packet::new(&set, &ids, Kind::Segment, 0.0);
+            let packet = Packet::new(&set, &ids, Kind::Segment, &set.aabb(), 0.0);
             assert!(packet.local(&[0.0; 3]).is_none(), "{size}");
         }
     }

@@ -88,7 +88,7 @@ impl Item {
     }
 }
 
-/// The nodes without volumes, and the order of the primitives in their leaves. Siblings are side by side, and what is
+/// The nodes without volumes, and the order of the primitives in their leaves, in no order within one. Siblings are side by side, and what is
 /// below the left one comes before what is below the right one.
 pub(super) fn build<T: Real>(boxes: &[Aabb<T>], options: &SplitOptions) -> (Vec<Node<()>>, Vec<PrimitiveId>) {
     let mut items: Vec<Item> = boxes.iter().enumerate().map(|(i, b)| Item::new(b, PrimitiveId::new(i))).collect();
@@ -130,9 +130,7 @@ fn subtree(items: &mut [Item], first: usize, depth: usize, options: &SplitOption
     nodes
 }
 
-fn leaf(items: &mut [Item], first: usize) -> Node<()> {
-    // Neighbours in the user's order tend to be neighbours in memory.
-    items.sort_unstable_by_key(|item| item.id);
+fn leaf(items: &[Item], first: usize) -> Node<()> {
     Node { volume: (), first: index(first), count: index(items.len()) }
 }
 

@@ -66,7 +66,7 @@ impl PacketTree {
             (primitive.aabb(), Kind::of(&primitive))
         };
         let (boxes, kinds): (Vec<Aabb<T>>, Vec<Kind>) = (0..set.len()).map(of_id).unzip();
-        let mut binary = Hierarchy::build(&boxes, options, |id| double(&boxes[id.index()]), Aabb::union);
+        let mut binary = Hierarchy::build(&boxes, options, |id| boxes[id.index()].to_f64(), Aabb::union);
         let bounds = binary.nodes.first().map_or(Aabb::empty(), |root| root.volume);
         // One packet after the other for each leaf, kinds apart.
         let mut ranges: Vec<(std::ops::Range<usize>, Kind)> = Vec::new();
@@ -74,6 +74,7 @@ impl PacketTree {
         for (at, node) in binary.nodes.iter().enumerate() {
             let places = node.places();
             let ids = &mut binary.order[places.clone()];
+            // And by id: neighbours in the user's order tend to be neighbours in memory.
             ids.sort_unstable_by_key(|id| (kinds[id.index()], *id));
             let first = ranges.len();
             for run in ids.chunk_by(|a, b| kinds[a.index()] == kinds[b.index()]) {
@@ -89,8 +90,8 @@ impl PacketTree {
         let order = binary.order;
         let pack = |(places, kind): &(std::ops::Range<usize>, Kind)| {
             let ids = &order[places.clone()];
-            let bounds = ids.iter().map(|id| double(&boxes[id.index()])).fold(Aabb::empty(), |a, b| a.union(&b));
-            (Packet::new(set, ids, *kind, frame.unit * FINEST), bounds)
+            let bounds = ids.iter().map(|id| boxes[id.index()].to_f64()).fold(Aabb::empty(), |a, b| a.union(&b));
+            (Packet::new(set, ids, *kind, &bounds, frame.unit * FINEST), bounds)
         };
         let (packets, packet_boxes): (Vec<Packet>, Vec<Aabb<f64>>) =
             map(&ranges, options.parallel, pack).into_iter().unzip();
@@ -120,22 +121,23 @@ impl PacketTree {
     pub fn refit<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(&mut self, set: &S, parallel: bool) {
         assert_eq!(set.len(), self.len, "as many primitives as before");
         let bounds_of = |packet: &Packet| {
-            let boxes = packet.ids().iter().map(|id| double(&set.get(*id).aabb()));
+            let boxes = packet.ids().iter().map(|id| set.get(*id).aabb().to_f64());
             boxes.fold(Aabb::empty(), |a, b| a.union(&b))
         };
         let packet_boxes = map(&self.packets, parallel, bounds_of);
         self.bounds = packet_boxes.iter().fold(Aabb::empty(), |a, b| a.union(b));
         self.frame = Frame::around(&self.bounds);
         let finest = self.frame.unit * FINEST;
-        let pack = |packet: &Packet| {
+        let pack = |(packet, bounds): &(&Packet, &Aabb<f64>)| {
             let ids = packet.ids();
             // A primitive may have become one of another kind.
             let mut kinds = ids.iter().map(|id| Kind::of(&set.get(*id)));
             let first = kinds.next().unwrap_or(Kind::Box);
             let kind = if kinds.all(|kind| kind == first) { first } else { Kind::Box };
-            Packet::new(set, ids, kind, finest)
+            Packet::new(set, ids, kind, bounds, finest)
         };
-        self.packets = map(&self.packets, parallel, pack);
+        let bounded: Vec<_> = self.packets.iter().zip(&packet_boxes).collect();
+        self.packets = map(&bounded, parallel, pack);
         // Children come after their parents.
         let mut node_boxes = vec![Aabb::empty(); self.nodes.len()];
         for number in (0..self.nodes.len()).rev() {
@@ -273,10 +275,6 @@ fn map<A: Sync, B: Send>(all: &[A], parallel: bool, f: impl Fn(&A) -> B + Sync) 
     }
     let _ = parallel;
     all.iter().map(f).collect()
-}
-
-fn double<T: Real>(bounds: &Aabb<T>) -> Aabb<f64> {
-    Aabb { min: Point3::from(wide(&bounds.min)), max: Point3::from(wide(&bounds.max)) }
 }
 
 /// Infinite where it overflows.
