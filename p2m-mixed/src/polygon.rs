@@ -2,6 +2,7 @@
 
 use earcut::Earcut;
 use nalgebra::Point3;
+use p2m_core::kernel::power_of_two;
 
 /// The largest polygon that is cut into triangles: 2^15 vertices. A simple concave one takes quadratic time (observed:
 /// two to three seconds for a spiral of this size), so this is a limit of patience rather than of memory.
@@ -197,9 +198,4 @@ impl Scale {
     fn apply3(&self, v: [f64; 3]) -> [f64; 3] {
         v.map(|x| x * self.0[0] * self.0[1])
     }
-}
-
-/// 2^e for e in -1022..=1023.
-fn power_of_two(e: i32) -> f64 {
-    f64::from_bits((i64::from(e) + 1023).cast_unsigned() << 52)
 }

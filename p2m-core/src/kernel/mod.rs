@@ -15,8 +15,9 @@ pub(crate) mod vector;
 
 pub use key::Key;
 
+pub(crate) use vector::exponent;
+pub use vector::power_of_two;
 use vector::{V3, bounds, clamp, scale_by_power};
-pub(crate) use vector::{exponent, power_of_two};
 
 /// Bound on the error of a distance in units of u M, where M is the largest distance from the query to a vertex of
 /// the primitive: |computed - true| <= `ERROR_CONSTANT` u M + eta. Proved in docs/accuracy.md; the largest error ever

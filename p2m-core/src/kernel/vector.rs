@@ -80,8 +80,12 @@ pub(crate) fn lexicographically_less(a: V3, b: V3) -> bool {
     a < b
 }
 
-/// 2^e for a normal result.
-pub(crate) const fn power_of_two(e: i32) -> f64 {
+/// 2^e, exactly.
+///
+/// # Panics
+/// Unless -1022 <= e <= 1023.
+#[must_use]
+pub const fn power_of_two(e: i32) -> f64 {
     assert!(e >= -1022 && e <= 1023);
     f64::from_bits(((1023 + e) as u64) << 52)
 }

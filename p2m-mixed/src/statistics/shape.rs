@@ -6,6 +6,7 @@
 
 use dashu_int::{IBig, ops::BitTest};
 use nalgebra::Point3;
+use p2m_core::kernel::power_of_two;
 
 /// Triangles whose height is below 2^-26 of the longest edge are measured in integers: plain arithmetic has that ratio with an
 /// absolute error below 2^-48, so what is zero is among them, and what is above is good to 2^-22.
@@ -120,10 +121,6 @@ fn decompose(x: f64) -> (i64, i32) {
 /// The nearest positive finite number to a positive one.
 fn representable(x: f64) -> f64 {
     x.clamp(f64::from_bits(1), f64::MAX)
-}
-
-const fn power_of_two(e: i32) -> f64 {
-    f64::from_bits(((e + 1023) as u64) << 52)
 }
 
 /// The power of two below a positive number, or near it if that is subnormal.
