@@ -226,6 +226,6 @@ fn searches_do_little() {
     }
 }
 
-const NODES: usize = 5_500;
-const PACKETS: usize = 2_500;
-const PRIMITIVES: usize = 1_300;
+const NODES: usize = 4_700;
+const PACKETS: usize = 2_250;
+const PRIMITIVES: usize = 1_100;

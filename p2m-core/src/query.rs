@@ -86,6 +86,13 @@ pub trait Collector {
         self.prune_above()
     }
 
+    /// The same for the primitive `id`: a collector that would refuse it at equality says so. As [`prune_above`](Self::prune_above) by default.
+    #[inline(always)]
+    fn prune_above_for(&self, id: PrimitiveId) -> f64 {
+        let _ = id;
+        self.prune_above()
+    }
+
     /// Whether only the nearest primitive counts, and ties with it: a candidate that is farther than some primitive need
     /// not be offered. Not by default.
     #[inline(always)]
@@ -200,6 +207,15 @@ impl<T: Real> Collector for Best<T> {
         // The answer will be at most that far.
         let square = square * self.shrink;
         if square < self.prune { square } else { self.prune }
+    }
+
+    #[inline(always)]
+    fn prune_above_for(&self, id: PrimitiveId) -> f64 {
+        match &self.best {
+            // Ties go to the lowest id.
+            Some((held, p)) if *held < id && p.key.plain_square() == Some(self.prune) => self.prune.next_down(),
+            _ => self.prune,
+        }
     }
 
     #[inline(always)]

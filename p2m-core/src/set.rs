@@ -1,6 +1,5 @@
 //! Sets of primitives, which indexes are built over.
 
-use crate::simd::prefetch;
 use crate::{Aabb, BuildError, Primitive, Real};
 
 /// Number of a primitive in its set, from 0, in the order in which the user gave them.
@@ -57,13 +56,6 @@ pub trait PrimitiveSet<T: Real> {
     /// May panic if `id` is not below `len`.
     fn get(&self, id: PrimitiveId) -> Self::Primitive<'_>;
 
-    /// Says that the primitive is probably asked for soon, so that it can be fetched from memory meanwhile. Does nothing by
-    /// default, and nothing but that anywhere.
-    #[inline(always)]
-    fn prefetch(&self, id: PrimitiveId) {
-        let _ = id;
-    }
-
     /// Whether there are none.
     fn is_empty(&self) -> bool {
         self.len() == 0
@@ -92,10 +84,6 @@ impl<T: Real, P: Primitive<T>> PrimitiveSet<T> for [P] {
     fn get(&self, id: PrimitiveId) -> &P {
         &self[id.index()]
     }
-    #[inline(always)]
-    fn prefetch(&self, id: PrimitiveId) {
-        prefetch(&self[id.index()]);
-    }
 }
 
 impl<T: Real, P: Primitive<T>, const N: usize> PrimitiveSet<T> for [P; N] {
@@ -111,10 +99,6 @@ impl<T: Real, P: Primitive<T>, const N: usize> PrimitiveSet<T> for [P; N] {
     #[inline(always)]
     fn get(&self, id: PrimitiveId) -> &P {
         &self[id.index()]
-    }
-    #[inline(always)]
-    fn prefetch(&self, id: PrimitiveId) {
-        prefetch(&self[id.index()]);
     }
 }
 
@@ -132,10 +116,6 @@ impl<T: Real, P: Primitive<T>> PrimitiveSet<T> for Vec<P> {
     fn get(&self, id: PrimitiveId) -> &P {
         &self[id.index()]
     }
-    #[inline(always)]
-    fn prefetch(&self, id: PrimitiveId) {
-        prefetch(&self[id.index()]);
-    }
 }
 
 impl<T: Real, S: PrimitiveSet<T> + ?Sized> PrimitiveSet<T> for &S {
@@ -151,10 +131,6 @@ impl<T: Real, S: PrimitiveSet<T> + ?Sized> PrimitiveSet<T> for &S {
     #[inline(always)]
     fn get(&self, id: PrimitiveId) -> Self::Primitive<'_> {
         (**self).get(id)
-    }
-    #[inline(always)]
-    fn prefetch(&self, id: PrimitiveId) {
-        (**self).prefetch(id);
     }
 }
 

@@ -256,13 +256,6 @@ impl<T: Real> PrimitiveSet<T> for Soup<T> {
     }
 
     #[inline(always)]
-    fn prefetch(&self, id: PrimitiveId) {
-        for &index in self.element(id).indices() {
-            crate::simd::prefetch(&self.positions[index as usize]);
-        }
-    }
-
-    #[inline(always)]
     fn get(&self, id: PrimitiveId) -> Shape<T> {
         match self.element(id) {
             Element::Point(p) => Shape::Point(Point::new(self.position(p))),

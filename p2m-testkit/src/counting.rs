@@ -11,7 +11,7 @@ pub struct Counting<T: Real> {
     pub nodes: usize,
     /// Packets filtered.
     pub packets: usize,
-    /// Primitives whose kernel ran.
+    /// Primitives that were offered.
     pub primitives: usize,
 }
 
@@ -26,6 +26,9 @@ impl<T: Real> Counting<T> {
 impl<T: Real> Collector for Counting<T> {
     fn prune_above(&self) -> f64 {
         self.best.prune_above()
+    }
+    fn prune_above_for(&self, id: PrimitiveId) -> f64 {
+        self.best.prune_above_for(id)
     }
     fn prune_given(&self, square: f64) -> f64 {
         self.best.prune_given(square)

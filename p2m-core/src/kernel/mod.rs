@@ -15,6 +15,7 @@ pub(crate) mod vector;
 
 pub use key::Key;
 
+use crate::Feature;
 pub(crate) use vector::exponent;
 pub use vector::power_of_two;
 use vector::{V3, bounds, clamp, scale_by_power};
@@ -29,24 +30,43 @@ pub const ERROR_CONSTANT: f64 = 8.0;
 pub const SLIVER_SINE: f64 = 1.0 / 1024.0;
 
 /// The winner among the features of one primitive.
+///
+/// Plain numbers without choices between them: they stay in registers on their way to a collector.
 #[derive(Clone, Copy)]
 pub(crate) struct Nearest {
     pub(crate) key: Key,
     /// From the query to the nearest point, divided by 2^`exponent`.
     pub(crate) offset: V3,
     pub(crate) exponent: i32,
-    pub(crate) feature: NearestFeature,
+    pub(crate) feature: Feature,
+    /// Of the vertices.
+    pub(crate) weights: V3,
     /// The largest component of an offset to a vertex.
     pub(crate) size: f64,
 }
 
-/// The feature that holds the nearest point, with the weights of its vertices.
-#[derive(Clone, Copy)]
-pub(crate) enum NearestFeature {
-    Vertex(usize),
-    /// Edge i, weights of vertices i and i + 1.
-    Edge(usize, [f64; 2]),
-    Face([f64; 3]),
+/// Vertex i and its weights.
+#[inline(always)]
+#[allow(clippy::cast_possible_truncation, reason = "a primitive has at most three vertices")]
+fn of_vertex(i: usize) -> (Feature, V3) {
+    let weights = match i {
+        0 => [1.0, 0.0, 0.0],
+        1 => [0.0, 1.0, 0.0],
+        _ => [0.0, 0.0, 1.0],
+    };
+    (Feature::Vertex(i as u8), weights)
+}
+
+/// Edge i, with the weights of vertices i and i + 1.
+#[inline(always)]
+#[allow(clippy::cast_possible_truncation, reason = "a primitive has at most three vertices")]
+fn of_edge(i: usize, [a, b]: [f64; 2]) -> (Feature, V3) {
+    let weights = match i {
+        0 => [a, b, 0.0],
+        1 => [0.0, a, b],
+        _ => [b, 0.0, a],
+    };
+    (Feature::Edge(i as u8), weights)
 }
 
 impl Nearest {
@@ -54,12 +74,13 @@ impl Nearest {
     #[inline(always)]
     pub(crate) fn point<const N: usize>(&self, query: V3, vertices: &[V3; N]) -> V3 {
         match self.feature {
-            NearestFeature::Vertex(i) => vertices[i],
-            NearestFeature::Edge(i, _) => {
+            Feature::Vertex(i) => vertices[usize::from(i)],
+            Feature::Edge(i) => {
+                let i = usize::from(i);
                 let [low, high] = bounds(&[vertices[i], vertices[(i + 1) % N]]);
                 clamp(self.landing(query), low, high)
             }
-            NearestFeature::Face(_) => {
+            Feature::Face => {
                 let [low, high] = bounds(vertices);
                 clamp(self.landing(query), low, high)
             }

@@ -32,7 +32,8 @@ use super::plane::{EDGES, Plane};
 use super::vector::{
     V3, bounds, dot, larger, largest, lexicographically_less, norm_squared, power_of_two, smaller, sub,
 };
-use super::{Nearest, NearestFeature, scaled};
+use super::{Nearest, of_edge, of_vertex, scaled};
+use crate::Feature;
 
 /// The scaled lane takes edges below 2^-100 of the distance for their end points; plain arithmetic demands a little
 /// more, so that the two lanes agree on what such a speck is.
@@ -70,13 +71,13 @@ fn nearest_vertex<const N: usize>(vertices: &[V3; N], squares: &[f64; N]) -> usi
 /// Whether edge i goes before a feature with the same key: never before a vertex, and before another edge if its end
 /// points come first in lexicographic order.
 #[cold]
-pub(super) fn edge_precedes(vertices: &[V3; 3], i: usize, other: NearestFeature) -> bool {
-    let NearestFeature::Edge(j, _) = other else { return false };
+pub(super) fn edge_precedes(vertices: &[V3; 3], i: usize, other: Feature) -> bool {
+    let Feature::Edge(j) = other else { return false };
     let sorted = |i: usize| {
         let [a, b] = EDGES[i].map(|k| vertices[k]);
         if lexicographically_less(b, a) { [b, a] } else { [a, b] }
     };
-    sorted(i) < sorted(j)
+    sorted(i) < sorted(usize::from(j))
 }
 
 /// The nearest feature of a single point; `None` if its key certainly exceeds `prune`.
@@ -88,7 +89,10 @@ pub(crate) fn point(query: V3, vertex: V3, prune: f64) -> Option<Nearest> {
         return None;
     }
     Some(match Key::plain(square) {
-        Some(key) => Nearest { key, offset, exponent: 0, feature: NearestFeature::Vertex(0), size: largest(&[offset]) },
+        Some(key) => {
+            let (feature, weights) = of_vertex(0);
+            Nearest { key, offset, exponent: 0, feature, weights, size: largest(&[offset]) }
+        }
         None => scaled::point(query, vertex),
     })
 }
@@ -96,8 +100,11 @@ pub(crate) fn point(query: V3, vertex: V3, prune: f64) -> Option<Nearest> {
 /// Lower bound of the key, from the box of the offsets: the same arithmetic as [`Aabb::lower_bound`](crate::Aabb).
 #[inline(always)]
 fn box_bound([low, high]: [V3; 2]) -> f64 {
-    let gap = |k: usize| larger(larger(low[k], -high[k]), 0.0);
-    norm_squared([gap(0), gap(1), gap(2)])
+    let mut gap = [0.0; 3];
+    for k in 0..3 {
+        gap[k] = larger(larger(low[k], -high[k]), 0.0);
+    }
+    norm_squared(gap)
 }
 
 /// The nearest feature of a segment; `None` if its key certainly exceeds `prune`.
@@ -110,6 +117,7 @@ pub(crate) fn segment(query: V3, vertices: [V3; 2], prune: f64) -> Option<Neares
     segment_features(query, &vertices, &offsets, prune)
 }
 
+#[inline(always)]
 fn segment_features(query: V3, vertices: &[V3; 2], offsets: &[V3; 2], prune: f64) -> Option<Nearest> {
     let size = largest(offsets);
     let squares = [norm_squared(offsets[0]), norm_squared(offsets[1])];
@@ -118,7 +126,7 @@ fn segment_features(query: V3, vertices: &[V3; 2], offsets: &[V3; 2], prune: f64
         return Some(scaled::segment(query, *vertices));
     }
     let vertex = nearest_vertex(vertices, &squares);
-    let mut best = (squares[vertex], offsets[vertex], NearestFeature::Vertex(vertex));
+    let mut best = (squares[vertex], offsets[vertex], of_vertex(vertex));
     if line.t > 0.0 {
         if line.square - ROUGH_MARGIN * (size * size) > prune {
             return None;
@@ -126,12 +134,15 @@ fn segment_features(query: V3, vertices: &[V3; 2], offsets: &[V3; 2], prune: f64
         if let Some(foot) = line.foot(*offsets)
             && foot.square < best.0
         {
-            best = (foot.square, foot.offset, NearestFeature::Edge(0, foot.weights));
+            best = (foot.square, foot.offset, of_edge(0, foot.weights));
         }
     } else if best.0 > prune {
         return None;
     }
-    Some(plain_nearest(best, size).unwrap_or_else(|| scaled::segment(query, *vertices)))
+    match plain_nearest(best, size) {
+        Some(nearest) => Some(nearest),
+        None => Some(scaled::segment(query, *vertices)),
+    }
 }
 
 /// The nearest feature of a triangle; `None` if its key certainly exceeds `prune`.
@@ -142,34 +153,59 @@ pub(crate) fn triangle(query: V3, vertices: [V3; 3], prune: f64) -> Option<Neare
     if box_bound(bounds) > prune {
         return None;
     }
-    triangle_features(query, &vertices, &offsets, bounds, prune)
+    triangle_features_apart(query, &vertices, &offsets, bounds, prune)
 }
 
 /// Not inlined: it is large, and the loops that call it are better off with registers of their own.
 #[inline(never)]
+fn triangle_features_apart(
+    query: V3,
+    vertices: &[V3; 3],
+    offsets: &[V3; 3],
+    bounds: [V3; 2],
+    prune: f64,
+) -> Option<Nearest> {
+    triangle_features(query, vertices, offsets, bounds, prune)
+}
+
+/// The same as [`triangle`] for one that is probably near: inlined, and without a look at its box.
+#[inline(always)]
+pub(crate) fn near_triangle(query: V3, vertices: [V3; 3], prune: f64) -> Option<Nearest> {
+    let offsets = [sub(vertices[0], query), sub(vertices[1], query), sub(vertices[2], query)];
+    triangle_features(query, &vertices, &offsets, bounds(&offsets), prune)
+}
+
+#[inline(always)]
 fn triangle_features(query: V3, vertices: &[V3; 3], offsets: &[V3; 3], bounds: [V3; 2], prune: f64) -> Option<Nearest> {
     let size = largest(&bounds);
     let squares = [norm_squared(offsets[0]), norm_squared(offsets[1]), norm_squared(offsets[2])];
     let vertex = nearest_vertex(vertices, &squares);
     // Where both edges at the nearest vertex clearly lead away from the query, no foot is accepted on them or on the
     // face, and one on the third edge is longer: the vertex is the answer.
-    let outward = |other: usize| dot(offsets[vertex], sub(offsets[other], offsets[vertex]));
-    let least = smaller(outward((vertex + 1) % 3), outward((vertex + 2) % 3));
+    let offset = offsets[vertex];
+    let [next, last] = [sub(offsets[(vertex + 1) % 3], offset), sub(offsets[(vertex + 2) % 3], offset)];
+    let least = smaller(dot(offset, next), dot(offset, last));
     if least > OUTWARD_MARGIN * (size * size)
         && (PLAIN_MIN..=PLAIN_MAX).contains(&size)
         && let Some(key) = Key::plain(squares[vertex])
     {
-        let offset = offsets[vertex];
-        let nearest = Nearest { key, offset, exponent: 0, feature: NearestFeature::Vertex(vertex), size };
+        let (feature, weights) = of_vertex(vertex);
+        let nearest = Nearest { key, offset, exponent: 0, feature, weights, size };
         return (squares[vertex] <= prune).then_some(nearest);
     }
-    let line = |i: usize, j: usize| Line::new([offsets[i], offsets[j]], [squares[i], squares[j]]);
-    let lines = [line(0, 1), line(1, 2), line(2, 0)];
+    let lines = [
+        Line::new([offsets[0], offsets[1]], [squares[0], squares[1]]),
+        Line::new([offsets[1], offsets[2]], [squares[1], squares[2]]),
+        Line::new([offsets[2], offsets[0]], [squares[2], squares[0]]),
+    ];
     if !plain_scale(size, larger(larger(lines[0].inverse, lines[1].inverse), lines[2].inverse)) {
         return Some(scaled::triangle(query, *vertices));
     }
     let plane = Plane::new(*offsets, &lines, size);
-    let (face, doubt) = plane.as_ref().map_or((f64::INFINITY, 1.0), Plane::estimate);
+    let (face, doubt) = match &plane {
+        Some(plane) => plane.estimate(),
+        None => (f64::INFINITY, 1.0),
+    };
     let mut rough = smaller(squares[vertex], face);
     for line in &lines {
         // Far away, rounding can mistake the nearer end, and the foot then lies beyond the farther one.
@@ -181,14 +217,14 @@ fn triangle_features(query: V3, vertices: &[V3; 3], offsets: &[V3; 3], bounds: [
     }
     let limit = rough + margin;
 
-    let mut best = (squares[vertex], offsets[vertex], NearestFeature::Vertex(vertex));
+    let mut best = (squares[vertex], offsets[vertex], of_vertex(vertex));
     for (i, [j, k]) in EDGES.into_iter().enumerate() {
         if lines[i].t > 0.0
             && lines[i].square <= limit
             && let Some(foot) = lines[i].foot([offsets[j], offsets[k]])
-            && (foot.square < best.0 || (foot.square == best.0 && edge_precedes(vertices, i, best.2)))
+            && (foot.square < best.0 || (foot.square == best.0 && edge_precedes(vertices, i, best.2.0)))
         {
-            best = (foot.square, foot.offset, NearestFeature::Edge(i, foot.weights));
+            best = (foot.square, foot.offset, of_edge(i, foot.weights));
         }
     }
     if let Some(plane) = plane
@@ -196,14 +232,17 @@ fn triangle_features(query: V3, vertices: &[V3; 3], offsets: &[V3; 3], bounds: [
         && let Some(foot) = plane.foot(*offsets, bounds)
         && foot.square < best.0
     {
-        best = (foot.square, foot.offset, NearestFeature::Face(foot.weights));
+        best = (foot.square, foot.offset, (Feature::Face, foot.weights));
     }
-    Some(plain_nearest(best, size).unwrap_or_else(|| scaled::triangle(query, *vertices)))
+    match plain_nearest(best, size) {
+        Some(nearest) => Some(nearest),
+        None => Some(scaled::triangle(query, *vertices)),
+    }
 }
 
 /// The result of the plain lane, unless its square has lost digits to underflow.
 #[inline(always)]
-fn plain_nearest((square, offset, feature): (f64, V3, NearestFeature), size: f64) -> Option<Nearest> {
+fn plain_nearest((square, offset, (feature, weights)): (f64, V3, (Feature, V3)), size: f64) -> Option<Nearest> {
     let key = if square >= SQUARE_MIN {
         Key::plain(square)?
     } else if offset == [0.0; 3] {
@@ -211,5 +250,5 @@ fn plain_nearest((square, offset, feature): (f64, V3, NearestFeature), size: f64
     } else {
         return None;
     };
-    Some(Nearest { key, offset, exponent: 0, feature, size })
+    Some(Nearest { key, offset, exponent: 0, feature, weights, size })
 }

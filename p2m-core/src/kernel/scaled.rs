@@ -12,7 +12,8 @@ use super::vector::{
     V3, bounds, clamp, exponent, larger, largest, lexicographically_less, norm_squared, power_of_two, scale_by_power,
     sub,
 };
-use super::{Nearest, NearestFeature};
+use super::{Nearest, of_edge, of_vertex};
+use crate::Feature;
 
 /// Edges shorter than 2^-100 of the distance to the query are their end points, with an error of 2^-100 M.
 const SPECK: f64 = power_of_two(-100);
@@ -50,14 +51,14 @@ impl<const N: usize> Scaled<N> {
     /// Scaling down may have lost small components, and with them the promise that the key is not below the bound of the
     /// box: such a foot is scaled back and moved into the box of the offsets as they were. (Scaling up loses nothing,
     /// scaling back would.)
-    fn candidate<const M: usize>(&self, foot: &Foot<M>, feature: NearestFeature, size: f64) -> Nearest {
+    fn candidate<const M: usize>(&self, foot: &Foot<M>, (feature, weights): (Feature, V3), size: f64) -> Nearest {
         let (offset, exponent) = if self.exponent > 0 {
             let [low, high] = bounds(&self.raw);
             (clamp(foot.offset.map(|x| scale_by_power(x, self.exponent)), low, high), self.base)
         } else {
             (foot.offset, self.base + self.exponent)
         };
-        Nearest { key: Key::of_scaled_offset(offset, exponent), offset, exponent, feature, size }
+        Nearest { key: Key::of_scaled_offset(offset, exponent), offset, exponent, feature, weights, size }
     }
 }
 
@@ -76,7 +77,8 @@ pub(super) fn point(query: V3, vertex: V3) -> Nearest {
 fn vertex_candidate(query: V3, index: usize, vertex: V3, size: f64) -> Nearest {
     let (offset, exponent) = Scaled::new(query, [vertex]).map_or(([0.0; 3], 0), |s| (s.raw[0], s.base));
     let key = Key::of_scaled_offset(offset, exponent);
-    Nearest { key, offset, exponent, feature: NearestFeature::Vertex(index), size }
+    let (feature, weights) = of_vertex(index);
+    Nearest { key, offset, exponent, feature, weights, size }
 }
 
 /// The nearest vertex in the scaled lane.
@@ -99,7 +101,7 @@ fn edge_candidate(query: V3, index: usize, ends: [V3; 2], size: f64) -> Option<N
         return None;
     }
     let foot = Line::new(ends, ends.map(norm_squared)).foot(ends)?;
-    Some(scaled.candidate(&foot, NearestFeature::Edge(index, foot.weights), size))
+    Some(scaled.candidate(&foot, of_edge(index, foot.weights), size))
 }
 
 #[cold]
@@ -123,7 +125,7 @@ fn face_candidate(query: V3, vertices: [V3; 3], size: f64) -> Option<Nearest> {
     let squares = offsets.map(norm_squared);
     let lines = EDGES.map(|[i, j]| Line::new([offsets[i], offsets[j]], [squares[i], squares[j]]));
     let foot = Plane::new(offsets, &lines, largest(&offsets))?.foot(offsets, bounds(&offsets))?;
-    Some(scaled.candidate(&foot, NearestFeature::Face(foot.weights), size))
+    Some(scaled.candidate(&foot, (Feature::Face, foot.weights), size))
 }
 
 #[cold]

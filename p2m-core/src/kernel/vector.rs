@@ -52,8 +52,8 @@ pub(crate) fn larger(a: f64, b: f64) -> f64 {
 /// `x` moved into the box from `low` to `high`.
 #[inline(always)]
 pub(crate) fn clamp(x: V3, low: V3, high: V3) -> V3 {
-    let one = |k: usize| larger(smaller(x[k], high[k]), low[k]);
-    [one(0), one(1), one(2)]
+    let x = [smaller(x[0], high[0]), smaller(x[1], high[1]), smaller(x[2], high[2])];
+    [larger(x[0], low[0]), larger(x[1], low[1]), larger(x[2], low[2])]
 }
 
 /// The corners of the smallest box around some vectors.
@@ -72,7 +72,11 @@ pub(crate) fn bounds<const N: usize>(vectors: &[V3; N]) -> [V3; 2] {
 /// The largest magnitude of any component; components are never NaN.
 #[inline(always)]
 pub(crate) fn largest(vectors: &[V3]) -> f64 {
-    vectors.as_flattened().iter().fold(0.0, |m, x| larger(x.abs(), m))
+    let mut largest = 0.0;
+    for x in vectors.as_flattened() {
+        largest = larger(x.abs(), largest);
+    }
+    largest
 }
 
 /// Lexicographic order of two vectors without NaN.

@@ -11,7 +11,7 @@ pub use segment::Segment;
 pub use shape::Shape;
 pub use triangle::Triangle;
 
-use crate::kernel::{Key, Nearest, NearestFeature};
+use crate::kernel::{Key, Nearest, scalar};
 use crate::real::wide;
 use crate::{Aabb, Real};
 use nalgebra::Point3;
@@ -81,27 +81,39 @@ impl Projection {
         Self { key, point, feature, barycentric, error }
     }
 
+    /// The same as [`of_triangle`](Self::of_triangle) for one that is probably near.
     #[inline(always)]
-    #[allow(clippy::cast_possible_truncation, reason = "a primitive has at most three vertices")]
+    pub(crate) fn of_near_triangle(query: [f64; 3], vertices: &[[f64; 3]; 3], square: f64) -> Option<Self> {
+        Some(Self::from_nearest(&scalar::near_triangle(query, *vertices, square)?, query, vertices))
+    }
+
+    /// On a triangle, as the contract has it; `None` if its key certainly exceeds `square`.
+    #[inline(always)]
+    pub(crate) fn of_triangle(query: [f64; 3], vertices: &[[f64; 3]; 3], square: f64) -> Option<Self> {
+        Some(Self::from_nearest(&scalar::triangle(query, *vertices, square)?, query, vertices))
+    }
+
+    /// The same on a segment.
+    #[inline(always)]
+    pub(crate) fn of_segment(query: [f64; 3], vertices: &[[f64; 3]; 2], square: f64) -> Option<Self> {
+        Some(Self::from_nearest(&scalar::segment(query, *vertices, square)?, query, vertices))
+    }
+
+    /// The same on a point.
+    #[inline(always)]
+    pub(crate) fn of_point(query: [f64; 3], vertex: &[[f64; 3]; 1], square: f64) -> Option<Self> {
+        Some(Self::from_nearest(&scalar::point(query, vertex[0], square)?, query, vertex))
+    }
+
+    #[inline(always)]
     fn from_nearest<const N: usize>(nearest: &Nearest, query: [f64; 3], vertices: &[[f64; 3]; N]) -> Self {
-        let mut barycentric = [0.0; 3];
-        let feature = match nearest.feature {
-            NearestFeature::Vertex(i) => {
-                barycentric[i] = 1.0;
-                Feature::Vertex(i as u8)
-            }
-            NearestFeature::Edge(i, weights) => {
-                barycentric[i] = weights[0];
-                barycentric[(i + 1) % N] = weights[1];
-                Feature::Edge(i as u8)
-            }
-            NearestFeature::Face(weights) => {
-                barycentric = weights;
-                Feature::Face
-            }
-        };
-        let point = Point3::from(nearest.point(query, vertices));
-        Self { key: nearest.key, point, feature, barycentric, error: nearest.error() }
+        Self {
+            key: nearest.key,
+            point: Point3::from(nearest.point(query, vertices)),
+            feature: nearest.feature,
+            barycentric: nearest.weights,
+            error: nearest.error(),
+        }
     }
 }
 
@@ -155,8 +167,9 @@ pub trait Primitive<T: Real> {
         Some(self.project(query))
     }
 
-    /// The one to three vertices of which it is the convex hull: indexes then filter it by more than its box. None by
-    /// default; a primitive that is no such hull leaves it so.
+    /// The one to three vertices of a primitive that *is* the [`Point`], [`Segment`] or [`Triangle`] of these: indexes
+    /// then filter it by more than its box, and may ask that shape in its place. None by default; a primitive whose
+    /// `project` differs from that shape's in any bit leaves it so.
     fn vertices(&self) -> &[Point3<T>] {
         &[]
     }

@@ -1,5 +1,4 @@
 use super::{Primitive, Projection, UNBOUNDED, in_box};
-use crate::kernel::scalar;
 use crate::real::wide;
 use crate::{Aabb, Real};
 use nalgebra::Point3;
@@ -34,8 +33,7 @@ impl<T: Real> Primitive<T> for Point<T> {
 
     #[inline(always)]
     fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
-        let (q, v) = (wide(query), wide(&self.position));
-        Some(Projection::from_nearest(&scalar::point(q, v, square)?, q, &[v]))
+        Projection::of_point(wide(query), &[wide(&self.position)], square)
     }
     #[inline(always)]
     fn vertices(&self) -> &[Point3<T>] {

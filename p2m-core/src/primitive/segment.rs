@@ -1,5 +1,4 @@
 use super::{Primitive, Projection, UNBOUNDED, in_box};
-use crate::kernel::scalar;
 use crate::real::wide;
 use crate::{Aabb, Real};
 use nalgebra::Point3;
@@ -32,8 +31,7 @@ impl<T: Real> Primitive<T> for Segment<T> {
 
     #[inline(always)]
     fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
-        let (q, v) = (wide(query), [wide(&self.vertices[0]), wide(&self.vertices[1])]);
-        Some(Projection::from_nearest(&scalar::segment(q, v, square)?, q, &v))
+        Projection::of_segment(wide(query), &self.vertices.each_ref().map(wide), square)
     }
     #[inline(always)]
     fn vertices(&self) -> &[Point3<T>] {

@@ -1,10 +1,10 @@
 //! A tree of wide nodes over packets.
 //!
-//! A binary tree of splits is collapsed into nodes of eight children: the children of the root, then those of whichever
-//! has the largest surface area, until eight are together. A node is a few cache lines with eight boxes side by side
+//! A binary tree of splits is collapsed into nodes of eight children ([`collapse`]). A node is a few cache lines with eight boxes side by side
 //! ([`node`]), a leaf a [`Packet`] of up to sixteen primitives. Both are in f32 or less and only bound distances, from
 //! both sides and with proof; what may be the answer is evaluated in f64 by the kernel of the contract ([`search`]).
 
+mod collapse;
 mod node;
 mod overlap;
 mod search;
@@ -12,7 +12,7 @@ mod search;
 use super::{Hierarchy, SplitOptions};
 use crate::packet::{Kind, LANES, Packet};
 use crate::real::wide;
-use crate::simd::Isa;
+use crate::simd::{Isa, prefetch};
 use crate::{Aabb, Collector, Primitive, PrimitiveId, PrimitiveSet, Real};
 use nalgebra::Point3;
 use node::{Child, Frame, Node, WIDTH};
@@ -32,6 +32,8 @@ pub struct PacketTree {
     depth: usize,
     nodes: Vec<Node>,
     packets: Vec<Packet>,
+    /// The exact vertices of the packets, one packet after the other.
+    vertices: Vec<[f64; 3]>,
     /// How many primitives there are.
     len: usize,
 }
@@ -93,8 +95,8 @@ impl PacketTree {
             let bounds = ids.iter().map(|id| boxes[id.index()].to_f64()).fold(Aabb::empty(), |a, b| a.union(&b));
             (Packet::new(set, ids, *kind, &bounds, frame.unit * FINEST), bounds)
         };
-        let (packets, packet_boxes): (Vec<Packet>, Vec<Aabb<f64>>) =
-            map(&ranges, options.parallel, pack).into_iter().unzip();
+        let (packed, packet_boxes): (Vec<_>, Vec<_>) = map(&ranges, options.parallel, pack).into_iter().unzip();
+        let (packets, vertices) = place_vertices(packed);
         let mut tree = Self {
             isa: Isa::best(),
             frame,
@@ -103,10 +105,11 @@ impl PacketTree {
             depth: 0,
             nodes: Vec::new(),
             packets,
+            vertices,
             len: set.len(),
         };
-        tree.collapse(&binary.nodes, &of_leaf, &packet_boxes);
-        tree.nodes.shrink_to_fit();
+        let parts = collapse::Binary::new(&binary.nodes, &of_leaf, &packet_boxes);
+        (tree.root, tree.nodes, tree.depth) = parts.collapse(&frame);
         tree
     }
 
@@ -137,7 +140,7 @@ impl PacketTree {
             Packet::new(set, ids, kind, bounds, finest)
         };
         let bounded: Vec<_> = self.packets.iter().zip(&packet_boxes).collect();
-        self.packets = map(&bounded, parallel, pack);
+        (self.packets, self.vertices) = place_vertices(map(&bounded, parallel, pack));
         // Children come after their parents.
         let mut node_boxes = vec![Aabb::empty(); self.nodes.len()];
         for number in (0..self.nodes.len()).rev() {
@@ -155,76 +158,6 @@ impl PacketTree {
         }
     }
 
-    fn collapse(
-        &mut self,
-        binary: &[super::Node<Aabb<f64>>],
-        of_leaf: &[std::ops::Range<usize>],
-        packet_boxes: &[Aabb<f64>],
-    ) {
-        if binary.is_empty() {
-            return;
-        }
-        // What a child of a wide node can be: a node of the binary tree or a packet.
-        #[derive(Clone, Copy)]
-        enum Part {
-            Binary(usize),
-            Packet(usize),
-        }
-        type Slot = (Part, Aabb<f64>);
-        let split = |(part, bounds): &Slot| -> Vec<Slot> {
-            match part {
-                Part::Packet(_) => vec![(*part, *bounds)],
-                Part::Binary(at) => match binary[*at].children() {
-                    Some(children) => children.map(|c| (Part::Binary(c), binary[c].volume)).to_vec(),
-                    None => of_leaf[*at].clone().map(|packet| (Part::Packet(packet), packet_boxes[packet])).collect(),
-                },
-            }
-        };
-        // Leaves of one packet are that packet.
-        let resolve = |slot: Slot| -> Slot {
-            let parts = split(&slot);
-            if let (Part::Binary(_), [only]) = (slot.0, parts.as_slice()) { *only } else { slot }
-        };
-        let root = resolve((Part::Binary(0), binary[0].volume));
-        if let (Part::Packet(packet), _) = root {
-            self.root = Child::packet(packet);
-            return;
-        }
-        self.root = Child::node(0);
-        self.nodes.push(Node::EMPTY);
-        let mut open = vec![(0, root, 1)];
-        while let Some((number, slot, depth)) = open.pop() {
-            self.depth = self.depth.max(depth);
-            let mut slots: Vec<Slot> = split(&slot).into_iter().map(resolve).collect();
-            // Leaves of more than eight packets: as many as fit into each child.
-            while slots.len() < WIDTH {
-                let area = |slot: &Slot| half_area(&slot.1);
-                let candidates = (0..slots.len()).filter(|&i| {
-                    let parts = split(&slots[i]).len();
-                    parts > 1 && slots.len() - 1 + parts <= WIDTH
-                });
-                let Some(widest) = candidates.max_by(|a, b| area(&slots[*a]).total_cmp(&area(&slots[*b]))) else {
-                    break;
-                };
-                let parts = split(&slots[widest]);
-                slots.splice(widest..=widest, parts.into_iter().map(resolve));
-            }
-            let mut node = Node::EMPTY;
-            for (place, slot) in slots.iter().enumerate() {
-                let child = match slot.0 {
-                    Part::Packet(packet) => Child::packet(packet),
-                    Part::Binary(_) => {
-                        self.nodes.push(Node::EMPTY);
-                        open.push((self.nodes.len() - 1, *slot, depth + 1));
-                        Child::node(self.nodes.len() - 1)
-                    }
-                };
-                node.put(place, self.frame.enclose(&slot.1), child);
-            }
-            self.nodes[number] = node;
-        }
-    }
-
     /// Offers to `collector` every primitive of `set`, over which the tree was built, that it could want. `query` is
     /// finite.
     #[inline]
@@ -234,8 +167,22 @@ impl PacketTree {
                 collector.offer(id, projection);
             }
         };
-        let fetch = |id| set.prefetch(id);
-        self.isa.run(Search { tree: self, query: wide(query), collector, evaluate, fetch });
+        self.isa.run(Search { tree: self, query: wide(query), collector, evaluate });
+    }
+
+    /// Asks for a node or a packet before it is read.
+    #[inline(always)]
+    fn prefetch(&self, child: Child) {
+        let (node, packet) = (self.nodes.as_ptr(), self.packets.as_ptr());
+        let at: *const u8 = if child.is_packet() {
+            packet.wrapping_add(child.number()).cast()
+        } else {
+            node.wrapping_add(child.number()).cast()
+        };
+        // A packet has seven cache lines. What comes behind a node is mostly its sibling.
+        for line in 0..size_of::<Packet>() / 64 {
+            prefetch(at.wrapping_add(64 * line));
+        }
     }
 
     /// The instruction set it searches with.
@@ -253,7 +200,9 @@ impl PacketTree {
     /// Heap memory it owns, in bytes.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.nodes.capacity() * size_of::<Node>() + self.packets.capacity() * size_of::<Packet>()
+        self.nodes.capacity() * size_of::<Node>()
+            + self.packets.capacity() * size_of::<Packet>()
+            + self.vertices.capacity() * size_of::<[f64; 3]>()
     }
 
     /// Packets, and lanes of them in use: how well they are filled.
@@ -261,6 +210,18 @@ impl PacketTree {
     pub fn packets(&self) -> (usize, usize) {
         (self.packets.len(), self.len)
     }
+}
+
+/// Puts the vertices of all packets one after the other.
+#[allow(clippy::cast_possible_truncation, reason = "ids leave two bits, and a primitive has three vertices at most")]
+fn place_vertices(packed: Vec<(Packet, Vec<[f64; 3]>)>) -> (Vec<Packet>, Vec<[f64; 3]>) {
+    let mut vertices = Vec::with_capacity(packed.iter().map(|(_, own)| own.len()).sum());
+    let place = |(mut packet, own): (Packet, Vec<[f64; 3]>)| {
+        packet.first_vertex = vertices.len() as u32;
+        vertices.extend(own);
+        packet
+    };
+    (packed.into_iter().map(place).collect(), vertices)
 }
 
 /// Units of packets below this part of the scene's are not needed: 2^-36.
@@ -275,10 +236,4 @@ fn map<A: Sync, B: Send>(all: &[A], parallel: bool, f: impl Fn(&A) -> B + Sync) 
     }
     let _ = parallel;
     all.iter().map(f).collect()
-}
-
-/// Infinite where it overflows.
-fn half_area(bounds: &Aabb<f64>) -> f64 {
-    let side = bounds.max - bounds.min;
-    side.x * side.y + side.y * side.z + side.z * side.x
 }

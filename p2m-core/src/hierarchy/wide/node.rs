@@ -2,7 +2,7 @@
 
 use crate::Aabb;
 use crate::kernel::{exponent, power_of_two};
-use crate::simd::{Lanes, prefetch};
+use crate::simd::Lanes;
 use nalgebra::Point3;
 
 /// Children of a node.
@@ -53,16 +53,6 @@ impl Node {
         self.min.iter_mut().zip(low).for_each(|(row, x)| row[place] = x);
         self.max.iter_mut().zip(high).for_each(|(row, x)| row[place] = x);
         self.children[place] = child;
-    }
-
-    /// Asks for all of it before it is read.
-    #[inline(always)]
-    pub(super) fn prefetch(&self) {
-        // Two rows are a cache line.
-        prefetch(&self.min[0]);
-        prefetch(&self.min[2]);
-        prefetch(&self.max[1]);
-        prefetch(&self.children);
     }
 
     /// The children in use, with their boxes in the frame.

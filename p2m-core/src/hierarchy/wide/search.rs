@@ -20,17 +20,16 @@ const SHORT_DEPTH: usize = (SHORT_STACK - WIDTH) / (WIDTH - 1);
 /// Candidates that wait for their evaluation.
 const CANDIDATES: usize = 32;
 
-/// A search as an operation. `evaluate` offers a primitive to the collector unless its key exceeds a square, `fetch` says
-/// that this may happen soon.
-pub(super) struct Search<'a, C, E, F> {
+/// A search as an operation. `evaluate` offers a primitive of which the tree has only a box to the collector, unless its
+/// key exceeds a square.
+pub(super) struct Search<'a, C, E> {
     pub(super) tree: &'a PacketTree,
     pub(super) query: [f64; 3],
     pub(super) collector: &'a mut C,
     pub(super) evaluate: E,
-    pub(super) fetch: F,
 }
 
-impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64), F: Fn(PrimitiveId)> Operation for Search<'_, C, E, F> {
+impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Operation for Search<'_, C, E> {
     type Output = ();
 
     #[inline(always)]
@@ -42,11 +41,10 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64), F: Fn(PrimitiveId)> Operatio
             query: self.query,
             collector: self.collector,
             evaluate: self.evaluate,
-            fetch: self.fetch,
             reach: f64::INFINITY,
             keep: 0.0,
             limit: 0.0,
-            waiting: [(0.0, PrimitiveId::new(0)); CANDIDATES],
+            waiting: [Candidate::default(); CANDIDATES],
             count: 0,
         };
         filter.update();
@@ -59,13 +57,13 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64), F: Fn(PrimitiveId)> Operatio
     }
 }
 
-impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64), F: Fn(PrimitiveId)> Search<'_, C, E, F> {
+impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Search<'_, C, E> {
     /// The same in f64 and without filters, for queries and scenes that f32 cannot tell apart.
     #[cold]
     #[inline(never)]
     fn run_far(self) {
-        let Self { tree, query, collector, evaluate, .. } = self;
-        let query = nalgebra::Point3::from(query);
+        let Self { tree, query, collector, evaluate } = self;
+        let place = nalgebra::Point3::from(query);
         let mut stack = vec![(0.0, tree.root)];
         while let Some((bound, child)) = stack.pop() {
             if bound > collector.prune_above() || child == Child::NONE {
@@ -73,41 +71,68 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64), F: Fn(PrimitiveId)> Search<'
             }
             if child.is_packet() {
                 collector.visit_packet();
-                for id in tree.packets[child.number()].ids() {
+                let packet = &tree.packets[child.number()];
+                for lane in 0..packet.ids().len() {
                     let limit = collector.prune_above();
-                    evaluate(collector, *id, limit);
+                    offer(tree, packet, lane, query, limit, collector, &evaluate);
                 }
                 continue;
             }
             collector.visit_node();
             let from = stack.len();
             let boxes = tree.nodes[child.number()].boxes();
-            stack.extend(boxes.map(|(bounds, child)| (tree.frame.disclose(&bounds).lower_bound(&query), child)));
+            stack.extend(boxes.map(|(bounds, child)| (tree.frame.disclose(&bounds).lower_bound(&place), child)));
             // The nearest one last.
             stack[from..].sort_by(|a, b| b.0.total_cmp(&a.0));
         }
     }
 }
 
+/// Offers the primitive in a lane to the collector, unless its key exceeds `square`.
+#[inline(always)]
+fn offer<C: Collector>(
+    tree: &PacketTree,
+    packet: &Packet,
+    lane: usize,
+    query: [f64; 3],
+    square: f64,
+    collector: &mut C,
+    evaluate: &impl Fn(&mut C, PrimitiveId, f64),
+) {
+    let id = packet.ids()[lane];
+    if !packet.has_vertices() {
+        evaluate(collector, id, square);
+    } else {
+        packet.offer(lane, &tree.vertices, query, square, collector);
+    }
+}
+
+/// A primitive that may be the answer.
+#[derive(Clone, Copy, Default)]
+struct Candidate {
+    /// A lower bound of its distance, in the frame of the scene.
+    low: f32,
+    packet: u32,
+    lane: u32,
+}
+
 /// The state of a search.
-struct Filter<'a, C, E, F> {
+struct Filter<'a, C, E> {
     tree: &'a PacketTree,
     query: [f64; 3],
     collector: &'a mut C,
     evaluate: E,
-    fetch: F,
     /// Some primitive is known to be at most this far.
     reach: f64,
     /// The distance above which primitives are no candidates.
     keep: f64,
     /// The square above which nodes are skipped, in their frame.
     limit: f32,
-    /// Lower bounds of distances, and the primitives.
-    waiting: [(f32, PrimitiveId); CANDIDATES],
+    waiting: [Candidate; CANDIDATES],
     count: usize,
 }
 
-impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64), F: Fn(PrimitiveId)> Filter<'_, C, E, F> {
+impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Filter<'_, C, E> {
     #[inline(always)]
     fn traverse<I: InstructionSet, const STACK: usize>(&mut self, local: &Query) {
         let tree = self.tree;
@@ -122,7 +147,7 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64), F: Fn(PrimitiveId)> Filter<'
         loop {
             if at.is_packet() {
                 self.collector.visit_packet();
-                self.packet::<I>(&tree.packets[at.number()]);
+                self.packet::<I>(at.number());
             } else {
                 self.collector.visit_node();
                 let node = &tree.nodes[at.number()];
@@ -130,15 +155,15 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64), F: Fn(PrimitiveId)> Filter<'
                 let room: &mut [u32; WIDTH] = (&mut keys[top..top + WIDTH]).try_into().expect("eight keys");
                 let count = bounds.sorted_keys(self.limit, room);
                 parents[top..top + WIDTH].fill(at.0);
-                for key in &keys[(top + count).saturating_sub(3).max(top)..top + count] {
-                    let child = node.children[lane_of_key(*key)];
-                    if child.is_packet() {
-                        tree.packets[child.number()].prefetch();
-                    } else {
-                        tree.nodes[child.number()].prefetch();
-                    }
+                // The nearest one and the next, whatever they are: a branch would be mispredicted. The keys behind the last
+                // are 0, which is the first child.
+                tree.prefetch(node.children[lane_of_key(keys[(top + count).wrapping_sub(1).min(STACK - 1)])]);
+                tree.prefetch(node.children[lane_of_key(keys[(top + count).wrapping_sub(2).min(STACK - 1)])]);
+                if count > 0 {
+                    top += count - 1;
+                    at = node.children[lane_of_key(keys[top])];
+                    continue;
                 }
-                top += count;
             }
             loop {
                 if top == 0 {
@@ -165,21 +190,23 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64), F: Fn(PrimitiveId)> Filter<'
 
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded up, and places fit")]
-    fn packet<I: InstructionSet>(&mut self, packet: &Packet) {
+    fn packet<I: InstructionSet>(&mut self, number: usize) {
         const ROUND_UP: f32 = 1.0 + 16.0 * f32::EPSILON;
+        let packet = &self.tree.packets[number];
+        let candidate = |low: f32, lane: usize| Candidate { low, packet: number as u32, lane: lane as u32 };
         let Some(local) = packet.local(&self.query) else {
-            packet.ids().iter().for_each(|id| self.wait(0.0, *id));
+            (0..packet.ids().len()).for_each(|lane| self.wait(candidate(0.0, lane)));
             return;
         };
-        let mut squares = [0.0; LANES];
-        packet.squares::<I>(&local, &mut squares);
-        let lanes = packet.lanes();
         let keep = ((self.keep * packet.per_unit()) as f32 + local.excess) * ROUND_UP;
+        let mut squares = [0.0; LANES];
+        packet.squares::<I>(&local, keep, &mut squares);
+        let lanes = packet.lanes();
         let mut found = at_most::<I::Wide>(&squares, keep * keep) & lanes;
         if found == 0 {
             return;
         }
-        if self.collector.is_nearest_only() && packet.bounds_above() {
+        if self.collector.is_nearest_only() && packet.has_vertices() {
             let reach = (smallest::<I::Wide>(&squares).sqrt() + local.deficit) * ROUND_UP;
             let here = f64::from(reach) * packet.unit();
             if here < self.reach {
@@ -195,7 +222,8 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64), F: Fn(PrimitiveId)> Filter<'
             let low = squares[lane].sqrt() * (1.0 - f32::EPSILON) - local.excess;
             // In the frame of the scene, where f32 has room; a difference of f32 about 1 or above does not underflow.
             let low = f64::from(low) * packet.unit() * self.tree.frame.per_unit;
-            self.wait(low as f32, packet.ids()[lane]);
+            packet.prefetch_vertices(lane, &self.tree.vertices);
+            self.wait(candidate(low as f32, lane));
         }
         if !self.collector.is_nearest_only() {
             self.evaluate_waiting();
@@ -203,34 +231,57 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64), F: Fn(PrimitiveId)> Filter<'
     }
 
     #[inline(always)]
-    fn wait(&mut self, low: f32, id: PrimitiveId) {
+    fn wait(&mut self, candidate: Candidate) {
         if self.count == CANDIDATES {
             self.evaluate_waiting();
         }
-        (self.fetch)(id);
-        self.waiting[self.count] = (low, id);
+        self.waiting[self.count] = candidate;
         self.count += 1;
     }
 
     /// Evaluates the candidates that are still of interest, the most promising one first.
+    ///
+    /// In a function of its own, with the instruction set: the traversal is better off with registers of its own.
     #[inline(always)]
     fn evaluate_waiting(&mut self) {
-        let waiting = &mut self.waiting[..self.count];
-        if let Some(first) = (0..waiting.len()).min_by(|a, b| waiting[*a].0.total_cmp(&waiting[*b].0)) {
-            waiting.swap(0, first);
+        self.tree.isa.run(Finish(self));
+    }
+
+    #[inline(always)]
+    fn finish(&mut self) {
+        let mut first = 0;
+        for i in 1..self.count {
+            if self.waiting[i].low < self.waiting[first].low {
+                first = i;
+            }
         }
+        self.waiting.swap(0, first);
         for i in 0..self.count {
-            let (low, id) = self.waiting[i];
+            let Candidate { low, packet, lane } = self.waiting[i];
             // Less for its rounding.
             if f64::from(low) * (1.0 - f64::from(f32::EPSILON)) * self.tree.frame.unit <= self.keep {
                 // The reach is at least a unit of a frame: its square does not underflow, as that of a bound on keys may.
                 let reach = self.reach * self.reach * (1.0 + 4.0 * f64::EPSILON);
-                let prune = self.collector.prune_above();
-                (self.evaluate)(self.collector, id, if reach < prune { reach } else { prune });
+                let packet = &self.tree.packets[packet as usize];
+                let prune = self.collector.prune_above_for(packet.ids()[lane as usize]);
+                let square = if reach < prune { reach } else { prune };
+                offer(self.tree, packet, lane as usize, self.query, square, self.collector, &self.evaluate);
                 self.update();
             }
         }
         self.count = 0;
+    }
+}
+
+/// The evaluation of the candidates that wait.
+struct Finish<'a, 'b, C, E>(&'a mut Filter<'b, C, E>);
+
+impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Operation for Finish<'_, '_, C, E> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        self.0.finish();
     }
 }
 

@@ -10,7 +10,7 @@ use super::{Operation, Portable};
 
 /// Asks for the cache line at an address before it is read; does nothing but that.
 #[inline(always)]
-pub(crate) fn prefetch<T>(at: &T) {
+pub(crate) fn prefetch(at: *const u8) {
     #[cfg(target_arch = "x86_64")]
     x86_64::prefetch(at);
     #[cfg(not(target_arch = "x86_64"))]

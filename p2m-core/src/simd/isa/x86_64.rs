@@ -7,7 +7,12 @@ use crate::simd::{EightLanes, InstructionSet, Lanes, Operation};
 use std::arch::x86_64::*;
 
 pub(super) fn has_avx2() -> bool {
-    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
+    is_x86_feature_detected!("avx2")
+        && is_x86_feature_detected!("fma")
+        && is_x86_feature_detected!("bmi1")
+        && is_x86_feature_detected!("bmi2")
+        && is_x86_feature_detected!("lzcnt")
+        && is_x86_feature_detected!("popcnt")
 }
 
 pub(super) fn has_avx512() -> bool {
@@ -15,24 +20,26 @@ pub(super) fn has_avx512() -> bool {
 }
 
 /// # Safety
-/// The processor has AVX2 and FMA.
-#[target_feature(enable = "avx2,fma")]
+/// The processor has AVX2, FMA and the scalar instructions that came before them.
+#[inline(never)]
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn run_avx2<O: Operation>(operation: O) -> O::Output {
     operation.run::<Avx2>()
 }
 
 /// # Safety
-/// The processor has AVX2, FMA and AVX-512 F and VL.
-#[target_feature(enable = "avx2,fma,avx512f,avx512vl")]
+/// The same, and AVX-512 F and VL.
+#[inline(never)]
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl")]
 pub(super) unsafe fn run_avx512<O: Operation>(operation: O) -> O::Output {
     operation.run::<Avx512>()
 }
 
 /// Every processor of this architecture can do this.
 #[inline(always)]
-pub(super) fn prefetch<T>(at: &T) {
+pub(super) fn prefetch(at: *const u8) {
     // SAFETY: a prefetch reads nothing, whatever the address.
-    unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(at).cast()) }
+    unsafe { _mm_prefetch::<_MM_HINT_T0>(at.cast()) }
 }
 
 /// Eight lanes in a 256-bit register.

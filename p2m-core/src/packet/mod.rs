@@ -20,10 +20,14 @@
 //! numbers, which are exact, so the normal of a sliver is as good as any; and a face counts only where the foot is inside
 //! by more than the test can err, so that what is found is the distance of a point of the triangle in any case.
 
+mod distance;
+
 use crate::kernel::power_of_two;
+use crate::kernel::vector::V3 as Vertex;
 use crate::real::wide;
 use crate::simd::{InstructionSet, Lanes, prefetch};
-use crate::{Aabb, Primitive, PrimitiveId, PrimitiveSet, Real};
+use crate::{Aabb, Collector, Primitive, PrimitiveId, PrimitiveSet, Projection, Real};
+use distance::{V3, beyond, edge, triangle};
 
 /// Lanes of a packet.
 pub(crate) const LANES: usize = 16;
@@ -60,12 +64,16 @@ pub(crate) struct Packet {
     /// Coordinate k of vertex v in row 3 v + k; boxes are two vertices.
     rows: [[u16; LANES]; 9],
     ids: [PrimitiveId; LANES],
+    /// Vertex v of lane l among the exact vertices of the packet.
+    corners: [[u8; LANES]; 3],
+    /// Where these begin among those of the tree.
+    pub(crate) first_vertex: u32,
+    len: u8,
+    kind: Kind,
     origin: [f64; 3],
     /// The unit of the frame; its inverse; both 0 if the box of the packet does not fit a frame of f64.
     unit: f64,
     per_unit: f64,
-    len: u8,
-    kind: Kind,
 }
 
 const _: () = assert!(size_of::<Packet>() == 448);
@@ -96,7 +104,7 @@ pub(crate) struct Local {
 
 impl Packet {
     /// Packs the primitives `ids` of a set, at most sixteen of one kind, with the box around all of
-    /// them. Units below `finest` are not needed.
+    /// them, and gives their exact vertices, each once. Units below `finest` are not needed.
     ///
     /// # Panics
     /// For more than sixteen ids, or none.
@@ -106,7 +114,7 @@ impl Packet {
         kind: Kind,
         bounds: &Aabb<f64>,
         finest: f64,
-    ) -> Self {
+    ) -> (Self, Vec<Vertex>) {
         let [min, max] = [wide(&bounds.min), wide(&bounds.max)];
         let size = (0..3).map(|k| max[k] - min[k]).fold(0.0, f64::max);
         let unit = frame_unit(size).max(finest);
@@ -117,9 +125,12 @@ impl Packet {
             unit,
             per_unit: if unit > 0.0 { unit.recip() } else { 0.0 },
             ids: [ids[0]; LANES],
+            corners: [[0; LANES]; 3],
+            first_vertex: 0,
             len: u8::try_from(ids.len()).expect("at most sixteen"),
             kind,
         };
+        let mut exact = Vec::new();
         for lane in 0..LANES {
             let id = ids[if lane < ids.len() { lane } else { 0 }];
             packet.ids[lane] = id;
@@ -131,10 +142,11 @@ impl Packet {
             } else {
                 for (v, vertex) in primitive.vertices().iter().enumerate() {
                     packet.put(lane, v, wide(vertex), f64::round);
+                    packet.corners[v][lane] = place_of(&mut exact, wide(vertex));
                 }
             }
         }
-        packet
+        (packet, exact)
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the range of u16")]
@@ -142,6 +154,51 @@ impl Packet {
         for (k, x) in position.into_iter().enumerate() {
             let x = round((x - self.origin[k]) * self.per_unit);
             self.rows[3 * vertex + k][lane] = x.clamp(0.0, TOP) as u16;
+        }
+    }
+
+    /// Offers the primitive in a lane to a collector, as the contract has it, unless its key certainly exceeds `square`.
+    /// `vertices` are all the exact vertices of the tree. Does nothing for a box, of which only the set knows.
+    #[inline(always)]
+    pub(crate) fn offer<C: Collector>(
+        &self,
+        lane: usize,
+        vertices: &[Vertex],
+        query: Vertex,
+        square: f64,
+        collector: &mut C,
+    ) {
+        let id = self.ids[lane];
+        let own = &vertices[self.first_vertex as usize..];
+        let [a, b, c] = &self.corners;
+        let [a, b, c] = [&own[usize::from(a[lane])], &own[usize::from(b[lane])], &own[usize::from(c[lane])]];
+        // Each kind for itself: a projection that is kept in registers need not be copied.
+        match self.kind {
+            Kind::Triangle => {
+                if let Some(projection) = Projection::of_near_triangle(query, &[*a, *b, *c], square) {
+                    collector.offer(id, projection);
+                }
+            }
+            Kind::Segment => {
+                if let Some(projection) = Projection::of_segment(query, &[*a, *b], square) {
+                    collector.offer(id, projection);
+                }
+            }
+            Kind::Point => {
+                if let Some(projection) = Projection::of_point(query, &[*a], square) {
+                    collector.offer(id, projection);
+                }
+            }
+            Kind::Box => {}
+        }
+    }
+
+    /// Asks for what [`offer`](Self::offer) reads.
+    #[inline(always)]
+    pub(crate) fn prefetch_vertices(&self, lane: usize, vertices: &[Vertex]) {
+        for corner in &self.corners {
+            let place = self.first_vertex as usize + usize::from(corner[lane]);
+            prefetch(vertices.as_ptr().wrapping_add(place).cast());
         }
     }
 
@@ -157,20 +214,10 @@ impl Packet {
         (1 << self.len) - 1
     }
 
-    /// Asks for all of it before it is read.
+    /// Whether its primitives are what their vertices say, rather than boxes around something else: the squares then
+    /// bound distances from above as well.
     #[inline(always)]
-    pub(crate) fn prefetch(&self) {
-        // Two rows are a cache line.
-        for row in [0, 2, 4, 6, 8] {
-            prefetch(&self.rows[row]);
-        }
-        prefetch(&self.ids[8]);
-        prefetch(&self.kind);
-    }
-
-    /// Whether the squares bound distances from above as well.
-    #[inline(always)]
-    pub(crate) fn bounds_above(&self) -> bool {
+    pub(crate) fn has_vertices(&self) -> bool {
         self.kind != Kind::Box
     }
 
@@ -205,16 +252,23 @@ impl Packet {
         })
     }
 
-    /// Squared distances in the frame to the primitives in all lanes; for boxes, to the boxes.
+    /// Squared distances in the frame to the primitives in all lanes; for boxes, to the boxes. Where they certainly
+    /// exceed `limit`, a distance in the frame, they may be infinite instead.
     #[inline(always)]
-    pub(crate) fn squares<I: InstructionSet>(&self, local: &Local, squares: &mut [f32; LANES]) {
+    pub(crate) fn squares<I: InstructionSet>(&self, local: &Local, limit: f32, squares: &mut [f32; LANES]) {
         let q = V3::splat(local.query);
+        let towards = self.towards(&local.query);
         let mut at = 0;
         while at < LANES {
             let result = match self.kind {
                 Kind::Triangle => {
                     let vertices = [self.vertex(0, at), self.vertex(1, at), self.vertex(2, at)];
-                    triangle::<I::Wide>(&q, vertices, local.margin_squared)
+                    let offsets = [vertices[0].sub(&q), vertices[1].sub(&q), vertices[2].sub(&q)];
+                    if beyond::<I::Wide>(&offsets, towards, limit) {
+                        I::Wide::splat(f32::INFINITY)
+                    } else {
+                        triangle::<I::Wide>(offsets, vertices, local.margin_squared)
+                    }
                 }
                 Kind::Segment => {
                     let (a, b) = (self.vertex(0, at), self.vertex(1, at));
@@ -231,12 +285,31 @@ impl Packet {
         }
     }
 
+    /// From a query in the frame to some vertex.
+    #[inline(always)]
+    fn towards(&self, [x, y, z]: &[f32; 3]) -> [f32; 3] {
+        const SOME: usize = LANES / 2;
+        [f32::from(self.rows[0][SOME]) - x, f32::from(self.rows[1][SOME]) - y, f32::from(self.rows[2][SOME]) - z]
+    }
+
     /// Vertex v in the lanes from `at` on.
     #[inline(always)]
     fn vertex<L: Lanes>(&self, v: usize, at: usize) -> V3<L> {
         let [x, y, z] = [&self.rows[3 * v], &self.rows[3 * v + 1], &self.rows[3 * v + 2]];
         V3 { x: L::load_u16(&x[at..]), y: L::load_u16(&y[at..]), z: L::load_u16(&z[at..]) }
     }
+}
+
+/// The place of a vertex in a list of at most 48, at the end of which it is put if it is not there yet. The same vertex is
+/// one with the same bits.
+#[allow(clippy::cast_possible_truncation, reason = "at most 48")]
+fn place_of(list: &mut Vec<Vertex>, vertex: Vertex) -> u8 {
+    let bits = vertex.map(f64::to_bits);
+    let place = list.iter().position(|v| v.map(f64::to_bits) == bits).unwrap_or(list.len());
+    if place == list.len() {
+        list.push(vertex);
+    }
+    place as u8
 }
 
 /// The smallest power of two of which `size` is at most 65534; 0 for 0.
@@ -259,100 +332,6 @@ fn scale(e: i32) -> f64 {
     2f64.powi(e)
 }
 
-/// Three coordinates, lane by lane.
-#[derive(Clone, Copy)]
-struct V3<L> {
-    x: L,
-    y: L,
-    z: L,
-}
-
-impl<L: Lanes> V3<L> {
-    #[inline(always)]
-    fn splat([x, y, z]: [f32; 3]) -> Self {
-        Self { x: L::splat(x), y: L::splat(y), z: L::splat(z) }
-    }
-    #[inline(always)]
-    fn sub(&self, other: &Self) -> Self {
-        Self { x: self.x.sub(other.x), y: self.y.sub(other.y), z: self.z.sub(other.z) }
-    }
-    #[inline(always)]
-    fn max(&self, other: &Self) -> Self {
-        Self { x: self.x.max(other.x), y: self.y.max(other.y), z: self.z.max(other.z) }
-    }
-    #[inline(always)]
-    fn scaled(&self, factor: L) -> Self {
-        Self { x: self.x.mul(factor), y: self.y.mul(factor), z: self.z.mul(factor) }
-    }
-    #[inline(always)]
-    fn dot(&self, other: &Self) -> L {
-        self.z.mul_add(other.z, self.y.mul_add(other.y, self.x.mul(other.x)))
-    }
-    #[inline(always)]
-    fn square(&self) -> L {
-        self.dot(self)
-    }
-    /// Of orthogonal vectors, for which nothing cancels badly.
-    #[inline(always)]
-    fn cross(&self, other: &Self) -> Self {
-        let zero = L::splat(0.0);
-        Self {
-            x: self.y.mul_add(other.z, zero.sub(self.z).mul(other.y)),
-            y: self.z.mul_add(other.x, zero.sub(self.x).mul(other.z)),
-            z: self.x.mul_add(other.y, zero.sub(self.y).mul(other.x)),
-        }
-    }
-    /// Of vectors of whole numbers, up to a power of two: exact but for its last bits, however nearly parallel they are.
-    #[inline(always)]
-    fn cross_of_whole(&self, other: &Self) -> Self {
-        Self {
-            x: L::difference_of_products(self.y, other.z, self.z, other.y),
-            y: L::difference_of_products(self.z, other.x, self.x, other.z),
-            z: L::difference_of_products(self.x, other.y, self.y, other.x),
-        }
-    }
-}
-
-/// The squared distance from the origin to the segment from `a` along `e`, and |e|^2.
-#[inline(always)]
-fn edge<L: Lanes>(a: &V3<L>, e: &V3<L>) -> (L, L) {
-    let length_squared = e.square();
-    let t = L::splat(0.0).sub(a.dot(e)).mul(length_squared.reciprocal());
-    // NaN, for an edge without length, becomes 0.
-    let t = t.max(L::splat(0.0)).min(L::splat(1.0));
-    let p = V3 { x: t.mul_add(e.x, a.x), y: t.mul_add(e.y, a.y), z: t.mul_add(e.z, a.z) };
-    (p.square(), length_squared)
-}
-
-/// The squared distance from `q` to triangles of whole numbers.
-#[inline(always)]
-fn triangle<L: Lanes>(q: &V3<L>, [a, b, c]: [V3<L>; 3], margin_squared: f32) -> L {
-    let edges = [b.sub(&a), c.sub(&b), a.sub(&c)];
-    let offsets = [a.sub(q), b.sub(q), c.sub(q)];
-    // Scaled so that no square of what follows overflows.
-    let normal = edges[0].scaled(L::splat(SCALE)).cross_of_whole(&edges[1]);
-    let normal_squared = normal.square();
-    let margin = L::splat(margin_squared).mul(normal_squared);
-    let mut nearest = L::splat(f32::INFINITY);
-    // Below zero where the foot on the plane is inside of all three edges by more than the margin.
-    let mut outside = L::splat(f32::NEG_INFINITY);
-    for (a, e) in offsets.iter().zip(&edges) {
-        let (square, length_squared) = edge(a, e);
-        nearest = square.min(nearest);
-        // The vertex lies ahead in the direction out of the triangle, if the query is inside.
-        let ahead = a.dot(&e.cross(&normal));
-        let beyond = margin.mul(length_squared).sub(ahead.mul(ahead.max(L::splat(0.0))));
-        outside = beyond.max(outside);
-    }
-    let height = offsets[0].dot(&normal);
-    let face = height.mul(height).mul(normal_squared.reciprocal());
-    outside.if_below(L::splat(0.0), face, nearest)
-}
-
-/// 2^-34: products of two edges are then about 1 at most.
-#[allow(clippy::cast_possible_truncation, reason = "a power of two")]
-const SCALE: f32 = power_of_two(-34) as f32;
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -360,14 +339,14 @@ mod tests {
     use crate::{Primitive, Shape};
     use nalgebra::Point3;
 
-    struct Squares<'a>(&'a Packet, &'a Local);
+    struct Squares<'a>(&'a Packet, &'a Local, f32);
 
     impl Operation for Squares<'_> {
         type Output = [f32; LANES];
         #[inline(always)]
         fn run<I: InstructionSet>(self) -> [f32; LANES] {
             let mut squares = [0.0; LANES];
-            self.0.squares::<I>(self.1, &mut squares);
+            self.0.squares::<I>(self.1, self.2, &mut squares);
             squares
         }
     }
@@ -435,6 +414,7 @@ mod tests {
     fn squares_are_within_the_band_on_every_instruction_set() {
         let mut random = Random(1);
         let mut worst = [0.0f64; 2];
+        let mut skipped = 0;
         for round in 0..6000 {
             let kind = [Kind::Triangle, Kind::Triangle, Kind::Segment, Kind::Point][round % 4];
             let len = random.below(16) as usize + 1;
@@ -443,7 +423,7 @@ mod tests {
             let queries: Vec<_> = (0..8).map(|_| query(&mut random, &shapes) * scale).collect();
             let shapes: Vec<Shape<f64>> = shapes.iter().map(|s| scaled(s, scale)).collect();
             let ids: Vec<PrimitiveId> = (0..len).map(PrimitiveId::new).collect();
-            let packet = Packet::new(&shapes, &ids, kind, &shapes.aabb(), scale * 2f64.powi(-36));
+            let (packet, _) = Packet::new(&shapes, &ids, kind, &shapes.aabb(), scale * 2f64.powi(-36));
             assert_eq!((packet.ids(), packet.lanes().count_ones() as usize), (ids.as_slice(), len));
             for q in queries {
                 let Some(local) = packet.local(&q.coords.into()) else {
@@ -452,18 +432,26 @@ mod tests {
                     continue;
                 };
                 for isa in Isa::available() {
-                    let squares = isa.run(Squares(&packet, &local));
+                    let squares = isa.run(Squares(&packet, &local, f32::INFINITY));
+                    let limit = squares[random.below(LANES as u64) as usize].sqrt() * random.unit() as f32 * 2.0;
+                    let limited = isa.run(Squares(&packet, &local, limit));
                     for (lane, shape) in shapes.iter().enumerate() {
                         let distance = shape.project(&q).key.distance() / packet.unit();
                         let off = f64::from(squares[lane]).sqrt() - distance;
                         let (excess, deficit) = (f64::from(local.excess), f64::from(local.deficit));
                         assert!(off <= excess && off >= -deficit, "{isa}: {off} of {distance}, {shape:?} {q}");
                         worst = [worst[0].max(off / excess), worst[1].max(-off / deficit)];
+                        if limited[lane] != squares[lane] {
+                            assert_eq!(limited[lane], f32::INFINITY);
+                            assert!(distance + excess > f64::from(limit), "{isa}: {distance} is within {limit}");
+                            skipped += 1;
+                        }
                     }
                 }
             }
         }
         println!("largest part of the band: {worst:?}");
+        assert!(skipped > 10_000, "{skipped}");
         // The quantisation alone takes a good part of a unit.
         assert!(worst[0] > 0.5 && worst[1] > 0.5, "{worst:?}");
     }
@@ -493,7 +481,7 @@ mod tests {
         let ids = [PrimitiveId::new(0)];
         for size in [1e-200, 1e200, f64::MAX] {
             let set = [crate::Segment::new(Point3::from([-size; 3]), Point3::from([size; 3]))];
-            let packet = Packet::new(&set, &ids, Kind::Segment, &set.aabb(), 0.0);
+            let (packet, _) = Packet::new(&set, &ids, Kind::Segment, &set.aabb(), 0.0);
             assert!(packet.local(&[0.0; 3]).is_none(), "{size}");
         }
     }
