@@ -126,7 +126,10 @@ impl Frame {
         }
         let mut result = Query { low: [0.0; 3], high: [0.0; 3] };
         for (k, x) in q.into_iter().enumerate() {
-            (result.low[k], result.high[k]) = ((x as f32).next_down(), (x as f32).next_up());
+            let x = x as f32;
+            // At least a unit in the last place, where the conversion errs by half of one.
+            let margin = x.abs() * f32::EPSILON + f32::MIN_POSITIVE;
+            (result.low[k], result.high[k]) = (x - margin, x + margin);
         }
         Some(result)
     }

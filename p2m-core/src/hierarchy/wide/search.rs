@@ -15,7 +15,7 @@ use crate::{Collector, PrimitiveId};
 /// Entries of the stack: seven waiting siblings on each level at most, and room for one node to be written whole.
 pub(super) const STACK: usize = (WIDTH - 1) * super::MAX_WIDE_DEPTH + WIDTH;
 /// Most trees are not deep, and a long stack takes a moment to clear.
-const SHORT_STACK: usize = 128;
+const SHORT_STACK: usize = 96;
 const SHORT_DEPTH: usize = (SHORT_STACK - WIDTH) / (WIDTH - 1);
 /// Candidates that wait for their evaluation.
 const CANDIDATES: usize = 32;
