@@ -230,6 +230,19 @@ where
             say()
         );
         assert!(rough.lower_bound <= expected.distance, "{}: epsilon {epsilon}", say());
+        // With a hint and a radius as well: something is found if anything is in the radius, and it keeps the bounds.
+        let stretch = rng.random_range(1.0..1.0 + epsilon);
+        let radius = T::of_f64(expected.distance.to_f64() * stretch);
+        let options = QueryOptions::default().with_epsilon(T::of_f64(epsilon)).with_max_distance(radius);
+        for options in [options, options.with_hint(hint)] {
+            let Some(rough) = index.closest_point_with(q, &options) else {
+                assert!(expected.distance > radius, "{}: epsilon {epsilon} within {radius:?}", say());
+                continue;
+            };
+            let bound = distance * (1.0 + epsilon) * slack + T::SMALLEST_SUBNORMAL;
+            assert!(rough.distance.to_f64() <= bound && rough.distance <= radius, "{}: epsilon {epsilon}", say());
+            assert!(rough.lower_bound <= expected.distance, "{}: epsilon {epsilon} and radius", say());
+        }
     }
 }
 

@@ -4,8 +4,8 @@
 
 use nalgebra::{Point3, Vector3};
 use p2m::{
-    AabbOptions, AabbTree, Best, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Isa, Primitive,
-    PrimitiveId, PrimitiveSet, Projection, QueryOptions, Real, Soup, batch,
+    AabbOptions, AabbTree, Best, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Isa, Point,
+    Primitive, PrimitiveId, PrimitiveSet, Projection, QueryOptions, Real, Segment, Shape, Soup, Triangle, batch,
 };
 use p2m_testkit::counting::Counting;
 use p2m_testkit::rng;
@@ -151,6 +151,61 @@ fn a_tree_that_is_refitted_answers_as_one_that_is_built() {
         let error = tree.refit(fewer.clone(), &AabbOptions::default());
         assert_eq!(error, Err(BuildError::OtherLength { len: fewer.len(), expected: len }));
         same(tree.closest_point(&Point3::origin()), before, "as it was");
+    }
+}
+
+/// Trees of few primitives and many nodes; leaves of every size.
+#[test]
+fn trees_of_every_shape_are_built() {
+    let mut rng = rng("shapes of trees", 0);
+    for base in [1.5f64, 2.0, 8.0, 16.0, 17.0, 100.0] {
+        for n in [1, 2, 17, 33, 34, 40, 68, 69, 100] {
+            let set: Vec<Point<f64>> = (0..n).map(|i| Point::new(Point3::new(base.powi(-i), 0.0, 0.0))).collect();
+            let tree = AabbTree::build(&set, &Default::default()).expect("valid");
+            let brute = BruteForce::new(&set).expect("valid");
+            for i in 0..n {
+                let q = Point3::new(base.powi(-i) * 1.25, 0.1, 0.0);
+                same(tree.closest_point(&q), brute.closest_point(&q), &format!("{n} points of base {base}"));
+            }
+        }
+    }
+    for max_leaf in [0, 1, 2, 3, 4, 8, 16, 17, 100, 1000, usize::MAX] {
+        for (layout, len) in [(Layout::Strewn, 300), (Layout::Sheet, 70), (Layout::Strewn, 5)] {
+            let soup = scenes::soup(&mut rng, Kinds::Mixed, layout, len);
+            let mut options = AabbOptions::default();
+            options.max_leaf = max_leaf;
+            let tree = AabbTree::build(&soup, &options).expect("valid");
+            let brute = BruteForce::new(&soup).expect("valid");
+            for _ in 0..50 {
+                let q = query(&mut rng, &soup);
+                same(tree.closest_point(&q), brute.closest_point(&q), &format!("leaves of {max_leaf}, {layout:?}"));
+            }
+        }
+    }
+}
+
+/// A packet whose primitives become others of other kinds; zeros of both signs.
+#[test]
+fn refitted_packets_may_mix_kinds_and_zeros_keep_their_signs() {
+    let at = |x: f64, y: f64| Point3::new(x, y, -0.0);
+    let shape = |kind: usize, i: usize| -> Shape<f64> {
+        let x = i as f64;
+        match kind {
+            0 => Point::new(at(x, 0.0)).into(),
+            1 => Segment::new(at(x, -0.0), at(x, 1.0)).into(),
+            _ => Triangle::new(at(x, 0.0), at(x, 1.0), Point3::new(x, -1.0, 0.0)).into(),
+        }
+    };
+    let of = |kind: &dyn Fn(usize) -> usize| -> Vec<Shape<f64>> { (0..40).map(|i| shape(kind(i), i)).collect() };
+    let mut tree = AabbTree::build(of(&|_| 2), &Default::default()).expect("valid");
+    for step in 0..6usize {
+        let moved = of(&|i| [i % 3, 1, (i / 5) % 2, 2, i * i % 3, 0][step]);
+        tree.refit(moved.clone(), &AabbOptions::default()).expect("as many");
+        let brute = BruteForce::new(&moved).expect("valid");
+        for i in 0..400 {
+            let q = Point3::new(f64::from(i) * 0.1, f64::from(i % 7) * 0.3 - 0.9, f64::from(i % 5) * 0.2 - 0.4);
+            same(tree.closest_point(&q), brute.closest_point(&q), &format!("step {step} {q}"));
+        }
     }
 }
 

@@ -68,7 +68,7 @@ const SHARE: usize = 1 << 9;
 /// ```
 ///
 /// # Panics
-/// If the slices differ in length, and for more than 2^32 - 1 queries.
+/// If the slices differ in length, and for more than 2^32 - 1 queries to reorder.
 ///
 /// # Complexity
 /// O(n log n) for sorting n queries, 16 bytes each, besides the queries themselves.

@@ -204,8 +204,8 @@ impl<T: Real> Collector for Best<T> {
 
     #[inline(always)]
     fn prune_given(&self, square: f64) -> f64 {
-        // The answer will be at most that far.
-        let square = square * self.shrink;
+        // Not shrunk by epsilon: that primitive may be beyond the radius, or be left out for a candidate that is a little
+        // farther, and what may be left out for a candidate depends on that candidate alone.
         if square < self.prune { square } else { self.prune }
     }
 

@@ -22,6 +22,12 @@ impl PrimitiveId {
         Self(index as u32)
     }
 
+    /// As it is kept.
+    #[inline(always)]
+    pub(crate) fn number(self) -> u32 {
+        self.0
+    }
+
     /// Its place in the set.
     #[inline]
     #[must_use]

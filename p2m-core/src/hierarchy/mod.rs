@@ -31,7 +31,8 @@ impl<V> Node<V> {
 
     /// The places in [`Hierarchy::order`] of a leaf's primitives; empty for an inner node.
     fn places(&self) -> std::ops::Range<usize> {
-        self.first as usize..(self.first + self.count) as usize
+        let first = if self.count == 0 { 0 } else { self.first as usize };
+        first..first + self.count as usize
     }
 }
 

@@ -12,6 +12,7 @@ mod plane;
 pub(crate) mod scalar;
 mod scaled;
 pub(crate) mod vector;
+pub(crate) mod vertices;
 
 pub use key::Key;
 
@@ -31,7 +32,7 @@ pub const SLIVER_SINE: f64 = 1.0 / 1024.0;
 
 /// The winner among the features of one primitive.
 ///
-/// Plain numbers without choices between them: they stay in registers on their way to a collector.
+/// Numbers and a small code, no payloads in an enum: they stay in registers on their way to a collector.
 #[derive(Clone, Copy)]
 pub(crate) struct Nearest {
     pub(crate) key: Key,

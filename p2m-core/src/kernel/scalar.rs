@@ -39,13 +39,13 @@ use crate::Feature;
 /// more, so that the two lanes agree on what such a speck is.
 const PLAIN_SIZE_PER_EDGE_SQUARED: f64 = power_of_two(196);
 /// Offsets within 2^-250..2^250 have squares, and squares of squares, well inside the range of f64.
-const PLAIN_MIN: f64 = power_of_two(-250);
-const PLAIN_MAX: f64 = power_of_two(250);
+pub(super) const PLAIN_MIN: f64 = power_of_two(-250);
+pub(super) const PLAIN_MAX: f64 = power_of_two(250);
 /// Rough squares of edges and faces of ordinary shape err by less than 2^-37 of the square of the offsets' size; what is
 /// farther than the best rough one by more than this cannot win.
 const ROUGH_MARGIN: f64 = power_of_two(-34);
 /// A foot that is accepted wrongly, by rounding, is within 2^-40 of the squared size of a foot that is right.
-const OUTWARD_MARGIN: f64 = power_of_two(-38);
+pub(super) const OUTWARD_MARGIN: f64 = power_of_two(-38);
 
 /// Whether the features of these offsets can be computed in plain f64: the largest component `size` and the shortest
 /// edge, given by the inverse of its square, are of ordinary size. A zero edge is not.

@@ -68,14 +68,17 @@ pub(super) fn edge<L: Lanes>(a: &V3<L>, e: &V3<L>) -> (L, L) {
     (p.square(), length_squared)
 }
 
-/// Whether all triangles are farther than `limit`: a plane that many units away leaves all vertices behind it.
+/// Whether all triangles are farther than `limit`: a plane that many units away, across `towards`, leaves all vertices
+/// behind it.
 #[inline(always)]
 pub(super) fn beyond<L: Lanes>(offsets: &[V3<L>; 3], towards: [f32; 3], limit: f32) -> bool {
     let [x, y, z] = towards;
     let length = (x * x + y * y + z * z).sqrt();
     let towards = V3::splat(towards);
     let [a, b, c] = offsets;
-    a.dot(&towards).min(b.dot(&towards)).min(c.dot(&towards)).at_most(L::splat(length * limit.min(f32::MAX))) == 0
+    // Shorter ways than a unit are not worth it, and may underflow.
+    let reached = if length >= 1.0 { length * limit } else { f32::INFINITY };
+    a.dot(&towards).min(b.dot(&towards)).min(c.dot(&towards)).at_most(L::splat(reached)) == 0
 }
 
 /// The squared distance from the origin to triangles of whole numbers, of which `offsets` are the places.

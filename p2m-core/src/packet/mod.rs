@@ -1,7 +1,7 @@
 //! Packets: up to sixteen primitives of one kind, filtered at once.
 //!
-//! A packet keeps the vertices of its primitives as whole numbers of 16 bits in a frame of its own, lane beside lane: a
-//! third of the room of f32, and more precise, for the frame is as small as the packet. [`Packet::squares`] computes
+//! A packet keeps the vertices of its primitives as whole numbers of 16 bits in a frame of its own, lane beside lane: half
+//! the room of f32, and more precise, for the frame is as small as the packet. [`Packet::squares`] computes
 //! squared distances to all of them in f32. They decide nothing but which primitives cannot be the answer: everything
 //! within a proven band is evaluated by the kernel of the contract.
 //!
@@ -191,6 +191,17 @@ impl Packet {
             }
             Kind::Box => {}
         }
+    }
+
+    /// The corners of the triangle in a lane; `None` if the packet has no triangles.
+    #[inline(always)]
+    pub(crate) fn triangle_corners<'a>(&self, lane: usize, vertices: &'a [Vertex]) -> Option<[&'a Vertex; 3]> {
+        if self.kind != Kind::Triangle {
+            return None;
+        }
+        let own = &vertices[self.first_vertex as usize..];
+        let [a, b, c] = &self.corners;
+        Some([&own[usize::from(a[lane])], &own[usize::from(b[lane])], &own[usize::from(c[lane])]])
     }
 
     /// Asks for what [`offer`](Self::offer) reads.
@@ -463,6 +474,28 @@ mod tests {
             [a, b] => crate::Segment::new(a, b).into(),
             [a, b, c] => crate::Triangle::new(a, b, c).into(),
             _ => unreachable!("one to three vertices"),
+        }
+    }
+
+    #[test]
+    fn a_query_that_is_hardly_beside_a_vertex_keeps_its_packet() {
+        // The way to the vertex in the middle lane is so short that its square underflows.
+        let at = |x: f64, y: f64| {
+            let [a, b, c] = [[x, y, y], [x + 900.0, y, y], [x + 900.0, y + 1.0, y]].map(Point3::from);
+            Shape::from(crate::Triangle::new(a, b, c))
+        };
+        let shapes: Vec<Shape<f64>> = (0..LANES)
+            .map(|lane| if lane == LANES / 2 { at(0.0, 1000.0) } else { at(30_000.0 + lane as f64, 0.0) })
+            .collect();
+        let ids: Vec<PrimitiveId> = (0..LANES).map(PrimitiveId::new).collect();
+        let bounds = shapes.aabb().union(&Aabb::of_points(&[Point3::origin(), Point3::from([40_000.0; 3])]));
+        let (packet, _) = Packet::new(&shapes, &ids, Kind::Triangle, &bounds, 0.0);
+        for tiny in [1e-10, 1e-22, 1e-24, 1e-30, 1e-40, 0.0] {
+            let local = packet.local(&[-tiny, 1000.0, 1000.0]).expect("near");
+            for isa in Isa::available() {
+                let squares = isa.run(Squares(&packet, &local, f32::MAX));
+                assert!(squares.iter().all(|s| s.is_finite()), "{isa}, {tiny:e}: {squares:?}");
+            }
         }
     }
 

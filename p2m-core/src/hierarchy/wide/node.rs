@@ -78,7 +78,7 @@ impl Node {
     }
 }
 
-/// The frame of the nodes' boxes: the scene fits into the cube from -1 to 1 (from -2 to 2, for the largest ones).
+/// The frame of the nodes' boxes: the scene fits into the cube from -1 to 1 (from -4 to 4, for the largest ones).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
     centre: [f64; 3],

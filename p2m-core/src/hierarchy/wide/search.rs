@@ -4,10 +4,11 @@
 //! primitive: it keeps the least upper bound that it has seen, skips what lies above it, and remembers as candidates
 //! what may lie below. At the end few are left, mostly one and those that share its nearest feature, and these are
 //! offered to the collector, which decides by exact keys. Where the collector wants more than the nearest, candidates
-//! are offered packet by packet.
+//! are offered packet by packet, or up to 32 at a time where the filter knows nothing.
 
 use super::PacketTree;
 use super::node::{Child, Query, WIDTH};
+use crate::kernel::vertices::{SIDE_BY_SIDE, certain_vertices};
 use crate::packet::{LANES, Packet};
 use crate::simd::{EightLanes, InstructionSet, Lanes, Operation, lane_of_key, number_of_key};
 use crate::{Collector, PrimitiveId};
@@ -247,6 +248,38 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Filter<'_, C, E> {
         self.tree.isa.run(Finish(self));
     }
 
+    /// Of the triangles of which a vertex is certainly the nearest point only the nearest stay, and of these the first: others
+    /// are as far or farther. They are not missed in the certified bound either, for keys of vertices are right to some u.
+    #[inline(always)]
+    fn drop_ties(&mut self) {
+        let mut corners = [[[0.0; SIDE_BY_SIDE]; 3]; 3];
+        let count = self.count.min(SIDE_BY_SIDE);
+        for (i, candidate) in self.waiting[..count].iter().enumerate() {
+            let packet = &self.tree.packets[candidate.packet as usize];
+            if let Some(own) = packet.triangle_corners(candidate.lane as usize, &self.tree.vertices) {
+                for v in 0..3 {
+                    for k in 0..3 {
+                        corners[v][k][i] = own[v][k];
+                    }
+                }
+            }
+        }
+        // What is no triangle is three times the same point here, of which nothing is certain.
+        let squares = certain_vertices(self.query, &corners);
+        let mut winner = (f64::INFINITY, u32::MAX, 0);
+        for (i, candidate) in self.waiting[..count].iter().enumerate() {
+            let id = self.tree.packets[candidate.packet as usize].ids()[candidate.lane as usize].number();
+            if squares[i] < winner.0 || (squares[i] == winner.0 && id < winner.1) {
+                winner = (squares[i], id, i);
+            }
+        }
+        for (i, candidate) in self.waiting[..count].iter_mut().enumerate() {
+            if squares[i] < f64::INFINITY && i != winner.2 {
+                candidate.low = f32::INFINITY;
+            }
+        }
+    }
+
     #[inline(always)]
     fn finish(&mut self) {
         let mut first = 0;
@@ -256,6 +289,9 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Filter<'_, C, E> {
             }
         }
         self.waiting.swap(0, first);
+        if self.count > FEW && self.collector.is_nearest_only() {
+            self.drop_ties();
+        }
         for i in 0..self.count {
             let Candidate { low, packet, lane } = self.waiting[i];
             // Less for its rounding.
@@ -272,6 +308,9 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Filter<'_, C, E> {
         self.count = 0;
     }
 }
+
+/// So many candidates are evaluated one by one.
+const FEW: usize = 3;
 
 /// The evaluation of the candidates that wait.
 struct Finish<'a, 'b, C, E>(&'a mut Filter<'b, C, E>);

@@ -1,0 +1,95 @@
+//! Triangles whose nearest point is certainly a vertex, eight at a time.
+//!
+//! Far from a mesh the triangles around a vertex tie; which of them has the lowest number is all that is left to know.
+
+use super::scalar::{OUTWARD_MARGIN, PLAIN_MAX, PLAIN_MIN};
+use super::vector::{V3, larger, smaller};
+
+/// Triangles side by side.
+pub(crate) const SIDE_BY_SIDE: usize = 8;
+type Row = [f64; SIDE_BY_SIDE];
+
+/// The squares of the keys of triangles whose nearest point is certainly a vertex, bit for bit those of
+/// [`triangle`](super::scalar::triangle); infinity for the others. Coordinate k of corner v is in `corners[v][k]`.
+#[inline(always)]
+#[allow(clippy::needless_range_loop, reason = "rows side by side")]
+pub(crate) fn certain_vertices(query: V3, corners: &[[Row; 3]; 3]) -> Row {
+    let mut offsets = *corners;
+    let mut size = [0.0; SIDE_BY_SIDE];
+    let mut squares = [[0.0; SIDE_BY_SIDE]; 3];
+    for v in 0..3 {
+        for k in 0..3 {
+            for i in 0..SIDE_BY_SIDE {
+                offsets[v][k][i] = corners[v][k][i] - query[k];
+                size[i] = larger(offsets[v][k][i].abs(), size[i]);
+            }
+        }
+        for i in 0..SIDE_BY_SIDE {
+            let [x, y, z] = [offsets[v][0][i], offsets[v][1][i], offsets[v][2][i]];
+            squares[v][i] = x * x + y * y + z * z;
+        }
+    }
+    let mut result = [f64::INFINITY; SIDE_BY_SIDE];
+    for v in 0..3 {
+        let (next, last) = ((v + 1) % 3, (v + 2) % 3);
+        for i in 0..SIDE_BY_SIDE {
+            let mut least = f64::INFINITY;
+            for w in [next, last] {
+                let [x, y, z] = [offsets[v][0][i], offsets[v][1][i], offsets[v][2][i]];
+                let outward = x * (offsets[w][0][i] - x) + y * (offsets[w][1][i] - y) + z * (offsets[w][2][i] - z);
+                least = smaller(outward, least);
+            }
+            let certain = least > OUTWARD_MARGIN * (size[i] * size[i]);
+            result[i] = if certain { squares[v][i] } else { result[i] };
+        }
+    }
+    for i in 0..SIDE_BY_SIDE {
+        // Squares of plain sizes, at least 2^-38 of the size away, are plain keys.
+        let plain = size[i] >= PLAIN_MIN && size[i] <= PLAIN_MAX;
+        result[i] = if plain { result[i] } else { f64::INFINITY };
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::scalar;
+
+    #[test]
+    fn squares_are_the_keys_of_the_kernel_where_they_are_certain() {
+        let mut state = 1u64;
+        let mut unit = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        let (mut certain, mut others) = (0, 0);
+        for round in 0..20_000 {
+            let scale = 2f64.powi([0, 0, 30, -200, 300][round % 5]);
+            let far = 2f64.powi(round as i32 % 12 - 2);
+            let mut corners = [[[0.0; SIDE_BY_SIDE]; 3]; 3];
+            for v in 0..3 {
+                for k in 0..3 {
+                    for i in 0..SIDE_BY_SIDE {
+                        // Every fifth triangle has a vertex twice.
+                        let again = v == 2 && i == 4;
+                        corners[v][k][i] = if again { corners[0][k][i] } else { unit() * scale };
+                    }
+                }
+            }
+            let query = [0; 3].map(|_| unit() * far * scale);
+            let squares = certain_vertices(query, &corners);
+            for i in 0..SIDE_BY_SIDE {
+                let vertices = [0, 1, 2].map(|v: usize| [0, 1, 2].map(|k: usize| corners[v][k][i]));
+                let key = scalar::triangle(query, vertices, f64::INFINITY).expect("nothing is beyond infinity").key;
+                if squares[i] < f64::INFINITY {
+                    assert_eq!(key.plain_square(), Some(squares[i]), "{query:?} {vertices:?}");
+                    certain += 1;
+                } else {
+                    others += 1;
+                }
+            }
+        }
+        assert!(certain > 20_000 && others > 20_000, "{certain} {others}");
+    }
+}
