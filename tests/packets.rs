@@ -187,13 +187,14 @@ fn trees_of_every_shape_are_built() {
 /// A packet whose primitives become others of other kinds; zeros of both signs.
 #[test]
 fn refitted_packets_may_mix_kinds_and_zeros_keep_their_signs() {
-    let at = |x: f64, y: f64| Point3::new(x, y, -0.0);
     let shape = |kind: usize, i: usize| -> Shape<f64> {
-        let x = i as f64;
+        // Every other one has the same place, with zeros of the other sign.
+        let (x, zero) = ((i / 2) as f64, if i % 2 == 0 { 0.0 } else { -0.0 });
+        let at = |y: f64| Point3::new(x + f64::from(i as u32 % 2) * 1e-3 * y * y, y, zero);
         match kind {
-            0 => Point::new(at(x, 0.0)).into(),
-            1 => Segment::new(at(x, -0.0), at(x, 1.0)).into(),
-            _ => Triangle::new(at(x, 0.0), at(x, 1.0), Point3::new(x, -1.0, 0.0)).into(),
+            0 => Point::new(at(zero)).into(),
+            1 => Segment::new(at(zero), at(1.0)).into(),
+            _ => Triangle::new(at(zero), at(1.0), at(-1.0)).into(),
         }
     };
     let of = |kind: &dyn Fn(usize) -> usize| -> Vec<Shape<f64>> { (0..40).map(|i| shape(kind(i), i)).collect() };
