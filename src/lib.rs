@@ -40,6 +40,7 @@
 //! |---|---|---|
 //! | [`BruteForce`] | every primitive, every time: the oracle, and right for a handful of queries | |
 //! | [`AabbTree`] | boxes split by surface area, searched nearest first | `bvh` |
+//! | [`KdopTree`] | the same with polytopes of K faces: closer to what does not lie along the axes | `kdop` |
 //!
 //! Write functions over `I: ClosestPoint<T>` to leave the choice to the caller, or take `&dyn ClosestPoint<T>`.
 //!
@@ -48,6 +49,7 @@
 //! | feature | adds | default |
 //! |---|---|---|
 //! | `bvh` | [`AabbTree`] | yes |
+//! | `kdop` | [`KdopTree`] | yes |
 //! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `mixed` | [`scene`]: reading scenes and points from files | yes |
 #![forbid(unsafe_code)]
@@ -55,6 +57,8 @@
 #[cfg(feature = "bvh")]
 pub use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
 pub use p2m_core::*;
+#[cfg(feature = "kdop")]
+pub use p2m_kdop::{KdopOptions, KdopTree};
 /// Scenes from files and generators.
 #[cfg(feature = "mixed")]
 pub use p2m_mixed as scene;

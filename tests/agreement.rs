@@ -1,13 +1,13 @@
 //! Every backend against brute force, bit for bit (N3), and sets against the exact oracle (N2, N7).
 //!
 //! One generic suite; a new backend adds a line to `backends!`.
-#![cfg(feature = "bvh")]
+#![cfg(all(feature = "bvh", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use p2m::{
-    AabbTree, Best, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Feature, Key, Point, Primitive,
-    PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment, Shape, Soup, Triangle,
+    AabbTree, Best, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Directions, Feature, KdopOptions,
+    KdopTree, Key, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment, Shape, Soup, Triangle,
 };
 use p2m_testkit::families::shape;
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
@@ -15,26 +15,56 @@ use p2m_testkit::{oracle::Distance, rng};
 use rand::RngExt;
 use std::fmt::Debug;
 
-/// Runs a generic test for every exact backend, each with both scalars.
+/// What every exact backend is tested with, each with both scalars: scenes of all kinds.
+macro_rules! on_soups {
+    ($index:ident) => {
+        #[test]
+        fn agrees_on_random_scenes_in_f64() {
+            for (seed, soup) in random_soups("f64") {
+                agrees::<f64, &Soup<f64>, $index<f64, _>>(seed, &soup, &queries(seed, &soup));
+            }
+        }
+
+        #[test]
+        fn agrees_on_random_scenes_in_f32() {
+            for (seed, soup) in random_soups("f32") {
+                let queries: Vec<_> = queries(seed, &soup).into_iter().map(to_f32).collect();
+                agrees::<f32, &Soup<f32>, $index<f32, _>>(seed, &scenes::narrow(&soup).expect("fits f32"), &queries);
+            }
+        }
+
+        #[test]
+        fn agrees_at_extreme_scales() {
+            for (seed, soup) in random_soups("scales") {
+                let e = [-1060, -1000, -600, -400, 400, 600, 1000, 1021][seed as usize % 8];
+                let scale = |p: &Point3<f64>| p.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
+                let queries: Vec<_> =
+                    queries(seed, &soup).iter().map(scale).filter(|q| q.iter().all(|x| x.is_finite())).collect();
+                let Ok(soup) = Soup::new(soup.positions().iter().map(scale).collect(), soup.elements()) else {
+                    continue;
+                };
+                agrees::<f64, &Soup<f64>, $index<f64, _>>(seed, &soup, &queries);
+            }
+        }
+    };
+}
+
+/// The same for backends whose directions do not matter to the rest.
+macro_rules! variants {
+    ($($name:ident: $index:ident),+ $(,)?) => {
+        $(mod $name {
+            use super::*;
+            on_soups!($index);
+        })+
+    };
+}
+
+/// Runs the whole suite for every backend.
 macro_rules! backends {
     ($($name:ident: $index:ident),+ $(,)?) => {
         $(mod $name {
             use super::*;
-
-            #[test]
-            fn agrees_on_random_scenes_in_f64() {
-                for (seed, soup) in random_soups("f64") {
-                    agrees::<f64, &Soup<f64>, $index<f64, _>>(seed, &soup, &queries(seed, &soup));
-                }
-            }
-
-            #[test]
-            fn agrees_on_random_scenes_in_f32() {
-                for (seed, soup) in random_soups("f32") {
-                    let queries: Vec<_> = queries(seed, &soup).into_iter().map(to_f32).collect();
-                    agrees::<f32, &Soup<f32>, $index<f32, _>>(seed, &scenes::narrow(&soup).expect("fits f32"), &queries);
-                }
-            }
+            on_soups!($index);
 
             #[test]
             fn agrees_on_homogeneous_slices() {
@@ -46,17 +76,6 @@ macro_rules! backends {
                     agrees::<f64, &[Triangle<f64>], $index<f64, _>>(seed, &triangles[..], &queries);
                     agrees::<f64, &[Segment<f64>], $index<f64, _>>(seed, &segments[..], &queries);
                     agrees::<f64, &[Point<f64>], $index<f64, _>>(seed, &points[..], &queries);
-                }
-            }
-
-            #[test]
-            fn agrees_at_extreme_scales() {
-                for (seed, soup) in random_soups("scales") {
-                    let e = [-1060, -1000, -600, -400, 400, 600, 1000, 1021][seed as usize % 8];
-                    let scale = |p: &Point3<f64>| p.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
-                    let queries: Vec<_> = queries(seed, &soup).iter().map(scale).filter(|q| q.iter().all(|x| x.is_finite())).collect();
-                    let Ok(soup) = Soup::new(soup.positions().iter().map(scale).collect(), soup.elements()) else { continue };
-                    agrees::<f64, &Soup<f64>, $index<f64, _>>(seed, &soup, &queries);
                 }
             }
 
@@ -120,7 +139,50 @@ macro_rules! backends {
 /// `BruteForce` with the type parameters that the other backends have.
 type Brute<T, S> = BruteForceOf<T, S>;
 
-backends! { aabb: AabbTree, brute: Brute }
+type Kdop6<T, S> = KdopTree<T, S, 6>;
+type Kdop14<T, S> = KdopTree<T, S, 14>;
+type Kdop18<T, S> = KdopTree<T, S, 18>;
+type Kdop26<T, S> = KdopTree<T, S, 26>;
+type KdopTurned<T, S> = OwnDirections<T, S, 10, true>;
+type KdopSkew<T, S> = OwnDirections<T, S, 8, false>;
+
+backends! {
+    aabb: AabbTree,
+    brute: Brute,
+    kdop_14: Kdop14,
+}
+
+// Few sets, for these take long to compile.
+variants! {
+    kdop_6: Kdop6,
+    kdop_18: Kdop18,
+    kdop_26: Kdop26,
+    kdop_of_turned_directions: KdopTurned,
+    kdop_of_skew_directions: KdopSkew,
+}
+
+/// A k-DOP tree of a user's directions: with three that are orthogonal, or without.
+struct OwnDirections<T: Real, S, const K: usize, const ORTHOGONAL: bool>(KdopTree<T, S, K>);
+
+impl<T: Real, S: PrimitiveSet<T>, const K: usize, const O: bool> ClosestPoint<T> for OwnDirections<T, S, K, O> {
+    fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
+        self.0.search(query, best);
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T> + Sync, const K: usize, const O: bool> BuildIndex<T, S> for OwnDirections<T, S, K, O> {
+    type Options = ();
+    type Error = BuildError;
+    fn build(set: S, (): &()) -> Result<Self, BuildError> {
+        let turned = [[2.0, 1.0, 2.0], [1.0, 2.0, -2.0], [-2.0, 2.0, 1.0], [1.0, 0.3, 0.2], [0.1, -3.0, 0.4]];
+        let skew = [[2.0, 1.0, 2.0], [1.0, 0.1, -0.4], [0.0, 1.0, 0.3], [1.0, -1.0, 0.2]];
+        let directions: Vec<Vector3<f64>> =
+            if O { &turned[..] } else { &skew[..] }.iter().map(|d| (*d).into()).collect();
+        let directions = Directions::new(&directions).expect("directions");
+        assert_eq!(directions.starts_orthogonal(), O);
+        KdopTree::build_with(set, &KdopOptions::new(directions)).map(Self)
+    }
+}
 
 /// Brute force takes no scalar; this gives it one, so that the suite is tested on itself.
 struct BruteForceOf<T, S>(BruteForce<S>, std::marker::PhantomData<T>);

@@ -5,7 +5,8 @@ use crate::rivals::{parry_double, parry_single};
 use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_bvh::{AabbOptions, AabbTree};
-use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Isa, PrimitiveId, PrimitiveSet, Shape, Soup, Triangle};
+use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Directions, Isa, PrimitiveId, PrimitiveSet, Shape, Soup, Triangle};
+use p2m_kdop::{KdopOptions, KdopTree};
 use std::marker::PhantomData;
 
 /// Every contender, in the order of the tables.
@@ -16,6 +17,10 @@ pub(crate) const ALL: &[Backend] = &[
     Backend { name: "aabb-avx2", prepare: |s| aabb::<f64>(s, Some("avx2")), ..OURS },
     Backend { name: "aabb-portable", prepare: |s| aabb::<f64>(s, Some("portable")), ..OURS },
     Backend { name: "aabb-tri", prepare: aabb_of_triangles, ..OURS },
+    Backend { name: "kdop-6", prepare: kdop::<f64, 6>, ..OURS },
+    Backend { name: "kdop-14", prepare: kdop::<f64, 14>, ..OURS },
+    Backend { name: "kdop-18", prepare: kdop::<f64, 18>, ..OURS },
+    Backend { name: "kdop-26", prepare: kdop::<f64, 26>, ..OURS },
     Backend { name: "brute-f32", exhaustive: true, prepare: |s| over_soup::<f32, BruteForce<_>>(s), ..OURS_SINGLE },
     Backend { name: "aabb-f32", prepare: |s| aabb::<f32>(s, None), ..OURS_SINGLE },
     Backend { name: YARDSTICK, scalar: ScalarKind::Single, prepare: parry_single, ..RIVAL },
@@ -108,6 +113,14 @@ fn aabb<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'
         Ok(Box::new(Ours(tree.with_isa(isa), PhantomData::<fn() -> T>)) as Ready<'a>)
     };
     Ok(Prepared { build: Box::new(build), borrowed })
+}
+
+/// The k-DOP tree of the usual directions.
+fn kdop<T: Scalar, const K: usize>(scene: &Scene) -> Result<Prepared<'_>, Absent>
+where
+    Directions<K>: Default,
+{
+    over_soup_with::<T, KdopTree<T, _, K>>(scene, KdopOptions::default().with_splits(aabb_options()))
 }
 
 /// The AABB tree over the triangles written out, where there is nothing else: shows what a set of mixed kinds costs.

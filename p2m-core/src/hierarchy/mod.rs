@@ -9,7 +9,7 @@ mod split;
 mod wide;
 
 pub use split::{SplitOptions, SplitRule};
-pub use wide::{NodeBox, PacketTree};
+pub use wide::{NodeBox, PacketTree, Part, Volume};
 
 use crate::{Aabb, PrimitiveId, Real};
 

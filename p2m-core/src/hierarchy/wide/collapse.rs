@@ -5,7 +5,7 @@
 //! forests of j and i - j trees below its two children. (For trees of rays this is \[Ylitie2017\]; leaves stay as they
 //! are here.) A greedy choice from the root leaves the lowest nodes half empty.
 
-use super::node::{Child, Frame, Node, WIDTH};
+use super::node::{Child, WIDTH};
 use crate::{Aabb, hierarchy};
 use std::ops::Range;
 
@@ -77,14 +77,14 @@ impl Binary {
         binary
     }
 
-    /// The root, the nodes, parents before children, and how many of them are on the longest path.
-    pub(super) fn collapse(&self, frame: &Frame) -> (Child, Vec<Node>, usize) {
+    /// The root, the children of the nodes, parents before children, and how many nodes are on the longest path.
+    pub(super) fn collapse(&self) -> (Child, Vec<[Child; WIDTH]>, usize) {
         let Some(root) = self.nodes.first() else { return (Child::NONE, Vec::new(), 0) };
         if let Below::Packet(packet) = root.below {
             return (Child::packet(packet), Vec::new(), 0);
         }
         let forests = self.forests();
-        let mut nodes = vec![Node::EMPTY];
+        let mut nodes = vec![[Child::NONE; WIDTH]];
         let mut longest = 0;
         let mut open = vec![(0, 0, 1)];
         while let Some((number, at, depth)) = open.pop() {
@@ -102,16 +102,15 @@ impl Binary {
                         continue;
                     }
                     Below::Nodes(_) => {
-                        nodes.push(Node::EMPTY);
+                        nodes.push([Child::NONE; WIDTH]);
                         open.push((nodes.len() - 1, at, depth + 1));
                         Child::node(nodes.len() - 1)
                     }
                 };
-                nodes[number].put(place, frame.enclose(&self.nodes[at].bounds), child);
+                nodes[number][place] = child;
                 place += 1;
             }
         }
-        nodes.shrink_to_fit();
         (Child::node(0), nodes, longest)
     }
 
@@ -197,9 +196,9 @@ mod tests {
             let found = tree.forests()[0][0].cost;
             assert!((found - expected).abs() < 1e-12 * expected, "{len}: {found} for {expected}");
             // And the nodes are those: as many children in all as there are nodes and packets below the root.
-            let (root, nodes, depth) = tree.collapse(&Frame::around(&tree.nodes[0].bounds));
+            let (root, nodes, depth) = tree.collapse();
             assert_eq!(root, Child::node(0));
-            let children: Vec<Child> = nodes.iter().flat_map(|node| node.boxes().map(|(_, child)| child)).collect();
+            let children: Vec<Child> = nodes.concat().into_iter().filter(|child| *child != Child::NONE).collect();
             let packets: Vec<usize> = children.iter().filter(|c| c.is_packet()).map(|c| c.number()).collect();
             assert_eq!(packets.len() + nodes.len() - 1, children.len());
             assert!((0..len).all(|packet| packets.contains(&packet)) && packets.len() == len);

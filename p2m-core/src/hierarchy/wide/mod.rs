@@ -1,36 +1,47 @@
 //! A tree of wide nodes over packets.
 //!
-//! A binary tree of splits is collapsed into nodes of eight children ([`collapse`]). A node is a few cache lines with eight boxes side by side
-//! ([`node`]), a leaf a [`Packet`] of up to sixteen primitives. Both are in f32 or less and only bound distances, from
+//! A binary tree of splits is collapsed into nodes of eight children ([`collapse`]). A node is a few cache lines with the bounds of eight children side by
+//! side ([`volume`]: boxes in [`node`], k-DOPs in [`slabs`]), a leaf a [`Packet`] of up to sixteen primitives. Both are in f32 or less and only bound distances, from
 //! both sides and with proof; what may be the answer is evaluated in f64 by the kernel of the contract ([`search`]).
 
 mod collapse;
 mod node;
 mod overlap;
+mod parts;
 mod search;
+mod slabs;
+mod volume;
 
 use super::{Hierarchy, SplitOptions};
+use crate::kdop::Slabs;
 use crate::packet::{Kind, LANES, Packet};
 use crate::real::wide;
 use crate::simd::{Isa, prefetch};
-use crate::{Aabb, Collector, Primitive, PrimitiveId, PrimitiveSet, Real};
+use crate::{Aabb, Collector, Directions, Kdop, Primitive, PrimitiveId, PrimitiveSet, Real};
 use nalgebra::Point3;
-use node::{Child, Frame, Node, WIDTH};
+use node::{Child, Frame, WIDTH};
 use search::Search;
+use volume::WideNode;
+
+pub use parts::Part;
+pub use volume::Volume;
 
 /// No path from the root is longer: that of the binary tree, and one node more where a leaf has several kinds.
 const MAX_WIDE_DEPTH: usize = super::MAX_DEPTH + 2;
 
 /// A tree over a set of primitives, which it does not keep: every method that needs the set is given the same one.
 #[derive(Clone, Debug)]
-pub struct PacketTree {
+pub struct PacketTree<V: Volume = Aabb<f64>> {
     isa: Isa,
+    shape: V::Shape,
     frame: Frame,
     bounds: Aabb<f64>,
+    /// Around everything, as nodes have it.
+    whole: <V::Node as WideNode>::Bounds,
     root: Child,
     /// Nodes on the longest path from the root.
     depth: usize,
-    nodes: Vec<Node>,
+    nodes: Vec<V::Node>,
     packets: Vec<Packet>,
     /// The exact vertices of the packets, one packet after the other.
     vertices: Vec<[f64; 3]>,
@@ -51,6 +62,38 @@ pub struct NodeBox {
 }
 
 impl PacketTree {
+    /// Builds a tree of boxes over a set whose boxes are finite.
+    ///
+    /// # Complexity
+    /// O(n log n) time expected, O(n) memory.
+    #[must_use]
+    pub fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, options: &SplitOptions) -> Self {
+        Self::build_shaped(set, options, ())
+    }
+}
+
+impl<const K: usize> PacketTree<Kdop<K>> {
+    /// Builds a tree of k-DOPs of these directions, over the same splits.
+    ///
+    /// # Complexity
+    /// O(n log n + K n) time expected, O(n) memory.
+    #[must_use]
+    pub fn build_kdops<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
+        set: &S,
+        options: &SplitOptions,
+        directions: &Directions<K>,
+    ) -> Self {
+        Self::build_shaped(set, options, Slabs::new(directions))
+    }
+
+    /// The directions of its k-DOPs.
+    #[must_use]
+    pub fn directions(&self) -> &Directions<K> {
+        &self.shape.directions
+    }
+}
+
+impl<V: Volume> PacketTree<V> {
     /// The box around everything; the empty box for an empty set.
     #[must_use]
     pub fn bounds(&self) -> &Aabb<f64> {
@@ -58,11 +101,11 @@ impl PacketTree {
     }
 
     /// Builds the tree over a set whose boxes are finite.
-    ///
-    /// # Complexity
-    /// O(n log n) time expected, O(n) memory.
-    #[must_use]
-    pub fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, options: &SplitOptions) -> Self {
+    fn build_shaped<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
+        set: &S,
+        options: &SplitOptions,
+        shape: V::Shape,
+    ) -> Self {
         let of_id = |i: usize| {
             let primitive = set.get(PrimitiveId::new(i));
             (primitive.aabb(), Kind::of(&primitive))
@@ -93,24 +136,50 @@ impl PacketTree {
         let pack = |(places, kind): &(std::ops::Range<usize>, Kind)| {
             let ids = &order[places.clone()];
             let bounds = ids.iter().map(|id| boxes[id.index()].to_f64()).fold(Aabb::empty(), |a, b| a.union(&b));
-            (Packet::new(set, ids, *kind, &bounds, frame.unit * FINEST), bounds)
+            let enclosed = V::Node::enclose(&shape, &frame, set, ids, &bounds);
+            (Packet::new(set, ids, *kind, &bounds, frame.unit * FINEST), (bounds, enclosed))
         };
-        let (packed, packet_boxes): (Vec<_>, Vec<_>) = map(&ranges, options.parallel, pack).into_iter().unzip();
+        let (packed, bounded): (Vec<_>, Vec<_>) = map(&ranges, options.parallel, pack).into_iter().unzip();
+        let (packet_boxes, packet_bounds): (Vec<_>, Vec<_>) = bounded.into_iter().unzip();
         let (packets, vertices) = place_vertices(packed);
+        let (root, children, depth) = collapse::Binary::new(&binary.nodes, &of_leaf, &packet_boxes).collapse();
+        let nodes = children.into_iter().map(V::Node::new).collect();
         let mut tree = Self {
             isa: Isa::best(),
+            shape,
             frame,
             bounds,
-            root: Child::NONE,
-            depth: 0,
-            nodes: Vec::new(),
+            whole: V::Node::NOTHING,
+            root,
+            depth,
+            nodes,
             packets,
             vertices,
             len: set.len(),
         };
-        let parts = collapse::Binary::new(&binary.nodes, &of_leaf, &packet_boxes);
-        (tree.root, tree.nodes, tree.depth) = parts.collapse(&frame);
+        tree.bound_nodes(&packet_bounds);
         tree
+    }
+
+    /// Bounds all nodes, given the bounds of the packets.
+    fn bound_nodes(&mut self, of_packets: &[<V::Node as WideNode>::Bounds]) {
+        let mut of_nodes = vec![V::Node::NOTHING; self.nodes.len()];
+        // Children come after their parents.
+        for number in (0..self.nodes.len()).rev() {
+            let mut all = V::Node::NOTHING;
+            let node = &mut self.nodes[number];
+            for place in 0..WIDTH {
+                let child = node.children()[place];
+                if child == Child::NONE {
+                    continue;
+                }
+                let own = if child.is_packet() { of_packets[child.number()] } else { of_nodes[child.number()] };
+                all = V::Node::join(&all, &own);
+                node.put(place, &own);
+            }
+            of_nodes[number] = all;
+        }
+        self.whole = of_packets.iter().fold(V::Node::NOTHING, |all, own| V::Node::join(&all, own));
     }
 
     /// Fits the tree to another set of as many primitives: the same ones, moved. The tree keeps its shape, so searches get
@@ -140,22 +209,12 @@ impl PacketTree {
             Packet::new(set, ids, kind, bounds, finest)
         };
         let bounded: Vec<_> = self.packets.iter().zip(&packet_boxes).collect();
+        let enclose = |(packet, bounds): &(&Packet, &Aabb<f64>)| {
+            V::Node::enclose(&self.shape, &self.frame, set, packet.ids(), bounds)
+        };
+        let packet_bounds = map(&bounded, parallel, enclose);
         (self.packets, self.vertices) = place_vertices(map(&bounded, parallel, pack));
-        // Children come after their parents.
-        let mut node_boxes = vec![Aabb::empty(); self.nodes.len()];
-        for number in (0..self.nodes.len()).rev() {
-            let mut all = Aabb::empty();
-            for place in 0..WIDTH {
-                let child = self.nodes[number].children[place];
-                if child == Child::NONE {
-                    continue;
-                }
-                let bounds = if child.is_packet() { packet_boxes[child.number()] } else { node_boxes[child.number()] };
-                all = all.union(&bounds);
-                self.nodes[number].put(place, self.frame.enclose(&bounds), child);
-            }
-            node_boxes[number] = all;
-        }
+        self.bound_nodes(&packet_bounds);
     }
 
     /// Offers to `collector` every primitive of `set`, over which the tree was built, that it could want. `query` is
@@ -170,6 +229,11 @@ impl PacketTree {
         self.isa.run(Search { tree: self, query: wide(query), collector, evaluate });
     }
 
+    /// A box around a child of a node.
+    fn box_of(&self, node: &V::Node, place: usize) -> Aabb<f64> {
+        V::Node::disclose(&node.at(place), &self.shape, &self.frame)
+    }
+
     /// Asks for a node or a packet before it is read.
     #[inline(always)]
     fn prefetch(&self, child: Child) {
@@ -179,8 +243,8 @@ impl PacketTree {
         } else {
             node.wrapping_add(child.number()).cast()
         };
-        // A packet has seven cache lines. What comes behind a node is mostly its sibling.
-        for line in 0..size_of::<Packet>() / 64 {
+        // A packet has seven cache lines, and few nodes have more. What comes behind a node is mostly its sibling.
+        for line in 0..size_of::<Packet>().max(size_of::<V::Node>()) / 64 {
             prefetch(at.wrapping_add(64 * line));
         }
     }
@@ -200,7 +264,7 @@ impl PacketTree {
     /// Heap memory it owns, in bytes.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.nodes.capacity() * size_of::<Node>()
+        self.nodes.capacity() * size_of::<V::Node>()
             + self.packets.capacity() * size_of::<Packet>()
             + self.vertices.capacity() * size_of::<[f64; 3]>()
     }

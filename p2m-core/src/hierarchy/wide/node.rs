@@ -1,27 +1,17 @@
-//! Nodes of eight boxes, in f32 in a frame of the scene.
+//! Nodes of eight children, in f32 in a frame of the scene; and those that bound their children by boxes.
 
-use crate::Aabb;
+use super::volume::{Rounded, WideNode};
 use crate::kernel::{exponent, power_of_two};
 use crate::simd::Lanes;
+use crate::{Aabb, PrimitiveId, PrimitiveSet, Real};
 use nalgebra::Point3;
 
 /// Children of a node.
-pub(super) const WIDTH: usize = 8;
-
-/// Eight boxes side by side. Unused ones are empty: infinitely far from everything.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub(super) struct Node {
-    pub(super) min: [[f32; WIDTH]; 3],
-    pub(super) max: [[f32; WIDTH]; 3],
-    pub(super) children: [Child; WIDTH],
-}
-
-const _: () = assert!(size_of::<Node>() == 256);
+pub(crate) const WIDTH: usize = 8;
 
 /// A node or a packet, by its number; `NONE` for neither.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Child(pub(super) u32);
+pub(crate) struct Child(pub(super) u32);
 
 const PACKET_BIT: u32 = 1 << 31;
 
@@ -44,29 +34,64 @@ impl Child {
     }
 }
 
-impl Node {
-    pub(super) const EMPTY: Self =
-        Self { min: [[f32::INFINITY; WIDTH]; 3], max: [[f32::NEG_INFINITY; WIDTH]; 3], children: [Child::NONE; WIDTH] };
+/// Eight boxes side by side. Unused ones are empty: infinitely far from everything.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct BoxNode {
+    min: [[f32; WIDTH]; 3],
+    max: [[f32; WIDTH]; 3],
+    children: [Child; WIDTH],
+}
 
-    pub(super) fn put(&mut self, place: usize, bounds: [[f32; 3]; 2], child: Child) {
-        let [low, high] = bounds;
+const _: () = assert!(size_of::<BoxNode>() == 256);
+
+/// The lower and the upper corner of a box in the frame.
+type Corners = [[f32; 3]; 2];
+
+impl WideNode for BoxNode {
+    type Volume = Aabb<f64>;
+    type Shape = ();
+    type Bounds = Corners;
+    type Query = Rounded;
+
+    const NOTHING: Corners = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+
+    fn new(children: [Child; WIDTH]) -> Self {
+        Self { min: [[f32::INFINITY; WIDTH]; 3], max: [[f32::NEG_INFINITY; WIDTH]; 3], children }
+    }
+
+    #[inline(always)]
+    fn children(&self) -> &[Child; WIDTH] {
+        &self.children
+    }
+
+    fn put(&mut self, place: usize, bounds: &Corners) {
+        let [low, high] = *bounds;
         self.min.iter_mut().zip(low).for_each(|(row, x)| row[place] = x);
         self.max.iter_mut().zip(high).for_each(|(row, x)| row[place] = x);
-        self.children[place] = child;
     }
 
-    /// The children in use, with their boxes in the frame.
-    pub(super) fn boxes(&self) -> impl Iterator<Item = ([[f32; 3]; 2], Child)> + '_ {
-        let used = (0..WIDTH).filter(|&i| self.children[i] != Child::NONE);
-        used.map(|i| {
-            ([[0, 1, 2].map(|k: usize| self.min[k][i]), [0, 1, 2].map(|k: usize| self.max[k][i])], self.children[i])
-        })
+    fn enclose<T: Real, S: PrimitiveSet<T> + ?Sized>(
+        (): &(),
+        frame: &Frame,
+        _: &S,
+        _: &[PrimitiveId],
+        bounds: &Aabb<f64>,
+    ) -> Corners {
+        frame.enclose(bounds)
     }
 
-    /// Squares of lower bounds of the distances to the eight boxes: at most 2^-20 (relative) too large, apart from
-    /// underflow.
+    fn join(a: &Corners, b: &Corners) -> Corners {
+        [[0, 1, 2].map(|k| a[0][k].min(b[0][k])), [0, 1, 2].map(|k| a[1][k].max(b[1][k]))]
+    }
+
     #[inline(always)]
-    pub(super) fn lower_bounds<L: Lanes>(&self, query: &Query) -> L {
+    fn query((): &(), frame: &Frame, query: &[f64; 3]) -> Option<Rounded> {
+        Some(Rounded::of(frame.local(query)?))
+    }
+
+    #[inline(always)]
+    fn lower_bounds<L: Lanes>(&self, (): &(), query: &Rounded) -> L {
         let mut sum = L::splat(0.0);
         for k in 0..3 {
             let below = L::load(&self.min[k]).sub(L::splat(query.high[k]));
@@ -76,12 +101,25 @@ impl Node {
         }
         sum
     }
+
+    fn at(&self, place: usize) -> Corners {
+        [self.min.map(|row| row[place]), self.max.map(|row| row[place])]
+    }
+
+    fn disclose(bounds: &Corners, (): &(), frame: &Frame) -> Aabb<f64> {
+        let [min, max] = bounds.map(|corner| Point3::from(corner.map(f64::from)));
+        frame.disclose(&Aabb { min, max })
+    }
+
+    fn volume(bounds: &Corners, (): &(), frame: &Frame) -> Aabb<f64> {
+        Self::disclose(bounds, &(), frame)
+    }
 }
 
-/// The frame of the nodes' boxes: the scene fits into the cube from -1 to 1 (from -4 to 4, for the largest ones).
+/// The frame of the nodes: the scene fits into the cube from -1 to 1 (from -4 to 4, for the largest ones).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
-    centre: [f64; 3],
+pub(crate) struct Frame {
+    pub(super) centre: [f64; 3],
     pub(super) unit: f64,
     pub(super) per_unit: f64,
 }
@@ -90,13 +128,6 @@ pub(super) struct Frame {
 const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-320)..=power_of_two(300);
 /// Beyond this many units from the scene, its boxes are asked in f64.
 const FARTHEST: f64 = power_of_two(40);
-
-/// A query in the frame, in f32 rounded both ways.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Query {
-    pub(super) low: [f32; 3],
-    pub(super) high: [f32; 3],
-}
 
 impl Frame {
     pub(super) fn around(bounds: &Aabb<f64>) -> Self {
@@ -112,41 +143,33 @@ impl Frame {
         Self { centre, unit, per_unit: unit.recip() }
     }
 
+    /// A point in the frame.
+    #[inline(always)]
+    pub(super) fn place(&self, point: &[f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|k| (point[k] - self.centre[k]) * self.per_unit)
+    }
+
     /// The query in the frame; `None` if it is too far or the frame too small or large to search in f32.
     #[inline(always)]
-    #[allow(
-        clippy::cast_possible_truncation,
-        reason = "rounded both ways, which covers the rounding of the difference"
-    )]
-    pub(super) fn query(&self, query: &[f64; 3]) -> Option<Query> {
-        let q: [f64; 3] = std::array::from_fn(|k| (query[k] - self.centre[k]) * self.per_unit);
+    pub(super) fn local(&self, query: &[f64; 3]) -> Option<[f64; 3]> {
+        let q = self.place(query);
         let largest = q[0].abs().max(q[1].abs()).max(q[2].abs());
-        if !(PLAIN.contains(&self.unit) && largest <= FARTHEST) {
-            return None;
-        }
-        let mut result = Query { low: [0.0; 3], high: [0.0; 3] };
-        for (k, x) in q.into_iter().enumerate() {
-            let x = x as f32;
-            // At least a unit in the last place, where the conversion errs by half of one.
-            let margin = x.abs() * f32::EPSILON + f32::MIN_POSITIVE;
-            (result.low[k], result.high[k]) = (x - margin, x + margin);
-        }
-        Some(result)
+        (PLAIN.contains(&self.unit) && largest <= FARTHEST).then_some(q)
     }
 
     /// A box in the frame, rounded outwards.
     #[allow(clippy::cast_possible_truncation, reason = "rounded outwards, which covers the rounding of the difference")]
-    pub(super) fn enclose(&self, bounds: &Aabb<f64>) -> [[f32; 3]; 2] {
-        let place = |p: &Point3<f64>, k: usize| ((p[k] - self.centre[k]) * self.per_unit) as f32;
-        [[0, 1, 2].map(|k| place(&bounds.min, k).next_down()), [0, 1, 2].map(|k| place(&bounds.max, k).next_up())]
+    fn enclose(&self, bounds: &Aabb<f64>) -> Corners {
+        let [min, max] = [&bounds.min, &bounds.max].map(|corner| self.place(&[corner.x, corner.y, corner.z]));
+        [min.map(|x| (x as f32).next_down()), max.map(|x| (x as f32).next_up())]
     }
 
     /// A box around a box of the frame.
-    pub(super) fn disclose(&self, bounds: &[[f32; 3]; 2]) -> Aabb<f64> {
-        let place = |x: f32, k: usize| self.centre[k] + f64::from(x) * self.unit;
+    pub(super) fn disclose(&self, bounds: &Aabb<f64>) -> Aabb<f64> {
+        let place = |x: f64, k: usize| self.centre[k] + x * self.unit;
         Aabb {
-            min: Point3::from(std::array::from_fn(|k| place(bounds[0][k], k).next_down())),
-            max: Point3::from(std::array::from_fn(|k| place(bounds[1][k], k).next_up())),
+            min: Point3::from(std::array::from_fn(|k| place(bounds.min[k], k).next_down())),
+            max: Point3::from(std::array::from_fn(|k| place(bounds.max[k], k).next_up())),
         }
     }
 

@@ -2,12 +2,13 @@
 
 use super::node::Child;
 use super::search::STACK;
+use super::volume::{Volume, WideNode};
 use super::{NodeBox, PacketTree};
 use crate::{Aabb, PrimitiveId};
 use nalgebra::Point3;
 use std::ops::ControlFlow;
 
-impl PacketTree {
+impl<V: Volume> PacketTree<V> {
     /// Visits the primitives that meet a box, in the order of the leaves, until `visit` breaks. `meets` tells whether a
     /// primitive does, which is asked only where the box of a node or packet does not tell.
     ///
@@ -33,10 +34,13 @@ impl PacketTree {
                 ids.iter().filter(|id| inside || meets(**id)).copied().try_for_each(&mut *visit)?;
                 continue;
             }
-            for (own, child) in self.nodes[child.number()].boxes() {
-                let own = self.frame.disclose(&own);
-                if inside || bounds.meets(&own) {
-                    stack[waiting] = (child, inside || bounds.contains(&own));
+            let node = &self.nodes[child.number()];
+            for place in node.used() {
+                let enclosed = node.at(place);
+                let own = V::Node::disclose(&enclosed, &self.shape, &self.frame);
+                let inside = inside || bounds.contains(&own);
+                if inside || (bounds.meets(&own) && V::Node::may_meet(&enclosed, &self.shape, &self.frame, bounds)) {
+                    stack[waiting] = (node.children()[place], inside);
                     waiting += 1;
                 }
             }
@@ -53,8 +57,10 @@ impl PacketTree {
         let mut at = self.root;
         while at != Child::NONE && !at.is_packet() {
             let mut nearest = (f64::INFINITY, Child::NONE);
-            for (own, child) in self.nodes[at.number()].boxes() {
-                let bound = self.frame.disclose(&own).lower_bound(query);
+            let node = &self.nodes[at.number()];
+            for place in node.used() {
+                let child = node.children()[place];
+                let bound = self.box_of(node, place).lower_bound(query);
                 let farther = if bound < nearest.0 || nearest.1 == Child::NONE {
                     std::mem::replace(&mut nearest, (bound, child))
                 } else {
@@ -81,8 +87,9 @@ impl PacketTree {
                 let primitives = self.packets[child.number()].ids().len();
                 return Some(NodeBox { bounds, depth, primitives });
             }
-            let boxes = self.nodes[child.number()].boxes();
-            open.extend(boxes.map(|(own, child)| (self.frame.disclose(&own), child, depth + 1)));
+            let node = &self.nodes[child.number()];
+            let below = |place| (self.box_of(node, place), node.children()[place], depth + 1);
+            open.extend(node.used().map(below));
             Some(NodeBox { bounds, depth, primitives: 0 })
         })
     }

@@ -7,7 +7,8 @@
 //! are offered packet by packet, or up to 32 at a time where the filter knows nothing.
 
 use super::PacketTree;
-use super::node::{Child, Query, WIDTH};
+use super::node::{Child, WIDTH};
+use super::volume::{Volume, WideNode};
 use crate::kernel::vertices::{SIDE_BY_SIDE, certain_vertices};
 use crate::packet::{LANES, Packet};
 use crate::simd::{EightLanes, InstructionSet, Lanes, Operation, lane_of_key, number_of_key};
@@ -23,20 +24,20 @@ const CANDIDATES: usize = 32;
 
 /// A search as an operation. `evaluate` offers a primitive of which the tree has only a box to the collector, unless its
 /// key exceeds a square.
-pub(super) struct Search<'a, C, E> {
-    pub(super) tree: &'a PacketTree,
+pub(super) struct Search<'a, V: Volume, C, E> {
+    pub(super) tree: &'a PacketTree<V>,
     pub(super) query: [f64; 3],
     pub(super) collector: &'a mut C,
     pub(super) evaluate: E,
 }
 
-impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Operation for Search<'_, C, E> {
+impl<V: Volume, C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Operation for Search<'_, V, C, E> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
         let tree = self.tree;
-        let Some(local) = tree.frame.query(&self.query) else { return self.run_far() };
+        let Some(local) = V::Node::query(&tree.shape, &tree.frame, &self.query) else { return self.run_far() };
         let mut filter = Filter {
             tree,
             query: self.query,
@@ -58,7 +59,7 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Operation for Search<'_, C, 
     }
 }
 
-impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Search<'_, C, E> {
+impl<V: Volume, C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Search<'_, V, C, E> {
     /// The same in f64 and without filters, for queries and scenes that f32 cannot tell apart.
     #[cold]
     #[inline(never)]
@@ -81,8 +82,9 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Search<'_, C, E> {
             }
             collector.visit_node();
             let from = stack.len();
-            let boxes = tree.nodes[child.number()].boxes();
-            stack.extend(boxes.map(|(bounds, child)| (tree.frame.disclose(&bounds).lower_bound(&place), child)));
+            let node = &tree.nodes[child.number()];
+            let bound = |at| tree.box_of(node, at).lower_bound(&place);
+            stack.extend(node.used().map(|at| (bound(at), node.children()[at])));
             // The nearest one last.
             stack[from..].sort_by(|a, b| b.0.total_cmp(&a.0));
         }
@@ -91,8 +93,8 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Search<'_, C, E> {
 
 /// Offers the primitive in a lane to the collector, unless its key exceeds `square`.
 #[inline(always)]
-fn offer<C: Collector>(
-    tree: &PacketTree,
+fn offer<V: Volume, C: Collector>(
+    tree: &PacketTree<V>,
     packet: &Packet,
     lane: usize,
     query: [f64; 3],
@@ -118,8 +120,8 @@ struct Candidate {
 }
 
 /// The state of a search.
-struct Filter<'a, C, E> {
-    tree: &'a PacketTree,
+struct Filter<'a, V: Volume, C, E> {
+    tree: &'a PacketTree<V>,
     query: [f64; 3],
     collector: &'a mut C,
     evaluate: E,
@@ -133,9 +135,9 @@ struct Filter<'a, C, E> {
     count: usize,
 }
 
-impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Filter<'_, C, E> {
+impl<V: Volume, C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Filter<'_, V, C, E> {
     #[inline(always)]
-    fn traverse<I: InstructionSet, const STACK: usize>(&mut self, local: &Query) {
+    fn traverse<I: InstructionSet, const STACK: usize>(&mut self, local: &<V::Node as WideNode>::Query) {
         let tree = self.tree;
         // Keys of children in descending order, and whose children they are.
         let mut keys = [0u32; STACK];
@@ -152,17 +154,17 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Filter<'_, C, E> {
             } else {
                 self.collector.visit_node();
                 let node = &tree.nodes[at.number()];
-                let bounds: I::Eight = node.lower_bounds(local);
+                let bounds: I::Eight = node.lower_bounds(&tree.shape, local);
                 let room: &mut [u32; WIDTH] = (&mut keys[top..top + WIDTH]).try_into().expect("eight keys");
                 let count = bounds.sorted_keys(self.limit, room);
                 parents[top..top + WIDTH].fill(at.0);
                 // The nearest one and the next, whatever they are: a branch would be mispredicted. The keys behind the last
                 // are 0, which is the first child.
-                tree.prefetch(node.children[lane_of_key(keys[(top + count).wrapping_sub(1).min(STACK - 1)])]);
-                tree.prefetch(node.children[lane_of_key(keys[(top + count).wrapping_sub(2).min(STACK - 1)])]);
+                tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(1).min(STACK - 1)])]);
+                tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(2).min(STACK - 1)])]);
                 if count > 0 {
                     top += count - 1;
-                    at = node.children[lane_of_key(keys[top])];
+                    at = node.children()[lane_of_key(keys[top])];
                     continue;
                 }
             }
@@ -173,7 +175,7 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Filter<'_, C, E> {
                 top -= 1;
                 let key = keys[top];
                 if number_of_key(key) <= self.limit {
-                    at = tree.nodes[Child(parents[top]).number()].children[lane_of_key(key)];
+                    at = tree.nodes[Child(parents[top]).number()].children()[lane_of_key(key)];
                     break;
                 }
             }
@@ -313,9 +315,9 @@ impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Filter<'_, C, E> {
 const FEW: usize = 3;
 
 /// The evaluation of the candidates that wait.
-struct Finish<'a, 'b, C, E>(&'a mut Filter<'b, C, E>);
+struct Finish<'a, 'b, V: Volume, C, E>(&'a mut Filter<'b, V, C, E>);
 
-impl<C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Operation for Finish<'_, '_, C, E> {
+impl<V: Volume, C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Operation for Finish<'_, '_, V, C, E> {
     type Output = ();
 
     #[inline(always)]

@@ -1,0 +1,378 @@
+//! Nodes whose children are bounded by k-DOPs.
+//!
+//! A child is at least as far as the intersection of two half-spaces: one that holds the box of the first three
+//! directions, across the way to its nearest point, and one behind a face of another direction. That is computed
+//! for every other direction, and the largest is kept; docs/kdop.md derives it, with its roundings.
+
+use super::node::{Child, Frame, WIDTH};
+use super::volume::WideNode;
+use crate::kdop::Slabs;
+use crate::kernel::power_of_two;
+use crate::real::wide;
+use crate::simd::Lanes;
+use crate::{Aabb, Kdop, Primitive, PrimitiveId, PrimitiveSet, Real};
+use nalgebra::{Point3, Vector3};
+
+/// Eight k-DOPs side by side. Unused ones are empty: their distance is infinite or NaN.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct SlabNode<const K: usize> {
+    heights: [[f32; WIDTH]; K],
+    children: [Child; WIDTH],
+}
+
+const _: () = assert!(size_of::<SlabNode<14>>() == 512);
+
+/// What heights in the frame may lack, where products are rounded: they are below 4, their terms rounded to 2^-52.
+const SLACK: f64 = power_of_two(-49);
+/// What is taken from all slacks but those of a box along the axes, in units of the size X of the query in the frame: 20 u of f32.
+const QUERY_SLACK: f64 = 20.0 * power_of_two(-24);
+/// What is left of an increment, for the roundings of its factor: 1 - 2^-15.
+const SHRINK: f32 = 1.0 - 1.0 / 32768.0;
+/// The least sine, squared, that two half-spaces are taken to meet at. If it is smaller, less is gained than there could be.
+const LEAST_SINE: f32 = 1.0 / 16.0;
+/// Below this squares are not told apart: 2^-100.
+const TINY: f32 = 1.0 / (1u128 << 100) as f32;
+
+impl<const K: usize> WideNode for SlabNode<K> {
+    type Volume = Kdop<K>;
+    type Shape = Slabs<K>;
+    type Bounds = [f32; K];
+    /// The products of the query with the normals, rounded down and less by [`QUERY_SLACK`].
+    type Query = [f32; K];
+
+    const NOTHING: [f32; K] = [f32::NEG_INFINITY; K];
+
+    fn new(children: [Child; WIDTH]) -> Self {
+        Self { heights: [[f32::NEG_INFINITY; WIDTH]; K], children }
+    }
+
+    #[inline(always)]
+    fn children(&self) -> &[Child; WIDTH] {
+        &self.children
+    }
+
+    fn put(&mut self, place: usize, bounds: &[f32; K]) {
+        self.heights.iter_mut().zip(bounds).for_each(|(row, x)| row[place] = *x);
+    }
+
+    #[allow(clippy::cast_possible_truncation, reason = "rounded up")]
+    fn enclose<T: Real, S: PrimitiveSet<T> + ?Sized>(
+        shape: &Slabs<K>,
+        frame: &Frame,
+        set: &S,
+        ids: &[PrimitiveId],
+        _: &Aabb<f64>,
+    ) -> [f32; K] {
+        let normals = shape.directions.normals();
+        let mut heights = [f64::NEG_INFINITY; K];
+        let mut add = |corner: [f64; 3]| {
+            let x = Vector3::from(frame.place(&corner));
+            for j in 0..K / 2 {
+                let product = normals[2 * j].dot(&x);
+                heights[2 * j] = heights[2 * j].max(product);
+                heights[2 * j + 1] = heights[2 * j + 1].max(-product);
+            }
+        };
+        for id in ids {
+            let primitive = set.get(*id);
+            let vertices = primitive.vertices();
+            vertices.iter().for_each(|vertex| add(wide(vertex)));
+            if vertices.is_empty() || vertices.len() > 3 {
+                // The corners of its box.
+                let bounds = primitive.aabb();
+                let [min, max] = [wide(&bounds.min), wide(&bounds.max)];
+                (0..8).for_each(|i| add([0, 1, 2].map(|k: usize| if i >> k & 1 == 0 { min[k] } else { max[k] })));
+            }
+        }
+        let up = |i: usize| ((heights[i] + if shape.rounds[i] { SLACK } else { 0.0 }) as f32).next_up();
+        std::array::from_fn(up)
+    }
+
+    fn join(a: &[f32; K], b: &[f32; K]) -> [f32; K] {
+        std::array::from_fn(|i| a[i].max(b[i]))
+    }
+
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "rounded down")]
+    fn query(shape: &Slabs<K>, frame: &Frame, query: &[f64; 3]) -> Option<[f32; K]> {
+        let q = frame.local(query)?;
+        let size = q[0].abs().max(q[1].abs()).max(q[2].abs()) + 2.0;
+        let normals = shape.directions.normals();
+        let mut result = [0.0; K];
+        for j in 0..K / 2 {
+            let n = &normals[2 * j];
+            let product = n.x * q[0] + n.y * q[1] + n.z * q[2];
+            let slack = if shape.is_exact_side(j) { 0.0 } else { QUERY_SLACK * size };
+            result[2 * j] = ((product - slack) as f32).next_down();
+            result[2 * j + 1] = ((-product - slack) as f32).next_down();
+        }
+        Some(result)
+    }
+
+    #[inline(always)]
+    fn lower_bounds<L: Lanes>(&self, shape: &Slabs<K>, query: &[f32; K]) -> L {
+        let zero = L::splat(0.0);
+        // A vector that every point of the child is at least its own length away along; its square.
+        let (first, gap, square) = if shape.orthogonal {
+            let gap: [L; 3] = [self.gap(query, 0), self.gap(query, 1), self.gap(query, 2)];
+            (3, gap, gap[2].mul_add(gap[2], gap[1].mul_add(gap[1], gap[0].mul(gap[0]))))
+        } else {
+            self.widest_gap(shape, query)
+        };
+        let scaled = square.mul(L::splat(SHRINK));
+        let least = square.mul(L::splat(LEAST_SINE)).max(L::splat(TINY));
+        let mut best = square;
+        let mut j = first;
+        while j < K / 2 {
+            let above = self.slack::<L>(query, 2 * j);
+            let below = self.slack::<L>(query, 2 * j + 1);
+            let [x, y, z] = shape.cosines[2 * j];
+            let along = gap[2].mul_add(L::splat(z), gap[1].mul_add(L::splat(y), gap[0].mul(L::splat(x))));
+            let against = zero.sub(along);
+            // The slack of the face that the query is outside of, and the part of the gap in its direction.
+            let slack = above.max(below);
+            let part = below.if_below(above, along, against);
+            let rest = along.mul_add(against, square).max(least);
+            let more = slack.sub(part).max(zero);
+            let more = zero.if_below(slack, more, zero);
+            let both = more.mul(more).mul_add(scaled.mul(rest.reciprocal()), square);
+            let slack = slack.max(zero);
+            // Where the nearest point of the face's half-space is in the other one, its distance.
+            let bound = slack.mul(part).if_below(square, both, slack.mul(slack));
+            best = bound.max(best);
+            j += 1;
+        }
+        best
+    }
+
+    fn at(&self, place: usize) -> [f32; K] {
+        self.heights.map(|row| row[place])
+    }
+
+    fn disclose(bounds: &[f32; K], shape: &Slabs<K>, frame: &Frame) -> Aabb<f64> {
+        frame.disclose(&shape.enclosing_box(&bounds.map(f64::from)))
+    }
+
+    fn volume(bounds: &[f32; K], shape: &Slabs<K>, frame: &Frame) -> Kdop<K> {
+        let centre = Vector3::from(frame.centre);
+        let height = |i: usize| {
+            let normal = &shape.directions.normals()[i];
+            let own = f64::from(bounds[i]) * frame.unit;
+            let size = own.abs() + normal.component_mul(&centre).lp_norm(1);
+            own + normal.dot(&centre) + size * power_of_two(-49)
+        };
+        Kdop { heights: std::array::from_fn(height) }
+    }
+
+    fn may_meet(bounds: &[f32; K], shape: &Slabs<K>, frame: &Frame, other: &Aabb<f64>) -> bool {
+        let place = |p: &Point3<f64>| Point3::from(frame.place(&[p.x, p.y, p.z]));
+        // What is lost by going into the frame is as small as the slack near the scene, and elsewhere does not matter.
+        let own = Kdop { heights: bounds.map(|height| f64::from(height) + SLACK) };
+        own.may_meet_box(&shape.directions, &Aabb { min: place(&other.min), max: place(&other.max) })
+    }
+}
+
+impl<const K: usize> SlabNode<K> {
+    /// How far the query is outside of face i, if positive.
+    #[inline(always)]
+    fn slack<L: Lanes>(&self, query: &[f32; K], i: usize) -> L {
+        L::splat(query[i]).sub(L::load(&self.heights[i]))
+    }
+
+    /// How far it is outside of slab j, with its sign.
+    #[inline(always)]
+    fn gap<L: Lanes>(&self, query: &[f32; K], j: usize) -> L {
+        let zero = L::splat(0.0);
+        let above = self.slack::<L>(query, 2 * j).max(zero);
+        let below = self.slack::<L>(query, 2 * j + 1).max(zero);
+        above.sub(below)
+    }
+
+    /// The way to the slab that the query is farthest outside of, where no three directions are orthogonal.
+    #[inline(always)]
+    fn widest_gap<L: Lanes>(&self, shape: &Slabs<K>, query: &[f32; K]) -> (usize, [L; 3], L) {
+        let zero = L::splat(0.0);
+        let mut gap = [zero; 3];
+        let mut widest = zero;
+        let mut i = 0;
+        while i < K {
+            let slack = self.slack::<L>(query, i);
+            let [x, y, z] = shape.cosines[i];
+            gap = [
+                widest.if_below(slack, slack.mul(L::splat(x)), gap[0]),
+                widest.if_below(slack, slack.mul(L::splat(y)), gap[1]),
+                widest.if_below(slack, slack.mul(L::splat(z)), gap[2]),
+            ];
+            widest = slack.max(widest);
+            i += 1;
+        }
+        (0, gap, widest.mul(widest))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::{InstructionSet, Isa, Operation};
+    use crate::{Directions, Triangle};
+    use nalgebra::Matrix3;
+
+    struct Bounds<'a, const K: usize>(&'a SlabNode<K>, &'a Slabs<K>, &'a [f32; K]);
+
+    impl<const K: usize> Operation for Bounds<'_, K> {
+        type Output = [f32; WIDTH];
+        #[inline(always)]
+        fn run<I: InstructionSet>(self) -> [f32; WIDTH] {
+            let mut bounds = [0.0; WIDTH];
+            self.0.lower_bounds::<I::Eight>(self.1, self.2).store(&mut bounds);
+            bounds
+        }
+    }
+
+    /// Numbers from 0 to 1.
+    struct Random(u64);
+
+    impl Random {
+        fn bits(&mut self) -> u64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 ^ self.0 >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 11
+        }
+        fn unit(&mut self) -> f64 {
+            self.bits() as f64 * 2f64.powi(-53)
+        }
+        fn vector(&mut self) -> Vector3<f64> {
+            Vector3::new(self.unit() - 0.5, self.unit() - 0.5, self.unit() - 0.5)
+        }
+    }
+
+    /// The distance to a k-DOP by going through all vertices, edges and faces: the nearest point is the foot of the
+    /// query on one of them.
+    fn distance<const K: usize>(kdop: &Kdop<K>, normals: &[Vector3<f64>; K], q: &Vector3<f64>) -> f64 {
+        let slack: Vec<f64> = (0..K).map(|i| normals[i].dot(q) - kdop.heights[i]).collect();
+        if slack.iter().all(|s| *s <= 0.0) {
+            return 0.0;
+        }
+        let size = q.norm() + 4.0;
+        let inside = |x: &Vector3<f64>| (0..K).all(|i| normals[i].dot(x) <= kdop.heights[i] + 1e-12 * size);
+        let mut nearest = f64::INFINITY;
+        let mut offer = |step: Vector3<f64>| {
+            if step.norm() < nearest && inside(&(q - step)) {
+                nearest = step.norm();
+            }
+        };
+        for a in 0..K {
+            offer(normals[a] * slack[a]);
+            for b in a + 1..K {
+                let c = normals[a].dot(&normals[b]);
+                if c.abs() < 1.0 - 1e-9 {
+                    let [x, y] = [slack[a] - c * slack[b], slack[b] - c * slack[a]].map(|x| x / (1.0 - c * c));
+                    offer(normals[a] * x + normals[b] * y);
+                }
+                for c in b + 1..K {
+                    let rows = Matrix3::from_rows(&[a, b, c].map(|i| normals[i].transpose()));
+                    if rows.determinant().abs() > 1e-6
+                        && let Some(inverse) = rows.try_inverse()
+                    {
+                        offer(inverse * Vector3::new(slack[a], slack[b], slack[c]));
+                    }
+                }
+            }
+        }
+        nearest
+    }
+
+    /// Bounds of random k-DOPs (of triangles of all sizes and shapes) for random queries (near and far, and across their
+    /// faces and edges) against distances, on every instruction set: how many were compared, how often the bound was within 1 % of the
+    /// distance, and how often that of the box was.
+    fn compare<const K: usize>(directions: &Directions<K>, nodes: usize, seed: u64) -> [usize; 3] {
+        let mut random = Random(seed);
+        let slabs = Slabs::new(directions);
+        let normals = directions.normals();
+        let scene = Aabb { min: Point3::new(-0.9, -0.9, -0.9), max: Point3::new(0.9, 0.9, 0.9) };
+        let frame = Frame::around(&scene);
+        let mut counts = [0; 3];
+        for _ in 0..nodes {
+            let mut node = SlabNode::<K>::new([Child::packet(0); WIDTH]);
+            let mut exact = [Kdop::<K>::empty(); WIDTH];
+            let mut boxes = [Aabb::empty(); WIDTH];
+            for place in 0..WIDTH - 1 {
+                let centre = random.vector();
+                let size = 2f64.powi(-((random.bits() % 24) as i32));
+                let mut flat = random.vector().normalize();
+                if random.bits().is_multiple_of(2) {
+                    flat = normals[(random.bits() % K as u64) as usize];
+                }
+                let corners = [(); 3].map(|()| {
+                    let v = random.vector();
+                    Point3::from(
+                        centre + (v - flat * (v.dot(&flat) * [0.0, 0.9, 1.0][(random.bits() % 3) as usize])) * size,
+                    )
+                });
+                let set = [Triangle { vertices: corners }];
+                boxes[place] = Aabb::of_points(&corners);
+                node.put(place, &SlabNode::enclose(&slabs, &frame, &set, &[PrimitiveId::new(0)], &boxes[place]));
+                exact[place] = Kdop::of_points(directions, &corners);
+            }
+            for _ in 0..8 {
+                let place = (random.bits() % (WIDTH as u64 - 1)) as usize;
+                let near = exact[place];
+                let towards = normals[(random.bits() % K as u64) as usize];
+                let offset = 2f64.powi((random.bits() % 36) as i32 - 28);
+                let at = nalgebra::center(&boxes[place].min, &boxes[place].max).coords;
+                let q = match random.bits() % 4 {
+                    0 => at + towards * offset + random.vector() * (offset * 0.1),
+                    1 => at + (towards + normals[(random.bits() % K as u64) as usize]) * offset,
+                    2 => at + random.vector() * offset,
+                    _ => at + random.vector() * (near.heights[0] + near.heights[1]),
+                };
+                let query = SlabNode::query(&slabs, &frame, &q.into()).expect("near enough");
+                for isa in Isa::available() {
+                    let bounds = isa.run(Bounds(&node, &slabs, &query));
+                    assert!(!(bounds[WIDTH - 1] <= f32::MAX), "an empty place");
+                    for place in 0..WIDTH - 1 {
+                        let distance = distance(&exact[place], normals, &q) * frame.per_unit;
+                        let bound = f64::from(bounds[place]);
+                        let limit = distance * distance * (1.0 + 2f64.powi(-20)) + 2f64.powi(-120);
+                        assert!(bound <= limit, "{isa}: {bound:e} for {:e}, {q:?}", distance * distance);
+                        counts[0] += 1;
+                        counts[1] += usize::from(bound.sqrt() >= 0.99 * distance);
+                        let box_bound = boxes[place].lower_bound(&q.into()).sqrt() * frame.per_unit;
+                        counts[2] += usize::from(box_bound >= 0.99 * distance);
+                    }
+                }
+            }
+        }
+        counts
+    }
+
+    #[test]
+    fn bounds_never_exceed_the_distance_and_are_mostly_close_to_it() {
+        let turned = [[2.0, 1.0, 2.0], [1.0, 2.0, -2.0], [-2.0, 2.0, 1.0], [1.0, 0.3, 0.2]].map(Vector3::from);
+        let skew = [[2.0, 1.0, 2.0], [1.0, 0.1, -0.4], [0.0, 1.0, 0.3], [1.0, 0.12, -0.4]].map(Vector3::from);
+        let turned = Directions::<8>::new(&turned).expect("four");
+        let skew = Directions::<8>::new(&skew).expect("four");
+        assert!(turned.starts_orthogonal() && !skew.starts_orthogonal());
+        let all = [
+            ("6", compare(&Directions::<6>::default(), 20_000, 1)),
+            ("14", compare(&Directions::<14>::default(), 10_000, 2)),
+            ("18", compare(&Directions::<18>::default(), 4_000, 3)),
+            ("26", compare(&Directions::<26>::default(), 1_500, 4)),
+            ("turned", compare(&turned, 10_000, 5)),
+            ("skew", compare(&skew, 10_000, 6)),
+        ];
+        for (name, [compared, close, box_close]) in all {
+            println!("{name}: {compared} bounds, {close} within 1 % of the distance, {box_close} of boxes");
+        }
+        assert!(all.iter().map(|(_, counts)| counts[0]).sum::<usize>() > 3_000_000);
+        for (name, [compared, close, box_close]) in &all[..5] {
+            assert!(close * 10 > compared * 7 && *close >= *box_close, "{name}");
+        }
+    }
+
+    #[test]
+    fn the_six_dop_of_the_axes_bounds_as_boxes_do() {
+        let [compared, close, box_close] = compare(&Directions::<6>::default(), 500, 9);
+        assert!(compared > 0 && close.abs_diff(box_close) * 1000 <= compared, "{close} {box_close}");
+    }
+}

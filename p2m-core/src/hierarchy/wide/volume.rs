@@ -1,0 +1,120 @@
+//! What a tree bounds its nodes with.
+//!
+//! Everything about a tree but the layout of its nodes and the bounds of their children is the same for all volumes. A
+//! volume is a type of nodes, [`WideNode`].
+
+use super::node::{BoxNode, Child, Frame, WIDTH};
+use super::slabs::SlabNode;
+use crate::kdop::Slabs;
+use crate::simd::Lanes;
+use crate::{Aabb, Kdop, PrimitiveId, PrimitiveSet, Real};
+use std::fmt::Debug;
+
+/// What the nodes of a [`PacketTree`](super::PacketTree) are bounded by: [`Aabb<f64>`] or [`Kdop<K>`](Kdop).
+///
+/// Sealed: searches rest on proofs about the rounding of the nodes.
+#[allow(private_bounds, reason = "that is what seals it")]
+pub trait Volume: Nodes {}
+
+impl Volume for Aabb<f64> {}
+impl<const K: usize> Volume for Kdop<K> {}
+
+/// The nodes of a volume.
+pub(crate) trait Nodes: Sized {
+    /// What all volumes of a tree have in common.
+    type Shape: Clone + Debug + Send + Sync;
+    /// A node.
+    type Node: WideNode<Volume = Self, Shape = Self::Shape>;
+}
+
+impl Nodes for Aabb<f64> {
+    type Shape = ();
+    type Node = BoxNode;
+}
+
+impl<const K: usize> Nodes for Kdop<K> {
+    type Shape = Slabs<K>;
+    type Node = SlabNode<K>;
+}
+
+/// A node of eight children with their bounds in f32, in a frame of the scene.
+pub(crate) trait WideNode: Copy + Debug + Send + Sync {
+    /// What bounds a child, in coordinates of the scene.
+    type Volume;
+    /// What all nodes of a tree have in common.
+    type Shape: Sync;
+    /// The bounds of a child in the frame, rounded outwards.
+    type Bounds: Copy + Debug + Send + Sync;
+    /// A query in the frame, rounded.
+    type Query: Copy;
+
+    /// The bounds of no primitive.
+    const NOTHING: Self::Bounds;
+
+    /// A node with these children, whose bounds are still empty.
+    fn new(children: [Child; WIDTH]) -> Self;
+    /// The children; [`Child::NONE`] for unused places.
+    fn children(&self) -> &[Child; WIDTH];
+    /// Sets the bounds of a child.
+    fn put(&mut self, place: usize, bounds: &Self::Bounds);
+
+    /// The bounds of the primitives `ids` of a set, of which `bounds` is the common box.
+    fn enclose<T: Real, S: PrimitiveSet<T> + ?Sized>(
+        shape: &Self::Shape,
+        frame: &Frame,
+        set: &S,
+        ids: &[PrimitiveId],
+        bounds: &Aabb<f64>,
+    ) -> Self::Bounds;
+    /// The smallest bounds around both.
+    fn join(a: &Self::Bounds, b: &Self::Bounds) -> Self::Bounds;
+
+    /// The query in the frame; `None` if it is too far or the frame too small or large to search in f32.
+    fn query(shape: &Self::Shape, frame: &Frame, query: &[f64; 3]) -> Option<Self::Query>;
+    /// Squares of lower bounds of the distances to what the eight children hold, in the frame: at most 2^-20 (relative)
+    /// too large, apart from underflow.
+    fn lower_bounds<L: Lanes>(&self, shape: &Self::Shape, query: &Self::Query) -> L;
+
+    /// The bounds of a child.
+    fn at(&self, place: usize) -> Self::Bounds;
+    /// A box around bounds of the frame, in coordinates of the scene.
+    fn disclose(bounds: &Self::Bounds, shape: &Self::Shape, frame: &Frame) -> Aabb<f64>;
+    /// Their volume, rounded outwards.
+    fn volume(bounds: &Self::Bounds, shape: &Self::Shape, frame: &Frame) -> Self::Volume;
+
+    /// Whether a child may have something in common with a box that meets its own.
+    fn may_meet(bounds: &Self::Bounds, shape: &Self::Shape, frame: &Frame, other: &Aabb<f64>) -> bool {
+        let _ = (bounds, shape, frame, other);
+        true
+    }
+
+    /// The places in use.
+    fn used(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..WIDTH).filter(|&place| self.children()[place] != Child::NONE)
+    }
+}
+
+/// A point of the frame in f32, rounded both ways.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rounded {
+    pub(super) low: [f32; 3],
+    pub(super) high: [f32; 3],
+}
+
+impl Rounded {
+    #[inline(always)]
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "rounded both ways, which covers the rounding of the difference"
+    )]
+    pub(super) fn of(point: [f64; 3]) -> Self {
+        let mut result = Self { low: [0.0; 3], high: [0.0; 3] };
+        for (k, x) in point.into_iter().enumerate() {
+            let x = x as f32;
+            // At least a unit in the last place, where the conversion errs by half of one.
+            let margin = x.abs() * f32::EPSILON + f32::MIN_POSITIVE;
+            (result.low[k], result.high[k]) = (x - margin, x + margin);
+        }
+        result
+    }
+}

@@ -1,0 +1,269 @@
+//! The corners, edges and faces of a k-DOP.
+
+use crate::{Directions, Kdop};
+use nalgebra::{Point3, Vector3};
+use std::io::{self, Write};
+
+/// A convex polytope: corners, and for each face the corners around it, counterclockwise as seen from outside.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Polytope {
+    /// The corners.
+    pub corners: Vec<Point3<f64>>,
+    /// Places of corners.
+    pub faces: Vec<Vec<usize>>,
+}
+
+impl Polytope {
+    /// The polytope of a k-DOP. Faces and corners closer together than about 1e-9 of its size may be one; what has no
+    /// volume is given a thickness of as much.
+    ///
+    /// A cube around the k-DOP is cut by one face after the other, so the result is closed whatever is rounded.
+    ///
+    /// # Complexity
+    /// O(K^2).
+    #[must_use]
+    pub fn new<const K: usize>(kdop: &Kdop<K>, directions: &Directions<K>) -> Self {
+        if kdop.is_empty() || kdop.heights.iter().any(|h| !h.is_finite()) {
+            return Self::default();
+        }
+        let normals = directions.normals();
+        let (centre, half) = middle(kdop, normals);
+        let mut polytope = Self::cube(half * 2.0);
+        let thickness = half * 1e-9;
+        for (normal, height) in normals.iter().zip(&kdop.heights) {
+            polytope.cut(normal, height - normal.dot(&centre) + thickness, thickness * 0.25);
+        }
+        for corner in &mut polytope.corners {
+            *corner += centre;
+        }
+        polytope
+    }
+
+    /// The cube from -h to h.
+    fn cube(h: f64) -> Self {
+        let corner = |i: usize| Point3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { -h } else { h }));
+        let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+        Self { corners: (0..8).map(corner).collect(), faces: faces.map(Vec::from).to_vec() }
+    }
+
+    /// Takes away what is above a plane. Corners within `tolerance` of it are on it.
+    fn cut(&mut self, normal: &Vector3<f64>, height: f64, tolerance: f64) {
+        let above: Vec<f64> = self.corners.iter().map(|p| normal.dot(&p.coords) - height).collect();
+        if above.iter().all(|d| *d <= tolerance) {
+            return;
+        }
+        // Each edge that goes through the plane gets one new corner, for both of its faces.
+        let mut crossings: Vec<([usize; 2], usize)> = Vec::new();
+        let mut corners = std::mem::take(&mut self.corners);
+        let mut rims = Vec::new();
+        let mut faces = Vec::new();
+        for face in &self.faces {
+            let mut kept = Vec::with_capacity(face.len() + 1);
+            let mut ends = [None; 2];
+            for (i, &a) in face.iter().enumerate() {
+                let b = face[(i + 1) % face.len()];
+                if above[a] <= tolerance {
+                    kept.push(a);
+                }
+                let (inside, outside) = if above[a] <= tolerance { (a, b) } else { (b, a) };
+                if (above[a] <= tolerance) == (above[b] <= tolerance) {
+                    continue;
+                }
+                let on = if above[inside] >= -tolerance {
+                    inside
+                } else {
+                    let edge = [inside, outside];
+                    match crossings.iter().find(|(known, _)| *known == edge) {
+                        Some((_, corner)) => *corner,
+                        None => {
+                            let t = above[inside] / (above[inside] - above[outside]);
+                            corners.push(corners[inside] + (corners[outside] - corners[inside]) * t);
+                            crossings.push((edge, corners.len() - 1));
+                            corners.len() - 1
+                        }
+                    }
+                };
+                if on != inside {
+                    kept.push(on);
+                }
+                // Going around the face, it leaves what is kept once and comes back once.
+                ends[usize::from(inside == b)] = Some(on);
+            }
+            if kept.len() >= 3 {
+                faces.push(kept);
+            }
+            if let [Some(leaves), Some(returns)] = ends
+                && leaves != returns
+            {
+                rims.push([returns, leaves]);
+            }
+        }
+        // The new face runs along the rims, against the faces beside it.
+        if let Some(&[first, mut at]) = rims.first() {
+            let mut around = vec![first];
+            while at != first && around.len() <= rims.len() {
+                around.push(at);
+                let Some([_, next]) = rims.iter().find(|[from, _]| *from == at) else { break };
+                at = *next;
+            }
+            if around.len() >= 3 {
+                faces.push(around);
+            }
+        }
+        self.corners = corners;
+        self.faces = faces;
+        self.compact();
+    }
+
+    /// Leaves out corners without a face.
+    fn compact(&mut self) {
+        let mut places = vec![usize::MAX; self.corners.len()];
+        let mut kept = Vec::new();
+        for corner in self.faces.iter_mut().flatten() {
+            if places[*corner] == usize::MAX {
+                places[*corner] = kept.len();
+                kept.push(self.corners[*corner]);
+            }
+            *corner = places[*corner];
+        }
+        self.corners = kept;
+    }
+
+    /// Its edges, each once.
+    pub fn edges(&self) -> impl Iterator<Item = [Point3<f64>; 2]> + '_ {
+        let around = |face: &'_ Vec<usize>| {
+            let face = face.clone();
+            (0..face.len()).map(move |i| [face[i], face[(i + 1) % face.len()]])
+        };
+        let once = self.faces.iter().flat_map(around).filter(|[a, b]| a < b);
+        once.map(|edge| edge.map(|i| self.corners[i]))
+    }
+
+    /// Its volume.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        let Some(origin) = self.corners.first() else { return 0.0 };
+        let at = |i: usize| self.corners[i] - origin;
+        let cones = self.faces.iter().flat_map(|face| {
+            (1..face.len() - 1).map(|i| at(face[0]).dot(&at(face[i]).cross(&at(face[i + 1]))))
+        });
+        cones.sum::<f64>() / 6.0
+    }
+}
+
+/// The middle of the box of the first three slabs, and half of a cube around it that holds the k-DOP.
+fn middle<const K: usize>(kdop: &Kdop<K>, normals: &[Vector3<f64>; K]) -> (Vector3<f64>, f64) {
+    let rows = nalgebra::Matrix3::from_rows(&[0, 2, 4].map(|i: usize| normals[i].transpose()));
+    let inverse = rows.try_inverse().expect("directions do not lie in a plane");
+    let heights = &kdop.heights;
+    let mean = Vector3::from_fn(|j, _| heights[2 * j] * 0.5 - heights[2 * j + 1] * 0.5);
+    let extent = Vector3::from_fn(|j, _| heights[2 * j] * 0.5 + heights[2 * j + 1] * 0.5);
+    let centre = inverse * mean;
+    let half = (inverse.abs() * extent.abs()).max();
+    // A point still has a size: that of what rounding takes from its place.
+    (centre, if half > centre.amax() * 1e-12 { half } else { centre.amax() * 1e-12 + f64::MIN_POSITIVE * 1e9 })
+}
+
+/// Writes polytopes as a PLY file of polygons, one after the other; `values` are a property of the faces of each (its level in
+/// a tree, say), by which viewers can colour them.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_polytopes_ply(
+    out: &mut impl Write,
+    polytopes: &[(Polytope, usize)],
+    property: &str,
+) -> io::Result<()> {
+    let corners: usize = polytopes.iter().map(|(p, _)| p.corners.len()).sum();
+    let faces: usize = polytopes.iter().map(|(p, _)| p.faces.len()).sum();
+    writeln!(out, "ply\nformat ascii 1.0\nelement vertex {corners}")?;
+    writeln!(out, "property double x\nproperty double y\nproperty double z")?;
+    writeln!(out, "element face {faces}\nproperty list uint uint vertex_indices\nproperty uint {property}\nend_header")?;
+    for corner in polytopes.iter().flat_map(|(p, _)| &p.corners) {
+        writeln!(out, "{} {} {}", corner.x, corner.y, corner.z)?;
+    }
+    let mut first = 0;
+    for (polytope, value) in polytopes {
+        for face in &polytope.faces {
+            write!(out, "{}", face.len())?;
+            for corner in face {
+                write!(out, " {}", first + corner)?;
+            }
+            writeln!(out, " {value}")?;
+        }
+        first += polytope.corners.len();
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Euler's formula, edges with two faces each, corners on the right sides, outward faces.
+    fn check<const K: usize>(points: &[Point3<f64>], directions: &Directions<K>) -> Polytope {
+        let kdop = Kdop::of_points(directions, points);
+        let p = Polytope::new(&kdop, directions);
+        let edges: usize = p.faces.iter().map(Vec::len).sum();
+        assert_eq!(edges, 2 * p.edges().count(), "{p:?}");
+        assert_eq!(p.corners.len() + p.faces.len(), edges / 2 + 2, "{p:?}");
+        let size = kdop.heights.iter().fold(0.0, |a: f64, h| a.max(h.abs()));
+        for corner in &p.corners {
+            for (n, h) in directions.normals().iter().zip(&kdop.heights) {
+                assert!(n.dot(&corner.coords) <= h + 1e-7 * size, "{corner} is outside");
+            }
+        }
+        for (n, h) in directions.normals().iter().zip(&kdop.heights) {
+            // Heights are attained: they are those of points.
+            let reached = p.corners.iter().map(|c| n.dot(&c.coords)).fold(f64::NEG_INFINITY, f64::max);
+            assert!(reached >= h - 1e-7 * size, "{reached} of {h}");
+        }
+        p
+    }
+
+    #[test]
+    fn polytopes_are_closed_and_their_corners_lie_on_the_faces() {
+        let cube: Vec<_> =
+            (0..8).map(|i| Point3::from([0, 1, 2].map(|k| f64::from(i >> k & 1) * f64::from(k + 1)))).collect();
+        let six = check(&cube, &Directions::<6>::default());
+        assert_eq!((six.corners.len(), six.faces.len()), (8, 6));
+        assert!((six.volume() - 6.0).abs() < 1e-6);
+        let mut state = 1u64;
+        let mut random = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as f64 / 2f64.powi(30) - 1.0
+        };
+        for round in 0..300 {
+            let far = if round % 3 == 0 { 1e4 } else { 0.0 };
+            let points: Vec<_> =
+                (0..3 + round % 9).map(|_| Point3::new(random() + far, random(), random() * 0.1)).collect();
+            let six = check(&points, &Directions::<6>::default()).volume();
+            let fourteen = check(&points, &Directions::<14>::default()).volume();
+            let eighteen = check(&points, &Directions::<18>::default()).volume();
+            let all = check(&points, &Directions::<26>::default()).volume();
+            assert!(six * 1.000_001 >= fourteen && fourteen * 1.000_001 >= all && eighteen * 1.000_001 >= all);
+            assert!(all > 0.0);
+        }
+    }
+
+    #[test]
+    fn flat_and_empty_ones_do_no_harm() {
+        let p = Point3::new(3.0, 4.0, 5.0);
+        check(&[p], &Directions::<14>::default());
+        check(&[p, Point3::new(3.0, 9.0, 5.0)], &Directions::<26>::default());
+        check(&[p, Point3::new(3.0, 9.0, 5.0), Point3::new(3.0, 9.0, 7.0)], &Directions::<18>::default());
+        assert_eq!(Polytope::new(&Kdop::empty(), &Directions::<14>::default()), Polytope::default());
+    }
+
+    #[test]
+    fn files_have_all_of_them() {
+        let directions = Directions::<6>::default();
+        let unit = Kdop::of_points(&directions, &[Point3::origin(), Point3::new(1.0, 1.0, 1.0)]);
+        let one = Polytope::new(&unit, &directions);
+        let mut out = Vec::new();
+        write_polytopes_ply(&mut out, &[(one.clone(), 0), (one, 3)], "level").expect("memory");
+        let text = String::from_utf8(out).expect("text");
+        assert!(text.contains("element vertex 16\n") && text.contains("element face 12\n"));
+        assert_eq!(text.lines().filter(|line| line.starts_with("4 ") && line.ends_with(" 3")).count(), 6);
+    }
+}
