@@ -5,7 +5,9 @@ use crate::rivals::{parry_double, parry_single};
 use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_bvh::{AabbOptions, AabbTree};
-use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Directions, Isa, PrimitiveId, PrimitiveSet, Shape, Soup, Triangle};
+use p2m_core::{
+    BruteForce, BuildIndex, ClosestPoint, Directions, Isa, PrimitiveId, PrimitiveSet, Shape, Soup, Triangle,
+};
 use p2m_kdop::{KdopOptions, KdopTree};
 use std::marker::PhantomData;
 

@@ -11,6 +11,7 @@ use anyhow::{Context, anyhow};
 use clap::{ArgGroup, ValueEnum};
 use p2m_bvh::AabbTree;
 use p2m_core::{BruteForce, BuildIndex, ClosestPoint, QueryOptions, Soup};
+use p2m_kdop::{Choice, KdopOptions, KdopTree};
 use p2m_mixed::{AnswerFormat, AnswerWriter, Format, PointFormat, Scene};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -49,6 +50,7 @@ Examples:
   p2m query bunny.obj --points scan.xyz --max-distance 0.5 --out answers.csv
   p2m query scene.ply --random 100000 --seed 7 --box-scale 1.5 --backend aabb > answers.csv
   p2m query scene.obj --grid 64 --out field.npy --json
+  p2m query turned.stl --random 100000 --backend kdop --k scene --out answers.csv
   p2m generate torus-knot | p2m query - --format obj --random 1000 --out distances.ply",
         json::STABILITY
     )
@@ -97,6 +99,10 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = Backend::Aabb)]
     backend: Backend,
 
+    /// How many faces the polytopes of --backend kdop have [default: 14]
+    #[arg(long, value_name = "K", value_enum)]
+    k: Option<Faces>,
+
     /// Give no answers farther than this, in the unit of the scene; at exactly this distance there is one
     #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true)]
     max_distance: Option<f64>,
@@ -128,6 +134,27 @@ enum Backend {
     Brute,
     /// A tree of boxes
     Aabb,
+    /// A tree of polytopes with --k faces, which fit closer what does not lie along the axes
+    Kdop,
+}
+
+/// The faces of k-DOPs.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Faces {
+    /// Boxes
+    #[value(name = "6")]
+    Six,
+    /// And the corners of a cube cut off
+    #[value(name = "14")]
+    Fourteen,
+    /// And its edges
+    #[value(name = "18")]
+    Eighteen,
+    /// Both
+    #[value(name = "26")]
+    TwentySix,
+    /// Those that the scene requires, which the summary tells
+    Scene,
 }
 
 impl Backend {
@@ -135,16 +162,32 @@ impl Backend {
         match self {
             Self::Brute => "brute",
             Self::Aabb => "aabb",
+            Self::Kdop => "kdop",
         }
     }
 
-    fn build(self, soup: &Soup<f64>) -> Result<Box<dyn ClosestPoint<f64> + Sync + '_>, p2m_core::BuildError> {
+    /// The index, and what there is to say about it.
+    fn build(self, soup: &Soup<f64>, faces: Faces) -> Result<(Index<'_>, Option<String>), p2m_core::BuildError> {
         Ok(match self {
-            Self::Brute => Box::new(BruteForce::build(soup, &())?),
-            Self::Aabb => Box::new(AabbTree::build(soup, &Default::default())?),
+            Self::Brute => (Box::new(BruteForce::build(soup, &())?), None),
+            Self::Aabb => (Box::new(AabbTree::build(soup, &Default::default())?), None),
+            Self::Kdop => match faces {
+                Faces::Six => (Box::new(KdopTree::<_, _, 6>::build(soup, &Default::default())?), None),
+                Faces::Fourteen => (Box::new(KdopTree::<_, _, 14>::build(soup, &Default::default())?), None),
+                Faces::Eighteen => (Box::new(KdopTree::<_, _, 18>::build(soup, &Default::default())?), None),
+                Faces::TwentySix => (Box::new(KdopTree::<_, _, 26>::build(soup, &Default::default())?), None),
+                Faces::Scene => {
+                    let choice = Choice::from_scene(soup);
+                    let directions = choice.directions().expect("six directions");
+                    let tree = KdopTree::<_, _, 6>::build_with(soup, &KdopOptions::new(directions))?;
+                    (Box::new(tree), Some(choice.to_string()))
+                }
+            },
         })
     }
 }
+
+type Index<'a> = Box<dyn ClosestPoint<f64> + Sync + 'a>;
 
 /// Queries that are asked before their answers are written: enough to keep all threads busy, few enough to hold.
 const CHUNK: usize = 1 << 14;
@@ -160,6 +203,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     if is_standard(&args.scene) && args.points.as_deref().is_some_and(is_standard) {
         return Err(usage("the standard input cannot be both the scene and the points"));
     }
+    if args.k.is_some() && args.backend != Backend::Kdop {
+        return Err(usage("--k is for --backend kdop"));
+    }
     let inputs: Vec<&Path> = std::iter::once(&args.scene).chain(&args.points).map(PathBuf::as_path).collect();
     Output::refuse_inputs(&args.out, &inputs)?;
     let format = scene_format(&args.scene, args.format, "--format")?;
@@ -174,7 +220,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let name = input::name(&args.scene);
     let start = Instant::now();
     let progress = Progress::start("building the index", None, Unit::None);
-    let index = args.backend.build(&scene.soup).with_context(|| name.clone())?;
+    let (index, note) =
+        args.backend.build(&scene.soup, args.k.unwrap_or(Faces::Fourteen)).with_context(|| name.clone())?;
     drop(progress);
     let build = start.elapsed();
 
@@ -201,6 +248,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     }
     // The answers are complete; whether anybody reads this is not our concern.
     let _ = write!(io::stderr(), "{summary}");
+    if let Some(note) = note {
+        let _ = writeln!(io::stderr(), "k-DOPs: {note}");
+    }
     Ok(())
 }
 

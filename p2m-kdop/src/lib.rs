@@ -31,12 +31,14 @@
 //! \[Klosowski1998\]; the manual of the k-DOP tree that was made for CGAL, whose features and figures these are measured against.
 #![forbid(unsafe_code)]
 
+mod choice;
 mod overlap;
 mod polytope;
 mod tree;
 
+pub use choice::Choice;
+pub use overlap::Overlap;
 pub use p2m_core::hierarchy::{Part, SplitOptions, SplitRule};
 pub use p2m_core::{Directions, DirectionsError, Kdop};
-pub use overlap::Overlap;
 pub use polytope::{Polytope, write_polytopes_ply};
 pub use tree::{KdopOptions, KdopTree};

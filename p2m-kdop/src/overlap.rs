@@ -116,10 +116,7 @@ impl<'a, const K: usize, const L: usize> Overlap<'a, K, L> {
     ///
     /// # Complexity
     /// O(k log n) expected for k pairs, O(n m) at worst.
-    pub fn visit(
-        &self,
-        mut visit: impl FnMut(&[PrimitiveId], &[PrimitiveId]) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
+    pub fn visit(&self, mut visit: impl FnMut(&[PrimitiveId], &[PrimitiveId]) -> ControlFlow<()>) -> ControlFlow<()> {
         let (first, second) = self.trees;
         let (Some(a), Some(b)) = (first.root(), second.root()) else { return ControlFlow::Continue(()) };
         let mut open: Vec<(Part<Kdop<K>>, Part<Kdop<L>>)> = vec![(a, b)];

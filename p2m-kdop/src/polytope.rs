@@ -144,9 +144,10 @@ impl Polytope {
     pub fn volume(&self) -> f64 {
         let Some(origin) = self.corners.first() else { return 0.0 };
         let at = |i: usize| self.corners[i] - origin;
-        let cones = self.faces.iter().flat_map(|face| {
-            (1..face.len() - 1).map(|i| at(face[0]).dot(&at(face[i]).cross(&at(face[i + 1]))))
-        });
+        let cones = self
+            .faces
+            .iter()
+            .flat_map(|face| (1..face.len() - 1).map(|i| at(face[0]).dot(&at(face[i]).cross(&at(face[i + 1])))));
         cones.sum::<f64>() / 6.0
     }
 }
@@ -169,16 +170,15 @@ fn middle<const K: usize>(kdop: &Kdop<K>, normals: &[Vector3<f64>; K]) -> (Vecto
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_polytopes_ply(
-    out: &mut impl Write,
-    polytopes: &[(Polytope, usize)],
-    property: &str,
-) -> io::Result<()> {
+pub fn write_polytopes_ply(out: &mut impl Write, polytopes: &[(Polytope, usize)], property: &str) -> io::Result<()> {
     let corners: usize = polytopes.iter().map(|(p, _)| p.corners.len()).sum();
     let faces: usize = polytopes.iter().map(|(p, _)| p.faces.len()).sum();
     writeln!(out, "ply\nformat ascii 1.0\nelement vertex {corners}")?;
     writeln!(out, "property double x\nproperty double y\nproperty double z")?;
-    writeln!(out, "element face {faces}\nproperty list uint uint vertex_indices\nproperty uint {property}\nend_header")?;
+    writeln!(
+        out,
+        "element face {faces}\nproperty list uint uint vertex_indices\nproperty uint {property}\nend_header"
+    )?;
     for corner in polytopes.iter().flat_map(|(p, _)| &p.corners) {
         writeln!(out, "{} {} {}", corner.x, corner.y, corner.z)?;
     }

@@ -354,25 +354,25 @@ mod tests {
         let skew = Directions::<8>::new(&skew).expect("four");
         assert!(turned.starts_orthogonal() && !skew.starts_orthogonal());
         let all = [
-            ("6", compare(&Directions::<6>::default(), 20_000, 1)),
-            ("14", compare(&Directions::<14>::default(), 10_000, 2)),
-            ("18", compare(&Directions::<18>::default(), 4_000, 3)),
-            ("26", compare(&Directions::<26>::default(), 1_500, 4)),
-            ("turned", compare(&turned, 10_000, 5)),
-            ("skew", compare(&skew, 10_000, 6)),
+            ("6", compare(&Directions::<6>::default(), 6_000, 1)),
+            ("14", compare(&Directions::<14>::default(), 6_000, 2)),
+            ("18", compare(&Directions::<18>::default(), 2_000, 3)),
+            ("26", compare(&Directions::<26>::default(), 600, 4)),
+            ("turned", compare(&turned, 6_000, 5)),
+            ("skew", compare(&skew, 4_000, 6)),
         ];
         for (name, [compared, close, box_close]) in all {
             println!("{name}: {compared} bounds, {close} within 1 % of the distance, {box_close} of boxes");
         }
         assert!(all.iter().map(|(_, counts)| counts[0]).sum::<usize>() > 3_000_000);
-        for (name, [compared, close, box_close]) in &all[..5] {
-            assert!(close * 10 > compared * 7 && *close >= *box_close, "{name}");
+        for (name, [compared, close, box_close]) in &all[1..5] {
+            assert!(close * 10 > compared * 8 && close > box_close, "{name}");
         }
     }
 
     #[test]
     fn the_six_dop_of_the_axes_bounds_as_boxes_do() {
         let [compared, close, box_close] = compare(&Directions::<6>::default(), 500, 9);
-        assert!(compared > 0 && close.abs_diff(box_close) * 1000 <= compared, "{close} {box_close}");
+        assert!(compared > 0 && close * 100 >= compared * 98 && box_close == compared, "{close} {box_close}");
     }
 }
