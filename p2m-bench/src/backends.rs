@@ -8,7 +8,7 @@ use p2m_bvh::{AabbOptions, AabbTree};
 use p2m_core::{
     BruteForce, BuildIndex, ClosestPoint, Directions, Isa, PrimitiveId, PrimitiveSet, Shape, Soup, Triangle,
 };
-use p2m_kdop::{KdopOptions, KdopTree};
+use p2m_kdop::{Choice, KdopOptions, KdopTree};
 use std::marker::PhantomData;
 
 /// Every contender, in the order of the tables.
@@ -23,6 +23,11 @@ pub(crate) const ALL: &[Backend] = &[
     Backend { name: "kdop-14", prepare: kdop::<f64, 14>, ..OURS },
     Backend { name: "kdop-18", prepare: kdop::<f64, 18>, ..OURS },
     Backend { name: "kdop-26", prepare: kdop::<f64, 26>, ..OURS },
+    Backend { name: "kdop-scene", prepare: kdop_of_scene, ..OURS },
+    Backend { name: "kdop-frame-6", prepare: |s| kdop_of_frame::<6>(s, &frame(s)), ..OURS },
+    Backend { name: "kdop-frame-14", prepare: |s| kdop_of_frame::<14>(s, &frame(s)), ..OURS },
+    Backend { name: "kdop-frame-18", prepare: |s| kdop_of_frame::<18>(s, &frame(s)), ..OURS },
+    Backend { name: "kdop-frame-26", prepare: |s| kdop_of_frame::<26>(s, &frame(s)), ..OURS },
     Backend { name: "brute-f32", exhaustive: true, prepare: |s| over_soup::<f32, BruteForce<_>>(s), ..OURS_SINGLE },
     Backend { name: "aabb-f32", prepare: |s| aabb::<f32>(s, None), ..OURS_SINGLE },
     Backend { name: YARDSTICK, scalar: ScalarKind::Single, prepare: parry_single, ..RIVAL },
@@ -123,6 +128,39 @@ where
     Directions<K>: Default,
 {
     over_soup_with::<T, KdopTree<T, _, K>>(scene, KdopOptions::default().with_splits(aabb_options()))
+}
+
+/// The k-DOP tree of what the scene requires; choosing is not part of the time.
+fn kdop_of_scene(scene: &Scene) -> Result<Prepared<'_>, Absent> {
+    let choice = frame(scene);
+    match choice.k {
+        6 => kdop_of_frame::<6>(scene, &choice),
+        14 => kdop_of_frame::<14>(scene, &choice),
+        18 => kdop_of_frame::<18>(scene, &choice),
+        _ => kdop_of_frame::<26>(scene, &choice),
+    }
+}
+
+/// The scene's own directions, with as many as may be asked for.
+fn kdop_of_frame<'a, const K: usize>(scene: &'a Scene, choice: &Choice) -> Result<Prepared<'a>, Absent> {
+    let directions = choice.directions::<K>().map_err(|error| Absent(error.to_string()))?;
+    let (soup, borrowed) = f64::soup(scene)?;
+    let options = KdopOptions::new(directions).with_splits(aabb_options());
+    let build = move || {
+        let tree = KdopTree::build_with(soup, &options).map_err(|error| Absent(error.to_string()))?;
+        Ok(Box::new(Ours(tree, PhantomData::<fn() -> f64>)) as Ready<'a>)
+    };
+    Ok(Prepared { build: Box::new(build), borrowed })
+}
+
+/// An entry by its name.
+pub(crate) fn kdop_backend(name: &str) -> &'static Backend {
+    ALL.iter().find(|backend| backend.name == name).expect("a name of the list")
+}
+
+/// What the scene requires.
+pub(crate) fn frame(scene: &Scene) -> Choice {
+    Choice::from_scene(&scene.double)
 }
 
 /// The AABB tree over the triangles written out, where there is nothing else: shows what a set of mixed kinds costs.

@@ -12,6 +12,7 @@ mod agree;
 mod backends;
 mod batch;
 mod contender;
+mod kdop;
 mod measure;
 mod memory;
 mod provenance;
@@ -54,6 +55,8 @@ enum Command {
     Verify(VerifyArguments),
     /// The split rules of the AABB tree: build, nodes and primitives visited, time per query
     Splits(SplitsArguments),
+    /// The figures of the k-DOP tree's manual: build, nodes and leaves visited, time per query
+    Kdop(KdopArguments),
     /// Batches on the AABB tree: order, hints and threads, in wall time
     Batch(BatchArguments),
 }
@@ -131,6 +134,28 @@ struct SplitsArguments {
 }
 
 #[derive(Args)]
+struct KdopArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    /// Each scene in seven orientations
+    #[arg(long)]
+    turned: bool,
+    /// Query set
+    #[arg(long, default_value_t = QuerySet::Box1)]
+    set: QuerySet,
+    /// Rounds; every tree begins one in turn
+    #[arg(long, default_value_t = 5)]
+    rounds: usize,
+    /// Queries a round
+    #[arg(long, default_value_t = 100_000)]
+    queries: usize,
+    /// Seed of the query set
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+#[derive(Args)]
 struct BatchArguments {
     /// Files of scenes
     #[arg(required = true)]
@@ -161,6 +186,7 @@ fn main() -> Result<ExitCode> {
         Command::Query(arguments) => query(&arguments)?,
         Command::Verify(arguments) => verify_all(&arguments)?,
         Command::Splits(arguments) => splits(&arguments)?,
+        Command::Kdop(arguments) => kdops(&arguments)?,
         Command::Batch(arguments) => batches(&arguments)?,
     };
     Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
@@ -213,6 +239,24 @@ fn batches(arguments: &BatchArguments) -> Result<bool> {
         good &= batch::print(&Scene::read(path)?, sets, *queries, threads, *rounds, *seed)?;
     }
     println!("{}", if good { "All answers are those of single queries." } else { "DIFFERENCES from single queries." });
+    Ok(good)
+}
+
+/// Whether all trees agree.
+fn kdops(arguments: &KdopArguments) -> Result<bool> {
+    let KdopArguments { scenes, turned, set, rounds, queries, seed } = arguments;
+    let effort = Effort { rounds: *rounds, queries: *queries, builds: *rounds, seed: *seed };
+    println!("{}", Provenance::collect(None));
+    println!("One thread, thread CPU time, {rounds} rounds in turns, {queries} queries of {set} a round, seed {seed}.");
+    kdop::print_cited();
+    let mut good = true;
+    for path in scenes {
+        let scene = Scene::read(path)?;
+        let all = if *turned { kdop::orientations(&scene)? } else { vec![scene] };
+        for scene in &all {
+            good &= kdop::print(scene, *set, &effort);
+        }
+    }
     Ok(good)
 }
 

@@ -178,13 +178,22 @@ impl Backend {
                 Faces::TwentySix => (Box::new(KdopTree::<_, _, 26>::build(soup, &Default::default())?), None),
                 Faces::Scene => {
                     let choice = Choice::from_scene(soup);
-                    let directions = choice.directions().expect("six directions");
-                    let tree = KdopTree::<_, _, 6>::build_with(soup, &KdopOptions::new(directions))?;
-                    (Box::new(tree), Some(choice.to_string()))
+                    let index: Index<'_> = match choice.k {
+                        6 => kdop_tree::<6>(soup, &choice)?,
+                        14 => kdop_tree::<14>(soup, &choice)?,
+                        18 => kdop_tree::<18>(soup, &choice)?,
+                        _ => kdop_tree::<26>(soup, &choice)?,
+                    };
+                    (index, Some(choice.to_string()))
                 }
             },
         })
     }
+}
+
+fn kdop_tree<'a, const K: usize>(soup: &'a Soup<f64>, choice: &Choice) -> Result<Index<'a>, p2m_core::BuildError> {
+    let directions = choice.directions::<K>().expect("a choice of as many");
+    Ok(Box::new(KdopTree::build_with(soup, &KdopOptions::new(directions))?))
 }
 
 type Index<'a> = Box<dyn ClosestPoint<f64> + Sync + 'a>;

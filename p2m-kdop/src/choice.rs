@@ -1,12 +1,15 @@
 //! Directions from the scene: model only what a scene requires.
 //!
-//! A slab is thin around a facet that it is parallel to, and around a segment that runs along it. So three orthogonal directions are sought
-//! along which most of the area of facets (by their normals) and most of the length of segments lie. A scene that was built along
-//! some axes has such a frame wherever it was turned to. More slabs than three cost arithmetic and memory in every
-//! node, whatever they save.
+//! A slab is thin around a facet that it is parallel to, and around a segment that runs along it. So three orthogonal
+//! directions are sought first along which most of the area of facets (by their normals) and most of the length of segments
+//! lie: a scene that was built along some axes has such a frame wherever it was turned to. Then the leaves are asked: how large
+//! are k-DOPs around their primitives, of more and more directions, along the axes and along the frame? More slabs cost
+//! arithmetic and memory in every node, so they have to save a part of the area, the measure of visits.
 
+use crate::Polytope;
 use nalgebra::Vector3;
-use p2m_core::{Directions, DirectionsError, Primitive, PrimitiveId, PrimitiveSet, Real};
+use p2m_core::hierarchy::{PacketTree, SplitOptions};
+use p2m_core::{Directions, DirectionsError, Kdop, Primitive, PrimitiveId, PrimitiveSet, Real};
 use std::fmt;
 
 /// Directions chosen for a scene, and why. Prints as a sentence.
@@ -35,7 +38,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Choice {
-    /// How many directions to use, both signs counted.
+    /// How many directions to use, both signs counted: 6, 14, 18 or 26.
     pub k: usize,
     /// The three that were found, orthogonal and of unit length.
     pub frame: [Vector3<f64>; 3],
@@ -43,8 +46,22 @@ pub struct Choice {
     pub waste_of_axes: f64,
     /// The same for the frame.
     pub waste_of_frame: f64,
+    /// The areas of leaves bounded by 6, 14, 18 and 26 faces, in parts of that of boxes along the axes: along the axes,
+    pub areas_of_axes: [f64; 4],
+    /// and along the frame, if that was looked at.
+    pub areas_of_frame: Option<[f64; 4]>,
     turned: bool,
 }
+
+/// The numbers of faces to choose from.
+const FACES: [usize; 4] = [6, 14, 18, 26];
+/// What a search costs with as many faces if as much is visited, in parts of what it costs with boxes (observed, over the scenes
+/// of docs/kdop.md).
+const COSTS: [f64; 4] = [1.0, 1.15, 1.22, 1.30];
+/// How visits fall with the area (observed).
+const POWER: f64 = 0.5;
+/// How many leaves are looked at.
+const LEAVES: usize = 600;
 
 /// Primitives that are looked at, at most.
 const SAMPLE: usize = 40_000;
@@ -61,8 +78,8 @@ impl Choice {
     /// Looks at a scene, or at a sample of a large one: always the same one.
     ///
     /// # Complexity
-    /// O(n) for up to 40,000 primitives, constant beyond.
-    pub fn from_scene<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -> Self {
+    /// O(n log n): one or two trees are built.
+    pub fn from_scene<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S) -> Self {
         let directions = sample(set);
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
         let waste_of_axes = waste(&directions, &axes);
@@ -81,8 +98,32 @@ impl Choice {
                 }
             }
         }
-        let turned = best.1 < waste_of_axes * GAIN;
-        Self { k: 6, frame: best.0, waste_of_axes, waste_of_frame: best.1, turned }
+        let [of_axes, of_frame] = [axes, best.0];
+        let boxes = areas(set, &of_axes);
+        let whole = boxes[0];
+        let parts =
+            |areas: [f64; 4]| if whole > 0.0 && whole.is_finite() { areas.map(|a| a / whole) } else { [1.0; 4] };
+        let areas_of_axes = parts(boxes);
+        let areas_of_frame = (best.1 < waste_of_axes * GAIN).then(|| parts(areas(set, &of_frame)));
+        let mut choice = Self {
+            k: 6,
+            frame: of_frame,
+            waste_of_axes,
+            waste_of_frame: best.1,
+            areas_of_axes,
+            areas_of_frame,
+            turned: false,
+        };
+        let mut least = f64::INFINITY;
+        for (turned, areas) in [(false, Some(areas_of_axes)), (true, areas_of_frame)] {
+            for (i, area) in areas.into_iter().flatten().enumerate() {
+                let cost = COSTS[i] * area.powf(POWER);
+                if cost < least {
+                    (least, choice.k, choice.turned) = (cost, FACES[i], turned);
+                }
+            }
+        }
+        choice
     }
 
     /// Whether the frame is to be used rather than the axes.
@@ -96,42 +137,70 @@ impl Choice {
     /// # Errors
     /// For K below 6, odd, or above 26.
     pub fn directions<const K: usize>(&self) -> Result<Directions<K>, DirectionsError> {
-        let [x, y, z] = if self.turned { self.frame } else { [Vector3::x(), Vector3::y(), Vector3::z()] };
-        // With 14 directions the diagonals of the cube, with 18 those of its faces, as in the usual sets.
-        let of_cube = [x + y + z, y + z - x, z - x - y, x - y + z];
-        let of_faces = [x + y, x + z, y + z, x - y, x - z, y - z];
-        let all = if K == 18 {
-            [&[x, y, z], &of_faces[..], &of_cube].concat()
-        } else {
-            [&[x, y, z], &of_cube[..], &of_faces].concat()
-        };
-        Directions::new(&all[..(K / 2).min(all.len())])
+        along(&if self.turned { self.frame } else { [Vector3::x(), Vector3::y(), Vector3::z()] })
     }
+}
+
+/// The axes of a frame and its diagonals: the usual sets, if the frame is that of the axes.
+fn along<const K: usize>(frame: &[Vector3<f64>; 3]) -> Result<Directions<K>, DirectionsError> {
+    let [x, y, z] = *frame;
+    let of_cube = [x + y + z, y + z - x, z - x - y, x - y + z];
+    let of_faces = [x + y, x + z, y + z, x - y, x - z, y - z];
+    let diagonals = if K == 18 { [&of_faces[..], &of_cube].concat() } else { [&of_cube[..], &of_faces].concat() };
+    let all = [&frame[..], &diagonals].concat();
+    Directions::new(&all[..(K / 2).min(all.len())])
+}
+
+/// The areas of the k-DOPs of 6, 14, 18 and 26 faces around leaves.
+fn areas<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, frame: &[Vector3<f64>; 3]) -> [f64; 4] {
+    let all = along::<26>(frame).expect("thirteen directions");
+    let tree = PacketTree::build_kdops(set, &SplitOptions::default(), &all);
+    let leaves: Vec<Kdop<26>> =
+        tree.parts().filter(|part| tree.primitives(part).is_some()).map(|part| part.volume).collect();
+    let count = leaves.len().min(LEAVES);
+    let mut sums = [0.0; 4];
+    for i in 0..count {
+        let heights = &leaves[i * leaves.len() / count].heights;
+        // Of the 26 the first 6 are the axes, the next 8 the diagonals of the cube, the last 12 those of its faces.
+        let fourteen = Kdop { heights: std::array::from_fn(|i| heights[i]) };
+        let eighteen = Kdop { heights: std::array::from_fn(|i| heights[if i < 6 { i } else { i + 8 }]) };
+        let six = Kdop { heights: std::array::from_fn(|i| heights[i]) };
+        sums[0] += area::<6>(&six, frame);
+        sums[1] += area::<14>(&fourteen, frame);
+        sums[2] += area::<18>(&eighteen, frame);
+        sums[3] += area::<26>(&Kdop { heights: *heights }, frame);
+    }
+    sums
+}
+
+fn area<const K: usize>(kdop: &Kdop<K>, frame: &[Vector3<f64>; 3]) -> f64 {
+    Polytope::new(kdop, &along(frame).expect("as many directions")).area()
 }
 
 impl fmt::Display for Choice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let parts = |waste: f64| 100.0 * (1.0 - waste);
-        let [axes, frame] = [self.waste_of_axes, self.waste_of_frame].map(parts);
+        let percent = |part: f64| 100.0 * part;
+        let place = FACES.iter().position(|k| *k == self.k).unwrap_or(0);
+        let areas = self.areas_of_frame.filter(|_| self.turned).unwrap_or(self.areas_of_axes);
+        write!(f, "{} directions along ", self.k)?;
         if self.turned {
-            write!(f, "{} directions along a frame of the scene's own (", self.k)?;
+            write!(f, "a frame of the scene's own (")?;
             for (i, axis) in self.frame.iter().enumerate() {
                 let [x, y, z] = [axis.x, axis.y, axis.z].map(|c| c + 0.0);
                 write!(f, "{}{x:.3} {y:.3} {z:.3}", if i > 0 { ", " } else { "" })?;
             }
-            write!(f, "), which {frame:.0} % of its facets and segments lie along, where the axes have {axes:.0} %")
+            let [axes, frame] = [self.waste_of_axes, self.waste_of_frame].map(|waste| percent(1.0 - waste));
+            write!(f, "), which {frame:.0} % of its facets and segments lie along, {axes:.0} % along the axes")?;
         } else {
-            let better = if frame > axes {
-                format!("; the best frame has {frame:.0} %, too little more")
-            } else {
-                String::new()
-            };
-            write!(
-                f,
-                "{} directions along the axes, which {axes:.0} % of the scene's facets and segments lie along{better}",
-                self.k
-            )
+            write!(f, "the axes")?;
         }
+        if self.turned || self.k > 6 {
+            write!(f, "; leaves have {:.0} % of the area of boxes along the axes", percent(areas[place]))?;
+        }
+        if self.k < 26 {
+            write!(f, "; with 26 directions they would have {:.0} %, which does not pay", percent(areas[3]))?;
+        }
+        Ok(())
     }
 }
 
@@ -242,7 +311,7 @@ mod tests {
     #[test]
     fn choices_say_why() {
         let turned = Choice::from_scene(&boxes(&Rotation3::new(Vector3::z() * 0.4)));
-        assert!(turned.to_string().starts_with("6 directions along a frame of the scene's own ("), "{turned}");
+        assert!(turned.to_string().contains(" directions along a frame of the scene's own ("), "{turned}");
         let around: Vec<_> = (0..1000)
             .map(|i| {
                 let t = f64::from(i) * 2.4;
@@ -259,7 +328,7 @@ mod tests {
     fn any_scene_has_a_choice() {
         let nothing: [Triangle<f64>; 0] = [];
         assert!(!Choice::from_scene(&nothing).is_turned());
-        let flat = [Triangle::new(Point3::origin(), Point3::origin(), Point3::origin())];
+        let flat = [Triangle::<f64>::new(Point3::origin(), Point3::origin(), Point3::origin())];
         assert_eq!(Choice::from_scene(&flat).directions::<6>(), Ok(Directions::default()));
         let large = [Segment::new(Point3::new(-f64::MAX, 0.0, 0.0), Point3::new(f64::MAX, f64::MAX, 0.0))];
         assert!(Choice::from_scene(&large).directions::<6>().is_ok());

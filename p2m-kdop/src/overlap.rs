@@ -6,7 +6,7 @@
 //! their heights. Which combinations there are depends on the movement alone, so they are computed once.
 
 use crate::{Directions, Kdop, KdopTree};
-use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
+use nalgebra::{Isometry3, Matrix3, Vector3};
 use p2m_core::hierarchy::{PacketTree, Part};
 use p2m_core::{PrimitiveId, Real};
 use std::ops::ControlFlow;
@@ -167,16 +167,10 @@ impl<T: Real, S: p2m_core::PrimitiveSet<T>, const K: usize> KdopTree<T, S, K> {
     }
 }
 
-/// The point moved, for tests and documentation of [`Overlap`].
-#[cfg(test)]
-fn moved(motion: &Isometry3<f64>, points: &[Point3<f64>]) -> Vec<Point3<f64>> {
-    points.iter().map(|p| motion * p).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Translation3;
+    use nalgebra::{Point3, Translation3};
     use p2m_core::{Aabb, BuildIndex, Point, PrimitiveSet, Soup};
     use p2m_testkit::rng;
     use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
@@ -191,7 +185,8 @@ mod tests {
             let motion = Isometry3::new(vector(), vector());
             let points: Vec<_> = (0..5).map(|_| Point3::from(vector())).collect();
             let around = Heights::new(&from, &motion, &to).around(&Kdop::of_points(&from, &points));
-            let exact = Kdop::of_points(&to, &moved(&motion, &points));
+            let moved: Vec<_> = points.iter().map(|p| motion * p).collect();
+            let exact = Kdop::of_points(&to, &moved);
             assert!(around.contains(&exact), "{around:?} {exact:?}");
             let own = Kdop::of_points(&from, &points);
             let same = Heights::new(&from, &Isometry3::identity(), &from).around(&own);
@@ -233,10 +228,11 @@ mod tests {
         let any = |motion: Isometry3<f64>| Overlap::new(&tree, &tree, &motion).any();
         assert!(any(Isometry3::identity()));
         assert!(!any(Isometry3::translation(19.5, 0.0, 0.0)));
-        // Corner to corner: boxes meet, diagonals tell them apart.
-        assert!(!any(Isometry3::translation(0.0, 0.0, 0.0) * Isometry3::translation(20.0, 19.0, 19.0)));
-        let turned = Isometry3::new(Vector3::new(30.0, 0.0, 0.0), Vector3::z() * std::f64::consts::FRAC_PI_4);
-        assert!(!any(turned * Isometry3::translation(-9.5, -9.5, 0.0) * Isometry3::translation(9.0, 9.0, 0.0)));
+        // A turned cube in the corner of another: their boxes meet, they do not.
+        let turn = Isometry3::rotation(Vector3::z() * std::f64::consts::FRAC_PI_4);
+        let beside =
+            Isometry3::translation(19.0 + 9.5, 19.0 + 9.5, 0.0) * turn * Isometry3::translation(-9.5, -9.5, 0.0);
+        assert!(!any(beside) && any(Isometry3::translation(-5.0, -5.0, 0.0) * beside));
         let mut pairs = 0;
         let _ = Overlap::new(&tree, &tree, &Isometry3::translation(18.5, 0.5, 0.5)).visit(|_, _| {
             pairs += 1;

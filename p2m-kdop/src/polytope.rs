@@ -139,6 +139,16 @@ impl Polytope {
         once.map(|edge| edge.map(|i| self.corners[i]))
     }
 
+    /// The area of its faces.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        let of = |face: &Vec<usize>| {
+            let at = |i: usize| self.corners[face[i]] - self.corners[face[0]];
+            (1..face.len() - 1).map(|i| at(i).cross(&at(i + 1))).sum::<Vector3<f64>>().norm() / 2.0
+        };
+        self.faces.iter().map(of).sum()
+    }
+
     /// Its volume.
     #[must_use]
     pub fn volume(&self) -> f64 {
@@ -227,7 +237,7 @@ mod tests {
             (0..8).map(|i| Point3::from([0, 1, 2].map(|k| f64::from(i >> k & 1) * f64::from(k + 1)))).collect();
         let six = check(&cube, &Directions::<6>::default());
         assert_eq!((six.corners.len(), six.faces.len()), (8, 6));
-        assert!((six.volume() - 6.0).abs() < 1e-6);
+        assert!((six.volume() - 6.0).abs() < 1e-6 && (six.area() - 22.0).abs() < 1e-6);
         let mut state = 1u64;
         let mut random = move || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -6,6 +6,7 @@
 
 pub mod counting;
 pub mod families;
+pub mod left_first;
 pub mod oracle;
 pub mod queries;
 pub mod scenes;

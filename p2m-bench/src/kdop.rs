@@ -1,0 +1,144 @@
+//! `p2m-bench kdop`: the distance figures of the manual of CGAL's k-DOP tree, redrawn.
+//!
+//! For each scene and number of faces: build time, nodes and leaves visited, time per query. Counters of the manual's own
+//! way (left child first, the largest slack as the bound) stand beside ours, and times that the manual quotes are marked as cited.
+
+use crate::backends::{frame, kdop_backend};
+use crate::contender::Backend;
+use crate::measure::{Effort, Spread, build_all, measure_set};
+use crate::scene::Scene;
+use crate::table::Table;
+use anyhow::Result;
+use nalgebra::{Point3, Rotation3, Vector3};
+use p2m_bvh::{AabbOptions, AabbTree};
+use p2m_core::{Best, BuildIndex, Directions, QueryOptions, Soup};
+use p2m_kdop::{KdopOptions, KdopTree};
+use p2m_testkit::counting::Counting;
+use p2m_testkit::left_first::LeftFirst;
+use p2m_testkit::queries::QuerySet;
+use std::f64::consts::PI;
+
+/// Angles about x and then y, in parts of pi.
+const ORIENTATIONS: [[f64; 2]; 7] =
+    [[0.0, 0.0], [0.125, 0.0], [0.25, 0.0], [0.0, 0.125], [0.0, 0.25], [0.125, 0.125], [0.25, 0.25]];
+
+const COLUMNS: [&str; 6] = ["aabb", "kdop-6", "kdop-14", "kdop-18", "kdop-26", "kdop-scene"];
+
+/// What the manual has: seconds of building, and of 100,000 closest points of its bunny.
+const CITED: [(&str, [f64; 5]); 3] = [
+    ("gear_skewed, build s", [0.0354, 0.039, 0.0426, 0.0455, 0.0493]),
+    ("bunny subdivided, build s", [0.184, 0.208, 0.224, 0.236, 0.268]),
+    ("bunny subdivided, 100,000 closest points s", [22.256, 21.816, 24.94, 25.588, 27.428]),
+];
+
+/// Nodes and leaves, per query.
+type Work = [f64; 2];
+
+/// The scene in each orientation.
+pub(crate) fn orientations(scene: &Scene) -> Result<Vec<Scene>> {
+    let turned = |[x, y]: [f64; 2]| {
+        let rotation = Rotation3::from_axis_angle(&Vector3::y_axis(), y * PI)
+            * Rotation3::from_axis_angle(&Vector3::x_axis(), x * PI);
+        let positions = scene.double.positions().iter().map(|p| rotation * p).collect();
+        Scene::new(
+            format!("{} turned by {x} pi about x, {y} pi about y", scene.name),
+            Soup::new(positions, scene.double.elements())?,
+        )
+    };
+    ORIENTATIONS.into_iter().map(turned).collect()
+}
+
+/// Prints the table of the manual's own figures.
+pub(crate) fn print_cited() {
+    let mut table = Table::new(["cited from the manual", "AABB", "6-DOP", "14-DOP", "18-DOP", "26-DOP"]);
+    for (name, figures) in CITED {
+        table.push(std::iter::once(name.to_owned()).chain(figures.map(|x| x.to_string())).collect());
+    }
+    println!("\n{table}");
+}
+
+/// Prints the table of a scene; whether all trees agree.
+pub(crate) fn print(scene: &Scene, set: QuerySet, effort: &Effort) -> bool {
+    let backends: Vec<&'static Backend> = COLUMNS.iter().map(|name| kdop_backend(name)).collect();
+    let mut entries = build_all(scene, &backends, effort.builds);
+    measure_set(scene, set, &mut entries, effort);
+    let queries = set.generate(&scene.double, effort.queries, effort.seed);
+    let choice = frame(scene);
+    let of_scene = match choice.k {
+        6 => work_of_frame::<6>(scene, &queries),
+        14 => work_of_frame::<14>(scene, &queries),
+        18 => work_of_frame::<18>(scene, &queries),
+        _ => work_of_frame::<26>(scene, &queries),
+    };
+    let work = [
+        (boxes(scene, &queries), None),
+        usual::<6>(scene, &queries),
+        usual::<14>(scene, &queries),
+        usual::<18>(scene, &queries),
+        usual::<26>(scene, &queries),
+        (of_scene, None),
+    ];
+    let mut table = Table::new(["per query", "AABB", "6-DOP", "14-DOP", "18-DOP", "26-DOP", "scene"]);
+    let row = |name: &str, cells: Vec<String>| std::iter::once(name.to_owned()).chain(cells).collect::<Vec<_>>();
+    let median = |values: &[f64]| Spread::of(values).map_or(f64::NAN, |s| s.median);
+    let least = |values: &[f64]| Spread::of(values).map_or(f64::NAN, |s| s.min);
+    table.push(row("build s", entries.iter().map(|e| format!("{:.4}", median(&e.build.seconds))).collect()));
+    table.push(row("nodes of eight", work.iter().map(|(w, _)| format!("{:.2}", w[0])).collect()));
+    table.push(row("packets", work.iter().map(|(w, _)| format!("{:.2}", w[1])).collect()));
+    let left = |at: usize| {
+        work.iter().map(|(_, left)| left.map_or(String::new(), |left| format!("{:.1}", left[at]))).collect()
+    };
+    table.push(row("binary nodes, left first", left(0)));
+    table.push(row("leaves, left first", left(1)));
+    let mut clean = true;
+    let mut times = [Vec::new(), Vec::new()];
+    for entry in &entries {
+        let figures = entry.sets[0].as_ref().expect("ours are never absent");
+        clean &= figures.agreement.is_clean();
+        times[0].push(format!("{:.0}", median(&figures.nanoseconds)));
+        times[1].push(format!("{:.0}", least(&figures.nanoseconds)));
+    }
+    let [medians, leasts] = times;
+    table.push(row("ns, median", medians));
+    table.push(row("ns, least", leasts));
+    println!("\n## {}\n\nThe scene: {choice}.\n\n{table}", scene.describe());
+    clean
+}
+
+fn count(queries: &[Point3<f64>], visit: impl Fn(&Point3<f64>, &mut Counting<f64>)) -> Work {
+    let mut sums = [0usize; 2];
+    for query in queries {
+        let mut counting = Counting::new(Best::new(&QueryOptions::default()));
+        visit(query, &mut counting);
+        sums = [sums[0] + counting.nodes, sums[1] + counting.packets];
+    }
+    sums.map(|sum| sum as f64 / queries.len() as f64)
+}
+
+fn boxes(scene: &Scene, queries: &[Point3<f64>]) -> Work {
+    let tree = AabbTree::build(&scene.double, &AabbOptions::default()).expect("built before");
+    count(queries, |query, counting| tree.visit(query, counting))
+}
+
+/// Of ours for all queries, of the manual's way for one of twenty.
+fn usual<const K: usize>(scene: &Scene, queries: &[Point3<f64>]) -> (Work, Option<Work>)
+where
+    Directions<K>: Default,
+{
+    let tree = KdopTree::<f64, _, K>::build(&scene.double, &KdopOptions::default()).expect("built before");
+    let work = count(queries, |query, counting| tree.visit(query, counting));
+    let left_first = LeftFirst::of_packets(tree.tree());
+    let some: Vec<_> = queries.iter().step_by(20).collect();
+    let mut sums = [0usize; 2];
+    for query in &some {
+        let (_, work) = left_first.distance(&&scene.double, query);
+        sums = [sums[0] + work.nodes, sums[1] + work.leaves];
+    }
+    (work, Some(sums.map(|sum| sum as f64 / some.len() as f64)))
+}
+
+fn work_of_frame<const K: usize>(scene: &Scene, queries: &[Point3<f64>]) -> Work {
+    let directions = frame(scene).directions::<K>().expect("as many as chosen");
+    let tree = KdopTree::<f64, _, K>::build_with(&scene.double, &KdopOptions::new(directions)).expect("built before");
+    count(queries, |query, counting| tree.visit(query, counting))
+}

@@ -1,0 +1,139 @@
+//! k-DOP trees: every instruction set, moved sets, box queries, and how much work is done.
+#![cfg(all(feature = "bvh", feature = "kdop"))]
+#![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
+
+use nalgebra::{Point3, Rotation3, Vector3};
+use p2m::{
+    Aabb, AabbTree, Best, BoxQuery, BruteForce, BuildError, BuildIndex, ClosestLeaf, ClosestPoint, Directions, Isa,
+    KdopOptions, KdopTree, PrimitiveSet, QueryOptions, Soup,
+};
+use p2m_testkit::counting::Counting;
+use p2m_testkit::left_first::LeftFirst;
+use p2m_testkit::queries::QuerySet;
+use p2m_testkit::rng;
+use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
+use rand::RngExt;
+
+type Tree<'a, const K: usize> = KdopTree<f64, &'a Soup<f64>, K>;
+
+/// Nodes and packets that a search of the tree visits, for all queries.
+fn work<const K: usize>(tree: &Tree<'_, K>, queries: &[Point3<f64>]) -> [usize; 2] {
+    let mut sums = [0; 2];
+    for query in queries {
+        let mut counting: Counting<f64> = Counting::new(Best::new(&QueryOptions::default()));
+        tree.visit(query, &mut counting);
+        sums = [sums[0] + counting.nodes, sums[1] + counting.packets];
+    }
+    sums
+}
+
+fn model(name: &str) -> Option<Soup<f64>> {
+    let path = p2m_testkit::model_files().into_iter().find(|path| path.ends_with(name));
+    if path.is_none() {
+        println!("skipped: no model {name}");
+    }
+    path.map(|path| p2m::scene::read_scene(&path).expect("readable").soup)
+}
+
+fn built<const K: usize>(soup: &Soup<f64>) -> Tree<'_, K>
+where
+    Directions<K>: Default,
+{
+    Tree::<K>::build(soup, &Default::default()).expect("valid")
+}
+
+#[test]
+fn every_instruction_set_refitted_and_boxes_agree_with_brute_force() {
+    let mut rng = rng("kdop", 0);
+    for kinds in KINDS {
+        for layout in LAYOUTS {
+            let soup = scenes::soup(&mut rng, kinds, layout, 300);
+            let turn = Rotation3::new(Vector3::new(0.2, 0.4, 0.7));
+            let moved: Vec<_> = soup.positions().iter().map(|p| turn * p * 3.0).collect();
+            let moved = Soup::new(moved, soup.elements()).expect("finite");
+            for isa in Isa::available() {
+                let mut tree = built::<14>(&soup).with_isa(isa);
+                for (scene, refit) in [(&soup, false), (&moved, true)] {
+                    if refit {
+                        tree.refit(scene, &KdopOptions::default()).expect("as many");
+                    }
+                    let brute = BruteForce::new(scene).expect("valid");
+                    for _ in 0..40 {
+                        let q = scenes::query(&mut rng, scene.positions());
+                        let [found, expected] = [tree.closest_point(&q), brute.closest_point(&q)]
+                            .map(|c| c.map(|c| (c.distance, c.primitive, c.feature, c.point)));
+                        assert_eq!(found, expected, "{isa} {kinds:?} {layout:?} {q}");
+                        let leaf = tree.closest_leaf(&q).expect("not empty");
+                        assert!(
+                            leaf.distance >= expected.expect("one").0 && leaf.lower_bound <= expected.expect("one").0
+                        );
+                        let half = Vector3::from_fn(|_, _| rng.random_range(0.0..0.2))
+                            * (scene.aabb().max - scene.aabb().min).norm();
+                        let bounds = Aabb { min: q - half, max: q + half };
+                        let (mut found, mut expected) = (Vec::new(), Vec::new());
+                        tree.primitives_in_box_into(&bounds, &mut found);
+                        brute.primitives_in_box_into(&bounds, &mut expected);
+                        assert_eq!(found, expected, "{isa} {kinds:?} {layout:?} {bounds:?}");
+                    }
+                }
+            }
+        }
+    }
+    let few = scenes::soup(&mut rng, KINDS[0], LAYOUTS[0], 20);
+    let other = scenes::soup(&mut rng, KINDS[0], LAYOUTS[0], 30);
+    let error = built::<18>(&few).refit(&other, &KdopOptions::default());
+    assert_eq!(error, Err(BuildError::OtherLength { len: other.len(), expected: few.len() }));
+}
+
+/// More faces, fewer nodes and packets; and all of them fewer than boxes.
+#[test]
+fn visits_fall_with_the_number_of_faces_on_a_turned_gear() {
+    let Some(soup) = model("gear_skewed_57k_rotated.ply") else { return };
+    for set in [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface] {
+        let queries = set.generate(&soup, 2000, 1);
+        let mut boxes = [0; 2];
+        let aabb = AabbTree::build(&soup, &Default::default()).expect("valid");
+        for query in &queries {
+            let mut counting: Counting<f64> = Counting::new(Best::new(&QueryOptions::default()));
+            aabb.visit(query, &mut counting);
+            boxes = [boxes[0] + counting.nodes, boxes[1] + counting.packets];
+        }
+        let six = work(&built::<6>(&soup), &queries);
+        let rows = [
+            six,
+            work(&built::<14>(&soup), &queries),
+            work(&built::<18>(&soup), &queries),
+            work(&built::<26>(&soup), &queries),
+        ];
+        println!("{set}: boxes {boxes:?}, k-DOPs {rows:?} nodes and packets");
+        // The six-DOP of the axes is the box.
+        assert!(
+            six[0].abs_diff(boxes[0]) * 1000 <= boxes[0] && six[1].abs_diff(boxes[1]) * 1000 <= boxes[1],
+            "{six:?} {boxes:?}"
+        );
+        for pair in rows.windows(2) {
+            assert!(pair[1][0] < pair[0][0] && pair[1][1] <= pair[0][1], "{set}: {rows:?}");
+        }
+    }
+}
+
+/// Nearest first, with the bound of two half-spaces and over nodes of eight, against the manual's way.
+#[test]
+fn far_fewer_nodes_are_visited_than_from_left_to_right() {
+    for name in ["dragon_100k.obj", "gear_skewed_57k_rotated.ply"] {
+        let Some(soup) = model(name) else { return };
+        let queries = QuerySet::Box1.generate(&soup, 500, 1);
+        let tree = built::<14>(&soup);
+        let [nodes, packets] = work(&tree, &queries);
+        let left_first = LeftFirst::of_packets(tree.tree());
+        let mut sums = [0; 2];
+        for query in &queries {
+            let (distance, work) = left_first.distance(&&soup, query);
+            assert_eq!(distance, tree.closest_point(query).expect("not empty").distance);
+            sums = [sums[0] + work.nodes, sums[1] + work.leaves];
+        }
+        println!("{name}: {nodes} nodes and {packets} packets, left first {} and {}", sums[0], sums[1]);
+        assert!(sums[0] >= 4 * nodes && sums[0] >= 4 * (nodes + packets), "{name}: {nodes} of {}", sums[0]);
+        assert!(sums[1] > packets, "{name}");
+    }
+}
