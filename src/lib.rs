@@ -57,6 +57,9 @@
 #[cfg(feature = "bvh")]
 pub use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
 pub use p2m_core::*;
+/// What else there is about k-DOPs: polytopes, overlap of trees, directions from a scene.
+#[cfg(feature = "kdop")]
+pub use p2m_kdop as kdop;
 #[cfg(feature = "kdop")]
 pub use p2m_kdop::{KdopOptions, KdopTree};
 /// Scenes from files and generators.

@@ -1,9 +1,10 @@
 //! Agreement with brute force, bit for bit, on real meshes: far from the origin, non-manifold, degenerate, lines, mixed.
 //! Skips, and says so, where there is no folder of models.
 
-#![cfg(all(feature = "bvh", feature = "mixed"))]
+#![cfg(all(feature = "bvh", feature = "kdop", feature = "mixed"))]
 
-use p2m::{AabbTree, BruteForce, BuildIndex, ClosestPoint, PrimitiveSet, Real, Soup};
+use p2m::kdop::Choice;
+use p2m::{AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopOptions, KdopTree, PrimitiveSet, Real, Soup};
 use p2m_testkit::model_files;
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::scenes::narrow;
@@ -24,17 +25,29 @@ fn answers<T: Real, I: ClosestPoint<T> + Sync>(index: &I, queries: &[nalgebra::P
     })
 }
 
-fn agrees<T: Real>(
-    name: &str,
-    set: QuerySet,
-    soup: &Soup<T>,
-    tree: &AabbTree<T, &Soup<T>>,
-    queries: &[nalgebra::Point3<T>],
-) {
+/// Compares trees of boxes, of k-DOPs and of the scene's own directions with brute force.
+fn agrees<T: Real>(name: &str, set: QuerySet, soup: &Soup<T>, trees: &Trees<'_, T>, queries: &[nalgebra::Point3<T>]) {
     let brute = BruteForce::new(soup).expect("valid");
-    let (expected, found) = (answers(&brute, queries), answers(tree, queries));
-    for (i, (e, f)) in expected.iter().zip(&found).enumerate() {
-        assert_eq!(e, f, "{name}, {set}, query {i}: {:?}", queries[i]);
+    let expected = answers(&brute, queries);
+    let found = [answers(&trees.0, queries), answers(&trees.1, queries), answers(&trees.2, queries)];
+    for (tree, found) in ["boxes", "k-DOPs", "the scene's k-DOPs"].iter().zip(found) {
+        for (i, (e, f)) in expected.iter().zip(&found).enumerate() {
+            assert_eq!(e, f, "{name}, {tree}, {set}, query {i}: {:?}", queries[i]);
+        }
+    }
+}
+
+/// Of boxes, of the usual 14 faces, and of 26 faces along a frame.
+struct Trees<'a, T: Real>(AabbTree<T, &'a Soup<T>>, KdopTree<T, &'a Soup<T>, 14>, KdopTree<T, &'a Soup<T>, 26>);
+
+impl<'a, T: Real> Trees<'a, T> {
+    fn build(soup: &'a Soup<T>, choice: &Choice) -> Self {
+        let own = KdopOptions::new(choice.frame_directions::<26>().expect("thirteen"));
+        Self(
+            AabbTree::build(soup, &Default::default()).expect("valid"),
+            KdopTree::build(soup, &Default::default()).expect("valid"),
+            KdopTree::build_with(soup, &own).expect("valid"),
+        )
     }
 }
 
@@ -44,10 +57,10 @@ fn trees_agree_with_brute_force_on_every_model_in_f64() {
     for path in model_files() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
         let soup = p2m::scene::read_scene(&path).expect("readable").soup;
-        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let trees = Trees::build(&soup, &Choice::from_scene(&soup));
         for set in QuerySet::ALL {
             let queries = set.generate(&soup, QUERIES, 1);
-            agrees(&name, set, &soup, &tree, &queries);
+            agrees(&name, set, &soup, &trees, &queries);
             count += queries.len();
         }
         println!("{name}: {} primitives agree", soup.len());
@@ -61,11 +74,11 @@ fn trees_agree_with_brute_force_on_every_model_in_f32() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
         let wide = p2m::scene::read_scene(&path).expect("readable").soup;
         let soup = narrow(&wide).expect("models fit f32");
-        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let trees = Trees::build(&soup, &Choice::from_scene(&wide));
         for set in QuerySet::ALL {
             // A quarter of the queries: the scalar changes the boxes, not the kernel.
             let queries: Vec<_> = set.generate(&wide, QUERIES / 4, 2).iter().map(|q| q.map(f32::of_f64)).collect();
-            agrees(&name, set, &soup, &tree, &queries);
+            agrees(&name, set, &soup, &trees, &queries);
         }
     }
 }

@@ -6,7 +6,8 @@ use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_bvh::{AabbOptions, AabbTree};
 use p2m_core::{
-    BruteForce, BuildIndex, ClosestPoint, Directions, Isa, PrimitiveId, PrimitiveSet, Shape, Soup, Triangle,
+    BruteForce, BuildIndex, ClosestPoint, Directions, DirectionsError, Isa, PrimitiveId, PrimitiveSet, Shape, Soup,
+    Triangle,
 };
 use p2m_kdop::{Choice, KdopOptions, KdopTree};
 use std::marker::PhantomData;
@@ -24,10 +25,10 @@ pub(crate) const ALL: &[Backend] = &[
     Backend { name: "kdop-18", prepare: kdop::<f64, 18>, ..OURS },
     Backend { name: "kdop-26", prepare: kdop::<f64, 26>, ..OURS },
     Backend { name: "kdop-scene", prepare: kdop_of_scene, ..OURS },
-    Backend { name: "kdop-frame-6", prepare: |s| kdop_of_frame::<6>(s, &frame(s)), ..OURS },
-    Backend { name: "kdop-frame-14", prepare: |s| kdop_of_frame::<14>(s, &frame(s)), ..OURS },
-    Backend { name: "kdop-frame-18", prepare: |s| kdop_of_frame::<18>(s, &frame(s)), ..OURS },
-    Backend { name: "kdop-frame-26", prepare: |s| kdop_of_frame::<26>(s, &frame(s)), ..OURS },
+    Backend { name: "kdop-frame-6", prepare: |s| kdop_with::<6>(s, frame(s).frame_directions()), ..OURS },
+    Backend { name: "kdop-frame-14", prepare: |s| kdop_with::<14>(s, frame(s).frame_directions()), ..OURS },
+    Backend { name: "kdop-frame-18", prepare: |s| kdop_with::<18>(s, frame(s).frame_directions()), ..OURS },
+    Backend { name: "kdop-frame-26", prepare: |s| kdop_with::<26>(s, frame(s).frame_directions()), ..OURS },
     Backend { name: "brute-f32", exhaustive: true, prepare: |s| over_soup::<f32, BruteForce<_>>(s), ..OURS_SINGLE },
     Backend { name: "aabb-f32", prepare: |s| aabb::<f32>(s, None), ..OURS_SINGLE },
     Backend { name: YARDSTICK, scalar: ScalarKind::Single, prepare: parry_single, ..RIVAL },
@@ -134,21 +135,24 @@ where
 fn kdop_of_scene(scene: &Scene) -> Result<Prepared<'_>, Absent> {
     let choice = frame(scene);
     match choice.k {
-        6 => kdop_of_frame::<6>(scene, &choice),
-        14 => kdop_of_frame::<14>(scene, &choice),
-        18 => kdop_of_frame::<18>(scene, &choice),
-        _ => kdop_of_frame::<26>(scene, &choice),
+        6 => kdop_with::<6>(scene, choice.directions()),
+        14 => kdop_with::<14>(scene, choice.directions()),
+        18 => kdop_with::<18>(scene, choice.directions()),
+        _ => kdop_with::<26>(scene, choice.directions()),
     }
 }
 
-/// The scene's own directions, with as many as may be asked for.
-fn kdop_of_frame<'a, const K: usize>(scene: &'a Scene, choice: &Choice) -> Result<Prepared<'a>, Absent> {
-    let directions = choice.directions::<K>().map_err(|error| Absent(error.to_string()))?;
+/// The k-DOP tree of these directions.
+fn kdop_with<const K: usize>(
+    scene: &Scene,
+    directions: Result<Directions<K>, DirectionsError>,
+) -> Result<Prepared<'_>, Absent> {
+    let directions = directions.map_err(|error| Absent(error.to_string()))?;
     let (soup, borrowed) = f64::soup(scene)?;
     let options = KdopOptions::new(directions).with_splits(aabb_options());
     let build = move || {
         let tree = KdopTree::build_with(soup, &options).map_err(|error| Absent(error.to_string()))?;
-        Ok(Box::new(Ours(tree, PhantomData::<fn() -> f64>)) as Ready<'a>)
+        Ok(Box::new(Ours(tree, PhantomData::<fn() -> f64>)) as Ready<'_>)
     };
     Ok(Prepared { build: Box::new(build), borrowed })
 }

@@ -14,6 +14,10 @@ fn backends_and_threads_give_the_same_table() {
         let expected = run(&["--backend", "brute"]);
         assert!(expected.starts_with(&format!("{HEADER}\n")));
         assert_eq!(run(&["--backend", "aabb"]), expected);
+        assert_eq!(run(&["--backend", "kdop"]), expected);
+        for faces in ["6", "14", "18", "26", "scene"] {
+            assert_eq!(run(&["--backend", "kdop", "--k", faces]), expected);
+        }
         assert_eq!(run(&[]), expected);
         assert_eq!(run(&["--threads", "1"]), expected);
         assert_eq!(run(&["--threads", "3"]), expected);
@@ -45,6 +49,15 @@ fn the_summary_tells_what_was_done() {
     ] {
         assert!(summary.contains(part), "{part}: {summary}");
     }
+}
+
+#[test]
+fn directions_of_the_scene_are_explained() {
+    let output = p2m(&["query", SCENE, "--random", "5", "--backend", "kdop", "--k", "scene"]);
+    assert!(text(&output.stderr).contains("k-DOPs: "), "{}", text(&output.stderr));
+    let output = p2m(&["query", SCENE, "--random", "5", "--k", "14"]);
+    assert!(text(&output.stderr).contains("--k is for --backend kdop"), "{}", text(&output.stderr));
+    assert_eq!(output.status.code(), Some(2));
 }
 
 /// What stands behind `start` in a line of the summary.

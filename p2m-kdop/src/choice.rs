@@ -2,14 +2,17 @@
 //!
 //! A slab is thin around a facet that it is parallel to, and around a segment that runs along it. So three orthogonal
 //! directions are sought first along which most of the area of facets (by their normals) and most of the length of segments
-//! lie: a scene that was built along some axes has such a frame wherever it was turned to. Then the leaves are asked: how large
-//! are k-DOPs around their primitives, of more and more directions, along the axes and along the frame? More slabs cost
-//! arithmetic and memory in every node, so they have to save a part of the area, the measure of visits.
+//! lie: a scene that was built along some axes has such a frame wherever it was turned to. Then trees of more and more
+//! directions, along the axes and along the frame, answer some queries, and nodes and packets that they visit are counted: more
+//! slabs cost arithmetic in every node, so they have to save visits. How large the volumes of leaves are does not tell that:
+//! those of a thin wire shrink most, but nothing else is in their way (docs/kdop.md).
 
-use crate::Polytope;
-use nalgebra::Vector3;
-use p2m_core::hierarchy::{PacketTree, SplitOptions};
-use p2m_core::{Directions, DirectionsError, Kdop, Primitive, PrimitiveId, PrimitiveSet, Real};
+use crate::{KdopOptions, KdopTree};
+use nalgebra::{Point3, Vector3};
+use p2m_core::{
+    Aabb, Best, Collector, Directions, DirectionsError, Primitive, PrimitiveId, PrimitiveSet, Projection, QueryOptions,
+    Real, Segment, Shape, Triangle,
+};
 use std::fmt;
 
 /// Directions chosen for a scene, and why. Prints as a sentence.
@@ -46,22 +49,23 @@ pub struct Choice {
     pub waste_of_axes: f64,
     /// The same for the frame.
     pub waste_of_frame: f64,
-    /// The areas of leaves bounded by 6, 14, 18 and 26 faces, in parts of that of boxes along the axes: along the axes,
-    pub areas_of_axes: [f64; 4],
-    /// and along the frame, if that was looked at.
-    pub areas_of_frame: Option<[f64; 4]>,
+    /// The expected work of a query with 6, 14, 18 and 26 faces, in parts of that with boxes along the axes: along the axes,
+    pub work_along_axes: [f64; 4],
+    /// and along the frame, if that was tried.
+    pub work_along_frame: Option<[f64; 4]>,
     turned: bool,
 }
 
 /// The numbers of faces to choose from.
 const FACES: [usize; 4] = [6, 14, 18, 26];
-/// What a search costs with as many faces if as much is visited, in parts of what it costs with boxes (observed, over the scenes
-/// of docs/kdop.md).
-const COSTS: [f64; 4] = [1.0, 1.15, 1.22, 1.30];
-/// How visits fall with the area (observed).
-const POWER: f64 = 0.5;
-/// How many leaves are looked at.
-const LEAVES: usize = 600;
+/// Nanoseconds of a query, of a node with as many faces and of a packet (observed, on one processor; their ratios matter).
+const QUERY: f64 = 200.0;
+const NODE: [f64; 4] = [40.0, 74.0, 81.0, 104.0];
+const PACKET: f64 = 45.0;
+/// What has to be saved before more faces or another frame are used: so that chance does not decide.
+const WORTH: f64 = 0.97;
+/// Queries that are tried.
+const TRIALS: usize = 256;
 
 /// Primitives that are looked at, at most.
 const SAMPLE: usize = 40_000;
@@ -78,7 +82,7 @@ impl Choice {
     /// Looks at a scene, or at a sample of a large one: always the same one.
     ///
     /// # Complexity
-    /// O(n log n): one or two trees are built.
+    /// O(n log n): four or eight trees are built.
     pub fn from_scene<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S) -> Self {
         let directions = sample(set);
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
@@ -98,28 +102,25 @@ impl Choice {
                 }
             }
         }
-        let [of_axes, of_frame] = [axes, best.0];
-        let boxes = areas(set, &of_axes);
-        let whole = boxes[0];
-        let parts =
-            |areas: [f64; 4]| if whole > 0.0 && whole.is_finite() { areas.map(|a| a / whole) } else { [1.0; 4] };
-        let areas_of_axes = parts(boxes);
-        let areas_of_frame = (best.1 < waste_of_axes * GAIN).then(|| parts(areas(set, &of_frame)));
+        let shapes: Vec<Shape<f64>> = (0..set.len()).map(|i| shape(&set.get(PrimitiveId::new(i)))).collect();
+        let queries = queries(&shapes);
+        let of_axes = work(&shapes, &queries, &axes);
+        let of_frame = (best.1 < waste_of_axes * GAIN).then(|| work(&shapes, &queries, &best.0));
+        let parts = |work: [f64; 4]| work.map(|w| w / of_axes[0]);
         let mut choice = Self {
             k: 6,
-            frame: of_frame,
+            frame: best.0,
             waste_of_axes,
             waste_of_frame: best.1,
-            areas_of_axes,
-            areas_of_frame,
+            work_along_axes: parts(of_axes),
+            work_along_frame: of_frame.map(parts),
             turned: false,
         };
-        let mut least = f64::INFINITY;
-        for (turned, areas) in [(false, Some(areas_of_axes)), (true, areas_of_frame)] {
-            for (i, area) in areas.into_iter().flatten().enumerate() {
-                let cost = COSTS[i] * area.powf(POWER);
-                if cost < least {
-                    (least, choice.k, choice.turned) = (cost, FACES[i], turned);
+        let mut least = 1.0;
+        for (turned, work) in [(false, Some(choice.work_along_axes)), (true, choice.work_along_frame)] {
+            for (k, work) in FACES.into_iter().zip(work.into_iter().flatten()) {
+                if work < least * WORTH {
+                    (least, choice.k, choice.turned) = (work, k, turned);
                 }
             }
         }
@@ -141,6 +142,16 @@ impl Choice {
     }
 }
 
+impl Choice {
+    /// The frame that was found, and its diagonals, whether or not it was chosen.
+    ///
+    /// # Errors
+    /// As [`directions`](Self::directions).
+    pub fn frame_directions<const K: usize>(&self) -> Result<Directions<K>, DirectionsError> {
+        along(&self.frame)
+    }
+}
+
 /// The axes of a frame and its diagonals: the usual sets, if the frame is that of the axes.
 fn along<const K: usize>(frame: &[Vector3<f64>; 3]) -> Result<Directions<K>, DirectionsError> {
     let [x, y, z] = *frame;
@@ -151,37 +162,103 @@ fn along<const K: usize>(frame: &[Vector3<f64>; 3]) -> Result<Directions<K>, Dir
     Directions::new(&all[..(K / 2).min(all.len())])
 }
 
-/// The areas of the k-DOPs of 6, 14, 18 and 26 faces around leaves.
-fn areas<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, frame: &[Vector3<f64>; 3]) -> [f64; 4] {
-    let all = along::<26>(frame).expect("thirteen directions");
-    let tree = PacketTree::build_kdops(set, &SplitOptions::default(), &all);
-    let leaves: Vec<Kdop<26>> =
-        tree.parts().filter(|part| tree.primitives(part).is_some()).map(|part| part.volume).collect();
-    let count = leaves.len().min(LEAVES);
-    let mut sums = [0.0; 4];
-    for i in 0..count {
-        let heights = &leaves[i * leaves.len() / count].heights;
-        // Of the 26 the first 6 are the axes, the next 8 the diagonals of the cube, the last 12 those of its faces.
-        let fourteen = Kdop { heights: std::array::from_fn(|i| heights[i]) };
-        let eighteen = Kdop { heights: std::array::from_fn(|i| heights[if i < 6 { i } else { i + 8 }]) };
-        let six = Kdop { heights: std::array::from_fn(|i| heights[i]) };
-        sums[0] += area::<6>(&six, frame);
-        sums[1] += area::<14>(&fourteen, frame);
-        sums[2] += area::<18>(&eighteen, frame);
-        sums[3] += area::<26>(&Kdop { heights: *heights }, frame);
+/// A primitive as what its vertices span, or as a diagonal of its box.
+fn shape<T: Real>(primitive: &impl Primitive<T>) -> Shape<f64> {
+    let wide = |p: &Point3<T>| p.map(|x| x.to_f64());
+    match primitive.vertices() {
+        [a] => p2m_core::Point::new(wide(a)).into(),
+        [a, b] => Segment::new(wide(a), wide(b)).into(),
+        [a, b, c] => Triangle::new(wide(a), wide(b), wide(c)).into(),
+        _ => {
+            let bounds = primitive.aabb();
+            Segment::new(wide(&bounds.min), wide(&bounds.max)).into()
+        }
     }
-    sums
 }
 
-fn area<const K: usize>(kdop: &Kdop<K>, frame: &[Vector3<f64>; 3]) -> f64 {
-    Polytope::new(kdop, &along(frame).expect("as many directions")).area()
+/// Points spread evenly in the box of the scene, and as many near its primitives.
+fn queries(shapes: &[Shape<f64>]) -> Vec<Point3<f64>> {
+    let bounds = shapes.iter().map(Primitive::aabb).fold(Aabb::empty(), |a, b| a.union(&b));
+    if shapes.is_empty() {
+        return Vec::new();
+    }
+    let place = |i: usize| {
+        // Multiples of powers of the root of x^4 = x + 1, which fill a cube evenly.
+        let fraction = |step: f64| (0.5 + step * i as f64).fract();
+        [0.819_172_513_396_164_4, 0.671_043_606_703_789_3, 0.549_700_477_901_970_3].map(fraction)
+    };
+    let inside = |i: usize| {
+        Point3::from([0, 1, 2].map(|k: usize| {
+            let t = place(i)[k];
+            bounds.min[k] * (1.0 - t) + bounds.max[k] * t
+        }))
+    };
+    let near = |i: usize| {
+        let around = shapes[i * shapes.len() / TRIALS].aabb();
+        let towards = inside(i);
+        Point3::from([0, 1, 2].map(|k: usize| around.min[k] * 0.98 + towards[k] * 0.02))
+    };
+    (0..TRIALS).map(|i| if i % 2 == 0 { inside(i) } else { near(i) }).collect()
+}
+
+/// The expected work of a query for 6, 14, 18 and 26 directions along a frame.
+fn work(shapes: &[Shape<f64>], queries: &[Point3<f64>], frame: &[Vector3<f64>; 3]) -> [f64; 4] {
+    [
+        trial::<6>(shapes, queries, frame, NODE[0]),
+        trial::<14>(shapes, queries, frame, NODE[1]),
+        trial::<18>(shapes, queries, frame, NODE[2]),
+        trial::<26>(shapes, queries, frame, NODE[3]),
+    ]
+}
+
+fn trial<const K: usize>(shapes: &[Shape<f64>], queries: &[Point3<f64>], frame: &[Vector3<f64>; 3], node: f64) -> f64 {
+    let options = KdopOptions::new(along::<K>(frame).expect("as many directions"));
+    let tree = KdopTree::<f64, _, K>::build_with(shapes, &options).expect("a scene that has been checked");
+    let mut work = QUERY;
+    for query in queries.iter().filter(|q| q.iter().all(|x| x.is_finite())) {
+        let mut counting = Visits { best: Best::new(&QueryOptions::default()), nodes: 0, packets: 0 };
+        tree.visit(query, &mut counting);
+        work += (node * f64::from(counting.nodes) + PACKET * f64::from(counting.packets)) / queries.len() as f64;
+    }
+    work
+}
+
+/// Counts visits.
+struct Visits {
+    best: Best<f64>,
+    nodes: u32,
+    packets: u32,
+}
+
+impl Collector for Visits {
+    fn prune_above(&self) -> f64 {
+        self.best.prune_above()
+    }
+    fn prune_above_for(&self, id: PrimitiveId) -> f64 {
+        self.best.prune_above_for(id)
+    }
+    fn prune_given(&self, square: f64) -> f64 {
+        self.best.prune_given(square)
+    }
+    fn is_nearest_only(&self) -> bool {
+        true
+    }
+    fn offer(&mut self, id: PrimitiveId, projection: Projection) {
+        self.best.offer(id, projection);
+    }
+    fn visit_node(&mut self) {
+        self.nodes += 1;
+    }
+    fn visit_packet(&mut self) {
+        self.packets += 1;
+    }
 }
 
 impl fmt::Display for Choice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let percent = |part: f64| 100.0 * part;
         let place = FACES.iter().position(|k| *k == self.k).unwrap_or(0);
-        let areas = self.areas_of_frame.filter(|_| self.turned).unwrap_or(self.areas_of_axes);
+        let work = self.work_along_frame.filter(|_| self.turned).unwrap_or(self.work_along_axes);
         write!(f, "{} directions along ", self.k)?;
         if self.turned {
             write!(f, "a frame of the scene's own (")?;
@@ -195,10 +272,13 @@ impl fmt::Display for Choice {
             write!(f, "the axes")?;
         }
         if self.turned || self.k > 6 {
-            write!(f, "; leaves have {:.0} % of the area of boxes along the axes", percent(areas[place]))?;
-        }
-        if self.k < 26 {
-            write!(f, "; with 26 directions they would have {:.0} %, which does not pay", percent(areas[3]))?;
+            write!(f, "; expected to take {:.0} % of the work of boxes along the axes", percent(work[place]))?;
+        } else {
+            write!(
+                f,
+                "; more would take {:.0} % of the work",
+                percent(work[1..].iter().fold(f64::MAX, |a, b| a.min(*b)))
+            )?;
         }
         Ok(())
     }
@@ -268,8 +348,7 @@ fn peaks(directions: &[(Vector3<f64>, f64)]) -> Vec<Vector3<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{Point3, Rotation3};
-    use p2m_core::{Segment, Triangle};
+    use nalgebra::Rotation3;
 
     /// The faces of boxes, turned.
     fn boxes(turn: &Rotation3<f64>) -> Vec<Triangle<f64>> {
