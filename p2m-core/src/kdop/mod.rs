@@ -95,6 +95,12 @@ impl<const K: usize> Kdop<K> {
     }
 }
 
+/// Whether a factor leaves a number as it is, but for its sign.
+#[allow(clippy::float_cmp, reason = "exactly 1 is meant")]
+fn is_one(x: f64) -> bool {
+    x.abs() == 1.0
+}
+
 /// normal . x rounded up, exactly where the normal is one of the axes.
 fn above(normal: &Vector3<f64>, x: &Vector3<f64>) -> f64 {
     // Terms without a factor are left out: infinite coordinates are allowed there.
@@ -105,7 +111,7 @@ fn above(normal: &Vector3<f64>, x: &Vector3<f64>) -> f64 {
         if *n != 0.0 {
             sum += n * x;
             size += (n * x).abs();
-            rounded |= n.abs() != 1.0;
+            rounded |= !is_one(*n);
         }
     }
     if rounded { sum + size * (4.0 * f64::EPSILON) + f64::MIN_POSITIVE } else { sum }

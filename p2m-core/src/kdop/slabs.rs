@@ -28,7 +28,7 @@ impl<const K: usize> Slabs<K> {
         let orthogonal = directions.starts_orthogonal();
         let axes = if orthogonal { first.transpose() } else { first.try_inverse().expect("directions are not flat") };
         let cosines = normals.map(|n| if orthogonal { first.transpose() * n } else { n }.map(|x| x as f32).into());
-        let rounds = normals.map(|n| n.iter().any(|x| *x != 0.0 && x.abs() != 1.0));
+        let rounds = normals.map(|n| n.iter().any(|x| *x != 0.0 && !super::is_one(*x)));
         // The determinant is at least 2^-20, so the inverse is good to 2^-28.
         let margin = if orthogonal { 2f64.powi(-40) } else { 2f64.powi(-28) };
         Self { directions: *directions, orthogonal, cosines, rounds, axes, margin }
