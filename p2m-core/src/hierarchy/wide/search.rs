@@ -253,6 +253,7 @@ impl<V: Volume, C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Filter<'_, V, C, 
     /// Of the triangles of which a vertex is certainly the nearest point only the nearest stay, and of these the first: others
     /// are as far or farther. They are not missed in the certified bound either, for keys of vertices are right to some u.
     #[inline(always)]
+    #[allow(clippy::float_cmp, reason = "ties are equality of bits")]
     fn drop_ties(&mut self) {
         let mut corners = [[[0.0; SIDE_BY_SIDE]; 3]; 3];
         let count = self.count.min(SIDE_BY_SIDE);
