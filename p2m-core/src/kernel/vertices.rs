@@ -52,6 +52,7 @@ pub(crate) fn certain_vertices(query: V3, corners: &[[Row; 3]; 3]) -> Row {
 }
 
 #[cfg(test)]
+#[allow(clippy::needless_range_loop, reason = "rows side by side")]
 mod tests {
     use super::*;
     use crate::kernel::scalar;

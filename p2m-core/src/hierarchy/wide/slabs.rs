@@ -329,7 +329,7 @@ mod tests {
                 let query = SlabNode::query(&slabs, &frame, &q.into()).expect("near enough");
                 for isa in Isa::available() {
                     let bounds = isa.run(Bounds(&node, &slabs, &query));
-                    assert!(!(bounds[WIDTH - 1] <= f32::MAX), "an empty place");
+                    assert!(bounds[WIDTH - 1] > f32::MAX || bounds[WIDTH - 1].is_nan(), "an empty place");
                     for place in 0..WIDTH - 1 {
                         let distance = distance(&exact[place], normals, &q) * frame.per_unit;
                         let bound = f64::from(bounds[place]);
