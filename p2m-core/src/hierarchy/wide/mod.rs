@@ -226,7 +226,7 @@ impl<V: Volume> PacketTree<V> {
                 collector.offer(id, projection);
             }
         };
-        self.isa.run(Search { tree: self, query: wide(query), collector, evaluate });
+        self.isa.run(Search { tree: self, query: wide(query), collector, evaluate: &evaluate });
     }
 
     /// A box around a child of a node.

@@ -22,16 +22,19 @@ const SHORT_DEPTH: usize = (SHORT_STACK - WIDTH) / (WIDTH - 1);
 /// Candidates that wait for their evaluation.
 const CANDIDATES: usize = 32;
 
-/// A search as an operation. `evaluate` offers a primitive of which the tree has only a box to the collector, unless its
-/// key exceeds a square.
-pub(super) struct Search<'a, V: Volume, C, E> {
+/// Offers a primitive of which the tree has only a box to the collector, unless its key exceeds a square. Not a type
+/// parameter: so searches do not depend on the set, and are compiled once for all of them.
+type Evaluate<'a, C> = &'a dyn Fn(&mut C, PrimitiveId, f64);
+
+/// A search as an operation.
+pub(super) struct Search<'a, V: Volume, C> {
     pub(super) tree: &'a PacketTree<V>,
     pub(super) query: [f64; 3],
     pub(super) collector: &'a mut C,
-    pub(super) evaluate: E,
+    pub(super) evaluate: Evaluate<'a, C>,
 }
 
-impl<V: Volume, C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Operation for Search<'_, V, C, E> {
+impl<V: Volume, C: Collector> Operation for Search<'_, V, C> {
     type Output = ();
 
     #[inline(always)]
@@ -59,7 +62,7 @@ impl<V: Volume, C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Operation for Sea
     }
 }
 
-impl<V: Volume, C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Search<'_, V, C, E> {
+impl<V: Volume, C: Collector> Search<'_, V, C> {
     /// The same in f64 and without filters, for queries and scenes that f32 cannot tell apart.
     #[cold]
     #[inline(never)]
@@ -76,7 +79,7 @@ impl<V: Volume, C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Search<'_, V, C, 
                 let packet = &tree.packets[child.number()];
                 for lane in 0..packet.ids().len() {
                     let limit = collector.prune_above();
-                    offer(tree, packet, lane, query, limit, collector, &evaluate);
+                    offer(tree, packet, lane, query, limit, collector, evaluate);
                 }
                 continue;
             }
@@ -100,7 +103,7 @@ fn offer<V: Volume, C: Collector>(
     query: [f64; 3],
     square: f64,
     collector: &mut C,
-    evaluate: &impl Fn(&mut C, PrimitiveId, f64),
+    evaluate: Evaluate<'_, C>,
 ) {
     let id = packet.ids()[lane];
     if !packet.has_vertices() {
@@ -120,11 +123,11 @@ struct Candidate {
 }
 
 /// The state of a search.
-struct Filter<'a, V: Volume, C, E> {
+struct Filter<'a, V: Volume, C> {
     tree: &'a PacketTree<V>,
     query: [f64; 3],
     collector: &'a mut C,
-    evaluate: E,
+    evaluate: Evaluate<'a, C>,
     /// Some primitive is known to be at most this far.
     reach: f64,
     /// The distance above which primitives are no candidates.
@@ -135,7 +138,7 @@ struct Filter<'a, V: Volume, C, E> {
     count: usize,
 }
 
-impl<V: Volume, C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Filter<'_, V, C, E> {
+impl<V: Volume, C: Collector> Filter<'_, V, C> {
     #[inline(always)]
     fn traverse<I: InstructionSet, const STACK: usize>(&mut self, local: &<V::Node as WideNode>::Query) {
         let tree = self.tree;
@@ -304,7 +307,7 @@ impl<V: Volume, C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Filter<'_, V, C, 
                 let packet = &self.tree.packets[packet as usize];
                 let prune = self.collector.prune_above_for(packet.ids()[lane as usize]);
                 let square = if reach < prune { reach } else { prune };
-                offer(self.tree, packet, lane as usize, self.query, square, self.collector, &self.evaluate);
+                offer(self.tree, packet, lane as usize, self.query, square, self.collector, self.evaluate);
                 self.update();
             }
         }
@@ -316,9 +319,9 @@ impl<V: Volume, C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Filter<'_, V, C, 
 const FEW: usize = 3;
 
 /// The evaluation of the candidates that wait.
-struct Finish<'a, 'b, V: Volume, C, E>(&'a mut Filter<'b, V, C, E>);
+struct Finish<'a, 'b, V: Volume, C>(&'a mut Filter<'b, V, C>);
 
-impl<V: Volume, C: Collector, E: Fn(&mut C, PrimitiveId, f64)> Operation for Finish<'_, '_, V, C, E> {
+impl<V: Volume, C: Collector> Operation for Finish<'_, '_, V, C> {
     type Output = ();
 
     #[inline(always)]
