@@ -7,7 +7,7 @@ use p2m::{
     Aabb, AabbTree, Best, BoxQuery, BruteForce, BuildError, BuildIndex, ClosestLeaf, ClosestPoint, Directions, Isa,
     KdopOptions, KdopTree, PrimitiveSet, QueryOptions, Soup,
 };
-use p2m_testkit::counting::Counting;
+use p2m_core::Counting;
 use p2m_testkit::left_first::LeftFirst;
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::rng;

@@ -7,7 +7,7 @@ use p2m::{
     AabbOptions, AabbTree, Best, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Isa, Point,
     Primitive, PrimitiveId, PrimitiveSet, Projection, QueryOptions, Real, Segment, Shape, Soup, Triangle, batch,
 };
-use p2m_testkit::counting::Counting;
+use p2m_core::Counting;
 use p2m_testkit::rng;
 use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};
 use rand::{Rng, RngExt};
@@ -242,7 +242,8 @@ fn trees_do_not_depend_on_the_number_of_threads() {
     let soup = scenes::soup(&mut rng, Kinds::Triangles, Layout::Strewn, 30_000);
     let boxes = |options| {
         let tree = AabbTree::build(&soup, &options).expect("valid");
-        tree.tree().boxes().map(|b| (b.bounds.min.coords, b.bounds.max.coords, b.primitives)).collect::<Vec<_>>()
+        let tree = tree.tree();
+        tree.parts().map(|p| (p.volume, p.depth, tree.primitives(&p).map(<[_]>::to_vec))).collect::<Vec<_>>()
     };
     let expected = boxes(AabbOptions::default().with_parallel(false));
     assert!(expected == boxes(AabbOptions::default().with_parallel(true)));

@@ -7,8 +7,8 @@ use crate::scene::Scene;
 use crate::table::Table;
 use nalgebra::Point3;
 use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
+use p2m_core::Counting;
 use p2m_core::{Best, BuildIndex, QueryOptions};
-use p2m_testkit::counting::Counting;
 use p2m_testkit::queries::QuerySet;
 
 /// A rule, whose radius is in diagonals of the scene's box here.
@@ -58,7 +58,7 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> bool {
     let mut clean = true;
     for (rule, entry) in RULES.iter().zip(&entries) {
         let tree = AabbTree::build(&scene.double, &options(scene, rule.rule)).expect("built before");
-        let (nodes, depth) = tree.tree().boxes().fold((0, 0), |(n, deepest), node| (n + 1, node.depth.max(deepest)));
+        let (nodes, depth) = tree.tree().parts().fold((0, 0), |(n, deepest), part| (n + 1, part.depth.max(deepest)));
         let seconds = Spread::of(&entry.build.seconds).map_or(f64::NAN, |s| s.median);
         let mut row =
             vec![entry.backend.name.to_owned(), format!("{seconds:.4}"), nodes.to_string(), depth.to_string()];

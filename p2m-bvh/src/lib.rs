@@ -20,7 +20,10 @@
 //! ```
 #![forbid(unsafe_code)]
 
-mod tree;
+use p2m_core::Aabb;
+use p2m_core::hierarchy::TreeIndex;
 
-pub use p2m_core::hierarchy::{NodeBox, SplitOptions as AabbOptions, SplitRule};
-pub use tree::AabbTree;
+pub use p2m_core::hierarchy::{SplitOptions as AabbOptions, SplitRule};
+
+/// An AABB tree over a set of primitives, which it keeps.
+pub type AabbTree<T, S> = TreeIndex<T, S, Aabb<f64>>;

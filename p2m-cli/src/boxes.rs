@@ -8,8 +8,9 @@ use crate::usage::one_of;
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use nalgebra::Point3;
-use p2m_bvh::{AabbTree, NodeBox};
-use p2m_core::{BuildIndex, Soup};
+use p2m_bvh::AabbTree;
+use p2m_core::hierarchy::{PacketTree, Part};
+use p2m_core::{Aabb, BuildIndex, Soup};
 use p2m_mixed::Format;
 use p2m_mixed::picture::{Panel, View, box_edges, write_picture_ply, write_svg};
 use p2m_mixed::statistics::figure::Count;
@@ -121,7 +122,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let tree = AabbTree::build(&scene.soup, &Default::default()).with_context(|| input::name(&args.scene))?;
     drop(progress);
     let (drawn, mut panels): (Vec<Drawn>, Vec<Panel>) =
-        panels(&tree.tree().boxes().collect::<Vec<_>>(), usize::from(args.levels)).into_iter().unzip();
+        panels(tree.tree(), usize::from(args.levels)).into_iter().unzip();
     let mut output = Output::open(Some(&args.out))?;
     let written = if is_ply {
         write_picture_ply(&panels, &mut output)
@@ -156,19 +157,20 @@ struct Drawn {
 }
 
 /// One panel for each of the first levels, and one for the leaves.
-fn panels(boxes: &[NodeBox], levels: usize) -> Vec<(Drawn, Panel)> {
-    let deepest = boxes.iter().map(|b| b.depth).max();
-    let panel = |level: Option<usize>, show: &dyn Fn(&NodeBox) -> bool| {
-        let shown: Vec<_> = boxes.iter().filter(|b| show(b)).collect();
+fn panels(tree: &PacketTree, levels: usize) -> Vec<(Drawn, Panel)> {
+    let parts: Vec<_> = tree.parts().collect();
+    let deepest = parts.iter().map(|part| part.depth).max();
+    let panel = |level: Option<usize>, show: &dyn Fn(&Part<Aabb<f64>>) -> bool| {
+        let shown: Vec<_> = parts.iter().filter(|part| show(part)).collect();
         let title = level.map_or("leaves".to_owned(), |level| format!("level {level}"));
         let noun = if shown.len() == 1 { "box" } else { "boxes" };
         let panel = Panel {
             title: format!("{title}: {} {noun}", Count(shown.len() as u64)),
-            lines: shown.iter().flat_map(|b| box_edges(&b.bounds)).collect(),
+            lines: shown.iter().flat_map(|b| box_edges(&b.volume)).collect(),
         };
         (Drawn { level, boxes: shown.len() }, panel)
     };
-    let is_leaf = |b: &NodeBox| b.primitives > 0;
+    let is_leaf = |part: &Part<Aabb<f64>>| tree.primitives(part).is_some();
     let drawn = deepest.map_or(0, |deepest| levels.min(deepest + 1));
     let mut panels: Vec<_> =
         (0..drawn).map(|level| panel(Some(level), &|b| b.depth == level || (b.depth < level && is_leaf(b)))).collect();

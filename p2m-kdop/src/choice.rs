@@ -10,8 +10,8 @@
 use crate::{KdopOptions, KdopTree};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{
-    Aabb, Best, Collector, Directions, DirectionsError, Primitive, PrimitiveId, PrimitiveSet, Projection, QueryOptions,
-    Real, Segment, Shape, Triangle,
+    Aabb, Best, Counting, Directions, DirectionsError, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real,
+    Segment, Shape, Triangle,
 };
 use std::fmt;
 
@@ -220,42 +220,11 @@ fn trial<const K: usize>(shapes: &[Shape<f64>], queries: &[Point3<f64>], frame: 
     let tree = KdopTree::<f64, _, K>::build_with(shapes, &options).expect("a scene that has been checked");
     let mut work = QUERY;
     for query in queries.iter().filter(|q| q.iter().all(|x| x.is_finite())) {
-        let mut counting = Visits { best: Best::new(&QueryOptions::default()), nodes: 0, packets: 0 };
+        let mut counting = Counting::<f64>::new(Best::new(&QueryOptions::default()));
         tree.visit(query, &mut counting);
-        work += (node * f64::from(counting.nodes) + PACKET * f64::from(counting.packets)) / queries.len() as f64;
+        work += (node * counting.nodes as f64 + PACKET * counting.packets as f64) / queries.len() as f64;
     }
     work
-}
-
-/// Counts visits.
-struct Visits {
-    best: Best<f64>,
-    nodes: u32,
-    packets: u32,
-}
-
-impl Collector for Visits {
-    fn prune_above(&self) -> f64 {
-        self.best.prune_above()
-    }
-    fn prune_above_for(&self, id: PrimitiveId) -> f64 {
-        self.best.prune_above_for(id)
-    }
-    fn prune_given(&self, square: f64) -> f64 {
-        self.best.prune_given(square)
-    }
-    fn is_nearest_only(&self) -> bool {
-        true
-    }
-    fn offer(&mut self, id: PrimitiveId, projection: Projection) {
-        self.best.offer(id, projection);
-    }
-    fn visit_node(&mut self) {
-        self.nodes += 1;
-    }
-    fn visit_packet(&mut self) {
-        self.packets += 1;
-    }
 }
 
 impl fmt::Display for Choice {

@@ -34,11 +34,11 @@
 mod choice;
 mod overlap;
 mod polytope;
-mod tree;
-
 pub use choice::Choice;
 pub use overlap::Overlap;
 pub use p2m_core::hierarchy::{Part, SplitOptions, SplitRule};
-pub use p2m_core::{Directions, DirectionsError, Kdop};
+pub use p2m_core::{Directions, DirectionsError, Kdop, KdopOptions};
 pub use polytope::{Polytope, write_polytopes_ply};
-pub use tree::{KdopOptions, KdopTree};
+
+/// A k-DOP tree over a set of primitives, which it keeps.
+pub type KdopTree<T, S, const K: usize> = p2m_core::hierarchy::TreeIndex<T, S, Kdop<K>>;

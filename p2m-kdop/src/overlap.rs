@@ -143,30 +143,6 @@ impl<'a, const K: usize, const L: usize> Overlap<'a, K, L> {
     }
 }
 
-impl<T: Real, S: p2m_core::PrimitiveSet<T>, const K: usize> KdopTree<T, S, K> {
-    /// Visits the leaves that may meet a box, by their k-DOPs, until `visit` breaks. [`BoxQuery`](p2m_core::BoxQuery) tells exactly which
-    /// primitives do.
-    pub fn visit_leaves_in_box(
-        &self,
-        bounds: &p2m_core::Aabb<f64>,
-        mut visit: impl FnMut(&[PrimitiveId]) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        let tree = self.tree();
-        let other = Kdop::of_box(self.directions(), bounds);
-        let mut open: Vec<_> = tree.root().into_iter().collect();
-        while let Some(part) = open.pop() {
-            if bounds.is_empty() || !part.volume.may_meet(&other) {
-                continue;
-            }
-            match tree.primitives(&part) {
-                Some(ids) => visit(ids)?,
-                None => open.extend(tree.children(&part)),
-            }
-        }
-        ControlFlow::Continue(())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -251,7 +227,7 @@ mod tests {
             let half = Vector3::repeat((soup.aabb().max - soup.aabb().min).norm() * 0.05);
             let bounds = Aabb { min: vertex - half, max: vertex + half };
             let mut found = Vec::new();
-            let _ = tree.visit_leaves_in_box(&bounds, |ids| {
+            let _ = tree.tree().visit_leaves_in_box(&bounds, |ids| {
                 found.extend_from_slice(ids);
                 ControlFlow::Continue(())
             });

@@ -209,6 +209,7 @@ pub fn write_polytopes_ply(out: &mut impl Write, polytopes: &[(Polytope, usize)]
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::RngExt;
 
     /// Euler's formula, edges with two faces each, corners on the right sides, outward faces.
     fn check<const K: usize>(points: &[Point3<f64>], directions: &Directions<K>) -> Polytope {
@@ -238,11 +239,8 @@ mod tests {
         let six = check(&cube, &Directions::<6>::default());
         assert_eq!((six.corners.len(), six.faces.len()), (8, 6));
         assert!((six.volume() - 6.0).abs() < 1e-6 && (six.area() - 22.0).abs() < 1e-6);
-        let mut state = 1u64;
-        let mut random = move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 33) as f64 / 2f64.powi(30) - 1.0
-        };
+        let mut rng = p2m_testkit::rng("polytopes", 0);
+        let mut random = move || rng.random_range(-1.0..1.0);
         for round in 0..300 {
             let far = if round % 3 == 0 { 1e4 } else { 0.0 };
             let points: Vec<_> =

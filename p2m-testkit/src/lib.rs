@@ -4,7 +4,6 @@
 #![forbid(unsafe_code)]
 #![allow(clippy::missing_panics_doc, reason = "a test kit panics where a test should fail")]
 
-pub mod counting;
 pub mod families;
 pub mod left_first;
 pub mod oracle;

@@ -5,11 +5,13 @@
 //! instructions. Every decision between candidates is left to a [`Collector`](crate::Collector).
 
 mod cost;
+mod index;
 mod split;
 mod wide;
 
+pub use index::TreeIndex;
 pub use split::{SplitOptions, SplitRule};
-pub use wide::{NodeBox, PacketTree, Part, Volume};
+pub use wide::{PacketTree, Part, Volume};
 
 use crate::{Aabb, PrimitiveId, Real};
 

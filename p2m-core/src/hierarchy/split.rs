@@ -207,6 +207,8 @@ fn partition(items: &mut [Item], left: impl Fn(&Item) -> bool) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    #[cfg(feature = "rayon")]
+    use rand::RngExt;
 
     struct Topology {
         nodes: Vec<Node<()>>,
@@ -268,11 +270,8 @@ mod tests {
     #[cfg(feature = "rayon")]
     #[test]
     fn the_tree_is_the_same_for_any_number_of_threads() {
-        let mut state = 1u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 40) as f64
-        };
+        let mut rng = p2m_testkit::rng("splits by threads", 0);
+        let mut next = || rng.random::<f64>();
         let boxes: Vec<Aabb<f64>> = (0..60_000).map(|_| point(next(), next(), next())).collect();
         let expected = build(&boxes, &SplitOptions::default().with_parallel(false));
         for threads in [1, 2, 5] {

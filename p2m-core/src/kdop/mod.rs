@@ -7,9 +7,11 @@
 //! \[Klosowski1998\]; the k-DOP tree of CGAL's manual, of which the sets of directions are.
 
 mod directions;
+mod options;
 mod slabs;
 
 pub use directions::{Directions, DirectionsError};
+pub use options::KdopOptions;
 pub(crate) use slabs::Slabs;
 
 use crate::{Aabb, Real};

@@ -56,14 +56,12 @@ pub(crate) fn certain_vertices(query: V3, corners: &[[Row; 3]; 3]) -> Row {
 mod tests {
     use super::*;
     use crate::kernel::scalar;
+    use rand::RngExt;
 
     #[test]
     fn squares_are_the_keys_of_the_kernel_where_they_are_certain() {
-        let mut state = 1u64;
-        let mut unit = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-        };
+        let mut rng = p2m_testkit::rng("certain vertices", 0);
+        let mut unit = || rng.random_range(-0.5..0.5);
         let (mut certain, mut others) = (0, 0);
         for round in 0..20_000 {
             let scale = 2f64.powi([0, 0, 30, -200, 300][round % 5]);

@@ -88,7 +88,7 @@ const UNITS: std::ops::RangeInclusive<f64> = power_of_two(-360)..=power_of_two(3
 /// u of f32.
 const U: f32 = f32::EPSILON / 2.0;
 /// For bounds that are computed in f32 themselves, with some roundings.
-const ROUND_UP: f32 = 1.0 + 16.0 * f32::EPSILON;
+pub(crate) const ROUND_UP: f32 = 1.0 + 16.0 * f32::EPSILON;
 
 /// A query in the frame of a packet, with the band.
 #[derive(Clone, Copy, Debug)]
@@ -169,9 +169,7 @@ impl Packet {
         collector: &mut C,
     ) {
         let id = self.ids[lane];
-        let own = &vertices[self.first_vertex as usize..];
-        let [a, b, c] = &self.corners;
-        let [a, b, c] = [&own[usize::from(a[lane])], &own[usize::from(b[lane])], &own[usize::from(c[lane])]];
+        let [a, b, c] = self.corners(lane).map(|place| &vertices[place]);
         // Each kind for itself: a projection that is kept in registers need not be copied.
         match self.kind {
             Kind::Triangle => {
@@ -193,22 +191,27 @@ impl Packet {
         }
     }
 
+    /// Where the exact vertices of the primitive in a lane are; unused corners are the first
+    /// vertex of the packet.
+    #[inline(always)]
+    fn corners(&self, lane: usize) -> [usize; 3] {
+        let [a, b, c] = &self.corners;
+        [a[lane], b[lane], c[lane]].map(|place| self.first_vertex as usize + usize::from(place))
+    }
+
     /// The corners of the triangle in a lane; `None` if the packet has no triangles.
     #[inline(always)]
     pub(crate) fn triangle_corners<'a>(&self, lane: usize, vertices: &'a [Vertex]) -> Option<[&'a Vertex; 3]> {
         if self.kind != Kind::Triangle {
             return None;
         }
-        let own = &vertices[self.first_vertex as usize..];
-        let [a, b, c] = &self.corners;
-        Some([&own[usize::from(a[lane])], &own[usize::from(b[lane])], &own[usize::from(c[lane])]])
+        Some(self.corners(lane).map(|place| &vertices[place]))
     }
 
     /// Asks for what [`offer`](Self::offer) reads.
     #[inline(always)]
     pub(crate) fn prefetch_vertices(&self, lane: usize, vertices: &[Vertex]) {
-        for corner in &self.corners {
-            let place = self.first_vertex as usize + usize::from(corner[lane]);
+        for place in self.corners(lane) {
             prefetch(vertices.as_ptr().wrapping_add(place).cast());
         }
     }
@@ -349,6 +352,7 @@ mod tests {
     use crate::simd::{Isa, Operation};
     use crate::{Primitive, Shape};
     use nalgebra::Point3;
+    use rand::{Rng, RngExt};
 
     struct Squares<'a>(&'a Packet, &'a Local, f32);
 
@@ -362,23 +366,8 @@ mod tests {
         }
     }
 
-    /// A small generator of numbers, enough for these tests.
-    struct Random(u64);
-
-    impl Random {
-        fn bits(&mut self) -> u64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (self.0 ^ self.0 >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 11
-        }
-        fn below(&mut self, n: u64) -> u64 {
-            self.bits() % n
-        }
-        fn unit(&mut self) -> f64 {
-            self.bits() as f64 * 2f64.powi(-53)
-        }
-        fn point(&mut self) -> [f64; 3] {
-            [self.unit(), self.unit(), self.unit()]
-        }
+    fn point(rng: &mut impl Rng) -> [f64; 3] {
+        [(); 3].map(|()| rng.random())
     }
 
     fn along(a: [f64; 3], b: [f64; 3], t: f64) -> [f64; 3] {
@@ -386,52 +375,52 @@ mod tests {
     }
 
     /// Primitives of all shapes: a third of them large in the packet, slivers of every sine, collinear, repeated.
-    fn shape(random: &mut Random, kind: Kind) -> Shape<f64> {
-        let size = 2f64.powi(-(random.below(18) as i32));
-        let corner = random.point();
-        let [a, b, mut c] = [(); 3].map(|()| along(corner, random.point(), size));
-        match random.below(6) {
-            0 => c = along(a, b, random.unit()),
-            1 => c = along(along(a, b, 2.0 * random.unit() - 0.5), c, 2f64.powi(-(random.below(40) as i32))),
+    fn shape(rng: &mut impl Rng, kind: Kind) -> Shape<f64> {
+        let size = 2f64.powi(-(rng.random_range(0..18)));
+        let corner = point(rng);
+        let [a, b, mut c] = [(); 3].map(|()| along(corner, point(rng), size));
+        match rng.random_range(0..6) {
+            0 => c = along(a, b, rng.random::<f64>()),
+            1 => c = along(along(a, b, 2.0 * rng.random::<f64>() - 0.5), c, 2f64.powi(-(rng.random_range(0..40)))),
             2 => c = a,
             _ => {}
         }
         let [a, b, c] = [a, b, c].map(Point3::from);
         match kind {
             Kind::Point => crate::Point::new(a).into(),
-            Kind::Segment => crate::Segment::new(a, if random.below(8) == 0 { a } else { b }).into(),
+            Kind::Segment => crate::Segment::new(a, if rng.random_range(0..8) == 0 { a } else { b }).into(),
             _ => crate::Triangle::new(a, b, c).into(),
         }
     }
 
     /// Near, on, between and far from the primitives of a packet.
-    fn query(random: &mut Random, shapes: &[Shape<f64>]) -> Point3<f64> {
-        let on = |random: &mut Random| {
-            let s = &shapes[random.below(shapes.len() as u64) as usize];
+    fn query<R: Rng>(rng: &mut R, shapes: &[Shape<f64>]) -> Point3<f64> {
+        let on = |rng: &mut R| {
+            let s = &shapes[rng.random_range(0..shapes.len())];
             let v: Vec<[f64; 3]> = s.vertices().iter().map(|v| v.coords.into()).collect();
-            along(along(v[0], v[v.len() / 2], random.unit()), v[v.len() - 1], random.unit())
+            along(along(v[0], v[v.len() / 2], rng.random::<f64>()), v[v.len() - 1], rng.random::<f64>())
         };
-        let target = on(random);
-        let away = 2f64.powi(random.below(70) as i32 - 40);
-        let direction = random.point().map(|x| 2.0 * x - 1.0);
-        match random.below(3) {
+        let target = on(rng);
+        let away = 2f64.powi(rng.random_range(-40..30));
+        let direction = point(rng).map(|x| 2.0 * x - 1.0);
+        match rng.random_range(0..3) {
             0 => Point3::from(target),
-            1 => Point3::from(along(target, on(random), random.unit())),
+            1 => Point3::from(along(target, on(rng), rng.random::<f64>())),
             _ => Point3::from([0, 1, 2].map(|k: usize| target[k] + away * direction[k])),
         }
     }
 
     #[test]
     fn squares_are_within_the_band_on_every_instruction_set() {
-        let mut random = Random(1);
+        let mut rng = p2m_testkit::rng("band", 0);
         let mut worst = [0.0f64; 2];
         let mut skipped = 0;
         for round in 0..6000 {
             let kind = [Kind::Triangle, Kind::Triangle, Kind::Segment, Kind::Point][round % 4];
-            let len = random.below(16) as usize + 1;
+            let len = rng.random_range(1..=16);
             let scale = 2f64.powi([0, 0, 40, -300, 250][round % 5]);
-            let shapes: Vec<Shape<f64>> = (0..len).map(|_| shape(&mut random, kind)).collect();
-            let queries: Vec<_> = (0..8).map(|_| query(&mut random, &shapes) * scale).collect();
+            let shapes: Vec<Shape<f64>> = (0..len).map(|_| shape(&mut rng, kind)).collect();
+            let queries: Vec<_> = (0..8).map(|_| query(&mut rng, &shapes) * scale).collect();
             let shapes: Vec<Shape<f64>> = shapes.iter().map(|s| scaled(s, scale)).collect();
             let ids: Vec<PrimitiveId> = (0..len).map(PrimitiveId::new).collect();
             let (packet, _) = Packet::new(&shapes, &ids, kind, &shapes.aabb(), scale * 2f64.powi(-36));
@@ -444,7 +433,7 @@ mod tests {
                 };
                 for isa in Isa::available() {
                     let squares = isa.run(Squares(&packet, &local, f32::INFINITY));
-                    let limit = squares[random.below(LANES as u64) as usize].sqrt() * random.unit() as f32 * 2.0;
+                    let limit = squares[rng.random_range(0..LANES)].sqrt() * rng.random::<f32>() * 2.0;
                     let limited = isa.run(Squares(&packet, &local, limit));
                     for (lane, shape) in shapes.iter().enumerate() {
                         let distance = shape.project(&q).key.distance() / packet.unit();

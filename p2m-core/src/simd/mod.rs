@@ -92,6 +92,7 @@ pub(crate) trait Operation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::RngExt;
 
     /// What every method makes of the same numbers, eight at a time.
     struct All<'a>(&'a [[f32; 16]; 4], &'a [u16; 16]);
@@ -153,12 +154,9 @@ mod tests {
         (numbers, masks)
     }
 
-    fn numbers(seed: u32) -> ([[f32; 16]; 4], [u16; 16]) {
-        let mut state = seed;
-        let mut next = || {
-            state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
-            (state >> 8) as f32 / 8_388_608.0 - 1.0
-        };
+    fn numbers(case: u64) -> ([[f32; 16]; 4], [u16; 16]) {
+        let mut rng = p2m_testkit::rng("lanes", case);
+        let mut next = || rng.random_range(-1.0f32..1.0);
         let mut x = [[0.0; 16]; 4];
         x.as_flattened_mut().fill_with(&mut next);
         // Equal ones, zeros of both signs, large and small ones.
@@ -168,8 +166,8 @@ mod tests {
 
     #[test]
     fn every_instruction_set_computes_what_the_portable_one_does() {
-        for seed in 0..2000 {
-            let (x, whole) = numbers(seed);
+        for case in 0..2000 {
+            let (x, whole) = numbers(case);
             let (expected, expected_masks) = Isa::PORTABLE.run(All(&x, &whole));
             for isa in Isa::available() {
                 let (found, masks) = isa.run(All(&x, &whole));

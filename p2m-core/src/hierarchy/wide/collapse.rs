@@ -155,17 +155,17 @@ fn half_area(bounds: &Aabb<f64>) -> f64 {
 mod tests {
     use super::*;
     use nalgebra::Point3;
+    use rand::{Rng, RngExt};
 
     /// Splits at places that a number decides, over packets along a line.
-    fn binary(random: &mut u64, packets: Range<usize>, nodes: &mut Vec<BinaryNode>) -> usize {
+    fn binary(random: &mut impl Rng, packets: Range<usize>, nodes: &mut Vec<BinaryNode>) -> usize {
         let at = nodes.len();
         let corner = |i: usize| Point3::new(i as f64, (i * i % 7) as f64, (i % 3) as f64);
         let bounds = packets.clone().map(|i| Aabb::of_points(&[corner(i), corner(i + 1)]));
         let bounds = bounds.fold(Aabb::empty(), |a, b| a.union(&b));
         nodes.push(BinaryNode { bounds, below: Below::Packet(packets.start) });
         if packets.len() > 1 {
-            *random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            let middle = packets.start + 1 + (*random >> 33) as usize % (packets.len() - 1);
+            let middle = random.random_range(packets.start + 1..packets.end);
             let children = [packets.start..middle, middle..packets.end].map(|half| binary(random, half, nodes));
             nodes[at].below = Below::Nodes(children);
         }
@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn no_other_choice_of_nodes_costs_less() {
-        let mut random = 1;
+        let mut random = p2m_testkit::rng("collapse", 0);
         for len in (2..=11).cycle().take(60) {
             let mut tree = Binary { nodes: Vec::new() };
             binary(&mut random, 0..len, &mut tree.nodes);

@@ -12,8 +12,7 @@ mod search;
 mod slabs;
 mod volume;
 
-use super::{Hierarchy, SplitOptions};
-use crate::kdop::Slabs;
+use super::Hierarchy;
 use crate::packet::{Kind, LANES, Packet};
 use crate::real::wide;
 use crate::simd::{Isa, prefetch};
@@ -21,7 +20,7 @@ use crate::{Aabb, Collector, Directions, Kdop, Primitive, PrimitiveId, Primitive
 use nalgebra::Point3;
 use node::{Child, Frame, WIDTH};
 use search::Search;
-use volume::WideNode;
+use volume::{TreeOptions, WideNode};
 
 pub use parts::Part;
 pub use volume::Volume;
@@ -49,43 +48,7 @@ pub struct PacketTree<V: Volume = Aabb<f64>> {
     len: usize,
 }
 
-/// The box of a node or a packet.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct NodeBox {
-    /// Around everything below the node.
-    pub bounds: Aabb<f64>,
-    /// How far below the root, which is at 0.
-    pub depth: usize,
-    /// How many primitives it has as a packet; 0 for a node.
-    pub primitives: usize,
-}
-
-impl PacketTree {
-    /// Builds a tree of boxes over a set whose boxes are finite.
-    ///
-    /// # Complexity
-    /// O(n log n) time expected, O(n) memory.
-    #[must_use]
-    pub fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, options: &SplitOptions) -> Self {
-        Self::build_shaped(set, options, ())
-    }
-}
-
 impl<const K: usize> PacketTree<Kdop<K>> {
-    /// Builds a tree of k-DOPs of these directions, over the same splits.
-    ///
-    /// # Complexity
-    /// O(n log n + K n) time expected, O(n) memory.
-    #[must_use]
-    pub fn build_kdops<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
-        set: &S,
-        options: &SplitOptions,
-        directions: &Directions<K>,
-    ) -> Self {
-        Self::build_shaped(set, options, Slabs::new(directions))
-    }
-
     /// The directions of its k-DOPs.
     #[must_use]
     pub fn directions(&self) -> &Directions<K> {
@@ -101,11 +64,12 @@ impl<V: Volume> PacketTree<V> {
     }
 
     /// Builds the tree over a set whose boxes are finite.
-    fn build_shaped<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
-        set: &S,
-        options: &SplitOptions,
-        shape: V::Shape,
-    ) -> Self {
+    ///
+    /// # Complexity
+    /// O(n log n) time expected, and O(K n) for k-DOPs; O(n) memory.
+    #[must_use]
+    pub fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, options: &V::Options) -> Self {
+        let (shape, options) = (options.shape(), options.splits());
         let of_id = |i: usize| {
             let primitive = set.get(PrimitiveId::new(i));
             (primitive.aabb(), Kind::of(&primitive))
@@ -183,14 +147,16 @@ impl<V: Volume> PacketTree<V> {
     }
 
     /// Fits the tree to another set of as many primitives: the same ones, moved. The tree keeps its shape, so searches get
-    /// slower the more primitives have moved apart; answers are those of a tree that is built anew. Boxes are finite.
+    /// slower the more primitives have moved apart; answers are those of a tree that is built anew. Boxes are finite. Of the
+    /// options only whether all threads are used matters.
     ///
     /// # Panics
     /// If the set has another number of primitives.
     ///
     /// # Complexity
     /// O(n).
-    pub fn refit<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(&mut self, set: &S, parallel: bool) {
+    pub fn refit<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(&mut self, set: &S, options: &V::Options) {
+        let parallel = options.splits().parallel;
         assert_eq!(set.len(), self.len, "as many primitives as before");
         let bounds_of = |packet: &Packet| {
             let boxes = packet.ids().iter().map(|id| set.get(*id).aabb().to_f64());

@@ -1,9 +1,9 @@
-//! Box queries, the way down to one leaf, and the boxes themselves.
+//! Box queries and the way down to one leaf.
 
+use super::PacketTree;
 use super::node::Child;
 use super::search::STACK;
 use super::volume::{Volume, WideNode};
-use super::{NodeBox, PacketTree};
 use crate::{Aabb, PrimitiveId};
 use nalgebra::Point3;
 use std::ops::ControlFlow;
@@ -73,24 +73,5 @@ impl<V: Volume> PacketTree<V> {
             at = nearest.1;
         }
         if at == Child::NONE { &[] } else { self.packets[at.number()].ids() }
-    }
-
-    /// The boxes of the tree, parents before children, rounded outwards by 2^-23 of the scene's size at most.
-    pub fn boxes(&self) -> impl Iterator<Item = NodeBox> + '_ {
-        let mut open = Vec::new();
-        if self.root != Child::NONE {
-            open.push((self.bounds, self.root, 0));
-        }
-        std::iter::from_fn(move || {
-            let (bounds, child, depth) = open.pop()?;
-            if child.is_packet() {
-                let primitives = self.packets[child.number()].ids().len();
-                return Some(NodeBox { bounds, depth, primitives });
-            }
-            let node = &self.nodes[child.number()];
-            let below = |place| (self.box_of(node, place), node.children()[place], depth + 1);
-            open.extend(node.used().map(below));
-            Some(NodeBox { bounds, depth, primitives: 0 })
-        })
     }
 }

@@ -3,7 +3,8 @@
 use super::PacketTree;
 use super::node::Child;
 use super::volume::{Volume, WideNode};
-use crate::PrimitiveId;
+use crate::{Aabb, Kdop, PrimitiveId};
+use std::ops::ControlFlow;
 
 /// A node or a packet of a tree, with its volume.
 #[derive(Clone, Copy, Debug)]
@@ -48,5 +49,28 @@ impl<V: Volume> PacketTree<V> {
             open.extend(self.children(&part));
             Some(part)
         })
+    }
+}
+
+impl<const K: usize> PacketTree<Kdop<K>> {
+    /// Visits the leaves that may meet a box, by their k-DOPs, until `visit` breaks. [`BoxQuery`](crate::BoxQuery) tells
+    /// exactly which primitives do.
+    pub fn visit_leaves_in_box(
+        &self,
+        bounds: &Aabb<f64>,
+        mut visit: impl FnMut(&[PrimitiveId]) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let other = Kdop::of_box(self.directions(), bounds);
+        let mut open: Vec<_> = self.root().into_iter().collect();
+        while let Some(part) = open.pop() {
+            if bounds.is_empty() || !part.volume.may_meet(&other) {
+                continue;
+            }
+            match self.primitives(&part) {
+                Some(ids) => visit(ids)?,
+                None => open.extend(self.children(&part)),
+            }
+        }
+        ControlFlow::Continue(())
     }
 }

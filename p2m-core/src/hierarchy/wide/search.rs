@@ -10,7 +10,7 @@ use super::PacketTree;
 use super::node::{Child, WIDTH};
 use super::volume::{Volume, WideNode};
 use crate::kernel::vertices::{SIDE_BY_SIDE, certain_vertices};
-use crate::packet::{LANES, Packet};
+use crate::packet::{LANES, Packet, ROUND_UP};
 use crate::simd::{EightLanes, InstructionSet, Lanes, Operation, lane_of_key, number_of_key};
 use crate::{Collector, PrimitiveId};
 
@@ -197,7 +197,6 @@ impl<V: Volume, C: Collector> Filter<'_, V, C> {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded up, and places fit")]
     fn packet<I: InstructionSet>(&mut self, number: usize) {
-        const ROUND_UP: f32 = 1.0 + 16.0 * f32::EPSILON;
         let packet = &self.tree.packets[number];
         let candidate = |low: f32, lane: usize| Candidate { low, packet: number as u32, lane: lane as u32 };
         let Some(local) = packet.local(&self.query) else {

@@ -217,6 +217,7 @@ mod tests {
     use crate::simd::{InstructionSet, Isa, Operation};
     use crate::{Directions, Triangle};
     use nalgebra::Matrix3;
+    use rand::{Rng, RngExt};
 
     struct Bounds<'a, const K: usize>(&'a SlabNode<K>, &'a Slabs<K>, &'a [f32; K]);
 
@@ -230,20 +231,8 @@ mod tests {
         }
     }
 
-    /// Numbers from 0 to 1.
-    struct Random(u64);
-
-    impl Random {
-        fn bits(&mut self) -> u64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (self.0 ^ self.0 >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 11
-        }
-        fn unit(&mut self) -> f64 {
-            self.bits() as f64 * 2f64.powi(-53)
-        }
-        fn vector(&mut self) -> Vector3<f64> {
-            Vector3::new(self.unit() - 0.5, self.unit() - 0.5, self.unit() - 0.5)
-        }
+    fn vector(rng: &mut impl Rng) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| rng.random_range(-0.5..0.5))
     }
 
     /// The distance to a k-DOP by going through all vertices, edges and faces: the nearest point is the foot of the
@@ -285,8 +274,8 @@ mod tests {
     /// Bounds of random k-DOPs (of triangles of all sizes and shapes) for random queries (near and far, and across their
     /// faces and edges) against distances, on every instruction set: how many were compared, how often the bound was within 1 % of the
     /// distance, and how often that of the box was.
-    fn compare<const K: usize>(directions: &Directions<K>, nodes: usize, seed: u64) -> [usize; 3] {
-        let mut random = Random(seed);
+    fn compare<const K: usize>(directions: &Directions<K>, nodes: usize, case: u64) -> [usize; 3] {
+        let mut rng = p2m_testkit::rng("slabs", case);
         let slabs = Slabs::new(directions);
         let normals = directions.normals();
         let scene = Aabb { min: Point3::new(-0.9, -0.9, -0.9), max: Point3::new(0.9, 0.9, 0.9) };
@@ -297,17 +286,15 @@ mod tests {
             let mut exact = [Kdop::<K>::empty(); WIDTH];
             let mut boxes = [Aabb::empty(); WIDTH];
             for place in 0..WIDTH - 1 {
-                let centre = random.vector();
-                let size = 2f64.powi(-((random.bits() % 24) as i32));
-                let mut flat = random.vector().normalize();
-                if random.bits().is_multiple_of(2) {
-                    flat = normals[(random.bits() % K as u64) as usize];
+                let centre = vector(&mut rng);
+                let size = 2f64.powi(-rng.random_range(0..24));
+                let mut flat = vector(&mut rng).normalize();
+                if rng.random() {
+                    flat = normals[rng.random_range(0..K)];
                 }
                 let corners = [(); 3].map(|()| {
-                    let v = random.vector();
-                    Point3::from(
-                        centre + (v - flat * (v.dot(&flat) * [0.0, 0.9, 1.0][(random.bits() % 3) as usize])) * size,
-                    )
+                    let v = vector(&mut rng);
+                    Point3::from(centre + (v - flat * (v.dot(&flat) * [0.0, 0.9, 1.0][rng.random_range(0..3)])) * size)
                 });
                 let set = [Triangle { vertices: corners }];
                 boxes[place] = Aabb::of_points(&corners);
@@ -315,16 +302,16 @@ mod tests {
                 exact[place] = Kdop::of_points(directions, &corners);
             }
             for _ in 0..8 {
-                let place = (random.bits() % (WIDTH as u64 - 1)) as usize;
+                let place = rng.random_range(0..WIDTH - 1);
                 let near = exact[place];
-                let towards = normals[(random.bits() % K as u64) as usize];
-                let offset = 2f64.powi((random.bits() % 36) as i32 - 28);
+                let towards = normals[rng.random_range(0..K)];
+                let offset = 2f64.powi(rng.random_range(-28..8));
                 let at = nalgebra::center(&boxes[place].min, &boxes[place].max).coords;
-                let q = match random.bits() % 4 {
-                    0 => at + towards * offset + random.vector() * (offset * 0.1),
-                    1 => at + (towards + normals[(random.bits() % K as u64) as usize]) * offset,
-                    2 => at + random.vector() * offset,
-                    _ => at + random.vector() * (near.heights[0] + near.heights[1]),
+                let q = match rng.random_range(0..4) {
+                    0 => at + towards * offset + vector(&mut rng) * (offset * 0.1),
+                    1 => at + (towards + normals[rng.random_range(0..K)]) * offset,
+                    2 => at + vector(&mut rng) * offset,
+                    _ => at + vector(&mut rng) * (near.heights[0] + near.heights[1]),
                 };
                 let query = SlabNode::query(&slabs, &frame, &q.into()).expect("near enough");
                 for isa in Isa::available() {

@@ -3,21 +3,30 @@
 //! Everything about a tree but the layout of its nodes and the bounds of their children is the same for all volumes. A
 //! volume is a type of nodes, [`WideNode`].
 
+use super::super::SplitOptions;
 use super::node::{BoxNode, Child, Frame, WIDTH};
 use super::slabs::SlabNode;
 use crate::kdop::Slabs;
 use crate::simd::Lanes;
-use crate::{Aabb, Kdop, PrimitiveId, PrimitiveSet, Real};
+use crate::{Aabb, Kdop, KdopOptions, PrimitiveId, PrimitiveSet, Real};
 use std::fmt::Debug;
 
 /// What the nodes of a [`PacketTree`](super::PacketTree) are bounded by: [`Aabb<f64>`] or [`Kdop<K>`](Kdop).
 ///
 /// Sealed: searches rest on proofs about the rounding of the nodes.
 #[allow(private_bounds, reason = "that is what seals it")]
-pub trait Volume: Nodes {}
+pub trait Volume: Nodes {
+    /// How a tree of them is built.
+    type Options: TreeOptions<Self::Shape>;
+}
 
-impl Volume for Aabb<f64> {}
-impl<const K: usize> Volume for Kdop<K> {}
+impl Volume for Aabb<f64> {
+    type Options = SplitOptions;
+}
+
+impl<const K: usize> Volume for Kdop<K> {
+    type Options = KdopOptions<K>;
+}
 
 /// The nodes of a volume.
 pub(crate) trait Nodes: Sized {
@@ -35,6 +44,28 @@ impl Nodes for Aabb<f64> {
 impl<const K: usize> Nodes for Kdop<K> {
     type Shape = Slabs<K>;
     type Node = SlabNode<K>;
+}
+
+/// How a tree is built of volumes that have this in common.
+pub(crate) trait TreeOptions<Shape> {
+    fn splits(&self) -> &SplitOptions;
+    fn shape(&self) -> Shape;
+}
+
+impl TreeOptions<()> for SplitOptions {
+    fn splits(&self) -> &SplitOptions {
+        self
+    }
+    fn shape(&self) {}
+}
+
+impl<const K: usize> TreeOptions<Slabs<K>> for KdopOptions<K> {
+    fn splits(&self) -> &SplitOptions {
+        &self.splits
+    }
+    fn shape(&self) -> Slabs<K> {
+        Slabs::new(&self.directions)
+    }
 }
 
 /// A node of eight children with their bounds in f32, in a frame of the scene.

@@ -1,6 +1,6 @@
 //! A collector that counts what a search does.
 
-use p2m_core::{Best, Collector, PrimitiveId, Projection, Real};
+use crate::{Best, Collector, PrimitiveId, Projection, Real};
 
 /// [`Best`] with counters: they are deterministic, so tests can hold a search to them where times only vary.
 #[derive(Clone, Debug)]

@@ -1,36 +1,47 @@
-use crate::AabbOptions;
-use nalgebra::Point3;
-use p2m_core::hierarchy::PacketTree;
-use p2m_core::{
-    Aabb, Best, BoxQuery, BuildError, BuildIndex, Closest, ClosestLeaf, ClosestPoint, Collector, Isa, Primitive,
-    PrimitiveId, PrimitiveSet, QueryOptions, Real, check_set,
+use super::{PacketTree, Volume};
+use crate::{
+    Aabb, Best, BoxQuery, BuildError, BuildIndex, Closest, ClosestLeaf, ClosestPoint, Collector, Directions, Isa, Kdop,
+    Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, check_set,
 };
+use nalgebra::Point3;
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
-/// An AABB tree over a set of primitives, which it keeps.
-///
-/// Nodes of eight boxes over packets of sixteen primitives, see [`PacketTree`].
+/// A [`PacketTree`] with the set that it was built over: an AABB tree or a k-DOP tree, by its volume.
 ///
 /// # Complexity
 /// Build O(n log n) expected, query O(log n) expected, O(n) at worst: equally distant primitives, queries more than 2^40 sizes
 /// away, scenes smaller than 1e-96 or larger than 1e90. Memory besides the set, for any scalar: 448 bytes a packet, 24 for each exact
-/// vertex of a packet, 256 a node; about 65 bytes a triangle (observed).
+/// vertex of a packet, and the nodes: 256 bytes for boxes, 32 K + 32 for k-DOPs, rounded up to cache lines. About 65 bytes a
+/// triangle with boxes (observed).
 #[derive(Clone, Debug)]
-pub struct AabbTree<T: Real, S> {
+pub struct TreeIndex<T: Real, S, V: Volume> {
     set: S,
     scalar: PhantomData<T>,
-    tree: PacketTree,
+    tree: PacketTree<V>,
 }
 
-impl<T: Real, S: PrimitiveSet<T>> AabbTree<T, S> {
+impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
+    /// Builds the tree: as [`BuildIndex::build`], but also for volumes without usual options, such as k-DOPs of any K.
+    ///
+    /// # Errors
+    /// For a coordinate that is not finite and for more primitives than ids.
+    pub fn build_with(set: S, options: &V::Options) -> Result<Self, BuildError>
+    where
+        S: Sync,
+    {
+        check_set(&set)?;
+        let tree = PacketTree::build(&set, options);
+        Ok(Self { set, scalar: PhantomData, tree })
+    }
+
     /// The set it was built over.
     pub fn set(&self) -> &S {
         &self.set
     }
 
     /// The tree.
-    pub fn tree(&self) -> &PacketTree {
+    pub fn tree(&self) -> &PacketTree<V> {
         &self.tree
     }
 
@@ -48,7 +59,7 @@ impl<T: Real, S: PrimitiveSet<T>> AabbTree<T, S> {
     ///
     /// # Complexity
     /// O(n).
-    pub fn refit(&mut self, set: S, options: &AabbOptions) -> Result<(), BuildError>
+    pub fn refit(&mut self, set: S, options: &V::Options) -> Result<(), BuildError>
     where
         S: Sync,
     {
@@ -56,7 +67,7 @@ impl<T: Real, S: PrimitiveSet<T>> AabbTree<T, S> {
             return Err(BuildError::OtherLength { len: set.len(), expected: self.set.len() });
         }
         check_set(&set)?;
-        self.tree.refit(&set, options.parallel);
+        self.tree.refit(&set, options);
         self.set = set;
         Ok(())
     }
@@ -75,7 +86,14 @@ impl<T: Real, S: PrimitiveSet<T>> AabbTree<T, S> {
     }
 }
 
-impl<T: Real, S: PrimitiveSet<T>> ClosestPoint<T> for AabbTree<T, S> {
+impl<T: Real, S: PrimitiveSet<T>, const K: usize> TreeIndex<T, S, Kdop<K>> {
+    /// The directions of its k-DOPs.
+    pub fn directions(&self) -> &Directions<K> {
+        self.tree.directions()
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestPoint<T> for TreeIndex<T, S, V> {
     fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
         if let Some(id) = best.hint(self.set.len()) {
             best.offer(id, self.set.get(id).project(query));
@@ -84,24 +102,25 @@ impl<T: Real, S: PrimitiveSet<T>> ClosestPoint<T> for AabbTree<T, S> {
     }
 }
 
-impl<T: Real, S: PrimitiveSet<T> + Sync> BuildIndex<T, S> for AabbTree<T, S> {
-    type Options = AabbOptions;
+impl<T: Real, S: PrimitiveSet<T> + Sync, V: Volume> BuildIndex<T, S> for TreeIndex<T, S, V>
+where
+    V::Options: Default,
+{
+    type Options = V::Options;
     type Error = BuildError;
 
-    fn build(set: S, options: &AabbOptions) -> Result<Self, BuildError> {
-        check_set(&set)?;
-        let tree = PacketTree::build(&set, options);
-        Ok(Self { set, scalar: PhantomData, tree })
+    fn build(set: S, options: &V::Options) -> Result<Self, BuildError> {
+        Self::build_with(set, options)
     }
 }
 
-impl<T: Real, S: PrimitiveSet<T>> BoxQuery<T> for AabbTree<T, S> {
+impl<T: Real, S: PrimitiveSet<T>, V: Volume> BoxQuery<T> for TreeIndex<T, S, V> {
     fn visit_box(&self, bounds: &Aabb<T>, visit: &mut dyn FnMut(PrimitiveId) -> ControlFlow<()>) -> ControlFlow<()> {
         self.tree.visit_box(&bounds.to_f64(), |id| self.set.get(id).meets_box(bounds), visit)
     }
 }
 
-impl<T: Real, S: PrimitiveSet<T>> ClosestLeaf<T> for AabbTree<T, S> {
+impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestLeaf<T> for TreeIndex<T, S, V> {
     fn closest_leaf(&self, query: &Point3<T>) -> Option<Closest<T>> {
         if !query.iter().all(|x| x.is_finite()) {
             return None;
