@@ -3,6 +3,7 @@
 use crate::real::narrow;
 use crate::{Feature, Key, PrimitiveId, Projection, Real};
 use nalgebra::Point3;
+use std::marker::PhantomData;
 
 /// What a query may ask beyond the closest point. Built from the default by the `with_` methods.
 ///
@@ -115,10 +116,19 @@ pub trait Collector {
 /// The running minimum of a search. Radius, ties, epsilon and lower bound are decided here and nowhere else.
 #[derive(Clone, Debug)]
 pub struct Best<T: Real> {
-    options: QueryOptions<T>,
+    hint: Option<PrimitiveId>,
+    minimum: Minimum,
+    scalar: PhantomData<T>,
+}
+
+/// The same in f64, whatever the scalar of the scene: a search is compiled once for both.
+#[derive(Clone, Debug)]
+pub(crate) struct Minimum {
+    /// The largest distance within the radius.
+    radius: f64,
     /// (1 + epsilon)^-2, rounded down
     shrink: f64,
-    /// The square of `max_distance`, rounded up; from the first answer within it, the key times `shrink`.
+    /// The square of the radius, rounded up; from the first answer within it, the key times `shrink`.
     prune: f64,
     best: Option<(PrimitiveId, Projection)>,
     key: Key,
@@ -141,21 +151,18 @@ impl<T: Real> Best<T> {
         // Beyond 2^100 any answer will do, and squares stay in range.
         let factor = if factor > LARGEST_FACTOR { LARGEST_FACTOR } else { factor };
         let shrink = if factor > 1.0 { ROUND_DOWN / (factor * factor) } else { 1.0 };
-        // A distance rounds to max_distance as long as it is within u of it; then up for the roundings of this line.
-        let radius = options.max_distance.to_f64() * (1.0 + 2.0 * T::UNIT_ROUNDOFF) + T::SMALLEST_SUBNORMAL;
-        let prune = Key::of_offset([radius, 0.0, 0.0]).square_above() * ROUND_UP;
-        Self { options: *options, shrink, prune, best: None, key: Key::INFINITY, certified: f64::INFINITY }
-    }
-
-    /// Whether a distance is within the radius, as it will be reported. Nothing is within a radius of NaN.
-    fn within(&self, key: Key) -> bool {
-        T::of_f64(key.distance()) <= self.options.max_distance
+        // A distance counts as it will be reported, so somewhat beyond the radius; nothing is within NaN.
+        let radius = options.max_distance.to_f64_above();
+        // Further by what a distance loses in rounding: near zero a smallest subnormal.
+        let prune = Key::of_offset([radius + f64::from_bits(1), 0.0, 0.0]).square_above() * ROUND_UP;
+        let minimum = Minimum { radius, shrink, prune, best: None, key: Key::INFINITY, certified: f64::INFINITY };
+        Self { hint: options.hint, minimum, scalar: PhantomData }
     }
 
     /// The primitive to look at first, if the caller named one and a set of `len` has it.
     #[must_use]
     pub fn hint(&self, len: usize) -> Option<PrimitiveId> {
-        self.options.hint.filter(|id| id.index() < len)
+        self.hint.filter(|id| id.index() < len)
     }
 
     /// A part of the scene will not be searched although it may hold the answer; `square` is a lower bound as for
@@ -165,23 +172,30 @@ impl<T: Real> Best<T> {
         // least its end.
         let square = if square < f64::MAX { square } else { f64::MAX };
         let bound = (square * ROUND_DOWN - 4.0 * f64::from_bits(1)).max(0.0).sqrt();
-        if bound < self.certified {
-            self.certified = bound;
+        if bound < self.minimum.certified {
+            self.minimum.certified = bound;
         }
+    }
+
+    /// What collects for it.
+    #[inline(always)]
+    pub(crate) fn minimum(&mut self) -> &mut Minimum {
+        &mut self.minimum
     }
 
     /// The answer.
     #[must_use]
     pub fn finish(self) -> Option<Closest<T>> {
-        let (primitive, p) = self.best?;
-        if !self.within(p.key) {
+        let Minimum { certified, shrink, best, .. } = self.minimum;
+        let (primitive, p) = best?;
+        if !self.minimum.within(p.key) {
             return None;
         }
         let distance = T::of_f64(p.key.distance());
         // What was pruned is farther than the bound it was pruned by, the bound itself being within 5 u on the square.
         let exact = p.key.distance();
-        let pruned = exact * self.shrink.sqrt() * ROUND_DOWN;
-        let bound = if self.certified < pruned { self.certified } else { pruned };
+        let pruned = exact * shrink.sqrt() * ROUND_DOWN;
+        let bound = if certified < pruned { certified } else { pruned };
         // One smallest subnormal for each rounding near zero; an infinite error leaves nothing to certify.
         let bound = bound * ROUND_DOWN - 2.0 * f64::from_bits(1);
         let lower_bound = if bound > 0.0 { T::of_f64_below(bound) } else { T::zero() };
@@ -197,6 +211,36 @@ impl<T: Real> Best<T> {
 }
 
 impl<T: Real> Collector for Best<T> {
+    #[inline(always)]
+    fn prune_above(&self) -> f64 {
+        self.minimum.prune_above()
+    }
+    #[inline(always)]
+    fn prune_given(&self, square: f64) -> f64 {
+        self.minimum.prune_given(square)
+    }
+    #[inline(always)]
+    fn prune_above_for(&self, id: PrimitiveId) -> f64 {
+        self.minimum.prune_above_for(id)
+    }
+    #[inline(always)]
+    fn is_nearest_only(&self) -> bool {
+        self.minimum.is_nearest_only()
+    }
+    #[inline(always)]
+    fn offer(&mut self, id: PrimitiveId, projection: Projection) {
+        self.minimum.offer(id, projection);
+    }
+}
+
+impl Minimum {
+    /// Whether a distance is within the radius, as it will be reported.
+    fn within(&self, key: Key) -> bool {
+        key.distance() <= self.radius
+    }
+}
+
+impl Collector for Minimum {
     #[inline(always)]
     fn prune_above(&self) -> f64 {
         self.prune

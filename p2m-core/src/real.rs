@@ -27,6 +27,8 @@ pub trait Real: RealField + Copy + Default + sealed::Sealed {
     fn to_f64(self) -> f64;
     /// Rounds to the nearest number of this type, ties to even.
     fn of_f64(value: f64) -> Self;
+    /// The largest f64 that [`of_f64`](Self::of_f64) takes to this number. NaN stays NaN.
+    fn to_f64_above(self) -> f64;
     /// The largest number of this type that is not above `value`. NaN stays NaN.
     fn of_f64_below(value: f64) -> Self;
 }
@@ -43,6 +45,10 @@ impl Real for f64 {
     #[inline(always)]
     fn of_f64(value: f64) -> Self {
         value
+    }
+    #[inline(always)]
+    fn to_f64_above(self) -> f64 {
+        self
     }
     #[inline(always)]
     fn of_f64_below(value: f64) -> Self {
@@ -63,6 +69,15 @@ impl Real for f32 {
     #[allow(clippy::cast_possible_truncation, reason = "rounding to nearest is what this function promises")]
     fn of_f64(value: f64) -> Self {
         value as f32
+    }
+    fn to_f64_above(self) -> f64 {
+        if !self.is_finite() {
+            return f64::from(self);
+        }
+        // Behind the largest number comes 2^128, for rounding.
+        let next = if self < Self::MAX { f64::from(self.next_up()) } else { 2.0 * 2f64.powi(127) };
+        let middle = (f64::from(self) + next) / 2.0;
+        if Self::of_f64(middle) <= self { middle } else { middle.next_down() }
     }
     fn of_f64_below(value: f64) -> Self {
         let nearest = Self::of_f64(value);
@@ -92,6 +107,15 @@ mod tests {
         assert_eq!(f32::UNIT_ROUNDOFF, 2f64.powi(-24));
         assert_eq!(<f64 as Real>::SMALLEST_SUBNORMAL, f64::from_bits(1));
         assert_eq!(<f32 as Real>::SMALLEST_SUBNORMAL, f64::from(f32::from_bits(1)));
+    }
+
+    #[test]
+    fn what_rounds_to_a_number_ends_where_it_says() {
+        for x in [0.0, f32::from_bits(1), f32::from_bits(2), 1.0, 1.0f32.next_up(), 3.7e-12, 1e30, f32::MAX, -1.0] {
+            let above = x.to_f64_above();
+            assert_eq!((f32::of_f64(above), f32::of_f64(above.next_up())), (x, x.next_up()));
+        }
+        assert!(f32::INFINITY.to_f64_above() == f64::INFINITY && f32::NAN.to_f64_above().is_nan());
     }
 
     #[test]

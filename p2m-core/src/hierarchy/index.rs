@@ -98,7 +98,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestPoint<T> for TreeIndex<T, S,
         if let Some(id) = best.hint(self.set.len()) {
             best.offer(id, self.set.get(id).project(query));
         }
-        self.visit(query, best);
+        self.tree.search_nearest(&self.set, query, best);
     }
 }
 

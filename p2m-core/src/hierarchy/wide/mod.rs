@@ -16,10 +16,10 @@ use super::Hierarchy;
 use crate::packet::{Kind, LANES, Packet};
 use crate::real::wide;
 use crate::simd::{Isa, prefetch};
-use crate::{Aabb, Collector, Directions, Kdop, Primitive, PrimitiveId, PrimitiveSet, Real};
+use crate::{Aabb, Best, Collector, Directions, Kdop, Primitive, PrimitiveId, PrimitiveSet, Real};
 use nalgebra::Point3;
 use node::{Child, Frame, WIDTH};
-use search::Search;
+use search::{Search, finish};
 use volume::{TreeOptions, WideNode};
 
 pub use parts::Part;
@@ -41,11 +41,17 @@ pub struct PacketTree<V: Volume = Aabb<f64>> {
     /// Nodes on the longest path from the root.
     depth: usize,
     nodes: Vec<V::Node>,
-    packets: Vec<Packet>,
-    /// The exact vertices of the packets, one packet after the other.
-    vertices: Vec<[f64; 3]>,
+    leaves: Leaves,
     /// How many primitives there are.
     len: usize,
+}
+
+/// The packets of a tree.
+#[derive(Clone, Debug)]
+pub(crate) struct Leaves {
+    pub(crate) packets: Vec<Packet>,
+    /// The exact vertices of the packets, one packet after the other.
+    pub(crate) vertices: Vec<[f64; 3]>,
 }
 
 impl<const K: usize> PacketTree<Kdop<K>> {
@@ -105,7 +111,7 @@ impl<V: Volume> PacketTree<V> {
         };
         let (packed, bounded): (Vec<_>, Vec<_>) = map(&ranges, options.parallel, pack).into_iter().unzip();
         let (packet_boxes, packet_bounds): (Vec<_>, Vec<_>) = bounded.into_iter().unzip();
-        let (packets, vertices) = place_vertices(packed);
+        let leaves = Leaves::new(packed);
         let (root, children, depth) = collapse::Binary::new(&binary.nodes, &of_leaf, &packet_boxes).collapse();
         let nodes = children.into_iter().map(V::Node::new).collect();
         let mut tree = Self {
@@ -117,8 +123,7 @@ impl<V: Volume> PacketTree<V> {
             root,
             depth,
             nodes,
-            packets,
-            vertices,
+            leaves,
             len: set.len(),
         };
         tree.bound_nodes(&packet_bounds);
@@ -162,7 +167,7 @@ impl<V: Volume> PacketTree<V> {
             let boxes = packet.ids().iter().map(|id| set.get(*id).aabb().to_f64());
             boxes.fold(Aabb::empty(), |a, b| a.union(&b))
         };
-        let packet_boxes = map(&self.packets, parallel, bounds_of);
+        let packet_boxes = map(&self.leaves.packets, parallel, bounds_of);
         self.bounds = packet_boxes.iter().fold(Aabb::empty(), |a, b| a.union(b));
         self.frame = Frame::around(&self.bounds);
         let finest = self.frame.unit * FINEST;
@@ -174,12 +179,12 @@ impl<V: Volume> PacketTree<V> {
             let kind = if kinds.all(|kind| kind == first) { first } else { Kind::Box };
             Packet::new(set, ids, kind, bounds, finest)
         };
-        let bounded: Vec<_> = self.packets.iter().zip(&packet_boxes).collect();
+        let bounded: Vec<_> = self.leaves.packets.iter().zip(&packet_boxes).collect();
         let enclose = |(packet, bounds): &(&Packet, &Aabb<f64>)| {
             V::Node::enclose(&self.shape, &self.frame, set, packet.ids(), bounds)
         };
         let packet_bounds = map(&bounded, parallel, enclose);
-        (self.packets, self.vertices) = place_vertices(map(&bounded, parallel, pack));
+        self.leaves = Leaves::new(map(&bounded, parallel, pack));
         self.bound_nodes(&packet_bounds);
     }
 
@@ -187,12 +192,14 @@ impl<V: Volume> PacketTree<V> {
     /// finite.
     #[inline]
     pub fn search<T: Real, S: PrimitiveSet<T>, C: Collector>(&self, set: &S, query: &Point3<T>, collector: &mut C) {
-        let evaluate = |collector: &mut C, id: PrimitiveId, square: f64| {
-            if let Some(projection) = set.get(id).project_within(query, square) {
-                collector.offer(id, projection);
-            }
-        };
-        self.isa.run(Search { tree: self, query: wide(query), collector, evaluate: &evaluate });
+        let (query, evaluate) = (wide(query), evaluation(set, query));
+        self.isa.run(Search { tree: self, query, collector, evaluate: &evaluate, finish });
+    }
+
+    /// The same for the nearest primitive.
+    #[inline]
+    pub(crate) fn search_nearest<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
+        V::nearest(self, wide(query), best.minimum(), &evaluation(set, query));
     }
 
     /// A box around a child of a node.
@@ -203,7 +210,7 @@ impl<V: Volume> PacketTree<V> {
     /// Asks for a node or a packet before it is read.
     #[inline(always)]
     fn prefetch(&self, child: Child) {
-        let (node, packet) = (self.nodes.as_ptr(), self.packets.as_ptr());
+        let (node, packet) = (self.nodes.as_ptr(), self.leaves.packets.as_ptr());
         let at: *const u8 = if child.is_packet() {
             packet.wrapping_add(child.number()).cast()
         } else {
@@ -231,31 +238,48 @@ impl<V: Volume> PacketTree<V> {
     #[must_use]
     pub fn memory(&self) -> usize {
         self.nodes.capacity() * size_of::<V::Node>()
-            + self.packets.capacity() * size_of::<Packet>()
-            + self.vertices.capacity() * size_of::<[f64; 3]>()
+            + self.leaves.packets.capacity() * size_of::<Packet>()
+            + self.leaves.vertices.capacity() * size_of::<[f64; 3]>()
     }
 
     /// Packets, and lanes of them in use: how well they are filled.
     #[must_use]
     pub fn packets(&self) -> (usize, usize) {
-        (self.packets.len(), self.len)
+        (self.leaves.packets.len(), self.len)
     }
 }
 
-/// Puts the vertices of all packets one after the other.
-#[allow(clippy::cast_possible_truncation, reason = "ids leave two bits, and a primitive has three vertices at most")]
-fn place_vertices(packed: Vec<(Packet, Vec<[f64; 3]>)>) -> (Vec<Packet>, Vec<[f64; 3]>) {
-    let mut vertices = Vec::with_capacity(packed.iter().map(|(_, own)| own.len()).sum());
-    let place = |(mut packet, own): (Packet, Vec<[f64; 3]>)| {
-        packet.first_vertex = vertices.len() as u32;
-        vertices.extend(own);
-        packet
-    };
-    (packed.into_iter().map(place).collect(), vertices)
+impl Leaves {
+    /// Puts the vertices of all packets one after the other.
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "ids leave two bits, and a primitive has three vertices at most"
+    )]
+    fn new(packed: Vec<(Packet, Vec<[f64; 3]>)>) -> Self {
+        let mut vertices = Vec::with_capacity(packed.iter().map(|(_, own)| own.len()).sum());
+        let place = |(mut packet, own): (Packet, Vec<[f64; 3]>)| {
+            packet.first_vertex = vertices.len() as u32;
+            vertices.extend(own);
+            packet
+        };
+        Self { packets: packed.into_iter().map(place).collect(), vertices }
+    }
 }
 
 /// Units of packets below this part of the scene's are not needed: 2^-36.
 const FINEST: f64 = 1.0 / (1u64 << 36) as f64;
+
+/// Offers a primitive of a set to a collector, unless its key exceeds a square.
+fn evaluation<T: Real, S: PrimitiveSet<T>, C: Collector>(
+    set: &S,
+    query: &Point3<T>,
+) -> impl Fn(&mut C, PrimitiveId, f64) {
+    move |collector, id, square| {
+        if let Some(projection) = set.get(id).project_within(query, square) {
+            collector.offer(id, projection);
+        }
+    }
+}
 
 /// Maps in order, on all threads if asked to.
 fn map<A: Sync, B: Send>(all: &[A], parallel: bool, f: impl Fn(&A) -> B + Sync) -> Vec<B> {

@@ -30,7 +30,7 @@ impl<V: Volume> PacketTree<V> {
             waiting -= 1;
             let (child, inside) = stack[waiting];
             if child.is_packet() {
-                let ids = self.packets[child.number()].ids();
+                let ids = self.leaves.packets[child.number()].ids();
                 ids.iter().filter(|id| inside || meets(**id)).copied().try_for_each(&mut *visit)?;
                 continue;
             }
@@ -72,6 +72,6 @@ impl<V: Volume> PacketTree<V> {
             }
             at = nearest.1;
         }
-        if at == Child::NONE { &[] } else { self.packets[at.number()].ids() }
+        if at == Child::NONE { &[] } else { self.leaves.packets[at.number()].ids() }
     }
 }

@@ -38,7 +38,7 @@ impl<V: Volume> PacketTree<V> {
 
     /// The primitives of a packet of this tree; `None` for a node.
     pub fn primitives(&self, part: &Part<V>) -> Option<&[PrimitiveId]> {
-        part.child.is_packet().then(|| self.packets[part.child.number()].ids())
+        part.child.is_packet().then(|| self.leaves.packets[part.child.number()].ids())
     }
 
     /// All nodes and packets, parents before children.

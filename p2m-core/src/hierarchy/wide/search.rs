@@ -6,13 +6,14 @@
 //! offered to the collector, which decides by exact keys. Where the collector wants more than the nearest, candidates
 //! are offered packet by packet, or up to 32 at a time where the filter knows nothing.
 
-use super::PacketTree;
-use super::node::{Child, WIDTH};
+use super::node::{Child, Frame, WIDTH};
 use super::volume::{Volume, WideNode};
+use super::{Leaves, PacketTree};
 use crate::kernel::vertices::{SIDE_BY_SIDE, certain_vertices};
 use crate::packet::{LANES, Packet, ROUND_UP};
+use crate::query::Minimum;
 use crate::simd::{EightLanes, InstructionSet, Lanes, Operation, lane_of_key, number_of_key};
-use crate::{Collector, PrimitiveId};
+use crate::{Collector, Isa, PrimitiveId};
 
 /// Entries of the stack: seven waiting siblings on each level at most, and room for one node to be written whole.
 pub(super) const STACK: usize = (WIDTH - 1) * super::MAX_WIDE_DEPTH + WIDTH;
@@ -24,7 +25,7 @@ const CANDIDATES: usize = 32;
 
 /// Offers a primitive of which the tree has only a box to the collector, unless its key exceeds a square. Not a type
 /// parameter: so searches do not depend on the set, and are compiled once for all of them.
-type Evaluate<'a, C> = &'a dyn Fn(&mut C, PrimitiveId, f64);
+pub(super) type Evaluate<'a, C> = &'a dyn Fn(&mut C, PrimitiveId, f64);
 
 /// A search as an operation.
 pub(super) struct Search<'a, V: Volume, C> {
@@ -32,6 +33,7 @@ pub(super) struct Search<'a, V: Volume, C> {
     pub(super) query: [f64; 3],
     pub(super) collector: &'a mut C,
     pub(super) evaluate: Evaluate<'a, C>,
+    pub(super) finish: fn(&mut Filter<'_, C>),
 }
 
 impl<V: Volume, C: Collector> Operation for Search<'_, V, C> {
@@ -42,10 +44,13 @@ impl<V: Volume, C: Collector> Operation for Search<'_, V, C> {
         let tree = self.tree;
         let Some(local) = V::Node::query(&tree.shape, &tree.frame, &self.query) else { return self.run_far() };
         let mut filter = Filter {
-            tree,
+            leaves: &tree.leaves,
+            frame: &tree.frame,
+            isa: tree.isa,
             query: self.query,
             collector: self.collector,
             evaluate: self.evaluate,
+            finish: self.finish,
             reach: f64::INFINITY,
             keep: 0.0,
             limit: 0.0,
@@ -54,9 +59,9 @@ impl<V: Volume, C: Collector> Operation for Search<'_, V, C> {
         };
         filter.update();
         if tree.depth <= SHORT_DEPTH {
-            filter.traverse::<I, SHORT_STACK>(&local);
+            filter.traverse::<I, V, SHORT_STACK>(tree, &local);
         } else {
-            filter.traverse::<I, STACK>(&local);
+            filter.traverse::<I, V, STACK>(tree, &local);
         }
         filter.evaluate_waiting();
     }
@@ -67,7 +72,7 @@ impl<V: Volume, C: Collector> Search<'_, V, C> {
     #[cold]
     #[inline(never)]
     fn run_far(self) {
-        let Self { tree, query, collector, evaluate } = self;
+        let Self { tree, query, collector, evaluate, .. } = self;
         let place = nalgebra::Point3::from(query);
         let mut stack = vec![(0.0, tree.root)];
         while let Some((bound, child)) = stack.pop() {
@@ -76,10 +81,10 @@ impl<V: Volume, C: Collector> Search<'_, V, C> {
             }
             if child.is_packet() {
                 collector.visit_packet();
-                let packet = &tree.packets[child.number()];
+                let packet = &tree.leaves.packets[child.number()];
                 for lane in 0..packet.ids().len() {
                     let limit = collector.prune_above();
-                    offer(tree, packet, lane, query, limit, collector, evaluate);
+                    offer(&tree.leaves, packet, lane, query, limit, collector, evaluate);
                 }
                 continue;
             }
@@ -96,8 +101,8 @@ impl<V: Volume, C: Collector> Search<'_, V, C> {
 
 /// Offers the primitive in a lane to the collector, unless its key exceeds `square`.
 #[inline(always)]
-fn offer<V: Volume, C: Collector>(
-    tree: &PacketTree<V>,
+fn offer<C: Collector>(
+    leaves: &Leaves,
     packet: &Packet,
     lane: usize,
     query: [f64; 3],
@@ -109,7 +114,7 @@ fn offer<V: Volume, C: Collector>(
     if !packet.has_vertices() {
         evaluate(collector, id, square);
     } else {
-        packet.offer(lane, &tree.vertices, query, square, collector);
+        packet.offer(lane, &leaves.vertices, query, square, collector);
     }
 }
 
@@ -123,11 +128,15 @@ struct Candidate {
 }
 
 /// The state of a search.
-struct Filter<'a, V: Volume, C> {
-    tree: &'a PacketTree<V>,
+pub(super) struct Filter<'a, C> {
+    leaves: &'a Leaves,
+    /// Of the nodes.
+    frame: &'a Frame,
+    isa: Isa,
     query: [f64; 3],
     collector: &'a mut C,
     evaluate: Evaluate<'a, C>,
+    finish: fn(&mut Filter<'_, C>),
     /// Some primitive is known to be at most this far.
     reach: f64,
     /// The distance above which primitives are no candidates.
@@ -138,10 +147,13 @@ struct Filter<'a, V: Volume, C> {
     count: usize,
 }
 
-impl<V: Volume, C: Collector> Filter<'_, V, C> {
+impl<C: Collector> Filter<'_, C> {
     #[inline(always)]
-    fn traverse<I: InstructionSet, const STACK: usize>(&mut self, local: &<V::Node as WideNode>::Query) {
-        let tree = self.tree;
+    fn traverse<I: InstructionSet, V: Volume, const STACK: usize>(
+        &mut self,
+        tree: &PacketTree<V>,
+        local: &<V::Node as WideNode>::Query,
+    ) {
         // Keys of children in descending order, and whose children they are.
         let mut keys = [0u32; STACK];
         let mut parents = [0u32; STACK];
@@ -191,13 +203,13 @@ impl<V: Volume, C: Collector> Filter<'_, V, C> {
         let bound = self.collector.prune_above().sqrt() * (1.0 + 4.0 * f64::EPSILON);
         self.keep = if self.reach < bound { self.reach } else { bound };
         let square = self.reach * self.reach * (1.0 + 4.0 * f64::EPSILON);
-        self.limit = self.tree.frame.square_above(self.collector.prune_given(square));
+        self.limit = self.frame.square_above(self.collector.prune_given(square));
     }
 
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded up, and places fit")]
     fn packet<I: InstructionSet>(&mut self, number: usize) {
-        let packet = &self.tree.packets[number];
+        let packet = &self.leaves.packets[number];
         let candidate = |low: f32, lane: usize| Candidate { low, packet: number as u32, lane: lane as u32 };
         let Some(local) = packet.local(&self.query) else {
             (0..packet.ids().len()).for_each(|lane| self.wait(candidate(0.0, lane)));
@@ -226,8 +238,8 @@ impl<V: Volume, C: Collector> Filter<'_, V, C> {
             found &= found - 1;
             let low = squares[lane].sqrt() * (1.0 - f32::EPSILON) - local.excess;
             // In the frame of the scene, where f32 has room; a difference of f32 about 1 or above does not underflow.
-            let low = f64::from(low) * packet.unit() * self.tree.frame.per_unit;
-            packet.prefetch_vertices(lane, &self.tree.vertices);
+            let low = f64::from(low) * packet.unit() * self.frame.per_unit;
+            packet.prefetch_vertices(lane, &self.leaves.vertices);
             self.wait(candidate(low as f32, lane));
         }
         if !self.collector.is_nearest_only() {
@@ -245,11 +257,9 @@ impl<V: Volume, C: Collector> Filter<'_, V, C> {
     }
 
     /// Evaluates the candidates that are still of interest, the most promising one first.
-    ///
-    /// In a function of its own, with the instruction set: the traversal is better off with registers of its own.
     #[inline(always)]
     fn evaluate_waiting(&mut self) {
-        self.tree.isa.run(Finish(self));
+        (self.finish)(self);
     }
 
     /// Of the triangles of which a vertex is certainly the nearest point only the nearest stay, and of these the first: others
@@ -260,8 +270,8 @@ impl<V: Volume, C: Collector> Filter<'_, V, C> {
         let mut corners = [[[0.0; SIDE_BY_SIDE]; 3]; 3];
         let count = self.count.min(SIDE_BY_SIDE);
         for (i, candidate) in self.waiting[..count].iter().enumerate() {
-            let packet = &self.tree.packets[candidate.packet as usize];
-            if let Some(own) = packet.triangle_corners(candidate.lane as usize, &self.tree.vertices) {
+            let packet = &self.leaves.packets[candidate.packet as usize];
+            if let Some(own) = packet.triangle_corners(candidate.lane as usize, &self.leaves.vertices) {
                 for v in 0..3 {
                     for k in 0..3 {
                         corners[v][k][i] = own[v][k];
@@ -273,7 +283,7 @@ impl<V: Volume, C: Collector> Filter<'_, V, C> {
         let squares = certain_vertices(self.query, &corners);
         let mut winner = (f64::INFINITY, u32::MAX, 0);
         for (i, candidate) in self.waiting[..count].iter().enumerate() {
-            let id = self.tree.packets[candidate.packet as usize].ids()[candidate.lane as usize].number();
+            let id = self.leaves.packets[candidate.packet as usize].ids()[candidate.lane as usize].number();
             if squares[i] < winner.0 || (squares[i] == winner.0 && id < winner.1) {
                 winner = (squares[i], id, i);
             }
@@ -300,13 +310,13 @@ impl<V: Volume, C: Collector> Filter<'_, V, C> {
         for i in 0..self.count {
             let Candidate { low, packet, lane } = self.waiting[i];
             // Less for its rounding.
-            if f64::from(low) * (1.0 - f64::from(f32::EPSILON)) * self.tree.frame.unit <= self.keep {
+            if f64::from(low) * (1.0 - f64::from(f32::EPSILON)) * self.frame.unit <= self.keep {
                 // The reach is at least a unit of a frame: its square does not underflow, as that of a bound on keys may.
                 let reach = self.reach * self.reach * (1.0 + 4.0 * f64::EPSILON);
-                let packet = &self.tree.packets[packet as usize];
+                let packet = &self.leaves.packets[packet as usize];
                 let prune = self.collector.prune_above_for(packet.ids()[lane as usize]);
                 let square = if reach < prune { reach } else { prune };
-                offer(self.tree, packet, lane as usize, self.query, square, self.collector, self.evaluate);
+                offer(self.leaves, packet, lane as usize, self.query, square, self.collector, self.evaluate);
                 self.update();
             }
         }
@@ -317,10 +327,23 @@ impl<V: Volume, C: Collector> Filter<'_, V, C> {
 /// So many candidates are evaluated one by one.
 const FEW: usize = 3;
 
-/// The evaluation of the candidates that wait.
-struct Finish<'a, 'b, V: Volume, C>(&'a mut Filter<'b, V, C>);
+/// Evaluates the candidates that wait with the instruction set, in a function of its own: the traversal is better off with
+/// registers of its own.
+#[inline(never)]
+pub(super) fn finish<C: Collector>(filter: &mut Filter<'_, C>) {
+    filter.isa.run(Finish(filter));
+}
 
-impl<V: Volume, C: Collector> Operation for Finish<'_, '_, V, C> {
+/// The same for the nearest primitive: what is not generic is compiled once.
+#[inline(never)]
+pub(super) fn finish_nearest(filter: &mut Filter<'_, Minimum>) {
+    filter.isa.run(Finish(filter));
+}
+
+/// The evaluation of the candidates that wait.
+struct Finish<'a, 'b, C>(&'a mut Filter<'b, C>);
+
+impl<C: Collector> Operation for Finish<'_, '_, C> {
     type Output = ();
 
     #[inline(always)]

@@ -4,9 +4,12 @@
 //! volume is a type of nodes, [`WideNode`].
 
 use super::super::SplitOptions;
+use super::PacketTree;
 use super::node::{BoxNode, Child, Frame, WIDTH};
+use super::search::{Evaluate, Search, finish_nearest};
 use super::slabs::SlabNode;
 use crate::kdop::Slabs;
+use crate::query::Minimum;
 use crate::simd::Lanes;
 use crate::{Aabb, Kdop, KdopOptions, PrimitiveId, PrimitiveSet, Real};
 use std::fmt::Debug;
@@ -34,16 +37,29 @@ pub(crate) trait Nodes: Sized {
     type Shape: Clone + Debug + Send + Sync;
     /// A node.
     type Node: WideNode<Volume = Self, Shape = Self::Shape>;
+
+    /// The search of a tree for the nearest primitive, in a function of its own: what is not generic is compiled once.
+    fn nearest(tree: &PacketTree<Self>, query: [f64; 3], minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>)
+    where
+        Self: Volume;
 }
 
 impl Nodes for Aabb<f64> {
     type Shape = ();
     type Node = BoxNode;
+
+    fn nearest(tree: &PacketTree, query: [f64; 3], minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
+        tree.isa.run(Search { tree, query, collector: minimum, evaluate, finish: finish_nearest });
+    }
 }
 
 impl<const K: usize> Nodes for Kdop<K> {
     type Shape = Slabs<K>;
     type Node = SlabNode<K>;
+
+    fn nearest(tree: &PacketTree<Self>, query: [f64; 3], minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
+        tree.isa.run(Search { tree, query, collector: minimum, evaluate, finish: finish_nearest });
+    }
 }
 
 /// How a tree is built of volumes that have this in common.
