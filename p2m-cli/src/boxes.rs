@@ -1,5 +1,6 @@
-//! `p2m boxes`: a picture of the boxes of the AABB tree, level by level.
+//! `p2m boxes`: a picture of the boxes of the AABB tree, or the polytopes of the k-DOP tree, level by level.
 
+use crate::faces::{Faces, WithTree};
 use crate::input::{self, read_scene, scene_format};
 use crate::json;
 use crate::output::Output;
@@ -9,8 +10,9 @@ use anyhow::{Context, bail};
 use clap::ValueEnum;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
-use p2m_core::hierarchy::{PacketTree, Part};
-use p2m_core::{Aabb, BuildIndex, Soup};
+use p2m_core::hierarchy::{PacketTree, Part, Volume};
+use p2m_core::{BuildIndex, Soup};
+use p2m_kdop::{KdopTree, Polytope};
 use p2m_mixed::Format;
 use p2m_mixed::picture::{Panel, View, box_edges, write_picture_ply, write_svg};
 use p2m_mixed::statistics::figure::Count;
@@ -30,12 +32,13 @@ scene, at most 4000 of them.
 Examples:
   p2m boxes bunny.obj --out boxes.svg
   p2m boxes scene.ply --levels 5 --view top --out boxes.svg
+  p2m boxes scene.ply --k 14 --levels 2 --out polytopes.svg
   p2m boxes scene.ply --levels 12 --out boxes.ply",
         json::STABILITY
     )
 }
 
-/// Draw the boxes of the AABB tree over a scene, level by level, as SVG or PLY
+/// Draw the boxes of the AABB tree over a scene (or the polytopes of the k-DOP tree), level by level, as SVG or PLY
 #[derive(clap::Args)]
 #[command(after_help = help())]
 pub(crate) struct Args {
@@ -53,6 +56,10 @@ pub(crate) struct Args {
     /// How many levels to draw, from the root on; deeper ones than the tree has are left out
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u8).range(0..=64))]
     levels: u8,
+
+    /// Draw the polytopes of the k-DOP tree with as many faces
+    #[arg(long, value_name = "K", value_enum)]
+    k: Option<Faces>,
 
     /// From where an SVG picture is seen
     #[arg(long, value_enum, default_value_t = ViewName::Isometric)]
@@ -119,10 +126,15 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let format = scene_format(&args.scene, args.format, "--format")?;
     let scene = read_scene(&args.scene, format)?;
     let progress = Progress::start("building", None, Unit::None);
-    let tree = AabbTree::build(&scene.soup, &Default::default()).with_context(|| input::name(&args.scene))?;
+    let levels = usize::from(args.levels);
+    let drawn = match args.k {
+        None => AabbTree::build(&scene.soup, &Default::default())
+            .map(|tree| panels(tree.tree(), levels, ["box", "boxes"], |bounds| box_edges(bounds).collect())),
+        Some(faces) => faces.build(&scene.soup, Polytopes { levels }).map(|(panels, _)| panels),
+    };
+    let drawn = drawn.with_context(|| input::name(&args.scene))?;
     drop(progress);
-    let (drawn, mut panels): (Vec<Drawn>, Vec<Panel>) =
-        panels(tree.tree(), usize::from(args.levels)).into_iter().unzip();
+    let (drawn, mut panels): (Vec<Drawn>, Vec<Panel>) = drawn.into_iter().unzip();
     let mut output = Output::open(Some(&args.out))?;
     let written = if is_ply {
         write_picture_ply(&panels, &mut output)
@@ -156,24 +168,43 @@ struct Drawn {
     boxes: usize,
 }
 
+/// Panels of a k-DOP tree.
+struct Polytopes {
+    levels: usize,
+}
+
+impl WithTree<'_> for Polytopes {
+    type Output = Vec<(Drawn, Panel)>;
+    fn with<const K: usize>(self, tree: KdopTree<f64, &Soup<f64>, K>) -> Self::Output {
+        let edges = |kdop: &_| Polytope::new(kdop, tree.directions()).edges().collect();
+        panels(tree.tree(), self.levels, ["polytope", "polytopes"], edges)
+    }
+}
+
 /// One panel for each of the first levels, and one for the leaves.
-fn panels(tree: &PacketTree, levels: usize) -> Vec<(Drawn, Panel)> {
+fn panels<V: Volume>(
+    tree: &PacketTree<V>,
+    levels: usize,
+    [one, many]: [&str; 2],
+    edges: impl Fn(&V) -> Vec<[Point3<f64>; 2]>,
+) -> Vec<(Drawn, Panel)> {
     let parts: Vec<_> = tree.parts().collect();
     let deepest = parts.iter().map(|part| part.depth).max();
-    let panel = |level: Option<usize>, show: &dyn Fn(&Part<Aabb<f64>>) -> bool| {
+    let panel = |level: Option<usize>, show: &dyn Fn(&Part<V>) -> bool| {
         let shown: Vec<_> = parts.iter().filter(|part| show(part)).collect();
         let title = level.map_or("leaves".to_owned(), |level| format!("level {level}"));
-        let noun = if shown.len() == 1 { "box" } else { "boxes" };
+        let noun = if shown.len() == 1 { one } else { many };
         let panel = Panel {
             title: format!("{title}: {} {noun}", Count(shown.len() as u64)),
-            lines: shown.iter().flat_map(|b| box_edges(&b.volume)).collect(),
+            lines: shown.iter().flat_map(|part| edges(&part.volume)).collect(),
         };
         (Drawn { level, boxes: shown.len() }, panel)
     };
-    let is_leaf = |part: &Part<Aabb<f64>>| tree.primitives(part).is_some();
+    let is_leaf = |part: &Part<V>| tree.primitives(part).is_some();
     let drawn = deepest.map_or(0, |deepest| levels.min(deepest + 1));
-    let mut panels: Vec<_> =
-        (0..drawn).map(|level| panel(Some(level), &|b| b.depth == level || (b.depth < level && is_leaf(b)))).collect();
+    let mut panels: Vec<_> = (0..drawn)
+        .map(|level| panel(Some(level), &|part| part.depth == level || (part.depth < level && is_leaf(part))))
+        .collect();
     panels.push(panel(None, &is_leaf));
     panels
 }

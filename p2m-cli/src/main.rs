@@ -5,6 +5,7 @@
 
 mod boxes;
 mod convert;
+mod faces;
 mod generate;
 mod info;
 mod input;

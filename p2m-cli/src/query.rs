@@ -1,5 +1,6 @@
 //! `p2m query`: closest points as a table.
 
+use crate::faces::{Faces, WithTree};
 use crate::input::{self, is_standard, or_option, point_format, read_points, read_scene, scene_format};
 use crate::json;
 use crate::output::Output;
@@ -11,7 +12,7 @@ use anyhow::{Context, anyhow};
 use clap::{ArgGroup, ValueEnum};
 use p2m_bvh::AabbTree;
 use p2m_core::{BruteForce, BuildIndex, ClosestPoint, QueryOptions, Soup};
-use p2m_kdop::{Choice, KdopOptions, KdopTree};
+use p2m_kdop::KdopTree;
 use p2m_mixed::{AnswerFormat, AnswerWriter, Format, PointFormat, Scene};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -138,25 +139,6 @@ enum Backend {
     Kdop,
 }
 
-/// The faces of k-DOPs.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Faces {
-    /// Boxes
-    #[value(name = "6")]
-    Six,
-    /// And the corners of a cube cut off
-    #[value(name = "14")]
-    Fourteen,
-    /// And its edges
-    #[value(name = "18")]
-    Eighteen,
-    /// Both
-    #[value(name = "26")]
-    TwentySix,
-    /// Those that the scene requires, which the summary tells
-    Scene,
-}
-
 impl Backend {
     fn name(self) -> &'static str {
         match self {
@@ -171,29 +153,19 @@ impl Backend {
         Ok(match self {
             Self::Brute => (Box::new(BruteForce::build(soup, &())?), None),
             Self::Aabb => (Box::new(AabbTree::build(soup, &Default::default())?), None),
-            Self::Kdop => match faces {
-                Faces::Six => (Box::new(KdopTree::<_, _, 6>::build(soup, &Default::default())?), None),
-                Faces::Fourteen => (Box::new(KdopTree::<_, _, 14>::build(soup, &Default::default())?), None),
-                Faces::Eighteen => (Box::new(KdopTree::<_, _, 18>::build(soup, &Default::default())?), None),
-                Faces::TwentySix => (Box::new(KdopTree::<_, _, 26>::build(soup, &Default::default())?), None),
-                Faces::Scene => {
-                    let choice = Choice::from_scene(soup);
-                    let index: Index<'_> = match choice.k {
-                        6 => kdop_tree::<6>(soup, &choice)?,
-                        14 => kdop_tree::<14>(soup, &choice)?,
-                        18 => kdop_tree::<18>(soup, &choice)?,
-                        _ => kdop_tree::<26>(soup, &choice)?,
-                    };
-                    (index, Some(choice.to_string()))
-                }
-            },
+            Self::Kdop => faces.build(soup, AnyTree)?,
         })
     }
 }
 
-fn kdop_tree<'a, const K: usize>(soup: &'a Soup<f64>, choice: &Choice) -> Result<Index<'a>, p2m_core::BuildError> {
-    let directions = choice.directions::<K>().expect("a choice of as many");
-    Ok(Box::new(KdopTree::build_with(soup, &KdopOptions::new(directions))?))
+/// A k-DOP tree as an index.
+struct AnyTree;
+
+impl<'a> WithTree<'a> for AnyTree {
+    type Output = Index<'a>;
+    fn with<const K: usize>(self, tree: KdopTree<f64, &'a Soup<f64>, K>) -> Index<'a> {
+        Box::new(tree)
+    }
 }
 
 type Index<'a> = Box<dyn ClosestPoint<f64> + Sync + 'a>;

@@ -56,6 +56,26 @@ fn the_boxes_of_a_level_hold_the_scene() {
 }
 
 #[test]
+fn polytopes_of_the_k_dop_tree_hold_the_scene_and_fit_closer() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = p2m_mixed::read_scene(SCENE.as_ref()).unwrap().soup;
+    let sums = ["6", "14", "26", "scene"].map(|k| {
+        let out = folder.path().join(format!("{k}.ply"));
+        let run = p2m(&["boxes", SCENE, "--levels", "0", "--k", k, "--out", out.to_str().unwrap()]);
+        let titles = String::from_utf8(run.stderr).unwrap();
+        assert!(titles.starts_with("leaves: ") && titles.ends_with(" polytopes\n"), "{titles}");
+        let picture = p2m_mixed::read_scene(&out).unwrap().soup;
+        let all = p2m_core::Aabb::of_points(picture.positions());
+        assert!(all.contains(&p2m_core::PrimitiveSet::aabb(&scene)), "{k}");
+        // How far corners of polytopes are from the scene on average: the closer they fit, the nearer.
+        let index = p2m_bvh::AabbTree::<f64, _>::build_with(&scene, &Default::default()).unwrap();
+        let distance = |p| p2m_core::ClosestPoint::closest_point(&index, p).unwrap().distance;
+        picture.positions().iter().map(distance).sum::<f64>() / picture.positions().len() as f64
+    });
+    assert!(sums[0] > sums[1] && sums[1] > sums[2], "{sums:?}");
+}
+
+#[test]
 fn other_extensions_and_the_scene_itself_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("scene.ply");

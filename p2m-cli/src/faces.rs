@@ -1,0 +1,67 @@
+//! `--k`: how many faces the polytopes of a k-DOP tree have, which is a type in the library.
+
+use clap::ValueEnum;
+use p2m_core::{BuildError, Soup};
+use p2m_kdop::{Choice, KdopOptions, KdopTree};
+
+/// The faces of k-DOPs.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Faces {
+    /// Boxes
+    #[value(name = "6")]
+    Six,
+    /// And the corners of a cube cut off
+    #[value(name = "14")]
+    Fourteen,
+    /// And its edges
+    #[value(name = "18")]
+    Eighteen,
+    /// Both
+    #[value(name = "26")]
+    TwentySix,
+    /// Those that the scene requires, which the summary tells
+    Scene,
+}
+
+/// What to do with a tree, whatever its K.
+pub(crate) trait WithTree<'a> {
+    type Output;
+    fn with<const K: usize>(self, tree: KdopTree<f64, &'a Soup<f64>, K>) -> Self::Output;
+}
+
+impl Faces {
+    /// Builds the tree, and says what the directions of the scene are if these are asked for.
+    pub(crate) fn build<'a, W: WithTree<'a>>(
+        self,
+        soup: &'a Soup<f64>,
+        what: W,
+    ) -> Result<(W::Output, Option<String>), BuildError> {
+        let choice = (self == Self::Scene).then(|| Choice::from_scene(soup));
+        let k = match self {
+            Self::Six => 6,
+            Self::Fourteen => 14,
+            Self::Eighteen => 18,
+            Self::TwentySix => 26,
+            Self::Scene => choice.as_ref().map_or(6, |choice| choice.k),
+        };
+        let output = match k {
+            6 => build::<6, _>(soup, choice.as_ref(), what),
+            14 => build::<14, _>(soup, choice.as_ref(), what),
+            18 => build::<18, _>(soup, choice.as_ref(), what),
+            _ => build::<26, _>(soup, choice.as_ref(), what),
+        }?;
+        Ok((output, choice.map(|choice| choice.to_string())))
+    }
+}
+
+fn build<'a, const K: usize, W: WithTree<'a>>(
+    soup: &'a Soup<f64>,
+    choice: Option<&Choice>,
+    what: W,
+) -> Result<W::Output, BuildError>
+where
+    p2m_core::Directions<K>: Default,
+{
+    let own = choice.map(|choice| choice.directions::<K>().expect("a choice of as many"));
+    KdopTree::build_with(soup, &KdopOptions::new(own.unwrap_or_default())).map(|tree| what.with(tree))
+}
