@@ -1,13 +1,14 @@
 //! Every backend against brute force, bit for bit (N3), and sets against the exact oracle (N2, N7).
 //!
 //! One generic suite; a new backend adds a line to `backends!`.
-#![cfg(all(feature = "bvh", feature = "kdop"))]
+#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
 use p2m::{
     AabbTree, Best, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Directions, Feature, KdopOptions,
-    KdopTree, Key, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment, Shape, Soup, Triangle,
+    KdopTree, Key, OctreeIndex, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment, Shape, Soup,
+    Triangle,
 };
 use p2m_testkit::families::shape;
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
@@ -150,6 +151,7 @@ backends! {
     aabb: AabbTree,
     brute: Brute,
     kdop_14: Kdop14,
+    octree: OctreeIndex,
 }
 
 // Few sets, for these take long to compile.

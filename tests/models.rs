@@ -1,10 +1,12 @@
 //! Agreement with brute force, bit for bit, on real meshes: far from the origin, non-manifold, degenerate, lines, mixed.
 //! Skips, and says so, where there is no folder of models.
 
-#![cfg(all(feature = "bvh", feature = "kdop", feature = "mixed"))]
+#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 
 use p2m::kdop::Choice;
-use p2m::{AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopOptions, KdopTree, PrimitiveSet, Real, Soup};
+use p2m::{
+    AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopOptions, KdopTree, OctreeIndex, PrimitiveSet, Real, Soup,
+};
 use p2m_testkit::model_files;
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::scenes::narrow;
@@ -25,20 +27,30 @@ fn answers<T: Real, I: ClosestPoint<T> + Sync>(index: &I, queries: &[nalgebra::P
     })
 }
 
-/// Compares trees of boxes, of k-DOPs and of the scene's own directions with brute force.
+/// Compares trees of boxes, of k-DOPs and of the scene's own directions, and the octree, with brute force.
 fn agrees<T: Real>(name: &str, set: QuerySet, soup: &Soup<T>, trees: &Trees<'_, T>, queries: &[nalgebra::Point3<T>]) {
     let brute = BruteForce::new(soup).expect("valid");
     let expected = answers(&brute, queries);
-    let found = [answers(&trees.0, queries), answers(&trees.1, queries), answers(&trees.2, queries)];
-    for (tree, found) in ["boxes", "k-DOPs", "the scene's k-DOPs"].iter().zip(found) {
+    let found = [
+        answers(&trees.0, queries),
+        answers(&trees.1, queries),
+        answers(&trees.2, queries),
+        answers(&trees.3, queries),
+    ];
+    for (tree, found) in ["boxes", "k-DOPs", "the scene's k-DOPs", "octree"].iter().zip(found) {
         for (i, (e, f)) in expected.iter().zip(&found).enumerate() {
             assert_eq!(e, f, "{name}, {tree}, {set}, query {i}: {:?}", queries[i]);
         }
     }
 }
 
-/// Of boxes, of the usual 14 faces, and of 26 faces along a frame.
-struct Trees<'a, T: Real>(AabbTree<T, &'a Soup<T>>, KdopTree<T, &'a Soup<T>, 14>, KdopTree<T, &'a Soup<T>, 26>);
+/// Of boxes, of the usual 14 faces, and of 26 faces along a frame; an octree.
+struct Trees<'a, T: Real>(
+    AabbTree<T, &'a Soup<T>>,
+    KdopTree<T, &'a Soup<T>, 14>,
+    KdopTree<T, &'a Soup<T>, 26>,
+    OctreeIndex<T, &'a Soup<T>>,
+);
 
 impl<'a, T: Real> Trees<'a, T> {
     fn build(soup: &'a Soup<T>, choice: &Choice) -> Self {
@@ -47,6 +59,7 @@ impl<'a, T: Real> Trees<'a, T> {
             AabbTree::build(soup, &Default::default()).expect("valid"),
             KdopTree::build(soup, &Default::default()).expect("valid"),
             KdopTree::build_with(soup, &own).expect("valid"),
+            OctreeIndex::build(soup, &Default::default()).expect("valid"),
         )
     }
 }

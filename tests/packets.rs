@@ -189,7 +189,7 @@ fn trees_of_every_shape_are_built() {
 fn refitted_packets_may_mix_kinds_and_zeros_keep_their_signs() {
     let shape = |kind: usize, i: usize| -> Shape<f64> {
         // Every other one has the same place, with zeros of the other sign.
-        let (x, zero) = ((i / 2) as f64, if i % 2 == 0 { 0.0 } else { -0.0 });
+        let (x, zero) = ((i / 2) as f64, if i.is_multiple_of(2) { 0.0 } else { -0.0 });
         let at = |y: f64| Point3::new(x + f64::from(i as u32 % 2) * 1e-3 * y * y, y, zero);
         match kind {
             0 => Point::new(at(zero)).into(),

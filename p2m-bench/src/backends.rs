@@ -9,6 +9,7 @@ use p2m_core::{
     BruteForce, BuildIndex, ClosestPoint, Directions, DirectionsError, Isa, PrimitiveId, PrimitiveSet, Shape, Soup,
     Triangle,
 };
+use p2m_interception::{OctreeIndex, OctreeOptions};
 use p2m_kdop::{Choice, KdopOptions, KdopTree};
 use std::marker::PhantomData;
 
@@ -20,6 +21,11 @@ pub(crate) const ALL: &[Backend] = &[
     Backend { name: "aabb-avx2", prepare: |s| aabb::<f64>(s, Some("avx2")), ..OURS },
     Backend { name: "aabb-portable", prepare: |s| aabb::<f64>(s, Some("portable")), ..OURS },
     Backend { name: "aabb-tri", prepare: aabb_of_triangles, ..OURS },
+    Backend { name: "octree", prepare: |s| octree::<f64>(s, None, 1.0), ..OURS },
+    Backend { name: "octree-avx2", prepare: |s| octree::<f64>(s, Some("avx2"), 1.0), ..OURS },
+    Backend { name: "octree-portable", prepare: |s| octree::<f64>(s, Some("portable"), 1.0), ..OURS },
+    Backend { name: "octree-coarse", prepare: |s| octree::<f64>(s, None, 0.1), ..OURS },
+    Backend { name: "octree-fine", prepare: |s| octree::<f64>(s, None, 10.0), ..OURS },
     Backend { name: "kdop-6", prepare: kdop::<f64, 6>, ..OURS },
     Backend { name: "kdop-14", prepare: kdop::<f64, 14>, ..OURS },
     Backend { name: "kdop-18", prepare: kdop::<f64, 18>, ..OURS },
@@ -30,6 +36,7 @@ pub(crate) const ALL: &[Backend] = &[
     Backend { name: "kdop-frame-18", prepare: |s| kdop_with::<18>(s, frame(s).frame_directions()), ..OURS },
     Backend { name: "kdop-frame-26", prepare: |s| kdop_with::<26>(s, frame(s).frame_directions()), ..OURS },
     Backend { name: "brute-f32", exhaustive: true, prepare: |s| over_soup::<f32, BruteForce<_>>(s), ..OURS_SINGLE },
+    Backend { name: "octree-f32", prepare: |s| octree::<f32>(s, None, 1.0), ..OURS_SINGLE },
     Backend { name: "aabb-f32", prepare: |s| aabb::<f32>(s, None), ..OURS_SINGLE },
     Backend { name: YARDSTICK, scalar: ScalarKind::Single, prepare: parry_single, ..RIVAL },
     Backend { name: YARDSTICK_DOUBLE, prepare: parry_double, ..RIVAL },
@@ -110,11 +117,30 @@ fn aabb_options() -> AabbOptions {
     AabbOptions::default().with_parallel(false)
 }
 
+/// The instruction set of that name; the best one without.
+fn instruction_set(name: Option<&str>) -> Result<Isa, Absent> {
+    let Some(name) = name else { return Ok(Isa::best()) };
+    let isa = Isa::available().into_iter().find(|isa| isa.name() == name);
+    isa.ok_or_else(|| Absent(format!("this processor has no {name}")))
+}
+
+/// The octree, with an instruction set and a resolution, and the memory that it asks for.
+fn octree<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>, resolution: f64) -> Result<Prepared<'a>, Absent> {
+    let isa = instruction_set(isa)?;
+    let (soup, borrowed) = T::soup(scene)?;
+    let usual = OctreeOptions::default();
+    let memory = usual.memory * if resolution > 1.0 { resolution } else { 1.0 };
+    let options = usual.with_splits(aabb_options()).with_resolution(resolution).with_memory(memory);
+    let build = move || {
+        let index = OctreeIndex::build(soup, &options).map_err(|error| Absent(error.to_string()))?;
+        Ok(Box::new(Ours(index.with_isa(isa), PhantomData::<fn() -> T>)) as Ready<'a>)
+    };
+    Ok(Prepared { build: Box::new(build), borrowed })
+}
+
 /// The AABB tree, with the instruction set of that name or the best one.
 fn aabb<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'a>, Absent> {
-    let Some(name) = isa else { return over_soup_with::<T, AabbTree<T, _>>(scene, aabb_options()) };
-    let isa = Isa::available().into_iter().find(|isa| isa.name() == name);
-    let isa = isa.ok_or_else(|| Absent(format!("this processor has no {name}")))?;
+    let isa = instruction_set(isa)?;
     let (soup, borrowed) = T::soup(scene)?;
     let build = move || {
         let tree = AabbTree::build(soup, &aabb_options()).map_err(|error| Absent(error.to_string()))?;

@@ -20,6 +20,8 @@ pub(crate) struct Progress {
 pub(crate) enum Unit {
     Bytes,
     Queries,
+    /// Hundredths of the work.
+    Percent,
     /// Work of which nothing is known but that it goes on.
     None,
 }
@@ -57,6 +59,11 @@ impl Progress {
         Self { done, drawing }
     }
 
+    /// So much is done.
+    pub(crate) fn reach(&self, count: u64) {
+        self.done.fetch_max(count, Ordering::Relaxed);
+    }
+
     /// So much more is done.
     pub(crate) fn add(&self, count: u64) {
         self.done.fetch_add(count, Ordering::Relaxed);
@@ -78,6 +85,7 @@ fn template(total: Option<u64>, unit: Unit) -> String {
         (Unit::Bytes, Some(_)) => "{wide_bar} {bytes}/{total_bytes}, {eta} left",
         (Unit::Bytes, None) => "{bytes}",
         (Unit::Queries, _) => "{wide_bar} {human_pos}/{human_len} queries, {eta} left",
+        (Unit::Percent, _) => "{wide_bar} {pos} %, {eta} left",
         (Unit::None, _) => "{elapsed}",
     };
     let spinner = if total.is_none() { "{spinner} " } else { "" };

@@ -12,6 +12,7 @@ use anyhow::{Context, anyhow};
 use clap::{ArgGroup, ValueEnum};
 use p2m_bvh::AabbTree;
 use p2m_core::{BruteForce, BuildIndex, ClosestPoint, QueryOptions, Soup};
+use p2m_interception::OctreeIndex;
 use p2m_kdop::KdopTree;
 use p2m_mixed::{AnswerFormat, AnswerWriter, Format, PointFormat, Scene};
 use rayon::prelude::*;
@@ -135,6 +136,8 @@ enum Backend {
     Brute,
     /// A tree of boxes
     Aabb,
+    /// Cells in space with lists of what can be nearest there: no search, for more memory and a longer build
+    Octree,
     /// A tree of polytopes with --k faces, which fit closer what does not lie along the axes
     Kdop,
 }
@@ -144,6 +147,7 @@ impl Backend {
         match self {
             Self::Brute => "brute",
             Self::Aabb => "aabb",
+            Self::Octree => "octree",
             Self::Kdop => "kdop",
         }
     }
@@ -153,9 +157,20 @@ impl Backend {
         Ok(match self {
             Self::Brute => (Box::new(BruteForce::build(soup, &())?), None),
             Self::Aabb => (Box::new(AabbTree::build(soup, &Default::default())?), None),
+            Self::Octree => octree(soup)?,
             Self::Kdop => faces.build(soup, AnyTree)?,
         })
     }
+}
+
+/// The octree, which takes a while to build, and what it became.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part is from 0 to 1")]
+fn octree(soup: &Soup<f64>) -> Result<(Index<'_>, Option<String>), p2m_core::BuildError> {
+    let progress = Progress::start("finding cells", Some(100), Unit::Percent);
+    let reach = |part: f64| progress.reach((part * 100.0) as u64);
+    let index = OctreeIndex::build_with_progress(soup, &Default::default(), &reach)?;
+    let report = index.report().to_string();
+    Ok((Box::new(index), Some(report)))
 }
 
 /// A k-DOP tree as an index.
@@ -200,7 +215,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
 
     let name = input::name(&args.scene);
     let start = Instant::now();
-    let progress = Progress::start("building the index", None, Unit::None);
+    // The octree tells more by itself.
+    let progress = (args.backend != Backend::Octree).then(|| Progress::start("building the index", None, Unit::None));
     let (index, note) =
         args.backend.build(&scene.soup, args.k.unwrap_or(Faces::Fourteen)).with_context(|| name.clone())?;
     drop(progress);

@@ -27,6 +27,7 @@ mod counting;
 mod error;
 pub mod hierarchy;
 mod index;
+pub mod interception;
 mod kdop;
 pub mod kernel;
 mod packet;

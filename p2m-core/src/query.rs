@@ -177,6 +177,11 @@ impl<T: Real> Best<T> {
         }
     }
 
+    /// The nearest point so far, as it was before rounding.
+    pub(crate) fn nearest_point(&self) -> Option<[f64; 3]> {
+        self.minimum.best.as_ref().map(|(_, p)| p.point.coords.into())
+    }
+
     /// What collects for it.
     #[inline(always)]
     pub(crate) fn minimum(&mut self) -> &mut Minimum {

@@ -7,7 +7,7 @@
 mod cost;
 mod index;
 mod split;
-mod wide;
+pub(crate) mod wide;
 
 pub use index::TreeIndex;
 pub use split::{SplitOptions, SplitRule};

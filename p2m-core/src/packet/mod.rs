@@ -28,6 +28,7 @@ use crate::real::wide;
 use crate::simd::{InstructionSet, Lanes, prefetch};
 use crate::{Aabb, Collector, Primitive, PrimitiveId, PrimitiveSet, Projection, Real};
 use distance::{V3, beyond, edge, triangle};
+use nalgebra::Point3;
 
 /// Lanes of a packet.
 pub(crate) const LANES: usize = 16;
@@ -208,6 +209,40 @@ impl Packet {
         Some(self.corners(lane).map(|place| &vertices[place]))
     }
 
+    /// Where the vertices of the primitive in a lane are among the exact vertices of the tree, and how many there are.
+    pub(crate) fn vertices_of(&self, lane: usize) -> ([usize; 3], usize) {
+        let count = match self.kind {
+            Kind::Box => 0,
+            Kind::Point => 1,
+            Kind::Segment => 2,
+            Kind::Triangle => 3,
+        };
+        (self.corners(lane), count)
+    }
+
+    /// A box around the primitives in some lanes.
+    pub(crate) fn bounds_of(&self, lanes: u16) -> Aabb<f64> {
+        let count = if self.kind == Kind::Box { 2 } else { self.vertices_of(0).1 };
+        let (mut low, mut high) = ([u16::MAX; 3], [0; 3]);
+        let mut rest = lanes;
+        while rest != 0 {
+            let lane = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            for v in 0..count {
+                for k in 0..3 {
+                    let x = self.rows[3 * v + k][lane];
+                    (low[k], high[k]) = (low[k].min(x), high[k].max(x));
+                }
+            }
+        }
+        // Vertices are rounded by half a unit.
+        let at = |k: usize, x: u16, off: f64| self.origin[k] + (f64::from(x) + off) * self.unit;
+        Aabb {
+            min: Point3::from(std::array::from_fn(|k| at(k, low[k], -0.75))),
+            max: Point3::from(std::array::from_fn(|k| at(k, high[k], 0.75))),
+        }
+    }
+
     /// Asks for what [`offer`](Self::offer) reads.
     #[inline(always)]
     pub(crate) fn prefetch_vertices(&self, lane: usize, vertices: &[Vertex]) {
@@ -314,6 +349,30 @@ impl Packet {
     }
 }
 
+/// One bit for each square that is at most `limit`.
+#[inline(always)]
+pub(crate) fn at_most<L: Lanes>(squares: &[f32; LANES], limit: f32) -> u32 {
+    let mut mask = 0;
+    let mut at = 0;
+    while at < LANES {
+        mask |= L::load(&squares[at..]).at_most(L::splat(limit)) << at;
+        at += L::LEN;
+    }
+    mask
+}
+
+/// The smallest square.
+#[inline(always)]
+pub(crate) fn smallest<L: Lanes>(squares: &[f32; LANES]) -> f32 {
+    let mut all = L::load(&squares[..]);
+    let mut at = L::LEN;
+    while at < LANES {
+        all = all.min(L::load(&squares[at..]));
+        at += L::LEN;
+    }
+    all.smallest()
+}
+
 /// The place of a vertex in a list of at most 48, at the end of which it is put if it is not there yet. The same vertex is
 /// one with the same bits.
 #[allow(clippy::cast_possible_truncation, reason = "at most 48")]
@@ -351,7 +410,6 @@ mod tests {
     use super::*;
     use crate::simd::{Isa, Operation};
     use crate::{Primitive, Shape};
-    use nalgebra::Point3;
     use rand::{Rng, RngExt};
 
     struct Squares<'a>(&'a Packet, &'a Local, f32);

@@ -26,6 +26,8 @@ pub(crate) trait Lanes: Copy {
     fn load(from: &[f32]) -> Self;
     /// The same of whole numbers.
     fn load_u16(from: &[u16]) -> Self;
+    /// The same of smaller ones.
+    fn load_u8(from: &[u8]) -> Self;
     /// Writes the lanes to the front of a slice.
     fn store(self, to: &mut [f32]);
     fn add(self, other: Self) -> Self;

@@ -49,6 +49,14 @@ impl Lanes for Eight {
         Self(lanes)
     }
     #[inline(always)]
+    fn load_u8(from: &[u8]) -> Self {
+        let mut lanes = [0.0; 8];
+        for (lane, x) in lanes.iter_mut().zip(&from[..8]) {
+            *lane = f32::from(*x);
+        }
+        Self(lanes)
+    }
+    #[inline(always)]
     fn store(self, to: &mut [f32]) {
         to[..8].copy_from_slice(&self.0);
     }

@@ -5,12 +5,12 @@
 //! both sides and with proof; what may be the answer is evaluated in f64 by the kernel of the contract ([`search`]).
 
 mod collapse;
-mod node;
+pub(crate) mod node;
 mod overlap;
 mod parts;
-mod search;
+pub(crate) mod search;
 mod slabs;
-mod volume;
+pub(crate) mod volume;
 
 use super::Hierarchy;
 use crate::packet::{Kind, LANES, Packet};
@@ -33,15 +33,15 @@ const MAX_WIDE_DEPTH: usize = super::MAX_DEPTH + 2;
 pub struct PacketTree<V: Volume = Aabb<f64>> {
     isa: Isa,
     shape: V::Shape,
-    frame: Frame,
+    pub(crate) frame: Frame,
     bounds: Aabb<f64>,
     /// Around everything, as nodes have it.
     whole: <V::Node as WideNode>::Bounds,
-    root: Child,
+    pub(crate) root: Child,
     /// Nodes on the longest path from the root.
     depth: usize,
     nodes: Vec<V::Node>,
-    leaves: Leaves,
+    pub(crate) leaves: Leaves,
     /// How many primitives there are.
     len: usize,
 }
@@ -52,6 +52,8 @@ pub(crate) struct Leaves {
     pub(crate) packets: Vec<Packet>,
     /// The exact vertices of the packets, one packet after the other.
     pub(crate) vertices: Vec<[f64; 3]>,
+    /// Where those of each packet begin: few numbers, which stay in the cache, so that vertices can be asked for with their packet.
+    firsts: Vec<u32>,
 }
 
 impl<const K: usize> PacketTree<Kdop<K>> {
@@ -198,8 +200,19 @@ impl<V: Volume> PacketTree<V> {
 
     /// The same for the nearest primitive.
     #[inline]
-    pub(crate) fn search_nearest<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
+    pub(crate) fn search_nearest<T: Real, S: PrimitiveSet<T> + ?Sized>(
+        &self,
+        set: &S,
+        query: &Point3<T>,
+        best: &mut Best<T>,
+    ) {
         V::nearest(self, wide(query), best.minimum(), &evaluation(set, query));
+    }
+
+    /// The children of a node, with boxes around them.
+    pub(crate) fn child_boxes(&self, node: Child) -> impl Iterator<Item = (Aabb<f64>, Child)> + '_ {
+        let node = &self.nodes[node.number()];
+        node.used().map(|place| (self.box_of(node, place), node.children()[place]))
     }
 
     /// A box around a child of a node.
@@ -209,7 +222,7 @@ impl<V: Volume> PacketTree<V> {
 
     /// Asks for a node or a packet before it is read.
     #[inline(always)]
-    fn prefetch(&self, child: Child) {
+    pub(crate) fn prefetch(&self, child: Child) {
         let (node, packet) = (self.nodes.as_ptr(), self.leaves.packets.as_ptr());
         let at: *const u8 = if child.is_packet() {
             packet.wrapping_add(child.number()).cast()
@@ -240,6 +253,7 @@ impl<V: Volume> PacketTree<V> {
         self.nodes.capacity() * size_of::<V::Node>()
             + self.leaves.packets.capacity() * size_of::<Packet>()
             + self.leaves.vertices.capacity() * size_of::<[f64; 3]>()
+            + self.leaves.firsts.capacity() * size_of::<u32>()
     }
 
     /// Packets, and lanes of them in use: how well they are filled.
@@ -262,7 +276,28 @@ impl Leaves {
             vertices.extend(own);
             packet
         };
-        Self { packets: packed.into_iter().map(place).collect(), vertices }
+        let packets: Vec<Packet> = packed.into_iter().map(place).collect();
+        let firsts = packets.iter().map(|packet| packet.first_vertex).chain([vertices.len() as u32]).collect();
+        Self { packets, vertices, firsts }
+    }
+
+    /// Asks for a packet before it is read.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, number: usize) {
+        let at: *const u8 = self.packets.as_ptr().wrapping_add(number).cast();
+        for line in 0..size_of::<Packet>() / 64 {
+            prefetch(at.wrapping_add(64 * line));
+        }
+    }
+
+    /// Asks for the vertices of a packet, up to eight cache lines.
+    #[inline(always)]
+    pub(crate) fn prefetch_vertices(&self, number: usize) {
+        let [first, end] = [self.firsts[number], self.firsts[number + 1]];
+        let at: *const u8 = self.vertices.as_ptr().wrapping_add(first as usize).cast();
+        for line in 0..((end - first) as usize * size_of::<[f64; 3]>()).div_ceil(64).min(8) {
+            prefetch(at.wrapping_add(64 * line));
+        }
     }
 }
 
@@ -270,7 +305,7 @@ impl Leaves {
 const FINEST: f64 = 1.0 / (1u64 << 36) as f64;
 
 /// Offers a primitive of a set to a collector, unless its key exceeds a square.
-fn evaluation<T: Real, S: PrimitiveSet<T>, C: Collector>(
+pub(crate) fn evaluation<T: Real, S: PrimitiveSet<T> + ?Sized, C: Collector>(
     set: &S,
     query: &Point3<T>,
 ) -> impl Fn(&mut C, PrimitiveId, f64) {

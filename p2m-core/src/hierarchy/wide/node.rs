@@ -11,25 +11,25 @@ pub(crate) const WIDTH: usize = 8;
 
 /// A node or a packet, by its number; `NONE` for neither.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Child(pub(super) u32);
+pub(crate) struct Child(pub(crate) u32);
 
 const PACKET_BIT: u32 = 1 << 31;
 
 impl Child {
-    pub(super) const NONE: Self = Self(u32::MAX);
+    pub(crate) const NONE: Self = Self(u32::MAX);
 
-    pub(super) fn node(number: usize) -> Self {
+    pub(crate) fn node(number: usize) -> Self {
         Self(u32::try_from(number).expect("fewer nodes than primitives"))
     }
-    pub(super) fn packet(number: usize) -> Self {
+    pub(crate) fn packet(number: usize) -> Self {
         Self(u32::try_from(number).expect("fewer packets than primitives") | PACKET_BIT)
     }
     #[inline(always)]
-    pub(super) fn is_packet(self) -> bool {
+    pub(crate) fn is_packet(self) -> bool {
         self.0 & PACKET_BIT != 0
     }
     #[inline(always)]
-    pub(super) fn number(self) -> usize {
+    pub(crate) fn number(self) -> usize {
         (self.0 & !PACKET_BIT) as usize
     }
 }
@@ -94,10 +94,7 @@ impl WideNode for BoxNode {
     fn lower_bounds<L: Lanes>(&self, (): &(), query: &Rounded) -> L {
         let mut sum = L::splat(0.0);
         for k in 0..3 {
-            let below = L::load(&self.min[k]).sub(L::splat(query.high[k]));
-            let above = L::splat(query.low[k]).sub(L::load(&self.max[k]));
-            let gap = below.max(above).max(L::splat(0.0));
-            sum = gap.mul_add(gap, sum);
+            sum = query.squared_gap(k, L::load(&self.min[k]), L::load(&self.max[k]), sum);
         }
         sum
     }
@@ -119,9 +116,9 @@ impl WideNode for BoxNode {
 /// The frame of the nodes: the scene fits into the cube from -1 to 1 (from -4 to 4, for the largest ones).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
-    pub(super) centre: [f64; 3],
-    pub(super) unit: f64,
-    pub(super) per_unit: f64,
+    pub(crate) centre: [f64; 3],
+    pub(crate) unit: f64,
+    pub(crate) per_unit: f64,
 }
 
 /// Units in which squares of lengths are plain, as searches in f32 need them.
@@ -130,7 +127,7 @@ const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-320)..=power_of_two(3
 const FARTHEST: f64 = power_of_two(40);
 
 impl Frame {
-    pub(super) fn around(bounds: &Aabb<f64>) -> Self {
+    pub(crate) fn around(bounds: &Aabb<f64>) -> Self {
         // Halves first: sums and differences of two finite numbers may not be finite.
         let halves: [f64; 3] = std::array::from_fn(|k| bounds.max[k] * 0.5 - bounds.min[k] * 0.5);
         let centre: [f64; 3] = std::array::from_fn(|k| bounds.max[k] * 0.5 + bounds.min[k] * 0.5);
@@ -145,27 +142,32 @@ impl Frame {
 
     /// A point in the frame.
     #[inline(always)]
-    pub(super) fn place(&self, point: &[f64; 3]) -> [f64; 3] {
+    pub(crate) fn place(&self, point: &[f64; 3]) -> [f64; 3] {
         std::array::from_fn(|k| (point[k] - self.centre[k]) * self.per_unit)
     }
 
     /// The query in the frame; `None` if it is too far or the frame too small or large to search in f32.
     #[inline(always)]
-    pub(super) fn local(&self, query: &[f64; 3]) -> Option<[f64; 3]> {
+    pub(crate) fn local(&self, query: &[f64; 3]) -> Option<[f64; 3]> {
         let q = self.place(query);
         let largest = q[0].abs().max(q[1].abs()).max(q[2].abs());
         (PLAIN.contains(&self.unit) && largest <= FARTHEST).then_some(q)
     }
 
+    /// Whether lengths of the scene have plain squares, so that searches in f32 are possible at all.
+    pub(crate) fn is_plain(&self) -> bool {
+        PLAIN.contains(&self.unit)
+    }
+
     /// A box in the frame, rounded outwards.
     #[allow(clippy::cast_possible_truncation, reason = "rounded outwards, which covers the rounding of the difference")]
-    fn enclose(&self, bounds: &Aabb<f64>) -> Corners {
+    pub(crate) fn enclose(&self, bounds: &Aabb<f64>) -> Corners {
         let [min, max] = [&bounds.min, &bounds.max].map(|corner| self.place(&[corner.x, corner.y, corner.z]));
         [min.map(|x| (x as f32).next_down()), max.map(|x| (x as f32).next_up())]
     }
 
     /// A box around a box of the frame.
-    pub(super) fn disclose(&self, bounds: &Aabb<f64>) -> Aabb<f64> {
+    pub(crate) fn disclose(&self, bounds: &Aabb<f64>) -> Aabb<f64> {
         let place = |x: f64, k: usize| self.centre[k] + x * self.unit;
         Aabb {
             min: Point3::from(std::array::from_fn(|k| place(bounds.min[k], k).next_down())),
@@ -176,7 +178,7 @@ impl Frame {
     /// The square of a length of the scene in the frame, rounded up.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded up before")]
-    pub(super) fn square_above(&self, square: f64) -> f32 {
+    pub(crate) fn square_above(&self, square: f64) -> f32 {
         // 2^-20 for the bounds it is compared with and for this product, 2^-120 for what underflows in either.
         let square = square * (self.per_unit * self.per_unit) * (1.0 + power_of_two(-19)) + power_of_two(-120);
         if square < f64::from(f32::MAX) { square as f32 } else { f32::MAX }

@@ -10,13 +10,13 @@ use super::node::{Child, Frame, WIDTH};
 use super::volume::{Volume, WideNode};
 use super::{Leaves, PacketTree};
 use crate::kernel::vertices::{SIDE_BY_SIDE, certain_vertices};
-use crate::packet::{LANES, Packet, ROUND_UP};
+use crate::packet::{LANES, Packet, ROUND_UP, at_most, smallest};
 use crate::query::Minimum;
-use crate::simd::{EightLanes, InstructionSet, Lanes, Operation, lane_of_key, number_of_key};
+use crate::simd::{EightLanes, InstructionSet, Operation, lane_of_key, number_of_key};
 use crate::{Collector, Isa, PrimitiveId};
 
 /// Entries of the stack: seven waiting siblings on each level at most, and room for one node to be written whole.
-pub(super) const STACK: usize = (WIDTH - 1) * super::MAX_WIDE_DEPTH + WIDTH;
+pub(crate) const STACK: usize = (WIDTH - 1) * super::MAX_WIDE_DEPTH + WIDTH;
 /// Most trees are not deep, and a long stack takes a moment to clear.
 const SHORT_STACK: usize = 96;
 const SHORT_DEPTH: usize = (SHORT_STACK - WIDTH) / (WIDTH - 1);
@@ -25,15 +25,15 @@ const CANDIDATES: usize = 32;
 
 /// Offers a primitive of which the tree has only a box to the collector, unless its key exceeds a square. Not a type
 /// parameter: so searches do not depend on the set, and are compiled once for all of them.
-pub(super) type Evaluate<'a, C> = &'a dyn Fn(&mut C, PrimitiveId, f64);
+pub(crate) type Evaluate<'a, C> = &'a dyn Fn(&mut C, PrimitiveId, f64);
 
 /// A search as an operation.
-pub(super) struct Search<'a, V: Volume, C> {
-    pub(super) tree: &'a PacketTree<V>,
-    pub(super) query: [f64; 3],
-    pub(super) collector: &'a mut C,
-    pub(super) evaluate: Evaluate<'a, C>,
-    pub(super) finish: fn(&mut Filter<'_, C>),
+pub(crate) struct Search<'a, V: Volume, C> {
+    pub(crate) tree: &'a PacketTree<V>,
+    pub(crate) query: [f64; 3],
+    pub(crate) collector: &'a mut C,
+    pub(crate) evaluate: Evaluate<'a, C>,
+    pub(crate) finish: fn(&mut Filter<'_, C>),
 }
 
 impl<V: Volume, C: Collector> Operation for Search<'_, V, C> {
@@ -43,21 +43,7 @@ impl<V: Volume, C: Collector> Operation for Search<'_, V, C> {
     fn run<I: InstructionSet>(self) {
         let tree = self.tree;
         let Some(local) = V::Node::query(&tree.shape, &tree.frame, &self.query) else { return self.run_far() };
-        let mut filter = Filter {
-            leaves: &tree.leaves,
-            frame: &tree.frame,
-            isa: tree.isa,
-            query: self.query,
-            collector: self.collector,
-            evaluate: self.evaluate,
-            finish: self.finish,
-            reach: f64::INFINITY,
-            keep: 0.0,
-            limit: 0.0,
-            waiting: [Candidate::default(); CANDIDATES],
-            count: 0,
-        };
-        filter.update();
+        let mut filter = Filter::new(tree, self.query, self.collector, self.evaluate, self.finish);
         if tree.depth <= SHORT_DEPTH {
             filter.traverse::<I, V, SHORT_STACK>(tree, &local);
         } else {
@@ -128,7 +114,7 @@ struct Candidate {
 }
 
 /// The state of a search.
-pub(super) struct Filter<'a, C> {
+pub(crate) struct Filter<'a, C> {
     leaves: &'a Leaves,
     /// Of the nodes.
     frame: &'a Frame,
@@ -147,7 +133,47 @@ pub(super) struct Filter<'a, C> {
     count: usize,
 }
 
-impl<C: Collector> Filter<'_, C> {
+impl<'a, C: Collector> Filter<'a, C> {
+    /// Nothing seen yet.
+    #[inline(always)]
+    pub(crate) fn new<V: Volume>(
+        tree: &'a PacketTree<V>,
+        query: [f64; 3],
+        collector: &'a mut C,
+        evaluate: Evaluate<'a, C>,
+        finish: fn(&mut Filter<'_, C>),
+    ) -> Self {
+        let mut filter = Self {
+            leaves: &tree.leaves,
+            frame: &tree.frame,
+            isa: tree.isa,
+            query,
+            collector,
+            evaluate,
+            finish,
+            reach: f64::INFINITY,
+            keep: 0.0,
+            limit: 0.0,
+            waiting: [Candidate::default(); CANDIDATES],
+            count: 0,
+        };
+        filter.update();
+        filter
+    }
+
+    /// The square above which boxes are skipped, in the frame of the scene.
+    #[inline(always)]
+    pub(crate) fn limit(&self) -> f32 {
+        self.limit
+    }
+
+    /// Adds a primitive that is to be evaluated whatever its filter says.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "places fit")]
+    pub(crate) fn add(&mut self, packet: usize, lane: usize) {
+        self.wait(Candidate { low: 0.0, packet: packet as u32, lane: lane as u32 });
+    }
+
     #[inline(always)]
     fn traverse<I: InstructionSet, V: Volume, const STACK: usize>(
         &mut self,
@@ -164,8 +190,7 @@ impl<C: Collector> Filter<'_, C> {
         }
         loop {
             if at.is_packet() {
-                self.collector.visit_packet();
-                self.packet::<I>(at.number());
+                self.packet::<I>(at.number(), self.leaves.packets[at.number()].lanes());
             } else {
                 self.collector.visit_node();
                 let node = &tree.nodes[at.number()];
@@ -206,19 +231,24 @@ impl<C: Collector> Filter<'_, C> {
         self.limit = self.frame.square_above(self.collector.prune_given(square));
     }
 
+    /// Looks at some lanes of a packet.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded up, and places fit")]
-    fn packet<I: InstructionSet>(&mut self, number: usize) {
+    pub(crate) fn packet<I: InstructionSet>(&mut self, number: usize, lanes: u32) {
+        self.collector.visit_packet();
         let packet = &self.leaves.packets[number];
         let candidate = |low: f32, lane: usize| Candidate { low, packet: number as u32, lane: lane as u32 };
         let Some(local) = packet.local(&self.query) else {
-            (0..packet.ids().len()).for_each(|lane| self.wait(candidate(0.0, lane)));
+            let mut rest = lanes;
+            while rest != 0 {
+                self.wait(candidate(0.0, rest.trailing_zeros() as usize));
+                rest &= rest - 1;
+            }
             return;
         };
         let keep = ((self.keep * packet.per_unit()) as f32 + local.excess) * ROUND_UP;
         let mut squares = [0.0; LANES];
         packet.squares::<I>(&local, keep, &mut squares);
-        let lanes = packet.lanes();
         let mut found = at_most::<I::Wide>(&squares, keep * keep) & lanes;
         if found == 0 {
             return;
@@ -258,7 +288,7 @@ impl<C: Collector> Filter<'_, C> {
 
     /// Evaluates the candidates that are still of interest, the most promising one first.
     #[inline(always)]
-    fn evaluate_waiting(&mut self) {
+    pub(crate) fn evaluate_waiting(&mut self) {
         (self.finish)(self);
     }
 
@@ -330,13 +360,13 @@ const FEW: usize = 3;
 /// Evaluates the candidates that wait with the instruction set, in a function of its own: the traversal is better off with
 /// registers of its own.
 #[inline(never)]
-pub(super) fn finish<C: Collector>(filter: &mut Filter<'_, C>) {
+pub(crate) fn finish<C: Collector>(filter: &mut Filter<'_, C>) {
     filter.isa.run(Finish(filter));
 }
 
 /// The same for the nearest primitive: what is not generic is compiled once.
 #[inline(never)]
-pub(super) fn finish_nearest(filter: &mut Filter<'_, Minimum>) {
+pub(crate) fn finish_nearest(filter: &mut Filter<'_, Minimum>) {
     filter.isa.run(Finish(filter));
 }
 
@@ -350,27 +380,4 @@ impl<C: Collector> Operation for Finish<'_, '_, C> {
     fn run<I: InstructionSet>(self) {
         self.0.finish();
     }
-}
-
-/// One bit for each square that is at most `limit`.
-#[inline(always)]
-fn at_most<L: Lanes>(squares: &[f32; LANES], limit: f32) -> u32 {
-    let mut mask = 0;
-    let mut at = 0;
-    while at < LANES {
-        mask |= L::load(&squares[at..]).at_most(L::splat(limit)) << at;
-        at += L::LEN;
-    }
-    mask
-}
-
-#[inline(always)]
-fn smallest<L: Lanes>(squares: &[f32; LANES]) -> f32 {
-    let mut all = L::load(&squares[..]);
-    let mut at = L::LEN;
-    while at < LANES {
-        all = all.min(L::load(&squares[at..]));
-        at += L::LEN;
-    }
-    all.smallest()
 }

@@ -149,12 +149,21 @@ pub(crate) struct Rounded {
 }
 
 impl Rounded {
+    /// Adds the squares of the gaps to some boxes on axis k to `sum`.
+    #[inline(always)]
+    pub(crate) fn squared_gap<L: Lanes>(&self, k: usize, min: L, max: L, sum: L) -> L {
+        let below = min.sub(L::splat(self.high[k]));
+        let above = L::splat(self.low[k]).sub(max);
+        let gap = below.max(above).max(L::splat(0.0));
+        gap.mul_add(gap, sum)
+    }
+
     #[inline(always)]
     #[allow(
         clippy::cast_possible_truncation,
         reason = "rounded both ways, which covers the rounding of the difference"
     )]
-    pub(super) fn of(point: [f64; 3]) -> Self {
+    pub(crate) fn of(point: [f64; 3]) -> Self {
         let mut result = Self { low: [0.0; 3], high: [0.0; 3] };
         for (k, x) in point.into_iter().enumerate() {
             let x = x as f32;

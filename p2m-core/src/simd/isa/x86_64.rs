@@ -92,6 +92,12 @@ impl Lanes for Eight {
         Self(unsafe { _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(_mm_loadu_si128(from.as_ptr().cast()))) })
     }
     #[inline(always)]
+    fn load_u8(from: &[u8]) -> Self {
+        let from: &[u8; 8] = from[..8].try_into().expect("eight numbers");
+        // SAFETY: as everywhere, and the array has 8 bytes to read.
+        Self(unsafe { _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(from.as_ptr().cast()))) })
+    }
+    #[inline(always)]
     fn store(self, to: &mut [f32]) {
         let to: &mut [f32; 8] = (&mut to[..8]).try_into().expect("room for eight numbers");
         // SAFETY: as everywhere, and the array has 32 bytes to write.
@@ -179,6 +185,12 @@ impl Lanes for Sixteen {
         let from: &[u16; 16] = from[..16].try_into().expect("sixteen numbers");
         // SAFETY: as everywhere, and the array has 32 bytes to read.
         Self(unsafe { _mm512_cvtepi32_ps(_mm512_cvtepu16_epi32(_mm256_loadu_si256(from.as_ptr().cast()))) })
+    }
+    #[inline(always)]
+    fn load_u8(from: &[u8]) -> Self {
+        let from: &[u8; 16] = from[..16].try_into().expect("sixteen numbers");
+        // SAFETY: as everywhere, and the array has 16 bytes to read.
+        Self(unsafe { _mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128(from.as_ptr().cast()))) })
     }
     #[inline(always)]
     fn store(self, to: &mut [f32]) {

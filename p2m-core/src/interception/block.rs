@@ -1,0 +1,228 @@
+//! Interception lists: blocks of up to eight packets, with bounds on their distances and the lanes that matter.
+//!
+//! A block bounds the distances to its packets from below in one of two ways, whichever rules out more of them in its
+//! cell:
+//!
+//! - by *boxes*, as a node of a tree does: best where the cell is as near as it is large;
+//! - by *corners*: f(q) = d(q, t)^2 - |q - y|^2 is concave for any closed set t and any point y, since it is an infimum of
+//!   affine functions. So with x_i the corners of the cell and l_i the weights of q among them (trilinear ones, say),
+//!   f(q) >= sum l_i f(x_i): eight numbers for each packet bound its distance everywhere in the cell. Where the nearest
+//!   point of t is the same vertex throughout, f is affine and the bound is the distance itself.
+//!
+//! Numbers are kept as bytes, rounded outwards. All lengths are in the frame of the scene.
+
+use crate::hierarchy::wide::volume::Rounded;
+use crate::kernel::vector::V3;
+use crate::simd::Lanes;
+
+/// Packets of a block.
+pub(super) const WIDTH: usize = 8;
+
+/// A packet of a list: which lanes can be the answer, a box around these, and f at the corners of the cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    pub(super) packet: u32,
+    pub(super) lanes: u16,
+    pub(super) bounds: [[f32; 3]; 2],
+    pub(super) f: [f64; 8],
+}
+
+/// How a block bounds distances.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Bounds {
+    Boxes,
+    /// By corners of a cell of this level, with a reference point y that [`reference`] has rounded.
+    Corners {
+        level: u8,
+        y: V3,
+    },
+}
+
+/// The level of blocks that have boxes.
+const BOXES: u8 = u8::MAX;
+/// Reference points are multiples of this: 16 bits reach to 4, where the frame of a scene ends.
+const REFERENCE: f64 = 1.0 / 8192.0;
+
+/// The nearest point that a block can have as y.
+pub(super) fn reference(y: V3) -> V3 {
+    y.map(|x| (x / REFERENCE).round().clamp(-32768.0, 32767.0) * REFERENCE)
+}
+
+/// Eight packets in two cache lines.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Block {
+    /// For corners: row i has f at corner i. For boxes: low and high corners, row by row, and in the last two rows the origin.
+    bounds: [[u8; WIDTH]; 8],
+    pub(super) packets: [u32; WIDTH],
+    pub(super) lanes: [u16; WIDTH],
+    y: [i16; 3],
+    /// What a byte of bounds is: a power of two.
+    exponent: i8,
+    /// Of the cell; [`BOXES`] for boxes.
+    level: u8,
+    /// What f is where its byte is 0.
+    base: f32,
+    /// Entries in use.
+    pub(super) len: u8,
+    /// How many blocks of the same list follow.
+    pub(super) more: u8,
+}
+
+const _: () = assert!(size_of::<Block>() == 128);
+
+/// A query, as blocks need it.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    pub(super) rounded: Rounded,
+    /// In the frame.
+    pub(super) local: V3,
+    /// In finest cells of the cube.
+    pub(super) cells: V3,
+    /// Levels to the finest cells.
+    pub(super) depth: u32,
+}
+
+impl Block {
+    /// The blocks of a list, of at most 256 times 8 entries.
+    pub(super) fn of_list(entries: &[Entry], bounds: Bounds) -> Vec<Self> {
+        let mut blocks: Vec<Self> = entries
+            .chunks(WIDTH)
+            .map(|entries| match bounds {
+                Bounds::Boxes => Self::of_boxes(entries),
+                Bounds::Corners { level, y } => Self::of_corners(entries, level, y),
+            })
+            .collect();
+        let count = blocks.len();
+        for (i, block) in blocks.iter_mut().enumerate() {
+            block.more = u8::try_from(count - 1 - i).expect("few blocks");
+        }
+        blocks
+    }
+
+    #[allow(clippy::cast_possible_truncation, reason = "at most eight")]
+    fn new(entries: &[Entry], level: u8) -> Self {
+        let mut block = Self {
+            bounds: [[0; WIDTH]; 8],
+            packets: [entries[0].packet; WIDTH],
+            lanes: [0; WIDTH],
+            y: [0; 3],
+            exponent: 0,
+            level,
+            base: 0.0,
+            len: entries.len() as u8,
+            more: 0,
+        };
+        for (i, entry) in entries.iter().enumerate() {
+            (block.packets[i], block.lanes[i]) = (entry.packet, entry.lanes);
+        }
+        block
+    }
+
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounded outwards within the range")]
+    fn of_boxes(entries: &[Entry]) -> Self {
+        let mut low = [f64::INFINITY; 3];
+        let mut high = [f64::NEG_INFINITY; 3];
+        for entry in entries {
+            for k in 0..3 {
+                low[k] = low[k].min(f64::from(entry.bounds[0][k]));
+                high[k] = high[k].max(f64::from(entry.bounds[1][k]));
+            }
+        }
+        // The boxes span at most 254 units, and origins are less than 2^23 units away from zero.
+        let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+        let place = low.iter().chain(&high).fold(0.0f64, |a, x| a.max(x.abs()));
+        let mut exponent = -100;
+        while size > 254.0 * 2f64.powi(exponent) || place > 8_388_000.0 * 2f64.powi(exponent) {
+            exponent += 1;
+        }
+        let unit = 2f64.powi(exponent);
+        let origin = low.map(|x| (x / unit).floor() * unit);
+        let mut block = Self::new(entries, BOXES);
+        block.exponent = exponent as i8;
+        for (k, x) in origin.into_iter().enumerate() {
+            block.bounds.as_flattened_mut()[48 + 4 * k..][..4].copy_from_slice(&(x as f32).to_le_bytes());
+        }
+        (block.bounds[0], block.bounds[1], block.bounds[2]) = ([255; WIDTH], [255; WIDTH], [255; WIDTH]);
+        for (i, entry) in entries.iter().enumerate() {
+            for k in 0..3 {
+                block.bounds[k][i] = ((f64::from(entry.bounds[0][k]) - origin[k]) / unit).floor() as u8;
+                block.bounds[3 + k][i] = ((f64::from(entry.bounds[1][k]) - origin[k]) / unit).ceil() as u8;
+            }
+        }
+        block
+    }
+
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounded down within the range")]
+    fn of_corners(entries: &[Entry], level: u8, y: V3) -> Self {
+        let all = || entries.iter().flat_map(|entry| entry.f);
+        let least = all().fold(f64::INFINITY, f64::min);
+        let most = all().fold(f64::NEG_INFINITY, f64::max);
+        // What is farther than y may be cut: a minimum of concave functions is concave.
+        let top = if least < 0.0 { most.min(-least) } else { most };
+        let mut exponent = -100;
+        while top - least > 254.0 * 2f64.powi(exponent) && exponent < 100 {
+            exponent += 1;
+        }
+        let unit = 2f64.powi(exponent);
+        // Less for the rounding of the sum at a query.
+        let base = least - unit / 256.0 - least.abs() * 2f64.powi(-20);
+        let base = (base as f32).next_down();
+        let mut block = Self::new(entries, level);
+        block.exponent = exponent as i8;
+        block.base = base;
+        block.y = y.map(|x| (x / REFERENCE) as i16);
+        block.bounds = [[255; WIDTH]; 8];
+        for (i, entry) in entries.iter().enumerate() {
+            for (row, f) in block.bounds.iter_mut().zip(entry.f) {
+                row[i] = ((f - least) / unit).floor().clamp(0.0, 255.0) as u8;
+            }
+        }
+        block
+    }
+
+    /// Squares of lower bounds of the distances to the packets, as those of a node. Those of empty entries are anything.
+    #[inline(always)]
+    pub(super) fn lower_bounds<L: Lanes>(&self, place: &Place) -> L {
+        let unit = f32::from_bits(((i32::from(self.exponent) + 127) as u32) << 23);
+        if self.level == BOXES {
+            let bytes = self.bounds.as_flattened();
+            let mut sum = L::splat(0.0);
+            for k in 0..3 {
+                let origin = L::splat(f32::from_le_bytes(bytes[48 + 4 * k..][..4].try_into().expect("four bytes")));
+                let low = L::load_u8(&self.bounds[k]).mul_add(L::splat(unit), origin);
+                let high = L::load_u8(&self.bounds[3 + k]).mul_add(L::splat(unit), origin);
+                sum = place.rounded.squared_gap(k, low, high, sum);
+            }
+            return sum;
+        }
+        let way = [0, 1, 2].map(|k: usize| place.local[k] - f64::from(self.y[k]) * REFERENCE);
+        let square = (way[0] * way[0] + way[1] * way[1] + way[2] * way[2]) as f32;
+        let [x, y, z] = place.weights(self.level);
+        let (z0, z1) = ((1.0 - z) * unit, z * unit);
+        let (w00, w10, w01, w11) = ((1.0 - y) * z0, y * z0, (1.0 - y) * z1, y * z1);
+        let weights =
+            [(1.0 - x) * w00, x * w00, (1.0 - x) * w10, x * w10, (1.0 - x) * w01, x * w01, (1.0 - x) * w11, x * w11];
+        let mut even = L::splat(square * (1.0 - 2.0 * f32::EPSILON) + self.base);
+        let mut odd = L::splat(-2.0 * f32::EPSILON * square);
+        for i in 0..4 {
+            even = L::load_u8(&self.bounds[2 * i]).mul_add(L::splat(weights[2 * i]), even);
+            odd = L::load_u8(&self.bounds[2 * i + 1]).mul_add(L::splat(weights[2 * i + 1]), odd);
+        }
+        even.add(odd).max(L::splat(0.0))
+    }
+}
+
+impl Place {
+    /// Where the query is in its cell of a level, from 0 to 1 on each axis.
+    #[inline(always)]
+    fn weights(&self, level: u8) -> [f32; 3] {
+        let shift = self.depth - u32::from(level);
+        let per_side = f64::from_bits((1023 - u64::from(shift)) << 52);
+        let part = |x: f64| {
+            let x = x * per_side;
+            (x - f64::from(x as u32)) as f32
+        };
+        [part(self.cells[0]), part(self.cells[1]), part(self.cells[2])]
+    }
+}

@@ -1,0 +1,444 @@
+//! A partition into cubes.
+
+use super::block::{Block, Place, WIDTH};
+use super::options::{Domain, OctreeOptions, OctreeReport};
+use super::refine::{Allowance, Cell, Done, Refinement};
+use crate::hierarchy::PacketTree;
+use crate::hierarchy::wide::evaluation;
+use crate::hierarchy::wide::search::{Evaluate, Filter, Search, finish, finish_nearest};
+use crate::hierarchy::wide::volume::Rounded;
+use crate::kernel::vector::V3;
+use crate::query::Minimum;
+use crate::real::{narrow, wide};
+use crate::simd::{EightLanes, InstructionSet, Operation, lane_of_key, number_of_key, prefetch};
+use crate::{Aabb, Best, Collector, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Real};
+use nalgebra::Point3;
+use std::collections::HashMap;
+use std::sync::atomic::AtomicU64;
+
+/// What a code means is in its three highest bits, the rest is a number:
+const SHIFT: u32 = 29;
+/// the first of eight rows of codes, two levels of cubes;
+const TWO_LEVELS: u32 = 0;
+/// a row of codes, one level;
+const ONE_LEVEL: u32 = 1;
+/// the first block of a list;
+const LIST: u32 = 2;
+/// a packet and its lane;
+const SINGLE: u32 = 3;
+/// none: the tree answers.
+const TREE: u32 = 4 << SHIFT;
+
+/// The most levels: a coordinate in cells is a whole number of 32 bits.
+const DEEPEST: u8 = 30;
+/// [`Domain::Everywhere`] in sizes of the scene.
+const EVERYWHERE: f64 = 10.0;
+/// Budgets are for at least so many primitives.
+const FEW: usize = 10_000;
+
+/// Codes of eight cubes, x lowest.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+struct Row([u32; 8]);
+
+/// An interception index whose cells are cubes, over a set of primitives that it does not keep.
+#[derive(Clone, Debug)]
+pub struct Octree {
+    tree: PacketTree,
+    low: V3,
+    /// Finest cells in a unit of length.
+    per_length: f64,
+    /// Levels to the finest cells; 0 if there are none.
+    depth: u32,
+    root: u32,
+    rows: Vec<Row>,
+    blocks: Vec<Block>,
+    report: OctreeReport,
+}
+
+impl Octree {
+    /// Builds the index over a set whose boxes are finite. `progress` is told what part of space is done, each percent once, from
+    /// any thread.
+    #[must_use]
+    pub fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
+        set: &S,
+        options: &OctreeOptions,
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Self {
+        let tree = PacketTree::build(set, &options.splits);
+        let tree_bytes = tree.memory();
+        let mut octree = Self {
+            tree,
+            low: [0.0; 3],
+            per_length: 0.0,
+            depth: 0,
+            root: TREE,
+            rows: Vec::new(),
+            blocks: Vec::new(),
+            report: OctreeReport { tree_bytes, ..OctreeReport::default() },
+        };
+        if let Some(shape) = Shape::of(&octree.tree, options) {
+            octree.refine(set, options, &shape, progress);
+        }
+        progress(1.0);
+        octree
+    }
+
+    fn refine<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
+        &mut self,
+        set: &S,
+        options: &OctreeOptions,
+        shape: &Shape,
+        progress: &(dyn Fn(f64) + Sync),
+    ) {
+        let tree = &self.tree;
+        let owners = owners(tree);
+        let nearest = |x: V3| {
+            // Nearest to a rounded place: any point of the scene will do.
+            let mut best = Best::<T>::new(&QueryOptions::default());
+            tree.search_nearest(set, &narrow(x), &mut best);
+            best.nearest_point().unwrap_or([f64::INFINITY; 3])
+        };
+        let refinement = Refinement {
+            tree,
+            owners: &owners,
+            nearest: &nearest,
+            domain: options.domain,
+            slack: shape.slack,
+            even: shape.even,
+            per_packet: 1.0 / tree.packets().0 as f64,
+            resolution: options.resolution,
+            depth: DEEPEST,
+            finest: shape.side * 2f64.powi(-i32::from(DEEPEST)),
+            parallel: options.splits.parallel,
+            done: Done {
+                work: AtomicU64::new(0),
+                stopped: AtomicU64::new(0),
+                share: AtomicU64::new(0),
+                percent: AtomicU64::new(0),
+                progress,
+            },
+        };
+        let count = tree.packets().1.max(FEW) as f64;
+        let allowance = Allowance { bytes: options.memory * count, work: options.work * count, share: 1.0 };
+        let cells = refinement.cells(shape.low, shape.side, allowance);
+        let (work, stopped) = (refinement.done.work.into_inner(), refinement.done.stopped.into_inner());
+        self.report.work = work;
+        self.report.stopped = usize::try_from(stopped).unwrap_or(usize::MAX);
+        self.low = shape.low;
+        self.depth = u32::from(DEEPEST);
+        self.per_length = 2f64.powi(i32::from(DEEPEST)) / shape.side;
+        self.root = self.code(cells, 0);
+        self.rows.shrink_to_fit();
+        self.blocks.shrink_to_fit();
+        self.report.bytes = self.memory() - self.tree.memory();
+    }
+
+    /// Keeps a cell of a level, and gives its code.
+    fn code(&mut self, cell: Cell, level: usize) -> u32 {
+        let code =
+            |what: u32, n: usize| u32::try_from(n).ok().filter(|n| n >> SHIFT == 0).map_or(TREE, |n| what << SHIFT | n);
+        self.report.depth = self.report.depth.max(level);
+        match cell {
+            Cell::Tree => {
+                self.report.trees += 1;
+                TREE
+            }
+            Cell::Single(packet, lane) => {
+                self.report.singles += 1;
+                code(SINGLE, packet as usize * 16 + usize::from(lane))
+            }
+            Cell::Blocks(blocks) => {
+                self.report.lists += 1;
+                self.report.entries += blocks.iter().map(|block| usize::from(block.len)).sum::<usize>();
+                let first = self.blocks.len();
+                self.blocks.extend(blocks);
+                code(LIST, first)
+            }
+            Cell::Split(children) => {
+                let row = self.rows.len();
+                let inner = children.iter().filter(|child| matches!(child, Cell::Split(_))).count();
+                // Two levels at once, unless most of their codes would be the same.
+                if inner < 4 {
+                    self.rows.push(Row([TREE; 8]));
+                    for (c, child) in children.into_iter().enumerate() {
+                        self.rows[row].0[c] = self.code(child, level + 1);
+                    }
+                    return code(ONE_LEVEL, row);
+                }
+                self.rows.resize(row + 8, Row([TREE; 8]));
+                for (c, child) in children.into_iter().enumerate() {
+                    match child {
+                        Cell::Split(grandchildren) => {
+                            for (g, grandchild) in grandchildren.into_iter().enumerate() {
+                                let code = self.code(grandchild, level + 2);
+                                self.put(row, c, g, code);
+                            }
+                        }
+                        leaf => {
+                            let code = self.code(leaf, level + 1);
+                            (0..8).for_each(|g| self.put(row, c, g, code));
+                        }
+                    }
+                }
+                code(TWO_LEVELS, row)
+            }
+        }
+    }
+
+    /// Puts the code of grandchild `g` of child `c` into a node of two levels: two bits for each axis, x lowest.
+    fn put(&mut self, row: usize, c: usize, g: usize, code: u32) {
+        let place: usize = (0..3).map(|k| ((c >> k & 1) << 1 | (g >> k & 1)) << (2 * k)).sum();
+        self.rows[row + place / 8].0[place % 8] = code;
+    }
+
+    /// The code of the cell of a place in finest cells of the cube.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the cube")]
+    fn locate(&self, place: &V3) -> u32 {
+        let cells = (1u64 << self.depth) as f64;
+        let mut at = [0u32; 3];
+        for k in 0..3 {
+            // Not for NaN either.
+            if !(place[k] >= 0.0 && place[k] < cells) {
+                return TREE;
+            }
+            at[k] = place[k] as u32;
+        }
+        let mut shift = self.depth;
+        let mut code = self.root;
+        while code < LIST << SHIFT {
+            let row = (code & !(ONE_LEVEL << SHIFT)) as usize;
+            if code < ONE_LEVEL << SHIFT {
+                shift -= 2;
+                let [x, y, z] = [at[0] >> shift & 3, at[1] >> shift & 3, at[2] >> shift & 3];
+                code = self.rows[row + (z << 1 | y >> 1) as usize].0[((y & 1) << 2 | x) as usize];
+            } else {
+                shift -= 1;
+                let [x, y, z] = [at[0] >> shift & 1, at[1] >> shift & 1, at[2] >> shift & 1];
+                code = self.rows[row].0[(z << 2 | y << 1 | x) as usize];
+            }
+        }
+        code
+    }
+
+    /// Offers to `collector` every primitive of `set`, over which the index was built, that it could want. `query` is
+    /// finite.
+    #[inline]
+    pub fn search<T: Real, S: PrimitiveSet<T>, C: Collector>(&self, set: &S, query: &Point3<T>, collector: &mut C) {
+        if collector.is_nearest_only() {
+            self.look_up(wide(query), collector, &evaluation(set, query), finish);
+        } else {
+            self.tree.search(set, query, collector);
+        }
+    }
+
+    /// The same for the nearest primitive.
+    pub fn search_nearest<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
+        self.nearest(wide(query), best.minimum(), &evaluation(set, query));
+    }
+
+    /// Not generic, so compiled once.
+    fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
+        self.look_up(query, minimum, evaluate, finish_nearest);
+    }
+
+    #[inline(always)]
+    fn look_up<C: Collector>(
+        &self,
+        query: V3,
+        collector: &mut C,
+        evaluate: Evaluate<'_, C>,
+        finish: fn(&mut Filter<'_, C>),
+    ) {
+        let tree = &self.tree;
+        let (code, cells) = self.cell_of(&query);
+        match tree.frame.local(&query) {
+            Some(local) if code != TREE => {
+                let place = Place { rounded: Rounded::of(local), local, cells, depth: self.depth };
+                tree.isa().run(Lookup { octree: self, code, query, place, collector, evaluate, finish });
+            }
+            _ => tree.isa().run(Search { tree, query, collector, evaluate, finish }),
+        }
+    }
+
+    /// The code of the cell of a query, and its place in finest cells.
+    #[inline(always)]
+    fn cell_of(&self, query: &V3) -> (u32, V3) {
+        let cells: V3 = std::array::from_fn(|k| (query[k] - self.low[k]) * self.per_length);
+        (if self.depth > 0 { self.locate(&cells) } else { TREE }, cells)
+    }
+
+    /// How many packets the list of the cell of a point has: 1 where one primitive is the nearest throughout, `None` where
+    /// the tree answers.
+    #[must_use]
+    pub fn list_length(&self, point: &Point3<f64>) -> Option<usize> {
+        let code = self.cell_of(&wide(point)).0;
+        match code >> SHIFT {
+            SINGLE => Some(1),
+            LIST => {
+                let first = (code & !(LIST << SHIFT)) as usize;
+                let blocks = &self.blocks[first..=first + usize::from(self.blocks[first].more)];
+                Some(blocks.iter().map(|block| usize::from(block.len)).sum())
+            }
+            _ => None,
+        }
+    }
+
+    /// The tree over the packets.
+    #[must_use]
+    pub fn tree(&self) -> &PacketTree {
+        &self.tree
+    }
+
+    /// What it is made of.
+    #[must_use]
+    pub fn report(&self) -> OctreeReport {
+        self.report
+    }
+
+    /// Heap memory it owns, in bytes.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.tree.memory() + self.rows.capacity() * size_of::<Row>() + self.blocks.capacity() * size_of::<Block>()
+    }
+
+    /// Searches with another instruction set. Answers do not depend on it.
+    #[must_use]
+    pub fn with_isa(self, isa: Isa) -> Self {
+        Self { tree: self.tree.with_isa(isa), ..self }
+    }
+}
+
+/// The cube of the domain, and what follows from it.
+struct Shape {
+    low: V3,
+    side: f64,
+    slack: f64,
+    /// Boxes with queries evenly in them, and how many for each unit of volume.
+    even: [(Aabb<f64>, f64); 2],
+}
+
+impl Shape {
+    /// `None` for a scene without extent, one that f32 cannot tell apart and a domain without extent: the tree answers.
+    fn of(tree: &PacketTree, options: &OctreeOptions) -> Option<Self> {
+        let bounds = tree.bounds();
+        let extent = bounds.max - bounds.min;
+        let size = extent.max();
+        let centre = bounds.min + extent * 0.5;
+        // A flat scene has a flat box, but queries beside it are in the domain, too.
+        let extent = extent.map(|x| x.max(size * 0.05));
+        let domain = match options.domain {
+            Domain::Everywhere => {
+                Aabb { min: centre - extent * (EVERYWHERE * 0.5), max: centre + extent * (EVERYWHERE * 0.5) }
+            }
+            Domain::Box(bounds) => bounds,
+            Domain::Band(width) => {
+                Aabb { min: centre - extent.map(|x| x * 0.5 + width), max: centre + extent.map(|x| x * 0.5 + width) }
+            }
+        };
+        let span = domain.max - domain.min;
+        let reach = span.max();
+        let sound = span.iter().all(|x| *x > 0.0 && x.is_finite()) && domain.min.iter().all(|x| x.is_finite());
+        let usable = size > 0.0 && size.is_finite() && tree.frame.is_plain() && sound;
+        // Lists have places in the frame of the scene in f32, and cells have to be of some use.
+        if !usable || reach > size * 2f64.powi(20) || reach < size * 2f64.powi(-20) {
+            return None;
+        }
+        // Dyadic: a power of two as side, and the corner a multiple of a small part of it, so that all corners are exact.
+        let side = 2f64.powi((reach * 1.0001).log2().ceil() as i32);
+        let grain = side / 4096.0;
+        let middle = domain.min + span * 0.5;
+        let low: V3 = std::array::from_fn(|k| ((middle[k] - side * 0.5) / grain).floor() * grain);
+        let ends = [wide(&bounds.min), wide(&bounds.max)];
+        let scale = side * 4.0 + low.iter().chain(ends.as_flattened()).fold(0.0f64, |a, x| a.max(x.abs()));
+        let around = Aabb { min: centre - extent * 0.525, max: centre + extent * 0.525 };
+        let in_scene =
+            if options.domain == Domain::Everywhere { 1.0 / (around.max - around.min).product() } else { 0.0 };
+        Some(Self {
+            low,
+            side,
+            // Rounding of keys, of dominators and of locating a query: all below 2^-46 of this.
+            slack: scale / (1u64 << 42) as f64,
+            even: [(domain, 1.0 / span.product()), (around, in_scene)],
+        })
+    }
+}
+
+/// For each vertex of a tree the lowest primitive that has it, bit for bit.
+fn owners(tree: &PacketTree) -> Vec<PrimitiveId> {
+    let leaves = &tree.leaves;
+    let mut owners: HashMap<[u64; 3], PrimitiveId> = HashMap::with_capacity(leaves.vertices.len());
+    let key = |v: &V3| v.map(f64::to_bits);
+    for packet in leaves.packets.iter().filter(|p| p.has_vertices()) {
+        for (lane, id) in packet.ids().iter().enumerate() {
+            let (corners, count) = packet.vertices_of(lane);
+            for &v in &corners[..count] {
+                owners.entry(key(&leaves.vertices[v])).and_modify(|o| *o = (*o).min(*id)).or_insert(*id);
+            }
+        }
+    }
+    leaves.vertices.iter().map(|v| owners[&key(v)]).collect()
+}
+
+/// A query in its cell, as an operation.
+struct Lookup<'a, C> {
+    octree: &'a Octree,
+    code: u32,
+    query: V3,
+    place: Place,
+    collector: &'a mut C,
+    evaluate: Evaluate<'a, C>,
+    finish: fn(&mut Filter<'_, C>),
+}
+
+/// Packets of a block that are fetched before they are asked.
+const PREFETCHED: usize = 2;
+
+impl<C: Collector> Operation for Lookup<'_, C> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        let octree = self.octree;
+        let tree = &octree.tree;
+        let number = (self.code & !(7 << SHIFT)) as usize;
+        // What comes next, if the list has more than a block.
+        let lines: *const u8 = octree.blocks.as_ptr().wrapping_add(number).cast();
+        for line in 0..4 {
+            prefetch(lines.wrapping_add(64 * line));
+        }
+        let mut filter = Filter::new(tree, self.query, self.collector, self.evaluate, self.finish);
+        if self.code >> SHIFT == SINGLE {
+            filter.add(number / 16, number % 16);
+            return filter.evaluate_waiting();
+        }
+        let mut at = number;
+        loop {
+            let block = &octree.blocks[at];
+            let bounds: I::Eight = block.lower_bounds(&self.place);
+            let mut keys = [0u32; WIDTH];
+            let count = bounds.sorted_keys(filter.limit(), &mut keys);
+            // The nearest ones, whatever there is: a branch would be mispredicted.
+            for back in 1..=PREFETCHED {
+                let packet = block.packets[lane_of_key(keys[count.wrapping_sub(back) & 7])] as usize;
+                tree.leaves.prefetch(packet);
+                tree.leaves.prefetch_vertices(packet);
+            }
+            let mut rest = count;
+            while rest > 0 {
+                rest -= 1;
+                let key = keys[rest];
+                let lane = lane_of_key(key);
+                if lane < usize::from(block.len) && number_of_key(key) <= filter.limit() {
+                    filter.packet::<I>(block.packets[lane] as usize, u32::from(block.lanes[lane]));
+                }
+            }
+            if block.more == 0 {
+                break;
+            }
+            at += 1;
+        }
+        filter.evaluate_waiting();
+    }
+}

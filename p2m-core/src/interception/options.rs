@@ -1,0 +1,114 @@
+//! What can be chosen about an octree, and what it became.
+
+use crate::Aabb;
+use crate::hierarchy::SplitOptions;
+
+/// Where queries are to be expected: model only what a scene and its queries require. Elsewhere the tree answers, just as
+/// right.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Domain {
+    /// Everywhere: cells reach to ten times the size of the scene's box.
+    #[default]
+    Everywhere,
+    /// In a box.
+    Box(Aabb<f64>),
+    /// At most this far from the scene.
+    Band(f64),
+}
+
+/// How an octree is built. Budgets are upper limits: where cells gain nothing, less is used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct OctreeOptions {
+    /// How the packets of the tree are made, and whether all threads are used.
+    pub splits: SplitOptions,
+    /// Where queries are expected.
+    pub domain: Domain,
+    /// How much a cell has to save to be split: 1 is usual, 3 gives about one and a half times the memory.
+    pub resolution: f64,
+    /// What cells may take, in bytes for each primitive of the scene (for at least 10,000 primitives).
+    pub memory: f64,
+    /// How many times packets may be tested while building, at one point each, for each primitive (for at least 10,000).
+    pub work: f64,
+}
+
+impl Default for OctreeOptions {
+    fn default() -> Self {
+        Self {
+            splits: SplitOptions::default(),
+            domain: Domain::Everywhere,
+            resolution: 1.0,
+            memory: 185.0,
+            work: 400.0,
+        }
+    }
+}
+
+impl OctreeOptions {
+    /// With queries in a part of space.
+    #[must_use]
+    pub fn with_domain(self, domain: Domain) -> Self {
+        Self { domain, ..self }
+    }
+    /// With finer or coarser cells.
+    #[must_use]
+    pub fn with_resolution(self, resolution: f64) -> Self {
+        Self { resolution, ..self }
+    }
+    /// With another memory budget.
+    #[must_use]
+    pub fn with_memory(self, memory: f64) -> Self {
+        Self { memory, ..self }
+    }
+    /// With another build budget.
+    #[must_use]
+    pub fn with_work(self, work: f64) -> Self {
+        Self { work, ..self }
+    }
+    /// With other splits.
+    #[must_use]
+    pub fn with_splits(self, splits: SplitOptions) -> Self {
+        Self { splits, ..self }
+    }
+}
+
+/// What an octree is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct OctreeReport {
+    /// Cells with a list.
+    pub lists: usize,
+    /// Cells of which one primitive is the nearest throughout.
+    pub singles: usize,
+    /// Cells that the tree answers: outside of the domain, or where a list would not be short.
+    pub trees: usize,
+    /// Packets in all lists.
+    pub entries: usize,
+    /// The length of the longest way to a cell, in halvings of the domain.
+    pub depth: usize,
+    /// Bytes of cells and lists.
+    pub bytes: usize,
+    /// Bytes of the tree over the packets.
+    pub tree_bytes: usize,
+    /// How many times a packet was tested at a point.
+    pub work: u64,
+    /// Cells that were not split since a budget was used up.
+    pub stopped: usize,
+}
+
+impl std::fmt::Display for OctreeReport {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { lists, singles, trees, entries, bytes, tree_bytes, work, stopped, .. } = self;
+        let mean = *entries as f64 / (*lists).max(1) as f64;
+        let megabytes = |bytes: usize| bytes as f64 / 1e6;
+        write!(
+            f,
+            "{lists} cells with lists of {mean:.1} packets on average, {singles} with one primitive, {trees} left to the tree; "
+        )?;
+        write!(f, "{:.1} MB of cells, {:.1} MB of tree, {work} tests", megabytes(*bytes), megabytes(*tree_bytes))?;
+        if *stopped > 0 {
+            write!(f, "; {stopped} cells larger than they would be with a larger budget")?;
+        }
+        Ok(())
+    }
+}

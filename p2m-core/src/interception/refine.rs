@@ -1,0 +1,547 @@
+//! From a cube and the tree to cells with their lists.
+//!
+//! A cell starts with what its parent could not rule out. While these are many, they are nodes of the tree, which are opened
+//! one level a cell and tested by their boxes (*coarse*). Once they are few packets, the filters of packets are computed at the
+//! corners (*fine*): 19 new lattice points for the eight children of a cell, whose nearest points give the new dominators.
+//!
+//! # What is split
+//!
+//! A split costs memory and saves time where queries are. The share of queries that a cell gets (its *mass*) is taken to be a mixture of
+//! three: even in the whole domain, even in the box of the scene, and on the surface. What a list costs is how many of its
+//! packets the bounds of its blocks let pass in the middle of the cell, and its blocks. A cell is split if mass times cost is
+//! worth it; budgets of memory and work are handed down in proportion to mass times length, so that they are kept however bad
+//! a scene is, on any number of threads and with the same result.
+
+use super::block::{Block, Bounds, Entry, reference};
+use super::corner::{AtPoints, Dominators, Found, Keep, Least};
+use super::cube::{Corner, Cube, LATTICE, LATTICE_OF, MIDDLE, corner_on};
+use super::options::Domain;
+use crate::hierarchy::PacketTree;
+use crate::hierarchy::wide::node::Child;
+use crate::kernel::vector::V3;
+use crate::{Aabb, Best, Isa, PrimitiveId, QueryOptions};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Fine cells have at most this many packets.
+const FINE: usize = 96;
+/// Fine cells with fewer packets are left to one thread.
+const FORK: usize = 48;
+/// No list is longer, in packets.
+const LONGEST: usize = 32;
+/// Nanoseconds of a packet that is tested and of a further block (observed; their ratio matters).
+const PACKET: f64 = 40.0;
+const BLOCK: f64 = 25.0;
+/// What a query gains by a list in the place of the tree.
+const SEARCH: f64 = 300.0;
+/// Part of its cost that a cell loses by a split.
+const GAIN: f64 = 0.5;
+/// Nanoseconds that have to be saved, in all packets' worth of cells.
+const WORTH: f64 = 100.0;
+/// What a split takes, about: codes of eight cells, and their lists of a block and a half.
+const ROW_BYTES: f64 = 8.0 * size_of::<u32>() as f64;
+const SPLIT_BYTES: f64 = ROW_BYTES + 8.0 * 1.5 * size_of::<Block>() as f64;
+
+/// A cell that is done, or its eight children: child c lies above the middle on axis k if bit k of c is set.
+pub(super) enum Cell {
+    /// The tree answers.
+    Tree,
+    /// One primitive: packet and lane.
+    Single(u32, u8),
+    /// The list.
+    Blocks(Vec<Block>),
+    Split(Box<[Cell; 8]>),
+}
+
+/// What the refinement of all cells shares.
+pub(super) struct Refinement<'a> {
+    pub(super) tree: &'a PacketTree,
+    /// For each vertex of the tree the lowest primitive that has it.
+    pub(super) owners: &'a [PrimitiveId],
+    /// The nearest point of the scene, of any primitive.
+    pub(super) nearest: &'a (dyn Fn(V3) -> V3 + Sync),
+    pub(super) domain: Domain,
+    /// By how much a dominator has to be nearer.
+    pub(super) slack: f64,
+    /// Boxes with queries evenly in them, and how many for each unit of volume.
+    pub(super) even: [(Aabb<f64>, f64); 2],
+    /// Queries for each packet.
+    pub(super) per_packet: f64,
+    pub(super) resolution: f64,
+    /// Levels below the cube.
+    pub(super) depth: u8,
+    /// No cell is smaller: below, corners would be rounded.
+    pub(super) finest: f64,
+    pub(super) parallel: bool,
+    pub(super) done: Done<'a>,
+}
+
+/// What has been done so far.
+pub(super) struct Done<'a> {
+    pub(super) work: AtomicU64,
+    pub(super) stopped: AtomicU64,
+    /// Parts of 2^-40 of the whole, and the last percent that was reported.
+    pub(super) share: AtomicU64,
+    pub(super) percent: AtomicU64,
+    pub(super) progress: &'a (dyn Fn(f64) + Sync),
+}
+
+impl Done<'_> {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share is from 0 to 1")]
+    fn add_share(&self, share: f64) {
+        const ALL: f64 = (1u64 << 40) as f64;
+        let part = (share * ALL) as u64;
+        let all = self.share.fetch_add(part, Ordering::Relaxed) + part;
+        let percent = (all as f64 / ALL * 100.0) as u64;
+        if self.percent.fetch_max(percent, Ordering::Relaxed) < percent {
+            (self.progress)((percent as f64 / 100.0).min(1.0));
+        }
+    }
+}
+
+/// What a cell may still use.
+#[derive(Clone, Copy)]
+pub(super) struct Allowance {
+    pub(super) bytes: f64,
+    pub(super) work: f64,
+    /// Of the whole, for the progress.
+    pub(super) share: f64,
+}
+
+impl Allowance {
+    fn part(self, part: f64) -> Self {
+        Self { bytes: self.bytes * part, work: self.work * part, share: self.share * part }
+    }
+    fn less(self, bytes: f64, work: f64) -> Self {
+        Self { bytes: self.bytes - bytes, work: self.work - work, ..self }
+    }
+}
+
+/// A cell, and what it has left of its allowance.
+type Refined = (Cell, Allowance);
+
+/// What a coarse cell cannot rule out.
+#[derive(Clone, Copy)]
+struct Candidate {
+    child: Child,
+    bounds: Aabb<f64>,
+}
+
+/// A packet that a fine cell cannot rule out: its lanes, and what its filter finds at the corners.
+#[derive(Clone, Copy)]
+struct Item {
+    packet: u32,
+    lanes: u16,
+    bounds: Aabb<f64>,
+    found: [Found; 8],
+}
+
+/// The primitive that seems nearest to a point.
+#[derive(Clone, Copy)]
+struct Nearest {
+    /// An upper bound.
+    distance: f64,
+    packet: u32,
+    lane: usize,
+}
+
+impl Nearest {
+    const NONE: Self = Self { distance: f64::INFINITY, packet: 0, lane: 0 };
+
+    fn add(&mut self, near: Option<(f64, usize)>, packet: u32) {
+        if let Some((distance, lane)) = near
+            && distance < self.distance
+        {
+            *self = Self { distance, packet, lane };
+        }
+    }
+}
+
+/// The middle of a cell.
+struct Middle {
+    /// What the filters of its items find there.
+    found: Vec<Found>,
+    /// The nearest point.
+    y: V3,
+    /// How many items bounds by boxes and by corners let pass.
+    boxes: usize,
+    corners: usize,
+}
+
+/// How much a cell of this mass and length is likely to use, in parts of others: a level makes eight cells of it, each with a
+/// sixteenth of its mass times cost, until that is not worth a split.
+fn need(mass: f64, len: usize) -> f64 {
+    (mass * len as f64).powf(0.7)
+}
+
+fn square_of_way(a: &V3, b: &V3) -> f64 {
+    (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum()
+}
+
+impl Refinement<'_> {
+    /// The cells of the cube.
+    pub(super) fn cells(&self, low: V3, side: f64, allowance: Allowance) -> Cell {
+        let at = |c: usize| -> V3 { std::array::from_fn(|k| low[k] + if c >> k & 1 == 1 { side } else { 0.0 }) };
+        let corners = std::array::from_fn(|c| Corner { x: at(c), y: (self.nearest)(at(c)) });
+        let root = Candidate { child: self.tree.root, bounds: *self.tree.bounds() };
+        self.coarse(&Cube { low, side, level: 0, corners }, vec![root], allowance).0
+    }
+
+    /// Whether a cell may have queries.
+    fn is_asked(&self, cube: &Cube) -> bool {
+        match self.domain {
+            Domain::Everywhere => true,
+            Domain::Box(bounds) => bounds.meets(&cube.bounds()),
+            Domain::Band(width) => {
+                // From everywhere in the cell the scene is at least as far as from a corner, less the way there.
+                let diagonal = cube.side * 1.733;
+                let least = |corner: &Corner| square_of_way(&corner.x, &corner.y).sqrt() - diagonal;
+                cube.corners.iter().all(|corner| least(corner) <= width)
+            }
+        }
+    }
+
+    /// The share of queries in a cell, of which these boxes are near; each stands for as many packets.
+    fn mass<'a>(&self, cube: &Cube, near: impl Iterator<Item = (&'a Aabb<f64>, f64)>) -> f64 {
+        let own = cube.bounds();
+        let mut mass = 0.0;
+        for (whole, density) in self.even {
+            let part = (0..3).map(|k| own.max[k].min(whole.max[k]) - own.min[k].max(whole.min[k]));
+            mass += part.map(|x| x.max(0.0)).product::<f64>() * density;
+        }
+        for (bounds, packets) in near {
+            if bounds.meets(&own) {
+                let size = (bounds.max - bounds.min).max();
+                // Of something larger than the cell a part lies in it.
+                let part = if size > cube.side { (cube.side / size).powi(2) } else { 1.0 };
+                mass += self.per_packet * packets * part;
+            }
+        }
+        mass
+    }
+
+    /// Whether a split pays and may be made.
+    fn splits(&self, cube: &Cube, mass: f64, cost: f64, allowance: &Allowance, work: f64) -> bool {
+        let worth = mass * cost * GAIN * self.resolution >= WORTH * self.per_packet;
+        if !worth || cube.level >= self.depth || cube.side <= self.finest {
+            return false;
+        }
+        let affordable = allowance.bytes >= SPLIT_BYTES && allowance.work >= work;
+        if !affordable {
+            self.done.stopped.fetch_add(1, Ordering::Relaxed);
+        }
+        affordable
+    }
+
+    fn end(&self, cell: Cell, allowance: Allowance) -> Refined {
+        self.done.add_share(allowance.share);
+        let bytes = if let Cell::Blocks(blocks) = &cell { size_of_val(blocks.as_slice()) } else { 0 };
+        (cell, allowance.less(bytes as f64, 0.0))
+    }
+
+    fn coarse(&self, cube: &Cube, mut candidates: Vec<Candidate>, allowance: Allowance) -> Refined {
+        if cube.level > 0 && !self.is_asked(cube) {
+            return self.end(Cell::Tree, allowance);
+        }
+        let dominators = Dominators::of(&cube.corners, self.slack);
+        // Opened until they are packets or too many.
+        let mut open = 1;
+        while open > 0 && candidates.len() <= FINE {
+            open = 0;
+            let mut opened = Vec::with_capacity(2 * candidates.len());
+            for candidate in &candidates {
+                if candidate.child.is_packet() {
+                    opened.push(*candidate);
+                } else {
+                    open += 1;
+                    let children = self.tree.child_boxes(candidate.child);
+                    let children = children.map(|(bounds, child)| Candidate { child, bounds });
+                    opened.extend(children.filter(|c| dominators.keeps_box(&cube.corners, &c.bounds)));
+                }
+            }
+            candidates = opened;
+        }
+        if open == 0 && candidates.len() <= FINE {
+            self.done.work.fetch_add(8 * candidates.len() as u64, Ordering::Relaxed);
+            let items: Vec<Item> = candidates.iter().filter_map(|c| self.item(cube, &dominators, c)).collect();
+            return self.fine(cube, items, allowance);
+        }
+        // What is not a packet has eight of them at least.
+        let near = |c: &Candidate| if c.child.is_packet() { 1.0 } else { 8.0 };
+        let mass = |cube: &Cube, near_it: &[Candidate]| self.mass(cube, near_it.iter().map(|c| (&c.bounds, near(c))));
+        // Searches of the tree for 19 corners, about.
+        let work = 19.0 * 8.0;
+        if !self.splits(cube, mass(cube, &candidates), SEARCH, &allowance, work) {
+            return self.end(Cell::Tree, allowance);
+        }
+        let lattice: [Corner; LATTICE] = std::array::from_fn(|at| match corner_on(at) {
+            Some(corner) => cube.corners[corner],
+            None => Corner { x: cube.point(at), y: (self.nearest)(cube.point(at)) },
+        });
+        let children = cube.children(&lattice).map(|child| {
+            let dominators = Dominators::of(&child.corners, self.slack);
+            let mut own = candidates.clone();
+            own.retain(|c| dominators.keeps_box(&child.corners, &c.bounds));
+            let weight = need(mass(&child, &own), own.len());
+            (child, own, weight)
+        });
+        self.split(allowance.less(ROW_BYTES, work), children, true, |child, own, rest| self.coarse(child, own, rest))
+    }
+
+    /// The cells of the children. Large ones have allowances by weights, and all threads if asked to; small ones have what those
+    /// before them left, too. So the result does not depend on the threads.
+    fn split<P: Send>(
+        &self,
+        allowance: Allowance,
+        children: [(Cube, P, f64); 8],
+        large: bool,
+        cell: impl Fn(&Cube, P, Allowance) -> Refined + Sync + Send,
+    ) -> Refined {
+        let mut total: f64 = children.iter().map(|(_, _, weight)| weight).sum();
+        let part = |weight: f64, total: f64| if total > 0.0 { (weight / total).min(1.0) } else { 0.125 };
+        if !large {
+            let mut left = allowance;
+            let cells = children.map(|(cube, own, weight)| {
+                let given = left.part(part(weight, total));
+                total -= weight;
+                let (cell, rest) = cell(&cube, own, Allowance { share: allowance.share * 0.125, ..given });
+                left = left.less(given.bytes - rest.bytes, given.work - rest.work);
+                cell
+            });
+            return (Cell::Split(Box::new(cells)), left);
+        }
+        let one = |(cube, own, weight): (Cube, P, f64)| cell(&cube, own, allowance.part(part(weight, total)));
+        let cells: Vec<Refined>;
+        #[cfg(feature = "rayon")]
+        if self.parallel {
+            use rayon::prelude::*;
+            cells = Vec::from(children).into_par_iter().map(one).collect();
+        } else {
+            cells = children.map(one).into();
+        }
+        #[cfg(not(feature = "rayon"))]
+        {
+            let _ = self.parallel;
+            cells = children.map(one).into();
+        }
+        let mut left = allowance.part(0.0);
+        let cells = cells.into_iter().map(|(cell, rest)| {
+            left = left.less(-rest.bytes, -rest.work);
+            cell
+        });
+        let cells: Vec<Cell> = cells.collect();
+        let cells: [Cell; 8] = cells.try_into().unwrap_or_else(|_| unreachable!("eight children"));
+        (Cell::Split(Box::new(cells)), left)
+    }
+
+    /// The packet of a candidate at the corners of a cell; `None` if no lane passes the corner test.
+    fn item(&self, cube: &Cube, dominators: &Dominators, candidate: &Candidate) -> Option<Item> {
+        let number = candidate.child.number();
+        let packet = &self.tree.leaves.packets[number];
+        let points = cube.corners.map(|c| c.x);
+        let mut found = [Found::NOTHING; 8];
+        let at = AtPoints { packet, points: &points, found: &mut found, nearest: &mut [None; 8] };
+        self.isa().run(at);
+        let lanes = self.isa().run(Keep { packet, dominators, found: &found, corners: &[0, 1, 2, 3, 4, 5, 6, 7] });
+        let packet = u32::try_from(number).expect("packets have numbers");
+        (lanes != 0).then_some(Item { packet, lanes, bounds: candidate.bounds, found })
+    }
+
+    fn isa(&self) -> Isa {
+        self.tree.isa()
+    }
+
+    fn fine(&self, cube: &Cube, items: Vec<Item>, allowance: Allowance) -> Refined {
+        if cube.level > 0 && !self.is_asked(cube) {
+            return self.end(Cell::Tree, allowance);
+        }
+        let middle = self.middle(cube, &items);
+        let mass = |cube: &Cube, items: &[Item]| self.mass(cube, items.iter().map(|item| (&item.bounds, 1.0)));
+        let tests = middle.boxes.min(middle.corners) as f64;
+        let blocks = items.len() as f64 / 8.0;
+        let cost =
+            if items.len() > LONGEST { SEARCH } else { 0.0 } + PACKET * (tests - 1.0) + BLOCK * (blocks - 1.0).max(0.0);
+        let work = 18.0 * items.len() as f64;
+        if !self.splits(cube, mass(cube, &items), cost, &allowance, work) {
+            return self.end(self.list(cube, &items, &middle), allowance);
+        }
+        self.done.work.fetch_add(18 * items.len() as u64, Ordering::Relaxed);
+        // All filters at all lattice points; those at the corners and in the middle are known.
+        let new: [usize; LATTICE - 9] = {
+            let mut new = (0..LATTICE).filter(|&at| at != MIDDLE && corner_on(at).is_none());
+            std::array::from_fn(|_| new.next().expect("18 points"))
+        };
+        let points = new.map(|at| cube.point(at));
+        let mut all: Vec<[Found; LATTICE]> = Vec::with_capacity(items.len());
+        let mut nearest = [Nearest::NONE; LATTICE];
+        let mut whole = true;
+        for (item, in_middle) in items.iter().zip(&middle.found) {
+            let packet = &self.tree.leaves.packets[item.packet as usize];
+            whole &= packet.has_vertices();
+            let mut found_new = [Found::NOTHING; LATTICE - 9];
+            let mut nearest_new = [None; LATTICE - 9];
+            self.isa().run(AtPoints { packet, points: &points, found: &mut found_new, nearest: &mut nearest_new });
+            let mut found = [Found::NOTHING; LATTICE];
+            for corner in 0..8 {
+                found[2 * LATTICE_OF[0][corner]] = item.found[corner];
+            }
+            found[MIDDLE] = *in_middle;
+            for ((at, own), near) in new.iter().zip(&found_new).zip(&nearest_new) {
+                found[*at] = *own;
+                nearest[*at].add(*near, item.packet);
+            }
+            all.push(found);
+        }
+        let lattice: [Corner; LATTICE] = std::array::from_fn(|at| match corner_on(at) {
+            Some(corner) => cube.corners[corner],
+            None if at == MIDDLE => Corner { x: cube.point(at), y: middle.y },
+            None => Corner { x: cube.point(at), y: self.nearest_of(&nearest[at], whole, cube.point(at)) },
+        });
+        let mut number = 0;
+        let children = cube.children(&lattice).map(|child| {
+            let corners = &LATTICE_OF[number];
+            number += 1;
+            let dominators = Dominators::of(&child.corners, self.slack);
+            let mut own = Vec::with_capacity(items.len());
+            for (item, found) in items.iter().zip(&all) {
+                let packet = &self.tree.leaves.packets[item.packet as usize];
+                let lanes = item.lanes & self.isa().run(Keep { packet, dominators: &dominators, found, corners });
+                if lanes != 0 {
+                    own.push(Item { lanes, found: corners.map(|at| found[at]), ..*item });
+                }
+            }
+            let weight = need(mass(&child, &own), own.len());
+            (child, own, weight)
+        });
+        drop(all);
+        let rest = allowance.less(ROW_BYTES, work);
+        self.split(rest, children, items.len() >= FORK, |child, own, allowance| self.fine(child, own, allowance))
+    }
+
+    /// The nearest point to `x`: of a primitive that seems nearest, or of all where filters do not tell (`whole`).
+    fn nearest_of(&self, near: &Nearest, whole: bool, x: V3) -> V3 {
+        if !whole || near.distance == f64::INFINITY {
+            return (self.nearest)(x);
+        }
+        let mut best = Best::<f64>::new(&QueryOptions::default());
+        let packet = &self.tree.leaves.packets[near.packet as usize];
+        packet.offer(near.lane, &self.tree.leaves.vertices, x, f64::INFINITY, &mut best);
+        best.finish().map_or([f64::INFINITY; 3], |closest| closest.point.coords.into())
+    }
+
+    /// What the filters find in the middle of a cell.
+    fn middle(&self, cube: &Cube, items: &[Item]) -> Middle {
+        let x = cube.point(MIDDLE);
+        let mut middle = Middle { found: Vec::with_capacity(items.len()), y: x, boxes: 0, corners: 0 };
+        let mut nearest = Nearest::NONE;
+        let mut whole = true;
+        self.done.work.fetch_add(items.len() as u64, Ordering::Relaxed);
+        for item in items {
+            let mut found = [Found::NOTHING];
+            let mut near = [None];
+            let packet = &self.tree.leaves.packets[item.packet as usize];
+            whole &= packet.has_vertices();
+            self.isa().run(AtPoints { packet, points: &[x], found: &mut found, nearest: &mut near });
+            middle.found.push(found[0]);
+            nearest.add(near[0], item.packet);
+        }
+        middle.y = self.nearest_of(&nearest, whole, x);
+        // How many packets either kind of bounds lets pass there.
+        let squares = cube.corners.map(|corner| square_of_way(&corner.x, &middle.y));
+        let own = square_of_way(&x, &middle.y);
+        let f = items.iter().map(|item| {
+            let unit = self.tree.leaves.packets[item.packet as usize].unit();
+            let least = self.isa().run(Least { found: &item.found, lanes: item.lanes });
+            std::array::from_fn(|i| (least[i] * unit) * (least[i] * unit) - squares[i])
+        });
+        let f: Vec<[f64; 8]> = f.collect();
+        let top = f.as_flattened().iter().fold(0.0f64, |a, x| a.max(-x));
+        let bound = |f: &[f64; 8]| own + f.iter().map(|f| f.min(top)).sum::<f64>() / 8.0 - top / 128.0;
+        middle.corners = f.iter().filter(|f| bound(f) <= own).count();
+        // Boxes are the exception, and only near the scene.
+        middle.boxes = if middle.corners > 2 && own < 4.0 * cube.side * cube.side {
+            let bound = |item: &Item| item.bounds.lower_bound(&nalgebra::Point3::from(x));
+            items.iter().filter(|item| bound(item) <= own).count()
+        } else {
+            usize::MAX
+        };
+        middle
+    }
+
+    /// A list as it is kept.
+    fn list(&self, cube: &Cube, items: &[Item], middle: &Middle) -> Cell {
+        let frame = &self.tree.frame;
+        let y = reference(frame.place(&middle.y));
+        let squares = cube.corners.map(|corner| square_of_way(&frame.place(&corner.x), &y));
+        // Rounding in f64, of places in the frame and of these squares.
+        let margin = squares.iter().fold(1.0, |a: f64, x| a.max(*x)) * 2f64.powi(-46);
+        let mut entries: Vec<(f64, Entry)> = Vec::with_capacity(items.len());
+        let mut single = None;
+        let mut count = 0;
+        for (item, found) in items.iter().zip(&middle.found) {
+            let packet = &self.tree.leaves.packets[item.packet as usize];
+            let lanes = self.without_ties(cube, item);
+            if lanes == 0 {
+                continue;
+            }
+            count += lanes.count_ones();
+            single = Some((item.packet, lanes.trailing_zeros()));
+            let bounds = frame.enclose(&packet.bounds_of(lanes));
+            let length = packet.unit() * frame.per_unit;
+            let least = self.isa().run(Least { found: &item.found, lanes });
+            let f = std::array::from_fn(|i| (least[i] * length) * (least[i] * length) - squares[i] - margin);
+            // Nearer packets in earlier blocks.
+            let order = self.isa().run(Least { found: std::slice::from_ref(found), lanes })[0] * length;
+            entries.push((order, Entry { packet: item.packet, lanes, bounds, f }));
+        }
+        match (count, single) {
+            (1, Some((packet, lane))) => Cell::Single(packet, u8::try_from(lane).expect("sixteen lanes")),
+            _ if entries.is_empty() || entries.len() > LONGEST => Cell::Tree,
+            _ => {
+                entries.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.packet.cmp(&b.1.packet)));
+                let entries: Vec<Entry> = entries.into_iter().map(|e| e.1).collect();
+                let bounds = if middle.boxes < middle.corners {
+                    Bounds::Boxes
+                } else {
+                    Bounds::Corners { level: cube.level, y }
+                };
+                Cell::Blocks(Block::of_list(&entries, bounds))
+            }
+        }
+    }
+
+    /// The lanes of an item without those that can only tie with a lower primitive: where a vertex is the nearest point of a
+    /// primitive in the whole cell, certainly enough for the kernel to give exactly the distance to it, the lowest
+    /// primitive with that vertex is at least as near.
+    fn without_ties(&self, cube: &Cube, item: &Item) -> u16 {
+        /// The kernel is content with 2^-38.
+        const MARGIN: f64 = 1.0 / (1u64 << 36) as f64;
+        let packet = &self.tree.leaves.packets[item.packet as usize];
+        let half = cube.side * 0.5;
+        let centre = cube.low.map(|x| x + half);
+        let mut kept = item.lanes;
+        for lane in (0..packet.ids().len()).filter(|lane| item.lanes >> lane & 1 == 1) {
+            let (corners, count) = packet.vertices_of(lane);
+            let corners = &corners[..count];
+            let vertex = |v: usize| self.tree.leaves.vertices[corners[v]];
+            let ties = (0..corners.len()).any(|v| {
+                if self.owners[corners[v]] >= packet.ids()[lane] {
+                    return false;
+                }
+                let own = vertex(v);
+                (0..corners.len()).filter(|&w| w != v).all(|w| {
+                    let other = vertex(w);
+                    let edge: V3 = std::array::from_fn(|k| other[k] - own[k]);
+                    let to: V3 = std::array::from_fn(|k| centre[k] - own[k]);
+                    let size = (0..3).map(|k| to[k].abs() + half + edge[k].abs()).fold(0.0, f64::max);
+                    // The largest value of (q - own) . edge in the cell.
+                    let most: f64 = (0..3).map(|k| to[k] * edge[k] + half * edge[k].abs()).sum();
+                    most < -MARGIN * size * size
+                })
+            });
+            if ties {
+                kept &= !(1 << lane);
+            }
+        }
+        kept
+    }
+}
