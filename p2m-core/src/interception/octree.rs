@@ -2,7 +2,7 @@
 
 use super::block::{Block, Place, WIDTH};
 use super::options::{Domain, OctreeOptions, OctreeReport};
-use super::refine::{Allowance, Cell, Done, Refinement};
+use super::refine::{Cell, Done, NODE, PACKET, Refinement};
 use crate::hierarchy::PacketTree;
 use crate::hierarchy::wide::evaluation;
 use crate::hierarchy::wide::search::{Evaluate, Filter, Search, finish, finish_nearest};
@@ -11,7 +11,7 @@ use crate::kernel::vector::V3;
 use crate::query::Minimum;
 use crate::real::{narrow, wide};
 use crate::simd::{EightLanes, InstructionSet, Operation, lane_of_key, number_of_key, prefetch};
-use crate::{Aabb, Best, Collector, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Real};
+use crate::{Aabb, Best, Collector, Counting, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Real};
 use nalgebra::Point3;
 use std::collections::HashMap;
 use std::sync::atomic::AtomicU64;
@@ -33,6 +33,8 @@ const TREE: u32 = 4 << SHIFT;
 const DEEPEST: u8 = 30;
 /// [`Domain::Everywhere`] in sizes of the scene.
 const EVERYWHERE: f64 = 10.0;
+/// Where a budget is exceeded, the resolution is this part of what it was.
+const COARSER: f64 = 0.3;
 /// Budgets are for at least so many primitives.
 const FEW: usize = 10_000;
 
@@ -99,32 +101,52 @@ impl Octree {
             tree.search_nearest(set, &narrow(x), &mut best);
             best.nearest_point().unwrap_or([f64::INFINITY; 3])
         };
-        let refinement = Refinement {
-            tree,
-            owners: &owners,
-            nearest: &nearest,
-            domain: options.domain,
-            slack: shape.slack,
-            even: shape.even,
-            per_packet: 1.0 / tree.packets().0 as f64,
-            resolution: options.resolution,
-            depth: DEEPEST,
-            finest: shape.side * 2f64.powi(-i32::from(DEEPEST)),
-            parallel: options.splits.parallel,
-            done: Done {
-                work: AtomicU64::new(0),
-                stopped: AtomicU64::new(0),
-                share: AtomicU64::new(0),
-                percent: AtomicU64::new(0),
-                progress,
-            },
+        let search_cost = |x: V3| {
+            let mut counting = Counting::new(Best::<T>::new(&QueryOptions::default()));
+            tree.search(set, &narrow(x), &mut counting);
+            PACKET * counting.packets as f64 + NODE * counting.nodes as f64
         };
         let count = tree.packets().1.max(FEW) as f64;
-        let allowance = Allowance { bytes: options.memory * count, work: options.work * count, share: 1.0 };
-        let cells = refinement.cells(shape.low, shape.side, allowance);
-        let (work, stopped) = (refinement.done.work.into_inner(), refinement.done.stopped.into_inner());
-        self.report.work = work;
-        self.report.stopped = usize::try_from(stopped).unwrap_or(usize::MAX);
+        let most = [options.memory, options.work].map(|budget| (budget * count) as u64);
+        let mut resolution = options.resolution;
+        let mut percent = 0;
+        let (cells, done) = loop {
+            let done = Done {
+                bytes: AtomicU64::new(0),
+                work: AtomicU64::new(0),
+                most,
+                share: AtomicU64::new(0),
+                percent: AtomicU64::new(percent),
+                progress,
+            };
+            let refinement = Refinement {
+                tree,
+                owners: &owners,
+                nearest: &nearest,
+                search_cost: &search_cost,
+                domain: options.domain,
+                slack: shape.slack,
+                even: shape.even,
+                per_packet: 1.0 / tree.packets().0 as f64,
+                resolution,
+                depth: DEEPEST,
+                finest: shape.side * 2f64.powi(-i32::from(DEEPEST)),
+                parallel: options.splits.parallel,
+                done,
+            };
+            let cells = refinement.cells(shape.low, shape.side);
+            if !refinement.done.is_over() {
+                break (cells, refinement.done);
+            }
+            percent = refinement.done.percent.into_inner();
+            resolution *= COARSER;
+            if resolution < options.resolution * 1e-6 {
+                // Not even the coarsest cells are within the budgets.
+                return;
+            }
+        };
+        self.report.work = done.work.into_inner();
+        self.report.resolution = resolution;
         self.low = shape.low;
         self.depth = u32::from(DEEPEST);
         self.per_length = 2f64.powi(i32::from(DEEPEST)) / shape.side;

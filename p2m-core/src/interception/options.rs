@@ -16,7 +16,7 @@ pub enum Domain {
     Band(f64),
 }
 
-/// How an octree is built. Budgets are upper limits: where cells gain nothing, less is used.
+/// How an octree is built. Budgets are upper limits: where one would be exceeded, cells are made coarser everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct OctreeOptions {
@@ -24,7 +24,7 @@ pub struct OctreeOptions {
     pub splits: SplitOptions,
     /// Where queries are expected.
     pub domain: Domain,
-    /// How much a cell has to save to be split: 1 is usual, 3 gives about one and a half times the memory.
+    /// How little a cell has to save to be split: 0.3 is usual, 1 gives about one and a half times the memory.
     pub resolution: f64,
     /// What cells may take, in bytes for each primitive of the scene (for at least 10,000 primitives).
     pub memory: f64,
@@ -37,9 +37,9 @@ impl Default for OctreeOptions {
         Self {
             splits: SplitOptions::default(),
             domain: Domain::Everywhere,
-            resolution: 1.0,
-            memory: 185.0,
-            work: 400.0,
+            resolution: 0.3,
+            memory: 190.0,
+            work: 200.0,
         }
     }
 }
@@ -73,7 +73,7 @@ impl OctreeOptions {
 }
 
 /// What an octree is made of.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct OctreeReport {
     /// Cells with a list.
@@ -92,13 +92,13 @@ pub struct OctreeReport {
     pub tree_bytes: usize,
     /// How many times a packet was tested at a point.
     pub work: u64,
-    /// Cells that were not split since a budget was used up.
-    pub stopped: usize,
+    /// The resolution: less than was asked for where that would have exceeded a budget.
+    pub resolution: f64,
 }
 
 impl std::fmt::Display for OctreeReport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { lists, singles, trees, entries, bytes, tree_bytes, work, stopped, .. } = self;
+        let Self { lists, singles, trees, entries, bytes, tree_bytes, work, resolution, .. } = self;
         let mean = *entries as f64 / (*lists).max(1) as f64;
         let megabytes = |bytes: usize| bytes as f64 / 1e6;
         write!(
@@ -106,9 +106,6 @@ impl std::fmt::Display for OctreeReport {
             "{lists} cells with lists of {mean:.1} packets on average, {singles} with one primitive, {trees} left to the tree; "
         )?;
         write!(f, "{:.1} MB of cells, {:.1} MB of tree, {work} tests", megabytes(*bytes), megabytes(*tree_bytes))?;
-        if *stopped > 0 {
-            write!(f, "; {stopped} cells larger than they would be with a larger budget")?;
-        }
-        Ok(())
+        write!(f, ", resolution {resolution}")
     }
 }

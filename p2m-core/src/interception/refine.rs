@@ -9,10 +9,10 @@
 //! A split costs memory and saves time where queries are. The share of queries that a cell gets (its *mass*) is taken to be a mixture of
 //! three: even in the whole domain, even in the box of the scene, and on the surface. What a list costs is how many of its
 //! packets the bounds of its blocks let pass in the middle of the cell, and its blocks. A cell is split if mass times cost is
-//! worth it; budgets of memory and work are handed down in proportion to mass times length, so that they are kept however bad
-//! a scene is, on any number of threads and with the same result.
+//! worth it. Whether a budget is exceeded does not depend on the order in which cells are made, so a refinement that exceeds
+//! one is given up at once and another one made that asks for more worth: the result is the same on any number of threads.
 
-use super::block::{Block, Bounds, Entry, reference};
+use super::block::{Block, Bounds, Entry, WIDTH, reference};
 use super::corner::{AtPoints, Dominators, Found, Keep, Least};
 use super::cube::{Corner, Cube, LATTICE, LATTICE_OF, MIDDLE, corner_on};
 use super::options::Domain;
@@ -23,24 +23,23 @@ use crate::{Aabb, Best, Isa, PrimitiveId, QueryOptions};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Fine cells have at most this many packets.
-const FINE: usize = 96;
+const FINE: usize = 256;
 /// Fine cells with fewer packets are left to one thread.
 const FORK: usize = 48;
 /// No list is longer, in packets.
-const LONGEST: usize = 32;
-/// Nanoseconds of a packet that is tested and of a further block (observed; their ratio matters).
-const PACKET: f64 = 40.0;
-const BLOCK: f64 = 25.0;
+const LONGEST: usize = 256;
+/// Lists longer than this are held against the tree.
+const LONG: usize = 24;
+/// Nanoseconds of a packet that is tested, of a further block and of a node of the tree (observed; their ratios matter).
+pub(super) const PACKET: f64 = 40.0;
+const BLOCK: f64 = 15.0;
+pub(super) const NODE: f64 = 30.0;
 /// What a query gains by a list in the place of the tree.
 const SEARCH: f64 = 300.0;
 /// Part of its cost that a cell loses by a split.
 const GAIN: f64 = 0.5;
 /// Nanoseconds that have to be saved, in all packets' worth of cells.
 const WORTH: f64 = 100.0;
-/// What a split takes, about: codes of eight cells, and their lists of a block and a half.
-const ROW_BYTES: f64 = 8.0 * size_of::<u32>() as f64;
-const SPLIT_BYTES: f64 = ROW_BYTES + 8.0 * 1.5 * size_of::<Block>() as f64;
-
 /// A cell that is done, or its eight children: child c lies above the middle on axis k if bit k of c is set.
 pub(super) enum Cell {
     /// The tree answers.
@@ -59,6 +58,8 @@ pub(super) struct Refinement<'a> {
     pub(super) owners: &'a [PrimitiveId],
     /// The nearest point of the scene, of any primitive.
     pub(super) nearest: &'a (dyn Fn(V3) -> V3 + Sync),
+    /// What a search of the tree takes, from the nodes and packets that it visits.
+    pub(super) search_cost: &'a (dyn Fn(V3) -> f64 + Sync),
     pub(super) domain: Domain,
     /// By how much a dominator has to be nearer.
     pub(super) slack: f64,
@@ -75,10 +76,12 @@ pub(super) struct Refinement<'a> {
     pub(super) done: Done<'a>,
 }
 
-/// What has been done so far.
+/// What has been done so far, and what may be.
 pub(super) struct Done<'a> {
+    pub(super) bytes: AtomicU64,
     pub(super) work: AtomicU64,
-    pub(super) stopped: AtomicU64,
+    /// No more than this.
+    pub(super) most: [u64; 2],
     /// Parts of 2^-40 of the whole, and the last percent that was reported.
     pub(super) share: AtomicU64,
     pub(super) percent: AtomicU64,
@@ -86,6 +89,11 @@ pub(super) struct Done<'a> {
 }
 
 impl Done<'_> {
+    /// Whether a budget is exceeded: what is made is of no use then.
+    pub(super) fn is_over(&self) -> bool {
+        self.bytes.load(Ordering::Relaxed) > self.most[0] || self.work.load(Ordering::Relaxed) > self.most[1]
+    }
+
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share is from 0 to 1")]
     fn add_share(&self, share: f64) {
         const ALL: f64 = (1u64 << 40) as f64;
@@ -96,28 +104,11 @@ impl Done<'_> {
             (self.progress)((percent as f64 / 100.0).min(1.0));
         }
     }
-}
 
-/// What a cell may still use.
-#[derive(Clone, Copy)]
-pub(super) struct Allowance {
-    pub(super) bytes: f64,
-    pub(super) work: f64,
-    /// Of the whole, for the progress.
-    pub(super) share: f64,
-}
-
-impl Allowance {
-    fn part(self, part: f64) -> Self {
-        Self { bytes: self.bytes * part, work: self.work * part, share: self.share * part }
-    }
-    fn less(self, bytes: f64, work: f64) -> Self {
-        Self { bytes: self.bytes - bytes, work: self.work - work, ..self }
+    fn add_work(&self, tests: usize) {
+        self.work.fetch_add(tests as u64, Ordering::Relaxed);
     }
 }
-
-/// A cell, and what it has left of its allowance.
-type Refined = (Cell, Allowance);
 
 /// What a coarse cell cannot rule out.
 #[derive(Clone, Copy)]
@@ -167,23 +158,17 @@ struct Middle {
     corners: usize,
 }
 
-/// How much a cell of this mass and length is likely to use, in parts of others: a level makes eight cells of it, each with a
-/// sixteenth of its mass times cost, until that is not worth a split.
-fn need(mass: f64, len: usize) -> f64 {
-    (mass * len as f64).powf(0.7)
-}
-
 fn square_of_way(a: &V3, b: &V3) -> f64 {
     (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum()
 }
 
 impl Refinement<'_> {
     /// The cells of the cube.
-    pub(super) fn cells(&self, low: V3, side: f64, allowance: Allowance) -> Cell {
+    pub(super) fn cells(&self, low: V3, side: f64) -> Cell {
         let at = |c: usize| -> V3 { std::array::from_fn(|k| low[k] + if c >> k & 1 == 1 { side } else { 0.0 }) };
         let corners = std::array::from_fn(|c| Corner { x: at(c), y: (self.nearest)(at(c)) });
         let root = Candidate { child: self.tree.root, bounds: *self.tree.bounds() };
-        self.coarse(&Cube { low, side, level: 0, corners }, vec![root], allowance).0
+        self.coarse(&Cube { low, side, level: 0, corners }, vec![root], 1.0)
     }
 
     /// Whether a cell may have queries.
@@ -219,30 +204,26 @@ impl Refinement<'_> {
         mass
     }
 
-    /// Whether a split pays and may be made.
-    fn splits(&self, cube: &Cube, mass: f64, cost: f64, allowance: &Allowance, work: f64) -> bool {
+    /// Whether a split pays.
+    fn splits(&self, cube: &Cube, mass: f64, cost: f64) -> bool {
         let worth = mass * cost * GAIN * self.resolution >= WORTH * self.per_packet;
-        if !worth || cube.level >= self.depth || cube.side <= self.finest {
-            return false;
-        }
-        let affordable = allowance.bytes >= SPLIT_BYTES && allowance.work >= work;
-        if !affordable {
-            self.done.stopped.fetch_add(1, Ordering::Relaxed);
-        }
-        affordable
+        worth && cube.level < self.depth && cube.side > self.finest && !self.done.is_over()
     }
 
-    fn end(&self, cell: Cell, allowance: Allowance) -> Refined {
-        self.done.add_share(allowance.share);
-        let bytes = if let Cell::Blocks(blocks) = &cell { size_of_val(blocks.as_slice()) } else { 0 };
-        (cell, allowance.less(bytes as f64, 0.0))
+    fn end(&self, cell: Cell, share: f64) -> Cell {
+        self.done.add_share(share);
+        if let Cell::Blocks(blocks) = &cell {
+            self.done.bytes.fetch_add(size_of_val(blocks.as_slice()) as u64, Ordering::Relaxed);
+        }
+        cell
     }
 
-    fn coarse(&self, cube: &Cube, mut candidates: Vec<Candidate>, allowance: Allowance) -> Refined {
+    fn coarse(&self, cube: &Cube, mut candidates: Vec<Candidate>, share: f64) -> Cell {
         if cube.level > 0 && !self.is_asked(cube) {
-            return self.end(Cell::Tree, allowance);
+            return self.end(Cell::Tree, share);
         }
         let dominators = Dominators::of(&cube.corners, self.slack);
+        candidates.retain(|c| dominators.keeps_box(&cube.corners, &c.bounds));
         // Opened until they are packets or too many.
         let mut open = 1;
         while open > 0 && candidates.len() <= FINE {
@@ -261,76 +242,46 @@ impl Refinement<'_> {
             candidates = opened;
         }
         if open == 0 && candidates.len() <= FINE {
-            self.done.work.fetch_add(8 * candidates.len() as u64, Ordering::Relaxed);
+            self.done.add_work(8 * candidates.len());
             let items: Vec<Item> = candidates.iter().filter_map(|c| self.item(cube, &dominators, c)).collect();
-            return self.fine(cube, items, allowance);
+            return self.fine(cube, items, share);
         }
         // What is not a packet has eight of them at least.
         let near = |c: &Candidate| if c.child.is_packet() { 1.0 } else { 8.0 };
-        let mass = |cube: &Cube, near_it: &[Candidate]| self.mass(cube, near_it.iter().map(|c| (&c.bounds, near(c))));
-        // Searches of the tree for 19 corners, about.
-        let work = 19.0 * 8.0;
-        if !self.splits(cube, mass(cube, &candidates), SEARCH, &allowance, work) {
-            return self.end(Cell::Tree, allowance);
+        let mass = self.mass(cube, candidates.iter().map(|c| (&c.bounds, near(c))));
+        if !self.splits(cube, mass, SEARCH) {
+            return self.end(Cell::Tree, share);
         }
+        // Searches of the tree for 19 corners, each of some packets.
+        self.done.add_work(19 * 8);
         let lattice: [Corner; LATTICE] = std::array::from_fn(|at| match corner_on(at) {
             Some(corner) => cube.corners[corner],
             None => Corner { x: cube.point(at), y: (self.nearest)(cube.point(at)) },
         });
-        let children = cube.children(&lattice).map(|child| {
-            let dominators = Dominators::of(&child.corners, self.slack);
-            let mut own = candidates.clone();
-            own.retain(|c| dominators.keeps_box(&child.corners, &c.bounds));
-            let weight = need(mass(&child, &own), own.len());
-            (child, own, weight)
-        });
-        self.split(allowance.less(ROW_BYTES, work), children, true, |child, own, rest| self.coarse(child, own, rest))
+        self.split(cube.children(&lattice).map(|child| (child, ())), true, |child, ()| {
+            self.coarse(child, candidates.clone(), share * 0.125)
+        })
     }
 
-    /// The cells of the children. Large ones have allowances by weights, and all threads if asked to; small ones have what those
-    /// before them left, too. So the result does not depend on the threads.
+    /// The cells of the children, on all threads if asked to and they are large.
     fn split<P: Send>(
         &self,
-        allowance: Allowance,
-        children: [(Cube, P, f64); 8],
+        children: [(Cube, P); 8],
         large: bool,
-        cell: impl Fn(&Cube, P, Allowance) -> Refined + Sync + Send,
-    ) -> Refined {
-        let mut total: f64 = children.iter().map(|(_, _, weight)| weight).sum();
-        let part = |weight: f64, total: f64| if total > 0.0 { (weight / total).min(1.0) } else { 0.125 };
-        if !large {
-            let mut left = allowance;
-            let cells = children.map(|(cube, own, weight)| {
-                let given = left.part(part(weight, total));
-                total -= weight;
-                let (cell, rest) = cell(&cube, own, Allowance { share: allowance.share * 0.125, ..given });
-                left = left.less(given.bytes - rest.bytes, given.work - rest.work);
-                cell
-            });
-            return (Cell::Split(Box::new(cells)), left);
-        }
-        let one = |(cube, own, weight): (Cube, P, f64)| cell(&cube, own, allowance.part(part(weight, total)));
-        let cells: Vec<Refined>;
+        cell: impl Fn(&Cube, P) -> Cell + Sync + Send,
+    ) -> Cell {
+        let bytes = 8 * size_of::<u32>() as u64;
+        self.done.bytes.fetch_add(bytes, Ordering::Relaxed);
         #[cfg(feature = "rayon")]
-        if self.parallel {
+        if self.parallel && large {
             use rayon::prelude::*;
-            cells = Vec::from(children).into_par_iter().map(one).collect();
-        } else {
-            cells = children.map(one).into();
+            let children = Vec::from(children).into_par_iter();
+            let cells: Vec<Cell> = children.map(|(cube, own)| cell(&cube, own)).collect();
+            let cells: [Cell; 8] = cells.try_into().unwrap_or_else(|_| unreachable!("eight children"));
+            return Cell::Split(Box::new(cells));
         }
-        #[cfg(not(feature = "rayon"))]
-        {
-            let _ = self.parallel;
-            cells = children.map(one).into();
-        }
-        let mut left = allowance.part(0.0);
-        let cells = cells.into_iter().map(|(cell, rest)| {
-            left = left.less(-rest.bytes, -rest.work);
-            cell
-        });
-        let cells: Vec<Cell> = cells.collect();
-        let cells: [Cell; 8] = cells.try_into().unwrap_or_else(|_| unreachable!("eight children"));
-        (Cell::Split(Box::new(cells)), left)
+        let _ = (large, self.parallel);
+        Cell::Split(Box::new(children.map(|(cube, own)| cell(&cube, own))))
     }
 
     /// The packet of a candidate at the corners of a cell; `None` if no lane passes the corner test.
@@ -350,21 +301,19 @@ impl Refinement<'_> {
         self.tree.isa()
     }
 
-    fn fine(&self, cube: &Cube, items: Vec<Item>, allowance: Allowance) -> Refined {
+    fn fine(&self, cube: &Cube, items: Vec<Item>, share: f64) -> Cell {
         if cube.level > 0 && !self.is_asked(cube) {
-            return self.end(Cell::Tree, allowance);
+            return self.end(Cell::Tree, share);
         }
         let middle = self.middle(cube, &items);
-        let mass = |cube: &Cube, items: &[Item]| self.mass(cube, items.iter().map(|item| (&item.bounds, 1.0)));
+        let mass = self.mass(cube, items.iter().map(|item| (&item.bounds, 1.0)));
         let tests = middle.boxes.min(middle.corners) as f64;
-        let blocks = items.len() as f64 / 8.0;
-        let cost =
-            if items.len() > LONGEST { SEARCH } else { 0.0 } + PACKET * (tests - 1.0) + BLOCK * (blocks - 1.0).max(0.0);
-        let work = 18.0 * items.len() as f64;
-        if !self.splits(cube, mass(cube, &items), cost, &allowance, work) {
-            return self.end(self.list(cube, &items, &middle), allowance);
+        let blocks = items.len() as f64 / WIDTH as f64;
+        let cost = PACKET * (tests - 1.0) + BLOCK * (blocks - 1.0).max(0.0);
+        if !self.splits(cube, mass, cost) {
+            return self.end(self.list(cube, &items, &middle), share);
         }
-        self.done.work.fetch_add(18 * items.len() as u64, Ordering::Relaxed);
+        self.done.add_work(18 * items.len());
         // All filters at all lattice points; those at the corners and in the middle are known.
         let new: [usize; LATTICE - 9] = {
             let mut new = (0..LATTICE).filter(|&at| at != MIDDLE && corner_on(at).is_none());
@@ -409,12 +358,10 @@ impl Refinement<'_> {
                     own.push(Item { lanes, found: corners.map(|at| found[at]), ..*item });
                 }
             }
-            let weight = need(mass(&child, &own), own.len());
-            (child, own, weight)
+            (child, own)
         });
         drop(all);
-        let rest = allowance.less(ROW_BYTES, work);
-        self.split(rest, children, items.len() >= FORK, |child, own, allowance| self.fine(child, own, allowance))
+        self.split(children, items.len() >= FORK, |child, own| self.fine(child, own, share * 0.125))
     }
 
     /// The nearest point to `x`: of a primitive that seems nearest, or of all where filters do not tell (`whole`).
@@ -434,7 +381,7 @@ impl Refinement<'_> {
         let mut middle = Middle { found: Vec::with_capacity(items.len()), y: x, boxes: 0, corners: 0 };
         let mut nearest = Nearest::NONE;
         let mut whole = true;
-        self.done.work.fetch_add(items.len() as u64, Ordering::Relaxed);
+        self.done.add_work(items.len());
         for item in items {
             let mut found = [Found::NOTHING];
             let mut near = [None];
@@ -495,7 +442,9 @@ impl Refinement<'_> {
         }
         match (count, single) {
             (1, Some((packet, lane))) => Cell::Single(packet, u8::try_from(lane).expect("sixteen lanes")),
-            _ if entries.is_empty() || entries.len() > LONGEST => Cell::Tree,
+            _ if entries.is_empty() || entries.len() > LONGEST || self.tree_is_faster(cube, entries.len(), middle) => {
+                Cell::Tree
+            }
             _ => {
                 entries.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.packet.cmp(&b.1.packet)));
                 let entries: Vec<Entry> = entries.into_iter().map(|e| e.1).collect();
@@ -507,6 +456,16 @@ impl Refinement<'_> {
                 Cell::Blocks(Block::of_list(&entries, bounds))
             }
         }
+    }
+
+    /// Whether the tree takes less in the middle of a cell than its list, if that is long.
+    fn tree_is_faster(&self, cube: &Cube, len: usize, middle: &Middle) -> bool {
+        if len <= LONG {
+            return false;
+        }
+        let tests = middle.boxes.min(middle.corners) as f64;
+        let list = PACKET * tests + BLOCK * len as f64 / WIDTH as f64;
+        list > (self.search_cost)(cube.point(MIDDLE))
     }
 
     /// The lanes of an item without those that can only tie with a lower primitive: where a vertex is the nearest point of a

@@ -193,7 +193,12 @@ impl<V: Volume> PacketTree<V> {
     /// Offers to `collector` every primitive of `set`, over which the tree was built, that it could want. `query` is
     /// finite.
     #[inline]
-    pub fn search<T: Real, S: PrimitiveSet<T>, C: Collector>(&self, set: &S, query: &Point3<T>, collector: &mut C) {
+    pub fn search<T: Real, S: PrimitiveSet<T> + ?Sized, C: Collector>(
+        &self,
+        set: &S,
+        query: &Point3<T>,
+        collector: &mut C,
+    ) {
         let (query, evaluate) = (wide(query), evaluation(set, query));
         self.isa.run(Search { tree: self, query, collector, evaluate: &evaluate, finish });
     }
