@@ -145,9 +145,9 @@ impl Block {
         }
         (block.bounds[0], block.bounds[1], block.bounds[2]) = ([255; WIDTH], [255; WIDTH], [255; WIDTH]);
         for (i, entry) in entries.iter().enumerate() {
-            for k in 0..3 {
-                block.bounds[k][i] = ((f64::from(entry.bounds[0][k]) - origin[k]) / unit).floor() as u8;
-                block.bounds[3 + k][i] = ((f64::from(entry.bounds[1][k]) - origin[k]) / unit).ceil() as u8;
+            for (k, origin) in origin.iter().enumerate() {
+                block.bounds[k][i] = ((f64::from(entry.bounds[0][k]) - origin) / unit).floor() as u8;
+                block.bounds[3 + k][i] = ((f64::from(entry.bounds[1][k]) - origin) / unit).ceil() as u8;
             }
         }
         block
@@ -183,6 +183,7 @@ impl Block {
 
     /// Squares of lower bounds of the distances to the packets, as those of a node. Those of empty entries are anything.
     #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounding is allowed for")]
     pub(super) fn lower_bounds<L: Lanes>(&self, place: &Place) -> L {
         let unit = f32::from_bits(((i32::from(self.exponent) + 127) as u32) << 23);
         if self.level == BOXES {
@@ -216,6 +217,7 @@ impl Block {
 impl Place {
     /// Where the query is in its cell of a level, from 0 to 1 on each axis.
     #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "fewer than 2^30 cells")]
     fn weights(&self, level: u8) -> [f32; 3] {
         let shift = self.depth - u32::from(level);
         let per_side = f64::from_bits((1023 - u64::from(shift)) << 52);
@@ -224,5 +226,114 @@ impl Place {
             (x - f64::from(x as u32)) as f32
         };
         [part(self.cells[0]), part(self.cells[1]), part(self.cells[2])]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::{InstructionSet, Isa, Operation};
+    use rand::{Rng, RngExt};
+
+    struct Bound<'a>(&'a Block, &'a Place);
+
+    impl Operation for Bound<'_> {
+        type Output = [f32; WIDTH];
+        #[inline(always)]
+        fn run<I: InstructionSet>(self) -> [f32; WIDTH] {
+            let mut bounds = [0.0; WIDTH];
+            self.0.lower_bounds::<I::Eight>(self.1).store(&mut bounds);
+            bounds
+        }
+    }
+
+    fn square(a: &V3, b: &V3) -> f64 {
+        (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum()
+    }
+
+    fn point(rng: &mut impl Rng, around: &V3, size: f64) -> V3 {
+        around.map(|x| x + rng.random_range(-size..size))
+    }
+
+    /// Sets of points in the frame, near and far from cells of all sizes, bounded in both ways: no bound exceeds the distance by more than
+    /// searches allow for, and that of a single point by the corners is the distance, but for the bytes.
+    #[test]
+    fn bounds_never_exceed_the_distance_and_corners_tell_that_of_a_point() {
+        let mut rng = p2m_testkit::rng("blocks", 0);
+        let (mut compared, mut close) = (0, 0);
+        for round in 0..3000 {
+            let level = rng.random_range(1..12u8);
+            let depth = 20u32;
+            // The cube is from -8 to 8, so a cell has this side; it may be far from the scene.
+            let side = 16.0 / f64::from(1u32 << level);
+            let number = [0; 3].map(|_| rng.random_range(0..1u32 << level));
+            let low = number.map(|n| -8.0 + f64::from(n) * side);
+            let corner =
+                |i: usize| -> V3 { std::array::from_fn(|k| low[k] + if i >> k & 1 == 1 { side } else { 0.0 }) };
+            let count = rng.random_range(1..=WIDTH);
+            let centre = point(&mut rng, &[0.0; 3], 1.0);
+            let spread = 2f64.powi(rng.random_range(-12..0));
+            let sets: Vec<Vec<V3>> = (0..count)
+                .map(|_| {
+                    let around = point(&mut rng, &centre, spread);
+                    (0..rng.random_range(1..=3)).map(|_| point(&mut rng, &around, spread * 0.3)).collect()
+                })
+                .collect();
+            let y = reference(sets[0][0]);
+            let least = |q: &V3, set: &[V3]| set.iter().map(|p| square(q, p)).fold(f64::INFINITY, f64::min);
+            let entries: Vec<Entry> = sets
+                .iter()
+                .zip(0..)
+                .map(|(set, packet)| {
+                    let end =
+                        |fold: fn(f64, f64) -> f64, from: f64, k: usize| set.iter().map(|p| p[k]).fold(from, fold);
+                    let low = [0, 1, 2].map(|k| (end(f64::min, f64::INFINITY, k) as f32).next_down());
+                    let high = [0, 1, 2].map(|k| (end(f64::max, f64::NEG_INFINITY, k) as f32).next_up());
+                    let f = std::array::from_fn(|i| least(&corner(i), set) - square(&corner(i), &y) - 1e-13);
+                    Entry { packet, lanes: 1, bounds: [low, high], f }
+                })
+                .collect();
+            for bounds in [Bounds::Boxes, Bounds::Corners { level, y }] {
+                let blocks = Block::of_list(&entries, bounds);
+                assert_eq!((blocks.len(), blocks[0].len, blocks[0].more), (1, count as u8, 0));
+                for _ in 0..4 {
+                    let part = [0; 3].map(|_| match rng.random_range(0..6) {
+                        0 => 0.0,
+                        1 => 1.0 - 1e-9,
+                        _ => rng.random::<f64>(),
+                    });
+                    let q: V3 = std::array::from_fn(|k| low[k] + part[k] * side);
+                    let cells = q.map(|x| (x + 8.0) / 16.0 * f64::from(1u32 << depth));
+                    let place = Place { rounded: Rounded::of(q), local: q, cells, depth };
+                    for isa in Isa::available() {
+                        let found = isa.run(Bound(&blocks[0], &place));
+                        for (set, found) in sets.iter().zip(found) {
+                            let (exact, found) = (least(&q, set), f64::from(found));
+                            let allowed = exact * (1.0 + 2f64.powi(-20)) + 2f64.powi(-120);
+                            assert!(found <= allowed, "{isa}, round {round}: {found} for {exact}, {bounds:?} {q:?}");
+                            if bounds != Bounds::Boxes && set.len() == 1 {
+                                compared += 1;
+                                // Two bytes, or what f32 loses of the square.
+                                let byte = 2f64.powi(i32::from(blocks[0].exponent));
+                                let lost = 2.0 * byte + 2f64.powi(-20) * (square(&q, &y) + byte * 256.0);
+                                let cut = entries.iter().flat_map(|e| e.f).fold(0.0f64, |a, f| a.max(-f));
+                                let f = |i: usize| least(&corner(i), set) - square(&corner(i), &y);
+                                close += usize::from(found >= exact - lost || (0..8).any(|i| f(i) > cut));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        assert!(compared > 10_000 && close == compared, "{close} of {compared}");
+    }
+
+    #[test]
+    fn lists_of_several_blocks_know_how_many_follow() {
+        let entry = |packet| Entry { packet, lanes: 3, bounds: [[0.0; 3], [0.1; 3]], f: [0.5; 8] };
+        let entries: Vec<Entry> = (0..19).map(entry).collect();
+        let blocks = Block::of_list(&entries, Bounds::Boxes);
+        assert_eq!(blocks.iter().map(|b| (b.len, b.more)).collect::<Vec<_>>(), [(8, 2), (8, 1), (3, 0)]);
+        assert_eq!((blocks[2].packets[1], blocks[2].lanes), (17, [3, 3, 3, 0, 0, 0, 0, 0]));
     }
 }

@@ -5,9 +5,9 @@
 //! dominators somewhere in the cell. A query *locates* its cell and tests the list: no search, no backtracking \[Zong2023\].
 //!
 //! What is in a list is decided by the corner test ([`corner`]), for any convex cell; how cells are made and located is
-//! the partition's affair: cubes ([`Octree`]). Lists are lists of packets with the lanes that matter, eight to a block
-//! ([`block`]), and are asked as the nodes of a tree are. Where a list would be too long, and outside of the domain,
-//! the tree over the same packets answers.
+//! the partition's affair: cubes ([`Octree`], [`refine`]). Lists are lists of packets with the lanes that matter, eight to a block,
+//! with bounds from the corners of the cell ([`block`]). Where a list would take longer than the tree over the same packets, and outside of the
+//! domain, the tree answers. docs/octree.md has the proofs.
 
 mod block;
 mod corner;

@@ -33,6 +33,8 @@ const TREE: u32 = 4 << SHIFT;
 const DEEPEST: u8 = 30;
 /// [`Domain::Everywhere`] in sizes of the scene.
 const EVERYWHERE: f64 = 10.0;
+/// Where queries are taken to be, evenly in boxes of so many sizes of the scene: more of them the nearer it is.
+const QUERIES: [(f64, f64); 4] = [(EVERYWHERE, 1.0), (4.0, 0.3), (2.0, 0.3), (1.05, 1.0)];
 /// Where a budget is exceeded, the resolution is this part of what it was.
 const COARSER: f64 = 0.3;
 /// Budgets are for at least so many primitives.
@@ -86,6 +88,7 @@ impl Octree {
         octree
     }
 
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates; NaN is no budget")]
     fn refine<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
         &mut self,
         set: &S,
@@ -126,7 +129,7 @@ impl Octree {
                 search_cost: &search_cost,
                 domain: options.domain,
                 slack: shape.slack,
-                even: shape.even,
+                even: &shape.even,
                 per_packet: 1.0 / tree.packets().0 as f64,
                 resolution,
                 depth: DEEPEST,
@@ -338,11 +341,12 @@ struct Shape {
     side: f64,
     slack: f64,
     /// Boxes with queries evenly in them, and how many for each unit of volume.
-    even: [(Aabb<f64>, f64); 2],
+    even: Vec<(Aabb<f64>, f64)>,
 }
 
 impl Shape {
     /// `None` for a scene without extent, one that f32 cannot tell apart and a domain without extent: the tree answers.
+    #[allow(clippy::cast_possible_truncation, reason = "an exponent")]
     fn of(tree: &PacketTree, options: &OctreeOptions) -> Option<Self> {
         let bounds = tree.bounds();
         let extent = bounds.max - bounds.min;
@@ -374,15 +378,21 @@ impl Shape {
         let low: V3 = std::array::from_fn(|k| ((middle[k] - side * 0.5) / grain).floor() * grain);
         let ends = [wide(&bounds.min), wide(&bounds.max)];
         let scale = side * 4.0 + low.iter().chain(ends.as_flattened()).fold(0.0f64, |a, x| a.max(x.abs()));
-        let around = Aabb { min: centre - extent * 0.525, max: centre + extent * 0.525 };
-        let in_scene =
-            if options.domain == Domain::Everywhere { 1.0 / (around.max - around.min).product() } else { 0.0 };
+        let share = |scale: f64, part: f64| {
+            let half = extent * (scale * 0.5);
+            let around = Aabb { min: centre - half, max: centre + half };
+            (around, part / (half * 2.0).product())
+        };
+        let even = match options.domain {
+            Domain::Everywhere => QUERIES.map(|(scale, part)| share(scale, part)).to_vec(),
+            Domain::Box(_) | Domain::Band(_) => vec![(domain, 1.0 / span.product())],
+        };
         Some(Self {
             low,
             side,
             // Rounding of keys, of dominators and of locating a query: all below 2^-46 of this.
             slack: scale / (1u64 << 42) as f64,
-            even: [(domain, 1.0 / span.product()), (around, in_scene)],
+            even,
         })
     }
 }

@@ -106,6 +106,7 @@ impl std::fmt::Display for OctreeReport {
             "{lists} cells with lists of {mean:.1} packets on average, {singles} with one primitive, {trees} left to the tree; "
         )?;
         write!(f, "{:.1} MB of cells, {:.1} MB of tree, {work} tests", megabytes(*bytes), megabytes(*tree_bytes))?;
-        write!(f, ", resolution {resolution}")
+        let digits = if *resolution < 0.01 { 5 } else { 2 };
+        write!(f, ", resolution {resolution:.digits$}")
     }
 }

@@ -7,7 +7,7 @@
 //! # What is split
 //!
 //! A split costs memory and saves time where queries are. The share of queries that a cell gets (its *mass*) is taken to be a mixture of
-//! three: even in the whole domain, even in the box of the scene, and on the surface. What a list costs is how many of its
+//! several: even in the whole domain, even in smaller boxes around the scene, and on the surface. What a list costs is how many of its
 //! packets the bounds of its blocks let pass in the middle of the cell, and its blocks. A cell is split if mass times cost is
 //! worth it. Whether a budget is exceeded does not depend on the order in which cells are made, so a refinement that exceeds
 //! one is given up at once and another one made that asks for more worth: the result is the same on any number of threads.
@@ -64,7 +64,7 @@ pub(super) struct Refinement<'a> {
     /// By how much a dominator has to be nearer.
     pub(super) slack: f64,
     /// Boxes with queries evenly in them, and how many for each unit of volume.
-    pub(super) even: [(Aabb<f64>, f64); 2],
+    pub(super) even: &'a [(Aabb<f64>, f64)],
     /// Queries for each packet.
     pub(super) per_packet: f64,
     pub(super) resolution: f64,
