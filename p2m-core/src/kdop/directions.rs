@@ -112,9 +112,9 @@ impl<const K: usize> Directions<K> {
 
 /// The vector at length 1; `None` if it has no direction.
 fn unit(v: &Vector3<f64>) -> Option<Vector3<f64>> {
+    // The largest component does not tell of NaN in another one.
     let largest = v.amax();
-    // Not for NaN either.
-    (largest > 0.0 && largest.is_finite()).then(|| {
+    (largest > 0.0 && v.iter().all(|x| x.is_finite())).then(|| {
         let scaled = v / largest;
         scaled / scaled.norm()
     })
@@ -197,8 +197,14 @@ mod tests {
         assert_eq!(Directions::<6>::new(&[x, y, x * -3.0]), parallel);
         assert_eq!(Directions::<6>::new(&[x, y, x + y * 1e-7]), parallel);
         assert_eq!(Directions::<6>::new(&[x, y, x + y]), Err(DirectionsError::Flat));
-        for bad in [Vector3::zeros(), x * f64::NAN, x * f64::INFINITY] {
-            assert_eq!(Directions::<6>::new(&[x, bad, z]), Err(DirectionsError::NotADirection { index: 1 }));
+        assert_eq!(Directions::<6>::new(&[x, Vector3::zeros(), z]), Err(DirectionsError::NotADirection { index: 1 }));
+        for (index, component, bad) in
+            (0..27).map(|i| (i / 9, i / 3 % 3, [f64::NAN, f64::INFINITY, -f64::INFINITY][i % 3]))
+        {
+            let mut given = [x + y, y + z, z];
+            given[index][component] = bad;
+            let refused = Err(DirectionsError::NotADirection { index });
+            assert_eq!(Directions::<6>::new(&given), refused, "{bad} in component {component}");
         }
     }
 
@@ -210,6 +216,8 @@ mod tests {
         assert!(own.starts_orthogonal() && own.normals()[6] == x && own.normals()[8] == y);
         let skew = Directions::<8>::new(&[x, x + y * 1e-3, x + y, x + z]).expect("four");
         assert!(!skew.starts_orthogonal());
+        assert!(!Directions::<6>::new(&[x, y + x * 2f64.powi(-39), z]).expect("three").starts_orthogonal());
+        assert!(Directions::<6>::new(&[x, y + x * 2f64.powi(-41), z]).expect("three").starts_orthogonal());
         assert_eq!([0, 2, 4].map(|i: usize| skew.normals()[i]), [x, (x + y).normalize(), (x + z).normalize()]);
     }
 }
