@@ -29,8 +29,12 @@ impl<const K: usize> Slabs<K> {
         let axes = if orthogonal { first.transpose() } else { first.try_inverse().expect("directions are not flat") };
         let cosines = normals.map(|n| if orthogonal { first.transpose() * n } else { n }.map(|x| x as f32).into());
         let rounds = normals.map(|n| n.iter().any(|x| *x != 0.0 && !super::is_one(*x)));
-        // The determinant is at least 2^-20, so the inverse is good to 2^-28.
-        let margin = if orthogonal { 2f64.powi(-40) } else { 2f64.powi(-28) };
+        // With M for the matrix of the three and E for M^T M - 1, the inverse is M^T - E M^T in first order. Off its
+        // diagonal E is 2^-40 at most, so row j of E M^T is at most 2^-40 times the sum of two components of one unit
+        // vector: the transpose is good to 1.42 x 2^-40, and the sums below to 2^-50.
+        // Otherwise the determinant is 2^-20 at least: the relative error of its computed value is 2^-30, that of an
+        // entry of the inverse as much, and 2^-31 more where the entry is less than 1.
+        let margin = if orthogonal { 2f64.powi(-39) } else { 2f64.powi(-28) };
         Self { directions: *directions, orthogonal, cosines, rounds, axes, margin }
     }
 
@@ -64,6 +68,7 @@ mod tests {
     use super::*;
     use crate::Kdop;
     use nalgebra::Vector3;
+    use rand::RngExt;
 
     #[test]
     fn boxes_hold_the_points_whatever_the_directions() {
@@ -79,6 +84,29 @@ mod tests {
                 let bounds = slabs.enclosing_box(&Kdop::of_points(&directions, &points).heights);
                 let around = Aabb::of_points(&points);
                 assert!(bounds.contains(&around), "{bounds:?} for {around:?}");
+            }
+        }
+        // Orthogonal to nearly 2^-40; and with a determinant of a little more than 2^-20.
+        let c = 0.99 * 2f64.powi(-40) * 2f64.sqrt();
+        let nearly = [Vector3::new(1.0, 0.0, c), Vector3::new(0.0, 1.0, 1.0), Vector3::new(0.0, -1.0, 1.0)];
+        let nearly = Directions::<6>::new(&nearly).expect("three");
+        assert!(nearly.starts_orthogonal());
+        let mut rng = p2m_testkit::rng("enclosing boxes", 0);
+        let mut random = || rng.random_range(-1.0..1.0);
+        let mut check = |directions: &Directions<6>, points: &[Point3<f64>]| {
+            let bounds = Slabs::new(directions).enclosing_box(&Kdop::of_points(directions, points).heights);
+            assert!(points.iter().all(|p| bounds.contains(&Aabb::of_points(&[*p]))), "{directions:?} {points:?}");
+        };
+        for sign in [-1.0, 1.0] {
+            check(&nearly, &[Point3::new(sign, 0.0, 0.0)]);
+        }
+        for _ in 0..2000 {
+            let point = Point3::new(random(), random(), random());
+            check(&nearly, &[point]);
+            let [u, v] = [(); 2].map(|()| Vector3::new(random(), random(), random()).normalize());
+            let flat = [u, v, u * random() + v * random() + u.cross(&v) * 4e-6];
+            if let Ok(directions) = Directions::<6>::new(&flat) {
+                check(&directions, &[point]);
             }
         }
         // The axes give the box itself.
