@@ -213,6 +213,20 @@ pub fn meets_box(vertices: &[[f64; 3]], corners: &[[f64; 3]; 2]) -> bool {
     !hull.is_empty()
 }
 
+/// Whether a . b is at most `bound`; a and b are finite.
+#[must_use]
+pub fn is_product_at_most(a: [f64; 3], b: [f64; 3], bound: f64) -> bool {
+    if !bound.is_finite() {
+        return bound > 0.0;
+    }
+    let unit = |v: &[f64; 3]| v.iter().map(|x| lowest_bit(*x)).min().expect("coordinates");
+    let (of_a, of_b) = (unit(&a), unit(&b));
+    let exact = |v: [f64; 3], unit: i64| v.map(|x| integer(x, unit));
+    let fine = lowest_bit(bound).min(of_a + of_b);
+    let up = usize::try_from(of_a + of_b - fine).expect("not negative");
+    dot(&exact(a, of_a), &exact(b, of_b)) << up <= integer(bound, fine)
+}
+
 /// The part of a convex polygon (or segment, or point) on which `height`, which is linear, is not negative.
 fn clip(hull: &[[IBig; 4]], height: impl Fn(&[IBig; 4]) -> IBig) -> Vec<[IBig; 4]> {
     let heights: Vec<IBig> = hull.iter().map(height).collect();
@@ -266,6 +280,16 @@ mod tests {
         assert!(!meets_box(&T, &[[0.5, 0.5, 0.1], [0.6, 0.6, 1.0]]), "above the face");
         assert!(meets_box(&T[1..], &[[1.0, 3.0, 0.0], [1.0, 3.0, 0.0]]) && !meets_box(&T[1..], &block(2.1)));
         assert!(meets_box(&T[..1], &[[-1.0; 3], [0.0; 3]]) && !meets_box(&T[..1], &[[-1.0; 3], [-1e-300; 3]]));
+    }
+
+    #[test]
+    fn products_are_compared_without_rounding() {
+        let (a, b) = ([1.0 + f64::EPSILON, 1e200, 0.5], [1.0 - f64::EPSILON, 0.0, 4.0]);
+        assert!(is_product_at_most(a, b, 3.0) && !is_product_at_most(a, b, 3f64.next_down()));
+        assert!(is_product_at_most(a, b, f64::INFINITY) && !is_product_at_most(a, b, f64::NAN));
+        assert!(
+            is_product_at_most([1e-200; 3], [1e-200; 3], 5e-324) && !is_product_at_most([1e-200; 3], [1e-200; 3], 0.0)
+        );
     }
 
     #[test]

@@ -19,7 +19,8 @@ use nalgebra::{Point3, Vector3};
 
 /// A k-DOP by its heights: `heights[i]` is the largest n_i . x, for the normals of some [`Directions`].
 ///
-/// What is computed of points is rounded outwards, so a k-DOP contains what it was made of.
+/// What is computed of points is rounded outwards, so a k-DOP contains what it was made of. Where products leave the range
+/// of f64 a height cannot be told, and is infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kdop<const K: usize> {
     /// One for each normal.
@@ -33,7 +34,7 @@ impl<const K: usize> Kdop<K> {
         Self { heights: [f64::NEG_INFINITY; K] }
     }
 
-    /// The smallest k-DOP around some points, rounded outwards by 2^-50 of their distance from the origin at most.
+    /// The smallest k-DOP around some points, rounded outwards by 2^-49 of their distance from the origin at most.
     #[must_use]
     pub fn of_points<T: Real>(directions: &Directions<K>, points: &[Point3<T>]) -> Self {
         let mut result = Self::empty();
@@ -116,7 +117,12 @@ fn above(normal: &Vector3<f64>, x: &Vector3<f64>) -> f64 {
             rounded |= !is_one(*n);
         }
     }
-    if rounded { sum + size * (4.0 * f64::EPSILON) + f64::MIN_POSITIVE } else { sum }
+    // Three products and their sum err by 3 u of their size and what underflows. Nothing is known of sums that overflow.
+    match rounded {
+        false => sum,
+        true if size.is_finite() => sum + size * (4.0 * f64::EPSILON) + f64::MIN_POSITIVE,
+        true => f64::INFINITY,
+    }
 }
 
 /// The height of a box, rounded up.
@@ -127,6 +133,62 @@ fn box_height(normal: &Vector3<f64>, bounds: &Aabb<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use p2m_testkit::oracle::is_product_at_most;
+    use rand::RngExt;
+
+    #[test]
+    fn heights_are_never_below_exact_products() {
+        let directions = Directions::<26>::default();
+        let mut rng = p2m_testkit::rng("heights", 0);
+        for round in 0..2000 {
+            let scale = [1.0, 1e-310, 1e300, 1e8][round % 4];
+            let mut x = Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0));
+            if round % 3 > 0 {
+                // Products with a normal cancel.
+                let n = directions.normals()[rng.random_range(6..26)];
+                x = n.cross(&x);
+            }
+            x *= scale;
+            let kdop = Kdop::of_points(&directions, &[Point3::from(x)]);
+            for (n, h) in directions.normals().iter().zip(&kdop.heights) {
+                assert!(is_product_at_most((*n).into(), x.into(), *h), "{n} {x} {h:e}");
+                assert!(h - n.dot(&x) <= x.norm() * 2f64.powi(-48) + 2.0 * f64::MIN_POSITIVE, "{n} {x} {h:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_touches_meets_and_what_lies_apart_in_either_order_does_not() {
+        let directions = Directions::<14>::default();
+        let normals = directions.normals();
+        for (i, normal) in normals.iter().enumerate() {
+            let below = Kdop::of_points(&directions, &[Point3::from(*normal), Point3::from(normal * 2.0)]);
+            let above = Kdop::of_points(&directions, &[Point3::from(normal * 3.0)]);
+            assert!(!below.may_meet(&above) && !above.may_meet(&below), "apart along {normal}");
+            // Only along this one.
+            let mut beside = below;
+            beside.heights = beside.heights.map(|h| h + 10.0);
+            beside.heights[i ^ 1] = -below.heights[i];
+            assert!(beside.may_meet(&below) && below.may_meet(&beside), "touching along {normal}");
+            beside.heights[i ^ 1] = (-below.heights[i]).next_down();
+            assert!(!beside.may_meet(&below) && !below.may_meet(&beside), "apart along {normal}");
+        }
+    }
+
+    #[test]
+    fn heights_that_overflow_are_infinite() {
+        let directions = Directions::<26>::default();
+        let m = f64::MAX;
+        for corner in [[-m, -m, -m], [m, m, m], [0.7 * m, -0.7 * m, 0.7 * m], [-0.7 * m, -0.7 * m, 0.0], [m, -m, 0.0]] {
+            let point = Point3::from(corner);
+            let kdop = Kdop::of_points(&directions, &[point]);
+            assert!(kdop.heights.iter().all(|h| *h > f64::NEG_INFINITY), "{kdop:?}");
+            assert!(!kdop.is_empty() && kdop.contains_point(&directions, &point), "{kdop:?}");
+            assert!(kdop.may_meet(&kdop) && kdop.may_meet_box(&directions, &Aabb { min: point, max: point }));
+            let all = Aabb { min: Point3::new(-m, -m, -m), max: Point3::new(m, m, m) };
+            assert!(kdop.may_meet_box(&directions, &all) && Kdop::of_box(&directions, &all).contains(&kdop));
+        }
+    }
 
     #[test]
     fn a_box_is_the_six_dop_of_its_corners() {

@@ -93,7 +93,7 @@ mod tests {
         assert!(nearly.starts_orthogonal());
         let mut rng = p2m_testkit::rng("enclosing boxes", 0);
         let mut random = || rng.random_range(-1.0..1.0);
-        let mut check = |directions: &Directions<6>, points: &[Point3<f64>]| {
+        let check = |directions: &Directions<6>, points: &[Point3<f64>]| {
             let bounds = Slabs::new(directions).enclosing_box(&Kdop::of_points(directions, points).heights);
             assert!(points.iter().all(|p| bounds.contains(&Aabb::of_points(&[*p]))), "{directions:?} {points:?}");
         };

@@ -9,7 +9,8 @@ use std::ops::ControlFlow;
 /// A node or a packet of a tree, with its volume.
 #[derive(Clone, Copy, Debug)]
 pub struct Part<V> {
-    /// Around everything below it, rounded outwards by 2^-22 of the scene's size at most.
+    /// Around everything below it, rounded outwards by 2^-22 of the longest side of the scene's box and 2^-48 of the
+    /// distance of its middle from the origin at most.
     pub volume: V,
     /// How far below the root, which is at 0.
     pub depth: usize,

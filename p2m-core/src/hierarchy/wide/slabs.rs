@@ -23,9 +23,12 @@ pub(crate) struct SlabNode<const K: usize> {
 
 const _: () = assert!(size_of::<SlabNode<14>>() == 512);
 
-/// What heights in the frame may lack, where products are rounded: they are below 4, their terms rounded to 2^-52.
-const SLACK: f64 = power_of_two(-49);
-/// What is taken from all slacks but those of a box along the axes, in units of the size X of the query in the frame: 20 u of f32.
+/// What heights in the frame may lack, where products are rounded: coordinates are 4 at most, so the sizes of three
+/// products add up to less than 7; coordinates, products and both sums err by 2^-53 of that each, in all by less than
+/// 30 x 2^-53.
+const SLACK: f64 = power_of_two(-48);
+/// What is taken from all slacks but those of a box along the axes, in units of the size X of the query in the frame: 20 u
+/// of f32.
 const QUERY_SLACK: f64 = 20.0 * power_of_two(-24);
 /// What is left of an increment, for the roundings of its factor: 1 - 2^-15.
 const SHRINK: f32 = 1.0 - 1.0 / 32768.0;
@@ -159,16 +162,18 @@ impl<const K: usize> WideNode for SlabNode<K> {
         let height = |i: usize| {
             let normal = &shape.directions.normals()[i];
             let own = f64::from(bounds[i]) * frame.unit;
-            let size = own.abs() + normal.component_mul(&centre).lp_norm(1);
-            own + normal.dot(&centre) + size * power_of_two(-49)
+            let size = own.abs() + normal.component_mul(&centre).abs().sum();
+            // The sum errs by 5 u of this size. Where it overflows the height cannot be told.
+            if size.is_finite() { own + normal.dot(&centre) + size * power_of_two(-50) } else { f64::INFINITY }
         };
         Kdop { heights: std::array::from_fn(height) }
     }
 
     fn may_meet(bounds: &[f32; K], shape: &Slabs<K>, frame: &Frame, other: &Aabb<f64>) -> bool {
         let place = |p: &Point3<f64>| Point3::from(frame.place(&[p.x, p.y, p.z]));
-        // What is lost by going into the frame is as small as the slack near the scene, and elsewhere does not matter.
-        let own = Kdop { heights: bounds.map(|height| f64::from(height) + SLACK) };
+        // Going into the frame errs by u of each coordinate, which heights of boxes have room for, but for faces along the
+        // axes: there points of the scene have been rounded as this box is, and rounding keeps their order.
+        let own = Kdop { heights: bounds.map(f64::from) };
         own.may_meet_box(&shape.directions, &Aabb { min: place(&other.min), max: place(&other.max) })
     }
 }
@@ -217,6 +222,7 @@ mod tests {
     use crate::simd::{InstructionSet, Isa, Operation};
     use crate::{Directions, Triangle};
     use nalgebra::Matrix3;
+    use p2m_testkit::oracle::is_product_at_most;
     use rand::{Rng, RngExt};
 
     struct Bounds<'a, const K: usize>(&'a SlabNode<K>, &'a Slabs<K>, &'a [f32; K]);
@@ -272,8 +278,8 @@ mod tests {
     }
 
     /// Bounds of random k-DOPs (of triangles of all sizes and shapes) for random queries (near and far, and across their
-    /// faces and edges) against distances, on every instruction set: how many were compared, how often the bound was within 1 % of the
-    /// distance, and how often that of the box was.
+    /// faces and edges) against distances, on every instruction set: how many were compared, how often the bound was within
+    /// 1 % of the distance, and how often that of the box was.
     fn compare<const K: usize>(directions: &Directions<K>, nodes: usize, case: u64) -> [usize; 3] {
         let mut rng = p2m_testkit::rng("slabs", case);
         let slabs = Slabs::new(directions);
@@ -354,6 +360,74 @@ mod tests {
         assert!(all.iter().map(|(_, counts)| counts[0]).sum::<usize>() > 3_000_000);
         for (name, [compared, close, box_close]) in &all[1..5] {
             assert!(close * 10 > compared * 8 && close > box_close, "{name}");
+        }
+    }
+
+    /// Heights of a set in the frame around it, and the frame.
+    fn enclosed<const K: usize>(slabs: &Slabs<K>, points: &[Point3<f64>]) -> (Frame, [f32; K]) {
+        let set: Vec<_> = points.iter().map(|p| crate::Point::new(*p)).collect();
+        let ids: Vec<_> = (0..set.len()).map(PrimitiveId::new).collect();
+        let bounds = Aabb::of_points(points);
+        let frame = Frame::around(&bounds);
+        (frame, SlabNode::enclose(slabs, &frame, &set[..], &ids, &bounds))
+    }
+
+    #[test]
+    fn heights_are_never_below_exact_products() {
+        let slabs = Slabs::new(&Directions::<26>::default());
+        let normals = slabs.directions.normals();
+        let mut rng = p2m_testkit::rng("heights of nodes", 0);
+        for round in 0..400 {
+            // Points whose products with a normal cancel. The frame is that of the scene, so points are exact in it.
+            let normal = normals[rng.random_range(6..26)];
+            let x = normal.cross(&vector(&mut rng));
+            let points = [x, -x, vector(&mut rng) * 1e-9].map(Point3::from);
+            let (frame, heights) = enclosed(&slabs, &points);
+            assert_eq!(frame.centre, [0.0; 3]);
+            for (n, h) in normals.iter().zip(&heights) {
+                for p in &points {
+                    let local = Vector3::from(frame.place(&[p.x, p.y, p.z]));
+                    assert!(is_product_at_most((*n).into(), local.into(), f64::from(*h)), "{n} {p} {h:e}");
+                }
+            }
+            // As volumes, wherever the scene lies and however large it is, and against boxes at their corners.
+            let scale = [1.0, 1e-200, 1e200, f64::MAX][round / 5 % 4];
+            let far = vector(&mut rng) * [0.0, 1e3, 1e9, 1e13, 1e16][round % 5];
+            let place = |p: &Point3<f64>| Point3::from((p.coords + far) * scale);
+            let points = points.map(|p| place(&p));
+            if points.iter().any(|p| p.iter().any(|x| x.is_infinite())) {
+                continue;
+            }
+            let (frame, heights) = enclosed(&slabs, &points);
+            let volume = SlabNode::volume(&heights, &slabs, &frame);
+            for p in &points {
+                for (n, h) in normals.iter().zip(&volume.heights) {
+                    assert!(is_product_at_most((*n).into(), p.coords.into(), *h), "{n} {p} {h:e}");
+                }
+                for corner in 0..8 {
+                    let size = (points[0] - points[1]).amax();
+                    let other = p + Vector3::from_fn(|k, _| if corner >> k & 1 == 0 { -size } else { size });
+                    let around = Aabb::of_points(&[*p, other]);
+                    assert!(SlabNode::may_meet(&heights, &slabs, &frame, &around), "{p} {around:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn heights_that_overflow_are_infinite() {
+        let slabs = Slabs::new(&Directions::<26>::default());
+        let m = f64::MAX;
+        for corner in [Vector3::repeat(-m), Vector3::repeat(m), Vector3::new(-0.7 * m, -0.7 * m, 0.7 * m)] {
+            let points = [corner, corner * 0.9].map(Point3::from);
+            let (frame, heights) = enclosed(&slabs, &points);
+            let volume = SlabNode::volume(&heights, &slabs, &frame);
+            assert!(volume.heights.iter().all(|h| *h > f64::NEG_INFINITY), "{volume:?}");
+            assert!(volume.may_meet(&volume) && !volume.is_empty());
+            for p in &points {
+                assert!(volume.contains_point(&slabs.directions, p));
+                assert!(SlabNode::may_meet(&heights, &slabs, &frame, &Aabb { min: *p, max: *p }));
+            }
         }
     }
 
