@@ -4,6 +4,9 @@ use crate::{Directions, Kdop};
 use nalgebra::{Point3, Vector3};
 use std::io::{self, Write};
 
+/// The largest height of a k-DOP with a polytope: there is room for sums of products. 2^1000.
+const LARGEST: f64 = f64::from_bits((1000 + 1023) << 52);
+
 /// A convex polytope: corners, and for each face the corners around it, counterclockwise as seen from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Polytope {
@@ -14,8 +17,9 @@ pub struct Polytope {
 }
 
 impl Polytope {
-    /// The polytope of a k-DOP. Faces and corners closer together than about 1e-9 of its size may be one; what has no
-    /// volume is given a thickness of as much.
+    /// The polytope of a k-DOP. Faces are moved outwards by 1e-9 of half the longest side of a box around the first three
+    /// slabs, which gives a thickness to what has none; corners closer together may be one. An empty k-DOP has no corners
+    /// and no faces, nor has one of which a height is not finite or beyond 2^1000.
     ///
     /// A cube around the k-DOP is cut by one face after the other, so the result is closed whatever is rounded.
     ///
@@ -23,14 +27,14 @@ impl Polytope {
     /// O(K^2).
     #[must_use]
     pub fn new<const K: usize>(kdop: &Kdop<K>, directions: &Directions<K>) -> Self {
-        if kdop.is_empty() || kdop.heights.iter().any(|h| !h.is_finite()) {
+        // Not for NaN either.
+        if kdop.is_empty() || !kdop.heights.iter().all(|h| h.abs() <= LARGEST) {
             return Self::default();
         }
-        let normals = directions.normals();
-        let (centre, half) = middle(kdop, normals);
+        let (centre, half) = middle(kdop, directions.normals());
         let mut polytope = Self::cube(half * 2.0);
         let thickness = half * 1e-9;
-        for (normal, height) in normals.iter().zip(&kdop.heights) {
+        for (normal, height) in directions.normals().iter().zip(&kdop.heights) {
             polytope.cut(normal, height - normal.dot(&centre) + thickness, thickness * 0.25);
         }
         for corner in &mut polytope.corners {
@@ -175,8 +179,8 @@ fn middle<const K: usize>(kdop: &Kdop<K>, normals: &[Vector3<f64>; K]) -> (Vecto
     (centre, if half > centre.amax() * 1e-12 { half } else { centre.amax() * 1e-12 + f64::MIN_POSITIVE * 1e9 })
 }
 
-/// Writes polytopes as a PLY file of polygons, one after the other; `values` are a property of the faces of each (its level in
-/// a tree, say), by which viewers can colour them.
+/// Writes polytopes as a PLY file of polygons, one after the other; the number beside each is a property of its faces (its
+/// level in a tree, say), by which viewers can colour them.
 ///
 /// # Errors
 /// Those of the writer.
@@ -209,6 +213,7 @@ pub fn write_polytopes_ply(out: &mut impl Write, polytopes: &[(Polytope, usize)]
 #[cfg(test)]
 mod tests {
     use super::*;
+    use p2m_core::Aabb;
     use rand::RngExt;
 
     /// Euler's formula, edges with two faces each, corners on the right sides, outward faces.
@@ -260,7 +265,42 @@ mod tests {
         check(&[p], &Directions::<14>::default());
         check(&[p, Point3::new(3.0, 9.0, 5.0)], &Directions::<26>::default());
         check(&[p, Point3::new(3.0, 9.0, 5.0), Point3::new(3.0, 9.0, 7.0)], &Directions::<18>::default());
-        assert_eq!(Polytope::new(&Kdop::empty(), &Directions::<14>::default()), Polytope::default());
+        let directions = Directions::<14>::default();
+        assert_eq!(Polytope::new(&Kdop::empty(), &directions), Polytope::default());
+        for far in [f64::MAX, 0.7 * f64::MAX, 1e305] {
+            let large = Kdop::of_points(&directions, &[Point3::new(far, far, far), Point3::new(-far, 0.0, far)]);
+            assert_eq!(Polytope::new(&large, &directions), Polytope::default());
+        }
+        check(&[Point3::new(1e300, 1e300, -1e300), Point3::origin()], &directions);
+        check(&[Point3::new(1e-300, 1e-300, -1e-300), Point3::origin()], &directions);
+    }
+
+    #[test]
+    fn thickness_is_small_against_the_polytope_whatever_the_directions() {
+        let mut rng = p2m_testkit::rng("flat polytopes", 0);
+        let mut vector = || Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0));
+        for round in 0..300 {
+            // Nearly in a plane, or nearly parallel.
+            let mut directions = [(); 7].map(|()| vector());
+            let first = directions[0].normalize();
+            for direction in &mut directions[1..4] {
+                match round % 3 {
+                    0 => direction.z *= 1e-5,
+                    1 => *direction = first + *direction * 2e-5,
+                    _ => {}
+                }
+            }
+            let Ok(directions) = Directions::<14>::new(&directions) else { continue };
+            let points = [(); 6].map(|()| Point3::from(vector()));
+            let kdop = Kdop::of_points(&directions, &points);
+            let polytope = check(&points, &directions);
+            let bounds = Aabb::of_points(&polytope.corners);
+            let size = (bounds.max - bounds.min).max() * 0.5;
+            for (normal, height) in directions.normals().iter().zip(&kdop.heights) {
+                let beyond = polytope.corners.iter().map(|c| normal.dot(&c.coords)).fold(f64::MIN, f64::max) - height;
+                assert!(beyond <= 3e-9 * size, "{beyond:e} of {size:e} in round {round}");
+            }
+        }
     }
 
     #[test]
