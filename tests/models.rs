@@ -70,7 +70,7 @@ fn trees_agree_with_brute_force_on_every_model_in_f64() {
     for path in model_files() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
         let soup = p2m::scene::read_scene(&path).expect("readable").soup;
-        let trees = Trees::build(&soup, &Choice::from_scene(&soup));
+        let trees = Trees::build(&soup, &Choice::from_scene(&soup).expect("valid"));
         for set in QuerySet::ALL {
             let queries = set.generate(&soup, QUERIES, 1);
             agrees(&name, set, &soup, &trees, &queries);
@@ -87,7 +87,7 @@ fn trees_agree_with_brute_force_on_every_model_in_f32() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
         let wide = p2m::scene::read_scene(&path).expect("readable").soup;
         let soup = narrow(&wide).expect("models fit f32");
-        let trees = Trees::build(&soup, &Choice::from_scene(&wide));
+        let trees = Trees::build(&soup, &Choice::from_scene(&wide).expect("valid"));
         for set in QuerySet::ALL {
             // A quarter of the queries: the scalar changes the boxes, not the kernel.
             let queries: Vec<_> = set.generate(&wide, QUERIES / 4, 2).iter().map(|q| q.map(f32::of_f64)).collect();

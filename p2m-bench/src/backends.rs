@@ -190,7 +190,7 @@ pub(crate) fn kdop_backend(name: &str) -> &'static Backend {
 
 /// What the scene requires.
 pub(crate) fn frame(scene: &Scene) -> Choice {
-    Choice::from_scene(&scene.double)
+    Choice::from_scene(&scene.double).expect("a scene is finite")
 }
 
 /// The AABB tree over the triangles written out, where there is nothing else: shows what a set of mixed kinds costs.

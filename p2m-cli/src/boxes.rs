@@ -58,7 +58,7 @@ pub(crate) struct Args {
     levels: u8,
 
     /// Draw the polytopes of the k-DOP tree with as many faces
-    #[arg(long, value_name = "K", value_enum)]
+    #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
     k: Option<Faces>,
 
     /// From where an SVG picture is seen
@@ -129,10 +129,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let levels = usize::from(args.levels);
     let drawn = match args.k {
         None => AabbTree::build(&scene.soup, &Default::default())
-            .map(|tree| panels(tree.tree(), levels, ["box", "boxes"], |bounds| box_edges(bounds).collect())),
-        Some(faces) => faces.build(&scene.soup, Polytopes { levels }).map(|(panels, _)| panels),
+            .map(|tree| panels(tree.tree(), levels, ["box", "boxes"], |bounds| box_edges(bounds).collect()))
+            .map(|panels| (panels, None)),
+        Some(faces) => faces.build(&scene.soup, Polytopes { levels }).map(|(panels, used)| (panels, Some(used))),
     };
-    let drawn = drawn.with_context(|| input::name(&args.scene))?;
+    let (drawn, faces) = drawn.with_context(|| input::name(&args.scene))?;
+    let choice = faces.as_ref().and_then(|faces| faces.choice.as_ref());
     drop(progress);
     let (drawn, mut panels): (Vec<Drawn>, Vec<Panel>) = drawn.into_iter().unzip();
     let mut output = Output::open(Some(&args.out))?;
@@ -152,12 +154,17 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
             "version": json::VERSION,
             "scene": { "file": input::name(&args.scene), "format": format.name() },
             "out": { "file": args.out.display().to_string() },
+            "faces": faces.as_ref().map(|faces| faces.k),
+            "choice": choice,
             "panels": panels,
         });
         return json::print(&report);
     }
     // The picture is complete; whether anybody reads this is not our concern.
     let _ = panels.iter().try_for_each(|panel| writeln!(io::stderr(), "{}", panel.title));
+    if let Some(choice) = choice {
+        let _ = writeln!(io::stderr(), "k-DOPs: {choice}");
+    }
     Ok(())
 }
 

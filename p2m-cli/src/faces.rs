@@ -7,20 +7,28 @@ use p2m_kdop::{Choice, KdopOptions, KdopTree};
 /// The faces of k-DOPs.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Faces {
-    /// Boxes
+    /// Boxes along the axes
     #[value(name = "6")]
     Six,
-    /// And the corners of a cube cut off
+    /// Boxes with their corners cut off
     #[value(name = "14")]
     Fourteen,
-    /// And its edges
+    /// Boxes with their edges cut off
     #[value(name = "18")]
     Eighteen,
-    /// Both
+    /// Boxes with both cut off
     #[value(name = "26")]
     TwentySix,
-    /// Those that the scene requires, which the summary tells
+    /// As many as the scene is worth, along the axes or turned with it: the summary says which and why
     Scene,
+}
+
+/// The faces that were used.
+pub(crate) struct Used {
+    /// How many.
+    pub(crate) k: usize,
+    /// Why these, if the scene was asked.
+    pub(crate) choice: Option<String>,
 }
 
 /// What to do with a tree, whatever its K.
@@ -30,13 +38,13 @@ pub(crate) trait WithTree<'a> {
 }
 
 impl Faces {
-    /// Builds the tree, and says what the directions of the scene are if these are asked for.
+    /// Builds the tree.
     pub(crate) fn build<'a, W: WithTree<'a>>(
         self,
         soup: &'a Soup<f64>,
         what: W,
-    ) -> Result<(W::Output, Option<String>), BuildError> {
-        let choice = (self == Self::Scene).then(|| Choice::from_scene(soup));
+    ) -> Result<(W::Output, Used), BuildError> {
+        let choice = (self == Self::Scene).then(|| Choice::from_scene(soup)).transpose()?;
         let k = match self {
             Self::Six => 6,
             Self::Fourteen => 14,
@@ -50,7 +58,7 @@ impl Faces {
             18 => build::<18, _>(soup, choice.as_ref(), what),
             _ => build::<26, _>(soup, choice.as_ref(), what),
         }?;
-        Ok((output, choice.map(|choice| choice.to_string())))
+        Ok((output, Used { k, choice: choice.map(|choice| choice.to_string()) }))
     }
 }
 

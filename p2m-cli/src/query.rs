@@ -6,7 +6,7 @@ use crate::json;
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
 use crate::sampling::{Queries, Region};
-use crate::summary::{Answers, Summary};
+use crate::summary::{About, Answers, Summary};
 use crate::usage::{not_negative, one_of, positive, usage, whole};
 use anyhow::{Context, anyhow};
 use clap::{ArgGroup, ValueEnum};
@@ -102,7 +102,7 @@ pub(crate) struct Args {
     backend: Backend,
 
     /// How many faces the polytopes of --backend kdop have [default: 14]
-    #[arg(long, value_name = "K", value_enum)]
+    #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
     k: Option<Faces>,
 
     /// Give no answers farther than this, in the unit of the scene; at exactly this distance there is one
@@ -153,24 +153,27 @@ impl Backend {
     }
 
     /// The index, and what there is to say about it.
-    fn build(self, soup: &Soup<f64>, faces: Faces) -> Result<(Index<'_>, Option<String>), p2m_core::BuildError> {
+    fn build(self, soup: &Soup<f64>, faces: Faces) -> Result<(Index<'_>, About), p2m_core::BuildError> {
         Ok(match self {
-            Self::Brute => (Box::new(BruteForce::build(soup, &())?), None),
-            Self::Aabb => (Box::new(AabbTree::build(soup, &Default::default())?), None),
+            Self::Brute => (Box::new(BruteForce::build(soup, &())?), About::Nothing),
+            Self::Aabb => (Box::new(AabbTree::build(soup, &Default::default())?), About::Nothing),
             Self::Octree => octree(soup)?,
-            Self::Kdop => faces.build(soup, AnyTree)?,
+            Self::Kdop => {
+                let (index, used) = faces.build(soup, AnyTree)?;
+                (index, About::Faces(used))
+            }
         })
     }
 }
 
-/// The octree, which takes a while to build, and what it became.
+/// The octree, which takes a while to build.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part is from 0 to 1")]
-fn octree(soup: &Soup<f64>) -> Result<(Index<'_>, Option<String>), p2m_core::BuildError> {
+fn octree(soup: &Soup<f64>) -> Result<(Index<'_>, About), p2m_core::BuildError> {
     let progress = Progress::start("finding cells", Some(100), Unit::Percent);
     let reach = |part: f64| progress.reach((part * 100.0) as u64);
     let index = OctreeIndex::build_with_progress(soup, &Default::default(), &reach)?;
-    let report = index.report().to_string();
-    Ok((Box::new(index), Some(report)))
+    let report = index.report();
+    Ok((Box::new(index), About::Cells(report)))
 }
 
 /// A k-DOP tree as an index.
@@ -217,7 +220,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let start = Instant::now();
     // The octree tells more by itself.
     let progress = (args.backend != Backend::Octree).then(|| Progress::start("building the index", None, Unit::None));
-    let (index, note) =
+    let (index, about) =
         args.backend.build(&scene.soup, args.k.unwrap_or(Faces::Fourteen)).with_context(|| name.clone())?;
     drop(progress);
     let build = start.elapsed();
@@ -238,16 +241,14 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
 
     let backend = args.backend.name();
     let threads = pool.current_num_threads();
-    let summary = Summary { scene_name: name, scene: &scene, format, backend, threads, read, build, query, answers };
+    let scene_name = name;
+    let summary = Summary { scene_name, scene: &scene, format, backend, about, threads, read, build, query, answers };
     if args.json {
         let out = json!({ "file": args.out.display().to_string(), "format": out_format.name(), "bytes": bytes });
         return json::print(&summary.json(&asked_about(args), args.max_distance, &out));
     }
     // The answers are complete; whether anybody reads this is not our concern.
     let _ = write!(io::stderr(), "{summary}");
-    if let Some(note) = note {
-        let _ = writeln!(io::stderr(), "k-DOPs: {note}");
-    }
     Ok(())
 }
 

@@ -1,7 +1,9 @@
 //! What a run was about: for people on the standard error, or for programs as JSON.
 
+use crate::faces::Used;
 use crate::json;
 use p2m_core::Closest;
+use p2m_interception::OctreeReport;
 use p2m_mixed::statistics::Counts;
 use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
@@ -14,11 +16,21 @@ pub(crate) struct Summary<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) format: Format,
     pub(crate) backend: &'static str,
+    pub(crate) about: About,
     pub(crate) threads: usize,
     pub(crate) read: Duration,
     pub(crate) build: Duration,
     pub(crate) query: Duration,
     pub(crate) answers: Answers,
+}
+
+/// What there is to say about an index.
+pub(crate) enum About {
+    Nothing,
+    /// Of a k-DOP tree.
+    Faces(Used),
+    /// Of an octree.
+    Cells(OctreeReport),
 }
 
 /// 2^-64
@@ -67,6 +79,22 @@ impl Summary<'_> {
         let distance = answers.mean().map(|mean| {
             json!({ "min": json::number(answers.min), "max": json::number(answers.max), "mean": json::number(mean) })
         });
+        let (faces, choice) = match &self.about {
+            About::Faces(used) => (Some(used.k), used.choice.as_ref()),
+            _ => (None, None),
+        };
+        let cells = match &self.about {
+            About::Cells(report) => json!({
+                "lists": report.lists,
+                "singles": report.singles,
+                "trees": report.trees,
+                "bytes": report.bytes,
+                "tree_bytes": report.tree_bytes,
+                "tests": report.work,
+                "resolution": json::number(report.resolution),
+            }),
+            _ => Value::Null,
+        };
         json!({
             "p2m": "query",
             "version": json::VERSION,
@@ -77,6 +105,9 @@ impl Summary<'_> {
                 "skipped": json::skipped(self.scene),
             },
             "backend": self.backend,
+            "faces": faces,
+            "choice": choice,
+            "cells": cells,
             "threads": self.threads,
             "max_distance": max_distance.map_or(Value::Null, json::number),
             "asked_about": asked_about,
@@ -109,7 +140,13 @@ impl fmt::Display for Summary<'_> {
             writeln!(f, "skipped  {}", list.join(", "))?;
         }
         let threads = if self.threads == 1 { "thread" } else { "threads" };
-        writeln!(f, "backend  {}, built in {:.3?}", self.backend, self.build)?;
+        let faces = if let About::Faces(used) = &self.about { format!(", {} faces", used.k) } else { String::new() };
+        writeln!(f, "backend  {}{faces}, built in {:.3?}", self.backend, self.build)?;
+        match &self.about {
+            About::Faces(Used { choice: Some(choice), .. }) => writeln!(f, "k-DOPs   {choice}")?,
+            About::Cells(report) => writeln!(f, "cells    {report}")?,
+            _ => {}
+        }
         let answers = &self.answers;
         let seconds = self.query.as_secs_f64();
         write!(f, "queries  {} in {:.3?} on {} {threads}", answers.queries, self.query, self.threads)?;

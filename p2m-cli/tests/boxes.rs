@@ -31,7 +31,7 @@ fn levels_and_leaves_are_drawn_and_listed() {
             // One root, and at most eight children of a node.
             let counts: Vec<usize> = titles
                 .lines()
-                .map(|title| title.split([':', ' ']).filter_map(|word| word.parse().ok()).last().unwrap())
+                .map(|title| title.split([':', ' ']).filter_map(|word| word.parse().ok()).next_back().unwrap())
                 .collect();
             assert_eq!(counts[..2], [1, 8], "{titles}");
             assert!(counts[1] < counts[2] && counts[2] <= 64 && counts[2] < counts[3], "{titles}");
@@ -63,7 +63,10 @@ fn polytopes_of_the_k_dop_tree_hold_the_scene_and_fit_closer() {
         let out = folder.path().join(format!("{k}.ply"));
         let run = p2m(&["boxes", SCENE, "--levels", "0", "--k", k, "--out", out.to_str().unwrap()]);
         let titles = String::from_utf8(run.stderr).unwrap();
-        assert!(titles.starts_with("leaves: ") && titles.ends_with(" polytopes\n"), "{titles}");
+        let lines: Vec<_> = titles.lines().collect();
+        assert!(lines[0].starts_with("leaves: ") && lines[0].ends_with(" polytopes"), "{titles}");
+        // Why these faces is said where the scene was asked.
+        assert_eq!(lines[1..].iter().filter(|line| line.starts_with("k-DOPs: ")).count(), usize::from(k == "scene"));
         let picture = p2m_mixed::read_scene(&out).unwrap().soup;
         let all = p2m_core::Aabb::of_points(picture.positions());
         assert!(all.contains(&p2m_core::PrimitiveSet::aabb(&scene)), "{k}");

@@ -53,8 +53,30 @@ fn the_summary_tells_what_was_done() {
 
 #[test]
 fn directions_of_the_scene_are_explained() {
-    let output = p2m(&["query", SCENE, "--random", "5", "--backend", "kdop", "--k", "scene"]);
-    assert!(text(&output.stderr).contains("k-DOPs: "), "{}", text(&output.stderr));
+    let query = ["query", SCENE, "--random", "5", "--backend", "kdop"];
+    let summary = |k: &str| text(&p2m(&[&query[..], &["--k", k]].concat()).stderr);
+    let of_scene = summary("SCENE");
+    let choice = after(&of_scene, "k-DOPs   ").to_owned();
+    assert!(choice.contains(" directions along "), "{of_scene}");
+    let faces = choice.split(' ').next().unwrap();
+    assert!(of_scene.contains(&format!("backend  kdop, {faces} faces, built in ")), "{of_scene}");
+    let usual = summary("18");
+    assert!(usual.contains("backend  kdop, 18 faces, built in ") && !usual.contains("k-DOPs"), "{usual}");
+    let folder = TempDir::new().unwrap();
+    let out = path(&folder, "answers.csv");
+    let report = |more: &[&str]| {
+        let output = p2m(&[&["query", SCENE, "--random", "5", "--json", "--out", &out], more].concat());
+        let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        ["faces", "choice"].map(|key| report[key].clone())
+    };
+    assert_eq!(
+        report(&["--backend", "kdop", "--k", "scene"]),
+        [serde_json::json!(faces.parse::<usize>().unwrap()), choice.into()]
+    );
+    assert_eq!(report(&["--backend", "kdop"]), [14.into(), serde_json::Value::Null]);
+    assert_eq!(report(&[]), [serde_json::Value::Null, serde_json::Value::Null]);
+    let wrong = failure(&[&query[..], &["--k", "-6"]].concat(), 2);
+    assert!(wrong.contains("invalid value '-6' for '--k <K>'"), "{wrong}");
     let output = p2m(&["query", SCENE, "--random", "5", "--k", "14"]);
     assert!(text(&output.stderr).contains("--k is for --backend kdop"), "{}", text(&output.stderr));
     assert_eq!(output.status.code(), Some(2));
@@ -249,6 +271,8 @@ fn the_json_summary_agrees_with_the_table() {
             "skipped": [],
         },
         "backend": "aabb",
+        "faces": null,
+        "choice": null,
         "threads": 2,
         "max_distance": 0.7,
         "asked_about": { "random": 200, "seed": 3, "box_scale": 1.05 },

@@ -3,15 +3,15 @@
 //! A slab is thin around a facet that it is parallel to, and around a segment that runs along it. So three orthogonal
 //! directions are sought first along which most of the area of facets (by their normals) and most of the length of segments
 //! lie: a scene that was built along some axes has such a frame wherever it was turned to. Then trees of more and more
-//! directions, along the axes and along the frame, answer some queries, and nodes and packets that they visit are counted: more
-//! slabs cost arithmetic in every node, so they have to save visits. How large the volumes of leaves are does not tell that:
-//! those of a thin wire shrink most, but nothing else is in their way (docs/kdop.md).
+//! directions, along the axes and along the frame, answer some queries, and nodes and packets that they visit are
+//! counted: more slabs cost arithmetic in every node, so they have to save visits. How large the volumes of leaves are does
+//! not tell that: those of a thin wire shrink most, but nothing else is in their way (docs/kdop.md).
 
 use crate::{KdopOptions, KdopTree};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{
-    Aabb, Best, Counting, Directions, DirectionsError, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real,
-    Segment, Shape, Triangle,
+    Aabb, Best, BuildError, Counting, Directions, DirectionsError, Primitive, PrimitiveId, PrimitiveSet, QueryOptions,
+    Real, Segment, Shape, Triangle, check_set,
 };
 use std::fmt;
 
@@ -35,7 +35,7 @@ use std::fmt;
 ///         }
 ///     })
 ///     .collect();
-/// let choice = Choice::from_scene(&boards);
+/// let choice = Choice::from_scene(&boards).unwrap();
 /// assert!(choice.is_turned());
 /// let directions = choice.directions::<6>().unwrap();
 /// let tree = KdopTree::<f64, _, 6>::build_with(&boards, &KdopOptions::new(directions)).unwrap();
@@ -45,7 +45,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Choice {
-    /// How many directions to use, both signs counted: 6, 14, 18 or 26.
+    /// How many faces, which is directions with both signs counted: 6, 14, 18 or 26.
     pub k: usize,
     /// The three that were found, orthogonal and of unit length.
     pub frame: [Vector3<f64>; 3],
@@ -53,7 +53,7 @@ pub struct Choice {
     pub waste_of_axes: f64,
     /// The same for the frame.
     pub waste_of_frame: f64,
-    /// The expected work of a query with 6, 14, 18 and 26 faces, in parts of that with boxes along the axes: along the axes,
+    /// The work of a trial query with 6, 14, 18 and 26 faces, in parts of that with boxes along the axes: along the axes,
     pub work_along_axes: [f64; 4],
     /// and along the frame, if that was tried.
     pub work_along_frame: Option<[f64; 4]>,
@@ -85,9 +85,13 @@ const GAIN: f64 = 0.75;
 impl Choice {
     /// Looks at a scene, or at a sample of a large one: always the same one.
     ///
+    /// # Errors
+    /// Those of building a tree: a coordinate that is not finite, or more primitives than ids.
+    ///
     /// # Complexity
     /// O(n log n): four or eight trees are built.
-    pub fn from_scene<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S) -> Self {
+    pub fn from_scene<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S) -> Result<Self, BuildError> {
+        check_set(set)?;
         let directions = sample(set);
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
         let waste_of_axes = waste(&directions, &axes);
@@ -128,7 +132,7 @@ impl Choice {
                 }
             }
         }
-        choice
+        Ok(choice)
     }
 
     /// Whether the frame is to be used rather than the axes.
@@ -144,9 +148,7 @@ impl Choice {
     pub fn directions<const K: usize>(&self) -> Result<Directions<K>, DirectionsError> {
         along(&if self.turned { self.frame } else { [Vector3::x(), Vector3::y(), Vector3::z()] })
     }
-}
 
-impl Choice {
     /// The frame that was found, and its diagonals, whether or not it was chosen.
     ///
     /// # Errors
@@ -245,11 +247,11 @@ impl fmt::Display for Choice {
             write!(f, "the axes")?;
         }
         if self.turned || self.k > 6 {
-            write!(f, "; expected to take {:.0} % of the work of boxes along the axes", percent(work[place]))?;
+            write!(f, "; trial queries take {:.0} % of their work with boxes along the axes", percent(work[place]))?;
         } else {
             write!(
                 f,
-                "; more would take {:.0} % of the work",
+                "; with more, trial queries take {:.0} % of their work or more",
                 percent(work[1..].iter().fold(f64::MAX, |a, b| a.min(*b)))
             )?;
         }
@@ -262,16 +264,16 @@ fn sample<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -> Vec<(Vector3<f64>, f
     let len = set.len();
     let count = len.min(SAMPLE);
     let mut found = Vec::with_capacity(count);
-    let size = (0..count).map(|i| set.get(PrimitiveId::new(i * len / count)).aabb().to_f64());
+    let boxes = (0..count).map(|i| set.get(PrimitiveId::new(i * len / count)).aabb().to_f64());
     // Half of the scale of the scene, so that no product overflows.
-    let bounds = size.fold(p2m_core::Aabb::empty(), |a, b| a.union(&b));
+    let bounds = boxes.fold(Aabb::empty(), |a, b| a.union(&b));
     let scale = (bounds.max.coords * 0.5 - bounds.min.coords * 0.5).max();
     for i in 0..count {
         let primitive = set.get(PrimitiveId::new(i * len / count));
         let corners: Vec<Vector3<f64>> =
             primitive.vertices().iter().map(|p| p.coords.map(|x| x.to_f64() / scale)).collect();
-        // A segment counts as a facet as long and as thick as its own length: there is nothing to compare areas and lengths by.
-        // A long facet counts as a segment besides, the more the longer it is for its height.
+        // A segment counts as a facet as long and as thick as its own length: there is nothing to compare areas and lengths
+        // by. A long facet counts as a segment besides, the more the longer it is for its height.
         let weighted = match corners[..] {
             [a, b] => [(b - a) * (b - a).norm(), Vector3::zeros()],
             [a, b, c] => {
@@ -331,6 +333,8 @@ fn peaks(directions: &[(Vector3<f64>, f64)]) -> Vec<Vector3<f64>> {
 mod tests {
     use super::*;
     use nalgebra::Rotation3;
+    use p2m_core::Soup;
+    use p2m_testkit::scenes;
 
     /// The faces of boxes, turned.
     fn boxes(turn: &Rotation3<f64>) -> Vec<Triangle<f64>> {
@@ -351,14 +355,14 @@ mod tests {
 
     #[test]
     fn a_turned_scene_gets_its_own_frame_back() {
-        let straight = Choice::from_scene(&boxes(&Rotation3::identity()));
+        let straight = Choice::from_scene(&boxes(&Rotation3::identity())).expect("finite");
         assert!(!straight.is_turned() && straight.waste_of_axes < 0.05, "{straight}");
         assert_eq!(straight.directions::<14>(), Ok(Directions::default()));
         assert_eq!(straight.directions::<18>(), Ok(Directions::default()));
         assert_eq!(straight.directions::<26>(), Ok(Directions::default()));
         for turn in [Vector3::new(0.3, 0.5, 0.1), Vector3::new(0.0, 0.0, 0.8), Vector3::new(1.0, -2.0, 0.5)] {
             let turn = Rotation3::new(turn);
-            let choice = Choice::from_scene(&boxes(&turn));
+            let choice = Choice::from_scene(&boxes(&turn)).expect("finite");
             assert!(choice.waste_of_frame < 0.05 && choice.work_along_frame.is_some(), "{choice:?}");
             let directions = choice.frame_directions::<6>().expect("a frame");
             assert!(directions.starts_orthogonal());
@@ -376,7 +380,7 @@ mod tests {
         let boards: Vec<_> = (0..1000)
             .map(|i| Triangle::new(at(0, i % 50, i / 50), at(1, i % 50, i / 50), at(1, i % 50 + 1, i / 50)))
             .collect();
-        let turned = Choice::from_scene(&boards);
+        let turned = Choice::from_scene(&boards).expect("finite");
         assert!(turned.is_turned(), "{turned:?}");
         assert!(turned.to_string().contains(" directions along a frame of the scene's own ("), "{turned}");
         assert_eq!(turned.directions::<26>(), turned.frame_directions());
@@ -388,18 +392,35 @@ mod tests {
                 Segment::new(Point3::origin(), Point3::new(r * t.cos(), r * t.sin(), z))
             })
             .collect();
-        let none = Choice::from_scene(&around);
+        let none = Choice::from_scene(&around).expect("finite");
         assert!(!none.is_turned() && none.to_string().contains("along the axes"), "{none}");
+    }
+
+    /// Faces are chosen by what nodes cost, by queries near and far, and only where that saves something.
+    #[test]
+    fn as_many_faces_as_the_scene_is_worth() {
+        let chosen = |soup: &Soup<f64>| {
+            let choice = Choice::from_scene(soup).expect("finite");
+            println!("{choice}: {:.3?}", choice.work_along_axes);
+            choice.k
+        };
+        let mut rng = p2m_testkit::rng("choices", 0);
+        assert_eq!(chosen(&scenes::soup(&mut rng, scenes::Kinds::Triangles, scenes::Layout::Uniform, 3000)), 6);
+        assert_eq!([20, 50, 100, 300, 1000].map(|teeth| chosen(&scenes::skewed_gear(teeth))), [6, 14, 14, 14, 18]);
     }
 
     #[test]
     fn any_scene_has_a_choice() {
         let nothing: [Triangle<f64>; 0] = [];
-        assert!(!Choice::from_scene(&nothing).is_turned());
+        assert!(!Choice::from_scene(&nothing).expect("finite").is_turned());
         let flat = [Triangle::<f64>::new(Point3::origin(), Point3::origin(), Point3::origin())];
-        assert_eq!(Choice::from_scene(&flat).directions::<6>(), Ok(Directions::default()));
+        assert_eq!(Choice::from_scene(&flat).expect("finite").directions::<6>(), Ok(Directions::default()));
         let large = [Segment::new(Point3::new(-f64::MAX, 0.0, 0.0), Point3::new(f64::MAX, f64::MAX, 0.0))];
-        assert!(Choice::from_scene(&large).directions::<6>().is_ok());
-        assert!(Choice::from_scene(&large).directions::<30>().is_err());
+        assert!(Choice::from_scene(&large).expect("finite").directions::<6>().is_ok());
+        assert!(Choice::from_scene(&large).expect("finite").directions::<30>().is_err());
+        for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY] {
+            let set = [large[0], Segment::new(Point3::origin(), Point3::new(0.0, bad, 0.0))];
+            assert_eq!(Choice::from_scene(&set), Err(BuildError::NonFinite { id: PrimitiveId::new(1) }));
+        }
     }
 }

@@ -63,8 +63,8 @@ impl<const K: usize> LeftFirst<K> {
         at
     }
 
-    /// The distance to the scene and the work of finding it. The search begins with the distance to some primitive, as the manual's does with a
-    /// hint.
+    /// The distance to the scene and the work of finding it. The search begins with the distance to some primitive, as the
+    /// manual's does with a hint.
     pub fn distance<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>) -> (f64, Work) {
         let q = query.map(T::to_f64).coords;
         let products = self.directions.normals().map(|normal| normal.dot(&q));

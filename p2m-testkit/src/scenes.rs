@@ -113,6 +113,24 @@ pub fn narrow(soup: &Soup<f64>) -> Option<Soup<f32>> {
     Soup::new(positions, soup.elements()).ok()
 }
 
+/// The sides of a gear with a fine toothing, skewed and turned: long triangles askew to each other and to the axes.
+#[must_use]
+pub fn skewed_gear(teeth: u32) -> Soup<f64> {
+    let turn = nalgebra::Rotation3::new(Vector3::new(0.4, 0.7, 0.3));
+    let corners = 4 * teeth;
+    let positions = (0..2 * corners).map(|i| {
+        let (corner, side) = (i / 2, f64::from(i % 2));
+        let radius = if corner % 4 < 2 { 1.0 } else { 0.9 };
+        let angle = std::f64::consts::TAU * f64::from(corner) / f64::from(corners) + side * 0.9;
+        turn * Point3::new(radius * angle.cos(), radius * angle.sin(), side * 0.8)
+    });
+    let elements = (0..corners).flat_map(|i| {
+        let [a, b] = [2 * i, 2 * ((i + 1) % corners)];
+        [Element::Triangle([a, b, b + 1]), Element::Triangle([a, b + 1, a + 1])]
+    });
+    Soup::new(positions.collect(), elements.collect::<Vec<_>>()).expect("finite")
+}
+
 /// A query around a scene: on a position, between two, near, uniform in the box, on a half-integer lattice, or far.
 pub fn query(rng: &mut impl Rng, positions: &[Point3<f64>]) -> Point3<f64> {
     if positions.is_empty() {
