@@ -1,9 +1,9 @@
 //! The third example of the k-DOP tree's manual: the volumes of a tree as polytopes, of the manual's own directions.
 //!
-//! Writes two levels of nodes and all leaves as PLY files of polygons into the folder of temporary files, or into the folder
-//! that is named behind the mesh.
+//! Writes some levels of nodes and all leaves as PLY files of polygons into the folder of temporary files, or into the folder
+//! that is named behind the mesh. The levels are named behind the folder; the root and its children by default.
 //!
-//! `cargo run --example kdop_polytopes -- mesh.obj folder`
+//! `cargo run --release --example kdop_polytopes -- mesh.obj folder 0 1 3`
 
 use nalgebra::Vector3;
 use p2m::kdop::{Polytope, write_polytopes_ply};
@@ -11,12 +11,30 @@ use p2m::{Directions, KdopOptions, KdopTree};
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::PathBuf;
+use std::process::ExitCode;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("kdop_polytopes: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().unwrap_or_else(|| "scenes/knot_and_cables.obj".to_owned());
     let folder = arguments.next().map_or_else(std::env::temp_dir, PathBuf::from);
+    let level =
+        |text: String| text.parse().map_err(|_| format!("'{text}' is not a level: they are whole numbers from 0"));
+    let mut levels: Vec<usize> = arguments.map(level).collect::<Result<_, _>>()?;
+    if levels.is_empty() {
+        levels = vec![0, 1];
+    }
     let scene = p2m::scene::read_scene(name.as_ref())?.soup;
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     // The axes, and four others; they need not be unit vectors, and opposites follow by themselves.
     let directions = Directions::<14>::new(&[
         Vector3::x(),
@@ -39,7 +57,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Ok(())
     };
     let polytope = |volume| Polytope::new(volume, &directions);
-    for level in 0..2 {
+    for level in levels {
         let of_level = parts.iter().filter(|part| part.depth == level);
         let polytopes: Vec<_> = of_level.map(|part| (polytope(&part.volume), level)).collect();
         write(&format!("polytopes-level-{level}.ply"), &polytopes)?;

@@ -52,7 +52,8 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
 
     /// Fits the tree to a set of as many primitives as its own, which it then keeps: the same primitives, moved. That takes
     /// a fraction of the time of building. The tree keeps its shape, so searches get slower the further apart neighbours have
-    /// moved; answers are those of a tree that is built anew.
+    /// moved; answers are those of a tree that is built anew. Of the options only whether all threads are used matters:
+    /// directions and splits stay those that it was built with.
     ///
     /// # Errors
     /// [`BuildError::OtherLength`] and [`BuildError::NonFinite`]; the tree is then as it was.

@@ -28,7 +28,8 @@ const _: () = assert!(size_of::<SlabNode<14>>() == 512);
 /// 30 x 2^-53.
 const SLACK: f64 = power_of_two(-48);
 /// What is taken from all slacks but those of a box along the axes, in units of the size X of the query in the frame: 20 u
-/// of f32.
+/// of f32. What the proof needs it for is small, and mostly hidden: products and heights are rounded outwards besides, and
+/// limits have room for 2^-19. So tests do not tell when it is missing.
 const QUERY_SLACK: f64 = 20.0 * power_of_two(-24);
 /// What is left of an increment, for the roundings of its factor: 1 - 2^-15.
 const SHRINK: f32 = 1.0 - 1.0 / 32768.0;
@@ -138,6 +139,7 @@ impl<const K: usize> WideNode for SlabNode<K> {
             let part = below.if_below(above, along, against);
             let rest = along.mul_add(against, square).max(least);
             let more = slack.sub(part).max(zero);
+            // The bound is derived for faces that the query is outside of.
             let more = zero.if_below(slack, more, zero);
             let both = more.mul(more).mul_add(scaled.mul(rest.reciprocal()), square);
             let slack = slack.max(zero);
