@@ -6,7 +6,7 @@
 use nalgebra::{Point3, Vector3};
 use p2m::{
     Aabb, Best, BruteForce, BuildIndex, ClosestPoint, Collector, Counting, Domain, Isa, OctreeIndex, OctreeOptions,
-    PrimitiveId, PrimitiveSet, Projection, QueryOptions, Soup,
+    Point, PrimitiveId, PrimitiveSet, Projection, QueryOptions, Segment, Shape, Soup,
 };
 use p2m_testkit::rng;
 use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};
@@ -217,5 +217,51 @@ fn lookups_do_little() {
         }
         println!("{name}: per 1000 queries {sums:?} nodes, packets, primitives");
         assert!((0..3).all(|i| sums[i] <= most[i]), "{name}: {sums:?}");
+    }
+}
+
+/// Rounding may put a query into the cell beside its own: what ties everywhere in that cell may be the nearest here.
+#[test]
+fn queries_beside_a_face_that_rounding_moves_across_it_lose_nothing() {
+    let mut found = 0;
+    for shift in [36.0f64, 36.5, 37.0] {
+        let mut rng = rng("face", 0);
+        // So near to a face of cells, the plane x = 0, that a difference to the end of the domain cannot tell.
+        let a = 2f64.powf(-shift);
+        let along = Vector3::new(-(2f64.powi(-5)), 0.0, 0.0);
+        let vertices: Vec<_> =
+            (0..8).map(|_| Point3::new(-a, rng.random_range(-0.5..0.5), rng.random_range(-0.5..0.5))).collect();
+        let mut shapes: Vec<Shape<f64>> = vertices.iter().map(|v| Point::new(*v).into()).collect();
+        shapes.extend(vertices.iter().map(|v| Shape::from(Segment::new(*v, v + along))));
+        shapes.extend([-0.6, 0.6].map(|x| Shape::from(Point::new(Point3::new(x, 0.0, 0.0)))));
+        let reach = 1.9 * 2f64.powf(18.2);
+        let domain = Domain::Box(Aabb { min: [-reach; 3].into(), max: [reach; 3].into() });
+        let options = OctreeOptions::default().with_domain(domain).with_resolution(2e3).with_memory(2e4).with_work(2e4);
+        let index = OctreeIndex::<f64, _>::build(&shapes[..], &options).expect("valid");
+        println!("{}", index.report());
+        let brute = BruteForce::new(&shapes[..]).expect("valid");
+        for v in &vertices {
+            for part in [0.3, 0.5, 0.9] {
+                let q = v - Vector3::x() * (a * part);
+                let key = |c: p2m::Closest<f64>| (c.distance.to_bits(), c.primitive);
+                assert_eq!(index.closest_point(&q).map(key), brute.closest_point(&q).map(key), "{shift} {q}");
+                found += usize::from(index.octree().list_length(&q).is_some());
+            }
+        }
+    }
+    assert!(found > 30, "{found}");
+}
+
+#[test]
+fn any_resolution_ends() {
+    let soup = sheet(1_200);
+    for resolution in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1e9, 10.0, 1e-9] {
+        for memory in [0.0, 2.0, 190.0] {
+            let options = OctreeOptions::default().with_resolution(resolution).with_memory(memory);
+            let report = built(&soup, &options).report();
+            let usual = built(&soup, &OctreeOptions::default().with_memory(memory)).report();
+            // Who asks for more has no less.
+            assert!(!(resolution > 1.0) || report.bytes >= usual.bytes, "{resolution} {memory}: {report}\n{usual}");
+        }
     }
 }

@@ -5,8 +5,8 @@ use std::marker::PhantomData;
 
 /// An interception index with cubes as cells, over a set of primitives, which it keeps.
 ///
-/// Queries outside of the refined box ([`OctreeOptions::domain`]) are answered by the AABB tree over the same packets, as are
-/// primitives of one's own that are no hulls of vertices, and collectors of more than the nearest primitive.
+/// Queries outside of the refined box ([`OctreeOptions::domain`]) and collectors of more than the nearest primitive are answered
+/// by the AABB tree over the same packets.
 ///
 /// # Complexity
 /// A query takes O(log n) steps to its cell, and then what the list has: a few packets, however many primitives there are, where the

@@ -35,15 +35,16 @@ const DEEPEST: u8 = 30;
 const EVERYWHERE: f64 = 10.0;
 /// Where queries are taken to be, evenly in boxes of so many sizes of the scene: more of them the nearer it is.
 const QUERIES: [(f64, f64); 4] = [(EVERYWHERE, 1.0), (4.0, 0.3), (2.0, 0.3), (1.05, 1.0)];
-/// Where a budget is exceeded, the resolution is this part of what it was.
-const COARSER: f64 = 0.3;
+/// Resolutions from which on nothing changes any more.
+const FINEST: f64 = 1e9;
+const COARSEST: f64 = 1e-9;
 /// Budgets are for at least so many primitives.
 const FEW: usize = 10_000;
 
 /// Codes of eight cubes, x lowest.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
-struct Row([u32; 8]);
+pub(super) struct Row([u32; 8]);
 
 /// An interception index whose cells are cubes, over a set of primitives that it does not keep.
 #[derive(Clone, Debug)]
@@ -111,9 +112,14 @@ impl Octree {
         };
         let count = tree.packets().1.max(FEW) as f64;
         let most = [options.memory, options.work].map(|budget| (budget * count) as u64);
-        let mut resolution = options.resolution;
+        // NaN is no resolution either.
+        let mut resolution = if options.resolution > 0.0 { options.resolution.min(FINEST) } else { 0.0 };
         let mut percent = 0;
         let (cells, done) = loop {
+            if resolution < COARSEST {
+                // Not even the coarsest cells are within the budgets.
+                return;
+            }
             let done = Done {
                 bytes: AtomicU64::new(0),
                 work: AtomicU64::new(0),
@@ -142,11 +148,7 @@ impl Octree {
                 break (cells, refinement.done);
             }
             percent = refinement.done.percent.into_inner();
-            resolution *= COARSER;
-            if resolution < options.resolution * 1e-6 {
-                // Not even the coarsest cells are within the budgets.
-                return;
-            }
+            resolution = coarser(resolution);
         };
         self.report.work = done.work.into_inner();
         self.report.resolution = resolution;
@@ -395,6 +397,13 @@ impl Shape {
             even,
         })
     }
+}
+
+/// The next lower of the powers of 0.3, so that who asks for more does not get less.
+#[allow(clippy::cast_possible_truncation, reason = "some dozens")]
+fn coarser(resolution: f64) -> f64 {
+    let steps = (resolution.ln() / 0.3f64.ln() + 1e-6).floor() as i32 + 1;
+    0.3f64.powi(steps)
 }
 
 /// For each vertex of a tree the lowest primitive that has it, bit for bit.

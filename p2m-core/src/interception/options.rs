@@ -16,7 +16,8 @@ pub enum Domain {
     Band(f64),
 }
 
-/// How an octree is built. Budgets are upper limits: where one would be exceeded, cells are made coarser everywhere.
+/// How an octree is built. Budgets are upper limits of the index, not of what building it takes: where one would be exceeded,
+/// cells are made coarser everywhere, by the next power of 0.3 for a resolution that fits; or none are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct OctreeOptions {

@@ -15,6 +15,7 @@
 use super::block::{Block, Bounds, Entry, WIDTH, reference};
 use super::corner::{AtPoints, Dominators, Found, Keep, Least};
 use super::cube::{Corner, Cube, LATTICE, LATTICE_OF, MIDDLE, corner_on};
+use super::octree::Row;
 use super::options::Domain;
 use crate::hierarchy::PacketTree;
 use crate::hierarchy::wide::node::Child;
@@ -38,6 +39,8 @@ pub(super) const NODE: f64 = 30.0;
 const SEARCH: f64 = 300.0;
 /// Part of its cost that a cell loses by a split.
 const GAIN: f64 = 0.5;
+/// What codes take of each split at most: eight rows for a node of two levels, which stands for five splits at least.
+const SPLIT_BYTES: u64 = (8 * size_of::<Row>()).div_ceil(5) as u64;
 /// Nanoseconds that have to be saved, in all packets' worth of cells.
 const WORTH: f64 = 100.0;
 /// A cell that is done, or its eight children: child c lies above the middle on axis k if bit k of c is set.
@@ -270,8 +273,7 @@ impl Refinement<'_> {
         large: bool,
         cell: impl Fn(&Cube, P) -> Cell + Sync + Send,
     ) -> Cell {
-        let bytes = 8 * size_of::<u32>() as u64;
-        self.done.bytes.fetch_add(bytes, Ordering::Relaxed);
+        self.done.bytes.fetch_add(SPLIT_BYTES, Ordering::Relaxed);
         #[cfg(feature = "rayon")]
         if self.parallel && large {
             use rayon::prelude::*;
@@ -419,8 +421,10 @@ impl Refinement<'_> {
         let frame = &self.tree.frame;
         let y = reference(frame.place(&middle.y));
         let squares = cube.corners.map(|corner| square_of_way(&frame.place(&corner.x), &y));
-        // Rounding in f64, of places in the frame and of these squares.
-        let margin = squares.iter().fold(1.0, |a: f64, x| a.max(*x)) * 2f64.powi(-46);
+        // Rounding in f64, of places in the frame and of these squares, and of the cell that a query is taken to lie in: where f
+        // is below zero, so that its value matters, it changes by twice the way to y for each step at most.
+        let largest = squares.iter().fold(1.0, |a: f64, x| a.max(*x));
+        let margin = largest * 2f64.powi(-46) + 4.0 * self.slack * frame.per_unit * largest.sqrt();
         let mut entries: Vec<(f64, Entry)> = Vec::with_capacity(items.len());
         let mut single = None;
         let mut count = 0;
@@ -475,8 +479,9 @@ impl Refinement<'_> {
         /// The kernel is content with 2^-38.
         const MARGIN: f64 = 1.0 / (1u64 << 36) as f64;
         let packet = &self.tree.leaves.packets[item.packet as usize];
-        let half = cube.side * 0.5;
-        let centre = cube.low.map(|x| x + half);
+        // And in what rounding may add to it: a query may lie beside its cell.
+        let half = cube.side * 0.5 + self.slack;
+        let centre = cube.low.map(|x| x + cube.side * 0.5);
         let mut kept = item.lanes;
         for lane in (0..packet.ids().len()).filter(|lane| item.lanes >> lane & 1 == 1) {
             let (corners, count) = packet.vertices_of(lane);
