@@ -14,6 +14,7 @@ fn backends_and_threads_give_the_same_table() {
         let expected = run(&["--backend", "brute"]);
         assert!(expected.starts_with(&format!("{HEADER}\n")));
         assert_eq!(run(&["--backend", "aabb"]), expected);
+        assert_eq!(run(&["--backend", "octree"]), expected);
         assert_eq!(run(&["--backend", "kdop"]), expected);
         for faces in ["6", "14", "18", "26", "scene"] {
             assert_eq!(run(&["--backend", "kdop", "--k", faces]), expected);
@@ -273,6 +274,7 @@ fn the_json_summary_agrees_with_the_table() {
         "backend": "aabb",
         "faces": null,
         "choice": null,
+        "cells": null,
         "threads": 2,
         "max_distance": 0.7,
         "asked_about": { "random": 200, "seed": 3, "box_scale": 1.05 },
