@@ -124,13 +124,17 @@ fn instruction_set(name: Option<&str>) -> Result<Isa, Absent> {
     isa.ok_or_else(|| Absent(format!("this processor has no {name}")))
 }
 
-/// The octree, with an instruction set and a resolution, and the memory that it asks for.
-fn octree<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>, resolution: f64) -> Result<Prepared<'a>, Absent> {
+/// The octree, with an instruction set and so many times the usual resolution, and budgets to match.
+fn octree<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>, times: f64) -> Result<Prepared<'a>, Absent> {
     let isa = instruction_set(isa)?;
     let (soup, borrowed) = T::soup(scene)?;
     let usual = OctreeOptions::default();
-    let memory = usual.memory * if resolution > 1.0 { resolution } else { 1.0 };
-    let options = usual.with_splits(aabb_options()).with_resolution(resolution).with_memory(memory);
+    let budget = if times > 1.0 { times } else { 1.0 };
+    let options = usual
+        .with_splits(aabb_options())
+        .with_resolution(usual.resolution * times)
+        .with_memory(usual.memory * budget)
+        .with_work(usual.work * budget);
     let build = move || {
         let index = OctreeIndex::build(soup, &options).map_err(|error| Absent(error.to_string()))?;
         Ok(Box::new(Ours(index.with_isa(isa), PhantomData::<fn() -> T>)) as Ready<'a>)
