@@ -63,8 +63,8 @@ pub struct Choice {
 /// The numbers of faces to choose from.
 const FACES: [usize; 4] = [6, 14, 18, 26];
 /// Nanoseconds of a query, of a node with as many faces and of a packet (observed, on one processor; their ratios matter).
-const QUERY: f64 = 200.0;
-const NODE: [f64; 4] = [40.0, 74.0, 81.0, 104.0];
+const QUERY: f64 = 100.0;
+const NODE: [f64; 4] = [30.0, 50.0, 50.0, 74.0];
 const PACKET: f64 = 45.0;
 /// What has to be saved before more faces or another frame are used: so that chance does not decide.
 const WORTH: f64 = 0.97;
@@ -405,8 +405,8 @@ mod tests {
             choice.k
         };
         let mut rng = p2m_testkit::rng("choices", 0);
-        assert_eq!(chosen(&scenes::soup(&mut rng, scenes::Kinds::Triangles, scenes::Layout::Uniform, 3000)), 6);
-        assert_eq!([20, 50, 100, 300, 1000].map(|teeth| chosen(&scenes::skewed_gear(teeth))), [6, 14, 14, 14, 18]);
+        assert_eq!(chosen(&scenes::soup(&mut rng, scenes::Kinds::Triangles, scenes::Layout::Uniform, 3000)), 18);
+        assert_eq!([20, 50, 100, 300, 1000].map(|teeth| chosen(&scenes::skewed_gear(teeth))), [18, 14, 18, 18, 18]);
     }
 
     #[test]
