@@ -11,6 +11,7 @@
 //!
 //! Numbers are kept as bytes, rounded outwards. All lengths are in the frame of the scene.
 
+use super::cube::DEEPEST;
 use crate::hierarchy::wide::volume::Rounded;
 use crate::kernel::vector::V3;
 use crate::simd::Lanes;
@@ -52,7 +53,7 @@ pub(super) fn reference(y: V3) -> V3 {
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Block {
-    /// For corners: row i has f at corner i. For boxes: low and high corners, row by row, and in the last two rows the origin.
+    /// For corners: row i has f at corner i. For boxes: low and high corners, row by row, and the origin in the last two rows.
     bounds: [[u8; WIDTH]; 8],
     pub(super) packets: [u32; WIDTH],
     pub(super) lanes: [u16; WIDTH],
@@ -79,8 +80,6 @@ pub(super) struct Place {
     pub(super) local: V3,
     /// In finest cells of the cube.
     pub(super) cells: V3,
-    /// Levels to the finest cells.
-    pub(super) depth: u32,
 }
 
 impl Block {
@@ -220,7 +219,7 @@ impl Place {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "fewer than 2^30 cells")]
     fn weights(&self, level: u8) -> [f32; 3] {
-        let shift = self.depth - u32::from(level);
+        let shift = DEEPEST - level;
         let per_side = f64::from_bits((1023 - u64::from(shift)) << 52);
         let part = |x: f64| {
             let x = x * per_side;
@@ -256,15 +255,14 @@ mod tests {
         around.map(|x| x + rng.random_range(-size..size))
     }
 
-    /// Sets of points in the frame, near and far from cells of all sizes, bounded in both ways: no bound exceeds the distance by more than
-    /// searches allow for, and that of a single point by the corners is the distance, but for the bytes.
+    /// Sets of points in the frame, near and far from cells of all sizes, bounded in both ways: no bound exceeds the distance
+    /// by more than searches allow for, and that of a single point by the corners is the distance, but for the bytes.
     #[test]
     fn bounds_never_exceed_the_distance_and_corners_tell_that_of_a_point() {
         let mut rng = p2m_testkit::rng("blocks", 0);
         let (mut compared, mut close) = (0, 0);
         for round in 0..3000 {
             let level = rng.random_range(1..12u8);
-            let depth = 20u32;
             // The cube is from -8 to 8, so a cell has this side; it may be far from the scene.
             let side = 16.0 / f64::from(1u32 << level);
             let number = [0; 3].map(|_| rng.random_range(0..1u32 << level));
@@ -304,8 +302,8 @@ mod tests {
                         _ => rng.random::<f64>(),
                     });
                     let q: V3 = std::array::from_fn(|k| low[k] + part[k] * side);
-                    let cells = q.map(|x| (x + 8.0) / 16.0 * f64::from(1u32 << depth));
-                    let place = Place { rounded: Rounded::of(q), local: q, cells, depth };
+                    let cells = q.map(|x| (x + 8.0) / 16.0 * f64::from(1u32 << DEEPEST));
+                    let place = Place { rounded: Rounded::of(q), local: q, cells };
                     for isa in Isa::available() {
                         let found = isa.run(Bound(&blocks[0], &place));
                         for (set, found) in sets.iter().zip(found) {

@@ -11,8 +11,8 @@
 
 use super::cube::Corner;
 use crate::Aabb;
-use crate::kernel::vector::V3;
-use crate::packet::{LANES, Packet, at_most, smallest};
+use crate::kernel::vector::{V3, norm_squared, sub};
+use crate::packet::{self, LANES, Packet, at_most, smallest};
 use crate::simd::{InstructionSet, Operation};
 use nalgebra::Point3;
 
@@ -40,8 +40,7 @@ impl Dominators {
         let mut rows = [[f64::INFINITY; 8]; 8];
         for (row, y) in rows.iter_mut().zip(&points[..count]) {
             for (to, corner) in row.iter_mut().zip(corners) {
-                let square: f64 = (0..3).map(|k| (corner.x[k] - y[k]).powi(2)).sum();
-                *to = square.sqrt() * ROUND_UP + slack;
+                *to = norm_squared(sub(corner.x, *y)).sqrt() * ROUND_UP + slack;
             }
         }
         Self { rows, count }
@@ -113,15 +112,14 @@ impl Operation for Keep<'_> {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded up before; sixteen lanes")]
     fn run<I: InstructionSet>(self) -> u16 {
-        const UP: f32 = 1.0 + 16.0 * f32::EPSILON;
         let mut kept = u32::MAX;
         for row in &self.dominators.rows[..self.dominators.count] {
             let mut near = 0;
             for (distance, corner) in row.iter().zip(self.corners) {
                 let found = &self.found[*corner];
                 // What the filter finds exceeds the distance by at most the excess.
-                let limit = ((distance * self.packet.per_unit()) as f32 + found.excess) * UP;
-                near |= at_most::<I::Wide>(&found.squares, limit * limit * UP);
+                let limit = ((distance * self.packet.per_unit()) as f32 + found.excess) * packet::ROUND_UP;
+                near |= at_most::<I::Wide>(&found.squares, limit * limit * packet::ROUND_UP);
             }
             kept &= near;
             if kept == 0 {

@@ -3,6 +3,10 @@
 use crate::Aabb;
 use crate::kernel::vector::V3;
 
+/// The most halvings of the cube of the domain: a coordinate in the finest cells is a whole number of 32 bits, and corners are
+/// exact.
+pub(super) const DEEPEST: u8 = 30;
+
 /// A corner of a cell, with a point of the scene near it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
@@ -47,6 +51,23 @@ pub(super) const LATTICE_OF: [[usize; 8]; 8] = {
     all
 };
 
+/// The lattice points that are neither corners of the cube nor its middle.
+pub(super) const BETWEEN: [usize; LATTICE - 9] = {
+    let mut all = [0; LATTICE - 9];
+    let mut count = 0;
+    let mut at = 0;
+    while at < LATTICE {
+        let is_halfway = at % 3 == 1 || at / 3 % 3 == 1 || at / 9 == 1;
+        if is_halfway && at != MIDDLE {
+            all[count] = at;
+            count += 1;
+        }
+        at += 1;
+    }
+    assert!(count == all.len());
+    all
+};
+
 /// The corner of the cube itself that lies on a lattice point, if there is one.
 pub(super) fn corner_on(at: usize) -> Option<usize> {
     (0..8).find(|&corner| 2 * LATTICE_OF[0][corner] == at)
@@ -85,6 +106,7 @@ mod tests {
         let lattice: [Corner; LATTICE] = std::array::from_fn(|at| Corner { x: cube.point(at), y: cube.point(at) });
         assert_eq!(cube.point(MIDDLE), [1.0, 4.0, 2.5]);
         assert_eq!((0..LATTICE).filter_map(corner_on).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5, 6, 7]);
+        assert!(BETWEEN.is_sorted() && BETWEEN.iter().all(|&at| corner_on(at).is_none() && at != MIDDLE));
         for (c, child) in cube.children(&lattice).iter().enumerate() {
             assert_eq!((child.side, child.level), (2.0, 4));
             for (i, corner) in child.corners.iter().enumerate() {

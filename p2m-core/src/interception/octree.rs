@@ -1,6 +1,7 @@
 //! A partition into cubes.
 
 use super::block::{Block, Place, WIDTH};
+use super::cube::DEEPEST;
 use super::options::{Domain, OctreeOptions, OctreeReport};
 use super::refine::{Cell, Done, NODE, PACKET, Refinement};
 use crate::hierarchy::PacketTree;
@@ -8,9 +9,10 @@ use crate::hierarchy::wide::evaluation;
 use crate::hierarchy::wide::search::{Evaluate, Filter, Search, finish, finish_nearest};
 use crate::hierarchy::wide::volume::Rounded;
 use crate::kernel::vector::V3;
+use crate::packet::LANES;
 use crate::query::Minimum;
 use crate::real::{narrow, wide};
-use crate::simd::{EightLanes, InstructionSet, Operation, lane_of_key, number_of_key, prefetch};
+use crate::simd::{EightLanes, InstructionSet, Operation, lane_of_key, number_of_key, prefetch_lines};
 use crate::{Aabb, Best, Collector, Counting, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Real};
 use nalgebra::Point3;
 use std::collections::HashMap;
@@ -29,8 +31,6 @@ const SINGLE: u32 = 3;
 /// none: the tree answers.
 const TREE: u32 = 4 << SHIFT;
 
-/// The most levels: a coordinate in cells is a whole number of 32 bits.
-const DEEPEST: u8 = 30;
 /// [`Domain::Everywhere`] in sizes of the scene.
 const EVERYWHERE: f64 = 10.0;
 /// Where queries are taken to be, evenly in boxes of so many sizes of the scene: more of them the nearer it is.
@@ -53,8 +53,6 @@ pub struct Octree {
     low: V3,
     /// Finest cells in a unit of length.
     per_length: f64,
-    /// Levels to the finest cells; 0 if there are none.
-    depth: u32,
     root: u32,
     rows: Vec<Row>,
     blocks: Vec<Block>,
@@ -62,8 +60,8 @@ pub struct Octree {
 }
 
 impl Octree {
-    /// Builds the index over a set whose boxes are finite. `progress` is told what part of space is done, each percent once, from
-    /// any thread.
+    /// Builds the index over a set whose boxes are finite. `progress` is told what part of space is done, each percent once,
+    /// from any thread.
     #[must_use]
     pub fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
         set: &S,
@@ -76,7 +74,6 @@ impl Octree {
             tree,
             low: [0.0; 3],
             per_length: 0.0,
-            depth: 0,
             root: TREE,
             rows: Vec::new(),
             blocks: Vec::new(),
@@ -138,8 +135,6 @@ impl Octree {
                 even: &shape.even,
                 per_packet: 1.0 / tree.packets().0 as f64,
                 resolution,
-                depth: DEEPEST,
-                finest: shape.side * 2f64.powi(-i32::from(DEEPEST)),
                 parallel: options.splits.parallel,
                 done,
             };
@@ -153,7 +148,6 @@ impl Octree {
         self.report.work = done.work.into_inner();
         self.report.resolution = resolution;
         self.low = shape.low;
-        self.depth = u32::from(DEEPEST);
         self.per_length = 2f64.powi(i32::from(DEEPEST)) / shape.side;
         self.root = self.code(cells, 0);
         self.rows.shrink_to_fit();
@@ -173,7 +167,7 @@ impl Octree {
             }
             Cell::Single(packet, lane) => {
                 self.report.singles += 1;
-                code(SINGLE, packet as usize * 16 + usize::from(lane))
+                code(SINGLE, packet as usize * LANES + usize::from(lane))
             }
             Cell::Blocks(blocks) => {
                 self.report.lists += 1;
@@ -223,7 +217,7 @@ impl Octree {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the cube")]
     fn locate(&self, place: &V3) -> u32 {
-        let cells = (1u64 << self.depth) as f64;
+        let cells = f64::from(1u32 << DEEPEST);
         let mut at = [0u32; 3];
         for k in 0..3 {
             // Not for NaN either.
@@ -232,7 +226,7 @@ impl Octree {
             }
             at[k] = place[k] as u32;
         }
-        let mut shift = self.depth;
+        let mut shift = DEEPEST;
         let mut code = self.root;
         while code < LIST << SHIFT {
             let row = (code & !(ONE_LEVEL << SHIFT)) as usize;
@@ -282,7 +276,7 @@ impl Octree {
         let (code, cells) = self.cell_of(&query);
         match tree.frame.local(&query) {
             Some(local) if code != TREE => {
-                let place = Place { rounded: Rounded::of(local), local, cells, depth: self.depth };
+                let place = Place { rounded: Rounded::of(local), local, cells };
                 tree.isa().run(Lookup { octree: self, code, query, place, collector, evaluate, finish });
             }
             _ => tree.isa().run(Search { tree, query, collector, evaluate, finish }),
@@ -293,7 +287,7 @@ impl Octree {
     #[inline(always)]
     fn cell_of(&self, query: &V3) -> (u32, V3) {
         let cells: V3 = std::array::from_fn(|k| (query[k] - self.low[k]) * self.per_length);
-        (if self.depth > 0 { self.locate(&cells) } else { TREE }, cells)
+        (self.locate(&cells), cells)
     }
 
     /// How many packets the list of the cell of a point has: 1 where one primitive is the nearest throughout, `None` where
@@ -444,16 +438,13 @@ impl<C: Collector> Operation for Lookup<'_, C> {
         let octree = self.octree;
         let tree = &octree.tree;
         let number = (self.code & !(7 << SHIFT)) as usize;
-        // What comes next, if the list has more than a block.
-        let lines: *const u8 = octree.blocks.as_ptr().wrapping_add(number).cast();
-        for line in 0..4 {
-            prefetch(lines.wrapping_add(64 * line));
-        }
         let mut filter = Filter::new(tree, self.query, self.collector, self.evaluate, self.finish);
         if self.code >> SHIFT == SINGLE {
-            filter.add(number / 16, number % 16);
+            filter.add(number / LANES, number % LANES);
             return filter.evaluate_waiting();
         }
+        // What comes next, if the list has more than a block.
+        prefetch_lines(octree.blocks.as_ptr().wrapping_add(number), 2 * size_of::<Block>());
         let mut at = number;
         loop {
             let block = &octree.blocks[at];

@@ -16,8 +16,8 @@ pub enum Domain {
     Band(f64),
 }
 
-/// How an octree is built. Budgets are upper limits of the index, not of what building it takes: where one would be exceeded,
-/// cells are made coarser everywhere, by the next power of 0.3 for a resolution that fits; or none are made.
+/// How an octree is built. Budgets are upper limits of the index, not of what building it takes: where one would be
+/// exceeded, cells are made coarser everywhere, with the next power of 0.3 for a resolution that fits; or none are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct OctreeOptions {
@@ -102,10 +102,8 @@ impl std::fmt::Display for OctreeReport {
         let Self { lists, singles, trees, entries, bytes, tree_bytes, work, resolution, .. } = self;
         let mean = *entries as f64 / (*lists).max(1) as f64;
         let megabytes = |bytes: usize| bytes as f64 / 1e6;
-        write!(
-            f,
-            "{lists} cells with lists of {mean:.1} packets on average, {singles} with one primitive, {trees} left to the tree; "
-        )?;
+        write!(f, "{lists} cells with lists of {mean:.1} packets on average, {singles} with one primitive, ")?;
+        write!(f, "{trees} left to the tree; ")?;
         write!(f, "{:.1} MB of cells, {:.1} MB of tree, {work} tests", megabytes(*bytes), megabytes(*tree_bytes))?;
         let digits = if *resolution < 0.01 { 5 } else { 2 };
         write!(f, ", resolution {resolution:.digits$}")

@@ -1,25 +1,26 @@
 //! From a cube and the tree to cells with their lists.
 //!
-//! A cell starts with what its parent could not rule out. While these are many, they are nodes of the tree, which are opened
-//! one level a cell and tested by their boxes (*coarse*). Once they are few packets, the filters of packets are computed at the
-//! corners (*fine*): 19 new lattice points for the eight children of a cell, whose nearest points give the new dominators.
+//! A cell starts with what its parent could not rule out. While these are many, they are nodes of the tree, which are
+//! opened and tested by their boxes (*coarse*). Once they are few packets, the filters of packets are computed at the corners
+//! (*fine*): 19 new lattice points for the eight children of a cell, whose nearest points give the new dominators.
 //!
 //! # What is split
 //!
-//! A split costs memory and saves time where queries are. The share of queries that a cell gets (its *mass*) is taken to be a mixture of
-//! several: even in the whole domain, even in smaller boxes around the scene, and on the surface. What a list costs is how many of its
-//! packets the bounds of its blocks let pass in the middle of the cell, and its blocks. A cell is split if mass times cost is
-//! worth it. Whether a budget is exceeded does not depend on the order in which cells are made, so a refinement that exceeds
-//! one is given up at once and another one made that asks for more worth: the result is the same on any number of threads.
+//! A split costs memory and saves time where queries are. The share of queries that a cell gets (its *mass*) is taken to be a
+//! mixture: even in the whole domain, even in smaller boxes around the scene, and on the surface. What a list costs is how
+//! many of its packets the bounds of its blocks let pass in the middle of the cell, and its blocks. A cell is split if mass
+//! times cost is worth it. Whether a budget is exceeded does not depend on the order in which cells are made, so a refinement
+//! that exceeds one is given up at once and another one made that asks for more worth: the result is the same on any number
+//! of threads.
 
 use super::block::{Block, Bounds, Entry, WIDTH, reference};
 use super::corner::{AtPoints, Dominators, Found, Keep, Least};
-use super::cube::{Corner, Cube, LATTICE, LATTICE_OF, MIDDLE, corner_on};
+use super::cube::{BETWEEN, Corner, Cube, DEEPEST, LATTICE, LATTICE_OF, MIDDLE, corner_on};
 use super::octree::Row;
 use super::options::Domain;
 use crate::hierarchy::PacketTree;
 use crate::hierarchy::wide::node::Child;
-use crate::kernel::vector::V3;
+use crate::kernel::vector::{V3, norm_squared, sub};
 use crate::{Aabb, Best, Isa, PrimitiveId, QueryOptions};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -43,6 +44,7 @@ const GAIN: f64 = 0.5;
 const SPLIT_BYTES: u64 = (8 * size_of::<Row>()).div_ceil(5) as u64;
 /// Nanoseconds that have to be saved, in all packets' worth of cells.
 const WORTH: f64 = 100.0;
+
 /// A cell that is done, or its eight children: child c lies above the middle on axis k if bit k of c is set.
 pub(super) enum Cell {
     /// The tree answers.
@@ -71,10 +73,6 @@ pub(super) struct Refinement<'a> {
     /// Queries for each packet.
     pub(super) per_packet: f64,
     pub(super) resolution: f64,
-    /// Levels below the cube.
-    pub(super) depth: u8,
-    /// No cell is smaller: below, corners would be rounded.
-    pub(super) finest: f64,
     pub(super) parallel: bool,
     pub(super) done: Done<'a>,
 }
@@ -154,15 +152,13 @@ impl Nearest {
 struct Middle {
     /// What the filters of its items find there.
     found: Vec<Found>,
+    /// Whether filters tell how near all of the items are.
+    whole: bool,
     /// The nearest point.
     y: V3,
     /// How many items bounds by boxes and by corners let pass.
     boxes: usize,
     corners: usize,
-}
-
-fn square_of_way(a: &V3, b: &V3) -> f64 {
-    (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum()
 }
 
 impl Refinement<'_> {
@@ -182,7 +178,7 @@ impl Refinement<'_> {
             Domain::Band(width) => {
                 // From everywhere in the cell the scene is at least as far as from a corner, less the way there.
                 let diagonal = cube.side * 1.733;
-                let least = |corner: &Corner| square_of_way(&corner.x, &corner.y).sqrt() - diagonal;
+                let least = |corner: &Corner| norm_squared(sub(corner.x, corner.y)).sqrt() - diagonal;
                 cube.corners.iter().all(|corner| least(corner) <= width)
             }
         }
@@ -210,7 +206,7 @@ impl Refinement<'_> {
     /// Whether a split pays.
     fn splits(&self, cube: &Cube, mass: f64, cost: f64) -> bool {
         let worth = mass * cost * GAIN * self.resolution >= WORTH * self.per_packet;
-        worth && cube.level < self.depth && cube.side > self.finest && !self.done.is_over()
+        worth && cube.level < DEEPEST && !self.done.is_over()
     }
 
     fn end(&self, cell: Cell, share: f64) -> Cell {
@@ -315,37 +311,31 @@ impl Refinement<'_> {
         if !self.splits(cube, mass, cost) {
             return self.end(self.list(cube, &items, &middle), share);
         }
-        self.done.add_work(18 * items.len());
+        self.done.add_work(BETWEEN.len() * items.len());
         // All filters at all lattice points; those at the corners and in the middle are known.
-        let new: [usize; LATTICE - 9] = {
-            let mut new = (0..LATTICE).filter(|&at| at != MIDDLE && corner_on(at).is_none());
-            std::array::from_fn(|_| new.next().expect("18 points"))
-        };
-        let points = new.map(|at| cube.point(at));
+        let points = BETWEEN.map(|at| cube.point(at));
         let mut all: Vec<[Found; LATTICE]> = Vec::with_capacity(items.len());
         let mut nearest = [Nearest::NONE; LATTICE];
-        let mut whole = true;
         for (item, in_middle) in items.iter().zip(&middle.found) {
             let packet = &self.tree.leaves.packets[item.packet as usize];
-            whole &= packet.has_vertices();
-            let mut found_new = [Found::NOTHING; LATTICE - 9];
-            let mut nearest_new = [None; LATTICE - 9];
+            let mut found_new = [Found::NOTHING; BETWEEN.len()];
+            let mut nearest_new = [None; BETWEEN.len()];
             self.isa().run(AtPoints { packet, points: &points, found: &mut found_new, nearest: &mut nearest_new });
             let mut found = [Found::NOTHING; LATTICE];
             for corner in 0..8 {
                 found[2 * LATTICE_OF[0][corner]] = item.found[corner];
             }
             found[MIDDLE] = *in_middle;
-            for ((at, own), near) in new.iter().zip(&found_new).zip(&nearest_new) {
-                found[*at] = *own;
-                nearest[*at].add(*near, item.packet);
+            for ((at, own), near) in BETWEEN.into_iter().zip(found_new).zip(nearest_new) {
+                found[at] = own;
+                nearest[at].add(near, item.packet);
             }
             all.push(found);
         }
         let lattice: [Corner; LATTICE] = std::array::from_fn(|at| match corner_on(at) {
             Some(corner) => cube.corners[corner],
             None if at == MIDDLE => Corner { x: cube.point(at), y: middle.y },
-            None => Corner { x: cube.point(at), y: self.nearest_of(&nearest[at], whole, cube.point(at)) },
+            None => Corner { x: cube.point(at), y: self.nearest_of(&nearest[at], middle.whole, cube.point(at)) },
         });
         let mut number = 0;
         let children = cube.children(&lattice).map(|child| {
@@ -366,7 +356,7 @@ impl Refinement<'_> {
         self.split(children, items.len() >= FORK, |child, own| self.fine(child, own, share * 0.125))
     }
 
-    /// The nearest point to `x`: of a primitive that seems nearest, or of all where filters do not tell (`whole`).
+    /// The nearest point to `x`: of the primitive that seems nearest, or of the scene where filters do not tell of the `whole`.
     fn nearest_of(&self, near: &Nearest, whole: bool, x: V3) -> V3 {
         if !whole || near.distance == f64::INFINITY {
             return (self.nearest)(x);
@@ -380,23 +370,22 @@ impl Refinement<'_> {
     /// What the filters find in the middle of a cell.
     fn middle(&self, cube: &Cube, items: &[Item]) -> Middle {
         let x = cube.point(MIDDLE);
-        let mut middle = Middle { found: Vec::with_capacity(items.len()), y: x, boxes: 0, corners: 0 };
+        let mut middle = Middle { found: Vec::with_capacity(items.len()), whole: true, y: x, boxes: 0, corners: 0 };
         let mut nearest = Nearest::NONE;
-        let mut whole = true;
         self.done.add_work(items.len());
         for item in items {
             let mut found = [Found::NOTHING];
             let mut near = [None];
             let packet = &self.tree.leaves.packets[item.packet as usize];
-            whole &= packet.has_vertices();
+            middle.whole &= packet.has_vertices();
             self.isa().run(AtPoints { packet, points: &[x], found: &mut found, nearest: &mut near });
             middle.found.push(found[0]);
             nearest.add(near[0], item.packet);
         }
-        middle.y = self.nearest_of(&nearest, whole, x);
+        middle.y = self.nearest_of(&nearest, middle.whole, x);
         // How many packets either kind of bounds lets pass there.
-        let squares = cube.corners.map(|corner| square_of_way(&corner.x, &middle.y));
-        let own = square_of_way(&x, &middle.y);
+        let squares = cube.corners.map(|corner| norm_squared(sub(corner.x, middle.y)));
+        let own = norm_squared(sub(x, middle.y));
         let f = items.iter().map(|item| {
             let unit = self.tree.leaves.packets[item.packet as usize].unit();
             let least = self.isa().run(Least { found: &item.found, lanes: item.lanes });
@@ -420,9 +409,9 @@ impl Refinement<'_> {
     fn list(&self, cube: &Cube, items: &[Item], middle: &Middle) -> Cell {
         let frame = &self.tree.frame;
         let y = reference(frame.place(&middle.y));
-        let squares = cube.corners.map(|corner| square_of_way(&frame.place(&corner.x), &y));
-        // Rounding in f64, of places in the frame and of these squares, and of the cell that a query is taken to lie in: where f
-        // is below zero, so that its value matters, it changes by twice the way to y for each step at most.
+        let squares = cube.corners.map(|corner| norm_squared(sub(frame.place(&corner.x), y)));
+        // Rounding in f64, of places in the frame and of these squares, and of the cell that a query is taken to lie in: where
+        // f is below zero, so that its value matters, it changes by twice the way to y for each step at most.
         let largest = squares.iter().fold(1.0, |a: f64, x| a.max(*x));
         let margin = largest * 2f64.powi(-46) + 4.0 * self.slack * frame.per_unit * largest.sqrt();
         let mut entries: Vec<(f64, Entry)> = Vec::with_capacity(items.len());

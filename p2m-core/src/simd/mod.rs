@@ -11,7 +11,7 @@ mod isa;
 mod portable;
 
 pub use isa::Isa;
-pub(crate) use isa::prefetch;
+pub(crate) use isa::{prefetch, prefetch_lines};
 pub(crate) use portable::Portable;
 
 /// Several f32 that are computed with at once.

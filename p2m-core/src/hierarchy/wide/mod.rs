@@ -1,8 +1,9 @@
 //! A tree of wide nodes over packets.
 //!
-//! A binary tree of splits is collapsed into nodes of eight children ([`collapse`]). A node is a few cache lines with the bounds of eight children side by
-//! side ([`volume`]: boxes in [`node`], k-DOPs in [`slabs`]), a leaf a [`Packet`] of up to sixteen primitives. Both are in f32 or less and only bound distances, from
-//! both sides and with proof; what may be the answer is evaluated in f64 by the kernel of the contract ([`search`]).
+//! A binary tree of splits is collapsed into nodes of eight children ([`collapse`]). A node is a few cache lines with the
+//! bounds of eight children side by side ([`volume`]: boxes in [`node`], k-DOPs in [`slabs`]), a leaf a [`Packet`] of up to
+//! sixteen primitives. Both are in f32 or less and only bound distances, from both sides and with proof; what may be the
+//! answer is evaluated in f64 by the kernel of the contract ([`search`]).
 
 mod collapse;
 pub(crate) mod node;
@@ -15,7 +16,7 @@ pub(crate) mod volume;
 use super::Hierarchy;
 use crate::packet::{Kind, LANES, Packet};
 use crate::real::wide;
-use crate::simd::{Isa, prefetch};
+use crate::simd::{Isa, prefetch_lines};
 use crate::{Aabb, Best, Collector, Directions, Kdop, Primitive, PrimitiveId, PrimitiveSet, Real};
 use nalgebra::Point3;
 use node::{Child, Frame, WIDTH};
@@ -52,7 +53,8 @@ pub(crate) struct Leaves {
     pub(crate) packets: Vec<Packet>,
     /// The exact vertices of the packets, one packet after the other.
     pub(crate) vertices: Vec<[f64; 3]>,
-    /// Where those of each packet begin: few numbers, which stay in the cache, so that vertices can be asked for with their packet.
+    /// Where those of each packet begin: few numbers, which stay in the cache, so that vertices can be asked for with their
+    /// packet.
     firsts: Vec<u32>,
 }
 
@@ -227,7 +229,7 @@ impl<V: Volume> PacketTree<V> {
 
     /// Asks for a node or a packet before it is read.
     #[inline(always)]
-    pub(crate) fn prefetch(&self, child: Child) {
+    fn prefetch(&self, child: Child) {
         let (node, packet) = (self.nodes.as_ptr(), self.leaves.packets.as_ptr());
         let at: *const u8 = if child.is_packet() {
             packet.wrapping_add(child.number()).cast()
@@ -235,9 +237,7 @@ impl<V: Volume> PacketTree<V> {
             node.wrapping_add(child.number()).cast()
         };
         // A packet has seven cache lines, and few nodes have more. What comes behind a node is mostly its sibling.
-        for line in 0..size_of::<Packet>().max(size_of::<V::Node>()) / 64 {
-            prefetch(at.wrapping_add(64 * line));
-        }
+        prefetch_lines(at, size_of::<Packet>().max(size_of::<V::Node>()));
     }
 
     /// The instruction set it searches with.
@@ -289,20 +289,15 @@ impl Leaves {
     /// Asks for a packet before it is read.
     #[inline(always)]
     pub(crate) fn prefetch(&self, number: usize) {
-        let at: *const u8 = self.packets.as_ptr().wrapping_add(number).cast();
-        for line in 0..size_of::<Packet>() / 64 {
-            prefetch(at.wrapping_add(64 * line));
-        }
+        prefetch_lines(self.packets.as_ptr().wrapping_add(number), size_of::<Packet>());
     }
 
     /// Asks for the vertices of a packet, up to eight cache lines.
     #[inline(always)]
     pub(crate) fn prefetch_vertices(&self, number: usize) {
-        let [first, end] = [self.firsts[number], self.firsts[number + 1]];
-        let at: *const u8 = self.vertices.as_ptr().wrapping_add(first as usize).cast();
-        for line in 0..((end - first) as usize * size_of::<[f64; 3]>()).div_ceil(64).min(8) {
-            prefetch(at.wrapping_add(64 * line));
-        }
+        let [first, end] = [self.firsts[number], self.firsts[number + 1]].map(|place| place as usize);
+        let bytes = (end - first) * size_of::<[f64; 3]>();
+        prefetch_lines(self.vertices.as_ptr().wrapping_add(first), bytes.min(8 * 64));
     }
 }
 

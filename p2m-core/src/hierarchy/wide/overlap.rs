@@ -57,10 +57,8 @@ impl<V: Volume> PacketTree<V> {
         let mut at = self.root;
         while at != Child::NONE && !at.is_packet() {
             let mut nearest = (f64::INFINITY, Child::NONE);
-            let node = &self.nodes[at.number()];
-            for place in node.used() {
-                let child = node.children()[place];
-                let bound = self.box_of(node, place).lower_bound(query);
+            for (bounds, child) in self.child_boxes(at) {
+                let bound = bounds.lower_bound(query);
                 let farther = if bound < nearest.0 || nearest.1 == Child::NONE {
                     std::mem::replace(&mut nearest, (bound, child))
                 } else {

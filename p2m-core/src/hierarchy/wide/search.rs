@@ -76,9 +76,7 @@ impl<V: Volume, C: Collector> Search<'_, V, C> {
             }
             collector.visit_node();
             let from = stack.len();
-            let node = &tree.nodes[child.number()];
-            let bound = |at| tree.box_of(node, at).lower_bound(&place);
-            stack.extend(node.used().map(|at| (bound(at), node.children()[at])));
+            stack.extend(tree.child_boxes(child).map(|(bounds, child)| (bounds.lower_bound(&place), child)));
             // The nearest one last.
             stack[from..].sort_by(|a, b| b.0.total_cmp(&a.0));
         }

@@ -17,6 +17,14 @@ pub(crate) fn prefetch(at: *const u8) {
     let _ = at;
 }
 
+/// The same for all lines of some bytes from an address on.
+#[inline(always)]
+pub(crate) fn prefetch_lines<T>(at: *const T, bytes: usize) {
+    for line in 0..bytes.div_ceil(64) {
+        prefetch(at.cast::<u8>().wrapping_add(64 * line));
+    }
+}
+
 /// An instruction set that this processor has.
 ///
 /// ```
