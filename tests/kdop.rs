@@ -3,11 +3,11 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Rotation3, Vector3};
+use p2m::hierarchy::{TreeIndex, Volume};
 use p2m::{
-    Aabb, AabbTree, Best, BoxQuery, BruteForce, BuildError, BuildIndex, ClosestLeaf, ClosestPoint, Directions, Isa,
-    KdopOptions, KdopTree, Primitive, PrimitiveSet, QueryOptions, Soup,
+    Aabb, AabbTree, BoxQuery, BruteForce, BuildError, BuildIndex, ClosestLeaf, ClosestPoint, Counting, Directions, Isa,
+    KdopOptions, KdopTree, Primitive, PrimitiveSet, Soup,
 };
-use p2m_core::Counting;
 use p2m_testkit::left_first::LeftFirst;
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::rng;
@@ -19,14 +19,9 @@ use std::ops::ControlFlow;
 type Tree<'a, const K: usize> = KdopTree<f64, &'a Soup<f64>, K>;
 
 /// Nodes and packets that a search of the tree visits, for all queries.
-fn work<const K: usize>(tree: &Tree<'_, K>, queries: &[Point3<f64>]) -> [usize; 2] {
-    let mut sums = [0; 2];
-    for query in queries {
-        let mut counting: Counting<f64> = Counting::new(Best::new(&QueryOptions::default()));
-        tree.visit(query, &mut counting);
-        sums = [sums[0] + counting.nodes, sums[1] + counting.packets];
-    }
-    sums
+fn work<V: Volume>(tree: &TreeIndex<f64, &Soup<f64>, V>, queries: &[Point3<f64>]) -> [usize; 2] {
+    let [nodes, packets, _] = Counting::of_queries(queries, |query, counting| tree.visit(query, counting));
+    [nodes, packets]
 }
 
 fn model(name: &str) -> Option<Soup<f64>> {
@@ -89,13 +84,7 @@ fn every_instruction_set_refitted_and_boxes_agree_with_brute_force() {
 
 /// Nodes and packets of boxes, and of 6, 14, 18 and 26 faces.
 fn work_of_all(soup: &Soup<f64>, queries: &[Point3<f64>]) -> ([usize; 2], [[usize; 2]; 4]) {
-    let mut boxes = [0; 2];
-    let aabb = AabbTree::build(soup, &Default::default()).expect("valid");
-    for query in queries {
-        let mut counting: Counting<f64> = Counting::new(Best::new(&QueryOptions::default()));
-        aabb.visit(query, &mut counting);
-        boxes = [boxes[0] + counting.nodes, boxes[1] + counting.packets];
-    }
+    let boxes = work(&AabbTree::build(soup, &Default::default()).expect("valid"), queries);
     let rows = [
         work(&built::<6>(soup), queries),
         work(&built::<14>(soup), queries),

@@ -4,10 +4,9 @@
 
 use nalgebra::{Point3, Vector3};
 use p2m::{
-    AabbOptions, AabbTree, Best, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Isa, Point,
-    Primitive, PrimitiveId, PrimitiveSet, Projection, QueryOptions, Real, Segment, Shape, Soup, Triangle, batch,
+    AabbOptions, AabbTree, Best, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Counting, Isa,
+    Point, Primitive, PrimitiveId, PrimitiveSet, Projection, QueryOptions, Real, Segment, Shape, Soup, Triangle, batch,
 };
-use p2m_core::Counting;
 use p2m_testkit::rng;
 use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};
 use rand::{Rng, RngExt};

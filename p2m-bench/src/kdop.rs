@@ -11,8 +11,7 @@ use crate::table::Table;
 use anyhow::Result;
 use nalgebra::{Point3, Rotation3, Vector3};
 use p2m_bvh::{AabbOptions, AabbTree};
-use p2m_core::Counting;
-use p2m_core::{Best, BuildIndex, Directions, QueryOptions, Soup};
+use p2m_core::{BuildIndex, Counting, Directions, Soup};
 use p2m_kdop::{KdopOptions, KdopTree};
 use p2m_testkit::left_first::LeftFirst;
 use p2m_testkit::queries::QuerySet;
@@ -106,13 +105,8 @@ pub(crate) fn print(scene: &Scene, set: QuerySet, effort: &Effort) -> bool {
 }
 
 fn count(queries: &[Point3<f64>], visit: impl Fn(&Point3<f64>, &mut Counting<f64>)) -> Work {
-    let mut sums = [0usize; 2];
-    for query in queries {
-        let mut counting = Counting::new(Best::new(&QueryOptions::default()));
-        visit(query, &mut counting);
-        sums = [sums[0] + counting.nodes, sums[1] + counting.packets];
-    }
-    sums.map(|sum| sum as f64 / queries.len() as f64)
+    let [nodes, packets, _] = Counting::of_queries(queries, visit);
+    [nodes, packets].map(|sum| sum as f64 / queries.len() as f64)
 }
 
 fn boxes(scene: &Scene, queries: &[Point3<f64>]) -> Work {

@@ -7,8 +7,8 @@ use crate::scene::Scene;
 use crate::table::Table;
 use nalgebra::Point3;
 use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
+use p2m_core::BuildIndex;
 use p2m_core::Counting;
-use p2m_core::{Best, BuildIndex, QueryOptions};
 use p2m_testkit::queries::QuerySet;
 
 /// A rule, whose radius is in diagonals of the scene's box here.
@@ -81,12 +81,6 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> bool {
 
 /// Nodes visited and primitives offered per query: deterministic.
 fn work<S: p2m_core::PrimitiveSet<f64>>(tree: &AabbTree<f64, S>, queries: &[Point3<f64>]) -> [f64; 2] {
-    let mut sums = [0usize; 2];
-    for query in queries {
-        let mut counting: Counting<f64> = Counting::new(Best::new(&QueryOptions::default()));
-        tree.visit(query, &mut counting);
-        sums[0] += counting.nodes;
-        sums[1] += counting.primitives;
-    }
-    sums.map(|sum| sum as f64 / queries.len() as f64)
+    let [nodes, _, primitives] = Counting::of_queries(queries, |query, counting| tree.visit(query, counting));
+    [nodes, primitives].map(|sum| sum as f64 / queries.len() as f64)
 }

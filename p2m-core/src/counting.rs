@@ -1,6 +1,7 @@
 //! A collector that counts what a search does.
 
-use crate::{Best, Collector, PrimitiveId, Projection, Real};
+use crate::{Best, Collector, PrimitiveId, Projection, QueryOptions, Real};
+use nalgebra::Point3;
 
 /// [`Best`] with counters: they are deterministic, so tests can hold a search to them where times only vary.
 #[derive(Clone, Debug)]
@@ -20,6 +21,20 @@ impl<T: Real> Counting<T> {
     #[must_use]
     pub fn new(best: Best<T>) -> Self {
         Self { best, nodes: 0, packets: 0, primitives: 0 }
+    }
+
+    /// Nodes, packets and primitives of some queries with default options, each searched by `visit`, in all.
+    pub fn of_queries<'a>(
+        queries: impl IntoIterator<Item = &'a Point3<T>>,
+        visit: impl Fn(&Point3<T>, &mut Self),
+    ) -> [usize; 3] {
+        let mut sums = [0; 3];
+        for query in queries {
+            let mut counting = Self::new(Best::new(&QueryOptions::default()));
+            visit(query, &mut counting);
+            sums = [sums[0] + counting.nodes, sums[1] + counting.packets, sums[2] + counting.primitives];
+        }
+        sums
     }
 }
 

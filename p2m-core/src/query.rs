@@ -1,7 +1,7 @@
 //! What a query asks and gets, and the running best that decides everything between them.
 
 use crate::real::narrow;
-use crate::{Feature, Key, PrimitiveId, Projection, Real};
+use crate::{Feature, Key, Primitive, PrimitiveId, PrimitiveSet, Projection, Real};
 use nalgebra::Point3;
 use std::marker::PhantomData;
 
@@ -159,10 +159,11 @@ impl<T: Real> Best<T> {
         Self { hint: options.hint, minimum, scalar: PhantomData }
     }
 
-    /// The primitive to look at first, if the caller named one and a set of `len` has it.
-    #[must_use]
-    pub fn hint(&self, len: usize) -> Option<PrimitiveId> {
-        self.hint.filter(|id| id.index() < len)
+    /// Offers the primitive to look at first, if the caller named one and the set has it.
+    pub fn offer_hint<S: PrimitiveSet<T> + ?Sized>(&mut self, set: &S, query: &Point3<T>) {
+        if let Some(id) = self.hint.filter(|id| id.index() < set.len()) {
+            self.offer(id, set.get(id).project(query));
+        }
     }
 
     /// A part of the scene will not be searched although it may hold the answer; `square` is a lower bound as for

@@ -1,6 +1,6 @@
 use nalgebra::Point3;
 use p2m_core::interception::{Octree, OctreeOptions, OctreeReport};
-use p2m_core::{Best, BuildError, BuildIndex, ClosestPoint, Collector, Isa, Primitive, PrimitiveSet, Real, check_set};
+use p2m_core::{Best, BuildError, BuildIndex, ClosestPoint, Collector, Isa, PrimitiveSet, Real, check_set};
 use std::marker::PhantomData;
 
 /// An interception index with cubes as cells, over a set of primitives, which it keeps.
@@ -72,9 +72,7 @@ impl<T: Real, S: PrimitiveSet<T>> OctreeIndex<T, S> {
 
 impl<T: Real, S: PrimitiveSet<T>> ClosestPoint<T> for OctreeIndex<T, S> {
     fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
-        if let Some(id) = best.hint(self.set.len()) {
-            best.offer(id, self.set.get(id).project(query));
-        }
+        best.offer_hint(&self.set, query);
         self.octree.search_nearest(&self.set, query, best);
     }
 }

@@ -10,8 +10,8 @@
 use crate::{KdopOptions, KdopTree};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{
-    Aabb, Best, BuildError, Counting, Directions, DirectionsError, Primitive, PrimitiveId, PrimitiveSet, QueryOptions,
-    Real, Segment, Shape, Triangle, check_set,
+    Aabb, BuildError, Counting, Directions, DirectionsError, Primitive, PrimitiveId, PrimitiveSet, Real, Segment,
+    Shape, Triangle, check_set,
 };
 use std::fmt;
 
@@ -220,13 +220,9 @@ fn work(shapes: &[Shape<f64>], queries: &[Point3<f64>], frame: &[Vector3<f64>; 3
 fn trial<const K: usize>(shapes: &[Shape<f64>], queries: &[Point3<f64>], frame: &[Vector3<f64>; 3], node: f64) -> f64 {
     let options = KdopOptions::new(along::<K>(frame).expect("as many directions"));
     let tree = KdopTree::<f64, _, K>::build_with(shapes, &options).expect("a scene that has been checked");
-    let mut work = QUERY;
-    for query in queries.iter().filter(|q| q.iter().all(|x| x.is_finite())) {
-        let mut counting = Counting::<f64>::new(Best::new(&QueryOptions::default()));
-        tree.visit(query, &mut counting);
-        work += (node * counting.nodes as f64 + PACKET * counting.packets as f64) / queries.len() as f64;
-    }
-    work
+    let finite = queries.iter().filter(|q| q.iter().all(|x| x.is_finite()));
+    let [nodes, packets, _] = Counting::of_queries(finite, |query, counting| tree.visit(query, counting));
+    QUERY + (node * nodes as f64 + PACKET * packets as f64) / queries.len().max(1) as f64
 }
 
 impl fmt::Display for Choice {

@@ -96,9 +96,7 @@ impl<T: Real, S: PrimitiveSet<T>, const K: usize> TreeIndex<T, S, Kdop<K>> {
 
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestPoint<T> for TreeIndex<T, S, V> {
     fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
-        if let Some(id) = best.hint(self.set.len()) {
-            best.offer(id, self.set.get(id).project(query));
-        }
+        best.offer_hint(&self.set, query);
         self.tree.search_nearest(&self.set, query, best);
     }
 }

@@ -103,9 +103,9 @@ impl Octree {
             best.nearest_point().unwrap_or([f64::INFINITY; 3])
         };
         let search_cost = |x: V3| {
-            let mut counting = Counting::new(Best::<T>::new(&QueryOptions::default()));
-            tree.search(set, &narrow(x), &mut counting);
-            PACKET * counting.packets as f64 + NODE * counting.nodes as f64
+            let [nodes, packets, _] =
+                Counting::<T>::of_queries([&narrow(x)], |query, all| tree.search(set, query, all));
+            PACKET * packets as f64 + NODE * nodes as f64
         };
         let count = tree.packets().1.max(FEW) as f64;
         let most = [options.memory, options.work].map(|budget| (budget * count) as u64);
