@@ -1,7 +1,7 @@
 //! The third example of the k-DOP tree's manual: the volumes of a tree as polytopes, of the manual's own directions.
 //!
-//! Writes some levels of nodes and all leaves as PLY files of polygons into the folder of temporary files, or into the folder
-//! that is named behind the mesh. The levels are named behind the folder; the root and its children by default.
+//! Writes some levels of nodes and all leaves as PLY files of polygons into the folder of temporary files, or into the
+//! folder that is named behind the mesh. The levels are named behind the folder; the root and its children by default.
 //!
 //! `cargo run --release --example kdop_polytopes -- mesh.obj folder 0 1 3`
 

@@ -1,8 +1,8 @@
 //! A slice through the cells of an octree, coloured by the length of their lists.
 //!
-//! Writes a PNG: dark where one packet is left, bright where lists are long (logarithmically, white from 64 packets on), blue where the
-//! tree answers, red where the scene itself is within half a pixel. The slice is a square about the middle of the scene's box, perpendicular
-//! to z; its side is in sizes of the scene.
+//! Writes a PNG: dark where one packet is left, bright where lists are long (logarithmically, white from 64 packets
+//! on), blue where the tree answers, red where the scene itself is within half a pixel. The slice is a square about the
+//! middle of the scene's box, perpendicular to z; its side is in sizes of the scene.
 //!
 //! `cargo run --release --example octree_slice -- mesh.obj slice.png 1.5`
 

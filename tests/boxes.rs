@@ -48,7 +48,8 @@ fn primitives_meet_boxes_as_exact_arithmetic_says() {
     assert!(met.min(touched).min(missed) > 6000, "the lattice should have all three: {met} {touched} {missed}");
 }
 
-/// A box with one corner at, and one ulp beside, the rounded point of a face or an edge: the sign hangs on the last bit.
+/// A box with one corner at, and one ulp beside, the rounded point of a face or an edge: the sign hangs on the last
+/// bit.
 #[test]
 fn the_last_bit_decides_whether_a_corner_touches() {
     let mut rng = rng("corners near faces", 0);

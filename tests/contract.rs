@@ -339,16 +339,16 @@ fn known_failures_of_other_projects_are_answered() {
 fn past_failures_stay_mended() {
     let error = |q: [f64; 3], v: &[[f64; 3]]| Distance::new(q, v).error(project(q, v).key.distance(), 53, 0.0);
     let origin = [0.0; 3];
-    // Both ends of a tiny edge round to the same distance, so the nearer one is mistaken: the estimate of a foot far beyond
-    // the other must not rule out the edge that holds the answer. Once 1e14 u M.
+    // Both ends of a tiny edge round to the same distance, so the nearer one is mistaken: the estimate of a foot far
+    // beyond the other must not rule out the edge that holds the answer. Once 1e14 u M.
     assert!(error([1.0, -5.0, 0.0], &[origin, [2f64.powi(-53), 0.0, 0.0], [2.0, 0.1, 0.0]]) <= OBSERVED);
     let (q, t) = (
         [1.351079888211149e16, -562949953421315.0, -5629499534213118.0],
         [[-1.0, 3.0, -4.0], [3.0, -1.0, 6.0], [2.0, -5.0, 4.0]],
     );
     assert_eq!(project(q, &t).key, project(q, &t[..2]).key);
-    // Heights of 2^-55 to 2^-50 of the longest edge: first weights are far off and must not be multiplied by long sides.
-    // Once 30 u M.
+    // Heights of 2^-55 to 2^-50 of the longest edge: first weights are far off and must not be multiplied by long
+    // sides. Once 30 u M.
     let q = [-0.015273819676656053, -0.2878166238002008, 0.28597550426703106];
     let a = [-0.037468572102620945, -0.7088830678307931, 0.7043301088604648];
     assert!(error(q, &[a, origin, [-0.037468571763492366, -0.7088830614146825, 0.7043301024855632]]) <= OBSERVED);

@@ -94,8 +94,8 @@ fn work_of_all(soup: &Soup<f64>, queries: &[Point3<f64>]) -> ([usize; 2], [[usiz
     (boxes, rows)
 }
 
-/// More faces, fewer nodes and packets; and all of them fewer than boxes. `most` is what the nodes of 14, 18 and 26 faces are
-/// at most of those of 6, in percent, for queries in the box.
+/// More faces, fewer nodes and packets; and all of them fewer than boxes. `most` is what the nodes of 14, 18 and 26
+/// faces are at most of those of 6, in percent, for queries in the box.
 fn falls(soup: &Soup<f64>, most: [usize; 3]) {
     for set in [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface] {
         let (boxes, rows) = work_of_all(soup, &set.generate(soup, 2000, 1));

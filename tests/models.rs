@@ -1,5 +1,5 @@
-//! Agreement with brute force, bit for bit, on real meshes: far from the origin, non-manifold, degenerate, lines, mixed.
-//! Skips, and says so, where there is no folder of models.
+//! Agreement with brute force, bit for bit, on real meshes: far from the origin, non-manifold, degenerate, lines,
+//! mixed. Skips, and says so, where there is no folder of models.
 
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 

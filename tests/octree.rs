@@ -1,5 +1,5 @@
-//! The octree: domains, budgets, threads, instruction sets, progress, other collectors, and how much work is done. That its
-//! answers are those of brute force is tested in `agreement`.
+//! The octree: domains, budgets, threads, instruction sets, progress, other collectors, and how much work is done. That
+//! its answers are those of brute force is tested in `agreement`.
 #![cfg(feature = "interception")]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 

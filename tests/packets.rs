@@ -249,8 +249,8 @@ fn trees_do_not_depend_on_the_number_of_threads() {
     assert!(expected.len() > 2000);
 }
 
-/// Lost pruning, lost filters or a lost reach would show here first: these figures are the same on every run, and nearly
-/// so on every instruction set.
+/// Lost pruning, lost filters or a lost reach would show here first: these figures are the same on every run, and
+/// nearly so on every instruction set.
 #[test]
 fn searches_do_little() {
     let mut rng = rng("counters", 0);

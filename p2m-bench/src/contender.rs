@@ -11,7 +11,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 pub(crate) struct Answer {
     /// The distance; NaN if there was no answer.
     pub(crate) distance: f64,
-    /// The primitive's id in the scene for our indexes; for a rival the number in its own shape, kept for the checksum.
+    /// The primitive's id in the scene for our indexes; for a rival the number in its own shape, kept for the
+    /// checksum.
     pub(crate) id: u32,
 }
 

@@ -1,7 +1,8 @@
 //! `p2m-bench kdop`: the distance figures of the manual of CGAL's k-DOP tree, redrawn.
 //!
-//! For each scene and number of faces: build time, nodes and leaves visited, time per query. Counters of the manual's own
-//! way (left child first, the largest slack as the bound) stand beside ours, and times that the manual quotes are marked as cited.
+//! For each scene and number of faces: build time, nodes and leaves visited, time per query. Counters of the manual's
+//! own way (left child first, the largest slack as the bound) stand beside ours, and times that the manual quotes are
+//! marked as cited.
 
 use crate::backends::{frame, kdop_backend};
 use crate::contender::Backend;

@@ -49,8 +49,8 @@ impl Queries {
     }
 }
 
-/// About `count` (never more, but at least one) of `total` places, spread evenly in at most 50 runs of neighbours: a slow
-/// contender gets the same mixture, and on the lattice the same order, as the others.
+/// About `count` (never more, but at least one) of `total` places, spread evenly in at most 50 runs of neighbours: a
+/// slow contender gets the same mixture, and on the lattice the same order, as the others.
 pub(crate) fn spread(total: usize, count: usize) -> Vec<usize> {
     if count >= total {
         return (0..total).collect();

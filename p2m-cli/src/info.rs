@@ -217,8 +217,8 @@ fn positions(s: &Statistics) -> String {
     text
 }
 
-/// To a thousandth of the size of the scene or better, so that corners of distant scenes differ; without thousands apart,
-/// since commas stand between coordinates.
+/// To a thousandth of the size of the scene or better, so that corners of distant scenes differ; without thousands
+/// apart, since commas stand between coordinates.
 fn coordinate(x: f64, s: &Statistics) -> String {
     // Adding zero turns -0 into 0.
     let (x, size, largest) = (x + 0.0, s.sizes.diagonal, s.location.largest_coordinate);

@@ -6,14 +6,14 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// Files that do not have their final name yet.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// The list of unfinished files. It is held while one is made or renamed, so that a signal finds it either on the list or
-/// not there at all.
+/// The list of unfinished files. It is held while one is made or renamed, so that a signal finds it either on the list
+/// or not there at all.
 pub(crate) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Starts to listen for SIGINT, SIGTERM, SIGHUP and SIGQUIT, as far as they are ours to handle (see [`is_ignored`]). Where there are
-/// no such signals, nothing happens.
+/// Starts to listen for SIGINT, SIGTERM, SIGHUP and SIGQUIT, as far as they are ours to handle (see [`is_ignored`]).
+/// Where there are no such signals, nothing happens.
 #[cfg(unix)]
 pub(crate) fn listen() -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
@@ -43,9 +43,9 @@ pub(crate) fn listen() -> std::io::Result<()> {
     Ok(())
 }
 
-/// Whether this process was started with that signal ignored, in which case it has to stay so: SIGHUP under `nohup`, SIGINT
-/// in the background of a script. Known on Linux only. Elsewhere SIGHUP counts as ignored: better a terminal that closes
-/// ends the program the hard way than that `nohup` has no effect.
+/// Whether this process was started with that signal ignored, in which case it has to stay so: SIGHUP under `nohup`,
+/// SIGINT in the background of a script. Known on Linux only. Elsewhere SIGHUP counts as ignored: better a terminal
+/// that closes ends the program the hard way than that `nohup` has no effect.
 #[cfg(unix)]
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

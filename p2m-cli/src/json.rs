@@ -1,8 +1,8 @@
 //! Reports for programs.
 //!
-//! Each is one object on the standard output, with `"p2m"` naming its kind and `"version"` its version. Within a version keys
-//! are added, never removed, renamed or given another meaning. Numbers are numbers; what is not finite, or does not exist,
-//! is null.
+//! Each is one object on the standard output, with `"p2m"` naming its kind and `"version"` its version. Within a
+//! version keys are added, never removed, renamed or given another meaning. Numbers are numbers; what is not finite, or
+//! does not exist, is null.
 
 use anyhow::Context;
 use p2m_mixed::statistics::Counts;

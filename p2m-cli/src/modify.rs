@@ -138,7 +138,8 @@ fn with_soup(scene: &Scene, soup: Soup<f64>, objects: Vec<Object>) -> Scene {
     changed
 }
 
-/// Where the parts of named primitives are after that many levels: in the places of the primitives, one after the other.
+/// Where the parts of named primitives are after that many levels: in the places of the primitives, one after the
+/// other.
 fn subdivided_objects(scene: &Scene, levels: u32) -> Vec<Object> {
     if scene.objects.is_empty() {
         return Vec::new();

@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
 /// A buffered destination. Dropped before [`finish`](Self::finish), or interrupted, a file is as it was before; only a
-/// process that ends without any chance to clean up (SIGKILL, or a limit of the system) leaves its unfinished work under the name `.p2m-*` in the
-/// same folder.
+/// process that ends without any chance to clean up (SIGKILL, or a limit of the system) leaves its unfinished work
+/// under the name `.p2m-*` in the same folder.
 pub(crate) struct Output {
     sink: Sink,
     name: String,

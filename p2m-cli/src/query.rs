@@ -111,9 +111,9 @@ pub(crate) struct Args {
 
     /// Where to write the answers; `-` is the standard output.
     ///
-    /// The file appears under this name when it is complete, and does not if the run is interrupted (one that is ended by
-    /// SIGKILL leaves a file `.p2m-*` beside it). A link is followed, one to nothing is refused, and so is the name of an
-    /// input.
+    /// The file appears under this name when it is complete, and does not if the run is interrupted (one that is ended
+    /// by SIGKILL leaves a file `.p2m-*` beside it). A link is followed, one to nothing is refused, and so is the
+    /// name of an input.
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
 

@@ -15,7 +15,8 @@ pub(crate) struct Region {
 }
 
 impl Region {
-    /// The box of the primitives of `soup`, scaled about its centre; the unit cube around the origin for an empty scene.
+    /// The box of the primitives of `soup`, scaled about its centre; the unit cube around the origin for an empty
+    /// scene.
     ///
     /// An axis without extent would put every query into the plane of the scene: it is widened to each side by what the
     /// scale adds to the longest axis, and for a single point by what it would add to one of length 1.

@@ -1,7 +1,7 @@
 //! docs/transcript.md is what really comes out.
 //!
-//! In blocks marked `console`, lines that start with `$ ` are commands, and what follows is their output, the standard error
-//! included. `P2M_BLESS=1` writes the file anew.
+//! In blocks marked `console`, lines that start with `$ ` are commands, and what follows is their output, the standard
+//! error included. `P2M_BLESS=1` writes the file anew.
 
 #![cfg(unix)]
 

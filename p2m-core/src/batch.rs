@@ -1,8 +1,8 @@
 //! Many queries at once: reordered, with hints, on all cores.
 //!
-//! Queries that are near each other visit the same nodes, and the answer of one is nearly that of the next. So queries are
-//! answered along a curve that fills their box \[Morton1966\], each with the primitive of the one before as its hint,
-//! and the answers put back into the order of the queries.
+//! Queries that are near each other visit the same nodes, and the answer of one is nearly that of the next. So queries
+//! are answered along a curve that fills their box \[Morton1966\], each with the primitive of the one before as its
+//! hint, and the answers put back into the order of the queries.
 
 use crate::real::wide;
 use crate::{Aabb, Closest, ClosestPoint, QueryOptions, Real};
@@ -12,7 +12,8 @@ use nalgebra::Point3;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct BatchOptions {
-    /// Answer along a space-filling curve. Queries that come in such an order anyway (a scan, a grid) save the sorting without.
+    /// Answer along a space-filling curve. Queries that come in such an order anyway (a scan, a grid) save the sorting
+    /// without.
     pub reorder: bool,
     /// Try the primitive of the previous answer first.
     pub hints: bool,
@@ -52,9 +53,9 @@ const BLOCK: usize = 1 << 16;
 const SHARE: usize = 1 << 9;
 
 /// Answers `queries` into `out`, in their order: distance, primitive, point, feature and weights are those of
-/// [`ClosestPoint::closest_point_with`] for each. The certified lower bound may differ in its last bits, since it depends
-/// on what the search has seen. An answer within an epsilon does depend on hints, so none are given then; nor where
-/// `options` have one.
+/// [`ClosestPoint::closest_point_with`] for each. The certified lower bound may differ in its last bits, since it
+/// depends on what the search has seen. An answer within an epsilon does depend on hints, so none are given then; nor
+/// where `options` have one.
 ///
 /// ```
 /// use p2m_core::{BruteForce, Point, batch};

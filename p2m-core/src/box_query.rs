@@ -8,13 +8,13 @@ use std::ops::ControlFlow;
 ///
 /// # Contract
 ///
-/// - **Exact**: box and primitives are closed sets, so one that touches a face, an edge or a corner of the box meets it, and
-///   one that passes by at the smallest representable distance does not. Decided without rounding
+/// - **Exact**: box and primitives are closed sets, so one that touches a face, an edge or a corner of the box meets
+///   it, and one that passes by at the smallest representable distance does not. Decided without rounding
 ///   ([`Primitive::meets_box`]), for all finite scenes; every backend finds the same primitives.
 /// - **Any box**: a box without extent is a rectangle, a segment or a point. Sides may lie at infinity. An empty box
 ///   (`min > max` on some axis) and one with a NaN coordinate meet nothing.
-/// - **Filled**: a triangle or segment that runs through the box without a vertex in it meets the box; a closed mesh around
-///   the box does not, for it is a surface.
+/// - **Filled**: a triangle or segment that runs through the box without a vertex in it meets the box; a closed mesh
+///   around the box does not, for it is a surface.
 ///
 /// ```
 /// use p2m_core::{Aabb, BoxQuery, BruteForce, Triangle};
@@ -62,9 +62,9 @@ impl<T: Real, S: PrimitiveSet<T>> BoxQuery<T> for BruteForce<S> {
 
 /// The closest point of the leaf that a tree finds first: an approximate answer at the price of one way down.
 ///
-/// `distance` is that of a point of the scene, so never below the true one (apart from the error of N1), but may exceed it by
-/// any factor; `lower_bound` is certified as in [`ClosestPoint`](crate::ClosestPoint), from the branches left aside. If
-/// both meet the answer is the exact one. `None` for an empty set and for a query that is not finite.
+/// `distance` is that of a point of the scene, so never below the true one (apart from the error of N1), but may exceed
+/// it by any factor; `lower_bound` is certified as in [`ClosestPoint`](crate::ClosestPoint), from the branches left
+/// aside. If both meet the answer is the exact one. `None` for an empty set and for a query that is not finite.
 ///
 /// Which leaf that is depends on the tree, so backends do not agree.
 ///

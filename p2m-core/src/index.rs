@@ -8,19 +8,21 @@ use nalgebra::Point3;
 /// # Contract
 ///
 /// u is [`Real::UNIT_ROUNDOFF`], eta the smallest subnormal, d the true distance, d^ the computed one, M(t) the largest
-/// distance from the query to a vertex of primitive t, *key* the number by which candidates are compared ([`Key`](crate::Key)).
+/// distance from the query to a vertex of primitive t, *key* the number by which candidates are compared
+/// ([`Key`](crate::Key)).
 ///
-/// - **N1 distance**: for all finite input, |d^ - d| <= [`ERROR_CONSTANT`](crate::kernel::ERROR_CONSTANT) u M + eta (proved, see
-///   docs/accuracy.md; at most 4 u M was ever observed), for points 4 u d + eta. Infinite only if d, or d plus that error, exceeds the scalar's range.
+/// - **N1 distance**: for all finite input, |d^ - d| <= [`ERROR_CONSTANT`](crate::kernel::ERROR_CONSTANT) u M + eta
+///   (proved, see docs/accuracy.md; at most 4 u M was ever observed), for points 4 u d + eta. Infinite only if d, or d
+///   plus that error, exceeds the scalar's range.
 /// - **N2 identity**: the true distance of the returned primitive exceeds d by at most the sum of both error bounds.
 /// - **N3 agreement**: every exact backend returns the same bits for distance and primitive. Ties go to the lowest id
 ///   among equal keys.
-/// - **N4 invariance**: the same bits under permutation of primitives (up to ids) and of a primitive's vertices, and under
-///   scaling by powers of two while input and results stay normal.
-/// - **N5 point**: a vertex is answered verbatim; any other point lies in the primitive's box and within
-///   4 u |q| + 8 u M of the primitive.
-/// - **N6 totality**: `None` for an empty set, when nothing lies within the (inclusive) radius, and for a query that is not
-///   finite. No query panics. A degenerate primitive is the set it spans.
+/// - **N4 invariance**: the same bits under permutation of primitives (up to ids) and of a primitive's vertices, and
+///   under scaling by powers of two while input and results stay normal.
+/// - **N5 point**: a vertex is answered verbatim; any other point lies in the primitive's box and within 4 u |q| + 8 u
+///   M of the primitive.
+/// - **N6 totality**: `None` for an empty set, when nothing lies within the (inclusive) radius, and for a query that is
+///   not finite. No query panics. A degenerate primitive is the set it spans.
 /// - **N7 approximation**: `lower_bound` <= d always; with epsilon, d^ <= (1 + epsilon) d up to the error of N1.
 ///
 /// Usable as a generic bound and as `dyn ClosestPoint<T>`:

@@ -28,8 +28,8 @@ fn is_plain<const N: usize>(points: &[[f64; N]]) -> bool {
     points.as_flattened().iter().all(|x| *x == 0.0 || PLAIN.contains(&x.abs()))
 }
 
-/// The sign of (b - a) x (c - a): [`Ordering::Greater`] if `c` is to the left of the line from `a` to `b`, `Equal` if the
-/// three are collinear. All finite.
+/// The sign of (b - a) x (c - a): [`Ordering::Greater`] if `c` is to the left of the line from `a` to `b`, `Equal` if
+/// the three are collinear. All finite.
 ///
 /// # Complexity
 /// A few multiplications, but some microseconds for coordinates beyond 2^-300..2^300.
@@ -46,8 +46,8 @@ pub fn orientation_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Ordering {
     (&b[0] * &c[1]).cmp(&(&b[1] * &c[0]))
 }
 
-/// The sign of the determinant of b - a, c - a, d - a: [`Ordering::Greater`] if `d` is on the side of the plane to which
-/// (b - a) x (c - a) points, `Equal` if the four are coplanar. All finite.
+/// The sign of the determinant of b - a, c - a, d - a: [`Ordering::Greater`] if `d` is on the side of the plane to
+/// which (b - a) x (c - a) points, `Equal` if the four are coplanar. All finite.
 ///
 /// # Complexity
 /// As [`orientation_2d`].

@@ -22,8 +22,8 @@ pub struct QueryOptions<T: Real> {
     /// A primitive that is probably near: the previous answer along a path, say. It changes the work, never an exact
     /// answer. Ignored if there is no such primitive.
     pub hint: Option<PrimitiveId>,
-    /// The reported distance may exceed the true one by this fraction of it: reported <= (1 + epsilon) true, apart from
-    /// rounding (contract N7). 0 by default; a negative or NaN value counts as 0.
+    /// The reported distance may exceed the true one by this fraction of it: reported <= (1 + epsilon) true, apart
+    /// from rounding (contract N7). 0 by default; a negative or NaN value counts as 0.
     pub epsilon: T,
 }
 
@@ -55,8 +55,8 @@ impl<T: Real> QueryOptions<T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Closest<T: Real> {
-    /// The closest point. It lies in the primitive's box, on a vertex verbatim; how ill-conditioned it is depends on the
-    /// scene, not on the library.
+    /// The closest point. It lies in the primitive's box, on a vertex verbatim; how ill-conditioned it is depends on
+    /// the scene, not on the library.
     pub point: Point3<T>,
     /// Its distance, from the unrounded offset rather than from `point`.
     pub distance: T,
@@ -79,23 +79,24 @@ pub trait Collector {
     /// rises during a search.
     fn prune_above(&self) -> f64;
 
-    /// The same if some primitive is known to have a key of at most `square`, without being offered yet. A collector that
-    /// looks for the nearest primitive alone may then skip more; others ignore it, as by default.
+    /// The same if some primitive is known to have a key of at most `square`, without being offered yet. A collector
+    /// that looks for the nearest primitive alone may then skip more; others ignore it, as by default.
     #[inline(always)]
     fn prune_given(&self, square: f64) -> f64 {
         let _ = square;
         self.prune_above()
     }
 
-    /// The same for the primitive `id`: a collector that would refuse it at equality says so. As [`prune_above`](Self::prune_above) by default.
+    /// The same for the primitive `id`: a collector that would refuse it at equality says so. As
+    /// [`prune_above`](Self::prune_above) by default.
     #[inline(always)]
     fn prune_above_for(&self, id: PrimitiveId) -> f64 {
         let _ = id;
         self.prune_above()
     }
 
-    /// Whether only the nearest primitive counts, and ties with it: a candidate that is farther than some primitive need
-    /// not be offered. Not by default.
+    /// Whether only the nearest primitive counts, and ties with it: a candidate that is farther than some primitive
+    /// need not be offered. Not by default.
     #[inline(always)]
     fn is_nearest_only(&self) -> bool {
         false
@@ -254,8 +255,8 @@ impl Collector for Minimum {
 
     #[inline(always)]
     fn prune_given(&self, square: f64) -> f64 {
-        // Not shrunk by epsilon: that primitive may be beyond the radius, or be left out for a candidate that is a little
-        // farther, and what may be left out for a candidate depends on that candidate alone.
+        // Not shrunk by epsilon: that primitive may be beyond the radius, or be left out for a candidate that is a
+        // little farther, and what may be left out for a candidate depends on that candidate alone.
         if square < self.prune { square } else { self.prune }
     }
 

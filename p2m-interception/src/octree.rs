@@ -5,12 +5,12 @@ use std::marker::PhantomData;
 
 /// An interception index with cubes as cells, over a set of primitives, which it keeps.
 ///
-/// Queries outside of the refined box ([`OctreeOptions::domain`]) and collectors of more than the nearest primitive are answered
-/// by the AABB tree over the same packets.
+/// Queries outside of the refined box ([`OctreeOptions::domain`]) and collectors of more than the nearest primitive are
+/// answered by the AABB tree over the same packets.
 ///
 /// # Complexity
-/// A query takes O(log n) steps to its cell, and then what the list has: a few packets, however many primitives there are, where the
-/// cell could be made small enough.
+/// A query takes O(log n) steps to its cell, and then what the list has: a few packets, however many primitives there
+/// are, where the cell could be made small enough.
 #[derive(Clone, Debug)]
 pub struct OctreeIndex<T: Real, S> {
     set: S,
@@ -19,7 +19,8 @@ pub struct OctreeIndex<T: Real, S> {
 }
 
 impl<T: Real, S: PrimitiveSet<T>> OctreeIndex<T, S> {
-    /// Builds the index as [`BuildIndex::build`], and tells `progress` what part is done: each percent once, from any thread.
+    /// Builds the index as [`BuildIndex::build`], and tells `progress` what part is done: each percent once, from any
+    /// thread.
     ///
     /// # Errors
     /// For a coordinate that is not finite and for more primitives than ids.

@@ -1,11 +1,11 @@
 //! Directions from the scene: model only what a scene requires.
 //!
 //! A slab is thin around a facet that it is parallel to, and around a segment that runs along it. So three orthogonal
-//! directions are sought first along which most of the area of facets (by their normals) and most of the length of segments
-//! lie: a scene that was built along some axes has such a frame wherever it was turned to. Then trees of more and more
-//! directions, along the axes and along the frame, answer some queries, and nodes and packets that they visit are
-//! counted: more slabs cost arithmetic in every node, so they have to save visits. How large the volumes of leaves are does
-//! not tell that: those of a thin wire shrink most, but nothing else is in their way (docs/kdop.md).
+//! directions are sought first along which most of the area of facets (by their normals) and most of the length of
+//! segments lie: a scene that was built along some axes has such a frame wherever it was turned to. Then trees of more
+//! and more directions, along the axes and along the frame, answer some queries, and nodes and packets that they visit
+//! are counted: more slabs cost arithmetic in every node, so they have to save visits. How large the volumes of leaves
+//! are does not tell that: those of a thin wire shrink most, but nothing else is in their way (docs/kdop.md).
 
 use crate::{KdopOptions, KdopTree};
 use nalgebra::{Point3, Vector3};
@@ -53,7 +53,8 @@ pub struct Choice {
     pub waste_of_axes: f64,
     /// The same for the frame.
     pub waste_of_frame: f64,
-    /// The work of a trial query with 6, 14, 18 and 26 faces, in parts of that with boxes along the axes: along the axes,
+    /// The work of a trial query with 6, 14, 18 and 26 faces, in parts of that with boxes along the axes: along the
+    /// axes,
     pub work_along_axes: [f64; 4],
     /// and along the frame, if that was tried.
     pub work_along_frame: Option<[f64; 4]>,
@@ -62,7 +63,8 @@ pub struct Choice {
 
 /// The numbers of faces to choose from.
 const FACES: [usize; 4] = [6, 14, 18, 26];
-/// Nanoseconds of a query, of a node with as many faces and of a packet (observed, on one processor; their ratios matter).
+/// Nanoseconds of a query, of a node with as many faces and of a packet (observed, on one processor; their ratios
+/// matter).
 const QUERY: f64 = 100.0;
 const NODE: [f64; 4] = [30.0, 50.0, 50.0, 74.0];
 const PACKET: f64 = 45.0;
@@ -268,8 +270,8 @@ fn sample<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -> Vec<(Vector3<f64>, f
         let primitive = set.get(PrimitiveId::new(i * len / count));
         let corners: Vec<Vector3<f64>> =
             primitive.vertices().iter().map(|p| p.coords.map(|x| x.to_f64() / scale)).collect();
-        // A segment counts as a facet as long and as thick as its own length: there is nothing to compare areas and lengths
-        // by. A long facet counts as a segment besides, the more the longer it is for its height.
+        // A segment counts as a facet as long and as thick as its own length: there is nothing to compare areas and
+        // lengths by. A long facet counts as a segment besides, the more the longer it is for its height.
         let weighted = match corners[..] {
             [a, b] => [(b - a) * (b - a).norm(), Vector3::zeros()],
             [a, b, c] => {

@@ -1,8 +1,8 @@
 //! k-DOP tree: bounding volumes of K slab directions.
 //!
 //! The tree of boxes of p2m-bvh (nodes of eight over packets of sixteen primitives, over the same splits) with
-//! [k-DOPs](Kdop) in the place of boxes: they fit closer what does not lie along the axes, so fewer nodes and packets are
-//! visited, at the price of more arithmetic and memory for each. docs/kdop.md has what that brings on which scenes.
+//! [k-DOPs](Kdop) in the place of boxes: they fit closer what does not lie along the axes, so fewer nodes and packets
+//! are visited, at the price of more arithmetic and memory for each. docs/kdop.md has what that brings on which scenes.
 //!
 //! K is fixed at compile time and counts both signs: `KdopTree<f64, _, 14>` has seven slabs. [`Directions`] are the
 //! usual ones for K = 6, 14, 18 and 26, or your own. Answers are those of [`BruteForce`](p2m_core::BruteForce), bit for
@@ -28,8 +28,8 @@
 //! ```
 //!
 //! # References
-//! \[Klosowski1998\]; the manual of the k-DOP tree that was made for CGAL, whose features and figures these are measured
-//! against.
+//! \[Klosowski1998\]; the manual of the k-DOP tree that was made for CGAL, whose features and figures these are
+//! measured against.
 #![forbid(unsafe_code)]
 
 mod choice;

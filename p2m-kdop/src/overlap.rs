@@ -1,9 +1,9 @@
 //! Which parts of two trees may meet.
 //!
-//! Two k-DOPs of the same directions have nothing in common if they lie apart along one of them. If one tree is moved, its
-//! k-DOPs have other directions; their heights along those of the other tree are then bounded from above: a direction
-//! that is a combination of three normals, with weights that are not negative, has at most the same combination of
-//! their heights. Which combinations there are depends on the movement alone, so they are computed once.
+//! Two k-DOPs of the same directions have nothing in common if they lie apart along one of them. If one tree is moved,
+//! its k-DOPs have other directions; their heights along those of the other tree are then bounded from above: a
+//! direction that is a combination of three normals, with weights that are not negative, has at most the same
+//! combination of their heights. Which combinations there are depends on the movement alone, so they are computed once.
 
 use crate::{Directions, Kdop, KdopTree};
 use nalgebra::{Isometry3, Matrix3, Vector3};
@@ -40,15 +40,16 @@ const ROUNDING: f64 = 1.0 / (1u64 << 46) as f64;
 impl<const K: usize, const L: usize> Heights<K, L> {
     /// For k-DOPs of directions `from`, moved by `motion`, along directions `to`.
     ///
-    /// Let A be what the quaternion of the motion does to points and t its translation, m a direction, d = A^T m and x a
-    /// point of a k-DOP of heights h_i, all at most s in size: m . (A x + t) = d . x + m . t. With weights w_i >= 0 and
-    /// r = d - sum w_i n_i, d . x is at most sum w_i h_i + |r| |x|; and |x| is at most s times what the inverse of the first
-    /// three normals makes of (1, 1, 1), with absolute values. So weights may be anything, if the computed |r| is added.
+    /// Let A be what the quaternion of the motion does to points and t its translation, m a direction, d = A^T m and x
+    /// a point of a k-DOP of heights h_i, all at most s in size: m . (A x + t) = d . x + m . t. With weights w_i >=
+    /// 0 and r = d - sum w_i n_i, d . x is at most sum w_i h_i + |r| |x|; and |x| is at most s times what the
+    /// inverse of the first three normals makes of (1, 1, 1), with absolute values. So weights may be anything, if
+    /// the computed |r| is added.
     ///
     /// With u = 2^-53: d is computed to 25 u, r to 4 u (1 + sum w_i) besides, sum w_i h_i to 4 u s sum w_i, m . t to
-    /// 3 u |t|, and where a point is said to be after the motion, or after the inverse one, differs by 57 u (|x| + |t|) at
-    /// most. All of that and the sums are less than 2^-46 = 128 u of (1 + sum w_i) |x| and of |t|. If the square of the
-    /// quaternion is 1 + e, the inverse motion is one to 5 e.
+    /// 3 u |t|, and where a point is said to be after the motion, or after the inverse one, differs by 57 u (|x| + |t|)
+    /// at most. All of that and the sums are less than 2^-46 = 128 u of (1 + sum w_i) |x| and of |t|. If the square
+    /// of the quaternion is 1 + e, the inverse motion is one to 5 e.
     fn new(from: &Directions<K>, motion: &Isometry3<f64>, to: &Directions<L>) -> Self {
         let normals = from.normals();
         let first = Matrix3::from_rows(&[0, 2, 4].map(|i: usize| normals[i].transpose()));
@@ -78,7 +79,8 @@ impl<const K: usize, const L: usize> Heights<K, L> {
                     }
                 }
             }
-            // The sum of the weights is 1 for a normal itself and larger the wider the normals are around the direction.
+            // The sum of the weights is 1 for a normal itself and larger the wider the normals are around the
+            // direction.
             found.sort_by(|x, y| x.0.total_cmp(&y.0));
             found.into_iter().take(KEPT).map(|(_, combination)| combination).collect()
         });
@@ -112,9 +114,9 @@ fn told(height: f64) -> f64 {
 
 /// Two trees, the second one moved against the first.
 ///
-/// Parts that meet, wherever the motion's arithmetic puts points, are never left out. Parts that lie apart along a direction
-/// of both trees, where they are, by more than rounding are; turned volumes are bounded along the other tree's directions,
-/// so some of those that lie apart along one alone may be visited.
+/// Parts that meet, wherever the motion's arithmetic puts points, are never left out. Parts that lie apart along a
+/// direction of both trees, where they are, by more than rounding are; turned volumes are bounded along the other
+/// tree's directions, so some of those that lie apart along one alone may be visited.
 ///
 /// ```
 /// use p2m_core::{BuildIndex, Segment};
@@ -137,8 +139,8 @@ pub struct Overlap<'a, const K: usize, const L: usize> {
 }
 
 impl<'a, const K: usize, const L: usize> Overlap<'a, K, L> {
-    /// `motion` takes points of the second scene to where they are in the first. For two transformed trees it is the inverse
-    /// of the first one's transformation times that of the second.
+    /// `motion` takes points of the second scene to where they are in the first. For two transformed trees it is the
+    /// inverse of the first one's transformation times that of the second.
     pub fn new<T: Real, U: Real, S, R>(
         first: &'a KdopTree<T, S, K>,
         second: &'a KdopTree<U, R, L>,

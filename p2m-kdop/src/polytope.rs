@@ -17,9 +17,9 @@ pub struct Polytope {
 }
 
 impl Polytope {
-    /// The polytope of a k-DOP. Faces are moved outwards by 1e-9 of half the longest side of a box around the first three
-    /// slabs, which gives a thickness to what has none; corners closer together may be one. An empty k-DOP has no corners
-    /// and no faces, nor has one of which a height is not finite or beyond 2^1000.
+    /// The polytope of a k-DOP. Faces are moved outwards by 1e-9 of half the longest side of a box around the first
+    /// three slabs, which gives a thickness to what has none; corners closer together may be one. An empty k-DOP
+    /// has no corners and no faces, nor has one of which a height is not finite or beyond 2^1000.
     ///
     /// A cube around the k-DOP is cut by one face after the other, so the result is closed whatever is rounded.
     ///
@@ -179,8 +179,8 @@ fn middle<const K: usize>(kdop: &Kdop<K>, normals: &[Vector3<f64>; K]) -> (Vecto
     (centre, if half > centre.amax() * 1e-12 { half } else { centre.amax() * 1e-12 + f64::MIN_POSITIVE * 1e9 })
 }
 
-/// Writes polytopes as a PLY file of polygons, one after the other; the number beside each is a property of its faces (its
-/// level in a tree, say), by which viewers can colour them.
+/// Writes polytopes as a PLY file of polygons, one after the other; the number beside each is a property of its faces
+/// (its level in a tree, say), by which viewers can colour them.
 ///
 /// # Errors
 /// Those of the writer.

@@ -5,7 +5,8 @@ use nalgebra::Point3;
 use p2m_core::{Closest, Feature};
 use std::io::{self, ErrorKind, Write};
 
-/// Writes answers one by one, in any [`AnswerFormat`]; the file is never in memory, but the writer should have a buffer.
+/// Writes answers one by one, in any [`AnswerFormat`]; the file is never in memory, but the writer should have a
+/// buffer.
 ///
 /// Each file holds the queries, so [`read_points`](crate::read_points) asks the same questions again.
 ///
@@ -15,8 +16,8 @@ use std::io::{self, ErrorKind, Write};
 /// back as the same ones. The last six are empty where there is no answer.
 ///
 /// # NPY
-/// A structured array of shape `(count,)`, little-endian, without gaps; a record has 96 bytes, and every number stands at a
-/// multiple of its size:
+/// A structured array of shape `(count,)`, little-endian, without gaps; a record has 96 bytes, and every number stands
+/// at a multiple of its size:
 ///
 /// | field | bytes | type | without an answer |
 /// |---|---|---|---|

@@ -102,9 +102,9 @@ pub enum Reason {
         /// What stands there.
         text: String,
     },
-    /// A primitive has a vertex with a coordinate that is NaN or infinite, or too large for a number of double precision.
-    /// OBJ counts vertices from 1, PLY and OFF from 0. The place is that of the vertex in a PLY file, of the primitive in
-    /// the others.
+    /// A primitive has a vertex with a coordinate that is NaN or infinite, or too large for a number of double
+    /// precision. OBJ counts vertices from 1, PLY and OFF from 0. The place is that of the vertex in a PLY file, of
+    /// the primitive in the others.
     #[error("vertex {index} is part of a primitive, but has a coordinate that is not finite")]
     NonFiniteVertex {
         /// The number of the vertex.

@@ -1,7 +1,7 @@
 //! Scenes of triangles, segments and points from files, and a synthetic one.
 //!
-//! [`read_scene`] reads OBJ, PLY, STL and OFF files into a [`Scene`], [`read_points`] reads query points from XYZ, CSV, NPY
-//! and PLY files. Both tell where and why a file is refused ([`ReadError`]), and a scene tells what it left out
+//! [`read_scene`] reads OBJ, PLY, STL and OFF files into a [`Scene`], [`read_points`] reads query points from XYZ, CSV,
+//! NPY and PLY files. Both tell where and why a file is refused ([`ReadError`]), and a scene tells what it left out
 //! ([`Scene::skipped`]). [`write_scene`] is the way back, [`AnswerWriter`] writes what was answered, [`generate`] makes
 //! scenes from nothing.
 //!

@@ -18,8 +18,8 @@ use std::io::BufRead;
 /// point, unless it has statements of free-form geometry (`cstype`, `curv`, `surf`, ...). Then its vertices are control
 /// points, and the scene is empty.
 ///
-/// [`Scene::objects`] are made by the statements `o`; a file that has none of them takes `g` instead. The name is the rest
-/// of the line, a `#` included.
+/// [`Scene::objects`] are made by the statements `o`; a file that has none of them takes `g` instead. The name is the
+/// rest of the line, a `#` included.
 ///
 /// Coordinates that are not finite are no error as long as no primitive uses the vertex. A point cloud leaves such
 /// vertices out and counts them in [`Scene::skipped`].

@@ -11,25 +11,26 @@ use std::io::BufRead;
 
 /// Reads an OFF file; `name` is for messages.
 ///
-/// Faces of three vertices or more are polygons of any shape, faces of two are segments, those of one are points. A file
-/// without faces is a point cloud: each vertex is a point. Faces count from 0 in [`Scene::sources`], whatever they are.
+/// Faces of three vertices or more are polygons of any shape, faces of two are segments, those of one are points. A
+/// file without faces is a point cloud: each vertex is a point. Faces count from 0 in [`Scene::sources`], whatever they
+/// are.
 ///
 /// The first word is `OFF` behind any of `ST`, `C` and `N`, which announce texture coordinates, colours and normals of
-/// vertices; it may be missing, and the counts may follow it on the same line, even without a blank. The number of edges
-/// may be missing. A `#` begins a comment. Vertices and faces may go on over several lines. What follows the coordinates of
-/// a vertex on its line (colours, normals), and up to four numbers behind a face (its colour), are left out and counted in
-/// [`Scene::skipped`], as is what follows the last face. `OFF BINARY` files are read, too.
+/// vertices; it may be missing, and the counts may follow it on the same line, even without a blank. The number of
+/// edges may be missing. A `#` begins a comment. Vertices and faces may go on over several lines. What follows the
+/// coordinates of a vertex on its line (colours, normals), and up to four numbers behind a face (its colour), are left
+/// out and counted in [`Scene::skipped`], as is what follows the last face. `OFF BINARY` files are read, too.
 ///
 /// Vertices in other dimensions (`4OFF`, `nOFF`) are refused, unless `nOFF` says 3.
 ///
-/// Coordinates that are not finite are no error as long as no primitive uses the vertex. A point cloud leaves such vertices
-/// out and counts them in [`Scene::skipped`].
+/// Coordinates that are not finite are no error as long as no primitive uses the vertex. A point cloud leaves such
+/// vertices out and counts them in [`Scene::skipped`].
 ///
 /// # Errors
-/// [`ReadError`] with the line or (binary) the offset for a header that makes no sense, an early end, numbers that are none
-/// or too many for their line, indices of no vertex, vertices of primitives that are not finite (with the place of the
-/// primitive), faces of no vertex or of more than [`MAX_CORNERS`], and for what goes wrong in reading. No memory is taken
-/// for data that is merely announced.
+/// [`ReadError`] with the line or (binary) the offset for a header that makes no sense, an early end, numbers that are
+/// none or too many for their line, indices of no vertex, vertices of primitives that are not finite (with the place of
+/// the primitive), faces of no vertex or of more than [`MAX_CORNERS`], and for what goes wrong in reading. No memory is
+/// taken for data that is merely announced.
 pub fn read_off(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     let mut words = Stream::with_comments(Lines::new(reader, 0));
     let fail = |line, reason| ReadError::new(name, Place::Line(line), reason);

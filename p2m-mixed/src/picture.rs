@@ -1,7 +1,7 @@
 //! Pictures of line drawings: the volumes of a tree, level by level.
 //!
-//! A [`Panel`] is a drawing of its own in an SVG file ([`write_svg`]), and a value of the property `panel` in a PLY file
-//! ([`write_picture_ply`]). Whoever has volumes turns them into lines; [`box_edges`] does so for boxes.
+//! A [`Panel`] is a drawing of its own in an SVG file ([`write_svg`]), and a value of the property `panel` in a PLY
+//! file ([`write_picture_ply`]). Whoever has volumes turns them into lines; [`box_edges`] does so for boxes.
 
 use nalgebra::{Point3, Vector3};
 use p2m_core::Aabb;

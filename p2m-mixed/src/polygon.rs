@@ -18,8 +18,8 @@ const MANY_CORNERS: usize = 256;
 /// - A simple planar polygon, convex or concave, is covered exactly and without overlap, up to rounding of the
 ///   orientation of three points; on small integer coordinates there is no rounding.
 /// - A polygon that is not planar is cut as its projection is; if that is simple, into a patch without gaps.
-/// - A polygon without area is cut as a fan, and so is one whose triangles do not add up to its area, because it crosses
-///   itself: there is no right answer.
+/// - A polygon without area is cut as a fan, and so is one whose triangles do not add up to its area, because it
+///   crosses itself: there is no right answer.
 /// - So is a large polygon with less than half of its corners at distinct places: it runs over itself, and cutting ears
 ///   would take cubic time.
 ///
@@ -90,9 +90,9 @@ impl Triangulator {
 
     /// Whether the fan around corner `apex` is a triangulation.
     ///
-    /// The oriented triangles of a fan add up to the winding number of the polygon wherever its apex is. If all have the
-    /// same orientation, those of a simple polygon therefore cover the inside once and nothing else. A convex polygon
-    /// passes with any apex.
+    /// The oriented triangles of a fan add up to the winding number of the polygon wherever its apex is. If all have
+    /// the same orientation, those of a simple polygon therefore cover the inside once and nothing else. A convex
+    /// polygon passes with any apex.
     fn fan_covers(&self, apex: u32) -> bool {
         let n = self.flat.len();
         let (mut left, mut right) = (false, false);
@@ -133,8 +133,8 @@ impl Triangulator {
         self.add_missing_edges();
     }
 
-    /// Adds each edge of the polygon that no triangle has as a triangle of two corners. The cutter leaves out spikes and
-    /// parts of polygons that cross or touch themselves; of a simple polygon it keeps every corner.
+    /// Adds each edge of the polygon that no triangle has as a triangle of two corners. The cutter leaves out spikes
+    /// and parts of polygons that cross or touch themselves; of a simple polygon it keeps every corner.
     #[allow(clippy::cast_possible_truncation, reason = "at most MAX_CORNERS corners")]
     fn add_missing_edges(&mut self) {
         let edge = |a: u32, b: u32| [a.min(b), a.max(b)];

@@ -15,14 +15,14 @@ pub struct Scene {
     /// The primitives, numbered in the order of the file. Polygons are cut into triangles: those of one polygon have
     /// consecutive ids and its winding.
     pub soup: Soup<f64>,
-    /// Where each primitive comes from: `sources[id]` is the number of its statement among those of the same kind, from
-    /// 0, in the order of the file. Kinds are counted apart.
+    /// Where each primitive comes from: `sources[id]` is the number of its statement among those of the same kind,
+    /// from 0, in the order of the file. Kinds are counted apart.
     ///
-    /// In an OBJ file a triangle counts `f` statements, a segment `l` statements, a point `p` statements. In a PLY file a
-    /// triangle counts the elements `face`, a segment the elements `edge`, a point the elements `point`; a file that has
-    /// both `face` and `tristrips` goes on with the strips after the last face. In STL files facets are counted, in OFF
-    /// files faces of any number of vertices. In a point cloud (vertices alone, in any format that has them) it is the
-    /// number of the vertex.
+    /// In an OBJ file a triangle counts `f` statements, a segment `l` statements, a point `p` statements. In a PLY
+    /// file a triangle counts the elements `face`, a segment the elements `edge`, a point the elements `point`; a
+    /// file that has both `face` and `tristrips` goes on with the strips after the last face. In STL files facets
+    /// are counted, in OFF files faces of any number of vertices. In a point cloud (vertices alone, in any format
+    /// that has them) it is the number of the vertex.
     pub sources: Vec<u32>,
     /// The named parts of the scene, in ascending order and apart from each other; primitives may be in none.
     ///
@@ -64,8 +64,8 @@ pub struct Object {
 #[non_exhaustive]
 pub struct Skipped {
     /// What it is: the keyword of an OBJ statement, an element or a property of a PLY file, or a plural such as
-    /// `bytes after the last element` (`words` in a text), `facets with attribute bytes`, `vertices with further numbers`,
-    /// `faces with a colour`, `vertices that are not finite` (of a point cloud).
+    /// `bytes after the last element` (`words` in a text), `facets with attribute bytes`, `vertices with further
+    /// numbers`, `faces with a colour`, `vertices that are not finite` (of a point cloud).
     pub what: String,
     /// How often it occurs, or how many of them there are.
     pub count: u64,
@@ -91,8 +91,8 @@ pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
 
 /// Reads a scene from the standard input, say; `name` is for messages.
 ///
-/// The file is read once from its beginning to its end. While it is, at most three times the memory of the finished scene
-/// is needed, whatever the file announces, besides small buffers and the longest line of a text.
+/// The file is read once from its beginning to its end. While it is, at most three times the memory of the finished
+/// scene is needed, whatever the file announces, besides small buffers and the longest line of a text.
 ///
 /// ```
 /// use p2m_mixed::{Format, read_scene_from};

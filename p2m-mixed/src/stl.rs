@@ -19,19 +19,19 @@ const HEAD: u64 = 1024;
 /// What the file is, its first 1024 bytes tell: text begins with `solid`, perhaps behind blanks, and has no control
 /// characters; many binary files begin with `solid`, too, but they have zeros among the first facets.
 ///
-/// Facets share vertices: corners with equal coordinates are one vertex, which is where the first of them is (0 and -0 are
-/// equal). No other corners are merged. Degenerate facets are kept. Facets count from 0 in [`Scene::sources`].
+/// Facets share vertices: corners with equal coordinates are one vertex, which is where the first of them is (0 and -0
+/// are equal). No other corners are merged. Degenerate facets are kept. Facets count from 0 in [`Scene::sources`].
 ///
 /// - Text: any number of solids, whose names are in [`Scene::objects`]; keywords in any case, numbers in double
 ///   precision as they are written. Normals may be missing or anything. A facet of more than three vertices is cut like
 ///   any polygon.
-/// - Binary: coordinates in single precision, which are exact in double precision. Attribute bytes that are not zero, and
-///   whatever follows the last facet, are counted in [`Scene::skipped`].
+/// - Binary: coordinates in single precision, which are exact in double precision. Attribute bytes that are not zero,
+///   and whatever follows the last facet, are counted in [`Scene::skipped`].
 ///
 /// # Errors
 /// [`ReadError`] with the line (text) or the offset of the facet (binary) for coordinates that are not finite or no
-/// numbers, words that are out of place, an early end, and for what goes wrong in reading. No memory is taken for facets
-/// that are merely announced.
+/// numbers, words that are out of place, an early end, and for what goes wrong in reading. No memory is taken for
+/// facets that are merely announced.
 pub fn read_stl(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     let fail = |reason| ReadError::new(name, Place::File, reason);
     let mut head = Vec::new();

@@ -70,7 +70,8 @@ fn torus_knots_are_closed_tubes() {
         };
         let length: f64 = (0..4096).map(speed).sum::<f64>() * TAU / 4096.0;
         let expected = 0.01 * polygon(sides) * length;
-        // Rings turn against each other, so that quadrilaterals are not planar: of first order in the angle between them.
+        // Rings turn against each other, so that quadrilaterals are not planar: of first order in the angle between
+        // them.
         let angle = TAU * f64::from(p.max(q)) / f64::from(rings);
         let relative = volume(&knot) / expected - 1.0;
         assert!(relative.abs() < angle, "({p}, {q}): {relative}");

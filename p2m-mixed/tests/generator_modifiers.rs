@@ -1,4 +1,5 @@
-//! What changes scenes: gaps and crossings that certain predicates see, subdivision that keeps meshes closed, transforms.
+//! What changes scenes: gaps and crossings that certain predicates see, subdivision that keeps meshes closed,
+//! transforms.
 
 mod generator_support;
 

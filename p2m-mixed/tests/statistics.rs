@@ -268,7 +268,8 @@ fn figures_are_finite_at_every_scale() {
     }
 }
 
-/// Name, zero area, slivers, non-manifold edges, duplicates, parts; as the list of the models has the figures that it has.
+/// Name, zero area, slivers, non-manifold edges, duplicates, parts; as the list of the models has the figures that it
+/// has.
 const MODELS: &[(&str, [u64; 5])] = &[
     ("armadillo.obj", [0, 0, 0, 0, 1]),
     ("mixed_armadillo_camel_wireframe.obj", [0, 0, 0, 0, 2]),

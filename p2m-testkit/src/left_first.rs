@@ -1,5 +1,5 @@
-//! The k-DOP tree's closest point as CGAL's manual has it, to compare counters with: a binary tree, the left child first,
-//! bounds that are the largest slack of a slab.
+//! The k-DOP tree's closest point as CGAL's manual has it, to compare counters with: a binary tree, the left child
+//! first, bounds that are the largest slack of a slab.
 //!
 //! Written from the manual's description, for counting only.
 
@@ -34,7 +34,8 @@ pub struct Work {
 }
 
 impl<const K: usize> LeftFirst<K> {
-    /// The packets of a tree as leaves, its nodes of eight as binary ones: the children of each in two halves, and so on.
+    /// The packets of a tree as leaves, its nodes of eight as binary ones: the children of each in two halves, and so
+    /// on.
     #[must_use]
     pub fn of_packets(tree: &PacketTree<Kdop<K>>) -> Self {
         let mut result = Self { directions: *tree.directions(), nodes: Vec::new() };
@@ -63,8 +64,8 @@ impl<const K: usize> LeftFirst<K> {
         at
     }
 
-    /// The distance to the scene and the work of finding it. The search begins with the distance to some primitive, as the
-    /// manual's does with a hint.
+    /// The distance to the scene and the work of finding it. The search begins with the distance to some primitive, as
+    /// the manual's does with a hint.
     pub fn distance<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>) -> (f64, Work) {
         let q = query.map(T::to_f64).coords;
         let products = self.directions.normals().map(|normal| normal.dot(&q));

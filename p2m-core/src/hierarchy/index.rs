@@ -10,10 +10,10 @@ use std::ops::ControlFlow;
 /// A [`PacketTree`] with the set that it was built over: an AABB tree or a k-DOP tree, by its volume.
 ///
 /// # Complexity
-/// Build O(n log n) expected, query O(log n) expected, O(n) at worst: equally distant primitives, queries more than 2^40 sizes
-/// away, scenes smaller than 1e-96 or larger than 1e90. Memory besides the set, for any scalar: 448 bytes a packet, 24 for each exact
-/// vertex of a packet, and the nodes: 256 bytes for boxes, 32 K + 32 for k-DOPs, rounded up to cache lines. About 65 bytes a
-/// triangle with boxes (observed).
+/// Build O(n log n) expected, query O(log n) expected, O(n) at worst: equally distant primitives, queries more than
+/// 2^40 sizes away, scenes smaller than 1e-96 or larger than 1e90. Memory besides the set, for any scalar: 448 bytes a
+/// packet, 24 for each exact vertex of a packet, and the nodes: 256 bytes for boxes, 32 K + 32 for k-DOPs, rounded up
+/// to cache lines. About 65 bytes a triangle with boxes (observed).
 #[derive(Clone, Debug)]
 pub struct TreeIndex<T: Real, S, V: Volume> {
     set: S,
@@ -50,10 +50,10 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         self.tree.memory()
     }
 
-    /// Fits the tree to a set of as many primitives as its own, which it then keeps: the same primitives, moved. That takes
-    /// a fraction of the time of building. The tree keeps its shape, so searches get slower the further apart neighbours have
-    /// moved; answers are those of a tree that is built anew. Of the options only whether all threads are used matters:
-    /// directions and splits stay those that it was built with.
+    /// Fits the tree to a set of as many primitives as its own, which it then keeps: the same primitives, moved. That
+    /// takes a fraction of the time of building. The tree keeps its shape, so searches get slower the further apart
+    /// neighbours have moved; answers are those of a tree that is built anew. Of the options only whether all
+    /// threads are used matters: directions and splits stay those that it was built with.
     ///
     /// # Errors
     /// [`BuildError::OtherLength`] and [`BuildError::NonFinite`]; the tree is then as it was.

@@ -1,7 +1,7 @@
 //! What every tree of this project shares: how primitives are split, how nodes are laid out, how they are searched.
 //!
-//! Primitives are split top-down into a binary tree by a [`SplitRule`] (`split`, `cost`), which is then collapsed into a
-//! [`PacketTree`]: nodes of eight children over packets of sixteen primitives, searched nearest first with vector
+//! Primitives are split top-down into a binary tree by a [`SplitRule`] (`split`, `cost`), which is then collapsed into
+//! a [`PacketTree`]: nodes of eight children over packets of sixteen primitives, searched nearest first with vector
 //! instructions. Every decision between candidates is left to a [`Collector`](crate::Collector).
 
 mod cost;
@@ -15,8 +15,8 @@ pub use wide::{PacketTree, Part, Volume};
 
 use crate::{Aabb, PrimitiveId, Real};
 
-/// A node of the binary tree: a leaf with `count` primitives from place `first`, or, with `count` 0, the parent of nodes
-/// `first` and `first + 1`.
+/// A node of the binary tree: a leaf with `count` primitives from place `first`, or, with `count` 0, the parent of
+/// nodes `first` and `first + 1`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Node<V> {
     /// Contains everything below the node.
@@ -46,8 +46,8 @@ struct Hierarchy<V> {
     order: Vec<PrimitiveId>,
 }
 
-/// No node lies deeper below the root than this, whatever the input: splits by cost until half of it, by halving from there
-/// on, and sets have at most 2^30 primitives. So searches keep their stack in an array.
+/// No node lies deeper below the root than this, whatever the input: splits by cost until half of it, by halving from
+/// there on, and sets have at most 2^30 primitives. So searches keep their stack in an array.
 const MAX_DEPTH: usize = 64;
 
 impl<V> Hierarchy<V> {

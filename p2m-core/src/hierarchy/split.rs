@@ -1,8 +1,8 @@
 //! Top-down splits.
 //!
-//! A node is cut in two by the [`SplitRule`] of the options, unless testing all its primitives is cheaper. Where boxes or
-//! their centres tell nothing apart (identical primitives, extents that overflow), the node is halved by order; below
-//! half of [`MAX_DEPTH`] every node is, so that no input makes the tree deep.
+//! A node is cut in two by the [`SplitRule`] of the options, unless testing all its primitives is cheaper. Where boxes
+//! or their centres tell nothing apart (identical primitives, extents that overflow), the node is halved by order;
+//! below half of [`MAX_DEPTH`] every node is, so that no input makes the tree deep.
 
 use super::cost::{Bounds, Cut, best_cut, count};
 use super::{MAX_DEPTH, Node};
@@ -13,16 +13,17 @@ use nalgebra::Point3;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum SplitRule {
-    /// Where n_left A_left + n_right A_right is smallest, A being surface areas: the cost of random lines. 16 bins along each
-    /// axis \[Wald2007\].
+    /// Where n_left A_left + n_right A_right is smallest, A being surface areas: the cost of random lines. 16 bins
+    /// along each axis \[Wald2007\].
     #[default]
     Sah,
-    /// The same cost along the longest side of the node alone, sampled coarsely first and then twice more finely around the
-    /// best position, as in \[Cavarga2021\]; but primitives go to one side only, by their centres.
+    /// The same cost along the longest side of the node alone, sampled coarsely first and then twice more finely around
+    /// the best position, as in \[Cavarga2021\]; but primitives go to one side only, by their centres.
     AdaptiveSah,
     /// The cost of random balls: A is the volume of the box dilated by `radius`, the distance (in units of the scene)
     /// that most answers are expected to have. From volumes (0) it goes through surface areas to the sum of the sides
-    /// (large radii). A negative or NaN radius counts as 0; an infinite one halves nodes as [`Median`](Self::Median) does. 16 bins along each axis.
+    /// (large radii). A negative or NaN radius counts as 0; an infinite one halves nodes as [`Median`](Self::Median)
+    /// does. 16 bins along each axis.
     Ball {
         /// The expected distance.
         radius: f64,
@@ -35,8 +36,8 @@ pub enum SplitRule {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SplitOptions {
-    /// Nodes with at most this many primitives are leaves if testing them is not dearer than splitting; larger ones are
-    /// always split.
+    /// Nodes with at most this many primitives are leaves if testing them is not dearer than splitting; larger ones
+    /// are always split.
     pub max_leaf: usize,
     /// How many primitives are tested at once: the cost of a leaf is that of as many blocks of this size as it fills.
     pub block: usize,
@@ -44,8 +45,8 @@ pub struct SplitOptions {
     pub node_cost: f64,
     /// Where nodes are split.
     pub rule: SplitRule,
-    /// Whether to use all threads of the current pool; needs the feature `rayon`, without which nothing does. The tree is
-    /// the same for any number of threads.
+    /// Whether to use all threads of the current pool; needs the feature `rayon`, without which nothing does. The tree
+    /// is the same for any number of threads.
     pub parallel: bool,
 }
 
@@ -57,8 +58,8 @@ impl Default for SplitOptions {
 }
 
 impl SplitOptions {
-    /// For trees that are built more often than they are asked: halves by the median. docs/splits.md has what that saves
-    /// and costs.
+    /// For trees that are built more often than they are asked: halves by the median. docs/splits.md has what that
+    /// saves and costs.
     #[must_use]
     pub fn fast() -> Self {
         Self::default().with_rule(SplitRule::Median)
@@ -94,8 +95,8 @@ impl Item {
     }
 }
 
-/// The nodes without volumes, and the order of the primitives in their leaves, in no order within one. Siblings are side by side, and what is
-/// below the left one comes before what is below the right one.
+/// The nodes without volumes, and the order of the primitives in their leaves, in no order within one. Siblings are
+/// side by side, and what is below the left one comes before what is below the right one.
 pub(super) fn build<T: Real>(boxes: &[Aabb<T>], options: &SplitOptions) -> (Vec<Node<()>>, Vec<PrimitiveId>) {
     let mut items: Vec<Item> = boxes.iter().enumerate().map(|(i, b)| Item::new(b, PrimitiveId::new(i))).collect();
     let nodes = if items.is_empty() { Vec::new() } else { subtree(&mut items, 0, 0, options) };

@@ -4,10 +4,10 @@
 //! cell:
 //!
 //! - by *boxes*, as a node of a tree does: best where the cell is as near as it is large;
-//! - by *corners*: f(q) = d(q, t)^2 - |q - y|^2 is concave for any closed set t and any point y, since it is an infimum of
-//!   affine functions. So with x_i the corners of the cell and l_i the weights of q among them (trilinear ones, say),
-//!   f(q) >= sum l_i f(x_i): eight numbers for each packet bound its distance everywhere in the cell. Where the nearest
-//!   point of t is the same vertex throughout, f is affine and the bound is the distance itself.
+//! - by *corners*: f(q) = d(q, t)^2 - |q - y|^2 is concave for any closed set t and any point y, since it is an infimum
+//!   of affine functions. So with x_i the corners of the cell and l_i the weights of q among them (trilinear ones,
+//!   say), f(q) >= sum l_i f(x_i): eight numbers for each packet bound its distance everywhere in the cell. Where the
+//!   nearest point of t is the same vertex throughout, f is affine and the bound is the distance itself.
 //!
 //! Numbers are kept as bytes, rounded outwards. All lengths are in the frame of the scene.
 
@@ -53,7 +53,8 @@ pub(super) fn reference(y: V3) -> V3 {
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Block {
-    /// For corners: row i has f at corner i. For boxes: low and high corners, row by row, and the origin in the last two rows.
+    /// For corners: row i has f at corner i. For boxes: low and high corners, row by row, and the origin in the last
+    /// two rows.
     bounds: [[u8; WIDTH]; 8],
     pub(super) packets: [u32; WIDTH],
     pub(super) lanes: [u16; WIDTH],
@@ -181,7 +182,8 @@ impl Block {
         block
     }
 
-    /// Squares of lower bounds of the distances to the packets, as those of a node. Those of empty entries are anything.
+    /// Squares of lower bounds of the distances to the packets, as those of a node. Those of empty entries are
+    /// anything.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounding is allowed for")]
     pub(super) fn lower_bounds<L: Lanes>(&self, place: &Place) -> L {
@@ -255,8 +257,9 @@ mod tests {
         around.map(|x| x + rng.random_range(-size..size))
     }
 
-    /// Sets of points in the frame, near and far from cells of all sizes, bounded in both ways: no bound exceeds the distance
-    /// by more than searches allow for, and that of a single point by the corners is the distance, but for the bytes.
+    /// Sets of points in the frame, near and far from cells of all sizes, bounded in both ways: no bound exceeds the
+    /// distance by more than searches allow for, and that of a single point by the corners is the distance, but for
+    /// the bytes.
     #[test]
     fn bounds_never_exceed_the_distance_and_corners_tell_that_of_a_point() {
         let mut rng = p2m_testkit::rng("blocks", 0);

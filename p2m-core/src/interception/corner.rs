@@ -1,10 +1,10 @@
 //! The corner test: what cannot beat a dominator anywhere in a cell.
 //!
-//! Let C be a convex cell with corners x_i, y a point of the scene and t any closed set. If d(x_i, t) > |x_i - y| + s at all
-//! corners, then d(q, t) > |q - y| + s for every q of C: d(q, t)^2 - (|q - y| + s)^2 is concave, as an infimum of affine
-//! functions less a convex one, so it is least at a corner (docs/octree.md). So t is
-//! never the answer in C, for the primitive that y belongs to is nearer, by more than all rounding if s is chosen so. It
-//! takes a single y for all corners; several may be tried.
+//! Let C be a convex cell with corners x_i, y a point of the scene and t any closed set. If d(x_i, t) > |x_i - y| + s
+//! at all corners, then d(q, t) > |q - y| + s for every q of C: d(q, t)^2 - (|q - y| + s)^2 is concave, as an infimum
+//! of affine functions less a convex one, so it is least at a corner (docs/octree.md). So t is
+//! never the answer in C, for the primitive that y belongs to is nearer, by more than all rounding if s is chosen so.
+//! It takes a single y for all corners; several may be tried.
 //!
 //! Distances from corners to primitives are bounded by the filters of packets and by boxes, so the test keeps too much
 //! rather than too little.
@@ -68,8 +68,8 @@ impl Found {
     pub(super) const NOTHING: Self = Self { squares: [0.0; LANES], excess: f32::INFINITY };
 }
 
-/// The filter of a packet at some points, as an operation: what it finds, and for each point an upper bound of the distance
-/// to the nearest primitive of the packet, and the lane, if there is one.
+/// The filter of a packet at some points, as an operation: what it finds, and for each point an upper bound of the
+/// distance to the nearest primitive of the packet, and the lane, if there is one.
 pub(super) struct AtPoints<'a> {
     pub(super) packet: &'a Packet,
     pub(super) points: &'a [V3],
@@ -130,7 +130,8 @@ impl Operation for Keep<'_> {
     }
 }
 
-/// Lower bounds of the distances from some corners to the primitives in some lanes, in units of the packet, as an operation.
+/// Lower bounds of the distances from some corners to the primitives in some lanes, in units of the packet, as an
+/// operation.
 pub(super) struct Least<'a> {
     pub(super) found: &'a [Found],
     pub(super) lanes: u16,

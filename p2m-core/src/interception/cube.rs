@@ -3,8 +3,8 @@
 use crate::Aabb;
 use crate::kernel::vector::V3;
 
-/// The most halvings of the cube of the domain: a coordinate in the finest cells is a whole number of 32 bits, and corners are
-/// exact.
+/// The most halvings of the cube of the domain: a coordinate in the finest cells is a whole number of 32 bits, and
+/// corners are exact.
 pub(super) const DEEPEST: u8 = 30;
 
 /// A corner of a cell, with a point of the scene near it.

@@ -60,8 +60,8 @@ pub struct Octree {
 }
 
 impl Octree {
-    /// Builds the index over a set whose boxes are finite. `progress` is told what part of space is done, each percent once,
-    /// from any thread.
+    /// Builds the index over a set whose boxes are finite. `progress` is told what part of space is done, each percent
+    /// once, from any thread.
     #[must_use]
     pub fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
         set: &S,
@@ -290,8 +290,8 @@ impl Octree {
         (self.locate(&cells), cells)
     }
 
-    /// How many packets the list of the cell of a point has: 1 where one primitive is the nearest throughout, `None` where
-    /// the tree answers.
+    /// How many packets the list of the cell of a point has: 1 where one primitive is the nearest throughout, `None`
+    /// where the tree answers.
     #[must_use]
     pub fn list_length(&self, point: &Point3<f64>) -> Option<usize> {
         let code = self.cell_of(&wide(point)).0;
@@ -367,7 +367,8 @@ impl Shape {
         if !usable || reach > size * 2f64.powi(20) || reach < size * 2f64.powi(-20) {
             return None;
         }
-        // Dyadic: a power of two as side, and the corner a multiple of a small part of it, so that all corners are exact.
+        // Dyadic: a power of two as side, and the corner a multiple of a small part of it, so that all corners are
+        // exact.
         let side = 2f64.powi((reach * 1.0001).log2().ceil() as i32);
         let grain = side / 4096.0;
         let middle = domain.min + span * 0.5;

@@ -3,8 +3,8 @@
 use crate::Aabb;
 use crate::hierarchy::SplitOptions;
 
-/// Where queries are to be expected: model only what a scene and its queries require. Elsewhere the tree answers, just as
-/// right.
+/// Where queries are to be expected: model only what a scene and its queries require. Elsewhere the tree answers, just
+/// as right.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Domain {
     /// Everywhere: cells reach to ten times the size of the scene's box.
@@ -17,7 +17,8 @@ pub enum Domain {
 }
 
 /// How an octree is built. Budgets are upper limits of the index, not of what building it takes: where one would be
-/// exceeded, cells are made coarser everywhere, with the next power of 0.3 for a resolution that fits; or none are made.
+/// exceeded, cells are made coarser everywhere, with the next power of 0.3 for a resolution that fits; or none are
+/// made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct OctreeOptions {
@@ -29,7 +30,8 @@ pub struct OctreeOptions {
     pub resolution: f64,
     /// What cells may take, in bytes for each primitive of the scene (for at least 10,000 primitives).
     pub memory: f64,
-    /// How many times packets may be tested while building, at one point each, for each primitive (for at least 10,000).
+    /// How many times packets may be tested while building, at one point each, for each primitive (for at least
+    /// 10,000).
     pub work: f64,
 }
 

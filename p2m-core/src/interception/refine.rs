@@ -1,17 +1,18 @@
 //! From a cube and the tree to cells with their lists.
 //!
 //! A cell starts with what its parent could not rule out. While these are many, they are nodes of the tree, which are
-//! opened and tested by their boxes (*coarse*). Once they are few packets, the filters of packets are computed at the corners
-//! (*fine*): 19 new lattice points for the eight children of a cell, whose nearest points give the new dominators.
+//! opened and tested by their boxes (*coarse*). Once they are few packets, the filters of packets are computed at the
+//! corners (*fine*): 19 new lattice points for the eight children of a cell, whose nearest points give the new
+//! dominators.
 //!
 //! # What is split
 //!
-//! A split costs memory and saves time where queries are. The share of queries that a cell gets (its *mass*) is taken to be a
-//! mixture: even in the whole domain, even in smaller boxes around the scene, and on the surface. What a list costs is how
-//! many of its packets the bounds of its blocks let pass in the middle of the cell, and its blocks. A cell is split if mass
-//! times cost is worth it. Whether a budget is exceeded does not depend on the order in which cells are made, so a refinement
-//! that exceeds one is given up at once and another one made that asks for more worth: the result is the same on any number
-//! of threads.
+//! A split costs memory and saves time where queries are. The share of queries that a cell gets (its *mass*) is taken
+//! to be a mixture: even in the whole domain, even in smaller boxes around the scene, and on the surface. What a list
+//! costs is how many of its packets the bounds of its blocks let pass in the middle of the cell, and its blocks. A cell
+//! is split if mass times cost is worth it. Whether a budget is exceeded does not depend on the order in which cells
+//! are made, so a refinement that exceeds one is given up at once and another one made that asks for more worth: the
+//! result is the same on any number of threads.
 
 use super::block::{Block, Bounds, Entry, WIDTH, reference};
 use super::corner::{AtPoints, Dominators, Found, Keep, Least};
@@ -32,7 +33,8 @@ const FORK: usize = 48;
 const LONGEST: usize = 256;
 /// Lists longer than this are held against the tree.
 const LONG: usize = 24;
-/// Nanoseconds of a packet that is tested, of a further block and of a node of the tree (observed; their ratios matter).
+/// Nanoseconds of a packet that is tested, of a further block and of a node of the tree (observed; their ratios
+/// matter).
 pub(super) const PACKET: f64 = 40.0;
 const BLOCK: f64 = 15.0;
 pub(super) const NODE: f64 = 30.0;
@@ -356,7 +358,8 @@ impl Refinement<'_> {
         self.split(children, items.len() >= FORK, |child, own| self.fine(child, own, share * 0.125))
     }
 
-    /// The nearest point to `x`: of the primitive that seems nearest, or of the scene where filters do not tell of the `whole`.
+    /// The nearest point to `x`: of the primitive that seems nearest, or of the scene where filters do not tell of the
+    /// `whole`.
     fn nearest_of(&self, near: &Nearest, whole: bool, x: V3) -> V3 {
         if !whole || near.distance == f64::INFINITY {
             return (self.nearest)(x);
@@ -410,8 +413,9 @@ impl Refinement<'_> {
         let frame = &self.tree.frame;
         let y = reference(frame.place(&middle.y));
         let squares = cube.corners.map(|corner| norm_squared(sub(frame.place(&corner.x), y)));
-        // Rounding in f64, of places in the frame and of these squares, and of the cell that a query is taken to lie in: where
-        // f is below zero, so that its value matters, it changes by twice the way to y for each step at most.
+        // Rounding in f64, of places in the frame and of these squares, and of the cell that a query is taken to lie
+        // in: where f is below zero, so that its value matters, it changes by twice the way to y for each step
+        // at most.
         let largest = squares.iter().fold(1.0, |a: f64, x| a.max(*x));
         let margin = largest * 2f64.powi(-46) + 4.0 * self.slack * frame.per_unit * largest.sqrt();
         let mut entries: Vec<(f64, Entry)> = Vec::with_capacity(items.len());
@@ -461,9 +465,9 @@ impl Refinement<'_> {
         list > (self.search_cost)(cube.point(MIDDLE))
     }
 
-    /// The lanes of an item without those that can only tie with a lower primitive: where a vertex is the nearest point of a
-    /// primitive in the whole cell, certainly enough for the kernel to give exactly the distance to it, the lowest
-    /// primitive with that vertex is at least as near.
+    /// The lanes of an item without those that can only tie with a lower primitive: where a vertex is the nearest point
+    /// of a primitive in the whole cell, certainly enough for the kernel to give exactly the distance to it, the
+    /// lowest primitive with that vertex is at least as near.
     fn without_ties(&self, cube: &Cube, item: &Item) -> u16 {
         /// The kernel is content with 2^-38.
         const MARGIN: f64 = 1.0 / (1u64 << 36) as f64;

@@ -19,8 +19,8 @@ use nalgebra::{Point3, Vector3};
 
 /// A k-DOP by its heights: `heights[i]` is the largest n_i . x, for the normals of some [`Directions`].
 ///
-/// What is computed of points is rounded outwards, so a k-DOP contains what it was made of. Where products leave the range
-/// of f64 a height cannot be told, and is infinite.
+/// What is computed of points is rounded outwards, so a k-DOP contains what it was made of. Where products leave the
+/// range of f64 a height cannot be told, and is infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kdop<const K: usize> {
     /// One for each normal.
@@ -62,8 +62,9 @@ impl<const K: usize> Kdop<K> {
         Self { heights: std::array::from_fn(|i| self.heights[i].max(other.heights[i])) }
     }
 
-    /// Whether no pair of faces, of either, has all of one k-DOP before it and all of the other one behind it: never false
-    /// for two k-DOPs (of the same directions) with a point in common, but it may be true for two that have none.
+    /// Whether no pair of faces, of either, has all of one k-DOP before it and all of the other one behind it: never
+    /// false for two k-DOPs (of the same directions) with a point in common, but it may be true for two that have
+    /// none.
     #[must_use]
     pub fn may_meet(&self, other: &Self) -> bool {
         (0..K).all(|i| -other.heights[i ^ 1] <= self.heights[i])
@@ -117,7 +118,8 @@ fn above(normal: &Vector3<f64>, x: &Vector3<f64>) -> f64 {
             rounded |= !is_one(*n);
         }
     }
-    // Three products and their sum err by 3 u of their size and what underflows. Nothing is known of sums that overflow.
+    // Three products and their sum err by 3 u of their size and what underflows. Nothing is known of sums that
+    // overflow.
     match rounded {
         false => sum,
         true if size.is_finite() => sum + size * (4.0 * f64::EPSILON) + f64::MIN_POSITIVE,

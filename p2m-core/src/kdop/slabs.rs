@@ -38,8 +38,8 @@ impl<const K: usize> Slabs<K> {
         Self { directions: *directions, orthogonal, cosines, rounds, axes, margin }
     }
 
-    /// Whether slab j is a pair of sides of a box along the axes: the distance to it is computed as exactly as for a tree of
-    /// boxes.
+    /// Whether slab j is a pair of sides of a box along the axes: the distance to it is computed as exactly as for a
+    /// tree of boxes.
     #[inline(always)]
     pub(crate) fn is_exact_side(&self, j: usize) -> bool {
         j < 3 && self.orthogonal && !self.rounds[2 * j]

@@ -102,7 +102,8 @@ impl Nearest {
         std::array::from_fn(|k| {
             let at =
                 |shift: i32| scale_by_power(query[k], shift) + scale_by_power(self.offset[k], self.exponent + shift);
-            // The sum is rounded once: at an eighth of the scale where the offset overflows, far up where it is subnormal.
+            // The sum is rounded once: at an eighth of the scale where the offset overflows, far up where it is
+            // subnormal.
             let offset = scale_by_power(self.offset[k], self.exponent);
             if !offset.is_finite() {
                 at(-3) * 8.0

@@ -41,8 +41,8 @@ struct Axes {
 }
 
 impl Axes {
-    /// First weights of the foot for the nearer end `n`, the farther one and the apex, `t` being the position of the foot
-    /// on the longest edge; and n . height.
+    /// First weights of the foot for the nearer end `n`, the farther one and the apex, `t` being the position of the
+    /// foot on the longest edge; and n . height.
     #[inline(always)]
     fn weights(&self, n: V3, t: f64) -> ([f64; 3], f64) {
         let projected = dot(n, self.height);
@@ -137,8 +137,8 @@ impl Plane {
         let [n, f, a] = [vertices[self.corners[0]], vertices[self.corners[1]], vertices[self.corners[2]]];
         let sliver = self.doubt > 1.0;
         let axes = if sliver { sliver_axes(&self.axes, n, f, a)? } else { self.axes };
-        // The first weights of a sliver are as uncertain as its height is small, and by the sides of the triangle they would
-        // add up to large vectors that cancel; along the orthogonal axes nothing cancels.
+        // The first weights of a sliver are as uncertain as its height is small, and by the sides of the triangle they
+        // would add up to large vectors that cancel; along the orthogonal axes nothing cancels.
         let (t, [_, wf, wa]) = (self.t, if sliver { axes.weights(n, self.t).0 } else { self.weights });
         let (first, second) = if sliver { (t, axes.height) } else { (wf, self.side) };
         let point = add(n, combine(first, axes.direction, wa, second));

@@ -41,8 +41,8 @@ const PLAIN_SIZE_PER_EDGE_SQUARED: f64 = power_of_two(196);
 /// Offsets within 2^-250..2^250 have squares, and squares of squares, well inside the range of f64.
 pub(super) const PLAIN_MIN: f64 = power_of_two(-250);
 pub(super) const PLAIN_MAX: f64 = power_of_two(250);
-/// Rough squares of edges and faces of ordinary shape err by less than 2^-37 of the square of the offsets' size; what is
-/// farther than the best rough one by more than this cannot win.
+/// Rough squares of edges and faces of ordinary shape err by less than 2^-37 of the square of the offsets' size; what
+/// is farther than the best rough one by more than this cannot win.
 const ROUGH_MARGIN: f64 = power_of_two(-34);
 /// A foot that is accepted wrongly, by rounding, is within 2^-40 of the squared size of a foot that is right.
 pub(super) const OUTWARD_MARGIN: f64 = power_of_two(-38);

@@ -48,9 +48,9 @@ impl<const N: usize> Scaled<N> {
 
     /// A foot computed from `offsets`, as a candidate.
     ///
-    /// Scaling down may have lost small components, and with them the promise that the key is not below the bound of the
-    /// box: such a foot is scaled back and moved into the box of the offsets as they were. (Scaling up loses nothing,
-    /// scaling back would.)
+    /// Scaling down may have lost small components, and with them the promise that the key is not below the bound of
+    /// the box: such a foot is scaled back and moved into the box of the offsets as they were. (Scaling up loses
+    /// nothing, scaling back would.)
     fn candidate<const M: usize>(&self, foot: &Foot<M>, (feature, weights): (Feature, V3), size: f64) -> Nearest {
         let (offset, exponent) = if self.exponent > 0 {
             let [low, high] = bounds(&self.raw);

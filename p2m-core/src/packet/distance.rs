@@ -46,7 +46,8 @@ impl<L: Lanes> V3<L> {
             z: self.x.mul_add(other.y, zero.sub(self.y).mul(other.x)),
         }
     }
-    /// Of vectors of whole numbers, up to a power of two: exact but for its last bits, however nearly parallel they are.
+    /// Of vectors of whole numbers, up to a power of two: exact but for its last bits, however nearly parallel they
+    /// are.
     #[inline(always)]
     fn cross_of_whole(&self, other: &Self) -> Self {
         Self {

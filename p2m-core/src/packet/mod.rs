@@ -1,15 +1,15 @@
 //! Packets: up to sixteen primitives of one kind, filtered at once.
 //!
-//! A packet keeps the vertices of its primitives as whole numbers of 16 bits in a frame of its own, lane beside lane: half
-//! the room of f32, and more precise, for the frame is as small as the packet. [`Packet::squares`] computes
+//! A packet keeps the vertices of its primitives as whole numbers of 16 bits in a frame of its own, lane beside lane:
+//! half the room of f32, and more precise, for the frame is as small as the packet. [`Packet::squares`] computes
 //! squared distances to all of them in f32. They decide nothing but which primitives cannot be the answer: everything
 //! within a proven band is evaluated by the kernel of the contract.
 //!
 //! # The band
 //!
-//! Lengths are in units of the frame, a power of two for which the box of the packet is less than 2^16 - 1 wide. Let q be the
-//! query in that frame, X = 2^16 + max |q_k| (so that no component of a difference between q and a vertex exceeds X),
-//! u = 2^-24. Then for every point, segment and triangle
+//! Lengths are in units of the frame, a power of two for which the box of the packet is less than 2^16 - 1 wide. Let q
+//! be the query in that frame, X = 2^16 + max |q_k| (so that no component of a difference between q and a vertex
+//! exceeds X), u = 2^-24. Then for every point, segment and triangle
 //!
 //! > d - 1 - 32 u X <= sqrt(square) <= d + 1 + 88 u X,
 //!
@@ -17,8 +17,8 @@
 //! proves it. For other primitives, which are filtered by their boxes, the right inequality holds.
 //!
 //! Two things make the band independent of the shape of a triangle: edges and normals are made of differences of whole
-//! numbers, which are exact, so the normal of a sliver is as good as any; and a face counts only where the foot is inside
-//! by more than the test can err, so that what is found is the distance of a point of the triangle in any case.
+//! numbers, which are exact, so the normal of a sliver is as good as any; and a face counts only where the foot is
+//! inside by more than the test can err, so that what is found is the distance of a point of the triangle in any case.
 
 mod distance;
 
@@ -158,8 +158,9 @@ impl Packet {
         }
     }
 
-    /// Offers the primitive in a lane to a collector, as the contract has it, unless its key certainly exceeds `square`.
-    /// `vertices` are all the exact vertices of the tree. Does nothing for a box, of which only the set knows.
+    /// Offers the primitive in a lane to a collector, as the contract has it, unless its key certainly exceeds
+    /// `square`. `vertices` are all the exact vertices of the tree. Does nothing for a box, of which only the set
+    /// knows.
     #[inline(always)]
     pub(crate) fn offer<C: Collector>(
         &self,
@@ -373,8 +374,8 @@ pub(crate) fn smallest<L: Lanes>(squares: &[f32; LANES]) -> f32 {
     all.smallest()
 }
 
-/// The place of a vertex in a list of at most 48, at the end of which it is put if it is not there yet. The same vertex is
-/// one with the same bits.
+/// The place of a vertex in a list of at most 48, at the end of which it is put if it is not there yet. The same vertex
+/// is one with the same bits.
 #[allow(clippy::cast_possible_truncation, reason = "at most 48")]
 fn place_of(list: &mut Vec<Vertex>, vertex: Vertex) -> u8 {
     let bits = vertex.map(f64::to_bits);

@@ -1,7 +1,7 @@
 //! Lanes of f32, and the choice of an instruction set at run time.
 //!
-//! Algorithms are written once over [`Lanes`]. An [`Operation`] that is handed to [`Isa::run`] is compiled once for each
-//! instruction set, inside of a function that enables it; everything on the way is inlined, so nothing checks the
+//! Algorithms are written once over [`Lanes`]. An [`Operation`] that is handed to [`Isa::run`] is compiled once for
+//! each instruction set, inside of a function that enables it; everything on the way is inlined, so nothing checks the
 //! processor again. Only the folder `isa` has `unsafe`.
 //!
 //! Results of lanes may differ between instruction sets in their last bits. So they are used in filters with a proven
@@ -35,8 +35,8 @@ pub(crate) trait Lanes: Copy {
     fn mul(self, other: Self) -> Self;
     /// self * factor + summand.
     fn mul_add(self, factor: Self, summand: Self) -> Self;
-    /// a b - c d with a relative error of at most 2^-22, if each product is a whole number times a power of two that is the
-    /// same for both, below 2^48 of it.
+    /// a b - c d with a relative error of at most 2^-22, if each product is a whole number times a power of two that is
+    /// the same for both, below 2^48 of it.
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self;
     /// The smaller one, `other` if either is NaN.
     fn min(self, other: Self) -> Self;
@@ -54,8 +54,8 @@ pub(crate) trait Lanes: Copy {
 
 /// Eight lanes, which can be sorted.
 pub(crate) trait EightLanes: Lanes {
-    /// The lanes that are at most `limit`, none of which is negative, as keys in descending order at the front of `keys`;
-    /// the other keys are 0. Returns how many there are.
+    /// The lanes that are at most `limit`, none of which is negative, as keys in descending order at the front of
+    /// `keys`; the other keys are 0. Returns how many there are.
     ///
     /// A key is made of the bits of the number with the lowest four replaced by 8 + lane, so keys are ordered as their
     /// numbers are and [`number_of_key`] is at most 15 units in the last place too small.

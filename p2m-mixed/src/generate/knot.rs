@@ -28,7 +28,8 @@ pub struct TorusKnot {
     pub rings: u32,
     /// Vertices of each ring; at least 3. There are two triangles for each vertex.
     pub sides: u32,
-    /// The radius of the tube, where those of the torus are 2 and 0.8. A tube thicker than the gaps of the knot meets itself.
+    /// The radius of the tube, where those of the torus are 2 and 0.8. A tube thicker than the gaps of the knot meets
+    /// itself.
     pub tube_radius: f64,
 }
 

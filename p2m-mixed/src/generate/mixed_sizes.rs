@@ -67,8 +67,9 @@ const LARGEST: f64 = 0.5;
 
 /// Primitives of random shape in random order, without shared vertices.
 ///
-/// Their centres are uniform in the cube from -1 to 1. Each lies on a sphere about its centre whose radius, its size, is
-/// at most 1/2 and has a uniform logarithm: three random places on it for a triangle, two opposite ones for a segment.
+/// Their centres are uniform in the cube from -1 to 1. Each lies on a sphere about its centre whose radius, its size,
+/// is at most 1/2 and has a uniform logarithm: three random places on it for a triangle, two opposite ones for a
+/// segment.
 ///
 /// # Errors
 /// [`GenerateError`] if an option is not in its range or there are more primitives than ids.

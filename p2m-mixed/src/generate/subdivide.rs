@@ -56,8 +56,8 @@ impl Subdivide {
 /// Splits each triangle at the middles of its edges into four and each segment into two, `levels` times.
 ///
 /// The parts of a primitive follow each other in its place, those of a triangle with its orientation: at its first,
-/// second and third corner, then the middle one. Points stay. The positions come first, those of the middles after them.
-/// Middles are displaced in random directions, so that large amplitudes let triangles cross each other.
+/// second and third corner, then the middle one. Points stay. The positions come first, those of the middles after
+/// them. Middles are displaced in random directions, so that large amplitudes let triangles cross each other.
 ///
 /// # Errors
 /// [`GenerateError::OutOfRange`] for an amplitude that is not from 0 to 0.5, [`GenerateError::Build`] if there are more

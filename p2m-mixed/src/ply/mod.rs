@@ -20,13 +20,13 @@ const ID: &str = "p2m_id";
 /// Reads a PLY file; `name` is for messages.
 ///
 /// Understood are the elements `vertex` (`x`, `y`, `z` of any type), `face` and `tristrips` (a list `vertex_indices` or
-/// `vertex_index`; in strips -1 starts a new one, and every other triangle is turned so that all have the winding of the
-/// first), `edge` (`vertex1`, `vertex2`), and `point` (`vertex_index`, of an integer type; [`write_ply`](crate::write_ply)
-/// writes them). Elements and properties may come in any order. Other elements and properties, and whatever follows the
-/// last element, are counted in [`Scene::skipped`]. Without any face, strip or edge, and without an element `point` of that
-/// form, the file is a point cloud: each vertex is a point. But not if there are other elements with a list of vertices
-/// (named `vertex_ind..`), such as polygons or tetrahedra under a name of their own: they are skipped, and the scene is
-/// empty.
+/// `vertex_index`; in strips -1 starts a new one, and every other triangle is turned so that all have the winding of
+/// the first), `edge` (`vertex1`, `vertex2`), and `point` (`vertex_index`, of an integer type;
+/// [`write_ply`](crate::write_ply) writes them). Elements and properties may come in any order. Other elements and
+/// properties, and whatever follows the last element, are counted in [`Scene::skipped`]. Without any face, strip or
+/// edge, and without an element `point` of that form, the file is a point cloud: each vertex is a point. But not if
+/// there are other elements with a list of vertices (named `vertex_ind..`), such as polygons or tetrahedra under a name
+/// of their own: they are skipped, and the scene is empty.
 ///
 /// Primitives are numbered in the order of the file, unless faces (of three vertices each, then), edges and points have
 /// the property `p2m_id`: then by that.
@@ -34,16 +34,16 @@ const ID: &str = "p2m_id";
 /// Coordinates that are not finite are no error as long as no primitive uses the vertex. A point cloud leaves such
 /// vertices out and counts them in [`Scene::skipped`].
 ///
-/// In a text file, numbers are taken as they are written, in double precision, even if the header says `float`. An element
-/// may go on over several lines, but nothing may follow it on its last one. Lines end at `\n`, `\r\n` or `\r`; those of a
-/// header before binary data as its first one does.
+/// In a text file, numbers are taken as they are written, in double precision, even if the header says `float`. An
+/// element may go on over several lines, but nothing may follow it on its last one. Lines end at `\n`, `\r\n` or `\r`;
+/// those of a header before binary data as its first one does.
 ///
 /// # Errors
 /// [`ReadError`] with the line (header, text) or the offset of the number in bytes (binary) for a header that makes no
 /// sense, an early end, numbers that are none or too many for their line, indices of no vertex, vertices of primitives
 /// that are not finite (with the place of the vertex), ids that are not 0, 1, 2, ... in some order, faces of fewer than
-/// three vertices or more than [`MAX_CORNERS`](crate::MAX_CORNERS), and for what goes wrong in reading. No memory is taken
-/// for data that is merely announced.
+/// three vertices or more than [`MAX_CORNERS`](crate::MAX_CORNERS), and for what goes wrong in reading. No memory is
+/// taken for data that is merely announced.
 pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     let header = read_header(&mut reader, name)?;
     let fail = |reason| ReadError::new(name, Place::File, reason);

@@ -24,17 +24,17 @@ use std::path::Path;
 /// number, is passed over if it has exactly three fields.
 ///
 /// `npy`: an array of NumPy of shape `(n, 3)`, in C or Fortran order, of integers or floats of 4 or 8 bytes, in either
-/// byte order; or a structured array of shape `(n,)` with a field `query` of shape `(3,)`, or else with fields `x`, `y`,
-/// `z`. Integers of 64 bits are rounded to double precision. Nothing may follow the array.
+/// byte order; or a structured array of shape `(n,)` with a field `query` of shape `(3,)`, or else with fields `x`,
+/// `y`, `z`. Integers of 64 bits are rounded to double precision. Nothing may follow the array.
 ///
 /// `ply`: the vertices, whatever the primitives.
 ///
 /// What an [`AnswerWriter`](crate::AnswerWriter) writes asks the same questions again, in each of its formats.
 ///
 /// # Errors
-/// [`ReadError`] with the place for numbers that are none or not finite, for fewer than three of them, for names of columns
-/// or fields that do not tell which are the coordinates, for arrays of other shapes and types, and for an early end. No
-/// memory is taken for points that are merely announced.
+/// [`ReadError`] with the place for numbers that are none or not finite, for fewer than three of them, for names of
+/// columns or fields that do not tell which are the coordinates, for arrays of other shapes and types, and for an early
+/// end. No memory is taken for points that are merely announced.
 pub fn read_points(path: &Path) -> Result<Vec<Point3<f64>>, ReadError> {
     let format = PointFormat::from_path(path)?;
     let name = path.display().to_string();

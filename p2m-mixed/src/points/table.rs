@@ -84,8 +84,8 @@ pub(super) fn read_csv(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f6
 
 /// The fields of a record, without blanks and quotes around them; `None` if a quote is not closed.
 ///
-/// A quote opens at the start of a field only: elsewhere it is a letter, as in `5'11"`. A quote doubled inside of quotes
-/// stays doubled: no number and no name of a column has any.
+/// A quote opens at the start of a field only: elsewhere it is a letter, as in `5'11"`. A quote doubled inside of
+/// quotes stays doubled: no number and no name of a column has any.
 fn split(line: &[u8], delimiter: u8) -> Option<Vec<&[u8]>> {
     let mut fields = Vec::new();
     let (mut quoted, mut started) = (false, false);

@@ -20,7 +20,8 @@ impl fmt::Display for Count {
     }
 }
 
-/// A measure with four significant digits: `0.03125`, `1,234`, `4.45e5` from a hundred thousand up and below a thousandth.
+/// A measure with four significant digits: `0.03125`, `1,234`, `4.45e5` from a hundred thousand up and below a
+/// thousandth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Figure(pub f64);
 

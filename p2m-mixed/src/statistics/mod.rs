@@ -1,9 +1,9 @@
 //! What a scene is made of, and what a person should know before asking it for closest points.
 //!
 //! [`Statistics`] are figures; [`Statistics::notes`] are the sentences that these figures warrant. What can be decided
-//! exactly is: a triangle counts as one of zero area if and only if its corners are on a line, positions are the same if
-//! and only if their coordinates are. Lengths and areas are good to 2^-20 at every scale; those that f64 cannot hold are
-//! given as the nearest positive number that it can.
+//! exactly is: a triangle counts as one of zero area if and only if its corners are on a line, positions are the same
+//! if and only if their coordinates are. Lengths and areas are good to 2^-20 at every scale; those that f64 cannot hold
+//! are given as the nearest positive number that it can.
 
 pub mod figure;
 mod notes;
@@ -20,8 +20,8 @@ use p2m_core::{Aabb, Element, PrimitiveSet, Soup};
 use places::{Places, by_place};
 use shape::{Measure, length};
 
-/// Triangles whose longest edge is more than so many times the height over it are [thin](Shapes::thin). An equilateral one
-/// has 1.15, half a square 2, a [sliver](Shapes::slivers) more than 1024.
+/// Triangles whose longest edge is more than so many times the height over it are [thin](Shapes::thin). An equilateral
+/// one has 1.15, half a square 2, a [sliver](Shapes::slivers) more than 1024.
 pub const THIN_ASPECT: f64 = 10.0;
 
 /// Figures of a scene.
@@ -45,7 +45,8 @@ pub struct Statistics {
     pub positions: Positions,
     /// The box of the primitives; `None` for an empty scene.
     pub bounds: Option<Aabb<f64>>,
-    /// Primitives that repeat another one: all but one of those that have the same corners, by coordinates and in any order.
+    /// Primitives that repeat another one: all but one of those that have the same corners, by coordinates and in any
+    /// order.
     pub duplicates: Counts,
     /// How triangles meet.
     pub edges: Edges,
@@ -138,7 +139,8 @@ pub struct Shapes {
     pub zero_area: u64,
     /// Segments whose ends are in one place.
     pub zero_length: u64,
-    /// Triangles with an area whose aspect is above 1024, the inverse of [`SLIVER_SINE`]: they are measured in double-double.
+    /// Triangles with an area whose aspect is above 1024, the inverse of [`SLIVER_SINE`]: they are measured in
+    /// double-double.
     pub slivers: u64,
     /// Triangles with an area whose aspect is above [`THIN_ASPECT`], slivers among them.
     pub thin: u64,

@@ -15,8 +15,8 @@ pub struct ObjectCounts {
     pub primitives: Counts,
 }
 
-/// The primitives of each name of a scene, in the order in which names first appear; parts of the same name are one. Those
-/// without a name come last. Nothing for a scene without names.
+/// The primitives of each name of a scene, in the order in which names first appear; parts of the same name are one.
+/// Those without a name come last. Nothing for a scene without names.
 ///
 /// ```
 /// use p2m_mixed::statistics::objects;

@@ -99,7 +99,8 @@ impl Forest {
     }
 }
 
-/// Sorts pairs by their first, a place, and then by their second, and shows those of each place, which are sorted, to `visit`.
+/// Sorts pairs by their first, a place, and then by their second, and shows those of each place, which are sorted, to
+/// `visit`.
 ///
 /// # Complexity
 /// O(n log n) for the most pairs at one place, O(n) for meshes.

@@ -1,15 +1,15 @@
 //! Lengths, areas and shapes of primitives at any scale, and whether a triangle has an area at all.
 //!
-//! Plain arithmetic where it is good to 2^-20, scaled arithmetic where squares would leave the range, exact integers where
-//! a triangle is so flat that its area is mostly rounding error. Results that f64 cannot hold are given as the nearest
-//! number that it can.
+//! Plain arithmetic where it is good to 2^-20, scaled arithmetic where squares would leave the range, exact integers
+//! where a triangle is so flat that its area is mostly rounding error. Results that f64 cannot hold are given as the
+//! nearest number that it can.
 
 use dashu_int::{IBig, ops::BitTest};
 use nalgebra::Point3;
 use p2m_core::kernel::power_of_two;
 
-/// Triangles whose height is below 2^-26 of the longest edge are measured in integers: plain arithmetic has that ratio with an
-/// absolute error below 2^-48, so what is zero is among them, and what is above is good to 2^-22.
+/// Triangles whose height is below 2^-26 of the longest edge are measured in integers: plain arithmetic has that ratio
+/// with an absolute error below 2^-48, so what is zero is among them, and what is above is good to 2^-22.
 const UNCERTAIN_SINE: f64 = power_of_two(-26);
 /// Offsets from 2^-200 to 2^200 have fourth powers in the range of f64.
 const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-200)..=power_of_two(200);
@@ -80,7 +80,8 @@ pub(super) fn length(a: V3, b: V3) -> f64 {
     representable(times_power_of_two(norm_squared(scaled).sqrt(), scale + exponent))
 }
 
-/// The length of the cross product of two edges, as a number and a power of two to multiply it by; `None` if it is zero.
+/// The length of the cross product of two edges, as a number and a power of two to multiply it by; `None` if it is
+/// zero.
 #[cold]
 fn exact_cross(corners: [V3; 3]) -> Option<(f64, i32)> {
     let parts = corners.map(|v| v.map(decompose));

@@ -46,8 +46,8 @@ pub enum WriteError {
 /// Writes a scene, number by number: `writer` should have a buffer.
 ///
 /// A file in [`Obj`](Format::Obj), [`Ply`](Format::Ply) or [`Off`](Format::Off) reads back as the same scene: the same
-/// positions bit by bit, the same primitives with the same ids. [`Stl`](Format::Stl) holds triangles in single precision
-/// and no shared vertices, see [`write_stl`]. What else is lost:
+/// positions bit by bit, the same primitives with the same ids. [`Stl`](Format::Stl) holds triangles in single
+/// precision and no shared vertices, see [`write_stl`]. What else is lost:
 ///
 /// | | OBJ | PLY | OFF | STL |
 /// |---|---|---|---|---|

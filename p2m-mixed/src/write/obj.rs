@@ -10,8 +10,8 @@ use std::io::Write;
 ///
 /// Numbers are the shortest that read back as the same ones. [`read_obj`](crate::read_obj) gives soup and objects back,
 /// with these exceptions: positions without any primitive would be read as a point cloud, so they are not written. A
-/// position that no primitive uses may be anything, but a file cannot hold all of that: one that is not finite is written
-/// as the origin. Line ends in names become blanks, blanks around names are lost.
+/// position that no primitive uses may be anything, but a file cannot hold all of that: one that is not finite is
+/// written as the origin. Line ends in names become blanks, blanks around names are lost.
 ///
 /// # Errors
 /// Those of `writer`.

@@ -8,9 +8,9 @@ use std::io::Write;
 /// Writes a scene as OFF text: its positions, then its primitives in the order of their ids. Segments are faces of two
 /// vertices, points are faces of one, which not every reader expects.
 ///
-/// Numbers are the shortest that read back as the same ones. [`read_off`](crate::read_off) gives the soup back, with two
-/// exceptions: positions without any primitive would be read as a point cloud, so they are not written; and a position
-/// that is not finite (no primitive uses it) is written as the origin. Objects are lost.
+/// Numbers are the shortest that read back as the same ones. [`read_off`](crate::read_off) gives the soup back, with
+/// two exceptions: positions without any primitive would be read as a point cloud, so they are not written; and a
+/// position that is not finite (no primitive uses it) is written as the origin. Objects are lost.
 ///
 /// # Errors
 /// Those of `writer`.

@@ -12,11 +12,11 @@ use std::io::{self, Write};
 /// A PLY file groups primitives by kind. Ids survive all the same:
 ///
 /// - Where the ids of each kind are consecutive, the elements come in the order of the ids; nothing else is needed.
-/// - Where kinds alternate, each primitive has a property `p2m_id`, its id, which [`read_ply`](crate::read_ply) honours.
-///   Other programs pass over it.
+/// - Where kinds alternate, each primitive has a property `p2m_id`, its id, which [`read_ply`](crate::read_ply)
+///   honours. Other programs pass over it.
 /// - A scene whose primitives are exactly all of its positions in order is written as vertices alone, a point cloud for
-///   everybody. Otherwise points are an element of their own, `point` with the property `vertex_index`. It is there, with
-///   no member, if a scene has positions but no primitives.
+///   everybody. Otherwise points are an element of their own, `point` with the property `vertex_index`. It is there,
+///   with no member, if a scene has positions but no primitives.
 ///
 /// [`read_ply`](crate::read_ply) gives the soup back, bit by bit; objects are lost.
 ///

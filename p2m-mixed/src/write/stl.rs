@@ -11,14 +11,14 @@ const HEADER: &[u8; 80] = b"binary STL                                          
 
 /// Writes a scene as binary STL: its triangles in the order of their ids, with unit normals (0 where there is none).
 ///
-/// Coordinates are rounded to single precision; [`stl_rounding`] tells by how much. Vertices are not shared in the file:
-/// [`read_stl`](crate::read_stl) gives the soup back if no coordinate is rounded, no two positions are equal and the
-/// triangles use them in ascending order, each of them. Otherwise positions are numbered anew, equal ones merged and
-/// unused ones lost; ids stay. Objects are lost.
+/// Coordinates are rounded to single precision; [`stl_rounding`] tells by how much. Vertices are not shared in the
+/// file: [`read_stl`](crate::read_stl) gives the soup back if no coordinate is rounded, no two positions are equal and
+/// the triangles use them in ascending order, each of them. Otherwise positions are numbered anew, equal ones merged
+/// and unused ones lost; ids stay. Objects are lost.
 ///
 /// # Errors
-/// [`WriteError`] for segments and points, and for coordinates that are infinite in single precision, before anything is
-/// written; and those of `writer`.
+/// [`WriteError`] for segments and points, and for coordinates that are infinite in single precision, before anything
+/// is written; and those of `writer`.
 pub fn write_stl(scene: &Scene, mut writer: impl Write) -> Result<(), WriteError> {
     let soup = &scene.soup;
     for (i, element) in soup.elements().enumerate() {

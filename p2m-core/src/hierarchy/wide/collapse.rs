@@ -114,8 +114,8 @@ impl Binary {
         (Child::node(0), nodes, longest)
     }
 
-    /// For each node the best forests of at most 1, 2, .. trees. That of one tree tells how the children of its root are
-    /// chosen.
+    /// For each node the best forests of at most 1, 2, .. trees. That of one tree tells how the children of its root
+    /// are chosen.
     fn forests(&self) -> Vec<[Forest; WIDTH]> {
         let whole = half_area(&self.nodes[0].bounds);
         let mut forests = vec![[Forest::default(); WIDTH]; self.nodes.len()];

@@ -1,9 +1,9 @@
 //! A tree of wide nodes over packets.
 //!
-//! A binary tree of splits is collapsed into nodes of eight children ([`collapse`]). A node is a few cache lines with the
-//! bounds of eight children side by side ([`volume`]: boxes in [`node`], k-DOPs in [`slabs`]), a leaf a [`Packet`] of up to
-//! sixteen primitives. Both are in f32 or less and only bound distances, from both sides and with proof; what may be the
-//! answer is evaluated in f64 by the kernel of the contract ([`search`]).
+//! A binary tree of splits is collapsed into nodes of eight children ([`collapse`]). A node is a few cache lines with
+//! the bounds of eight children side by side ([`volume`]: boxes in [`node`], k-DOPs in [`slabs`]), a leaf a [`Packet`]
+//! of up to sixteen primitives. Both are in f32 or less and only bound distances, from both sides and with proof; what
+//! may be the answer is evaluated in f64 by the kernel of the contract ([`search`]).
 
 mod collapse;
 pub(crate) mod node;
@@ -53,8 +53,8 @@ pub(crate) struct Leaves {
     pub(crate) packets: Vec<Packet>,
     /// The exact vertices of the packets, one packet after the other.
     pub(crate) vertices: Vec<[f64; 3]>,
-    /// Where those of each packet begin: few numbers, which stay in the cache, so that vertices can be asked for with their
-    /// packet.
+    /// Where those of each packet begin: few numbers, which stay in the cache, so that vertices can be asked for with
+    /// their packet.
     firsts: Vec<u32>,
 }
 
@@ -155,9 +155,9 @@ impl<V: Volume> PacketTree<V> {
         self.whole = of_packets.iter().fold(V::Node::NOTHING, |all, own| V::Node::join(&all, own));
     }
 
-    /// Fits the tree to another set of as many primitives: the same ones, moved. The tree keeps its shape, so searches get
-    /// slower the more primitives have moved apart; answers are those of a tree that is built anew. Boxes are finite. Of the
-    /// options only whether all threads are used matters.
+    /// Fits the tree to another set of as many primitives: the same ones, moved. The tree keeps its shape, so searches
+    /// get slower the more primitives have moved apart; answers are those of a tree that is built anew. Boxes are
+    /// finite. Of the options only whether all threads are used matters.
     ///
     /// # Panics
     /// If the set has another number of primitives.

@@ -48,8 +48,8 @@ impl<V: Volume> PacketTree<V> {
         ControlFlow::Continue(())
     }
 
-    /// Goes down from the root to a leaf, to the child with the least lower bound each time, and returns the primitives of
-    /// that leaf; `aside` is told the bounds of all other children. Nothing for an empty set.
+    /// Goes down from the root to a leaf, to the child with the least lower bound each time, and returns the primitives
+    /// of that leaf; `aside` is told the bounds of all other children. Nothing for an empty set.
     ///
     /// # Complexity
     /// O(depth).

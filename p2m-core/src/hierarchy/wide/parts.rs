@@ -54,8 +54,8 @@ impl<V: Volume> PacketTree<V> {
 }
 
 impl<const K: usize> PacketTree<Kdop<K>> {
-    /// Visits the leaves that may meet a box, by their k-DOPs, until `visit` breaks. [`BoxQuery`](crate::BoxQuery) tells
-    /// exactly which primitives do.
+    /// Visits the leaves that may meet a box, by their k-DOPs, until `visit` breaks. [`BoxQuery`](crate::BoxQuery)
+    /// tells exactly which primitives do.
     pub fn visit_leaves_in_box(
         &self,
         bounds: &Aabb<f64>,

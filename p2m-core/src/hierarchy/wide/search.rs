@@ -196,8 +196,8 @@ impl<'a, C: Collector> Filter<'a, C> {
                 let room: &mut [u32; WIDTH] = (&mut keys[top..top + WIDTH]).try_into().expect("eight keys");
                 let count = bounds.sorted_keys(self.limit, room);
                 parents[top..top + WIDTH].fill(at.0);
-                // The nearest one and the next, whatever they are: a branch would be mispredicted. The keys behind the last
-                // are 0, which is the first child.
+                // The nearest one and the next, whatever they are: a branch would be mispredicted. The keys behind the
+                // last are 0, which is the first child.
                 tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(1).min(STACK - 1)])]);
                 tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(2).min(STACK - 1)])]);
                 if count > 0 {
@@ -290,8 +290,9 @@ impl<'a, C: Collector> Filter<'a, C> {
         (self.finish)(self);
     }
 
-    /// Of the triangles of which a vertex is certainly the nearest point only the nearest stay, and of these the first: others
-    /// are as far or farther. They are not missed in the certified bound either, for keys of vertices are right to some u.
+    /// Of the triangles of which a vertex is certainly the nearest point only the nearest stay, and of these the first:
+    /// others are as far or farther. They are not missed in the certified bound either, for keys of vertices are
+    /// right to some u.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "ties are equality of bits")]
     fn drop_ties(&mut self) {
@@ -339,7 +340,8 @@ impl<'a, C: Collector> Filter<'a, C> {
             let Candidate { low, packet, lane } = self.waiting[i];
             // Less for its rounding.
             if f64::from(low) * (1.0 - f64::from(f32::EPSILON)) * self.frame.unit <= self.keep {
-                // The reach is at least a unit of a frame: its square does not underflow, as that of a bound on keys may.
+                // The reach is at least a unit of a frame: its square does not underflow, as that of a bound on keys
+                // may.
                 let reach = self.reach * self.reach * (1.0 + 4.0 * f64::EPSILON);
                 let packet = &self.leaves.packets[packet as usize];
                 let prune = self.collector.prune_above_for(packet.ids()[lane as usize]);
@@ -355,8 +357,8 @@ impl<'a, C: Collector> Filter<'a, C> {
 /// So many candidates are evaluated one by one.
 const FEW: usize = 3;
 
-/// Evaluates the candidates that wait with the instruction set, in a function of its own: the traversal is better off with
-/// registers of its own.
+/// Evaluates the candidates that wait with the instruction set, in a function of its own: the traversal is better off
+/// with registers of its own.
 #[inline(never)]
 pub(crate) fn finish<C: Collector>(filter: &mut Filter<'_, C>) {
     filter.isa.run(Finish(filter));

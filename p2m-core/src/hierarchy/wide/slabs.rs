@@ -27,13 +27,14 @@ const _: () = assert!(size_of::<SlabNode<14>>() == 512);
 /// products add up to less than 7; coordinates, products and both sums err by 2^-53 of that each, in all by less than
 /// 30 x 2^-53.
 const SLACK: f64 = power_of_two(-48);
-/// What is taken from all slacks but those of a box along the axes, in units of the size X of the query in the frame: 20 u
-/// of f32. What the proof needs it for is small, and mostly hidden: products and heights are rounded outwards besides, and
-/// limits have room for 2^-19. So tests do not tell when it is missing.
+/// What is taken from all slacks but those of a box along the axes, in units of the size X of the query in the frame:
+/// 20 u of f32. What the proof needs it for is small, and mostly hidden: products and heights are rounded outwards
+/// besides, and limits have room for 2^-19. So tests do not tell when it is missing.
 const QUERY_SLACK: f64 = 20.0 * power_of_two(-24);
 /// What is left of an increment, for the roundings of its factor: 1 - 2^-15.
 const SHRINK: f32 = 1.0 - 1.0 / 32768.0;
-/// The least sine, squared, that two half-spaces are taken to meet at. If it is smaller, less is gained than there could be.
+/// The least sine, squared, that two half-spaces are taken to meet at. If it is smaller, less is gained than there
+/// could be.
 const LEAST_SINE: f32 = 1.0 / 16.0;
 /// Below this squares are not told apart: 2^-100.
 const TINY: f32 = 1.0 / (1u128 << 100) as f32;
@@ -173,8 +174,8 @@ impl<const K: usize> WideNode for SlabNode<K> {
 
     fn may_meet(bounds: &[f32; K], shape: &Slabs<K>, frame: &Frame, other: &Aabb<f64>) -> bool {
         let place = |p: &Point3<f64>| Point3::from(frame.place(&[p.x, p.y, p.z]));
-        // Going into the frame errs by u of each coordinate, which heights of boxes have room for, but for faces along the
-        // axes: there points of the scene have been rounded as this box is, and rounding keeps their order.
+        // Going into the frame errs by u of each coordinate, which heights of boxes have room for, but for faces along
+        // the axes: there points of the scene have been rounded as this box is, and rounding keeps their order.
         let own = Kdop { heights: bounds.map(f64::from) };
         own.may_meet_box(&shape.directions, &Aabb { min: place(&other.min), max: place(&other.max) })
     }
@@ -279,9 +280,9 @@ mod tests {
         nearest
     }
 
-    /// Bounds of random k-DOPs (of triangles of all sizes and shapes) for random queries (near and far, and across their
-    /// faces and edges) against distances, on every instruction set: how many were compared, how often the bound was within
-    /// 1 % of the distance, and how often that of the box was.
+    /// Bounds of random k-DOPs (of triangles of all sizes and shapes) for random queries (near and far, and across
+    /// their faces and edges) against distances, on every instruction set: how many were compared, how often the
+    /// bound was within 1 % of the distance, and how often that of the box was.
     fn compare<const K: usize>(directions: &Directions<K>, nodes: usize, case: u64) -> [usize; 3] {
         let mut rng = p2m_testkit::rng("slabs", case);
         let slabs = Slabs::new(directions);
