@@ -124,19 +124,23 @@ fn instruction_set(name: Option<&str>) -> Result<Isa, Absent> {
     isa.ok_or_else(|| Absent(format!("this processor has no {name}")))
 }
 
-/// The octree, with an instruction set and so many times the usual resolution, and budgets to match.
-fn octree<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>, times: f64) -> Result<Prepared<'a>, Absent> {
-    let isa = instruction_set(isa)?;
-    let (soup, borrowed) = T::soup(scene)?;
+/// So many times the usual resolution of the octree, and budgets to match, on one thread.
+pub(crate) fn octree_options(times: f64) -> OctreeOptions {
     let usual = OctreeOptions::default();
-    let budget = if times > 1.0 { times } else { 1.0 };
-    let options = usual
+    let budget = times.max(1.0);
+    usual
         .with_splits(aabb_options())
         .with_resolution(usual.resolution * times)
         .with_memory(usual.memory * budget)
-        .with_work(usual.work * budget);
+        .with_work(usual.work * budget)
+}
+
+/// The octree, with an instruction set and so many times the usual resolution.
+fn octree<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>, times: f64) -> Result<Prepared<'a>, Absent> {
+    let isa = instruction_set(isa)?;
+    let (soup, borrowed) = T::soup(scene)?;
     let build = move || {
-        let index = OctreeIndex::build(soup, &options).map_err(|error| Absent(error.to_string()))?;
+        let index = OctreeIndex::build(soup, &octree_options(times)).map_err(|error| Absent(error.to_string()))?;
         Ok(Box::new(Ours(index.with_isa(isa), PhantomData::<fn() -> T>)) as Ready<'a>)
     };
     Ok(Prepared { build: Box::new(build), borrowed })

@@ -15,6 +15,7 @@ mod contender;
 mod kdop;
 mod measure;
 mod memory;
+mod octree;
 mod provenance;
 mod queries;
 mod report;
@@ -57,6 +58,8 @@ enum Command {
     Splits(SplitsArguments),
     /// The figures of the k-DOP tree's manual: build, nodes and leaves visited, time per query
     Kdop(KdopArguments),
+    /// The settings of the octree: resolution, domain, threads
+    Octree(BatchArguments),
     /// Batches on the AABB tree: order, hints and threads, in wall time
     Batch(BatchArguments),
 }
@@ -166,10 +169,10 @@ struct BatchArguments {
     /// Numbers of threads
     #[arg(long, value_delimiter = ',', default_values_t = [1, 2])]
     threads: Vec<usize>,
-    /// Rounds, in which all ways take turns
+    /// Rounds, in which all contenders take turns
     #[arg(long, default_value_t = 5)]
     rounds: usize,
-    /// Queries of a batch
+    /// Queries a round
     #[arg(long, default_value_t = 1_000_000)]
     queries: usize,
     /// Seed of the query sets
@@ -187,6 +190,7 @@ fn main() -> Result<ExitCode> {
         Command::Verify(arguments) => verify_all(&arguments)?,
         Command::Splits(arguments) => splits(&arguments)?,
         Command::Kdop(arguments) => kdops(&arguments)?,
+        Command::Octree(arguments) => octrees(&arguments)?,
         Command::Batch(arguments) => batches(&arguments)?,
     };
     Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
@@ -225,6 +229,19 @@ fn query(arguments: &QueryArguments) -> Result<bool> {
             .iter()
             .filter(|entry| entry.backend.ours)
             .all(|entry| entry.sets.iter().flatten().all(|set| set.agreement.is_clean()));
+    }
+    Ok(good)
+}
+
+/// Whether all octrees agree.
+fn octrees(arguments: &BatchArguments) -> Result<bool> {
+    let BatchArguments { scenes, sets, threads, rounds, queries, seed } = arguments;
+    let effort = Effort { rounds: *rounds, queries: *queries, builds: 3, seed: *seed };
+    println!("{}", Provenance::collect(None));
+    println!("{rounds} rounds in turns, {queries} queries a round, seed {seed}.");
+    let mut good = true;
+    for path in scenes {
+        good &= octree::print(&Scene::read(path)?, sets, threads, &effort)?;
     }
     Ok(good)
 }
