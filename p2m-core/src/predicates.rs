@@ -15,8 +15,8 @@
 //! }
 //! ```
 
+use crate::integers::{self, common_exponent, difference};
 use crate::kernel::power_of_two;
-use dashu_int::IBig;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 use std::cmp::Ordering;
 
@@ -42,7 +42,8 @@ pub fn orientation_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Ordering {
         let coord = |[x, y]: [f64; 2]| Coord { x, y };
         return sign(orient2d(coord(a), coord(b), coord(c)));
     }
-    let [b, c] = [b, c].map(|p| difference(p, a));
+    let exponent = common_exponent([a, b, c].as_flattened());
+    let [b, c] = [b, c].map(|p| difference(p, a, exponent));
     (&b[0] * &c[1]).cmp(&(&b[1] * &c[0]))
 }
 
@@ -61,29 +62,13 @@ pub fn orientation_3d(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> Ord
         // Positive below the plane, there.
         return sign(orient3d(coord(a), coord(b), coord(c), coord(d))).reverse();
     }
-    let [b, c, d] = [b, c, d].map(|p| difference(p, a));
-    let minor = |i: usize, j: usize| &b[i] * &c[j] - &b[j] * &c[i];
-    (minor(1, 2) * &d[0] + minor(2, 0) * &d[1] + minor(0, 1) * &d[2]).cmp(&IBig::ZERO)
+    let exponent = common_exponent([a, b, c, d].as_flattened());
+    let [b, c, d] = [b, c, d].map(|p| difference(p, a, exponent));
+    integers::sign(&integers::dot(&integers::cross(&b, &c), &d))
 }
 
 fn sign(x: f64) -> Ordering {
     x.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
-}
-
-/// p - a in units of 2^-1074.
-fn difference<const N: usize>(p: [f64; N], a: [f64; N]) -> [IBig; N] {
-    std::array::from_fn(|k| integer(p[k]) - integer(a[k]))
-}
-
-/// x in units of 2^-1074.
-fn integer(x: f64) -> IBig {
-    let bits = x.abs().to_bits();
-    let (exponent, fraction) = (bits >> 52, bits & ((1 << 52) - 1));
-    let magnitude = match exponent {
-        0 => IBig::from(fraction),
-        _ => IBig::from(fraction | 1 << 52) << usize::try_from(exponent - 1).expect("eleven bits"),
-    };
-    if x < 0.0 { -magnitude } else { magnitude }
 }
 
 #[cfg(test)]
@@ -127,15 +112,6 @@ mod tests {
                 assert_eq!(orientation_3d(small(p), small(q), small(r), small(s)), expected.reverse());
             }
         }
-    }
-
-    #[test]
-    fn integers_go_on_where_subnormals_end() {
-        let (subnormal, normal) = (f64::MIN_POSITIVE.next_down(), f64::MIN_POSITIVE);
-        assert_eq!(integer(normal) - integer(subnormal), IBig::ONE);
-        assert_eq!(integer(-normal.next_up()) + integer(normal), -IBig::ONE);
-        assert_eq!(integer(4.0) - integer(2.0), integer(2.0));
-        assert_eq!(integer(-0.0), IBig::ZERO);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 use super::{PacketTree, Volume};
 use crate::{
-    Aabb, Best, BoxQuery, BuildError, BuildIndex, Closest, ClosestLeaf, ClosestPoint, Collector, Directions, Isa, Kdop,
-    Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, check_set,
+    Aabb, Best, BoxQuery, BuildError, BuildIndex, Closest, ClosestLeaf, ClosestPoint, Collector, Directions, Hits, Isa,
+    Kdop, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector, RayQuery, Real, check_set,
 };
 use nalgebra::Point3;
 use std::marker::PhantomData;
@@ -85,6 +85,12 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     pub fn visit<C: Collector>(&self, query: &Point3<T>, collector: &mut C) {
         self.tree.search(&self.set, query, collector);
     }
+
+    /// Offers to any collector every hit that it could want; [`RayQuery::search_ray`] with [`Hits`].
+    #[inline]
+    pub fn visit_ray<'r, C: RayCollector<'r>>(&self, ray: &'r Ray, collector: &mut C) {
+        crate::ray::search_all(&self.set, ray, collector);
+    }
 }
 
 impl<T: Real, S: PrimitiveSet<T>, const K: usize> TreeIndex<T, S, Kdop<K>> {
@@ -131,5 +137,11 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestLeaf<T> for TreeIndex<T, S, 
             }
         }
         best.finish()
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>, V: Volume> RayQuery<T> for TreeIndex<T, S, V> {
+    fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>) {
+        self.visit_ray(ray, hits);
     }
 }

@@ -8,9 +8,9 @@
 use std::ops::{Add, Div, Mul, Sub};
 
 #[derive(Clone, Copy)]
-pub(super) struct Double {
-    high: f64,
-    low: f64,
+pub(crate) struct Double {
+    pub(crate) high: f64,
+    pub(crate) low: f64,
 }
 
 /// a + b without error.
@@ -45,12 +45,12 @@ fn two_product(a: f64, b: f64) -> Double {
 
 impl Double {
     /// a - b without error.
-    pub(super) fn difference(a: f64, b: f64) -> Self {
+    pub(crate) fn difference(a: f64, b: f64) -> Self {
         two_sum(a, -b)
     }
 
     /// The value rounded to f64.
-    pub(super) fn round(self) -> f64 {
+    pub(crate) fn round(self) -> f64 {
         self.high
     }
 }
@@ -92,7 +92,7 @@ impl Div for Double {
     }
 }
 
-pub(super) fn dot(a: [Double; 3], b: [Double; 3]) -> Double {
+pub(crate) fn dot(a: [Double; 3], b: [Double; 3]) -> Double {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

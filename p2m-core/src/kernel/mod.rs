@@ -5,7 +5,7 @@
 
 #![allow(clippy::float_cmp, reason = "ties are equality of bits, and are decided here")]
 
-mod double;
+pub(crate) mod double;
 mod key;
 mod line;
 mod plane;

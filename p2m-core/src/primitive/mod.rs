@@ -13,7 +13,7 @@ pub use triangle::Triangle;
 
 use crate::kernel::{Key, Nearest, scalar};
 use crate::real::wide;
-use crate::{Aabb, Real};
+use crate::{Aabb, Ray, RayHit, Real};
 use nalgebra::Point3;
 
 /// The part of a primitive that holds its nearest point; numbered locally to the primitive.
@@ -180,6 +180,14 @@ pub trait Primitive<T: Real> {
         !bounds.is_empty() && bounds.meets(&self.aabb())
     }
 
+    /// Where a ray meets a primitive that has no [`vertices`](Self::vertices): nowhere by default. A pure function; the
+    /// point lies in `aabb()`, and the parameter is in the range of the ray, or there is no hit. Others are met where
+    /// the contract of [`RayQuery`](crate::RayQuery) says.
+    fn intersect_ray(&self, ray: &Ray) -> Option<RayHit> {
+        let _ = ray;
+        None
+    }
+
     /// Whether all coordinates are finite.
     fn is_finite(&self) -> bool {
         self.aabb().is_finite()
@@ -208,6 +216,9 @@ impl<T: Real, P: Primitive<T>> Primitive<T> for &P {
     }
     fn meets_box(&self, bounds: &Aabb<T>) -> bool {
         (*self).meets_box(bounds)
+    }
+    fn intersect_ray(&self, ray: &Ray) -> Option<RayHit> {
+        (*self).intersect_ray(ray)
     }
     #[inline(always)]
     fn is_finite(&self) -> bool {

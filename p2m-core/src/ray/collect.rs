@@ -1,0 +1,113 @@
+//! What becomes of the hits that a search finds.
+
+use super::crossing::{Crossing, Hit};
+use crate::PrimitiveId;
+use std::ops::ControlFlow;
+
+/// Decides which hits a search has to find.
+pub trait RayCollector<'r> {
+    /// Whether only crossings of the surface count (see [`RayQuery::crossings`](super::RayQuery::crossings)), rather
+    /// than every primitive that the ray meets.
+    fn only_crossings(&self) -> bool {
+        false
+    }
+
+    /// The parameter above which hits do not matter.
+    fn limit(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Takes a hit, in any order; breaks if no other one matters.
+    fn offer(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()>;
+
+    /// A node is visited: the bounds of its children are tested.
+    fn visit_node(&mut self) {}
+
+    /// A packet is visited: its primitives are filtered.
+    fn visit_packet(&mut self) {}
+
+    /// A primitive passed the filter, and is tested exactly.
+    fn visit_primitive(&mut self) {}
+}
+
+/// What is wanted of the hits, and what was found: handed to a backend by the methods of
+/// [`RayQuery`](super::RayQuery).
+#[derive(Clone, Debug)]
+pub struct Hits<'r> {
+    wanted: Wanted,
+    /// The first one, or any, if that is wanted.
+    pub(super) one: Option<(PrimitiveId, Crossing<'r>)>,
+    /// Every one, if that is wanted.
+    pub(super) all: Vec<Hit>,
+    /// How many there are, if that is wanted.
+    pub(super) count: usize,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Wanted {
+    Any,
+    First,
+    All,
+    Count,
+    Crossings,
+}
+
+impl Hits<'_> {
+    pub(super) fn new(wanted: Wanted) -> Self {
+        Self { wanted, one: None, all: Vec::new(), count: 0 }
+    }
+}
+
+impl<'r> RayCollector<'r> for Hits<'r> {
+    #[inline(always)]
+    fn only_crossings(&self) -> bool {
+        self.wanted == Wanted::Crossings
+    }
+
+    #[inline(always)]
+    fn limit(&self) -> f64 {
+        match &self.one {
+            Some((_, first)) => first.bounds()[1],
+            None => f64::INFINITY,
+        }
+    }
+
+    #[inline]
+    fn offer(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()> {
+        match self.wanted {
+            Wanted::Any => {
+                self.one = Some((primitive, *crossing));
+                return ControlFlow::Break(());
+            }
+            Wanted::First => self.offer_first(primitive, crossing),
+            Wanted::All => self.all.push(crossing.hit(primitive)),
+            Wanted::Count | Wanted::Crossings => self.count += 1,
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl<'r> Hits<'r> {
+    /// Keeps the hit with the least parameter, and of equal ones the lowest id. Parameters are computed only where their
+    /// bounds do not decide.
+    fn offer_first(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) {
+        let Some((id, first)) = &mut self.one else {
+            self.one = Some((primitive, *crossing));
+            return;
+        };
+        let ([low, high], [first_low, first_high]) = (crossing.bounds(), first.bounds());
+        if low > first_high {
+            return;
+        }
+        if high < first_low {
+            (*id, *first) = (primitive, *crossing);
+            return;
+        }
+        let crossing = crossing.resolved();
+        *first = first.resolved();
+        let ([t, _], [first_t, _]) = (crossing.bounds(), first.bounds());
+        if t < first_t || t.total_cmp(&first_t).is_eq() && primitive < *id {
+            (*id, *first) = (primitive, crossing);
+        }
+    }
+}

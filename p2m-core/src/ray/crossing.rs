@@ -1,0 +1,306 @@
+//! Where a ray meets a primitive: decided exactly, in f64 where that is enough.
+//!
+//! Everything is relative to the origin of the ray. A, B, C are the vertices of a triangle, D is the direction. The
+//! line passes the edge from A to B on the side that the sign of the moment D . (A x B) says; it meets the triangle if
+//! no two of the three moments have opposite signs, and lies in its plane if all are zero. The parameter of the plane is
+//! n . A / n . D with n = (B - A) x (C - A). docs/rays.md bounds the errors.
+
+use super::exact::Exact;
+use super::line::Ray;
+use crate::PrimitiveId;
+use crate::kernel::double::{Double, dot as double_dot};
+use crate::kernel::power_of_two;
+use crate::kernel::vector::{V3, dot, sub};
+use nalgebra::Point3;
+use std::cmp::Ordering;
+
+/// From where a ray meets a primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// From the side to which the normal (b - a) x (c - a) of the triangle points.
+    Front,
+    /// From the other side.
+    Back,
+    /// In the plane of a triangle; and all that segments, points and triangles without area know.
+    Along,
+}
+
+/// A hit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The primitive.
+    pub primitive: PrimitiveId,
+    /// The parameter of the ray, in lengths of its direction: the exact one rounded to the nearest f64, for every
+    /// primitive of this project; infinite beyond the range of f64. The least one in the range of the ray where it meets
+    /// the primitive in a stretch; where it is nearest to a segment or a point, if it has a radius.
+    pub parameter: f64,
+    /// From where.
+    pub side: Side,
+    /// Weights of the primitive's vertices, each rounded to nearest; within 4 u where the range of the ray begins inside
+    /// of a triangle or segment that it runs along. Unused ones are 0.
+    pub barycentric: [f64; 3],
+    /// The sum of the vertices with these weights, rounded; a vertex verbatim.
+    pub point: Point3<f64>,
+}
+
+/// What a primitive of your own answers to a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayHit {
+    /// The parameter, in lengths of the direction.
+    pub parameter: f64,
+    /// From where.
+    pub side: Side,
+    /// Weights, as the primitive understands them.
+    pub barycentric: [f64; 3],
+    /// The point.
+    pub point: Point3<f64>,
+}
+
+/// The point of a ray on a primitive.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    pub(super) parameter: f64,
+    pub(super) side: Side,
+    pub(super) weights: V3,
+}
+
+/// A hit of which the parameter is known between bounds, and exactly when asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Crossing<'a> {
+    ray: &'a Ray,
+    low: f64,
+    high: f64,
+    source: Source,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Source {
+    /// A triangle that is crossed, and from where.
+    Face([V3; 3], Side),
+    /// Anything else.
+    Known(RayHit),
+}
+
+/// u of f64.
+const U: f64 = f64::EPSILON / 2.0;
+/// What products may lack that underflow, and sums of them.
+const TINY: f64 = power_of_two(-1000);
+
+impl<'a> Crossing<'a> {
+    /// What a primitive of your own answered, if it is in the range of the ray.
+    pub(crate) fn of_hit(ray: &'a Ray, hit: RayHit) -> Option<Self> {
+        let t = hit.parameter;
+        ray.contains(t).then_some(Self { ray, low: t, high: t, source: Source::Known(hit) })
+    }
+
+    /// One of this project, by its vertices.
+    #[inline(always)]
+    pub(crate) fn of_vertices(ray: &'a Ray, vertices: &[V3], limit: f64, only_crossings: bool) -> Option<Self> {
+        match vertices {
+            [a, b, c] => Self::of_triangle(ray, [*a, *b, *c], limit, only_crossings),
+            _ if only_crossings => None,
+            _ => Self::of_wire(ray, vertices),
+        }
+    }
+
+    /// Segments and points.
+    fn of_wire(ray: &'a Ray, vertices: &[V3]) -> Option<Self> {
+        if passes_by(ray, vertices) {
+            return None;
+        }
+        let found = Exact::new(ray, vertices).wire()?;
+        Self::of_found(ray, vertices, &found)
+    }
+
+    fn of_found(ray: &'a Ray, vertices: &[V3], found: &Found) -> Option<Self> {
+        Self::of_hit(ray, found.at(vertices))
+    }
+
+    /// A triangle; `None` also if its parameter certainly exceeds `limit`.
+    #[inline(always)]
+    fn of_triangle(ray: &'a Ray, vertices: [V3; 3], limit: f64, only_crossings: bool) -> Option<Self> {
+        let offsets = vertices.map(|v| sub(v, ray.origin));
+        let [bc, ca, ab] =
+            [(1, 2), (2, 0), (0, 1)].map(|(i, j)| certain_sign(&ray.direction, &offsets[i], &offsets[j]));
+        let (above, below) = (bc > 0 || ca > 0 || ab > 0, bc < 0 || ca < 0 || ab < 0);
+        if above && below {
+            return None;
+        }
+        let front = if bc != 0 && ca != 0 && ab != 0 {
+            below
+        } else {
+            match exact_side(ray, &vertices, [bc, ca, ab], only_crossings)? {
+                Ordering::Less => true,
+                Ordering::Greater => false,
+                Ordering::Equal => {
+                    return Self::of_found(ray, &vertices, &Exact::new(ray, &vertices).flat()?);
+                }
+            }
+        };
+        let side = if front { Side::Front } else { Side::Back };
+        let [low, high] = parameter_bounds(ray, &vertices, &offsets[0]);
+        if low > limit || low > ray.max || high < ray.min {
+            return None;
+        }
+        let found = Self { ray, low, high, source: Source::Face(vertices, side) };
+        if ray.min <= low && high <= ray.max {
+            return Some(found);
+        }
+        let t = found.parameter();
+        ray.contains(t).then_some(Self { low: t, high: t, ..found })
+    }
+
+    /// Two numbers between which the parameter lies.
+    #[inline(always)]
+    pub fn bounds(&self) -> [f64; 2] {
+        [self.low, self.high]
+    }
+
+    /// The parameter.
+    #[inline]
+    #[must_use]
+    pub fn parameter(&self) -> f64 {
+        match &self.source {
+            _ if self.low == self.high => self.low,
+            Source::Known(hit) => hit.parameter,
+            Source::Face(vertices, _) => {
+                double_parameter(self.ray, vertices).unwrap_or_else(|| Exact::new(self.ray, vertices).face().0)
+            }
+        }
+    }
+
+    /// The same crossing with bounds that are equal.
+    #[must_use]
+    pub(super) fn resolved(self) -> Self {
+        let t = self.parameter();
+        Self { low: t, high: t, ..self }
+    }
+
+    /// All there is to know.
+    #[must_use]
+    pub fn hit(&self, primitive: PrimitiveId) -> Hit {
+        let hit = match &self.source {
+            Source::Known(hit) => *hit,
+            Source::Face(vertices, side) => {
+                let (parameter, weights) = Exact::new(self.ray, vertices).face();
+                Found { parameter, side: *side, weights }.at(vertices)
+            }
+        };
+        let RayHit { parameter, side, barycentric, point } = hit;
+        Hit { primitive, parameter, side, barycentric, point }
+    }
+}
+
+impl Found {
+    /// With its point.
+    fn at(&self, vertices: &[V3]) -> RayHit {
+        let point = match self.weights.iter().position(|w| *w == 1.0) {
+            Some(vertex) => vertices[vertex],
+            None => std::array::from_fn(|k| vertices.iter().zip(&self.weights).map(|(v, w)| v[k] * w).sum()),
+        };
+        RayHit { parameter: self.parameter, side: self.side, barycentric: self.weights, point: Point3::from(point) }
+    }
+}
+
+/// 1 or -1 if the moment D . (A x B) is certainly above or below zero, from offsets that are rounded; else 0.
+#[inline(always)]
+fn certain_sign(d: &V3, a: &V3, b: &V3) -> i32 {
+    let products = [[a[1] * b[2], a[2] * b[1]], [a[2] * b[0], a[0] * b[2]], [a[0] * b[1], a[1] * b[0]]];
+    let minors = products.map(|[p, q]| p - q);
+    let sizes = products.map(|[p, q]| p.abs() + q.abs());
+    let moment = dot(*d, minors);
+    let error = 8.0 * U * (d[0].abs() * sizes[0] + d[1].abs() * sizes[1] + d[2].abs() * sizes[2]) + TINY;
+    i32::from(moment > error) - i32::from(moment < -error)
+}
+
+/// On which side of all edges a line passes that f64 could not tell: `None` for a miss, `Equal` in the plane.
+#[cold]
+#[inline(never)]
+fn exact_side(ray: &Ray, vertices: &[V3; 3], known: [i32; 3], only_crossings: bool) -> Option<Ordering> {
+    let exact = Exact::new(ray, vertices);
+    let mut all = Ordering::Equal;
+    for (known, (i, j)) in known.into_iter().zip([(1, 2), (2, 0), (0, 1)]) {
+        let side = match known {
+            0 if only_crossings => exact.perturbed_side(i, j),
+            0 => exact.side(i, j),
+            known => known.cmp(&0),
+        };
+        if only_crossings && side == Ordering::Equal || side == all.reverse() && all != Ordering::Equal {
+            return None;
+        }
+        all = all.then(side);
+    }
+    Some(all)
+}
+
+/// Between which numbers the parameter of the plane of a triangle lies that the line is not parallel to, given its first
+/// vertex as seen from the origin.
+#[inline(always)]
+fn parameter_bounds(ray: &Ray, vertices: &[V3; 3], a: &V3) -> [f64; 2] {
+    let [e, f] = [sub(vertices[1], vertices[0]), sub(vertices[2], vertices[0])];
+    let products = [[e[1] * f[2], e[2] * f[1]], [e[2] * f[0], e[0] * f[2]], [e[0] * f[1], e[1] * f[0]]];
+    let normal = products.map(|[p, q]| p - q);
+    let sizes = products.map(|[p, q]| p.abs() + q.abs());
+    let error = |x: &V3| 8.0 * U * (x[0].abs() * sizes[0] + x[1].abs() * sizes[1] + x[2].abs() * sizes[2]) + TINY;
+    let (height, speed) = (dot(normal, *a), dot(normal, ray.direction));
+    let (height_error, speed_error) = (error(a), error(&ray.direction));
+    let t = height / speed;
+    let margin =
+        (height_error + t.abs() * speed_error) / (speed.abs() - speed_error) * (1.0 + 16.0 * U) + t.abs() * (4.0 * U);
+    // Not for NaN, nor where underflow matters to the quotient.
+    if speed.abs() > 2.0 * speed_error && margin < f64::MAX && margin > TINY {
+        [t - margin, t + margin]
+    } else {
+        let t = Exact::new(ray, vertices).face().0;
+        [t, t]
+    }
+}
+
+/// Magnitudes for which products of three underflow nowhere that matters, and overflow nowhere.
+const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-250)..=power_of_two(250);
+
+/// The parameter of the plane of a triangle, rounded to nearest, where double-double arithmetic can tell.
+fn double_parameter(ray: &Ray, vertices: &[V3; 3]) -> Option<f64> {
+    let [a, b, c] = vertices;
+    let minus = |p: &V3, q: &V3| -> [Double; 3] { std::array::from_fn(|k| Double::difference(p[k], q[k])) };
+    let size = |x: &[Double; 3]| x.iter().fold(0.0, |m: f64, x| m.max(x.high.abs()));
+    let (e, f, a) = (minus(b, a), minus(c, a), minus(a, &ray.origin));
+    let d = ray.direction.map(|x| Double { high: x, low: 0.0 });
+    let sizes = [size(&e), size(&f), size(&a), size(&d)];
+    if !sizes.iter().all(|x| PLAIN.contains(x)) {
+        return None;
+    }
+    let normal = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];
+    let (height, speed) = (double_dot(normal, a), double_dot(normal, d));
+    let t = height / speed;
+    // Of each sum, and then of the quotient.
+    let [height_error, speed_error] = [sizes[2], sizes[3]].map(|x| power_of_two(-95) * sizes[0] * sizes[1] * x);
+    let rest = speed.high.abs() - speed_error;
+    let error = (height_error + t.high.abs() * speed_error) / rest * (1.0 + power_of_two(-40))
+        + t.high.abs() * power_of_two(-98);
+    let [low, high] = [t.high + (t.low - error), t.high + (t.low + error)];
+    (rest > 0.0 && low == high && PLAIN.contains(&low.abs())).then_some(low)
+}
+
+/// Whether a ray certainly passes a segment or a point by more than its radius.
+#[inline(always)]
+fn passes_by(ray: &Ray, vertices: &[V3]) -> bool {
+    let size = |x: &V3| x[0].abs().max(x[1].abs()).max(x[2].abs());
+    // Across the ray, of which only the direction matters: at least its largest component is 1 now.
+    let d = ray.direction.map(|x| x / size(&ray.direction));
+    let square = dot(d, d);
+    let across = |v: &V3| {
+        let offset = sub(*v, ray.origin);
+        let along = dot(offset, d) / square;
+        (std::array::from_fn::<f64, 3, _>(|k| offset[k] - along * d[k]), size(&offset))
+    };
+    let ((a, reach_a), (b, reach_b)) = (across(&vertices[0]), across(&vertices[vertices.len() - 1]));
+    let edge = sub(b, a);
+    let share = (-dot(a, edge) / dot(edge, edge)).clamp(0.0, 1.0);
+    let share = if share.is_nan() { 0.0 } else { share };
+    let nearest = std::array::from_fn::<f64, 3, _>(|k| a[k] + share * edge[k]);
+    let distance = dot(nearest, nearest).sqrt();
+    // Not for NaN, nor for squares that underflow or overflow.
+    let error = 256.0 * U * (reach_a + reach_b);
+    distance > ray.radius * (1.0 + 16.0 * U) + error && PLAIN.contains(&distance)
+}

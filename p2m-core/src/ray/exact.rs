@@ -1,0 +1,169 @@
+//! Rays and primitives in integers of any length: what decides where rounding could.
+//!
+//! Everything is relative to the origin of the ray. A, B, C are the vertices, D is the direction; positions are
+//! multiples of one power of two, the direction of another, and parameters of their quotient.
+
+use super::crossing::{Found, Side};
+use super::line::Ray;
+use crate::integers::{Fraction, Vector, common_exponent, cross, cross_component, difference, dot, integer, sign};
+use crate::kernel::vector::V3;
+use dashu_int::IBig;
+use std::cmp::Ordering;
+
+/// A ray and some vertices.
+pub(super) struct Exact<'a> {
+    ray: &'a Ray,
+    vertices: Vec<Vector>,
+    direction: Vector,
+    /// Of positions.
+    unit: i32,
+    /// Of the direction.
+    direction_unit: i32,
+}
+
+/// Where a line is nearest to a segment, or meets a triangle that it lies in the plane of: one point or a stretch.
+struct Span {
+    ends: [(Fraction, V3); 2],
+}
+
+impl<'a> Exact<'a> {
+    pub(super) fn new(ray: &'a Ray, vertices: &[V3]) -> Self {
+        let unit = common_exponent(vertices.as_flattened().iter().chain(&ray.origin).chain([&ray.radius]));
+        let direction_unit = common_exponent(&ray.direction);
+        Self {
+            ray,
+            vertices: vertices.iter().map(|v| difference(*v, ray.origin, unit)).collect(),
+            direction: ray.direction.map(|x| integer(x, direction_unit)),
+            unit,
+            direction_unit,
+        }
+    }
+
+    /// The sign of D . (V_i x V_j): on which side of the line the edge from i to j passes.
+    pub(super) fn side(&self, i: usize, j: usize) -> Ordering {
+        sign(&self.moment(i, j))
+    }
+
+    fn moment(&self, i: usize, j: usize) -> IBig {
+        dot(&self.direction, &cross(&self.vertices[i], &self.vertices[j]))
+    }
+
+    /// The same for the line that is moved by an infinitely small amount along x, by an infinitely smaller one along y
+    /// and by a still smaller one along z. Moved by w, the moment changes by -w . ((V_j - V_i) x D). `Equal` only for an
+    /// edge along the line.
+    pub(super) fn perturbed_side(&self, i: usize, j: usize) -> Ordering {
+        let edge: Vector = std::array::from_fn(|k| &self.vertices[j][k] - &self.vertices[i][k]);
+        let change = |k| sign(&cross_component(&edge, &self.direction, k)).reverse();
+        (0..3).map(change).fold(self.side(i, j), Ordering::then)
+    }
+
+    /// The parameter of the plane of a triangle that the line is not parallel to, and the weights of its vertices there,
+    /// all rounded to nearest.
+    pub(super) fn face(&self) -> (f64, V3) {
+        let moments = [self.moment(1, 2), self.moment(2, 0), self.moment(0, 1)];
+        let height = dot(&self.vertices[0], &cross(&self.vertices[1], &self.vertices[2]));
+        let sum = &moments[0] + &moments[1] + &moments[2];
+        let (sum, turn) = if sign(&sum) == Ordering::Less { (-sum, -IBig::ONE) } else { (sum, IBig::ONE) };
+        let over = |x: IBig| Fraction { numerator: x * &turn, denominator: sum.clone() };
+        let parameter = over(height).round(self.parameter_unit());
+        (parameter, moments.map(|m| over(m).round(0)))
+    }
+
+    /// A triangle that the line lies in the plane of, or one that is no more than a segment or a point.
+    pub(super) fn flat(&self) -> Option<Found> {
+        let mut all: Option<Span> = None;
+        for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+            let Some(Span { ends: [from, to] }) = self.span(i, j, 0.0) else { continue };
+            all = Some(match all {
+                None => Span { ends: [from, to] },
+                Some(Span { ends: [first, last] }) => Span {
+                    ends: [
+                        if from.0.cmp(&first.0) == Ordering::Less { from } else { first },
+                        if to.0.cmp(&last.0) == Ordering::Greater { to } else { last },
+                    ],
+                },
+            });
+        }
+        self.in_range(&all?)
+    }
+
+    /// A segment, or a point as one of two equal vertices: where the ray is nearest to it, if that is within its radius.
+    pub(super) fn wire(&self) -> Option<Found> {
+        self.in_range(&self.span(0, self.vertices.len() - 1, self.ray.radius)?)
+    }
+
+    fn parameter_unit(&self) -> i32 {
+        self.unit - self.direction_unit
+    }
+
+    /// The first parameter of a span that is in the range of the ray.
+    fn in_range(&self, span: &Span) -> Option<Found> {
+        let [(first, first_weights), (last, last_weights)] = &span.ends;
+        let [t, end] = [first, last].map(|t| t.round(self.parameter_unit()));
+        if t > self.ray.max || end < self.ray.min {
+            return None;
+        }
+        if t >= self.ray.min {
+            return Some(Found { parameter: t, side: Side::Along, weights: *first_weights });
+        }
+        // The range begins inside.
+        let share = self.share(first, last);
+        let weights = std::array::from_fn(|k| first_weights[k] * (1.0 - share) + last_weights[k] * share);
+        Some(Found { parameter: self.ray.min, side: Side::Along, weights })
+    }
+
+    /// How far between two parameters the range begins, from 0 to 1.
+    fn share(&self, first: &Fraction, last: &Fraction) -> f64 {
+        if self.ray.min.is_infinite() {
+            return 1.0;
+        }
+        let unit = self.parameter_unit();
+        let own = common_exponent([&self.ray.min]).min(unit);
+        let begin = integer(self.ray.min, own);
+        let lift = |t: &Fraction| (&t.numerator << (unit - own).unsigned_abs() as usize, t.denominator.clone());
+        let ((n1, d1), (n2, d2)) = (lift(first), lift(last));
+        // (begin - n1 / d1) / (n2 / d2 - n1 / d1)
+        let share = Fraction { numerator: (begin * &d1 - &n1) * &d2, denominator: n2 * d1 - n1 * d2 };
+        share.round(0).clamp(0.0, 1.0)
+    }
+
+    /// Where the line is nearest to the segment from vertex i to vertex j, if that is within `radius`.
+    ///
+    /// A point of the segment is P = A + s E. Its squared distance from the line is |P|^2 - (P . D)^2 / D^2; with
+    /// a = D . D, b = D . E, c = E . E it is least at s = ((A . D) b - a (A . E)) / (a c - b^2).
+    fn span(&self, i: usize, j: usize, radius: f64) -> Option<Span> {
+        let (from, to, d) = (&self.vertices[i], &self.vertices[j], &self.direction);
+        let edge: Vector = std::array::from_fn(|k| &to[k] - &from[k]);
+        let [a, b, c] = [dot(d, d), dot(d, &edge), dot(&edge, &edge)];
+        let along = dot(from, d);
+        let steep = &a * &c - &b * &b;
+        let parallel = sign(&steep) == Ordering::Equal;
+        // s = n / q, clamped to the segment.
+        let (n, q) = if parallel {
+            (IBig::ZERO, IBig::ONE)
+        } else {
+            let n = &along * &b - &a * dot(from, &edge);
+            (n.max(IBig::ZERO).min(steep.clone()), steep)
+        };
+        // q P
+        let point: Vector = std::array::from_fn(|k| &from[k] * &q + &edge[k] * &n);
+        let ahead = dot(&point, d);
+        let limit = integer(radius, self.unit) * &q;
+        if &a * dot(&point, &point) - &ahead * &ahead > &limit * &limit * &a {
+            return None;
+        }
+        let weights = |n: IBig, q: &IBig| {
+            let rest = Fraction { numerator: q - &n, denominator: q.clone() };
+            let mut weights = [0.0; 3];
+            weights[i] = rest.round(0);
+            weights[j] += Fraction { numerator: n, denominator: q.clone() }.round(0);
+            weights
+        };
+        let first = (Fraction { numerator: ahead, denominator: &a * &q }, weights(n, &q));
+        if !parallel {
+            return Some(Span { ends: [first.clone(), first] });
+        }
+        let last = (Fraction { numerator: along + &b, denominator: a }, weights(IBig::ONE, &IBig::ONE));
+        Some(Span { ends: if sign(&b) == Ordering::Less { [last, first] } else { [first, last] } })
+    }
+}

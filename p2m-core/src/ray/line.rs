@@ -1,0 +1,138 @@
+//! Rays: what is asked.
+
+use crate::Real;
+use crate::kernel::vector::V3;
+use crate::real::wide;
+use nalgebra::{Point3, Vector3};
+
+/// Why a ray cannot be asked for.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RayError {
+    /// A coordinate of the origin or of the direction is NaN or infinite.
+    #[error("a coordinate of the ray is not finite")]
+    NonFinite,
+    /// A direction without length has no line.
+    #[error("the direction of the ray is zero")]
+    ZeroDirection,
+    /// There is no parameter between these.
+    #[error("no parameter lies between {min} and {max}")]
+    EmptyRange {
+        /// The lower end.
+        min: f64,
+        /// The upper end.
+        max: f64,
+    },
+    /// A radius is not negative, and finite.
+    #[error("{0} is no radius")]
+    Radius(f64),
+}
+
+/// The points origin + t direction for all t of a range: a ray from 0 on, a line from minus infinity, a piece of one
+/// otherwise.
+///
+/// The direction has any length but zero; t counts in its lengths. Everything is kept in f64, in which the coordinates
+/// of an f32 scene are exact.
+///
+/// ```
+/// use nalgebra::{Point3, Vector3};
+/// use p2m_core::{Ray, RayError};
+///
+/// let ray = Ray::new(&Point3::new(0.0, 0.0, 3.0), &Vector3::new(0.0, 0.0, -2.0))?;
+/// assert_eq!(ray.at(1.5), Point3::origin());
+/// assert_eq!(ray.with_range(0.0, 1.0)?.range(), [0.0, 1.0]);
+/// assert_eq!(Ray::new(&Point3::origin(), &Vector3::<f32>::zeros()), Err(RayError::ZeroDirection));
+/// # Ok::<(), RayError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    pub(super) origin: V3,
+    pub(super) direction: V3,
+    pub(super) min: f64,
+    pub(super) max: f64,
+    pub(super) radius: f64,
+}
+
+impl Ray {
+    /// The ray from a point into a direction.
+    ///
+    /// # Errors
+    /// [`RayError::NonFinite`] and [`RayError::ZeroDirection`].
+    pub fn new<T: Real>(origin: &Point3<T>, direction: &Vector3<T>) -> Result<Self, RayError> {
+        let (origin, direction) = (wide(origin), wide(&Point3::from(*direction)));
+        if !origin.iter().chain(&direction).all(|x| x.is_finite()) {
+            return Err(RayError::NonFinite);
+        }
+        if direction == [0.0; 3] {
+            return Err(RayError::ZeroDirection);
+        }
+        Ok(Self { origin, direction, min: 0.0, max: f64::INFINITY, radius: 0.0 })
+    }
+
+    /// The ray from a point through another one, which has the parameter 1 up to the rounding of their difference.
+    ///
+    /// # Errors
+    /// [`RayError::ZeroDirection`] for equal points, [`RayError::NonFinite`], also where the difference overflows.
+    pub fn through<T: Real>(origin: &Point3<T>, target: &Point3<T>) -> Result<Self, RayError> {
+        let [origin, target] = [wide(origin), wide(target)].map(Point3::from);
+        Self::new(&origin, &(target - origin))
+    }
+
+    /// Both ways, without ends.
+    #[must_use]
+    pub fn line(self) -> Self {
+        Self { min: f64::NEG_INFINITY, max: f64::INFINITY, ..self }
+    }
+
+    /// The parameters from `min` to `max`, both included; they may be infinite.
+    ///
+    /// # Errors
+    /// [`RayError::EmptyRange`] if `min > max` or one is NaN.
+    pub fn with_range(self, min: f64, max: f64) -> Result<Self, RayError> {
+        if min <= max { Ok(Self { min, max, ..self }) } else { Err(RayError::EmptyRange { min, max }) }
+    }
+
+    /// Segments and points are hit within this distance, in units of the scene. It does not matter to triangles.
+    ///
+    /// # Errors
+    /// [`RayError::Radius`] if it is negative or not finite.
+    pub fn with_radius(self, radius: f64) -> Result<Self, RayError> {
+        if radius >= 0.0 && radius.is_finite() { Ok(Self { radius, ..self }) } else { Err(RayError::Radius(radius)) }
+    }
+
+    /// Where it begins.
+    #[must_use]
+    pub fn origin(&self) -> Point3<f64> {
+        Point3::from(self.origin)
+    }
+
+    /// Where it goes.
+    #[must_use]
+    pub fn direction(&self) -> Vector3<f64> {
+        Vector3::from(self.direction)
+    }
+
+    /// The least and the largest parameter.
+    #[must_use]
+    pub fn range(&self) -> [f64; 2] {
+        [self.min, self.max]
+    }
+
+    /// How near it has to come to segments and points.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The point of a parameter, rounded.
+    #[must_use]
+    pub fn at(&self, parameter: f64) -> Point3<f64> {
+        self.origin() + self.direction() * parameter
+    }
+
+    /// Whether a parameter is in the range.
+    #[inline(always)]
+    pub(super) fn contains(&self, parameter: f64) -> bool {
+        self.min <= parameter && parameter <= self.max
+    }
+}
