@@ -89,7 +89,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// Offers to any collector every hit that it could want; [`RayQuery::search_ray`] with [`Hits`].
     #[inline]
     pub fn visit_ray<'r, C: RayCollector<'r>>(&self, ray: &'r Ray, collector: &mut C) {
-        crate::ray::search_all(&self.set, ray, collector);
+        self.tree.search_ray(&self.set, ray, collector);
     }
 }
 
@@ -142,6 +142,6 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestLeaf<T> for TreeIndex<T, S, 
 
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> RayQuery<T> for TreeIndex<T, S, V> {
     fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>) {
-        self.visit_ray(ray, hits);
+        self.tree.search_hits(&self.set, ray, hits);
     }
 }

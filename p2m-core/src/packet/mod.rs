@@ -21,6 +21,7 @@
 //! inside by more than the test can err, so that what is found is the distance of a point of the triangle in any case.
 
 mod distance;
+mod line;
 
 use crate::kernel::power_of_two;
 use crate::kernel::vector::V3 as Vertex;
@@ -28,6 +29,7 @@ use crate::real::wide;
 use crate::simd::{InstructionSet, Lanes, prefetch};
 use crate::{Aabb, Collector, Primitive, PrimitiveId, PrimitiveSet, Projection, Real};
 use distance::{V3, beyond, edge, triangle};
+pub(crate) use line::Line;
 use nalgebra::Point3;
 
 /// Lanes of a packet.

@@ -46,11 +46,11 @@ pub enum RayError {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    pub(super) origin: V3,
-    pub(super) direction: V3,
-    pub(super) min: f64,
-    pub(super) max: f64,
-    pub(super) radius: f64,
+    pub(crate) origin: V3,
+    pub(crate) direction: V3,
+    pub(crate) min: f64,
+    pub(crate) max: f64,
+    pub(crate) radius: f64,
 }
 
 impl Ray {

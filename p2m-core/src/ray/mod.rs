@@ -139,24 +139,14 @@ pub(crate) fn crossing<'r, T: Real>(
     }
 }
 
-/// Offers to a collector every primitive of a set that a ray meets.
-pub(crate) fn search_all<'r, T: Real, S: PrimitiveSet<T> + ?Sized, C: RayCollector<'r> + ?Sized>(
-    set: &S,
-    ray: &'r Ray,
-    hits: &mut C,
-) {
-    let only_crossings = hits.only_crossings();
-    let _ = (0..set.len()).map(PrimitiveId::new).try_for_each(|id| {
-        hits.visit_primitive();
-        match crossing(&set.get(id), ray, hits.limit(), only_crossings) {
-            Some(crossing) => hits.offer(id, &crossing),
-            None => ControlFlow::Continue(()),
-        }
-    });
-}
-
 impl<T: Real, S: PrimitiveSet<T>> RayQuery<T> for BruteForce<S> {
     fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>) {
-        search_all(self.set(), ray, hits);
+        let only_crossings = hits.only_crossings();
+        let _ = (0..self.set().len()).map(PrimitiveId::new).try_for_each(|id| {
+            match crossing(&self.set().get(id), ray, hits.limit(), only_crossings) {
+                Some(crossing) => hits.offer(id, &crossing),
+                None => ControlFlow::Continue(()),
+            }
+        });
     }
 }

@@ -9,17 +9,24 @@ mod collapse;
 pub(crate) mod node;
 mod overlap;
 mod parts;
+mod ray;
 pub(crate) mod search;
 mod slabs;
 pub(crate) mod volume;
+mod walk;
 
 use super::Hierarchy;
 use crate::packet::{Kind, LANES, Packet};
+use crate::ray::crossing;
 use crate::real::wide;
 use crate::simd::{Isa, prefetch_lines};
-use crate::{Aabb, Best, Collector, Directions, Kdop, Primitive, PrimitiveId, PrimitiveSet, Real};
+use crate::{
+    Aabb, Best, Collector, Crossing, Directions, Hits, Kdop, Primitive, PrimitiveId, PrimitiveSet, Ray, RayCollector,
+    Real,
+};
 use nalgebra::Point3;
 use node::{Child, Frame, WIDTH};
+use ray::RaySearch;
 use search::{Search, finish};
 use volume::{TreeOptions, WideNode};
 
@@ -216,6 +223,30 @@ impl<V: Volume> PacketTree<V> {
         V::nearest(self, wide(query), best.minimum(), &evaluation(set, query));
     }
 
+    /// Offers to a collector every hit of a ray with the set over which the tree was built that it could want.
+    #[inline]
+    pub fn search_ray<'r, T: Real, S: PrimitiveSet<T> + ?Sized, C: RayCollector<'r>>(
+        &self,
+        set: &S,
+        ray: &'r Ray,
+        collector: &mut C,
+    ) {
+        let intersect = intersection(set, ray, collector.only_crossings());
+        self.isa.run(RaySearch { tree: self, ray, hits: collector, intersect: &intersect });
+    }
+
+    /// The same for the hits that its methods want.
+    #[inline]
+    pub(crate) fn search_hits<'r, T: Real, S: PrimitiveSet<T> + ?Sized>(
+        &self,
+        set: &S,
+        ray: &'r Ray,
+        hits: &mut Hits<'r>,
+    ) {
+        let intersect = intersection(set, ray, hits.only_crossings());
+        V::rays(self, ray, hits, &intersect);
+    }
+
     /// The children of a node, with boxes around them.
     pub(crate) fn child_boxes(&self, node: Child) -> impl Iterator<Item = (Aabb<f64>, Child)> + '_ {
         let node = &self.nodes[node.number()];
@@ -314,6 +345,15 @@ pub(crate) fn evaluation<T: Real, S: PrimitiveSet<T> + ?Sized, C: Collector>(
             collector.offer(id, projection);
         }
     }
+}
+
+/// Where a ray meets a primitive of a set, unless that is beyond a parameter.
+fn intersection<'r, T: Real, S: PrimitiveSet<T> + ?Sized>(
+    set: &S,
+    ray: &'r Ray,
+    only_crossings: bool,
+) -> impl Fn(PrimitiveId, f64) -> Option<Crossing<'r>> {
+    move |id, limit| crossing(&set.get(id), ray, limit, only_crossings)
 }
 
 /// Maps in order, on all threads if asked to.

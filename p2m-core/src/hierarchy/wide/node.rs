@@ -1,5 +1,6 @@
 //! Nodes of eight children, in f32 in a frame of the scene; and those that bound their children by boxes.
 
+use super::ray::{FrameLine, Piece, SlabRay};
 use super::volume::{Rounded, WideNode};
 use crate::kernel::{exponent, power_of_two};
 use crate::simd::Lanes;
@@ -53,6 +54,7 @@ impl WideNode for BoxNode {
     type Shape = ();
     type Bounds = Corners;
     type Query = Rounded;
+    type Ray = [SlabRay; 3];
 
     const NOTHING: Corners = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
@@ -97,6 +99,19 @@ impl WideNode for BoxNode {
             sum = query.squared_gap(k, L::load(&self.min[k]), L::load(&self.max[k]), sum);
         }
         sum
+    }
+
+    fn ray((): &(), line: &FrameLine) -> [SlabRay; 3] {
+        std::array::from_fn(|k| SlabRay::new(line.base[k], line.direction[k], line.margin))
+    }
+
+    #[inline(always)]
+    fn entries<L: Lanes>(&self, ray: &[SlabRay; 3]) -> L {
+        let mut piece = Piece::new();
+        for k in 0..3 {
+            piece.clip(&ray[k], L::load(&self.min[k]), L::load(&self.max[k]));
+        }
+        piece.entry()
     }
 
     fn at(&self, place: usize) -> Corners {

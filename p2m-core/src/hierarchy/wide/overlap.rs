@@ -2,8 +2,8 @@
 
 use super::PacketTree;
 use super::node::Child;
-use super::search::STACK;
 use super::volume::{Volume, WideNode};
+use super::walk::STACK;
 use crate::{Aabb, PrimitiveId};
 use nalgebra::Point3;
 use std::ops::ControlFlow;

@@ -6,20 +6,17 @@
 //! offered to the collector, which decides by exact keys. Where the collector wants more than the nearest, candidates
 //! are offered packet by packet, or up to 32 at a time where the filter knows nothing.
 
-use super::node::{Child, Frame, WIDTH};
+use super::node::{Child, Frame};
 use super::volume::{Volume, WideNode};
+use super::walk::{Walk, walk};
 use super::{Leaves, PacketTree};
 use crate::kernel::vertices::{SIDE_BY_SIDE, certain_vertices};
 use crate::packet::{LANES, Packet, ROUND_UP, at_most, smallest};
 use crate::query::Minimum;
-use crate::simd::{EightLanes, InstructionSet, Operation, lane_of_key, number_of_key};
+use crate::simd::{InstructionSet, Lanes, Operation};
 use crate::{Collector, Isa, PrimitiveId};
+use std::ops::ControlFlow;
 
-/// Entries of the stack: seven waiting siblings on each level at most, and room for one node to be written whole.
-pub(crate) const STACK: usize = (WIDTH - 1) * super::MAX_WIDE_DEPTH + WIDTH;
-/// Most trees are not deep, and a long stack takes a moment to clear.
-const SHORT_STACK: usize = 96;
-const SHORT_DEPTH: usize = (SHORT_STACK - WIDTH) / (WIDTH - 1);
 /// Candidates that wait for their evaluation.
 const CANDIDATES: usize = 32;
 
@@ -43,13 +40,10 @@ impl<V: Volume, C: Collector> Operation for Search<'_, V, C> {
     fn run<I: InstructionSet>(self) {
         let tree = self.tree;
         let Some(local) = V::Node::query(&tree.shape, &tree.frame, &self.query) else { return self.run_far() };
-        let mut filter = Filter::new(tree, self.query, self.collector, self.evaluate, self.finish);
-        if tree.depth <= SHORT_DEPTH {
-            filter.traverse::<I, V, SHORT_STACK>(tree, &local);
-        } else {
-            filter.traverse::<I, V, STACK>(tree, &local);
-        }
-        filter.evaluate_waiting();
+        let filter = Filter::new(tree, self.query, self.collector, self.evaluate, self.finish);
+        let mut nearest = Nearest { filter, shape: &tree.shape, local };
+        walk::<I, V, _>(tree, &mut nearest);
+        nearest.filter.evaluate_waiting();
     }
 }
 
@@ -80,6 +74,33 @@ impl<V: Volume, C: Collector> Search<'_, V, C> {
             // The nearest one last.
             stack[from..].sort_by(|a, b| b.0.total_cmp(&a.0));
         }
+    }
+}
+
+/// A search on its way through the nodes.
+struct Nearest<'a, V: Volume, C> {
+    filter: Filter<'a, C>,
+    shape: &'a V::Shape,
+    local: <V::Node as WideNode>::Query,
+}
+
+impl<V: Volume, C: Collector> Walk<V> for Nearest<'_, V, C> {
+    #[inline(always)]
+    fn bounds<L: Lanes>(&self, node: &V::Node) -> L {
+        node.lower_bounds(self.shape, &self.local)
+    }
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.filter.limit
+    }
+    #[inline(always)]
+    fn visit_node(&mut self) {
+        self.filter.collector.visit_node();
+    }
+    #[inline(always)]
+    fn visit_packet<I: InstructionSet>(&mut self, number: usize) -> ControlFlow<()> {
+        self.filter.packet::<I>(number, self.filter.leaves.packets[number].lanes());
+        ControlFlow::Continue(())
     }
 }
 
@@ -170,54 +191,6 @@ impl<'a, C: Collector> Filter<'a, C> {
     #[allow(clippy::cast_possible_truncation, reason = "places fit")]
     pub(crate) fn add(&mut self, packet: usize, lane: usize) {
         self.wait(Candidate { low: 0.0, packet: packet as u32, lane: lane as u32 });
-    }
-
-    #[inline(always)]
-    fn traverse<I: InstructionSet, V: Volume, const STACK: usize>(
-        &mut self,
-        tree: &PacketTree<V>,
-        local: &<V::Node as WideNode>::Query,
-    ) {
-        // Keys of children in descending order, and whose children they are.
-        let mut keys = [0u32; STACK];
-        let mut parents = [0u32; STACK];
-        let mut top = 0;
-        let mut at = tree.root;
-        if at == Child::NONE {
-            return;
-        }
-        loop {
-            if at.is_packet() {
-                self.packet::<I>(at.number(), self.leaves.packets[at.number()].lanes());
-            } else {
-                self.collector.visit_node();
-                let node = &tree.nodes[at.number()];
-                let bounds: I::Eight = node.lower_bounds(&tree.shape, local);
-                let room: &mut [u32; WIDTH] = (&mut keys[top..top + WIDTH]).try_into().expect("eight keys");
-                let count = bounds.sorted_keys(self.limit, room);
-                parents[top..top + WIDTH].fill(at.0);
-                // The nearest one and the next, whatever they are: a branch would be mispredicted. The keys behind the
-                // last are 0, which is the first child.
-                tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(1).min(STACK - 1)])]);
-                tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(2).min(STACK - 1)])]);
-                if count > 0 {
-                    top += count - 1;
-                    at = node.children()[lane_of_key(keys[top])];
-                    continue;
-                }
-            }
-            loop {
-                if top == 0 {
-                    return;
-                }
-                top -= 1;
-                let key = keys[top];
-                if number_of_key(key) <= self.limit {
-                    at = tree.nodes[Child(parents[top]).number()].children()[lane_of_key(key)];
-                    break;
-                }
-            }
-        }
     }
 
     /// Brings the bounds up to date with the reach and the collector.

@@ -5,6 +5,7 @@
 //! for every other direction, and the largest is kept; docs/kdop.md derives it, with its roundings.
 
 use super::node::{Child, Frame, WIDTH};
+use super::ray::{FrameLine, Piece, SlabRay};
 use super::volume::WideNode;
 use crate::kdop::Slabs;
 use crate::kernel::power_of_two;
@@ -45,6 +46,8 @@ impl<const K: usize> WideNode for SlabNode<K> {
     type Bounds = [f32; K];
     /// The products of the query with the normals, rounded down and less by [`QUERY_SLACK`].
     type Query = [f32; K];
+    /// One slab for each pair of opposite directions; the second half is not used.
+    type Ray = [SlabRay; K];
 
     const NOTHING: [f32; K] = [f32::NEG_INFINITY; K];
 
@@ -150,6 +153,25 @@ impl<const K: usize> WideNode for SlabNode<K> {
             j += 1;
         }
         best
+    }
+
+    fn ray(shape: &Slabs<K>, line: &FrameLine) -> [SlabRay; K] {
+        let [base, direction] = [line.base, line.direction].map(Vector3::from);
+        let normals = shape.directions.normals();
+        std::array::from_fn(|j| {
+            let n = &normals[2 * (j % (K / 2))];
+            SlabRay::new(n.dot(&base), n.dot(&direction), line.margin * 2.0)
+        })
+    }
+
+    #[inline(always)]
+    fn entries<L: Lanes>(&self, ray: &[SlabRay; K]) -> L {
+        let mut piece = Piece::new();
+        for j in 0..K / 2 {
+            let below = L::splat(0.0).sub(L::load(&self.heights[2 * j + 1]));
+            piece.clip(&ray[j], below, L::load(&self.heights[2 * j]));
+        }
+        piece.entry()
     }
 
     fn at(&self, place: usize) -> [f32; K] {

@@ -6,12 +6,13 @@
 use super::super::SplitOptions;
 use super::PacketTree;
 use super::node::{BoxNode, Child, Frame, WIDTH};
+use super::ray::{FrameLine, Intersect, RaySearch};
 use super::search::{Evaluate, Search, finish_nearest};
 use super::slabs::SlabNode;
 use crate::kdop::Slabs;
 use crate::query::Minimum;
 use crate::simd::Lanes;
-use crate::{Aabb, Kdop, KdopOptions, PrimitiveId, PrimitiveSet, Real};
+use crate::{Aabb, Hits, Kdop, KdopOptions, PrimitiveId, PrimitiveSet, Ray, Real};
 use std::fmt::Debug;
 
 /// What the nodes of a [`PacketTree`](super::PacketTree) are bounded by: [`Aabb<f64>`] or [`Kdop<K>`](Kdop).
@@ -38,6 +39,11 @@ pub(crate) trait Nodes: Sized {
     /// A node.
     type Node: WideNode<Volume = Self, Shape = Self::Shape>;
 
+    /// What a ray meets, for the same reason in a function of its own.
+    fn rays<'r>(tree: &PacketTree<Self>, ray: &'r Ray, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>)
+    where
+        Self: Volume;
+
     /// The search of a tree for the nearest primitive, in a function of its own: what is not generic is compiled once.
     fn nearest(tree: &PacketTree<Self>, query: [f64; 3], minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>)
     where
@@ -48,6 +54,10 @@ impl Nodes for Aabb<f64> {
     type Shape = ();
     type Node = BoxNode;
 
+    fn rays<'r>(tree: &PacketTree, ray: &'r Ray, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>) {
+        tree.isa.run(RaySearch { tree, ray, hits, intersect });
+    }
+
     fn nearest(tree: &PacketTree, query: [f64; 3], minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
         tree.isa.run(Search { tree, query, collector: minimum, evaluate, finish: finish_nearest });
     }
@@ -56,6 +66,10 @@ impl Nodes for Aabb<f64> {
 impl<const K: usize> Nodes for Kdop<K> {
     type Shape = Slabs<K>;
     type Node = SlabNode<K>;
+
+    fn rays<'r>(tree: &PacketTree<Self>, ray: &'r Ray, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>) {
+        tree.isa.run(RaySearch { tree, ray, hits, intersect });
+    }
 
     fn nearest(tree: &PacketTree<Self>, query: [f64; 3], minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
         tree.isa.run(Search { tree, query, collector: minimum, evaluate, finish: finish_nearest });
@@ -94,6 +108,8 @@ pub(crate) trait WideNode: Copy + Debug + Send + Sync {
     type Bounds: Copy + Debug + Send + Sync;
     /// A query in the frame, rounded.
     type Query: Copy;
+    /// A ray in the frame, rounded.
+    type Ray: Copy;
 
     /// The bounds of no primitive.
     const NOTHING: Self::Bounds;
@@ -121,6 +137,12 @@ pub(crate) trait WideNode: Copy + Debug + Send + Sync {
     /// Squares of lower bounds of the distances to what the eight children hold, in the frame: at most 2^-20 (relative)
     /// too large, apart from underflow.
     fn lower_bounds<L: Lanes>(&self, shape: &Self::Shape, query: &Self::Query) -> L;
+
+    /// A ray in the frame.
+    fn ray(shape: &Self::Shape, line: &FrameLine) -> Self::Ray;
+    /// How far from its base it enters the eight children: at most 2^-22 (relative) too far, and not below 0; infinite
+    /// for those that it does not meet.
+    fn entries<L: Lanes>(&self, ray: &Self::Ray) -> L;
 
     /// The bounds of a child.
     fn at(&self, place: usize) -> Self::Bounds;

@@ -1,0 +1,295 @@
+//! What a ray meets: the way through the nodes that it enters, nearest first.
+//!
+//! The line of the ray is cut to the box of the scene, and begins where it enters that: so nodes can be clipped in f32
+//! wherever the ray comes from. Packets leave out what the line certainly misses; the rest is decided exactly.
+//! docs/rays.md has the proofs.
+
+use super::node::Frame;
+use super::volume::{Volume, WideNode};
+use super::walk::{Walk, walk};
+use super::{Leaves, PacketTree};
+use crate::kernel::power_of_two;
+use crate::packet::Line;
+use crate::simd::{InstructionSet, Lanes, Operation};
+use crate::{Aabb, Crossing, PrimitiveId, Ray, RayCollector};
+use std::ops::ControlFlow;
+
+/// Where a ray meets a primitive of which the tree has only a box, unless that is beyond a parameter.
+pub(crate) type Intersect<'a, 'r> = &'a dyn Fn(PrimitiveId, f64) -> Option<Crossing<'r>>;
+
+/// A search as an operation.
+pub(crate) struct RaySearch<'a, 'r, V: Volume, C> {
+    pub(crate) tree: &'a PacketTree<V>,
+    pub(crate) ray: &'r Ray,
+    pub(crate) hits: &'a mut C,
+    pub(crate) intersect: Intersect<'a, 'r>,
+}
+
+impl<'r, V: Volume, C: RayCollector<'r>> Operation for RaySearch<'_, 'r, V, C> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        let Self { tree, ray, hits, intersect } = self;
+        let mut tests = Tests { leaves: &tree.leaves, ray, only_crossings: hits.only_crossings(), hits, intersect };
+        let placed = Line::of(ray).and_then(|line| Some((line, FrameLine::new(&tree.frame, &tree.bounds, &line, ray.min * line.speed)?)));
+        let Some((line, piece)) = placed else { return tests.everything() };
+        if let Some(piece) = piece {
+            let local = V::Node::ray(&tree.shape, &piece);
+            let mut entering = Entering { tests, line, piece, local, to: 0.0, limit: 0.0 };
+            entering.update();
+            walk::<I, V, _>(tree, &mut entering);
+        }
+    }
+}
+
+/// Exact tests of primitives.
+struct Tests<'a, 'r, C> {
+    leaves: &'a Leaves,
+    ray: &'r Ray,
+    only_crossings: bool,
+    hits: &'a mut C,
+    intersect: Intersect<'a, 'r>,
+}
+
+impl<'r, C: RayCollector<'r>> Tests<'_, 'r, C> {
+    /// Tests the primitive in a lane of a packet; breaks if no other one matters.
+    #[inline(always)]
+    fn test(&mut self, packet: usize, lane: usize) -> ControlFlow<()> {
+        self.hits.visit_primitive();
+        let packet = &self.leaves.packets[packet];
+        let id = packet.ids()[lane];
+        let limit = self.hits.limit();
+        let (places, count) = packet.vertices_of(lane);
+        let crossing = if count == 0 {
+            (self.intersect)(id, limit)
+        } else {
+            let vertices = places.map(|place| self.leaves.vertices[place]);
+            Crossing::of_vertices(self.ray, &vertices[..count], limit, self.only_crossings)
+        };
+        match crossing {
+            Some(crossing) => self.hits.offer(id, &crossing),
+            None => ControlFlow::Continue(()),
+        }
+    }
+
+    /// Rays and scenes that f32 and f64 cannot place.
+    #[cold]
+    #[inline(never)]
+    fn everything(&mut self) {
+        for number in 0..self.leaves.packets.len() {
+            self.hits.visit_packet();
+            for lane in 0..self.leaves.packets[number].ids().len() {
+                if self.test(number, lane).is_break() {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+/// Components of directions for which lengths along the ray are plain.
+const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-400)..=power_of_two(400);
+
+impl Line {
+    /// The line of a ray; `None` if its direction is so long or short that lengths along it are not plain.
+    fn of(ray: &Ray) -> Option<Self> {
+        let d = ray.direction;
+        let axis = if d[0].abs() >= d[1].abs() && d[0].abs() >= d[2].abs() {
+            0
+        } else if d[1].abs() >= d[2].abs() {
+            1
+        } else {
+            2
+        };
+        let speed = d[axis].abs();
+        let line = Self { origin: ray.origin, direction: d.map(|x| x / speed), axis, speed, radius: ray.radius };
+        PLAIN.contains(&speed).then_some(line)
+    }
+}
+
+/// The piece of a line that lies in the box of a scene, in the frame of its nodes.
+pub(crate) struct FrameLine {
+    /// A point of the line before it enters the box, or begins.
+    pub(super) base: [f64; 3],
+    /// The largest component is 1 or -1.
+    pub(super) direction: [f64; 3],
+    /// What the base may be off, and the radius of the ray.
+    pub(super) margin: f64,
+    /// From the origin of the line to the base.
+    ahead: f64,
+    /// From the base to behind the box.
+    length: f64,
+    per_unit: f64,
+}
+
+/// Lines that come from so many units away are placed well enough in f64.
+const FARTHEST: f64 = power_of_two(30);
+/// Beyond so many units a radius is not worth a search.
+const WIDEST: f64 = 64.0;
+/// What the box is widened by, in units.
+const BESIDE: f64 = power_of_two(-20);
+
+impl FrameLine {
+    /// What lies in the box of a line that begins at the length `from` from its origin. `None` if f32 or f64 cannot
+    /// place it, `Some(None)` if there is nothing.
+    #[inline(always)]
+    fn new(frame: &Frame, bounds: &Aabb<f64>, line: &Line, from: f64) -> Option<Option<Self>> {
+        let q = frame.place(&line.origin);
+        let largest = q[0].abs().max(q[1].abs()).max(q[2].abs());
+        let radius = line.radius * frame.per_unit;
+        if !(frame.is_plain() && largest <= FARTHEST && radius <= WIDEST) {
+            return None;
+        }
+        let [min, max] = [&bounds.min, &bounds.max].map(|corner| frame.place(&[corner.x, corner.y, corner.z]));
+        let from = from * frame.per_unit;
+        let (mut enter, mut exit) = (from - from.abs() * power_of_two(-48) - BESIDE, f64::INFINITY);
+        for k in 0..3 {
+            let d = line.direction[k];
+            let [low, high] = [min[k] - radius - BESIDE - q[k], max[k] + radius + BESIDE - q[k]];
+            // In which nothing moves more than 2^-28 from one side of the box to the other.
+            if d.abs() < power_of_two(-40) {
+                if low > 0.0 || high < 0.0 {
+                    return Some(None);
+                }
+                continue;
+            }
+            let (near, far) = if d > 0.0 { (low / d, high / d) } else { (high / d, low / d) };
+            enter = enter.max(near);
+            exit = exit.min(far);
+        }
+        if enter > exit {
+            return Some(None);
+        }
+        let base = std::array::from_fn(|k| q[k] + enter * line.direction[k]);
+        let margin = power_of_two(-49) * (largest + enter.abs()) + power_of_two(-30) + radius;
+        Some(Some(Self {
+            base,
+            direction: line.direction,
+            margin,
+            ahead: enter,
+            length: exit - enter,
+            per_unit: frame.per_unit,
+        }))
+    }
+
+    /// A length along the line from its origin as one from the base, rounded up.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "rounded up")]
+    fn limit(&self, length: f64) -> f32 {
+        let length = length * self.per_unit;
+        let from_base = length - self.ahead + (length.abs() + self.ahead.abs()) * power_of_two(-48);
+        // Bounds of nodes are good to 2^-22, and NaN comes of infinity.
+        let length = if from_base < self.length { from_base } else { self.length };
+        (length as f32) * (1.0 + 16.0 * f32::EPSILON) + f32::EPSILON
+    }
+}
+
+/// A search on its way through the nodes.
+struct Entering<'a, 'r, V: Volume, C> {
+    tests: Tests<'a, 'r, C>,
+    line: Line,
+    piece: FrameLine,
+    local: <V::Node as WideNode>::Ray,
+    /// The length along the line beyond which nothing matters, from its origin and from the base.
+    to: f64,
+    limit: f32,
+}
+
+impl<'r, V: Volume, C: RayCollector<'r>> Entering<'_, 'r, V, C> {
+    /// Brings the limits up to date with the collector.
+    #[inline(always)]
+    fn update(&mut self) {
+        let limit = self.tests.hits.limit();
+        self.to = if limit < self.tests.ray.max { limit } else { self.tests.ray.max } * self.line.speed;
+        self.limit = self.piece.limit(self.to);
+    }
+}
+
+impl<'r, V: Volume, C: RayCollector<'r>> Walk<V> for Entering<'_, 'r, V, C> {
+    #[inline(always)]
+    fn bounds<L: Lanes>(&self, node: &V::Node) -> L {
+        node.entries(&self.local)
+    }
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.limit
+    }
+    #[inline(always)]
+    fn visit_node(&mut self) {
+        self.tests.hits.visit_node();
+    }
+    #[inline(always)]
+    fn visit_packet<I: InstructionSet>(&mut self, number: usize) -> ControlFlow<()> {
+        self.tests.hits.visit_packet();
+        let from = self.tests.ray.min * self.line.speed;
+        let mut met = self.tests.leaves.packets[number].met_by::<I>(&self.line, from, self.to);
+        while met != 0 {
+            let lane = met.trailing_zeros() as usize;
+            met &= met - 1;
+            self.tests.test(number, lane)?;
+            self.update();
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// A ray and a pair of opposite planes: a product with a normal, turned so that it grows along the ray.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SlabRay {
+    /// The product of the base, rounded up and down.
+    high: f32,
+    low: f32,
+    /// By how much it grows per length; infinite if by nothing worth mentioning.
+    inverse: f32,
+    /// Whether it was turned.
+    turned: bool,
+}
+
+impl SlabRay {
+    #[allow(clippy::cast_possible_truncation, reason = "rounded outwards, and margins have room")]
+    pub(super) fn new(product: f64, growth: f64, margin: f64) -> Self {
+        let turned = growth < 0.0;
+        let product = if turned { -product } else { product };
+        let parallel = growth.abs() < power_of_two(-40);
+        Self {
+            high: ((product + margin) as f32).next_up(),
+            low: ((product - margin) as f32).next_down(),
+            inverse: if parallel { f32::INFINITY } else { growth.abs().recip() as f32 },
+            turned,
+        }
+    }
+}
+
+/// The piece of a ray that lies in some slabs, lane by lane.
+#[derive(Clone, Copy)]
+pub(super) struct Piece<L> {
+    near: L,
+    far: L,
+}
+
+impl<L: Lanes> Piece<L> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        Self { near: L::splat(0.0), far: L::splat(f32::INFINITY) }
+    }
+
+    /// Cuts it to the slabs between two planes each.
+    #[inline(always)]
+    pub(super) fn clip(&mut self, ray: &SlabRay, min: L, max: L) {
+        let zero = L::splat(0.0);
+        // NaN, which is the product of nothing and an infinite inverse, leaves the piece as it is.
+        let (near, far) = if ray.turned { (zero.sub(max), zero.sub(min)) } else { (min, max) };
+        let inverse = L::splat(ray.inverse);
+        self.near = near.sub(L::splat(ray.high)).mul(inverse).max(self.near);
+        self.far = far.sub(L::splat(ray.low)).mul(inverse).min(self.far);
+    }
+
+    /// Where it begins; infinite if it is empty.
+    #[inline(always)]
+    pub(super) fn entry(self) -> L {
+        // Either end is good to 2^-22.
+        let far = self.far.mul(L::splat(1.0 + 8.0 * f32::EPSILON));
+        far.if_below(self.near, L::splat(f32::INFINITY), self.near)
+    }
+}

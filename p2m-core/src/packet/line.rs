@@ -1,0 +1,208 @@
+//! Which primitives of a packet a line may meet.
+//!
+//! The line is taken to the foot of the centre of the packet, so it does not matter how far away it begins, and
+//! everything is projected along it to the two axes that it is steepest to. There a triangle that it meets has the
+//! origin inside, within a margin of one or two units of the frame; docs/rays.md has the proof. What is left is tested
+//! exactly.
+
+use super::{Kind, LANES, Packet, TOP};
+use crate::simd::{InstructionSet, Lanes};
+
+/// A line in f64, of which the largest component of the direction is 1 or -1.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Line {
+    pub(crate) origin: [f64; 3],
+    pub(crate) direction: [f64; 3],
+    /// The axis of that component.
+    pub(crate) axis: usize,
+    /// What the direction was divided by.
+    pub(crate) speed: f64,
+    /// How near it has to come to segments and points, in units of the scene.
+    pub(crate) radius: f64,
+}
+
+/// The same in the frame of a packet, from near its centre.
+struct Local {
+    /// The axes to which is projected, and the one along which is.
+    axes: [usize; 3],
+    base: [f32; 3],
+    /// Of the first two axes, per unit of the third.
+    slopes: [f32; 2],
+    /// Whether it runs down the third axis.
+    down: bool,
+    /// What a projected coordinate may be off.
+    margin: f32,
+    /// The same with the radius.
+    wire_margin: f32,
+    /// The piece of the line that matters, along the third axis.
+    low: f32,
+    high: f32,
+}
+
+/// Half of the edge of the frame.
+const CENTRE: f64 = (TOP + 1.0) / 2.0;
+/// A line that passes the centre at more than this many units meets nothing: 2^18.
+const BESIDE: f64 = 262_144.0;
+/// Nor is its place needed to less than this many units.
+const COARSE: f64 = 1024.0;
+
+impl Packet {
+    /// One bit for each lane that a line may meet between `from` and `to`, which are lengths along its axis from its
+    /// origin, in units of the scene.
+    #[inline(always)]
+    pub(crate) fn met_by<I: InstructionSet>(&self, line: &Line, from: f64, to: f64) -> u32 {
+        match self.line(line, from, to) {
+            Placed::Beside => 0,
+            Placed::Unknown => self.lanes(),
+            Placed::Near(local) => self.near::<I>(&local) & self.lanes(),
+        }
+    }
+
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "margins have room for rounding")]
+    fn line(&self, line: &Line, from: f64, to: f64) -> Placed {
+        let d = &line.direction;
+        let q: [f64; 3] = std::array::from_fn(|k| (line.origin[k] - self.origin[k]) * self.per_unit);
+        let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        let towards = d[0] * (CENTRE - q[0]) + d[1] * (CENTRE - q[1]) + d[2] * (CENTRE - q[2]);
+        // Lengths along the axis are those along the line, as the direction has 1 there.
+        let ahead = towards / square;
+        let base: [f64; 3] = std::array::from_fn(|k| q[k] + ahead * d[k]);
+        let size = |x: &[f64; 3]| x[0].abs().max(x[1].abs()).max(x[2].abs());
+        let error = (size(&q) + ahead.abs()) * (8.0 * f64::EPSILON);
+        let radius = line.radius * self.per_unit;
+        // Not for NaN either, which comes of infinite differences.
+        if !(self.unit > 0.0 && error < COARSE && radius < COARSE) {
+            return Placed::Unknown;
+        }
+        if size(&base.map(|x| x - CENTRE)) > BESIDE {
+            return Placed::Beside;
+        }
+        let axis = line.axis;
+        let axes = [(axis + 1) % 3, (axis + 2) % 3, axis];
+        let down = d[axis] < 0.0;
+        let sign = d[axis];
+        let piece = |t: f64| {
+            let t = t * self.per_unit;
+            (t - ahead, 1.0 + error + t.abs() * (8.0 * f64::EPSILON))
+        };
+        let ((low, low_error), (high, high_error)) = (piece(from), piece(to));
+        let margin = 1.76 + 2.5 * error;
+        Placed::Near(Local {
+            axes,
+            base: axes.map(|k| base[k] as f32),
+            slopes: [(d[axes[0]] * sign) as f32, (d[axes[1]] * sign) as f32],
+            down,
+            margin: margin as f32,
+            wire_margin: (margin + 1.75 * radius) as f32,
+            // NaN comes of infinite ends, and says nothing.
+            low: ((low - low_error).max(f64::NEG_INFINITY) as f32).next_down(),
+            high: ((high + high_error).min(f64::INFINITY) as f32).next_up(),
+        })
+    }
+
+    /// The lanes near a line.
+    #[inline(always)]
+    fn near<I: InstructionSet>(&self, line: &Local) -> u32 {
+        let mut lanes = 0;
+        let mut at = 0;
+        while at < LANES {
+            lanes |= match self.kind {
+                Kind::Triangle => {
+                    let corners = [0, 1, 2].map(|v| self.projected::<I::Wide>(line, v, at));
+                    triangles(line, &corners)
+                }
+                Kind::Segment => wires(line, &[0, 1].map(|v| self.projected::<I::Wide>(line, v, at))),
+                Kind::Point => wires(line, &[self.projected::<I::Wide>(line, 0, at)]),
+                Kind::Box => boxes(line, &[0, 1].map(|v| self.offset::<I::Wide>(line, v, at))),
+            } << at;
+            at += I::Wide::LEN;
+        }
+        lanes
+    }
+
+    /// Vertex v in the lanes from `at` on, as seen from the base of the line; the axis of the line comes last.
+    #[inline(always)]
+    fn offset<L: Lanes>(&self, line: &Local, v: usize, at: usize) -> [L; 3] {
+        let coordinate = |k: usize| L::load_u16(&self.rows[3 * v + line.axes[k]][at..]).sub(L::splat(line.base[k]));
+        [coordinate(0), coordinate(1), coordinate(2)]
+    }
+
+    /// The same, projected along the line, and how far along it.
+    #[inline(always)]
+    fn projected<L: Lanes>(&self, line: &Local, v: usize, at: usize) -> [L; 3] {
+        let [x, y, z] = self.offset::<L>(line, v, at);
+        let [a, b] = line.slopes.map(|s| L::splat(-s));
+        [z.mul_add(a, x), z.mul_add(b, y), if line.down { L::splat(0.0).sub(z) } else { z }]
+    }
+}
+
+/// Where a line is with respect to a packet.
+enum Placed {
+    /// So far that it meets nothing.
+    Beside,
+    /// f64 cannot tell.
+    Unknown,
+    Near(Local),
+}
+
+#[inline(always)]
+fn size<L: Lanes>(x: L) -> L {
+    x.max(L::splat(0.0).sub(x))
+}
+
+/// The lanes whose extent along the line has something in common with the piece that matters. Those that end before it
+/// begins are left out: low <= largest is -largest <= -low.
+#[inline(always)]
+fn in_piece<L: Lanes>(line: &Local, least: L, largest: L) -> u32 {
+    least.at_most(L::splat(line.high)) & L::splat(0.0).sub(largest).at_most(L::splat(-line.low))
+}
+
+/// The lanes that have the origin on one side of all edges, within the margin.
+#[inline(always)]
+fn triangles<L: Lanes>(line: &Local, [a, b, c]: &[[L; 3]; 3]) -> u32 {
+    let margin = L::splat(line.margin);
+    let constant = L::splat(2.0 * line.margin * line.margin);
+    let sizes = [a, b, c].map(|p| size(p[0]).add(size(p[1])));
+    let edge = |p: &[L; 3], q: &[L; 3], sum: L| {
+        let area = p[0].mul(q[1]).sub(p[1].mul(q[0]));
+        let margin = margin.mul_add(sum, constant);
+        (L::splat(0.0).sub(area).at_most(margin), area.at_most(margin))
+    };
+    let ((left, right), (left_too, right_too), (left_three, right_three)) =
+        (edge(a, b, sizes[0].add(sizes[1])), edge(b, c, sizes[1].add(sizes[2])), edge(c, a, sizes[2].add(sizes[0])));
+    let (least, largest) = (a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2]));
+    (left & left_too & left_three | right & right_too & right_three) & in_piece(line, least, largest)
+}
+
+/// The lanes of segments, or of points, that come near the origin.
+#[inline(always)]
+fn wires<L: Lanes, const N: usize>(line: &Local, ends: &[[L; 3]; N]) -> u32 {
+    let margin = L::splat(line.wire_margin);
+    let (a, b) = (&ends[0], &ends[N - 1]);
+    let reaches = |k: usize| a[k].min(b[k]).at_most(margin) & L::splat(0.0).sub(a[k].max(b[k])).at_most(margin);
+    let area = size(a[0].mul(b[1]).sub(a[1].mul(b[0])));
+    let sum = size(a[0]).add(size(a[1])).add(size(b[0])).add(size(b[1]));
+    let constant = L::splat(2.0 * line.wire_margin * line.wire_margin);
+    // Where a line with a radius is nearest is as far off along it.
+    let off = L::splat(line.wire_margin);
+    let (least, largest) = (a[2].min(b[2]).sub(off), a[2].max(b[2]).add(off));
+    reaches(0) & reaches(1) & area.at_most(margin.mul_add(sum, constant)) & in_piece(line, least, largest)
+}
+
+/// The lanes of boxes, given by two corners, whose projections reach the origin.
+#[inline(always)]
+fn boxes<L: Lanes>(line: &Local, [min, max]: &[[L; 3]; 2]) -> u32 {
+    let half = L::splat(0.5);
+    let centre = [0, 1, 2].map(|k| min[k].add(max[k]).mul(half));
+    let extent = [0, 1, 2].map(|k| max[k].sub(min[k]).mul(half));
+    let mut lanes = u32::MAX;
+    for k in 0..2 {
+        let slope = line.slopes[k];
+        let off = size(centre[2].mul_add(L::splat(-slope), centre[k]));
+        let reach = extent[2].mul_add(L::splat(slope.abs()), extent[k]).add(L::splat(line.margin));
+        lanes &= off.at_most(reach);
+    }
+    let along = if line.down { L::splat(0.0).sub(centre[2]) } else { centre[2] };
+    lanes & in_piece(line, along.sub(extent[2]), along.add(extent[2]))
+}
