@@ -107,14 +107,20 @@ impl Packet {
         let mut lanes = 0;
         let mut at = 0;
         while at < LANES {
+            // Arrays are spelled out: closures are compiled without the instruction set.
             lanes |= match self.kind {
-                Kind::Triangle => {
-                    let corners = [0, 1, 2].map(|v| self.projected::<I::Wide>(line, v, at));
-                    triangles(line, &corners)
+                Kind::Triangle => triangles::<I::Wide>(
+                    line,
+                    &self.projected(line, 0, at),
+                    &self.projected(line, 1, at),
+                    &self.projected(line, 2, at),
+                ),
+                Kind::Segment => wires::<I::Wide>(line, &self.projected(line, 0, at), &self.projected(line, 1, at)),
+                Kind::Point => {
+                    let place = self.projected(line, 0, at);
+                    wires::<I::Wide>(line, &place, &place)
                 }
-                Kind::Segment => wires(line, &[0, 1].map(|v| self.projected::<I::Wide>(line, v, at))),
-                Kind::Point => wires(line, &[self.projected::<I::Wide>(line, 0, at)]),
-                Kind::Box => boxes(line, &[0, 1].map(|v| self.offset::<I::Wide>(line, v, at))),
+                Kind::Box => boxes::<I::Wide>(line, &self.offset(line, 0, at), &self.offset(line, 1, at)),
             } << at;
             at += I::Wide::LEN;
         }
@@ -124,15 +130,19 @@ impl Packet {
     /// Vertex v in the lanes from `at` on, as seen from the base of the line; the axis of the line comes last.
     #[inline(always)]
     fn offset<L: Lanes>(&self, line: &Local, v: usize, at: usize) -> [L; 3] {
-        let coordinate = |k: usize| L::load_u16(&self.rows[3 * v + line.axes[k]][at..]).sub(L::splat(line.base[k]));
-        [coordinate(0), coordinate(1), coordinate(2)]
+        [self.coordinate(line, v, 0, at), self.coordinate(line, v, 1, at), self.coordinate(line, v, 2, at)]
+    }
+
+    #[inline(always)]
+    fn coordinate<L: Lanes>(&self, line: &Local, v: usize, k: usize, at: usize) -> L {
+        L::load_u16(&self.rows[3 * v + line.axes[k]][at..]).sub(L::splat(line.base[k]))
     }
 
     /// The same, projected along the line, and how far along it.
     #[inline(always)]
     fn projected<L: Lanes>(&self, line: &Local, v: usize, at: usize) -> [L; 3] {
         let [x, y, z] = self.offset::<L>(line, v, at);
-        let [a, b] = line.slopes.map(|s| L::splat(-s));
+        let (a, b) = (L::splat(-line.slopes[0]), L::splat(-line.slopes[1]));
         [z.mul_add(a, x), z.mul_add(b, y), if line.down { L::splat(0.0).sub(z) } else { z }]
     }
 }
@@ -160,49 +170,70 @@ fn in_piece<L: Lanes>(line: &Local, least: L, largest: L) -> u32 {
 
 /// The lanes that have the origin on one side of all edges, within the margin.
 #[inline(always)]
-fn triangles<L: Lanes>(line: &Local, [a, b, c]: &[[L; 3]; 3]) -> u32 {
-    let margin = L::splat(line.margin);
-    let constant = L::splat(2.0 * line.margin * line.margin);
-    let sizes = [a, b, c].map(|p| size(p[0]).add(size(p[1])));
-    let edge = |p: &[L; 3], q: &[L; 3], sum: L| {
-        let area = p[0].mul(q[1]).sub(p[1].mul(q[0]));
-        let margin = margin.mul_add(sum, constant);
-        (L::splat(0.0).sub(area).at_most(margin), area.at_most(margin))
-    };
-    let ((left, right), (left_too, right_too), (left_three, right_three)) =
-        (edge(a, b, sizes[0].add(sizes[1])), edge(b, c, sizes[1].add(sizes[2])), edge(c, a, sizes[2].add(sizes[0])));
+fn triangles<L: Lanes>(line: &Local, a: &[L; 3], b: &[L; 3], c: &[L; 3]) -> u32 {
+    let (left, right) = sides(line, a, b);
+    let (left_too, right_too) = sides(line, b, c);
+    let (left_three, right_three) = sides(line, c, a);
     let (least, largest) = (a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2]));
     (left & left_too & left_three | right & right_too & right_three) & in_piece(line, least, largest)
 }
 
-/// The lanes of segments, or of points, that come near the origin.
+/// The lanes that have the origin to the left of an edge or on it, and those that have it to the right or on it.
 #[inline(always)]
-fn wires<L: Lanes, const N: usize>(line: &Local, ends: &[[L; 3]; N]) -> u32 {
-    let margin = L::splat(line.wire_margin);
-    let (a, b) = (&ends[0], &ends[N - 1]);
-    let reaches = |k: usize| a[k].min(b[k]).at_most(margin) & L::splat(0.0).sub(a[k].max(b[k])).at_most(margin);
-    let area = size(a[0].mul(b[1]).sub(a[1].mul(b[0])));
+fn sides<L: Lanes>(line: &Local, a: &[L; 3], b: &[L; 3]) -> (u32, u32) {
+    let area = doubled_area(a, b);
+    let margin = margin(line.margin, a, b);
+    (L::splat(0.0).sub(area).at_most(margin), area.at_most(margin))
+}
+
+/// Of the triangle that the origin and two points make.
+#[inline(always)]
+fn doubled_area<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
+    a[0].mul(b[1]).sub(a[1].mul(b[0]))
+}
+
+/// By how much that may be off, if coordinates are by `margin`.
+#[inline(always)]
+fn margin<L: Lanes>(margin: f32, a: &[L; 3], b: &[L; 3]) -> L {
     let sum = size(a[0]).add(size(a[1])).add(size(b[0])).add(size(b[1]));
-    let constant = L::splat(2.0 * line.wire_margin * line.wire_margin);
+    L::splat(margin).mul_add(sum, L::splat(2.0 * margin * margin))
+}
+
+/// The lanes of segments that come near the origin.
+#[inline(always)]
+fn wires<L: Lanes>(line: &Local, a: &[L; 3], b: &[L; 3]) -> u32 {
     // Where a line with a radius is nearest is as far off along it.
     let off = L::splat(line.wire_margin);
     let (least, largest) = (a[2].min(b[2]).sub(off), a[2].max(b[2]).add(off));
-    reaches(0) & reaches(1) & area.at_most(margin.mul_add(sum, constant)) & in_piece(line, least, largest)
+    let near = size(doubled_area(a, b)).at_most(margin(line.wire_margin, a, b));
+    near & reaches(line, a[0], b[0]) & reaches(line, a[1], b[1]) & in_piece(line, least, largest)
+}
+
+/// The lanes in which the origin lies between two numbers, within the margin.
+#[inline(always)]
+fn reaches<L: Lanes>(line: &Local, a: L, b: L) -> u32 {
+    let margin = L::splat(line.wire_margin);
+    a.min(b).at_most(margin) & L::splat(0.0).sub(a.max(b)).at_most(margin)
 }
 
 /// The lanes of boxes, given by two corners, whose projections reach the origin.
 #[inline(always)]
-fn boxes<L: Lanes>(line: &Local, [min, max]: &[[L; 3]; 2]) -> u32 {
-    let half = L::splat(0.5);
-    let centre = [0, 1, 2].map(|k| min[k].add(max[k]).mul(half));
-    let extent = [0, 1, 2].map(|k| max[k].sub(min[k]).mul(half));
-    let mut lanes = u32::MAX;
+fn boxes<L: Lanes>(line: &Local, min: &[L; 3], max: &[L; 3]) -> u32 {
+    let (centre, extent) = middle(min[2], max[2]);
+    let along = if line.down { L::splat(0.0).sub(centre) } else { centre };
+    let mut lanes = in_piece(line, along.sub(extent), along.add(extent));
     for k in 0..2 {
         let slope = line.slopes[k];
-        let off = size(centre[2].mul_add(L::splat(-slope), centre[k]));
-        let reach = extent[2].mul_add(L::splat(slope.abs()), extent[k]).add(L::splat(line.margin));
-        lanes &= off.at_most(reach);
+        let (own_centre, own_extent) = middle(min[k], max[k]);
+        let reach = extent.mul_add(L::splat(slope.abs()), own_extent).add(L::splat(line.margin));
+        lanes &= size(centre.mul_add(L::splat(-slope), own_centre)).at_most(reach);
     }
-    let along = if line.down { L::splat(0.0).sub(centre[2]) } else { centre[2] };
-    lanes & in_piece(line, along.sub(extent[2]), along.add(extent[2]))
+    lanes
+}
+
+/// The middle between two numbers, and how far they are from it.
+#[inline(always)]
+fn middle<L: Lanes>(min: L, max: L) -> (L, L) {
+    let half = L::splat(0.5);
+    (min.add(max).mul(half), max.sub(min).mul(half))
 }

@@ -36,11 +36,39 @@ pub struct Hit {
     pub parameter: f64,
     /// From where.
     pub side: Side,
+    /// What the rest is computed from when asked for.
+    origin: V3,
+    direction: V3,
+    source: Source,
+}
+
+impl Hit {
     /// Weights of the primitive's vertices, each rounded to nearest; within 4 u where the range of the ray begins inside
     /// of a triangle or segment that it runs along. Unused ones are 0.
-    pub barycentric: [f64; 3],
-    /// The sum of the vertices with these weights, rounded; a vertex verbatim.
-    pub point: Point3<f64>,
+    #[must_use]
+    pub fn barycentric(&self) -> [f64; 3] {
+        match &self.source {
+            Source::Face(vertices, _) => self.weights(vertices),
+            Source::Known(hit) => hit.barycentric,
+        }
+    }
+
+    /// The point of the primitive: the sum of its vertices with these weights, rounded; a vertex verbatim. The point of
+    /// the ray is [`Ray::at`], which errs differently.
+    #[must_use]
+    pub fn point(&self) -> Point3<f64> {
+        match &self.source {
+            Source::Face(vertices, _) => weighted(vertices, &self.weights(vertices)),
+            Source::Known(hit) => hit.point,
+        }
+    }
+
+    fn weights(&self, vertices: &[V3; 3]) -> V3 {
+        let plane = Plane::new(&self.origin, &self.direction, vertices);
+        plane
+            .and_then(|plane| plane.weights())
+            .unwrap_or_else(|| Exact::new(&self.origin, &self.direction, 0.0, vertices).face().1)
+    }
 }
 
 /// What a primitive of your own answers to a ray.
@@ -60,7 +88,6 @@ pub struct RayHit {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
     pub(super) parameter: f64,
-    pub(super) side: Side,
     pub(super) weights: V3,
 }
 
@@ -73,7 +100,7 @@ pub struct Crossing<'a> {
     source: Source,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Source {
     /// A triangle that is crossed, and from where.
     Face([V3; 3], Side),
@@ -108,12 +135,14 @@ impl<'a> Crossing<'a> {
         if passes_by(ray, vertices) {
             return None;
         }
-        let found = Exact::new(ray, vertices).wire()?;
+        let found = exact(ray, vertices).wire(ray)?;
         Self::of_found(ray, vertices, &found)
     }
 
     fn of_found(ray: &'a Ray, vertices: &[V3], found: &Found) -> Option<Self> {
-        Self::of_hit(ray, found.at(vertices))
+        let Found { parameter, weights } = *found;
+        let point = weighted(vertices, &weights);
+        Self::of_hit(ray, RayHit { parameter, side: Side::Along, barycentric: weights, point })
     }
 
     /// A triangle; `None` also if its parameter certainly exceeds `limit`.
@@ -133,7 +162,7 @@ impl<'a> Crossing<'a> {
                 Ordering::Less => true,
                 Ordering::Greater => false,
                 Ordering::Equal => {
-                    return Self::of_found(ray, &vertices, &Exact::new(ray, &vertices).flat()?);
+                    return Self::of_found(ray, &vertices, &exact(ray, &vertices).flat(ray)?);
                 }
             }
         };
@@ -164,7 +193,8 @@ impl<'a> Crossing<'a> {
             _ if self.low == self.high => self.low,
             Source::Known(hit) => hit.parameter,
             Source::Face(vertices, _) => {
-                double_parameter(self.ray, vertices).unwrap_or_else(|| Exact::new(self.ray, vertices).face().0)
+                let plane = Plane::new(&self.ray.origin, &self.ray.direction, vertices);
+                plane.and_then(|plane| plane.parameter()).unwrap_or_else(|| exact(self.ray, vertices).face().0)
             }
         }
     }
@@ -179,27 +209,27 @@ impl<'a> Crossing<'a> {
     /// All there is to know.
     #[must_use]
     pub fn hit(&self, primitive: PrimitiveId) -> Hit {
-        let hit = match &self.source {
-            Source::Known(hit) => *hit,
-            Source::Face(vertices, side) => {
-                let (parameter, weights) = Exact::new(self.ray, vertices).face();
-                Found { parameter, side: *side, weights }.at(vertices)
-            }
+        let side = match &self.source {
+            Source::Face(_, side) => *side,
+            Source::Known(hit) => hit.side,
         };
-        let RayHit { parameter, side, barycentric, point } = hit;
-        Hit { primitive, parameter, side, barycentric, point }
+        let Ray { origin, direction, .. } = *self.ray;
+        Hit { primitive, parameter: self.parameter(), side, origin, direction, source: self.source }
     }
 }
 
-impl Found {
-    /// With its point.
-    fn at(&self, vertices: &[V3]) -> RayHit {
-        let point = match self.weights.iter().position(|w| *w == 1.0) {
-            Some(vertex) => vertices[vertex],
-            None => std::array::from_fn(|k| vertices.iter().zip(&self.weights).map(|(v, w)| v[k] * w).sum()),
-        };
-        RayHit { parameter: self.parameter, side: self.side, barycentric: self.weights, point: Point3::from(point) }
-    }
+/// The integers of a ray and some vertices.
+#[cold]
+fn exact(ray: &Ray, vertices: &[V3]) -> Exact {
+    Exact::new(&ray.origin, &ray.direction, ray.radius, vertices)
+}
+
+/// The sum of some vertices with weights; a vertex verbatim.
+fn weighted(vertices: &[V3], weights: &V3) -> Point3<f64> {
+    Point3::from(match weights.iter().position(|w| *w == 1.0) {
+        Some(vertex) => vertices[vertex],
+        None => std::array::from_fn(|k| vertices.iter().zip(weights).map(|(v, w)| v[k] * w).sum()),
+    })
 }
 
 /// 1 or -1 if the moment D . (A x B) is certainly above or below zero, from offsets that are rounded; else 0.
@@ -217,7 +247,7 @@ fn certain_sign(d: &V3, a: &V3, b: &V3) -> i32 {
 #[cold]
 #[inline(never)]
 fn exact_side(ray: &Ray, vertices: &[V3; 3], known: [i32; 3], only_crossings: bool) -> Option<Ordering> {
-    let exact = Exact::new(ray, vertices);
+    let exact = exact(ray, vertices);
     let mut all = Ordering::Equal;
     for (known, (i, j)) in known.into_iter().zip([(1, 2), (2, 0), (0, 1)]) {
         let side = match known {
@@ -251,7 +281,7 @@ fn parameter_bounds(ray: &Ray, vertices: &[V3; 3], a: &V3) -> [f64; 2] {
     if speed.abs() > 2.0 * speed_error && margin < f64::MAX && margin > TINY {
         [t - margin, t + margin]
     } else {
-        let t = Exact::new(ray, vertices).face().0;
+        let t = exact(ray, vertices).face().0;
         [t, t]
     }
 }
@@ -259,27 +289,88 @@ fn parameter_bounds(ray: &Ray, vertices: &[V3; 3], a: &V3) -> [f64; 2] {
 /// Magnitudes for which products of three underflow nowhere that matters, and overflow nowhere.
 const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-250)..=power_of_two(250);
 
-/// The parameter of the plane of a triangle, rounded to nearest, where double-double arithmetic can tell.
-fn double_parameter(ray: &Ray, vertices: &[V3; 3]) -> Option<f64> {
-    let [a, b, c] = vertices;
-    let minus = |p: &V3, q: &V3| -> [Double; 3] { std::array::from_fn(|k| Double::difference(p[k], q[k])) };
-    let size = |x: &[Double; 3]| x.iter().fold(0.0, |m: f64, x| m.max(x.high.abs()));
-    let (e, f, a) = (minus(b, a), minus(c, a), minus(a, &ray.origin));
-    let d = ray.direction.map(|x| Double { high: x, low: 0.0 });
-    let sizes = [size(&e), size(&f), size(&a), size(&d)];
-    if !sizes.iter().all(|x| PLAIN.contains(x)) {
-        return None;
+/// Where a line meets the plane of a triangle, in double-double arithmetic.
+struct Plane {
+    /// From the first vertex to the others, and from the origin of the line to it.
+    edges: [[Double; 3]; 2],
+    offset: [Double; 3],
+    direction: [Double; 3],
+    normal: [Double; 3],
+    parameter: Double,
+    /// Of the parameter.
+    error: f64,
+}
+
+/// What products of double-double numbers and sums of some of them may be off, in parts of their factors: 2^-95, where
+/// less than 2^-98 can be shown.
+const DOUBLE: f64 = power_of_two(-95);
+
+impl Plane {
+    /// `None` where products might over- or underflow, or the line is nearly parallel.
+    fn new(origin: &V3, direction: &V3, [a, b, c]: &[V3; 3]) -> Option<Self> {
+        let minus = |p: &V3, q: &V3| -> [Double; 3] { std::array::from_fn(|k| Double::difference(p[k], q[k])) };
+        let (e, f, offset) = (minus(b, a), minus(c, a), minus(a, origin));
+        let direction = direction.map(|x| Double { high: x, low: 0.0 });
+        let sizes = [size(&e), size(&f), size(&offset), size(&direction)];
+        if !sizes.iter().all(|x| PLAIN.contains(x)) {
+            return None;
+        }
+        let normal = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];
+        let (height, speed) = (double_dot(normal, offset), double_dot(normal, direction));
+        let parameter = height / speed;
+        let [height_error, speed_error] = [sizes[2], sizes[3]].map(|x| DOUBLE * sizes[0] * sizes[1] * x);
+        let error = quotient_error(parameter, height_error, speed, speed_error)?;
+        Some(Self { edges: [e, f], offset, direction, normal, parameter, error })
     }
-    let normal = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];
-    let (height, speed) = (double_dot(normal, a), double_dot(normal, d));
-    let t = height / speed;
-    // Of each sum, and then of the quotient.
-    let [height_error, speed_error] = [sizes[2], sizes[3]].map(|x| power_of_two(-95) * sizes[0] * sizes[1] * x);
-    let rest = speed.high.abs() - speed_error;
-    let error = (height_error + t.high.abs() * speed_error) / rest * (1.0 + power_of_two(-40))
-        + t.high.abs() * power_of_two(-98);
-    let [low, high] = [t.high + (t.low - error), t.high + (t.low + error)];
-    (rest > 0.0 && low == high && PLAIN.contains(&low.abs())).then_some(low)
+
+    /// The parameter, rounded to nearest.
+    fn parameter(&self) -> Option<f64> {
+        rounded(self.parameter, self.error)
+    }
+
+    /// The weights of the vertices, rounded to nearest: with x for the way from the first vertex to the point,
+    /// x = v e + w f, so v = (x x f) / (e x f) and w = (e x x) / (e x f), on the axis where e x f is largest.
+    fn weights(&self) -> Option<V3> {
+        let Self { edges: [e, f], offset, direction, normal, parameter, error } = self;
+        let x: [Double; 3] = std::array::from_fn(|k| *parameter * direction[k] - offset[k]);
+        let reach = size(direction);
+        let x_error = DOUBLE * (size(offset) + parameter.high.abs() * reach) + error * reach;
+        let largest = |i: usize, j: usize| if normal[j].high.abs() > normal[i].high.abs() { j } else { i };
+        let k = largest(largest(0, 1), 2);
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        let (e_size, f_size) = (size(e), size(f));
+        let weight = |numerator: Double, other: f64| {
+            let quotient = numerator / normal[k];
+            let numerator_error = other * (DOUBLE * size(&x) + 2.0 * x_error);
+            quotient_error(quotient, numerator_error, normal[k], DOUBLE * e_size * f_size)
+                .map(|error| (quotient, error))
+        };
+        let (v, v_error) = weight(x[i] * f[j] - x[j] * f[i], f_size)?;
+        let (w, w_error) = weight(e[i] * x[j] - e[j] * x[i], e_size)?;
+        let one = Double { high: 1.0, low: 0.0 };
+        let u = one - v - w;
+        let u_error = v_error + w_error + DOUBLE * (1.0 + v.high.abs() + w.high.abs());
+        Some([rounded(u, u_error)?, rounded(v, v_error)?, rounded(w, w_error)?])
+    }
+}
+
+/// The largest component.
+fn size(x: &[Double; 3]) -> f64 {
+    x.iter().fold(0.0, |m, x| m.max(x.high.abs()))
+}
+
+/// What a quotient is off, given the errors of what is divided and of the divisor; `None` if that could be zero.
+fn quotient_error(quotient: Double, error: f64, divisor: Double, divisor_error: f64) -> Option<f64> {
+    let least = divisor.high.abs() - divisor_error;
+    let t = quotient.high.abs();
+    let error = (error + t * divisor_error) / least * (1.0 + 16.0 * U) + t * DOUBLE;
+    (least > 0.0).then_some(error)
+}
+
+/// A number rounded to nearest, if its error leaves no doubt. Not for zero, nor where rounding might underflow.
+fn rounded(x: Double, error: f64) -> Option<f64> {
+    let [low, high] = [x.high + (x.low - error), x.high + (x.low + error)];
+    (low == high && PLAIN.contains(&low.abs())).then_some(low)
 }
 
 /// Whether a ray certainly passes a segment or a point by more than its radius.

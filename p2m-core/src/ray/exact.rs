@@ -3,7 +3,7 @@
 //! Everything is relative to the origin of the ray. A, B, C are the vertices, D is the direction; positions are
 //! multiples of one power of two, the direction of another, and parameters of their quotient.
 
-use super::crossing::{Found, Side};
+use super::crossing::Found;
 use super::line::Ray;
 use crate::integers::{Fraction, Vector, common_exponent, cross, cross_component, difference, dot, integer, sign};
 use crate::kernel::vector::V3;
@@ -11,14 +11,14 @@ use dashu_int::IBig;
 use std::cmp::Ordering;
 
 /// A ray and some vertices.
-pub(super) struct Exact<'a> {
-    ray: &'a Ray,
+pub(super) struct Exact {
     vertices: Vec<Vector>,
     direction: Vector,
     /// Of positions.
     unit: i32,
     /// Of the direction.
     direction_unit: i32,
+    radius: IBig,
 }
 
 /// Where a line is nearest to a segment, or meets a triangle that it lies in the plane of: one point or a stretch.
@@ -26,16 +26,16 @@ struct Span {
     ends: [(Fraction, V3); 2],
 }
 
-impl<'a> Exact<'a> {
-    pub(super) fn new(ray: &'a Ray, vertices: &[V3]) -> Self {
-        let unit = common_exponent(vertices.as_flattened().iter().chain(&ray.origin).chain([&ray.radius]));
-        let direction_unit = common_exponent(&ray.direction);
+impl Exact {
+    pub(super) fn new(origin: &V3, direction: &V3, radius: f64, vertices: &[V3]) -> Self {
+        let unit = common_exponent(vertices.as_flattened().iter().chain(origin).chain([&radius]));
+        let direction_unit = common_exponent(direction);
         Self {
-            ray,
-            vertices: vertices.iter().map(|v| difference(*v, ray.origin, unit)).collect(),
-            direction: ray.direction.map(|x| integer(x, direction_unit)),
+            vertices: vertices.iter().map(|v| difference(*v, *origin, unit)).collect(),
+            direction: direction.map(|x| integer(x, direction_unit)),
             unit,
             direction_unit,
+            radius: integer(radius, unit),
         }
     }
 
@@ -70,10 +70,10 @@ impl<'a> Exact<'a> {
     }
 
     /// A triangle that the line lies in the plane of, or one that is no more than a segment or a point.
-    pub(super) fn flat(&self) -> Option<Found> {
+    pub(super) fn flat(&self, ray: &Ray) -> Option<Found> {
         let mut all: Option<Span> = None;
         for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-            let Some(Span { ends: [from, to] }) = self.span(i, j, 0.0) else { continue };
+            let Some(Span { ends: [from, to] }) = self.span(i, j, &IBig::ZERO) else { continue };
             all = Some(match all {
                 None => Span { ends: [from, to] },
                 Some(Span { ends: [first, last] }) => Span {
@@ -84,12 +84,12 @@ impl<'a> Exact<'a> {
                 },
             });
         }
-        self.in_range(&all?)
+        self.in_range(ray, &all?)
     }
 
     /// A segment, or a point as one of two equal vertices: where the ray is nearest to it, if that is within its radius.
-    pub(super) fn wire(&self) -> Option<Found> {
-        self.in_range(&self.span(0, self.vertices.len() - 1, self.ray.radius)?)
+    pub(super) fn wire(&self, ray: &Ray) -> Option<Found> {
+        self.in_range(ray, &self.span(0, self.vertices.len() - 1, &self.radius)?)
     }
 
     fn parameter_unit(&self) -> i32 {
@@ -97,29 +97,29 @@ impl<'a> Exact<'a> {
     }
 
     /// The first parameter of a span that is in the range of the ray.
-    fn in_range(&self, span: &Span) -> Option<Found> {
+    fn in_range(&self, ray: &Ray, span: &Span) -> Option<Found> {
         let [(first, first_weights), (last, last_weights)] = &span.ends;
         let [t, end] = [first, last].map(|t| t.round(self.parameter_unit()));
-        if t > self.ray.max || end < self.ray.min {
+        if t > ray.max || end < ray.min {
             return None;
         }
-        if t >= self.ray.min {
-            return Some(Found { parameter: t, side: Side::Along, weights: *first_weights });
+        if t >= ray.min {
+            return Some(Found { parameter: t, weights: *first_weights });
         }
         // The range begins inside.
-        let share = self.share(first, last);
+        let share = self.share(ray.min, first, last);
         let weights = std::array::from_fn(|k| first_weights[k] * (1.0 - share) + last_weights[k] * share);
-        Some(Found { parameter: self.ray.min, side: Side::Along, weights })
+        Some(Found { parameter: ray.min, weights })
     }
 
     /// How far between two parameters the range begins, from 0 to 1.
-    fn share(&self, first: &Fraction, last: &Fraction) -> f64 {
-        if self.ray.min.is_infinite() {
+    fn share(&self, begin: f64, first: &Fraction, last: &Fraction) -> f64 {
+        if begin.is_infinite() {
             return 1.0;
         }
         let unit = self.parameter_unit();
-        let own = common_exponent([&self.ray.min]).min(unit);
-        let begin = integer(self.ray.min, own);
+        let own = common_exponent([&begin]).min(unit);
+        let begin = integer(begin, own);
         let lift = |t: &Fraction| (&t.numerator << (unit - own).unsigned_abs() as usize, t.denominator.clone());
         let ((n1, d1), (n2, d2)) = (lift(first), lift(last));
         // (begin - n1 / d1) / (n2 / d2 - n1 / d1)
@@ -131,7 +131,7 @@ impl<'a> Exact<'a> {
     ///
     /// A point of the segment is P = A + s E. Its squared distance from the line is |P|^2 - (P . D)^2 / D^2; with
     /// a = D . D, b = D . E, c = E . E it is least at s = ((A . D) b - a (A . E)) / (a c - b^2).
-    fn span(&self, i: usize, j: usize, radius: f64) -> Option<Span> {
+    fn span(&self, i: usize, j: usize, radius: &IBig) -> Option<Span> {
         let (from, to, d) = (&self.vertices[i], &self.vertices[j], &self.direction);
         let edge: Vector = std::array::from_fn(|k| &to[k] - &from[k]);
         let [a, b, c] = [dot(d, d), dot(d, &edge), dot(&edge, &edge)];
@@ -148,7 +148,7 @@ impl<'a> Exact<'a> {
         // q P
         let point: Vector = std::array::from_fn(|k| &from[k] * &q + &edge[k] * &n);
         let ahead = dot(&point, d);
-        let limit = integer(radius, self.unit) * &q;
+        let limit = radius * &q;
         if &a * dot(&point, &point) - &ahead * &ahead > &limit * &limit * &a {
             return None;
         }

@@ -231,6 +231,9 @@ impl<V: Volume> PacketTree<V> {
         ray: &'r Ray,
         collector: &mut C,
     ) {
+        if ray::misses(ray, &self.frame, &self.bounds) {
+            return;
+        }
         let intersect = intersection(set, ray, collector.only_crossings());
         self.isa.run(RaySearch { tree: self, ray, hits: collector, intersect: &intersect });
     }
@@ -243,6 +246,9 @@ impl<V: Volume> PacketTree<V> {
         ray: &'r Ray,
         hits: &mut Hits<'r>,
     ) {
+        if ray::misses(ray, &self.frame, &self.bounds) {
+            return;
+        }
         let intersect = intersection(set, ray, hits.only_crossings());
         V::rays(self, ray, hits, &intersect);
     }

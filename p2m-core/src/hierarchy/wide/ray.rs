@@ -32,7 +32,8 @@ impl<'r, V: Volume, C: RayCollector<'r>> Operation for RaySearch<'_, 'r, V, C> {
     fn run<I: InstructionSet>(self) {
         let Self { tree, ray, hits, intersect } = self;
         let mut tests = Tests { leaves: &tree.leaves, ray, only_crossings: hits.only_crossings(), hits, intersect };
-        let placed = Line::of(ray).and_then(|line| Some((line, FrameLine::new(&tree.frame, &tree.bounds, &line, ray.min * line.speed)?)));
+        let placed = Line::of(ray)
+            .and_then(|line| Some((line, FrameLine::new(&tree.frame, &tree.bounds, &line, ray.min * line.speed)?)));
         let Some((line, piece)) = placed else { return tests.everything() };
         if let Some(piece) = piece {
             let local = V::Node::ray(&tree.shape, &piece);
@@ -86,6 +87,38 @@ impl<'r, C: RayCollector<'r>> Tests<'_, 'r, C> {
             }
         }
     }
+}
+
+/// Directions that grow by less per length are parallel to a slab: from one side of a scene to the other that makes less
+/// than [`MARGIN`]. Also some room for rounding.
+const SLIGHT: f64 = power_of_two(-40);
+/// Of some sums and products of f64.
+const ROUNDING: f64 = power_of_two(-48);
+/// What positions may be off in the frame besides, which is small beside rounding to f32.
+const MARGIN: f64 = power_of_two(-30);
+/// What products may lack that underflow.
+const TINY: f64 = power_of_two(-1000);
+
+/// Whether a ray certainly misses a box: it begins outside and goes away, or the box lies on one side of its projection
+/// along an axis. Most rays from far away are done with that.
+#[inline(always)]
+pub(super) fn misses(ray: &Ray, frame: &Frame, bounds: &Aabb<f64>) -> bool {
+    let (o, d, c) = (&ray.origin, &ray.direction, &frame.centre);
+    let towards = [c[0] - o[0], c[1] - o[1], c[2] - o[2]];
+    // Half of the box, with room for the rounding of the line above.
+    let half =
+        |k: usize| (bounds.max[k] - bounds.min[k]) * (0.5 + SLIGHT) + (o[k].abs() + c[k].abs()) * ROUNDING + ray.radius;
+    let half = [half(0), half(1), half(2)];
+    // All of it and then one branch: one after the other they are mispredicted.
+    let away = |k: usize| (towards[k] > half[k]) & (d[k] <= 0.0) | (towards[k] < -half[k]) & (d[k] >= 0.0);
+    let goes_away = (ray.min >= 0.0) & (away(0) | away(1) | away(2));
+    let beside = |i: usize, j: usize| {
+        let off = (towards[i] * d[j] - towards[j] * d[i]).abs();
+        let least = half[i] * d[j].abs() + half[j] * d[i].abs();
+        let room = (towards[i] * d[j]).abs() + (towards[j] * d[i]).abs();
+        off > least * (1.0 + SLIGHT) + room * ROUNDING + TINY
+    };
+    goes_away | beside(0, 1) | beside(1, 2) | beside(2, 0)
 }
 
 /// Components of directions for which lengths along the ray are plain.
@@ -143,12 +176,12 @@ impl FrameLine {
         }
         let [min, max] = [&bounds.min, &bounds.max].map(|corner| frame.place(&[corner.x, corner.y, corner.z]));
         let from = from * frame.per_unit;
-        let (mut enter, mut exit) = (from - from.abs() * power_of_two(-48) - BESIDE, f64::INFINITY);
+        let (mut enter, mut exit) = (from - from.abs() * ROUNDING - BESIDE, f64::INFINITY);
         for k in 0..3 {
             let d = line.direction[k];
             let [low, high] = [min[k] - radius - BESIDE - q[k], max[k] + radius + BESIDE - q[k]];
             // In which nothing moves more than 2^-28 from one side of the box to the other.
-            if d.abs() < power_of_two(-40) {
+            if d.abs() < SLIGHT {
                 if low > 0.0 || high < 0.0 {
                     return Some(None);
                 }
@@ -162,7 +195,7 @@ impl FrameLine {
             return Some(None);
         }
         let base = std::array::from_fn(|k| q[k] + enter * line.direction[k]);
-        let margin = power_of_two(-49) * (largest + enter.abs()) + power_of_two(-30) + radius;
+        let margin = ROUNDING * (largest + enter.abs()) + MARGIN + radius;
         Some(Some(Self {
             base,
             direction: line.direction,
@@ -178,7 +211,7 @@ impl FrameLine {
     #[allow(clippy::cast_possible_truncation, reason = "rounded up")]
     fn limit(&self, length: f64) -> f32 {
         let length = length * self.per_unit;
-        let from_base = length - self.ahead + (length.abs() + self.ahead.abs()) * power_of_two(-48);
+        let from_base = length - self.ahead + (length.abs() + self.ahead.abs()) * ROUNDING;
         // Bounds of nodes are good to 2^-22, and NaN comes of infinity.
         let length = if from_base < self.length { from_base } else { self.length };
         (length as f32) * (1.0 + 16.0 * f32::EPSILON) + f32::EPSILON
@@ -251,7 +284,7 @@ impl SlabRay {
     pub(super) fn new(product: f64, growth: f64, margin: f64) -> Self {
         let turned = growth < 0.0;
         let product = if turned { -product } else { product };
-        let parallel = growth.abs() < power_of_two(-40);
+        let parallel = growth.abs() < SLIGHT;
         Self {
             high: ((product + margin) as f32).next_up(),
             low: ((product - margin) as f32).next_down(),
