@@ -14,7 +14,7 @@ pub(crate) struct Double {
 }
 
 /// a + b without error.
-#[inline]
+#[inline(always)]
 fn two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     let b_part = high - a;
@@ -23,14 +23,14 @@ fn two_sum(a: f64, b: f64) -> Double {
 }
 
 /// a + b without error if |a| >= |b| or a = 0.
-#[inline]
+#[inline(always)]
 fn fast_two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     Double { high, low: b - (high - a) }
 }
 
 /// a b without error.
-#[inline]
+#[inline(always)]
 fn two_product(a: f64, b: f64) -> Double {
     const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1: halves of at most 26 bits
     let split = |x: f64| {
@@ -45,6 +45,7 @@ fn two_product(a: f64, b: f64) -> Double {
 
 impl Double {
     /// a - b without error.
+    #[inline(always)]
     pub(crate) fn difference(a: f64, b: f64) -> Self {
         two_sum(a, -b)
     }
@@ -57,6 +58,7 @@ impl Double {
 
 impl Add for Double {
     type Output = Self;
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         let high = two_sum(self.high, other.high);
         let low = two_sum(self.low, other.low);
@@ -67,6 +69,7 @@ impl Add for Double {
 
 impl Sub for Double {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         self + Self { high: -other.high, low: -other.low }
     }
@@ -74,6 +77,7 @@ impl Sub for Double {
 
 impl Mul for Double {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         let high = two_product(self.high, other.high);
         let cross = self.high * other.low + self.low * other.high;
@@ -92,6 +96,7 @@ impl Div for Double {
     }
 }
 
+#[inline(always)]
 pub(crate) fn dot(a: [Double; 3], b: [Double; 3]) -> Double {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

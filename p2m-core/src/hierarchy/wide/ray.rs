@@ -255,6 +255,7 @@ impl<'r, V: Volume, C: RayCollector<'r>> Walk<V> for Entering<'_, 'r, V, C> {
     #[inline(always)]
     fn visit_packet<I: InstructionSet>(&mut self, number: usize) -> ControlFlow<()> {
         self.tests.hits.visit_packet();
+        self.tests.leaves.prefetch_vertices(number);
         let from = self.tests.ray.min * self.line.speed;
         let mut met = self.tests.leaves.packets[number].met_by::<I>(&self.line, from, self.to);
         while met != 0 {
