@@ -51,7 +51,7 @@ pub use kdop::{Directions, DirectionsError, Kdop, KdopOptions};
 pub use kernel::Key;
 pub use primitive::{Feature, Point, Primitive, Projection, Segment, Shape, Triangle};
 pub use query::{Best, Closest, Collector, QueryOptions};
-pub use ray::{Crossing, Hit, Hits, Ray, RayCollector, RayError, RayHit, RayQuery, Side};
+pub use ray::{Crossing, Hit, Hits, Ray, RayCollector, RayCounting, RayError, RayHit, RayQuery, Side};
 pub use real::Real;
 pub use set::{PrimitiveId, PrimitiveSet, check_set};
 pub use simd::Isa;

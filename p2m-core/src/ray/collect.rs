@@ -31,7 +31,8 @@ pub trait RayCollector<'r> {
 }
 
 /// What is wanted of the hits, and what was found: handed to a backend by the methods of
-/// [`RayQuery`](super::RayQuery).
+/// [`RayQuery`](super::RayQuery), which take it apart. One of your own serves to count what a search does
+/// ([`RayCounting`](super::RayCounting)).
 #[derive(Clone, Debug)]
 pub struct Hits<'r> {
     wanted: Wanted,
@@ -44,7 +45,7 @@ pub struct Hits<'r> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Wanted {
+enum Wanted {
     Any,
     First,
     All,
@@ -53,7 +54,37 @@ pub(super) enum Wanted {
 }
 
 impl Hits<'_> {
-    pub(super) fn new(wanted: Wanted) -> Self {
+    /// One hit, whichever is found first.
+    #[must_use]
+    pub fn any() -> Self {
+        Self::new(Wanted::Any)
+    }
+
+    /// The hit with the least parameter.
+    #[must_use]
+    pub fn first() -> Self {
+        Self::new(Wanted::First)
+    }
+
+    /// All hits.
+    #[must_use]
+    pub fn all() -> Self {
+        Self::new(Wanted::All)
+    }
+
+    /// Only how many there are.
+    #[must_use]
+    pub fn count() -> Self {
+        Self::new(Wanted::Count)
+    }
+
+    /// Only how often the surface is crossed.
+    #[must_use]
+    pub fn crossings() -> Self {
+        Self::new(Wanted::Crossings)
+    }
+
+    fn new(wanted: Wanted) -> Self {
         Self { wanted, one: None, all: Vec::new(), count: 0 }
     }
 }

@@ -7,16 +7,17 @@
 #![allow(clippy::float_cmp, reason = "nothing here has a tolerance")]
 
 mod collect;
+mod counting;
 mod crossing;
 mod exact;
 mod line;
 
 pub use collect::{Hits, RayCollector};
+pub use counting::RayCounting;
 pub use crossing::{Crossing, Hit, RayHit, Side};
 pub use line::{Ray, RayError};
 
 use crate::{BruteForce, Primitive, PrimitiveId, PrimitiveSet, Real};
-use collect::Wanted;
 use std::ops::ControlFlow;
 
 /// What a ray meets of a scene. A backend writes one method, [`search_ray`](Self::search_ray).
@@ -69,28 +70,28 @@ pub trait RayQuery<T: Real> {
 
     /// Whether the ray meets anything.
     fn do_intersect(&self, ray: &Ray) -> bool {
-        let mut hits = Hits::new(Wanted::Any);
+        let mut hits = Hits::any();
         self.search_ray(ray, &mut hits);
         hits.one.is_some()
     }
 
     /// Some hit, if there is one: the one that is found first.
     fn any_intersection(&self, ray: &Ray) -> Option<Hit> {
-        let mut hits = Hits::new(Wanted::Any);
+        let mut hits = Hits::any();
         self.search_ray(ray, &mut hits);
         hits.one.map(|(id, crossing)| crossing.hit(id))
     }
 
     /// The hit with the least parameter, and of equal ones that with the lowest id.
     fn first_intersection(&self, ray: &Ray) -> Option<Hit> {
-        let mut hits = Hits::new(Wanted::First);
+        let mut hits = Hits::first();
         self.search_ray(ray, &mut hits);
         hits.one.map(|(id, crossing)| crossing.hit(id))
     }
 
     /// All hits, one for each primitive that is met, in the order of their parameters and then of ids.
     fn all_intersections(&self, ray: &Ray) -> Vec<Hit> {
-        let mut hits = Hits::new(Wanted::All);
+        let mut hits = Hits::all();
         self.search_ray(ray, &mut hits);
         hits.all.sort_unstable_by(|a, b| a.parameter.total_cmp(&b.parameter).then(a.primitive.cmp(&b.primitive)));
         hits.all
@@ -98,7 +99,7 @@ pub trait RayQuery<T: Real> {
 
     /// How many primitives are met.
     fn count(&self, ray: &Ray) -> usize {
-        let mut hits = Hits::new(Wanted::Count);
+        let mut hits = Hits::count();
         self.search_ray(ray, &mut hits);
         hits.count
     }
@@ -114,7 +115,7 @@ pub trait RayQuery<T: Real> {
     /// # References
     /// Simulation of simplicity \[Edelsbrunner1990\].
     fn crossings(&self, ray: &Ray) -> usize {
-        let mut hits = Hits::new(Wanted::Crossings);
+        let mut hits = Hits::crossings();
         self.search_ray(ray, &mut hits);
         hits.count
     }
