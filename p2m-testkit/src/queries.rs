@@ -3,7 +3,7 @@
 
 use crate::surface::{SurfaceSampler, direction, normal};
 use nalgebra::{Point3, Vector3};
-use p2m_core::{PrimitiveSet, Soup};
+use p2m_core::{PrimitiveSet, Ray, Soup};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -30,6 +30,9 @@ pub enum QuerySet {
 
 /// How many clusters there are.
 const CLUSTERS: usize = 8;
+
+/// Directions of rays are drawn from streams this far behind those of origins.
+const DIRECTIONS: u64 = 1 << 32;
 
 impl QuerySet {
     /// All of them, in the order of the tables.
@@ -80,6 +83,15 @@ impl QuerySet {
                     .collect()
             }
         }
+    }
+
+    /// Rays from these queries, their directions of length 1 and evenly distributed on the sphere.
+    #[must_use]
+    pub fn rays(self, soup: &Soup<f64>, count: usize, seed: u64) -> Vec<Ray> {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        rng.set_stream(DIRECTIONS + self as u64);
+        let origins = self.generate(soup, count, seed);
+        origins.iter().map(|origin| Ray::new(origin, &direction(&mut rng)).expect("finite, and of length 1")).collect()
     }
 }
 
@@ -240,6 +252,23 @@ mod tests {
         for q in QuerySet::Far.generate(&scene, 100, 1) {
             assert!(((q - centre).norm() / diagonal(&scene) - 100.0).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn rays_begin_at_queries_and_go_everywhere() {
+        let rays = QuerySet::Box1.rays(&scene(), 4000, 1);
+        let origins: Vec<_> = rays.iter().map(Ray::origin).collect();
+        assert_eq!(origins, QuerySet::Box1.generate(&scene(), 4000, 1));
+        let mut octants = [0; 8];
+        for direction in rays.iter().map(Ray::direction) {
+            assert!((direction.norm() - 1.0).abs() < 1e-15);
+            octants[(0..3).map(|k| usize::from(direction[k] > 0.0) << k).sum::<usize>()] += 1;
+        }
+        assert!(octants.iter().all(|count| (400..600).contains(count)), "{octants:?}");
+        // Each coordinate of a sphere is evenly distributed.
+        let steep = rays.iter().filter(|ray| ray.direction().z.abs() > 0.5).count();
+        assert!((1850..2150).contains(&steep), "{steep}");
+        assert_ne!(rays[0].direction(), QuerySet::Box10.rays(&scene(), 1, 1)[0].direction());
     }
 
     #[test]

@@ -81,3 +81,30 @@ impl<'r, C: RayCollector<'r>> RayCollector<'r> for RayCounting<C> {
         self.collector.visit_primitive();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::search_all;
+    use super::*;
+    use crate::{Hits, Triangle};
+    use nalgebra::{Point3, Vector3};
+
+    #[test]
+    fn what_is_counted_is_what_is_wanted() {
+        let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]].map(|[x, y]| Point3::new(x, y, 0.0));
+        let square =
+            [Triangle::new(corners[0], corners[1], corners[2]), Triangle::new(corners[0], corners[2], corners[3])];
+        let ray = Ray::new(&Point3::new(1.0, 1.0, 3.0), &Vector3::new(0.0, 0.0, -1.0)).unwrap();
+        let search = |wanted: Hits<'static>| {
+            let mut counting = RayCounting::new(RayCounting::new(wanted));
+            search_all(&square[..], &ray, &mut counting);
+            assert_eq!(counting.primitives, counting.collector.primitives);
+            (counting.primitives, counting.limit(), counting.collector.collector)
+        };
+        assert_eq!(search(Hits::any()).0, 1);
+        assert_eq!(search(Hits::first()).1, 3.0);
+        assert_eq!(search(Hits::all()).2.all.len(), 2);
+        assert_eq!(search(Hits::count()).2.count, 2);
+        assert_eq!(search(Hits::crossings()).2.count, 1);
+    }
+}
