@@ -84,9 +84,9 @@ impl<'r, C: RayCollector<'r>> RayCollector<'r> for RayCounting<C> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::search_all;
     use super::*;
-    use crate::{Hits, Triangle};
+    use crate::hierarchy::TreeIndex;
+    use crate::{BuildIndex, Hits, Kdop, KdopOptions, Triangle};
     use nalgebra::{Point3, Vector3};
 
     #[test]
@@ -94,11 +94,16 @@ mod tests {
         let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]].map(|[x, y]| Point3::new(x, y, 0.0));
         let square =
             [Triangle::new(corners[0], corners[1], corners[2]), Triangle::new(corners[0], corners[2], corners[3])];
+        let tree = TreeIndex::<f64, _, Kdop<6>>::build(square, &KdopOptions::default()).unwrap();
         let ray = Ray::new(&Point3::new(1.0, 1.0, 3.0), &Vector3::new(0.0, 0.0, -1.0)).unwrap();
         let search = |wanted: Hits<'static>| {
             let mut counting = RayCounting::new(RayCounting::new(wanted));
-            search_all(&square[..], &ray, &mut counting);
-            assert_eq!(counting.primitives, counting.collector.primitives);
+            tree.visit_ray(&ray, &mut counting);
+            let inner = &counting.collector;
+            assert_eq!(
+                [counting.nodes, counting.packets, counting.primitives],
+                [inner.nodes, inner.packets, inner.primitives]
+            );
             (counting.primitives, counting.limit(), counting.collector.collector)
         };
         assert_eq!(search(Hits::any()).0, 1);
