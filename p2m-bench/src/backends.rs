@@ -113,12 +113,12 @@ where
 }
 
 /// What is timed is one thread's work.
-fn aabb_options() -> AabbOptions {
+pub(crate) fn aabb_options() -> AabbOptions {
     AabbOptions::default().with_parallel(false)
 }
 
 /// The instruction set of that name; the best one without.
-fn instruction_set(name: Option<&str>) -> Result<Isa, Absent> {
+pub(crate) fn instruction_set(name: Option<&str>) -> Result<Isa, Absent> {
     let Some(name) = name else { return Ok(Isa::best()) };
     let isa = Isa::available().into_iter().find(|isa| isa.name() == name);
     isa.ok_or_else(|| Absent(format!("this processor has no {name}")))

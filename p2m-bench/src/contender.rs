@@ -109,9 +109,9 @@ pub(crate) type Ready<'a> = Box<dyn Batch + 'a>;
 
 /// A contender before it is built. What is copied or converted for it was made already and is not timed, but it counts
 /// as its memory.
-pub(crate) struct Prepared<'a> {
+pub(crate) struct Prepared<'a, V = Ready<'a>> {
     /// Builds it, which is timed.
-    pub(crate) build: Box<dyn FnOnce() -> Result<Ready<'a>, Absent> + 'a>,
+    pub(crate) build: Box<dyn FnOnce() -> Result<V, Absent> + 'a>,
     /// Heap bytes of the scene that it keeps borrowing.
     pub(crate) borrowed: usize,
 }

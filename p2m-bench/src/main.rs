@@ -18,6 +18,7 @@ mod memory;
 mod octree;
 mod provenance;
 mod queries;
+mod rays;
 mod report;
 mod rivals;
 mod scene;
@@ -58,6 +59,8 @@ enum Command {
     Splits(SplitsArguments),
     /// The figures of the k-DOP tree's manual: build, nodes and leaves visited, time per query
     Kdop(KdopArguments),
+    /// Rays: the figures of the k-DOP tree's manual, or the first hit against rivals; fails if ours differ
+    Ray(RayArguments),
     /// The settings of the octree: resolution, domain, threads
     Octree(BatchArguments),
     /// Batches on the AABB tree: order, hints and threads, in wall time
@@ -159,6 +162,40 @@ struct KdopArguments {
 }
 
 #[derive(Args)]
+struct RayArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    /// Each scene in seven orientations
+    #[arg(long)]
+    turned: bool,
+    /// The first hit against rivals, in place of the manual's tables
+    #[arg(long)]
+    rivals: bool,
+    /// The same with these contenders only
+    #[arg(long, value_delimiter = ',', value_parser = ray_names())]
+    backends: Vec<String>,
+    /// Query sets at which rays begin [default: 1x for the manual's tables, 10x and 1x against rivals]
+    #[arg(long, value_delimiter = ',')]
+    sets: Vec<QuerySet>,
+    /// Rays a round [default: 20 for each primitive for the manual's tables, 200,000 against rivals]
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    rays: Option<u64>,
+    /// Rounds; contenders take turns
+    #[arg(long, default_value_t = 5)]
+    rounds: usize,
+    /// Seed of the rays
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Record of times against rivals to make or to add to, as comma-separated values
+    #[arg(long)]
+    csv: Option<PathBuf>,
+    /// Name of this build in tables and record [default: native with AVX2 at compile time, else portable]
+    #[arg(long)]
+    label: Option<String>,
+}
+
+#[derive(Args)]
 struct BatchArguments {
     /// Files of scenes
     #[arg(required = true)]
@@ -184,12 +221,17 @@ fn backend_names() -> PossibleValuesParser {
     backends::ALL.iter().map(|backend| backend.name).collect::<Vec<_>>().into()
 }
 
+fn ray_names() -> PossibleValuesParser {
+    rays::ALL.iter().map(|backend| backend.name).collect::<Vec<_>>().into()
+}
+
 fn main() -> Result<ExitCode> {
     let good = match Cli::parse().command {
         Command::Query(arguments) => query(&arguments)?,
         Command::Verify(arguments) => verify_all(&arguments)?,
         Command::Splits(arguments) => splits(&arguments)?,
         Command::Kdop(arguments) => kdops(&arguments)?,
+        Command::Ray(arguments) => ray(&arguments)?,
         Command::Octree(arguments) => octrees(&arguments)?,
         Command::Batch(arguments) => batches(&arguments)?,
     };
@@ -272,6 +314,39 @@ fn kdops(arguments: &KdopArguments) -> Result<bool> {
         let all = if *turned { kdop::orientations(&scene)? } else { vec![scene] };
         for scene in &all {
             good &= kdop::print(scene, *set, &effort);
+        }
+    }
+    Ok(good)
+}
+
+/// Whether all trees agree.
+fn ray(arguments: &RayArguments) -> Result<bool> {
+    let RayArguments { scenes, turned, rivals, backends, sets, rays, rounds, seed, csv, label } = arguments;
+    let versus = *rivals || !backends.is_empty();
+    let provenance = Provenance::collect(label.as_deref());
+    let mut record = csv.as_deref().map(report::Record::open).transpose()?;
+    println!("{provenance}");
+    println!("One thread, thread CPU time, {rounds} rounds in turns, seed {seed}.");
+    let usual: &[QuerySet] = if versus { &[QuerySet::Box10, QuerySet::Box1] } else { &[QuerySet::Box1] };
+    let sets = if sets.is_empty() { usual } else { sets };
+    if !versus {
+        rays::manual::print_cited();
+    }
+    let mut good = true;
+    for path in scenes {
+        let scene = Scene::read(path)?;
+        let all = if *turned { kdop::orientations(&scene)? } else { vec![scene] };
+        for scene in &all {
+            let count =
+                rays.map_or(Ok(if versus { 200_000 } else { rays::manual::RAYS_EACH * scene.len() }), usize::try_from)?;
+            let effort = Effort { rounds: *rounds, queries: count, builds: 1, seed: *seed };
+            if versus {
+                good &= rays::versus::print(scene, sets, backends, &effort, &provenance, record.as_mut())?;
+            } else {
+                for set in sets {
+                    good &= rays::manual::print(scene, *set, &effort)?;
+                }
+            }
         }
     }
     Ok(good)

@@ -124,15 +124,24 @@ fn build_once<'a>(scene: &'a Scene, entry: &mut Entry<'a>) {
     let before = memory::current();
     entry.index = (entry.backend.prepare)(scene).and_then(|prepared| {
         entry.build.borrowed = prepared.borrowed;
-        memory::reset_peak();
-        let start = ThreadTime::now();
-        let index = catch(prepared.build)?;
-        let seconds = start.elapsed().as_secs_f64();
-        entry.build.peak = memory::peak().saturating_sub(before);
-        entry.build.owned = memory::current().saturating_sub(before);
-        entry.build.seconds.push(seconds);
-        Ok(index)
+        weigh(&mut entry.build, before, || catch(prepared.build))
     });
+}
+
+/// Builds, and adds what that costs; `before` is the memory before its input was prepared.
+pub(crate) fn weigh<V>(
+    figures: &mut BuildFigures,
+    before: usize,
+    build: impl FnOnce() -> Result<V, Absent>,
+) -> Result<V, Absent> {
+    memory::reset_peak();
+    let start = ThreadTime::now();
+    let index = build()?;
+    let seconds = start.elapsed().as_secs_f64();
+    figures.peak = memory::peak().saturating_sub(before);
+    figures.owned = memory::current().saturating_sub(before);
+    figures.seconds.push(seconds);
+    Ok(index)
 }
 
 /// Measures one query set and appends its figures to every entry.
@@ -236,7 +245,7 @@ fn affordable(backend: &Backend, nanoseconds: f64) -> usize {
 }
 
 /// The numbers below `n`, beginning with another one in every round.
-fn rotated(n: usize, round: usize) -> impl Iterator<Item = usize> {
+pub(crate) fn rotated(n: usize, round: usize) -> impl Iterator<Item = usize> {
     (0..n).map(move |i| (i + round) % n)
 }
 

@@ -2,7 +2,7 @@
 
 use crate::backends::{YARDSTICK, YARDSTICK_DOUBLE};
 use crate::contender::Absent;
-use crate::measure::{Entry, SetFigures, Spread};
+use crate::measure::{BuildFigures, Entry, SetFigures, Spread};
 use crate::provenance::Provenance;
 use crate::scene::Scene;
 use crate::table::{Table, csv_line};
@@ -159,8 +159,30 @@ fn seconds(s: f64) -> String {
 }
 
 /// Two digits behind the point, more for small ratios.
-fn significant(ratio: f64) -> String {
+pub(crate) fn significant(ratio: f64) -> String {
     if ratio < 0.1 { format!("{ratio:.1e}") } else { format!("{ratio:.2}") }
+}
+
+/// What a line of a record has besides scene and build.
+pub(crate) struct Line<'a> {
+    /// Its name.
+    pub(crate) contender: &'a str,
+    /// The name of its scalar.
+    pub(crate) scalar: &'a str,
+    /// Of its builds.
+    pub(crate) build: &'a BuildFigures,
+    /// The name of the query set.
+    pub(crate) set: &'a str,
+    /// Queries a round.
+    pub(crate) queries: usize,
+    /// Seed of the query set.
+    pub(crate) seed: u64,
+    /// Which round.
+    pub(crate) round: usize,
+    /// Per query.
+    pub(crate) nanoseconds: f64,
+    /// Of the answers.
+    pub(crate) checksum: u64,
 }
 
 /// A file of comma-separated values, one line for each scene, contender, set and round. Lines are added to a file that
@@ -216,28 +238,48 @@ impl Record {
             for (set, figures) in sets.iter().zip(&entry.sets) {
                 let Ok(figures) = figures else { continue };
                 for (round, (ns, checksum)) in figures.nanoseconds.iter().zip(&figures.checksums).enumerate() {
-                    let fields: [String; COLUMNS.len()] = [
-                        scene.name.clone(),
-                        scene.len().to_string(),
-                        entry.backend.name.to_owned(),
-                        entry.backend.scalar.name().to_owned(),
-                        Spread::of(&build.seconds).map(|s| format!("{:.6}", s.median)).unwrap_or_default(),
-                        build.owned.to_string(),
-                        build.borrowed.to_string(),
-                        build.peak.to_string(),
-                        set.name().to_owned(),
-                        figures.queries.to_string(),
-                        seed.to_string(),
-                        round.to_string(),
-                        format!("{ns:.1}"),
-                        format!("{checksum:016x}"),
-                    ];
-                    let line: Vec<String> = provenance.fields().into_iter().chain(fields).collect();
-                    writeln!(self.file, "{}", csv_line(&line))?;
+                    self.line(
+                        provenance,
+                        scene,
+                        &Line {
+                            contender: entry.backend.name,
+                            scalar: entry.backend.scalar.name(),
+                            build,
+                            set: set.name(),
+                            queries: figures.queries,
+                            seed,
+                            round,
+                            nanoseconds: *ns,
+                            checksum: *checksum,
+                        },
+                    )?;
                 }
             }
         }
         Ok(())
+    }
+
+    /// Adds a line.
+    pub(crate) fn line(&mut self, provenance: &Provenance, scene: &Scene, line: &Line<'_>) -> Result<()> {
+        let build = line.build;
+        let fields: [String; COLUMNS.len()] = [
+            scene.name.clone(),
+            scene.len().to_string(),
+            line.contender.to_owned(),
+            line.scalar.to_owned(),
+            Spread::of(&build.seconds).map(|s| format!("{:.6}", s.median)).unwrap_or_default(),
+            build.owned.to_string(),
+            build.borrowed.to_string(),
+            build.peak.to_string(),
+            line.set.to_owned(),
+            line.queries.to_string(),
+            line.seed.to_string(),
+            line.round.to_string(),
+            format!("{:.1}", line.nanoseconds),
+            format!("{:016x}", line.checksum),
+        ];
+        let fields: Vec<String> = provenance.fields().into_iter().chain(fields).collect();
+        Ok(writeln!(self.file, "{}", csv_line(&fields))?)
     }
 }
 

@@ -224,3 +224,40 @@ impl<const K: usize> Clip<K> {
         min <= max
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use p2m_core::Triangle;
+
+    #[test]
+    fn rays_along_a_face_are_in_the_slab_or_beside_it() {
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point3::from);
+        let set = [Triangle { vertices: corners }];
+        let tree = LeftFirst::<14>::of_primitives(&set, &Directions::default());
+        let leaves = |y: f64, z: f64| {
+            let ray = Ray::new(&Point3::new(-1.0, y, z), &Vector3::x()).expect("a ray");
+            tree.along(&ray, |_| ()).leaves
+        };
+        assert_eq!([leaves(0.5, 0.0), leaves(1.0, 0.0), leaves(1.1, 0.0), leaves(0.5, 0.1)], [1, 1, 0, 0]);
+    }
+
+    #[test]
+    fn every_primitive_is_a_leaf_of_its_own_tree() {
+        let soup = crate::scenes::skewed_gear(20);
+        let tree = LeftFirst::<6>::of_primitives(&soup, &Directions::default());
+        let mut leaves: Vec<_> = tree
+            .nodes
+            .iter()
+            .filter_map(|node| match &node.below {
+                Below::Primitives(ids) => Some(ids),
+                Below::Children(_) => None,
+            })
+            .flatten()
+            .map(|id| id.index())
+            .collect();
+        leaves.sort_unstable();
+        assert_eq!(leaves, (0..soup.len()).collect::<Vec<_>>());
+        assert_eq!(tree.nodes.len(), 2 * soup.len() - 1);
+    }
+}
