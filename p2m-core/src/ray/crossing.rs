@@ -110,8 +110,24 @@ enum Source {
 
 /// u of f64.
 const U: f64 = f64::EPSILON / 2.0;
-/// What products may lack that underflow, and sums of them.
+/// What products may lack that underflow, times what they are multiplied with.
 const TINY: f64 = power_of_two(-1000);
+
+/// What sums of three products of differences may be off, given the sizes of what is summed in each component of the
+/// first factor and the second factor.
+#[inline(always)]
+fn rounding(sizes: &V3, x: &V3) -> f64 {
+    let [a, b, c] = [x[0].abs(), x[1].abs(), x[2].abs()];
+    10.0 * U * (a * sizes[0] + b * sizes[1] + c * sizes[2]) + TINY * (1.0 + a + b + c)
+}
+
+/// The cross product of two vectors, and the sizes of what is summed in it.
+#[inline(always)]
+fn cross_with_sizes(a: &V3, b: &V3) -> (V3, V3) {
+    let [p, q, r] = [[a[1] * b[2], a[2] * b[1]], [a[2] * b[0], a[0] * b[2]], [a[0] * b[1], a[1] * b[0]]];
+    let sum = |[x, y]: [f64; 2]| x.abs() + y.abs();
+    ([p[0] - p[1], q[0] - q[1], r[0] - r[1]], [sum(p), sum(q), sum(r)])
+}
 
 impl<'a> Crossing<'a> {
     /// What a primitive of your own answered, if it is in the range of the ray.
@@ -235,11 +251,8 @@ fn weighted(vertices: &[V3], weights: &V3) -> Point3<f64> {
 /// 1 or -1 if the moment D . (A x B) is certainly above or below zero, from offsets that are rounded; else 0.
 #[inline(always)]
 fn certain_sign(d: &V3, a: &V3, b: &V3) -> i32 {
-    let products = [[a[1] * b[2], a[2] * b[1]], [a[2] * b[0], a[0] * b[2]], [a[0] * b[1], a[1] * b[0]]];
-    let minors = products.map(|[p, q]| p - q);
-    let sizes = products.map(|[p, q]| p.abs() + q.abs());
-    let moment = dot(*d, minors);
-    let error = 8.0 * U * (d[0].abs() * sizes[0] + d[1].abs() * sizes[1] + d[2].abs() * sizes[2]) + TINY;
+    let (minors, sizes) = cross_with_sizes(a, b);
+    let (moment, error) = (dot(*d, minors), rounding(&sizes, d));
     i32::from(moment > error) - i32::from(moment < -error)
 }
 
@@ -268,12 +281,9 @@ fn exact_side(ray: &Ray, vertices: &[V3; 3], known: [i32; 3], only_crossings: bo
 #[inline(always)]
 fn parameter_bounds(ray: &Ray, vertices: &[V3; 3], a: &V3) -> [f64; 2] {
     let [e, f] = [sub(vertices[1], vertices[0]), sub(vertices[2], vertices[0])];
-    let products = [[e[1] * f[2], e[2] * f[1]], [e[2] * f[0], e[0] * f[2]], [e[0] * f[1], e[1] * f[0]]];
-    let normal = products.map(|[p, q]| p - q);
-    let sizes = products.map(|[p, q]| p.abs() + q.abs());
-    let error = |x: &V3| 8.0 * U * (x[0].abs() * sizes[0] + x[1].abs() * sizes[1] + x[2].abs() * sizes[2]) + TINY;
+    let (normal, sizes) = cross_with_sizes(&e, &f);
     let (height, speed) = (dot(normal, *a), dot(normal, ray.direction));
-    let (height_error, speed_error) = (error(a), error(&ray.direction));
+    let (height_error, speed_error) = (rounding(&sizes, a), rounding(&sizes, &ray.direction));
     let t = height / speed;
     let margin =
         (height_error + t.abs() * speed_error) / (speed.abs() - speed_error) * (1.0 + 16.0 * U) + t.abs() * (4.0 * U);
