@@ -43,6 +43,8 @@ pub struct PacketTree<V: Volume = Aabb<f64>> {
     shape: V::Shape,
     pub(crate) frame: Frame,
     bounds: Aabb<f64>,
+    /// Half of the box, for rays.
+    half: [f64; 3],
     /// Around everything, as nodes have it.
     whole: <V::Node as WideNode>::Bounds,
     pub(crate) root: Child,
@@ -130,6 +132,7 @@ impl<V: Volume> PacketTree<V> {
             shape,
             frame,
             bounds,
+            half: ray::half_box(&frame, &bounds),
             whole: V::Node::NOTHING,
             root,
             depth,
@@ -181,6 +184,7 @@ impl<V: Volume> PacketTree<V> {
         let packet_boxes = map(&self.leaves.packets, parallel, bounds_of);
         self.bounds = packet_boxes.iter().fold(Aabb::empty(), |a, b| a.union(b));
         self.frame = Frame::around(&self.bounds);
+        self.half = ray::half_box(&self.frame, &self.bounds);
         let finest = self.frame.unit * FINEST;
         let pack = |(packet, bounds): &(&Packet, &Aabb<f64>)| {
             let ids = packet.ids();
@@ -231,7 +235,7 @@ impl<V: Volume> PacketTree<V> {
         ray: &'r Ray,
         collector: &mut C,
     ) {
-        if ray::misses(ray, &self.frame, &self.bounds) {
+        if ray::misses(ray, &self.frame, &self.half) {
             return;
         }
         let intersect = intersection(set, ray, collector.only_crossings());
@@ -246,7 +250,7 @@ impl<V: Volume> PacketTree<V> {
         ray: &'r Ray,
         hits: &mut Hits<'r>,
     ) {
-        if ray::misses(ray, &self.frame, &self.bounds) {
+        if ray::misses(ray, &self.frame, &self.half) {
             return;
         }
         let intersect = intersection(set, ray, hits.only_crossings());

@@ -99,26 +99,30 @@ const MARGIN: f64 = power_of_two(-30);
 /// What products may lack that underflow.
 const TINY: f64 = power_of_two(-1000);
 
-/// Whether a ray certainly misses a box: it begins outside and goes away, or the box lies on one side of its projection
-/// along an axis. Most rays from far away are done with that.
+/// Whether a ray certainly misses the box of a scene, half of which is `half`: it begins outside and goes away, or the
+/// box lies on one side of its projection along an axis. Most rays from far away are done with that.
 #[inline(always)]
-pub(super) fn misses(ray: &Ray, frame: &Frame, bounds: &Aabb<f64>) -> bool {
+pub(super) fn misses(ray: &Ray, frame: &Frame, half: &[f64; 3]) -> bool {
     let (o, d, c) = (&ray.origin, &ray.direction, &frame.centre);
     let towards = [c[0] - o[0], c[1] - o[1], c[2] - o[2]];
-    // Half of the box, with room for the rounding of the line above.
-    let half =
-        |k: usize| (bounds.max[k] - bounds.min[k]) * (0.5 + SLIGHT) + (o[k].abs() + c[k].abs()) * ROUNDING + ray.radius;
-    let half = [half(0), half(1), half(2)];
+    // With room for all rounding here: the centre has brought its own.
+    let half = [0, 1, 2].map(|k: usize| half[k] + o[k].abs() * ROUNDING + ray.radius);
     // All of it and then one branch: one after the other they are mispredicted.
     let away = |k: usize| (towards[k] > half[k]) & (d[k] <= 0.0) | (towards[k] < -half[k]) & (d[k] >= 0.0);
     let goes_away = (ray.min >= 0.0) & (away(0) | away(1) | away(2));
     let beside = |i: usize, j: usize| {
         let off = (towards[i] * d[j] - towards[j] * d[i]).abs();
         let least = half[i] * d[j].abs() + half[j] * d[i].abs();
-        let room = (towards[i] * d[j]).abs() + (towards[j] * d[i]).abs();
-        off > least * (1.0 + SLIGHT) + room * ROUNDING + TINY
+        // Not where something overflows.
+        (off > least + TINY) & (off <= f64::MAX)
     };
     goes_away | beside(0, 1) | beside(1, 2) | beside(2, 0)
+}
+
+/// Half of the box of a scene, with room for the rounding of its centre and of what [`misses`] computes.
+pub(super) fn half_box(frame: &Frame, bounds: &Aabb<f64>) -> [f64; 3] {
+    let half = |k: usize| (bounds.max[k] * 0.5 - bounds.min[k] * 0.5) * (1.0 + SLIGHT);
+    std::array::from_fn(|k| half(k) + frame.centre[k].abs() * ROUNDING)
 }
 
 /// Components of directions for which lengths along the ray are plain.
