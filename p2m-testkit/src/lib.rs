@@ -8,6 +8,8 @@ pub mod families;
 pub mod left_first;
 pub mod oracle;
 pub mod queries;
+pub mod ray_oracle;
+pub mod rays;
 pub mod scenes;
 mod surface;
 

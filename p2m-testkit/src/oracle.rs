@@ -8,7 +8,8 @@ use dashu_int::ops::{BitTest, SquareRoot};
 use dashu_int::{IBig, UBig};
 use std::cmp::Ordering;
 
-type V = [IBig; 3];
+/// Three coordinates.
+pub(crate) type V = [IBig; 3];
 
 /// A finite f64 as mantissa and exponent.
 fn decompose(x: f64) -> (i64, i64) {
@@ -20,28 +21,28 @@ fn decompose(x: f64) -> (i64, i64) {
 }
 
 /// The exponent of the lowest set bit; a large one for zero.
-fn lowest_bit(x: f64) -> i64 {
+pub(crate) fn lowest_bit(x: f64) -> i64 {
     let (mantissa, exponent) = decompose(x);
     if mantissa == 0 { 2000 } else { exponent + i64::from(mantissa.trailing_zeros()) }
 }
 
 /// x as a multiple of 2^unit, which must divide it.
-fn integer(x: f64, unit: i64) -> IBig {
+pub(crate) fn integer(x: f64, unit: i64) -> IBig {
     let (mantissa, exponent) = decompose(x);
     let shift = exponent - unit;
     let up = |n: i64| usize::try_from(n).expect("not negative");
     if shift >= 0 { IBig::from(mantissa) << up(shift) } else { IBig::from(mantissa) >> up(-shift) }
 }
 
-fn sub(a: &V, b: &V) -> V {
+pub(crate) fn sub(a: &V, b: &V) -> V {
     std::array::from_fn(|k| &a[k] - &b[k])
 }
 
-fn dot(a: &V, b: &V) -> IBig {
+pub(crate) fn dot(a: &V, b: &V) -> IBig {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-fn cross(a: &V, b: &V) -> V {
+pub(crate) fn cross(a: &V, b: &V) -> V {
     std::array::from_fn(|k| {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         &a[i] * &b[j] - &a[j] * &b[i]

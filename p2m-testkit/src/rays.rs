@@ -1,0 +1,145 @@
+//! Rays that break kernels: through vertices and edges, along edges, in planes, from the surface, from afar.
+
+use nalgebra::{Point3, Vector3};
+use p2m_core::{PrimitiveId, PrimitiveSet, Ray, Soup};
+use rand::{Rng, RngExt};
+
+type P = Point3<f64>;
+
+/// How a ray is aimed at a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Aim {
+    /// From one place in ten times the box to another.
+    Random,
+    /// From a place to a vertex.
+    ToVertex,
+    /// From a vertex anywhere.
+    FromVertex,
+    /// From a vertex to another, or from before it.
+    Vertices,
+    /// From a place to a point of an edge.
+    ToEdge,
+    /// From a point of an edge, its middle more often than not.
+    FromEdge,
+    /// From a point of a face.
+    FromFace,
+    /// To a point of a face.
+    ToFace,
+    /// Along an edge, from anywhere on its line.
+    AlongEdge,
+    /// In the plane of a facet.
+    InPlane,
+    /// Along an axis or a diagonal through a vertex: exact as far as coordinates have room.
+    Axis,
+    /// From small integers to small integers.
+    Lattice,
+    /// From 1e6, 1e12 or 1e300 sizes away.
+    Far,
+}
+
+/// All of them.
+pub const AIMS: [Aim; 13] = [
+    Aim::Random,
+    Aim::ToVertex,
+    Aim::FromVertex,
+    Aim::Vertices,
+    Aim::ToEdge,
+    Aim::FromEdge,
+    Aim::FromFace,
+    Aim::ToFace,
+    Aim::AlongEdge,
+    Aim::InPlane,
+    Aim::Axis,
+    Aim::Lattice,
+    Aim::Far,
+];
+
+/// Three vertices of a random primitive; the last ones are repeated where it has fewer.
+fn corners(rng: &mut impl Rng, soup: &Soup<f64>) -> [P; 3] {
+    let primitive = soup.get(PrimitiveId::new(rng.random_range(0..soup.len())));
+    let vertices = primitive.vertices();
+    let turn = rng.random_range(0..3);
+    std::array::from_fn(|k| vertices[(k + turn) % vertices.len()])
+}
+
+fn vector(rng: &mut impl Rng) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0))
+}
+
+fn small(rng: &mut impl Rng) -> f64 {
+    f64::from(rng.random_range(-3..=3))
+}
+
+/// Origin and direction of a ray at a scene that is not empty. The direction may be zero.
+fn aimed(rng: &mut impl Rng, soup: &Soup<f64>, aim: Aim) -> (P, Vector3<f64>) {
+    let bounds = soup.aabb();
+    let size = (bounds.max - bounds.min).amax().max(f64::MIN_POSITIVE);
+    let [a, b, c] = corners(rng, soup);
+    let place = bounds.min + (bounds.max - bounds.min) * 0.5 + vector(rng) * (5.0 * size);
+    let weights: [f64; 2] = if rng.random() { [0.5, 0.25] } else { [rng.random(), 0.5 * rng.random::<f64>()] };
+    let on_edge = a + (b - a) * weights[0];
+    let on_face = a + (b - a) * (weights[0] * 0.5) + (c - a) * weights[1];
+    match aim {
+        Aim::Random => (place, vector(rng) * (5.0 * size)),
+        Aim::ToVertex => (place, a - place),
+        Aim::FromVertex => (a, vector(rng)),
+        Aim::Vertices => {
+            let [d, ..] = corners(rng, soup);
+            (a - (d - a) * small(rng), d - a)
+        }
+        Aim::ToEdge => (place, on_edge - place),
+        Aim::FromEdge => (on_edge, vector(rng)),
+        Aim::FromFace => (on_face, vector(rng)),
+        Aim::ToFace => (place, on_face - place),
+        Aim::AlongEdge => (a + (b - a) * small(rng), (b - a) * if rng.random() { -1.0 } else { 2.0 }),
+        Aim::InPlane => {
+            let mut inside = || (b - a) * small(rng) + (c - a) * small(rng);
+            (a + inside() * 0.5, inside())
+        }
+        Aim::Axis => {
+            let direction = Vector3::from_fn(|_, _| f64::from(rng.random_range(-1..=1)));
+            // Half of them along an axis.
+            let axis = Vector3::ith(rng.random_range(0..3), if rng.random() { 1.0 } else { -1.0 });
+            let direction = if rng.random() { direction } else { axis };
+            let through = if rng.random() { a } else { on_edge };
+            (through - direction * (size * small(rng)), direction)
+        }
+        Aim::Lattice => {
+            let direction = Vector3::from_fn(|_, _| small(rng));
+            (a.map(f64::round) + Vector3::from_fn(|_, _| small(rng)), direction)
+        }
+        Aim::Far => {
+            let origin = a + vector(rng) * (size * [1e6, 1e12, 1e300][rng.random_range(0..3)]);
+            (origin, a - origin)
+        }
+    }
+}
+
+/// A finite number beside another, by a few units in the last place.
+fn beside(rng: &mut impl Rng, x: f64) -> f64 {
+    match rng.random_range(0..3) {
+        0 => x.next_up(),
+        1 => x.next_down(),
+        _ => x,
+    }
+}
+
+/// A ray, half line or line or a piece of one, aimed at a scene that is not empty; in a third of the cases its
+/// coordinates are one unit off in the last place.
+pub fn ray(rng: &mut impl Rng, soup: &Soup<f64>, aim: Aim) -> Ray {
+    let (mut origin, mut direction) = aimed(rng, soup, aim);
+    if rng.random_range(0..3) == 0 {
+        origin = origin.map(|x| beside(rng, x));
+        if rng.random() {
+            direction = direction.map(|x| beside(rng, x));
+        }
+    }
+    // What has no length, or is too far away, goes anywhere.
+    let anywhere = vector(rng);
+    let ray = Ray::new(&origin, &direction).or_else(|_| Ray::new(&corners(rng, soup)[0], &anywhere)).expect("finite");
+    match rng.random_range(0..4) {
+        0 => ray,
+        1 => ray.with_range(0.0, 1.0).expect("in order"),
+        _ => ray.line(),
+    }
+}
