@@ -132,7 +132,9 @@ fn cross_with_sizes(a: &V3, b: &V3) -> (V3, V3) {
 impl<'a> Crossing<'a> {
     /// What a primitive of your own answered, if it is in the range of the ray.
     pub(crate) fn of_hit(ray: &'a Ray, hit: RayHit) -> Option<Self> {
-        let t = hit.parameter;
+        // Never -0.
+        let t = hit.parameter + 0.0;
+        let hit = RayHit { parameter: t, ..hit };
         ray.contains(t).then_some(Self { ray, low: t, high: t, source: Source::Known(hit) })
     }
 

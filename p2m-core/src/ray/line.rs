@@ -89,7 +89,12 @@ impl Ray {
     /// # Errors
     /// [`RayError::EmptyRange`] if `min > max` or one is NaN.
     pub fn with_range(self, min: f64, max: f64) -> Result<Self, RayError> {
-        if min <= max { Ok(Self { min, max, ..self }) } else { Err(RayError::EmptyRange { min, max }) }
+        // There is one zero, so that equal parameters have equal bits.
+        if min <= max {
+            Ok(Self { min: min + 0.0, max: max + 0.0, ..self })
+        } else {
+            Err(RayError::EmptyRange { min, max })
+        }
     }
 
     /// Segments and points are hit within this distance, in units of the scene. It does not matter to triangles.
