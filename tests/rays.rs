@@ -5,8 +5,8 @@
 
 use nalgebra::{Point3, Vector3};
 use p2m::{
-    Aabb, AabbTree, BruteForce, BuildIndex, Directions, Element, Feature, Hit, Isa, KdopTree, Primitive, PrimitiveId,
-    PrimitiveSet, Projection, Ray, RayError, RayHit, RayQuery, Real, Side, Soup,
+    Aabb, AabbTree, BruteForce, BuildIndex, Crossing, Directions, Element, Feature, Hit, Isa, KdopTree, Primitive,
+    PrimitiveId, PrimitiveSet, Projection, Ray, RayError, RayHit, RayQuery, Real, Side, Soup,
 };
 use p2m_testkit::families::{SCALES, wild};
 use p2m_testkit::ray_oracle::{Meeting, crossing};
@@ -41,8 +41,8 @@ fn backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: S) -> Vec<I
 
 /// All of a hit, comparable to the last bit.
 fn bits(hit: &Hit) -> (usize, u64, Side, [u64; 3], [u64; 3]) {
-    let point: [f64; 3] = hit.point.coords.into();
-    let [weights, point] = [hit.barycentric, point].map(|x| x.map(f64::to_bits));
+    let point: [f64; 3] = hit.point().coords.into();
+    let [weights, point] = [hit.barycentric(), point].map(|x| x.map(f64::to_bits));
     (hit.primitive.index(), hit.parameter.to_bits(), hit.side, weights, point)
 }
 
@@ -531,8 +531,8 @@ fn primitives_of_ones_own_are_hit_where_they_say() {
         let ray = [ray, ray.line(), ray.with_range(0.0, 1.0).expect("in order")][i % 3];
         let mut expected: Vec<Hit> = Vec::new();
         for (id, ball) in balls.iter().enumerate() {
-            let Some(RayHit { parameter, side, barycentric, point }) = ball.intersect_ray(&ray) else { continue };
-            expected.push(Hit { primitive: PrimitiveId::new(id), parameter, side, barycentric, point });
+            let Some(answer) = ball.intersect_ray(&ray) else { continue };
+            expected.push(Crossing::of_hit(&ray, answer).expect("in the range").hit(PrimitiveId::new(id)));
         }
         expected.sort_by(|a, b| a.parameter.total_cmp(&b.parameter).then(a.primitive.cmp(&b.primitive)));
         for backend in &backends {

@@ -367,7 +367,7 @@ impl Expected<'_> {
         if hit.side != self.side {
             return Err(format!("side {:?}, not {:?}", hit.side, self.side));
         }
-        for (k, (found, exact)) in hit.barycentric.iter().zip(&self.weights).enumerate() {
+        for (k, (found, exact)) in hit.barycentric().iter().zip(&self.weights).enumerate() {
             let right = match self.known {
                 _ if k >= self.vertices.len() => found.to_bits() == 0,
                 Known::Rounded => found.to_bits() == exact.round().to_bits(),
@@ -380,10 +380,10 @@ impl Expected<'_> {
                 return Err(format!("weight {k} is {found:e}, not {:e} ({:?})", exact.round(), self.known));
             }
         }
-        let point: [f64; 3] = hit.point.coords.into();
-        let vertex = hit.barycentric.iter().position(|w| *w == 1.0);
+        let point: [f64; 3] = hit.point().coords.into();
+        let vertex = hit.barycentric().iter().position(|w| *w == 1.0);
         if vertex.is_some_and(|vertex| point.map(f64::to_bits) != self.vertices[vertex].map(f64::to_bits)) {
-            return Err(format!("point {:?} is not vertex {vertex:?}", hit.point));
+            return Err(format!("point {:?} is not vertex {vertex:?}", hit.point()));
         }
         for k in 0..3 {
             let at = |weights: &[Ratio; 3]| {
@@ -396,11 +396,11 @@ impl Expected<'_> {
             let slack = Ratio::from(factor * U) * Ratio::from(size) + Ratio::from(3.0 * f64::from_bits(1));
             let far = |x: Ratio, y: &Ratio| slack.is_below(&(x - y.clone()).abs());
             let exact = at(&self.weights);
-            if !hit.point[k].is_finite() || far(Ratio::from(hit.point[k]), &exact) {
-                return Err(format!("coordinate {k} of the point is {:e}, not {:e}", hit.point[k], exact.round()));
+            if !hit.point()[k].is_finite() || far(Ratio::from(hit.point()[k]), &exact) {
+                return Err(format!("coordinate {k} of the point is {:e}, not {:e}", hit.point()[k], exact.round()));
             }
-            if far(at(&hit.barycentric.map(Ratio::from)), &exact) {
-                return Err(format!("weights {:?} make another point", hit.barycentric));
+            if far(at(&hit.barycentric().map(Ratio::from)), &exact) {
+                return Err(format!("weights {:?} make another point", hit.barycentric()));
             }
         }
         Ok(())

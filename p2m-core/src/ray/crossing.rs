@@ -7,10 +7,11 @@
 
 use super::exact::Exact;
 use super::line::Ray;
-use crate::PrimitiveId;
 use crate::kernel::double::{Double, dot as double_dot};
 use crate::kernel::power_of_two;
 use crate::kernel::vector::{V3, dot, sub};
+use crate::real::wide;
+use crate::{Primitive, PrimitiveId, Real};
 use nalgebra::Point3;
 use std::cmp::Ordering;
 
@@ -130,8 +131,21 @@ fn cross_with_sizes(a: &V3, b: &V3) -> (V3, V3) {
 }
 
 impl<'a> Crossing<'a> {
+    /// Where a ray meets a primitive, for a backend of your own: `None` for a miss, and where the parameter is out of the
+    /// range of the ray or certainly exceeds `limit`. `only_crossings` as [`RayCollector`](super::RayCollector) says.
+    #[must_use]
+    pub fn of<T: Real>(primitive: &impl Primitive<T>, ray: &'a Ray, limit: f64, only_crossings: bool) -> Option<Self> {
+        match primitive.vertices() {
+            [] => Self::of_hit(ray, primitive.intersect_ray(ray).filter(|_| !only_crossings)?),
+            [a] => Self::of_vertices(ray, &[wide(a)], limit, only_crossings),
+            [a, b] => Self::of_vertices(ray, &[wide(a), wide(b)], limit, only_crossings),
+            [a, b, c, ..] => Self::of_vertices(ray, &[wide(a), wide(b), wide(c)], limit, only_crossings),
+        }
+    }
+
     /// What a primitive of your own answered, if it is in the range of the ray.
-    pub(crate) fn of_hit(ray: &'a Ray, hit: RayHit) -> Option<Self> {
+    #[must_use]
+    pub fn of_hit(ray: &'a Ray, hit: RayHit) -> Option<Self> {
         // Never -0.
         let t = hit.parameter + 0.0;
         let hit = RayHit { parameter: t, ..hit };

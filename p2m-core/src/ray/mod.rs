@@ -17,7 +17,7 @@ pub use counting::RayCounting;
 pub use crossing::{Crossing, Hit, RayHit, Side};
 pub use line::{Ray, RayError};
 
-use crate::{BruteForce, Primitive, PrimitiveId, PrimitiveSet, Real};
+use crate::{BruteForce, PrimitiveId, PrimitiveSet, Real};
 use std::ops::ControlFlow;
 
 /// What a ray meets of a scene. A backend writes one method, [`search_ray`](Self::search_ray).
@@ -121,30 +121,11 @@ pub trait RayQuery<T: Real> {
     }
 }
 
-/// Where a ray meets a primitive of a set: by its vertices, if it has them.
-pub(crate) fn crossing<'r, T: Real>(
-    primitive: &impl Primitive<T>,
-    ray: &'r Ray,
-    limit: f64,
-    only_crossings: bool,
-) -> Option<Crossing<'r>> {
-    use crate::real::wide;
-    match primitive.vertices() {
-        [] => Crossing::of_hit(ray, primitive.intersect_ray(ray).filter(|_| !only_crossings)?),
-        [a] => Crossing::of_vertices(ray, &[wide(a)], limit, only_crossings),
-        [a, b] => Crossing::of_vertices(ray, &[a, b].map(wide), limit, only_crossings),
-        vertices => {
-            let triangle = std::array::from_fn::<_, 3, _>(|v| wide(&vertices[v]));
-            Crossing::of_vertices(ray, &triangle, limit, only_crossings)
-        }
-    }
-}
-
 impl<T: Real, S: PrimitiveSet<T>> RayQuery<T> for BruteForce<S> {
     fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>) {
         let only_crossings = hits.only_crossings();
         let _ = (0..self.set().len()).map(PrimitiveId::new).try_for_each(|id| {
-            match crossing(&self.set().get(id), ray, hits.limit(), only_crossings) {
+            match Crossing::of(&self.set().get(id), ray, hits.limit(), only_crossings) {
                 Some(crossing) => hits.offer(id, &crossing),
                 None => ControlFlow::Continue(()),
             }

@@ -17,7 +17,6 @@ mod walk;
 
 use super::Hierarchy;
 use crate::packet::{Kind, LANES, Packet};
-use crate::ray::crossing;
 use crate::real::wide;
 use crate::simd::{Isa, prefetch_lines};
 use crate::{
@@ -363,7 +362,7 @@ fn intersection<'r, T: Real, S: PrimitiveSet<T> + ?Sized>(
     ray: &'r Ray,
     only_crossings: bool,
 ) -> impl Fn(PrimitiveId, f64) -> Option<Crossing<'r>> {
-    move |id, limit| crossing(&set.get(id), ray, limit, only_crossings)
+    move |id, limit| Crossing::of(&set.get(id), ray, limit, only_crossings)
 }
 
 /// Maps in order, on all threads if asked to.

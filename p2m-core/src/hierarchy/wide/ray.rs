@@ -105,8 +105,8 @@ const TINY: f64 = power_of_two(-1000);
 pub(super) fn misses(ray: &Ray, frame: &Frame, half: &[f64; 3]) -> bool {
     let (o, d, c) = (&ray.origin, &ray.direction, &frame.centre);
     let towards = [c[0] - o[0], c[1] - o[1], c[2] - o[2]];
-    // With room for all rounding here: the centre has brought its own.
-    let half = [0, 1, 2].map(|k: usize| half[k] + o[k].abs() * ROUNDING + ray.radius);
+    // With room for all rounding here (the centre has brought its own), and for that of a parameter to zero.
+    let half = [0, 1, 2].map(|k: usize| half[k] + o[k].abs() * ROUNDING + d[k].abs() * TINY + ray.radius);
     // All of it and then one branch: one after the other they are mispredicted.
     let away = |k: usize| (towards[k] > half[k]) & (d[k] <= 0.0) | (towards[k] < -half[k]) & (d[k] >= 0.0);
     let goes_away = (ray.min >= 0.0) & (away(0) | away(1) | away(2));
@@ -122,7 +122,7 @@ pub(super) fn misses(ray: &Ray, frame: &Frame, half: &[f64; 3]) -> bool {
 /// Half of the box of a scene, with room for the rounding of its centre and of what [`misses`] computes.
 pub(super) fn half_box(frame: &Frame, bounds: &Aabb<f64>) -> [f64; 3] {
     let half = |k: usize| (bounds.max[k] * 0.5 - bounds.min[k] * 0.5) * (1.0 + SLIGHT);
-    std::array::from_fn(|k| half(k) + frame.centre[k].abs() * ROUNDING)
+    std::array::from_fn(|k| half(k) + frame.centre[k].abs() * ROUNDING + TINY)
 }
 
 /// Components of directions for which lengths along the ray are plain.
