@@ -9,7 +9,7 @@ use p2m::{
     PrimitiveId, PrimitiveSet, Projection, Ray, RayError, RayHit, RayQuery, Real, Side, Soup,
 };
 use p2m_testkit::families::{SCALES, wild};
-use p2m_testkit::ray_oracle::{Meeting, crossing};
+use p2m_testkit::ray_check::{Truth, agrees, bits};
 use p2m_testkit::rays::{AIMS, ray};
 use p2m_testkit::rng;
 use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS};
@@ -39,89 +39,6 @@ fn backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: S) -> Vec<I
     all
 }
 
-/// All of a hit, comparable to the last bit.
-fn bits(hit: &Hit) -> (usize, u64, Side, [u64; 3], [u64; 3]) {
-    let point: [f64; 3] = hit.point().coords.into();
-    let [weights, point] = [hit.barycentric(), point].map(|x| x.map(f64::to_bits));
-    (hit.primitive.index(), hit.parameter.to_bits(), hit.side, weights, point)
-}
-
-/// What the line of a ray does with a scene.
-struct Truth {
-    meetings: Vec<(usize, Meeting)>,
-    crossings: Vec<f64>,
-}
-
-impl Truth {
-    fn new(primitives: &[Vec<[f64; 3]>], ray: &Ray) -> Self {
-        let meetings = primitives.iter().enumerate().filter_map(|(i, v)| Some((i, Meeting::new(ray, v)?)));
-        let crossings = primitives.iter().filter_map(|v| Some(crossing(ray, v)?.1));
-        Self { meetings: meetings.collect(), crossings: crossings.collect() }
-    }
-
-    /// The hits of brute force, each checked.
-    fn hits<T: Real>(&self, brute: &dyn RayQuery<T>, ray: &Ray, say: &dyn Fn() -> String) -> Vec<Hit> {
-        let mut expected: Vec<_> =
-            self.meetings.iter().filter_map(|(i, meeting)| Some((i, meeting.in_range(ray.range())?))).collect();
-        expected.sort_by(|(i, a), (j, b)| a.parameter.partial_cmp(&b.parameter).expect("no NaN").then(i.cmp(j)));
-        let found = brute.all_intersections(ray);
-        let ids = |hits: &[Hit]| hits.iter().map(|h| (h.primitive.index(), h.parameter)).collect::<Vec<_>>();
-        let all: Vec<_> = expected.iter().map(|(i, e)| (**i, e.parameter)).collect();
-        assert_eq!(ids(&found), all, "{} {ray:?}", say());
-        for (hit, (_, expected)) in found.iter().zip(&expected) {
-            if let Err(what) = expected.check(hit) {
-                panic!("{what}: {} {ray:?} {hit:?} {expected:?}", say());
-            }
-        }
-        found
-    }
-
-    /// How often the surface is crossed in the range of the ray.
-    fn crossings(&self, ray: &Ray) -> usize {
-        let [min, max] = ray.range();
-        self.crossings.iter().filter(|t| min <= **t && **t <= max).count()
-    }
-
-    /// Numbers at which ranges are worth beginning or ending.
-    fn parameters(&self) -> Vec<f64> {
-        let hits = self.meetings.iter().flat_map(|(_, meeting)| meeting.parameters());
-        hits.chain(self.crossings.iter().copied()).chain([0.0, -0.0, 1.0]).collect()
-    }
-}
-
-/// A backend against what is known of a ray.
-fn agrees<T: Real>((name, index): &Index<'_, T>, ray: &Ray, hits: &[Hit], crossings: usize, say: &dyn Fn() -> String) {
-    let say = || format!("{name}: {} {ray:?}", say());
-    let expected: Vec<_> = hits.iter().map(bits).collect();
-    let found: Vec<_> = index.all_intersections(ray).iter().map(bits).collect();
-    assert_eq!(found, expected, "{}", say());
-    assert_eq!(index.first_intersection(ray).as_ref().map(bits), expected.first().copied(), "{}: first", say());
-    assert_eq!(index.do_intersect(ray), !hits.is_empty(), "{}: whether", say());
-    assert_eq!(index.count(ray), hits.len(), "{}: count", say());
-    assert_eq!(index.crossings(ray), crossings, "{}: crossings", say());
-    match index.any_intersection(ray) {
-        Some(hit) => assert!(expected.contains(&bits(&hit)), "{}: any is {hit:?}", say()),
-        None => assert!(hits.is_empty(), "{}: any", say()),
-    }
-}
-
-/// A range that often begins or ends at a hit or next to one.
-fn range<R: Rng>(rng: &mut R, parameters: &[f64]) -> [f64; 2] {
-    let mut end = || {
-        let t = parameters[rng.random_range(0..parameters.len())];
-        match rng.random_range(0..8) {
-            0 => f64::NEG_INFINITY,
-            1 => f64::INFINITY,
-            2 => t.next_up(),
-            3 => t.next_down(),
-            4 => 0.5 * t,
-            _ => t,
-        }
-    };
-    let (a, b) = (end(), end());
-    if a <= b { [a, b] } else { [b, a] }
-}
-
 /// What was checked: rays, hits, and hits along a stretch.
 #[derive(Debug, Default)]
 struct Checked {
@@ -138,17 +55,16 @@ fn check<T: Real, R: Rng>(soup: &Soup<T>, rays: &[Ray], rng: &mut R, checked: &m
         (0..soup.len()).map(|i| soup.get(PrimitiveId::new(i)).vertices().iter().map(wide).collect()).collect();
     let backends = backends(soup);
     for ray in rays {
-        let truth = Truth::new(&primitives, ray);
-        let parameters = truth.parameters();
+        let truth = Truth::new(&primitives, 0..primitives.len(), ray);
         for round in 0..6 {
             let ray = match round {
                 0 => *ray,
                 _ => {
-                    let [min, max] = range(rng, &parameters);
+                    let [min, max] = truth.range(rng);
                     ray.with_range(min, max).expect("in order")
                 }
             };
-            let hits = truth.hits(&*backends[0].1, &ray, say);
+            let hits = truth.checked_hits(&*backends[0].1, &ray, say);
             let crossings = truth.crossings(&ray);
             checked.rays += 1;
             checked.hits += hits.len();
@@ -156,9 +72,9 @@ fn check<T: Real, R: Rng>(soup: &Soup<T>, rays: &[Ray], rng: &mut R, checked: &m
             checked.crossings += crossings;
             // Ranges take turns.
             let turn = rng.random_range(0..3);
-            for (i, backend) in backends.iter().enumerate() {
+            for (i, (name, index)) in backends.iter().enumerate() {
                 if round == 0 || i == 0 || i % 3 == turn {
-                    agrees(backend, &ray, &hits, crossings, say);
+                    agrees(&**index, &ray, &hits, crossings, &|| format!("{name}: {}", say()));
                 }
             }
         }
@@ -535,8 +451,8 @@ fn primitives_of_ones_own_are_hit_where_they_say() {
             expected.push(Crossing::of_hit(&ray, answer).expect("in the range").hit(PrimitiveId::new(id)));
         }
         expected.sort_by(|a, b| a.parameter.total_cmp(&b.parameter).then(a.primitive.cmp(&b.primitive)));
-        for backend in &backends {
-            agrees(backend, &ray, &expected, 0, &|| format!("ray {i}"));
+        for (name, index) in &backends {
+            agrees(&**index, &ray, &expected, 0, &|| format!("{name}: ray {i}"));
         }
         count += expected.len();
     }

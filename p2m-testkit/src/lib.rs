@@ -6,8 +6,10 @@
 
 pub mod families;
 pub mod left_first;
+pub mod line_filter;
 pub mod oracle;
 pub mod queries;
+pub mod ray_check;
 pub mod ray_oracle;
 pub mod rays;
 pub mod scenes;

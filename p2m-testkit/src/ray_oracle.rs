@@ -236,6 +236,19 @@ fn determinant([a, b, c]: [&V; 3]) -> IBig {
     even - odd
 }
 
+/// The point of the line of a ray that is nearest to a position, rounded.
+#[must_use]
+pub fn nearest_to(ray: &Ray, position: [f64; 3]) -> [f64; 3] {
+    let vector = |p: [f64; 3]| p.map(Ratio::from);
+    let (o, d, p) = (vector(ray.origin().coords.into()), vector(ray.direction().into()), vector(position));
+    let dot = |a: &[Ratio; 3], b: &[Ratio; 3]| {
+        a.iter().zip(b).map(|(a, b)| a.clone() * b.clone()).reduce(|a, b| a + b).expect("three")
+    };
+    let offset = std::array::from_fn(|k| p[k].clone() - o[k].clone());
+    let t = dot(&offset, &d) / dot(&d, &d);
+    std::array::from_fn(|k| (o[k].clone() + t.clone() * d[k].clone()).round())
+}
+
 /// A point of a primitive on a line.
 #[derive(Clone, Debug)]
 struct Place {

@@ -1,0 +1,170 @@
+//! Which primitives of a large scene a line could meet: a plain tree of boxes with generous margins, so that rational
+//! arithmetic has few to decide.
+
+use crate::ray_oracle::nearest_to;
+use p2m_core::Ray;
+use std::ops::Range;
+
+type P = [f64; 3];
+
+/// How much farther than exactly a line may pass, of everything's size: thousands of roundings.
+const MARGIN: f64 = 1e-12;
+
+/// A binary tree over the vertices of primitives.
+pub struct LineFilter<'a> {
+    primitives: &'a [Vec<P>],
+    /// Ids in the order of the leaves.
+    order: Vec<usize>,
+    nodes: Vec<Node>,
+}
+
+struct Node {
+    centre: P,
+    half: P,
+    ids: Range<usize>,
+    /// Of the two children; leaves have none.
+    children: Option<[usize; 2]>,
+}
+
+/// A line near the scene: a point of it, and its direction of size 1.
+struct Line {
+    point: P,
+    direction: P,
+    radius: f64,
+}
+
+fn size(x: &P) -> f64 {
+    x.iter().fold(0.0, |m, x| m.max(x.abs()))
+}
+
+fn cross(a: &P, b: &P) -> P {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+impl<'a> LineFilter<'a> {
+    /// Of primitives of moderate coordinates.
+    #[must_use]
+    pub fn new(primitives: &'a [Vec<P>]) -> Self {
+        let mut filter = Self { primitives, order: (0..primitives.len()).collect(), nodes: Vec::new() };
+        if !primitives.is_empty() {
+            filter.build(0..primitives.len());
+        }
+        filter
+    }
+
+    fn build(&mut self, ids: Range<usize>) -> usize {
+        let vertices = || self.order[ids.clone()].iter().flat_map(|i| &self.primitives[*i]);
+        let min: P = std::array::from_fn(|k| vertices().fold(f64::INFINITY, |m, v| m.min(v[k])));
+        let max: P = std::array::from_fn(|k| vertices().fold(f64::NEG_INFINITY, |m, v| m.max(v[k])));
+        let centre = std::array::from_fn(|k| 0.5 * min[k] + 0.5 * max[k]);
+        let half: P = std::array::from_fn(|k| 0.5 * max[k] - 0.5 * min[k]);
+        let node = self.nodes.len();
+        self.nodes.push(Node { centre, half, ids: ids.clone(), children: None });
+        if ids.len() > 4 {
+            let axis = (0..3).max_by(|a, b| half[*a].total_cmp(&half[*b])).expect("three");
+            let middle = ids.len() / 2;
+            let of = |i: &usize| self.primitives[*i].iter().map(|v| v[axis]).sum::<f64>();
+            self.order[ids.clone()].select_nth_unstable_by(middle, |a, b| of(a).total_cmp(&of(b)));
+            let middle = ids.start + middle;
+            let children = [self.build(ids.start..middle), self.build(middle..ids.end)];
+            self.nodes[node].children = Some(children);
+        }
+        node
+    }
+
+    /// All primitives that the whole line of a ray could meet, and some others.
+    #[must_use]
+    pub fn near(&self, ray: &Ray) -> Vec<usize> {
+        let Some(root) = self.nodes.first() else { return Vec::new() };
+        let direction: P = ray.direction().into();
+        // From where it passes the scene, lest the margin of a far origin hold everything.
+        let line = Line {
+            point: nearest_to(ray, root.centre),
+            direction: direction.map(|x| x / size(&direction)),
+            radius: ray.radius(),
+        };
+        let (mut found, mut stack) = (Vec::new(), vec![0]);
+        while let Some(node) = stack.pop() {
+            let node = &self.nodes[node];
+            if line.misses_box(&node.centre, &node.half) {
+                continue;
+            }
+            match node.children {
+                Some(children) => stack.extend(children),
+                None => found
+                    .extend(self.order[node.ids.clone()].iter().filter(|i| !line.misses_hull(&self.primitives[**i]))),
+            }
+        }
+        found.sort_unstable();
+        found
+    }
+}
+
+impl Line {
+    /// What is across the line is seen along the edges of a box: there are three ways to look.
+    fn misses_box(&self, centre: &P, half: &P) -> bool {
+        let offset = std::array::from_fn(|k| centre[k] - self.point[k]);
+        let margin = self.radius + MARGIN * (size(centre) + size(half) + size(&self.point));
+        let aside = cross(&offset, &self.direction);
+        let d = self.direction.map(f64::abs);
+        (0..3).any(|k| {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            aside[k].abs() > (half[i] + margin) * d[j] + (half[j] + margin) * d[i]
+        })
+    }
+
+    /// Across the line, all vertices are on one side of it, seen along an edge or across one.
+    fn misses_hull(&self, vertices: &[P]) -> bool {
+        let aside: Vec<P> =
+            vertices.iter().map(|v| cross(&std::array::from_fn(|k| v[k] - self.point[k]), &self.direction)).collect();
+        // A distance across is up to three times as long there.
+        let reach = vertices.iter().map(size).fold(size(&self.point), f64::max);
+        let margin = 3.0 * (self.radius + MARGIN * reach);
+        let dot = |a: &P, b: &P| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let separates = |axis: P| {
+            let slack = margin * size(&axis) * 3.0;
+            aside.iter().all(|a| dot(a, &axis) > slack) || aside.iter().all(|a| dot(a, &axis) < -slack)
+        };
+        (0..aside.len()).any(|i| {
+            let (a, b) = (&aside[i], &aside[(i + 1) % aside.len()]);
+            let edge = std::array::from_fn(|k| b[k] - a[k]);
+            separates(edge) || separates(cross(&edge, &self.direction)) || separates(*a)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ray_oracle::{Meeting, crossing};
+    use crate::rays::{AIMS, ray};
+    use crate::scenes::{KINDS, LAYOUTS, scene};
+    use nalgebra::Point3;
+    use p2m_core::{PrimitiveId, PrimitiveSet, Soup};
+
+    #[test]
+    fn nothing_that_is_met_is_left_out() {
+        let (mut kept, mut met, mut all) = (0, 0, 0);
+        for seed in 0..48 {
+            let mut rng = crate::rng("line filter", seed);
+            let (positions, elements) = scene(&mut rng, KINDS[seed as usize % 4], LAYOUTS[seed as usize / 4 % 6], 100);
+            let soup = Soup::new(positions.into_iter().map(Point3::from).collect(), elements).expect("valid");
+            let primitives: Vec<Vec<P>> = (0..soup.len())
+                .map(|i| soup.get(PrimitiveId::new(i)).vertices().iter().map(|v| v.coords.into()).collect())
+                .collect();
+            let filter = LineFilter::new(&primitives);
+            for aim in AIMS {
+                let ray = ray(&mut rng, &soup, aim).with_radius([0.0, 1e-3][seed as usize % 2]).expect("valid");
+                let near = filter.near(&ray);
+                for (i, vertices) in primitives.iter().enumerate() {
+                    let meets = Meeting::new(&ray, vertices).is_some() || crossing(&ray, vertices).is_some();
+                    assert!(!meets || near.binary_search(&i).is_ok(), "seed {seed} {ray:?} {vertices:?}");
+                    met += usize::from(meets);
+                }
+                kept += near.len();
+                all += primitives.len();
+            }
+        }
+        assert!(met > 1000 && kept < 2 * met, "{met} met, {kept} kept of {all}");
+    }
+}

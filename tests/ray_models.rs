@@ -1,0 +1,170 @@
+//! Rays on real meshes: every answer against exact rational arithmetic, and closed surfaces that let nothing slip
+//! through. Skips, and says so, where there is no folder of models.
+//!
+//! `P2M_RAYS` is how many rays each model gets, and `P2M_LINES` how many lines each closed one.
+
+#![cfg(all(feature = "bvh", feature = "kdop", feature = "mixed"))]
+
+use nalgebra::{Point3, Vector3};
+use p2m::hierarchy::{TreeIndex, Volume};
+use p2m::{
+    AabbTree, BuildIndex, Crossing, Element, KdopTree, PrimitiveId, PrimitiveSet, Ray, RayCollector, Side, Soup,
+};
+use p2m_testkit::line_filter::LineFilter;
+use p2m_testkit::ray_check::{Truth, agrees};
+use p2m_testkit::rays::{AIMS, ray};
+use p2m_testkit::{model_files, rng};
+use rand::{Rng, RngExt};
+use std::collections::HashMap;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+/// A number from the environment.
+fn number(name: &str, default: usize) -> usize {
+    std::env::var(name).map_or(default, |n| n.parse().expect("a number"))
+}
+
+fn read(path: &PathBuf) -> (String, Soup<f64>) {
+    let name = path.file_name().expect("a file").to_string_lossy().into_owned();
+    (name, p2m::scene::read_scene(path).expect("readable").soup)
+}
+
+/// The sum of what each of `count` cases returns, on all cores.
+fn on_all_cores<const N: usize>(count: usize, case: impl Fn(usize) -> [usize; N] + Sync) -> [usize; N] {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let add = |a: [usize; N], b: [usize; N]| std::array::from_fn(|k| a[k] + b[k]);
+    std::thread::scope(|scope| {
+        let case = &case;
+        let part = |first| move || (first..count).step_by(cores).map(case).fold([0; N], add);
+        let threads: Vec<_> = (0..cores).map(|first| scope.spawn(part(first))).collect();
+        threads.into_iter().map(|thread| thread.join().expect("no panic")).fold([0; N], add)
+    })
+}
+
+#[test]
+fn every_model_is_met_as_exact_arithmetic_says() {
+    let count = number("P2M_RAYS", 2000);
+    for path in model_files() {
+        let (name, soup) = read(&path);
+        let vertices = |i| soup.get(PrimitiveId::new(i)).vertices().iter().map(|v| v.coords.into()).collect();
+        let primitives: Vec<Vec<[f64; 3]>> = (0..soup.len()).map(vertices).collect();
+        let filter = LineFilter::new(&primitives);
+        let boxes = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let kdops = KdopTree::<f64, _, 14>::build(&soup, &Default::default()).expect("valid");
+        let bounds = soup.aabb();
+        let size = (bounds.max - bounds.min).amax();
+        let [asked, met, along, crossed] = on_all_cores(count, |i| {
+            let mut rng = rng("rays of models", i as u64);
+            let radius = if i % 2 == 0 { 0.0 } else { size * 10f64.powi(-rng.random_range(2..12)) };
+            let ray = ray(&mut rng, &soup, AIMS[i % AIMS.len()]).with_radius(radius).expect("valid");
+            let near = filter.near(&ray);
+            let asked = near.len();
+            let truth = Truth::new(&primitives, near, &ray);
+            let [min, max] = truth.range(&mut rng);
+            let mut sums = [asked, 0, 0, 0];
+            for ray in [ray, ray.with_range(min, max).expect("in order")] {
+                let say = || format!("{name}, ray {i}");
+                let hits = truth.checked_hits(&boxes, &ray, &say);
+                let crossings = truth.crossings(&ray);
+                agrees(&boxes, &ray, &hits, crossings, &|| format!("{}, boxes", say()));
+                agrees(&kdops, &ray, &hits, crossings, &|| format!("{}, k-DOPs", say()));
+                let along = hits.iter().filter(|hit| hit.side == Side::Along).count();
+                sums = [sums[0], sums[1] + hits.len(), sums[2] + along, sums[3] + crossings];
+            }
+            sums
+        });
+        println!(
+            "{name}: {count} rays, {asked} decided exactly, {met} hits, {along} of them along, {crossed} crossings"
+        );
+        assert!(met > count / 10, "{name}: rays are aimed at it");
+    }
+}
+
+/// How often a line enters and leaves.
+#[derive(Default)]
+struct Sides {
+    front: usize,
+    back: usize,
+}
+
+impl<'r> RayCollector<'r> for Sides {
+    fn only_crossings(&self) -> bool {
+        true
+    }
+
+    fn offer(&mut self, id: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()> {
+        match crossing.hit(id).side {
+            Side::Front => self.front += 1,
+            Side::Back => self.back += 1,
+            Side::Along => panic!("crossed along"),
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// Each edge is as often there in one direction as in the other, by the positions of its ends.
+fn is_closed(soup: &Soup<f64>) -> bool {
+    let mut edges: HashMap<[[u64; 3]; 2], i32> = HashMap::new();
+    // One zero.
+    let at = |i: u32| -> [u64; 3] { soup.positions()[i as usize].map(|x| (x + 0.0).to_bits()).coords.into() };
+    for element in soup.elements() {
+        let Element::Triangle(corners) = element else { return false };
+        for k in 0..3 {
+            let (a, b) = (at(corners[k]), at(corners[(k + 1) % 3]));
+            if a < b {
+                *edges.entry([a, b]).or_default() += 1;
+            } else if b < a {
+                *edges.entry([b, a]).or_default() -= 1;
+            }
+        }
+    }
+    edges.values().all(|sum| *sum == 0)
+}
+
+/// A line through ten times the box; half of them exactly through a vertex, or as nearly as floats allow through a
+/// point of an edge.
+fn line<R: Rng>(rng: &mut R, soup: &Soup<f64>) -> Ray {
+    let bounds = soup.aabb();
+    let size = (bounds.max - bounds.min).amax();
+    let middle = bounds.min + (bounds.max - bounds.min) * 0.5;
+    let mut place = || middle + Vector3::from_fn(|_, _| rng.random_range(-0.7..0.7)) * size;
+    let (from, to) = (place(), place());
+    let triangle = soup.get(PrimitiveId::new(rng.random_range(0..soup.len())));
+    let [a, b]: [Point3<f64>; 2] = [triangle.vertices()[0], triangle.vertices()[1]];
+    let edge = a + (b - a) * rng.random::<f64>();
+    let (origin, direction) = match rng.random_range(0..8) {
+        0 => (a, to - from),
+        1 => (a, Vector3::from_fn(|_, _| f64::from(rng.random_range(-2..=2)))),
+        2 => (edge, to - from),
+        3 => (from, if rng.random() { edge - from } else { a - from }),
+        _ => (from, to - from),
+    };
+    Ray::new(&origin, &direction).or_else(|_| Ray::new(&a, &(to - from))).expect("finite").line()
+}
+
+fn sides<V: Volume>(tree: &TreeIndex<f64, &Soup<f64>, V>, line: &Ray) -> [usize; 2] {
+    let mut sides = Sides::default();
+    tree.visit_ray(line, &mut sides);
+    [sides.front, sides.back]
+}
+
+/// As many crossings enter as leave, whatever edges and vertices a line is aimed at.
+#[test]
+fn closed_models_let_nothing_slip_through() {
+    let count = number("P2M_LINES", 20_000);
+    let closed = ["bunny.obj", "camel.off", "armadillo.obj", "lucy_100k.ply", "dragon_100k.obj"];
+    for path in model_files().iter().filter(|path| closed.iter().any(|name| path.ends_with(name))) {
+        let (name, soup) = read(path);
+        assert!(is_closed(&soup), "{name} should be closed");
+        let boxes = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let kdops = KdopTree::<f64, _, 14>::build(&soup, &Default::default()).expect("valid");
+        let [crossed, crossings] = on_all_cores(count, |i| {
+            let line = line(&mut rng("lines of models", i as u64), &soup);
+            let [front, back] = if i % 2 == 0 { sides(&boxes, &line) } else { sides(&kdops, &line) };
+            assert_eq!(front, back, "{name}, line {i} {line:?}");
+            [usize::from(front > 0), front + back]
+        });
+        println!("{name}: {crossed} of {count} lines cross it, {crossings} times");
+        assert!(crossed > count / 4, "{name}: lines are aimed at it");
+    }
+}
