@@ -22,12 +22,15 @@ pub(crate) const ALL: &[Backend] = &[
     Backend { name: "kdop-18", prepare: |s| prepare::<Kdop<18>>(s, kdop_options(), None), ..OURS },
     Backend { name: "kdop-26", prepare: |s| prepare::<Kdop<26>>(s, kdop_options(), None), ..OURS },
     Backend { name: YARDSTICK, scalar: "f32", prepare: |s| parry_single(s, true) },
-    Backend { name: "parry3d-parameter", scalar: "f32", prepare: |s| parry_single(s, false) },
+    Backend { name: YARDSTICK_PARAMETER, scalar: "f32", prepare: |s| parry_single(s, false) },
     Backend { name: "parry3d-f64", prepare: |s| parry_double(s, true), ..OURS },
 ];
 
-/// The rival that ratios refer to; it tells the triangle and its normal, where `parry3d-parameter` tells neither.
+/// The rival that ratios refer to: it tells triangle, parameter and normal.
 pub(crate) const YARDSTICK: &str = "parry3d";
+
+/// The same rival where it tells the parameter only, to which ratios are given as well.
+pub(crate) const YARDSTICK_PARAMETER: &str = "parry3d-parameter";
 
 /// What entries have in common.
 const OURS: Backend =

@@ -128,3 +128,16 @@ where
     let work = tree.along_all(rays.iter().copied());
     [work.nodes, work.leaves].map(|sum| sum as f64 / rays.len() as f64)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_is_printed_and_all_agree() {
+        let scene = Scene::new("test".into(), p2m_testkit::scenes::skewed_gear(30)).unwrap();
+        let effort = Effort { rounds: 2, queries: 100, builds: 1, seed: 1 };
+        assert!(print(&scene, QuerySet::Box1, &effort).unwrap());
+        print_cited();
+    }
+}

@@ -1,6 +1,6 @@
 //! The first hit, against parry.
 
-use super::backends::{ALL, YARDSTICK};
+use super::backends::{ALL, YARDSTICK, YARDSTICK_PARAMETER};
 use super::caster::{Backend, Function, Index};
 use super::measure::{Contender, Differences, Figures, ROUNDING, first_part, measure, verify};
 use crate::contender::{Absent, catch};
@@ -20,7 +20,7 @@ struct Entry<'a> {
     build: BuildFigures,
 }
 
-/// Prints times, ratios and agreement of the named contenders in a scene, and records them; whether ours agree.
+/// Prints times, ratios and agreement of the named contenders, all without names, and records them; whether ours agree.
 pub(crate) fn print(
     scene: &Scene,
     sets: &[QuerySet],
@@ -29,7 +29,6 @@ pub(crate) fn print(
     provenance: &Provenance,
     mut record: Option<&mut Record>,
 ) -> Result<bool> {
-    println!("\n## {} ({})\n", scene.describe(), provenance.label);
     let named = |backend: &&Backend| names.is_empty() || names.iter().any(|name| name == backend.name);
     let (mut entries, mut notes, mut clean) = (Vec::new(), Vec::new(), true);
     for backend in ALL.iter().filter(named) {
@@ -40,64 +39,30 @@ pub(crate) fn print(
     }
     let contenders: Vec<_> =
         entries.iter().map(|entry| Contender { index: &entry.index, function: Function::First }).collect();
-    let head = ["ns per ray (least), speed", "scalar"].into_iter().chain(sets.iter().map(|set| set.name()));
-    let mut times: Vec<Vec<String>> =
+    let mut rows: Vec<Vec<String>> =
         entries.iter().map(|e| vec![e.backend.name.to_owned(), e.backend.scalar.to_owned()]).collect();
     for set in sets {
         let all = measure(scene, *set, &contenders, effort);
-        let median = |f: &Figures| Spread::of(&f.seconds).map(|s| s.median);
-        let yardstick =
-            entries.iter().zip(&all).find(|(e, _)| e.backend.name == YARDSTICK).and_then(|(_, f)| median(f));
-        for ((entry, figures), row) in entries.iter().zip(&all).zip(&mut times) {
-            let name = entry.backend.name;
-            row.push(cell(figures, yardstick, effort.queries));
-            if let Some(Absent(why)) = &figures.failure {
-                notes.push(format!("{name} on {set}: {why}"));
-            }
-            let Differences { compared, missed, added, other } = figures.differences;
-            match entry.index {
-                Index::Ours(_) => clean &= figures.failure.is_none() && figures.differences.is_clean(),
-                Index::Rival(_) if other + missed + added == 0 => {}
-                Index::Rival(_) => notes.push(format!(
-                    "{name} on {set}: of {compared} rays it misses {missed} that hit and hits with {added} that miss; \
-                     {other} parameters differ by more than {ROUNDING:.1e} of themselves and the diagonal"
-                )),
-            }
-            if let (Index::Ours(_), false) = (&entry.index, figures.differences.is_clean()) {
-                notes.push(format!("{name} on {set}: DIFFERENCES {:?}", figures.differences));
-            }
+        for ((entry, figures), row) in entries.iter().zip(&all).zip(&mut rows) {
+            row.push(cell(figures, rivals(&entries, &all)));
+            clean &= matches!(entry.index, Index::Rival(_)) || is_clean(figures);
+            notes.extend(note(entry, *set, figures));
             if let Some(record) = &mut record {
-                let per_ray = figures.seconds.iter().map(|s| s * 1e9 / effort.queries as f64);
-                for (round, (nanoseconds, checksum)) in per_ray.zip(&figures.checksums).enumerate() {
-                    record.line(
-                        provenance,
-                        scene,
-                        &Line {
-                            contender: name,
-                            scalar: entry.backend.scalar,
-                            build: &entry.build,
-                            set: &format!("ray {set}"),
-                            queries: effort.queries,
-                            seed: effort.seed,
-                            round,
-                            nanoseconds,
-                            checksum: *checksum,
-                        },
-                    )?;
-                }
+                add(record, provenance, scene, entry, *set, effort.seed, figures)?;
             }
         }
-        let hits = all.first().map_or(0, |figures| figures.hits);
         let agreement = verify(scene, &first_part(scene, *set, effort))?;
         clean &= agreement.is_ok();
-        notes.push(format!(
-            "{set}: {hits} of {} rays hit. {}",
-            effort.queries,
-            agreement.unwrap_or_else(|differ| differ)
-        ));
+        let (hits, rays) = all.first().map_or((0, 0), |figures| (figures.hits, figures.rays));
+        notes.push(format!("{set}: {hits} of {rays} rays hit. {}", agreement.unwrap_or_else(|difference| difference)));
     }
-    let mut table = Table::new(head);
-    times.into_iter().for_each(|row| table.push(row));
+    println!("\n## {} ({})\n", scene.describe(), provenance.label);
+    println!(
+        "ns per ray as median (least); then the speed relative to {YARDSTICK} / {YARDSTICK_PARAMETER}, which tells no \
+         triangle and no normal: its median over the contender's, above 1 is faster.\n"
+    );
+    let mut table = Table::new(["first hit", "scalar"].into_iter().chain(sets.iter().map(|set| set.name())));
+    rows.into_iter().for_each(|row| table.push(row));
     println!("{table}");
     notes.iter().for_each(|note| println!("- {note}"));
     Ok(clean)
@@ -112,11 +77,102 @@ fn build<'a>(scene: &'a Scene, backend: &'static Backend) -> Result<Entry<'a>, A
     Ok(Entry { backend, index, build })
 }
 
-fn cell(figures: &Figures, yardstick: Option<f64>, rays: usize) -> String {
+fn is_clean(figures: &Figures) -> bool {
+    figures.failure.is_none() && figures.differences.is_clean()
+}
+
+/// The medians of those that ratios refer to.
+fn rivals(entries: &[Entry<'_>], all: &[Figures]) -> [Option<f64>; 2] {
+    [YARDSTICK, YARDSTICK_PARAMETER].map(|name| {
+        let (_, figures) = entries.iter().zip(all).find(|(entry, _)| entry.backend.name == name)?;
+        Some(Spread::of(&figures.seconds)?.median)
+    })
+}
+
+fn cell(figures: &Figures, rivals: [Option<f64>; 2]) -> String {
     let Some(spread) = Spread::of(&figures.seconds).filter(|_| figures.failure.is_none()) else {
         return "-".to_owned();
     };
-    let [median, least] = [spread.median, spread.min].map(|s| s * 1e9 / rays as f64);
-    let ratio = yardstick.map_or("-".to_owned(), |of_rival| significant(of_rival / spread.median));
-    format!("{median:.0} ({least:.0}), {ratio}")
+    let [median, least] = [spread.median, spread.min].map(|s| s * 1e9 / figures.rays as f64);
+    let [mesh, parameter] =
+        rivals.map(|rival| rival.map_or("-".to_owned(), |rival| significant(rival / spread.median)));
+    format!("{median:.0} ({least:.0}), {mesh} / {parameter}")
+}
+
+/// What is to be said of the answers of a contender, rivals' in any case.
+fn note(entry: &Entry<'_>, set: QuerySet, figures: &Figures) -> Option<String> {
+    let name = entry.backend.name;
+    if let Some(Absent(why)) = &figures.failure {
+        return Some(format!("{name} on {set}: {why}"));
+    }
+    let Differences { compared, missed, added, other, largest } = figures.differences;
+    let counts = format!("of {compared} rays it misses {missed} that hit and hits with {added} that miss");
+    match entry.index {
+        Index::Ours(_) if figures.differences.is_clean() => None,
+        Index::Ours(_) => Some(format!("{name} on {set}: DIFFERENCES, {counts}, {other} hits have other bits")),
+        Index::Rival(_) => Some(format!(
+            "{name} on {set}: {counts}; {other} parameters are off by more than {ROUNDING:.1e} of parameter and \
+             diagonal, {largest:.1e} at most"
+        )),
+    }
+}
+
+/// Adds the rounds of a contender to a record.
+fn add(
+    record: &mut Record,
+    provenance: &Provenance,
+    scene: &Scene,
+    entry: &Entry<'_>,
+    set: QuerySet,
+    seed: u64,
+    figures: &Figures,
+) -> Result<()> {
+    for (round, (seconds, checksum)) in figures.seconds.iter().zip(&figures.checksums).enumerate() {
+        record.line(
+            provenance,
+            scene,
+            &Line {
+                contender: entry.backend.name,
+                scalar: entry.backend.scalar,
+                build: &entry.build,
+                set: &format!("ray {set}"),
+                queries: figures.rays,
+                seed,
+                round,
+                nanoseconds: seconds * 1e9 / figures.rays as f64,
+                checksum: *checksum,
+            },
+        )?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point3;
+    use p2m_core::{Element, Soup};
+
+    #[test]
+    fn scenes_of_any_kind_are_printed_and_recorded() {
+        let directory = std::env::temp_dir().join(format!("p2m-bench-rays-{}", std::process::id()));
+        std::fs::create_dir_all(&directory).unwrap();
+        let path = directory.join("rays.csv");
+        let effort = Effort { rounds: 2, queries: 300, builds: 1, seed: 1 };
+        let p = [[1.0, 0.0, 0.0], [2.0, 0.0, 1.0], [1.0, 3.0, 0.0], [5.0, 1.0, 2.0]].map(Point3::from).to_vec();
+        let triangle = Element::Triangle([0, 1, 2]);
+        for (elements, contenders) in [(vec![triangle], 11), (vec![triangle, Element::Point(3)], 8)] {
+            let scene = Scene::new("test".into(), Soup::new(p.clone(), elements).unwrap()).unwrap();
+            let provenance = Provenance::collect(None);
+            let mut record = Record::open(&path).unwrap();
+            let sets = [QuerySet::Box1, QuerySet::Grid];
+            assert!(print(&scene, &sets, &[], &effort, &provenance, Some(&mut record)).unwrap());
+            let lines = std::fs::read_to_string(&path).unwrap().lines().count();
+            // Some instruction sets may be absent.
+            let rounds = (lines - 1) / (sets.len() * effort.rounds);
+            assert!((contenders - 2..=contenders).contains(&rounds), "{rounds}");
+            std::fs::remove_file(&path).unwrap();
+        }
+        std::fs::remove_dir_all(&directory).unwrap();
+    }
 }
