@@ -1,6 +1,6 @@
 //! Why a file cannot be read, and where it goes wrong.
 
-use p2m_core::BuildError;
+use p2m_core::{BuildError, RayError};
 use std::fmt;
 
 /// A file that cannot be read.
@@ -51,6 +51,8 @@ pub enum Place {
     Line(u64),
     /// An offset in bytes from the start of the file, from 0.
     Byte(u64),
+    /// A row of an array, from 0.
+    Row(u64),
 }
 
 impl fmt::Display for Place {
@@ -59,6 +61,7 @@ impl fmt::Display for Place {
             Self::File => Ok(()),
             Self::Line(line) => write!(f, ":{line}"),
             Self::Byte(byte) => write!(f, " at byte {byte}"),
+            Self::Row(row) => write!(f, " in row {row}, counted from 0"),
         }
     }
 }
@@ -133,6 +136,15 @@ pub enum Reason {
         /// How many it has.
         found: usize,
     },
+    /// A ray has fewer than six coordinates.
+    #[error("a ray needs 6 coordinates, found {found}")]
+    IncompleteRay {
+        /// How many it has.
+        found: usize,
+    },
+    /// Six coordinates that make no ray.
+    #[error("{0}")]
+    Ray(RayError),
     /// OBJ numbers vertices from 1 (or -1, backwards).
     #[error("vertex index 0, but vertices are numbered from 1")]
     IndexZero,
@@ -199,14 +211,12 @@ pub enum Reason {
         text: String,
     },
     /// The names of a CSV file's columns do not tell which of them are coordinates.
-    #[error(
-        "no coordinates among the columns {}; they may be named qx, qy, qz or x, y, z (or like 'X [m]') or Points:0, \
-        Points:1, Points:2",
-        names.join(", ")
-    )]
+    #[error("no coordinates among the columns {}; they may be named {expected}", names.join(", "))]
     UnknownColumns {
         /// The names, of the first columns if there are many.
         names: Vec<String>,
+        /// What they could be.
+        expected: &'static str,
     },
     /// A CSV record with a quote that is not closed.
     #[error("a quote is not closed on this line")]
@@ -251,10 +261,12 @@ pub enum HeaderProblem {
         text: String,
     },
     /// A structured array in which no fields are coordinates.
-    #[error("no coordinates among the fields {}; expected query of shape (3,), or x, y, z", names.join(", "))]
+    #[error("no coordinates among the fields {}; expected {expected}", names.join(", "))]
     UnknownFields {
         /// The names, of the first fields if there are many.
         names: Vec<String>,
+        /// What they could be.
+        expected: &'static str,
     },
     /// An array of a shape that no points have.
     #[error("the array has the shape {text}, expected {expected}")]

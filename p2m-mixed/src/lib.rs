@@ -39,13 +39,13 @@ mod stl;
 mod text;
 mod write;
 
-pub use answers::AnswerWriter;
+pub use answers::{AnswerWriter, HitWriter, NumberWriter};
 pub use error::{HeaderProblem, Place, ReadError, Reason};
 pub use format::{AnswerFormat, Format, PointFormat, UnknownFormat};
 pub use obj::read_obj;
 pub use off::read_off;
 pub use ply::read_ply;
-pub use points::{read_points, read_points_from};
+pub use points::{read_points, read_points_from, read_rays, read_rays_from};
 pub use polygon::MAX_CORNERS;
 pub use scene::{Object, Scene, Skipped, read_scene, read_scene_from};
 pub use stl::read_stl;

@@ -6,6 +6,7 @@ mod members;
 mod plan;
 
 use crate::builder::Builder;
+use crate::points::Row;
 use crate::{HeaderProblem, Place, ReadError, Reason, Scene};
 use data::Data;
 use header::read_header;
@@ -86,7 +87,9 @@ pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
                     let (position, bad) = vertex(&mut data, &element.properties, xyz)?;
                     // Nothing uses the vertices of a cloud.
                     let bad = bad.filter(|_| !is_cloud);
-                    members.vertex(position, bad.map(|(place, _)| place)).map_err(|reason| data.error(reason))?;
+                    members
+                        .vertex(Point3::from(position), bad.map(|(place, _)| place))
+                        .map_err(|reason| data.error(reason))?;
                 }
                 members.end_vertices(name)?;
                 report(&mut members.builder, element, &xyz.map(|(at, _)| at));
@@ -109,30 +112,33 @@ pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
     members.finish(name)
 }
 
-/// Reads the vertices of a PLY file as points; all have to be finite. What follows them is not read.
-pub(crate) fn read_vertices(mut reader: impl BufRead, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
+/// Reads the vertices of a PLY file as rows; all coordinates have to be finite. What follows them is not read.
+pub(crate) fn read_vertices<R: Row<N>, const N: usize>(
+    mut reader: impl BufRead,
+    name: &str,
+) -> Result<Vec<R>, ReadError> {
     let header = read_header(&mut reader, name)?;
     let fail = |problem| ReadError::new(name, Place::File, Reason::BadHeader(problem));
     let at = header.elements.iter().position(|element| element.name == b"vertex");
     let at = at.ok_or_else(|| fail(HeaderProblem::MissingElement { element: "vertex" }))?;
     let vertices = &header.elements[at];
-    let mut points = Vec::new();
+    let mut rows = Vec::new();
     if vertices.count == 0 {
-        return Ok(points); // of what there is none, no property is missing
+        return Ok(rows); // of what there is none, no property is missing
     }
-    let xyz = plan::coordinates(vertices).map_err(fail)?;
+    let coordinates = plan::coordinates(vertices, R::PROPERTIES).map_err(fail)?;
     let mut data = Data::new(reader, &header, name);
     for element in &header.elements[..at] {
         skip(&mut data, element)?;
     }
     for _ in 0..vertices.count {
-        let (point, bad) = vertex(&mut data, &vertices.properties, &xyz)?;
+        let (numbers, bad) = vertex(&mut data, &vertices.properties, &coordinates)?;
         if let Some((place, coordinate)) = bad {
             return Err(ReadError::new(name, place, Reason::NonFinite { text: coordinate.to_string() }));
         }
-        points.push(point);
+        rows.push(R::new(numbers).map_err(|reason| data.error(reason))?);
     }
-    Ok(points)
+    Ok(rows)
 }
 
 /// Passes over an element.
@@ -155,17 +161,17 @@ fn skip_properties(data: &mut Data<'_, impl BufRead>, properties: &[header::Prop
 type Bad = Option<(Place, f64)>;
 
 /// Reads a vertex.
-fn vertex(
+fn vertex<const N: usize>(
     data: &mut Data<'_, impl BufRead>,
     properties: &[header::Property],
-    xyz: &Coordinates,
-) -> Result<(Point3<f64>, Bad), ReadError> {
-    let mut position = Point3::origin();
+    coordinates: &Coordinates<N>,
+) -> Result<([f64; N], Bad), ReadError> {
+    let mut position = [0.0; N];
     let mut bad = None;
     for (k, property) in properties.iter().enumerate() {
-        match xyz.iter().position(|&(at, _)| at == k) {
+        match coordinates.iter().position(|&(at, _)| at == k) {
             Some(axis) => {
-                position[axis] = data.coordinate(xyz[axis].1)?;
+                position[axis] = data.coordinate(coordinates[axis].1)?;
                 if !position[axis].is_finite() {
                     bad = Some((data.place(), position[axis]));
                 }

@@ -6,12 +6,12 @@ use crate::bytes::Scalar;
 use crate::text::quote;
 use header::Layout;
 
-/// The places of x, y and z among the properties, and the types of their numbers.
-pub(super) type Coordinates = [(usize, Scalar); 3];
+/// The places of coordinates among the properties, and the types of their numbers.
+pub(super) type Coordinates<const N: usize> = [(usize, Scalar); N];
 
 /// What an element is for, with the places of its useful properties and the type of their numbers.
 pub(super) enum Plan {
-    Vertices(Coordinates),
+    Vertices(Coordinates<3>),
     Members(MemberPlan),
     Skip,
 }
@@ -50,7 +50,7 @@ pub(super) struct List {
 impl Plan {
     pub(super) fn of(element: &header::Element) -> Result<Self, HeaderProblem> {
         let kind = match element.name.as_slice() {
-            b"vertex" => return Ok(Self::Vertices(coordinates(element)?)),
+            b"vertex" => return Ok(Self::Vertices(coordinates(element, ["x", "y", "z"])?)),
             b"edge" => {
                 Kind::Edge([scalar(element, "edge", "vertex1", true)?, scalar(element, "edge", "vertex2", true)?])
             }
@@ -125,12 +125,15 @@ pub(super) fn ids(elements: &[header::Element], plans: &[Plan]) -> Result<Option
     }
 }
 
-pub(super) fn coordinates(element: &header::Element) -> Result<Coordinates, HeaderProblem> {
-    Ok([
-        scalar(element, "vertex", "x", false)?,
-        scalar(element, "vertex", "y", false)?,
-        scalar(element, "vertex", "z", false)?,
-    ])
+pub(super) fn coordinates<const N: usize>(
+    element: &header::Element,
+    names: [&'static str; N],
+) -> Result<Coordinates<N>, HeaderProblem> {
+    let mut found = [(0, Scalar::F64); N];
+    for (found, name) in found.iter_mut().zip(names) {
+        *found = scalar(element, "vertex", name, false)?;
+    }
+    Ok(found)
 }
 
 /// Whether the members of an element are made of vertices, by the usual names of such a list.

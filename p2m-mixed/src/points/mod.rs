@@ -1,7 +1,12 @@
-//! Points to ask about.
+//! Points and rays to ask about.
 
 mod npy;
+mod rays;
+mod row;
 mod table;
+
+pub use rays::{read_rays, read_rays_from};
+pub(crate) use row::Row;
 
 use crate::ply::read_vertices;
 use crate::scene::open;
@@ -54,6 +59,11 @@ pub fn read_points(path: &Path) -> Result<Vec<Point3<f64>>, ReadError> {
 /// # Errors
 /// As [`read_points`].
 pub fn read_points_from(reader: impl BufRead, format: PointFormat, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
+    read(reader, format, name)
+}
+
+/// Reads rows of any kind.
+fn read<R: Row<N>, const N: usize>(reader: impl BufRead, format: PointFormat, name: &str) -> Result<Vec<R>, ReadError> {
     match format {
         PointFormat::Xyz => table::read_xyz(reader, name),
         PointFormat::Csv => table::read_csv(reader, name),

@@ -1,17 +1,17 @@
-//! Points from tables of text.
+//! Rows of tables of text.
 
+use super::Row;
 use crate::text::{Lines, Words, finite, number, quote};
 use crate::{Place, ReadError, Reason};
-use nalgebra::Point3;
 use std::io::BufRead;
 
-pub(super) fn read_xyz(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
+pub(super) fn read_xyz<R: Row<N>, const N: usize>(reader: impl BufRead, name: &str) -> Result<Vec<R>, ReadError> {
     let mut lines = Lines::new(reader, 0);
-    let mut points = Vec::new();
+    let mut rows = Vec::new();
     loop {
         match lines.read() {
             Ok(true) => {}
-            Ok(false) => return Ok(points),
+            Ok(false) => return Ok(rows),
             Err(e) => return Err(ReadError::new(name, Place::Line(lines.line()), Reason::Io(e))),
         }
         let mut words = Words::new(lines.bytes());
@@ -19,8 +19,10 @@ pub(super) fn read_xyz(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f6
         if first.starts_with(b"#") || first.starts_with(b"//") {
             continue;
         }
-        match point([Some(first), words.next(), words.next()]) {
-            Ok(point) => points.push(point),
+        let mut fields = [Some(first); N];
+        fields[1..].fill_with(|| words.next());
+        match row(fields) {
+            Ok(row) => rows.push(row),
             Err(reason) => {
                 let reason = match reason {
                     Reason::BadNumber { text } if text.contains([',', ';']) => Reason::SeparatorInNumber { text },
@@ -32,26 +34,26 @@ pub(super) fn read_xyz(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f6
     }
 }
 
-fn point(fields: [Option<&[u8]>; 3]) -> Result<Point3<f64>, Reason> {
-    let mut point = Point3::origin();
+fn row<R: Row<N>, const N: usize>(fields: [Option<&[u8]>; N]) -> Result<R, Reason> {
+    let mut numbers = [0.0; N];
     for (k, field) in fields.into_iter().enumerate() {
         match field {
-            None => return Err(Reason::TooFewCoordinates { found: k }),
-            Some(field) => point[k] = finite(field)?,
+            None => return Err(R::too_few(k)),
+            Some(field) => numbers[k] = finite(field)?,
         }
     }
-    Ok(point)
+    R::new(numbers)
 }
 
-pub(super) fn read_csv(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
+pub(super) fn read_csv<R: Row<N>, const N: usize>(reader: impl BufRead, name: &str) -> Result<Vec<R>, ReadError> {
     let mut lines = Lines::new(reader, 0);
     let mut format = None;
-    let mut points = Vec::new();
+    let mut rows = Vec::new();
     loop {
         let fail = |line, reason| Err(ReadError::new(name, Place::Line(line), reason));
         match lines.read() {
             Ok(true) => {}
-            Ok(false) => return Ok(points),
+            Ok(false) => return Ok(rows),
             Err(e) => return fail(lines.line(), Reason::Io(e)),
         }
         let line = lines.bytes().trim_ascii();
@@ -63,7 +65,7 @@ pub(super) fn read_csv(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f6
             None => {
                 let delimiter = if line.contains(&b';') { b';' } else { b',' };
                 let Some(fields) = split(line, delimiter) else { return fail(lines.line(), Reason::BadRecord) };
-                let (columns, is_header) = match header(&fields) {
+                let (columns, is_header) = match header::<R, N>(&fields) {
                     Ok(header) => header,
                     Err(reason) => return fail(lines.line(), reason),
                 };
@@ -75,8 +77,8 @@ pub(super) fn read_csv(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f6
             }
         };
         let Some(fields) = split(line, delimiter) else { return fail(lines.line(), Reason::BadRecord) };
-        match point(columns.map(|c| fields.get(c).copied())) {
-            Ok(point) => points.push(point),
+        match row(columns.map(|c| fields.get(c).copied())) {
+            Ok(row) => rows.push(row),
             Err(reason) => return fail(lines.line(), reason),
         }
     }
@@ -112,25 +114,26 @@ fn split(line: &[u8], delimiter: u8) -> Option<Vec<&[u8]>> {
 }
 
 /// The columns to use, by the first record, and whether it is a header.
-fn header(fields: &[&[u8]]) -> Result<([usize; 3], bool), Reason> {
-    for names in [["qx", "qy", "qz"], ["x", "y", "z"], ["points:0", "points:1", "points:2"]] {
-        let [x, y, z] = names.map(|n| fields.iter().position(|f| first_word(f).eq_ignore_ascii_case(n.as_bytes())));
-        if let (Some(x), Some(y), Some(z)) = (x, y, z) {
-            return Ok(([x, y, z], true));
+fn header<R: Row<N>, const N: usize>(fields: &[&[u8]]) -> Result<([usize; N], bool), Reason> {
+    for names in R::COLUMNS {
+        let columns = names.map(|n| fields.iter().position(|f| first_word(f).eq_ignore_ascii_case(n.as_bytes())));
+        if columns.iter().all(Option::is_some) {
+            return Ok((columns.map(Option::unwrap_or_default), true));
         }
     }
     // What merely starts like a number is one in a form that we do not read, such as `1D0` or `0,5`: an error, no name.
     let like_number = |field: &[u8]| {
         matches!(field.first(), Some(b'0'..=b'9' | b'+' | b'-' | b'.')) || number(field).is_ok() // `nan`
     };
-    let is_header = !fields.iter().take(3).any(|f| like_number(f));
-    if is_header && fields.len() > 3 {
-        return Err(Reason::UnknownColumns { names: fields.iter().take(LISTED).map(|f| quote(f)).collect() });
+    let is_header = !fields.iter().take(N).any(|f| like_number(f));
+    if is_header && fields.len() > N {
+        let names = fields.iter().take(LISTED).map(|f| quote(f)).collect();
+        return Err(Reason::UnknownColumns { names, expected: R::EXPECTED_COLUMNS });
     }
-    if is_header && fields.len() < 3 {
-        return Err(Reason::TooFewCoordinates { found: fields.len() });
+    if is_header && fields.len() < N {
+        return Err(R::too_few(fields.len()));
     }
-    Ok(([0, 1, 2], is_header))
+    Ok((std::array::from_fn(|column| column), is_header))
 }
 
 /// No message lists more columns.
@@ -145,14 +148,15 @@ fn first_word(field: &[u8]) -> &[u8] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Point3;
 
     fn xyz(text: &str) -> Result<Vec<[f64; 3]>, String> {
-        let points = read_xyz(text.as_bytes(), "q.xyz").map_err(|e| e.to_string())?;
+        let points: Vec<Point3<f64>> = read_xyz(text.as_bytes(), "q.xyz").map_err(|e| e.to_string())?;
         Ok(points.into_iter().map(|p| p.coords.into()).collect())
     }
 
     fn csv(text: &str) -> Result<Vec<[f64; 3]>, String> {
-        let points = read_csv(text.as_bytes(), "q.csv").map_err(|e| e.to_string())?;
+        let points: Vec<Point3<f64>> = read_csv(text.as_bytes(), "q.csv").map_err(|e| e.to_string())?;
         Ok(points.into_iter().map(|p| p.coords.into()).collect())
     }
 

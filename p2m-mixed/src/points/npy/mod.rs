@@ -1,12 +1,12 @@
-//! Points from arrays of NumPy.
+//! Rows of arrays of NumPy.
 
 mod literal;
 
+use super::Row;
 use crate::bytes::{Bytes, Scalar};
 use crate::text::quote;
 use crate::{HeaderProblem, Place, ReadError, Reason};
 use literal::{Value, parse};
-use nalgebra::Point3;
 use std::io::BufRead;
 
 /// NumPy writes longer headers only for arrays of very many fields, and does not read them itself.
@@ -15,19 +15,22 @@ const LONGEST_HEADER: u32 = 1 << 16;
 /// No message lists more fields.
 const LISTED: usize = 16;
 
-pub(super) fn read_npy(reader: impl BufRead, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
+pub(super) fn read_npy<R: Row<N>, const N: usize>(reader: impl BufRead, name: &str) -> Result<Vec<R>, ReadError> {
     let mut bytes = Bytes::new(reader, 0);
-    let points = read_header(&mut bytes).and_then(|array| read_array(&mut bytes, &array));
-    points.map_err(|reason| ReadError::new(name, Place::Byte(bytes.start()), reason))
+    let rows = read_header::<R, N>(&mut bytes).and_then(|array| read_array(&mut bytes, &array));
+    let rows = rows.map_err(|reason| ReadError::new(name, Place::Byte(bytes.start()), reason))?;
+    // Where each is as large as its numbers, it takes their place.
+    let row = |(i, numbers)| R::new(numbers).map_err(|reason| ReadError::new(name, Place::Row(i), reason));
+    (0..).zip(rows).map(row).collect()
 }
 
 /// Where the coordinates of an array are.
 #[derive(Debug)]
-struct Array {
+struct Array<const N: usize> {
     count: u64,
-    /// Bytes of an item, and where in it x, y and z are; the first of them, and their types.
+    /// Bytes of an item, and where in it its coordinates are.
     size: u64,
-    coordinates: [Coordinate; 3],
+    coordinates: [Coordinate; N],
     /// Whether all x come first, then all y.
     is_fortran: bool,
 }
@@ -43,7 +46,7 @@ fn bad(problem: HeaderProblem) -> Reason {
     Reason::BadHeader(problem)
 }
 
-fn read_header(bytes: &mut Bytes<impl BufRead>) -> Result<Array, Reason> {
+fn read_header<R: Row<N>, const N: usize>(bytes: &mut Bytes<impl BufRead>) -> Result<Array<N>, Reason> {
     let not_npy = |reason| match reason {
         Reason::UnexpectedEnd => bad(HeaderProblem::NotNpy),
         other => other,
@@ -64,11 +67,11 @@ fn read_header(bytes: &mut Bytes<impl BufRead>) -> Result<Array, Reason> {
     for _ in 0..length {
         text.push(u8::from_le_bytes(bytes.array()?));
     }
-    array(&text)
+    array::<R, N>(&text)
 }
 
 /// What a description like `{'descr': '<f8', 'fortran_order': False, 'shape': (5, 3), }` says.
-fn array(text: &[u8]) -> Result<Array, Reason> {
+fn array<R: Row<N>, const N: usize>(text: &[u8]) -> Result<Array<N>, Reason> {
     let value = parse(text).map_err(|rest| bad(HeaderProblem::BadDescription { text: quote(rest) }))?;
     let Value::Dictionary(entries) = value else {
         return Err(bad(HeaderProblem::BadDescription { text: quote(text) }));
@@ -84,18 +87,19 @@ fn array(text: &[u8]) -> Result<Array, Reason> {
     match descr {
         Value::Text(_) => {
             let (scalar, big_endian) = scalar(descr)?;
-            let &[Value::Integer(count), Value::Integer(3)] = lengths.as_slice() else {
-                return Err(bad(HeaderProblem::BadShape { text: shape.to_string(), expected: "(n, 3)" }));
+            let count = match lengths.as_slice() {
+                &[Value::Integer(count), Value::Integer(columns)] if columns == N as u64 => count,
+                _ => return Err(bad(HeaderProblem::BadShape { text: shape.to_string(), expected: R::SHAPE })),
             };
             let size = scalar.size() as u64;
-            let coordinates = [0, 1, 2].map(|k| Coordinate { offset: k * size, scalar, big_endian });
-            Ok(Array { count, size: 3 * size, coordinates, is_fortran })
+            let coordinates = std::array::from_fn(|k| Coordinate { offset: k as u64 * size, scalar, big_endian });
+            Ok(Array { count, size: N as u64 * size, coordinates, is_fortran })
         }
         Value::List(fields) => {
             let &[Value::Integer(count)] = lengths.as_slice() else {
                 return Err(bad(HeaderProblem::BadShape { text: shape.to_string(), expected: "(n,)" }));
             };
-            let (coordinates, size) = structure(fields)?;
+            let (coordinates, size) = structure::<R, N>(fields)?;
             Ok(Array { count, size, coordinates, is_fortran: false })
         }
         other => Err(bad(HeaderProblem::UnsupportedType { text: other.to_string() })),
@@ -103,10 +107,9 @@ fn array(text: &[u8]) -> Result<Array, Reason> {
 }
 
 /// The coordinates among the fields of a structured array, and the size of an item.
-fn structure(fields: &[Value<'_>]) -> Result<([Coordinate; 3], u64), Reason> {
+fn structure<R: Row<N>, const N: usize>(fields: &[Value<'_>]) -> Result<([Coordinate; N], u64), Reason> {
     let mut offset = 0u64;
-    let mut query = None;
-    let mut xyz = [None; 3];
+    let (mut of_triples, mut singles) = ([None; N], [None; N]);
     let mut names = Vec::new();
     for field in fields {
         let too_large = || bad(HeaderProblem::UnsupportedType { text: field.to_string() });
@@ -130,10 +133,14 @@ fn structure(fields: &[Value<'_>]) -> Result<([Coordinate; 3], u64), Reason> {
         let coordinate = scalar(descr).map(|(scalar, big_endian)| Coordinate { offset, scalar, big_endian });
         let is_three = matches!(shape, Some(Value::Tuple(s)) if **s == [Value::Integer(3)])
             || matches!(shape, Some(Value::Integer(3)));
-        if name == b"query" && is_three {
-            query = Some(coordinate?);
-        } else if let (Some(axis), None) = ([b"x", b"y", b"z"].iter().position(|n| *n == name), shape) {
-            xyz[axis] = coordinate.ok();
+        let is_name = |n: &&str| n.as_bytes() == name;
+        if let (Some(triple), true) = (R::TRIPLES.iter().position(is_name), is_three) {
+            let first = coordinate?;
+            for (k, c) in (0..).zip(&mut of_triples[3 * triple..][..3]) {
+                *c = Some(Coordinate { offset: first.offset + k * first.scalar.size() as u64, ..first });
+            }
+        } else if let (Some(axis), None) = (R::FIELDS.iter().position(is_name), shape) {
+            singles[axis] = coordinate.ok();
         }
         if names.len() < LISTED {
             names.push(quote(name));
@@ -141,15 +148,11 @@ fn structure(fields: &[Value<'_>]) -> Result<([Coordinate; 3], u64), Reason> {
         let size = size(descr, shape).ok_or_else(too_large)?;
         offset = offset.checked_add(size).ok_or_else(too_large)?;
     }
-    let coordinates = match (query, xyz) {
-        (Some(first), _) => {
-            let size = first.scalar.size() as u64;
-            [0, 1, 2].map(|k| Coordinate { offset: first.offset + k * size, ..first })
-        }
-        (None, [Some(x), Some(y), Some(z)]) => [x, y, z],
-        _ => return Err(bad(HeaderProblem::UnknownFields { names })),
-    };
-    Ok((coordinates, offset))
+    let all = |found: [Option<Coordinate>; N]| found.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok();
+    match [of_triples, singles].into_iter().find_map(all) {
+        Some(coordinates) => Ok((coordinates, offset)),
+        None => Err(bad(HeaderProblem::UnknownFields { names, expected: R::EXPECTED_FIELDS })),
+    }
 }
 
 /// The type that a word like `<f8` stands for, and whether its bytes are big-endian.
@@ -206,41 +209,41 @@ fn size(descr: &Value<'_>, shape: Option<&Value<'_>>) -> Option<u64> {
     }
 }
 
-fn read_array(bytes: &mut Bytes<impl BufRead>, array: &Array) -> Result<Vec<Point3<f64>>, Reason> {
-    let mut points = Vec::new();
+fn read_array<const N: usize>(bytes: &mut Bytes<impl BufRead>, array: &Array<N>) -> Result<Vec<[f64; N]>, Reason> {
+    let mut rows = Vec::new();
     if array.is_fortran {
         for (axis, c) in array.coordinates.iter().enumerate() {
             for i in 0..array.count {
                 let x = coordinate(bytes, c)?;
                 if axis == 0 {
-                    points.push(Point3::new(x, 0.0, 0.0));
-                } else if let Some(point) = usize::try_from(i).ok().and_then(|i| points.get_mut(i)) {
-                    point[axis] = x;
+                    rows.push([x; N]);
+                } else if let Some(row) = usize::try_from(i).ok().and_then(|i| rows.get_mut(i)) {
+                    row[axis] = x;
                 }
             }
         }
     } else {
-        let mut order = [0, 1, 2];
+        let mut order: [usize; N] = std::array::from_fn(|axis| axis);
         order.sort_by_key(|&axis| array.coordinates[axis].offset);
         for _ in 0..array.count {
-            let mut point = Point3::origin();
+            let mut row = [0.0; N];
             let mut offset = 0;
             for axis in order {
                 let c = &array.coordinates[axis];
                 if c.offset > offset {
                     bytes.skip(c.offset - offset)?;
                 }
-                point[axis] = coordinate(bytes, c)?;
+                row[axis] = coordinate(bytes, c)?;
                 offset = c.offset + c.scalar.size() as u64;
             }
             if array.size > offset {
                 bytes.skip(array.size - offset)?;
             }
-            points.push(point);
+            rows.push(row);
         }
     }
     match bytes.rest()? {
-        0 => Ok(points),
+        0 => Ok(rows),
         bytes => Err(Reason::TrailingBytes { bytes }),
     }
 }

@@ -1,9 +1,15 @@
 //! Answers to files.
 
+mod rays;
+mod records;
+
+pub use rays::{HitWriter, NumberWriter};
+
 use crate::AnswerFormat;
 use nalgebra::Point3;
 use p2m_core::{Closest, Feature};
-use std::io::{self, ErrorKind, Write};
+use records::{Fields, Header, Records};
+use std::io::{self, Write};
 
 /// Writes answers one by one, in any [`AnswerFormat`]; the file is never in memory, but the writer should have a
 /// buffer.
@@ -56,11 +62,8 @@ use std::io::{self, ErrorKind, Write};
 /// ```
 #[derive(Debug)]
 pub struct AnswerWriter<W: Write> {
-    writer: W,
+    records: Records<W>,
     format: AnswerFormat,
-    /// Announced, and not yet written.
-    count: u64,
-    left: u64,
 }
 
 /// Bytes of a record of an array, and of a vertex.
@@ -72,26 +75,31 @@ impl<W: Write> AnswerWriter<W> {
     ///
     /// # Errors
     /// Those of `writer`.
-    pub fn new(mut writer: W, format: AnswerFormat, count: u64) -> io::Result<Self> {
-        match format {
-            AnswerFormat::Csv => writeln!(writer, "qx,qy,qz,x,y,z,distance,primitive,feature")?,
-            AnswerFormat::Npy => writer.write_all(&npy_header(count))?,
-            AnswerFormat::Ply => writer.write_all(ply_header(count).as_bytes())?,
-        }
-        Ok(Self { writer, format, count, left: count })
+    pub fn new(writer: W, format: AnswerFormat, count: u64) -> io::Result<Self> {
+        let header = match format {
+            AnswerFormat::Csv => Header::Line("qx,qy,qz,x,y,z,distance,primitive,feature".to_owned()),
+            AnswerFormat::Npy => Header::Npy(
+                "('query', '<f8', (3,)), ('point', '<f8', (3,)), ('distance', '<f8'), ('lower_bound', '<f8'), \
+                ('barycentric', '<f8', (3,)), ('primitive', '<i4'), ('feature_kind', '<i2'), ('feature_number', '<i2')"
+                    .to_owned(),
+            ),
+            AnswerFormat::Ply => {
+                let doubles = ["x", "y", "z", "cx", "cy", "cz", "distance"].map(|name| ("double", name));
+                let others = [("int", "primitive"), ("char", "feature_kind"), ("char", "feature_number")];
+                Header::Ply(doubles.into_iter().chain(others).collect())
+            }
+        };
+        Ok(Self { records: Records::new(writer, header, Some(count))?, format })
     }
 
     /// Writes the answer to a query.
     ///
     /// # Errors
-    /// Those of the writer, and [`ErrorKind::InvalidInput`] for more answers than announced.
+    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more answers than announced.
     pub fn write(&mut self, query: &Point3<f64>, answer: Option<&Closest<f64>>) -> io::Result<()> {
-        self.left = self.left.checked_sub(1).ok_or_else(|| {
-            let count = self.count;
-            io::Error::new(ErrorKind::InvalidInput, format!("there are more answers than the {count} announced"))
-        })?;
+        let out = self.records.next()?;
         match self.format {
-            AnswerFormat::Csv => self.row(query, answer),
+            AnswerFormat::Csv => row(out, query, answer),
             AnswerFormat::Npy => {
                 let mut record = Fields::<RECORD>::default();
                 record.numbers(query.coords.as_ref());
@@ -105,7 +113,7 @@ impl<W: Write> AnswerWriter<W> {
                 }
                 record.add(primitive(answer).to_le_bytes());
                 feature(answer).into_iter().for_each(|x| record.add(i16::from(x).to_le_bytes()));
-                self.writer.write_all(&record.bytes)
+                out.write_all(&record.bytes)
             }
             AnswerFormat::Ply => {
                 let mut vertex = Fields::<VERTEX>::default();
@@ -119,18 +127,7 @@ impl<W: Write> AnswerWriter<W> {
                 }
                 vertex.add(primitive(answer).to_le_bytes());
                 feature(answer).into_iter().for_each(|x| vertex.add(x.to_le_bytes()));
-                self.writer.write_all(&vertex.bytes)
-            }
-        }
-    }
-
-    /// `{:?}` writes the shortest number that reads back the same, with an exponent where it is far from 1.
-    fn row(&mut self, query: &Point3<f64>, answer: Option<&Closest<f64>>) -> io::Result<()> {
-        write!(self.writer, "{:?},{:?},{:?},", query.x, query.y, query.z)?;
-        match answer {
-            None => writeln!(self.writer, ",,,,,"),
-            Some(Closest { point, distance, primitive, feature, .. }) => {
-                writeln!(self.writer, "{:?},{:?},{:?},{distance:?},{primitive},{feature}", point.x, point.y, point.z)
+                out.write_all(&vertex.bytes)
             }
         }
     }
@@ -138,14 +135,20 @@ impl<W: Write> AnswerWriter<W> {
     /// Ends the file and gives the writer back, flushed.
     ///
     /// # Errors
-    /// Those of the writer, and [`ErrorKind::InvalidInput`] if there were fewer answers than announced.
-    pub fn finish(mut self) -> io::Result<W> {
-        if self.left > 0 {
-            let message = format!("there are {} answers, not the {} announced", self.count - self.left, self.count);
-            return Err(io::Error::new(ErrorKind::InvalidInput, message));
+    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) if there were fewer answers than announced.
+    pub fn finish(self) -> io::Result<W> {
+        self.records.finish()
+    }
+}
+
+/// `{:?}` writes the shortest number that reads back the same, with an exponent where it is far from 1.
+fn row(out: &mut dyn Write, query: &Point3<f64>, answer: Option<&Closest<f64>>) -> io::Result<()> {
+    write!(out, "{:?},{:?},{:?},", query.x, query.y, query.z)?;
+    match answer {
+        None => writeln!(out, ",,,,,"),
+        Some(Closest { point, distance, primitive, feature, .. }) => {
+            writeln!(out, "{:?},{:?},{:?},{distance:?},{primitive},{feature}", point.x, point.y, point.z)
         }
-        self.writer.flush()?;
-        Ok(self.writer)
     }
 }
 
@@ -161,55 +164,5 @@ fn feature(answer: Option<&Closest<f64>>) -> [i8; 2] {
         Some(Feature::Vertex(i)) => [0, i.cast_signed()], // at most 2
         Some(Feature::Edge(i)) => [1, i.cast_signed()],
         Some(Feature::Face) => [2, 0],
-    }
-}
-
-/// A header as NumPy writes it: version 1.0, filled up to a multiple of 64 bytes.
-fn npy_header(count: u64) -> Vec<u8> {
-    let mut description = format!(
-        "{{'descr': [('query', '<f8', (3,)), ('point', '<f8', (3,)), ('distance', '<f8'), ('lower_bound', '<f8'), \
-        ('barycentric', '<f8', (3,)), ('primitive', '<i4'), ('feature_kind', '<i2'), ('feature_number', '<i2')], \
-        'fortran_order': False, 'shape': ({count},), }}"
-    );
-    // Magic, version and length take 10 bytes, and a line end comes last.
-    while !(10 + description.len() + 1).is_multiple_of(64) {
-        description.push(' ');
-    }
-    description.push('\n');
-    let length = u16::try_from(description.len()).expect("a few hundred bytes");
-    let mut header = b"\x93NUMPY\x01\x00".to_vec();
-    header.extend(length.to_le_bytes());
-    header.extend(description.into_bytes());
-    header
-}
-
-fn ply_header(count: u64) -> String {
-    let mut header = format!("ply\nformat binary_little_endian 1.0\nelement vertex {count}\n");
-    for name in ["x", "y", "z", "cx", "cy", "cz", "distance"] {
-        header += &format!("property double {name}\n");
-    }
-    header + "property int primitive\nproperty char feature_kind\nproperty char feature_number\nend_header\n"
-}
-
-/// A record that is filled from its beginning.
-struct Fields<const N: usize> {
-    bytes: [u8; N],
-    end: usize,
-}
-
-impl<const N: usize> Default for Fields<N> {
-    fn default() -> Self {
-        Self { bytes: [0; N], end: 0 }
-    }
-}
-
-impl<const N: usize> Fields<N> {
-    fn add<const M: usize>(&mut self, bytes: [u8; M]) {
-        self.bytes[self.end..self.end + M].copy_from_slice(&bytes);
-        self.end += M;
-    }
-
-    fn numbers(&mut self, numbers: &[f64]) {
-        numbers.iter().for_each(|x| self.add(x.to_le_bytes()));
     }
 }

@@ -1,0 +1,231 @@
+//! What rays meet.
+
+use super::records::{Fields, Header, Records};
+use crate::AnswerFormat;
+use p2m_core::{Hit, Ray, Side};
+use std::io::{self, Write};
+
+/// Writes hits of rays one by one, each with its ray and the number of it; a ray without a hit may have a record of its
+/// own or none.
+///
+/// Each file holds the rays, so [`read_rays`](crate::read_rays) asks the same questions again (a ray with several
+/// records as often).
+///
+/// # CSV
+/// The columns `ray,ox,oy,oz,dx,dy,dz,parameter,x,y,z,primitive,side,w0,w1,w2`: the number of the ray, its origin and its
+/// direction, the parameter and the point of the hit, the id of the primitive, from where it is met (`front`, `back` or
+/// `along`, see [`Side`]), and the weights of its vertices. Numbers are the shortest that read back as the same ones.
+/// The last nine are empty where there is no hit.
+///
+/// # NPY
+/// A structured array of shape `(count,)`, little-endian, without gaps; a record has 120 bytes, and every number stands
+/// at a multiple of its size:
+///
+/// | field | bytes | type | without a hit |
+/// |---|---|---|---|
+/// | `origin` | 0..24 | `<f8`, shape `(3,)` | of the ray |
+/// | `direction` | 24..48 | `<f8`, shape `(3,)` | of the ray |
+/// | `ray` | 48..56 | `<i8` | the number of the ray |
+/// | `parameter` | 56..64 | `<f8` | NaN |
+/// | `point` | 64..88 | `<f8`, shape `(3,)` | NaN |
+/// | `barycentric` | 88..112 | `<f8`, shape `(3,)` | NaN |
+/// | `primitive` | 112..116 | `<i4` | -1 |
+/// | `side` | 116..120 | `<i4`: 0 the front, 1 the back, 2 along | -1 |
+///
+/// # PLY
+/// A cloud of the origins with the directions as normals, binary and little-endian: each `vertex` has the properties
+/// `double` `x`, `y`, `z`, `nx`, `ny`, `nz`, `ray`, `parameter`, `hx`, `hy`, `hz` (the point of the hit), `w0`, `w1`, `w2`,
+/// `int` `primitive` and `side`, as above. Viewers can colour it by parameter.
+///
+/// ```
+/// use nalgebra::{Point3, Vector3};
+/// use p2m_core::{BruteForce, Ray, RayQuery, Segment};
+/// use p2m_mixed::{AnswerFormat, HitWriter};
+///
+/// let scene = [Segment::new(Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 0.0, 0.0))];
+/// let ray = Ray::new(&Point3::new(1.0, 0.0, 5.0), &Vector3::new(0.0, 0.0, -2.0)).unwrap();
+/// let hit = BruteForce::new(&scene).unwrap().first_intersection(&ray);
+/// let mut writer = HitWriter::new(Vec::new(), AnswerFormat::Csv, Some(1))?;
+/// writer.write(0, &ray, hit.as_ref())?;
+/// let table = String::from_utf8(writer.finish()?).unwrap();
+/// assert_eq!(table.lines().nth(1), Some("0,1.0,0.0,5.0,0.0,0.0,-2.0,2.5,1.0,0.0,0.0,0,along,0.75,0.25,0.0"));
+/// # Ok::<(), std::io::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct HitWriter<W: Write> {
+    records: Records<W>,
+    format: AnswerFormat,
+}
+
+/// Writes a number for each ray, in the order of the rays.
+///
+/// Each file holds the rays, so [`read_rays`](crate::read_rays) asks the same questions again.
+///
+/// CSV has the columns `ray,ox,oy,oz,dx,dy,dz` of [`HitWriter`] and one more under the name of the number. NPY is a
+/// structured array with the fields `origin`, `direction`, `ray` of [`HitWriter`] and the number, of type `<i8`. PLY is a
+/// cloud with the properties `x`, `y`, `z`, `nx`, `ny`, `nz`, `ray` of [`HitWriter`] and the number, of type `double`.
+///
+/// ```
+/// use nalgebra::{Point3, Vector3};
+/// use p2m_core::Ray;
+/// use p2m_mixed::{AnswerFormat, NumberWriter};
+///
+/// let ray = Ray::new(&Point3::origin(), &Vector3::new(0.0, 0.0, 1.0)).unwrap();
+/// let mut writer = NumberWriter::new(Vec::new(), AnswerFormat::Csv, "crossings", 1)?;
+/// writer.write(0, &ray, 3)?;
+/// let table = String::from_utf8(writer.finish()?).unwrap();
+/// assert_eq!(table, "ray,ox,oy,oz,dx,dy,dz,crossings\n0,0.0,0.0,0.0,0.0,0.0,1.0,3\n");
+/// # Ok::<(), std::io::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct NumberWriter<W: Write> {
+    records: Records<W>,
+    format: AnswerFormat,
+}
+
+/// Bytes of records.
+const HIT: usize = 120;
+const NUMBER: usize = 64;
+
+impl<W: Write> HitWriter<W> {
+    /// Begins a file of `count` records. Without a count, NPY and PLY files are kept in memory until their end: the number
+    /// stands in their beginning.
+    ///
+    /// # Errors
+    /// Those of `writer`.
+    pub fn new(writer: W, format: AnswerFormat, count: Option<u64>) -> io::Result<Self> {
+        let header = match format {
+            AnswerFormat::Csv => line("parameter,x,y,z,primitive,side,w0,w1,w2"),
+            AnswerFormat::Npy => npy(
+                "('parameter', '<f8'), ('point', '<f8', (3,)), ('barycentric', '<f8', (3,)), ('primitive', '<i4'), \
+                ('side', '<i4')",
+            ),
+            AnswerFormat::Ply => {
+                let doubles = ["parameter", "hx", "hy", "hz", "w0", "w1", "w2"].map(|name| ("double", name));
+                ply(doubles.into_iter().chain([("int", "primitive"), ("int", "side")]))
+            }
+        };
+        Ok(Self { records: Records::new(writer, header, count)?, format })
+    }
+
+    /// Writes a hit of a ray, or that there is none.
+    ///
+    /// # Errors
+    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more records than announced.
+    pub fn write(&mut self, number: u64, ray: &Ray, hit: Option<&Hit>) -> io::Result<()> {
+        let out = self.records.next()?;
+        if self.format == AnswerFormat::Csv {
+            row(out, number, ray)?;
+            let Some(Hit { parameter, point, primitive, side, barycentric: [a, b, c] }) = hit else {
+                return writeln!(out, ",,,,,,,,");
+            };
+            let side = match side {
+                Side::Front => "front",
+                Side::Back => "back",
+                Side::Along => "along",
+            };
+            let [x, y, z] = point.coords.into();
+            return writeln!(out, "{parameter:?},{x:?},{y:?},{z:?},{primitive},{side},{a:?},{b:?},{c:?}");
+        }
+        let mut record = record::<HIT>(self.format, number, ray);
+        match hit {
+            None => record.numbers(&[f64::NAN; 7]),
+            Some(hit) => {
+                record.numbers(&[hit.parameter]);
+                record.numbers(hit.point.coords.as_ref());
+                record.numbers(&hit.barycentric);
+            }
+        }
+        let primitive = hit.and_then(|hit| i32::try_from(hit.primitive.index()).ok()); // ids end at 2^30
+        record.add(primitive.unwrap_or(-1).to_le_bytes());
+        let side: i32 = match hit.map(|hit| hit.side) {
+            None => -1,
+            Some(Side::Front) => 0,
+            Some(Side::Back) => 1,
+            Some(Side::Along) => 2,
+        };
+        record.add(side.to_le_bytes());
+        out.write_all(&record.bytes)
+    }
+
+    /// Ends the file and gives the writer back, flushed.
+    ///
+    /// # Errors
+    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) if there were fewer records than announced.
+    pub fn finish(self) -> io::Result<W> {
+        self.records.finish()
+    }
+}
+
+impl<W: Write> NumberWriter<W> {
+    /// Begins a file of `count` numbers, which are called `name`: a word of letters.
+    ///
+    /// # Errors
+    /// Those of `writer`.
+    pub fn new(writer: W, format: AnswerFormat, name: &'static str, count: u64) -> io::Result<Self> {
+        let header = match format {
+            AnswerFormat::Csv => line(name),
+            AnswerFormat::Npy => npy(&format!("('{name}', '<i8')")),
+            AnswerFormat::Ply => ply([("double", name)].into_iter()),
+        };
+        Ok(Self { records: Records::new(writer, header, Some(count))?, format })
+    }
+
+    /// Writes the number of a ray.
+    ///
+    /// # Errors
+    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more numbers than announced.
+    pub fn write(&mut self, number: u64, ray: &Ray, value: u64) -> io::Result<()> {
+        let out = self.records.next()?;
+        if self.format == AnswerFormat::Csv {
+            row(out, number, ray)?;
+            return writeln!(out, "{value}");
+        }
+        let mut record = record::<NUMBER>(self.format, number, ray);
+        record.add(whole(self.format, value));
+        out.write_all(&record.bytes)
+    }
+
+    /// Ends the file and gives the writer back, flushed.
+    ///
+    /// # Errors
+    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) if there were fewer numbers than announced.
+    pub fn finish(self) -> io::Result<W> {
+        self.records.finish()
+    }
+}
+
+/// Headers: the columns of the ray, and then others.
+fn line(columns: &str) -> Header {
+    Header::Line(format!("ray,ox,oy,oz,dx,dy,dz,{columns}"))
+}
+
+fn npy(fields: &str) -> Header {
+    Header::Npy(format!("('origin', '<f8', (3,)), ('direction', '<f8', (3,)), ('ray', '<i8'), {fields}"))
+}
+
+fn ply(properties: impl Iterator<Item = (&'static str, &'static str)>) -> Header {
+    let ray = ["x", "y", "z", "nx", "ny", "nz", "ray"].map(|name| ("double", name));
+    Header::Ply(ray.into_iter().chain(properties).collect())
+}
+
+/// The columns of a ray. `{:?}` writes the shortest number that reads back the same.
+fn row(out: &mut dyn Write, number: u64, ray: &Ray) -> io::Result<()> {
+    let (o, d) = (ray.origin(), ray.direction());
+    write!(out, "{number},{:?},{:?},{:?},{:?},{:?},{:?},", o.x, o.y, o.z, d.x, d.y, d.z)
+}
+
+/// A record that begins with a ray.
+fn record<const N: usize>(format: AnswerFormat, number: u64, ray: &Ray) -> Fields<N> {
+    let mut record = Fields::default();
+    record.numbers(ray.origin().coords.as_ref());
+    record.numbers(ray.direction().as_ref());
+    record.add(whole(format, number));
+    record
+}
+
+/// A whole number as an integer, for which PLY has no type of 64 bits.
+#[allow(clippy::cast_precision_loss, reason = "nobody asks 2^53 rays")]
+fn whole(format: AnswerFormat, number: u64) -> [u8; 8] {
+    if format == AnswerFormat::Ply { (number as f64).to_le_bytes() } else { number.to_le_bytes() }
+}

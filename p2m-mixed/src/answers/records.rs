@@ -1,0 +1,117 @@
+//! Files of records, the number of which may stand in their header.
+
+use std::io::{self, ErrorKind, Write};
+
+/// Writes a header and so many records.
+#[derive(Debug)]
+pub(super) struct Records<W> {
+    writer: W,
+    header: Header,
+    /// Announced, if it is known from the start.
+    count: Option<u64>,
+    written: u64,
+    /// All records, where the header needs a number that was not announced.
+    held: Vec<u8>,
+}
+
+/// What stands in front of the records.
+#[derive(Debug)]
+pub(super) enum Header {
+    /// A line of text, without a number.
+    Line(String),
+    /// That of an array of NumPy, by its fields.
+    Npy(String),
+    /// That of a cloud in a PLY file, by types and names of its properties.
+    Ply(Vec<(&'static str, &'static str)>),
+}
+
+impl<W: Write> Records<W> {
+    pub(super) fn new(mut writer: W, header: Header, count: Option<u64>) -> io::Result<Self> {
+        if count.is_some() || matches!(header, Header::Line(_)) {
+            writer.write_all(&header.bytes(count.unwrap_or(0)))?;
+        }
+        Ok(Self { writer, header, count, written: 0, held: Vec::new() })
+    }
+
+    /// Where the next record goes.
+    pub(super) fn next(&mut self) -> io::Result<&mut dyn Write> {
+        if let Some(count) = self.count.filter(|count| *count == self.written) {
+            let message = format!("there are more answers than the {count} announced");
+            return Err(io::Error::new(ErrorKind::InvalidInput, message));
+        }
+        self.written += 1;
+        Ok(if self.is_held() { &mut self.held } else { &mut self.writer })
+    }
+
+    fn is_held(&self) -> bool {
+        self.count.is_none() && !matches!(self.header, Header::Line(_))
+    }
+
+    /// Ends the file and gives the writer back, flushed.
+    pub(super) fn finish(mut self) -> io::Result<W> {
+        if let Some(count) = self.count.filter(|count| *count > self.written) {
+            let message = format!("there are {} answers, not the {count} announced", self.written);
+            return Err(io::Error::new(ErrorKind::InvalidInput, message));
+        }
+        if self.is_held() {
+            self.writer.write_all(&self.header.bytes(self.written))?;
+            self.writer.write_all(&self.held)?;
+        }
+        self.writer.flush()?;
+        Ok(self.writer)
+    }
+}
+
+impl Header {
+    fn bytes(&self, count: u64) -> Vec<u8> {
+        match self {
+            Self::Line(line) => format!("{line}\n").into_bytes(),
+            Self::Npy(fields) => npy(fields, count),
+            Self::Ply(properties) => {
+                let mut header = format!("ply\nformat binary_little_endian 1.0\nelement vertex {count}\n");
+                for (scalar, name) in properties {
+                    header += &format!("property {scalar} {name}\n");
+                }
+                (header + "end_header\n").into_bytes()
+            }
+        }
+    }
+}
+
+/// A header as NumPy writes it: version 1.0, filled up to a multiple of 64 bytes.
+fn npy(fields: &str, count: u64) -> Vec<u8> {
+    let mut description = format!("{{'descr': [{fields}], 'fortran_order': False, 'shape': ({count},), }}");
+    // Magic, version and length take 10 bytes, and a line end comes last.
+    while !(10 + description.len() + 1).is_multiple_of(64) {
+        description.push(' ');
+    }
+    description.push('\n');
+    let length = u16::try_from(description.len()).expect("a few hundred bytes");
+    let mut header = b"\x93NUMPY\x01\x00".to_vec();
+    header.extend(length.to_le_bytes());
+    header.extend(description.into_bytes());
+    header
+}
+
+/// A record that is filled from its beginning.
+pub(super) struct Fields<const N: usize> {
+    pub(super) bytes: [u8; N],
+    end: usize,
+}
+
+impl<const N: usize> Default for Fields<N> {
+    fn default() -> Self {
+        Self { bytes: [0; N], end: 0 }
+    }
+}
+
+impl<const N: usize> Fields<N> {
+    pub(super) fn add<const M: usize>(&mut self, bytes: [u8; M]) {
+        self.bytes[self.end..self.end + M].copy_from_slice(&bytes);
+        self.end += M;
+    }
+
+    pub(super) fn numbers(&mut self, numbers: &[f64]) {
+        numbers.iter().for_each(|x| self.add(x.to_le_bytes()));
+    }
+}
