@@ -1,11 +1,10 @@
 //! `p2m boxes`: a picture of the boxes of the AABB tree, or the polytopes of the k-DOP tree, level by level.
 
 use crate::faces::{Faces, WithTree};
-use crate::input::{self, read_scene, scene_format};
+use crate::input::{SceneArgs, read_scene};
 use crate::json;
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
-use crate::usage::one_of;
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use nalgebra::Point3;
@@ -13,7 +12,6 @@ use p2m_bvh::AabbTree;
 use p2m_core::hierarchy::{PacketTree, Part, Volume};
 use p2m_core::{BuildIndex, Soup};
 use p2m_kdop::{KdopTree, Polytope};
-use p2m_mixed::Format;
 use p2m_mixed::picture::{Panel, View, box_edges, write_picture_ply, write_svg};
 use p2m_mixed::statistics::figure::Count;
 use serde_json::json;
@@ -42,12 +40,8 @@ Examples:
 #[derive(clap::Args)]
 #[command(after_help = help())]
 pub(crate) struct Args {
-    /// Scene: an OBJ, PLY, STL or OFF file; `-` is the standard input
-    scene: PathBuf,
-
-    /// The format of the scene, if the extension of its name does not tell
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
-    format: Option<Format>,
+    #[command(flatten)]
+    scene: SceneArgs,
 
     /// Where to write the picture: a name that ends in .svg or .ply
     #[arg(long, value_name = "FILE")]
@@ -122,9 +116,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         Some("ply") => true,
         _ => bail!("{}: the name of a picture ends in .svg or .ply", args.out.display()),
     };
-    Output::refuse_inputs(&args.out, &[&args.scene])?;
-    let format = scene_format(&args.scene, args.format, "--format")?;
-    let scene = read_scene(&args.scene, format)?;
+    Output::refuse_inputs(&args.out, &[&args.scene.path])?;
+    let format = args.scene.format()?;
+    let scene = read_scene(&args.scene.path, format)?;
     let progress = Progress::start("building", None, Unit::None);
     let levels = usize::from(args.levels);
     let drawn = match args.k {
@@ -133,7 +127,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
             .map(|panels| (panels, None)),
         Some(faces) => faces.build(&scene.soup, Polytopes { levels }).map(|(panels, used)| (panels, Some(used))),
     };
-    let (drawn, faces) = drawn.with_context(|| input::name(&args.scene))?;
+    let (drawn, faces) = drawn.with_context(|| args.scene.name())?;
     let choice = faces.as_ref().and_then(|faces| faces.choice.as_ref());
     drop(progress);
     let (drawn, mut panels): (Vec<Drawn>, Vec<Panel>) = drawn.into_iter().unzip();
@@ -152,7 +146,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         let report = json!({
             "p2m": "boxes",
             "version": json::VERSION,
-            "scene": { "file": input::name(&args.scene), "format": format.name() },
+            "scene": { "file": args.scene.name(), "format": format.name() },
             "out": { "file": args.out.display().to_string() },
             "faces": faces.as_ref().map(|faces| faces.k),
             "choice": choice,

@@ -1,10 +1,9 @@
 //! `p2m info`: what a scene is made of.
 
-use crate::input::{self, read_scene, scene_format};
+use crate::input::{SceneArgs, read_scene};
 use crate::json;
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
-use crate::usage::one_of;
 use anyhow::Context;
 use p2m_mixed::statistics::figure::{Count, Exact, Figure, Share};
 use p2m_mixed::statistics::{Counts, Extremes, ObjectCounts, Statistics, objects};
@@ -12,18 +11,13 @@ use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
 use std::fmt::{self, Write as _};
 use std::io::Write as _;
-use std::path::PathBuf;
 
 /// Say what a scene is made of, and what to expect of it
 #[derive(clap::Args)]
 #[command(after_help = help())]
 pub(crate) struct Args {
-    /// Scene: an OBJ, PLY, STL or OFF file; `-` is the standard input
-    scene: PathBuf,
-
-    /// The format of the scene, if the extension of its name does not tell
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
-    format: Option<Format>,
+    #[command(flatten)]
+    scene: SceneArgs,
 
     /// Report as one JSON object
     #[arg(long)]
@@ -48,13 +42,13 @@ Examples:
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
-    let format = scene_format(&args.scene, args.format, "--format")?;
-    let scene = read_scene(&args.scene, format)?;
+    let format = args.scene.format()?;
+    let scene = read_scene(&args.scene.path, format)?;
     let progress = Progress::start("counting", None, Unit::None);
     let statistics = Statistics::of(&scene.soup);
     let objects = objects(&scene);
     drop(progress);
-    let name = input::name(&args.scene);
+    let name = args.scene.name();
     if args.json {
         return json::print(&report(&name, format, &scene, &objects, &statistics));
     }

@@ -1,17 +1,42 @@
 //! Files to read, among them the standard input under the name `-`.
 
 use crate::progress::{Progress, Unit};
-use crate::usage::usage;
+use crate::usage::{one_of, usage};
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
+use p2m_core::Ray;
 use p2m_mixed::{Format, PointFormat, ReadError, Scene};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const BUFFER: usize = 1 << 16;
 /// The name of the standard input and the standard output.
 pub(crate) const STANDARD: &str = "-";
+
+/// A scene to read.
+#[derive(clap::Args)]
+pub(crate) struct SceneArgs {
+    /// Scene: an OBJ, PLY, STL or OFF file; `-` is the standard input
+    #[arg(value_name = "SCENE")]
+    pub(crate) path: PathBuf,
+
+    /// The format of the scene, if the extension of its name does not tell
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
+    format: Option<Format>,
+}
+
+impl SceneArgs {
+    /// What to call it in messages.
+    pub(crate) fn name(&self) -> String {
+        name(&self.path)
+    }
+
+    /// Its format.
+    pub(crate) fn format(&self) -> anyhow::Result<Format> {
+        scene_format(&self.path, self.format, "--format")
+    }
+}
 
 /// Whether `path` stands for the standard input or output.
 pub(crate) fn is_standard(path: &Path) -> bool {
@@ -32,7 +57,7 @@ pub(crate) fn scene_format(path: &Path, given: Option<Format>, option: &str) -> 
     }
 }
 
-/// The format of points, likewise.
+/// The format of points or rays, likewise.
 pub(crate) fn point_format(path: &Path, given: Option<PointFormat>, option: &str) -> anyhow::Result<PointFormat> {
     match given {
         Some(format) => Ok(format),
@@ -57,6 +82,11 @@ pub(crate) fn read_scene(path: &Path, format: Format) -> anyhow::Result<Scene> {
 /// Reads points.
 pub(crate) fn read_points(path: &Path, format: PointFormat) -> anyhow::Result<Vec<Point3<f64>>> {
     Ok(p2m_mixed::read_points_from(open(path)?, format, &name(path))?)
+}
+
+/// Reads rays.
+pub(crate) fn read_rays(path: &Path, format: PointFormat) -> anyhow::Result<Vec<Ray>> {
+    Ok(p2m_mixed::read_rays_from(open(path)?, format, &name(path))?)
 }
 
 /// Opens a file, and shows how far it is read.

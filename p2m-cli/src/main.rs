@@ -1,11 +1,14 @@
-//! The command line of p2m: reads a scene, asks for closest points, writes a table; and what else one wants to do with
+//! The command line of p2m: reads a scene, asks for closest points or what rays meet, writes a table; and what else one wants to do with
 //! scenes.
 
 #![forbid(unsafe_code)]
 
+mod asking;
+mod backend;
 mod boxes;
 mod convert;
 mod faces;
+mod findings;
 mod generate;
 mod info;
 mod input;
@@ -15,6 +18,7 @@ mod modify;
 mod output;
 mod progress;
 mod query;
+mod ray;
 mod sampling;
 mod shell;
 mod summary;
@@ -24,7 +28,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-/// Closest points of scenes of triangles, segments and points
+/// Closest points and hits of rays in scenes of triangles, segments and points
 #[derive(Parser)]
 #[command(name = "p2m", version, after_help = EXAMPLES)]
 struct Cli {
@@ -37,6 +41,7 @@ Scenes are OBJ, PLY, STL and OFF files. A `-` in place of a file is the standard
 
 Examples:
   p2m query scene.obj --random 1000 --out answers.csv
+  p2m ray scene.obj --random 1000 --out hits.csv
   p2m info scene.obj
   p2m convert scene.obj scene.ply
   p2m generate torus-knot --out knot.obj
@@ -47,6 +52,7 @@ the signal after an interruption (130 for Ctrl-C), which leaves no half-written 
 #[derive(Subcommand)]
 enum Command {
     Query(query::Args),
+    Ray(ray::Args),
     Info(info::Args),
     Convert(convert::Args),
     Generate(generate::Args),
@@ -60,6 +66,7 @@ impl Command {
     fn path(&self) -> String {
         match self {
             Self::Query(_) => "p2m query".to_owned(),
+            Self::Ray(_) => "p2m ray".to_owned(),
             Self::Info(_) => "p2m info".to_owned(),
             Self::Convert(_) => "p2m convert".to_owned(),
             Self::Generate(args) => format!("p2m generate {}", args.name()),
@@ -94,6 +101,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
     interrupt::listen().context("cannot listen for Ctrl-C")?;
     match command {
         Command::Query(args) => query::run(args),
+        Command::Ray(args) => ray::run(args),
         Command::Info(args) => info::run(args),
         Command::Convert(args) => convert::run(args),
         Command::Generate(args) => generate::run(args),

@@ -19,7 +19,8 @@ pub(crate) struct Progress {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Unit {
     Bytes,
-    Queries,
+    /// Things of this name.
+    Items(&'static str),
     /// Hundredths of the work.
     Percent,
     /// Work of which nothing is known but that it goes on.
@@ -84,7 +85,7 @@ fn template(total: Option<u64>, unit: Unit) -> String {
     let count = match (unit, total) {
         (Unit::Bytes, Some(_)) => "{wide_bar} {bytes}/{total_bytes}, {eta} left",
         (Unit::Bytes, None) => "{bytes}",
-        (Unit::Queries, _) => "{wide_bar} {human_pos}/{human_len} queries, {eta} left",
+        (Unit::Items(name), _) => &format!("{{wide_bar}} {{human_pos}}/{{human_len}} {name}, {{eta}} left"),
         (Unit::Percent, _) => "{wide_bar} {pos} %, {eta} left",
         (Unit::None, _) => "{elapsed}",
     };

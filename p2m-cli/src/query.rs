@@ -1,24 +1,24 @@
 //! `p2m query`: closest points as a table.
 
-use crate::faces::{Faces, WithTree};
-use crate::input::{self, is_standard, or_option, point_format, read_points, read_scene, scene_format};
+use crate::asking::{Asking, Questions, ask};
+use crate::backend::{About, Search};
+use crate::faces::Faces;
+use crate::input::{self, SceneArgs, point_format, read_points, read_scene};
 use crate::json;
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
 use crate::sampling::{Queries, Region};
-use crate::summary::{About, Answers, Summary};
-use crate::usage::{not_negative, one_of, positive, usage, whole};
-use anyhow::{Context, anyhow};
+use crate::summary::{Answers, Run};
+use crate::usage::{not_negative, one_of, positive, whole};
+use anyhow::Context;
+use clap::builder::PossibleValue;
 use clap::{ArgGroup, ValueEnum};
-use p2m_bvh::AabbTree;
-use p2m_core::{BruteForce, BuildIndex, ClosestPoint, QueryOptions, Soup};
+use p2m_core::{BuildError, ClosestPoint, QueryOptions, Soup};
 use p2m_interception::OctreeIndex;
-use p2m_kdop::KdopTree;
-use p2m_mixed::{AnswerFormat, AnswerWriter, Format, PointFormat, Scene};
-use rayon::prelude::*;
+use p2m_mixed::{AnswerWriter, PointFormat, Scene};
 use serde_json::{Value, json};
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// Each paragraph is one line, so that it wraps at the width of the terminal.
@@ -63,12 +63,8 @@ Examples:
 #[command(after_help = help())]
 #[command(group = ArgGroup::new("queries").required(true).args(["points", "grid", "random"]))]
 pub(crate) struct Args {
-    /// Scene: an OBJ, PLY, STL or OFF file; `-` is the standard input
-    scene: PathBuf,
-
-    /// The format of the scene, if the extension of its name does not tell
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
-    format: Option<Format>,
+    #[command(flatten)]
+    scene: SceneArgs,
 
     /// Ask about the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
     #[arg(long, value_name = "FILE")]
@@ -97,78 +93,61 @@ pub(crate) struct Args {
     #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole, allow_negative_numbers = true, conflicts_with_all = ["points", "grid"])]
     seed: u64,
 
-    /// How to search
-    #[arg(long, value_enum, default_value_t = Backend::Aabb)]
-    backend: Backend,
-
-    /// How many faces the polytopes of --backend kdop have [default: 14]
-    #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
-    k: Option<Faces>,
-
     /// Give no answers farther than this, in the unit of the scene; at exactly this distance there is one
     #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true)]
     max_distance: Option<f64>,
 
-    /// Where to write the answers; `-` is the standard output.
-    ///
-    /// The file appears under this name when it is complete, and does not if the run is interrupted (one that is ended
-    /// by SIGKILL leaves a file `.p2m-*` beside it). A link is followed, one to nothing is refused, and so is the
-    /// name of an input.
-    #[arg(long, value_name = "FILE", default_value = "-")]
-    out: PathBuf,
+    /// How to search
+    #[arg(long, value_enum, default_value_t = Backend::Search(Search::Aabb))]
+    backend: Backend,
 
-    /// The format of the answers, if the extension of their file does not tell; CSV is the default
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<AnswerFormat>(AnswerFormat::NAMES), ignore_case = true)]
-    out_format: Option<AnswerFormat>,
-
-    /// Report the summary as one JSON object on the standard output; needs --out FILE
-    #[arg(long)]
-    json: bool,
-
-    /// How many threads to use, up to 1024; all cores by default
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
-    threads: Option<u16>,
+    #[command(flatten)]
+    asking: Asking,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Backend {
-    /// Every primitive, every time
-    Brute,
-    /// A tree of boxes
-    Aabb,
-    /// Cells in space with lists of what can be nearest there: no search, for more memory and a longer build
+    Search(Search),
     Octree,
-    /// A tree of polytopes with --k faces, which fit closer what does not lie along the axes
-    Kdop,
+}
+
+impl ValueEnum for Backend {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Search(Search::Brute), Self::Search(Search::Aabb), Self::Octree, Self::Search(Search::Kdop)]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let octree =
+            "Cells in space with lists of what can be nearest there: no search, for more memory and a longer build";
+        match self {
+            Self::Search(search) => search.to_possible_value(),
+            Self::Octree => Some(PossibleValue::new(self.name()).help(octree)),
+        }
+    }
 }
 
 impl Backend {
     fn name(self) -> &'static str {
         match self {
-            Self::Brute => "brute",
-            Self::Aabb => "aabb",
+            Self::Search(search) => search.name(),
             Self::Octree => "octree",
-            Self::Kdop => "kdop",
         }
     }
 
     /// The index, and what there is to say about it.
-    fn build(self, soup: &Soup<f64>, faces: Faces) -> Result<(Index<'_>, About), p2m_core::BuildError> {
-        Ok(match self {
-            Self::Brute => (Box::new(BruteForce::build(soup, &())?), About::Nothing),
-            Self::Aabb => (Box::new(AabbTree::build(soup, &Default::default())?), About::Nothing),
-            Self::Octree => octree(soup)?,
-            Self::Kdop => {
-                let (index, used) = faces.build(soup, AnyTree)?;
-                (index, About::Faces(used))
-            }
-        })
+    fn build(self, soup: &Soup<f64>, faces: Faces) -> Result<(Closest<'_>, About), BuildError> {
+        match self {
+            Self::Search(search) => search.build(soup, faces).map(|(index, about)| (index as Closest<'_>, about)),
+            Self::Octree => octree(soup),
+        }
     }
 }
 
+type Closest<'a> = Box<dyn ClosestPoint<f64> + Sync + 'a>;
+
 /// The octree, which takes a while to build.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part is from 0 to 1")]
-fn octree(soup: &Soup<f64>) -> Result<(Index<'_>, About), p2m_core::BuildError> {
+fn octree(soup: &Soup<f64>) -> Result<(Closest<'_>, About), BuildError> {
     let progress = Progress::start("finding cells", Some(100), Unit::Percent);
     let reach = |part: f64| progress.reach((part * 100.0) as u64);
     let index = OctreeIndex::build_with_progress(soup, &Default::default(), &reach)?;
@@ -176,93 +155,57 @@ fn octree(soup: &Soup<f64>) -> Result<(Index<'_>, About), p2m_core::BuildError> 
     Ok((Box::new(index), About::Cells(report)))
 }
 
-/// A k-DOP tree as an index.
-struct AnyTree;
-
-impl<'a> WithTree<'a> for AnyTree {
-    type Output = Index<'a>;
-    fn with<const K: usize>(self, tree: KdopTree<f64, &'a Soup<f64>, K>) -> Index<'a> {
-        Box::new(tree)
-    }
-}
-
-type Index<'a> = Box<dyn ClosestPoint<f64> + Sync + 'a>;
-
-/// Queries that are asked before their answers are written: enough to keep all threads busy, few enough to hold.
-const CHUNK: usize = 1 << 14;
-/// Queries that one thread takes at a time. A brute-force query of a large scene takes milliseconds.
-const SHARE: usize = 32;
-
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
-    if args.json && is_standard(&args.out) {
-        return Err(usage(
-            "--json reports on the standard output, so the answers have to go to a file: add --out FILE",
-        ));
-    }
-    if is_standard(&args.scene) && args.points.as_deref().is_some_and(is_standard) {
-        return Err(usage("the standard input cannot be both the scene and the points"));
-    }
-    if args.k.is_some() && args.backend != Backend::Kdop {
-        return Err(usage("--k is for --backend kdop"));
-    }
-    let inputs: Vec<&Path> = std::iter::once(&args.scene).chain(&args.points).map(PathBuf::as_path).collect();
-    Output::refuse_inputs(&args.out, &inputs)?;
-    let format = scene_format(&args.scene, args.format, "--format")?;
-    let out_format = answer_format(args)?;
+    let (scene_args, asking) = (&args.scene, &args.asking);
+    let is_kdop = args.backend == Backend::Search(Search::Kdop);
+    asking.check(scene_args, args.points.as_deref(), "points", is_kdop)?;
+    let (format, out_format) = (scene_args.format()?, asking.format()?);
     let start = Instant::now();
-    let scene = read_scene(&args.scene, format)?;
+    let scene = read_scene(&scene_args.path, format)?;
     let queries = queries(args, &scene)?;
     let read = start.elapsed();
     // Before any work, so that it is not lost to a wrong name.
-    let mut output = Output::open(Some(&args.out))?;
+    let mut output = Output::open(Some(&asking.out))?;
 
-    let name = input::name(&args.scene);
     let start = Instant::now();
     // The octree tells more by itself.
     let progress = (args.backend != Backend::Octree).then(|| Progress::start("building the index", None, Unit::None));
-    let (index, about) =
-        args.backend.build(&scene.soup, args.k.unwrap_or(Faces::Fourteen)).with_context(|| name.clone())?;
+    let built = args.backend.build(&scene.soup, asking.faces());
+    let (index, about) = built.with_context(|| scene_args.name())?;
     drop(progress);
     let build = start.elapsed();
 
-    let threads = args.threads.map_or(0, usize::from); // 0 is all of them
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|e| anyhow!("cannot start threads: {e}"))?; // as text: its source says the same again
+    let pool = asking.pool()?;
     let mut options = QueryOptions::default();
     if let Some(max_distance) = args.max_distance {
         options = options.with_max_distance(max_distance);
     }
-    let asked = ask(&*index, &options, queries, &pool, &mut output, out_format);
-    let (query, answers) = asked.with_context(|| output.cannot_write())?;
+    let mut answers = Answers::default();
+    let write = || -> io::Result<Duration> {
+        let mut writer = AnswerWriter::new(&mut output, out_format, queries.len())?;
+        let questions = Questions { name: "queries", count: queries.len(), iter: queries };
+        let answer = |queries: &[_], answers: &mut [_]| index.closest_points_into(queries, &options, answers);
+        let time = ask(&pool, questions, answer, |query, answer| {
+            answers.add(answer.as_ref());
+            writer.write(query, answer.as_ref())
+        })?;
+        writer.finish()?;
+        Ok(time)
+    };
+    let asked = write().with_context(|| output.cannot_write())?;
     let bytes = output.bytes();
     output.finish()?;
 
-    let backend = args.backend.name();
-    let threads = pool.current_num_threads();
-    let scene_name = name;
-    let summary = Summary { scene_name, scene: &scene, format, backend, about, threads, read, build, query, answers };
-    if args.json {
-        let out = json!({ "file": args.out.display().to_string(), "format": out_format.name(), "bytes": bytes });
-        return json::print(&summary.json(&asked_about(args), args.max_distance, &out));
+    let (scene_name, backend, threads) = (scene_args.name(), args.backend.name(), pool.current_num_threads());
+    let run = Run { scene_name, scene: &scene, format, backend, about, threads, read, build, asked };
+    if asking.json {
+        let max_distance = args.max_distance.map_or(Value::Null, json::number);
+        let report = answers.json(&run.cells(), &max_distance, &asked_about(args));
+        return json::print(&run.json("query", report, &asking.written(out_format, bytes)));
     }
     // The answers are complete; whether anybody reads this is not our concern.
-    let _ = write!(io::stderr(), "{summary}");
+    let _ = write!(io::stderr(), "{}{answers}", run.text("queries", "query", answers.queries()));
     Ok(())
-}
-
-/// The given format, or that of the extension; CSV for names that have none.
-fn answer_format(args: &Args) -> anyhow::Result<AnswerFormat> {
-    let format = match args.out_format {
-        Some(format) => format,
-        None if is_standard(&args.out) || args.out.extension().is_none() => AnswerFormat::Csv,
-        None => AnswerFormat::from_path(&args.out).map_err(|e| or_option(&e, "--out-format"))?,
-    };
-    if format != AnswerFormat::Csv {
-        Output::refuse_terminal(&args.out, format.name())?;
-    }
-    Ok(format)
 }
 
 fn queries(args: &Args, scene: &Scene) -> anyhow::Result<Queries> {
@@ -283,40 +226,4 @@ fn asked_about(args: &Args) -> Value {
         (_, Some(side)) => json!({ "grid": side, "box_scale": args.box_scale }),
         _ => json!({ "random": args.random, "seed": args.seed, "box_scale": args.box_scale }),
     }
-}
-
-/// Asks chunk by chunk and writes the answers; how long the asking took, and what came of it.
-fn ask(
-    index: &(dyn ClosestPoint<f64> + Sync),
-    options: &QueryOptions<f64>,
-    mut queries: Queries,
-    pool: &rayon::ThreadPool,
-    output: &mut Output,
-    format: AnswerFormat,
-) -> io::Result<(Duration, Answers)> {
-    let progress = Progress::start("asking", Some(queries.len()), Unit::Queries);
-    let mut statistics = Answers::none();
-    let mut time = Duration::ZERO;
-    let mut chunk = Vec::new();
-    let mut answers = Vec::new();
-    let mut writer = AnswerWriter::new(output, format, queries.len())?;
-    while queries.len() > 0 {
-        queries.fill(CHUNK, &mut chunk);
-        answers.clear();
-        answers.resize(chunk.len(), None);
-        let start = Instant::now();
-        pool.install(|| {
-            chunk.par_chunks(SHARE).zip(answers.par_chunks_mut(SHARE)).for_each(|(queries, answers)| {
-                index.closest_points_into(queries, options, answers);
-                progress.add(queries.len() as u64);
-            });
-        });
-        time += start.elapsed();
-        for (query, answer) in chunk.iter().zip(&answers) {
-            statistics.add(answer.as_ref());
-            writer.write(query, answer.as_ref())?;
-        }
-    }
-    writer.finish()?;
-    Ok((time, statistics))
 }

@@ -1,7 +1,7 @@
-//! Where to ask: given points, a grid, or random points around the scene.
+//! Where to ask: given points, a grid, or random points and rays around the scene.
 
-use nalgebra::Point3;
-use p2m_core::{PrimitiveSet, Soup};
+use nalgebra::{Point3, Vector3};
+use p2m_core::{PrimitiveSet, Ray, Soup};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -75,33 +75,58 @@ impl Queries {
             Self::Random { left, .. } => *left,
         }
     }
+}
 
-    /// Replaces the content of `chunk` by the next queries, up to `most`.
-    pub(crate) fn fill(&mut self, most: usize, chunk: &mut Vec<Point3<f64>>) {
-        chunk.clear();
-        let take = self.len().min(most as u64);
+impl Iterator for Queries {
+    type Item = Point3<f64>;
+
+    fn next(&mut self) -> Option<Point3<f64>> {
         match self {
-            Self::List(points) => chunk.extend(points.take(most)),
+            Self::List(points) => points.next(),
             Self::Grid { region, side, next } => {
-                let side = *side;
-                chunk.extend((*next..*next + take).map(|i| {
-                    if side == 1 {
-                        return Point3::from(region.centre);
-                    }
-                    let t = |place: u64| fraction(place, side - 1);
-                    region.at([t(i / (side * side)), t(i / side % side), t(i % side)])
-                }));
-                *next += take;
+                let (i, side) = (*next, *side);
+                if i == side * side * side {
+                    return None;
+                }
+                *next += 1;
+                if side == 1 {
+                    return Some(Point3::from(region.centre));
+                }
+                let t = |place: u64| fraction(place, side - 1);
+                Some(region.at([t(i / (side * side)), t(i / side % side), t(i % side)]))
             }
             Self::Random { region, left, rng } => {
-                chunk.extend((0..take).map(|_| {
-                    let mut unit = || fraction(rng.next_u64() >> 11, 1 << 53);
-                    region.at([unit(), unit(), unit()])
-                }));
-                *left -= take;
+                *left = left.checked_sub(1)?;
+                Some(region.at(std::array::from_fn(|_| unit(rng))))
             }
         }
     }
+}
+
+/// `count` rays, the same ones for the same seed everywhere: their origins are the points of [`Queries::random`], their
+/// directions come from a uniform distribution on the unit sphere.
+pub(crate) fn random_rays(region: Region, count: u64, seed: u64) -> impl Iterator<Item = Ray> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(1); // independent of that of the origins
+    Queries::random(region, count, seed)
+        .map(move |origin| Ray::new(&origin, &direction(&mut rng)).expect("finite, and of length 1"))
+}
+
+/// A unit vector from a point of the unit disk \[Marsaglia1972\]: without functions that differ between platforms.
+fn direction(rng: &mut ChaCha8Rng) -> Vector3<f64> {
+    loop {
+        let [u, v] = std::array::from_fn(|_| 2.0 * unit(rng) - 1.0);
+        let square = u * u + v * v;
+        if square < 1.0 {
+            let scale = 2.0 * (1.0 - square).sqrt();
+            return Vector3::new(u * scale, v * scale, 1.0 - 2.0 * square);
+        }
+    }
+}
+
+/// From 0 to below 1.
+fn unit(rng: &mut ChaCha8Rng) -> f64 {
+    fraction(rng.next_u64() >> 11, 1 << 53)
 }
 
 /// The number halfway between two others, rounded once unless it is subnormal or the sum would overflow.
@@ -129,13 +154,11 @@ mod tests {
         Soup::new(positions, (0..count).map(Element::Point)).unwrap()
     }
 
-    fn all(mut queries: Queries, chunk_size: usize) -> Vec<Point3<f64>> {
-        let (mut chunk, mut all) = (Vec::new(), Vec::new());
-        while queries.len() > 0 {
-            queries.fill(chunk_size, &mut chunk);
-            assert!(!chunk.is_empty() && chunk.len() <= chunk_size);
-            all.extend_from_slice(&chunk);
-        }
+    /// As many as announced.
+    fn all(queries: Queries) -> Vec<Point3<f64>> {
+        let count = queries.len();
+        let all: Vec<_> = queries.collect();
+        assert_eq!(all.len() as u64, count);
         all
     }
 
@@ -158,20 +181,18 @@ mod tests {
     #[test]
     fn boxes_of_any_size_give_finite_queries() {
         let far = Region::around(&soup(&[[f64::MIN; 3], [f64::MAX; 3]]), 1.05);
-        let queries = all(Queries::random(far, 100, 0), 7);
+        let queries = all(Queries::random(far, 100, 0));
         assert!(queries.iter().flat_map(|p| p.iter()).all(|x| x.is_finite()));
     }
 
     #[test]
     fn grids_run_along_z_first_and_hit_the_corners() {
         let region = Region { min: [0.1, 0.2, 0.3], max: [1.1, 2.2, 3.3], centre: [0.6, 1.2, 1.8] };
-        for chunk in [1, 5, 100] {
-            let points = all(Queries::grid(region, 3), chunk);
-            assert_eq!(points.len(), 27);
-            assert_eq!(points[0], Point3::new(0.1, 0.2, 0.3));
-            assert_eq!(points[2], Point3::new(0.1, 0.2, 3.3));
-            assert_eq!(points[26], Point3::new(1.1, 2.2, 3.3));
-        }
+        let points = all(Queries::grid(region, 3));
+        assert_eq!(points.len(), 27);
+        assert_eq!(points[0], Point3::new(0.1, 0.2, 0.3));
+        assert_eq!(points[2], Point3::new(0.1, 0.2, 3.3));
+        assert_eq!(points[26], Point3::new(1.1, 2.2, 3.3));
     }
 
     #[test]
@@ -181,7 +202,7 @@ mod tests {
             for scale in [0.3, 1.0, 1.05, 7.7] {
                 let region = Region::around(&soup(&[[a; 3], [b; 3]]), scale);
                 let expected = if a == f64::MAX { f64::MAX } else { (a + b) / 2.0 };
-                assert_eq!(all(Queries::grid(region, 1), 9), [Point3::from([expected; 3])], "{a} {b} {scale}");
+                assert_eq!(all(Queries::grid(region, 1)), [Point3::from([expected; 3])], "{a} {b} {scale}");
             }
         }
     }
@@ -189,11 +210,25 @@ mod tests {
     #[test]
     fn random_points_depend_on_the_seed_alone() {
         let region = Region { min: [-1.0; 3], max: [1.0; 3], centre: [0.0; 3] };
-        let points = all(Queries::random(region, 1000, 5), 1000);
-        assert_eq!(all(Queries::random(region, 1000, 5), 13), points);
-        assert_ne!(all(Queries::random(region, 1000, 6), 1000), points);
+        let points = all(Queries::random(region, 1000, 5));
+        assert_eq!(all(Queries::random(region, 1000, 5)), points);
+        assert_ne!(all(Queries::random(region, 1000, 6)), points);
         assert!(points.iter().flat_map(|p| p.iter()).all(|x| x.abs() <= 1.0));
         let mean: f64 = points.iter().map(|p| p.x + p.y + p.z).sum::<f64>() / 3000.0;
         assert!(mean.abs() < 0.05, "{mean}");
+    }
+    #[test]
+    fn random_rays_go_everywhere_from_random_points() {
+        let region = Region { min: [-1.0; 3], max: [1.0; 3], centre: [0.0; 3] };
+        let rays: Vec<_> = random_rays(region, 3000, 5).collect();
+        assert!(rays.iter().map(Ray::origin).eq(Queries::random(region, 3000, 5)));
+        assert!(rays.iter().all(|ray| (ray.direction().norm() - 1.0).abs() < 1e-15));
+        assert_ne!(rays[0].direction(), random_rays(region, 1, 6).next().unwrap().direction());
+        // A third of the unit sphere's points in each third along any axis.
+        for axis in 0..3 {
+            let low = rays.iter().filter(|ray| ray.direction()[axis] < -1.0 / 3.0).count();
+            let high = rays.iter().filter(|ray| ray.direction()[axis] > 1.0 / 3.0).count();
+            assert!((900..1100).contains(&low) && (900..1100).contains(&high), "{low} {high}");
+        }
     }
 }

@@ -1,17 +1,18 @@
 //! What a run was about: for people on the standard error, or for programs as JSON.
 
+use crate::backend::About;
 use crate::faces::Used;
+use crate::info::counted;
 use crate::json;
 use p2m_core::Closest;
-use p2m_interception::OctreeReport;
 use p2m_mixed::statistics::Counts;
 use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
-use std::fmt;
+use std::fmt::{self, Write};
 use std::time::Duration;
 
-/// Numbers of a run.
-pub(crate) struct Summary<'a> {
+/// What there is to say of every run that asks.
+pub(crate) struct Run<'a> {
     pub(crate) scene_name: String,
     pub(crate) scene: &'a Scene,
     pub(crate) format: Format,
@@ -20,83 +21,18 @@ pub(crate) struct Summary<'a> {
     pub(crate) threads: usize,
     pub(crate) read: Duration,
     pub(crate) build: Duration,
-    pub(crate) query: Duration,
-    pub(crate) answers: Answers,
+    pub(crate) asked: Duration,
 }
 
-/// What there is to say about an index.
-pub(crate) enum About {
-    Nothing,
-    /// Of a k-DOP tree.
-    Faces(Used),
-    /// Of an octree.
-    Cells(OctreeReport),
-}
-
-/// 2^-64
-const SCALE: f64 = 1.0 / (1u128 << 64) as f64;
-
-/// Statistics of the answers.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Answers {
-    queries: u64,
-    answered: u64,
-    min: f64,
-    max: f64,
-    sum: f64,
-    /// The sum of the distances times [`SCALE`], for those whose sum leaves the range.
-    scaled_sum: f64,
-}
-
-impl Answers {
-    pub(crate) fn none() -> Self {
-        Self { queries: 0, answered: 0, min: f64::INFINITY, max: 0.0, sum: 0.0, scaled_sum: 0.0 }
-    }
-
-    pub(crate) fn add(&mut self, answer: Option<&Closest<f64>>) {
-        self.queries += 1;
-        if let Some(closest) = answer {
-            self.answered += 1;
-            self.min = self.min.min(closest.distance);
-            self.max = self.max.max(closest.distance);
-            self.sum += closest.distance;
-            self.scaled_sum += closest.distance * SCALE;
-        }
-    }
-
-    #[allow(clippy::cast_precision_loss, reason = "more answers than 2^53 are out of reach")]
-    fn mean(&self) -> Option<f64> {
-        let count = self.answered as f64;
-        let mean = if self.sum.is_finite() { self.sum / count } else { self.scaled_sum / count / SCALE };
-        (self.answered > 0).then_some(mean)
-    }
-}
-
-impl Summary<'_> {
-    /// The report: of queries that came from `asked_about`, within `max_distance`, with answers that went to `out`.
-    pub(crate) fn json(&self, asked_about: &Value, max_distance: Option<f64>, out: &Value) -> Value {
-        let answers = &self.answers;
-        let distance = answers.mean().map(|mean| {
-            json!({ "min": json::number(answers.min), "max": json::number(answers.max), "mean": json::number(mean) })
-        });
+impl Run<'_> {
+    /// The report of a command: that of the run, with `answers` in it, which went to `out`.
+    pub(crate) fn json(&self, command: &str, answers: Value, out: &Value) -> Value {
         let (faces, choice) = match &self.about {
             About::Faces(used) => (Some(used.k), used.choice.as_ref()),
             _ => (None, None),
         };
-        let cells = match &self.about {
-            About::Cells(report) => json!({
-                "lists": report.lists,
-                "singles": report.singles,
-                "trees": report.trees,
-                "bytes": report.bytes,
-                "tree_bytes": report.tree_bytes,
-                "tests": report.work,
-                "resolution": json::number(report.resolution),
-            }),
-            _ => Value::Null,
-        };
-        json!({
-            "p2m": "query",
+        let mut report = json!({
+            "p2m": command,
             "version": json::VERSION,
             "scene": {
                 "file": self.scene_name,
@@ -107,57 +43,172 @@ impl Summary<'_> {
             "backend": self.backend,
             "faces": faces,
             "choice": choice,
-            "cells": cells,
             "threads": self.threads,
-            "max_distance": max_distance.map_or(Value::Null, json::number),
-            "asked_about": asked_about,
-            "queries": answers.queries,
-            "answered": answers.answered,
-            "unanswered": answers.queries - answers.answered,
-            "distance": distance,
+        });
+        let end = json!({
             "seconds": {
                 "read": self.read.as_secs_f64(),
                 "build": self.build.as_secs_f64(),
-                "query": self.query.as_secs_f64(),
+                "query": self.asked.as_secs_f64(),
             },
             "out": out,
+        });
+        for part in [answers, end] {
+            if let (Value::Object(report), Value::Object(part)) = (&mut report, part) {
+                report.extend(part);
+            }
+        }
+        report
+    }
+
+    /// What the octree is made of, for the report.
+    pub(crate) fn cells(&self) -> Value {
+        match &self.about {
+            About::Cells(report) => json!({
+                "lists": report.lists,
+                "singles": report.singles,
+                "trees": report.trees,
+                "bytes": report.bytes,
+                "tree_bytes": report.tree_bytes,
+                "tests": report.work,
+                "resolution": json::number(report.resolution),
+            }),
+            _ => Value::Null,
+        }
+    }
+
+    /// Lines about the scene, the index, and the speed of `count` questions, which are called like `rays`, one of them
+    /// `ray`.
+    pub(crate) fn text(&self, many: &str, one: &str, count: u64) -> String {
+        let mut text = String::new();
+        // Nothing fails in writing to memory.
+        let _ = self.write(&mut text, many, one, count);
+        text
+    }
+
+    #[allow(clippy::cast_precision_loss, reason = "counts for people to read")]
+    fn write(&self, text: &mut String, many: &str, one: &str, count: u64) -> fmt::Result {
+        writeln!(text, "scene    {}", self.scene_name)?;
+        writeln!(text, "         {}", counted(&Counts::of(&self.scene.soup)))?;
+        if p2m_core::PrimitiveSet::is_empty(&self.scene.soup) {
+            writeln!(text, "note     the scene is empty: there is nothing to find")?;
+        }
+        if !self.scene.skipped.is_empty() {
+            let list: Vec<String> = self.scene.skipped.iter().map(ToString::to_string).collect();
+            writeln!(text, "skipped  {}", list.join(", "))?;
+        }
+        let faces = if let About::Faces(used) = &self.about { format!(", {} faces", used.k) } else { String::new() };
+        writeln!(text, "backend  {}{faces}, built in {:.3?}", self.backend, self.build)?;
+        match &self.about {
+            About::Faces(Used { choice: Some(choice), .. }) => writeln!(text, "k-DOPs   {choice}")?,
+            About::Cells(report) => writeln!(text, "cells    {report}")?,
+            _ => {}
+        }
+        let threads = if self.threads == 1 { "thread" } else { "threads" };
+        write!(text, "{many:9}{count} in {:.3?} on {} {threads}", self.asked, self.threads)?;
+        let seconds = self.asked.as_secs_f64();
+        if count > 0 && seconds > 0.0 {
+            let count = count as f64;
+            write!(text, ": {:.0} ns per {one}, {:.0} {many}/s", seconds * 1e9 / count, count / seconds)?;
+        }
+        writeln!(text)
+    }
+}
+
+/// 2^-64
+const SCALE: f64 = 1.0 / (1u128 << 64) as f64;
+
+/// Statistics of numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Spread {
+    count: u64,
+    min: f64,
+    max: f64,
+    sum: f64,
+    /// The sum of the numbers times [`SCALE`], for those whose sum leaves the range.
+    scaled_sum: f64,
+}
+
+impl Default for Spread {
+    fn default() -> Self {
+        Self { count: 0, min: f64::INFINITY, max: f64::NEG_INFINITY, sum: 0.0, scaled_sum: 0.0 }
+    }
+}
+
+impl Spread {
+    pub(crate) fn add(&mut self, x: f64) {
+        self.count += 1;
+        self.min = self.min.min(x);
+        self.max = self.max.max(x);
+        self.sum += x;
+        self.scaled_sum += x * SCALE;
+    }
+
+    pub(crate) fn count(&self) -> u64 {
+        self.count
+    }
+
+    #[allow(clippy::cast_precision_loss, reason = "more numbers than 2^53 are out of reach")]
+    fn mean(&self) -> f64 {
+        let count = self.count as f64;
+        if self.sum.is_finite() { self.sum / count } else { self.scaled_sum / count / SCALE }
+    }
+
+    /// Null if there are no numbers.
+    pub(crate) fn json(&self) -> Value {
+        if self.count == 0 {
+            return Value::Null;
+        }
+        json!({ "min": json::number(self.min), "max": json::number(self.max), "mean": json::number(self.mean()) })
+    }
+}
+
+impl fmt::Display for Spread {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "min {:?}, max {:?}, mean {:?}", self.min, self.max, self.mean())
+    }
+}
+
+/// Statistics of closest points.
+#[derive(Debug, Default)]
+pub(crate) struct Answers {
+    queries: u64,
+    distances: Spread,
+}
+
+impl Answers {
+    pub(crate) fn add(&mut self, answer: Option<&Closest<f64>>) {
+        self.queries += 1;
+        if let Some(closest) = answer {
+            self.distances.add(closest.distance);
+        }
+    }
+
+    pub(crate) fn queries(&self) -> u64 {
+        self.queries
+    }
+
+    /// The report: of queries that came from `asked_about`, within `max_distance`.
+    pub(crate) fn json(&self, cells: &Value, max_distance: &Value, asked_about: &Value) -> Value {
+        let answered = self.distances.count();
+        json!({
+            "cells": cells,
+            "max_distance": max_distance,
+            "asked_about": asked_about,
+            "queries": self.queries,
+            "answered": answered,
+            "unanswered": self.queries - answered,
+            "distance": self.distances.json(),
         })
     }
 }
 
-#[allow(clippy::cast_precision_loss, reason = "counts for people to read")]
-impl fmt::Display for Summary<'_> {
+impl fmt::Display for Answers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let soup = &self.scene.soup;
-        let (triangles, segments, points) = (soup.triangles().len(), soup.segments().len(), soup.points().len());
-        writeln!(f, "scene    {}", self.scene_name)?;
-        writeln!(f, "         {triangles} triangles, {segments} segments, {points} points")?;
-        if triangles + segments + points == 0 {
-            writeln!(f, "note     the scene is empty: no query has an answer")?;
-        }
-        if !self.scene.skipped.is_empty() {
-            let list: Vec<String> = self.scene.skipped.iter().map(ToString::to_string).collect();
-            writeln!(f, "skipped  {}", list.join(", "))?;
-        }
-        let threads = if self.threads == 1 { "thread" } else { "threads" };
-        let faces = if let About::Faces(used) = &self.about { format!(", {} faces", used.k) } else { String::new() };
-        writeln!(f, "backend  {}{faces}, built in {:.3?}", self.backend, self.build)?;
-        match &self.about {
-            About::Faces(Used { choice: Some(choice), .. }) => writeln!(f, "k-DOPs   {choice}")?,
-            About::Cells(report) => writeln!(f, "cells    {report}")?,
-            _ => {}
-        }
-        let answers = &self.answers;
-        let seconds = self.query.as_secs_f64();
-        write!(f, "queries  {} in {:.3?} on {} {threads}", answers.queries, self.query, self.threads)?;
-        if answers.queries > 0 && seconds > 0.0 {
-            let count = answers.queries as f64;
-            write!(f, ": {:.0} ns per query, {:.0} queries/s", seconds * 1e9 / count, count / seconds)?;
-        }
-        writeln!(f)?;
-        writeln!(f, "answers  {}, without answer {}", answers.answered, answers.queries - answers.answered)?;
-        if let Some(mean) = answers.mean() {
-            writeln!(f, "distance min {:?}, max {:?}, mean {mean:?}", answers.min, answers.max)?;
+        let answered = self.distances.count();
+        writeln!(f, "answers  {answered}, without answer {}", self.queries - answered)?;
+        if answered > 0 {
+            writeln!(f, "distance {}", self.distances)?;
         }
         Ok(())
     }

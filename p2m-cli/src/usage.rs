@@ -48,6 +48,13 @@ pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
+pub(crate) fn number(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if !x.is_nan() => Ok(x),
+        _ => Err("not a number".to_owned()),
+    }
+}
+
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if x.is_finite() => Ok(x),

@@ -38,7 +38,7 @@ fn the_summary_tells_what_was_done() {
     let summary = text(&output.stderr);
     for part in [
         scene.as_str(),
-        "1 triangles, 1 segments, 1 points",
+        "1 triangle, 1 segment, 1 point\n",
         "1 x vn, 2 x usemtl",
         "backend  aabb, built in ",
         "queries  8 in ",
