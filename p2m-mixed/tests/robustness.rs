@@ -7,7 +7,10 @@ use common::{
     rich_binary_stl, rich_ply, stl,
 };
 use nalgebra::Point3;
-use p2m_mixed::{AnswerFormat, AnswerWriter, Format, PointFormat, ReadError, Scene, read_points_from};
+use p2m_core::Ray;
+use p2m_mixed::{
+    AnswerFormat, AnswerWriter, Format, HitWriter, PointFormat, ReadError, Scene, read_points_from, read_rays_from,
+};
 use peak_alloc::PeakAlloc;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -33,6 +36,16 @@ fn files() -> Vec<(Vec<u8>, Reader, usize)> {
         (rich_binary_off(), |b| check(off(b)), 0),
         (npy(RICH_NPY, &[0; 2 * 44]), |b| check_points(read_points_from(b, PointFormat::Npy, "t")), 0),
         (b"qx;qy;qz\n1;2;-0.0\n".into(), |b| check_points(read_points_from(b, PointFormat::Csv, "t")), anywhere),
+        (
+            npy("{'descr': '<f4', 'fortran_order': False, 'shape': (1, 6)}\n", &[60; 24]),
+            |b| check_rays(read_rays_from(b, PointFormat::Npy, "t")),
+            0,
+        ),
+        (
+            b"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,6\n".into(),
+            |b| check_rays(read_rays_from(b, PointFormat::Csv, "t")),
+            anywhere,
+        ),
         (b"1 2 3\n# c\n4 5 6\n".into(), |b| check_points(read_points_from(b, PointFormat::Xyz, "t")), anywhere),
     ];
     files.extend(ENCODINGS.map(|e| (rich_ply(e), (|b| check(ply(b))) as Reader, 3)));
@@ -73,6 +86,24 @@ fn check_points(points: Result<Vec<Point3<f64>>, ReadError>) -> bool {
                 points.iter().for_each(|p| writer.write(p, None).unwrap());
                 let file = writer.finish().unwrap();
                 assert_eq!(read_points_from(&file[..], format.name().parse().unwrap(), "t").unwrap(), points);
+            }
+            true
+        }
+    }
+}
+
+fn check_rays(rays: Result<Vec<Ray>, ReadError>) -> bool {
+    match rays {
+        Err(error) => {
+            assert!(!error.to_string().is_empty());
+            false
+        }
+        Ok(rays) => {
+            for format in [AnswerFormat::Csv, AnswerFormat::Npy, AnswerFormat::Ply] {
+                let mut writer = HitWriter::new(Vec::new(), format, None).unwrap();
+                (0..).zip(&rays).for_each(|(number, ray)| writer.write(number, ray, None).unwrap());
+                let file = writer.finish().unwrap();
+                assert_eq!(read_rays_from(&file[..], format.name().parse().unwrap(), "t").unwrap(), rays);
             }
             true
         }
@@ -130,6 +161,7 @@ fn noise() {
         check(off(&bytes));
         for format in [PointFormat::Xyz, PointFormat::Csv, PointFormat::Npy, PointFormat::Ply] {
             check_points(read_points_from(&bytes[..], format, "t"));
+            check_rays(read_rays_from(&bytes[..], format, "t"));
         }
         // Facets and faces without end, all of them of noise.
         check(stl([&[0; 80][..], &[0xff; 4], &bytes].concat()));

@@ -116,15 +116,14 @@ impl<W: Write> HitWriter<W> {
         let out = self.records.next()?;
         if self.format == AnswerFormat::Csv {
             row(out, number, ray)?;
-            let Some(Hit { parameter, point, primitive, side, barycentric: [a, b, c] }) = hit else {
-                return writeln!(out, ",,,,,,,,");
-            };
-            let side = match side {
+            let Some(hit) = hit else { return writeln!(out, ",,,,,,,,") };
+            let (parameter, primitive) = (hit.parameter, hit.primitive);
+            let side = match hit.side {
                 Side::Front => "front",
                 Side::Back => "back",
                 Side::Along => "along",
             };
-            let [x, y, z] = point.coords.into();
+            let ([x, y, z], [a, b, c]): ([f64; 3], _) = (hit.point().coords.into(), hit.barycentric());
             return writeln!(out, "{parameter:?},{x:?},{y:?},{z:?},{primitive},{side},{a:?},{b:?},{c:?}");
         }
         let mut record = record::<HIT>(self.format, number, ray);
@@ -132,8 +131,8 @@ impl<W: Write> HitWriter<W> {
             None => record.numbers(&[f64::NAN; 7]),
             Some(hit) => {
                 record.numbers(&[hit.parameter]);
-                record.numbers(hit.point.coords.as_ref());
-                record.numbers(&hit.barycentric);
+                record.numbers(hit.point().coords.as_ref());
+                record.numbers(&hit.barycentric());
             }
         }
         let primitive = hit.and_then(|hit| i32::try_from(hit.primitive.index()).ok()); // ids end at 2^30
