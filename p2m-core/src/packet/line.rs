@@ -6,6 +6,8 @@
 //! exactly.
 
 use super::{Kind, LANES, Packet, TOP};
+use crate::Ray;
+use crate::kernel::power_of_two;
 use crate::simd::{InstructionSet, Lanes};
 
 /// A line in f64, of which the largest component of the direction is 1 or -1.
@@ -19,6 +21,26 @@ pub(crate) struct Line {
     pub(crate) speed: f64,
     /// How near it has to come to segments and points, in units of the scene.
     pub(crate) radius: f64,
+}
+
+/// Components of directions for which lengths along the ray are plain.
+const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-400)..=power_of_two(400);
+
+impl Line {
+    /// The line of a ray; `None` if its direction is so long or short that lengths along it are not plain.
+    pub(crate) fn of(ray: &Ray) -> Option<Self> {
+        let d = ray.direction;
+        let axis = if d[0].abs() >= d[1].abs() && d[0].abs() >= d[2].abs() {
+            0
+        } else if d[1].abs() >= d[2].abs() {
+            1
+        } else {
+            2
+        };
+        let speed = d[axis].abs();
+        let line = Self { origin: ray.origin, direction: d.map(|x| x / speed), axis, speed, radius: ray.radius };
+        PLAIN.contains(&speed).then_some(line)
+    }
 }
 
 /// The same in the frame of a packet, from near its centre.
@@ -236,4 +258,112 @@ fn boxes<L: Lanes>(line: &Local, min: &[L; 3], max: &[L; 3]) -> u32 {
 fn middle<L: Lanes>(min: L, max: L) -> (L, L) {
     let half = L::splat(0.5);
     (min.add(max).mul(half), max.sub(min).mul(half))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::Operation;
+    use crate::{Aabb, Crossing, Element, Isa, Primitive, PrimitiveId, PrimitiveSet, Shape, Soup};
+    use nalgebra::{Point3, Vector3};
+    use rand::{Rng, RngExt};
+
+    struct Met<'a>(&'a Packet, &'a Line, [f64; 2]);
+
+    impl Operation for Met<'_> {
+        type Output = u32;
+        #[inline(always)]
+        fn run<I: InstructionSet>(self) -> u32 {
+            let Self(packet, line, [from, to]) = self;
+            packet.met_by::<I>(line, from, to)
+        }
+    }
+
+    fn vector(rng: &mut impl Rng) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0))
+    }
+
+    /// A ball, which a packet knows by its box.
+    struct Anything(Shape<f64>);
+
+    impl Primitive<f64> for Anything {
+        fn aabb(&self) -> Aabb<f64> {
+            self.0.aabb()
+        }
+        fn project(&self, query: &Point3<f64>) -> crate::Projection {
+            self.0.project(query)
+        }
+    }
+
+    /// Sixteen primitives of a kind, of all sizes and shapes, somewhere.
+    fn set(rng: &mut impl Rng, kind: Kind) -> Soup<f64> {
+        let place = vector(rng) * 2f64.powi(rng.random_range(-20..40));
+        let size = place.norm() * 2f64.powi(-rng.random_range(0..30));
+        let positions = (0..48).map(|i| {
+            let own = size * 2f64.powi(-(i / 3 % 8));
+            Point3::from(place + vector(rng) * size * f64::from(i % 2) + vector(rng) * own)
+        });
+        let elements = (0..16u32).map(|i| match kind {
+            Kind::Point => Element::Point(3 * i),
+            Kind::Segment => Element::Segment([3 * i, 3 * i + 1]),
+            _ => Element::Triangle([3 * i, 3 * i + 1, 3 * i + 2]),
+        });
+        Soup::new(positions.collect(), elements).expect("valid")
+    }
+
+    #[test]
+    fn lanes_that_are_met_are_never_left_out_and_few_others_pass() {
+        let mut counts = [[0; 3]; 4];
+        for case in 0..6_000 {
+            let mut rng = p2m_testkit::rng("lines and packets", case);
+            let kind = [Kind::Triangle, Kind::Segment, Kind::Point, Kind::Box][case as usize % 4];
+            let soup = set(&mut rng, kind);
+            let ids: Vec<_> = (0..16).map(PrimitiveId::new).collect();
+            let bounds = PrimitiveSet::aabb(&soup);
+            let packet = if kind == Kind::Box {
+                let all: Vec<_> = ids.iter().map(|id| Anything(soup.get(*id))).collect();
+                Packet::new(&all, &ids, kind, &bounds, 0.0).0
+            } else {
+                Packet::new(&soup, &ids, kind, &bounds, 0.0).0
+            };
+            let size = (bounds.max - bounds.min).norm();
+            for _ in 0..8 {
+                // At a point of a primitive: a corner, one of an edge, one inside, or beside it.
+                let primitive = soup.get(PrimitiveId::new(rng.random_range(0..16)));
+                let vertices = primitive.vertices();
+                let mut weights = [0.0; 3].map(|_: f64| f64::from(rng.random_range(0..4u8)));
+                weights[0] += 0.01;
+                let sum: f64 = weights[..vertices.len()].iter().sum();
+                let target: Vector3<f64> = vertices.iter().zip(weights).map(|(v, w)| v.coords * (w / sum)).sum();
+                let beside = [0.0, 0.0, 1e-9, 1e-4, 1.0][rng.random_range(0..5)];
+                let target = target + vector(&mut rng) * (size * beside);
+                let mut direction = vector(&mut rng);
+                if rng.random_bool(0.3) {
+                    direction[rng.random_range(0..3)] = 0.0;
+                }
+                let distance = size * 2f64.powi(rng.random_range(-4..44)) * f64::from(rng.random_range(-1..2i8));
+                let origin = Point3::from(target - direction * distance);
+                let radius = [0.0, 1e-3, 0.1][rng.random_range(0..3)] * size;
+                let ray = Ray::new(&origin, &direction).and_then(|ray| ray.line().with_radius(radius)).expect("valid");
+                let range = rng.random_range(0.0..2.0) * distance;
+                let ray = if rng.random() { ray.with_range(range, f64::INFINITY).expect("in order") } else { ray };
+                let line = Line::of(&ray).expect("plain");
+                let [from, to] = ray.range().map(|t| t * line.speed);
+                let hit = |lane: &usize| Crossing::of(&soup.get(ids[*lane]), &ray, f64::INFINITY, false).is_some();
+                let hits = (0..16).filter(hit).fold(0, |lanes, lane| lanes | 1 << lane);
+                for isa in Isa::available() {
+                    let met = isa.run(Met(&packet, &line, [from, to]));
+                    assert_eq!(met & hits, hits, "{isa} {kind:?} case {case}: {ray:?}");
+                    let count = &mut counts[kind as usize];
+                    count[0] += 16;
+                    count[1] += hits.count_ones();
+                    count[2] += met.count_ones();
+                }
+            }
+        }
+        for (kind, [all, hits, passed]) in ["points", "segments", "triangles", "boxes"].iter().zip(counts) {
+            println!("{kind}: {passed} of {all} passed, {hits} are met");
+            assert!(hits * 50 > all && passed * 4 < all * if *kind == "boxes" { 4 } else { 3 }, "{kind}");
+        }
+    }
 }

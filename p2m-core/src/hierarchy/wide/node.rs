@@ -108,8 +108,8 @@ impl WideNode for BoxNode {
     #[inline(always)]
     fn entries<L: Lanes>(&self, ray: &[SlabRay; 3]) -> L {
         let mut piece = Piece::new();
-        for k in 0..3 {
-            piece.clip(&ray[k], L::load(&self.min[k]), L::load(&self.max[k]));
+        for (slab, (min, max)) in ray.iter().zip(self.min.iter().zip(&self.max)) {
+            piece.clip(slab, L::load(min), L::load(max));
         }
         piece.entry()
     }

@@ -125,26 +125,6 @@ pub(super) fn half_box(frame: &Frame, bounds: &Aabb<f64>) -> [f64; 3] {
     std::array::from_fn(|k| half(k) + frame.centre[k].abs() * ROUNDING + TINY)
 }
 
-/// Components of directions for which lengths along the ray are plain.
-const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-400)..=power_of_two(400);
-
-impl Line {
-    /// The line of a ray; `None` if its direction is so long or short that lengths along it are not plain.
-    fn of(ray: &Ray) -> Option<Self> {
-        let d = ray.direction;
-        let axis = if d[0].abs() >= d[1].abs() && d[0].abs() >= d[2].abs() {
-            0
-        } else if d[1].abs() >= d[2].abs() {
-            1
-        } else {
-            2
-        };
-        let speed = d[axis].abs();
-        let line = Self { origin: ray.origin, direction: d.map(|x| x / speed), axis, speed, radius: ray.radius };
-        PLAIN.contains(&speed).then_some(line)
-    }
-}
-
 /// The piece of a line that lies in the box of a scene, in the frame of its nodes.
 pub(crate) struct FrameLine {
     /// A point of the line before it enters the box, or begins.
@@ -184,8 +164,7 @@ impl FrameLine {
         for k in 0..3 {
             let d = line.direction[k];
             let [low, high] = [min[k] - radius - BESIDE - q[k], max[k] + radius + BESIDE - q[k]];
-            // In which nothing moves more than 2^-28 from one side of the box to the other.
-            if d.abs() < SLIGHT {
+            if d == 0.0 {
                 if low > 0.0 || high < 0.0 {
                     return Some(None);
                 }
@@ -329,5 +308,112 @@ impl<L: Lanes> Piece<L> {
         // Either end is good to 2^-22.
         let far = self.far.mul(L::splat(1.0 + 8.0 * f32::EPSILON));
         far.if_below(self.near, L::splat(f32::INFINITY), self.near)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::node::{BoxNode, Child, WIDTH};
+    use super::super::slabs::SlabNode;
+    use super::*;
+    use crate::kdop::Slabs;
+    use crate::{Directions, Isa, PrimitiveSet, Triangle};
+    use nalgebra::{Point3, Vector3};
+    use rand::{Rng, RngExt};
+
+    struct Entries<'a, N: WideNode>(&'a N, &'a N::Ray);
+
+    impl<N: WideNode> Operation for Entries<'_, N> {
+        type Output = [f32; WIDTH];
+        #[inline(always)]
+        fn run<I: InstructionSet>(self) -> [f32; WIDTH] {
+            let mut entries = [0.0; WIDTH];
+            self.0.entries::<I::Eight>(self.1).store(&mut entries);
+            entries
+        }
+    }
+
+    fn vector(rng: &mut impl Rng) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0))
+    }
+
+    /// Rays to points of some random triangles: how many were hit, all of whose places were entered, and how many other
+    /// places were.
+    fn compare<N: WideNode>(shape: &N::Shape, name: &str) -> [usize; 2] {
+        let mut counts = [0; 2];
+        for case in 0..2_000 {
+            let mut rng = p2m_testkit::rng(name, case);
+            let place = vector(&mut rng) * 2f64.powi(rng.random_range(-20..20));
+            let scale = place.norm() * 2f64.powi(-rng.random_range(0..20));
+            let at = |v: Vector3<f64>| Point3::from(place + v * scale);
+            let triangles: Vec<_> = (0..WIDTH - 1)
+                .map(|_| {
+                    let (centre, size) = (vector(&mut rng), 2f64.powi(-rng.random_range(0..20)));
+                    let [a, b, c] = [(); 3].map(|()| at(centre + vector(&mut rng) * size));
+                    Triangle::new(a, b, c)
+                })
+                .collect();
+            let bounds = triangles[..].aabb();
+            let frame = Frame::around(&bounds);
+            let mut node = N::new([Child::packet(0); WIDTH]);
+            for place in 0..WIDTH - 1 {
+                let ids = [PrimitiveId::new(place)];
+                let own = crate::Primitive::aabb(&triangles[place]);
+                node.put(place, &N::enclose(shape, &frame, &triangles[..], &ids, &own));
+            }
+            for _ in 0..8 {
+                let vertices = triangles[rng.random_range(0..WIDTH - 1)].vertices;
+                let weights = [(); 3].map(|()| rng.random_range(0.01..1.0));
+                let sum: f64 = weights.iter().sum();
+                let target = vertices.iter().zip(weights).map(|(v, w)| v.coords * (w / sum)).sum::<Vector3<f64>>();
+                let mut direction = vector(&mut rng);
+                match rng.random_range(0..4) {
+                    0 => direction[rng.random_range(0..3)] = 0.0,
+                    1 => direction[rng.random_range(0..3)] *= 2f64.powi(-rng.random_range(20..60)),
+                    _ => {}
+                }
+                let distance = scale * 2f64.powi(rng.random_range(-20..28));
+                let ray = Ray::new(&Point3::from(target - direction * distance), &direction).expect("valid");
+                let ray = if rng.random() { ray.line() } else { ray };
+                let parameter = |triangle: &Triangle<f64>| {
+                    Crossing::of(triangle, &ray, f64::INFINITY, false).map(|crossing| crossing.parameter())
+                };
+                let hits: Vec<Option<f64>> = triangles.iter().map(parameter).collect();
+                let line = Line::of(&ray).expect("plain");
+                let piece = FrameLine::new(&frame, &bounds, &line, ray.min * line.speed).expect("near enough");
+                if misses(&ray, &frame, &half_box(&frame, &bounds)) || piece.is_none() {
+                    assert!(hits.iter().all(Option::is_none), "{name} {case}: {ray:?}");
+                    continue;
+                }
+                let piece = piece.expect("checked");
+                let local = N::ray(shape, &piece);
+                for isa in Isa::available() {
+                    let entries = isa.run(Entries(&node, &local));
+                    assert!(entries[WIDTH - 1] > f32::MAX, "an empty place");
+                    for (hit, entry) in hits.iter().zip(entries) {
+                        match hit {
+                            Some(t) => {
+                                let limit = piece.limit(t * line.speed);
+                                assert!(entry >= 0.0 && entry <= limit, "{isa} {name} {case}: {entry:e} {limit:e}");
+                                counts[0] += 1;
+                            }
+                            None => counts[1] += usize::from(entry <= f32::MAX),
+                        }
+                    }
+                }
+            }
+        }
+        counts
+    }
+
+    #[test]
+    fn children_that_are_met_are_entered() {
+        let of_boxes = compare::<BoxNode>(&(), "rays and nodes");
+        let of_six = compare::<SlabNode<6>>(&Slabs::new(&Directions::default()), "rays and nodes");
+        let of_more = compare::<SlabNode<26>>(&Slabs::new(&Directions::default()), "rays and nodes");
+        println!("hit, and entered besides: boxes {of_boxes:?}, 6-DOPs {of_six:?}, 26-DOPs {of_more:?}");
+        assert!(of_boxes[0] > 20_000 && of_boxes[0] == of_six[0] && of_six[0] == of_more[0]);
+        assert!(of_more[1] * 3 < of_boxes[1] * 2 && of_boxes[1] < of_boxes[0], "{of_boxes:?} {of_more:?}");
+        assert!(of_six[1].abs_diff(of_boxes[1]) * 100 < of_boxes[1], "{of_boxes:?} {of_six:?}");
     }
 }

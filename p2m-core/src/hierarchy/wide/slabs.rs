@@ -167,9 +167,8 @@ impl<const K: usize> WideNode for SlabNode<K> {
     #[inline(always)]
     fn entries<L: Lanes>(&self, ray: &[SlabRay; K]) -> L {
         let mut piece = Piece::new();
-        for j in 0..K / 2 {
-            let below = L::splat(0.0).sub(L::load(&self.heights[2 * j + 1]));
-            piece.clip(&ray[j], below, L::load(&self.heights[2 * j]));
+        for (slab, heights) in ray.iter().zip(self.heights.chunks_exact(2)) {
+            piece.clip(slab, L::splat(0.0).sub(L::load(&heights[1])), L::load(&heights[0]));
         }
         piece.entry()
     }
