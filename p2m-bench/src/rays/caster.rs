@@ -75,7 +75,7 @@ impl Outcome {
     pub(crate) const NONE: Self = Self { hits: 0, parameter: f64::NAN, id: usize::MAX };
 
     fn of(hits: usize, first: Option<&Hit>) -> Self {
-        // Nothing of a hit is to be left out of the work.
+        // Nothing that a hit holds is to be left out of the work; weights and point are computed when asked for.
         let first = black_box(first);
         first.map_or(Self { hits, ..Self::NONE }, |hit| Self {
             hits,
