@@ -106,7 +106,8 @@ fn note(entry: &Entry<'_>, set: QuerySet, figures: &Figures) -> Option<String> {
         return Some(format!("{name} on {set}: {why}"));
     }
     let Differences { compared, missed, added, other, largest } = figures.differences;
-    let counts = format!("of {compared} rays it misses {missed} that hit and hits with {added} that miss");
+    let counts =
+        format!("of {compared} rays of all rounds it misses {missed} that hit and hits with {added} that miss");
     match entry.index {
         Index::Ours(_) if figures.differences.is_clean() => None,
         Index::Ours(_) => Some(format!("{name} on {set}: DIFFERENCES, {counts}, {other} hits have other bits")),
