@@ -25,8 +25,12 @@ fn start(folder: &Path, before: &mut Command) -> Child {
 }
 
 fn query(folder: &Path) -> Command {
+    long("query", folder)
+}
+
+fn long(name: &str, folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_p2m"));
-    command.arg("query").arg(SCENE).args(LONG).arg(folder.join("answers.csv"));
+    command.arg(name).arg(SCENE).args(LONG).arg(folder.join("answers.csv"));
     command
 }
 
@@ -48,13 +52,13 @@ fn is_ignored_here(number: u32) -> bool {
 
 #[test]
 fn an_interrupted_run_leaves_what_was_there_before() {
-    for (signal, code) in [("-INT", 130), ("-TERM", 143)] {
+    for (name, signal, code) in [("query", "-INT", 130), ("query", "-TERM", 143), ("ray", "-INT", 130)] {
         if signal == "-INT" && is_ignored_here(2) {
             continue;
         }
         let folder = TempDir::new().unwrap();
         write(&folder, "answers.csv", "old");
-        let child = start(folder.path(), &mut query(folder.path()));
+        let child = start(folder.path(), &mut long(name, folder.path()));
         assert_eq!(names(folder.path()).len(), 2);
         send(signal, &child);
         let output = child.wait_with_output().unwrap();

@@ -61,7 +61,7 @@ fn replay(transcript: &str, folder: &Path) -> String {
 /// With dots for times, which no two runs share.
 fn masked(transcript: &str) -> String {
     let mask = |line: &str| {
-        for start in ["backend  ", "queries  "] {
+        for start in ["backend  ", "queries  ", "rays     "] {
             if let Some((before, after)) = line.split_once(" in ").filter(|_| line.starts_with(start)) {
                 // The number of threads is no time.
                 let words: Vec<&str> = after.split(' ').collect();

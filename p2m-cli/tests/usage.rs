@@ -39,6 +39,9 @@ fn wrong_usage_is_code_2() {
         &["query", SCENE, "--random", "3", "--threads", "0"],
         &["query", SCENE, "--grid", "3", "--seed", "1"],
         &["query", SCENE, "--points", "a.xyz", "--box-scale", "2"],
+        &["ray", SCENE],
+        &["ray", SCENE, "--random", "-1"],
+        &["ray", SCENE, "--grid", "3"],
         &["generate", "tree"],
         &["generate", "knot-and-cables", "--sides", "2"],
         &["ask"],
@@ -50,15 +53,27 @@ fn wrong_usage_is_code_2() {
 
 #[test]
 fn help_has_examples() {
-    for arguments in
-        [&["--help"][..], &["query", "--help"], &["generate", "--help"], &["generate", "knot-and-cables", "--help"]]
-    {
+    for arguments in [
+        &["--help"][..],
+        &["query", "--help"],
+        &["ray", "--help"],
+        &["generate", "--help"],
+        &["generate", "knot-and-cables", "--help"],
+    ] {
         let help = table(arguments);
         assert!(help.contains("Example") && help.contains("  p2m "), "{help}");
     }
-    assert!(table(&["--help"]).starts_with("Closest points of scenes of triangles, segments and points\n"));
+    assert!(
+        table(&["--help"]).starts_with("Closest points and hits of rays in scenes of triangles, segments and points\n")
+    );
     let help = table(&["query", "--help"]);
     for part in ["edge0", "vertex2", "exit code", "Points:0", "cut into triangles", "unit of the scene"] {
+        assert!(help.contains(part), "{part}: {help}");
+    }
+    let help = table(&["ray", "--help"]);
+    for part in
+        ["origin + t direction", "without rounding", "crossings", "w2", "Normals:2", "exit code", "unit of the scene"]
+    {
         assert!(help.contains(part), "{part}: {help}");
     }
     assert!(table(&["--version"]).starts_with("p2m "));
