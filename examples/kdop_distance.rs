@@ -4,22 +4,11 @@
 
 use nalgebra::Point3;
 use p2m::{BuildIndex, ClosestPoint, KdopTree};
-use std::process::ExitCode;
 
 /// Faces of the k-DOPs, both signs of each direction counted.
 const FACES: usize = 14;
 
-fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("kdop_distance: {error}");
-            ExitCode::FAILURE
-        }
-    }
-}
-
-fn run() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> anyhow::Result<()> {
     let name = std::env::args().nth(1).unwrap_or_else(|| "scenes/knot_and_cables.obj".to_owned());
     let scene = p2m::scene::read_scene(name.as_ref())?.soup;
     let tree = KdopTree::<f64, _, FACES>::build(&scene, &Default::default())?;

@@ -5,36 +5,27 @@
 //!
 //! `cargo run --release --example kdop_polytopes -- mesh.obj folder 0 1 3`
 
+use anyhow::Context;
 use nalgebra::Vector3;
 use p2m::kdop::{Polytope, write_polytopes_ply};
 use p2m::{Directions, KdopOptions, KdopTree};
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::PathBuf;
-use std::process::ExitCode;
 
-fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("kdop_polytopes: {error}");
-            ExitCode::FAILURE
-        }
-    }
-}
-
-fn run() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> anyhow::Result<()> {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().unwrap_or_else(|| "scenes/knot_and_cables.obj".to_owned());
     let folder = arguments.next().map_or_else(std::env::temp_dir, PathBuf::from);
-    let level =
-        |text: String| text.parse().map_err(|_| format!("'{text}' is not a level: they are whole numbers from 0"));
-    let mut levels: Vec<usize> = arguments.map(level).collect::<Result<_, _>>()?;
+    let level = |text: String| {
+        text.parse().ok().with_context(|| format!("'{text}' is not a level: they are whole numbers from 0"))
+    };
+    let mut levels: Vec<usize> = arguments.map(level).collect::<anyhow::Result<_>>()?;
     if levels.is_empty() {
         levels = vec![0, 1];
     }
     let scene = p2m::scene::read_scene(name.as_ref())?.soup;
-    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
     // The axes, and four others; they need not be unit vectors, and opposites follow by themselves.
     let directions = Directions::<14>::new(&[
         Vector3::x(),

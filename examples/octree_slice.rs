@@ -6,14 +6,15 @@
 //!
 //! `cargo run --release --example octree_slice -- mesh.obj slice.png 1.5`
 
+mod common;
+
 use nalgebra::Point3;
 use p2m::{BuildIndex, ClosestPoint, OctreeIndex, PrimitiveSet};
-use std::io::BufWriter;
 
 /// Pixels on each side.
 const PIXELS: u32 = 600;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> anyhow::Result<()> {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().unwrap_or_else(|| "scenes/knot_and_cables.obj".to_owned());
     let out = arguments.next().unwrap_or_else(|| "octree_slice.png".to_owned());
@@ -35,11 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             colours.extend(colour(index.octree().list_length(&place), distance < pixel * 0.5));
         }
     }
-    let mut encoder = png::Encoder::new(BufWriter::new(std::fs::File::create(&out)?), PIXELS, PIXELS);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.write_header()?.write_image_data(&colours)?;
-    println!("{out}");
-    Ok(())
+    common::write_png(&out, [PIXELS; 2], &colours)
 }
 
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "short lists")]

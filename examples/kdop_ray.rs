@@ -1,0 +1,21 @@
+//! The ray example of the k-DOP tree's manual: where a ray first meets a mesh.
+//!
+//! `cargo run --release --example kdop_ray -- mesh.obj`
+
+use nalgebra::Point3;
+use p2m::{BuildIndex, KdopTree, Ray, RayQuery};
+
+/// Faces of the k-DOPs, both signs of each direction counted.
+const FACES: usize = 14;
+
+fn main() -> anyhow::Result<()> {
+    let name = std::env::args().nth(1).unwrap_or_else(|| "scenes/knot_and_cables.obj".to_owned());
+    let scene = p2m::scene::read_scene(name.as_ref())?.soup;
+    let tree = KdopTree::<f64, _, FACES>::build(&scene, &Default::default())?;
+    let ray = Ray::through(&Point3::new(1.0, 1.0, 1.0), &Point3::new(1.0 / 3.0, 1.0 / 6.0, 2.0 / 3.0))?;
+    match tree.first_intersection(&ray) {
+        Some(hit) => println!("{}", hit.point()),
+        None => println!("No intersection"),
+    }
+    Ok(())
+}
