@@ -5,6 +5,8 @@
 //! stretch. Crossings are found by moving the line, by a number that is small enough, and solving for where it then
 //! meets the plane. Rounding looks for the f64 whose neighbours are farther.
 
+#![allow(clippy::float_cmp, reason = "nothing here has a tolerance")]
+
 use crate::oracle::{V, cross, dot, integer, lowest_bit, sub};
 use dashu_int::IBig;
 use dashu_int::ops::{BitTest, UnsignedAbs};

@@ -8,27 +8,34 @@
 use super::{Kind, LANES, Packet, TOP};
 use crate::Ray;
 use crate::kernel::power_of_two;
+use crate::ray::foot;
 use crate::simd::{InstructionSet, Lanes};
 
 /// A line in f64, of which the largest component of the direction is 1 or -1.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Line {
+    /// The origin of the ray, or a point of its line near the scene.
     pub(crate) origin: [f64; 3],
     pub(crate) direction: [f64; 3],
     /// The axis of that component.
     pub(crate) axis: usize,
-    /// What the direction was divided by.
+    /// What the direction of the ray was divided by.
     pub(crate) speed: f64,
+    /// How far the origin lies ahead of that of the ray.
+    pub(crate) ahead: f64,
     /// How near it has to come to segments and points, in units of the scene.
     pub(crate) radius: f64,
 }
 
-/// Components of directions for which lengths along the ray are plain.
-const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-400)..=power_of_two(400);
+/// What lengths along a line may be off, in parts of what they are computed from: 2^-50.
+const ROUNDING: f64 = power_of_two(-50);
+/// More than what a parameter may be off that underflows.
+const TINY: f64 = power_of_two(-1000);
 
 impl Line {
-    /// The line of a ray; `None` if its direction is so long or short that lengths along it are not plain.
-    pub(crate) fn of(ray: &Ray) -> Option<Self> {
+    /// The line of a ray.
+    #[inline(always)]
+    pub(crate) fn of(ray: &Ray) -> Self {
         let d = ray.direction;
         let axis = if d[0].abs() >= d[1].abs() && d[0].abs() >= d[2].abs() {
             0
@@ -38,8 +45,39 @@ impl Line {
             2
         };
         let speed = d[axis].abs();
-        let line = Self { origin: ray.origin, direction: d.map(|x| x / speed), axis, speed, radius: ray.radius };
-        PLAIN.contains(&speed).then_some(line)
+        let direction = [d[0] / speed, d[1] / speed, d[2] / speed];
+        Self { origin: ray.origin, direction, axis, speed, ahead: 0.0, radius: ray.radius }
+    }
+
+    /// The same from the foot of a point, which is rounded once: for rays that come from so far away, or so fast, that
+    /// f64 would lose the scene on the way.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn from_afar(ray: &Ray, point: &[f64; 3]) -> Self {
+        let line = Self::of(ray);
+        let (origin, ahead) = foot(ray, point, line.axis);
+        Self { origin, ahead, ..line }
+    }
+
+    /// The length from the origin at which a parameter of the ray lies, rounded down.
+    #[inline(always)]
+    pub(crate) fn from(&self, parameter: f64) -> f64 {
+        let (length, error) = self.length(parameter);
+        // NaN comes of infinite parameters, and of lengths that overflow.
+        if length - error > f64::MIN { length - error } else { f64::NEG_INFINITY }
+    }
+
+    /// The same, rounded up.
+    #[inline(always)]
+    pub(crate) fn to(&self, parameter: f64) -> f64 {
+        let (length, error) = self.length(parameter);
+        if length + error < f64::MAX { length + error } else { f64::INFINITY }
+    }
+
+    #[inline(always)]
+    fn length(&self, parameter: f64) -> (f64, f64) {
+        let length = parameter * self.speed;
+        (length - self.ahead, (length.abs() + self.ahead.abs()) * ROUNDING + self.speed * TINY)
     }
 }
 
@@ -104,8 +142,8 @@ impl Packet {
         let axes = [(axis + 1) % 3, (axis + 2) % 3, axis];
         let down = d[axis] < 0.0;
         let sign = d[axis];
-        let piece = |t: f64| {
-            let t = t * self.per_unit;
+        let piece = |length: f64| {
+            let t = length * self.per_unit;
             (t - ahead, 1.0 + error + t.abs() * (8.0 * f64::EPSILON))
         };
         let ((low, low_error), (high, high_error)) = (piece(from), piece(to));
@@ -347,8 +385,12 @@ mod tests {
                 let ray = Ray::new(&origin, &direction).and_then(|ray| ray.line().with_radius(radius)).expect("valid");
                 let range = rng.random_range(0.0..2.0) * distance;
                 let ray = if rng.random() { ray.with_range(range, f64::INFINITY).expect("in order") } else { ray };
-                let line = Line::of(&ray).expect("plain");
-                let [from, to] = ray.range().map(|t| t * line.speed);
+                let line = if distance > 1e6 * size {
+                    Line::from_afar(&ray, &nalgebra::center(&bounds.min, &bounds.max).into())
+                } else {
+                    Line::of(&ray)
+                };
+                let (from, to) = (line.from(ray.range()[0]), line.to(ray.range()[1]));
                 let hit = |lane: &usize| Crossing::of(&soup.get(ids[*lane]), &ray, f64::INFINITY, false).is_some();
                 let hits = (0..16).filter(hit).fold(0, |lanes, lane| lanes | 1 << lane);
                 for isa in Isa::available() {

@@ -26,6 +26,19 @@ struct Span {
     ends: [(Fraction, V3); 2],
 }
 
+/// The point of the line of a ray that is nearest to `point`, and how far from the origin of the ray it lies, measured
+/// along `axis`, on which the direction is largest: each rounded once.
+pub(crate) fn foot(ray: &Ray, point: &V3, axis: usize) -> (V3, f64) {
+    let unit = common_exponent(ray.origin.iter().chain(point));
+    let direction_unit = common_exponent(&ray.direction);
+    let d = ray.direction.map(|x| integer(x, direction_unit));
+    let (square, along) = (dot(&d, &d), dot(&d, &difference(*point, ray.origin, unit)));
+    let over = |numerator: IBig| Fraction { numerator, denominator: square.clone() }.round(unit);
+    let place = |k: usize| over(integer(ray.origin[k], unit) * &square + &along * &d[k]);
+    let ahead = if ray.direction[axis] < 0.0 { -&d[axis] } else { d[axis].clone() };
+    ([place(0), place(1), place(2)], over(along * ahead))
+}
+
 impl Exact {
     pub(super) fn new(origin: &V3, direction: &V3, radius: f64, vertices: &[V3]) -> Self {
         let unit = common_exponent(vertices.as_flattened().iter().chain(origin).chain([&radius]));

@@ -17,6 +17,8 @@ pub use counting::RayCounting;
 pub use crossing::{Crossing, Hit, RayHit, Side};
 pub use line::{Ray, RayError};
 
+pub(crate) use exact::foot;
+
 use crate::{BruteForce, PrimitiveId, PrimitiveSet, Real};
 use std::ops::ControlFlow;
 

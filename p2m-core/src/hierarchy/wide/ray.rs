@@ -32,12 +32,14 @@ impl<'r, V: Volume, C: RayCollector<'r>> Operation for RaySearch<'_, 'r, V, C> {
     fn run<I: InstructionSet>(self) {
         let Self { tree, ray, hits, intersect } = self;
         let mut tests = Tests { leaves: &tree.leaves, ray, only_crossings: hits.only_crossings(), hits, intersect };
-        let placed = Line::of(ray)
-            .and_then(|line| Some((line, FrameLine::new(&tree.frame, &tree.bounds, &line, ray.min * line.speed)?)));
-        let Some((line, piece)) = placed else { return tests.everything() };
+        let line = FrameLine::line(&tree.frame, ray);
+        let from = line.from(ray.min);
+        let Some(piece) = FrameLine::new(&tree.frame, &tree.bounds, &line, from) else {
+            return tests.everything();
+        };
         if let Some(piece) = piece {
             let local = V::Node::ray(&tree.shape, &piece);
-            let mut entering = Entering { tests, line, piece, local, to: 0.0, limit: 0.0 };
+            let mut entering = Entering { tests, line, piece, local, from, to: 0.0, limit: 0.0 };
             entering.update();
             walk::<I, V, _>(tree, &mut entering);
         }
@@ -140,7 +142,7 @@ pub(crate) struct FrameLine {
     per_unit: f64,
 }
 
-/// Lines that come from so many units away are placed well enough in f64.
+/// Lines that begin at most so many units away are placed well enough in f64.
 const FARTHEST: f64 = power_of_two(30);
 /// Beyond so many units a radius is not worth a search.
 const WIDEST: f64 = 64.0;
@@ -148,15 +150,27 @@ const WIDEST: f64 = 64.0;
 const BESIDE: f64 = power_of_two(-20);
 
 impl FrameLine {
-    /// What lies in the box of a line that begins at the length `from` from its origin. `None` if f32 or f64 cannot
-    /// place it, `Some(None)` if there is nothing.
+    /// The line of a ray, from near the scene.
+    #[inline(always)]
+    fn line(frame: &Frame, ray: &Ray) -> Line {
+        let [x, y, z] = frame.place(&ray.origin).map(f64::abs);
+        // Nor for NaN.
+        if x.max(y).max(z) <= FARTHEST { Line::of(ray) } else { Line::from_afar(ray, &frame.centre) }
+    }
+
+    /// What lies in the box of a line that begins at the length `from` from its origin. `None` if f32 cannot place it,
+    /// `Some(None)` if there is nothing.
     #[inline(always)]
     fn new(frame: &Frame, bounds: &Aabb<f64>, line: &Line, from: f64) -> Option<Option<Self>> {
         let q = frame.place(&line.origin);
         let largest = q[0].abs().max(q[1].abs()).max(q[2].abs());
         let radius = line.radius * frame.per_unit;
-        if !(frame.is_plain() && largest <= FARTHEST && radius <= WIDEST) {
+        if !(frame.is_plain() && radius <= WIDEST) {
             return None;
+        }
+        // The foot of the centre of the scene.
+        if largest > FARTHEST {
+            return Some(None);
         }
         let [min, max] = [&bounds.min, &bounds.max].map(|corner| frame.place(&[corner.x, corner.y, corner.z]));
         let from = from * frame.per_unit;
@@ -207,7 +221,8 @@ struct Entering<'a, 'r, V: Volume, C> {
     line: Line,
     piece: FrameLine,
     local: <V::Node as WideNode>::Ray,
-    /// The length along the line beyond which nothing matters, from its origin and from the base.
+    /// The lengths along the line between which hits matter, from its origin, and the latter from the base.
+    from: f64,
     to: f64,
     limit: f32,
 }
@@ -217,7 +232,7 @@ impl<'r, V: Volume, C: RayCollector<'r>> Entering<'_, 'r, V, C> {
     #[inline(always)]
     fn update(&mut self) {
         let limit = self.tests.hits.limit();
-        self.to = if limit < self.tests.ray.max { limit } else { self.tests.ray.max } * self.line.speed;
+        self.to = self.line.to(if limit < self.tests.ray.max { limit } else { self.tests.ray.max });
         self.limit = self.piece.limit(self.to);
     }
 }
@@ -239,8 +254,7 @@ impl<'r, V: Volume, C: RayCollector<'r>> Walk<V> for Entering<'_, 'r, V, C> {
     fn visit_packet<I: InstructionSet>(&mut self, number: usize) -> ControlFlow<()> {
         self.tests.hits.visit_packet();
         self.tests.leaves.prefetch_vertices(number);
-        let from = self.tests.ray.min * self.line.speed;
-        let mut met = self.tests.leaves.packets[number].met_by::<I>(&self.line, from, self.to);
+        let mut met = self.tests.leaves.packets[number].met_by::<I>(&self.line, self.from, self.to);
         while met != 0 {
             let lane = met.trailing_zeros() as usize;
             met &= met - 1;
@@ -372,15 +386,15 @@ mod tests {
                     1 => direction[rng.random_range(0..3)] *= 2f64.powi(-rng.random_range(20..60)),
                     _ => {}
                 }
-                let distance = scale * 2f64.powi(rng.random_range(-20..28));
+                let distance = scale * 2f64.powi(rng.random_range(-20..48));
                 let ray = Ray::new(&Point3::from(target - direction * distance), &direction).expect("valid");
                 let ray = if rng.random() { ray.line() } else { ray };
                 let parameter = |triangle: &Triangle<f64>| {
                     Crossing::of(triangle, &ray, f64::INFINITY, false).map(|crossing| crossing.parameter())
                 };
                 let hits: Vec<Option<f64>> = triangles.iter().map(parameter).collect();
-                let line = Line::of(&ray).expect("plain");
-                let piece = FrameLine::new(&frame, &bounds, &line, ray.min * line.speed).expect("near enough");
+                let line = FrameLine::line(&frame, &ray);
+                let piece = FrameLine::new(&frame, &bounds, &line, line.from(ray.min)).expect("plain");
                 if misses(&ray, &frame, &half_box(&frame, &bounds)) || piece.is_none() {
                     assert!(hits.iter().all(Option::is_none), "{name} {case}: {ray:?}");
                     continue;
@@ -393,7 +407,7 @@ mod tests {
                     for (hit, entry) in hits.iter().zip(entries) {
                         match hit {
                             Some(t) => {
-                                let limit = piece.limit(t * line.speed);
+                                let limit = piece.limit(line.to(*t));
                                 assert!(entry >= 0.0 && entry <= limit, "{isa} {name} {case}: {entry:e} {limit:e}");
                                 counts[0] += 1;
                             }
