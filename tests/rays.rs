@@ -5,8 +5,8 @@
 
 use nalgebra::{Point3, Vector3};
 use p2m::{
-    Aabb, AabbTree, BruteForce, BuildIndex, Crossing, Directions, Element, Feature, Hit, Isa, KdopTree, Primitive,
-    PrimitiveId, PrimitiveSet, Projection, Ray, RayError, RayHit, RayQuery, Real, Side, Soup,
+    Aabb, AabbTree, BruteForce, BuildIndex, Crossing, Directions, Element, Feature, Hit, Hits, Isa, KdopTree,
+    Primitive, PrimitiveId, PrimitiveSet, Projection, Ray, RayCollector, RayError, RayHit, RayQuery, Real, Side, Soup,
 };
 use p2m_testkit::families::{SCALES, wild};
 use p2m_testkit::ray_check::{Truth, agrees, bits};
@@ -14,6 +14,7 @@ use p2m_testkit::rays::{AIMS, ray};
 use p2m_testkit::rng;
 use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS};
 use rand::{Rng, RngExt};
+use std::ops::ControlFlow;
 
 type Index<'a, T> = (String, Box<dyn RayQuery<T> + 'a>);
 
@@ -25,9 +26,40 @@ where
     (format!("{K}-DOPs, {isa}"), Box::new(tree))
 }
 
+/// Finds the hits in another order than that of ids.
+struct Reversed<T: Real, S>(AabbTree<T, S>);
+
+/// Keeps what is offered.
+struct Offered<'r> {
+    only_crossings: bool,
+    all: Vec<(PrimitiveId, Crossing<'r>)>,
+}
+
+impl<'r> RayCollector<'r> for Offered<'r> {
+    fn only_crossings(&self) -> bool {
+        self.only_crossings
+    }
+
+    fn offer(&mut self, id: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()> {
+        self.all.push((id, *crossing));
+        ControlFlow::Continue(())
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>> RayQuery<T> for Reversed<T, S> {
+    fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>) {
+        let mut offered = Offered { only_crossings: hits.only_crossings(), all: Vec::new() };
+        self.0.visit_ray(ray, &mut offered);
+        offered.all.sort_by_key(|(id, _)| std::cmp::Reverse(*id));
+        let _ = offered.all.iter().try_for_each(|(id, crossing)| hits.offer(*id, crossing));
+    }
+}
+
 /// Brute force first, then every tree with every instruction set.
 fn backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: S) -> Vec<Index<'a, T>> {
     let mut all: Vec<Index<'a, T>> = vec![("brute force".to_owned(), Box::new(BruteForce::new(set).expect("valid")))];
+    let reversed = AabbTree::<T, S>::build(set, &Default::default()).expect("valid");
+    all.push(("boxes, backwards".to_owned(), Box::new(Reversed(reversed))));
     for isa in Isa::available() {
         let boxes = AabbTree::<T, S>::build(set, &Default::default()).expect("valid").with_isa(isa);
         all.push((format!("boxes, {isa}"), Box::new(boxes)));
@@ -173,8 +205,14 @@ fn no_scale_of_scene_or_direction_is_too_small_or_too_large() {
             let Ok(soup) = Soup::new(positions, soup.elements()) else { continue };
             let mut some = Vec::new();
             for ray in &rays {
-                let f = [-1074, -1000, -600, -250, 0, 0, 250, 600, 1000, 1023][rng.random_range(0..10)];
-                some.extend(scaled_ray(ray, e, f).filter(|_| rng.random_range(0..12) == 0));
+                // Any length, or so long that parameters get near a limit: of f64, of plain arithmetic, or none.
+                let f = match rng.random_range(0..4) {
+                    0 => [-1074, -1000, -600, -250, 0, 0, 250, 600, 1000, 1023][rng.random_range(0..10)],
+                    1 => e + rng.random_range(-30..30),
+                    2 => e - [-1074, -1030, -1022, 1022][rng.random_range(0..4)] + rng.random_range(-10..10),
+                    _ => e - [-250, 250, -500, 500][rng.random_range(0..4)] + rng.random_range(-5..5),
+                };
+                some.extend(scaled_ray(ray, e, f).filter(|_| rng.random_range(0..8) == 0));
             }
             if !some.is_empty() {
                 check(&soup, &some, &mut rng, &mut checked, &|| format!("seed {seed} at 2^{e}"));
@@ -394,6 +432,21 @@ fn a_tiny_triangle_is_hit_into_a_long_direction() {
     for (name, index) in backends(&soup_of(&[tiny])) {
         let hit = index.first_intersection(&ray).map(|hit| (hit.parameter, hit.side));
         assert_eq!(hit, Some((scaled(-1.0 / 6.0, -788), Side::Back)), "{name}");
+    }
+}
+
+/// The end of a stretch may be beyond the range of f64, and then it is all that a range at infinity has of it.
+#[test]
+fn a_stretch_may_end_at_infinity() {
+    let [near, far] = [[1.0, 0.0, 0.0], [1e300, 0.0, 0.0]];
+    let ray = Ray::new(&Point3::origin(), &Vector3::new(1e-300, 0.0, 0.0)).expect("valid");
+    let beyond = ray.with_range(f64::INFINITY, f64::INFINITY).expect("in order");
+    for (name, index) in backends(&soup_of(&[vec![near, far], vec![near, far, [2.0, 1.0, 0.0]]])) {
+        let found =
+            |ray| index.all_intersections(&ray).iter().map(|hit| (hit.parameter, hit.point)).collect::<Vec<_>>();
+        assert_eq!(found(ray), [(1e300, Point3::from(near)); 2], "{name}");
+        assert_eq!(found(beyond), [(f64::INFINITY, Point3::from(far)); 2], "{name}");
+        assert_eq!(found(ray.with_range(f64::MAX, f64::MAX).expect("in order")).len(), 2, "{name}");
     }
 }
 

@@ -33,12 +33,14 @@ pub enum Aim {
     Axis,
     /// From small integers to small integers.
     Lattice,
+    /// From next to a vertex to a point of an edge or a face there: almost in its plane.
+    Graze,
     /// From 1e6, 1e12 or 1e300 sizes away.
     Far,
 }
 
 /// All of them.
-pub const AIMS: [Aim; 13] = [
+pub const AIMS: [Aim; 14] = [
     Aim::Random,
     Aim::ToVertex,
     Aim::FromVertex,
@@ -51,6 +53,7 @@ pub const AIMS: [Aim; 13] = [
     Aim::InPlane,
     Aim::Axis,
     Aim::Lattice,
+    Aim::Graze,
     Aim::Far,
 ];
 
@@ -107,6 +110,10 @@ fn aimed(rng: &mut impl Rng, soup: &Soup<f64>, aim: Aim) -> (P, Vector3<f64>) {
         Aim::Lattice => {
             let direction = Vector3::from_fn(|_, _| small(rng));
             (a.map(f64::round) + Vector3::from_fn(|_, _| small(rng)), direction)
+        }
+        Aim::Graze => {
+            let origin = a + vector(rng) * (size * 2f64.powi(-rng.random_range(1..60)));
+            (origin, if rng.random() { b + (c - b) * weights[0] } else { on_face } - origin)
         }
         Aim::Far => {
             let origin = a + vector(rng) * (size * [1e6, 1e12, 1e300][rng.random_range(0..3)]);
