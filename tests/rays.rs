@@ -443,7 +443,7 @@ fn a_stretch_may_end_at_infinity() {
     let beyond = ray.with_range(f64::INFINITY, f64::INFINITY).expect("in order");
     for (name, index) in backends(&soup_of(&[vec![near, far], vec![near, far, [2.0, 1.0, 0.0]]])) {
         let found =
-            |ray| index.all_intersections(&ray).iter().map(|hit| (hit.parameter, hit.point)).collect::<Vec<_>>();
+            |ray| index.all_intersections(&ray).iter().map(|hit| (hit.parameter, hit.point())).collect::<Vec<_>>();
         assert_eq!(found(ray), [(1e300, Point3::from(near)); 2], "{name}");
         assert_eq!(found(beyond), [(f64::INFINITY, Point3::from(far)); 2], "{name}");
         assert_eq!(found(ray.with_range(f64::MAX, f64::MAX).expect("in order")).len(), 2, "{name}");
