@@ -42,7 +42,7 @@ use std::ops::ControlFlow;
 /// - **Agreement**: every backend finds the same hits with the same bits. Only which hit is
 ///   [any](Self::any_intersection) depends on the backend.
 ///
-/// A primitive of your own answers by [`Primitive::intersect_ray`]. It is no part of a surface that is crossed.
+/// A primitive of your own answers by [`Primitive::intersect_ray`](crate::Primitive::intersect_ray). It is no part of a surface that is crossed.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
