@@ -123,7 +123,7 @@ fn rays<R: Rng>(rng: &mut R, soup: &Soup<f64>) -> Vec<Ray> {
         1 => 1.0,
         _ => 2f64.powi(rng.random_range(-60..4)),
     };
-    AIMS.iter().map(|aim| ray(rng, soup, *aim).with_radius(radius(rng)).expect("valid")).collect()
+    AIMS.iter().map(|aim| ray(rng, soup, &soup.aabb(), *aim).with_radius(radius(rng)).expect("valid")).collect()
 }
 
 /// x 2^e; infinite or rounded beyond the range of f64.
@@ -226,7 +226,7 @@ fn no_scale_of_scene_or_direction_is_too_small_or_too_large() {
 #[test]
 fn magnitudes_may_mix_in_scene_and_ray() {
     let mut checked = Checked::default();
-    for seed in 0..60 {
+    for seed in 0..40 {
         let mut rng = rng("magnitudes of rays", seed);
         let cases: Vec<_> = (0..6).map(|_| wild(&mut rng)).collect();
         let primitives: Vec<_> = cases.iter().map(|case| case.vertices.clone()).collect();
@@ -237,7 +237,7 @@ fn magnitudes_may_mix_in_scene_and_ray() {
             .copied()
             .collect::<Vec<_>>()
             .into_iter()
-            .map(|aim| ray(&mut rng, &soup, aim))
+            .map(|aim| ray(&mut rng, &soup, &soup.aabb(), aim))
             .collect();
         for (case, other) in cases.iter().zip(&cases[1..]) {
             // From a vertex or a query into the direction of coordinates, and to another vertex.
@@ -301,7 +301,7 @@ fn the_whole_lattice_of_three_is_met_as_exact_arithmetic_says() {
     }
     assert_eq!(primitives.len(), 27 + 378 + 3654);
     let soup = soup_of(&primitives);
-    let lines: Vec<Ray> = (0..36)
+    let lines: Vec<Ray> = (0..24)
         .map(|round| {
             let origin =
                 Point3::from(at(rng.random_range(0..27))) + Vector3::repeat(if round % 7 == 0 { 0.5 } else { 0.0 });
@@ -323,7 +323,7 @@ fn the_whole_lattice_of_three_is_met_as_exact_arithmetic_says() {
     let mut checked = Checked::default();
     check(&soup, &lines, &mut rng, &mut checked, &|| "lattice".to_owned());
     println!("{checked:?}");
-    assert!(checked.along > 5000 && checked.crossings > 5000, "{checked:?}");
+    assert!(checked.along > 4000 && checked.crossings > 4000, "{checked:?}");
 }
 
 /// The cube of two triangles a side, and one with its sides cut into four: every line of the lattice crosses the
@@ -438,13 +438,13 @@ fn a_tiny_triangle_is_hit_into_a_long_direction() {
 /// The end of a stretch may be beyond the range of f64, and then it is all that a range at infinity has of it.
 #[test]
 fn a_stretch_may_end_at_infinity() {
-    let [near, far] = [[1.0, 0.0, 0.0], [1e300, 0.0, 0.0]];
-    let ray = Ray::new(&Point3::origin(), &Vector3::new(1e-300, 0.0, 0.0)).expect("valid");
+    let [near, far] = [[1.0, 0.0, 0.0], [2f64.powi(900), 0.0, 0.0]];
+    let ray = Ray::new(&Point3::origin(), &Vector3::new(2f64.powi(-900), 0.0, 0.0)).expect("valid");
     let beyond = ray.with_range(f64::INFINITY, f64::INFINITY).expect("in order");
     for (name, index) in backends(&soup_of(&[vec![near, far], vec![near, far, [2.0, 1.0, 0.0]]])) {
         let found =
             |ray| index.all_intersections(&ray).iter().map(|hit| (hit.parameter, hit.point())).collect::<Vec<_>>();
-        assert_eq!(found(ray), [(1e300, Point3::from(near)); 2], "{name}");
+        assert_eq!(found(ray), [(2f64.powi(900), Point3::from(near)); 2], "{name}");
         assert_eq!(found(beyond), [(f64::INFINITY, Point3::from(far)); 2], "{name}");
         assert_eq!(found(ray.with_range(f64::MAX, f64::MAX).expect("in order")).len(), 2, "{name}");
     }

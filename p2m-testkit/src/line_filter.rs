@@ -119,7 +119,8 @@ impl Line {
             vertices.iter().map(|v| cross(&std::array::from_fn(|k| v[k] - self.point[k]), &self.direction)).collect();
         // A distance across is up to three times as long there.
         let reach = vertices.iter().map(size).fold(size(&self.point), f64::max);
-        let margin = 3.0 * (self.radius + MARGIN * reach);
+        let radius = if vertices.len() < 3 { self.radius } else { 0.0 };
+        let margin = 3.0 * (radius + MARGIN * reach);
         let dot = |a: &P, b: &P| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let separates = |axis: P| {
             let slack = margin * size(&axis) * 3.0;
@@ -154,7 +155,8 @@ mod tests {
                 .collect();
             let filter = LineFilter::new(&primitives);
             for aim in AIMS {
-                let ray = ray(&mut rng, &soup, aim).with_radius([0.0, 1e-3][seed as usize % 2]).expect("valid");
+                let ray =
+                    ray(&mut rng, &soup, &soup.aabb(), aim).with_radius([0.0, 1e-3][seed as usize % 2]).expect("valid");
                 let near = filter.near(&ray);
                 for (i, vertices) in primitives.iter().enumerate() {
                     let meets = Meeting::new(&ray, vertices).is_some() || crossing(&ray, vertices).is_some();

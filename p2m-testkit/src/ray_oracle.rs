@@ -175,6 +175,9 @@ impl Exact {
         let mut polygon: Vec<V> = (0..self.offsets.len()).map(corner).collect();
         for k in 0..3 {
             for sign in [1, -1] {
+                if polygon.is_empty() {
+                    return polygon;
+                }
                 polygon = clip(&polygon, |w| aside.iter().zip(w).map(|(a, w)| &a[k] * w).sum::<IBig>() * sign);
             }
         }
@@ -439,18 +442,27 @@ pub fn crossing(ray: &Ray, vertices: &[[f64; 3]]) -> Option<(Side, f64)> {
     }
     let side = if all > IBig::ZERO { Side::Front } else { Side::Back };
     let right: V = o[0].each_ref().map(|x| -x);
-    // Determinants are below 2^(3 bits + 5), and above 1/2 or zero: beside them 2^-(3 bits + 8) is next to nothing.
-    let bits = [&e, &f, &back, &right].into_iter().flatten().map(|x| x.unsigned_abs().bit_len()).max().expect("some");
-    let fine = 3 * bits + 8;
-    let moved: V = std::array::from_fn(|k| (&right[k] << (3 * fine)) + (IBig::ONE << ((2 - k) * fine)));
     let turn = if all > IBig::ZERO { IBig::ONE } else { -IBig::ONE };
-    let u = determinant([&moved, &f, &back]) * &turn;
-    let v = determinant([&e, &moved, &back]) * &turn;
-    let rest = ((&all * &turn) << (3 * fine)) - &u - &v;
+    // u, v and 1 - u - v, times something above zero, for a right side that is scaled by 2^scale.
+    let weights = |right: &V, scale: usize| {
+        let (u, v) = (determinant([right, &f, &back]) * &turn, determinant([&e, right, &back]) * &turn);
+        let rest = ((&all * &turn) << scale) - &u - &v;
+        [u, v, rest]
+    };
     let zero = IBig::ZERO;
-    assert!(u != zero && v != zero && rest != zero, "moved off all edges");
+    let mut inside = weights(&right, 0);
+    // Only on an edge or a vertex does it matter that the line moves.
+    if inside.iter().all(|x| *x >= zero) && inside.contains(&zero) {
+        // Determinants are below 2^(3 bits + 5), and zero or at least 1: beside them 2^-(3 bits + 8) is nothing.
+        let entries = [&e, &f, &back, &right].into_iter().flatten();
+        let bits = entries.map(|x| x.unsigned_abs().bit_len()).max().expect("some");
+        let fine = 3 * bits + 8;
+        let moved: V = std::array::from_fn(|k| (&right[k] << (3 * fine)) + (IBig::ONE << ((2 - k) * fine)));
+        inside = weights(&moved, 3 * fine);
+        assert!(!inside.contains(&zero), "moved off all edges");
+    }
     let parameter = || Ratio::new(determinant([&e, &f, &right]), all.clone()).times_power_of_two(unit).round();
-    (u > zero && v > zero && rest > zero).then(|| (side, parameter()))
+    inside.iter().all(|x| *x > zero).then(|| (side, parameter()))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Rays that break kernels: through vertices and edges, along edges, in planes, from the surface, from afar.
 
 use nalgebra::{Point3, Vector3};
-use p2m_core::{PrimitiveId, PrimitiveSet, Ray, Soup};
+use p2m_core::{Aabb, PrimitiveId, PrimitiveSet, Ray, Soup};
 use rand::{Rng, RngExt};
 
 type P = Point3<f64>;
@@ -74,8 +74,7 @@ fn small(rng: &mut impl Rng) -> f64 {
 }
 
 /// Origin and direction of a ray at a scene that is not empty. The direction may be zero.
-fn aimed(rng: &mut impl Rng, soup: &Soup<f64>, aim: Aim) -> (P, Vector3<f64>) {
-    let bounds = soup.aabb();
+fn aimed(rng: &mut impl Rng, soup: &Soup<f64>, bounds: &Aabb<f64>, aim: Aim) -> (P, Vector3<f64>) {
     let size = (bounds.max - bounds.min).amax().max(f64::MIN_POSITIVE);
     let [a, b, c] = corners(rng, soup);
     let place = bounds.min + (bounds.max - bounds.min) * 0.5 + vector(rng) * (5.0 * size);
@@ -131,10 +130,10 @@ fn beside(rng: &mut impl Rng, x: f64) -> f64 {
     }
 }
 
-/// A ray, half line or line or a piece of one, aimed at a scene that is not empty; in a third of the cases its
-/// coordinates are one unit off in the last place.
-pub fn ray(rng: &mut impl Rng, soup: &Soup<f64>, aim: Aim) -> Ray {
-    let (mut origin, mut direction) = aimed(rng, soup, aim);
+/// A ray, half line or line or a piece of one, aimed at a scene that is not empty, of these bounds; in a third of the
+/// cases its coordinates are one unit off in the last place.
+pub fn ray(rng: &mut impl Rng, soup: &Soup<f64>, bounds: &Aabb<f64>, aim: Aim) -> Ray {
+    let (mut origin, mut direction) = aimed(rng, soup, bounds, aim);
     if rng.random_range(0..3) == 0 {
         origin = origin.map(|x| beside(rng, x));
         if rng.random() {

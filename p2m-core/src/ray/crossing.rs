@@ -54,8 +54,8 @@ impl Hit {
         }
     }
 
-    /// The point of the primitive: the sum of its vertices with these weights, rounded; a vertex verbatim. The point of
-    /// the ray is [`Ray::at`], which errs differently.
+    /// The point of the primitive: the sum of its vertices with these weights, rounded, in its box; a vertex verbatim.
+    /// The point of the ray is [`Ray::at`], which errs differently.
     #[must_use]
     pub fn point(&self) -> Point3<f64> {
         match &self.source {
@@ -256,12 +256,18 @@ fn exact(ray: &Ray, vertices: &[V3]) -> Exact {
     Exact::new(&ray.origin, &ray.direction, ray.radius, vertices)
 }
 
-/// The sum of some vertices with weights; a vertex verbatim.
+/// The sum of some vertices with weights, in the box of the vertices; a vertex verbatim.
 fn weighted(vertices: &[V3], weights: &V3) -> Point3<f64> {
-    Point3::from(match weights.iter().position(|w| *w == 1.0) {
-        Some(vertex) => vertices[vertex],
-        None => std::array::from_fn(|k| vertices.iter().zip(weights).map(|(v, w)| v[k] * w).sum()),
-    })
+    if let Some(vertex) = weights.iter().position(|w| *w == 1.0) {
+        return Point3::from(vertices[vertex]);
+    }
+    let coordinate = |k: usize| {
+        let sum: f64 = vertices.iter().zip(weights).map(|(v, w)| v[k] * w).sum();
+        let low = vertices.iter().map(|v| v[k]).fold(f64::INFINITY, f64::min);
+        let high = vertices.iter().map(|v| v[k]).fold(f64::NEG_INFINITY, f64::max);
+        sum.max(low).min(high)
+    };
+    Point3::from([0, 1, 2].map(coordinate))
 }
 
 /// 1 or -1 if the moment D . (A x B) is certainly above or below zero, from offsets that are rounded; else 0.
