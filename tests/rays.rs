@@ -57,16 +57,24 @@ impl<T: Real, S: PrimitiveSet<T>> RayQuery<T> for Reversed<T, S> {
 
 /// Brute force first, then every tree with every instruction set.
 fn backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: S) -> Vec<Index<'a, T>> {
+    let mut all = some_backends(set);
+    for isa in Isa::available() {
+        all.push(kdop::<T, S, 6>(set, isa));
+        all.push(kdop::<T, S, 18>(set, isa));
+        all.push(kdop::<T, S, 26>(set, isa));
+    }
+    all
+}
+
+/// Brute force, boxes and 14-DOPs: each tree is compiled for each type of set, which takes its time.
+fn some_backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: S) -> Vec<Index<'a, T>> {
     let mut all: Vec<Index<'a, T>> = vec![("brute force".to_owned(), Box::new(BruteForce::new(set).expect("valid")))];
     let reversed = AabbTree::<T, S>::build(set, &Default::default()).expect("valid");
     all.push(("boxes, backwards".to_owned(), Box::new(Reversed(reversed))));
     for isa in Isa::available() {
         let boxes = AabbTree::<T, S>::build(set, &Default::default()).expect("valid").with_isa(isa);
         all.push((format!("boxes, {isa}"), Box::new(boxes)));
-        all.push(kdop::<T, S, 6>(set, isa));
         all.push(kdop::<T, S, 14>(set, isa));
-        all.push(kdop::<T, S, 18>(set, isa));
-        all.push(kdop::<T, S, 26>(set, isa));
     }
     all
 }
@@ -492,7 +500,7 @@ fn primitives_of_ones_own_are_hit_where_they_say() {
     let mut rng = rng("balls and rays", 0);
     let mut place = || Point3::from(std::array::from_fn(|_| rng.random_range(-5.0..5.0)));
     let balls: Vec<Ball> = (0..200).map(|i| Ball { centre: place(), radius: f64::from(i % 10) * 0.1 }).collect();
-    let backends = backends(&balls[..]);
+    let backends = some_backends(&balls[..]);
     let mut count = 0;
     for i in 0..200 {
         let (from, to) = (place(), place());
@@ -536,7 +544,7 @@ fn answers_of_others_count_in_the_range_only() {
     let set = [0.5, f64::NAN, 3.0, 2.0, -1.0, f64::INFINITY, 0.0, -0.0].map(Stubborn);
     let ray = Ray::new(&Point3::new(0.0, 0.5, 0.5), &Vector3::x()).expect("valid");
     let ray = ray.with_range(0.0, 2.0).expect("in order");
-    for (name, index) in backends(&set[..]) {
+    for (name, index) in some_backends(&set[..]) {
         let hits = index.all_intersections(&ray);
         let ids: Vec<usize> = hits.iter().map(|hit| hit.primitive.index()).collect();
         assert_eq!(ids, [6, 7, 0, 3], "{name}");
@@ -578,4 +586,69 @@ fn rays_that_make_no_sense_are_refused() {
     let narrow = Ray::new(&Point3::new(0.1f32, 0.2, 0.3), &Vector3::new(0.4f32, 0.5, 0.6)).expect("valid");
     assert_eq!(narrow.origin(), Point3::new(0.1f32, 0.2, 0.3).map(f64::from));
     assert_eq!(narrow.direction(), Vector3::new(0.4f32, 0.5, 0.6).map(f64::from));
+}
+
+#[test]
+fn scenes_small_beside_their_coordinates_are_hit_from_afar() {
+    let mut hits = 0;
+    for case in 0..600u64 {
+        let mut rng = rng("small and far", case);
+        let mut vector = || Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0f64));
+        // A few clusters: all within 2^-20 to 2^-52 of their coordinates, and each as small as can be.
+        let extent = 2f64.powi(-20 - i32::try_from(case % 33).expect("small"));
+        let centre = Vector3::new(1.3, 1.6, 1.9);
+        let mut primitives = Vec::new();
+        for i in 0..18u8 {
+            let place = centre + vector() * extent * f64::from(i % 3);
+            let near: Vec<[f64; 3]> = (0..3).map(|_| (place + vector() * (3.0 * f64::EPSILON)).into()).collect();
+            primitives.push(near[..1 + usize::from(i % 3)].to_vec());
+        }
+        let soup = soup_of(&primitives);
+        let backends = some_backends(&soup);
+        for primitive in &primitives {
+            let target = Point3::from(primitive[0]);
+            let far = 2f64.powi(10 + i32::try_from(case % 26).expect("small"));
+            for origin in [target - vector() * far, target - vector() * (extent * far)] {
+                let Ok(ray) = Ray::through(&origin, &target) else { continue };
+                let radius = extent * [0.0, 0.1][usize::from(case % 2 == 0)];
+                let ray = ray.line().with_radius(radius).expect("valid");
+                let expected = bits_of(&backends[0], &ray);
+                hits += expected.len();
+                for backend in &backends[1..] {
+                    assert_eq!(bits_of(backend, &ray), expected, "{} case {case}: {ray:?}", backend.0);
+                }
+            }
+        }
+    }
+    assert!(hits > 20_000, "{hits}");
+}
+
+/// All hits, comparable to the last bit.
+fn bits_of<T: Real>((_, index): &Index<'_, T>, ray: &Ray) -> Vec<(usize, u64)> {
+    let bits = |hit: &Hit| (hit.primitive.index(), hit.parameter.to_bits());
+    index.all_intersections(ray).iter().map(bits).collect()
+}
+
+#[test]
+fn packets_that_became_mixed_keep_the_radius() {
+    let mut rng = rng("refitted rays", 0);
+    let mut place = || -> [f64; 3] { std::array::from_fn(|_| rng.random_range(-2.0..2.0)) };
+    let triangles = soup_of(&(0..64).map(|_| vec![place(), place(), place()]).collect::<Vec<_>>());
+    let others = soup_of(&(0..64).map(|i| (0..1 + i % 2).map(|_| place()).collect()).collect::<Vec<_>>());
+    let mut boxes = AabbTree::<f64, _>::build(&triangles, &Default::default()).expect("valid");
+    boxes.refit(&others, &Default::default()).expect("as many");
+    let mut kdops = KdopTree::<f64, _, 14>::build(&triangles, &Default::default()).expect("valid");
+    kdops.refit(&others, &Default::default()).expect("as many");
+    let trees: [&dyn RayQuery<f64>; 2] = [&boxes, &kdops];
+    let brute = BruteForce::new(&others).expect("valid");
+    let mut count = 0;
+    for _ in 0..300 {
+        let ray = Ray::through(&Point3::from(place()), &Point3::from(place())).expect("apart");
+        let ray = ray.with_radius(0.3).expect("valid");
+        count += brute.count(&ray);
+        for tree in trees {
+            assert_eq!(tree.all_intersections(&ray), brute.all_intersections(&ray), "{ray:?}");
+        }
+    }
+    assert!(count > 300, "{count}");
 }

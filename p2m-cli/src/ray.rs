@@ -27,7 +27,7 @@ fn help() -> String {
         "\
 A ray has an origin and a direction of any length but zero: its points are origin + t direction with the parameter t from \
 --min to --max. Whether it meets a primitive is decided without rounding, so nothing slips through between two \
-triangles with a common edge, and every backend gives the same table. A hit on a common edge is one of both \
+triangles with a common edge, and every backend gives the same table, but for `any`. A hit on a common edge is one of both \
 triangles, and as a crossing it counts once.
 
 The table has the columns ray,ox,oy,oz,dx,dy,dz: the number of the ray from 0, its origin and its direction. With --mode \

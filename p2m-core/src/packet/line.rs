@@ -25,6 +25,8 @@ pub(crate) struct Line {
     pub(crate) ahead: f64,
     /// How near it has to come to segments and points, in units of the scene.
     pub(crate) radius: f64,
+    /// What the origin may be off, in units of the scene.
+    pub(crate) off: f64,
 }
 
 /// What lengths along a line may be off, in parts of what they are computed from: 2^-50.
@@ -33,9 +35,9 @@ const ROUNDING: f64 = power_of_two(-50);
 const TINY: f64 = power_of_two(-1000);
 
 impl Line {
-    /// The line of a ray.
+    /// The line of a ray, which has to come within `radius` of segments and points.
     #[inline(always)]
-    pub(crate) fn of(ray: &Ray) -> Self {
+    pub(crate) fn of(ray: &Ray, radius: f64) -> Self {
         let d = ray.direction;
         let axis = if d[0].abs() >= d[1].abs() && d[0].abs() >= d[2].abs() {
             0
@@ -46,17 +48,18 @@ impl Line {
         };
         let speed = d[axis].abs();
         let direction = [d[0] / speed, d[1] / speed, d[2] / speed];
-        Self { origin: ray.origin, direction, axis, speed, ahead: 0.0, radius: ray.radius }
+        Self { origin: ray.origin, direction, axis, speed, ahead: 0.0, radius, off: 0.0 }
     }
 
-    /// The same from the foot of a point, which is rounded once: for rays that come from so far away, or so fast, that
-    /// f64 would lose the scene on the way.
+    /// The same from the foot of a point, which is rounded once: for rays that come from so far away that f64 would
+    /// lose the scene on the way.
     #[cold]
     #[inline(never)]
-    pub(crate) fn from_afar(ray: &Ray, point: &[f64; 3]) -> Self {
-        let line = Self::of(ray);
+    pub(crate) fn from_afar(ray: &Ray, radius: f64, point: &[f64; 3]) -> Self {
+        let line = Self::of(ray, radius);
         let (origin, ahead) = foot(ray, point, line.axis);
-        Self { origin, ahead, ..line }
+        let off = origin.iter().fold(0.0, |a: f64, x| a.max(x.abs())) * ROUNDING + TINY;
+        Self { origin, ahead, off, ..line }
     }
 
     /// The length from the origin at which a parameter of the ray lies, rounded down.
@@ -77,7 +80,7 @@ impl Line {
     #[inline(always)]
     fn length(&self, parameter: f64) -> (f64, f64) {
         let length = parameter * self.speed;
-        (length - self.ahead, (length.abs() + self.ahead.abs()) * ROUNDING + self.speed * TINY)
+        (length - self.ahead, (length.abs() + self.ahead.abs()) * ROUNDING + self.speed * TINY + self.off)
     }
 }
 
@@ -129,8 +132,9 @@ impl Packet {
         let ahead = towards / square;
         let base: [f64; 3] = std::array::from_fn(|k| q[k] + ahead * d[k]);
         let size = |x: &[f64; 3]| x[0].abs().max(x[1].abs()).max(x[2].abs());
-        let error = (size(&q) + ahead.abs()) * (8.0 * f64::EPSILON);
-        let radius = line.radius * self.per_unit;
+        let error = (size(&q) + ahead.abs()) * (8.0 * f64::EPSILON) + line.off * self.per_unit;
+        // It does not matter to triangles.
+        let radius = if self.kind == Kind::Triangle { 0.0 } else { line.radius * self.per_unit };
         // Not for NaN either, which comes of infinite differences.
         if !(self.unit > 0.0 && error < COARSE && radius < COARSE) {
             return Placed::Unknown;
@@ -281,11 +285,12 @@ fn reaches<L: Lanes>(line: &Local, a: L, b: L) -> u32 {
 fn boxes<L: Lanes>(line: &Local, min: &[L; 3], max: &[L; 3]) -> u32 {
     let (centre, extent) = middle(min[2], max[2]);
     let along = if line.down { L::splat(0.0).sub(centre) } else { centre };
-    let mut lanes = in_piece(line, along.sub(extent), along.add(extent));
+    let extent_too = extent.add(L::splat(line.wire_margin));
+    let mut lanes = in_piece(line, along.sub(extent_too), along.add(extent_too));
     for k in 0..2 {
         let slope = line.slopes[k];
         let (own_centre, own_extent) = middle(min[k], max[k]);
-        let reach = extent.mul_add(L::splat(slope.abs()), own_extent).add(L::splat(line.margin));
+        let reach = extent.mul_add(L::splat(slope.abs()), own_extent).add(L::splat(line.wire_margin));
         lanes &= size(centre.mul_add(L::splat(-slope), own_centre)).at_most(reach);
     }
     lanes
@@ -386,9 +391,9 @@ mod tests {
                 let range = rng.random_range(0.0..2.0) * distance;
                 let ray = if rng.random() { ray.with_range(range, f64::INFINITY).expect("in order") } else { ray };
                 let line = if distance > 1e6 * size {
-                    Line::from_afar(&ray, &nalgebra::center(&bounds.min, &bounds.max).into())
+                    Line::from_afar(&ray, radius, &nalgebra::center(&bounds.min, &bounds.max).into())
                 } else {
-                    Line::of(&ray)
+                    Line::of(&ray, radius)
                 };
                 let (from, to) = (line.from(ray.range()[0]), line.to(ray.range()[1]));
                 let hit = |lane: &usize| Crossing::of(&soup.get(ids[*lane]), &ray, f64::INFINITY, false).is_some();

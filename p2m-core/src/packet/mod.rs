@@ -273,6 +273,11 @@ impl Packet {
         self.kind != Kind::Box
     }
 
+    /// Whether its primitives are triangles.
+    pub(crate) fn has_triangles(&self) -> bool {
+        self.kind == Kind::Triangle
+    }
+
     /// The unit of its frame.
     #[inline(always)]
     pub(crate) fn unit(&self) -> f64 {

@@ -129,7 +129,7 @@ impl Ray {
         self.radius
     }
 
-    /// The point of a parameter, rounded.
+    /// The point of a parameter, rounded; NaN where that is infinite and the direction has a zero.
     #[must_use]
     pub fn at(&self, parameter: f64) -> Point3<f64> {
         self.origin() + self.direction() * parameter

@@ -64,6 +64,8 @@ pub(crate) struct Leaves {
     /// Where those of each packet begin: few numbers, which stay in the cache, so that vertices can be asked for with
     /// their packet.
     firsts: Vec<u32>,
+    /// Whether there is anything but triangles.
+    has_others: bool,
 }
 
 impl<const K: usize> PacketTree<Kdop<K>> {
@@ -234,11 +236,10 @@ impl<V: Volume> PacketTree<V> {
         ray: &'r Ray,
         collector: &mut C,
     ) {
-        if ray::misses(ray, &self.frame, &self.half) {
-            return;
-        }
-        let intersect = intersection(set, ray, collector.only_crossings());
-        self.isa.run(RaySearch { tree: self, ray, hits: collector, intersect: &intersect });
+        let only_crossings = collector.only_crossings();
+        let Some(radius) = self.radius_of(ray, only_crossings) else { return };
+        let intersect = intersection(set, ray, only_crossings);
+        self.isa.run(RaySearch { tree: self, ray, radius, hits: collector, intersect: &intersect });
     }
 
     /// The same for the hits that its methods want.
@@ -249,11 +250,16 @@ impl<V: Volume> PacketTree<V> {
         ray: &'r Ray,
         hits: &mut Hits<'r>,
     ) {
-        if ray::misses(ray, &self.frame, &self.half) {
-            return;
-        }
-        let intersect = intersection(set, ray, hits.only_crossings());
-        V::rays(self, ray, hits, &intersect);
+        let only_crossings = hits.only_crossings();
+        let Some(radius) = self.radius_of(ray, only_crossings) else { return };
+        V::rays(self, ray, radius, hits, &intersection(set, ray, only_crossings));
+    }
+
+    /// How near a ray has to come to what is no triangle; `None` if it certainly misses everything.
+    #[inline(always)]
+    fn radius_of(&self, ray: &Ray, only_crossings: bool) -> Option<f64> {
+        let radius = if self.leaves.has_others && !only_crossings { ray.radius } else { 0.0 };
+        (self.root != Child::NONE && !ray::misses(ray, radius, &self.frame, &self.half)).then_some(radius)
     }
 
     /// The children of a node, with boxes around them.
@@ -323,7 +329,8 @@ impl Leaves {
         };
         let packets: Vec<Packet> = packed.into_iter().map(place).collect();
         let firsts = packets.iter().map(|packet| packet.first_vertex).chain([vertices.len() as u32]).collect();
-        Self { packets, vertices, firsts }
+        let has_others = packets.iter().any(|packet| !packet.has_triangles());
+        Self { packets, vertices, firsts, has_others }
     }
 
     /// Asks for a packet before it is read.

@@ -21,6 +21,8 @@ pub(crate) type Intersect<'a, 'r> = &'a dyn Fn(PrimitiveId, f64) -> Option<Cross
 pub(crate) struct RaySearch<'a, 'r, V: Volume, C> {
     pub(crate) tree: &'a PacketTree<V>,
     pub(crate) ray: &'r Ray,
+    /// How near it has to come to segments and points: 0 if nothing asks for that.
+    pub(crate) radius: f64,
     pub(crate) hits: &'a mut C,
     pub(crate) intersect: Intersect<'a, 'r>,
 }
@@ -30,9 +32,9 @@ impl<'r, V: Volume, C: RayCollector<'r>> Operation for RaySearch<'_, 'r, V, C> {
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        let Self { tree, ray, hits, intersect } = self;
+        let Self { tree, ray, radius, hits, intersect } = self;
         let mut tests = Tests { leaves: &tree.leaves, ray, only_crossings: hits.only_crossings(), hits, intersect };
-        let line = FrameLine::line(&tree.frame, ray);
+        let line = FrameLine::line(&tree.frame, ray, radius);
         let from = line.from(ray.min);
         let Some(piece) = FrameLine::new(&tree.frame, &tree.bounds, &line, from) else {
             return tests.everything();
@@ -104,11 +106,11 @@ const TINY: f64 = power_of_two(-1000);
 /// Whether a ray certainly misses the box of a scene, half of which is `half`: it begins outside and goes away, or the
 /// box lies on one side of its projection along an axis. Most rays from far away are done with that.
 #[inline(always)]
-pub(super) fn misses(ray: &Ray, frame: &Frame, half: &[f64; 3]) -> bool {
+pub(super) fn misses(ray: &Ray, radius: f64, frame: &Frame, half: &[f64; 3]) -> bool {
     let (o, d, c) = (&ray.origin, &ray.direction, &frame.centre);
     let towards = [c[0] - o[0], c[1] - o[1], c[2] - o[2]];
     // With room for all rounding here (the centre has brought its own), and for that of a parameter to zero.
-    let half = [0, 1, 2].map(|k: usize| half[k] + o[k].abs() * ROUNDING + d[k].abs() * TINY + ray.radius);
+    let half = [0, 1, 2].map(|k: usize| half[k] + o[k].abs() * ROUNDING + d[k].abs() * TINY + radius);
     // All of it and then one branch: one after the other they are mispredicted.
     let away = |k: usize| (towards[k] > half[k]) & (d[k] <= 0.0) | (towards[k] < -half[k]) & (d[k] >= 0.0);
     let goes_away = (ray.min >= 0.0) & (away(0) | away(1) | away(2));
@@ -152,10 +154,9 @@ const BESIDE: f64 = power_of_two(-20);
 impl FrameLine {
     /// The line of a ray, from near the scene.
     #[inline(always)]
-    fn line(frame: &Frame, ray: &Ray) -> Line {
+    fn line(frame: &Frame, ray: &Ray, radius: f64) -> Line {
         let [x, y, z] = frame.place(&ray.origin).map(f64::abs);
-        // Nor for NaN.
-        if x.max(y).max(z) <= FARTHEST { Line::of(ray) } else { Line::from_afar(ray, &frame.centre) }
+        if x.max(y).max(z) <= FARTHEST { Line::of(ray, radius) } else { Line::from_afar(ray, radius, &frame.centre) }
     }
 
     /// What lies in the box of a line that begins at the length `from` from its origin. `None` if f32 cannot place it,
@@ -164,7 +165,8 @@ impl FrameLine {
     fn new(frame: &Frame, bounds: &Aabb<f64>, line: &Line, from: f64) -> Option<Option<Self>> {
         let q = frame.place(&line.origin);
         let largest = q[0].abs().max(q[1].abs()).max(q[2].abs());
-        let radius = line.radius * frame.per_unit;
+        let off = line.off * frame.per_unit;
+        let radius = line.radius * frame.per_unit + off;
         if !(frame.is_plain() && radius <= WIDEST) {
             return None;
         }
@@ -393,9 +395,9 @@ mod tests {
                     Crossing::of(triangle, &ray, f64::INFINITY, false).map(|crossing| crossing.parameter())
                 };
                 let hits: Vec<Option<f64>> = triangles.iter().map(parameter).collect();
-                let line = FrameLine::line(&frame, &ray);
+                let line = FrameLine::line(&frame, &ray, 0.0);
                 let piece = FrameLine::new(&frame, &bounds, &line, line.from(ray.min)).expect("plain");
-                if misses(&ray, &frame, &half_box(&frame, &bounds)) || piece.is_none() {
+                if misses(&ray, 0.0, &frame, &half_box(&frame, &bounds)) || piece.is_none() {
                     assert!(hits.iter().all(Option::is_none), "{name} {case}: {ray:?}");
                     continue;
                 }

@@ -40,7 +40,7 @@ pub(crate) trait Nodes: Sized {
     type Node: WideNode<Volume = Self, Shape = Self::Shape>;
 
     /// What a ray meets, for the same reason in a function of its own.
-    fn rays<'r>(tree: &PacketTree<Self>, ray: &'r Ray, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>)
+    fn rays<'r>(tree: &PacketTree<Self>, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>)
     where
         Self: Volume;
 
@@ -54,8 +54,8 @@ impl Nodes for Aabb<f64> {
     type Shape = ();
     type Node = BoxNode;
 
-    fn rays<'r>(tree: &PacketTree, ray: &'r Ray, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>) {
-        tree.isa.run(RaySearch { tree, ray, hits, intersect });
+    fn rays<'r>(tree: &PacketTree, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>) {
+        tree.isa.run(RaySearch { tree, ray, radius, hits, intersect });
     }
 
     fn nearest(tree: &PacketTree, query: [f64; 3], minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
@@ -67,8 +67,8 @@ impl<const K: usize> Nodes for Kdop<K> {
     type Shape = Slabs<K>;
     type Node = SlabNode<K>;
 
-    fn rays<'r>(tree: &PacketTree<Self>, ray: &'r Ray, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>) {
-        tree.isa.run(RaySearch { tree, ray, hits, intersect });
+    fn rays<'r>(tree: &PacketTree<Self>, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>) {
+        tree.isa.run(RaySearch { tree, ray, radius, hits, intersect });
     }
 
     fn nearest(tree: &PacketTree<Self>, query: [f64; 3], minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
