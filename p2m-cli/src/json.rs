@@ -17,7 +17,7 @@ pub(crate) const VERSION: u32 = 1;
 pub(crate) const STABILITY: &str = "\
 Reports of --json are one object. Its key \"p2m\" names the kind of the report and \"version\" its version, now 1: within a \
 version keys are added, but not removed, renamed or given another meaning. Lengths are in the unit of the scene, times in \
-seconds; what does not exist is null.";
+seconds; what does not exist is null, and so is what is infinite, like the end of a range without one.";
 
 /// Writes a report to the standard output.
 pub(crate) fn print(report: &Value) -> anyhow::Result<()> {

@@ -9,7 +9,7 @@ use crate::output::Output;
 use crate::progress::{Progress, Unit};
 use crate::sampling::{Region, random_rays};
 use crate::summary::Run;
-use crate::usage::{not_negative, number, one_of, positive, usage, whole};
+use crate::usage::{finite_not_negative, number, one_of, positive, usage, whole};
 use anyhow::Context;
 use clap::{ArgGroup, ValueEnum};
 use nalgebra::{Point3, Vector3};
@@ -112,10 +112,10 @@ pub(crate) struct Args {
     max: Option<f64>,
 
     /// Segments and points are hit within this distance, in the unit of the scene; it does not matter to triangles
-    #[arg(long, value_name = "R", default_value_t = 0.0, value_parser = not_negative, allow_negative_numbers = true)]
+    #[arg(long, value_name = "R", default_value_t = 0.0, value_parser = finite_not_negative, allow_negative_numbers = true)]
     radius: f64,
 
-    /// How to search
+    /// How to search; octrees answer no rays
     #[arg(long, value_enum, default_value_t = Search::Aabb)]
     backend: Search,
 
@@ -156,7 +156,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let (scene_args, asking) = (&args.scene, &args.asking);
     asking.check(scene_args, args.rays.as_deref(), "rays", args.backend == Search::Kdop)?;
     let along_x = Ray::new(&Point3::<f64>::origin(), &Vector3::x()).and_then(|ray| args.limited(&ray));
-    along_x.map_err(|error| usage(error.to_string()))?;
+    along_x.map_err(|error| usage(format!("{error} (--min, --max)")))?;
     let (format, out_format) = (scene_args.format()?, asking.format()?);
     let start = Instant::now();
     let scene = read_scene(&scene_args.path, format)?;

@@ -93,6 +93,9 @@ impl Run<'_> {
         if p2m_core::PrimitiveSet::is_empty(&self.scene.soup) {
             writeln!(text, "note     the scene is empty: there is nothing to find")?;
         }
+        if count == 0 {
+            writeln!(text, "note     there are no {many}: nothing is asked")?;
+        }
         if !self.scene.skipped.is_empty() {
             let list: Vec<String> = self.scene.skipped.iter().map(ToString::to_string).collect();
             writeln!(text, "skipped  {}", list.join(", "))?;

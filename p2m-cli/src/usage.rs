@@ -48,6 +48,10 @@ pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
+pub(crate) fn finite_not_negative(text: &str) -> Result<f64, String> {
+    not_negative(text).ok().filter(|x| x.is_finite()).ok_or_else(|| "not a finite number from 0 up".to_owned())
+}
+
 pub(crate) fn number(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if !x.is_nan() => Ok(x),

@@ -283,11 +283,11 @@ fn what_is_no_ray_is_refused_with_its_place() {
 #[test]
 fn wrong_usage_is_told_what_is_wrong() {
     for (arguments, why) in [
-        (&["--random", "1", "--min", "3", "--max", "2"][..], "no parameter lies between 3 and 2"),
+        (&["--random", "1", "--min", "3", "--max", "2"][..], "no parameter lies between 3 and 2 (--min, --max)"),
         (&["--random", "1", "--line", "--max=-inf", "--min", "1"], "--min"),
         (&["--random", "1", "--min", "nan"], "not a number"),
-        (&["--random", "1", "--radius", "-1"], "not a number from 0 up"),
-        (&["--random", "1", "--radius", "inf"], "inf is no radius"),
+        (&["--random", "1", "--radius", "-1"], "not a finite number from 0 up"),
+        (&["--random", "1", "--radius", "inf"], "not a finite number from 0 up"),
         (&["--random", "1", "--k", "14"], "--k is for --backend kdop"),
         (&["--random", "1", "--backend", "octree"], "[possible values: brute, aabb, kdop]"),
         (&["--random", "1", "--mode", "last"], "[possible values: do, any, first, all, count, crossings]"),

@@ -7,6 +7,7 @@
 use nalgebra::{Point3, Vector3};
 use p2m_core::hierarchy::{PacketTree, Part};
 use p2m_core::{Directions, Kdop, Primitive, PrimitiveId, PrimitiveSet, Ray, Real};
+use std::cell::Cell;
 
 /// A binary tree of k-DOPs.
 pub struct LeftFirst<const K: usize> {
@@ -119,40 +120,30 @@ impl<const K: usize> LeftFirst<K> {
     pub fn distance<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>) -> (f64, Work) {
         let q = query.map(T::to_f64).coords;
         let products = self.directions.normals().map(|normal| normal.dot(&q));
-        let mut work = Work::default();
-        let mut nearest = set.get(PrimitiveId::new(0)).project(query).key.distance();
-        let mut open = vec![0];
-        while let Some(at) = open.pop() {
-            let Some(node) = self.nodes.get(at) else { continue };
-            let slacks = products.iter().zip(&node.volume.heights).map(|(product, height)| product - height);
-            if slacks.fold(0.0, f64::max) > nearest {
-                continue;
-            }
-            work.nodes += 1;
-            match &node.below {
-                Below::Children([left, right]) => open.extend([*right, *left]),
-                Below::Primitives(ids) => {
-                    work.leaves += 1;
-                    work.primitives += ids.len();
-                    for id in ids {
-                        nearest = nearest.min(set.get(*id).project(query).key.distance());
-                    }
-                }
-            }
-        }
-        (nearest, work)
+        let nearest = Cell::new(set.get(PrimitiveId::new(0)).project(query).key.distance());
+        let work = self.walk(
+            |volume| {
+                let slacks = products.iter().zip(&volume.heights).map(|(product, height)| product - height);
+                slacks.fold(0.0, f64::max) <= nearest.get()
+            },
+            |id| nearest.set(nearest.get().min(set.get(id).project(query).key.distance())),
+        );
+        (nearest.get(), work)
     }
+
     /// Tests every primitive that the ray could meet, in the leaves whose k-DOPs it overlaps, and returns the work.
-    pub fn along(&self, ray: &Ray, mut test: impl FnMut(PrimitiveId)) -> Work {
-        let mut work = Work::default();
-        let Some(root) = self.nodes.first() else { return work };
+    pub fn along(&self, ray: &Ray, test: impl FnMut(PrimitiveId)) -> Work {
+        let Some(root) = self.nodes.first() else { return Work::default() };
         let clip = Clip::new(&self.directions, ray, &root.volume);
+        self.walk(|volume| clip.overlaps(volume), test)
+    }
+
+    /// Tests the primitives of all leaves that are entered, the left ones first.
+    fn walk(&self, enters: impl Fn(&Kdop<K>) -> bool, mut test: impl FnMut(PrimitiveId)) -> Work {
+        let mut work = Work::default();
         let mut open = vec![0];
         while let Some(at) = open.pop() {
-            let node = &self.nodes[at];
-            if !clip.overlaps(&node.volume) {
-                continue;
-            }
+            let Some(node) = self.nodes.get(at).filter(|node| enters(&node.volume)) else { continue };
             work.nodes += 1;
             match &node.below {
                 Below::Children([left, right]) => open.extend([*right, *left]),

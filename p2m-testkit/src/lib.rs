@@ -15,7 +15,8 @@ pub mod rays;
 pub mod scenes;
 mod surface;
 
-use rand::SeedableRng;
+use nalgebra::Vector3;
+use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 /// The generator of case number `case` of the test `name`: cases are independent of each other and of their order.
@@ -27,6 +28,11 @@ pub fn rng(name: &str, case: u64) -> ChaCha8Rng {
     seed[..8].copy_from_slice(&name.to_le_bytes());
     seed[8..16].copy_from_slice(&case.to_le_bytes());
     ChaCha8Rng::from_seed(seed)
+}
+
+/// A vector of the cube from -1 to 1.
+pub fn vector(rng: &mut impl Rng) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0))
 }
 
 /// The folder of real meshes: `P2M_MODELS`, by default `../shared/models` beside the workspace. `None`, with a message,

@@ -1,5 +1,6 @@
 //! Rays that break kernels: through vertices and edges, along edges, in planes, from the surface, from afar.
 
+use crate::vector;
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Aabb, PrimitiveId, PrimitiveSet, Ray, Soup};
 use rand::{Rng, RngExt};
@@ -63,10 +64,6 @@ fn corners(rng: &mut impl Rng, soup: &Soup<f64>) -> [P; 3] {
     let vertices = primitive.vertices();
     let turn = rng.random_range(0..3);
     std::array::from_fn(|k| vertices[(k + turn) % vertices.len()])
-}
-
-fn vector(rng: &mut impl Rng) -> Vector3<f64> {
-    Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0))
 }
 
 fn small(rng: &mut impl Rng) -> f64 {

@@ -8,7 +8,7 @@
 use super::{Kind, LANES, Packet, TOP};
 use crate::Ray;
 use crate::kernel::power_of_two;
-use crate::ray::foot;
+use crate::ray::{TINY, foot};
 use crate::simd::{InstructionSet, Lanes};
 
 /// A line in f64, of which the largest component of the direction is 1 or -1.
@@ -30,9 +30,7 @@ pub(crate) struct Line {
 }
 
 /// What lengths along a line may be off, in parts of what they are computed from: 2^-50.
-const ROUNDING: f64 = power_of_two(-50);
-/// More than what a parameter may be off that underflows.
-const TINY: f64 = power_of_two(-1000);
+const LENGTH_ROUNDING: f64 = power_of_two(-50);
 
 impl Line {
     /// The line of a ray, which has to come within `radius` of segments and points.
@@ -58,7 +56,7 @@ impl Line {
     pub(crate) fn from_afar(ray: &Ray, radius: f64, point: &[f64; 3]) -> Self {
         let line = Self::of(ray, radius);
         let (origin, ahead) = foot(ray, point, line.axis);
-        let off = origin.iter().fold(0.0, |a: f64, x| a.max(x.abs())) * ROUNDING + TINY;
+        let off = origin.iter().fold(0.0, |a: f64, x| a.max(x.abs())) * LENGTH_ROUNDING + TINY;
         Self { origin, ahead, off, ..line }
     }
 
@@ -80,7 +78,7 @@ impl Line {
     #[inline(always)]
     fn length(&self, parameter: f64) -> (f64, f64) {
         let length = parameter * self.speed;
-        (length - self.ahead, (length.abs() + self.ahead.abs()) * ROUNDING + self.speed * TINY + self.off)
+        (length - self.ahead, (length.abs() + self.ahead.abs()) * LENGTH_ROUNDING + self.speed * TINY + self.off)
     }
 }
 
@@ -309,6 +307,7 @@ mod tests {
     use crate::simd::Operation;
     use crate::{Aabb, Crossing, Element, Isa, Primitive, PrimitiveId, PrimitiveSet, Shape, Soup};
     use nalgebra::{Point3, Vector3};
+    use p2m_testkit::vector;
     use rand::{Rng, RngExt};
 
     struct Met<'a>(&'a Packet, &'a Line, [f64; 2]);
@@ -320,10 +319,6 @@ mod tests {
             let Self(packet, line, [from, to]) = self;
             packet.met_by::<I>(line, from, to)
         }
-    }
-
-    fn vector(rng: &mut impl Rng) -> Vector3<f64> {
-        Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0))
     }
 
     /// A ball, which a packet knows by its box.

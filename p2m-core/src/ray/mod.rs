@@ -11,6 +11,7 @@ mod counting;
 mod crossing;
 mod exact;
 mod line;
+mod plane;
 
 pub use collect::{Hits, RayCollector};
 pub use counting::RayCounting;
@@ -19,8 +20,12 @@ pub use line::{Ray, RayError};
 
 pub(crate) use exact::foot;
 
+use crate::kernel::power_of_two;
 use crate::{BruteForce, PrimitiveId, PrimitiveSet, Real};
 use std::ops::ControlFlow;
+
+/// More than what products, and parameters, may lack that underflow, in parts of what they are multiplied with.
+pub(crate) const TINY: f64 = power_of_two(-1000);
 
 /// What a ray meets of a scene. A backend writes one method, [`search_ray`](Self::search_ray).
 ///
@@ -42,7 +47,8 @@ use std::ops::ControlFlow;
 /// - **Agreement**: every backend finds the same hits with the same bits. Only which hit is
 ///   [any](Self::any_intersection) depends on the backend.
 ///
-/// A primitive of your own answers by [`Primitive::intersect_ray`](crate::Primitive::intersect_ray). It is no part of a surface that is crossed.
+/// A primitive of your own answers by [`Primitive::intersect_ray`](crate::Primitive::intersect_ray). It is no part of a
+/// surface that is crossed.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
@@ -84,7 +90,8 @@ pub trait RayQuery<T: Real> {
         hits.one.map(|(id, crossing)| crossing.hit(id))
     }
 
-    /// The hit with the least parameter, and of equal ones that with the lowest id.
+    /// The hit with the least parameter, and of equal ones that with the lowest id. Parameters are equal if they round to
+    /// the same f64: beyond its range they are all infinite.
     fn first_intersection(&self, ray: &Ray) -> Option<Hit> {
         let mut hits = Hits::first();
         self.search_ray(ray, &mut hits);

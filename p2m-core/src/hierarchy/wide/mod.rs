@@ -10,6 +10,7 @@ pub(crate) mod node;
 mod overlap;
 mod parts;
 mod ray;
+mod ray_slab;
 pub(crate) mod search;
 mod slabs;
 pub(crate) mod volume;

@@ -1,6 +1,7 @@
 //! Nodes of eight children, in f32 in a frame of the scene; and those that bound their children by boxes.
 
-use super::ray::{FrameLine, Piece, SlabRay};
+use super::ray::FrameLine;
+use super::ray_slab::{Piece, SlabRay};
 use super::volume::{Rounded, WideNode};
 use crate::kernel::{exponent, power_of_two};
 use crate::simd::Lanes;

@@ -5,11 +5,13 @@
 //! docs/rays.md has the proofs.
 
 use super::node::Frame;
+use super::ray_slab::SLIGHT;
 use super::volume::{Volume, WideNode};
 use super::walk::{Walk, walk};
 use super::{Leaves, PacketTree};
 use crate::kernel::power_of_two;
 use crate::packet::Line;
+use crate::ray::TINY;
 use crate::simd::{InstructionSet, Lanes, Operation};
 use crate::{Aabb, Crossing, PrimitiveId, Ray, RayCollector};
 use std::ops::ControlFlow;
@@ -36,7 +38,7 @@ impl<'r, V: Volume, C: RayCollector<'r>> Operation for RaySearch<'_, 'r, V, C> {
         let mut tests = Tests { leaves: &tree.leaves, ray, only_crossings: hits.only_crossings(), hits, intersect };
         let line = FrameLine::line(&tree.frame, ray, radius);
         let from = line.from(ray.min);
-        let Some(piece) = FrameLine::new(&tree.frame, &tree.bounds, &line, from) else {
+        let Some(piece) = FrameLine::new(&tree.frame, &tree.half, &line, from) else {
             return tests.everything();
         };
         if let Some(piece) = piece {
@@ -93,15 +95,10 @@ impl<'r, C: RayCollector<'r>> Tests<'_, 'r, C> {
     }
 }
 
-/// Directions that grow by less per length are parallel to a slab: from one side of a scene to the other that makes less
-/// than [`MARGIN`]. Also some room for rounding.
-const SLIGHT: f64 = power_of_two(-40);
 /// Of some sums and products of f64.
 const ROUNDING: f64 = power_of_two(-48);
 /// What positions may be off in the frame besides, which is small beside rounding to f32.
 const MARGIN: f64 = power_of_two(-30);
-/// What products may lack that underflow.
-const TINY: f64 = power_of_two(-1000);
 
 /// Whether a ray certainly misses the box of a scene, half of which is `half`: it begins outside and goes away, or the
 /// box lies on one side of its projection along an axis. Most rays from far away are done with that.
@@ -159,10 +156,10 @@ impl FrameLine {
         if x.max(y).max(z) <= FARTHEST { Line::of(ray, radius) } else { Line::from_afar(ray, radius, &frame.centre) }
     }
 
-    /// What lies in the box of a line that begins at the length `from` from its origin. `None` if f32 cannot place it,
+    /// What lies in the box, half of which is `half`, of a line that begins at the length `from` from its origin. `None` if f32 cannot place it,
     /// `Some(None)` if there is nothing.
     #[inline(always)]
-    fn new(frame: &Frame, bounds: &Aabb<f64>, line: &Line, from: f64) -> Option<Option<Self>> {
+    fn new(frame: &Frame, half: &[f64; 3], line: &Line, from: f64) -> Option<Option<Self>> {
         let q = frame.place(&line.origin);
         let largest = q[0].abs().max(q[1].abs()).max(q[2].abs());
         let off = line.off * frame.per_unit;
@@ -174,12 +171,13 @@ impl FrameLine {
         if largest > FARTHEST {
             return Some(None);
         }
-        let [min, max] = [&bounds.min, &bounds.max].map(|corner| frame.place(&[corner.x, corner.y, corner.z]));
         let from = from * frame.per_unit;
         let (mut enter, mut exit) = (from - from.abs() * ROUNDING - BESIDE, f64::INFINITY);
         for k in 0..3 {
             let d = line.direction[k];
-            let [low, high] = [min[k] - radius - BESIDE - q[k], max[k] + radius + BESIDE - q[k]];
+            // The box is symmetric about the centre of the frame.
+            let reach = half[k] * frame.per_unit + radius + BESIDE;
+            let [low, high] = [-reach - q[k], reach - q[k]];
             if d == 0.0 {
                 if low > 0.0 || high < 0.0 {
                     return Some(None);
@@ -267,66 +265,6 @@ impl<'r, V: Volume, C: RayCollector<'r>> Walk<V> for Entering<'_, 'r, V, C> {
     }
 }
 
-/// A ray and a pair of opposite planes: a product with a normal, turned so that it grows along the ray.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SlabRay {
-    /// The product of the base, rounded up and down.
-    high: f32,
-    low: f32,
-    /// By how much it grows per length; infinite if by nothing worth mentioning.
-    inverse: f32,
-    /// Whether it was turned.
-    turned: bool,
-}
-
-impl SlabRay {
-    #[allow(clippy::cast_possible_truncation, reason = "rounded outwards, and margins have room")]
-    pub(super) fn new(product: f64, growth: f64, margin: f64) -> Self {
-        let turned = growth < 0.0;
-        let product = if turned { -product } else { product };
-        let parallel = growth.abs() < SLIGHT;
-        Self {
-            high: ((product + margin) as f32).next_up(),
-            low: ((product - margin) as f32).next_down(),
-            inverse: if parallel { f32::INFINITY } else { growth.abs().recip() as f32 },
-            turned,
-        }
-    }
-}
-
-/// The piece of a ray that lies in some slabs, lane by lane.
-#[derive(Clone, Copy)]
-pub(super) struct Piece<L> {
-    near: L,
-    far: L,
-}
-
-impl<L: Lanes> Piece<L> {
-    #[inline(always)]
-    pub(super) fn new() -> Self {
-        Self { near: L::splat(0.0), far: L::splat(f32::INFINITY) }
-    }
-
-    /// Cuts it to the slabs between two planes each.
-    #[inline(always)]
-    pub(super) fn clip(&mut self, ray: &SlabRay, min: L, max: L) {
-        let zero = L::splat(0.0);
-        // NaN, which is the product of nothing and an infinite inverse, leaves the piece as it is.
-        let (near, far) = if ray.turned { (zero.sub(max), zero.sub(min)) } else { (min, max) };
-        let inverse = L::splat(ray.inverse);
-        self.near = near.sub(L::splat(ray.high)).mul(inverse).max(self.near);
-        self.far = far.sub(L::splat(ray.low)).mul(inverse).min(self.far);
-    }
-
-    /// Where it begins; infinite if it is empty.
-    #[inline(always)]
-    pub(super) fn entry(self) -> L {
-        // Either end is good to 2^-22.
-        let far = self.far.mul(L::splat(1.0 + 8.0 * f32::EPSILON));
-        far.if_below(self.near, L::splat(f32::INFINITY), self.near)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::node::{BoxNode, Child, WIDTH};
@@ -335,7 +273,8 @@ mod tests {
     use crate::kdop::Slabs;
     use crate::{Directions, Isa, PrimitiveSet, Triangle};
     use nalgebra::{Point3, Vector3};
-    use rand::{Rng, RngExt};
+    use p2m_testkit::vector;
+    use rand::RngExt;
 
     struct Entries<'a, N: WideNode>(&'a N, &'a N::Ray);
 
@@ -347,10 +286,6 @@ mod tests {
             self.0.entries::<I::Eight>(self.1).store(&mut entries);
             entries
         }
-    }
-
-    fn vector(rng: &mut impl Rng) -> Vector3<f64> {
-        Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0))
     }
 
     /// Rays to points of some random triangles: how many were hit, all of whose places were entered, and how many other
@@ -396,8 +331,9 @@ mod tests {
                 };
                 let hits: Vec<Option<f64>> = triangles.iter().map(parameter).collect();
                 let line = FrameLine::line(&frame, &ray, 0.0);
-                let piece = FrameLine::new(&frame, &bounds, &line, line.from(ray.min)).expect("plain");
-                if misses(&ray, 0.0, &frame, &half_box(&frame, &bounds)) || piece.is_none() {
+                let half = half_box(&frame, &bounds);
+                let piece = FrameLine::new(&frame, &half, &line, line.from(ray.min)).expect("plain");
+                if misses(&ray, 0.0, &frame, &half) || piece.is_none() {
                     assert!(hits.iter().all(Option::is_none), "{name} {case}: {ray:?}");
                     continue;
                 }

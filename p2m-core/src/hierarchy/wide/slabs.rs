@@ -5,7 +5,8 @@
 //! for every other direction, and the largest is kept; docs/kdop.md derives it, with its roundings.
 
 use super::node::{Child, Frame, WIDTH};
-use super::ray::{FrameLine, Piece, SlabRay};
+use super::ray::FrameLine;
+use super::ray_slab::{Piece, SlabRay};
 use super::volume::WideNode;
 use crate::kdop::Slabs;
 use crate::kernel::power_of_two;
