@@ -24,6 +24,7 @@ pub mod batch;
 mod box_query;
 mod brute_force;
 mod counting;
+pub mod delaunay;
 mod error;
 pub mod hierarchy;
 mod index;

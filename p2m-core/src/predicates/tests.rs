@@ -1,0 +1,189 @@
+//! Every stage of the predicates against integers.
+
+use super::staged::{self, RANGE, Stage};
+use super::*;
+use p2m_testkit::{rng, vector};
+use rand::{Rng, RngExt};
+
+type Point = [f64; 3];
+
+fn integers_orientation([a, b, c, d]: [Point; 4]) -> Ordering {
+    let exponent = common_exponent([a, b, c, d].as_flattened());
+    let [b, c, d] = [b, c, d].map(|p| difference(p, a, exponent));
+    integers::sign(&integers::dot(&integers::cross(&b, &c), &d))
+}
+
+/// Whether all stages that are sure of a sign say what the integers say; those that were, of filter, small, double,
+/// adaptive.
+fn check_sphere(points: [Point; 4], e: Point) -> [bool; 4] {
+    let expected = integers_insphere(points, e);
+    let [a, b, c, d] = points;
+    assert_eq!(insphere(a, b, c, d, e), expected, "{points:?} {e:?}");
+    let filter = staged::sphere_filter(points, e);
+    assert!(filter.is_none_or(|sign| sign == expected), "{points:?} {e:?}");
+    let double = staged::sphere_double(points, e);
+    assert!(double.is_none_or(|sign| sign == expected), "{points:?} {e:?}");
+    let (sign, stage) = staged::sphere_exact(points, e);
+    assert_eq!(sign, expected, "{stage:?} {points:?} {e:?}");
+    assert_eq!(staged::sphere_adaptive(points, e), expected, "{points:?} {e:?}");
+    [filter.is_some(), stage == Stage::Small, double.is_some(), true]
+}
+
+fn check_orientation(points: [Point; 4]) -> [bool; 2] {
+    let expected = integers_orientation(points);
+    let [a, b, c, d] = points;
+    assert_eq!(orientation_3d(a, b, c, d), expected, "{points:?}");
+    // Of a, b, c as seen from d: the other way round.
+    let filter = staged::orientation_filter([a, b, c].map(|p| std::array::from_fn(|k| p[k] - d[k])));
+    assert!(filter.is_none_or(|sign| sign == expected.reverse()), "{points:?}");
+    let (sign, stage) = staged::orientation_exact([a, b, c], d);
+    assert_eq!(sign, expected.reverse(), "{stage:?} {points:?}");
+    [filter.is_some(), stage == Stage::Small]
+}
+
+/// Both predicates on many points; how often each stage was sure.
+fn check_all(name: &str, cases: u64, mut points: impl FnMut(&mut dyn Rng) -> [Point; 5]) -> [usize; 4] {
+    let mut sure = [0; 4];
+    for case in 0..cases {
+        let [a, b, c, d, e] = points(&mut rng(name, case));
+        for (count, sure) in sure.iter_mut().zip(check_sphere([a, b, c, d], e)) {
+            *count += usize::from(sure);
+        }
+        check_orientation([a, b, c, d]);
+        check_orientation([b, c, d, e]);
+    }
+    sure
+}
+
+fn random(mut rng: &mut dyn Rng) -> Point {
+    vector(&mut rng).into()
+}
+
+fn rounded(p: Point, length: f64) -> Point {
+    let norm = p.iter().map(|x| x * x).sum::<f64>().sqrt();
+    p.map(|x| x / norm * length)
+}
+
+#[test]
+fn inside_is_greater_for_positive_tetrahedra() {
+    for scale in [1.0, 2f64.powi(-150), 2f64.powi(150), 2f64.powi(-1000), 2f64.powi(1000)] {
+        let at = |p: Point| p.map(|x| x * scale);
+        let [a, b, c, d] = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]].map(at);
+        assert_eq!(orientation_3d(a, b, c, d), Ordering::Greater);
+        for (e, expected) in
+            [([1.0; 3], Ordering::Greater), ([2.0; 3], Ordering::Equal), ([2.0, 2.0, 2.5], Ordering::Less)]
+        {
+            assert_eq!(insphere(a, b, c, d, at(e)), expected);
+            assert_eq!(insphere(b, a, c, d, at(e)), expected.reverse());
+        }
+    }
+}
+
+#[test]
+fn random_points_are_decided_by_the_filter() {
+    let [filter, _, double, _] = check_all("predicates random", 20_000, |rng| [0; 5].map(|_| random(rng)));
+    assert!(filter > 19_900 && double == 20_000, "{filter} {double}");
+}
+
+#[test]
+fn whole_numbers_are_decided_in_integers() {
+    for most in [1, 2, 4, 100, 1 << 12, 1 << 22] {
+        let [_, small, ..] = check_all("predicates whole", 5000, |rng| {
+            [0; 5].map(|_| [0; 3].map(|_| f64::from(rng.random_range(-most..=most)) * 0.125))
+        });
+        assert_eq!(small, 5000);
+    }
+    // The largest determinants that there are.
+    let most = f64::from((1 << 24) - 1);
+    let corner = |i: u32| [0, 1, 2].map(|k| if i >> k & 1 == 1 { most } else { -most });
+    for i in 0..8u32.pow(4) {
+        let points = [0, 3, 6, 9].map(|shift| corner(i >> shift & 7));
+        assert!(check_sphere(points, [0.0; 3])[1]);
+        assert!(check_sphere(points.map(|p| p.map(|x| x * 0.5)), [most * 0.5; 3])[1]);
+    }
+}
+
+#[test]
+fn points_rounded_onto_a_sphere_are_decided_in_double_double() {
+    let [filter, _, double, _] =
+        check_all("predicates sphere", 20_000, |rng| [0; 5].map(|_| rounded(random(rng), 1.0)));
+    assert!(filter < 1000 && double > 19_900, "{filter} {double}");
+    // On a small part of it.
+    let [.., double, _] = check_all("predicates cap", 20_000, |rng| {
+        let centre = rounded(random(rng), 1.0);
+        [0; 5].map(|_| {
+            let offset = random(rng);
+            rounded(std::array::from_fn(|k| centre[k] + 0.01 * offset[k]), 1.0)
+        })
+    });
+    assert!(double > 15_000, "{double}");
+}
+
+#[test]
+fn points_of_a_box_are_on_its_sphere() {
+    let [_, small, double, _] = check_all("predicates box", 20_000, |rng| {
+        let [low, high] = [random(rng), random(rng)];
+        [0; 5].map(|_| std::array::from_fn(|k| if rng.random_range(0..2) == 0 { low[k] } else { high[k] }))
+    });
+    assert!(small == 20_000 && double < 20_000);
+    // One of them moved by one unit in the last place, or far along an axis.
+    check_all("predicates near box", 20_000, |rng| {
+        let [low, high] = [random(rng), random(rng)];
+        let mut points: [Point; 5] =
+            [0; 5].map(|_| std::array::from_fn(|k| if rng.random_range(0..2) == 0 { low[k] } else { high[k] }));
+        let x = &mut points[rng.random_range(0..5)][rng.random_range(0..3)];
+        *x = if rng.random_range(0..2) == 0 { x.next_up() } else { 0.5 };
+        points
+    });
+}
+
+/// Rounded grids, circles and planes: determinants of zero, and of one bit.
+#[test]
+fn nearly_degenerate_points_are_decided_rightly() {
+    let spacing = [0.01, 0.1, 1.0 / 3.0];
+    check_all("predicates fine grid", 20_000, |rng| {
+        let spacing = spacing[rng.random_range(0..3)];
+        [0; 5].map(|_| [0; 3].map(|_| f64::from(rng.random_range(0..4)) * spacing))
+    });
+    check_all("predicates plane", 20_000, |rng| {
+        [0; 5].map(|_| {
+            let [x, y, _] = random(rng);
+            [x, y, 0.3 * x + 0.7 * y]
+        })
+    });
+    check_all("predicates line", 20_000, |rng| {
+        [0; 5].map(|_| {
+            let [x, ..] = random(rng);
+            [x, 0.3 * x, 0.7 * x]
+        })
+    });
+    // Neighbouring floats.
+    check_all("predicates last bits", 20_000, |rng| {
+        let p = random(rng);
+        [0; 5].map(|_| p.map(|x| f64::from_bits(x.to_bits() + rng.random_range(0..4u64))))
+    });
+}
+
+/// On the border of the range of the stages, and of any exponents.
+#[test]
+fn exponents_at_the_border_and_beyond_are_decided_rightly() {
+    let least = *RANGE.start();
+    let [_, _, double, _] = check_all("predicates least", 5000, |rng| {
+        [0; 5].map(|_| rounded(random(rng), 1.0).map(|x| if x.abs() < 1e-3 { 0.0 } else { x * 1024.0 * least }))
+    });
+    assert!(double > 4900, "{double}");
+    check_all("predicates mixed", 20_000, |rng| {
+        [0; 5]
+            .map(|_| random(rng).map(|x| if x.abs() < 0.1 { 0.0 } else { x * 2f64.powi(rng.random_range(-150..190)) }))
+    });
+    for (low, high) in [(-1070, 1023), (-1070, -900), (900, 1023), (-200, 0)] {
+        for case in 0..3000 {
+            let rng: &mut dyn Rng = &mut rng("predicates any", case);
+            let [a, b, c, d, e] = [0; 5].map(|_| random(rng).map(|x| x * 2f64.powi(rng.random_range(low..high))));
+            let expected = integers_insphere([a, b, c, d], e);
+            assert_eq!(insphere(a, b, c, d, e), expected);
+            assert_eq!(insphere(b, c, a, d, e), expected);
+            assert_eq!(insphere(a, b, d, c, e), expected.reverse());
+        }
+    }
+}
