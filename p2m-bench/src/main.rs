@@ -12,6 +12,7 @@ mod agree;
 mod backends;
 mod batch;
 mod contender;
+mod delaunay;
 mod kdop;
 mod measure;
 mod memory;
@@ -63,6 +64,8 @@ enum Command {
     Ray(RayArguments),
     /// The settings of the octree: resolution, domain, threads
     Octree(BatchArguments),
+    /// Delaunay tetrahedra of vertices, and of grids, a sphere, a plane and a line; fails if any is not valid
+    Delaunay(DelaunayArguments),
     /// Batches on the AABB tree: order, hints and threads, in wall time
     Batch(BatchArguments),
 }
@@ -217,6 +220,15 @@ struct BatchArguments {
     seed: u64,
 }
 
+#[derive(Args)]
+struct DelaunayArguments {
+    /// Files of scenes, whose vertices are triangulated besides the generated points
+    scenes: Vec<PathBuf>,
+    /// Rounds; every input has its turn
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    rounds: usize,
+}
+
 fn backend_names() -> PossibleValuesParser {
     backends::ALL.iter().map(|backend| backend.name).collect::<Vec<_>>().into()
 }
@@ -233,6 +245,7 @@ fn main() -> Result<ExitCode> {
         Command::Kdop(arguments) => kdops(&arguments)?,
         Command::Ray(arguments) => ray(&arguments)?,
         Command::Octree(arguments) => octrees(&arguments)?,
+        Command::Delaunay(arguments) => delaunays(&arguments)?,
         Command::Batch(arguments) => batches(&arguments)?,
     };
     Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
@@ -286,6 +299,13 @@ fn octrees(arguments: &BatchArguments) -> Result<bool> {
         good &= octree::print(&Scene::read(path)?, sets, threads, &effort)?;
     }
     Ok(good)
+}
+
+/// Whether all triangulations are valid.
+fn delaunays(arguments: &DelaunayArguments) -> Result<bool> {
+    println!("{}", Provenance::collect(None));
+    println!("One thread, thread CPU time.");
+    delaunay::print(&arguments.scenes, arguments.rounds)
 }
 
 /// Whether all batches agree with single queries.

@@ -22,35 +22,56 @@
 use super::{Delaunay, Work};
 use crate::kernel::vector::{V3, sub};
 use crate::predicates::staged::{Stage, orientation_exact, orientation_filter, sphere_exact, sphere_filter};
+use crate::simd::prefetch;
 use std::cmp::Ordering;
 
 /// The face opposite to each vertex, so that orientation_3d of it and the vertex is `Greater`.
 pub(super) const FACES: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
 
+/// Vertices of the faces around a cavity that have places in the table of edges: those of 124 faces.
+const PLACES: usize = 64;
+
+/// In the first vertex of a tetrahedron: in the cavity,
+const INSIDE: u32 = 1 << 31;
+/// or tested, and not in it. Numbers of sites are below.
+const OUTSIDE: u32 = 1 << 30;
+
 /// Half a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(super) struct Tetrahedron {
-    /// In place of a removed one the first is [`Delaunay::NONE`].
+    /// In place of a removed one the first is [`Delaunay::NONE`]. While a cavity is found, the first has [`INSIDE`] or
+    /// [`OUTSIDE`] besides, once that is known.
     pub(super) vertices: [u32; 4],
     /// Across the face opposite to each vertex.
     pub(super) neighbours: [u32; 4],
 }
 
+/// A site with what is known of it in the current insertion: half a cache line as well, never on two.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+struct Site {
+    point: V3,
+    /// For which site it was a vertex of the faces around the cavity last,
+    round: u32,
+    /// and the how manieth of those.
+    place: u32,
+}
+
 /// A triangulation that grows.
-pub(super) struct Insertion<'a> {
-    sites: &'a [V3],
+pub(super) struct Insertion {
+    sites: Vec<Site>,
     tetrahedra: Vec<Tetrahedron>,
-    /// Of each tetrahedron: twice the number of the site for which it was tested last, and one more if it is in the
-    /// cavity.
-    marks: Vec<u32>,
     free: Vec<u32>,
     /// Where the next walk begins.
     last: u32,
     cavity: Vec<u32>,
     /// Faces around the cavity: a tetrahedron inside, and the vertex that its face is opposite to.
-    boundary: Vec<(u32, usize)>,
+    boundary: Vec<(u32, u32)>,
     created: Vec<u32>,
+    /// Of an edge of a face around the cavity, from the place of one vertex to that of another: which of the created
+    /// tetrahedra has it. What is left of earlier insertions is not read.
+    edges: Box<[u8; PLACES * PLACES]>,
     pub(super) work: Work,
 }
 
@@ -62,30 +83,37 @@ fn position(of: &[u32; 4], number: u32) -> usize {
     usize::from(of[1] == number) + 2 * usize::from(of[2] == number) + 3 * usize::from(of[3] == number)
 }
 
-impl<'a> Insertion<'a> {
+/// The edge between two places, in the table.
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "two instructions")]
+fn edge(from: u8, to: u8) -> usize {
+    usize::from(from) % PLACES * PLACES + usize::from(to) % PLACES
+}
+
+impl Insertion {
     /// The tetrahedra of the six bounding sites, around the diagonal from 0 to 1. They are at the same distance from
     /// their centre, exactly, so any diagonal is Delaunay.
-    pub(super) fn new(sites: &'a [V3]) -> Self {
+    pub(super) fn new(sites: &[V3]) -> Self {
         let ring = [2, 4, 3, 5];
-        let tetrahedra: Vec<Tetrahedron> = (0..4u32)
-            .map(|i| {
-                let [a, b] = [ring[i as usize], ring[(i as usize + 1) % 4]];
-                // Opposite to a lies the next one, opposite to b the one before.
-                Tetrahedron {
-                    vertices: [0, 1, a, b],
-                    neighbours: [Delaunay::NONE, Delaunay::NONE, (i + 1) % 4, (i + 3) % 4],
-                }
-            })
-            .collect();
+        // Points in space have seven times as many; on a surface there are some more, with the removed ones.
+        let mut tetrahedra = Vec::with_capacity(15 * sites.len() / 2);
+        tetrahedra.extend((0..4u32).map(|i| {
+            let [a, b] = [ring[i as usize], ring[(i as usize + 1) % 4]];
+            // Opposite to a lies the next one, opposite to b the one before.
+            Tetrahedron {
+                vertices: [0, 1, a, b],
+                neighbours: [Delaunay::NONE, Delaunay::NONE, (i + 1) % 4, (i + 3) % 4],
+            }
+        }));
         Self {
-            sites,
-            marks: vec![0; tetrahedra.len()],
+            sites: sites.iter().map(|&point| Site { point, round: 0, place: 0 }).collect(),
             tetrahedra,
             free: Vec::new(),
             last: 0,
             cavity: Vec::new(),
             boundary: Vec::new(),
             created: Vec::new(),
+            edges: Box::new([0; PLACES * PLACES]),
             work: Work::default(),
         }
     }
@@ -93,18 +121,20 @@ impl<'a> Insertion<'a> {
     /// Inserts a site other than all before; whether there are numbers enough for its tetrahedra.
     #[must_use]
     pub(super) fn insert(&mut self, site: u32) -> bool {
-        let p = self.sites[site as usize];
+        let p = self.sites[site as usize].point;
         let start = self.locate(p);
-        self.find_cavity(start, p, site);
+        self.find_cavity(start, p);
         if self.tetrahedra.len() + self.boundary.len() >= Delaunay::NONE as usize {
             return false;
         }
         self.fill(site);
-        self.link();
+        if !self.link(site) {
+            self.link_by_turning();
+        }
         for &t in &self.cavity {
             self.tetrahedra[t as usize].vertices[0] = Delaunay::NONE;
         }
-        self.free.append(&mut self.cavity);
+        self.free.extend_from_slice(&self.cavity);
         self.last = self.created[0];
         true
     }
@@ -114,25 +144,36 @@ impl<'a> Insertion<'a> {
         self.tetrahedra
     }
 
+    /// The vertices of a tetrahedron.
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "in registers")]
+    fn corners(&self, [a, b, c, d]: [u32; 4]) -> [V3; 4] {
+        let at = |v: u32| &self.sites[v as usize].point;
+        let (a, b, c, d) = (at(a), at(b), at(c), at(d));
+        [[a[0], a[1], a[2]], [b[0], b[1], b[2]], [c[0], c[1], c[2]], [d[0], d[1], d[2]]]
+    }
+
     /// A tetrahedron that contains p, maybe on a face.
     fn locate(&mut self, p: V3) -> u32 {
         let (mut at, mut from) = (self.last, Delaunay::NONE);
         'walk: loop {
             self.work.steps += 1;
             let Tetrahedron { vertices, neighbours } = self.tetrahedra[at as usize];
-            let corners = vertices.map(|v| self.sites[v as usize]);
-            let offsets = corners.map(|v| sub(v, p));
-            for (face, next) in FACES.iter().zip(neighbours) {
+            let corners = self.corners(vertices);
+            let offsets = [sub(corners[0], p), sub(corners[1], p), sub(corners[2], p), sub(corners[3], p)];
+            for ([i, j, k], next) in FACES.into_iter().zip(neighbours) {
                 if next == from {
                     continue;
                 }
                 self.work.orientations += 1;
-                let sign = match orientation_filter(face.map(|k| offsets[k])) {
-                    Some(sign) => sign,
-                    None => self.orientation(face.map(|k| corners[k]), p),
+                let estimate = orientation_filter([offsets[i], offsets[j], offsets[k]]);
+                let is_beyond = if estimate.is_certain() {
+                    estimate.value > 0.0
+                } else {
+                    self.orientation([corners[i], corners[j], corners[k]], p) == Ordering::Greater
                 };
                 // Of the corners as seen from p: the other way round.
-                if sign == Ordering::Greater {
+                if is_beyond {
                     debug_assert_ne!(next, Delaunay::NONE, "inside the bounding sites");
                     (from, at) = (at, next);
                     continue 'walk;
@@ -146,29 +187,27 @@ impl<'a> Insertion<'a> {
     fn orientation(&mut self, face: [V3; 3], p: V3) -> Ordering {
         let (sign, stage) = orientation_exact(face, p);
         match stage {
-            Stage::Small => self.work.small_orientations += 1,
+            Stage::Whole => self.work.whole_orientations += 1,
             _ => self.work.adaptive_orientations += 1,
         }
         sign
     }
 
-    /// Whether p is strictly inside the sphere of a tetrahedron.
-    #[inline]
-    fn conflicts(&mut self, tetrahedron: u32, p: V3) -> bool {
+    /// Whether p is strictly inside the sphere of four vertices.
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "once, in the innermost loop")]
+    fn conflicts(&mut self, vertices: [u32; 4], p: V3) -> bool {
         self.work.spheres += 1;
-        let corners = self.tetrahedra[tetrahedron as usize].vertices.map(|v| self.sites[v as usize]);
-        let sign = match sphere_filter(corners, p) {
-            Some(sign) => sign,
-            None => self.sphere(corners, p),
-        };
-        sign == Ordering::Greater
+        let corners = self.corners(vertices);
+        let estimate = sphere_filter(corners, p);
+        if estimate.is_certain() { estimate.value > 0.0 } else { self.sphere(corners, p) == Ordering::Greater }
     }
 
     #[cold]
     fn sphere(&mut self, corners: [V3; 4], p: V3) -> Ordering {
         let (sign, stage) = sphere_exact(corners, p);
         match stage {
-            Stage::Small => self.work.small_spheres += 1,
+            Stage::Whole => self.work.whole_spheres += 1,
             Stage::Double => self.work.double_spheres += 1,
             Stage::Adaptive => self.work.adaptive_spheres += 1,
         }
@@ -176,33 +215,60 @@ impl<'a> Insertion<'a> {
     }
 
     /// Collects the tetrahedra in conflict with p, from one of them, and the faces around them.
-    fn find_cavity(&mut self, start: u32, p: V3, site: u32) {
-        let outside = 2 * site;
-        let inside = outside + 1;
-        self.cavity.clear();
-        self.boundary.clear();
-        self.marks[start as usize] = inside;
-        self.cavity.push(start);
-        let mut done = 0;
-        while let Some(&t) = self.cavity.get(done) {
+    ///
+    /// Which are in conflict cannot be predicted, and takes long to compute. So nothing branches on it: a tetrahedron and
+    /// its face are written to the end of both lists, and one of the two becomes longer.
+    #[allow(clippy::cast_possible_truncation, reason = "one of four faces")]
+    fn find_cavity(&mut self, start: u32, p: V3) {
+        self.tetrahedra[start as usize].vertices[0] |= INSIDE;
+        self.room_for(0, 0);
+        self.cavity[0] = start;
+        let (mut done, mut cavity, mut boundary) = (0, 1, 0);
+        while done < cavity {
+            let t = self.cavity[done];
             done += 1;
+            self.room_for(cavity, boundary);
+            if done < cavity {
+                self.prefetch_neighbours(self.cavity[done]);
+            }
             for (face, next) in self.tetrahedra[t as usize].neighbours.into_iter().enumerate() {
-                if next != Delaunay::NONE {
-                    let mark = self.marks[next as usize];
-                    if mark == inside {
+                let mut conflict = false;
+                if let Some(&Tetrahedron { vertices, .. }) = self.tetrahedra.get(next as usize) {
+                    if vertices[0] & INSIDE != 0 {
                         continue;
                     }
-                    if mark != outside {
-                        if self.conflicts(next, p) {
-                            self.marks[next as usize] = inside;
-                            self.cavity.push(next);
-                            continue;
-                        }
-                        self.marks[next as usize] = outside;
+                    if vertices[0] & OUTSIDE == 0 {
+                        conflict = self.conflicts(vertices, p);
+                        self.tetrahedra[next as usize].vertices[0] |= if conflict { INSIDE } else { OUTSIDE };
                     }
                 }
-                self.boundary.push((t, face));
+                self.cavity[cavity] = next;
+                cavity += usize::from(conflict);
+                self.boundary[boundary] = (t, face as u32);
+                boundary += usize::from(!conflict);
             }
+        }
+        self.cavity.truncate(cavity);
+        self.boundary.truncate(boundary);
+    }
+
+    /// Asks for the neighbours of a tetrahedron before they are read.
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "a few instructions in the innermost loop")]
+    fn prefetch_neighbours(&self, tetrahedron: u32) {
+        for next in self.tetrahedra[tetrahedron as usize].neighbours {
+            prefetch(self.tetrahedra.as_ptr().wrapping_add(next as usize).cast());
+        }
+    }
+
+    /// Makes the lists long enough for four more than so many.
+    #[inline]
+    fn room_for(&mut self, cavity: usize, boundary: usize) {
+        if self.cavity.len() < cavity + 4 {
+            self.cavity.resize(2 * cavity + 64, 0);
+        }
+        if self.boundary.len() < boundary + 4 {
+            self.boundary.resize(2 * boundary + 64, (0, 0));
         }
     }
 
@@ -211,19 +277,20 @@ impl<'a> Insertion<'a> {
     fn fill(&mut self, site: u32) {
         self.created.clear();
         for &(t, face) in &self.boundary {
+            let face = face as usize;
             let old = self.tetrahedra[t as usize];
             let mut new = Tetrahedron { vertices: old.vertices, neighbours: [Delaunay::NONE; 4] };
+            new.vertices[0] &= !INSIDE;
             new.vertices[face] = site;
             new.neighbours[face] = old.neighbours[face];
             #[allow(clippy::cast_possible_truncation, reason = "checked")]
             let number = self.free.pop().unwrap_or_else(|| {
                 self.tetrahedra.push(new);
-                self.marks.push(0);
                 self.tetrahedra.len() as u32 - 1
             });
             self.tetrahedra[number as usize] = new;
-            self.marks[number as usize] = 0;
             if let Some(beyond) = self.tetrahedra.get_mut(old.neighbours[face] as usize) {
+                beyond.vertices[0] &= !OUTSIDE;
                 let back = position(&beyond.neighbours, t);
                 beyond.neighbours[back] = number;
             }
@@ -233,25 +300,61 @@ impl<'a> Insertion<'a> {
         self.work.created += self.created.len() as u64;
     }
 
-    /// Makes neighbours of the new tetrahedra that share an edge of faces around the cavity, by turning around the edge
-    /// through the old ones.
-    fn link(&mut self) {
-        let inside = |marks: &[u32], t: u32| marks[t as usize] & 1 == 1;
+    /// Makes neighbours of the new tetrahedra that share an edge of faces around the cavity. Every such edge belongs to
+    /// two faces, which turn around it in opposite directions; whether there are places for all.
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation, reason = "at most 124 faces and 64 vertices")]
+    fn link(&mut self, site: u32) -> bool {
+        if self.created.len() > 2 * PLACES - 4 {
+            return false;
+        }
+        let mut count = 0;
+        // Of each created tetrahedron, the places of the vertices of its face.
+        let mut places = [[0u8; 3]; 2 * PLACES - 4];
+        for (i, (places, (&(_, face), &number))) in
+            places.iter_mut().zip(self.boundary.iter().zip(&self.created)).enumerate()
+        {
+            let vertices = self.tetrahedra[number as usize].vertices;
+            for (place, k) in places.iter_mut().zip(FACES[face as usize]) {
+                let vertex = &mut self.sites[vertices[k] as usize];
+                // Without branches.
+                let new = vertex.round != site;
+                vertex.place = if new { count } else { vertex.place };
+                vertex.round = site;
+                count += u32::from(new);
+                *place = vertex.place as u8;
+            }
+            for k in 0..3 {
+                self.edges[edge(places[k], places[(k + 1) % 3])] = i as u8;
+            }
+        }
+        for (places, (&(_, face), &number)) in places.iter().zip(self.boundary.iter().zip(&self.created)) {
+            for k in 0..3 {
+                let other = self.edges[edge(places[(k + 1) % 3], places[k])];
+                self.tetrahedra[number as usize].neighbours[FACES[face as usize][(k + 2) % 3]] =
+                    self.created[usize::from(other)];
+            }
+        }
+        true
+    }
+
+    /// The same for any number of faces, by turning around the edges through the old tetrahedra.
+    fn link_by_turning(&mut self) {
         for (&(t, face), &number) in self.boundary.iter().zip(&self.created) {
-            for side in (0..4).filter(|&side| side != face) {
+            for side in (0..4).filter(|&side| side != face as usize) {
                 if self.tetrahedra[number as usize].neighbours[side] != Delaunay::NONE {
                     continue;
                 }
                 // The edge and the vertex `pivot` make the face that is crossed, opposite to vertex `exit`.
-                let (mut at, mut exit, mut pivot) = (t, side, face);
+                let (mut at, mut exit, mut pivot) = (t, side, face as usize);
                 let other = loop {
                     let old = &self.tetrahedra[at as usize];
                     let next = old.neighbours[exit];
-                    if !inside(&self.marks, next) {
+                    let vertex = old.vertices[pivot] & !INSIDE;
+                    let old = &self.tetrahedra[next as usize];
+                    if old.vertices[0] & INSIDE == 0 {
                         break next;
                     }
-                    let vertex = old.vertices[pivot];
-                    let old = &self.tetrahedra[next as usize];
                     (exit, pivot, at) = (position(&old.vertices, vertex), position(&old.neighbours, at), next);
                 };
                 self.tetrahedra[number as usize].neighbours[side] = other;

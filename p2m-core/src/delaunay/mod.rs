@@ -68,14 +68,14 @@ pub struct Work {
     pub created: u64,
     /// Orientations asked for.
     pub orientations: u64,
-    /// Those decided in integers.
-    pub small_orientations: u64,
+    /// Those decided in whole numbers.
+    pub whole_orientations: u64,
     /// Those left to adaptive arithmetic.
     pub adaptive_orientations: u64,
     /// Points tested against spheres.
     pub spheres: u64,
-    /// Those decided in integers, or as corners of a box.
-    pub small_spheres: u64,
+    /// Those decided in whole numbers.
+    pub whole_spheres: u64,
     /// Those decided in double-double.
     pub double_spheres: u64,
     /// Those left to adaptive arithmetic.
@@ -101,7 +101,7 @@ impl Delaunay {
     /// The farthest.
     pub const LARGEST_REACH: f64 = 1_048_576.0;
     /// The most points.
-    pub const MAX_POINTS: usize = 1 << 30;
+    pub const MAX_POINTS: usize = (1 << 30) - BOUNDING;
 
     /// Triangulates any finite points; equal ones become one site (0.0 == -0.0). No points have the four tetrahedra of
     /// the octahedron.
@@ -118,7 +118,7 @@ impl Delaunay {
     ///
     /// # Complexity
     /// O(n log n) expected for points spread over a surface or in space; O(n^2) at worst, as is the number of tetrahedra.
-    /// While building 36 bytes a tetrahedron and 40 a point, besides what remains ([`memory`](Self::memory)).
+    /// While building 32 bytes a tetrahedron and 60 a point, besides what remains ([`memory`](Self::memory)).
     pub fn new(points: &[[f64; 3]], reach: f64) -> Result<Self, DelaunayError> {
         let too_many = DelaunayError::TooMany { len: points.len() };
         if !(Self::LEAST_REACH..=Self::LARGEST_REACH).contains(&reach) {

@@ -14,6 +14,7 @@ const BITS: u32 = 21;
 ///
 /// A state is the corner at which the curve enters a cube, and the axis along which it goes on to the exit
 /// \[Hamilton2006\].
+#[allow(clippy::cast_possible_truncation, reason = "small numbers")]
 const LEVEL: [[(u8, u8); 8]; 24] = {
     let mut table = [[(0, 0); 8]; 24];
     let mut state = 0;

@@ -1,5 +1,7 @@
 //! From points to sites: scaled, sorted, each once, with the six around them.
 
+#![allow(clippy::float_cmp, reason = "points are the same site if they are equal")]
+
 use super::BOUNDING;
 use super::order::{along_the_curve, bounds};
 use crate::kernel::power_of_two;

@@ -19,6 +19,7 @@
 pub(crate) mod staged;
 #[cfg(test)]
 mod tests;
+mod whole;
 
 use crate::integers::{self, common_exponent, difference};
 use crate::kernel::power_of_two;
@@ -88,7 +89,7 @@ pub fn insphere(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3], e: [f64; 3])
     let in_range = |x: &f64| *x == 0.0 || staged::RANGE.contains(&x.abs());
     if [a, b, c, d, e].as_flattened().iter().all(in_range) {
         let points = [a, b, c, d];
-        return staged::sphere_filter(points, e).unwrap_or_else(|| staged::sphere_exact(points, e).0);
+        return staged::sphere_filter(points, e).sign().unwrap_or_else(|| staged::sphere_exact(points, e).0);
     }
     integers_insphere([a, b, c, d], e)
 }

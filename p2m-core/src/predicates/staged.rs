@@ -1,15 +1,15 @@
-//! Determinants in stages: f64 with a bound on its error, then small integers, then double-double, then robust.
+//! Determinants in stages: f64 with a bound on its error, then whole numbers, then double-double, then robust.
 //!
 //! For points whose coordinates are 0 or of a size in [`RANGE`]: then every coordinate is a multiple of 2^-213, products
 //! of k differences and all that rounding makes of them are multiples of 2^-213k, at least 2^-1065, and nothing
 //! underflows in any stage but the bounds themselves. Nothing overflows either: products of five stay below 2^960.
 
-#![allow(clippy::float_cmp, reason = "whether a difference is exact is equality")]
 #![allow(clippy::inline_always, reason = "one expression; calls would hide it from the optimiser")]
 
+use super::whole;
 use crate::kernel::double::Double;
 use crate::kernel::power_of_two;
-use crate::kernel::vector::{V3, dot, exponent, larger, largest, sub};
+use crate::kernel::vector::{V3, larger, sub};
 use robust::{Coord3D, insphere, orient3d};
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
@@ -20,8 +20,8 @@ pub(crate) const RANGE: std::ops::RangeInclusive<f64> = power_of_two(-161)..=pow
 /// What decided a sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stage {
-    /// Differences that are multiples of a common power of two, below 2^24 of it, or points of a box: no rounding.
-    Small,
+    /// Whole numbers, of a common power of two.
+    Whole,
     /// Double-double arithmetic.
     Double,
     /// The adaptive predicates of \[Shewchuk1997\].
@@ -48,29 +48,35 @@ impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T
 /// below 6 XYZ ((1 + u)^8 - 1).
 #[inline(always)]
 fn determinant<T: Number>([a, b, c]: [[T; 3]; 3]) -> T {
-    (a[0] * b[1] - a[1] * b[0]) * c[2] - (a[0] * c[1] - a[1] * c[0]) * b[2] + (b[0] * c[1] - b[1] * c[0]) * a[2]
+    dot(cross(a, b), c)
 }
 
 /// Above zero if the origin is inside the sphere of four points with determinant(b - a, c - a, d - a) > 0.
 ///
 /// It is the sum of 24 products of a squared length and three coordinates, each below L X Y Z for squared lengths below
-/// L. On the way to the result a product takes 11 operations (3 for the squared length, 5 for a determinant, 3 together),
+/// L. On the way to the result a product takes 11 operations (3 for the squared length, 2 for a difference of multiples, 2 for
+/// a cross product, which is its other factor, 1 + 2 for the product of the two, 1 for the sum),
 /// 16 with the differences in its five factors. So the error is below 24 XYZL ((1 + u)^16 - 1) in f64. In double-double,
 /// with exact differences, operations have errors below 7 u^2 \[Joldes2017\], and it is below 24 XYZL ((1 + 7u^2)^11 - 1).
 #[inline(always)]
 fn sphere<T: Number>([a, b, c, d]: [[T; 3]; 4], [a2, b2, c2, d2]: [T; 4]) -> T {
-    let minor = |p: [T; 3], q: [T; 3]| p[0] * q[1] - q[0] * p[1];
-    let (ab, bc, cd, da, ac, bd) = (minor(a, b), minor(b, c), minor(c, d), minor(d, a), minor(a, c), minor(b, d));
-    let abc = a[2] * bc - b[2] * ac + c[2] * ab;
-    let bcd = b[2] * cd - c[2] * bd + d[2] * bc;
-    let cda = c[2] * da + d[2] * ac + a[2] * cd;
-    let dab = d[2] * ab + a[2] * bd + b[2] * da;
-    (a2 * bcd - b2 * cda) + (c2 * dab - d2 * abc)
+    let combine = |s: T, p: [T; 3], t: T, q: [T; 3]| [s * p[0] - t * q[0], s * p[1] - t * q[1], s * p[2] - t * q[2]];
+    dot(cross(a, b), combine(c2, d, d2, c)) + dot(cross(c, d), combine(a2, b, b2, a))
+}
+
+#[inline(always)]
+fn cross<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[inline(always)]
+fn dot<T: Number>(a: [T; 3], b: [T; 3]) -> T {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline(always)]
 fn squares<T: Number>(rows: [[T; 3]; 4]) -> [T; 4] {
-    rows.map(|r| r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
+    rows.map(|r| dot(r, r))
 }
 
 /// The largest sizes in the columns, multiplied.
@@ -85,55 +91,65 @@ fn columns<const N: usize>(rows: &[V3; N]) -> f64 {
     size[0] * size[1] * size[2]
 }
 
-/// The sign of x, if it is that of every number within the bound.
-#[inline(always)]
-fn certain(x: f64, bound: f64) -> Option<Ordering> {
-    // The bound has underflowed if it is below that, by less than that.
-    let bound = bound + f64::MIN_POSITIVE;
-    if x > bound {
-        Some(Ordering::Greater)
-    } else if x < -bound {
-        Some(Ordering::Less)
-    } else {
-        None
+/// A number near another one.
+#[derive(Clone, Copy)]
+pub(crate) struct Estimate {
+    pub(crate) value: f64,
+    /// Above the distance of the two.
+    bound: f64,
+}
+
+impl Estimate {
+    #[inline(always)]
+    fn new(value: f64, bound: f64) -> Self {
+        // Where the bound has underflowed, it is below that, by less than that.
+        Self { value, bound: bound + f64::MIN_POSITIVE }
+    }
+
+    /// Whether the value has the sign of the other one, which is not 0.
+    #[inline(always)]
+    pub(crate) fn is_certain(self) -> bool {
+        self.value.abs() > self.bound
+    }
+
+    /// The sign of the other one.
+    #[inline(always)]
+    pub(crate) fn sign(self) -> Option<Ordering> {
+        self.is_certain().then_some(if self.value > 0.0 { Ordering::Greater } else { Ordering::Less })
     }
 }
 
-/// The sign of the determinant of the differences that these rows are rounded from.
+/// Of the determinant of the differences that these rows are rounded from.
 #[inline(always)]
-pub(crate) fn orientation_filter(rows: [V3; 3]) -> Option<Ordering> {
-    certain(determinant(rows), ORIENTATION_ERROR * columns(&rows))
+pub(crate) fn orientation_filter(rows: [V3; 3]) -> Estimate {
+    Estimate::new(determinant(rows), ORIENTATION_ERROR * columns(&rows))
 }
 
 /// The sign of the determinant of a - origin, b - origin, c - origin, where the filter could not tell.
 #[cold]
 pub(crate) fn orientation_exact([a, b, c]: [V3; 3], origin: V3) -> (Ordering, Stage) {
-    if let Some(rows) = small(&[a, b, c], origin) {
-        return (determinant(rows).cmp(&0), Stage::Small);
+    if let Some(rows) = whole::rows(&[a, b, c], origin) {
+        return (whole::orientation(rows), Stage::Whole);
     }
     // The sign that is documented there, for points below the plane.
     let sign = orient3d(coord(a), coord(b), coord(c), coord(origin));
     (super::sign(sign), Stage::Adaptive)
 }
 
-/// Whether e is inside (`Greater`), on or outside (`Less`) the sphere through the other four, which are positively
-/// oriented.
+/// Of a number above 0 if e is inside the sphere through the other four, which are positively oriented.
 #[inline(always)]
-pub(crate) fn sphere_filter([a, b, c, d]: [V3; 4], e: V3) -> Option<Ordering> {
+pub(crate) fn sphere_filter([a, b, c, d]: [V3; 4], e: V3) -> Estimate {
     let rows = [sub(a, e), sub(b, e), sub(c, e), sub(d, e)];
-    let lengths = rows.map(|r| dot(r, r));
+    let lengths = squares(rows);
     let longest = larger(larger(lengths[0], lengths[1]), larger(lengths[2], lengths[3]));
-    certain(sphere(rows, lengths), SPHERE_ERROR * columns(&rows) * longest)
+    Estimate::new(sphere(rows, lengths), SPHERE_ERROR * columns(&rows) * longest)
 }
 
-/// The same, where the filter could not tell.
+/// Whether e is inside (`Greater`), on or outside (`Less`) that sphere, where the filter could not tell.
 #[cold]
 pub(crate) fn sphere_exact(points: [V3; 4], e: V3) -> (Ordering, Stage) {
-    if corners_of_a_box(&points, e) {
-        return (Ordering::Equal, Stage::Small);
-    }
-    if let Some(rows) = small(&points, e) {
-        return (sphere(rows, squares(rows)).cmp(&0), Stage::Small);
+    if let Some(rows) = whole::rows(&points, e) {
+        return (whole::sphere(rows), Stage::Whole);
     }
     if let Some(sign) = sphere_double(points, e) {
         return (sign, Stage::Double);
@@ -154,51 +170,7 @@ pub(super) fn sphere_double(points: [V3; 4], e: V3) -> Option<Ordering> {
     let lengths = squares(rows);
     let longest = lengths.iter().fold(0.0, |m, l| larger(l.round(), m));
     let bound = DOUBLE_SPHERE_ERROR * columns(&rows.map(|row| row.map(Double::round))) * longest;
-    certain(sphere(rows, lengths).round(), bound)
-}
-
-/// Whether each coordinate takes at most two values: then the points are corners of a box, and on its sphere. That is
-/// so all the time in grids whose coordinates were rounded.
-fn corners_of_a_box(points: &[V3; 4], e: V3) -> bool {
-    (0..3).all(|k| {
-        let other = points.iter().map(|p| p[k]).find(|x| *x != e[k]).unwrap_or(e[k]);
-        points.iter().all(|p| p[k] == e[k] || p[k] == other)
-    })
-}
-
-/// The differences p - origin as multiples of a common power of two, if they are below 2^24 of it: then a product of
-/// five, 72 of which bound [`sphere`], has at most 120 bits.
-fn small<const N: usize>(points: &[V3; N], origin: V3) -> Option<[[i128; 3]; N]> {
-    let mut rows = [[0.0; 3]; N];
-    for (row, p) in rows.iter_mut().zip(points) {
-        for k in 0..3 {
-            let difference = Double::difference(p[k], origin[k]);
-            if difference.low != 0.0 {
-                return None;
-            }
-            row[k] = difference.high;
-        }
-    }
-    let size = largest(&rows);
-    if size == 0.0 {
-        return Some([[0; 3]; N]);
-    }
-    let unit = exponent(size) - 23;
-    // Adding this rounds to multiples of the unit.
-    let rounder = 1.5 * power_of_two(52 + unit);
-    let scale = power_of_two(-unit);
-    let mut whole = [[0; 3]; N];
-    for (row, p) in whole.iter_mut().zip(&rows) {
-        for k in 0..3 {
-            if (p[k] + rounder) - rounder != p[k] {
-                return None;
-            }
-            #[allow(clippy::cast_possible_truncation, reason = "a whole number below 2^24")]
-            let n = (p[k] * scale) as i64;
-            row[k] = i128::from(n);
-        }
-    }
-    Some(whole)
+    Estimate::new(sphere(rows, lengths).round(), bound).sign()
 }
 
 fn coord([x, y, z]: V3) -> Coord3D<f64> {
