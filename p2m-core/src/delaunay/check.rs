@@ -51,14 +51,14 @@ pub enum Invalid {
 }
 
 impl Delaunay {
-    /// Whether this is the Delaunay triangulation of the sites, exactly: all tetrahedra are positively oriented, neighbours
-    /// share faces, no vertex of a neighbour is inside a sphere, the outer faces are those of the octahedron, and every
-    /// site is a vertex.
+    /// Whether this is the Delaunay triangulation of the sites, exactly: all tetrahedra are positively oriented,
+    /// neighbours share faces, no vertex of a neighbour is inside a sphere, the outer faces are those of the
+    /// octahedron, and every site is a vertex.
     ///
-    /// That is enough. The number of tetrahedra over a point off all faces does not change across inner faces, which have
-    /// one on either side, so it is the same everywhere in the octahedron: one, as it is one next to an outer face, of
-    /// which there are not two. So they fill it without overlap, and numbers of faces, edges and vertices obey Euler's
-    /// formula. And where every face is locally Delaunay, all spheres are empty \[Delaunay1934\].
+    /// That is enough. The number of tetrahedra over a point off all faces does not change across inner faces, which
+    /// have one on either side, so it is the same everywhere in the octahedron: one, as it is one next to an outer
+    /// face, of which there are not two. So they fill it without overlap, and numbers of faces, edges and vertices obey
+    /// Euler's formula. And where every face is locally Delaunay, all spheres are empty \[Delaunay1934\].
     ///
     /// # Errors
     /// The first thing that is wrong.

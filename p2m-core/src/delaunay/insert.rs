@@ -19,10 +19,12 @@
 //! triangulation in general position, in which no cycle of tetrahedra lies each in front of the next as seen from a
 //! point \[Edelsbrunner1990b\].
 
+#![allow(clippy::inline_always, reason = "or it is compiled without the instruction set")]
+
 use super::{Delaunay, Work};
 use crate::kernel::vector::{V3, sub};
 use crate::predicates::staged::{Stage, orientation_exact, orientation_filter, sphere_exact, sphere_filter};
-use crate::simd::prefetch;
+use crate::simd::{InstructionSet, Isa, Operation, prefetch};
 use std::cmp::Ordering;
 
 /// The face opposite to each vertex, so that orientation_3d of it and the vertex is `Greater`.
@@ -77,7 +79,6 @@ pub(super) struct Insertion {
 
 /// What `number` is the index of; it occurs.
 #[inline(always)]
-#[allow(clippy::inline_always, reason = "a handful of instructions in the innermost loops")]
 fn position(of: &[u32; 4], number: u32) -> usize {
     // Without branches: which it is cannot be predicted.
     usize::from(of[1] == number) + 2 * usize::from(of[2] == number) + 3 * usize::from(of[3] == number)
@@ -85,9 +86,30 @@ fn position(of: &[u32; 4], number: u32) -> usize {
 
 /// The edge between two places, in the table.
 #[inline(always)]
-#[allow(clippy::inline_always, reason = "two instructions")]
 fn edge(from: u8, to: u8) -> usize {
     usize::from(from) % PLACES * PLACES + usize::from(to) % PLACES
+}
+
+/// Insertion of sites, with all instructions that there are. Only compilers use them: lanes are no more precise than
+/// one number at a time, and nothing is contracted, so the tetrahedra are the same on every processor.
+struct All<'a, S> {
+    insertion: &'a mut Insertion,
+    sites: S,
+}
+
+impl<S: Iterator<Item = usize>> Operation for All<'_, S> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> bool {
+        for site in self.sites {
+            #[allow(clippy::cast_possible_truncation, reason = "at most MAX_POINTS and six")]
+            if !self.insertion.insert(site as u32) {
+                return false;
+            }
+        }
+        true
+    }
 }
 
 impl Insertion {
@@ -120,7 +142,8 @@ impl Insertion {
 
     /// Inserts a site other than all before; whether there are numbers enough for its tetrahedra.
     #[must_use]
-    pub(super) fn insert(&mut self, site: u32) -> bool {
+    #[inline(always)]
+    fn insert(&mut self, site: u32) -> bool {
         let p = self.sites[site as usize].point;
         let start = self.locate(p);
         self.find_cavity(start, p);
@@ -139,6 +162,12 @@ impl Insertion {
         true
     }
 
+    /// Inserts sites other than all before, each once; whether there are numbers enough for their tetrahedra.
+    #[must_use]
+    pub(super) fn insert_all(&mut self, sites: impl Iterator<Item = usize>) -> bool {
+        Isa::best().run(All { insertion: self, sites })
+    }
+
     /// What has become of it, with the places of removed ones.
     pub(super) fn into_tetrahedra(self) -> Vec<Tetrahedron> {
         self.tetrahedra
@@ -146,7 +175,6 @@ impl Insertion {
 
     /// The vertices of a tetrahedron.
     #[inline(always)]
-    #[allow(clippy::inline_always, reason = "in registers")]
     fn corners(&self, [a, b, c, d]: [u32; 4]) -> [V3; 4] {
         let at = |v: u32| &self.sites[v as usize].point;
         let (a, b, c, d) = (at(a), at(b), at(c), at(d));
@@ -154,6 +182,7 @@ impl Insertion {
     }
 
     /// A tetrahedron that contains p, maybe on a face.
+    #[inline(always)]
     fn locate(&mut self, p: V3) -> u32 {
         let (mut at, mut from) = (self.last, Delaunay::NONE);
         'walk: loop {
@@ -195,7 +224,6 @@ impl Insertion {
 
     /// Whether p is strictly inside the sphere of four vertices.
     #[inline(always)]
-    #[allow(clippy::inline_always, reason = "once, in the innermost loop")]
     fn conflicts(&mut self, vertices: [u32; 4], p: V3) -> bool {
         self.work.spheres += 1;
         let corners = self.corners(vertices);
@@ -216,8 +244,9 @@ impl Insertion {
 
     /// Collects the tetrahedra in conflict with p, from one of them, and the faces around them.
     ///
-    /// Which are in conflict cannot be predicted, and takes long to compute. So nothing branches on it: a tetrahedron and
-    /// its face are written to the end of both lists, and one of the two becomes longer.
+    /// Which are in conflict cannot be predicted, and takes long to compute. So nothing branches on it: a tetrahedron
+    /// and its face are written to the end of both lists, and one of the two becomes longer.
+    #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "one of four faces")]
     fn find_cavity(&mut self, start: u32, p: V3) {
         self.tetrahedra[start as usize].vertices[0] |= INSIDE;
@@ -254,7 +283,6 @@ impl Insertion {
 
     /// Asks for the neighbours of a tetrahedron before they are read.
     #[inline(always)]
-    #[allow(clippy::inline_always, reason = "a few instructions in the innermost loop")]
     fn prefetch_neighbours(&self, tetrahedron: u32) {
         for next in self.tetrahedra[tetrahedron as usize].neighbours {
             prefetch(self.tetrahedra.as_ptr().wrapping_add(next as usize).cast());
@@ -262,7 +290,7 @@ impl Insertion {
     }
 
     /// Makes the lists long enough for four more than so many.
-    #[inline]
+    #[inline(always)]
     fn room_for(&mut self, cavity: usize, boundary: usize) {
         if self.cavity.len() < cavity + 4 {
             self.cavity.resize(2 * cavity + 64, 0);
@@ -272,8 +300,9 @@ impl Insertion {
         }
     }
 
-    /// Makes the new tetrahedra: of those in the cavity that have a face around it, with the site in place of the vertex
-    /// behind the face. In the old ones they become the neighbours there.
+    /// Makes the new tetrahedra: of those in the cavity that have a face around it, with the site in place of the
+    /// vertex behind the face. In the old ones they become the neighbours there.
+    #[inline(always)]
     fn fill(&mut self, site: u32) {
         self.created.clear();
         for &(t, face) in &self.boundary {
@@ -302,6 +331,7 @@ impl Insertion {
 
     /// Makes neighbours of the new tetrahedra that share an edge of faces around the cavity. Every such edge belongs to
     /// two faces, which turn around it in opposite directions; whether there are places for all.
+    #[inline(always)]
     #[must_use]
     #[allow(clippy::cast_possible_truncation, reason = "at most 124 faces and 64 vertices")]
     fn link(&mut self, site: u32) -> bool {

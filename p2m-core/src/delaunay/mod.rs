@@ -2,7 +2,8 @@
 //!
 //! The points are enclosed by an octahedron of six sites, far enough away that the Voronoi cells of the points are
 //! bounded and, for queries in a box, that none of the six is the nearest site. Signs are decided by exact predicates
-//! in stages ([`crate::predicates`]), and nothing is perturbed: points may be cospherical, coplanar, collinear or equal.
+//! in stages ([`crate::predicates`]), and nothing is perturbed: points may be cospherical, coplanar, collinear or
+//! equal.
 //!
 //! Points are sorted along a Hilbert curve and inserted in rounds (`order`), one by one (`insert`).
 //!
@@ -107,18 +108,19 @@ impl Delaunay {
     /// the octahedron.
     ///
     /// `reach` is the distance of the bounding sites from the centre of the points' box, in halves of its largest side;
-    /// a box without size counts as one with a side of twice [`unit`](Self::unit). It is rounded up by at most 1 %, or, for
-    /// boxes that are small beside their coordinates, to some 2^-46 of those. From [`LEAST_REACH`](Self::LEAST_REACH) on, all
-    /// points are strictly inside the octahedron and their Voronoi cells are bounded. No bounding site is the nearest site for
-    /// queries in the box scaled by s about its centre if the reach R obeys R (R - 2 s) > 3 + 6 s: 22.78 for s = 10, 4.28 for
-    /// s = 1.05.
+    /// a box without size counts as one with a side of twice [`unit`](Self::unit). It is rounded up by at most 1 %, or,
+    /// for boxes that are small beside their coordinates, to some 2^-46 of those. From
+    /// [`LEAST_REACH`](Self::LEAST_REACH) on, all points are strictly inside the octahedron and their Voronoi cells are
+    /// bounded. No bounding site is the nearest site for queries in the box scaled by s about its centre if the reach R
+    /// obeys R (R - 2 s) > 3 + 6 s: 22.78 for s = 10, 4.28 for s = 1.05.
     ///
     /// # Errors
     /// A coordinate that is not finite, a reach out of range, or too many points or tetrahedra.
     ///
     /// # Complexity
-    /// O(n log n) expected for points spread over a surface or in space; O(n^2) at worst, as is the number of tetrahedra.
-    /// While building 32 bytes a tetrahedron and 60 a point, besides what remains ([`memory`](Self::memory)).
+    /// O(n log n) expected for points spread over a surface or in space; O(n^2) at worst, as is the number of
+    /// tetrahedra. While building 32 bytes a tetrahedron and 60 a point, besides what remains
+    /// ([`memory`](Self::memory)).
     pub fn new(points: &[[f64; 3]], reach: f64) -> Result<Self, DelaunayError> {
         let too_many = DelaunayError::TooMany { len: points.len() };
         if !(Self::LEAST_REACH..=Self::LARGEST_REACH).contains(&reach) {
@@ -132,11 +134,8 @@ impl Delaunay {
         }
         let scale::Sites { sites, unit, site_of } = scale::sites(points, reach);
         let mut insertion = Insertion::new(&sites);
-        for site in order::rounds(BOUNDING..sites.len()) {
-            #[allow(clippy::cast_possible_truncation, reason = "at most MAX_POINTS and six")]
-            if !insertion.insert(site as u32) {
-                return Err(too_many);
-            }
+        if !insertion.insert_all(order::rounds(BOUNDING..sites.len())) {
+            return Err(too_many);
         }
         let work = insertion.work;
         let (tetrahedra, neighbours) = compact::compact(insertion.into_tetrahedra(), sites.len());

@@ -45,11 +45,15 @@ fn scale(x: f64, unit: i32) -> f64 {
     if scaled.abs() < *RANGE.start() { 0.0 } else { scaled }
 }
 
-/// The six sites around points of size below 2: c - D and c + D on each axis. c and D are multiples of a power of two, so
-/// that the six are exact and equally far from c, and tests that involve them often need few bits.
+/// The six sites around points of size below 2: c - D and c + D on each axis. c and D are multiples of a power of two,
+/// so that the six are exact and equally far from c, and tests that involve them often need few bits.
 ///
-/// All points are strictly inside: |p - c|_1 <= 3h + 2 steps < D, with two steps for the rounding of c and of h, which is
-/// half the largest side. And |p - c|_2 < D, so the first point is inside the spheres of all tetrahedra of the six.
+/// All points are strictly inside: |p - c|_1 <= 3h + 2 steps < D, with two steps for the rounding of c and of h, which
+/// is half the largest side. And |p - c|_2 < D, so the first point is inside the spheres of all tetrahedra of the six.
+///
+/// The condition D (D - 2M) > 3h^2 + 6Mh for queries within M of the centre (docs of [`super::Delaunay::new`]) survives
+/// the rounding: with c off by half a step on each axis, and D larger by three, the left grows by 5D - 6M steps at
+/// least, the right by 6h + 3M, which is less as the condition has D > M + sqrt(M^2 + 6Mh + 3h^2).
 fn around(points: &[V3], reach: f64) -> [V3; BOUNDING] {
     let [low, high] = if points.is_empty() { [[0.0; 3]; 2] } else { bounds(points.iter().copied()) };
     let half: V3 = std::array::from_fn(|k| 0.5 * high[k] - 0.5 * low[k]);

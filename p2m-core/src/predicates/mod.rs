@@ -79,8 +79,8 @@ pub fn orientation_3d(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> Ord
 /// `Equal` only if the five are on a common sphere or plane, or the four on a common circle. All finite.
 ///
 /// # Complexity
-/// Some tens of multiplications, and a microsecond where the point is very near the sphere, but about ten for
-/// coordinates beyond 2^-161..2^190.
+/// Some tens of multiplications, a few hundred where the point is very near the sphere or on it, some microseconds for
+/// coordinates beyond 2^-161..2^190 and on the rare occasions that need adaptive arithmetic.
 ///
 /// # References
 /// \[Shewchuk1997\]

@@ -1,8 +1,9 @@
 //! Determinants in stages: f64 with a bound on its error, then whole numbers, then double-double, then robust.
 //!
-//! For points whose coordinates are 0 or of a size in [`RANGE`]: then every coordinate is a multiple of 2^-213, products
-//! of k differences and all that rounding makes of them are multiples of 2^-213k, at least 2^-1065, and nothing
-//! underflows in any stage but the bounds themselves. Nothing overflows either: products of five stay below 2^960.
+//! For points whose coordinates are 0 or of a size in [`RANGE`]: then every coordinate is a multiple of 2^-213,
+//! products of k differences and all that rounding makes of them are multiples of 2^-213k, at least 2^-1065, and
+//! nothing underflows in any stage but the bounds themselves. Nothing overflows either: sums of products of five stay
+//! below 2^962.
 
 #![allow(clippy::inline_always, reason = "one expression; calls would hide it from the optimiser")]
 
@@ -44,8 +45,8 @@ impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T
 /// The determinant of three rows, a x b . c.
 ///
 /// It has six products of three, each below XYZ for entries below X, Y and Z in the three columns. On the way to the
-/// result a product takes 5 operations, 8 with the differences in its factors: with relative errors below u each, the error is
-/// below 6 XYZ ((1 + u)^8 - 1).
+/// result a product takes 5 operations, 8 with the differences in its factors: with relative errors below u each, the
+/// error is below 6 XYZ ((1 + u)^8 - 1).
 #[inline(always)]
 fn determinant<T: Number>([a, b, c]: [[T; 3]; 3]) -> T {
     dot(cross(a, b), c)
@@ -54,10 +55,11 @@ fn determinant<T: Number>([a, b, c]: [[T; 3]; 3]) -> T {
 /// Above zero if the origin is inside the sphere of four points with determinant(b - a, c - a, d - a) > 0.
 ///
 /// It is the sum of 24 products of a squared length and three coordinates, each below L X Y Z for squared lengths below
-/// L. On the way to the result a product takes 11 operations (3 for the squared length, 2 for a difference of multiples, 2 for
-/// a cross product, which is its other factor, 1 + 2 for the product of the two, 1 for the sum),
-/// 16 with the differences in its five factors. So the error is below 24 XYZL ((1 + u)^16 - 1) in f64. In double-double,
-/// with exact differences, operations have errors below 7 u^2 \[Joldes2017\], and it is below 24 XYZL ((1 + 7u^2)^11 - 1).
+/// L. On the way to the result a product takes 11 operations (3 for the squared length, 2 for a difference of
+/// multiples, 2 for a cross product, which is its other factor, 1 + 2 for the product of the two, 1 for the sum), 16
+/// with the differences in its five factors. So the error is below 24 XYZL ((1 + u)^16 - 1) in f64. In double-double,
+/// with exact differences, operations have errors below 7 u^2 \[Joldes2017\], and it is below 24 XYZL ((1 + 7u^2)^11 -
+/// 1).
 #[inline(always)]
 fn sphere<T: Number>([a, b, c, d]: [[T; 3]; 4], [a2, b2, c2, d2]: [T; 4]) -> T {
     let combine = |s: T, p: [T; 3], t: T, q: [T; 3]| [s * p[0] - t * q[0], s * p[1] - t * q[1], s * p[2] - t * q[2]];

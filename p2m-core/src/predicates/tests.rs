@@ -13,8 +13,8 @@ fn integers_orientation([a, b, c, d]: [Point; 4]) -> Ordering {
     integers::sign(&integers::dot(&integers::cross(&b, &c), &d))
 }
 
-/// Whether all stages that are sure of a sign say what the integers say; those that were, of filter, whole numbers, double,
-/// adaptive.
+/// Whether all stages that are sure of a sign say what the integers say; those that were, of filter, whole numbers,
+/// double, adaptive.
 fn check_sphere(points: [Point; 4], e: Point) -> [bool; 4] {
     let expected = integers_insphere(points, e);
     let [a, b, c, d] = points;

@@ -7,8 +7,8 @@ use std::cmp::Ordering;
 /// Differences of whole numbers below 2^61.
 type Row = [i64; 3];
 
-/// The differences p - origin as multiples of a common power of two; `None` if coordinates are not multiples of the 2^61st part of
-/// the least power of two above all of them. Where all have the same exponent, they are.
+/// The differences p - origin in units of 2^-61 of the least power of two above all coordinates; `None` if these are
+/// not whole. They are if no coordinate but 0 is below 2^-8 of the largest, or if all have few bits, as in grids.
 #[inline]
 #[allow(clippy::float_cmp, clippy::cast_precision_loss, reason = "whether it is whole is equality")]
 pub(super) fn rows<const N: usize>(points: &[V3; N], origin: V3) -> Option<[Row; N]> {
