@@ -152,6 +152,7 @@ impl Insertion {
         }
         self.fill(site);
         if !self.link(site) {
+            self.work.large_cavities += 1;
             self.link_by_turning();
         }
         for &t in &self.cavity {

@@ -67,6 +67,8 @@ pub struct Work {
     pub steps: u64,
     /// Tetrahedra made, most of which went again.
     pub created: u64,
+    /// Points whose cavity had so many faces that edges were not linked through the table.
+    pub large_cavities: u64,
     /// Orientations asked for.
     pub orientations: u64,
     /// Those decided in whole numbers.

@@ -149,6 +149,16 @@ fn spheres_and_circles_do() {
     valid_by_definition(&whole);
 }
 
+/// Points of a circle and of its axis: each is joined to all of the other kind.
+#[test]
+fn points_with_many_tetrahedra_do() {
+    let circle = (0..400).map(f64::from).map(|i| [(i * 0.37).cos(), (i * 0.37).sin(), 0.0]);
+    let points: Vec<_> = circle.chain((1..40).map(|i| [0.0, 0.0, f64::from(i) * 0.01])).collect();
+    let delaunay = valid(&points);
+    assert!(delaunay.work().large_cavities > 10, "{:?}", delaunay.work());
+    assert!(delaunay.tetrahedra().len() > 10_000);
+}
+
 #[test]
 fn grids_do() {
     for spacing in [1.0, 0.01, 1.0 / 3.0, 1e-200, 3e250] {
