@@ -32,7 +32,7 @@ pub(crate) enum Stage {
 /// The unit roundoff of f64.
 const U: f64 = f64::EPSILON / 2.0;
 
-/// Of [`orientation`] in f64, see there. A ninth of it is for the rounding of the bound.
+/// Of [`determinant`] in f64, see there. A ninth of it is for the rounding of the bound.
 const ORIENTATION_ERROR: f64 = 54.0 * U;
 /// Of [`sphere`] in f64, see there. A seventeenth of it is for the rounding of the bound.
 const SPHERE_ERROR: f64 = 408.0 * U;
