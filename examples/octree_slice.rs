@@ -33,7 +33,7 @@ fn main() -> anyhow::Result<()> {
             let y = centre.y + (middle - f64::from(row) - 0.5) * pixel;
             let place = Point3::new(x, y, centre.z);
             let distance = index.closest_point(&place).map_or(f64::INFINITY, |closest| closest.distance);
-            colours.extend(colour(index.octree().list_length(&place), distance < pixel * 0.5));
+            colours.extend(colour(index.partition().list_length(&place), distance < pixel * 0.5));
         }
     }
     common::write_png(&out, [PIXELS; 2], &colours)

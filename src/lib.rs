@@ -41,7 +41,8 @@
 //! | [`BruteForce`] | every primitive, every time: the oracle, and right for a handful of queries | |
 //! | [`AabbTree`] | boxes split by surface area, searched nearest first | `bvh` |
 //! | [`OctreeIndex`] | cells with lists of what can be nearest in them: no search, for more memory | `interception` |
-//! | [`KdopTree`] | the same with polytopes of K faces: closer to what does not lie along the axes | `kdop` |
+//! | [`P2mIndex`] | the same with the cells of the vertices: fastest far away, for still more memory | `interception` |
+//! | [`KdopTree`] | trees of polytopes of K faces: closer to what does not lie along the axes | `kdop` |
 //!
 //! Write functions over `I: ClosestPoint<T>` to leave the choice to the caller, or take `&dyn ClosestPoint<T>`.
 //!
@@ -50,7 +51,7 @@
 //! | feature | adds | default |
 //! |---|---|---|
 //! | `bvh` | [`AabbTree`] | yes |
-//! | `interception` | [`OctreeIndex`] | yes |
+//! | `interception` | [`OctreeIndex`], [`P2mIndex`] | yes |
 //! | `kdop` | [`KdopTree`] | yes |
 //! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `mixed` | [`scene`]: reading scenes and points from files | yes |
@@ -60,7 +61,7 @@
 pub use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
 pub use p2m_core::*;
 #[cfg(feature = "interception")]
-pub use p2m_interception::{Domain, OctreeIndex, OctreeOptions, OctreeReport};
+pub use p2m_interception::{Domain, OctreeIndex, OctreeOptions, OctreeReport, P2mIndex, P2mOptions, P2mReport};
 /// What else there is about k-DOPs: polytopes, overlap of trees, directions from a scene.
 #[cfg(feature = "kdop")]
 pub use p2m_kdop as kdop;

@@ -7,8 +7,8 @@
 use nalgebra::{Point3, Vector3};
 use p2m::{
     AabbTree, Best, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Directions, Feature, KdopOptions,
-    KdopTree, Key, OctreeIndex, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment, Shape, Soup,
-    Triangle,
+    KdopTree, Key, OctreeIndex, P2mIndex, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment,
+    Shape, Soup, Triangle,
 };
 use p2m_testkit::families::shape;
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
@@ -152,6 +152,7 @@ backends! {
     brute: Brute,
     kdop_14: Kdop14,
     octree: OctreeIndex,
+    p2m_index: P2mIndex,
 }
 
 // Few sets, for these take long to compile.

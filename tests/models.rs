@@ -5,7 +5,8 @@
 
 use p2m::kdop::Choice;
 use p2m::{
-    AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopOptions, KdopTree, OctreeIndex, PrimitiveSet, Real, Soup,
+    AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopOptions, KdopTree, OctreeIndex, P2mIndex, PrimitiveSet, Real,
+    Soup,
 };
 use p2m_testkit::model_files;
 use p2m_testkit::queries::QuerySet;
@@ -36,20 +37,22 @@ fn agrees<T: Real>(name: &str, set: QuerySet, soup: &Soup<T>, trees: &Trees<'_, 
         answers(&trees.1, queries),
         answers(&trees.2, queries),
         answers(&trees.3, queries),
+        answers(&trees.4, queries),
     ];
-    for (tree, found) in ["boxes", "k-DOPs", "the scene's k-DOPs", "octree"].iter().zip(found) {
+    for (tree, found) in ["boxes", "k-DOPs", "the scene's k-DOPs", "octree", "p2m"].iter().zip(found) {
         for (i, (e, f)) in expected.iter().zip(&found).enumerate() {
             assert_eq!(e, f, "{name}, {tree}, {set}, query {i}: {:?}", queries[i]);
         }
     }
 }
 
-/// Of boxes, of the usual 14 faces, and of 26 faces along a frame; an octree.
+/// Of boxes, of the usual 14 faces, and of 26 faces along a frame; an octree, and a P2M index.
 struct Trees<'a, T: Real>(
     AabbTree<T, &'a Soup<T>>,
     KdopTree<T, &'a Soup<T>, 14>,
     KdopTree<T, &'a Soup<T>, 26>,
     OctreeIndex<T, &'a Soup<T>>,
+    P2mIndex<T, &'a Soup<T>>,
 );
 
 impl<'a, T: Real> Trees<'a, T> {
@@ -60,6 +63,7 @@ impl<'a, T: Real> Trees<'a, T> {
             KdopTree::build(soup, &Default::default()).expect("valid"),
             KdopTree::build_with(soup, &own).expect("valid"),
             OctreeIndex::build(soup, &Default::default()).expect("valid"),
+            P2mIndex::build(soup, &Default::default()).expect("valid"),
         )
     }
 }

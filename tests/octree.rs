@@ -83,9 +83,9 @@ fn what_is_not_asked_for_is_not_made() {
     assert!(band.bytes < all.bytes && part.bytes < all.bytes && band.work < all.work && part.work < all.work);
     // Outside of the domain the tree answers.
     let index = built(&soup, &OctreeOptions::default().with_domain(Domain::Box(corner)));
-    assert_eq!(index.octree().list_length(&(bounds.max + Vector3::repeat(1.0))), None);
+    assert_eq!(index.partition().list_length(&(bounds.max + Vector3::repeat(1.0))), None);
     let inside = nalgebra::center(&corner.min, &corner.max);
-    assert!(index.octree().list_length(&inside).is_some());
+    assert!(index.partition().list_length(&inside).is_some());
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn cells_do_not_depend_on_the_number_of_threads() {
     let cells = |parallel| {
         let splits = p2m::hierarchy::SplitOptions::default().with_parallel(parallel);
         let index = built(&soup, &OctreeOptions::default().with_splits(splits));
-        let lists: Vec<_> = places.iter().map(|place| index.octree().list_length(place)).collect();
+        let lists: Vec<_> = places.iter().map(|place| index.partition().list_length(place)).collect();
         (index.report(), lists)
     };
     let expected = cells(false);
@@ -242,7 +242,7 @@ fn queries_beside_a_face_that_rounding_moves_across_it_lose_nothing() {
                 let q = v - Vector3::x() * (a * part);
                 let key = |c: p2m::Closest<f64>| (c.distance.to_bits(), c.primitive);
                 assert_eq!(index.closest_point(&q).map(key), brute.closest_point(&q).map(key), "{shift} {q}");
-                found += usize::from(index.octree().list_length(&q).is_some());
+                found += usize::from(index.partition().list_length(&q).is_some());
             }
         }
     }

@@ -9,7 +9,7 @@ use p2m_core::{
     BruteForce, BuildIndex, ClosestPoint, Directions, DirectionsError, Isa, PrimitiveId, PrimitiveSet, Shape, Soup,
     Triangle,
 };
-use p2m_interception::{OctreeIndex, OctreeOptions};
+use p2m_interception::{OctreeIndex, OctreeOptions, P2mIndex, P2mOptions};
 use p2m_kdop::{Choice, KdopOptions, KdopTree};
 use std::marker::PhantomData;
 
@@ -26,6 +26,8 @@ pub(crate) const ALL: &[Backend] = &[
     Backend { name: "octree-portable", prepare: |s| octree::<f64>(s, Some("portable"), 1.0), ..OURS },
     Backend { name: "octree-coarse", prepare: |s| octree::<f64>(s, None, 0.1), ..OURS },
     Backend { name: "octree-fine", prepare: |s| octree::<f64>(s, None, 10.0), ..OURS },
+    Backend { name: "p2m", prepare: |s| p2m::<f64>(s, None), ..OURS },
+    Backend { name: "p2m-avx2", prepare: |s| p2m::<f64>(s, Some("avx2")), ..OURS },
     Backend { name: "kdop-6", prepare: kdop::<f64, 6>, ..OURS },
     Backend { name: "kdop-14", prepare: kdop::<f64, 14>, ..OURS },
     Backend { name: "kdop-18", prepare: kdop::<f64, 18>, ..OURS },
@@ -141,6 +143,22 @@ fn octree<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>, times: f64) -> Res
     let (soup, borrowed) = T::soup(scene)?;
     let build = move || {
         let index = OctreeIndex::build(soup, &octree_options(times)).map_err(|error| Absent(error.to_string()))?;
+        Ok(Box::new(Ours(index.with_isa(isa), PhantomData::<fn() -> T>)) as Ready<'a>)
+    };
+    Ok(Prepared { build: Box::new(build), borrowed })
+}
+
+/// The P2M index on one thread.
+pub(crate) fn p2m_options() -> P2mOptions {
+    P2mOptions::default().with_splits(aabb_options())
+}
+
+/// The P2M index, with the instruction set of that name or the best one.
+fn p2m<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'a>, Absent> {
+    let isa = instruction_set(isa)?;
+    let (soup, borrowed) = T::soup(scene)?;
+    let build = move || {
+        let index = P2mIndex::build(soup, &p2m_options()).map_err(|error| Absent(error.to_string()))?;
         Ok(Box::new(Ours(index.with_isa(isa), PhantomData::<fn() -> T>)) as Ready<'a>)
     };
     Ok(Prepared { build: Box::new(build), borrowed })

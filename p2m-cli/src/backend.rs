@@ -4,7 +4,7 @@ use crate::faces::{Faces, Used, WithTree};
 use clap::ValueEnum;
 use p2m_bvh::AabbTree;
 use p2m_core::{BruteForce, BuildError, BuildIndex, ClosestPoint, RayQuery, Soup};
-use p2m_interception::OctreeReport;
+use p2m_interception::{OctreeReport, P2mReport};
 use p2m_kdop::KdopTree;
 
 /// Backends that answer every kind of question.
@@ -29,7 +29,9 @@ pub(crate) enum About {
     /// Of a k-DOP tree.
     Faces(Used),
     /// Of an octree.
-    Cells(OctreeReport),
+    Cubes(OctreeReport),
+    /// Of a P2M index.
+    Cells(P2mReport),
 }
 
 impl Search {

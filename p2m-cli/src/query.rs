@@ -14,7 +14,7 @@ use anyhow::Context;
 use clap::builder::PossibleValue;
 use clap::{ArgGroup, ValueEnum};
 use p2m_core::{BuildError, ClosestPoint, QueryOptions, Soup};
-use p2m_interception::OctreeIndex;
+use p2m_interception::{InterceptionIndex, Octree, Partition, Voronoi};
 use p2m_mixed::{AnswerWriter, PointFormat, Scene};
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -109,19 +109,29 @@ pub(crate) struct Args {
 enum Backend {
     Search(Search),
     Octree,
+    P2m,
 }
 
 impl ValueEnum for Backend {
     fn value_variants<'a>() -> &'a [Self] {
-        &[Self::Search(Search::Brute), Self::Search(Search::Aabb), Self::Octree, Self::Search(Search::Kdop)]
+        const ALL: &[Backend] = &[
+            Backend::Search(Search::Brute),
+            Backend::Search(Search::Aabb),
+            Backend::Search(Search::Kdop),
+            Backend::Octree,
+            Backend::P2m,
+        ];
+        ALL
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
         let octree =
             "Cells in space with lists of what can be nearest there: no search, for more memory and a longer build";
+        let p2m = "Cells of the vertices with lists of what can be nearest there: fastest far from the scene";
         match self {
             Self::Search(search) => search.to_possible_value(),
             Self::Octree => Some(PossibleValue::new(self.name()).help(octree)),
+            Self::P2m => Some(PossibleValue::new(self.name()).help(p2m)),
         }
     }
 }
@@ -131,6 +141,7 @@ impl Backend {
         match self {
             Self::Search(search) => search.name(),
             Self::Octree => "octree",
+            Self::P2m => "p2m",
         }
     }
 
@@ -138,21 +149,25 @@ impl Backend {
     fn build(self, soup: &Soup<f64>, faces: Faces) -> Result<(Closest<'_>, About), BuildError> {
         match self {
             Self::Search(search) => search.build(soup, faces).map(|(index, about)| (index as Closest<'_>, about)),
-            Self::Octree => octree(soup),
+            Self::Octree => interception::<Octree>(soup, About::Cubes),
+            Self::P2m => interception::<Voronoi>(soup, About::Cells),
         }
     }
 }
 
 type Closest<'a> = Box<dyn ClosestPoint<f64> + Sync + 'a>;
 
-/// The octree, which takes a while to build.
+/// An interception index, which takes a while to build.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part is from 0 to 1")]
-fn octree(soup: &Soup<f64>) -> Result<(Closest<'_>, About), BuildError> {
+fn interception<P: Partition + Sync + 'static>(
+    soup: &Soup<f64>,
+    about: fn(P::Report) -> About,
+) -> Result<(Closest<'_>, About), BuildError> {
     let progress = Progress::start("finding cells", Some(100), Unit::Percent);
     let reach = |part: f64| progress.reach((part * 100.0) as u64);
-    let index = OctreeIndex::build_with_progress(soup, &Default::default(), &reach)?;
+    let index = InterceptionIndex::<_, _, P>::build_with_progress(soup, &Default::default(), &reach)?;
     let report = index.report();
-    Ok((Box::new(index), About::Cells(report)))
+    Ok((Box::new(index), about(report)))
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
@@ -168,8 +183,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let mut output = Output::open(Some(&asking.out))?;
 
     let start = Instant::now();
-    // The octree tells more by itself.
-    let progress = (args.backend != Backend::Octree).then(|| Progress::start("building the index", None, Unit::None));
+    // Interception indexes tell more by themselves.
+    let is_search = matches!(args.backend, Backend::Search(_));
+    let progress = is_search.then(|| Progress::start("building the index", None, Unit::None));
     let built = args.backend.build(&scene.soup, asking.faces());
     let (index, about) = built.with_context(|| scene_args.name())?;
     drop(progress);

@@ -115,7 +115,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "R", default_value_t = 0.0, value_parser = finite_not_negative, allow_negative_numbers = true)]
     radius: f64,
 
-    /// How to search; octrees answer no rays
+    /// How to search; interception indexes (octree, p2m) answer no rays
     #[arg(long, value_enum, default_value_t = Search::Aabb)]
     backend: Search,
 

@@ -61,10 +61,10 @@ impl Run<'_> {
         report
     }
 
-    /// What the octree is made of, for the report.
+    /// What an interception index is made of, for the report.
     pub(crate) fn cells(&self) -> Value {
         match &self.about {
-            About::Cells(report) => json!({
+            About::Cubes(report) => json!({
                 "lists": report.lists,
                 "singles": report.singles,
                 "trees": report.trees,
@@ -72,6 +72,14 @@ impl Run<'_> {
                 "tree_bytes": report.tree_bytes,
                 "tests": report.work,
                 "resolution": json::number(report.resolution),
+            }),
+            About::Cells(report) => json!({
+                "lists": report.lists,
+                "trees": report.trees,
+                "packets": report.entries,
+                "primitives": report.primitives,
+                "bytes": report.bytes,
+                "tree_bytes": report.tree_bytes,
             }),
             _ => Value::Null,
         }
@@ -104,6 +112,7 @@ impl Run<'_> {
         writeln!(text, "backend  {}{faces}, built in {:.3?}", self.backend, self.build)?;
         match &self.about {
             About::Faces(Used { choice: Some(choice), .. }) => writeln!(text, "k-DOPs   {choice}")?,
+            About::Cubes(report) => writeln!(text, "cells    {report}")?,
             About::Cells(report) => writeln!(text, "cells    {report}")?,
             _ => {}
         }

@@ -15,6 +15,7 @@ fn backends_and_threads_give_the_same_table() {
         assert!(expected.starts_with(&format!("{HEADER}\n")));
         assert_eq!(run(&["--backend", "aabb"]), expected);
         assert_eq!(run(&["--backend", "octree"]), expected);
+        assert_eq!(run(&["--backend", "p2m"]), expected);
         assert_eq!(run(&["--backend", "kdop"]), expected);
         for faces in ["6", "14", "18", "26", "scene"] {
             assert_eq!(run(&["--backend", "kdop", "--k", faces]), expected);

@@ -19,7 +19,9 @@
 //! ```
 #![forbid(unsafe_code)]
 
-mod octree;
+mod index;
 
-pub use octree::OctreeIndex;
-pub use p2m_core::interception::{Domain, Octree, OctreeOptions, OctreeReport};
+pub use index::{InterceptionIndex, OctreeIndex, P2mIndex};
+pub use p2m_core::interception::{
+    Domain, Octree, OctreeOptions, OctreeReport, P2mOptions, P2mReport, Partition, Voronoi,
+};

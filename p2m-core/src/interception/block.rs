@@ -12,9 +12,12 @@
 //! Numbers are kept as bytes, rounded outwards. All lengths are in the frame of the scene.
 
 use super::cube::DEEPEST;
+use crate::Collector;
+use crate::hierarchy::PacketTree;
+use crate::hierarchy::wide::search::Filter;
 use crate::hierarchy::wide::volume::Rounded;
 use crate::kernel::vector::V3;
-use crate::simd::Lanes;
+use crate::simd::{EightLanes, InstructionSet, Lanes, lane_of_key, number_of_key};
 
 /// Packets of a block.
 pub(super) const WIDTH: usize = 8;
@@ -213,6 +216,41 @@ impl Block {
             odd = L::load_u8(&self.bounds[2 * i + 1]).mul_add(L::splat(weights[2 * i + 1]), odd);
         }
         even.add(odd).max(L::splat(0.0))
+    }
+}
+
+/// Packets of a block that are fetched before they are asked.
+const PREFETCHED: usize = 2;
+
+/// Looks at the packets of a list that can be the answer, the nearest ones of each block first. The list has its first
+/// block, and as many of the rest as that says.
+#[inline(always)]
+pub(super) fn search<I: InstructionSet, C: Collector>(
+    tree: &PacketTree,
+    first: &Block,
+    rest: &[Block],
+    place: &Place,
+    filter: &mut Filter<'_, C>,
+) {
+    for block in std::iter::once(first).chain(&rest[..usize::from(first.more)]) {
+        let bounds: I::Eight = block.lower_bounds(place);
+        let mut keys = [0u32; WIDTH];
+        let count = bounds.sorted_keys(filter.limit(), &mut keys);
+        // The nearest ones, whatever there is: a branch would be mispredicted.
+        for back in 1..=PREFETCHED {
+            let packet = block.packets[lane_of_key(keys[count.wrapping_sub(back) & 7])] as usize;
+            tree.leaves.prefetch(packet);
+            tree.leaves.prefetch_vertices(packet);
+        }
+        let mut rest = count;
+        while rest > 0 {
+            rest -= 1;
+            let key = keys[rest];
+            let lane = lane_of_key(key);
+            if lane < usize::from(block.len) && number_of_key(key) <= filter.limit() {
+                filter.packet::<I>(block.packets[lane] as usize, u32::from(block.lanes[lane]));
+            }
+        }
     }
 }
 

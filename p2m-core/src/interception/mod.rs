@@ -5,17 +5,29 @@
 //! dominators somewhere in the cell. A query *locates* its cell and tests the list: no search, no backtracking
 //! \[Zong2023\].
 //!
-//! What is in a list is decided by the corner test (`corner`), for any convex cell; how cells are made and located is
-//! the partition's affair: cubes ([`Octree`], `refine`). Lists are lists of packets with the lanes that matter, eight
-//! to a block, with bounds from the corners of the cell (`block`). Where a list would take longer than the tree over
-//! the same packets, and outside of the domain, the tree answers. docs/octree.md has the proofs.
+//! What is in a list is decided by the corner test, for any convex cell; how cells are made and located is the
+//! [`Partition`]'s affair: cubes ([`Octree`]: `cube`, `corner`, `refine`), or the Voronoi cells of the vertices
+//! ([`Voronoi`]: `sphere`, `hull`, `features`, `cells`; located by `hints` and `fan`). Lists are lists of packets with the
+//! lanes that matter, eight to a block, with bounds (`block`). Where a list would be too long, and outside of the domain,
+//! the tree over the same packets answers. docs/octree.md and docs/p2m.md have the proofs.
 
 mod block;
+mod cells;
 mod corner;
 mod cube;
+mod fan;
+mod features;
+mod hints;
+mod hull;
+mod nearer;
 mod octree;
 mod options;
+mod partition;
 mod refine;
+mod sphere;
+mod voronoi;
 
 pub use octree::Octree;
-pub use options::{Domain, OctreeOptions, OctreeReport};
+pub use options::{Domain, OctreeOptions, OctreeReport, P2mOptions, P2mReport};
+pub use partition::Partition;
+pub use voronoi::Voronoi;

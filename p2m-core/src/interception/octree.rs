@@ -1,8 +1,9 @@
 //! A partition into cubes.
 
-use super::block::{Block, Place, WIDTH};
+use super::block::{self, Block, Place};
 use super::cube::DEEPEST;
 use super::options::{Domain, OctreeOptions, OctreeReport};
+use super::partition::Partition;
 use super::refine::{Cell, Done, NODE, PACKET, Refinement};
 use crate::hierarchy::PacketTree;
 use crate::hierarchy::wide::evaluation;
@@ -12,7 +13,7 @@ use crate::kernel::vector::V3;
 use crate::packet::LANES;
 use crate::query::Minimum;
 use crate::real::{narrow, wide};
-use crate::simd::{EightLanes, InstructionSet, Operation, lane_of_key, number_of_key, prefetch_lines};
+use crate::simd::{InstructionSet, Operation, prefetch_lines};
 use crate::{Aabb, Best, Collector, Counting, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Real};
 use nalgebra::Point3;
 use std::collections::HashMap;
@@ -60,32 +61,6 @@ pub struct Octree {
 }
 
 impl Octree {
-    /// Builds the index over a set whose boxes are finite. `progress` is told what part of space is done, each percent
-    /// once, from any thread.
-    #[must_use]
-    pub fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
-        set: &S,
-        options: &OctreeOptions,
-        progress: &(dyn Fn(f64) + Sync),
-    ) -> Self {
-        let tree = PacketTree::build(set, &options.splits);
-        let tree_bytes = tree.memory();
-        let mut octree = Self {
-            tree,
-            low: [0.0; 3],
-            per_length: 0.0,
-            root: TREE,
-            rows: Vec::new(),
-            blocks: Vec::new(),
-            report: OctreeReport { tree_bytes, ..OctreeReport::default() },
-        };
-        if let Some(shape) = Shape::of(&octree.tree, options) {
-            octree.refine(set, options, &shape, progress);
-        }
-        progress(1.0);
-        octree
-    }
-
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates; NaN is no budget")]
     fn refine<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
         &mut self,
@@ -243,22 +218,6 @@ impl Octree {
         code
     }
 
-    /// Offers to `collector` every primitive of `set`, over which the index was built, that it could want. `query` is
-    /// finite.
-    #[inline]
-    pub fn search<T: Real, S: PrimitiveSet<T>, C: Collector>(&self, set: &S, query: &Point3<T>, collector: &mut C) {
-        if collector.is_nearest_only() {
-            self.look_up(wide(query), collector, &evaluation(set, query), finish);
-        } else {
-            self.tree.search(set, query, collector);
-        }
-    }
-
-    /// The same for the nearest primitive.
-    pub fn search_nearest<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
-        self.nearest(wide(query), best.minimum(), &evaluation(set, query));
-    }
-
     /// Not generic, so compiled once.
     fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
         self.look_up(query, minimum, evaluate, finish_nearest);
@@ -279,7 +238,7 @@ impl Octree {
                 let place = Place { rounded: Rounded::of(local), local, cells };
                 tree.isa().run(Lookup { octree: self, code, query, place, collector, evaluate, finish });
             }
-            _ => tree.isa().run(Search { tree, query, collector, evaluate, finish }),
+            _ => tree.isa().run(Search { tree, query, reach: f64::INFINITY, collector, evaluate, finish }),
         }
     }
 
@@ -305,28 +264,61 @@ impl Octree {
             _ => None,
         }
     }
+}
 
-    /// The tree over the packets.
-    #[must_use]
-    pub fn tree(&self) -> &PacketTree {
+impl Partition for Octree {
+    type Options = OctreeOptions;
+    type Report = OctreeReport;
+
+    fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
+        set: &S,
+        options: &OctreeOptions,
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Self {
+        let tree = PacketTree::build(set, &options.splits);
+        let tree_bytes = tree.memory();
+        let mut octree = Self {
+            tree,
+            low: [0.0; 3],
+            per_length: 0.0,
+            root: TREE,
+            rows: Vec::new(),
+            blocks: Vec::new(),
+            report: OctreeReport { tree_bytes, ..OctreeReport::default() },
+        };
+        if let Some(shape) = Shape::of(&octree.tree, options) {
+            octree.refine(set, options, &shape, progress);
+        }
+        progress(1.0);
+        octree
+    }
+
+    #[inline]
+    fn search<T: Real, S: PrimitiveSet<T>, C: Collector>(&self, set: &S, query: &Point3<T>, collector: &mut C) {
+        if collector.is_nearest_only() {
+            self.look_up(wide(query), collector, &evaluation(set, query), finish);
+        } else {
+            self.tree.search(set, query, collector);
+        }
+    }
+
+    fn search_nearest<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
+        self.nearest(wide(query), best.minimum(), &evaluation(set, query));
+    }
+
+    fn tree(&self) -> &PacketTree {
         &self.tree
     }
 
-    /// What it is made of.
-    #[must_use]
-    pub fn report(&self) -> OctreeReport {
+    fn report(&self) -> OctreeReport {
         self.report
     }
 
-    /// Heap memory it owns, in bytes.
-    #[must_use]
-    pub fn memory(&self) -> usize {
+    fn memory(&self) -> usize {
         self.tree.memory() + self.rows.capacity() * size_of::<Row>() + self.blocks.capacity() * size_of::<Block>()
     }
 
-    /// Searches with another instruction set. Answers do not depend on it.
-    #[must_use]
-    pub fn with_isa(self, isa: Isa) -> Self {
+    fn with_isa(self, isa: Isa) -> Self {
         Self { tree: self.tree.with_isa(isa), ..self }
     }
 }
@@ -428,9 +420,6 @@ struct Lookup<'a, C> {
     finish: fn(&mut Filter<'_, C>),
 }
 
-/// Packets of a block that are fetched before they are asked.
-const PREFETCHED: usize = 2;
-
 impl<C: Collector> Operation for Lookup<'_, C> {
     type Output = ();
 
@@ -439,39 +428,15 @@ impl<C: Collector> Operation for Lookup<'_, C> {
         let octree = self.octree;
         let tree = &octree.tree;
         let number = (self.code & !(7 << SHIFT)) as usize;
-        let mut filter = Filter::new(tree, self.query, self.collector, self.evaluate, self.finish);
+        let mut filter = Filter::new(tree, self.query, f64::INFINITY, self.collector, self.evaluate, self.finish);
         if self.code >> SHIFT == SINGLE {
             filter.add(number / LANES, number % LANES);
             return filter.evaluate_waiting();
         }
         // What comes next, if the list has more than a block.
         prefetch_lines(octree.blocks.as_ptr().wrapping_add(number), 2 * size_of::<Block>());
-        let mut at = number;
-        loop {
-            let block = &octree.blocks[at];
-            let bounds: I::Eight = block.lower_bounds(&self.place);
-            let mut keys = [0u32; WIDTH];
-            let count = bounds.sorted_keys(filter.limit(), &mut keys);
-            // The nearest ones, whatever there is: a branch would be mispredicted.
-            for back in 1..=PREFETCHED {
-                let packet = block.packets[lane_of_key(keys[count.wrapping_sub(back) & 7])] as usize;
-                tree.leaves.prefetch(packet);
-                tree.leaves.prefetch_vertices(packet);
-            }
-            let mut rest = count;
-            while rest > 0 {
-                rest -= 1;
-                let key = keys[rest];
-                let lane = lane_of_key(key);
-                if lane < usize::from(block.len) && number_of_key(key) <= filter.limit() {
-                    filter.packet::<I>(block.packets[lane] as usize, u32::from(block.lanes[lane]));
-                }
-            }
-            if block.more == 0 {
-                break;
-            }
-            at += 1;
-        }
+        let (first, rest) = (&octree.blocks[number], &octree.blocks[number + 1..]);
+        block::search::<I, C>(tree, first, rest, &self.place, &mut filter);
         filter.evaluate_waiting();
     }
 }

@@ -111,3 +111,66 @@ impl std::fmt::Display for OctreeReport {
         write!(f, ", resolution {resolution:.digits$}")
     }
 }
+
+/// How a P2M index is built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct P2mOptions {
+    /// How the packets of the tree are made, and whether all threads are used.
+    pub splits: SplitOptions,
+    /// Lists of more packets are left to the tree.
+    pub longest: usize,
+}
+
+impl Default for P2mOptions {
+    fn default() -> Self {
+        Self { splits: SplitOptions::default(), longest: 128 }
+    }
+}
+
+impl P2mOptions {
+    /// With other splits.
+    #[must_use]
+    pub fn with_splits(self, splits: SplitOptions) -> Self {
+        Self { splits, ..self }
+    }
+    /// With lists of more or fewer packets.
+    #[must_use]
+    pub fn with_longest(self, longest: usize) -> Self {
+        Self { longest, ..self }
+    }
+}
+
+/// What a P2M index is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct P2mReport {
+    /// Cells with a list.
+    pub lists: usize,
+    /// Cells that the tree answers.
+    pub trees: usize,
+    /// Packets in all lists.
+    pub entries: usize,
+    /// Primitives in all lists.
+    pub primitives: usize,
+    /// Bytes of cells and lists.
+    pub bytes: usize,
+    /// Bytes of the tree over the packets.
+    pub tree_bytes: usize,
+}
+
+impl std::fmt::Display for P2mReport {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { lists, trees, entries, primitives, bytes, tree_bytes } = self;
+        let mean = |count: &usize| *count as f64 / (*lists).max(1) as f64;
+        let megabytes = |bytes: &usize| *bytes as f64 / 1e6;
+        write!(
+            f,
+            "{lists} cells with lists of {:.1} primitives in {:.1} packets on average, ",
+            mean(primitives),
+            mean(entries)
+        )?;
+        write!(f, "{trees} left to the tree; ")?;
+        write!(f, "{:.1} MB of cells, {:.1} MB of tree", megabytes(bytes), megabytes(tree_bytes))
+    }
+}

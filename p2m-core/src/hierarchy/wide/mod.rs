@@ -5,6 +5,7 @@
 //! of up to sixteen primitives. Both are in f32 or less and only bound distances, from both sides and with proof; what
 //! may be the answer is evaluated in f64 by the kernel of the contract ([`search`]).
 
+pub(crate) mod ball;
 mod collapse;
 pub(crate) mod node;
 mod overlap;
@@ -215,7 +216,7 @@ impl<V: Volume> PacketTree<V> {
         collector: &mut C,
     ) {
         let (query, evaluate) = (wide(query), evaluation(set, query));
-        self.isa.run(Search { tree: self, query, collector, evaluate: &evaluate, finish });
+        self.isa.run(Search { tree: self, query, reach: f64::INFINITY, collector, evaluate: &evaluate, finish });
     }
 
     /// The same for the nearest primitive.

@@ -28,6 +28,8 @@ pub(crate) type Evaluate<'a, C> = &'a dyn Fn(&mut C, PrimitiveId, f64);
 pub(crate) struct Search<'a, V: Volume, C> {
     pub(crate) tree: &'a PacketTree<V>,
     pub(crate) query: [f64; 3],
+    /// Some primitive is known to be at most this far.
+    pub(crate) reach: f64,
     pub(crate) collector: &'a mut C,
     pub(crate) evaluate: Evaluate<'a, C>,
     pub(crate) finish: fn(&mut Filter<'_, C>),
@@ -40,7 +42,7 @@ impl<V: Volume, C: Collector> Operation for Search<'_, V, C> {
     fn run<I: InstructionSet>(self) {
         let tree = self.tree;
         let Some(local) = V::Node::query(&tree.shape, &tree.frame, &self.query) else { return self.run_far() };
-        let filter = Filter::new(tree, self.query, self.collector, self.evaluate, self.finish);
+        let filter = Filter::new(tree, self.query, self.reach, self.collector, self.evaluate, self.finish);
         let mut nearest = Nearest { filter, shape: &tree.shape, local };
         walk::<I, V, _>(tree, &mut nearest);
         nearest.filter.evaluate_waiting();
@@ -153,11 +155,12 @@ pub(crate) struct Filter<'a, C> {
 }
 
 impl<'a, C: Collector> Filter<'a, C> {
-    /// Nothing seen yet.
+    /// Nothing seen yet, but some primitive is known to be at most `reach` far.
     #[inline(always)]
     pub(crate) fn new<V: Volume>(
         tree: &'a PacketTree<V>,
         query: [f64; 3],
+        reach: f64,
         collector: &'a mut C,
         evaluate: Evaluate<'a, C>,
         finish: fn(&mut Filter<'_, C>),
@@ -170,7 +173,7 @@ impl<'a, C: Collector> Filter<'a, C> {
             collector,
             evaluate,
             finish,
-            reach: f64::INFINITY,
+            reach,
             keep: 0.0,
             limit: 0.0,
             waiting: [Candidate::default(); CANDIDATES],

@@ -59,7 +59,14 @@ impl Nodes for Aabb<f64> {
     }
 
     fn nearest(tree: &PacketTree, query: [f64; 3], minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
-        tree.isa.run(Search { tree, query, collector: minimum, evaluate, finish: finish_nearest });
+        tree.isa.run(Search {
+            tree,
+            query,
+            reach: f64::INFINITY,
+            collector: minimum,
+            evaluate,
+            finish: finish_nearest,
+        });
     }
 }
 
@@ -72,7 +79,14 @@ impl<const K: usize> Nodes for Kdop<K> {
     }
 
     fn nearest(tree: &PacketTree<Self>, query: [f64; 3], minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
-        tree.isa.run(Search { tree, query, collector: minimum, evaluate, finish: finish_nearest });
+        tree.isa.run(Search {
+            tree,
+            query,
+            reach: f64::INFINITY,
+            collector: minimum,
+            evaluate,
+            finish: finish_nearest,
+        });
     }
 }
 

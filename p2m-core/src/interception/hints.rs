@@ -1,0 +1,157 @@
+//! Where a walk begins: for each cell of a grid the site that is nearest to its middle. One grid lies around the scene;
+//! its cells with several sites are cut into 64. A coarser one lies over the whole domain.
+
+use super::fan::Fans;
+use crate::kernel::vector::V3;
+use crate::simd::{InstructionSet, Isa, Operation};
+
+/// Sites by a grid of cells.
+#[derive(Clone, Debug)]
+struct Grid {
+    low: V3,
+    /// Cells in a unit of length.
+    per_length: f64,
+    counts: [usize; 3],
+    /// A site; or, with [`CUT`], the number of a finer grid.
+    cells: Vec<u32>,
+    fine: Vec<[u32; FINE * FINE * FINE]>,
+}
+
+/// The two grids.
+#[derive(Clone, Debug)]
+pub(super) struct Hints {
+    near: Grid,
+    far: Grid,
+}
+
+const CUT: u32 = 1 << 31;
+/// Cells along a side of a cell that is cut.
+const FINE: usize = 4;
+/// Cells of the grid around the scene for each site, and of the other one along a side.
+const CELLS: f64 = 2.0;
+const SIDE: f64 = 24.0;
+
+impl Grid {
+    /// Over a box, of about `count` cubes.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "few cells")]
+    fn new(low: V3, high: V3, count: f64) -> Self {
+        let extent: V3 = std::array::from_fn(|k| high[k] - low[k]);
+        let side = (extent.iter().product::<f64>() / count).cbrt();
+        let counts = extent.map(|x| ((x / side).ceil() as usize).max(1));
+        let per_length = side.recip();
+        Self { low, per_length, counts, cells: vec![0; counts.iter().product()], fine: Vec::new() }
+    }
+
+    /// The number of the cell of a place, and the place in cells.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, and few cells")]
+    fn cell(&self, place: &V3) -> Option<(usize, V3)> {
+        let mut number = 0;
+        let mut at = [0.0; 3];
+        for k in (0..3).rev() {
+            let x = (place[k] - self.low[k]) * self.per_length;
+            // Not for NaN either.
+            if !(x >= 0.0 && x < self.counts[k] as f64) {
+                return None;
+            }
+            at[k] = x;
+            number = number * self.counts[k] + x as usize;
+        }
+        Some((number, at))
+    }
+
+    /// The site for a place in the grid.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, and few cells")]
+    fn site(&self, place: &V3) -> Option<usize> {
+        let (number, at) = self.cell(place)?;
+        let cell = self.cells[number];
+        if cell & CUT == 0 {
+            return Some(cell as usize);
+        }
+        let [x, y, z] = at.map(|x| (x * FINE as f64) as usize & (FINE - 1));
+        Some(self.fine[(cell & !CUT) as usize][(z * FINE + y) * FINE + x] as usize)
+    }
+
+    fn memory(&self) -> usize {
+        self.cells.capacity() * size_of::<u32>() + self.fine.capacity() * size_of::<[u32; FINE * FINE * FINE]>()
+    }
+}
+
+impl Hints {
+    /// For sites in a box, with queries in another one.
+    pub(super) fn new(fans: &Fans, isa: Isa, own: [V3; 2], domain: [V3; 2], first: usize) -> Self {
+        let count = fans.sites.len() as f64;
+        let mut near = Grid::new(own[0], own[1], CELLS * count);
+        let mut far = Grid::new(domain[0], domain[1], SIDE.powi(3).min(CELLS * count));
+        for site in &fans.sites[first..] {
+            if let Some((number, _)) = near.cell(&site.place) {
+                near.cells[number] += 1;
+            }
+        }
+        for grid in [&mut near, &mut far] {
+            isa.run(Fill { grid, fans, first });
+        }
+        Self { near, far }
+    }
+
+    /// Some site, mostly near a place.
+    #[inline(always)]
+    pub(super) fn start(&self, place: &V3) -> Option<usize> {
+        self.near.site(place).or_else(|| self.far.site(place))
+    }
+
+    /// Heap memory, in bytes.
+    pub(super) fn memory(&self) -> usize {
+        self.near.memory() + self.far.memory()
+    }
+}
+
+/// Fills a grid, whose cells hold how many sites are in them, there and back along each axis, so that every walk is
+/// short.
+struct Fill<'a> {
+    grid: &'a mut Grid,
+    fans: &'a Fans,
+    first: usize,
+}
+
+impl Operation for Fill<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        let Self { grid, fans, first } = self;
+        let [nx, ny, nz] = grid.counts;
+        let number = |n: usize| u32::try_from(n).expect("numbers of 32 bits");
+        let mut site = first;
+        for z in 0..nz {
+            for j in 0..ny {
+                let y = if z % 2 == 1 { ny - 1 - j } else { j };
+                for i in 0..nx {
+                    let x = if (z * ny + j) % 2 == 1 { nx - 1 - i } else { i };
+                    let at = [x as f64, y as f64, z as f64];
+                    let cell = (z * ny + y) * nx + x;
+                    let nearest = |from: usize, off: V3| {
+                        let place = std::array::from_fn(|k| grid.low[k] + (at[k] + off[k]) / grid.per_length);
+                        fans.walk::<I>(from, &place, |_| ()).site
+                    };
+                    let several = grid.cells[cell] > 1;
+                    site = nearest(site, [0.5; 3]);
+                    grid.cells[cell] = number(site);
+                    if several {
+                        let mut fine = [0; FINE * FINE * FINE];
+                        let mut own = site;
+                        for (n, to) in fine.iter_mut().enumerate() {
+                            let off = [n % FINE, n / FINE % FINE, n / FINE / FINE];
+                            own = nearest(own, off.map(|x| (x as f64 + 0.5) / FINE as f64));
+                            *to = number(own);
+                        }
+                        grid.cells[cell] = number(grid.fine.len()) | CUT;
+                        grid.fine.push(fine);
+                    }
+                }
+            }
+        }
+        grid.fine.shrink_to_fit();
+    }
+}

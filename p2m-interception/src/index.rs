@@ -1,0 +1,103 @@
+use nalgebra::Point3;
+use p2m_core::interception::{Octree, Partition, Voronoi};
+use p2m_core::{Best, BuildError, BuildIndex, ClosestPoint, Collector, Isa, PrimitiveSet, Real, check_set};
+use std::marker::PhantomData;
+
+/// An interception index with cubes as cells.
+///
+/// Queries outside of the refined box ([`OctreeOptions::domain`](p2m_core::interception::OctreeOptions::domain)) and
+/// collectors of more than the nearest primitive are answered by the AABB tree over the same packets.
+///
+/// # Complexity
+/// A query takes O(log n) steps to its cell, and then what the list has: a few packets, however many primitives there
+/// are, where the cell could be made small enough.
+pub type OctreeIndex<T, S> = InterceptionIndex<T, S, Octree>;
+
+/// An interception index with the Voronoi cells of the scene's vertices as cells.
+///
+/// Queries farther from the scene than five of its sizes and collectors of more than the nearest primitive are answered
+/// by the AABB tree over the same packets.
+///
+/// # Complexity
+/// A query takes a few steps to its cell, from a hint by a grid, and then what the list has.
+///
+/// # References
+/// \[Zong2023\]
+pub type P2mIndex<T, S> = InterceptionIndex<T, S, Voronoi>;
+
+/// An interception index over a set of primitives, which it keeps.
+#[derive(Clone, Debug)]
+pub struct InterceptionIndex<T: Real, S, P> {
+    set: S,
+    scalar: PhantomData<T>,
+    partition: P,
+}
+
+impl<T: Real, S: PrimitiveSet<T>, P: Partition> InterceptionIndex<T, S, P> {
+    /// Builds the index as [`BuildIndex::build`], and tells `progress` what part is done: each percent once, from any
+    /// thread.
+    ///
+    /// # Errors
+    /// For a coordinate that is not finite and for more primitives than ids.
+    pub fn build_with_progress(
+        set: S,
+        options: &P::Options,
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Result<Self, BuildError>
+    where
+        S: Sync,
+    {
+        check_set(&set)?;
+        let partition = P::build(&set, options, progress);
+        Ok(Self { set, scalar: PhantomData, partition })
+    }
+
+    /// The set it was built over.
+    pub fn set(&self) -> &S {
+        &self.set
+    }
+
+    /// The cells, without the set.
+    pub fn partition(&self) -> &P {
+        &self.partition
+    }
+
+    /// What it is made of.
+    pub fn report(&self) -> P::Report {
+        self.partition.report()
+    }
+
+    /// Heap memory that the index owns besides its set, in bytes.
+    pub fn memory(&self) -> usize {
+        self.partition.memory()
+    }
+
+    /// The same index, searched with another instruction set. Answers do not depend on it.
+    #[must_use]
+    pub fn with_isa(self, isa: Isa) -> Self {
+        Self { partition: self.partition.with_isa(isa), ..self }
+    }
+
+    /// Offers to any collector every primitive that it could want; [`ClosestPoint::search`] with [`Best`].
+    /// `query` is finite.
+    #[inline]
+    pub fn visit<C: Collector>(&self, query: &Point3<T>, collector: &mut C) {
+        self.partition.search(&self.set, query, collector);
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>, P: Partition> ClosestPoint<T> for InterceptionIndex<T, S, P> {
+    fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
+        best.offer_hint(&self.set, query);
+        self.partition.search_nearest(&self.set, query, best);
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T> + Sync, P: Partition> BuildIndex<T, S> for InterceptionIndex<T, S, P> {
+    type Options = P::Options;
+    type Error = BuildError;
+
+    fn build(set: S, options: &P::Options) -> Result<Self, BuildError> {
+        Self::build_with_progress(set, options, &|_| ())
+    }
+}

@@ -1,0 +1,244 @@
+//! The P2M index: ties in lattices, symmetric shapes, slivers, instruction sets, progress, other collectors, and how much
+//! work is done. That its answers are those of brute force on random scenes is tested in `agreement`.
+#![cfg(feature = "interception")]
+#![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
+
+use nalgebra::{Point3, Vector3};
+use p2m::{
+    BruteForce, BuildIndex, ClosestPoint, Counting, Isa, P2mIndex, P2mOptions, Point, PrimitiveSet, Segment, Shape,
+    Soup, Triangle,
+};
+use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};
+use p2m_testkit::{rng, vector};
+use rand::{Rng, RngExt};
+use std::sync::Mutex;
+
+fn built<S: PrimitiveSet<f64> + Sync>(set: S) -> P2mIndex<f64, S> {
+    P2mIndex::build(set, &Default::default()).expect("valid")
+}
+
+/// Holds an index against brute force, bit for bit; how many queries there were.
+fn agrees<S: PrimitiveSet<f64> + Sync + Copy>(name: &str, set: S, queries: &[Point3<f64>]) {
+    let brute = BruteForce::new(set).expect("valid");
+    for isa in Isa::available() {
+        let index = built(set).with_isa(isa);
+        for q in queries {
+            let key = |c: p2m::Closest<f64>| (c.distance.to_bits(), c.primitive);
+            let (found, expected) = (index.closest_point(q).map(key), brute.closest_point(q).map(key));
+            assert_eq!(found, expected, "{name} {isa} {q:?}");
+        }
+    }
+}
+
+/// Near and on vertices, between them, around, far from and beyond the domain of a scene of about the size 1.
+fn queries(rng: &mut impl Rng, shapes: &[Shape<f64>], count: usize) -> Vec<Point3<f64>> {
+    let vertex = |rng: &mut dyn FnMut(usize) -> usize| {
+        let vertices = p2m::Primitive::vertices(&shapes[rng(shapes.len())]).to_vec();
+        vertices[rng(vertices.len())]
+    };
+    (0..count)
+        .map(|_| {
+            let mut index = |n: usize| rng.random_range(0..n);
+            let (a, b) = (vertex(&mut index), vertex(&mut index));
+            match rng.random_range(0..7) {
+                0 => a,
+                1 => nalgebra::center(&a, &b),
+                2 => a + vector(rng) * 2f64.powi(-rng.random_range(1..40)),
+                3 => a + (a - b) * rng.random_range(0.0..4.0),
+                4 => Point3::from(vector(rng) * 0.6),
+                5 => Point3::from(vector(rng) * 5.0),
+                _ => Point3::from(vector(rng) * 2f64.powi(rng.random_range(0..50))),
+            }
+        })
+        .collect()
+}
+
+/// The surface of a cube of n x n squares a side, whose places are whole numbers times a step: everything ties.
+fn lattice(n: i32, step: f64) -> Vec<Shape<f64>> {
+    let mut shapes = Vec::new();
+    let at = |axis: usize, side: i32, i: i32, j: i32| {
+        let mut p = [0.0; 3];
+        (p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]) = (f64::from(side * n), f64::from(i), f64::from(j));
+        Point3::from(p.map(|x| x * step - 0.5))
+    };
+    for axis in 0..3 {
+        for side in 0..2 {
+            for i in 0..n {
+                for j in 0..n {
+                    let corner = |x: i32, y: i32| at(axis, side, i + x, j + y);
+                    shapes.push(Triangle::new(corner(0, 0), corner(1, 0), corner(1, 1)).into());
+                    shapes.push(Triangle::new(corner(0, 0), corner(1, 1), corner(0, 1)).into());
+                }
+            }
+        }
+    }
+    shapes
+}
+
+#[test]
+fn ties_of_lattices_go_to_the_lowest_id() {
+    for (n, step) in [(1, 1.0), (4, 0.25), (5, 0.2), (16, 0.0625)] {
+        let shapes = lattice(n, step);
+        let mut rng = rng("p2m lattice", n as u64);
+        let mut all = queries(&mut rng, &shapes, 800);
+        // On the planes between vertices.
+        all.extend((0..800).map(|_| {
+            let cells = [(); 3].map(|()| f64::from(rng.random_range(-4 * n..6 * n)) * 0.5);
+            Point3::from(cells.map(|x| x * step - 0.5))
+        }));
+        agrees(&format!("cube of {n}"), &shapes[..], &all);
+    }
+}
+
+#[test]
+fn symmetric_shapes_and_fans_of_slivers_agree() {
+    let turn = |i: u32, n: u32| (f64::from(i) * std::f64::consts::TAU / f64::from(n)).sin_cos();
+    // A sphere by rings, whose circumcentres are one; a fan; a cylinder of slivers.
+    let (rings, around) = (16, 24);
+    let on_sphere = |i: u32, j: u32| {
+        let (z, r) = turn(i, 2 * rings);
+        let (s, c) = turn(j, around);
+        Point3::new(0.5 * z * c, 0.5 * z * s, 0.5 * r)
+    };
+    let mut sphere: Vec<Shape<f64>> = Vec::new();
+    for i in 0..rings {
+        for j in 0..around {
+            let [a, b, c, d] = [on_sphere(i, j), on_sphere(i, j + 1), on_sphere(i + 1, j + 1), on_sphere(i + 1, j)];
+            sphere.extend([Triangle::new(a, b, c), Triangle::new(a, c, d)].map(Shape::from));
+        }
+    }
+    let rim = |j: u32, z: f64| {
+        let (s, c) = turn(j, 200);
+        Point3::new(0.5 * c, 0.5 * s, z)
+    };
+    let fan: Vec<Shape<f64>> =
+        (0..200).map(|j| Triangle::new(Point3::new(0.0, 0.0, 0.3), rim(j, 0.0), rim(j + 1, 0.0)).into()).collect();
+    let cylinder: Vec<Shape<f64>> = (0..200)
+        .flat_map(|j| {
+            let [a, b, c, d] = [rim(j, -0.5), rim(j + 1, -0.5), rim(j + 1, 0.5), rim(j, 0.5)];
+            [Triangle::new(a, b, c), Triangle::new(a, c, d)].map(Shape::from)
+        })
+        .collect();
+    for (name, shapes) in [("sphere", sphere), ("fan", fan), ("cylinder", cylinder)] {
+        let mut rng = rng(name, 0);
+        let mut all = queries(&mut rng, &shapes, 600);
+        all.push(Point3::origin());
+        all.extend((0..100).map(|_| Point3::from(vector(&mut rng) * 1e-9)));
+        agrees(name, &shapes[..], &all);
+    }
+}
+
+#[test]
+fn scenes_on_a_line_or_in_a_plane_and_small_ones_agree() {
+    let mut rng = rng("p2m flat", 0);
+    for case in 0..60 {
+        let count = rng.random_range(1..40);
+        let dimensions = case % 3 + 1;
+        let place = vector(&mut rng) * [0.0, 1.0, 1e6][case % 3];
+        let grid = rng.random::<bool>();
+        let mut point = || {
+            let mut p = vector(&mut rng) * 0.5;
+            p.iter_mut().skip(dimensions).for_each(|x| *x = 0.0);
+            Point3::from(place + if grid { p.map(|x| (x * 8.0).round() / 8.0) } else { p })
+        };
+        let shapes: Vec<Shape<f64>> = (0..count)
+            .map(|i| match (i + case) % 3 {
+                0 => Triangle::new(point(), point(), point()).into(),
+                1 => Segment::new(point(), point()).into(),
+                _ => Point::new(point()).into(),
+            })
+            .collect();
+        let all: Vec<_> = queries(&mut rng, &shapes, 60).into_iter().flat_map(|q| [q, q + place]).collect();
+        agrees(&format!("case {case}"), &shapes[..], &all);
+    }
+}
+
+/// Vertices that differ by less than sites can tell apart.
+#[test]
+fn vertices_that_become_one_site_agree() {
+    let tiny = 2f64.powi(-170);
+    let shapes: Vec<Shape<f64>> = (0..64)
+        .map(|i| {
+            let at = |bit: u32| if i >> bit & 1 == 1 { tiny * f64::from(bit + 1) } else { 0.0 };
+            let a = Point3::new(at(0), at(1), at(2));
+            Segment::new(a, Point3::new(0.5, at(3) + 0.5, at(4) - 0.5)).into()
+        })
+        .chain([Point::new(Point3::new(-1.0, 0.0, 0.0)).into()])
+        .collect();
+    let mut rng = rng("p2m snapped", 0);
+    let mut all = queries(&mut rng, &shapes, 400);
+    all.extend((0..200).map(|_| Point3::from(vector(&mut rng) * tiny * 8.0)));
+    agrees("snapped", &shapes[..], &all);
+}
+
+fn sheet(len: usize) -> Soup<f64> {
+    scenes::soup(&mut rng("p2m sheet", 0), Kinds::Triangles, Layout::Sheet, len)
+}
+
+#[test]
+fn soups_agree_beyond_the_domain_and_on_its_border() {
+    let mut rng = rng("p2m soups", 0);
+    for kinds in KINDS {
+        for layout in LAYOUTS {
+            let soup = scenes::soup(&mut rng, kinds, layout, 400);
+            let bounds = soup.aabb();
+            let (centre, size) = (nalgebra::center(&bounds.min, &bounds.max), (bounds.max - bounds.min).max());
+            let mut all: Vec<_> = (0..100)
+                .map(|_| centre + vector(&mut rng) * (size * [0.6, 2.0, 5.1, 1e4][rng.random_range(0..4)]))
+                .collect();
+            // Where cells meet those of the bounding sites, if anywhere.
+            all.extend((0..20).map(|_| centre + vector(&mut rng).map(f64::signum) * (size * 5.0)));
+            all.extend((0..40).map(|_| {
+                let positions = soup.positions();
+                positions[rng.random_range(0..positions.len())] + vector(&mut rng) * (size * 1e-3)
+            }));
+            agrees(&format!("{kinds:?} {layout:?}"), &soup, &all);
+        }
+    }
+}
+
+#[test]
+fn progress_goes_from_nothing_to_all() {
+    let soup = sheet(5_000);
+    let parts = Mutex::new(Vec::new());
+    let index = P2mIndex::build_with_progress(&soup, &P2mOptions::default(), &|part| {
+        parts.lock().expect("whole").push(part);
+    });
+    assert_eq!(index.expect("valid").set().len(), 5_000);
+    let parts = parts.into_inner().expect("whole");
+    assert!(parts.len() > 20 && parts.windows(2).all(|w| w[0] < w[1]), "{parts:?}");
+    assert!(parts[0] >= 0.0 && parts.last() == Some(&1.0), "{parts:?}");
+}
+
+#[test]
+fn lists_that_are_too_long_are_left_to_the_tree() {
+    let soup = sheet(3_000);
+    let report = |longest| {
+        P2mIndex::<f64, _>::build(&soup, &P2mOptions::default().with_longest(longest)).expect("valid").report()
+    };
+    let usual = report(128);
+    assert!(usual.lists > 1_000 && usual.trees == 0 && usual.entries > 2 * usual.lists, "{usual}");
+    let short = report(3);
+    assert!(short.trees > 100 && short.bytes < usual.bytes && short.entries <= 3 * short.lists, "{short}");
+    let none = report(0);
+    assert!(none.lists == 0 && none.trees == usual.lists, "{none}");
+}
+
+/// Lost lists, lost bounds or a lost way to the answer far away would show here first.
+#[test]
+fn lookups_do_little() {
+    let soup = sheet(20_000);
+    let index = built(&soup);
+    let mut rng = rng("p2m counters", 0);
+    let bounds = soup.aabb();
+    let size = bounds.max - bounds.min;
+    println!("{}", index.report());
+    for (name, reach, most) in [("around", 0.52, [0, 4_000, 1_350]), ("far", 4.9, [0, 1_500, 1_100])] {
+        let centre = nalgebra::center(&bounds.min, &bounds.max);
+        let mut place = || centre + Vector3::from_fn(|k, _| rng.random_range(-reach..reach) * size[k]);
+        let queries: Vec<_> = (0..1000).map(|_| place()).collect();
+        let sums = Counting::of_queries(&queries, |query, counting| index.visit(query, counting));
+        println!("{name}: per 1000 queries {sums:?} nodes, packets, primitives");
+        assert!((0..3).all(|i| sums[i] <= most[i]), "{name}: {sums:?}");
+    }
+}
