@@ -268,9 +268,9 @@ impl Cell {
         let (y, slack) = (self.y, cells.slack);
         let [part, next] = &mut self.part;
         part.clip(&self.whole, height, u32::MAX, &y, slack);
+        // Planes are moved outwards by more than corners may be off, so that what is left has corners where it is not.
+        let margin = 4.0 * self.whole.error + 1e-12 * self.whole.reach;
         for (way, face) in ways.iter().zip((0..u32::MAX).rev()) {
-            // With room for rounding.
-            let margin = part.reach * 1e-12;
             next.clip(part, |x| margin - dot(sub(*x, y), *way), face, &y, slack);
             std::mem::swap(part, next);
         }
@@ -294,7 +294,7 @@ impl Cell {
                 most = most.max(part);
             }
         }
-        let scaled = from / unit * (1.0 + 1e-6);
+        let scaled = (from + margin) / unit * (1.0 + 1e-6);
         Some(Outside { normal, from: scaled as f32, part: (most * (1.0 + 1e-6)) as f32 })
     }
 }
@@ -458,7 +458,8 @@ impl Operation for Values<'_> {
         let mut near = 0;
         let per_unit = packet.per_unit();
         for (i, corner) in hull.corners.iter().enumerate() {
-            let mut own = [-1.0; LANES];
+            // Nothing is known where f32 cannot place the corner.
+            let mut own = [f32::NEG_INFINITY; LANES];
             if let Some(local) = packet.local(corner) {
                 let mut squares = [0.0; LANES];
                 packet.squares::<I>(&local, f32::INFINITY, &mut squares);

@@ -218,6 +218,8 @@ impl<C: Collector> Operation for Lookup<'_, C> {
         if site.list == TREE {
             return Search { tree, query, reach, collector, evaluate, finish }.run::<I>();
         }
+        // What comes next, if the list has more than a block.
+        prefetch_lines(blocks.as_ptr().wrapping_add(site.list as usize), size_of::<Block>());
         let mut filter = Filter::new(tree, query, reach, collector, evaluate, finish);
         if found.is_nearest && site.outside.contains(&way) {
             filter.add(site.owner as usize / LANES, site.owner as usize % LANES);
