@@ -332,3 +332,81 @@ impl Next {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delaunay::{BOUNDING, Delaunay};
+    use crate::simd::{Isa, Operation};
+    use rand::RngExt;
+    use std::collections::BTreeSet;
+
+    struct Walk<'a>(&'a Fans, usize, &'a V3);
+
+    impl Operation for Walk<'_> {
+        type Output = Found;
+        #[inline(always)]
+        fn run<I: InstructionSet>(self) -> Found {
+            self.0.walk::<I>(self.1, self.2, |_| ())
+        }
+    }
+
+    fn fans(points: &[V3]) -> Fans {
+        let delaunay = Delaunay::new(points, 250.0).expect("finite");
+        let mut neighbours = vec![BTreeSet::new(); delaunay.sites().len()];
+        for tetrahedron in delaunay.tetrahedra() {
+            for v in tetrahedron {
+                neighbours[*v as usize].extend(tetrahedron.iter().filter(|w| *w != v && **w as usize >= BOUNDING));
+            }
+        }
+        Fans::new(delaunay.sites(), BOUNDING, 1e-12, |site, all, _| all.extend(&neighbours[site]))
+    }
+
+    /// Random places, clusters of all sizes and lattices; queries anywhere, on sites and in the middle of two.
+    #[test]
+    fn walks_end_at_the_nearest_site_wherever_they_begin() {
+        let mut rng = p2m_testkit::rng("walks", 0);
+        let (mut ties, mut close) = (0, 0);
+        for round in 0..60 {
+            let count = [1, 2, 5, 30, 200][round % 5];
+            let spread = rng.random_range(0..30);
+            let points: Vec<V3> = (0..count)
+                .map(|_| match round % 3 {
+                    0 => std::array::from_fn(|_| rng.random_range(-1.0..1.0)),
+                    1 => std::array::from_fn(|_| f64::from(rng.random_range(-3..=3)) / 4.0),
+                    _ => {
+                        let size = 2f64.powi(-rng.random_range(0..=spread));
+                        std::array::from_fn(|k| 0.3 * k as f64 + rng.random_range(-1.0..1.0) * size)
+                    }
+                })
+                .collect();
+            let fans = fans(&points);
+            let sites = &fans.sites;
+            for _ in 0..200 {
+                let mut some = || rng.random_range(BOUNDING..sites.len());
+                let (a, b, from) = (some(), some(), some());
+                let (p, q) = (sites[a].place, sites[b].place);
+                let query: V3 = match rng.random_range(0..4) {
+                    0 => p,
+                    1 => std::array::from_fn(|k| (p[k] + q[k]) * 0.5),
+                    2 => std::array::from_fn(|k| p[k] + rng.random_range(-1.0..1.0) * 2f64.powi(-(k as i32) * 9)),
+                    _ => std::array::from_fn(|_| rng.random_range(-5.0..5.0)),
+                };
+                for isa in Isa::available() {
+                    let found = isa.run(Walk(&fans, from, &query));
+                    for (other, site) in sites.iter().enumerate().skip(BOUNDING) {
+                        let compared = nearer::compare(&query, &sites[found.site].place, &site.place);
+                        assert_ne!(compared, Ordering::Greater, "{isa}, round {round}: {query:?} {other}");
+                        ties += usize::from(other != found.site && compared == Ordering::Equal);
+                        // No other site is nearly as near, then.
+                        let gap =
+                            norm_squared(sub(query, site.place)) - norm_squared(sub(query, sites[found.site].place));
+                        assert!(other == found.site || !found.is_nearest || gap > 0.0);
+                    }
+                    close += usize::from(found.is_nearest);
+                }
+            }
+        }
+        assert!(ties > 2_000 && close > 20_000, "{ties} {close}");
+    }
+}

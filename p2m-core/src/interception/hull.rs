@@ -83,3 +83,65 @@ impl Hull {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::vector::dot;
+    use rand::RngExt;
+    use std::collections::BTreeSet;
+
+    fn cube() -> Hull {
+        let mut hull = Hull::default();
+        for i in 0..8u32 {
+            let bits = [0, 1, 2].map(|k| i >> k & 1);
+            // Two faces to an axis.
+            let faces = std::array::from_fn(|k| 2 * k as u32 + bits[k]);
+            hull.push(bits.map(f64::from), 0.0, faces, &[0.5; 3], 0.0);
+            hull.edges.extend((0..3).filter(|k| i >> k & 1 == 0).map(|k| [i, i | 1 << k]));
+        }
+        hull
+    }
+
+    /// A cube that is cut again and again: each time what is left is a polytope by Euler's formula, whose corners are above all
+    /// planes and on the faces that they say, and of which no point is lost.
+    #[test]
+    fn what_is_cut_off_is_what_lies_below() {
+        let mut cuts = 0;
+        for case in 0..300 {
+            let mut rng = p2m_testkit::rng("hulls", case);
+            let (mut hull, mut planes) = (cube(), Vec::<(V3, f64)>::new());
+            for face in 6..14 {
+                let normal: V3 = p2m_testkit::vector(&mut rng).into();
+                let inside: V3 = std::array::from_fn(|_| rng.random_range(0.2..0.8));
+                let offset = dot(inside, normal);
+                planes.push((normal, offset));
+                let mut next = Hull::default();
+                next.clip(&hull, |x| dot(*x, normal) - offset, face, &[0.5; 3], 0.0);
+                hull = next;
+                let faces: BTreeSet<u32> = hull.faces.iter().flatten().copied().collect();
+                if hull.corners.is_empty() {
+                    break;
+                }
+                assert_eq!(hull.corners.len() + faces.len(), hull.edges.len() + 2, "case {case}, face {face}");
+                cuts += 1;
+                for (corner, faces) in hull.corners.iter().zip(&hull.faces) {
+                    for (number, (normal, offset)) in (6..).zip(&planes) {
+                        let height = dot(*corner, *normal) - offset;
+                        assert!(height > -1e-12 && (!faces.contains(&number) || height < 1e-12), "{height}");
+                    }
+                }
+            }
+            // In a direction the farthest of random points that are above all planes is not beyond all corners.
+            for _ in 0..200 {
+                let point: V3 = std::array::from_fn(|_| rng.random());
+                if planes.iter().all(|(normal, offset)| dot(point, *normal) > *offset) {
+                    let way: V3 = p2m_testkit::vector(&mut rng).into();
+                    let most = hull.corners.iter().map(|c| dot(*c, way)).fold(f64::NEG_INFINITY, f64::max);
+                    assert!(dot(point, way) <= most + 1e-12, "case {case}");
+                }
+            }
+        }
+        assert!(cuts > 1000, "{cuts}");
+    }
+}

@@ -82,3 +82,60 @@ impl<V: Volume> Walk<V> for Ball<'_, V> {
         ControlFlow::Continue(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hierarchy::SplitOptions;
+    use crate::{Aabb, Isa, Primitive, Segment, Triangle};
+    use nalgebra::{Point3, Vector3};
+    use p2m_testkit::vector;
+    use rand::RngExt;
+
+    /// All that is within the radius is found, and little else; where there is more than asked for, that is said.
+    #[test]
+    fn balls_find_what_they_meet() {
+        let mut rng = p2m_testkit::rng("balls", 0);
+        let (mut met, mut others) = (0, 0);
+        for round in 0..60 {
+            let scale = 2f64.powi([0, 40, -200][round % 3]);
+            let mut point = |around: &Vector3<f64>, size: f64| Point3::from((around + vector(&mut rng) * size) * scale);
+            let set: Vec<crate::Shape<f64>> = (0..400)
+                .map(|i| {
+                    let around = Vector3::from_fn(|k, _| (f64::from(i) * (1.0 + k as f64)).sin());
+                    let [a, b, c] = [(); 3].map(|()| point(&around, 0.1));
+                    if i % 3 == 0 { Segment::new(a, b).into() } else { Triangle::new(a, b, c).into() }
+                })
+                .collect();
+            let tree = PacketTree::<Aabb<f64>>::build(&set[..], &SplitOptions::default());
+            for _ in 0..20 {
+                let centre = Point3::from(vector(&mut rng) * scale * 2f64.powi(rng.random_range(-2..6)));
+                let distances: Vec<f64> = set.iter().map(|s| s.project(&centre).key.distance()).collect();
+                let radius = distances[rng.random_range(0..distances.len())];
+                let expected = distances.iter().filter(|d| **d <= radius).count();
+                for isa in Isa::available() {
+                    let tree = tree.clone().with_isa(isa);
+                    let mut found = Vec::new();
+                    assert!(tree.ball(centre.coords.into(), radius, usize::MAX, &mut found));
+                    let mut ids = vec![false; set.len()];
+                    for Selection { packet, lanes } in &found {
+                        let own = tree.leaves.packets[*packet as usize].ids();
+                        own.iter()
+                            .enumerate()
+                            .filter(|(l, _)| lanes >> l & 1 == 1)
+                            .for_each(|(_, id)| ids[id.index()] = true);
+                    }
+                    assert!(distances.iter().zip(&ids).all(|(d, found)| *found || *d > radius), "{isa} {round}");
+                    met += expected;
+                    others += ids.iter().filter(|found| **found).count() - expected;
+                    let packets = found.len();
+                    found.clear();
+                    assert!(!tree.ball(centre.coords.into(), radius, packets - 1, &mut found), "{packets}");
+                    found.clear();
+                    assert!(tree.ball(centre.coords.into(), radius, packets, &mut found));
+                }
+            }
+        }
+        assert!(met > 100_000 && others * 50 < met, "{met} {others}");
+    }
+}
