@@ -254,7 +254,7 @@ impl Cell {
             .collect();
         let sum = ways.iter().fold([0.0; 3], |sum, way| sub(sum, *way));
         let length = norm_squared(sum).sqrt();
-        if features.owners[self.site] == NONE || length < 1e-3 {
+        if features.owners[self.site] == NONE || ways.len() > MOST_WAYS || length < 1e-3 {
             return None;
         }
         let normal = sum.map(|x| (x / length) as f32);
@@ -373,6 +373,8 @@ impl Found {
     }
 }
 
+/// A vertex of more edges, like the tip of a cone, is not worth it.
+const MOST_WAYS: usize = 64;
 /// The largest part that is worth a look.
 pub(super) const PART: f64 = 0.85;
 /// A half-space begins so many sizes of the scene from the site.

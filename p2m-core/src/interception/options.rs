@@ -147,7 +147,7 @@ impl P2mOptions {
 pub struct P2mReport {
     /// Cells with a list.
     pub lists: usize,
-    /// Cells that the tree answers.
+    /// Cells that the tree answers: where these are the majority, it answers everything, and nothing is kept.
     pub trees: usize,
     /// Packets in all lists.
     pub entries: usize,

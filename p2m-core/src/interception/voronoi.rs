@@ -78,6 +78,10 @@ impl Voronoi {
         let corners = cells.corners();
         let (fans, blocks) = cells.lists(&corners, &mut self.report);
         drop(corners);
+        // To find one's cell in vain costs more than the few lists save.
+        if self.report.lists < self.report.trees {
+            return;
+        }
         self.slack = cells.slack;
         (self.unit, self.per_unit) = (delaunay.unit(), delaunay.unit().recip());
         drop(delaunay);
