@@ -10,6 +10,7 @@ use p2m::{
     KdopTree, Key, OctreeIndex, P2mIndex, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment,
     Shape, Soup, Triangle,
 };
+use p2m_testkit::ball::Ball;
 use p2m_testkit::families::shape;
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
 use p2m_testkit::{oracle::Distance, rng};
@@ -201,26 +202,6 @@ impl<T: Real, S: PrimitiveSet<T>> BuildIndex<T, S> for BruteForceOf<T, S> {
     type Error = BuildError;
     fn build(set: S, _: &()) -> Result<Self, BuildError> {
         Ok(Self(BruteForce::new(set)?, std::marker::PhantomData))
-    }
-}
-
-/// A user's primitive.
-struct Ball {
-    centre: Point3<f64>,
-    radius: f64,
-}
-
-impl Primitive<f64> for Ball {
-    fn aabb(&self) -> p2m::Aabb<f64> {
-        let r = nalgebra::Vector3::repeat(self.radius);
-        p2m::Aabb::of_points(&[self.centre - r, self.centre + r])
-    }
-    fn project(&self, query: &Point3<f64>) -> p2m::Projection {
-        let v = query - self.centre;
-        let outside = v.norm() > self.radius;
-        let point = if outside { self.centre + v * (self.radius / v.norm()) } else { *query };
-        let error = 1e-14 * (v.norm() + self.radius);
-        p2m::Projection::new(query, self.aabb().clamp(point), Feature::Face, [1.0, 0.0, 0.0], error)
     }
 }
 

@@ -5,9 +5,10 @@
 
 use nalgebra::{Point3, Vector3};
 use p2m::{
-    BruteForce, BuildIndex, ClosestPoint, Counting, Isa, P2mIndex, P2mOptions, Point, PrimitiveSet, Segment, Shape,
-    Soup, Triangle,
+    Aabb, BruteForce, BuildIndex, ClosestPoint, Counting, Isa, P2mIndex, P2mOptions, Point, Primitive, PrimitiveSet,
+    Projection, Segment, Shape, Soup, Triangle,
 };
+use p2m_testkit::ball::Ball;
 use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};
 use p2m_testkit::{rng, vector};
 use rand::{Rng, RngExt};
@@ -17,7 +18,7 @@ fn built<S: PrimitiveSet<f64> + Sync>(set: S) -> P2mIndex<f64, S> {
     P2mIndex::build(set, &Default::default()).expect("valid")
 }
 
-/// Holds an index against brute force, bit for bit; how many queries there were.
+/// Holds an index with every instruction set against brute force, bit for bit.
 fn agrees<S: PrimitiveSet<f64> + Sync + Copy>(name: &str, set: S, queries: &[Point3<f64>]) {
     let brute = BruteForce::new(set).expect("valid");
     for isa in Isa::available() {
@@ -33,7 +34,7 @@ fn agrees<S: PrimitiveSet<f64> + Sync + Copy>(name: &str, set: S, queries: &[Poi
 /// Near and on vertices, between them, around, far from and beyond the domain of a scene of about the size 1.
 fn queries(rng: &mut impl Rng, shapes: &[Shape<f64>], count: usize) -> Vec<Point3<f64>> {
     let vertex = |rng: &mut dyn FnMut(usize) -> usize| {
-        let vertices = p2m::Primitive::vertices(&shapes[rng(shapes.len())]).to_vec();
+        let vertices = shapes[rng(shapes.len())].vertices().to_vec();
         vertices[rng(vertices.len())]
     };
     (0..count)
@@ -169,6 +170,122 @@ fn vertices_that_become_one_site_agree() {
     let mut all = queries(&mut rng, &shapes, 400);
     all.extend((0..200).map(|_| Point3::from(vector(&mut rng) * tiny * 8.0)));
     agrees("snapped", &shapes[..], &all);
+}
+
+/// A triangle or a primitive that shows no vertices.
+#[derive(Clone, Copy, Debug)]
+enum Mixed {
+    Triangle(Triangle<f64>),
+    Ball(Ball),
+}
+
+impl Primitive<f64> for Mixed {
+    fn aabb(&self) -> Aabb<f64> {
+        match self {
+            Self::Triangle(triangle) => triangle.aabb(),
+            Self::Ball(ball) => ball.aabb(),
+        }
+    }
+    fn vertices(&self) -> &[Point3<f64>] {
+        match self {
+            Self::Triangle(triangle) => triangle.vertices(),
+            Self::Ball(_) => &[],
+        }
+    }
+    fn project(&self, query: &Point3<f64>) -> Projection {
+        match self {
+            Self::Triangle(triangle) => triangle.project(query),
+            Self::Ball(ball) => ball.project(query),
+        }
+    }
+}
+
+/// What shows no vertices may be large, far from all vertices, and the last of all.
+#[test]
+fn primitives_of_ones_own_agree_wherever_they_are() {
+    for case in 0..80 {
+        let mut rng = rng("p2m balls", case);
+        let away = 10f64.powi(rng.random_range(0..6));
+        let mut all: Vec<Mixed> = (0..rng.random_range(1..20))
+            .map(|_| {
+                let centre = Point3::from(vector(&mut rng));
+                let [a, b, c] = [(); 3].map(|()| centre + vector(&mut rng) * 0.2);
+                Mixed::Triangle(if case % 7 == 0 { Triangle::new(a, a, a) } else { Triangle::new(a, b, c) })
+            })
+            .collect();
+        for _ in 0..rng.random_range(1..4) {
+            let ball =
+                Ball { centre: Point3::from(vector(&mut rng) * away), radius: away * rng.random_range(0.0..0.5) };
+            all.insert(rng.random_range(0..=all.len()), Mixed::Ball(ball));
+        }
+        let queries: Vec<_> =
+            (0..80).map(|i| Point3::from(vector(&mut rng) * [1.0, 5.0, away, away * 5.0][i % 4])).collect();
+        agrees(&format!("case {case}"), &all[..], &queries);
+    }
+}
+
+/// The kernel's rounding decides between features that are missed by less than it can tell: pruning has to leave room for
+/// slivers, and for vertices that are nearly one.
+#[test]
+fn slivers_and_vertices_that_are_nearly_one_agree() {
+    let [a, b, c, d] = [
+        [-0.09385277385180002, -0.2820102176108825, -0.86333400843566],
+        [0.22181407804052888, 0.5194096455550592, 0.7640106774258804],
+        [0.20451761976982324, 0.4754971310244159, 0.6748429384557477],
+        [0.9019058404823306, 0.6292557174550899, -0.9853900378582874],
+    ]
+    .map(Point3::from);
+    let points = [
+        [0.2042689449616888, -0.4994953512284006, 0.35093793966232556],
+        [0.5121567505292512, 0.5070233010974172, 0.3814640306916568],
+        [0.7616984008649881, -0.5540654729917704, -0.7836039887532664],
+        [-0.18672822889704865, -0.09714400003699275, -0.500564223765682],
+    ];
+    let mut shapes: Vec<Shape<f64>> =
+        vec![Triangle::new(a, b, d).into(), Segment::new(b, c).into(), Triangle::new(b, c, a).into()];
+    shapes.extend(points.map(|p| Shape::from(Point::new(Point3::from(p)))));
+    agrees("sliver", &shapes[..], &[Point3::new(-0.5708403546368517, -0.06606097613022954, 0.47953094376149297)]);
+    let mut asked = 0;
+    for case in 0..3_000 {
+        let mut rng = rng("p2m nearly one", case);
+        let mut shapes: Vec<Shape<f64>> = (0..14).map(|_| Point::new(Point3::from(vector(&mut rng))).into()).collect();
+        let v = shapes[rng.random_range(0..14)];
+        let v = v.vertices()[0];
+        let (a, c) = (Point3::from(vector(&mut rng)), Point3::from(vector(&mut rng)));
+        // Some units in the last place away.
+        let b = a.map(|x| x + f64::EPSILON * 0.5 * f64::from(rng.random_range(-3..=3)));
+        let own: [Shape<f64>; 2] = if rng.random() {
+            [Segment::new(b, a).into(), Segment::new(a, c).into()]
+        } else {
+            [Segment::new(a, c).into(), Triangle::new(b, a, c).into()]
+        };
+        shapes.extend(own);
+        let queries: Vec<_> = (0..20)
+            .map(|_| {
+                // On the plane between both.
+                let way = a - v;
+                let aside = vector(&mut rng);
+                nalgebra::center(&a, &v) + aside - way * (aside.dot(&way) / way.norm_squared())
+            })
+            .collect();
+        asked += queries.len();
+        agrees(&format!("case {case}"), &shapes[..], &queries);
+    }
+    assert_eq!(asked, 60_000);
+}
+
+/// Beside a flat scene f64 has no room left, far enough out.
+#[test]
+fn flat_scenes_far_out_agree() {
+    for e in 10..19 {
+        let z = 10f64.powi(e);
+        let at = |x: f64, y: f64| Point3::new(x, y, z);
+        let shapes: [Shape<f64>; 2] = [
+            Triangle::new(at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)).into(),
+            Triangle::new(at(1.0, 1.0), at(1.0, 0.0), at(0.0, 1.0)).into(),
+        ];
+        agrees(&format!("{z:e}"), &shapes[..], &[at(0.2, 0.2), at(3.0, 2.0), Point3::origin(), at(0.5, 0.5) * 1.5]);
+    }
 }
 
 fn sheet(len: usize) -> Soup<f64> {

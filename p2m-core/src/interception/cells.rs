@@ -229,15 +229,24 @@ impl Cell {
     /// Whether the primitive in a lane may be the answer.
     fn keeps(&mut self, cells: &Cells<'_>, packet: &Packet, lane: usize, shared: Shared) -> bool {
         let (places, count) = packet.vertices_of(lane);
-        let vertices = &places.map(|place| cells.tree.leaves.vertices[place])[..count];
-        let own = vertices.iter().flat_map(|v| sub(*v, self.y)).fold(0.0f64, |a, x| a.max(x.abs()));
+        // One of your own.
+        if count == 0 {
+            return true;
+        }
+        let mut own = [[0.0; 3]; 3];
+        for (to, place) in own.iter_mut().zip(&places[..count]) {
+            *to = cells.tree.leaves.vertices[*place];
+        }
+        let vertices = &own[..count];
+        let size = vertices.iter().flat_map(|v| sub(*v, self.y)).fold(0.0f64, |a, x| a.max(x.abs()));
         // Rounding of the kernel near the borders of features, and of what is computed here.
-        let margin = MARGIN * (self.whole.reach + own);
-        if count == 0 || self.whole.error >= margin * 0.25 {
+        let margin = MARGIN * (self.whole.reach + size);
+        let (height, sine) = slimness(vertices);
+        if self.whole.error >= margin * 0.25 || height.is_nan() || height < margin {
             return true;
         }
         self.values.find_region(&self.whole, lane);
-        matters(vertices, &self.values.region, margin, shared)
+        matters(vertices, &self.values.region, margin, margin / sine, shared)
     }
 
     /// The half-space far from the site in which only primitives with it can be the answer, if it is the nearest point of
@@ -286,6 +295,10 @@ impl Cell {
                     continue;
                 }
                 let distance = f64::from(least(packet, &y, 1 << lane, tree));
+                // So the slack does not matter to the function at the site.
+                if distance * packet.unit() < 64.0 * slack {
+                    return None;
+                }
                 let lack = self.values.values.iter().fold(0.0f64, |a, v| a.max(-f64::from(v[lane])));
                 let part = lack * 1.001 / (distance * distance);
                 if part.is_nan() || part > PART {
@@ -383,8 +396,24 @@ const OUTSIDE: f64 = 0.15;
 /// Part of the largest length by which a feature has to be missed.
 const MARGIN: f64 = 1.0 / (1u64 << 22) as f64;
 
-/// Whether a feature matters that is not shared.
-fn matters(vertices: &[V3], region: &[V3], margin: f64, shared: Shared) -> bool {
+/// The least height of a primitive, or its length, and what part that is of the longest edge; no point is slim.
+fn slimness(vertices: &[V3]) -> (f64, f64) {
+    let length = |a: &V3, b: &V3| norm_squared(sub(*a, *b)).sqrt();
+    match vertices {
+        [a, b, c] => {
+            let longest = length(a, b).max(length(b, c)).max(length(c, a));
+            let (e, f) = (sub(*b, *a), sub(*c, *a));
+            let normal = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];
+            let height = norm_squared(normal).sqrt() / longest;
+            (height, height / longest)
+        }
+        [a, b] => (length(a, b), 1.0),
+        _ => (f64::INFINITY, 1.0),
+    }
+}
+
+/// Whether a feature matters that is not shared. It has to be missed by `margin` along an edge, by `across` across one.
+fn matters(vertices: &[V3], region: &[V3], margin: f64, across: f64, shared: Shared) -> bool {
     let n = vertices.len();
     let all = |test: &dyn Fn(&V3) -> bool| region.iter().all(test);
     // The direction of a length, zero for none; products with it are lengths.
@@ -407,7 +436,7 @@ fn matters(vertices: &[V3], region: &[V3], margin: f64, shared: Shared) -> bool 
                 normal[2] * d[0] - normal[0] * d[2],
                 normal[0] * d[1] - normal[1] * d[0],
             ];
-            outside |= all(&|h| dot(sub(*h, p), inside[i]) < -margin);
+            outside |= all(&|h| dot(sub(*h, p), inside[i]) < -across);
         }
         if !outside {
             return true;
@@ -422,7 +451,7 @@ fn matters(vertices: &[V3], region: &[V3], margin: f64, shared: Shared) -> bool 
         let d = unit(sub(q, p));
         let missed = all(&|h| dot(sub(*h, p), d) < -margin)
             || all(&|h| dot(sub(*h, q), d) > margin)
-            || (n == 3 && all(&|h| dot(sub(*h, p), inside[i]) > margin));
+            || (n == 3 && all(&|h| dot(sub(*h, p), inside[i]) > across));
         if !missed {
             return true;
         }

@@ -99,7 +99,8 @@ impl Fan {
         let sizes = px.max(zero.sub(px)).add(py.max(zero.sub(py))).add(pz.max(zero.sub(pz)));
         let product = px.add(py).add(pz);
         // Each component is off by half a unit: the product by that much of the query's size, half of the square by
-        // that much of the way's, which is at most its largest component times 3.
+        // that much of the way's. The square of an error is at most 3/8 of a squared unit; what is certainly gained is a
+        // whole one on some axis.
         let lengths = x.max(zero.sub(x)).add(y.max(zero.sub(y))).add(z.max(zero.sub(z)));
         let whole = lengths.add(L::splat(d.size)).mul(L::splat(self.unit * 0.51));
         let margins = sizes.add(half).mul_add(L::splat(ROUNDING), whole.add(L::splat(d.tie)));

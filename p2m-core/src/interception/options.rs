@@ -118,7 +118,7 @@ impl std::fmt::Display for OctreeReport {
 pub struct P2mOptions {
     /// How the packets of the tree are made, and whether all threads are used.
     pub splits: SplitOptions,
-    /// Lists of more packets are left to the tree.
+    /// Lists of more packets are left to the tree; 2048 is the most.
     pub longest: usize,
 }
 

@@ -21,16 +21,18 @@ use crate::packet::LANES;
 use crate::query::Minimum;
 use crate::real::wide;
 use crate::simd::{InstructionSet, Operation, prefetch_lines};
-use crate::{Best, Collector, Isa, PrimitiveSet, Real};
+use crate::{Aabb, Best, Collector, Isa, PrimitiveSet, Real};
 use nalgebra::Point3;
 use std::cell::Cell;
 
 /// The list of a cell that the tree answers; else the number of its first block.
 pub(super) const TREE: u32 = u32::MAX;
+/// As many packets as a list can have.
+const LONGEST: usize = 2048;
 /// The cube of the domain is so many times as wide as the scene.
 const REACH: f64 = 10.0;
-/// The distance of the bounding sites, in halves of the widest side: none of them is nearest in the domain (T6 of
-/// docs/p2m.md).
+/// The distance of the bounding sites, in halves of the widest side: none of them is nearest in the domain, nor nearly
+/// (docs/p2m.md).
 const BOUNDING_DISTANCE: f64 = 250.0;
 
 /// An interception index whose cells are those of the vertices, over a set of primitives that it does not keep.
@@ -53,16 +55,28 @@ pub struct Voronoi {
 impl Voronoi {
     fn make_cells(&mut self, options: &P2mOptions, progress: &(dyn Fn(f64) + Sync)) {
         let tree = &self.tree;
-        let bounds = tree.bounds();
+        // Around the vertices: primitives of your own may be elsewhere.
+        let vertices = tree.leaves.vertices.iter().map(|v| Point3::from(*v));
+        let bounds = vertices.fold(Aabb::empty(), |all, v| all.union(&Aabb { min: v, max: v }));
         let half = (bounds.max - bounds.min).max() * 0.5;
-        // A scene without extent, or one that f32 cannot tell apart, or without vertices.
-        if !tree.frame.is_plain() || half <= 0.0 || tree.leaves.vertices.is_empty() {
+        // No extent, or one that f32 cannot tell apart; not for NaN either, which comes of no vertices.
+        if !tree.frame.is_plain() || half.is_nan() || half <= 0.0 {
             return;
         }
         // What cannot be triangulated is left to the tree, too: there are more vertices than numbers.
         let Ok(delaunay) = Delaunay::new(&tree.leaves.vertices, BOUNDING_DISTANCE) else { return };
         let centre = wide(&nalgebra::center(&bounds.min, &bounds.max));
-        let far = half * BOUNDING_DISTANCE + centre.iter().fold(0.0f64, |a, x| a.max(x.abs()));
+        let domain = half * REACH;
+        let (low, high) = (centre.map(|x| x - domain), centre.map(|x| x + domain));
+        let pad = half * 0.25;
+        let own = [wide(&bounds.min).map(|x| x - pad), wide(&bounds.max).map(|x| x + pad)];
+        // In the plane of a flat scene, far out, f64 has no room beside it.
+        if (0..3).any(|k| own[0][k] >= own[1][k] || low[k] >= high[k]) {
+            return;
+        }
+        let whole = tree.bounds();
+        let size = (whole.max - whole.min).max();
+        let far = half.max(size) * BOUNDING_DISTANCE + centre.iter().fold(0.0f64, |a, x| a.max(x.abs()));
         let all = (delaunay.tetrahedra().len() + 4 * delaunay.sites().len()) as f64;
         let percent = Cell::new(0.0);
         // What comes before is about a tenth of all.
@@ -74,7 +88,7 @@ impl Voronoi {
         };
         // Rounding of keys and of corners: all below 2^-44 of this.
         let slack = far / (1u64 << 40) as f64;
-        let cells = Cells { tree, delaunay: &delaunay, slack, most: options.longest, progress: &done };
+        let cells = Cells { tree, delaunay: &delaunay, slack, most: options.longest.min(LONGEST), progress: &done };
         let corners = cells.corners();
         let (fans, blocks) = cells.lists(&corners, &mut self.report);
         drop(corners);
@@ -85,13 +99,9 @@ impl Voronoi {
         self.slack = cells.slack;
         (self.unit, self.per_unit) = (delaunay.unit(), delaunay.unit().recip());
         drop(delaunay);
-        let domain = half * REACH;
-        self.low = centre.map(|x| x - domain);
-        self.high = centre.map(|x| x + domain);
-        let pad = half * 0.25;
-        let scaled = |p: V3, by: f64| p.map(|x| (x + by) * self.per_unit);
-        let own = [scaled(wide(&bounds.min), -pad), scaled(wide(&bounds.max), pad)];
-        let all = [scaled(self.low, 0.0), scaled(self.high, 0.0)];
+        (self.low, self.high) = (low, high);
+        let scaled = |p: V3| p.map(|x| x * self.per_unit);
+        let (own, all) = (own.map(scaled), [low, high].map(scaled));
         self.hints = Some(Hints::new(&fans, self.tree.isa(), own, all, BOUNDING));
         (self.fans, self.blocks) = (fans, blocks);
         self.blocks.shrink_to_fit();

@@ -1,0 +1,27 @@
+//! A primitive of one's own.
+
+use nalgebra::{Point3, Vector3};
+use p2m_core::{Aabb, Feature, Primitive, Projection};
+
+/// A solid ball: it shows no vertices.
+#[derive(Clone, Copy, Debug)]
+pub struct Ball {
+    /// Its centre.
+    pub centre: Point3<f64>,
+    /// Its radius.
+    pub radius: f64,
+}
+
+impl Primitive<f64> for Ball {
+    fn aabb(&self) -> Aabb<f64> {
+        let r = Vector3::repeat(self.radius);
+        Aabb::of_points(&[self.centre - r, self.centre + r])
+    }
+    fn project(&self, query: &Point3<f64>) -> Projection {
+        let v = query - self.centre;
+        let outside = v.norm() > self.radius;
+        let point = if outside { self.centre + v * (self.radius / v.norm()) } else { *query };
+        let error = 1e-14 * (v.norm() + self.radius);
+        Projection::new(query, self.aabb().clamp(point), Feature::Face, [1.0, 0.0, 0.0], error)
+    }
+}
