@@ -32,13 +32,13 @@ fn answers<T: Real, I: ClosestPoint<T> + Sync>(index: &I, queries: &[nalgebra::P
 fn agrees<T: Real>(name: &str, set: QuerySet, soup: &Soup<T>, trees: &Trees<'_, T>, queries: &[nalgebra::Point3<T>]) {
     let brute = BruteForce::new(soup).expect("valid");
     let expected = answers(&brute, queries);
-    let found = [
+    let mut found = vec![
         answers(&trees.0, queries),
         answers(&trees.1, queries),
         answers(&trees.2, queries),
         answers(&trees.3, queries),
-        answers(&trees.4, queries),
     ];
+    found.extend(trees.4.iter().map(|index| answers(index, queries)));
     for (tree, found) in ["boxes", "k-DOPs", "the scene's k-DOPs", "octree", "p2m"].iter().zip(found) {
         for (i, (e, f)) in expected.iter().zip(&found).enumerate() {
             assert_eq!(e, f, "{name}, {tree}, {set}, query {i}: {:?}", queries[i]);
@@ -52,7 +52,7 @@ struct Trees<'a, T: Real>(
     KdopTree<T, &'a Soup<T>, 14>,
     KdopTree<T, &'a Soup<T>, 26>,
     OctreeIndex<T, &'a Soup<T>>,
-    P2mIndex<T, &'a Soup<T>>,
+    Option<P2mIndex<T, &'a Soup<T>>>,
 );
 
 impl<'a, T: Real> Trees<'a, T> {
@@ -63,7 +63,8 @@ impl<'a, T: Real> Trees<'a, T> {
             KdopTree::build(soup, &Default::default()).expect("valid"),
             KdopTree::build_with(soup, &own).expect("valid"),
             OctreeIndex::build(soup, &Default::default()).expect("valid"),
-            P2mIndex::build(soup, &Default::default()).expect("valid"),
+            // Its cells are made from f64 for both scalars, and take a while.
+            (size_of::<T>() == 8).then(|| P2mIndex::build(soup, &Default::default()).expect("valid")),
         )
     }
 }
