@@ -9,7 +9,7 @@ use p2m_core::{
     BruteForce, BuildIndex, ClosestPoint, Directions, DirectionsError, Isa, PrimitiveId, PrimitiveSet, Shape, Soup,
     Triangle,
 };
-use p2m_interception::{OctreeIndex, OctreeOptions, P2mIndex, P2mOptions};
+use p2m_interception::{InterceptionIndex, Octree, OctreeOptions, P2mOptions, Partition, Voronoi};
 use p2m_kdop::{Choice, KdopOptions, KdopTree};
 use std::marker::PhantomData;
 
@@ -137,31 +137,35 @@ pub(crate) fn octree_options(times: f64) -> OctreeOptions {
         .with_work(usual.work * budget)
 }
 
-/// The octree, with an instruction set and so many times the usual resolution.
-fn octree<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>, times: f64) -> Result<Prepared<'a>, Absent> {
-    let isa = instruction_set(isa)?;
-    let (soup, borrowed) = T::soup(scene)?;
-    let build = move || {
-        let index = OctreeIndex::build(soup, &octree_options(times)).map_err(|error| Absent(error.to_string()))?;
-        Ok(Box::new(Ours(index.with_isa(isa), PhantomData::<fn() -> T>)) as Ready<'a>)
-    };
-    Ok(Prepared { build: Box::new(build), borrowed })
-}
-
 /// The P2M index on one thread.
 pub(crate) fn p2m_options() -> P2mOptions {
     P2mOptions::default().with_splits(aabb_options())
 }
 
-/// The P2M index, with the instruction set of that name or the best one.
-fn p2m<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'a>, Absent> {
+/// An interception index, with the instruction set of that name or the best one.
+fn cells<'a, T, P>(scene: &'a Scene, isa: Option<&str>, options: P::Options) -> Result<Prepared<'a>, Absent>
+where
+    T: Scalar,
+    P: Partition<Options: 'a> + Sync + 'a,
+{
     let isa = instruction_set(isa)?;
     let (soup, borrowed) = T::soup(scene)?;
     let build = move || {
-        let index = P2mIndex::build(soup, &p2m_options()).map_err(|error| Absent(error.to_string()))?;
+        let index = InterceptionIndex::<T, _, P>::build(soup, &options);
+        let index = index.map_err(|error| Absent(error.to_string()))?;
         Ok(Box::new(Ours(index.with_isa(isa), PhantomData::<fn() -> T>)) as Ready<'a>)
     };
     Ok(Prepared { build: Box::new(build), borrowed })
+}
+
+/// The octree, with an instruction set and so many times the usual resolution.
+fn octree<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>, times: f64) -> Result<Prepared<'a>, Absent> {
+    cells::<T, Octree>(scene, isa, octree_options(times))
+}
+
+/// The P2M index, with an instruction set.
+fn p2m<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'a>, Absent> {
+    cells::<T, Voronoi>(scene, isa, p2m_options())
 }
 
 /// The AABB tree, with the instruction set of that name or the best one.

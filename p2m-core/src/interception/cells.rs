@@ -9,7 +9,7 @@
 //! id as well, t is never the answer: the other one is as near, by the same bits, and the lower id wins.
 
 use super::block::{Block, Bounds, Entry};
-use super::corner::{self, AtPoints};
+use super::corner::{AtPoints, Found, Least};
 use super::fan::{Fans, Outside};
 use super::features::{Features, Incidences, NONE, Shared};
 use super::hull::Hull;
@@ -19,6 +19,7 @@ use super::voronoi::TREE;
 use crate::delaunay::{BOUNDING, Delaunay};
 use crate::hierarchy::PacketTree;
 use crate::hierarchy::wide::ball::Selection;
+use crate::kernel::number::cross;
 use crate::kernel::vector::{V3, dot, norm_squared, sub};
 use crate::packet::{LANES, Packet};
 use crate::simd::{InstructionSet, Operation};
@@ -155,12 +156,12 @@ struct Cell {
     packets: Vec<u32>,
     /// Numbers of the tetrahedra, for the search of pairs.
     own: Vec<u32>,
-    values: Found,
+    values: Known,
 }
 
 /// What is known about a packet and a hull.
 #[derive(Default)]
-struct Found {
+struct Known {
     /// Of each corner the values of the function for the lanes of a packet, rounded down, in squares of its unit.
     values: Vec<[f32; LANES]>,
     /// The lanes that are not above zero at some corner.
@@ -216,7 +217,7 @@ impl Cell {
             }
             if lanes != 0 {
                 report.primitives += lanes.count_ones() as usize;
-                let order = f64::from(least(packet, &self.y, lanes, tree)) * packet.unit();
+                let order = FromPlace::new(tree, packet, &self.y).least(lanes) * packet.unit();
                 let bounds = tree.frame.enclose(&packet.bounds_of(lanes));
                 entries.push((order, Entry { packet: number, lanes, bounds, f: [0.0; 8] }));
             }
@@ -289,12 +290,13 @@ impl Cell {
             let packet = &tree.leaves.packets[entry.packet as usize];
             self.values.compute(part, packet, tree);
             let lanes = self.values.near & entry.lanes;
+            let from_site = FromPlace::new(tree, packet, &y);
             for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
                 let (places, count) = packet.vertices_of(lane);
                 if places[..count].iter().any(|place| cells.delaunay.site_of(*place) == self.site) {
                     continue;
                 }
-                let distance = f64::from(least(packet, &y, 1 << lane, tree));
+                let distance = from_site.least(1 << lane);
                 // So the slack does not matter to the function at the site.
                 if distance * packet.unit() < 64.0 * slack {
                     return None;
@@ -312,16 +314,25 @@ impl Cell {
     }
 }
 
-/// How far at least the nearest of some lanes of a packet is from a point, in the unit of the packet.
-fn least(packet: &Packet, point: &V3, lanes: u16, tree: &PacketTree) -> f32 {
-    let (mut found, mut nearest) = ([corner::Found::NOTHING], [None]);
-    tree.isa().run(AtPoints { packet, points: &[*point], found: &mut found, nearest: &mut nearest });
-    let squares = (0..LANES).filter(|lane| lanes >> lane & 1 == 1).map(|lane| found[0].squares[lane]);
-    let square = squares.fold(f32::INFINITY, f32::min);
-    (square.sqrt() * (1.0 - 4.0 * f32::EPSILON) - found[0].excess).max(0.0)
+/// How far at least the nearest of some lanes of a packet is from a place, in the unit of the packet.
+struct FromPlace<'a> {
+    tree: &'a PacketTree,
+    found: [Found; 1],
 }
 
-impl Found {
+impl<'a> FromPlace<'a> {
+    fn new(tree: &'a PacketTree, packet: &Packet, place: &V3) -> Self {
+        let mut found = [Found::NOTHING];
+        tree.isa().run(AtPoints { packet, points: &[*place], found: &mut found, nearest: &mut [None] });
+        Self { tree, found }
+    }
+
+    fn least(&self, lanes: u16) -> f64 {
+        self.tree.isa().run(Least { found: &self.found, lanes })[0]
+    }
+}
+
+impl Known {
     /// The values of a packet at the corners of a hull.
     fn compute(&mut self, hull: &Hull, packet: &Packet, tree: &PacketTree) {
         self.values.clear();
@@ -403,8 +414,7 @@ fn slimness(vertices: &[V3]) -> (f64, f64) {
         [a, b, c] => {
             let longest = length(a, b).max(length(b, c)).max(length(c, a));
             let (e, f) = (sub(*b, *a), sub(*c, *a));
-            let normal = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];
-            let height = norm_squared(normal).sqrt() / longest;
+            let height = norm_squared(cross(e, f)).sqrt() / longest;
             (height, height / longest)
         }
         [a, b] => (length(a, b), 1.0),
@@ -425,17 +435,13 @@ fn matters(vertices: &[V3], region: &[V3], margin: f64, across: f64, shared: Sha
     if n == 3 {
         let [a, b, c] = [vertices[0], vertices[1], vertices[2]];
         let (e, f) = (sub(b, a), sub(c, a));
-        let normal = unit([e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]]);
+        let normal = unit(cross(e, f));
         let mut outside = false;
         for i in 0..3 {
             let (p, q) = (vertices[i], vertices[(i + 1) % 3]);
             let d = unit(sub(q, p));
             // Into the triangle.
-            inside[i] = [
-                normal[1] * d[2] - normal[2] * d[1],
-                normal[2] * d[0] - normal[0] * d[2],
-                normal[0] * d[1] - normal[1] * d[0],
-            ];
+            inside[i] = cross(normal, d);
             outside |= all(&|h| dot(sub(*h, p), inside[i]) < -across);
         }
         if !outside {

@@ -6,12 +6,14 @@
 //! cell, and never runs in a circle, for each step is one to a nearer site.
 
 use super::nearer;
+use crate::kernel::power_of_two;
 use crate::kernel::vector::{V3, norm_squared, sub};
+use crate::packet::frame_unit;
 use crate::simd::{InstructionSet, Lanes, prefetch_lines};
 use std::cmp::Ordering;
 
 /// Neighbours of a block.
-pub(super) const WIDTH: usize = 8;
+const WIDTH: usize = 8;
 
 /// Eight ways to other sites: one cache line.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +38,9 @@ const ROUNDING: f32 = 4.0 * f32::EPSILON;
 const CERTAIN: f32 = 1.0 / (1u64 << 28) as f32;
 /// What products lack by underflow, with plenty of room.
 const TINY: f32 = 1e-30;
+
+/// What is shorter does not matter beside what underflows.
+const LEAST_UNIT: f64 = power_of_two(-99);
 
 /// A query as seen from a site.
 #[derive(Clone, Copy)]
@@ -72,11 +77,8 @@ impl Fan {
         let ways: [V3; WIDTH] =
             std::array::from_fn(|lane| sub(places[others[lane.min(others.len() - 1)] as usize], places[site]));
         let largest = ways.as_flattened().iter().fold(0.0f64, |a, x| a.max(x.abs()));
-        let mut unit = f64::from(TINY);
-        unit = 2f64.powi(unit.log2().ceil() as i32);
-        while largest > 32766.0 * unit {
-            unit *= 2.0;
-        }
+        // To both sides of zero.
+        let unit = frame_unit(2.0 * largest).max(LEAST_UNIT);
         let mut fan = Self { unit: unit as f32, ..Self::EMPTY };
         for (lane, way) in ways.into_iter().enumerate() {
             for (row, x) in fan.ways.iter_mut().zip(way) {

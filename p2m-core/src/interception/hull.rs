@@ -21,10 +21,9 @@ pub(super) struct Hull {
 
 impl Hull {
     pub(super) fn clear(&mut self) {
-        for list in [&mut self.reaches, &mut self.errors] {
-            list.clear();
-        }
         self.corners.clear();
+        self.reaches.clear();
+        self.errors.clear();
         self.faces.clear();
         self.edges.clear();
         (self.reach, self.error) = (0.0, 0.0);

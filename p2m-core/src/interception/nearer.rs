@@ -4,14 +4,13 @@
 //! double-double numbers, of which the differences are exact, else by integers.
 
 use crate::integers::{self, common_exponent, integer};
-use crate::kernel::double::{Double, dot as double_dot};
+use crate::kernel::double::{self, Double};
+use crate::kernel::number::dot;
 use crate::kernel::vector::V3;
 use std::cmp::Ordering;
 
-/// What the sum of three products may be off, in parts of their sizes: seven roundings in f64,
+/// What the sum of three products may be off in f64, in parts of their sizes: seven roundings.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
-/// and in double-double arithmetic, where less than 2^-100 can be shown.
-const DOUBLE_ROUNDING: f64 = crate::kernel::power_of_two(-95);
 
 /// How the distance from `q` to `v` compares with that to `w`. All coordinates are zero or between 2^-161 and 2^100 in
 /// size, so that no product matters that underflows.
@@ -29,8 +28,8 @@ pub(super) fn compare(q: &V3, v: &V3, w: &V3) -> Ordering {
     }
     let way: [Double; 3] = std::array::from_fn(|k| Double::difference(w[k], v[k]));
     let sum: [Double; 3] = std::array::from_fn(|k| Double::difference(q[k], v[k]) + Double::difference(q[k], w[k]));
-    let s = double_dot(way, sum).round();
-    if s.abs() > DOUBLE_ROUNDING * size {
+    let s = dot(way, sum).round();
+    if s.abs() > double::ROUNDING * size {
         return s.total_cmp(&0.0);
     }
     let exponent = common_exponent([*q, *v, *w].as_flattened());

@@ -3,11 +3,10 @@
 use super::block::{self, Block, Place};
 use super::cube::DEEPEST;
 use super::options::{Domain, OctreeOptions, OctreeReport};
-use super::partition::Partition;
+use super::partition::{LookUp, Partition};
 use super::refine::{Cell, Done, NODE, PACKET, Refinement};
 use crate::hierarchy::PacketTree;
-use crate::hierarchy::wide::evaluation;
-use crate::hierarchy::wide::search::{Evaluate, Filter, Search, finish, finish_nearest};
+use crate::hierarchy::wide::search::{Evaluate, Filter, Search, finish_nearest};
 use crate::hierarchy::wide::volume::Rounded;
 use crate::kernel::vector::V3;
 use crate::packet::LANES;
@@ -218,30 +217,6 @@ impl Octree {
         code
     }
 
-    /// Not generic, so compiled once.
-    fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
-        self.look_up(query, minimum, evaluate, finish_nearest);
-    }
-
-    #[inline(always)]
-    fn look_up<C: Collector>(
-        &self,
-        query: V3,
-        collector: &mut C,
-        evaluate: Evaluate<'_, C>,
-        finish: fn(&mut Filter<'_, C>),
-    ) {
-        let tree = &self.tree;
-        let (code, cells) = self.cell_of(&query);
-        match tree.frame.local(&query) {
-            Some(local) if code != TREE => {
-                let place = Place { rounded: Rounded::of(local), local, cells };
-                tree.isa().run(Lookup { octree: self, code, query, place, collector, evaluate, finish });
-            }
-            _ => tree.isa().run(Search { tree, query, reach: f64::INFINITY, collector, evaluate, finish }),
-        }
-    }
-
     /// The code of the cell of a query, and its place in finest cells.
     #[inline(always)]
     fn cell_of(&self, query: &V3) -> (u32, V3) {
@@ -263,6 +238,31 @@ impl Octree {
             }
             _ => None,
         }
+    }
+}
+
+impl LookUp for Octree {
+    #[inline(always)]
+    fn look_up<C: Collector>(
+        &self,
+        query: V3,
+        collector: &mut C,
+        evaluate: Evaluate<'_, C>,
+        finish: fn(&mut Filter<'_, C>),
+    ) {
+        let tree = &self.tree;
+        let (code, cells) = self.cell_of(&query);
+        match tree.frame.local(&query) {
+            Some(local) if code != TREE => {
+                let place = Place { rounded: Rounded::of(local), local, cells };
+                tree.isa().run(Lookup { octree: self, code, query, place, collector, evaluate, finish });
+            }
+            _ => tree.isa().run(Search { tree, query, reach: f64::INFINITY, collector, evaluate, finish }),
+        }
+    }
+
+    fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
+        self.look_up(query, minimum, evaluate, finish_nearest);
     }
 }
 
@@ -291,19 +291,6 @@ impl Partition for Octree {
         }
         progress(1.0);
         octree
-    }
-
-    #[inline]
-    fn search<T: Real, S: PrimitiveSet<T>, C: Collector>(&self, set: &S, query: &Point3<T>, collector: &mut C) {
-        if collector.is_nearest_only() {
-            self.look_up(wide(query), collector, &evaluation(set, query), finish);
-        } else {
-            self.tree.search(set, query, collector);
-        }
-    }
-
-    fn search_nearest<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
-        self.nearest(wide(query), best.minimum(), &evaluation(set, query));
     }
 
     fn tree(&self) -> &PacketTree {

@@ -1,12 +1,20 @@
 //! What every partition of space into cells with lists offers.
 
 use crate::hierarchy::PacketTree;
+use crate::hierarchy::wide::evaluation;
+use crate::hierarchy::wide::search::{Evaluate, Filter, finish};
+use crate::kernel::vector::V3;
+use crate::query::Minimum;
+use crate::real::wide;
 use crate::{Best, Collector, Isa, PrimitiveSet, Real};
 use nalgebra::Point3;
 
 /// A partition with its lists, over a set of primitives that it does not keep: every method that needs the set is given
 /// the same one.
-pub trait Partition: Sized {
+///
+/// Sealed: searches rest on proofs about the cells.
+#[allow(private_bounds, reason = "that is what seals it")]
+pub trait Partition: LookUp + Sized {
     /// How it is built.
     type Options: Default;
     /// What it is made of.
@@ -22,10 +30,19 @@ pub trait Partition: Sized {
     ) -> Self;
 
     /// Offers to `collector` every primitive of the set that it could want. `query` is finite.
-    fn search<T: Real, S: PrimitiveSet<T>, C: Collector>(&self, set: &S, query: &Point3<T>, collector: &mut C);
+    #[inline]
+    fn search<T: Real, S: PrimitiveSet<T>, C: Collector>(&self, set: &S, query: &Point3<T>, collector: &mut C) {
+        if collector.is_nearest_only() {
+            self.look_up(wide(query), collector, &evaluation(set, query), finish);
+        } else {
+            self.tree().search(set, query, collector);
+        }
+    }
 
     /// The same for the nearest primitive.
-    fn search_nearest<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>);
+    fn search_nearest<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
+        self.nearest(wide(query), best.minimum(), &evaluation(set, query));
+    }
 
     /// The tree over the packets, which answers what cells do not.
     fn tree(&self) -> &PacketTree;
@@ -39,4 +56,19 @@ pub trait Partition: Sized {
     /// Searches with another instruction set. Answers do not depend on it.
     #[must_use]
     fn with_isa(self, isa: Isa) -> Self;
+}
+
+/// The way of a query to its cell and through its list.
+pub(crate) trait LookUp {
+    /// Offers to a collector of nearest primitives every one that it could want.
+    fn look_up<C: Collector>(
+        &self,
+        query: V3,
+        collector: &mut C,
+        evaluate: Evaluate<'_, C>,
+        finish: fn(&mut Filter<'_, C>),
+    );
+
+    /// The same for the nearest one, in a function of its own: what is not generic is compiled once.
+    fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>);
 }

@@ -4,10 +4,10 @@
 //! B x C) from it. Computed in f64, and in double-double arithmetic where that is too far off for thin tetrahedra; the
 //! error is bounded in either case.
 
-use crate::kernel::double::Double;
+use crate::kernel::double::{self, Double};
+use crate::kernel::number::{Number, cross, dot};
 use crate::kernel::power_of_two;
 use crate::kernel::vector::V3;
-use std::ops::{Add, Mul, Sub};
 
 /// The centre of a sphere.
 #[derive(Clone, Copy, Debug)]
@@ -17,30 +17,16 @@ pub(super) struct Centre {
     pub(super) error: f64,
 }
 
-/// What numerator and denominator may be off, in parts of the sizes of what is summed: 12 roundings of f64 at most,
+/// What numerator and denominator may be off in f64, in parts of the sizes of what is summed: 12 roundings at most.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
-/// and of double-double arithmetic, each less than 2^-101.
-const DOUBLE_ROUNDING: f64 = power_of_two(-95);
 /// A larger part of the radius is worth more precise arithmetic.
 const PART: f64 = power_of_two(-24);
 
-trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
-impl Number for f64 {}
-impl Number for Double {}
-
-fn cross<N: Number>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot<N: Number>(a: &[N; 3], b: &[N; 3]) -> N {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 /// The numerator and half of the denominator.
-fn quotient<N: Number>([a, b, c]: &[[N; 3]; 3]) -> ([N; 3], N) {
+fn quotient<N: Number>([a, b, c]: [[N; 3]; 3]) -> ([N; 3], N) {
     let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
     let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
-    (std::array::from_fn(|k| aa * bc[k] + bb * ca[k] + cc * ab[k]), dot(a, &bc))
+    (std::array::from_fn(|k| aa * bc[k] + bb * ca[k] + cc * ab[k]), dot(a, bc))
 }
 
 /// The sizes of what is summed in them.
@@ -49,8 +35,8 @@ fn sizes(offsets: &[V3; 3]) -> (V3, f64) {
     let cross =
         |a: &V3, b: &V3| -> V3 { [a[1] * b[2] + a[2] * b[1], a[2] * b[0] + a[0] * b[2], a[0] * b[1] + a[1] * b[0]] };
     let (bc, ca, ab) = (cross(&b, &c), cross(&c, &a), cross(&a, &b));
-    let (aa, bb, cc) = (dot(&a, &a), dot(&b, &b), dot(&c, &c));
-    (std::array::from_fn(|k| aa * bc[k] + bb * ca[k] + cc * ab[k]), dot(&a, &bc))
+    let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
+    (std::array::from_fn(|k| aa * bc[k] + bb * ca[k] + cc * ab[k]), dot(a, bc))
 }
 
 /// The centre of the sphere through four points, which are not in a plane; `None` if it cannot be told. Coordinates are
@@ -59,14 +45,14 @@ pub(super) fn centre(points: &[V3; 4]) -> Option<Centre> {
     let [o, rest @ ..] = points;
     let offsets = rest.map(|p| std::array::from_fn(|k| p[k] - o[k]));
     let sizes = sizes(&offsets);
-    let in_f64 = finish(o, quotient(&offsets), &sizes, ROUNDING);
+    let in_f64 = finish(o, quotient(offsets), &sizes, ROUNDING);
     let good = |c: &Centre| c.error <= PART * (0..3).map(|k| (c.place[k] - o[k]).abs()).fold(0.0, f64::max);
     if let Some(found) = in_f64.filter(good) {
         return Some(found);
     }
     let offsets = rest.map(|p| std::array::from_fn(|k| Double::difference(p[k], o[k])));
-    let (numerator, half) = quotient(&offsets);
-    finish(o, (numerator.map(Double::round), half.round()), &sizes, DOUBLE_ROUNDING)
+    let (numerator, half) = quotient(offsets);
+    finish(o, (numerator.map(Double::round), half.round()), &sizes, double::ROUNDING)
 }
 
 fn finish(o: &V3, (numerator, half): (V3, f64), sizes: &(V3, f64), rounding: f64) -> Option<Centre> {

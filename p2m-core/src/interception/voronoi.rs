@@ -10,18 +10,18 @@ use super::cells::Cells;
 use super::fan::Fans;
 use super::hints::Hints;
 use super::options::{P2mOptions, P2mReport};
-use super::partition::Partition;
+use super::partition::{LookUp, Partition};
 use crate::delaunay::{BOUNDING, Delaunay};
 use crate::hierarchy::PacketTree;
-use crate::hierarchy::wide::evaluation;
-use crate::hierarchy::wide::search::{Evaluate, Filter, Search, finish, finish_nearest};
+use crate::hierarchy::wide::search::{Evaluate, Filter, Search, finish_nearest};
 use crate::hierarchy::wide::volume::Rounded;
 use crate::kernel::vector::{V3, norm_squared, sub};
 use crate::packet::LANES;
+use crate::predicates::staged::RANGE;
 use crate::query::Minimum;
 use crate::real::wide;
 use crate::simd::{InstructionSet, Operation, prefetch_lines};
-use crate::{Aabb, Best, Collector, Isa, PrimitiveSet, Real};
+use crate::{Aabb, Collector, Isa, PrimitiveSet, Real};
 use nalgebra::Point3;
 use std::cell::Cell;
 
@@ -107,12 +107,9 @@ impl Voronoi {
         self.blocks.shrink_to_fit();
         self.report.bytes = self.memory() - self.tree.memory();
     }
+}
 
-    /// Not generic, so compiled once.
-    fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
-        self.look_up(query, minimum, evaluate, finish_nearest);
-    }
-
+impl LookUp for Voronoi {
     #[inline(always)]
     fn look_up<C: Collector>(
         &self,
@@ -131,6 +128,10 @@ impl Voronoi {
             }
         }
         tree.isa().run(Search { tree, query, reach: f64::INFINITY, collector, evaluate, finish });
+    }
+
+    fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
+        self.look_up(query, minimum, evaluate, finish_nearest);
     }
 }
 
@@ -162,19 +163,6 @@ impl Partition for Voronoi {
         index
     }
 
-    #[inline]
-    fn search<T: Real, S: PrimitiveSet<T>, C: Collector>(&self, set: &S, query: &Point3<T>, collector: &mut C) {
-        if collector.is_nearest_only() {
-            self.look_up(wide(query), collector, &evaluation(set, query), finish);
-        } else {
-            self.tree.search(set, query, collector);
-        }
-    }
-
-    fn search_nearest<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
-        self.nearest(wide(query), best.minimum(), &evaluation(set, query));
-    }
-
     fn tree(&self) -> &PacketTree {
         &self.tree
     }
@@ -195,12 +183,10 @@ impl Partition for Voronoi {
     }
 }
 
-/// Coordinates below this are zero for sites and queries: products of five of them would underflow.
-const LEAST: f64 = crate::kernel::power_of_two(-161);
-
+/// A coordinate of a query in the units of sites, or 0 below what the predicates can tell, as for sites.
 #[inline(always)]
 fn snapped(x: f64) -> f64 {
-    if x.abs() < LEAST { 0.0 } else { x }
+    if x.abs() < *RANGE.start() { 0.0 } else { x }
 }
 
 /// A query on its way to its cell, as an operation.

@@ -5,7 +5,12 @@
 //! multiply-add, so the bits are the same on every machine. Exact as long as nothing overflows (|x| < 2^990) and the
 //! error terms stay above the subnormals; the kernel scales its input to guarantee both.
 
+use super::power_of_two;
 use std::ops::{Add, Div, Mul, Sub};
+
+/// What sums of a few products of double-double numbers may be off, in parts of the sizes of what is summed: 2^-95, where
+/// less than 2^-98 can be shown.
+pub(crate) const ROUNDING: f64 = power_of_two(-95);
 
 #[derive(Clone, Copy)]
 pub(crate) struct Double {
@@ -94,11 +99,6 @@ impl Div for Double {
         let rest = rest - other * Self { high: second, low: 0.0 };
         fast_two_sum(first, second) + Self { high: rest.high / other.high, low: 0.0 }
     }
-}
-
-#[inline(always)]
-pub(crate) fn dot(a: [Double; 3], b: [Double; 3]) -> Double {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@
 pub(crate) mod double;
 mod key;
 mod line;
+pub(crate) mod number;
 mod plane;
 pub(crate) mod scalar;
 mod scaled;

@@ -394,7 +394,7 @@ fn place_of(list: &mut Vec<Vertex>, vertex: Vertex) -> u8 {
 }
 
 /// The smallest power of two of which `size` is at most 65534; 0 for 0.
-fn frame_unit(size: f64) -> f64 {
+pub(crate) fn frame_unit(size: f64) -> f64 {
     if size <= 0.0 {
         return 0.0;
     }

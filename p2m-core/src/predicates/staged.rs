@@ -9,11 +9,11 @@
 
 use super::whole;
 use crate::kernel::double::Double;
+use crate::kernel::number::{Number, cross, dot};
 use crate::kernel::power_of_two;
 use crate::kernel::vector::{V3, larger, sub};
 use robust::{Coord3D, insphere, orient3d};
 use std::cmp::Ordering;
-use std::ops::{Add, Mul, Sub};
 
 /// Sizes of coordinates for which the stages are exact; 0 is as well.
 pub(crate) const RANGE: std::ops::RangeInclusive<f64> = power_of_two(-161)..=power_of_two(190);
@@ -39,9 +39,6 @@ const SPHERE_ERROR: f64 = 408.0 * U;
 /// Of [`sphere`] in double-double, see there. A tenth of it is for the rounding of the bound.
 const DOUBLE_SPHERE_ERROR: f64 = 2048.0 * U * U;
 
-trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
-impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T {}
-
 /// The determinant of three rows, a x b . c.
 ///
 /// It has six products of three, each below XYZ for entries below X, Y and Z in the three columns. On the way to the
@@ -64,16 +61,6 @@ fn determinant<T: Number>([a, b, c]: [[T; 3]; 3]) -> T {
 fn sphere<T: Number>([a, b, c, d]: [[T; 3]; 4], [a2, b2, c2, d2]: [T; 4]) -> T {
     let combine = |s: T, p: [T; 3], t: T, q: [T; 3]| [s * p[0] - t * q[0], s * p[1] - t * q[1], s * p[2] - t * q[2]];
     dot(cross(a, b), combine(c2, d, d2, c)) + dot(cross(c, d), combine(a2, b, b2, a))
-}
-
-#[inline(always)]
-fn cross<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-#[inline(always)]
-fn dot<T: Number>(a: [T; 3], b: [T; 3]) -> T {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline(always)]

@@ -1,7 +1,8 @@
 //! Where a line meets the plane of a triangle, and with which weights: rounded to nearest, by double-double numbers where
 //! these leave no doubt.
 
-use crate::kernel::double::{Double, dot as double_dot};
+use crate::kernel::double::{Double, ROUNDING as DOUBLE};
+use crate::kernel::number::{cross, dot};
 use crate::kernel::power_of_two;
 use crate::kernel::vector::V3;
 
@@ -9,9 +10,6 @@ use crate::kernel::vector::V3;
 pub(super) const U: f64 = f64::EPSILON / 2.0;
 /// Magnitudes for which products of three underflow nowhere that matters, and overflow nowhere.
 pub(super) const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-250)..=power_of_two(250);
-/// What products of double-double numbers and sums of some of them may be off, in parts of their factors: 2^-95, where
-/// less than 2^-98 can be shown.
-const DOUBLE: f64 = power_of_two(-95);
 
 /// Where a line meets the plane of a triangle, in double-double arithmetic.
 pub(super) struct Plane {
@@ -35,8 +33,8 @@ impl Plane {
         if !sizes.iter().all(|x| PLAIN.contains(x)) {
             return None;
         }
-        let normal = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];
-        let (height, speed) = (double_dot(normal, offset), double_dot(normal, direction));
+        let normal = cross(e, f);
+        let (height, speed) = (dot(normal, offset), dot(normal, direction));
         let parameter = height / speed;
         let [height_error, speed_error] = [sizes[2], sizes[3]].map(|x| DOUBLE * sizes[0] * sizes[1] * x);
         let error = quotient_error(parameter, height_error, speed, speed_error)?;
