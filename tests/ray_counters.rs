@@ -137,3 +137,26 @@ fn visits_fall_with_the_number_of_faces_on_a_turned_gear() {
         falls("gear_skewed_57k_rotated", &soup, [[[50, 42], [45, 35], [37, 25]], [[43, 42], [36, 34], [27, 24]]]);
     }
 }
+
+/// Lines so far away that their coordinates step by more than the scene is large miss it without a test, or come near.
+#[test]
+fn lines_that_pass_far_away_cost_nothing() {
+    let mut rng = rng("far away", 0);
+    let soup = scenes::soup(&mut rng, KINDS[0], LAYOUTS[0], 2000);
+    let (boxes, kdops) = (AabbTree::build(&soup, &Default::default()), built::<14>(&soup));
+    let boxes: AabbTree<f64, _> = boxes.expect("valid");
+    for far in [1e12, 1e20, 1e100, 1e300] {
+        let ray = |_| {
+            let origin = p2m_testkit::vector(&mut rng) * far;
+            // Beside the scene by as little as the coordinates allow, or through it.
+            let beside = origin.map(|x| if rng.random() { x.next_up() } else { x });
+            Ray::new(&(soup.positions()[rng.random_range(0..soup.positions().len())] + origin), &-beside)
+                .expect("finite")
+        };
+        let rays: Vec<_> = (0..200).map(ray).collect();
+        for [nodes, packets] in [work(&boxes, &rays), work(&kdops, &rays)] {
+            println!("{far:e}: {nodes} nodes, {packets} packets of {} lines", rays.len());
+            assert!(nodes <= 12 * rays.len() && packets <= 12 * rays.len());
+        }
+    }
+}

@@ -18,6 +18,7 @@ use rand::{Rng, RngExt};
 use std::collections::HashMap;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// A number from the environment.
 fn number(name: &str, default: usize) -> usize {
@@ -33,10 +34,11 @@ fn read(path: &Path) -> (String, Soup<f64>) {
 fn on_all_cores<const N: usize>(count: usize, case: impl Fn(usize) -> [usize; N] + Sync) -> [usize; N] {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let add = |a: [usize; N], b: [usize; N]| std::array::from_fn(|k| a[k] + b[k]);
+    let next = AtomicUsize::new(0);
+    let take = || Some(next.fetch_add(1, Relaxed)).filter(|i| *i < count);
     std::thread::scope(|scope| {
-        let case = &case;
-        let part = |first| move || (first..count).step_by(cores).map(case).fold([0; N], add);
-        let threads: Vec<_> = (0..cores).map(|first| scope.spawn(part(first))).collect();
+        let part = || std::iter::from_fn(take).map(&case).fold([0; N], add);
+        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(part)).collect();
         threads.into_iter().map(|thread| thread.join().expect("no panic")).fold([0; N], add)
     })
 }
@@ -55,7 +57,7 @@ fn every_model_is_met_as_exact_arithmetic_says() {
         let size = (bounds.max - bounds.min).amax();
         let [asked, met, along, crossed] = on_all_cores(count, |i| {
             let mut rng = rng("rays of models", i as u64);
-            let radius = if i % 2 == 0 { 0.0 } else { size * 10f64.powi(-rng.random_range(4..12)) };
+            let radius = if (i / AIMS.len()) % 2 == 0 { 0.0 } else { size * 10f64.powi(-rng.random_range(4..12)) };
             let ray = ray(&mut rng, &soup, &bounds, AIMS[i % AIMS.len()]).with_radius(radius).expect("valid");
             let near = filter.near(&ray);
             let asked = near.len();

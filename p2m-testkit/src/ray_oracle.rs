@@ -1,8 +1,8 @@
 //! Where lines meet primitives, in exact rational arithmetic.
 //!
 //! Nothing here is clever. A point of a primitive is known by the weights of its vertices. The line is where the three
-//! components of (P - O) x D are zero, so the primitive is clipped by six half-spaces; what is left is a point or a
-//! stretch. Crossings are found by moving the line, by a number that is small enough, and solving for where it then
+//! components of (P - O) x D are zero, two of which are enough where the third component of D is not zero, since
+//! D . ((P - O) x D) = 0. So the primitive is clipped by four half-spaces; what is left is a point or a stretch. Crossings are found by moving the line, by a number that is small enough, and solving for where it then
 //! meets the plane. Rounding looks for the f64 whose neighbours are farther.
 
 #![allow(clippy::float_cmp, reason = "nothing here has a tolerance")]
@@ -173,7 +173,8 @@ impl Exact {
         let aside: Vec<V> = self.offsets.iter().map(|v| cross(v, &self.direction)).collect();
         let corner = |i: usize| std::array::from_fn(|k| IBig::from(u8::from(i == k)));
         let mut polygon: Vec<V> = (0..self.offsets.len()).map(corner).collect();
-        for k in 0..3 {
+        let rest = self.direction.iter().position(|x| *x != IBig::ZERO).expect("a direction");
+        for k in (0..3).filter(|k| *k != rest) {
             for sign in [1, -1] {
                 if polygon.is_empty() {
                     return polygon;

@@ -162,14 +162,17 @@ impl FrameLine {
     fn new(frame: &Frame, half: &[f64; 3], line: &Line, from: f64) -> Option<Option<Self>> {
         let q = frame.place(&line.origin);
         let largest = q[0].abs().max(q[1].abs()).max(q[2].abs());
-        let off = line.off * frame.per_unit;
-        let radius = line.radius * frame.per_unit + off;
+        let (off, radius) = (line.off * frame.per_unit, line.radius * frame.per_unit);
         if !(frame.is_plain() && radius <= WIDEST) {
             return None;
         }
-        // The foot of the centre of the scene.
-        if largest > FARTHEST {
+        // The foot of the centre of the scene: rounding moves what is far away by much more than the scene is large.
+        if largest - off > FARTHEST {
             return Some(None);
+        }
+        let radius = radius + off;
+        if !(radius <= WIDEST && largest <= FARTHEST) {
+            return None;
         }
         let from = from * frame.per_unit;
         let (mut enter, mut exit) = (from - from.abs() * ROUNDING - BESIDE, f64::INFINITY);
