@@ -52,6 +52,7 @@
 //! |---|---|---|
 //! | `bvh` | [`AabbTree`] | yes |
 //! | `interception` | [`OctreeIndex`], [`P2mIndex`] | yes |
+//! | `kiddo` | `KdTreeLocator`, the paper's way to the nearest vertex, for [`P2mIndexWith`] | no |
 //! | `kdop` | [`KdopTree`] | yes |
 //! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `mixed` | [`scene`]: reading scenes and points from files | yes |
@@ -60,8 +61,12 @@
 #[cfg(feature = "bvh")]
 pub use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
 pub use p2m_core::*;
+#[cfg(feature = "kiddo")]
+pub use p2m_interception::KdTreeLocator;
 #[cfg(feature = "interception")]
-pub use p2m_interception::{Domain, OctreeIndex, OctreeOptions, OctreeReport, P2mIndex, P2mOptions, P2mReport};
+pub use p2m_interception::{
+    Domain, OctreeIndex, OctreeOptions, OctreeReport, P2mIndex, P2mIndexWith, P2mOptions, P2mReport,
+};
 /// What else there is about k-DOPs: polytopes, overlap of trees, directions from a scene.
 #[cfg(feature = "kdop")]
 pub use p2m_kdop as kdop;

@@ -57,7 +57,8 @@ fn every_model_is_met_as_exact_arithmetic_says() {
         let size = (bounds.max - bounds.min).amax();
         let [asked, met, along, crossed] = on_all_cores(count, |i| {
             let mut rng = rng("rays of models", i as u64);
-            let radius = if (i / AIMS.len()) % 2 == 0 { 0.0 } else { size * 10f64.powi(-rng.random_range(4..12)) };
+            let radius =
+                if (i / AIMS.len()).is_multiple_of(2) { 0.0 } else { size * 10f64.powi(-rng.random_range(4..12)) };
             let ray = ray(&mut rng, &soup, &bounds, AIMS[i % AIMS.len()]).with_radius(radius).expect("valid");
             let near = filter.near(&ray);
             let asked = near.len();

@@ -6,10 +6,10 @@ use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_bvh::{AabbOptions, AabbTree};
 use p2m_core::{
-    BruteForce, BuildIndex, ClosestPoint, Directions, DirectionsError, Isa, PrimitiveId, PrimitiveSet, Shape, Soup,
-    Triangle,
+    BruteForce, BuildIndex, Closest, ClosestPoint, Directions, DirectionsError, Isa, PrimitiveId, PrimitiveSet,
+    QueryOptions, Shape, Soup, Triangle,
 };
-use p2m_interception::{InterceptionIndex, Octree, OctreeOptions, P2mOptions, Partition, Voronoi};
+use p2m_interception::{InterceptionIndex, KdTreeLocator, Octree, OctreeOptions, P2mOptions, Partition, Voronoi};
 use p2m_kdop::{Choice, KdopOptions, KdopTree};
 use std::marker::PhantomData;
 
@@ -28,6 +28,8 @@ pub(crate) const ALL: &[Backend] = &[
     Backend { name: "octree-fine", prepare: |s| octree::<f64>(s, None, 10.0), ..OURS },
     Backend { name: "p2m", prepare: |s| p2m::<f64>(s, None), ..OURS },
     Backend { name: "p2m-avx2", prepare: |s| p2m::<f64>(s, Some("avx2")), ..OURS },
+    Backend { name: "p2m-kiddo", prepare: p2m_with_kd_tree, ..OURS },
+    Backend { name: "p2m-batch", prepare: p2m_in_batches, ..OURS },
     Backend { name: "kdop-6", prepare: kdop::<f64, 6>, ..OURS },
     Backend { name: "kdop-14", prepare: kdop::<f64, 14>, ..OURS },
     Backend { name: "kdop-18", prepare: kdop::<f64, 18>, ..OURS },
@@ -72,11 +74,36 @@ impl<T: Scalar, I: ClosestPoint<T> + Sync> Contender for Ours<T, I> {
 
     #[inline(always)]
     fn query(&self, query: &Point3<T>) -> Answer {
-        match self.0.closest_point(query) {
-            Some(closest) => Answer { distance: closest.distance.to_f64(), id: id_of(closest.primitive) },
-            None => Answer::NONE,
+        answer(self.0.closest_point(query))
+    }
+}
+
+/// The same, asked for several queries at a time.
+struct Batches<T, I>(I, PhantomData<fn() -> T>);
+
+/// Queries of a batch.
+const BATCH: usize = 256;
+
+impl<T: Scalar, I: ClosestPoint<T> + Sync> Contender for Batches<T, I> {
+    type Scalar = T;
+
+    fn query(&self, query: &Point3<T>) -> Answer {
+        answer(self.0.closest_point(query))
+    }
+
+    fn queries(&self, queries: &[Point3<T>], answers: &mut [Answer]) {
+        let mut closest = [None; BATCH];
+        for (queries, answers) in queries.chunks(BATCH).zip(answers.chunks_mut(BATCH)) {
+            let closest = &mut closest[..queries.len()];
+            self.0.closest_points_into(queries, &QueryOptions::default(), closest);
+            answers.iter_mut().zip(closest).for_each(|(to, closest)| *to = answer(*closest));
         }
     }
+}
+
+#[inline(always)]
+fn answer<T: Scalar>(closest: Option<Closest<T>>) -> Answer {
+    closest.map_or(Answer::NONE, |c| Answer { distance: c.distance.to_f64(), id: id_of(c.primitive) })
 }
 
 #[allow(clippy::cast_possible_truncation, reason = "ids are below 2^30")]
@@ -166,6 +193,22 @@ fn octree<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>, times: f64) -> Res
 /// The P2M index, with an instruction set.
 fn p2m<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'a>, Absent> {
     cells::<T, Voronoi>(scene, isa, p2m_options())
+}
+
+/// The P2M index with the paper's locator.
+fn p2m_with_kd_tree(scene: &Scene) -> Result<Prepared<'_>, Absent> {
+    cells::<f64, Voronoi<KdTreeLocator>>(scene, None, p2m_options())
+}
+
+/// The P2M index, asked for several queries at a time.
+fn p2m_in_batches(scene: &Scene) -> Result<Prepared<'_>, Absent> {
+    let (soup, borrowed) = f64::soup(scene)?;
+    let build = move || {
+        let index = InterceptionIndex::<f64, _, Voronoi>::build(soup, &p2m_options());
+        let index = index.map_err(|error| Absent(error.to_string()))?;
+        Ok(Box::new(Batches(index, PhantomData::<fn() -> f64>)) as Ready<'_>)
+    };
+    Ok(Prepared { build: Box::new(build), borrowed })
 }
 
 /// The AABB tree, with the instruction set of that name or the best one.

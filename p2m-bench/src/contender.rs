@@ -32,21 +32,26 @@ pub(crate) trait Contender: Sync {
     type Scalar: Scalar;
     /// Answers one query, with default options and no hint.
     fn query(&self, query: &Point3<Self::Scalar>) -> Answer;
+    /// Answers several, in their order: one by one, unless the contender is one of batches.
+    #[inline(always)]
+    fn queries(&self, queries: &[Point3<Self::Scalar>], answers: &mut [Answer]) {
+        for (query, answer) in queries.iter().zip(answers) {
+            *answer = self.query(query);
+        }
+    }
 }
 
 /// A contender with its scalar erased: the loop over queries is compiled for each one, so that a query costs no
 /// dynamic call beyond its own.
 pub(crate) trait Batch: Sync {
-    /// Answers queries one by one, in their order. Panics are errors.
+    /// Answers queries in their order. Panics are errors.
     fn answer(&self, queries: QuerySlice<'_>, answers: &mut [Answer]) -> Result<(), Absent>;
 }
 
 impl<C: Contender> Batch for C {
     fn answer(&self, queries: QuerySlice<'_>, answers: &mut [Answer]) -> Result<(), Absent> {
         catch(|| {
-            for (query, answer) in C::Scalar::of(queries).iter().zip(answers) {
-                *answer = self.query(query);
-            }
+            self.queries(C::Scalar::of(queries), answers);
             Ok(())
         })
     }

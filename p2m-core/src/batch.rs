@@ -15,7 +15,8 @@ pub struct BatchOptions {
     /// Answer along a space-filling curve. Queries that come in such an order anyway (a scan, a grid) save the sorting
     /// without.
     pub reorder: bool,
-    /// Try the primitive of the previous answer first.
+    /// Try the primitive of the previous answer first. Without, an index may answer several queries side by side, as the
+    /// P2M index does.
     pub hints: bool,
     /// Use all threads of the current pool; needs the feature `rayon`, without which one thread does it all.
     pub parallel: bool,
@@ -114,10 +115,13 @@ impl<T: Real, I: ClosestPoint<T> + Sync + ?Sized> Share<'_, T, I> {
             return shares.for_each(|(queries, out)| self.answer(queries, false, out));
         }
         let _ = parallel;
+        if !self.hints {
+            return self.index.closest_points_into(queries, self.options, out);
+        }
         let mut options = *self.options;
         for (query, answer) in queries.iter().zip(out) {
             *answer = self.index.closest_point_with(query, &options);
-            if let (true, Some(closest)) = (self.hints, answer.as_ref()) {
+            if let Some(closest) = answer {
                 options.hint = Some(closest.primitive);
             }
         }

@@ -1,6 +1,8 @@
 use nalgebra::Point3;
-use p2m_core::interception::{Octree, Partition, Voronoi};
-use p2m_core::{Best, BuildError, BuildIndex, ClosestPoint, Collector, Isa, PrimitiveSet, Real, check_set};
+use p2m_core::interception::{Hints, Octree, Partition, SIDE_BY_SIDE, Voronoi};
+use p2m_core::{
+    Best, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Isa, PrimitiveSet, QueryOptions, Real, check_set,
+};
 use std::marker::PhantomData;
 
 /// An interception index with cubes as cells.
@@ -23,7 +25,10 @@ pub type OctreeIndex<T, S> = InterceptionIndex<T, S, Octree>;
 ///
 /// # References
 /// \[Zong2023\]
-pub type P2mIndex<T, S> = InterceptionIndex<T, S, Voronoi>;
+pub type P2mIndex<T, S> = P2mIndexWith<T, S, Hints>;
+
+/// [`P2mIndex`] with another [`Locator`](p2m_core::interception::Locator).
+pub type P2mIndexWith<T, S, L> = InterceptionIndex<T, S, Voronoi<L>>;
 
 /// An interception index over a set of primitives, which it keeps.
 #[derive(Clone, Debug)]
@@ -90,6 +95,26 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> ClosestPoint<T> for Interception
     fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
         best.offer_hint(&self.set, query);
         self.partition.search_nearest(&self.set, query, best);
+    }
+
+    fn closest_points_into(&self, queries: &[Point3<T>], options: &QueryOptions<T>, out: &mut [Option<Closest<T>>]) {
+        assert_eq!(queries.len(), out.len(), "one answer for each query");
+        for (queries, out) in queries.chunks(SIDE_BY_SIDE).zip(out.chunks_mut(SIDE_BY_SIDE)) {
+            let several: Option<&[Point3<T>; SIDE_BY_SIDE]> = queries.try_into().ok();
+            let finite =
+                |queries: &[Point3<T>; SIDE_BY_SIDE]| queries.iter().flat_map(|q| q.iter()).all(|x| x.is_finite());
+            if let Some(queries) = several.filter(|queries| finite(queries)) {
+                let mut best = queries.each_ref().map(|query| {
+                    let mut best = Best::new(options);
+                    best.offer_hint(&self.set, query);
+                    best
+                });
+                self.partition.search_nearest_of_several(&self.set, queries, &mut best);
+                out.iter_mut().zip(best).for_each(|(to, best)| *to = best.finish());
+            } else {
+                queries.iter().zip(out).for_each(|(query, to)| *to = self.closest_point_with(query, options));
+            }
+        }
     }
 }
 

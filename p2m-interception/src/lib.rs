@@ -20,8 +20,13 @@
 #![forbid(unsafe_code)]
 
 mod index;
+#[cfg(feature = "kiddo")]
+mod kd_tree;
 
-pub use index::{InterceptionIndex, OctreeIndex, P2mIndex};
+pub use index::{InterceptionIndex, OctreeIndex, P2mIndex, P2mIndexWith};
+#[cfg(feature = "kiddo")]
+pub use kd_tree::KdTreeLocator;
 pub use p2m_core::interception::{
-    Domain, Octree, OctreeOptions, OctreeReport, P2mOptions, P2mReport, Partition, Voronoi,
+    Domain, Hints, Locator, LocatorSites, Octree, OctreeOptions, OctreeReport, P2mOptions, P2mReport, Partition,
+    Voronoi,
 };

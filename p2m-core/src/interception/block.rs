@@ -222,6 +222,28 @@ impl Block {
 /// Packets of a block that are fetched before they are asked.
 const PREFETCHED: usize = 2;
 
+impl Block {
+    /// Asks for the nearest packets, given what was sorted.
+    #[inline(always)]
+    fn prefetch(&self, tree: &PacketTree, keys: &[u32; WIDTH], count: usize) {
+        // Whatever there is: a branch would be mispredicted.
+        for back in 1..=PREFETCHED {
+            let packet = self.packets[lane_of_key(keys[count.wrapping_sub(back) & 7])] as usize;
+            tree.leaves.prefetch(packet);
+            tree.leaves.prefetch_vertices(packet);
+        }
+    }
+}
+
+/// Asks for the packets of a list that a search would look at first.
+#[inline(always)]
+pub(super) fn prefetch<I: InstructionSet>(tree: &PacketTree, first: &Block, place: &Place) {
+    let bounds: I::Eight = first.lower_bounds(place);
+    let mut keys = [0u32; WIDTH];
+    let count = bounds.sorted_keys(f32::INFINITY, &mut keys);
+    first.prefetch(tree, &keys, count);
+}
+
 /// Looks at the packets of a list that can be the answer, the nearest ones of each block first. The list has its first
 /// block, and as many of the rest as that says.
 #[inline(always)]
@@ -236,12 +258,7 @@ pub(super) fn search<I: InstructionSet, C: Collector>(
         let bounds: I::Eight = block.lower_bounds(place);
         let mut keys = [0u32; WIDTH];
         let count = bounds.sorted_keys(filter.limit(), &mut keys);
-        // The nearest ones, whatever there is: a branch would be mispredicted.
-        for back in 1..=PREFETCHED {
-            let packet = block.packets[lane_of_key(keys[count.wrapping_sub(back) & 7])] as usize;
-            tree.leaves.prefetch(packet);
-            tree.leaves.prefetch_vertices(packet);
-        }
+        block.prefetch(tree, &keys, count);
         let mut rest = count;
         while rest > 0 {
             rest -= 1;

@@ -11,96 +11,45 @@
 use super::block::{Block, Bounds, Entry};
 use super::corner::{AtPoints, Found, Least};
 use super::fan::{Fans, Outside};
-use super::features::{Features, Incidences, NONE, Shared};
+use super::features::{Features, Incidences, NONE};
 use super::hull::Hull;
+use super::matters::{Around, Missed, Outlines, Scene, Seen};
 use super::options::P2mReport;
-use super::sphere;
-use super::voronoi::TREE;
-use crate::delaunay::{BOUNDING, Delaunay};
+use super::shares::in_shares;
+use super::sites::{Corners, Sites};
+use super::voronoi::{AUXILIARY, TREE};
+use crate::delaunay::BOUNDING;
 use crate::hierarchy::PacketTree;
-use crate::hierarchy::wide::ball::Selection;
-use crate::kernel::number::cross;
 use crate::kernel::vector::{V3, dot, norm_squared, sub};
 use crate::packet::{LANES, Packet};
 use crate::simd::{InstructionSet, Operation};
 use crate::{Best, QueryOptions};
+use std::ops::Range;
 
 /// What is needed to make lists.
 pub(super) struct Cells<'a> {
     pub(super) tree: &'a PacketTree,
-    pub(super) delaunay: &'a Delaunay,
+    pub(super) sites: &'a Sites,
     /// By how much a dominator has to be nearer.
     pub(super) slack: f64,
     /// Packets of a list.
     pub(super) most: usize,
-    /// Told how many of all steps are done: one for each corner, and four for each cell.
-    pub(super) progress: &'a dyn Fn(usize),
-}
-
-/// A corner of Voronoi cells, in coordinates of the scene, and what meets its ball.
-#[derive(Clone, Copy)]
-struct Corner {
-    place: V3,
-    /// How far it may be from where it is.
-    error: f64,
-    /// Its selections begin here.
-    first: u32,
-    /// Whether it is unknown, or meets too much.
-    full: bool,
-}
-
-/// The corners of all cells: one for each tetrahedron, and one more for the end.
-pub(super) struct Corners {
-    all: Vec<Corner>,
-    packets: Vec<u32>,
+    /// Whether all threads are used.
+    pub(super) parallel: bool,
 }
 
 impl Cells<'_> {
-    /// A ball for each tetrahedron.
-    pub(super) fn corners(&self) -> Corners {
-        let sites = self.delaunay.sites();
-        let unit = self.delaunay.unit();
-        let mut corners =
-            Corners { all: Vec::with_capacity(self.delaunay.tetrahedra().len() + 1), packets: Vec::new() };
-        let mut met: Vec<Selection> = Vec::new();
-        for (number, tetrahedron) in self.delaunay.tetrahedra().iter().enumerate() {
-            (self.progress)(number);
-            let first = corners.packets.len();
-            let mut corner = Corner {
-                place: [0.0; 3],
-                error: 0.0,
-                first: u32::try_from(first).expect("fewer than 2^32"),
-                full: true,
-            };
-            let own = tetrahedron.iter().map(|v| *v as usize).find(|v| *v >= BOUNDING);
-            if let (Some(own), Some(centre)) = (own, sphere::centre(&tetrahedron.map(|v| sites[v as usize]))) {
-                corner.place = centre.place.map(|x| x * unit);
-                corner.error = centre.error * unit;
-                let radius = norm_squared(sub(centre.place, sites[own])).sqrt() * unit * (1.0 + 8.0 * f64::EPSILON);
-                met.clear();
-                corner.full =
-                    !self.tree.ball(corner.place, radius + 2.0 * corner.error + self.slack, self.most, &mut met);
-                if !corner.full {
-                    corners.packets.extend(met.iter().map(|s| s.packet));
-                }
-            }
-            corners.all.push(corner);
-        }
-        let first = u32::try_from(corners.packets.len()).expect("fewer than 2^32");
-        corners.all.push(Corner { place: [0.0; 3], error: 0.0, first, full: true });
-        corners
-    }
-
     /// The sites with their neighbours and the blocks of their lists: the first one of each at its own number.
-    pub(super) fn lists(&self, corners: &Corners, report: &mut P2mReport) -> (Fans, Vec<Block>) {
-        let sites = self.delaunay.sites();
-        let tetrahedra = self.delaunay.tetrahedra();
+    /// `progress` is told how many sites are done.
+    pub(super) fn lists(&self, report: &mut P2mReport, progress: &dyn Fn(usize, usize)) -> (Fans, Vec<Block>) {
+        let sites = self.sites.delaunay.sites();
+        let tetrahedra = self.sites.delaunay.tetrahedra();
         let around = Incidences::new(
             sites.len(),
             (0..).zip(tetrahedra).flat_map(|(number, tetrahedron)| tetrahedron.iter().map(move |v| (*v, number))),
         );
-        let features = Features::of(self.tree, self.delaunay);
-        let slack = self.slack / self.delaunay.unit();
+        let features = Features::of(self.tree, &self.sites.delaunay);
+        let slack = self.slack / self.sites.delaunay.unit();
         let mut fans = Fans::new(sites, BOUNDING, slack, |site, all, edges| {
             let neighbours = around.of(site).iter().flat_map(|t| tetrahedra[*t as usize]);
             all.extend(neighbours.filter(|v| *v as usize >= BOUNDING && *v as usize != site));
@@ -109,35 +58,87 @@ impl Cells<'_> {
         let nothing =
             Block::of_list(&[Entry { packet: 0, lanes: 0, bounds: [[0.0; 3]; 2], f: [0.0; 8] }], Bounds::Boxes);
         let mut blocks = vec![nothing[0]; sites.len()];
-        let mut cell = Cell::default();
-        for site in 0..sites.len() {
-            (self.progress)(tetrahedra.len() + 4 * site);
-            let to = &mut fans.sites[site];
-            (to.owner, to.list) = (features.owners[site], TREE);
-            let own = around.of(site);
-            if site < BOUNDING || own.iter().any(|t| corners.all[*t as usize].full) {
-                report.trees += usize::from(site >= BOUNDING);
-                continue;
+        report.added = self.sites.added;
+        let outlines = Outlines::of(self.tree);
+        let work = |share| self.share(share, &around, &features, &outlines);
+        in_shares(sites.len(), self.parallel, work, |share: Share| {
+            for made in share.cells {
+                let to = &mut fans.sites[made.site];
+                (to.owner, to.list) = (features.owners[made.site], TREE);
+                match made.list {
+                    List::Tree => report.trees += usize::from(made.site >= BOUNDING),
+                    List::Auxiliary(anchor) => {
+                        (to.owner, to.list) = (anchor, AUXILIARY);
+                        report.auxiliary += 1;
+                    }
+                    List::Blocks(own) => {
+                        to.list = u32::try_from(blocks.len()).expect("numbers of 32 bits");
+                        to.outside = made.outside.unwrap_or(to.outside);
+                        blocks[made.site] = share.blocks[own.start];
+                        blocks.extend_from_slice(&share.blocks[own.start + 1..own.end]);
+                        report.lists += 1;
+                    }
+                }
+                progress(made.site, sites.len());
             }
-            cell.gather(self, corners, site, own);
-            let entries =
-                if cell.packets.len() <= self.most { cell.entries(self, &features, report) } else { Vec::new() };
-            if entries.is_empty() {
-                report.trees += 1;
-                continue;
-            }
-            if let Some(outside) = cell.outside(self, &features, &entries) {
-                to.outside = outside;
-            }
-            report.lists += 1;
-            report.entries += entries.len();
-            let list = Block::of_list(&entries, Bounds::Boxes);
-            to.list = u32::try_from(blocks.len()).expect("numbers of 32 bits");
-            blocks[site] = list[0];
-            blocks.extend_from_slice(&list[1..]);
-        }
+            report.entries += share.entries;
+            report.primitives += share.primitives;
+        });
         (fans, blocks)
     }
+
+    /// The lists of some sites.
+    fn share(&self, sites: Range<usize>, around: &Incidences, features: &Features, outlines: &Outlines) -> Share {
+        let corners = &self.sites.corners;
+        let mut share = Share::default();
+        let mut cell = Cell::default();
+        for site in sites {
+            let own = around.of(site);
+            let mut made = Made { site, list: List::Tree, outside: None };
+            if let Some(anchor) = self.sites.anchor_of(site) {
+                made.list = List::Auxiliary(u32::try_from(anchor).expect("numbers of 32 bits"));
+            } else if site >= BOUNDING && !own.iter().any(|t| corners.all[*t as usize].full) {
+                cell.gather(self, corners, site, own);
+                let few = cell.packets.len() <= self.most;
+                let entries =
+                    if few { cell.entries(self, features, outlines, &mut share.primitives) } else { Vec::new() };
+                if !entries.is_empty() {
+                    made.outside = cell.outside(self, features, &entries);
+                    let first = share.blocks.len();
+                    share.blocks.extend(Block::of_list(&entries, Bounds::Boxes));
+                    share.entries += entries.len();
+                    made.list = List::Blocks(first..share.blocks.len());
+                }
+            }
+            share.cells.push(made);
+        }
+        share
+    }
+}
+
+/// The lists of some sites.
+#[derive(Default)]
+struct Share {
+    cells: Vec<Made>,
+    blocks: Vec<Block>,
+    entries: usize,
+    primitives: usize,
+}
+
+/// What is known of a cell.
+struct Made {
+    site: usize,
+    list: List,
+    outside: Option<Outside>,
+}
+
+enum List {
+    /// The tree answers,
+    Tree,
+    /// from the bound of an anchor,
+    Auxiliary(u32),
+    /// or blocks of the share do.
+    Blocks(Range<usize>),
 }
 
 /// From so many units of a packet on, filters are not precise enough.
@@ -146,7 +147,7 @@ const FAR: f64 = (1u64 << 19) as f64;
 /// A cell at work.
 #[derive(Default)]
 struct Cell {
-    /// The vertex.
+    /// The site.
     y: V3,
     site: usize,
     whole: Hull,
@@ -157,6 +158,7 @@ struct Cell {
     /// Numbers of the tetrahedra, for the search of pairs.
     own: Vec<u32>,
     values: Known,
+    missed: Missed,
 }
 
 /// What is known about a packet and a hull.
@@ -166,15 +168,18 @@ struct Known {
     values: Vec<[f32; LANES]>,
     /// The lanes that are not above zero at some corner.
     near: u16,
+    /// Of each corner the lanes that are not above zero there; of each edge those that are at one end alone.
+    below: Vec<u16>,
+    crossed: Vec<u16>,
     /// The region of a lane.
     region: Vec<V3>,
 }
 
 impl Cell {
     fn gather(&mut self, cells: &Cells<'_>, corners: &Corners, site: usize, own: &[u32]) {
-        let unit = cells.delaunay.unit();
+        let unit = cells.sites.delaunay.unit();
         self.site = site;
-        self.y = cells.delaunay.sites()[site].map(|x| x * unit);
+        self.y = cells.sites.delaunay.sites()[site].map(|x| x * unit);
         self.whole.clear();
         self.packets.clear();
         self.own.clear();
@@ -183,13 +188,13 @@ impl Cell {
         for (i, &number) in (0u32..).zip(&self.own) {
             let t = number as usize;
             let corner = &corners.all[t];
-            let tetrahedron = &cells.delaunay.tetrahedra()[t];
+            let tetrahedron = &cells.sites.delaunay.tetrahedra()[t];
             let mut faces = [0; 3];
             let others = tetrahedron.iter().filter(|v| **v as usize != site);
             faces.iter_mut().zip(others).for_each(|(to, v)| *to = *v);
             self.whole.push(corner.place, corner.error, faces, &self.y, cells.slack);
-            self.packets.extend_from_slice(&corners.packets[corner.first as usize..corners.all[t + 1].first as usize]);
-            for (v, other) in tetrahedron.iter().zip(&cells.delaunay.neighbours()[t]) {
+            self.packets.extend_from_slice(corners.packets(t));
+            for (v, other) in tetrahedron.iter().zip(&cells.sites.delaunay.neighbours()[t]) {
                 // Each pair once.
                 let joined = *v as usize != site && number < *other;
                 if let Some(Ok(j)) = joined.then(|| self.own.binary_search(other)) {
@@ -201,8 +206,17 @@ impl Cell {
         self.packets.dedup();
     }
 
-    fn entries(&mut self, cells: &Cells<'_>, features: &Features, report: &mut P2mReport) -> Vec<Entry> {
+    fn entries(
+        &mut self,
+        cells: &Cells<'_>,
+        features: &Features,
+        outlines: &Outlines,
+        primitives: &mut usize,
+    ) -> Vec<Entry> {
         let tree = cells.tree;
+        let scene = Scene { tree, delaunay: &cells.sites.delaunay, features, outlines, slack: cells.slack };
+        let Self { site, y: place, whole: Hull { reach, error, .. }, .. } = *self;
+        let around = Around { site, place, reach, error };
         let mut entries: Vec<(f64, Entry)> = Vec::with_capacity(self.packets.len());
         let packets = std::mem::take(&mut self.packets);
         for &number in &packets {
@@ -211,12 +225,13 @@ impl Cell {
             let near = self.values.near;
             let mut lanes = near;
             for lane in (0..LANES).filter(|lane| near >> lane & 1 == 1) {
-                if !self.keeps(cells, packet, lane, features.shared[number as usize][lane]) {
-                    lanes &= !(1 << lane);
+                if let Some(seen) = Seen::new(scene, around, number as usize, lane) {
+                    self.values.find_region(&self.whole, lane);
+                    lanes &= !(u16::from(!seen.matters(&self.values.region, &mut self.missed)) << lane);
                 }
             }
             if lanes != 0 {
-                report.primitives += lanes.count_ones() as usize;
+                *primitives += lanes.count_ones() as usize;
                 let order = FromPlace::new(tree, packet, &self.y).least(lanes) * packet.unit();
                 let bounds = tree.frame.enclose(&packet.bounds_of(lanes));
                 entries.push((order, Entry { packet: number, lanes, bounds, f: [0.0; 8] }));
@@ -227,36 +242,13 @@ impl Cell {
         entries.into_iter().map(|e| e.1).collect()
     }
 
-    /// Whether the primitive in a lane may be the answer.
-    fn keeps(&mut self, cells: &Cells<'_>, packet: &Packet, lane: usize, shared: Shared) -> bool {
-        let (places, count) = packet.vertices_of(lane);
-        // One of your own.
-        if count == 0 {
-            return true;
-        }
-        let mut own = [[0.0; 3]; 3];
-        for (to, place) in own.iter_mut().zip(&places[..count]) {
-            *to = cells.tree.leaves.vertices[*place];
-        }
-        let vertices = &own[..count];
-        let size = vertices.iter().flat_map(|v| sub(*v, self.y)).fold(0.0f64, |a, x| a.max(x.abs()));
-        // Rounding of the kernel near the borders of features, and of what is computed here.
-        let margin = MARGIN * (self.whole.reach + size);
-        let (height, sine) = slimness(vertices);
-        if self.whole.error >= margin * 0.25 || height.is_nan() || height < margin {
-            return true;
-        }
-        self.values.find_region(&self.whole, lane);
-        matters(vertices, &self.values.region, margin, margin / sine, shared)
-    }
-
-    /// The half-space far from the site in which only primitives with it can be the answer, if it is the nearest point of
-    /// all of these and other sites are farther away by some part.
+    /// The half-space far from the site in which only primitives with it can be the answer, if it is the nearest point
+    /// of all of these and other sites are farther away by some part.
     #[allow(clippy::cast_possible_truncation, reason = "rounded, and margins have room")]
     fn outside(&mut self, cells: &Cells<'_>, features: &Features, entries: &[Entry]) -> Option<Outside> {
         let tree = cells.tree;
-        let sites = cells.delaunay.sites();
-        let unit = cells.delaunay.unit();
+        let sites = cells.sites.delaunay.sites();
+        let unit = cells.sites.delaunay.unit();
         let others = features.edges.of(self.site).iter();
         let ways: Vec<V3> = others
             .map(|w| sub(sites[*w as usize], sites[self.site]))
@@ -293,7 +285,7 @@ impl Cell {
             let from_site = FromPlace::new(tree, packet, &y);
             for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
                 let (places, count) = packet.vertices_of(lane);
-                if places[..count].iter().any(|place| cells.delaunay.site_of(*place) == self.site) {
+                if places[..count].iter().any(|place| cells.sites.delaunay.site_of(*place) == self.site) {
                     continue;
                 }
                 let distance = from_site.least(1 << lane);
@@ -338,6 +330,17 @@ impl Known {
         self.values.clear();
         self.near = tree.isa().run(Values { hull, packet, values: &mut self.values });
         self.refine(hull, packet, tree);
+        self.below.clear();
+        for values in &self.values {
+            let mut lanes = 0;
+            for (lane, value) in values.iter().enumerate() {
+                lanes |= u16::from(*value <= 0.0) << lane;
+            }
+            self.below.push(lanes);
+        }
+        self.crossed.clear();
+        let below = &self.below;
+        self.crossed.extend(hull.edges.iter().map(|[i, j]| below[*i as usize] ^ below[*j as usize]));
     }
 
     /// Evaluates what the filter is too coarse for: corners from which the packet is small.
@@ -378,17 +381,12 @@ impl Known {
     /// The points that span the region of a lane.
     fn find_region(&mut self, hull: &Hull, lane: usize) {
         self.region.clear();
-        for (corner, values) in hull.corners.iter().zip(&self.values) {
-            if values[lane] <= 0.0 {
-                self.region.push(*corner);
-            }
+        for (corner, _) in hull.corners.iter().zip(&self.below).filter(|(_, below)| **below >> lane & 1 == 1) {
+            self.region.push(*corner);
         }
-        for [i, j] in hull.edges.iter().map(|e| e.map(|i| i as usize)) {
-            let (a, b) = (self.values[i][lane], self.values[j][lane]);
-            if (a <= 0.0) == (b <= 0.0) {
-                continue;
-            }
-            let (a, b) = (f64::from(a), f64::from(b));
+        for (edge, _) in hull.edges.iter().zip(&self.crossed).filter(|(_, crossed)| **crossed >> lane & 1 == 1) {
+            let [i, j] = edge.map(|i| i as usize);
+            let [a, b] = [i, j].map(|i| f64::from(self.values[i][lane]));
             // The part of the way from i, a little farther than the zero of the chord.
             let t = a / (a - b) + if a <= 0.0 { 1e-6 } else { -1e-6 };
             let (from, to) = (hull.corners[i], hull.corners[j]);
@@ -403,79 +401,6 @@ const MOST_WAYS: usize = 64;
 pub(super) const PART: f64 = 0.85;
 /// A half-space begins so many sizes of the scene from the site.
 const OUTSIDE: f64 = 0.15;
-
-/// Part of the largest length by which a feature has to be missed.
-const MARGIN: f64 = 1.0 / (1u64 << 22) as f64;
-
-/// The least height of a primitive, or its length, and what part that is of the longest edge; no point is slim.
-fn slimness(vertices: &[V3]) -> (f64, f64) {
-    let length = |a: &V3, b: &V3| norm_squared(sub(*a, *b)).sqrt();
-    match vertices {
-        [a, b, c] => {
-            let longest = length(a, b).max(length(b, c)).max(length(c, a));
-            let (e, f) = (sub(*b, *a), sub(*c, *a));
-            let height = norm_squared(cross(e, f)).sqrt() / longest;
-            (height, height / longest)
-        }
-        [a, b] => (length(a, b), 1.0),
-        _ => (f64::INFINITY, 1.0),
-    }
-}
-
-/// Whether a feature matters that is not shared. It has to be missed by `margin` along an edge, by `across` across one.
-fn matters(vertices: &[V3], region: &[V3], margin: f64, across: f64, shared: Shared) -> bool {
-    let n = vertices.len();
-    let all = |test: &dyn Fn(&V3) -> bool| region.iter().all(test);
-    // The direction of a length, zero for none; products with it are lengths.
-    let unit = |d: V3| -> V3 {
-        let length = norm_squared(d).sqrt();
-        if length > 0.0 { d.map(|x| x / length) } else { [0.0; 3] }
-    };
-    let mut inside = [[0.0; 3]; 3];
-    if n == 3 {
-        let [a, b, c] = [vertices[0], vertices[1], vertices[2]];
-        let (e, f) = (sub(b, a), sub(c, a));
-        let normal = unit(cross(e, f));
-        let mut outside = false;
-        for i in 0..3 {
-            let (p, q) = (vertices[i], vertices[(i + 1) % 3]);
-            let d = unit(sub(q, p));
-            // Into the triangle.
-            inside[i] = cross(normal, d);
-            outside |= all(&|h| dot(sub(*h, p), inside[i]) < -across);
-        }
-        if !outside {
-            return true;
-        }
-    }
-    let edge_count = if n == 3 { 3 } else { n - 1 };
-    for i in 0..edge_count {
-        if shared >> (3 + i) & 1 == 1 {
-            continue;
-        }
-        let (p, q) = (vertices[i], vertices[(i + 1) % n]);
-        let d = unit(sub(q, p));
-        let missed = all(&|h| dot(sub(*h, p), d) < -margin)
-            || all(&|h| dot(sub(*h, q), d) > margin)
-            || (n == 3 && all(&|h| dot(sub(*h, p), inside[i]) > across));
-        if !missed {
-            return true;
-        }
-    }
-    for i in 0..n {
-        if shared >> i & 1 == 1 {
-            continue;
-        }
-        let missed = (0..n).filter(|j| *j != i).any(|j| {
-            let d = unit(sub(vertices[j], vertices[i]));
-            all(&|h| dot(sub(*h, vertices[i]), d) > margin)
-        });
-        if !missed {
-            return true;
-        }
-    }
-    false
-}
 
 /// The function at all corners of a hull for the lanes of a packet, as an operation: which lanes are not above zero at
 /// all of them.

@@ -1,7 +1,7 @@
 //! From a site to the nearest one: the walk over Delaunay neighbours.
 //!
-//! If a site v is not the nearest one to q, some Delaunay neighbour w of it is nearer: (q - v) . (w - v) > |w - v|^2 / 2
-//! (docs/p2m.md). The ways w - v lie side by side as whole numbers of 16 bits, eight to a cache line. Where their
+//! If a site v is not the nearest one to q, some Delaunay neighbour w of it is nearer: (q - v) . (w - v) > |w - v|^2 /
+//! 2 (docs/p2m.md). The ways w - v lie side by side as whole numbers of 16 bits, eight to a cache line. Where their
 //! products do not tell, f64 does, and integers at last; so a walk ends at a site that certainly has q in its closed
 //! cell, and never runs in a circle, for each step is one to a nearer site.
 
@@ -101,8 +101,8 @@ impl Fan {
         let sizes = px.max(zero.sub(px)).add(py.max(zero.sub(py))).add(pz.max(zero.sub(pz)));
         let product = px.add(py).add(pz);
         // Each component is off by half a unit: the product by that much of the query's size, half of the square by
-        // that much of the way's. The square of an error is at most 3/8 of a squared unit; what is certainly gained is a
-        // whole one on some axis.
+        // that much of the way's. The square of an error is at most 3/8 of a squared unit; what is certainly gained is
+        // a whole one on some axis.
         let lengths = x.max(zero.sub(x)).add(y.max(zero.sub(y))).add(z.max(zero.sub(z)));
         let whole = lengths.add(L::splat(d.size)).mul(L::splat(self.unit * 0.51));
         let margins = sizes.add(half).mul_add(L::splat(ROUNDING), whole.add(L::splat(d.tie)));
@@ -130,7 +130,7 @@ pub(super) struct Site {
     more: u32,
     count: u32,
     pub(super) outside: Outside,
-    /// The lowest primitive with the vertex: packet and lane.
+    /// The lowest primitive with the vertex, as packet and lane; the anchor of an auxiliary site.
     pub(super) owner: u32,
     /// What its list is.
     pub(super) list: u32,
@@ -138,8 +138,8 @@ pub(super) struct Site {
 
 const _: () = assert!(size_of::<Site>() == 64);
 
-/// A half-space far from a site in which only primitives with it can be the answer, if it is the nearest point of all of
-/// these and no other site is nearly as near.
+/// A half-space far from a site in which only primitives with it can be the answer, if it is the nearest point of all
+/// of these and no other site is nearly as near.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Outside {
     pub(super) normal: [f32; 3],
@@ -243,8 +243,7 @@ impl Fans {
     pub(super) fn walk<I: InstructionSet>(&self, from: usize, query: &V3, ahead: impl Fn(usize)) -> Found {
         let mut at = from;
         loop {
-            prefetch_lines(self.sites.as_ptr().wrapping_add(at), size_of::<Site>());
-            prefetch_lines(self.blocks.as_ptr().wrapping_add(FIXED * at), FIXED * size_of::<Fan>());
+            self.prefetch(at);
             ahead(at);
             let (next, is_nearest) = self.step::<I>(at, query);
             if next == at {
@@ -254,11 +253,18 @@ impl Fans {
         }
     }
 
-    /// A nearer site than this one, the nearest of its neighbours as far as f32 tells; or the same if there is none, and
-    /// what [`Found::is_nearest`] says.
+    /// Asks for what a step reads.
+    #[inline(always)]
+    pub(super) fn prefetch(&self, at: usize) {
+        prefetch_lines(self.sites.as_ptr().wrapping_add(at), size_of::<Site>());
+        prefetch_lines(self.blocks.as_ptr().wrapping_add(FIXED * at), FIXED * size_of::<Fan>());
+    }
+
+    /// A nearer site than this one, the nearest of its neighbours as far as f32 tells; or the same if there is none,
+    /// and what [`Found::is_nearest`] says.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounding is allowed for")]
-    fn step<I: InstructionSet>(&self, at: usize, query: &V3) -> (usize, bool) {
+    pub(super) fn step<I: InstructionSet>(&self, at: usize, query: &V3) -> (usize, bool) {
         let site = &self.sites[at];
         let d = sub(*query, site.place);
         let way = [d[0] as f32, d[1] as f32, d[2] as f32];

@@ -18,6 +18,18 @@ pub(super) struct Features {
     pub(super) owners: Vec<u32>,
     /// Of each site the sites at the other ends of edges.
     pub(super) edges: Incidences,
+    /// For each packet and lane, of the edge from each vertex to the next another triangle that has it, as packet and
+    /// lane, or [`NONE`].
+    pub(super) across: Vec<[[u32; 3]; LANES]>,
+    /// Whether sites are exactly where their vertices are.
+    pub(super) exact: bool,
+}
+
+/// What primitives have an edge.
+struct Edge {
+    lowest: PrimitiveId,
+    /// The first two triangles, as packets and lanes.
+    triangles: [u32; 2],
 }
 
 /// No primitive.
@@ -35,7 +47,7 @@ impl Features {
         let place = |site: usize| delaunay.sites()[site].map(|x| x * delaunay.unit());
         // The lowest primitive of each vertex, its packet and lane.
         let mut owners = vec![(PrimitiveId::new(0), NONE); count];
-        let mut edge_owners: HashMap<(u32, u32), PrimitiveId> = HashMap::with_capacity(leaves.vertices.len());
+        let mut edge_owners: HashMap<(u32, u32), Edge> = HashMap::with_capacity(leaves.vertices.len());
         let each = |visit: Visit<'_>| {
             for (number, packet) in leaves.packets.iter().enumerate().filter(|(_, p)| p.has_vertices()) {
                 for (lane, id) in packet.ids().iter().enumerate() {
@@ -52,17 +64,25 @@ impl Features {
                 }
             }
             for edge in edges(own) {
-                edge_owners.entry(edge).and_modify(|o| *o = (*o).min(id)).or_insert(id);
+                let edge = edge_owners.entry(edge).or_insert(Edge { lowest: id, triangles: [NONE; 2] });
+                edge.lowest = edge.lowest.min(id);
+                if let Some(free) = edge.triangles.iter_mut().find(|t| **t == NONE).filter(|_| own.len() == 3) {
+                    *free = (number * LANES + lane) as u32;
+                }
             }
         });
         let mut shared = vec![[0; LANES]; leaves.packets.len()];
+        let mut across = vec![[[NONE; 3]; LANES]; leaves.packets.len()];
         each(&mut |number, lane, id, own| {
             let bits = &mut shared[number][lane];
             for (i, &site) in own.iter().enumerate() {
                 *bits |= u8::from(owners[site].0 < id) << i;
             }
             for (i, edge) in edges(own).enumerate() {
-                *bits |= u8::from(edge_owners[&edge] < id) << (3 + i);
+                let edge = &edge_owners[&edge];
+                *bits |= u8::from(edge.lowest < id) << (3 + i);
+                let other = edge.triangles.iter().find(|t| **t != (number * LANES + lane) as u32);
+                across[number][lane][i] = other.copied().unwrap_or(NONE);
             }
         });
         let mut proper: Vec<(u32, u32)> = edge_owners.into_keys().filter(|(a, b)| a != b).collect();
@@ -70,11 +90,13 @@ impl Features {
         let edges = Incidences::new(count, proper.iter().flat_map(|&(a, b)| [(a, b), (b, a)]));
         let mut owners: Vec<u32> = owners.into_iter().map(|(_, place)| place).collect();
         // Vertices that one site stands for, but for what is below the least coordinate of sites, are not the same.
-        if (0..leaves.vertices.len()).any(|v| place(delaunay.site_of(v)) != leaves.vertices[v]) {
+        let exact = (0..leaves.vertices.len()).all(|v| place(delaunay.site_of(v)) == leaves.vertices[v]);
+        if !exact {
             shared.fill([0; LANES]);
             owners.fill(NONE);
+            across.fill([[NONE; 3]; LANES]);
         }
-        Self { shared, owners, edges }
+        Self { shared, owners, edges, across, exact }
     }
 }
 

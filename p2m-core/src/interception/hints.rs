@@ -2,12 +2,13 @@
 //! its cells with several sites are cut into 64. A coarser one lies over the whole domain.
 
 use super::fan::Fans;
+use super::locator::{Locator, LocatorSites};
 use crate::kernel::vector::V3;
-use crate::simd::{InstructionSet, Isa, Operation};
+use crate::simd::{InstructionSet, Operation, prefetch};
 
 /// Sites by a grid of cells.
 #[derive(Clone, Debug)]
-struct Grid {
+pub(super) struct Grid {
     low: V3,
     /// Cells in a unit of length.
     per_length: f64,
@@ -17,9 +18,9 @@ struct Grid {
     fine: Vec<[u32; FINE * FINE * FINE]>,
 }
 
-/// The two grids.
+/// Two grids: the usual [`Locator`].
 #[derive(Clone, Debug)]
-pub(super) struct Hints {
+pub struct Hints {
     near: Grid,
     far: Grid,
 }
@@ -69,8 +70,25 @@ impl Grid {
         if cell & CUT == 0 {
             return Some(cell as usize);
         }
-        let [x, y, z] = at.map(|x| (x * FINE as f64) as usize & (FINE - 1));
-        Some(self.fine[(cell & !CUT) as usize][(z * FINE + y) * FINE + x] as usize)
+        Some(self.fine[(cell & !CUT) as usize][within(&at)] as usize)
+    }
+
+    /// Asks for the cell of a place, if the grid has it.
+    #[inline(always)]
+    fn prefetch(&self, place: &V3) -> bool {
+        let number = self.cell(place).map(|(number, _)| number);
+        number.map(|number| prefetch(self.cells.as_ptr().wrapping_add(number).cast())).is_some()
+    }
+
+    /// Asks for its finer cell, if there is one; `false` if the grid does not have the place.
+    #[inline(always)]
+    fn prefetch_fine(&self, place: &V3) -> bool {
+        let Some((number, at)) = self.cell(place) else { return false };
+        let cell = self.cells[number];
+        if cell & CUT != 0 {
+            prefetch(self.fine[(cell & !CUT) as usize].as_ptr().wrapping_add(within(&at)).cast());
+        }
+        true
     }
 
     fn memory(&self) -> usize {
@@ -78,41 +96,54 @@ impl Grid {
     }
 }
 
-impl Hints {
-    /// For sites in a box, with queries in another one.
-    pub(super) fn new(fans: &Fans, isa: Isa, own: [V3; 2], domain: [V3; 2], first: usize) -> Self {
-        let count = fans.sites.len() as f64;
-        let mut near = Grid::new(own[0], own[1], CELLS * count);
-        let mut far = Grid::new(domain[0], domain[1], SIDE.powi(3).min(CELLS * count));
-        for site in &fans.sites[first..] {
-            if let Some((number, _)) = near.cell(&site.place) {
+/// The number of the finer cell of a place that is given in cells.
+#[inline(always)]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, and few cells")]
+fn within(at: &V3) -> usize {
+    let [x, y, z] = at.map(|x| (x * FINE as f64) as usize & (FINE - 1));
+    (z * FINE + y) * FINE + x
+}
+
+impl Locator for Hints {
+    fn new(sites: &LocatorSites<'_>) -> Self {
+        let count = sites.places().count() as f64;
+        let [mut near, mut far] = [(sites.own, CELLS * count), (sites.domain, SIDE.powi(3).min(CELLS * count))]
+            .map(|([low, high], count)| Grid::new(low, high, count));
+        for place in sites.places() {
+            if let Some((number, _)) = near.cell(&place) {
                 near.cells[number] += 1;
             }
         }
-        for grid in [&mut near, &mut far] {
-            isa.run(Fill { grid, fans, first });
-        }
+        [&mut near, &mut far].into_iter().for_each(|grid| sites.fill(grid));
         Self { near, far }
     }
 
-    /// Some site, mostly near a place.
     #[inline(always)]
-    pub(super) fn start(&self, place: &V3) -> Option<usize> {
+    fn start(&self, place: &V3) -> Option<usize> {
         self.near.site(place).or_else(|| self.far.site(place))
     }
 
-    /// Heap memory, in bytes.
-    pub(super) fn memory(&self) -> usize {
+    fn memory(&self) -> usize {
         self.near.memory() + self.far.memory()
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, place: &V3) {
+        let _ = self.near.prefetch(place) || self.far.prefetch(place);
+    }
+
+    #[inline(always)]
+    fn prefetch_more(&self, place: &V3) {
+        let _ = self.near.prefetch_fine(place) || self.far.prefetch_fine(place);
     }
 }
 
 /// Fills a grid, whose cells hold how many sites are in them, there and back along each axis, so that every walk is
 /// short.
-struct Fill<'a> {
-    grid: &'a mut Grid,
-    fans: &'a Fans,
-    first: usize,
+pub(super) struct Fill<'a> {
+    pub(super) grid: &'a mut Grid,
+    pub(super) fans: &'a Fans,
+    pub(super) first: usize,
 }
 
 impl Operation for Fill<'_> {

@@ -102,8 +102,8 @@ mod tests {
         hull
     }
 
-    /// A cube that is cut again and again: each time what is left is a polytope by Euler's formula, whose corners are above all
-    /// planes and on the faces that they say, and of which no point is lost.
+    /// A cube that is cut again and again: each time what is left is a polytope by Euler's formula, whose corners are
+    /// above all planes and on the faces that they say, and of which no point is lost.
     #[test]
     fn what_is_cut_off_is_what_lies_below() {
         let mut cuts = 0;

@@ -120,11 +120,15 @@ pub struct P2mOptions {
     pub splits: SplitOptions,
     /// Lists of more packets are left to the tree; 2048 is the most.
     pub longest: usize,
+    /// So many sites may be added for each vertex of a packet (one that several packets have counts several times),
+    /// where many primitives are about as near as the nearest vertex: on long edges and wide faces, and in the middle
+    /// of round shapes.
+    pub added: f64,
 }
 
 impl Default for P2mOptions {
     fn default() -> Self {
-        Self { splits: SplitOptions::default(), longest: 128 }
+        Self { splits: SplitOptions::default(), longest: 96, added: 0.5 }
     }
 }
 
@@ -139,6 +143,11 @@ impl P2mOptions {
     pub fn with_longest(self, longest: usize) -> Self {
         Self { longest, ..self }
     }
+    /// With more or fewer sites.
+    #[must_use]
+    pub fn with_added(self, added: f64) -> Self {
+        Self { added, ..self }
+    }
 }
 
 /// What a P2M index is made of.
@@ -147,7 +156,11 @@ impl P2mOptions {
 pub struct P2mReport {
     /// Cells with a list.
     pub lists: usize,
-    /// Cells that the tree answers: where these are the majority, it answers everything, and nothing is kept.
+    /// Points of the scene that were added to its vertices as sites.
+    pub added: usize,
+    /// Sites beside the scene, in whose cells the tree answers.
+    pub auxiliary: usize,
+    /// Other cells that the tree answers: where these are a quarter of all, it answers everything, and nothing is kept.
     pub trees: usize,
     /// Packets in all lists.
     pub entries: usize,
@@ -161,7 +174,7 @@ pub struct P2mReport {
 
 impl std::fmt::Display for P2mReport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { lists, trees, entries, primitives, bytes, tree_bytes } = self;
+        let Self { lists, added, auxiliary, trees, entries, primitives, bytes, tree_bytes } = self;
         let mean = |count: &usize| *count as f64 / (*lists).max(1) as f64;
         let megabytes = |bytes: &usize| *bytes as f64 / 1e6;
         write!(
@@ -170,7 +183,7 @@ impl std::fmt::Display for P2mReport {
             mean(primitives),
             mean(entries)
         )?;
-        write!(f, "{trees} left to the tree; ")?;
+        write!(f, "{trees} left to the tree; {added} sites added on the scene and {auxiliary} beside it; ")?;
         write!(f, "{:.1} MB of cells, {:.1} MB of tree", megabytes(bytes), megabytes(tree_bytes))
     }
 }

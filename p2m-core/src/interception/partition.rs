@@ -44,6 +44,18 @@ pub trait Partition: LookUp + Sized {
         self.nearest(wide(query), best.minimum(), &evaluation(set, query));
     }
 
+    /// The same for several queries, which may be answered side by side.
+    fn search_nearest_of_several<T: Real, S: PrimitiveSet<T>>(
+        &self,
+        set: &S,
+        queries: &[Point3<T>; SIDE_BY_SIDE],
+        best: &mut [Best<T>; SIDE_BY_SIDE],
+    ) {
+        let evaluations = queries.each_ref().map(|query| evaluation(set, query));
+        let evaluates = evaluations.each_ref().map(|evaluate| evaluate as Evaluate<'_, Minimum>);
+        self.nearest_of_several(&queries.each_ref().map(wide), best.each_mut().map(Best::minimum), evaluates);
+    }
+
     /// The tree over the packets, which answers what cells do not.
     fn tree(&self) -> &PacketTree;
 
@@ -58,6 +70,9 @@ pub trait Partition: LookUp + Sized {
     fn with_isa(self, isa: Isa) -> Self;
 }
 
+/// How many queries are answered side by side.
+pub const SIDE_BY_SIDE: usize = 16;
+
 /// The way of a query to its cell and through its list.
 pub(crate) trait LookUp {
     /// Offers to a collector of nearest primitives every one that it could want.
@@ -71,4 +86,16 @@ pub(crate) trait LookUp {
 
     /// The same for the nearest one, in a function of its own: what is not generic is compiled once.
     fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>);
+
+    /// The same for several queries.
+    fn nearest_of_several(
+        &self,
+        queries: &[V3; SIDE_BY_SIDE],
+        minimums: [&mut Minimum; SIDE_BY_SIDE],
+        evaluates: [Evaluate<'_, Minimum>; SIDE_BY_SIDE],
+    ) {
+        for ((query, minimum), evaluate) in queries.iter().zip(minimums).zip(evaluates) {
+            self.nearest(*query, minimum, evaluate);
+        }
+    }
 }

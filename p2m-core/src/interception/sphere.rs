@@ -1,8 +1,8 @@
 //! Spheres through four points: corners of Voronoi cells.
 //!
-//! With A, B, C from the first point to the others the centre lies at (|A|^2 B x C + |B|^2 C x A + |C|^2 A x B) / (2 A .
-//! B x C) from it. Computed in f64, and in double-double arithmetic where that is too far off for thin tetrahedra; the
-//! error is bounded in either case.
+//! With A, B, C from the first point to the others the centre lies at (|A|^2 B x C + |B|^2 C x A + |C|^2 A x B) / (2 A
+//! . B x C) from it. Computed in f64, and in double-double arithmetic where that is too far off for thin tetrahedra;
+//! the error is bounded in either case.
 
 use crate::kernel::double::{self, Double};
 use crate::kernel::number::{Number, cross, dot};

@@ -1,0 +1,292 @@
+//! From a query to its cell and through its list; several side by side, so that some go on while others wait for
+//! memory.
+//!
+//! A query reads, one after the other, a hint, the site with its neighbours for each step of the walk, the blocks of
+//! the list, packets and vertices. Side by side every query takes a step and asks for what it reads next before the
+//! others take theirs.
+
+use super::block::{self, Block, Place};
+use super::fan::{Fans, Found, Site};
+use super::locator::Locator;
+use super::partition::{LookUp, SIDE_BY_SIDE};
+use super::voronoi::{AUXILIARY, TREE, Voronoi};
+use crate::hierarchy::PacketTree;
+use crate::hierarchy::wide::search::{Evaluate, Filter, Search, finish_nearest};
+use crate::hierarchy::wide::volume::Rounded;
+use crate::kernel::vector::{V3, norm_squared, sub};
+use crate::packet::LANES;
+use crate::predicates::staged::RANGE;
+use crate::query::Minimum;
+use crate::real::wide;
+use crate::simd::{InstructionSet, Operation, prefetch_lines};
+use crate::{Collector, PrimitiveId};
+use nalgebra::Point3;
+
+impl<L: Locator> LookUp for Voronoi<L> {
+    #[inline(always)]
+    fn look_up<C: Collector>(
+        &self,
+        query: V3,
+        collector: &mut C,
+        evaluate: Evaluate<'_, C>,
+        finish: fn(&mut Filter<'_, C>),
+    ) {
+        let tree = &self.tree;
+        if let Some(place) = self.place(&query)
+            && let Some(start) = self.locator.as_ref().and_then(|locator| locator.start(&place))
+        {
+            return tree.isa().run(Lookup { index: self, start, query, place, collector, evaluate, finish });
+        }
+        tree.isa().run(Search { tree, query, reach: f64::INFINITY, collector, evaluate, finish });
+    }
+
+    fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
+        self.look_up(query, minimum, evaluate, finish_nearest);
+    }
+
+    fn nearest_of_several(
+        &self,
+        queries: &[V3; SIDE_BY_SIDE],
+        minimums: [&mut Minimum; SIDE_BY_SIDE],
+        evaluates: [Evaluate<'_, Minimum>; SIDE_BY_SIDE],
+    ) {
+        self.tree.isa().run(Several { index: self, queries, minimums, evaluates });
+    }
+}
+
+impl<L: Locator> Voronoi<L> {
+    /// A query in the units of sites, if it is in the domain.
+    #[inline(always)]
+    fn place(&self, query: &V3) -> Option<V3> {
+        // Not for NaN either.
+        let inside = (0..3).all(|k| query[k] >= self.low[k] && query[k] <= self.high[k]);
+        inside.then(|| query.map(|x| snapped(x * self.per_unit)))
+    }
+
+    /// Asks for a block of a list: the first one has the number of its site.
+    #[inline(always)]
+    fn prefetch_block(&self, number: usize) {
+        prefetch_lines(self.blocks.as_ptr().wrapping_add(number), size_of::<Block>());
+    }
+
+    /// The bound on the answer that a site gives.
+    #[inline(always)]
+    fn reach(&self, site: &Site, query: &V3, place: &V3) -> f64 {
+        let length = |way: V3| norm_squared(way).sqrt() * (1.0 + 8.0 * f64::EPSILON);
+        if site.list == AUXILIARY {
+            length(sub(*query, self.anchors[site.owner as usize])) + self.slack
+        } else {
+            length(sub(*place, site.place)) * self.unit + self.slack
+        }
+    }
+
+    /// The primitive that is certainly the answer for a query from whose site the way is known, as packet and lane.
+    #[inline(always)]
+    fn certain(found: &Found, site: &Site, place: &V3) -> Option<(usize, usize)> {
+        let owner = site.owner as usize;
+        let certain = found.is_nearest && site.outside.contains(&sub(*place, site.place));
+        certain.then_some((owner / LANES, owner % LANES))
+    }
+
+    /// The primitives of the list of the cell that `query` is in, in ascending order: what a search in the cell may
+    /// come to look at. `None` where the tree answers.
+    #[must_use]
+    pub fn list(&self, query: &Point3<f64>) -> Option<Vec<PrimitiveId>> {
+        let place = self.place(&wide(query))?;
+        let start = self.locator.as_ref()?.start(&place)?;
+        let at = self.tree.isa().run(Walk { fans: &self.fans, start, place });
+        let list = self.fans.sites[at].list;
+        if list == TREE || list == AUXILIARY {
+            return None;
+        }
+        let first = &self.blocks[at];
+        let rest = &self.blocks[list as usize..][..usize::from(first.more)];
+        let mut ids = Vec::new();
+        for block in std::iter::once(first).chain(rest) {
+            for (packet, lanes) in block.packets.iter().zip(block.lanes).take(usize::from(block.len)) {
+                let all = self.tree.leaves.packets[*packet as usize].ids().iter().enumerate();
+                ids.extend(all.filter(|(lane, _)| lanes >> lane & 1 == 1).map(|(_, id)| *id));
+            }
+        }
+        ids.sort_unstable();
+        Some(ids)
+    }
+}
+
+/// A coordinate of a query in the units of sites, or 0 below what the predicates can tell, as for sites.
+#[inline(always)]
+fn snapped(x: f64) -> f64 {
+    if x.abs() < *RANGE.start() { 0.0 } else { x }
+}
+
+/// The way to a cell alone, as an operation.
+struct Walk<'a> {
+    fans: &'a Fans,
+    start: usize,
+    place: V3,
+}
+
+impl Operation for Walk<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> usize {
+        self.fans.walk::<I>(self.start, &self.place, |_| ()).site
+    }
+}
+
+/// A query on its way to its cell, as an operation.
+struct Lookup<'a, C, L> {
+    index: &'a Voronoi<L>,
+    start: usize,
+    query: V3,
+    place: V3,
+    collector: &'a mut C,
+    evaluate: Evaluate<'a, C>,
+    finish: fn(&mut Filter<'_, C>),
+}
+
+impl<C: Collector, L: Locator> Operation for Lookup<'_, C, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        let Self { index, start, query, place, collector, evaluate, finish } = self;
+        let found = index.fans.walk::<I>(start, &place, |at| index.prefetch_block(at));
+        Answer { index, found, query, place, collector, evaluate, finish }.search::<I>();
+    }
+}
+
+/// A query in its cell.
+struct Answer<'a, C, L> {
+    index: &'a Voronoi<L>,
+    found: Found,
+    query: V3,
+    place: V3,
+    collector: &'a mut C,
+    evaluate: Evaluate<'a, C>,
+    finish: fn(&mut Filter<'_, C>),
+}
+
+impl<C: Collector, L: Locator> Answer<'_, C, L> {
+    #[inline(always)]
+    fn search<I: InstructionSet>(self) {
+        let Self { index, found, query, place, collector, evaluate, finish } = self;
+        let tree = &index.tree;
+        let site = &index.fans.sites[found.site];
+        let reach = index.reach(site, &query, &place);
+        if site.list == TREE || site.list == AUXILIARY {
+            return Search { tree, query, reach, collector, evaluate, finish }.run::<I>();
+        }
+        // What comes next, if the list has more than a block.
+        index.prefetch_block(site.list as usize);
+        let mut filter = Filter::new(tree, query, reach, collector, evaluate, finish);
+        if let Some((packet, lane)) = Voronoi::<L>::certain(&found, site, &place) {
+            filter.add(packet, lane);
+            return filter.evaluate_waiting();
+        }
+        let (first, rest) = (&index.blocks[found.site], &index.blocks[site.list as usize..]);
+        block::search::<I, C>(tree, first, rest, &in_frame(tree, &query), &mut filter);
+        filter.evaluate_waiting();
+    }
+}
+
+#[inline(always)]
+fn in_frame(tree: &PacketTree, query: &V3) -> Place {
+    let local = tree.frame.place(query);
+    Place { rounded: Rounded::of(local), local, cells: [0.0; 3] }
+}
+
+/// Several queries side by side, as an operation.
+struct Several<'a, L> {
+    index: &'a Voronoi<L>,
+    queries: &'a [V3; SIDE_BY_SIDE],
+    minimums: [&'a mut Minimum; SIDE_BY_SIDE],
+    evaluates: [Evaluate<'a, Minimum>; SIDE_BY_SIDE],
+}
+
+impl<L: Locator> Operation for Several<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        let Self { index, queries, minimums, evaluates } = self;
+        let mut places = [None; SIDE_BY_SIDE];
+        if let Some(locator) = &index.locator {
+            for (to, query) in places.iter_mut().zip(queries) {
+                *to = index.place(query);
+                to.iter().for_each(|place| locator.prefetch(place));
+            }
+            places.iter().flatten().for_each(|place| locator.prefetch_more(place));
+        }
+        let mut ways: [Option<Found>; SIDE_BY_SIDE] = [None; SIDE_BY_SIDE];
+        let mut walking = 0u32;
+        for (i, (to, place)) in ways.iter_mut().zip(&places).enumerate() {
+            let start = place.as_ref().and_then(|place| index.locator.as_ref()?.start(place));
+            *to = start.map(|site| Found { site, is_nearest: false });
+            if let Some(site) = start {
+                index.fans.prefetch(site);
+                walking |= 1 << i;
+            }
+        }
+        while walking != 0 {
+            let mut rest = walking;
+            while rest != 0 {
+                let i = rest.trailing_zeros() as usize;
+                rest &= rest - 1;
+                if let (Some(found), Some(place)) = (&mut ways[i], &places[i]) {
+                    let (next, is_nearest) = index.fans.step::<I>(found.site, place);
+                    if next == found.site {
+                        found.is_nearest = is_nearest;
+                        walking &= !(1 << i);
+                        index.prefetch_answer(found, place);
+                    } else {
+                        found.site = next;
+                        index.fans.prefetch(next);
+                    }
+                }
+            }
+        }
+        for ((found, place), query) in ways.iter().zip(&places).zip(queries) {
+            if let (Some(found), Some(place)) = (found, place) {
+                index.prefetch_packets::<I>(found, query, place);
+            }
+        }
+        let finish = finish_nearest;
+        for (i, (minimum, evaluate)) in minimums.into_iter().zip(evaluates).enumerate() {
+            let query = queries[i];
+            match (ways[i], places[i]) {
+                (Some(found), Some(place)) => {
+                    Answer { index, found, query, place, collector: minimum, evaluate, finish }.search::<I>();
+                }
+                _ => Search { tree: &index.tree, query, reach: f64::INFINITY, collector: minimum, evaluate, finish }
+                    .run::<I>(),
+            }
+        }
+    }
+}
+
+impl<L: Locator> Voronoi<L> {
+    /// Asks for what a query reads first in its cell.
+    #[inline(always)]
+    fn prefetch_answer(&self, found: &Found, place: &V3) {
+        let site = &self.fans.sites[found.site];
+        if let Some((packet, _)) = Self::certain(found, site, place) {
+            self.tree.leaves.prefetch(packet);
+        } else if site.list < AUXILIARY {
+            self.prefetch_block(found.site);
+            self.prefetch_block(site.list as usize);
+        }
+    }
+
+    /// Asks for the packets and vertices that come after that.
+    #[inline(always)]
+    fn prefetch_packets<I: InstructionSet>(&self, found: &Found, query: &V3, place: &V3) {
+        let (tree, site) = (&self.tree, &self.fans.sites[found.site]);
+        if let Some((packet, lane)) = Self::certain(found, site, place) {
+            tree.leaves.packets[packet].prefetch_vertices(lane, &tree.leaves.vertices);
+        } else if site.list < AUXILIARY {
+            block::prefetch::<I>(tree, &self.blocks[found.site], &in_frame(tree, query));
+        }
+    }
+}

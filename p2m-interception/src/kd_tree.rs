@@ -1,0 +1,49 @@
+//! The paper's locator: a KD-tree of the sites.
+
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use p2m_core::interception::{Locator, LocatorSites};
+use std::sync::Arc;
+
+/// The sites in a KD-tree of the crate `kiddo` \[Zong2023\].
+///
+/// Its answer is the nearest site but for rounding, so that the walk has hardly anything to do. Queries far from the
+/// scene make it look at many leaves: their distances to all sites differ by little (docs/p2m.md has figures).
+///
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::{BuildIndex, ClosestPoint, Segment};
+/// use p2m_interception::{KdTreeLocator, P2mIndexWith};
+///
+/// let wires: Vec<Segment<f64>> = (0..20)
+///     .map(|i| f64::from(i).sin_cos())
+///     .map(|(x, y)| Segment::new(Point3::new(x, y, 0.0), Point3::new(-y, x, 1.0)))
+///     .collect();
+/// let index: P2mIndexWith<f64, _, KdTreeLocator> = P2mIndexWith::build(&wires, &Default::default())?;
+/// assert!(index.closest_point(&Point3::new(2.0, 0.0, 0.0)).is_some_and(|answer| answer.distance < 1.5));
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct KdTreeLocator {
+    /// `None` if there cannot be one.
+    tree: Option<Arc<ImmutableKdTree<f64, 3>>>,
+    first: usize,
+    bytes: usize,
+}
+
+impl Locator for KdTreeLocator {
+    fn new(sites: &LocatorSites<'_>) -> Self {
+        let places: Vec<[f64; 3]> = sites.places().collect();
+        // It does not tell how much memory it has: places, numbers, and a split for each leaf of 32.
+        let bytes = places.len() * (size_of::<[f64; 3]>() + size_of::<u32>() + 1);
+        Self { tree: ImmutableKdTree::new_from_slice(&places).ok().map(Arc::new), first: sites.first(), bytes }
+    }
+
+    fn start(&self, place: &[f64; 3]) -> Option<usize> {
+        let nearest = self.tree.as_ref()?.query(place).nearest_one::<SquaredEuclidean<f64>>().execute();
+        Some(self.first + nearest.item as usize)
+    }
+
+    fn memory(&self) -> usize {
+        self.bytes
+    }
+}
