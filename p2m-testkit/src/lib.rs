@@ -9,6 +9,7 @@ pub mod families;
 pub mod left_first;
 pub mod line_filter;
 pub mod oracle;
+pub mod paper;
 pub mod queries;
 pub mod ray_check;
 pub mod ray_oracle;
