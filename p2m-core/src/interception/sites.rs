@@ -241,14 +241,13 @@ impl Sites {
             };
             let known = Known::new(&delaunay, &corners, &next, before);
             let all = Corners::new(tree, &next, limits, Some(&known), progress);
-            // Points do not help everywhere: between long thin triangles there would have to be too many.
             let (full, rest) = (corners.full(), all.full());
-            if rest * 8 > full * 7 && (rest * 16 > all.all.len() || rest >= full) {
-                points.truncate(before);
-                break;
-            }
             added.extend(more);
             (delaunay, corners) = (next, all);
+            // Points do not help everywhere: between long thin triangles there would have to be too many.
+            if rest * 8 > full * 7 && rest * 16 > corners.all.len() {
+                break;
+            }
         }
         let corners = corners.finished(tree, limits);
         // A site at a point of the scene is no auxiliary one.
