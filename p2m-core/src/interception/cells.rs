@@ -16,7 +16,7 @@ use super::hull::Hull;
 use super::matters::{Around, Missed, Outlines, Scene, Seen};
 use super::options::P2mReport;
 use super::shares::in_shares;
-use super::sites::{Corners, Sites};
+use super::sites::{Corners, Limits, Sites};
 use super::voronoi::{AUXILIARY, TREE};
 use crate::delaunay::BOUNDING;
 use crate::hierarchy::PacketTree;
@@ -30,12 +30,7 @@ use std::ops::Range;
 pub(super) struct Cells<'a> {
     pub(super) tree: &'a PacketTree,
     pub(super) sites: &'a Sites,
-    /// By how much a dominator has to be nearer.
-    pub(super) slack: f64,
-    /// Packets of a list.
-    pub(super) most: usize,
-    /// Whether all threads are used.
-    pub(super) parallel: bool,
+    pub(super) limits: Limits,
 }
 
 impl Cells<'_> {
@@ -49,7 +44,7 @@ impl Cells<'_> {
             (0..).zip(tetrahedra).flat_map(|(number, tetrahedron)| tetrahedron.iter().map(move |v| (*v, number))),
         );
         let features = Features::of(self.tree, &self.sites.delaunay);
-        let slack = self.slack / self.sites.delaunay.unit();
+        let slack = self.limits.slack / self.sites.delaunay.unit();
         let mut fans = Fans::new(sites, BOUNDING, slack, |site, all, edges| {
             let neighbours = around.of(site).iter().flat_map(|t| tetrahedra[*t as usize]);
             all.extend(neighbours.filter(|v| *v as usize >= BOUNDING && *v as usize != site));
@@ -61,7 +56,7 @@ impl Cells<'_> {
         report.added = self.sites.added;
         let outlines = Outlines::of(self.tree);
         let work = |share| self.share(share, &around, &features, &outlines);
-        in_shares(sites.len(), self.parallel, work, |share: Share| {
+        in_shares(sites.len(), self.limits.parallel, work, |share: Share| {
             for made in share.cells {
                 let to = &mut fans.sites[made.site];
                 (to.owner, to.list) = (features.owners[made.site], TREE);
@@ -99,7 +94,7 @@ impl Cells<'_> {
                 made.list = List::Auxiliary(u32::try_from(anchor).expect("numbers of 32 bits"));
             } else if site >= BOUNDING && !own.iter().any(|t| corners.all[*t as usize].full) {
                 cell.gather(self, corners, site, own);
-                let few = cell.packets.len() <= self.most;
+                let few = cell.packets.len() <= self.limits.most;
                 let entries =
                     if few { cell.entries(self, features, outlines, &mut share.primitives) } else { Vec::new() };
                 if !entries.is_empty() {
@@ -192,7 +187,7 @@ impl Cell {
             let mut faces = [0; 3];
             let others = tetrahedron.iter().filter(|v| **v as usize != site);
             faces.iter_mut().zip(others).for_each(|(to, v)| *to = *v);
-            self.whole.push(corner.place, corner.error, faces, &self.y, cells.slack);
+            self.whole.push(corner.place, corner.error, faces, &self.y, cells.limits.slack);
             self.packets.extend_from_slice(corners.packets(t));
             for (v, other) in tetrahedron.iter().zip(&cells.sites.delaunay.neighbours()[t]) {
                 // Each pair once.
@@ -214,7 +209,7 @@ impl Cell {
         primitives: &mut usize,
     ) -> Vec<Entry> {
         let tree = cells.tree;
-        let scene = Scene { tree, delaunay: &cells.sites.delaunay, features, outlines, slack: cells.slack };
+        let scene = Scene { tree, delaunay: &cells.sites.delaunay, features, outlines, slack: cells.limits.slack };
         let Self { site, y: place, whole: Hull { reach, error, .. }, .. } = *self;
         let around = Around { site, place, reach, error };
         let mut entries: Vec<(f64, Entry)> = Vec::with_capacity(self.packets.len());
@@ -267,7 +262,7 @@ impl Cell {
         if self.whole.corners.iter().all(|x| height(x) < 0.0) {
             return None;
         }
-        let (y, slack) = (self.y, cells.slack);
+        let (y, slack) = (self.y, cells.limits.slack);
         let [part, next] = &mut self.part;
         part.clip(&self.whole, height, u32::MAX, &y, slack);
         // Planes are moved outwards by more than corners may be off, so that what is left has corners where it is not.
@@ -338,6 +333,7 @@ impl Known {
             }
             self.below.push(lanes);
         }
+        self.near &= self.below.iter().fold(0, |all, lanes| all | lanes);
         self.crossed.clear();
         let below = &self.below;
         self.crossed.extend(hull.edges.iter().map(|[i, j]| below[*i as usize] ^ below[*j as usize]));
@@ -368,14 +364,6 @@ impl Known {
                 values[lane] = values[lane].max((value as f32).next_down());
             }
         }
-        let lanes = self.near;
-        self.near = 0;
-        for values in &self.values {
-            for (lane, value) in values.iter().enumerate() {
-                self.near |= u16::from(*value <= 0.0) << lane;
-            }
-        }
-        self.near &= lanes;
     }
 
     /// The points that span the region of a lane.

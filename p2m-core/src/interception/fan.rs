@@ -6,6 +6,7 @@
 //! cell, and never runs in a circle, for each step is one to a nearer site.
 
 use super::nearer;
+use super::voronoi::{AUXILIARY, TREE};
 use crate::kernel::power_of_two;
 use crate::kernel::vector::{V3, norm_squared, sub};
 use crate::packet::frame_unit;
@@ -137,6 +138,14 @@ pub(super) struct Site {
 }
 
 const _: () = assert!(size_of::<Site>() == 64);
+
+impl Site {
+    /// Whether its cell has a list, and is not left to the tree.
+    #[inline(always)]
+    pub(super) fn has_list(&self) -> bool {
+        self.list != TREE && self.list != AUXILIARY
+    }
+}
 
 /// A half-space far from a site in which only primitives with it can be the answer, if it is the nearest point of all
 /// of these and no other site is nearly as near.

@@ -9,7 +9,7 @@ use super::block::{self, Block, Place};
 use super::fan::{Fans, Found, Site};
 use super::locator::Locator;
 use super::partition::{LookUp, SIDE_BY_SIDE};
-use super::voronoi::{AUXILIARY, TREE, Voronoi};
+use super::voronoi::{AUXILIARY, Voronoi};
 use crate::hierarchy::PacketTree;
 use crate::hierarchy::wide::search::{Evaluate, Filter, Search, finish_nearest};
 use crate::hierarchy::wide::volume::Rounded;
@@ -33,9 +33,10 @@ impl<L: Locator> LookUp for Voronoi<L> {
     ) {
         let tree = &self.tree;
         if let Some(place) = self.place(&query)
-            && let Some(start) = self.locator.as_ref().and_then(|locator| locator.start(&place))
+            && let Some(site) = self.locator.as_ref().and_then(|locator| locator.start(&place))
         {
-            return tree.isa().run(Lookup { index: self, start, query, place, collector, evaluate, finish });
+            let found = Found { site, is_nearest: false };
+            return tree.isa().run(Answer { index: self, found, query, place, collector, evaluate, finish });
         }
         tree.isa().run(Search { tree, query, reach: f64::INFINITY, collector, evaluate, finish });
     }
@@ -95,12 +96,12 @@ impl<L: Locator> Voronoi<L> {
         let place = self.place(&wide(query))?;
         let start = self.locator.as_ref()?.start(&place)?;
         let at = self.tree.isa().run(Walk { fans: &self.fans, start, place });
-        let list = self.fans.sites[at].list;
-        if list == TREE || list == AUXILIARY {
+        let site = &self.fans.sites[at];
+        if !site.has_list() {
             return None;
         }
         let first = &self.blocks[at];
-        let rest = &self.blocks[list as usize..][..usize::from(first.more)];
+        let rest = &self.blocks[site.list as usize..][..usize::from(first.more)];
         let mut ids = Vec::new();
         for block in std::iter::once(first).chain(rest) {
             for (packet, lanes) in block.packets.iter().zip(block.lanes).take(usize::from(block.len)) {
@@ -135,29 +136,7 @@ impl Operation for Walk<'_> {
     }
 }
 
-/// A query on its way to its cell, as an operation.
-struct Lookup<'a, C, L> {
-    index: &'a Voronoi<L>,
-    start: usize,
-    query: V3,
-    place: V3,
-    collector: &'a mut C,
-    evaluate: Evaluate<'a, C>,
-    finish: fn(&mut Filter<'_, C>),
-}
-
-impl<C: Collector, L: Locator> Operation for Lookup<'_, C, L> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<I: InstructionSet>(self) {
-        let Self { index, start, query, place, collector, evaluate, finish } = self;
-        let found = index.fans.walk::<I>(start, &place, |at| index.prefetch_block(at));
-        Answer { index, found, query, place, collector, evaluate, finish }.search::<I>();
-    }
-}
-
-/// A query in its cell.
+/// A query in its cell; as an operation, one on its way there from the site that was found first.
 struct Answer<'a, C, L> {
     index: &'a Voronoi<L>,
     found: Found,
@@ -168,6 +147,17 @@ struct Answer<'a, C, L> {
     finish: fn(&mut Filter<'_, C>),
 }
 
+impl<C: Collector, L: Locator> Operation for Answer<'_, C, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        let Self { index, found, place, .. } = self;
+        let found = index.fans.walk::<I>(found.site, &place, |at| index.prefetch_block(at));
+        Answer { found, ..self }.search::<I>();
+    }
+}
+
 impl<C: Collector, L: Locator> Answer<'_, C, L> {
     #[inline(always)]
     fn search<I: InstructionSet>(self) {
@@ -175,7 +165,7 @@ impl<C: Collector, L: Locator> Answer<'_, C, L> {
         let tree = &index.tree;
         let site = &index.fans.sites[found.site];
         let reach = index.reach(site, &query, &place);
-        if site.list == TREE || site.list == AUXILIARY {
+        if !site.has_list() {
             return Search { tree, query, reach, collector, evaluate, finish }.run::<I>();
         }
         // What comes next, if the list has more than a block.
@@ -273,7 +263,7 @@ impl<L: Locator> Voronoi<L> {
         let site = &self.fans.sites[found.site];
         if let Some((packet, _)) = Self::certain(found, site, place) {
             self.tree.leaves.prefetch(packet);
-        } else if site.list < AUXILIARY {
+        } else if site.has_list() {
             self.prefetch_block(found.site);
             self.prefetch_block(site.list as usize);
         }
@@ -285,7 +275,7 @@ impl<L: Locator> Voronoi<L> {
         let (tree, site) = (&self.tree, &self.fans.sites[found.site]);
         if let Some((packet, lane)) = Self::certain(found, site, place) {
             tree.leaves.packets[packet].prefetch_vertices(lane, &tree.leaves.vertices);
-        } else if site.list < AUXILIARY {
+        } else if site.has_list() {
             block::prefetch::<I>(tree, &self.blocks[found.site], &in_frame(tree, query));
         }
     }

@@ -97,7 +97,7 @@ impl<L: Locator> Voronoi<L> {
             self.report.trees = left;
             return;
         }
-        let cells = Cells { tree, sites: &sites, slack, most, parallel };
+        let cells = Cells { tree, sites: &sites, limits };
         let (fans, blocks) = cells.lists(&mut self.report, &report_part(30.0, 100.0));
         self.slack = slack;
         let Sites { delaunay, anchors, .. } = sites;
