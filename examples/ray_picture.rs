@@ -10,13 +10,12 @@ mod common;
 
 use anyhow::{Context, ensure};
 use nalgebra::{Point3, Vector3};
+use p2m::scene::Camera;
 use p2m::{AabbTree, BuildIndex, PrimitiveSet, Ray, RayQuery, Side, Soup};
 use rayon::prelude::*;
 
 /// From the middle of the scene towards the eye, unless told otherwise; y is up.
 const EYE: [f64; 3] = [0.45, 0.4, 1.0];
-/// How far it is, in diagonals of the scene's box.
-const FAR: f64 = 2.0;
 /// Towards the light: to the right in the picture, up, and towards the eye.
 const LIGHT: [f64; 3] = [-0.4, 0.6, 0.9];
 /// A pixel is asked by so many rays along each side.
@@ -38,11 +37,13 @@ fn main() -> anyhow::Result<()> {
     let width = width.context("the width is a whole number from 1 to 10000")?;
     let eye = arguments.map(|x| x.parse::<f64>().with_context(|| format!("'{x}' is not a number")));
     let eye: Vec<f64> = eye.collect::<anyhow::Result<_>>()?;
-    let eye = if eye.is_empty() { Vector3::from(EYE) } else { direction(&eye)? };
+    let eye = if eye.is_empty() { EYE.to_vec() } else { eye };
     let scene = p2m::scene::read_scene(name.as_ref())?.soup;
     ensure!(!scene.is_empty(), "{name} is empty");
     let index = AabbTree::build(&scene, &Default::default())?;
-    let camera = Camera::before(&scene, &eye, width);
+    let towards = <[f64; 3]>::try_from(eye).ok().map(Vector3::from);
+    let camera = towards.and_then(|towards| Camera::before(&scene, &towards, width));
+    let camera = camera.context("the direction to the eye is three numbers, and not along y")?;
     let step = 1.0 / f64::from(RAYS);
     let pixel = |(row, column): (u32, u32)| {
         let mut sum = Vector3::zeros();
@@ -52,70 +53,15 @@ fn main() -> anyhow::Result<()> {
         }
         <[f64; 3]>::from(sum * step * step).map(byte)
     };
-    let [width, height] = camera.size;
+    let [width, height] = camera.size();
     let rows = (0..height).into_par_iter();
     let bytes: Vec<u8> = rows.flat_map_iter(|row| (0..width).flat_map(move |column| pixel((row, column)))).collect();
-    common::write_png(&out, camera.size, &bytes)
-}
-
-/// Any but straight up or down.
-fn direction(eye: &[f64]) -> anyhow::Result<Vector3<f64>> {
-    let eye = <[f64; 3]>::try_from(eye).ok().map(Vector3::from);
-    let eye = eye.filter(|eye| eye.iter().all(|x| x.is_finite()) && eye.cross(&Vector3::y()).norm() > 0.0);
-    eye.context("the direction to the eye is three numbers, and not along y")
+    common::write_png(&out, camera.size(), &bytes)
 }
 
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 255")]
 fn byte(x: f64) -> u8 {
     x.round() as u8
-}
-
-/// An eye, and a picture in a plane through the middle of the scene.
-struct Camera {
-    eye: Point3<f64>,
-    /// Right, up, and towards the eye.
-    axes: [Vector3<f64>; 3],
-    /// The upper left corner of the picture.
-    corner: Point3<f64>,
-    /// The side of a pixel, and how many of them the picture has.
-    pixel: f64,
-    size: [u32; 2],
-    diagonal: f64,
-}
-
-impl Camera {
-    /// Sees the whole scene from that side in a picture of that width.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-    fn before(scene: &Soup<f64>, eye: &Vector3<f64>, width: u32) -> Self {
-        let bounds = scene.aabb();
-        let middle = nalgebra::center(&bounds.min, &bounds.max);
-        let diagonal = Some((bounds.max - bounds.min).norm()).filter(|d| *d > 0.0).unwrap_or(1.0);
-        let back = eye.normalize();
-        let right = Vector3::y().cross(&back).normalize();
-        let axes = [right, back.cross(&right), back];
-        // Where the vertices are in the picture.
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for index in scene.elements().flat_map(|element| element.indices().to_vec()) {
-            let [x, y, z] = axes.map(|axis| axis.dot(&(scene.positions()[index as usize] - middle)));
-            let scale = FAR * diagonal / (FAR * diagonal - z);
-            for (k, x) in [x, y].into_iter().enumerate() {
-                (low[k], high[k]) = (low[k].min(x * scale), high[k].max(x * scale));
-            }
-        }
-        let margin = diagonal * 0.02;
-        let [across, down] = [0, 1].map(|k| high[k] - low[k] + 2.0 * margin);
-        let pixel = across / f64::from(width);
-        let height = (down / pixel).ceil().clamp(1.0, 4.0 * f64::from(width)) as u32;
-        let corner = middle + axes[0] * (low[0] - margin) + axes[1] * (high[1] + margin);
-        Self { eye: middle + back * (FAR * diagonal), axes, corner, pixel, size: [width, height], diagonal }
-    }
-
-    /// Through a place of the picture, in pixels from the corner.
-    fn ray(&self, [x, y]: [f64; 2]) -> Ray {
-        let place = self.corner + self.axes[0] * (x * self.pixel) - self.axes[1] * (y * self.pixel);
-        let ray = Ray::through(&self.eye, &place).and_then(|ray| ray.with_radius(self.pixel * 0.75));
-        ray.expect("the eye is not in the picture")
-    }
 }
 
 /// What a ray sees.
@@ -132,16 +78,15 @@ fn colour(camera: &Camera, scene: &Soup<f64>, index: &impl RayQuery<f64>, ray: &
         (Some(normal), Side::Back) => Vector3::from(BACK) * light(camera, index, &point, &-normal),
         _ => Vector3::from(WIRE),
     };
-    let depth = (camera.eye - point).dot(&camera.axes[2]) / camera.diagonal - FAR; // from -0.5 to 0.5
-    seen.lerp(&paper, FADING * (depth + 0.5).clamp(0.0, 1.0))
+    seen.lerp(&paper, FADING * (camera.depth(&point) + 0.5).clamp(0.0, 1.0))
 }
 
 /// How bright a surface is.
 fn light(camera: &Camera, index: &impl RayQuery<f64>, point: &Point3<f64>, normal: &Vector3<f64>) -> f64 {
-    let to_light: Vector3<f64> = camera.axes.iter().zip(LIGHT).map(|(axis, x)| axis * x).sum();
+    let to_light: Vector3<f64> = camera.axes().iter().zip(LIGHT).map(|(axis, x)| axis * x).sum();
     let cosine = normal.dot(&to_light.normalize());
     // From beside the surface, so that it does not shade itself.
-    let start = point + normal * camera.pixel;
+    let start = point + normal * camera.pixel();
     let is_lit = cosine > 0.0 && Ray::new(&start, &to_light).is_ok_and(|ray| !index.do_intersect(&ray));
     0.22 + 0.3 * (0.5 + 0.5 * cosine) + if is_lit { 0.5 * cosine } else { 0.0 }
 }

@@ -53,6 +53,7 @@
 //! | `bvh` | [`AabbTree`] | yes |
 //! | `interception` | [`OctreeIndex`], [`P2mIndex`] | yes |
 //! | `kiddo` | `KdTreeLocator`, the paper's way to the nearest vertex, for [`P2mIndexWith`] | no |
+//! | `rstar` | `RegionTree`, the paper's filter of long lists, for [`P2mIndexWith`] | no |
 //! | `kdop` | [`KdopTree`] | yes |
 //! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `mixed` | [`scene`]: reading scenes and points from files | yes |
@@ -63,6 +64,8 @@ pub use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
 pub use p2m_core::*;
 #[cfg(feature = "kiddo")]
 pub use p2m_interception::KdTreeLocator;
+#[cfg(feature = "rstar")]
+pub use p2m_interception::RegionTree;
 #[cfg(feature = "interception")]
 pub use p2m_interception::{
     Domain, OctreeIndex, OctreeOptions, OctreeReport, P2mIndex, P2mIndexWith, P2mOptions, P2mReport,

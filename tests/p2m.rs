@@ -4,6 +4,7 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
+use p2m::interception::Partition;
 use p2m::{
     Aabb, BruteForce, BuildIndex, ClosestPoint, Counting, Isa, P2mIndex, P2mOptions, Point, Primitive, PrimitiveSet,
     Projection, Segment, Shape, Soup, Triangle,

@@ -9,7 +9,10 @@ use p2m_core::{
     BruteForce, BuildIndex, Closest, ClosestPoint, Directions, DirectionsError, Isa, PrimitiveId, PrimitiveSet,
     QueryOptions, Shape, Soup, Triangle,
 };
-use p2m_interception::{InterceptionIndex, KdTreeLocator, Octree, OctreeOptions, P2mOptions, Partition, Voronoi};
+use p2m_interception::{
+    Hints, InterceptionIndex, KdTreeLocator, ListFilter, Octree, OctreeOptions, P2mOptions, Partition, RegionTree,
+    SortedLists, Voronoi,
+};
 use p2m_kdop::{Choice, KdopOptions, KdopTree};
 use std::marker::PhantomData;
 
@@ -29,6 +32,9 @@ pub(crate) const ALL: &[Backend] = &[
     Backend { name: "p2m", prepare: |s| p2m::<f64>(s, None), ..OURS },
     Backend { name: "p2m-avx2", prepare: |s| p2m::<f64>(s, Some("avx2")), ..OURS },
     Backend { name: "p2m-kiddo", prepare: p2m_with_kd_tree, ..OURS },
+    Backend { name: "p2m-rstar", prepare: |s| p2m_filtered::<RegionTree>(s, p2m_options()), ..OURS },
+    Backend { name: "p2m-long", prepare: |s| p2m_filtered::<SortedLists>(s, long_lists()), ..OURS },
+    Backend { name: "p2m-long-rstar", prepare: |s| p2m_filtered::<RegionTree>(s, long_lists()), ..OURS },
     Backend { name: "p2m-batch", prepare: p2m_in_batches, ..OURS },
     Backend { name: "kdop-6", prepare: kdop::<f64, 6>, ..OURS },
     Backend { name: "kdop-14", prepare: kdop::<f64, 14>, ..OURS },
@@ -198,6 +204,16 @@ fn p2m<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'a
 /// The P2M index with the paper's locator.
 fn p2m_with_kd_tree(scene: &Scene) -> Result<Prepared<'_>, Absent> {
     cells::<f64, Voronoi<KdTreeLocator>>(scene, None, p2m_options())
+}
+
+/// The P2M index with some filter of long lists.
+fn p2m_filtered<F: ListFilter + 'static>(scene: &Scene, options: P2mOptions) -> Result<Prepared<'_>, Absent> {
+    cells::<f64, Voronoi<Hints, F>>(scene, None, options)
+}
+
+/// As in the paper: no site is added, and lists may be long.
+fn long_lists() -> P2mOptions {
+    p2m_options().with_longest(2048).with_added(0.0)
 }
 
 /// The P2M index, asked for several queries at a time.

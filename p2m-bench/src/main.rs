@@ -22,6 +22,7 @@ mod queries;
 mod rays;
 mod report;
 mod rivals;
+mod saved;
 mod scene;
 mod splits;
 mod table;
@@ -62,6 +63,8 @@ enum Command {
     Kdop(KdopArguments),
     /// Rays: the figures of the k-DOP tree's manual, or the first hit against rivals; fails if ours differ
     Ray(RayArguments),
+    /// Saving and loading indexes, against building them
+    Saved(SavedArguments),
     /// The settings of the octree: resolution, domain, threads
     Octree(BatchArguments),
     /// Delaunay tetrahedra of vertices, and of grids, a sphere, a plane and a line; fails if any is not valid
@@ -247,6 +250,7 @@ fn main() -> Result<ExitCode> {
         Command::Octree(arguments) => octrees(&arguments)?,
         Command::Delaunay(arguments) => delaunays(&arguments)?,
         Command::Batch(arguments) => batches(&arguments)?,
+        Command::Saved(arguments) => saved_indexes(&arguments)?,
     };
     Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
@@ -284,6 +288,26 @@ fn query(arguments: &QueryArguments) -> Result<bool> {
             .iter()
             .filter(|entry| entry.backend.ours)
             .all(|entry| entry.sets.iter().flatten().all(|set| set.agreement.is_clean()));
+    }
+    Ok(good)
+}
+
+#[derive(Args)]
+struct SavedArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    /// How often to load
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    rounds: usize,
+}
+
+/// Whether all loaded indexes answer as those that were built.
+fn saved_indexes(arguments: &SavedArguments) -> Result<bool> {
+    println!("{}", Provenance::collect(None));
+    let mut good = true;
+    for path in &arguments.scenes {
+        good &= saved::print(&Scene::read(path)?, arguments.rounds)?;
     }
     Ok(good)
 }

@@ -1,6 +1,6 @@
 //! How `query` and `ray` ask: the options that they share, and many questions at once.
 
-use crate::faces::Faces;
+use crate::faces::{self, Faces};
 use crate::input::{SceneArgs, is_standard, or_option};
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 
 #[derive(clap::Args)]
 pub(crate) struct Asking {
-    /// How many faces the polytopes of --backend kdop have [default: 14]
+    /// How many faces the polytopes of --backend kdop have [default: 14, or as a saved index]
     #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
     k: Option<Faces>,
 
@@ -43,13 +43,7 @@ pub(crate) struct Asking {
 
 impl Asking {
     /// Refuses what cannot be, before any work: `file` has the questions, which are called `what`.
-    pub(crate) fn check(
-        &self,
-        scene: &SceneArgs,
-        file: Option<&Path>,
-        what: &str,
-        is_kdop: bool,
-    ) -> anyhow::Result<()> {
+    pub(crate) fn check(&self, scene: &SceneArgs, file: Option<&Path>, what: &str) -> anyhow::Result<()> {
         if self.json && is_standard(&self.out) {
             return Err(usage(
                 "--json reports on the standard output, so the answers have to go to a file: add --out FILE",
@@ -58,16 +52,16 @@ impl Asking {
         if is_standard(&scene.path) && file.is_some_and(is_standard) {
             return Err(usage(format!("the standard input cannot be both the scene and the {what}")));
         }
-        if self.k.is_some() && !is_kdop {
-            return Err(usage("--k is for --backend kdop"));
-        }
         let inputs: Vec<&Path> = std::iter::once(scene.path.as_path()).chain(file).collect();
         Output::refuse_inputs(&self.out, &inputs)
     }
 
-    /// How many faces k-DOPs have.
-    pub(crate) fn faces(&self) -> Faces {
-        self.k.unwrap_or(Faces::Fourteen)
+    /// How many faces k-DOPs have, if that was said.
+    ///
+    /// # Errors
+    /// If it was, and this is another backend.
+    pub(crate) fn faces(&self, is_kdop: bool) -> anyhow::Result<Option<Faces>> {
+        if self.k.is_some() && !is_kdop { Err(usage(faces::FOR_KDOP)) } else { Ok(self.k) }
     }
 
     /// The format of the answers: the given one, or that of the extension; CSV for names that have none.

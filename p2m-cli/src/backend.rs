@@ -1,10 +1,14 @@
 //! `--backend`: what searches.
 
 use crate::faces::{Faces, Used, WithTree};
+use crate::progress::{Progress, Unit};
 use clap::ValueEnum;
+use clap::builder::PossibleValue;
 use p2m_bvh::AabbTree;
-use p2m_core::{BruteForce, BuildError, BuildIndex, ClosestPoint, RayQuery, Soup};
-use p2m_interception::{OctreeReport, P2mReport};
+use p2m_core::hierarchy::{TreeIndex, Volume};
+use p2m_core::saved::{self, Reader, Saved, Writer};
+use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Examine, RayQuery, Soup};
+use p2m_interception::{InterceptionIndex, Octree, OctreeReport, P2mReport, Partition, Voronoi};
 use p2m_kdop::KdopTree;
 
 /// Backends that answer every kind of question.
@@ -19,9 +23,40 @@ pub(crate) enum Search {
 }
 
 /// What they build.
-pub(crate) trait Index: ClosestPoint<f64> + RayQuery<f64> + Sync {}
+pub(crate) trait Closest: ClosestPoint<f64> + Examine<f64> + Sync {
+    /// Adds it to a file.
+    fn save<'s>(&'s self, writer: &mut Writer<'s>);
+}
 
-impl<I: ClosestPoint<f64> + RayQuery<f64> + Sync> Index for I {}
+/// The same for rays as well.
+pub(crate) trait Index: Closest + RayQuery<f64> {}
+
+impl<I: Closest + RayQuery<f64>> Index for I {}
+
+impl<V: Volume> Closest for TreeIndex<f64, &Soup<f64>, V> {
+    fn save<'s>(&'s self, writer: &mut Writer<'s>) {
+        self.save(writer);
+    }
+}
+
+impl<P: Partition + Saved + Sync> Closest for InterceptionIndex<f64, &Soup<f64>, P> {
+    fn save<'s>(&'s self, writer: &mut Writer<'s>) {
+        self.save(writer);
+    }
+}
+
+impl Closest for BruteForce<&Soup<f64>> {
+    /// There is nothing.
+    fn save<'s>(&'s self, _: &mut Writer<'s>) {}
+}
+
+/// An index, and what there is to say about it.
+pub(crate) struct Built<I> {
+    pub(crate) index: I,
+    pub(crate) about: About,
+    /// Whether a file had it.
+    pub(crate) loaded: bool,
+}
 
 /// What there is to say about an index.
 pub(crate) enum About {
@@ -34,6 +69,23 @@ pub(crate) enum About {
     Cells(P2mReport),
 }
 
+/// What to build over, or where to take it from.
+#[derive(Clone, Copy)]
+pub(crate) struct Source<'a> {
+    pub(crate) soup: &'a Soup<f64>,
+    /// `None` for the usual ones.
+    pub(crate) faces: Option<Faces>,
+    /// The file that has the scene, which may have an index as well.
+    pub(crate) saved: Option<&'a Reader>,
+}
+
+impl<'a> Source<'a> {
+    /// The file, if it has an index that fits.
+    fn with(self, fits: impl Fn(&str) -> bool) -> Option<&'a Reader> {
+        self.saved.filter(|reader| saved::kind(reader).is_ok_and(|kind| fits(&kind)))
+    }
+}
+
 impl Search {
     pub(crate) fn name(self) -> &'static str {
         match self {
@@ -43,16 +95,41 @@ impl Search {
         }
     }
 
-    /// The index, and what there is to say about it.
-    pub(crate) fn build(self, soup: &Soup<f64>, faces: Faces) -> Result<(Box<dyn Index + '_>, About), BuildError> {
-        Ok(match self {
-            Self::Brute => (Box::new(BruteForce::build(soup, &())?), About::Nothing),
-            Self::Aabb => (Box::new(AabbTree::build(soup, &Default::default())?), About::Nothing),
-            Self::Kdop => {
-                let (index, used) = faces.build(soup, AnyTree)?;
-                (index, About::Faces(used))
+    /// The backend of the index that a file has, if it is one of these.
+    pub(crate) fn of_saved(saved: Option<&Reader>) -> Option<Self> {
+        match Backend::of_saved(saved) {
+            Some(Backend::Search(search)) => Some(search),
+            _ => None,
+        }
+    }
+
+    /// The index of the file, or a new one.
+    pub(crate) fn build<'a>(self, source: Source<'a>) -> anyhow::Result<Built<Box<dyn Index + 'a>>> {
+        let soup = source.soup;
+        let progress = Progress::start("building the index", None, Unit::None);
+        let built: Built<Box<dyn Index + 'a>> = match self {
+            Self::Brute => {
+                Built { index: Box::new(BruteForce::build(soup, &())?), about: About::Nothing, loaded: false }
             }
-        })
+            Self::Aabb => {
+                let saved = source.with(|kind| kind == self.name());
+                let index: AabbTree<f64, _> = match saved {
+                    Some(reader) => AabbTree::load(soup, reader)?,
+                    None => AabbTree::build(soup, &Default::default())?,
+                };
+                Built { index: Box::new(index), about: About::Nothing, loaded: saved.is_some() }
+            }
+            Self::Kdop => {
+                let saved = source.saved.and_then(|r| Faces::of_saved(source.faces, r).map(|k| (r, k)));
+                let (index, used) = match saved {
+                    Some((reader, k)) => Faces::load(k, soup, reader, AnyTree)?,
+                    None => source.faces.unwrap_or(Faces::Fourteen).build(soup, AnyTree)?,
+                };
+                Built { index, about: About::Faces(used), loaded: saved.is_some() }
+            }
+        };
+        drop(progress);
+        Ok(built)
     }
 }
 
@@ -64,4 +141,86 @@ impl<'a> WithTree<'a> for AnyTree {
     fn with<const K: usize>(self, tree: KdopTree<f64, &'a Soup<f64>, K>) -> Self::Output {
         Box::new(tree)
     }
+}
+
+/// All backends.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Backend {
+    Search(Search),
+    Octree,
+    P2m,
+}
+
+impl ValueEnum for Backend {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: &[Backend] = &[
+            Backend::Search(Search::Brute),
+            Backend::Search(Search::Aabb),
+            Backend::Search(Search::Kdop),
+            Backend::Octree,
+            Backend::P2m,
+        ];
+        ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let octree =
+            "Cells in space with lists of what can be nearest there: no search, for more memory and a longer build";
+        let p2m = "Cells of the vertices with lists of what can be nearest there: fastest far from the scene";
+        match self {
+            Self::Search(search) => search.to_possible_value(),
+            Self::Octree => Some(PossibleValue::new(self.name()).help(octree)),
+            Self::P2m => Some(PossibleValue::new(self.name()).help(p2m)),
+        }
+    }
+}
+
+impl Backend {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Search(search) => search.name(),
+            Self::Octree => "octree",
+            Self::P2m => "p2m",
+        }
+    }
+
+    /// The backend of the index that a file has.
+    pub(crate) fn of_saved(saved: Option<&Reader>) -> Option<Self> {
+        let reader = saved?;
+        if Faces::of_saved(None, reader).is_some() {
+            return Some(Self::Search(Search::Kdop));
+        }
+        let kind = saved::kind(reader).ok()?;
+        Self::value_variants().iter().find(|backend| backend.name() == kind).copied()
+    }
+
+    /// The index of the file, or a new one.
+    pub(crate) fn build<'a>(self, source: Source<'a>) -> anyhow::Result<Built<Box<dyn Closest + 'a>>> {
+        match self {
+            Self::Search(search) => {
+                let Built { index, about, loaded } = search.build(source)?;
+                Ok(Built { index, about, loaded })
+            }
+            Self::Octree => interception::<Octree>(source, About::Cubes),
+            Self::P2m => interception::<Voronoi>(source, About::Cells),
+        }
+    }
+}
+
+/// An interception index, which takes a while to build.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part is from 0 to 1")]
+fn interception<'a, P: Partition + Saved + Sync + 'static>(
+    source: Source<'a>,
+    about: fn(P::Report) -> About,
+) -> anyhow::Result<Built<Box<dyn Closest + 'a>>> {
+    let saved = source.with(|kind| kind == P::kind());
+    let index: InterceptionIndex<f64, _, P> = if let Some(reader) = saved {
+        InterceptionIndex::load(source.soup, reader)?
+    } else {
+        let progress = Progress::start("finding cells", Some(100), Unit::Percent);
+        let reach = |part: f64| progress.reach((part * 100.0) as u64);
+        InterceptionIndex::build_with_progress(source.soup, &Default::default(), &reach)?
+    };
+    let report = index.report();
+    Ok(Built { index: Box::new(index), about: about(report), loaded: saved.is_some() })
 }

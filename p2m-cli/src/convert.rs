@@ -1,7 +1,7 @@
 //! `p2m convert`: scenes from one format to another, changed on the way.
 
 use crate::info::counted;
-use crate::input::{self, is_standard, or_option, read_scene, scene_format};
+use crate::input::{self, is_standard, or_option, read_scene_and_index, scene_format};
 use crate::json;
 use crate::modify::{self, Modifiers};
 use crate::output::Output;
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(after_help = help())]
 pub(crate) struct Args {
-    /// Scene: an OBJ, PLY, STL or OFF file; `-` is the standard input
+    /// Scene: an OBJ, PLY, STL or OFF file, or an index that `p2m build` saved; `-` is the standard input
     #[arg(value_name = "IN")]
     from_file: PathBuf,
 
@@ -69,12 +69,18 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let target = Target::new(&args.to_file, args.to, None)?;
     target.check_report(args.json)?;
     Output::refuse_inputs(&args.to_file, &[&args.from_file])?;
-    let read = read_scene(&args.from_file, from)?;
+    let (read, saved) = read_scene_and_index(&args.from_file, from)?;
+    let has_index = saved.is_some_and(|reader| p2m_core::saved::kind(&reader).is_ok());
     let before = Counts::of(&read.soup);
     let polygons = polygons(&read);
     let scene = args.modifiers.apply(read)?;
     let mut written = target.write(&scene)?;
-    written.lose_polygons(polygons);
+    if target.format != Format::P2m {
+        written.lose_polygons(polygons);
+    }
+    if has_index {
+        written.losses.push(Loss::Index);
+    }
     if args.json {
         return json::print(&json!({
             "p2m": "convert",
@@ -115,7 +121,7 @@ impl<'a> Target<'a> {
             }
             None => Format::from_path(path).map_err(|e| or_option(&e, "--to"))?,
         };
-        if matches!(format, Format::Ply | Format::Stl) {
+        if matches!(format, Format::Ply | Format::Stl | Format::P2m) {
             Output::refuse_terminal(path, format.name())?;
         }
         Ok(Self { path, format })
@@ -202,9 +208,14 @@ impl Written {
 enum Loss {
     Polygons(u64),
     Names(u64),
-    Rounding { count: u64, largest: f64 },
+    Rounding {
+        count: u64,
+        largest: f64,
+    },
     Unused(u64),
     Sharing,
+    /// That of a saved file.
+    Index,
 }
 
 impl Loss {
@@ -217,6 +228,7 @@ impl Loss {
             }
             Self::Unused(count) => json!({ "what": "unused_positions", "count": count }),
             Self::Sharing => json!({ "what": "shared_positions" }),
+            Self::Index => json!({ "what": "index" }),
         }
     }
 
@@ -231,12 +243,16 @@ impl Loss {
             }
             Self::Unused(count) => format!("positions that belong to no primitive: {}", Count(count)),
             Self::Sharing => "which corners are shared: each triangle has its own".to_owned(),
+            Self::Index => "the index of the saved file (p2m build makes another)".to_owned(),
         }
     }
 }
 
 fn losses(scene: &Scene, format: Format) -> Vec<Loss> {
     let mut losses = Vec::new();
+    if format == Format::P2m {
+        return losses;
+    }
     if format != Format::Obj && !scene.objects.is_empty() {
         losses.push(Loss::Names(scene.objects.len() as u64));
     }

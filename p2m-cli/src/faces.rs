@@ -1,8 +1,16 @@
 //! `--k`: how many faces the polytopes of a k-DOP tree have, which is a type in the library.
 
 use clap::ValueEnum;
+use p2m_core::saved::{self, LoadError, Reader, Writer};
 use p2m_core::{BuildError, Soup};
 use p2m_kdop::{Choice, KdopOptions, KdopTree};
+
+/// Said where faces are given for another backend.
+pub(crate) const FOR_KDOP: &str = "--k is for --backend kdop";
+/// How the kinds of k-DOP trees begin.
+const KIND: &str = "kdop-";
+/// The section of a file that says why the directions of a scene are these.
+const CHOICE: &str = "kdop/choice";
 
 /// The faces of k-DOPs.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -31,6 +39,15 @@ pub(crate) struct Used {
     pub(crate) choice: Option<String>,
 }
 
+impl Used {
+    /// Adds to a file why these were chosen.
+    pub(crate) fn save(&self, writer: &mut Writer<'_>) {
+        if let Some(choice) = &self.choice {
+            writer.put_copy(CHOICE, choice.as_bytes());
+        }
+    }
+}
+
 /// What to do with a tree, whatever its K.
 pub(crate) trait WithTree<'a> {
     type Output;
@@ -38,6 +55,44 @@ pub(crate) trait WithTree<'a> {
 }
 
 impl Faces {
+    /// How many there are, if that does not depend on the scene.
+    pub(crate) fn k(self) -> Option<usize> {
+        match self {
+            Self::Six => Some(6),
+            Self::Fourteen => Some(14),
+            Self::Eighteen => Some(18),
+            Self::TwentySix => Some(26),
+            Self::Scene => None,
+        }
+    }
+
+    /// How many the tree has that a file keeps, if there is one, and these are what is wanted. Where nothing is wanted
+    /// any tree will do, and where a number is, not one whose directions are those of the scene.
+    pub(crate) fn of_saved(wanted: Option<Self>, reader: &Reader) -> Option<usize> {
+        let kind = saved::kind(reader).ok()?;
+        let k = kind.strip_prefix(KIND)?.parse().ok().filter(|k| [6, 14, 18, 26].contains(k))?;
+        let of_scene = reader.has(CHOICE);
+        let fits = wanted.is_none_or(|faces| if of_scene { faces == Self::Scene } else { faces.k() == Some(k) });
+        fits.then_some(k)
+    }
+
+    /// Takes a tree of so many from a file.
+    pub(crate) fn load<'a, W: WithTree<'a>>(
+        k: usize,
+        soup: &'a Soup<f64>,
+        reader: &Reader,
+        what: W,
+    ) -> Result<(W::Output, Used), LoadError> {
+        let output = match k {
+            6 => what.with::<6>(KdopTree::load(soup, reader)?),
+            14 => what.with::<14>(KdopTree::load(soup, reader)?),
+            18 => what.with::<18>(KdopTree::load(soup, reader)?),
+            _ => what.with::<26>(KdopTree::load(soup, reader)?),
+        };
+        let choice = reader.copy::<u8>(CHOICE).ok().map(|text| String::from_utf8_lossy(&text).into_owned());
+        Ok((output, Used { k, choice }))
+    }
+
     /// Builds the tree.
     pub(crate) fn build<'a, W: WithTree<'a>>(
         self,
@@ -45,13 +100,7 @@ impl Faces {
         what: W,
     ) -> Result<(W::Output, Used), BuildError> {
         let choice = (self == Self::Scene).then(|| Choice::from_scene(soup)).transpose()?;
-        let k = match self {
-            Self::Six => 6,
-            Self::Fourteen => 14,
-            Self::Eighteen => 18,
-            Self::TwentySix => 26,
-            Self::Scene => choice.as_ref().map_or(6, |choice| choice.k),
-        };
+        let k = self.k().unwrap_or_else(|| choice.as_ref().map_or(6, |choice| choice.k));
         let output = match k {
             6 => build::<6, _>(soup, choice.as_ref(), what),
             14 => build::<14, _>(soup, choice.as_ref(), what),

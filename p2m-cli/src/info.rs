@@ -1,6 +1,6 @@
 //! `p2m info`: what a scene is made of.
 
-use crate::input::{SceneArgs, read_scene};
+use crate::input::{SceneArgs, read_scene_and_index};
 use crate::json;
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
@@ -43,22 +43,30 @@ Examples:
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
-    let scene = read_scene(&args.scene.path, format)?;
+    let (scene, saved) = read_scene_and_index(&args.scene.path, format)?;
+    let index = saved.and_then(|reader| p2m_core::saved::kind(&reader).ok());
     let progress = Progress::start("counting", None, Unit::None);
     let statistics = Statistics::of(&scene.soup);
     let objects = objects(&scene);
     drop(progress);
     let name = args.scene.name();
     if args.json {
-        return json::print(&report(&name, format, &scene, &objects, &statistics));
+        return json::print(&report(&name, format, index, &scene, &objects, &statistics));
     }
     let mut output = Output::open(None)?;
-    write!(output, "{}", Report { name, format, scene: &scene, objects: &objects, statistics: &statistics })
+    write!(output, "{}", Report { name, format, index, scene: &scene, objects: &objects, statistics: &statistics })
         .with_context(|| output.cannot_write())?;
     output.finish()
 }
 
-fn report(name: &str, format: Format, scene: &Scene, objects: &[ObjectCounts], s: &Statistics) -> Value {
+fn report(
+    name: &str,
+    format: Format,
+    index: Option<String>,
+    scene: &Scene,
+    objects: &[ObjectCounts],
+    s: &Statistics,
+) -> Value {
     let extremes = |e: Option<Extremes>| e.map(|e| json!({ "min": e.min, "max": e.max }));
     let corner = |p: nalgebra::Point3<f64>| [p.x, p.y, p.z];
     json!({
@@ -66,6 +74,7 @@ fn report(name: &str, format: Format, scene: &Scene, objects: &[ObjectCounts], s
         "version": json::VERSION,
         "file": name,
         "format": format.name(),
+        "index": index,
         "primitives": json::counts(&s.primitives),
         "objects": objects.iter().map(|o| {
             json!({ "name": o.name, "primitives": json::counts(&o.primitives) })
@@ -111,6 +120,8 @@ fn report(name: &str, format: Format, scene: &Scene, objects: &[ObjectCounts], s
 struct Report<'a> {
     name: String,
     format: Format,
+    /// That of a saved file.
+    index: Option<String>,
     scene: &'a Scene,
     objects: &'a [ObjectCounts],
     statistics: &'a Statistics,
@@ -125,6 +136,9 @@ impl fmt::Display for Report<'_> {
         let s = self.statistics;
         let mut line = |label: &str, text: &str| writeln!(f, "{label:LABEL$}{text}");
         line("scene", &format!("{} ({})", self.name, self.format))?;
+        if let Some(index) = &self.index {
+            line("index", index)?;
+        }
         line("primitives", &counted(&s.primitives))?;
         for (i, object) in self.objects.iter().enumerate().take(LISTED) {
             let name = object.name.as_deref().map_or_else(|| "(without a name)".to_owned(), printable);

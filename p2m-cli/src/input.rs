@@ -5,8 +5,9 @@ use crate::usage::{one_of, usage};
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
 use p2m_core::Ray;
-use p2m_mixed::{Format, PointFormat, ReadError, Scene};
-use std::fs::File;
+use p2m_core::saved::{LoadError, Reader, SavedFile};
+use p2m_mixed::{Format, PointFormat, ReadError, Scene, load_scene};
+use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
@@ -17,7 +18,7 @@ pub(crate) const STANDARD: &str = "-";
 /// A scene to read.
 #[derive(clap::Args)]
 pub(crate) struct SceneArgs {
-    /// Scene: an OBJ, PLY, STL or OFF file; `-` is the standard input
+    /// Scene: an OBJ, PLY, STL or OFF file, or an index that `p2m build` saved; `-` is the standard input
     #[arg(value_name = "SCENE")]
     pub(crate) path: PathBuf,
 
@@ -74,9 +75,28 @@ pub(crate) fn or_option(error: &ReadError, option: &str) -> anyhow::Error {
     anyhow!("{error}, or name the format with {option}")
 }
 
+/// A scene, and what a saved index has besides it.
+pub(crate) fn read_scene_and_index(path: &Path, format: Format) -> anyhow::Result<(Scene, Option<Reader>)> {
+    if format != Format::P2m {
+        return Ok((p2m_mixed::read_scene_from(open(path)?, format, &name(path))?, None));
+    }
+    // What is no file cannot be mapped.
+    let is_file = fs::metadata(path).is_ok_and(|metadata| metadata.is_file()) && !is_standard(path);
+    let mut stream = if is_file { None } else { Some(open(path)?) };
+    let progress = is_file.then(|| Progress::start(&format!("checking {}", name(path)), None, Unit::None));
+    let mut load = || -> Result<_, LoadError> {
+        let file = stream.as_mut().map_or_else(|| SavedFile::open(path), SavedFile::read)?;
+        let reader = file.checked()?;
+        Ok((load_scene(reader)?, Some(reader.clone())))
+    };
+    let loaded = load().with_context(|| name(path))?;
+    drop(progress);
+    Ok(loaded)
+}
+
 /// Reads a scene.
 pub(crate) fn read_scene(path: &Path, format: Format) -> anyhow::Result<Scene> {
-    Ok(p2m_mixed::read_scene_from(open(path)?, format, &name(path))?)
+    Ok(read_scene_and_index(path, format)?.0)
 }
 
 /// Reads points.

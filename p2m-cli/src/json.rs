@@ -30,6 +30,17 @@ pub(crate) fn print(report: &Value) -> anyhow::Result<()> {
     write().context("the standard output: cannot be written")
 }
 
+/// One object of several.
+pub(crate) fn joined<const N: usize>(parts: [Value; N]) -> Value {
+    let mut all = serde_json::Map::new();
+    for part in parts {
+        if let Value::Object(part) = part {
+            all.extend(part);
+        }
+    }
+    Value::Object(all)
+}
+
 /// A number, or null if it is not finite.
 pub(crate) fn number(x: f64) -> Value {
     // That is what serde_json does; stated here because reports rely on it.

@@ -6,6 +6,7 @@
 mod asking;
 mod backend;
 mod boxes;
+mod build;
 mod convert;
 mod faces;
 mod findings;
@@ -21,6 +22,7 @@ mod query;
 mod ray;
 mod sampling;
 mod shell;
+mod stats;
 mod summary;
 mod usage;
 
@@ -37,7 +39,7 @@ struct Cli {
 }
 
 const EXAMPLES: &str = "\
-Scenes are OBJ, PLY, STL and OFF files. A `-` in place of a file is the standard input or output.
+Scenes are OBJ, PLY, STL and OFF files, and indexes that `p2m build` saved. A `-` in place of a file is the standard input or output.
 
 Examples:
   p2m query scene.obj --random 1000 --out answers.csv
@@ -52,6 +54,8 @@ the signal after an interruption (130 for Ctrl-C), which leaves no half-written 
 #[derive(Subcommand)]
 enum Command {
     Query(query::Args),
+    Build(build::Args),
+    Stats(stats::Args),
     Ray(ray::Args),
     Info(info::Args),
     Convert(convert::Args),
@@ -66,6 +70,8 @@ impl Command {
     fn path(&self) -> String {
         match self {
             Self::Query(_) => "p2m query".to_owned(),
+            Self::Build(_) => "p2m build".to_owned(),
+            Self::Stats(_) => "p2m stats".to_owned(),
             Self::Ray(_) => "p2m ray".to_owned(),
             Self::Info(_) => "p2m info".to_owned(),
             Self::Convert(_) => "p2m convert".to_owned(),
@@ -101,6 +107,8 @@ fn run(command: &Command) -> anyhow::Result<()> {
     interrupt::listen().context("cannot listen for Ctrl-C")?;
     match command {
         Command::Query(args) => query::run(args),
+        Command::Build(args) => build::run(args),
+        Command::Stats(args) => stats::run(args),
         Command::Ray(args) => ray::run(args),
         Command::Info(args) => info::run(args),
         Command::Convert(args) => convert::run(args),

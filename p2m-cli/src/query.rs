@@ -1,20 +1,16 @@
 //! `p2m query`: closest points as a table.
 
 use crate::asking::{Asking, Questions, ask};
-use crate::backend::{About, Search};
-use crate::faces::Faces;
-use crate::input::{self, SceneArgs, point_format, read_points, read_scene};
+use crate::backend::{Backend, Built, Search, Source};
+use crate::input::{self, SceneArgs, point_format, read_points, read_scene_and_index};
 use crate::json;
 use crate::output::Output;
-use crate::progress::{Progress, Unit};
 use crate::sampling::{Queries, Region};
-use crate::summary::{Answers, Run};
+use crate::summary::{Answers, Indexed, Run};
 use crate::usage::{not_negative, one_of, positive, whole};
 use anyhow::Context;
-use clap::builder::PossibleValue;
-use clap::{ArgGroup, ValueEnum};
-use p2m_core::{BuildError, ClosestPoint, QueryOptions, Soup};
-use p2m_interception::{InterceptionIndex, Octree, Partition, Voronoi};
+use clap::ArgGroup;
+use p2m_core::QueryOptions;
 use p2m_mixed::{AnswerWriter, PointFormat, Scene};
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -97,98 +93,31 @@ pub(crate) struct Args {
     #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true)]
     max_distance: Option<f64>,
 
-    /// How to search
-    #[arg(long, value_enum, default_value_t = Backend::Search(Search::Aabb))]
-    backend: Backend,
+    /// How to search [default: aabb, or as a saved index does]
+    #[arg(long, value_enum)]
+    backend: Option<Backend>,
 
     #[command(flatten)]
     asking: Asking,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Backend {
-    Search(Search),
-    Octree,
-    P2m,
-}
-
-impl ValueEnum for Backend {
-    fn value_variants<'a>() -> &'a [Self] {
-        const ALL: &[Backend] = &[
-            Backend::Search(Search::Brute),
-            Backend::Search(Search::Aabb),
-            Backend::Search(Search::Kdop),
-            Backend::Octree,
-            Backend::P2m,
-        ];
-        ALL
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        let octree =
-            "Cells in space with lists of what can be nearest there: no search, for more memory and a longer build";
-        let p2m = "Cells of the vertices with lists of what can be nearest there: fastest far from the scene";
-        match self {
-            Self::Search(search) => search.to_possible_value(),
-            Self::Octree => Some(PossibleValue::new(self.name()).help(octree)),
-            Self::P2m => Some(PossibleValue::new(self.name()).help(p2m)),
-        }
-    }
-}
-
-impl Backend {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Search(search) => search.name(),
-            Self::Octree => "octree",
-            Self::P2m => "p2m",
-        }
-    }
-
-    /// The index, and what there is to say about it.
-    fn build(self, soup: &Soup<f64>, faces: Faces) -> Result<(Closest<'_>, About), BuildError> {
-        match self {
-            Self::Search(search) => search.build(soup, faces).map(|(index, about)| (index as Closest<'_>, about)),
-            Self::Octree => interception::<Octree>(soup, About::Cubes),
-            Self::P2m => interception::<Voronoi>(soup, About::Cells),
-        }
-    }
-}
-
-type Closest<'a> = Box<dyn ClosestPoint<f64> + Sync + 'a>;
-
-/// An interception index, which takes a while to build.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part is from 0 to 1")]
-fn interception<P: Partition + Sync + 'static>(
-    soup: &Soup<f64>,
-    about: fn(P::Report) -> About,
-) -> Result<(Closest<'_>, About), BuildError> {
-    let progress = Progress::start("finding cells", Some(100), Unit::Percent);
-    let reach = |part: f64| progress.reach((part * 100.0) as u64);
-    let index = InterceptionIndex::<_, _, P>::build_with_progress(soup, &Default::default(), &reach)?;
-    let report = index.report();
-    Ok((Box::new(index), about(report)))
-}
-
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let (scene_args, asking) = (&args.scene, &args.asking);
-    let is_kdop = args.backend == Backend::Search(Search::Kdop);
-    asking.check(scene_args, args.points.as_deref(), "points", is_kdop)?;
+    asking.check(scene_args, args.points.as_deref(), "points")?;
     let (format, out_format) = (scene_args.format()?, asking.format()?);
     let start = Instant::now();
-    let scene = read_scene(&scene_args.path, format)?;
+    let (scene, saved) = read_scene_and_index(&scene_args.path, format)?;
     let queries = queries(args, &scene)?;
     let read = start.elapsed();
     // Before any work, so that it is not lost to a wrong name.
     let mut output = Output::open(Some(&asking.out))?;
 
     let start = Instant::now();
-    // Interception indexes tell more by themselves.
-    let is_search = matches!(args.backend, Backend::Search(_));
-    let progress = is_search.then(|| Progress::start("building the index", None, Unit::None));
-    let built = args.backend.build(&scene.soup, asking.faces());
-    let (index, about) = built.with_context(|| scene_args.name())?;
-    drop(progress);
+    let saved = saved.as_ref();
+    let backend = args.backend.or_else(|| Backend::of_saved(saved)).unwrap_or(Backend::Search(Search::Aabb));
+    let faces = asking.faces(backend == Backend::Search(Search::Kdop))?;
+    let source = Source { soup: &scene.soup, faces, saved };
+    let Built { index, about, loaded } = backend.build(source).with_context(|| scene_args.name())?;
     let build = start.elapsed();
 
     let pool = asking.pool()?;
@@ -212,11 +141,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let bytes = output.bytes();
     output.finish()?;
 
-    let (scene_name, backend, threads) = (scene_args.name(), args.backend.name(), pool.current_num_threads());
-    let run = Run { scene_name, scene: &scene, format, backend, about, threads, read, build, asked };
+    let (scene_name, backend, threads) = (scene_args.name(), backend.name(), pool.current_num_threads());
+    let indexed = Indexed { scene_name, scene: &scene, format, backend, about, loaded, read, build };
+    let run = Run { indexed, threads, asked };
     if asking.json {
         let max_distance = args.max_distance.map_or(Value::Null, json::number);
-        let report = answers.json(&run.cells(), &max_distance, &asked_about(args));
+        let report = answers.json(&run.indexed.cells(), &max_distance, &asked_about(args));
         return json::print(&run.json("query", report, &asking.written(out_format, bytes)));
     }
     // The answers are complete; whether anybody reads this is not our concern.

@@ -1,14 +1,13 @@
 //! `p2m ray`: what rays meet, as a table.
 
 use crate::asking::{Asking, Questions, ask};
-use crate::backend::{Index, Search};
+use crate::backend::{Built, Index, Search, Source};
 use crate::findings::Findings;
-use crate::input::{self, SceneArgs, point_format, read_rays, read_scene};
+use crate::input::{self, SceneArgs, point_format, read_rays, read_scene_and_index};
 use crate::json;
 use crate::output::Output;
-use crate::progress::{Progress, Unit};
 use crate::sampling::{Region, random_rays};
-use crate::summary::Run;
+use crate::summary::{Indexed, Run};
 use crate::usage::{finite_not_negative, number, one_of, positive, usage, whole};
 use anyhow::Context;
 use clap::{ArgGroup, ValueEnum};
@@ -115,9 +114,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "R", default_value_t = 0.0, value_parser = finite_not_negative, allow_negative_numbers = true)]
     radius: f64,
 
-    /// How to search; interception indexes (octree, p2m) answer no rays
-    #[arg(long, value_enum, default_value_t = Search::Aabb)]
-    backend: Search,
+    /// How to search; interception indexes (octree, p2m) answer no rays [default: aabb, or as a saved index does]
+    #[arg(long, value_enum)]
+    backend: Option<Search>,
 
     #[command(flatten)]
     asking: Asking,
@@ -154,22 +153,22 @@ impl Mode {
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let (scene_args, asking) = (&args.scene, &args.asking);
-    asking.check(scene_args, args.rays.as_deref(), "rays", args.backend == Search::Kdop)?;
+    asking.check(scene_args, args.rays.as_deref(), "rays")?;
     let along_x = Ray::new(&Point3::<f64>::origin(), &Vector3::x()).and_then(|ray| args.limited(&ray));
     along_x.map_err(|error| usage(format!("{error} (--min, --max)")))?;
     let (format, out_format) = (scene_args.format()?, asking.format()?);
     let start = Instant::now();
-    let scene = read_scene(&scene_args.path, format)?;
+    let (scene, saved) = read_scene_and_index(&scene_args.path, format)?;
     let rays = rays(args, &scene)?;
     let read = start.elapsed();
     // Before any work, so that it is not lost to a wrong name.
     let mut output = Output::open(Some(&asking.out))?;
 
     let start = Instant::now();
-    let progress = Progress::start("building the index", None, Unit::None);
-    let built = args.backend.build(&scene.soup, asking.faces());
-    let (index, about) = built.with_context(|| scene_args.name())?;
-    drop(progress);
+    let saved = saved.as_ref();
+    let backend = args.backend.or_else(|| Search::of_saved(saved)).unwrap_or(Search::Aabb);
+    let source = Source { soup: &scene.soup, faces: asking.faces(backend == Search::Kdop)?, saved };
+    let Built { index, about, loaded } = backend.build(source).with_context(|| scene_args.name())?;
     let build = start.elapsed();
 
     let pool = asking.pool()?;
@@ -178,8 +177,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let bytes = output.bytes();
     output.finish()?;
 
-    let (scene_name, backend, threads) = (scene_args.name(), args.backend.name(), pool.current_num_threads());
-    let run = Run { scene_name, scene: &scene, format, backend, about, threads, read, build, asked };
+    let (scene_name, backend, threads) = (scene_args.name(), backend.name(), pool.current_num_threads());
+    let indexed = Indexed { scene_name, scene: &scene, format, backend, about, loaded, read, build };
+    let run = Run { indexed, threads, asked };
     if asking.json {
         let report = args.report(findings.json());
         return json::print(&run.json("ray", report, &asking.written(out_format, bytes)));

@@ -11,27 +11,28 @@ use serde_json::{Value, json};
 use std::fmt::{self, Write};
 use std::time::Duration;
 
-/// What there is to say of every run that asks.
-pub(crate) struct Run<'a> {
+/// A scene and the index over it.
+pub(crate) struct Indexed<'a> {
     pub(crate) scene_name: String,
     pub(crate) scene: &'a Scene,
     pub(crate) format: Format,
     pub(crate) backend: &'static str,
     pub(crate) about: About,
-    pub(crate) threads: usize,
+    /// Whether a file had the index.
+    pub(crate) loaded: bool,
     pub(crate) read: Duration,
+    /// Building or loading.
     pub(crate) build: Duration,
-    pub(crate) asked: Duration,
 }
 
-impl Run<'_> {
-    /// The report of a command: that of the run, with `answers` in it, which went to `out`.
-    pub(crate) fn json(&self, command: &str, answers: Value, out: &Value) -> Value {
+impl Indexed<'_> {
+    /// The report of a command up to the index, as an object.
+    pub(crate) fn json(&self, command: &str) -> Value {
         let (faces, choice) = match &self.about {
             About::Faces(used) => (Some(used.k), used.choice.as_ref()),
             _ => (None, None),
         };
-        let mut report = json!({
+        json!({
             "p2m": command,
             "version": json::VERSION,
             "scene": {
@@ -41,24 +42,10 @@ impl Run<'_> {
                 "skipped": json::skipped(self.scene),
             },
             "backend": self.backend,
+            "loaded": self.loaded,
             "faces": faces,
             "choice": choice,
-            "threads": self.threads,
-        });
-        let end = json!({
-            "seconds": {
-                "read": self.read.as_secs_f64(),
-                "build": self.build.as_secs_f64(),
-                "query": self.asked.as_secs_f64(),
-            },
-            "out": out,
-        });
-        for part in [answers, end] {
-            if let (Value::Object(report), Value::Object(part)) = (&mut report, part) {
-                report.extend(part);
-            }
-        }
-        report
+        })
     }
 
     /// What an interception index is made of, for the report.
@@ -85,6 +72,54 @@ impl Run<'_> {
         }
     }
 
+    /// Lines about both, with one about what is asked if that is to be noted.
+    pub(crate) fn write(&self, text: &mut String, note: Option<String>) -> fmt::Result {
+        writeln!(text, "scene    {}", self.scene_name)?;
+        writeln!(text, "         {}", counted(&Counts::of(&self.scene.soup)))?;
+        if p2m_core::PrimitiveSet::is_empty(&self.scene.soup) {
+            writeln!(text, "note     the scene is empty: there is nothing to find")?;
+        }
+        if let Some(note) = note {
+            writeln!(text, "note     {note}")?;
+        }
+        if !self.scene.skipped.is_empty() {
+            let list: Vec<String> = self.scene.skipped.iter().map(ToString::to_string).collect();
+            writeln!(text, "skipped  {}", list.join(", "))?;
+        }
+        let faces = if let About::Faces(used) = &self.about { format!(", {} faces", used.k) } else { String::new() };
+        let done = if self.loaded { "loaded" } else { "built" };
+        writeln!(text, "backend  {}{faces}, {done} in {:.3?}", self.backend, self.build)?;
+        match &self.about {
+            About::Faces(Used { choice: Some(choice), .. }) => writeln!(text, "k-DOPs   {choice}")?,
+            About::Cubes(report) => writeln!(text, "cells    {report}")?,
+            About::Cells(report) => writeln!(text, "cells    {report}")?,
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+/// What there is to say of every run that asks.
+pub(crate) struct Run<'a> {
+    pub(crate) indexed: Indexed<'a>,
+    pub(crate) threads: usize,
+    pub(crate) asked: Duration,
+}
+
+impl Run<'_> {
+    /// The report of a command: that of the run, with `answers` in it, which went to `out`.
+    pub(crate) fn json(&self, command: &str, answers: Value, out: &Value) -> Value {
+        let end = json!({
+            "seconds": {
+                "read": self.indexed.read.as_secs_f64(),
+                "build": self.indexed.build.as_secs_f64(),
+                "query": self.asked.as_secs_f64(),
+            },
+            "out": out,
+        });
+        json::joined([self.indexed.json(command), json!({ "threads": self.threads }), answers, end])
+    }
+
     /// Lines about the scene, the index, and the speed of `count` questions, which are called like `rays`, one of them
     /// `ray`.
     pub(crate) fn text(&self, many: &str, one: &str, count: u64) -> String {
@@ -96,26 +131,8 @@ impl Run<'_> {
 
     #[allow(clippy::cast_precision_loss, reason = "counts for people to read")]
     fn write(&self, text: &mut String, many: &str, one: &str, count: u64) -> fmt::Result {
-        writeln!(text, "scene    {}", self.scene_name)?;
-        writeln!(text, "         {}", counted(&Counts::of(&self.scene.soup)))?;
-        if p2m_core::PrimitiveSet::is_empty(&self.scene.soup) {
-            writeln!(text, "note     the scene is empty: there is nothing to find")?;
-        }
-        if count == 0 {
-            writeln!(text, "note     there are no {many}: nothing is asked")?;
-        }
-        if !self.scene.skipped.is_empty() {
-            let list: Vec<String> = self.scene.skipped.iter().map(ToString::to_string).collect();
-            writeln!(text, "skipped  {}", list.join(", "))?;
-        }
-        let faces = if let About::Faces(used) = &self.about { format!(", {} faces", used.k) } else { String::new() };
-        writeln!(text, "backend  {}{faces}, built in {:.3?}", self.backend, self.build)?;
-        match &self.about {
-            About::Faces(Used { choice: Some(choice), .. }) => writeln!(text, "k-DOPs   {choice}")?,
-            About::Cubes(report) => writeln!(text, "cells    {report}")?,
-            About::Cells(report) => writeln!(text, "cells    {report}")?,
-            _ => {}
-        }
+        let note = (count == 0).then(|| format!("there are no {many}: nothing is asked"));
+        self.indexed.write(text, note)?;
         let threads = if self.threads == 1 { "thread" } else { "threads" };
         write!(text, "{many:9}{count} in {:.3?} on {} {threads}", self.asked, self.threads)?;
         let seconds = self.asked.as_secs_f64();

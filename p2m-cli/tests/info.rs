@@ -51,6 +51,7 @@ fn the_json_report_has_the_same_figures() {
         "version": 1,
         "file": scene,
         "format": "obj",
+        "index": null,
         "primitives": counts(5, 1, 1),
         "objects": [
             { "name": "wall", "primitives": counts(5, 0, 0) },
@@ -126,14 +127,15 @@ fn the_given_format_goes_before_the_extension() {
     let scene = write(&folder, "scene.txt", "v 0 0 0\np 1\n");
     let message = failure(&["info", &scene], 1);
     assert!(
-        message
-            .contains("unknown extension 'txt', expected one of obj, ply, stl, off, or name the format with --format"),
+        message.contains(
+            "unknown extension 'txt', expected one of obj, ply, stl, off, p2m, or name the format with --format"
+        ),
         "{message}"
     );
     assert_eq!(json(&["info", &scene, "--format", "obj", "--json"])["primitives"]["points"], 1);
     let message = failure(&["info", &scene, "--format", "step"], 2);
     assert!(
-        message.contains("invalid value 'step' for '--format <FORMAT>'\n  [possible values: obj, ply, stl, off]"),
+        message.contains("invalid value 'step' for '--format <FORMAT>'\n  [possible values: obj, ply, stl, off, p2m]"),
         "{message}"
     );
 }

@@ -273,6 +273,7 @@ fn the_json_summary_agrees_with_the_table() {
             "skipped": [],
         },
         "backend": "aabb",
+        "loaded": false,
         "faces": null,
         "choice": null,
         "cells": null,

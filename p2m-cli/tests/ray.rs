@@ -219,6 +219,7 @@ fn the_json_summary_agrees_with_the_table() {
             "skipped": [],
         },
         "backend": "aabb",
+        "loaded": false,
         "faces": null,
         "choice": null,
         "threads": 2,

@@ -6,7 +6,8 @@ use common::*;
 use std::fs;
 use tempfile::TempDir;
 
-const COMMANDS: [&str; 8] = ["query", "ray", "info", "boxes", "convert", "generate", "completions", "man"];
+const COMMANDS: [&str; 10] =
+    ["query", "build", "stats", "ray", "info", "boxes", "convert", "generate", "completions", "man"];
 
 #[test]
 fn every_shell_gets_completions() {

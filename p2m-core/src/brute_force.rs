@@ -1,7 +1,8 @@
 //! The oracle of everything else: every primitive, every time.
 
 use crate::{
-    Best, BuildError, BuildIndex, ClosestPoint, Collector, Primitive, PrimitiveId, PrimitiveSet, Real, check_set,
+    Best, BuildError, BuildIndex, ClosestPoint, Collector, Counting, Examine, Primitive, PrimitiveId, PrimitiveSet,
+    Real, check_set,
 };
 use nalgebra::Point3;
 
@@ -38,6 +39,18 @@ impl<T: Real, S: PrimitiveSet<T>> ClosestPoint<T> for BruteForce<S> {
         for id in (0..self.set.len()).map(PrimitiveId::new) {
             best.offer(id, self.set.get(id).project(query));
         }
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>> Examine<T> for BruteForce<S> {
+    fn examine(&self, query: &Point3<T>, counting: &mut Counting<T>) {
+        for id in (0..self.set.len()).map(PrimitiveId::new) {
+            counting.offer(id, self.set.get(id).project(query));
+        }
+    }
+
+    fn parts(&self) -> Vec<(&'static str, usize)> {
+        Vec::new()
     }
 }
 

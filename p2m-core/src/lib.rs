@@ -38,9 +38,11 @@ mod primitive;
 mod query;
 mod ray;
 mod real;
+pub mod saved;
 mod set;
 mod simd;
 mod soup;
+mod stats;
 
 pub use aabb::Aabb;
 pub use box_query::{BoxQuery, ClosestLeaf};
@@ -57,3 +59,4 @@ pub use real::Real;
 pub use set::{PrimitiveId, PrimitiveSet, check_set};
 pub use simd::Isa;
 pub use soup::{Element, Soup};
+pub use stats::{Examine, Lists, Visits};

@@ -3,7 +3,8 @@
 use crate::{Aabb, BuildError, Primitive, Real};
 
 /// Number of a primitive in its set, from 0, in the order in which the user gave them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
 pub struct PrimitiveId(u32);
 
 impl PrimitiveId {

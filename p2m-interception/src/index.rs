@@ -1,7 +1,9 @@
 use nalgebra::Point3;
-use p2m_core::interception::{Hints, Octree, Partition, SIDE_BY_SIDE, Voronoi};
+use p2m_core::interception::{Hints, Octree, Partition, SIDE_BY_SIDE, SortedLists, Voronoi};
+use p2m_core::saved::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{
-    Best, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Isa, PrimitiveSet, QueryOptions, Real, check_set,
+    Best, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Counting, Examine, Isa, PrimitiveSet, QueryOptions,
+    Real, check_set,
 };
 use std::marker::PhantomData;
 
@@ -25,10 +27,11 @@ pub type OctreeIndex<T, S> = InterceptionIndex<T, S, Octree>;
 ///
 /// # References
 /// \[Zong2023\]
-pub type P2mIndex<T, S> = P2mIndexWith<T, S, Hints>;
+pub type P2mIndex<T, S> = P2mIndexWith<T, S, Hints, SortedLists>;
 
-/// [`P2mIndex`] with another [`Locator`](p2m_core::interception::Locator).
-pub type P2mIndexWith<T, S, L> = InterceptionIndex<T, S, Voronoi<L>>;
+/// [`P2mIndex`] with another [`Locator`](p2m_core::interception::Locator) or
+/// [`ListFilter`](p2m_core::interception::ListFilter).
+pub type P2mIndexWith<T, S, L, F> = InterceptionIndex<T, S, Voronoi<L, F>>;
 
 /// An interception index over a set of primitives, which it keeps.
 #[derive(Clone, Debug)]
@@ -88,6 +91,47 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> InterceptionIndex<T, S, P> {
     #[inline]
     pub fn visit<C: Collector>(&self, query: &Point3<T>, collector: &mut C) {
         self.partition.search(&self.set, query, collector);
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>, P: Saved> InterceptionIndex<T, S, P> {
+    /// Adds the cells to a file, without the set.
+    ///
+    /// # Panics
+    /// If the file has an index already.
+    pub fn save<'a>(&'a self, writer: &mut Writer<'a>) {
+        saved::save(&self.partition, &self.set, writer);
+    }
+
+    /// The cells of a file over a set like the one that they were built over, as if they had been built.
+    ///
+    /// # Errors
+    /// [`LoadError`].
+    ///
+    /// # Complexity
+    /// O(n) to look at the set and copy the nodes of the tree; the rest stays in the file.
+    pub fn load(set: S, reader: &Reader) -> Result<Self, LoadError> {
+        let partition = saved::load(&set, reader)?;
+        Ok(Self { set, scalar: PhantomData, partition })
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>, P: Partition> Examine<T> for InterceptionIndex<T, S, P> {
+    fn examine(&self, query: &Point3<T>, counting: &mut Counting<T>) {
+        self.visit(query, counting);
+    }
+
+    fn parts(&self) -> Vec<(&'static str, usize)> {
+        let tree = self.partition.tree().memory();
+        vec![("cells", self.memory() - tree), ("tree", tree)]
+    }
+
+    fn list_lengths(&self) -> Vec<usize> {
+        self.partition.list_lengths()
+    }
+
+    fn list_length(&self, point: &Point3<T>) -> Option<usize> {
+        self.partition.list(&point.map(Real::to_f64)).map(|list| list.len())
     }
 }
 

@@ -12,13 +12,13 @@ use std::sync::Arc;
 /// ```
 /// use nalgebra::Point3;
 /// use p2m_core::{BuildIndex, ClosestPoint, Segment};
-/// use p2m_interception::{KdTreeLocator, P2mIndexWith};
+/// use p2m_interception::{KdTreeLocator, P2mIndexWith, SortedLists};
 ///
 /// let wires: Vec<Segment<f64>> = (0..20)
 ///     .map(|i| f64::from(i).sin_cos())
 ///     .map(|(x, y)| Segment::new(Point3::new(x, y, 0.0), Point3::new(-y, x, 1.0)))
 ///     .collect();
-/// let index: P2mIndexWith<f64, _, KdTreeLocator> = P2mIndexWith::build(&wires, &Default::default())?;
+/// let index: P2mIndexWith<f64, _, KdTreeLocator, SortedLists> = P2mIndexWith::build(&wires, &Default::default())?;
 /// assert!(index.closest_point(&Point3::new(2.0, 0.0, 0.0)).is_some_and(|answer| answer.distance < 1.5));
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```

@@ -22,11 +22,15 @@
 mod index;
 #[cfg(feature = "kiddo")]
 mod kd_tree;
+#[cfg(feature = "rstar")]
+mod region_tree;
 
 pub use index::{InterceptionIndex, OctreeIndex, P2mIndex, P2mIndexWith};
 #[cfg(feature = "kiddo")]
 pub use kd_tree::KdTreeLocator;
 pub use p2m_core::interception::{
-    Domain, Hints, Locator, LocatorSites, Octree, OctreeOptions, OctreeReport, P2mOptions, P2mReport, Partition,
-    Voronoi,
+    Domain, Hints, ListFilter, Locator, LocatorSites, Octree, OctreeOptions, OctreeReport, P2mOptions, P2mReport,
+    Partition, Region, SortedLists, Voronoi,
 };
+#[cfg(feature = "rstar")]
+pub use region_tree::RegionTree;

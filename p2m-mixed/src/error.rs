@@ -73,6 +73,9 @@ pub enum Reason {
     /// The operating system says no.
     #[error("cannot be read")]
     Io(#[source] std::io::Error),
+    /// It is no saved index, or a damaged one.
+    #[error(transparent)]
+    Saved(p2m_core::saved::LoadError),
     /// The primitives do not make a scene: there are too many.
     #[error("no scene can be made of it")]
     Build(#[source] BuildError),

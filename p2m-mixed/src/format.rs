@@ -9,7 +9,7 @@ use std::str::FromStr;
 ///
 /// ```
 /// let error = "step".parse::<p2m_mixed::Format>().unwrap_err();
-/// assert_eq!(error.to_string(), "unknown format 'step', expected one of obj, ply, stl, off");
+/// assert_eq!(error.to_string(), "unknown format 'step', expected one of obj, ply, stl, off, p2m");
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown format '{name}', expected one of {}", supported.join(", "))]
@@ -102,6 +102,9 @@ formats! {
         Stl = "stl",
         /// The object file format of Geomview: [`read_off`](crate::read_off), [`write_off`](crate::write_off).
         Off = "off",
+        /// Saved indexes with their scenes, of which the scene is read and written: [`read_p2m`](crate::read_p2m),
+        /// [`write_p2m`](crate::write_p2m).
+        P2m = "p2m",
     }
 }
 

@@ -24,6 +24,7 @@
 mod answers;
 mod builder;
 mod bytes;
+mod camera;
 mod error;
 mod format;
 pub mod generate;
@@ -33,6 +34,7 @@ pub mod picture;
 mod ply;
 mod points;
 mod polygon;
+mod saved;
 mod scene;
 pub mod statistics;
 mod stl;
@@ -40,6 +42,7 @@ mod text;
 mod write;
 
 pub use answers::{AnswerWriter, HitWriter, NumberWriter};
+pub use camera::Camera;
 pub use error::{HeaderProblem, Place, ReadError, Reason};
 pub use format::{AnswerFormat, Format, PointFormat, UnknownFormat};
 pub use obj::read_obj;
@@ -47,6 +50,7 @@ pub use off::read_off;
 pub use ply::read_ply;
 pub use points::{read_points, read_points_from, read_rays, read_rays_from};
 pub use polygon::MAX_CORNERS;
+pub use saved::{load_scene, read_p2m, save_scene, write_p2m};
 pub use scene::{Object, Scene, Skipped, read_scene, read_scene_from};
 pub use stl::read_stl;
 pub use write::{

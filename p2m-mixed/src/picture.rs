@@ -4,7 +4,7 @@
 //! file ([`write_picture_ply`]). Whoever has volumes turns them into lines; [`box_edges`] does so for boxes.
 
 use nalgebra::{Point3, Vector3};
-use p2m_core::Aabb;
+use p2m_core::{Aabb, Element, PrimitiveSet, Soup};
 use std::io::{self, Write};
 
 /// A drawing under a title.
@@ -170,10 +170,74 @@ pub fn write_picture_ply(panels: &[Panel], mut writer: impl Write) -> io::Result
     writer.flush()
 }
 
+/// A colour for each value: from blue over green to red by the logarithm, from the least to the largest; what is not
+/// positive is blue.
+#[must_use]
+pub fn value_colours(values: &[f64]) -> Vec<[u8; 3]> {
+    let logarithms = || values.iter().filter(|x| **x > 0.0).map(|x| x.ln());
+    let (least, most) = (logarithms().fold(f64::INFINITY, f64::min), logarithms().fold(f64::NEG_INFINITY, f64::max));
+    let part = |x: f64| if x > 0.0 && most > least { (x.ln() - least) / (most - least) } else { 0.0 };
+    values.iter().map(|x| shade(part(*x))).collect()
+}
+
+/// Writes a scene as a binary PLY file in which each primitive has a colour of its own ([`value_colours`]), on vertices
+/// of its own, with the values as the property `value`.
+///
+/// # Errors
+/// Those of `writer`, and [`io::ErrorKind::InvalidInput`] for more than 2^31 - 1 vertices.
+///
+/// # Panics
+/// If there is not one value for each primitive.
+pub fn write_values_ply(soup: &Soup<f64>, values: &[f64], mut writer: impl Write) -> io::Result<()> {
+    assert_eq!(soup.len(), values.len(), "a value for each primitive");
+    let [points, segments, triangles] = [soup.points().len(), soup.segments().len(), soup.triangles().len()];
+    let vertices = points + 2 * segments + 3 * triangles;
+    if i32::try_from(vertices).is_err() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "too many vertices for a PLY file"));
+    }
+    write!(
+        writer,
+        "ply\nformat binary_little_endian 1.0\ncomment value: {} to {}\nelement vertex {vertices}\n\
+         property double x\nproperty double y\nproperty double z\n\
+         property uchar red\nproperty uchar green\nproperty uchar blue\nproperty double value\n\
+         element face {triangles}\nproperty list uchar int vertex_indices\n\
+         element edge {segments}\nproperty int vertex1\nproperty int vertex2\nend_header\n",
+        values.iter().copied().fold(f64::INFINITY, f64::min),
+        values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    )?;
+    let (mut next, mut faces, mut edges) = (0i32, Vec::new(), Vec::new());
+    for ((element, value), colour) in soup.elements().zip(values).zip(value_colours(values)) {
+        for index in element.indices() {
+            let position = soup.positions()[*index as usize];
+            position.iter().try_for_each(|x| writer.write_all(&x.to_le_bytes()))?;
+            writer.write_all(&colour)?;
+            writer.write_all(&value.to_le_bytes())?;
+        }
+        match element {
+            Element::Triangle(_) => faces.push(next),
+            Element::Segment(_) => edges.push(next),
+            Element::Point(_) => {}
+        }
+        next += i32::try_from(element.indices().len()).unwrap_or_default();
+    }
+    for first in faces {
+        writer.write_all(&[3])?;
+        [first, first + 1, first + 2].iter().try_for_each(|i| writer.write_all(&i.to_le_bytes()))?;
+    }
+    for first in edges {
+        [first, first + 1].iter().try_for_each(|i| writer.write_all(&i.to_le_bytes()))?;
+    }
+    writer.flush()
+}
+
 /// From blue over green to red, dark enough for thin lines on white.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 255")]
 fn colour(number: usize, of: usize) -> [u8; 3] {
-    let t = if of > 1 { number as f64 / (of - 1) as f64 } else { 0.0 };
+    shade(if of > 1 { number as f64 / (of - 1) as f64 } else { 0.0 })
+}
+
+/// The same for a part from 0 to 1.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 255")]
+fn shade(t: f64) -> [u8; 3] {
     [40.0 + 170.0 * t, 90.0 + 160.0 * t * (1.0 - t), 200.0 - 160.0 * t].map(|x| x as u8)
 }
 

@@ -1,6 +1,6 @@
 //! Scenes as they come from files.
 
-use crate::{Format, Place, ReadError, Reason, read_obj, read_off, read_ply, read_stl};
+use crate::{Format, Place, ReadError, Reason, read_obj, read_off, read_p2m, read_ply, read_stl};
 use p2m_core::{Element, Soup};
 use std::fmt;
 use std::fs::File;
@@ -110,6 +110,7 @@ pub fn read_scene_from(reader: impl BufRead, format: Format, name: &str) -> Resu
         Format::Ply => read_ply(reader, name),
         Format::Stl => read_stl(reader, name),
         Format::Off => read_off(reader, name),
+        Format::P2m => read_p2m(reader, name),
     }
 }
 

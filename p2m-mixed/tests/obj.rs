@@ -232,10 +232,10 @@ fn messages_read_well() {
 #[test]
 fn files_are_told_by_their_extension() {
     let error = read_scene(Path::new("scene.stp")).unwrap_err();
-    assert_eq!(error.to_string(), "scene.stp: unknown extension 'stp', expected one of obj, ply, stl, off");
+    assert_eq!(error.to_string(), "scene.stp: unknown extension 'stp', expected one of obj, ply, stl, off, p2m");
     assert_eq!(
         read_scene(Path::new("obj")).unwrap_err().to_string(),
-        "obj: unknown extension '', expected one of obj, ply, stl, off"
+        "obj: unknown extension '', expected one of obj, ply, stl, off, p2m"
     );
     for name in ["/nonexistent/a.OBJ", "/nonexistent/a.Ply"] {
         let error = read_scene(Path::new(name)).unwrap_err();

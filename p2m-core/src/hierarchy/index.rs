@@ -1,7 +1,9 @@
 use super::{PacketTree, Volume};
+use crate::saved::{self, LoadError, Reader, Writer};
 use crate::{
-    Aabb, Best, BoxQuery, BuildError, BuildIndex, Closest, ClosestLeaf, ClosestPoint, Collector, Directions, Hits, Isa,
-    Kdop, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector, RayQuery, Real, check_set,
+    Aabb, Best, BoxQuery, BuildError, BuildIndex, Closest, ClosestLeaf, ClosestPoint, Collector, Counting, Directions,
+    Examine, Hits, Isa, Kdop, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector, RayQuery, Real,
+    check_set,
 };
 use nalgebra::Point3;
 use std::marker::PhantomData;
@@ -73,6 +75,26 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         Ok(())
     }
 
+    /// Adds the tree to a file, without the set.
+    ///
+    /// # Panics
+    /// If the file has an index already.
+    pub fn save<'a>(&'a self, writer: &mut Writer<'a>) {
+        saved::save(&self.tree, &self.set, writer);
+    }
+
+    /// The tree of a file over a set like the one that it was built over, as if it had been built.
+    ///
+    /// # Errors
+    /// [`LoadError`].
+    ///
+    /// # Complexity
+    /// O(n) to look at the set and copy the nodes; packets and vertices stay in the file.
+    pub fn load(set: S, reader: &Reader) -> Result<Self, LoadError> {
+        let tree = saved::load(&set, reader)?;
+        Ok(Self { set, scalar: PhantomData, tree })
+    }
+
     /// The same tree, searched with another instruction set. Answers do not depend on it.
     #[must_use]
     pub fn with_isa(self, isa: Isa) -> Self {
@@ -97,6 +119,16 @@ impl<T: Real, S: PrimitiveSet<T>, const K: usize> TreeIndex<T, S, Kdop<K>> {
     /// The directions of its k-DOPs.
     pub fn directions(&self) -> &Directions<K> {
         self.tree.directions()
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>, V: Volume> Examine<T> for TreeIndex<T, S, V> {
+    fn examine(&self, query: &Point3<T>, counting: &mut Counting<T>) {
+        self.visit(query, counting);
+    }
+
+    fn parts(&self) -> Vec<(&'static str, usize)> {
+        vec![("tree", self.memory())]
     }
 }
 

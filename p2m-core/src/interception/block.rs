@@ -12,12 +12,12 @@
 //! Numbers are kept as bytes, rounded outwards. All lengths are in the frame of the scene.
 
 use super::cube::DEEPEST;
-use crate::Collector;
 use crate::hierarchy::PacketTree;
 use crate::hierarchy::wide::search::Filter;
 use crate::hierarchy::wide::volume::Rounded;
 use crate::kernel::vector::V3;
 use crate::simd::{EightLanes, InstructionSet, Lanes, lane_of_key, number_of_key};
+use crate::{Collector, PrimitiveId};
 
 /// Packets of a block.
 pub(super) const WIDTH: usize = 8;
@@ -53,7 +53,7 @@ pub(super) fn reference(y: V3) -> V3 {
 }
 
 /// Eight packets in two cache lines.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(64))]
 pub(super) struct Block {
     /// For corners: row i has f at corner i. For boxes: low and high corners, row by row, and the origin in the last
@@ -72,6 +72,7 @@ pub(super) struct Block {
     pub(super) len: u8,
     /// How many blocks of the same list follow.
     pub(super) more: u8,
+    unused: [u8; 2],
 }
 
 const _: () = assert!(size_of::<Block>() == 128);
@@ -115,6 +116,7 @@ impl Block {
             base: 0.0,
             len: entries.len() as u8,
             more: 0,
+            unused: [0; 2],
         };
         for (i, entry) in entries.iter().enumerate() {
             (block.packets[i], block.lanes[i]) = (entry.packet, entry.lanes);
@@ -216,6 +218,26 @@ impl Block {
             odd = L::load_u8(&self.bounds[2 * i + 1]).mul_add(L::splat(weights[2 * i + 1]), odd);
         }
         even.add(odd).max(L::splat(0.0))
+    }
+}
+
+/// The primitives of a list, in ascending order.
+pub(super) fn primitives<'a>(tree: &PacketTree, list: impl Iterator<Item = &'a Block>) -> Vec<PrimitiveId> {
+    let mut ids = Vec::new();
+    for block in list {
+        for (packet, lanes) in block.packets.iter().zip(block.lanes).take(usize::from(block.len)) {
+            let all = tree.leaves.packets[*packet as usize].ids().iter().enumerate();
+            ids.extend(all.filter(|(lane, _)| lanes >> lane & 1 == 1).map(|(_, id)| *id));
+        }
+    }
+    ids.sort_unstable();
+    ids
+}
+
+impl Block {
+    /// How many primitives it has.
+    pub(super) fn count(&self) -> usize {
+        self.lanes[..usize::from(self.len)].iter().map(|lanes| lanes.count_ones() as usize).sum()
     }
 }
 

@@ -13,6 +13,7 @@ use super::corner::{AtPoints, Found, Least};
 use super::fan::{Fans, Outside};
 use super::features::{Features, Incidences, NONE};
 use super::hull::Hull;
+use super::list_filter::{Filters, ListFilter, Region};
 use super::matters::{Around, Missed, Outlines, Scene, Seen};
 use super::options::P2mReport;
 use super::shares::in_shares;
@@ -31,12 +32,21 @@ pub(super) struct Cells<'a> {
     pub(super) tree: &'a PacketTree,
     pub(super) sites: &'a Sites,
     pub(super) limits: Limits,
+    /// Lists of more primitives have a filter.
+    pub(super) filter_above: usize,
+}
+
+/// The sites with their neighbours, the blocks of their lists, the first one of each at its own number, and the filters
+/// of long ones.
+pub(super) struct Lists<F> {
+    pub(super) fans: Fans,
+    pub(super) blocks: Vec<Block>,
+    pub(super) filters: Filters<F>,
 }
 
 impl Cells<'_> {
-    /// The sites with their neighbours and the blocks of their lists: the first one of each at its own number.
-    /// `progress` is told how many sites are done.
-    pub(super) fn lists(&self, report: &mut P2mReport, progress: &dyn Fn(usize, usize)) -> (Fans, Vec<Block>) {
+    /// The lists of all sites. `progress` is told how many of these are done.
+    pub(super) fn lists<F: ListFilter>(&self, report: &mut P2mReport, progress: &dyn Fn(usize, usize)) -> Lists<F> {
         let sites = self.sites.delaunay.sites();
         let tetrahedra = self.sites.delaunay.tetrahedra();
         let around = Incidences::new(
@@ -53,12 +63,14 @@ impl Cells<'_> {
         let nothing =
             Block::of_list(&[Entry { packet: 0, lanes: 0, bounds: [[0.0; 3]; 2], f: [0.0; 8] }], Bounds::Boxes);
         let mut blocks = vec![nothing[0]; sites.len()];
+        let mut filters = Filters::new(sites.len());
+        let mut records = fans.sites.edit(std::mem::take);
         report.added = self.sites.added;
         let outlines = Outlines::of(self.tree);
         let work = |share| self.share(share, &around, &features, &outlines);
-        in_shares(sites.len(), self.limits.parallel, work, |share: Share| {
+        in_shares(sites.len(), self.limits.parallel, work, |share: Share<F>| {
             for made in share.cells {
-                let to = &mut fans.sites[made.site];
+                let to = &mut records[made.site];
                 (to.owner, to.list) = (features.owners[made.site], TREE);
                 match made.list {
                     List::Tree => report.trees += usize::from(made.site >= BOUNDING),
@@ -71,6 +83,9 @@ impl Cells<'_> {
                         to.outside = made.outside.unwrap_or(to.outside);
                         blocks[made.site] = share.blocks[own.start];
                         blocks.extend_from_slice(&share.blocks[own.start + 1..own.end]);
+                        if let Some(filter) = made.filter {
+                            filters.add(made.site, filter);
+                        }
                         report.lists += 1;
                     }
                 }
@@ -79,25 +94,35 @@ impl Cells<'_> {
             report.entries += share.entries;
             report.primitives += share.primitives;
         });
-        (fans, blocks)
+        fans.sites = records.into();
+        Lists { fans, blocks, filters }
     }
 
     /// The lists of some sites.
-    fn share(&self, sites: Range<usize>, around: &Incidences, features: &Features, outlines: &Outlines) -> Share {
+    fn share<F: ListFilter>(
+        &self,
+        sites: Range<usize>,
+        around: &Incidences,
+        features: &Features,
+        outlines: &Outlines,
+    ) -> Share<F> {
         let corners = &self.sites.corners;
-        let mut share = Share::default();
+        let mut share = Share { cells: Vec::new(), blocks: Vec::new(), entries: 0, primitives: 0 };
         let mut cell = Cell::default();
         for site in sites {
             let own = around.of(site);
-            let mut made = Made { site, list: List::Tree, outside: None };
+            let mut made = Made { site, list: List::Tree, outside: None, filter: None };
             if let Some(anchor) = self.sites.anchor_of(site) {
                 made.list = List::Auxiliary(u32::try_from(anchor).expect("numbers of 32 bits"));
             } else if site >= BOUNDING && !own.iter().any(|t| corners.all[*t as usize].full) {
                 cell.gather(self, corners, site, own);
                 let few = cell.packets.len() <= self.limits.most;
-                let entries =
-                    if few { cell.entries(self, features, outlines, &mut share.primitives) } else { Vec::new() };
+                let entries = if few { cell.entries(self, features, outlines) } else { Vec::new() };
                 if !entries.is_empty() {
+                    let primitives: usize = entries.iter().map(|entry| entry.lanes.count_ones() as usize).sum();
+                    share.primitives += primitives;
+                    made.filter =
+                        (F::IS_USED && primitives > self.filter_above).then(|| F::new(cell.regions(self, &entries)));
                     made.outside = cell.outside(self, features, &entries);
                     let first = share.blocks.len();
                     share.blocks.extend(Block::of_list(&entries, Bounds::Boxes));
@@ -112,19 +137,19 @@ impl Cells<'_> {
 }
 
 /// The lists of some sites.
-#[derive(Default)]
-struct Share {
-    cells: Vec<Made>,
+struct Share<F> {
+    cells: Vec<Made<F>>,
     blocks: Vec<Block>,
     entries: usize,
     primitives: usize,
 }
 
 /// What is known of a cell.
-struct Made {
+struct Made<F> {
     site: usize,
     list: List,
     outside: Option<Outside>,
+    filter: Option<F>,
 }
 
 enum List {
@@ -201,13 +226,7 @@ impl Cell {
         self.packets.dedup();
     }
 
-    fn entries(
-        &mut self,
-        cells: &Cells<'_>,
-        features: &Features,
-        outlines: &Outlines,
-        primitives: &mut usize,
-    ) -> Vec<Entry> {
+    fn entries(&mut self, cells: &Cells<'_>, features: &Features, outlines: &Outlines) -> Vec<Entry> {
         let tree = cells.tree;
         let scene = Scene { tree, delaunay: &cells.sites.delaunay, features, outlines, slack: cells.limits.slack };
         let Self { site, y: place, whole: Hull { reach, error, .. }, .. } = *self;
@@ -226,7 +245,6 @@ impl Cell {
                 }
             }
             if lanes != 0 {
-                *primitives += lanes.count_ones() as usize;
                 let order = FromPlace::new(tree, packet, &self.y).least(lanes) * packet.unit();
                 let bounds = tree.frame.enclose(&packet.bounds_of(lanes));
                 entries.push((order, Entry { packet: number, lanes, bounds, f: [0.0; 8] }));
@@ -235,6 +253,25 @@ impl Cell {
         self.packets = packets;
         entries.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.packet.cmp(&b.1.packet)));
         entries.into_iter().map(|e| e.1).collect()
+    }
+
+    /// Boxes around the regions of all primitives of a list.
+    fn regions(&mut self, cells: &Cells<'_>, entries: &[Entry]) -> Vec<Region> {
+        let tree = cells.tree;
+        let mut regions = Vec::new();
+        for entry in entries {
+            self.values.compute(&self.whole, &tree.leaves.packets[entry.packet as usize], tree);
+            for lane in (0..LANES).filter(|lane| entry.lanes >> lane & 1 == 1) {
+                self.values.find_region(&self.whole, lane);
+                regions.push(Region::around(&self.values.region, self.margin(), entry.packet, lane));
+            }
+        }
+        regions
+    }
+
+    /// By more than corners may be off.
+    fn margin(&self) -> f64 {
+        4.0 * self.whole.error + 1e-12 * self.whole.reach
     }
 
     /// The half-space far from the site in which only primitives with it can be the answer, if it is the nearest point
@@ -262,11 +299,11 @@ impl Cell {
         if self.whole.corners.iter().all(|x| height(x) < 0.0) {
             return None;
         }
+        // Planes are moved outwards, so that what is left has corners where it is not.
+        let margin = self.margin();
         let (y, slack) = (self.y, cells.limits.slack);
         let [part, next] = &mut self.part;
         part.clip(&self.whole, height, u32::MAX, &y, slack);
-        // Planes are moved outwards by more than corners may be off, so that what is left has corners where it is not.
-        let margin = 4.0 * self.whole.error + 1e-12 * self.whole.reach;
         for (way, face) in ways.iter().zip((0..u32::MAX).rev()) {
             next.clip(part, |x| margin - dot(sub(*x, y), *way), face, &y, slack);
             std::mem::swap(part, next);

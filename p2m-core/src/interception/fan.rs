@@ -10,6 +10,7 @@ use super::voronoi::{AUXILIARY, TREE};
 use crate::kernel::power_of_two;
 use crate::kernel::vector::{V3, norm_squared, sub};
 use crate::packet::frame_unit;
+use crate::saved::{Array, LoadError, Reader, Writer};
 use crate::simd::{InstructionSet, Lanes, prefetch_lines};
 use std::cmp::Ordering;
 
@@ -17,7 +18,7 @@ use std::cmp::Ordering;
 const WIDTH: usize = 8;
 
 /// Eight ways to other sites: one cache line.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(64))]
 struct Fan {
     /// In units, from [`ZERO`] on.
@@ -26,6 +27,7 @@ struct Fan {
     unit: f32,
     /// One bit for each way along an edge of a primitive.
     edges: u32,
+    unused: [u32; 2],
 }
 
 const _: () = assert!(size_of::<Fan>() == 64);
@@ -69,7 +71,7 @@ struct Said<L> {
 }
 
 impl Fan {
-    const EMPTY: Self = Self { ways: [[ZERO; WIDTH]; 3], unit: 0.0, edges: 0 };
+    const EMPTY: Self = Self { ways: [[ZERO; WIDTH]; 3], unit: 0.0, edges: 0, unused: [0; 2] };
 
     /// The ways from a site to others, the last one repeated where there are fewer. `is_edge` tells which of them are
     /// along an edge of a primitive.
@@ -120,7 +122,7 @@ impl Fan {
 const FIXED: usize = 2;
 
 /// A site with where its neighbours and its list are: one cache line.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(64))]
 pub(super) struct Site {
     /// In units in which all sites are about 1.
@@ -149,7 +151,8 @@ impl Site {
 
 /// A half-space far from a site in which only primitives with it can be the answer, if it is the nearest point of all
 /// of these and no other site is nearly as near.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 pub(super) struct Outside {
     pub(super) normal: [f32; 3],
     /// In the units of sites; infinite if there is none.
@@ -172,10 +175,10 @@ impl Outside {
 /// The sites, with their neighbours.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Fans {
-    pub(super) sites: Vec<Site>,
-    blocks: Vec<Fan>,
+    pub(super) sites: Array<Site>,
+    blocks: Array<Fan>,
     /// The neighbours of each block.
-    names: Vec<[u32; WIDTH]>,
+    names: Array<[u32; WIDTH]>,
     /// By how much more than the nearest site others have to be farther away, for their primitives not to tie: three
     /// times the slack, in the units of sites.
     slack: f32,
@@ -244,7 +247,7 @@ impl Fans {
         }
         blocks.shrink_to_fit();
         names.shrink_to_fit();
-        Self { sites, blocks, names, slack: (slack * 3.0) as f32 }
+        Self { sites: sites.into(), blocks: blocks.into(), names: names.into(), slack: (slack * 3.0) as f32 }
     }
 
     /// From a site to the nearest one to `query`; `ahead` is told of every site on the way before it is looked at.
@@ -307,11 +310,27 @@ impl Fans {
         nearer::compare(query, &self.sites[site].place, &self.sites[than].place) == Ordering::Less
     }
 
+    pub(super) fn save<'a>(&'a self, writer: &mut Writer<'a>) {
+        writer.put("voronoi/sites", &self.sites);
+        writer.put("voronoi/neighbours", &self.blocks);
+        writer.put("voronoi/neighbours/names", &self.names);
+        writer.put_copy("voronoi/neighbours/slack", &[self.slack]);
+    }
+
+    pub(super) fn load(reader: &Reader) -> Result<Self, LoadError> {
+        let fans = Self {
+            sites: reader.array("voronoi/sites")?,
+            blocks: reader.array("voronoi/neighbours")?,
+            names: reader.array("voronoi/neighbours/names")?,
+            slack: reader.one("voronoi/neighbours/slack")?,
+        };
+        let fits = fans.names.len() == fans.blocks.len() && fans.blocks.len() >= FIXED * fans.sites.len();
+        if fits { Ok(fans) } else { Err(LoadError::Inconsistent { section: "voronoi/neighbours".to_owned() }) }
+    }
+
     /// Heap memory, in bytes.
     pub(super) fn memory(&self) -> usize {
-        self.sites.capacity() * size_of::<Site>()
-            + self.blocks.capacity() * size_of::<Fan>()
-            + self.names.capacity() * size_of::<[u32; WIDTH]>()
+        self.sites.memory() + self.blocks.memory() + self.names.memory()
     }
 }
 

@@ -4,6 +4,7 @@
 use super::fan::Fans;
 use super::locator::{Locator, LocatorSites};
 use crate::kernel::vector::V3;
+use crate::saved::{Array, LoadError, Reader, Writer};
 use crate::simd::{InstructionSet, Operation, prefetch};
 
 /// Sites by a grid of cells.
@@ -14,8 +15,8 @@ pub(super) struct Grid {
     per_length: f64,
     counts: [usize; 3],
     /// A site; or, with [`CUT`], the number of a finer grid.
-    cells: Vec<u32>,
-    fine: Vec<[u32; FINE * FINE * FINE]>,
+    cells: Array<u32>,
+    fine: Array<[u32; FINE * FINE * FINE]>,
 }
 
 /// Two grids: the usual [`Locator`].
@@ -40,7 +41,7 @@ impl Grid {
         let side = (extent.iter().product::<f64>() / count).cbrt();
         let counts = extent.map(|x| ((x / side).ceil() as usize).max(1));
         let per_length = side.recip();
-        Self { low, per_length, counts, cells: vec![0; counts.iter().product()], fine: Vec::new() }
+        Self { low, per_length, counts, cells: vec![0; counts.iter().product()].into(), fine: Array::default() }
     }
 
     /// The number of the cell of a place, and the place in cells.
@@ -92,7 +93,7 @@ impl Grid {
     }
 
     fn memory(&self) -> usize {
-        self.cells.capacity() * size_of::<u32>() + self.fine.capacity() * size_of::<[u32; FINE * FINE * FINE]>()
+        self.cells.memory() + self.fine.memory()
     }
 }
 
@@ -104,16 +105,50 @@ fn within(at: &V3) -> usize {
     (z * FINE + y) * FINE + x
 }
 
+impl Grid {
+    fn save<'a>(&'a self, name: &str, writer: &mut Writer<'a>) {
+        writer.put(&format!("{name}/cells"), &self.cells);
+        writer.put(&format!("{name}/finer"), &self.fine);
+        writer.put_copy(&format!("{name}/place"), &[[self.low[0], self.low[1], self.low[2], self.per_length]]);
+        writer.put_copy(&format!("{name}/counts"), &[self.counts.map(|n| n as u64)]);
+    }
+
+    fn load(name: &str, reader: &Reader) -> Result<Self, LoadError> {
+        let [x, y, z, per_length] = reader.one(&format!("{name}/place"))?;
+        let counts = reader.one::<[u64; 3]>(&format!("{name}/counts"))?;
+        let cells: Array<u32> = reader.array(&format!("{name}/cells"))?;
+        let fits = counts.iter().try_fold(1u64, |product, n| product.checked_mul(*n)) == Some(cells.len() as u64);
+        if !fits {
+            return Err(LoadError::Inconsistent { section: name.to_owned() });
+        }
+        #[allow(clippy::cast_possible_truncation, reason = "there are as many cells in memory")]
+        let counts = counts.map(|n| n as usize);
+        Ok(Self { low: [x, y, z], per_length, counts, cells, fine: reader.array(&format!("{name}/finer"))? })
+    }
+}
+
+impl Hints {
+    pub(super) fn save<'a>(&'a self, writer: &mut Writer<'a>) {
+        self.near.save("hints/near", writer);
+        self.far.save("hints/far", writer);
+    }
+
+    pub(super) fn load(reader: &Reader) -> Result<Self, LoadError> {
+        Ok(Self { near: Grid::load("hints/near", reader)?, far: Grid::load("hints/far", reader)? })
+    }
+}
+
 impl Locator for Hints {
     fn new(sites: &LocatorSites<'_>) -> Self {
         let count = sites.places().count() as f64;
         let [mut near, mut far] = [(sites.own, CELLS * count), (sites.domain, SIDE.powi(3).min(CELLS * count))]
             .map(|([low, high], count)| Grid::new(low, high, count));
-        for place in sites.places() {
-            if let Some((number, _)) = near.cell(&place) {
-                near.cells[number] += 1;
-            }
-        }
+        let mut cells = std::mem::take(&mut near.cells);
+        cells.edit(|cells| {
+            let numbers = sites.places().filter_map(|place| near.cell(&place));
+            numbers.for_each(|(number, _)| cells[number] += 1);
+        });
+        near.cells = cells;
         [&mut near, &mut far].into_iter().for_each(|grid| sites.fill(grid));
         Self { near, far }
     }
@@ -153,6 +188,8 @@ impl Operation for Fill<'_> {
     fn run<I: InstructionSet>(self) {
         let Self { grid, fans, first } = self;
         let [nx, ny, nz] = grid.counts;
+        let mut cells = grid.cells.to_vec();
+        let mut all_fine = Vec::new();
         let number = |n: usize| u32::try_from(n).expect("numbers of 32 bits");
         let mut site = first;
         for z in 0..nz {
@@ -166,9 +203,9 @@ impl Operation for Fill<'_> {
                         let place = std::array::from_fn(|k| grid.low[k] + (at[k] + off[k]) / grid.per_length);
                         fans.walk::<I>(from, &place, |_| ()).site
                     };
-                    let several = grid.cells[cell] > 1;
+                    let several = cells[cell] > 1;
                     site = nearest(site, [0.5; 3]);
-                    grid.cells[cell] = number(site);
+                    cells[cell] = number(site);
                     if several {
                         let mut fine = [0; FINE * FINE * FINE];
                         let mut own = site;
@@ -177,12 +214,13 @@ impl Operation for Fill<'_> {
                             own = nearest(own, off.map(|x| (x as f64 + 0.5) / FINE as f64));
                             *to = number(own);
                         }
-                        grid.cells[cell] = number(grid.fine.len()) | CUT;
-                        grid.fine.push(fine);
+                        cells[cell] = number(all_fine.len()) | CUT;
+                        all_fine.push(fine);
                     }
                 }
             }
         }
-        grid.fine.shrink_to_fit();
+        all_fine.shrink_to_fit();
+        (grid.cells, grid.fine) = (cells.into(), all_fine.into());
     }
 }

@@ -7,9 +7,11 @@
 
 use super::block::{self, Block, Place};
 use super::fan::{Fans, Found, Site};
+use super::list_filter::{Filters, ListFilter};
 use super::locator::Locator;
 use super::partition::{LookUp, SIDE_BY_SIDE};
 use super::voronoi::{AUXILIARY, Voronoi};
+use crate::Collector;
 use crate::hierarchy::PacketTree;
 use crate::hierarchy::wide::search::{Evaluate, Filter, Search, finish_nearest};
 use crate::hierarchy::wide::volume::Rounded;
@@ -19,10 +21,9 @@ use crate::predicates::staged::RANGE;
 use crate::query::Minimum;
 use crate::real::wide;
 use crate::simd::{InstructionSet, Operation, prefetch_lines};
-use crate::{Collector, PrimitiveId};
 use nalgebra::Point3;
 
-impl<L: Locator> LookUp for Voronoi<L> {
+impl<L: Locator, F: ListFilter> LookUp for Voronoi<L, F> {
     #[inline(always)]
     fn look_up<C: Collector>(
         &self,
@@ -55,7 +56,14 @@ impl<L: Locator> LookUp for Voronoi<L> {
     }
 }
 
-impl<L: Locator> Voronoi<L> {
+impl<L: Locator, F: ListFilter> Voronoi<L, F> {
+    /// The site in whose cell a place is.
+    pub(super) fn site_of(&self, query: &Point3<f64>) -> Option<usize> {
+        let place = self.place(&wide(query))?;
+        let start = self.locator.as_ref()?.start(&place)?;
+        Some(self.tree.isa().run(Walk { fans: &self.fans, start, place }))
+    }
+
     /// A query in the units of sites, if it is in the domain.
     #[inline(always)]
     fn place(&self, query: &V3) -> Option<V3> {
@@ -88,30 +96,6 @@ impl<L: Locator> Voronoi<L> {
         let certain = found.is_nearest && site.outside.contains(&sub(*place, site.place));
         certain.then_some((owner / LANES, owner % LANES))
     }
-
-    /// The primitives of the list of the cell that `query` is in, in ascending order: what a search in the cell may
-    /// come to look at. `None` where the tree answers.
-    #[must_use]
-    pub fn list(&self, query: &Point3<f64>) -> Option<Vec<PrimitiveId>> {
-        let place = self.place(&wide(query))?;
-        let start = self.locator.as_ref()?.start(&place)?;
-        let at = self.tree.isa().run(Walk { fans: &self.fans, start, place });
-        let site = &self.fans.sites[at];
-        if !site.has_list() {
-            return None;
-        }
-        let first = &self.blocks[at];
-        let rest = &self.blocks[site.list as usize..][..usize::from(first.more)];
-        let mut ids = Vec::new();
-        for block in std::iter::once(first).chain(rest) {
-            for (packet, lanes) in block.packets.iter().zip(block.lanes).take(usize::from(block.len)) {
-                let all = self.tree.leaves.packets[*packet as usize].ids().iter().enumerate();
-                ids.extend(all.filter(|(lane, _)| lanes >> lane & 1 == 1).map(|(_, id)| *id));
-            }
-        }
-        ids.sort_unstable();
-        Some(ids)
-    }
 }
 
 /// A coordinate of a query in the units of sites, or 0 below what the predicates can tell, as for sites.
@@ -137,8 +121,8 @@ impl Operation for Walk<'_> {
 }
 
 /// A query in its cell; as an operation, one on its way there from the site that was found first.
-struct Answer<'a, C, L> {
-    index: &'a Voronoi<L>,
+struct Answer<'a, C, L, F> {
+    index: &'a Voronoi<L, F>,
     found: Found,
     query: V3,
     place: V3,
@@ -147,7 +131,7 @@ struct Answer<'a, C, L> {
     finish: fn(&mut Filter<'_, C>),
 }
 
-impl<C: Collector, L: Locator> Operation for Answer<'_, C, L> {
+impl<C: Collector, L: Locator, F: ListFilter> Operation for Answer<'_, C, L, F> {
     type Output = ();
 
     #[inline(always)]
@@ -158,7 +142,7 @@ impl<C: Collector, L: Locator> Operation for Answer<'_, C, L> {
     }
 }
 
-impl<C: Collector, L: Locator> Answer<'_, C, L> {
+impl<C: Collector, L: Locator, F: ListFilter> Answer<'_, C, L, F> {
     #[inline(always)]
     fn search<I: InstructionSet>(self) {
         let Self { index, found, query, place, collector, evaluate, finish } = self;
@@ -171,8 +155,14 @@ impl<C: Collector, L: Locator> Answer<'_, C, L> {
         // What comes next, if the list has more than a block.
         index.prefetch_block(site.list as usize);
         let mut filter = Filter::new(tree, query, reach, collector, evaluate, finish);
-        if let Some((packet, lane)) = Voronoi::<L>::certain(&found, site, &place) {
+        if let Some((packet, lane)) = Voronoi::<L, F>::certain(&found, site, &place) {
             filter.add(packet, lane);
+            return filter.evaluate_waiting();
+        }
+        if let Some(list) = index.filters.of(found.site) {
+            for (packet, lanes) in Filters::packets(list, &query) {
+                filter.packet::<I>(packet as usize, u32::from(lanes));
+            }
             return filter.evaluate_waiting();
         }
         let (first, rest) = (&index.blocks[found.site], &index.blocks[site.list as usize..]);
@@ -188,14 +178,14 @@ fn in_frame(tree: &PacketTree, query: &V3) -> Place {
 }
 
 /// Several queries side by side, as an operation.
-struct Several<'a, L> {
-    index: &'a Voronoi<L>,
+struct Several<'a, L, F> {
+    index: &'a Voronoi<L, F>,
     queries: &'a [V3; SIDE_BY_SIDE],
     minimums: [&'a mut Minimum; SIDE_BY_SIDE],
     evaluates: [Evaluate<'a, Minimum>; SIDE_BY_SIDE],
 }
 
-impl<L: Locator> Operation for Several<'_, L> {
+impl<L: Locator, F: ListFilter> Operation for Several<'_, L, F> {
     type Output = ();
 
     #[inline(always)]
@@ -256,7 +246,7 @@ impl<L: Locator> Operation for Several<'_, L> {
     }
 }
 
-impl<L: Locator> Voronoi<L> {
+impl<L: Locator, F: ListFilter> Voronoi<L, F> {
     /// Asks for what a query reads first in its cell.
     #[inline(always)]
     fn prefetch_answer(&self, found: &Found, place: &V3) {

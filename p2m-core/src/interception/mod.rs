@@ -8,7 +8,7 @@
 //! What is in a list is decided by the corner test, for any convex cell; how cells are made and located is the
 //! [`Partition`]'s affair: cubes ([`Octree`]: `cube`, `corner`, `refine`), or the Voronoi cells of the vertices
 //! ([`Voronoi`]: `sites`, `sphere`, `hull`, `features`, `matters`, `cells`; located by a [`Locator`], `hints` unless
-//! told otherwise, and `fan`; `lookup`). Lists are lists of packets with the lanes that matter, eight to a block, with
+//! told otherwise, and `fan`; `lookup`; long lists cut short by a [`ListFilter`]). Lists are lists of packets with the lanes that matter, eight to a block, with
 //! bounds (`block`). Where a list would be too long, and outside of the domain, the tree over the same packets answers.
 //! docs/octree.md and docs/p2m.md have the proofs.
 
@@ -20,6 +20,7 @@ mod fan;
 mod features;
 mod hints;
 mod hull;
+mod list_filter;
 mod locator;
 mod lookup;
 mod matters;
@@ -34,6 +35,7 @@ mod sphere;
 mod voronoi;
 
 pub use hints::Hints;
+pub use list_filter::{ListFilter, Region, SortedLists};
 pub use locator::{Locator, LocatorSites};
 pub use octree::Octree;
 pub use options::{Domain, OctreeOptions, OctreeReport, P2mOptions, P2mReport};

@@ -12,6 +12,7 @@ use crate::kernel::vector::V3;
 use crate::packet::LANES;
 use crate::query::Minimum;
 use crate::real::{narrow, wide};
+use crate::saved::{Array, LoadError, Reader, Saved, Writer};
 use crate::simd::{InstructionSet, Operation, prefetch_lines};
 use crate::{Aabb, Best, Collector, Counting, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Real};
 use nalgebra::Point3;
@@ -42,8 +43,8 @@ const COARSEST: f64 = 1e-9;
 const FEW: usize = 10_000;
 
 /// Codes of eight cubes, x lowest.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(32))]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C, align(32))]
 pub(super) struct Row([u32; 8]);
 
 /// An interception index whose cells are cubes, over a set of primitives that it does not keep.
@@ -54,9 +55,16 @@ pub struct Octree {
     /// Finest cells in a unit of length.
     per_length: f64,
     root: u32,
+    rows: Array<Row>,
+    blocks: Array<Block>,
+    report: OctreeReport,
+}
+
+/// The codes of cells, as they are made.
+struct Codes<'a> {
     rows: Vec<Row>,
     blocks: Vec<Block>,
-    report: OctreeReport,
+    report: &'a mut OctreeReport,
 }
 
 impl Octree {
@@ -123,12 +131,79 @@ impl Octree {
         self.report.resolution = resolution;
         self.low = shape.low;
         self.per_length = 2f64.powi(i32::from(DEEPEST)) / shape.side;
-        self.root = self.code(cells, 0);
-        self.rows.shrink_to_fit();
-        self.blocks.shrink_to_fit();
+        let mut codes = Codes { rows: Vec::new(), blocks: Vec::new(), report: &mut self.report };
+        self.root = codes.code(cells, 0);
+        codes.rows.shrink_to_fit();
+        codes.blocks.shrink_to_fit();
+        (self.rows, self.blocks) = (codes.rows.into(), codes.blocks.into());
         self.report.bytes = self.memory() - self.tree.memory();
     }
+}
 
+/// What is no array.
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Head {
+    low: V3,
+    per_length: f64,
+    resolution: f64,
+    work: u64,
+    lists: u64,
+    singles: u64,
+    trees: u64,
+    entries: u64,
+    depth: u64,
+    bytes: u64,
+    tree_bytes: u64,
+    root: u32,
+    unused: u32,
+}
+
+impl Saved for Octree {
+    fn kind() -> String {
+        "octree".to_owned()
+    }
+
+    fn save<'a>(&'a self, writer: &mut Writer<'a>) {
+        let OctreeReport { lists, singles, trees, entries, depth, bytes, tree_bytes, work, resolution } = self.report;
+        let [lists, singles, trees, entries, depth, bytes, tree_bytes] =
+            [lists, singles, trees, entries, depth, bytes, tree_bytes].map(|n| n as u64);
+        let Self { low, per_length, root, .. } = *self;
+        let head = Head {
+            low,
+            per_length,
+            resolution,
+            work,
+            lists,
+            singles,
+            trees,
+            entries,
+            depth,
+            bytes,
+            tree_bytes,
+            root,
+            unused: 0,
+        };
+        writer.put_copy("octree", &[head]);
+        writer.put("octree/codes", &self.rows);
+        writer.put("octree/lists", &self.blocks);
+        self.tree.save(writer);
+    }
+
+    #[allow(clippy::cast_possible_truncation, reason = "numbers to report")]
+    fn load(reader: &Reader) -> Result<Self, LoadError> {
+        let head: Head = reader.one("octree")?;
+        let Head { lists, singles, trees, entries, depth, bytes, tree_bytes, .. } = head;
+        let [lists, singles, trees, entries, depth, bytes, tree_bytes] =
+            [lists, singles, trees, entries, depth, bytes, tree_bytes].map(|n| n as usize);
+        let Head { low, per_length, resolution, work, root, .. } = head;
+        let report = OctreeReport { lists, singles, trees, entries, depth, bytes, tree_bytes, work, resolution };
+        let (rows, blocks) = (reader.array("octree/codes")?, reader.array("octree/lists")?);
+        Ok(Self { tree: PacketTree::load(reader)?, low, per_length, root, rows, blocks, report })
+    }
+}
+
+impl Codes<'_> {
     /// Keeps a cell of a level, and gives its code.
     fn code(&mut self, cell: Cell, level: usize) -> u32 {
         let code =
@@ -186,7 +261,9 @@ impl Octree {
         let place: usize = (0..3).map(|k| ((c >> k & 1) << 1 | (g >> k & 1)) << (2 * k)).sum();
         self.rows[row + place / 8].0[place % 8] = code;
     }
+}
 
+impl Octree {
     /// The code of the cell of a place in finest cells of the cube.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the cube")]
@@ -282,8 +359,8 @@ impl Partition for Octree {
             low: [0.0; 3],
             per_length: 0.0,
             root: TREE,
-            rows: Vec::new(),
-            blocks: Vec::new(),
+            rows: Array::default(),
+            blocks: Array::default(),
             report: OctreeReport { tree_bytes, ..OctreeReport::default() },
         };
         if let Some(shape) = Shape::of(&octree.tree, options) {
@@ -302,7 +379,32 @@ impl Partition for Octree {
     }
 
     fn memory(&self) -> usize {
-        self.tree.memory() + self.rows.capacity() * size_of::<Row>() + self.blocks.capacity() * size_of::<Block>()
+        self.tree.memory() + self.rows.memory() + self.blocks.memory()
+    }
+
+    fn list(&self, point: &Point3<f64>) -> Option<Vec<PrimitiveId>> {
+        let code = self.cell_of(&wide(point)).0;
+        let number = (code & ((1 << SHIFT) - 1)) as usize;
+        match code >> SHIFT {
+            SINGLE => Some(vec![self.tree.leaves.packets[number / LANES].ids()[number % LANES]]),
+            LIST => {
+                let blocks = &self.blocks[number..=number + usize::from(self.blocks[number].more)];
+                Some(block::primitives(&self.tree, blocks.iter()))
+            }
+            _ => None,
+        }
+    }
+
+    fn list_lengths(&self) -> Vec<usize> {
+        let mut lengths = vec![1; self.report.singles];
+        // One list after the other.
+        let mut rest = &self.blocks[..];
+        while let Some(first) = rest.first() {
+            let (own, others) = rest.split_at(usize::from(first.more) + 1);
+            lengths.push(own.iter().map(Block::count).sum());
+            rest = others;
+        }
+        lengths
     }
 
     fn with_isa(self, isa: Isa) -> Self {

@@ -124,11 +124,13 @@ pub struct P2mOptions {
     /// where many primitives are about as near as the nearest vertex: on long edges and wide faces, and in the middle
     /// of round shapes.
     pub added: f64,
+    /// Lists of more primitives have a [`ListFilter`](super::ListFilter), if the index is one with filters.
+    pub filter_above: usize,
 }
 
 impl Default for P2mOptions {
     fn default() -> Self {
-        Self { splits: SplitOptions::default(), longest: 96, added: 0.5 }
+        Self { splits: SplitOptions::default(), longest: 96, added: 0.5, filter_above: 64 }
     }
 }
 
@@ -148,6 +150,11 @@ impl P2mOptions {
     pub fn with_added(self, added: f64) -> Self {
         Self { added, ..self }
     }
+    /// With filters for longer or shorter lists.
+    #[must_use]
+    pub fn with_filter_above(self, filter_above: usize) -> Self {
+        Self { filter_above, ..self }
+    }
 }
 
 /// What a P2M index is made of.
@@ -156,6 +163,8 @@ impl P2mOptions {
 pub struct P2mReport {
     /// Cells with a list.
     pub lists: usize,
+    /// Those of them that have a filter.
+    pub filtered: usize,
     /// Points of the scene that were added to its vertices as sites.
     pub added: usize,
     /// Sites beside the scene, in whose cells the tree answers.
@@ -174,7 +183,7 @@ pub struct P2mReport {
 
 impl std::fmt::Display for P2mReport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { lists, added, auxiliary, trees, entries, primitives, bytes, tree_bytes } = self;
+        let Self { lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes } = self;
         let mean = |count: &usize| *count as f64 / (*lists).max(1) as f64;
         let megabytes = |bytes: &usize| *bytes as f64 / 1e6;
         write!(
@@ -183,6 +192,9 @@ impl std::fmt::Display for P2mReport {
             mean(primitives),
             mean(entries)
         )?;
+        if *filtered > 0 {
+            write!(f, "{filtered} of them filtered, ")?;
+        }
         write!(f, "{trees} left to the tree; {added} sites added on the scene and {auxiliary} beside it; ")?;
         write!(f, "{:.1} MB of cells, {:.1} MB of tree", megabytes(bytes), megabytes(tree_bytes))
     }

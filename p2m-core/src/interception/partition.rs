@@ -6,7 +6,7 @@ use crate::hierarchy::wide::search::{Evaluate, Filter, finish};
 use crate::kernel::vector::V3;
 use crate::query::Minimum;
 use crate::real::wide;
-use crate::{Best, Collector, Isa, PrimitiveSet, Real};
+use crate::{Best, Collector, Isa, PrimitiveId, PrimitiveSet, Real};
 use nalgebra::Point3;
 
 /// A partition with its lists, over a set of primitives that it does not keep: every method that needs the set is given
@@ -55,6 +55,13 @@ pub trait Partition: LookUp + Sized {
         let evaluates = evaluations.each_ref().map(|evaluate| evaluate as Evaluate<'_, Minimum>);
         self.nearest_of_several(&queries.each_ref().map(wide), best.each_mut().map(Best::minimum), evaluates);
     }
+
+    /// The primitives of the list of the cell that a point is in, in ascending order: what a search in the cell may
+    /// come to look at. `None` where the tree answers.
+    fn list(&self, point: &Point3<f64>) -> Option<Vec<PrimitiveId>>;
+
+    /// How many primitives each list has.
+    fn list_lengths(&self) -> Vec<usize>;
 
     /// The tree over the packets, which answers what cells do not.
     fn tree(&self) -> &PacketTree;

@@ -224,7 +224,7 @@ impl Sites {
         progress: &dyn Fn(usize, usize),
     ) -> Result<Self, DelaunayError> {
         let vertices = &tree.leaves.vertices;
-        let mut points = vertices.clone();
+        let mut points = vertices.to_vec();
         let mut added: Vec<Added> = Vec::new();
         let mut delaunay = Delaunay::new(&points, BOUNDING_DISTANCE)?;
         let mut corners = Corners::new(tree, &delaunay, limits, None, progress);

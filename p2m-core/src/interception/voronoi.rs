@@ -5,10 +5,11 @@
 //! the answer in the cell only if it meets one of their circumscribed balls, so one ball query for each tetrahedron
 //! serves four lists: no flooding, no cutting of cells. Six far sites close the cells of the hull.
 
-use super::block::Block;
-use super::cells::Cells;
+use super::block::{self, Block};
+use super::cells::{Cells, Lists};
 use super::fan::Fans;
 use super::hints::Hints;
+use super::list_filter::{Filters, ListFilter, SortedLists};
 use super::locator::{Locator, LocatorSites};
 use super::options::{P2mOptions, P2mReport};
 use super::partition::Partition;
@@ -16,7 +17,8 @@ use super::sites::{BOUNDING_DISTANCE, Limits, Sites};
 use crate::hierarchy::PacketTree;
 use crate::kernel::vector::V3;
 use crate::real::wide;
-use crate::{Aabb, Isa, PrimitiveSet, Real};
+use crate::saved::{Array, LoadError, Reader, Saved, Writer};
+use crate::{Aabb, Isa, PrimitiveId, PrimitiveSet, Real};
 use nalgebra::Point3;
 use std::cell::Cell;
 
@@ -32,7 +34,7 @@ const MOST_LEFT: usize = 4;
 const REACH: f64 = 10.0;
 /// An interception index whose cells are those of the vertices, over a set of primitives that it does not keep.
 #[derive(Clone, Debug)]
-pub struct Voronoi<L = Hints> {
+pub struct Voronoi<L = Hints, F = SortedLists> {
     pub(super) tree: PacketTree,
     /// Of the places of sites.
     pub(super) per_unit: f64,
@@ -43,13 +45,21 @@ pub struct Voronoi<L = Hints> {
     pub(super) high: V3,
     pub(super) fans: Fans,
     pub(super) locator: Option<L>,
-    pub(super) blocks: Vec<Block>,
+    pub(super) blocks: Array<Block>,
+    pub(super) filters: Filters<F>,
     /// Of auxiliary sites points of the scene that are near.
-    pub(super) anchors: Vec<V3>,
+    pub(super) anchors: Array<V3>,
     report: P2mReport,
 }
 
-impl<L: Locator> Voronoi<L> {
+impl<L: Locator, F: ListFilter> Voronoi<L, F> {
+    /// The blocks of a site that has a list.
+    fn blocks_of(&self, site: usize) -> impl Iterator<Item = &Block> {
+        let first = &self.blocks[site];
+        let rest = &self.blocks[self.fans.sites[site].list as usize..][..usize::from(first.more)];
+        std::iter::once(first).chain(rest)
+    }
+
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
     fn make_cells(&mut self, options: &P2mOptions, progress: &(dyn Fn(f64) + Sync)) {
         let tree = &self.tree;
@@ -97,25 +107,27 @@ impl<L: Locator> Voronoi<L> {
             self.report.trees = left;
             return;
         }
-        let cells = Cells { tree, sites: &sites, limits };
-        let (fans, blocks) = cells.lists(&mut self.report, &report_part(30.0, 100.0));
+        let cells = Cells { tree, sites: &sites, limits, filter_above: options.filter_above };
+        let Lists { fans, mut blocks, filters } = cells.lists(&mut self.report, &report_part(30.0, 100.0));
         self.slack = slack;
         let Sites { delaunay, anchors, .. } = sites;
         (self.unit, self.per_unit) = (delaunay.unit(), delaunay.unit().recip());
-        self.anchors = anchors.into_iter().map(|(_, anchor)| anchor).collect();
+        self.anchors = anchors.into_iter().map(|(_, anchor)| anchor).collect::<Vec<_>>().into();
         drop(delaunay);
         (self.low, self.high) = (low, high);
         let scaled = |p: V3| p.map(|x| x * self.per_unit);
         let (own, all) = (own.map(scaled), [low, high].map(scaled));
         let sites = LocatorSites { fans: &fans, isa: self.tree.isa(), own, domain: all };
         self.locator = Some(L::new(&sites));
-        (self.fans, self.blocks) = (fans, blocks);
-        self.blocks.shrink_to_fit();
+        (self.fans, self.filters) = (fans, filters);
+        self.report.filtered = self.filters.count();
+        blocks.shrink_to_fit();
+        self.blocks = blocks.into();
         self.report.bytes = self.memory() - self.tree.memory();
     }
 }
 
-impl<L: Locator> Partition for Voronoi<L> {
+impl<L: Locator, F: ListFilter> Partition for Voronoi<L, F> {
     type Options = P2mOptions;
     type Report = P2mReport;
 
@@ -135,8 +147,9 @@ impl<L: Locator> Partition for Voronoi<L> {
             high: [0.0; 3],
             fans: Fans::default(),
             locator: None,
-            blocks: Vec::new(),
-            anchors: Vec::new(),
+            blocks: Array::default(),
+            filters: Filters::default(),
+            anchors: Array::default(),
             report,
         };
         index.make_cells(options, progress);
@@ -156,11 +169,113 @@ impl<L: Locator> Partition for Voronoi<L> {
         self.tree.memory()
             + self.fans.memory()
             + self.locator.as_ref().map_or(0, L::memory)
-            + self.blocks.capacity() * size_of::<Block>()
-            + self.anchors.capacity() * size_of::<V3>()
+            + self.blocks.memory()
+            + self.filters.memory()
+            + self.anchors.memory()
+    }
+
+    fn list(&self, point: &Point3<f64>) -> Option<Vec<PrimitiveId>> {
+        let site = self.site_of(point).filter(|site| self.fans.sites[*site].has_list())?;
+        Some(block::primitives(&self.tree, self.blocks_of(site)))
+    }
+
+    fn list_lengths(&self) -> Vec<usize> {
+        let sites = (0..self.fans.sites.len()).filter(|site| self.fans.sites[*site].has_list());
+        sites.map(|site| self.blocks_of(site).map(Block::count).sum()).collect()
     }
 
     fn with_isa(self, isa: Isa) -> Self {
         Self { tree: self.tree.with_isa(isa), ..self }
+    }
+}
+
+/// What is no array.
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Head {
+    per_unit: f64,
+    unit: f64,
+    slack: f64,
+    low: V3,
+    high: V3,
+    lists: u64,
+    filtered: u64,
+    added: u64,
+    auxiliary: u64,
+    trees: u64,
+    entries: u64,
+    primitives: u64,
+    bytes: u64,
+    tree_bytes: u64,
+    /// Whether there are cells at all.
+    has_cells: u64,
+}
+
+impl Saved for Voronoi {
+    fn kind() -> String {
+        "p2m".to_owned()
+    }
+
+    fn save<'a>(&'a self, writer: &mut Writer<'a>) {
+        let P2mReport { lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes } =
+            self.report;
+        let [lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes] =
+            [lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes].map(|n| n as u64);
+        let has_cells = u64::from(self.locator.is_some());
+        let Self { per_unit, unit, slack, low, high, .. } = *self;
+        let head = Head {
+            per_unit,
+            unit,
+            slack,
+            low,
+            high,
+            lists,
+            filtered,
+            added,
+            auxiliary,
+            trees,
+            entries,
+            primitives,
+            bytes,
+            tree_bytes,
+            has_cells,
+        };
+        writer.put_copy("voronoi", &[head]);
+        writer.put("voronoi/lists", &self.blocks);
+        writer.put("voronoi/anchors", &self.anchors);
+        self.fans.save(writer);
+        if let Some(locator) = &self.locator {
+            locator.save(writer);
+        }
+        self.tree.save(writer);
+    }
+
+    #[allow(clippy::cast_possible_truncation, reason = "numbers to report")]
+    fn load(reader: &Reader) -> Result<Self, LoadError> {
+        let head: Head = reader.one("voronoi")?;
+        let Head { lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes, .. } = head;
+        let [lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes] =
+            [lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes].map(|n| n as usize);
+        let Head { per_unit, unit, slack, low, high, has_cells, .. } = head;
+        let locator = if has_cells == 0 { None } else { Some(Hints::load(reader)?) };
+        let fans = Fans::load(reader)?;
+        let blocks: Array<Block> = reader.array("voronoi/lists")?;
+        if blocks.len() < fans.sites.len() {
+            return Err(LoadError::Inconsistent { section: "voronoi/lists".to_owned() });
+        }
+        Ok(Self {
+            tree: PacketTree::load(reader)?,
+            per_unit,
+            unit,
+            slack,
+            low,
+            high,
+            fans,
+            locator,
+            blocks,
+            filters: Filters::default(),
+            anchors: reader.array("voronoi/anchors")?,
+            report: P2mReport { lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes },
+        })
     }
 }

@@ -97,6 +97,17 @@ impl<const K: usize> Directions<K> {
         Ok(Self { normals, orthogonal })
     }
 
+    /// Those of a file, in their order; `None` if these are no such directions.
+    pub(crate) fn of_normals(normals: &[Vector3<f64>], orthogonal: bool) -> Option<Self> {
+        let normals: [Vector3<f64>; K] = normals.try_into().ok()?;
+        // Three roundings of a square, and those of the square root and the quotient.
+        let is_unit = |n: &Vector3<f64>| (n.norm_squared() - 1.0).abs() <= 16.0 * f64::EPSILON;
+        let fits = normals.chunks_exact(2).all(|pair| is_unit(&pair[0]) && pair[1] == -pair[0]);
+        let [u, v, w] = [normals[0], normals[2], normals[4]];
+        let first = if orthogonal { cosine(&u, &v, &w) <= ORTHOGONAL } else { volume(&u, &v, &w) > FLAT };
+        (fits && first).then_some(Self { normals, orthogonal })
+    }
+
     /// The unit normals.
     #[must_use]
     pub fn normals(&self) -> &[Vector3<f64>; K] {
@@ -120,6 +131,16 @@ fn unit(v: &Vector3<f64>) -> Option<Vector3<f64>> {
     })
 }
 
+/// The largest cosine between three unit vectors, by magnitude.
+fn cosine(u: &Vector3<f64>, v: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
+    u.dot(v).abs().max(v.dot(w).abs()).max(w.dot(u).abs())
+}
+
+/// The volume of the box that they span.
+fn volume(u: &Vector3<f64>, v: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
+    u.cross(v).dot(w).abs()
+}
+
 /// Which three come first, and whether they are orthogonal; `None` if all lie in a plane.
 fn leading(units: &[Vector3<f64>]) -> Option<([usize; 3], bool)> {
     let mut widest = (FLAT, None);
@@ -127,10 +148,10 @@ fn leading(units: &[Vector3<f64>]) -> Option<([usize; 3], bool)> {
         for b in a + 1..units.len() {
             for c in b + 1..units.len() {
                 let [u, v, w] = [a, b, c].map(|i| units[i]);
-                if u.dot(&v).abs().max(v.dot(&w).abs()).max(w.dot(&u).abs()) <= ORTHOGONAL {
+                if cosine(&u, &v, &w) <= ORTHOGONAL {
                     return Some(([a, b, c], true));
                 }
-                let volume = u.cross(&v).dot(&w).abs();
+                let volume = volume(&u, &v, &w);
                 if volume > widest.0 {
                     widest = (volume, Some([a, b, c]));
                 }

@@ -132,7 +132,7 @@ impl Packet {
         let size = |x: &[f64; 3]| x[0].abs().max(x[1].abs()).max(x[2].abs());
         let error = (size(&q) + ahead.abs()) * (8.0 * f64::EPSILON) + line.off * self.per_unit;
         // It does not matter to triangles.
-        let radius = if self.kind == Kind::Triangle { 0.0 } else { line.radius * self.per_unit };
+        let radius = if self.kind() == Kind::Triangle { 0.0 } else { line.radius * self.per_unit };
         // Not for NaN either, which comes of infinite differences.
         if !(self.unit > 0.0 && error < COARSE && radius < COARSE) {
             return Placed::Unknown;
@@ -170,7 +170,7 @@ impl Packet {
         let mut at = 0;
         while at < LANES {
             // Arrays are spelled out: closures are compiled without the instruction set.
-            lanes |= match self.kind {
+            lanes |= match self.kind() {
                 Kind::Triangle => triangles::<I::Wide>(
                     line,
                     &self.projected(line, 0, at),

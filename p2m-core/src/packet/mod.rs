@@ -61,7 +61,7 @@ impl Kind {
 /// Up to sixteen primitives in a frame of their own.
 ///
 /// Unused lanes repeat the first primitive, so they need no mask while computing.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(64))]
 pub(crate) struct Packet {
     /// Coordinate k of vertex v in row 3 v + k; boxes are two vertices.
@@ -72,7 +72,9 @@ pub(crate) struct Packet {
     /// Where these begin among those of the tree.
     pub(crate) first_vertex: u32,
     len: u8,
-    kind: Kind,
+    /// A [`Kind`], as a number.
+    kind: u8,
+    unused: [u8; 2],
     origin: [f64; 3],
     /// The unit of the frame; its inverse; both 0 if the box of the packet does not fit a frame of f64.
     unit: f64,
@@ -106,6 +108,17 @@ pub(crate) struct Local {
 }
 
 impl Packet {
+    /// What its primitives are.
+    #[inline(always)]
+    fn kind(&self) -> Kind {
+        match self.kind {
+            0 => Kind::Point,
+            1 => Kind::Segment,
+            2 => Kind::Triangle,
+            _ => Kind::Box,
+        }
+    }
+
     /// Packs the primitives `ids` of a set, at most sixteen of one kind, with the box around all of
     /// them, and gives their exact vertices, each once. Units below `finest` are not needed.
     ///
@@ -131,7 +144,8 @@ impl Packet {
             corners: [[0; LANES]; 3],
             first_vertex: 0,
             len: u8::try_from(ids.len()).expect("at most sixteen"),
-            kind,
+            kind: kind as u8,
+            unused: [0; 2],
         };
         let mut exact = Vec::new();
         for lane in 0..LANES {
@@ -175,7 +189,7 @@ impl Packet {
         let id = self.ids[lane];
         let [a, b, c] = self.corners(lane).map(|place| &vertices[place]);
         // Each kind for itself: a projection that is kept in registers need not be copied.
-        match self.kind {
+        match self.kind() {
             Kind::Triangle => {
                 if let Some(projection) = Projection::of_near_triangle(query, &[*a, *b, *c], square) {
                     collector.offer(id, projection);
@@ -206,7 +220,7 @@ impl Packet {
     /// The corners of the triangle in a lane; `None` if the packet has no triangles.
     #[inline(always)]
     pub(crate) fn triangle_corners<'a>(&self, lane: usize, vertices: &'a [Vertex]) -> Option<[&'a Vertex; 3]> {
-        if self.kind != Kind::Triangle {
+        if self.kind() != Kind::Triangle {
             return None;
         }
         Some(self.corners(lane).map(|place| &vertices[place]))
@@ -214,7 +228,7 @@ impl Packet {
 
     /// Where the vertices of the primitive in a lane are among the exact vertices of the tree, and how many there are.
     pub(crate) fn vertices_of(&self, lane: usize) -> ([usize; 3], usize) {
-        let count = match self.kind {
+        let count = match self.kind() {
             Kind::Box => 0,
             Kind::Point => 1,
             Kind::Segment => 2,
@@ -225,7 +239,7 @@ impl Packet {
 
     /// A box around the primitives in some lanes.
     pub(crate) fn bounds_of(&self, lanes: u16) -> Aabb<f64> {
-        let count = if self.kind == Kind::Box { 2 } else { self.vertices_of(0).1 };
+        let count = if self.kind() == Kind::Box { 2 } else { self.vertices_of(0).1 };
         let (mut low, mut high) = ([u16::MAX; 3], [0; 3]);
         let mut rest = lanes;
         while rest != 0 {
@@ -270,12 +284,12 @@ impl Packet {
     /// bound distances from above as well.
     #[inline(always)]
     pub(crate) fn has_vertices(&self) -> bool {
-        self.kind != Kind::Box
+        self.kind() != Kind::Box
     }
 
     /// Whether its primitives are triangles.
     pub(crate) fn has_triangles(&self) -> bool {
-        self.kind == Kind::Triangle
+        self.kind() == Kind::Triangle
     }
 
     /// The unit of its frame.
@@ -317,7 +331,7 @@ impl Packet {
         let towards = self.towards(&local.query);
         let mut at = 0;
         while at < LANES {
-            let result = match self.kind {
+            let result = match self.kind() {
                 Kind::Triangle => {
                     let vertices = [self.vertex(0, at), self.vertex(1, at), self.vertex(2, at)];
                     let offsets = [vertices[0].sub(&q), vertices[1].sub(&q), vertices[2].sub(&q)];

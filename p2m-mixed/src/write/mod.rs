@@ -47,7 +47,7 @@ pub enum WriteError {
 ///
 /// A file in [`Obj`](Format::Obj), [`Ply`](Format::Ply) or [`Off`](Format::Off) reads back as the same scene: the same
 /// positions bit by bit, the same primitives with the same ids. [`Stl`](Format::Stl) holds triangles in single
-/// precision and no shared vertices, see [`write_stl`]. What else is lost:
+/// precision and no shared vertices, see [`write_stl`]. In [`P2m`](Format::P2m) nothing of the scene is lost; else:
 ///
 /// | | OBJ | PLY | OFF | STL |
 /// |---|---|---|---|---|
@@ -74,6 +74,7 @@ pub fn write_scene(scene: &Scene, format: Format, writer: impl Write) -> Result<
         Format::Ply => write_ply(scene, writer),
         Format::Stl => write_stl(scene, writer),
         Format::Off => write_off(scene, writer),
+        Format::P2m => Ok(crate::write_p2m(scene, writer)?),
     }
 }
 

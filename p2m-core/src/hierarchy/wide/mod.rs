@@ -12,6 +12,7 @@ mod overlap;
 mod parts;
 mod ray;
 mod ray_slab;
+mod saved;
 pub(crate) mod search;
 mod slabs;
 pub(crate) mod volume;
@@ -20,6 +21,7 @@ mod walk;
 use super::Hierarchy;
 use crate::packet::{Kind, LANES, Packet};
 use crate::real::wide;
+use crate::saved::Array;
 use crate::simd::{Isa, prefetch_lines};
 use crate::{
     Aabb, Best, Collector, Crossing, Directions, Hits, Kdop, Primitive, PrimitiveId, PrimitiveSet, Ray, RayCollector,
@@ -60,12 +62,12 @@ pub struct PacketTree<V: Volume = Aabb<f64>> {
 /// The packets of a tree.
 #[derive(Clone, Debug)]
 pub(crate) struct Leaves {
-    pub(crate) packets: Vec<Packet>,
+    pub(crate) packets: Array<Packet>,
     /// The exact vertices of the packets, one packet after the other.
-    pub(crate) vertices: Vec<[f64; 3]>,
+    pub(crate) vertices: Array<[f64; 3]>,
     /// Where those of each packet begin: few numbers, which stay in the cache, so that vertices can be asked for with
     /// their packet.
-    firsts: Vec<u32>,
+    firsts: Array<u32>,
     /// Whether there is anything but triangles.
     has_others: bool,
 }
@@ -304,9 +306,9 @@ impl<V: Volume> PacketTree<V> {
     #[must_use]
     pub fn memory(&self) -> usize {
         self.nodes.capacity() * size_of::<V::Node>()
-            + self.leaves.packets.capacity() * size_of::<Packet>()
-            + self.leaves.vertices.capacity() * size_of::<[f64; 3]>()
-            + self.leaves.firsts.capacity() * size_of::<u32>()
+            + self.leaves.packets.memory()
+            + self.leaves.vertices.memory()
+            + self.leaves.firsts.memory()
     }
 
     /// Packets, and lanes of them in use: how well they are filled.
@@ -330,9 +332,10 @@ impl Leaves {
             packet
         };
         let packets: Vec<Packet> = packed.into_iter().map(place).collect();
-        let firsts = packets.iter().map(|packet| packet.first_vertex).chain([vertices.len() as u32]).collect();
+        let firsts =
+            packets.iter().map(|packet| packet.first_vertex).chain([vertices.len() as u32]).collect::<Vec<_>>().into();
         let has_others = packets.iter().any(|packet| !packet.has_triangles());
-        Self { packets, vertices, firsts, has_others }
+        Self { packets: packets.into(), vertices: vertices.into(), firsts, has_others }
     }
 
     /// Asks for a packet before it is read.

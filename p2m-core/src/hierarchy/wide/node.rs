@@ -68,6 +68,17 @@ impl WideNode for BoxNode {
         &self.children
     }
 
+    const ROWS: usize = 6;
+
+    fn rows(&self) -> impl Iterator<Item = [f32; WIDTH]> {
+        self.min.into_iter().chain(self.max)
+    }
+
+    fn of_rows(rows: &[[f32; WIDTH]], children: [Child; WIDTH]) -> Self {
+        let [min, max] = [0, 3].map(|first| std::array::from_fn(|k| rows[first + k]));
+        Self { min, max, children }
+    }
+
     fn put(&mut self, place: usize, bounds: &Corners) {
         let [low, high] = *bounds;
         self.min.iter_mut().zip(low).for_each(|(row, x)| row[place] = x);

@@ -61,6 +61,16 @@ impl<const K: usize> WideNode for SlabNode<K> {
         &self.children
     }
 
+    const ROWS: usize = K;
+
+    fn rows(&self) -> impl Iterator<Item = [f32; WIDTH]> {
+        self.heights.into_iter()
+    }
+
+    fn of_rows(rows: &[[f32; WIDTH]], children: [Child; WIDTH]) -> Self {
+        Self { heights: std::array::from_fn(|i| rows[i]), children }
+    }
+
     fn put(&mut self, place: usize, bounds: &[f32; K]) {
         self.heights.iter_mut().zip(bounds).for_each(|(row, x)| row[place] = *x);
     }

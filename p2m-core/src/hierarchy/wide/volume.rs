@@ -11,8 +11,10 @@ use super::search::{Evaluate, Search, finish_nearest};
 use super::slabs::SlabNode;
 use crate::kdop::Slabs;
 use crate::query::Minimum;
+use crate::saved::{LoadError, Reader, Writer};
 use crate::simd::Lanes;
-use crate::{Aabb, Hits, Kdop, KdopOptions, PrimitiveId, PrimitiveSet, Ray, Real};
+use crate::{Aabb, Directions, Hits, Kdop, KdopOptions, PrimitiveId, PrimitiveSet, Ray, Real};
+use nalgebra::Vector3;
 use std::fmt::Debug;
 
 /// What the nodes of a [`PacketTree`](super::PacketTree) are bounded by: [`Aabb<f64>`] or [`Kdop<K>`](Kdop).
@@ -39,6 +41,13 @@ pub(crate) trait Nodes: Sized {
     /// A node.
     type Node: WideNode<Volume = Self, Shape = Self::Shape>;
 
+    /// What files call trees of it.
+    fn name() -> String;
+    /// Adds to a file what all volumes have in common,
+    fn save_shape(shape: &Self::Shape, writer: &mut Writer<'_>);
+    /// and takes it from there.
+    fn load_shape(reader: &Reader) -> Result<Self::Shape, LoadError>;
+
     /// What a ray meets, for the same reason in a function of its own.
     fn rays<'r>(tree: &PacketTree<Self>, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>)
     where
@@ -50,9 +59,20 @@ pub(crate) trait Nodes: Sized {
         Self: Volume;
 }
 
+const DIRECTIONS: &str = "tree/directions";
+const ORTHOGONAL: &str = "tree/orthogonal";
+
 impl Nodes for Aabb<f64> {
     type Shape = ();
     type Node = BoxNode;
+
+    fn name() -> String {
+        "aabb".to_owned()
+    }
+    fn save_shape((): &(), _: &mut Writer<'_>) {}
+    fn load_shape(_: &Reader) -> Result<(), LoadError> {
+        Ok(())
+    }
 
     fn rays<'r>(tree: &PacketTree, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>) {
         tree.isa.run(RaySearch { tree, ray, radius, hits, intersect });
@@ -73,6 +93,22 @@ impl Nodes for Aabb<f64> {
 impl<const K: usize> Nodes for Kdop<K> {
     type Shape = Slabs<K>;
     type Node = SlabNode<K>;
+
+    fn name() -> String {
+        format!("kdop-{K}")
+    }
+    fn save_shape(shape: &Slabs<K>, writer: &mut Writer<'_>) {
+        let normals = shape.directions.normals().map(<[f64; 3]>::from);
+        writer.put_copy(DIRECTIONS, normals.as_flattened());
+        writer.put_copy(ORTHOGONAL, &[u8::from(shape.directions.starts_orthogonal())]);
+    }
+    fn load_shape(reader: &Reader) -> Result<Slabs<K>, LoadError> {
+        let numbers = reader.array::<f64>(DIRECTIONS)?;
+        let normals: Vec<Vector3<f64>> = numbers.chunks_exact(3).map(Vector3::from_column_slice).collect();
+        let directions = Directions::of_normals(&normals, reader.one::<u8>(ORTHOGONAL)? != 0);
+        let directions = directions.ok_or_else(|| LoadError::Inconsistent { section: DIRECTIONS.to_owned() })?;
+        Ok(Slabs::new(&directions))
+    }
 
     fn rays<'r>(tree: &PacketTree<Self>, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>) {
         tree.isa.run(RaySearch { tree, ray, radius, hits, intersect });
@@ -132,6 +168,12 @@ pub(crate) trait WideNode: Copy + Debug + Send + Sync {
     fn new(children: [Child; WIDTH]) -> Self;
     /// The children; [`Child::NONE`] for unused places.
     fn children(&self) -> &[Child; WIDTH];
+    /// How many rows of numbers the bounds of the children are,
+    const ROWS: usize;
+    /// these rows,
+    fn rows(&self) -> impl Iterator<Item = [f32; WIDTH]>;
+    /// and a node of them.
+    fn of_rows(rows: &[[f32; WIDTH]], children: [Child; WIDTH]) -> Self;
     /// Sets the bounds of a child.
     fn put(&mut self, place: usize, bounds: &Self::Bounds);
 

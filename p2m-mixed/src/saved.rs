@@ -1,0 +1,119 @@
+//! Scenes in the files of saved indexes.
+
+use crate::{Object, Place, ReadError, Reason, Scene, Skipped};
+use nalgebra::Point3;
+use p2m_core::saved::{LoadError, Reader, SavedFile, Writer};
+use p2m_core::{Element, Soup};
+use std::io::{self, BufRead, Write};
+
+const POSITIONS: &str = "scene/positions";
+/// How many vertices each primitive has; nothing if all have three.
+const KINDS: &str = "scene/kinds";
+/// The vertices of all primitives, one after the other.
+const INDICES: &str = "scene/indices";
+const SOURCES: &str = "scene/sources";
+/// Texts, one after the other,
+const TEXTS: &str = "scene/texts";
+/// and for each object the length of its name, and its first and its last id and one;
+const OBJECTS: &str = "scene/objects";
+/// for what was skipped the length of its name, how often, and whether it is a plural.
+const SKIPPED: &str = "scene/skipped";
+
+/// Adds a scene to a file.
+///
+/// # Panics
+/// If the file has a scene already.
+pub fn save_scene(scene: &Scene, writer: &mut Writer<'_>) {
+    let soup = &scene.soup;
+    let positions: Vec<[f64; 3]> = soup.positions().iter().map(|p| p.coords.into()).collect();
+    writer.put_copy(POSITIONS, positions.as_flattened());
+    let only_triangles = soup.points().is_empty() && soup.segments().is_empty();
+    if only_triangles {
+        writer.put_copy::<u8>(KINDS, &[]);
+        writer.put_copy(INDICES, soup.triangles().as_flattened());
+    } else {
+        let kinds: Vec<u8> = soup.elements().map(|e| [0, 1, 2, 3][e.indices().len()]).collect();
+        let indices: Vec<u32> = soup.elements().flat_map(|e| e.indices().to_vec()).collect();
+        writer.put_copy(KINDS, &kinds);
+        writer.put_copy(INDICES, &indices);
+    }
+    writer.put_copy(SOURCES, &scene.sources);
+    let texts = scene.objects.iter().map(|o| &o.name).chain(scene.skipped.iter().map(|s| &s.what));
+    writer.put_copy(TEXTS, &texts.flat_map(|text| text.bytes()).collect::<Vec<u8>>());
+    let objects = scene.objects.iter().map(|o| [o.name.len(), o.ids.start, o.ids.end].map(|n| n as u64));
+    writer.put_copy(OBJECTS, objects.collect::<Vec<_>>().as_flattened());
+    let skipped = scene.skipped.iter().map(|s| [s.what.len() as u64, s.count, u64::from(s.is_plural)]);
+    writer.put_copy(SKIPPED, skipped.collect::<Vec<_>>().as_flattened());
+}
+
+/// The scene of a file.
+///
+/// # Errors
+/// [`LoadError::Missing`] and [`LoadError::Inconsistent`].
+pub fn load_scene(reader: &Reader) -> Result<Scene, LoadError> {
+    let inconsistent = |section: &str| LoadError::Inconsistent { section: section.to_owned() };
+    let numbers: Vec<f64> = reader.copy(POSITIONS)?;
+    let positions: Vec<Point3<f64>> = numbers.chunks_exact(3).map(|p| Point3::new(p[0], p[1], p[2])).collect();
+    let (kinds, indices): (Vec<u8>, Vec<u32>) = (reader.copy(KINDS)?, reader.copy(INDICES)?);
+    let count = if kinds.is_empty() { indices.len() / 3 } else { kinds.len() };
+    let sources: Vec<u32> = reader.copy(SOURCES)?;
+    let mut rest = &indices[..];
+    let mut elements = Vec::with_capacity(count);
+    for i in 0..count {
+        let kind = usize::from(kinds.get(i).copied().unwrap_or(3));
+        let (own, others) = rest.split_at_checked(kind).ok_or_else(|| inconsistent(INDICES))?;
+        rest = others;
+        elements.push(match *own {
+            [a] => Element::Point(a),
+            [a, b] => Element::Segment([a, b]),
+            [a, b, c] => Element::Triangle([a, b, c]),
+            _ => return Err(inconsistent(KINDS)),
+        });
+    }
+    if !rest.is_empty() || !numbers.len().is_multiple_of(3) || sources.len() != count {
+        return Err(inconsistent(INDICES));
+    }
+    let soup = Soup::new(positions, elements).map_err(|_| inconsistent(POSITIONS))?;
+    let texts: Vec<u8> = reader.copy(TEXTS)?;
+    let mut texts = &texts[..];
+    let mut text = |len: u64| -> Option<String> {
+        let (own, others) = texts.split_at_checked(usize::try_from(len).ok()?)?;
+        texts = others;
+        String::from_utf8(own.to_vec()).ok()
+    };
+    let mut objects = Vec::new();
+    for object in reader.copy::<u64>(OBJECTS)?.chunks_exact(3) {
+        let ids = [object[1], object[2]].map(usize::try_from);
+        let ([Ok(start), Ok(end)], Some(name)) = (ids, text(object[0])) else { return Err(inconsistent(OBJECTS)) };
+        if start > end || end > count {
+            return Err(inconsistent(OBJECTS));
+        }
+        objects.push(Object { name, ids: start..end });
+    }
+    let mut skipped = Vec::new();
+    for own in reader.copy::<u64>(SKIPPED)?.chunks_exact(3) {
+        let what = text(own[0]).ok_or_else(|| inconsistent(SKIPPED))?;
+        skipped.push(Skipped { what, count: own[1], is_plural: own[2] != 0 });
+    }
+    Ok(Scene { soup, sources, objects, skipped })
+}
+
+/// Reads the scene of a saved index.
+///
+/// # Errors
+/// [`ReadError`] with [`Reason::Saved`].
+pub fn read_p2m(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
+    let load = || load_scene(SavedFile::read(reader)?.checked()?);
+    load().map_err(|error| ReadError::new(name, Place::File, Reason::Saved(error)))
+}
+
+/// Writes a scene as a file like that of a saved index, but without one. What the scene has comes back as it is, names
+/// and origins included.
+///
+/// # Errors
+/// Those of `writer`.
+pub fn write_p2m(scene: &Scene, writer: impl Write) -> io::Result<()> {
+    let mut sections = Writer::default();
+    save_scene(scene, &mut sections);
+    sections.write(writer)
+}

@@ -1,0 +1,272 @@
+//! Saved indexes: the same answers bit for bit, copied or mapped, and typed errors for everything else.
+#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
+
+use nalgebra::Point3;
+use p2m::saved::{LoadError, Reader, SavedFile, VERSION, Writer};
+use p2m::scene::{Scene, load_scene, save_scene};
+use p2m::{
+    AabbTree, BuildIndex, ClosestPoint, KdopTree, OctreeIndex, P2mIndex, Point, PrimitiveId, PrimitiveSet, Ray,
+    RayQuery, Segment, Soup,
+};
+use p2m_testkit::ball::Ball;
+use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
+use p2m_testkit::{rng, vector};
+use rand::{Rng, RngExt};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+type Answers = Vec<Option<(u64, PrimitiveId, [u64; 3])>>;
+type Loaded = Result<Answers, LoadError>;
+
+fn answers(index: &dyn ClosestPoint<f64>, queries: &[Point3<f64>]) -> Answers {
+    let bits = |c: p2m::Closest<f64>| (c.distance.to_bits(), c.primitive, [0, 1, 2].map(|k| c.point[k].to_bits()));
+    queries.iter().map(|q| index.closest_point(q).map(bits)).collect()
+}
+
+fn queries(rng: &mut impl Rng, soup: &Soup<f64>, count: usize) -> Vec<Point3<f64>> {
+    let mut queries: Vec<_> = (0..count).map(|i| Point3::from(vector(rng) * [1.0, 5.0, 1e6][i % 3])).collect();
+    queries.extend(soup.positions().iter().take(count));
+    queries
+}
+
+/// A kind of index: what it answers as it is built, its file, and what it answers as it is loaded.
+struct Kind {
+    name: &'static str,
+    built: fn(&Soup<f64>, &[Point3<f64>]) -> Answers,
+    saved: fn(&Scene) -> Vec<u8>,
+    loaded: fn(&Soup<f64>, &Reader, &[Point3<f64>]) -> Loaded,
+}
+
+macro_rules! kinds {
+    ($($name:literal: $index:ty,)*) => {
+        [$(Kind {
+            name: $name,
+            built: |soup, queries| answers(&<$index>::build(soup, &Default::default()).expect("valid"), queries),
+            saved: |scene| {
+                let index = <$index>::build(&scene.soup, &Default::default()).expect("valid");
+                let (mut writer, mut bytes) = (Writer::default(), Vec::new());
+                save_scene(scene, &mut writer);
+                index.save(&mut writer);
+                writer.write(&mut bytes).expect("memory");
+                bytes
+            },
+            loaded: |soup, reader, queries| Ok(answers(&<$index>::load(soup, reader)?, queries)),
+        },)*]
+    };
+}
+
+const INDEXES: [Kind; 6] = kinds! {
+    "aabb": AabbTree<f64, &Soup<f64>>,
+    "kdop-6": KdopTree<f64, &Soup<f64>, 6>,
+    "kdop-14": KdopTree<f64, &Soup<f64>, 14>,
+    "kdop-26": KdopTree<f64, &Soup<f64>, 26>,
+    "octree": OctreeIndex<f64, &Soup<f64>>,
+    "p2m": P2mIndex<f64, &Soup<f64>>,
+};
+
+#[test]
+fn what_is_loaded_answers_as_what_was_saved() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (case, kinds) in KINDS.into_iter().enumerate() {
+        for layout in LAYOUTS {
+            for count in [0, 1, 17, 400] {
+                let mut rng = rng("saved", case as u64);
+                let scene = Scene::from(scenes::soup(&mut rng, kinds, layout, count));
+                let queries = queries(&mut rng, &scene.soup, 60);
+                for index in &INDEXES {
+                    let bytes = (index.saved)(&scene);
+                    let path = folder.path().join("index.p2m");
+                    std::fs::write(&path, &bytes).expect("written");
+                    let expected = (index.built)(&scene.soup, &queries);
+                    for file in [SavedFile::read(&bytes[..]).expect("read"), SavedFile::open(&path).expect("mapped")] {
+                        let reader = file.checked().expect("whole");
+                        assert_eq!(p2m::saved::kind(reader).expect("a kind"), index.name);
+                        let again = load_scene(reader).expect("a scene");
+                        assert_eq!(again, scene, "{} {kinds:?} {layout:?}", index.name);
+                        let found = (index.loaded)(&again.soup, reader, &queries).expect("an index");
+                        assert_eq!(found, expected, "{} {kinds:?} {layout:?} {count}", index.name);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A mesh that is worth cells, with names, something skipped and a position that nothing uses.
+fn scene() -> Scene {
+    let mut text = String::from("usemtl red\nv 9 9 9\n");
+    let (rings, sides) = (12, 16);
+    for i in 0..=rings {
+        for j in 0..sides {
+            let [u, v] = [f64::from(i) * 0.25, f64::from(j) * std::f64::consts::TAU / f64::from(sides)];
+            text += &format!("v {} {} {}\n", v.cos() * (1.0 + 0.1 * u.sin()), v.sin(), u);
+        }
+    }
+    for i in 0..rings {
+        if i % 5 == 0 {
+            text += &format!("o ring ä {i}\n");
+        }
+        for j in 0..sides {
+            let at = |i: i32, j: i32| 2 + i * sides + j % sides;
+            text += &format!("f {} {} {} {}\n", at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+        }
+    }
+    text += "o wires\nl 2 40 90\np 3\n";
+    p2m::scene::read_obj(text.as_bytes(), "scene").expect("a scene")
+}
+
+#[test]
+fn names_origins_and_what_was_skipped_come_back() {
+    let scene = scene();
+    let counts = [scene.objects.len(), scene.skipped.len(), scene.soup.segments().len()];
+    assert_eq!(counts, [4, 1, 2], "{:?} {:?}", scene.objects, scene.skipped);
+    let mut file = Vec::new();
+    p2m::scene::write_p2m(&scene, &mut file).expect("memory");
+    assert_eq!(p2m::scene::read_p2m(&file[..], "scene").expect("a scene"), scene);
+    // A scene alone has no index.
+    let saved = SavedFile::read(&file[..]).expect("read");
+    let error = p2m::saved::kind(saved.checked().expect("whole")).expect_err("none");
+    assert!(matches!(error, LoadError::Missing { .. }), "{error}");
+}
+
+/// What a program would do with a file: its answers, or why there are none.
+fn answers_of(index: &Kind, bytes: &[u8], queries: &[Point3<f64>]) -> Loaded {
+    let file = SavedFile::read(bytes)?;
+    let reader = file.checked()?;
+    (index.loaded)(&load_scene(reader)?.soup, reader, queries)
+}
+
+#[test]
+fn ten_thousand_corruptions_are_errors_or_harmless() {
+    let scene = scene();
+    let mut harmless = 0;
+    for (number, index) in INDEXES.iter().enumerate() {
+        let mut rng = rng("corruption", number as u64);
+        let queries = queries(&mut rng, &scene.soup, 20);
+        let bytes = (index.saved)(&scene);
+        let expected = answers_of(index, &bytes, &queries).expect("whole");
+        for case in 0..10_000 / INDEXES.len() + 1 {
+            let mut other = bytes.clone();
+            match case % 6 {
+                // A bit, a byte, in the whole file or in its beginning.
+                0 => other[rng.random_range(0..bytes.len())] ^= 1 << rng.random_range(0..8),
+                1 => other[rng.random_range(0..bytes.len().min(2048))] ^= rng.random_range(1..=255),
+                2 => other[rng.random_range(0..64)] = rng.random(),
+                // The end is missing, or there is more.
+                3 => other.truncate(rng.random_range(0..bytes.len())),
+                4 => other.extend((0..rng.random_range(1..200)).map(|_| 0)),
+                // A piece of another place.
+                _ => {
+                    let len = rng.random_range(1..bytes.len() / 2);
+                    let [from, to] = [0, 1].map(|_| rng.random_range(0..bytes.len() - len));
+                    other.copy_within(from..from + len, to);
+                }
+            }
+            let found = catch_unwind(AssertUnwindSafe(|| answers_of(index, &other, &queries)));
+            match found.unwrap_or_else(|_| panic!("{} {case}: a panic", index.name)) {
+                Ok(found) => {
+                    assert_eq!(found, expected, "{} {case}", index.name);
+                    harmless += 1;
+                }
+                Err(error) => assert!(!matches!(error, LoadError::Io(_)), "{} {case}: {error}", index.name),
+            }
+        }
+    }
+    // Between sections there are bytes that nobody reads, and some changes change nothing.
+    assert!(harmless < 1_000, "{harmless}");
+}
+
+#[test]
+fn other_files_are_told_apart() {
+    let scene = scene();
+    let bytes = (INDEXES[0].saved)(&scene);
+    let error = |bytes: &[u8]| answers_of(&INDEXES[0], bytes, &[]).expect_err("no index");
+    assert!(matches!(error(b""), LoadError::Foreign));
+    assert!(matches!(error(b"solid cube\nendsolid\n"), LoadError::Foreign));
+    assert!(matches!(error(&bytes[..40]), LoadError::Length { found: 40, .. }));
+    assert!(matches!(error(&bytes[..bytes.len() - 64]), LoadError::Length { .. }));
+    let mut newer = bytes.clone();
+    newer[8..12].copy_from_slice(&(VERSION + 1).to_le_bytes());
+    let message = error(&newer);
+    assert!(matches!(message, LoadError::Version { found } if found == VERSION + 1), "{message}");
+    let mut last = bytes.clone();
+    let place = last.len() - 80;
+    last[place] ^= 4;
+    assert!(matches!(error(&last), LoadError::Damaged { .. }), "{}", error(&last));
+
+    let whole = SavedFile::read(&bytes[..]).expect("read");
+    let reader = whole.checked().expect("whole");
+    let other = OctreeIndex::<f64, _>::load(&scene.soup, reader).expect_err("another kind");
+    assert_eq!(other.to_string(), "has an index of the kind aabb, not octree");
+    // Another set: fewer primitives, another coordinate, another kind.
+    let moved = scene.soup.triangles().iter().map(|t| t.map(|i| scene.soup.positions()[i as usize]));
+    let triangles: Vec<_> = moved.map(|[a, b, c]| p2m::Triangle::new(a, b, c)).collect();
+    assert!(matches!(AabbTree::<f64, _>::load(&triangles, reader), Err(LoadError::OtherSet)));
+    let mut positions = scene.soup.positions().to_vec();
+    positions[5].x = positions[5].x.next_up();
+    let near = Soup::new(positions, scene.soup.elements()).expect("valid");
+    assert!(matches!(AabbTree::<f64, _>::load(&near, reader), Err(LoadError::OtherSet)));
+    assert!(AabbTree::<f64, _>::load(&scene.soup, reader).is_ok());
+    assert!(SavedFile::open("no such file".as_ref()).is_err_and(|e| matches!(e, LoadError::Io(_))));
+}
+
+#[test]
+fn rays_moved_sets_and_primitives_of_ones_own_work_as_before() {
+    let mut rng = rng("saved-others", 0);
+    let scene = scene();
+    let bytes = (INDEXES[2].saved)(&scene);
+    let file = SavedFile::read(&bytes[..]).expect("read");
+    let reader = file.checked().expect("whole").clone();
+    drop((file, bytes));
+    let mut loaded = KdopTree::<f64, &Soup<f64>, 14>::load(&scene.soup, &reader).expect("an index");
+    let mut built = KdopTree::<f64, &Soup<f64>, 14>::build(&scene.soup, &Default::default()).expect("valid");
+    assert_eq!(loaded.directions(), built.directions());
+    let rays: Vec<Ray> =
+        (0..200).map(|_| Ray::new(&Point3::from(vector(&mut rng) * 3.0), &vector(&mut rng)).expect("a ray")).collect();
+    for ray in &rays {
+        assert_eq!(loaded.all_intersections(ray), built.all_intersections(ray));
+    }
+    assert!(rays.iter().filter(|ray| loaded.do_intersect(ray)).count() > 10);
+    // A loaded tree is fitted to what has moved, as a built one.
+    let moved = scene.soup.positions().iter().map(|p| p * 1.5 + vector(&mut rng) * 0.01).collect();
+    let moved = Soup::new(moved, scene.soup.elements()).expect("valid");
+    let queries = queries(&mut rng, &moved, 100);
+    loaded.refit(&moved, &Default::default()).expect("as many");
+    built.refit(&moved, &Default::default()).expect("as many");
+    assert_eq!(answers(&loaded, &queries), answers(&built, &queries));
+
+    let balls: Vec<Ball> =
+        (0..300).map(|_| Ball { centre: Point3::from(vector(&mut rng)), radius: rng.random_range(0.0..0.1) }).collect();
+    let index = P2mIndex::<f64, _>::build(&balls, &Default::default()).expect("valid");
+    let (mut writer, mut bytes) = (Writer::default(), Vec::new());
+    index.save(&mut writer);
+    writer.write(&mut bytes).expect("memory");
+    let file = SavedFile::read(&bytes[..]).expect("read");
+    let again = P2mIndex::<f64, _>::load(&balls, file.checked().expect("whole")).expect("an index");
+    assert_eq!(answers(&again, &queries), answers(&index, &queries));
+    assert_eq!(again.report(), index.report());
+    let fewer = &balls[1..];
+    assert!(matches!(P2mIndex::<f64, _>::load(fewer, file.unchecked()), Err(LoadError::OtherSet)));
+}
+
+#[test]
+fn single_precision_comes_back_as_well() {
+    let wires: Vec<Segment<f32>> = (0..500u16)
+        .map(|i| f32::from(i).sin_cos())
+        .map(|(x, y)| Segment::new(Point3::new(x, y, x * y), Point3::new(-y, x, 1.0)))
+        .collect();
+    let index = P2mIndex::<f32, _>::build(&wires, &Default::default()).expect("valid");
+    let (mut writer, mut bytes) = (Writer::default(), Vec::new());
+    index.save(&mut writer);
+    writer.write(&mut bytes).expect("memory");
+    let file = SavedFile::read(&bytes[..]).expect("read");
+    let again = P2mIndex::<f32, _>::load(&wires, file.checked().expect("whole")).expect("an index");
+    let mut rng = rng("saved-f32", 0);
+    for _ in 0..500 {
+        let query = Point3::from((vector(&mut rng) * 2.0).map(|x| x as f32));
+        assert_eq!(again.closest_point(&query), index.closest_point(&query));
+    }
+    // Points are no segments, wherever they are.
+    let points: Vec<Point<f32>> = wires.iter().map(|wire| Point::new(wire.vertices[0])).collect();
+    assert_eq!(points.len(), PrimitiveSet::<f32>::len(&wires));
+    assert!(matches!(P2mIndex::<f32, _>::load(&points, file.unchecked()), Err(LoadError::OtherSet)));
+}
