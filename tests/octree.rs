@@ -150,7 +150,9 @@ fn progress_goes_from_nothing_to_all() {
     for memory in [1e4, 20.0] {
         let parts = Mutex::new(Vec::new());
         let options = OctreeOptions::default().with_memory(memory);
-        let index = OctreeIndex::build_with_progress(&soup, &options, &|part| parts.lock().expect("whole").push(part));
+        let index = OctreeIndex::build_with_progress(&soup, &options, &|progress| {
+            parts.lock().expect("whole").push(progress.part);
+        });
         assert_eq!(index.expect("valid").set().len(), 5_000);
         let mut parts = parts.into_inner().expect("whole");
         assert!(parts.iter().all(|part| (0.0..=1.0).contains(part)) && parts.last() == Some(&1.0));

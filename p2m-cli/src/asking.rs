@@ -1,6 +1,6 @@
 //! How `query` and `ray` ask: the options that they share, and many questions at once.
 
-use crate::faces::{self, Faces};
+use crate::faces::Faces;
 use crate::input::{SceneArgs, is_standard, or_option};
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 pub(crate) struct Asking {
     /// How many faces the polytopes of --backend kdop have [default: 14, or as a saved index]
     #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
-    k: Option<Faces>,
+    pub(crate) k: Option<Faces>,
 
     /// Where to write the answers; `-` is the standard output.
     ///
@@ -54,14 +54,6 @@ impl Asking {
         }
         let inputs: Vec<&Path> = std::iter::once(scene.path.as_path()).chain(file).collect();
         Output::refuse_inputs(&self.out, &inputs)
-    }
-
-    /// How many faces k-DOPs have, if that was said.
-    ///
-    /// # Errors
-    /// If it was, and this is another backend.
-    pub(crate) fn faces(&self, is_kdop: bool) -> anyhow::Result<Option<Faces>> {
-        if self.k.is_some() && !is_kdop { Err(usage(faces::FOR_KDOP)) } else { Ok(self.k) }
     }
 
     /// The format of the answers: the given one, or that of the extension; CSV for names that have none.

@@ -7,9 +7,10 @@ use clap::builder::PossibleValue;
 use p2m_bvh::AabbTree;
 use p2m_core::hierarchy::{TreeIndex, Volume};
 use p2m_core::saved::{self, Reader, Saved, Writer};
-use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Examine, RayQuery, Soup};
-use p2m_interception::{InterceptionIndex, Octree, OctreeReport, P2mReport, Partition, Voronoi};
+use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Examine, RayQuery, Soup, StageTimes};
+use p2m_interception::{InterceptionIndex, Octree, OctreeReport, P2mReport, Partition, Stage, Voronoi};
 use p2m_kdop::KdopTree;
+use std::time::{Duration, Instant};
 
 /// Backends that answer every kind of question.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -56,7 +57,12 @@ pub(crate) struct Built<I> {
     pub(crate) about: About,
     /// Whether a file had it.
     pub(crate) loaded: bool,
+    /// How long building took by stages, where there are some.
+    pub(crate) stages: Stages,
 }
+
+/// The stages of a build, and how long they took.
+pub(crate) type Stages = Vec<(Stage, Duration)>;
 
 /// What there is to say about an index.
 pub(crate) enum About {
@@ -108,16 +114,19 @@ impl Search {
         let soup = source.soup;
         let progress = Progress::start("building the index", None, Unit::None);
         let built: Built<Box<dyn Index + 'a>> = match self {
-            Self::Brute => {
-                Built { index: Box::new(BruteForce::build(soup, &())?), about: About::Nothing, loaded: false }
-            }
+            Self::Brute => Built {
+                index: Box::new(BruteForce::build(soup, &())?),
+                about: About::Nothing,
+                loaded: false,
+                stages: Stages::new(),
+            },
             Self::Aabb => {
                 let saved = source.with(|kind| kind == self.name());
                 let index: AabbTree<f64, _> = match saved {
                     Some(reader) => AabbTree::load(soup, reader)?,
                     None => AabbTree::build(soup, &Default::default())?,
                 };
-                Built { index: Box::new(index), about: About::Nothing, loaded: saved.is_some() }
+                Built { index: Box::new(index), about: About::Nothing, loaded: saved.is_some(), stages: Stages::new() }
             }
             Self::Kdop => {
                 let saved = source.saved.and_then(|r| Faces::of_saved(source.faces, r).map(|k| (r, k)));
@@ -125,7 +134,7 @@ impl Search {
                     Some((reader, k)) => Faces::load(k, soup, reader, AnyTree)?,
                     None => source.faces.unwrap_or(Faces::Fourteen).build(soup, AnyTree)?,
                 };
-                Built { index, about: About::Faces(used), loaded: saved.is_some() }
+                Built { index, about: About::Faces(used), loaded: saved.is_some(), stages: Stages::new() }
             }
         };
         drop(progress);
@@ -198,8 +207,8 @@ impl Backend {
     pub(crate) fn build<'a>(self, source: Source<'a>) -> anyhow::Result<Built<Box<dyn Closest + 'a>>> {
         match self {
             Self::Search(search) => {
-                let Built { index, about, loaded } = search.build(source)?;
-                Ok(Built { index, about, loaded })
+                let Built { index, about, loaded, stages } = search.build(source)?;
+                Ok(Built { index, about, loaded, stages })
             }
             Self::Octree => interception::<Octree>(source, About::Cubes),
             Self::P2m => interception::<Voronoi>(source, About::Cells),
@@ -214,13 +223,17 @@ fn interception<'a, P: Partition + Saved + Sync + 'static>(
     about: fn(P::Report) -> About,
 ) -> anyhow::Result<Built<Box<dyn Closest + 'a>>> {
     let saved = source.with(|kind| kind == P::kind());
+    let start = Instant::now();
+    let times = StageTimes::new(move || start.elapsed());
     let index: InterceptionIndex<f64, _, P> = if let Some(reader) = saved {
         InterceptionIndex::load(source.soup, reader)?
     } else {
-        let progress = Progress::start("finding cells", Some(100), Unit::Percent);
-        let reach = |part: f64| progress.reach((part * 100.0) as u64);
-        InterceptionIndex::build_with_progress(source.soup, &Default::default(), &reach)?
+        let bar = Progress::start("finding cells", Some(100), Unit::Percent);
+        InterceptionIndex::build_with_progress(source.soup, &Default::default(), &|progress| {
+            times.tell(progress);
+            bar.reach((progress.part * 100.0) as u64);
+        })?
     };
     let report = index.report();
-    Ok(Built { index: Box::new(index), about: about(report), loaded: saved.is_some() })
+    Ok(Built { index: Box::new(index), about: about(report), loaded: saved.is_some(), stages: times.finish() })
 }

@@ -1,8 +1,8 @@
 //! `p2m build`: an index in a file, for other commands to use.
 
 use crate::backend::{About, Backend, Built, Search, Source};
-use crate::faces::{self, Faces};
-use crate::input::{SceneArgs, read_scene};
+use crate::indexing::Indexing;
+use crate::input::read_scene;
 use crate::json;
 use crate::output::Output;
 use crate::summary::Indexed;
@@ -40,15 +40,7 @@ Examples:
 #[command(after_help = help())]
 pub(crate) struct Args {
     #[command(flatten)]
-    scene: SceneArgs,
-
-    /// Which index
-    #[arg(long, value_enum, default_value_t = Backend::Search(Search::Aabb))]
-    backend: Backend,
-
-    /// How many faces the polytopes of --backend kdop have [default: 14]
-    #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
-    k: Option<Faces>,
+    indexing: Indexing,
 
     /// Where to write the file, usually a name that ends in .p2m
     #[arg(long, value_name = "FILE")]
@@ -60,27 +52,26 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
-    if args.backend == Backend::Search(Search::Brute) {
+    let scene_args = &args.indexing.scene;
+    let (backend, faces) = args.indexing.choice(None)?;
+    if backend == Backend::Search(Search::Brute) {
         return Err(usage("--backend brute has no index to save"));
-    }
-    if args.k.is_some() && args.backend != Backend::Search(Search::Kdop) {
-        return Err(usage(faces::FOR_KDOP));
     }
     if args.json && crate::input::is_standard(&args.out) {
         return Err(usage("--json reports on the standard output, so the index has to go to a file"));
     }
-    Output::refuse_inputs(&args.out, &[&args.scene.path])?;
+    Output::refuse_inputs(&args.out, &[&scene_args.path])?;
     Output::refuse_terminal(&args.out, Format::P2m.name())?;
-    let format = args.scene.format()?;
+    let format = scene_args.format()?;
     let start = Instant::now();
-    let scene = read_scene(&args.scene.path, format)?;
+    let scene = read_scene(&scene_args.path, format)?;
     let read = start.elapsed();
     // Before any work, so that it is not lost to a wrong name.
     let mut output = Output::open(Some(&args.out))?;
 
     let start = Instant::now();
-    let source = Source { soup: &scene.soup, faces: args.k, saved: None };
-    let Built { index, about, loaded } = args.backend.build(source).with_context(|| args.scene.name())?;
+    let source = Source { soup: &scene.soup, faces, saved: None };
+    let Built { index, about, loaded, .. } = backend.build(source).with_context(|| scene_args.name())?;
     let build = start.elapsed();
 
     let start = Instant::now();
@@ -96,7 +87,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     output.finish()?;
     let written = start.elapsed();
 
-    let (scene_name, backend) = (args.scene.name(), args.backend.name());
+    let (scene_name, backend) = (scene_args.name(), backend.name());
     let indexed = Indexed { scene_name, scene: &scene, format, backend, about, loaded, read, build };
     let out = args.out.display();
     if args.json {

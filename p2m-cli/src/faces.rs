@@ -1,12 +1,11 @@
 //! `--k`: how many faces the polytopes of a k-DOP tree have, which is a type in the library.
 
+use crate::usage::usage;
 use clap::ValueEnum;
 use p2m_core::saved::{self, LoadError, Reader, Writer};
 use p2m_core::{BuildError, Soup};
 use p2m_kdop::{Choice, KdopOptions, KdopTree};
 
-/// Said where faces are given for another backend.
-pub(crate) const FOR_KDOP: &str = "--k is for --backend kdop";
 /// How the kinds of k-DOP trees begin.
 const KIND: &str = "kdop-";
 /// The section of a file that says why the directions of a scene are these.
@@ -46,6 +45,14 @@ impl Used {
             writer.put_copy(CHOICE, choice.as_bytes());
         }
     }
+}
+
+/// How many faces k-DOPs have, if that was said.
+///
+/// # Errors
+/// If it was, and this is another backend.
+pub(crate) fn only_for(is_kdop: bool, k: Option<Faces>) -> anyhow::Result<Option<Faces>> {
+    if k.is_some() && !is_kdop { Err(usage("--k is for --backend kdop")) } else { Ok(k) }
 }
 
 /// What to do with a tree, whatever its K.

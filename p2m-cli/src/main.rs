@@ -11,6 +11,7 @@ mod convert;
 mod faces;
 mod findings;
 mod generate;
+mod indexing;
 mod info;
 mod input;
 mod interrupt;

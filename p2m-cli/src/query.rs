@@ -2,6 +2,7 @@
 
 use crate::asking::{Asking, Questions, ask};
 use crate::backend::{Backend, Built, Search, Source};
+use crate::faces;
 use crate::input::{self, SceneArgs, point_format, read_points, read_scene_and_index};
 use crate::json;
 use crate::output::Output;
@@ -115,9 +116,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let start = Instant::now();
     let saved = saved.as_ref();
     let backend = args.backend.or_else(|| Backend::of_saved(saved)).unwrap_or(Backend::Search(Search::Aabb));
-    let faces = asking.faces(backend == Backend::Search(Search::Kdop))?;
+    let faces = faces::only_for(backend == Backend::Search(Search::Kdop), asking.k)?;
     let source = Source { soup: &scene.soup, faces, saved };
-    let Built { index, about, loaded } = backend.build(source).with_context(|| scene_args.name())?;
+    let Built { index, about, loaded, .. } = backend.build(source).with_context(|| scene_args.name())?;
     let build = start.elapsed();
 
     let pool = asking.pool()?;

@@ -2,6 +2,7 @@
 
 use crate::asking::{Asking, Questions, ask};
 use crate::backend::{Built, Index, Search, Source};
+use crate::faces;
 use crate::findings::Findings;
 use crate::input::{self, SceneArgs, point_format, read_rays, read_scene_and_index};
 use crate::json;
@@ -167,8 +168,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let start = Instant::now();
     let saved = saved.as_ref();
     let backend = args.backend.or_else(|| Search::of_saved(saved)).unwrap_or(Search::Aabb);
-    let source = Source { soup: &scene.soup, faces: asking.faces(backend == Search::Kdop)?, saved };
-    let Built { index, about, loaded } = backend.build(source).with_context(|| scene_args.name())?;
+    let source = Source { soup: &scene.soup, faces: faces::only_for(backend == Search::Kdop, asking.k)?, saved };
+    let Built { index, about, loaded, .. } = backend.build(source).with_context(|| scene_args.name())?;
     let build = start.elapsed();
 
     let pool = asking.pool()?;

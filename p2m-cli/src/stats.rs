@@ -1,18 +1,18 @@
 //! `p2m stats`: what an index is made of and what its queries cost, in what does not depend on the machine.
 
-use crate::backend::{Backend, Built, Closest, Search, Source};
-use crate::faces::{self, Faces};
-use crate::input::{SceneArgs, read_scene_and_index};
+use crate::backend::{Built, Closest, Source, Stages};
+use crate::indexing::Indexing;
+use crate::input::read_scene_and_index;
 use crate::json;
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
 use crate::sampling::{Queries, Region};
 use crate::summary::Indexed;
-use crate::usage::{positive, usage, whole};
+use crate::usage::{positive, whole};
 use anyhow::{Context, bail};
 use nalgebra::{Point3, Vector3};
 use p2m_bvh::AabbTree;
-use p2m_core::{BuildIndex, Counting, Lists, PrimitiveSet, RayQuery, Soup, Visits};
+use p2m_core::{BuildIndex, Counting, Lists, Load, PrimitiveSet, RayQuery, Soup, Visits};
 use p2m_mixed::Camera;
 use p2m_mixed::picture::{value_colours, write_values_ply};
 use p2m_mixed::statistics::figure::Count;
@@ -50,15 +50,7 @@ Examples:
 #[command(after_help = help())]
 pub(crate) struct Args {
     #[command(flatten)]
-    scene: SceneArgs,
-
-    /// Which index [default: aabb, or that of a saved file]
-    #[arg(long, value_enum)]
-    backend: Option<Backend>,
-
-    /// How many faces the polytopes of --backend kdop have [default: 14]
-    #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
-    k: Option<Faces>,
+    indexing: Indexing,
 
     /// How many random points of the box, and how many middles of primitives, to ask about
     #[arg(long, value_name = "N", value_parser = whole, default_value_t = 10_000, allow_negative_numbers = true)]
@@ -90,27 +82,24 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
-    if args.k.is_some() && args.backend.is_some_and(|backend| backend != Backend::Search(Search::Kdop)) {
-        return Err(usage(faces::FOR_KDOP));
-    }
+    let scene_args = &args.indexing.scene;
     if let Some(out) = &args.out {
         if !is(out, "ply") && !is(out, "png") {
             bail!("{}: the name of a picture ends in .ply or .png", out.display());
         }
-        Output::refuse_inputs(out, &[&args.scene.path])?;
+        Output::refuse_inputs(out, &[&scene_args.path])?;
     }
-    let format = args.scene.format()?;
+    let format = scene_args.format()?;
     let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(&args.scene.path, format)?;
+    let (scene, saved) = read_scene_and_index(&scene_args.path, format)?;
     let read = start.elapsed();
     let picture = args.out.as_ref().map(|out| Output::open(Some(out))).transpose()?;
 
     let start = Instant::now();
     let saved = saved.as_ref();
-    let usual = if args.k.is_some() { Search::Kdop } else { Search::Aabb };
-    let backend = args.backend.or_else(|| Backend::of_saved(saved)).unwrap_or(Backend::Search(usual));
-    let source = Source { soup: &scene.soup, faces: args.k, saved };
-    let Built { index, about, loaded } = backend.build(source).with_context(|| args.scene.name())?;
+    let (backend, faces) = args.indexing.choice(saved)?;
+    let source = Source { soup: &scene.soup, faces, saved };
+    let Built { index, about, loaded, stages } = backend.build(source).with_context(|| scene_args.name())?;
     let build = start.elapsed();
 
     let progress = Progress::start("asking", None, Unit::None);
@@ -122,6 +111,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         on_scene: Visits::of(&*index, &some_middles(&scene.soup, args.queries)),
         asked: random.len() as u64,
         parts: index.parts(),
+        stages,
         primitives: scene.soup.len(),
         loaded,
     };
@@ -136,7 +126,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     }
     drop(progress);
 
-    let (scene_name, backend) = (args.scene.name(), backend.name());
+    let (scene_name, backend) = (scene_args.name(), backend.name());
     let indexed = Indexed { scene_name, scene: &scene, format, backend, about, loaded, read, build };
     if args.json {
         let end = json!({
@@ -226,17 +216,19 @@ struct Stats {
     /// How many random points.
     asked: u64,
     parts: Vec<(&'static str, usize)>,
+    stages: Stages,
     primitives: usize,
     loaded: bool,
 }
 
 impl Stats {
     fn json(&self) -> Value {
+        let load = |load: &Load| json!({ "mean": load.mean, "most": load.most });
         let visits = |visits: &Visits| {
             json!({
-                "nodes": visits.nodes,
-                "packets": visits.packets,
-                "primitives": visits.primitives,
+                "nodes": load(&visits.nodes),
+                "packets": load(&visits.packets),
+                "primitives": load(&visits.primitives),
                 "list": self.lists.map(|_| visits.list),
                 "without_list": self.lists.map(|_| visits.without_list),
             })
@@ -252,12 +244,15 @@ impl Stats {
             })
         });
         let parts: serde_json::Map<_, _> = self.parts.iter().map(|(name, n)| ((*name).to_owned(), json!(n))).collect();
+        let stages: serde_json::Map<_, _> =
+            self.stages.iter().map(|(stage, time)| (stage.name().to_owned(), json!(time.as_secs_f64()))).collect();
         json!({
             "lists": lists,
             "queries": self.asked,
             "in_box": visits(&self.in_box),
             "on_scene": visits(&self.on_scene),
             "memory": parts,
+            "stages": stages,
         })
     }
 }
@@ -280,20 +275,25 @@ impl fmt::Display for Stats {
                 100.0 * without_list
             )?;
         }
-        for (name, visits) in [("box", &self.in_box), ("scene", &self.on_scene)] {
+        for (places, visits) in [("in the box", &self.in_box), ("on the scene", &self.on_scene)] {
             let Visits { nodes, packets, primitives, .. } = visits;
-            let places = if name == "box" { "in the box" } else { "on the scene" };
             writeln!(
                 f,
-                "queries  {places}: {nodes:.2} nodes, {packets:.2} packets, {primitives:.2} primitives each, on average"
+                "queries  {places}: {:.2} nodes, {:.2} packets, {:.2} primitives each; at most {}, {}, {}",
+                nodes.mean, packets.mean, primitives.mean, nodes.most, packets.most, primitives.most
             )?;
+        }
+        if !self.stages.is_empty() {
+            let stages: Vec<String> =
+                self.stages.iter().map(|(stage, time)| format!("{} {time:.3?}", stage.name())).collect();
+            writeln!(f, "stages   {}", stages.join(", "))?;
         }
         if self.loaded {
             return writeln!(f, "memory   that of the file");
         }
         let total: usize = self.parts.iter().map(|part| part.1).sum();
-        let parts: Vec<String> =
-            self.parts.iter().map(|(name, bytes)| format!("{name} {:.1} MB", *bytes as f64 / 1e6)).collect();
+        let held = self.parts.iter().filter(|part| part.1 > 0);
+        let parts: Vec<String> = held.map(|(name, bytes)| format!("{name} {:.1} MB", *bytes as f64 / 1e6)).collect();
         if !parts.is_empty() {
             let each = total as f64 / self.primitives.max(1) as f64;
             writeln!(f, "memory   {}: {each:.0} bytes a primitive", parts.join(", "))?;

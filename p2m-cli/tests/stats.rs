@@ -25,11 +25,13 @@ fn every_backend_says_what_it_is_made_of() {
         assert_eq!(report["queries"], 500);
         for place in ["in_box", "on_scene"] {
             let [nodes, packets, primitives] =
-                ["nodes", "packets", "primitives"].map(|n| number(&format!("/{place}/{n}")));
+                ["nodes", "packets", "primitives"].map(|n| number(&format!("/{place}/{n}/mean")));
+            let most = number(&format!("/{place}/primitives/most"));
+            assert!(most >= primitives && most <= 4080.0, "{report}");
             assert!(primitives >= 1.0, "{report}");
             match backend {
                 "brute" => assert_eq!([nodes, packets, primitives], [0.0, 0.0, 4080.0]),
-                "p2m" => assert!(nodes < 0.1 && packets > 0.0, "{report}"),
+                "p2m" => assert!(nodes >= 1.0 && nodes < 4.0 && packets > 0.0, "{report}"),
                 "octree" => assert!(nodes < 1.0 && packets > 0.0, "{report}"),
                 _ => assert!(nodes > 1.0 && packets > 1.0 && primitives < 10.0, "{report}"),
             }
@@ -39,10 +41,13 @@ fn every_backend_says_what_it_is_made_of() {
             assert!(lengths.is_sorted() && lengths[0] >= 1.0, "{report}");
             assert!(number("/lists/mean") <= lengths[3] && number("/lists/count") > 100.0, "{report}");
             assert!(number("/in_box/list") >= 1.0 && number("/in_box/without_list") < 0.5, "{report}");
-            assert_eq!(
-                number("/memory/cells") + number("/memory/tree"),
-                number("/cells/bytes") + number("/cells/tree_bytes")
-            );
+            let parts = report["memory"].as_object().unwrap().values().map(|bytes| bytes.as_f64().unwrap());
+            assert_eq!(parts.sum::<f64>(), number("/cells/bytes") + number("/cells/tree_bytes"));
+            let stages = report["stages"].as_object().unwrap();
+            let sum: f64 = stages.values().map(|seconds| seconds.as_f64().unwrap()).sum();
+            assert_eq!(stages.len(), if backend == "p2m" { 5 } else { 2 });
+            assert!(sum > 0.0 && sum <= number("/seconds/build"), "{report}");
+            assert!(line("stages").is_some_and(|line| line.contains("tree")), "{text}");
         } else {
             assert!(report["lists"].is_null() && report["in_box"]["list"].is_null(), "{report}");
         }
@@ -117,7 +122,9 @@ fn saved_indexes_have_statistics_and_wrong_usage_is_refused() {
     for eye in ["0,1,0", "1,2", "a,b,c", "inf,0,0"] {
         assert!(failure(&["stats", SCENE, "--out", "lists.png", "--eye", eye], 2).contains("that lead sideways"));
     }
-    assert!(table(&["stats", SCENE, "--k", "6"]).contains("backend  kdop, 6 faces"));
+    assert!(failure(&["stats", SCENE, "--k", "6"], 2).contains("--k is for --backend kdop"));
+    assert!(failure(&["stats", &file, "--k", "6"], 2).contains("--k is for --backend kdop"));
+    assert!(table(&["stats", SCENE, "--backend", "kdop", "--k", "6"]).contains("backend  kdop, 6 faces"));
     let empty = common::write(&folder, "empty.obj", "");
     let text = table(&["stats", &empty, "--backend", "p2m"]);
     assert!(text.contains("the scene is empty"), "{text}");

@@ -59,4 +59,4 @@ pub use real::Real;
 pub use set::{PrimitiveId, PrimitiveSet, check_set};
 pub use simd::Isa;
 pub use soup::{Element, Soup};
-pub use stats::{Examine, Lists, Visits};
+pub use stats::{Examine, Lists, Load, StageTimes, Visits};

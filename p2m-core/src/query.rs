@@ -105,7 +105,7 @@ pub trait Collector {
     /// Takes a candidate.
     fn offer(&mut self, id: PrimitiveId, projection: Projection);
 
-    /// Called once for every node of a tree that is visited. Does nothing unless somebody counts.
+    /// Called once for every node of a tree that is visited, and for every site on the way to a Voronoi cell. Does nothing unless somebody counts.
     #[inline(always)]
     fn visit_node(&mut self) {}
 

@@ -1,7 +1,10 @@
 //! Statistics of indexes: how long lists are, and what queries cost in what does not depend on the machine.
 
-use crate::{Counting, Real};
+use crate::interception::{Progress, Stage};
+use crate::{Best, Counting, QueryOptions, Real};
 use nalgebra::Point3;
+use std::sync::Mutex;
+use std::time::Duration;
 
 /// What statistics ask an index.
 pub trait Examine<T: Real> {
@@ -57,16 +60,25 @@ impl Lists {
     }
 }
 
-/// What queries cost on average.
+/// A mean and a maximum.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Load {
+    /// The mean over the queries; 0 without any.
+    pub mean: f64,
+    /// The most for one query.
+    pub most: usize,
+}
+
+/// What queries cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Visits {
-    /// Nodes of trees that a query visits.
-    pub nodes: f64,
+    /// Nodes of trees that a query visits, and sites on its way to a Voronoi cell.
+    pub nodes: Load,
     /// Packets of primitives that it filters.
-    pub packets: f64,
+    pub packets: Load,
     /// Primitives that it evaluates.
-    pub primitives: f64,
+    pub primitives: Load,
     /// The length of the list of the cell that it is in, over the queries that have one; 0 if none has. For points that
     /// are spread evenly it is the mean length weighted by the volumes of cells.
     pub list: f64,
@@ -77,12 +89,89 @@ pub struct Visits {
 impl Visits {
     /// Those of some queries; all zero without any.
     pub fn of<T: Real>(index: &(impl Examine<T> + ?Sized), queries: &[Point3<T>]) -> Self {
-        let sums = Counting::of_queries(queries, |query, counting| index.examine(query, counting));
+        let mut loads = [Load::default(); 3];
+        for query in queries {
+            let mut counting = Counting::new(Best::new(&QueryOptions::default()));
+            index.examine(query, &mut counting);
+            for (load, count) in loads.iter_mut().zip([counting.nodes, counting.packets, counting.primitives]) {
+                *load = Load { mean: load.mean + count as f64, most: load.most.max(count) };
+            }
+        }
         let lengths: Vec<usize> = queries.iter().filter_map(|query| index.list_length(query)).collect();
         let all = queries.len().max(1) as f64;
-        let [nodes, packets, primitives] = sums.map(|sum| sum as f64 / all);
+        let [nodes, packets, primitives] = loads.map(|load| Load { mean: load.mean / all, ..load });
         let list = lengths.iter().sum::<usize>() as f64 / lengths.len().max(1) as f64;
         Self { nodes, packets, primitives, list, without_list: (queries.len() - lengths.len()) as f64 / all }
+    }
+}
+
+/// Sums the times of the stages of a build: give [`tell`](Self::tell) what is told of progress.
+///
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::interception::{Partition, Stage, Voronoi};
+/// use p2m_core::{Segment, StageTimes};
+/// use std::time::Instant;
+///
+/// let wires = [Segment::new(Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 1.0, 2.0))];
+/// let start = Instant::now();
+/// let times = StageTimes::new(move || start.elapsed());
+/// let cells: Voronoi = Partition::build(&wires, &Default::default(), &|progress| times.tell(progress));
+/// assert!(times.finish().iter().any(|(stage, _)| *stage == Stage::Tree));
+/// # drop(cells);
+/// ```
+pub struct StageTimes<C> {
+    /// The time since some moment.
+    clock: C,
+    seen: Mutex<Seen>,
+}
+
+#[derive(Default)]
+struct Seen {
+    times: Vec<(Stage, Duration)>,
+    /// The stage that is being done, and when it began.
+    current: Option<(Stage, Duration)>,
+}
+
+impl<C: Fn() -> Duration> StageTimes<C> {
+    /// With a clock that tells the time since some moment, the same one each time.
+    pub fn new(clock: C) -> Self {
+        Self { clock, seen: Mutex::default() }
+    }
+
+    /// Ends one stage and begins another, if that is what is told. The clock is asked only then.
+    ///
+    /// # Panics
+    /// If the clock panicked.
+    pub fn tell(&self, progress: Progress) {
+        let mut seen = self.seen.lock().expect("a clock that did not panic");
+        if seen.current.is_none_or(|(stage, _)| stage != progress.stage) {
+            let now = (self.clock)();
+            seen.end(now);
+            seen.current = Some((progress.stage, now));
+        }
+    }
+
+    /// The time of each stage, in the order in which they began for the first time; of one that came several times the
+    /// sum.
+    ///
+    /// # Panics
+    /// If the clock panicked.
+    pub fn finish(self) -> Vec<(Stage, Duration)> {
+        let mut seen = self.seen.into_inner().expect("a clock that did not panic");
+        seen.end((self.clock)());
+        seen.times
+    }
+}
+
+impl Seen {
+    fn end(&mut self, now: Duration) {
+        let Some((stage, began)) = self.current.take() else { return };
+        let time = now.saturating_sub(began);
+        match self.times.iter_mut().find(|(known, _)| *known == stage) {
+            Some((_, sum)) => *sum += time,
+            None => self.times.push((stage, time)),
+        }
     }
 }
 
@@ -124,13 +213,32 @@ mod tests {
     fn visits_are_means_over_the_queries() {
         let at = |x: f64| Point3::new(x, 0.0, 0.0);
         let visits = Visits::of(&Made, &[at(3.0), at(5.0), at(-1.0), at(-2.0)]);
-        assert_eq!([visits.nodes, visits.packets, visits.primitives], [1.0, 2.0, 2.0]);
+        let load = |mean, most| Load { mean, most };
+        assert_eq!([visits.nodes, visits.packets, visits.primitives], [load(1.0, 1), load(2.0, 5), load(2.0, 5)]);
         assert_eq!([visits.list, visits.without_list], [4.0, 0.5]);
         let nothing = Visits::of(&Made, &[]);
-        assert_eq!([nothing.nodes, nothing.list, nothing.without_list], [0.0; 3]);
+        assert_eq!((nothing.nodes, nothing.list, nothing.without_list), (Load::default(), 0.0, 0.0));
         let points = [at(1.0), at(2.0), at(3.0)].map(Point::new);
         let brute = Visits::of(&BruteForce::new(points).expect("valid"), &[at(0.0), at(9.0)]);
-        assert_eq!([brute.nodes, brute.packets, brute.primitives, brute.without_list], [0.0, 0.0, 3.0, 1.0]);
+        assert_eq!((brute.nodes, brute.primitives, brute.without_list), (Load::default(), load(3.0, 3), 1.0));
         assert_eq!(Lists::of(&BruteForce::new(points).expect("valid")), None);
+    }
+
+    #[test]
+    fn a_stage_lasts_until_another_begins_and_may_come_again() {
+        let now = std::cell::Cell::new(0);
+        let times = StageTimes::new(|| Duration::from_secs(now.get()));
+        for (time, stage) in [(1, Stage::Tree), (3, Stage::Delaunay), (4, Stage::Balls), (4, Stage::Balls)] {
+            now.set(time);
+            times.tell(Progress { stage, part: 0.0 });
+        }
+        for (time, stage) in [(9, Stage::Delaunay), (11, Stage::Lists)] {
+            now.set(time);
+            times.tell(Progress { stage, part: 0.5 });
+        }
+        now.set(20);
+        let expected = [(Stage::Tree, 2), (Stage::Delaunay, 3), (Stage::Balls, 5), (Stage::Lists, 9)];
+        assert_eq!(times.finish(), expected.map(|(stage, time)| (stage, Duration::from_secs(time))));
+        assert!(StageTimes::new(|| Duration::ZERO).finish().is_empty());
     }
 }

@@ -1,5 +1,5 @@
 use nalgebra::Point3;
-use p2m_core::interception::{Hints, Octree, Partition, SIDE_BY_SIDE, SortedLists, Voronoi};
+use p2m_core::interception::{Hints, Octree, Partition, Progress, SIDE_BY_SIDE, SortedLists, Voronoi};
 use p2m_core::saved::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{
     Best, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Counting, Examine, Isa, PrimitiveSet, QueryOptions,
@@ -42,15 +42,15 @@ pub struct InterceptionIndex<T: Real, S, P> {
 }
 
 impl<T: Real, S: PrimitiveSet<T>, P: Partition> InterceptionIndex<T, S, P> {
-    /// Builds the index as [`BuildIndex::build`], and tells `progress` what part is done: each percent once, from any
-    /// thread.
+    /// Builds the index as [`BuildIndex::build`], and tells `progress` of each stage that begins, from this thread, and
+    /// of each percent, from any thread ([`StageTimes`](p2m_core::StageTimes) sums their times).
     ///
     /// # Errors
     /// For a coordinate that is not finite and for more primitives than ids.
     pub fn build_with_progress(
         set: S,
         options: &P::Options,
-        progress: &(dyn Fn(f64) + Sync),
+        progress: &(dyn Fn(Progress) + Sync),
     ) -> Result<Self, BuildError>
     where
         S: Sync,
@@ -122,8 +122,7 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> Examine<T> for InterceptionIndex
     }
 
     fn parts(&self) -> Vec<(&'static str, usize)> {
-        let tree = self.partition.tree().memory();
-        vec![("cells", self.memory() - tree), ("tree", tree)]
+        self.partition.parts()
     }
 
     fn list_lengths(&self) -> Vec<usize> {

@@ -30,7 +30,7 @@ pub use index::{InterceptionIndex, OctreeIndex, P2mIndex, P2mIndexWith};
 pub use kd_tree::KdTreeLocator;
 pub use p2m_core::interception::{
     Domain, Hints, ListFilter, Locator, LocatorSites, Octree, OctreeOptions, OctreeReport, P2mOptions, P2mReport,
-    Partition, Region, SortedLists, Voronoi,
+    Partition, Progress, Region, SortedLists, Stage, Voronoi,
 };
 #[cfg(feature = "rstar")]
 pub use region_tree::RegionTree;

@@ -16,6 +16,7 @@ use super::hull::Hull;
 use super::list_filter::{Filters, ListFilter, Region};
 use super::matters::{Around, Missed, Outlines, Scene, Seen};
 use super::options::P2mReport;
+use super::progress::{Stage, Teller};
 use super::shares::in_shares;
 use super::sites::{Corners, Limits, Sites};
 use super::voronoi::{AUXILIARY, TREE};
@@ -45,8 +46,9 @@ pub(super) struct Lists<F> {
 }
 
 impl Cells<'_> {
-    /// The lists of all sites. `progress` is told how many of these are done.
-    pub(super) fn lists<F: ListFilter>(&self, report: &mut P2mReport, progress: &dyn Fn(usize, usize)) -> Lists<F> {
+    /// The lists of all sites. `teller` is told how many of these are done.
+    pub(super) fn lists<F: ListFilter>(&self, report: &mut P2mReport, teller: &Teller<'_>) -> Lists<F> {
+        teller.begin(Stage::Lists);
         let sites = self.sites.delaunay.sites();
         let tetrahedra = self.sites.delaunay.tetrahedra();
         let around = Incidences::new(
@@ -89,9 +91,11 @@ impl Cells<'_> {
                         report.lists += 1;
                     }
                 }
-                progress(made.site, sites.len());
+                teller.reach([30.0, 100.0], made.site, sites.len());
             }
             report.entries += share.entries;
+            report.candidates += share.candidates;
+            report.most_candidates = report.most_candidates.max(share.most_candidates);
             report.primitives += share.primitives;
         });
         fans.sites = records.into();
@@ -107,7 +111,14 @@ impl Cells<'_> {
         outlines: &Outlines,
     ) -> Share<F> {
         let corners = &self.sites.corners;
-        let mut share = Share { cells: Vec::new(), blocks: Vec::new(), entries: 0, primitives: 0 };
+        let mut share = Share {
+            cells: Vec::new(),
+            blocks: Vec::new(),
+            entries: 0,
+            primitives: 0,
+            candidates: 0,
+            most_candidates: 0,
+        };
         let mut cell = Cell::default();
         for site in sites {
             let own = around.of(site);
@@ -116,6 +127,8 @@ impl Cells<'_> {
                 made.list = List::Auxiliary(u32::try_from(anchor).expect("numbers of 32 bits"));
             } else if site >= BOUNDING && !own.iter().any(|t| corners.all[*t as usize].full) {
                 cell.gather(self, corners, site, own);
+                share.candidates += cell.packets.len();
+                share.most_candidates = share.most_candidates.max(cell.packets.len());
                 let few = cell.packets.len() <= self.limits.most;
                 let entries = if few { cell.entries(self, features, outlines) } else { Vec::new() };
                 if !entries.is_empty() {
@@ -142,6 +155,8 @@ struct Share<F> {
     blocks: Vec<Block>,
     entries: usize,
     primitives: usize,
+    candidates: usize,
+    most_candidates: usize,
 }
 
 /// What is known of a cell.

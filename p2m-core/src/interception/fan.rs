@@ -252,7 +252,7 @@ impl Fans {
 
     /// From a site to the nearest one to `query`; `ahead` is told of every site on the way before it is looked at.
     #[inline(always)]
-    pub(super) fn walk<I: InstructionSet>(&self, from: usize, query: &V3, ahead: impl Fn(usize)) -> Found {
+    pub(super) fn walk<I: InstructionSet>(&self, from: usize, query: &V3, mut ahead: impl FnMut(usize)) -> Found {
         let mut at = from;
         loop {
             self.prefetch(at);

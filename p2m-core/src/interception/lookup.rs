@@ -57,8 +57,9 @@ impl<L: Locator, F: ListFilter> LookUp for Voronoi<L, F> {
 }
 
 impl<L: Locator, F: ListFilter> Voronoi<L, F> {
-    /// The site in whose cell a place is.
-    pub(super) fn site_of(&self, query: &Point3<f64>) -> Option<usize> {
+    /// The number of the site in whose cell a place is, the first step of every query: `None` outside of the domain.
+    #[must_use]
+    pub fn site_of(&self, query: &Point3<f64>) -> Option<usize> {
         let place = self.place(&wide(query))?;
         let start = self.locator.as_ref()?.start(&place)?;
         Some(self.tree.isa().run(Walk { fans: &self.fans, start, place }))
@@ -137,7 +138,10 @@ impl<C: Collector, L: Locator, F: ListFilter> Operation for Answer<'_, C, L, F> 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
         let Self { index, found, place, .. } = self;
-        let found = index.fans.walk::<I>(found.site, &place, |at| index.prefetch_block(at));
+        let found = index.fans.walk::<I>(found.site, &place, |at| {
+            self.collector.visit_node();
+            index.prefetch_block(at);
+        });
         Answer { found, ..self }.search::<I>();
     }
 }

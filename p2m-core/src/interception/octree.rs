@@ -4,6 +4,7 @@ use super::block::{self, Block, Place};
 use super::cube::DEEPEST;
 use super::options::{Domain, OctreeOptions, OctreeReport};
 use super::partition::{LookUp, Partition};
+use super::progress::{Progress, Stage};
 use super::refine::{Cell, Done, NODE, PACKET, Refinement};
 use crate::hierarchy::PacketTree;
 use crate::hierarchy::wide::search::{Evaluate, Filter, Search, finish_nearest};
@@ -74,7 +75,7 @@ impl Octree {
         set: &S,
         options: &OctreeOptions,
         shape: &Shape,
-        progress: &(dyn Fn(f64) + Sync),
+        progress: &(dyn Fn(Progress) + Sync),
     ) {
         let tree = &self.tree;
         let owners = owners(tree);
@@ -350,9 +351,11 @@ impl Partition for Octree {
     fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
         set: &S,
         options: &OctreeOptions,
-        progress: &(dyn Fn(f64) + Sync),
+        progress: &(dyn Fn(Progress) + Sync),
     ) -> Self {
+        progress(Progress { stage: Stage::Tree, part: 0.0 });
         let tree = PacketTree::build(set, &options.splits);
+        progress(Progress { stage: Stage::Octree, part: 0.0 });
         let tree_bytes = tree.memory();
         let mut octree = Self {
             tree,
@@ -366,7 +369,7 @@ impl Partition for Octree {
         if let Some(shape) = Shape::of(&octree.tree, options) {
             octree.refine(set, options, &shape, progress);
         }
-        progress(1.0);
+        progress(Progress { stage: Stage::Octree, part: 1.0 });
         octree
     }
 
@@ -378,8 +381,8 @@ impl Partition for Octree {
         self.report
     }
 
-    fn memory(&self) -> usize {
-        self.tree.memory() + self.rows.memory() + self.blocks.memory()
+    fn parts(&self) -> Vec<(&'static str, usize)> {
+        vec![("cells", self.rows.memory()), ("lists", self.blocks.memory()), ("tree", self.tree.memory())]
     }
 
     fn list(&self, point: &Point3<f64>) -> Option<Vec<PrimitiveId>> {

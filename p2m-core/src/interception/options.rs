@@ -171,6 +171,10 @@ pub struct P2mReport {
     pub auxiliary: usize,
     /// Other cells that the tree answers: where these are a quarter of all, it answers everything, and nothing is kept.
     pub trees: usize,
+    /// Packets that were looked at for lists: those that meet a ball at a corner of the cell.
+    pub candidates: usize,
+    /// The most for one cell.
+    pub most_candidates: usize,
     /// Packets in all lists.
     pub entries: usize,
     /// Primitives in all lists.
@@ -181,9 +185,62 @@ pub struct P2mReport {
     pub tree_bytes: usize,
 }
 
+/// The report as numbers of a file.
+impl From<P2mReport> for [u64; 11] {
+    fn from(report: P2mReport) -> Self {
+        let P2mReport {
+            lists,
+            filtered,
+            added,
+            auxiliary,
+            trees,
+            candidates,
+            most_candidates,
+            entries,
+            primitives,
+            bytes,
+            tree_bytes,
+        } = report;
+        [lists, filtered, added, auxiliary, trees, candidates, most_candidates, entries, primitives, bytes, tree_bytes]
+            .map(|n| n as u64)
+    }
+}
+
+impl From<[u64; 11]> for P2mReport {
+    #[allow(clippy::cast_possible_truncation, reason = "numbers to report")]
+    fn from(numbers: [u64; 11]) -> Self {
+        let [
+            lists,
+            filtered,
+            added,
+            auxiliary,
+            trees,
+            candidates,
+            most_candidates,
+            entries,
+            primitives,
+            bytes,
+            tree_bytes,
+        ] = numbers.map(|n| n as usize);
+        Self {
+            lists,
+            filtered,
+            added,
+            auxiliary,
+            trees,
+            candidates,
+            most_candidates,
+            entries,
+            primitives,
+            bytes,
+            tree_bytes,
+        }
+    }
+}
+
 impl std::fmt::Display for P2mReport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes } = self;
+        let Self { lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes, .. } = self;
         let mean = |count: &usize| *count as f64 / (*lists).max(1) as f64;
         let megabytes = |bytes: &usize| *bytes as f64 / 1e6;
         write!(

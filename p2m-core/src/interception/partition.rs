@@ -1,5 +1,6 @@
 //! What every partition of space into cells with lists offers.
 
+use super::progress::Progress;
 use crate::hierarchy::PacketTree;
 use crate::hierarchy::wide::evaluation;
 use crate::hierarchy::wide::search::{Evaluate, Filter, finish};
@@ -20,13 +21,13 @@ pub trait Partition: LookUp + Sized {
     /// What it is made of.
     type Report;
 
-    /// Builds it over a set whose boxes are finite. `progress` is told what part is done, each percent once, from any
-    /// thread.
+    /// Builds it over a set whose boxes are finite. `progress` is told of each stage that begins, from this thread, and
+    /// of each percent, from any thread.
     #[must_use]
     fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
         set: &S,
         options: &Self::Options,
-        progress: &(dyn Fn(f64) + Sync),
+        progress: &(dyn Fn(Progress) + Sync),
     ) -> Self;
 
     /// Offers to `collector` every primitive of the set that it could want. `query` is finite.
@@ -69,8 +70,13 @@ pub trait Partition: LookUp + Sized {
     /// What it is made of.
     fn report(&self) -> Self::Report;
 
-    /// Heap memory it owns, in bytes.
-    fn memory(&self) -> usize;
+    /// Heap memory it owns, by parts, in bytes.
+    fn parts(&self) -> Vec<(&'static str, usize)>;
+
+    /// All of it.
+    fn memory(&self) -> usize {
+        self.parts().iter().map(|part| part.1).sum()
+    }
 
     /// Searches with another instruction set. Answers do not depend on it.
     #[must_use]

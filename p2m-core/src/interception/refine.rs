@@ -19,6 +19,7 @@ use super::corner::{AtPoints, Dominators, Found, Keep, Least};
 use super::cube::{BETWEEN, Corner, Cube, DEEPEST, LATTICE, LATTICE_OF, MIDDLE, corner_on};
 use super::octree::Row;
 use super::options::Domain;
+use super::progress::{Progress, Stage};
 use crate::hierarchy::PacketTree;
 use crate::hierarchy::wide::node::Child;
 use crate::kernel::vector::{V3, norm_squared, sub};
@@ -88,7 +89,7 @@ pub(super) struct Done<'a> {
     /// Parts of 2^-40 of the whole, and the last percent that was reported.
     pub(super) share: AtomicU64,
     pub(super) percent: AtomicU64,
-    pub(super) progress: &'a (dyn Fn(f64) + Sync),
+    pub(super) progress: &'a (dyn Fn(Progress) + Sync),
 }
 
 impl Done<'_> {
@@ -104,7 +105,8 @@ impl Done<'_> {
         let all = self.share.fetch_add(part, Ordering::Relaxed) + part;
         let percent = (all as f64 / ALL * 100.0) as u64;
         if self.percent.fetch_max(percent, Ordering::Relaxed) < percent {
-            (self.progress)((percent as f64 / 100.0).min(1.0));
+            let part = (percent as f64 / 100.0).min(1.0);
+            (self.progress)(Progress { stage: Stage::Octree, part });
         }
     }
 

@@ -11,6 +11,7 @@
 //! added in rounds, each with new tetrahedra, until no ball meets too much, a round does not help, or the budget is
 //! spent.
 
+use super::progress::{Stage, Teller};
 use super::shares::in_shares;
 use super::sphere;
 use crate::delaunay::{BOUNDING, Delaunay, DelaunayError};
@@ -215,19 +216,25 @@ struct Added {
 }
 
 impl Sites {
-    /// Those of the vertices of a tree, which lie in `bounds`, and more. `progress` is told how many tetrahedra are
-    /// done.
+    /// Those of the vertices of a tree, which lie in `bounds`, and more. `teller` is told of its stages.
     pub(super) fn new(
         tree: &PacketTree,
         bounds: &Aabb<f64>,
         limits: Limits,
-        progress: &dyn Fn(usize, usize),
+        teller: &Teller<'_>,
     ) -> Result<Self, DelaunayError> {
+        let progress = |done, all| teller.reach([5.0, 30.0], done, all);
+        let triangulated = |points: &[V3]| {
+            teller.begin(Stage::Delaunay);
+            let delaunay = Delaunay::new(points, BOUNDING_DISTANCE);
+            teller.begin(Stage::Balls);
+            delaunay
+        };
         let vertices = &tree.leaves.vertices;
         let mut points = vertices.to_vec();
         let mut added: Vec<Added> = Vec::new();
-        let mut delaunay = Delaunay::new(&points, BOUNDING_DISTANCE)?;
-        let mut corners = Corners::new(tree, &delaunay, limits, None, progress);
+        let mut delaunay = triangulated(&points)?;
+        let mut corners = Corners::new(tree, &delaunay, limits, None, &progress);
         for _ in 0..ROUNDS {
             let more = Crowds { tree, corners: &corners, bounds }.added(limits.added - added.len());
             if more.is_empty() {
@@ -235,12 +242,12 @@ impl Sites {
             }
             points.extend(more.iter().map(|a| a.place));
             let before = points.len() - more.len();
-            let Ok(next) = Delaunay::new(&points, BOUNDING_DISTANCE) else {
+            let Ok(next) = triangulated(&points) else {
                 points.truncate(before);
                 break;
             };
             let known = Known::new(&delaunay, &corners, &next, before);
-            let all = Corners::new(tree, &next, limits, Some(&known), progress);
+            let all = Corners::new(tree, &next, limits, Some(&known), &progress);
             let (full, rest) = (corners.full(), all.full());
             added.extend(more);
             (delaunay, corners) = (next, all);

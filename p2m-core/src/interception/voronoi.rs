@@ -13,6 +13,7 @@ use super::list_filter::{Filters, ListFilter, SortedLists};
 use super::locator::{Locator, LocatorSites};
 use super::options::{P2mOptions, P2mReport};
 use super::partition::Partition;
+use super::progress::{Progress, Stage, Teller};
 use super::sites::{BOUNDING_DISTANCE, Limits, Sites};
 use crate::hierarchy::PacketTree;
 use crate::kernel::vector::V3;
@@ -20,7 +21,6 @@ use crate::real::wide;
 use crate::saved::{Array, LoadError, Reader, Saved, Writer};
 use crate::{Aabb, Isa, PrimitiveId, PrimitiveSet, Real};
 use nalgebra::Point3;
-use std::cell::Cell;
 
 /// The list of a cell that the tree answers; else the number of its first block.
 pub(super) const TREE: u32 = u32::MAX;
@@ -61,7 +61,7 @@ impl<L: Locator, F: ListFilter> Voronoi<L, F> {
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-    fn make_cells(&mut self, options: &P2mOptions, progress: &(dyn Fn(f64) + Sync)) {
+    fn make_cells(&mut self, options: &P2mOptions, teller: &Teller<'_>) {
         let tree = &self.tree;
         // Around the vertices: primitives of your own may be elsewhere.
         let vertices = tree.leaves.vertices.iter().map(|v| Point3::from(*v));
@@ -89,18 +89,8 @@ impl<L: Locator, F: ListFilter> Voronoi<L, F> {
         let parallel = options.splits.parallel;
         let limits =
             Limits { parallel, slack, most, added: (tree.leaves.vertices.len() as f64 * options.added) as usize };
-        let percent = Cell::new(0.0);
-        let report_part = |from: f64, to: f64| {
-            let percent = &percent;
-            move |done: usize, all: usize| {
-                let part = (from + (to - from) * done as f64 / all as f64).floor();
-                if part > percent.replace(part.max(percent.get())) {
-                    progress(part / 100.0);
-                }
-            }
-        };
         // What cannot be triangulated is left to the tree, too: there are more vertices than numbers.
-        let Ok(sites) = Sites::new(tree, &bounds, limits, &report_part(5.0, 30.0)) else { return };
+        let Ok(sites) = Sites::new(tree, &bounds, limits, teller) else { return };
         // To find one's cell in vain costs more than the few lists save.
         let left = sites.left_to_the_tree();
         if left * MOST_LEFT > sites.delaunay.sites().len() {
@@ -108,7 +98,7 @@ impl<L: Locator, F: ListFilter> Voronoi<L, F> {
             return;
         }
         let cells = Cells { tree, sites: &sites, limits, filter_above: options.filter_above };
-        let Lists { fans, mut blocks, filters } = cells.lists(&mut self.report, &report_part(30.0, 100.0));
+        let Lists { fans, mut blocks, filters } = cells.lists(&mut self.report, teller);
         self.slack = slack;
         let Sites { delaunay, anchors, .. } = sites;
         (self.unit, self.per_unit) = (delaunay.unit(), delaunay.unit().recip());
@@ -117,6 +107,7 @@ impl<L: Locator, F: ListFilter> Voronoi<L, F> {
         (self.low, self.high) = (low, high);
         let scaled = |p: V3| p.map(|x| x * self.per_unit);
         let (own, all) = (own.map(scaled), [low, high].map(scaled));
+        teller.begin(Stage::Locator);
         let sites = LocatorSites { fans: &fans, isa: self.tree.isa(), own, domain: all };
         self.locator = Some(L::new(&sites));
         (self.fans, self.filters) = (fans, filters);
@@ -134,8 +125,9 @@ impl<L: Locator, F: ListFilter> Partition for Voronoi<L, F> {
     fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
         set: &S,
         options: &P2mOptions,
-        progress: &(dyn Fn(f64) + Sync),
+        progress: &(dyn Fn(Progress) + Sync),
     ) -> Self {
+        let teller = Teller::new(progress, Stage::Tree);
         let tree = PacketTree::build(set, &options.splits);
         let report = P2mReport { tree_bytes: tree.memory(), ..P2mReport::default() };
         let mut index = Self {
@@ -152,8 +144,8 @@ impl<L: Locator, F: ListFilter> Partition for Voronoi<L, F> {
             anchors: Array::default(),
             report,
         };
-        index.make_cells(options, progress);
-        progress(1.0);
+        index.make_cells(options, &teller);
+        teller.reach([0.0, 100.0], 1, 1);
         index
     }
 
@@ -165,13 +157,14 @@ impl<L: Locator, F: ListFilter> Partition for Voronoi<L, F> {
         self.report
     }
 
-    fn memory(&self) -> usize {
-        self.tree.memory()
-            + self.fans.memory()
-            + self.locator.as_ref().map_or(0, L::memory)
-            + self.blocks.memory()
-            + self.filters.memory()
-            + self.anchors.memory()
+    fn parts(&self) -> Vec<(&'static str, usize)> {
+        vec![
+            ("sites", self.fans.memory() + self.anchors.memory()),
+            ("locator", self.locator.as_ref().map_or(0, L::memory)),
+            ("lists", self.blocks.memory()),
+            ("filters", self.filters.memory()),
+            ("tree", self.tree.memory()),
+        ]
     }
 
     fn list(&self, point: &Point3<f64>) -> Option<Vec<PrimitiveId>> {
@@ -198,15 +191,8 @@ struct Head {
     slack: f64,
     low: V3,
     high: V3,
-    lists: u64,
-    filtered: u64,
-    added: u64,
-    auxiliary: u64,
-    trees: u64,
-    entries: u64,
-    primitives: u64,
-    bytes: u64,
-    tree_bytes: u64,
+    /// A [`P2mReport`].
+    report: [u64; 11],
     /// Whether there are cells at all.
     has_cells: u64,
 }
@@ -217,29 +203,9 @@ impl Saved for Voronoi {
     }
 
     fn save<'a>(&'a self, writer: &mut Writer<'a>) {
-        let P2mReport { lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes } =
-            self.report;
-        let [lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes] =
-            [lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes].map(|n| n as u64);
         let has_cells = u64::from(self.locator.is_some());
         let Self { per_unit, unit, slack, low, high, .. } = *self;
-        let head = Head {
-            per_unit,
-            unit,
-            slack,
-            low,
-            high,
-            lists,
-            filtered,
-            added,
-            auxiliary,
-            trees,
-            entries,
-            primitives,
-            bytes,
-            tree_bytes,
-            has_cells,
-        };
+        let head = Head { per_unit, unit, slack, low, high, report: self.report.into(), has_cells };
         writer.put_copy("voronoi", &[head]);
         writer.put("voronoi/lists", &self.blocks);
         writer.put("voronoi/anchors", &self.anchors);
@@ -250,13 +216,8 @@ impl Saved for Voronoi {
         self.tree.save(writer);
     }
 
-    #[allow(clippy::cast_possible_truncation, reason = "numbers to report")]
     fn load(reader: &Reader) -> Result<Self, LoadError> {
-        let head: Head = reader.one("voronoi")?;
-        let Head { lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes, .. } = head;
-        let [lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes] =
-            [lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes].map(|n| n as usize);
-        let Head { per_unit, unit, slack, low, high, has_cells, .. } = head;
+        let Head { per_unit, unit, slack, low, high, report, has_cells } = reader.one("voronoi")?;
         let locator = if has_cells == 0 { None } else { Some(Hints::load(reader)?) };
         let fans = Fans::load(reader)?;
         let blocks: Array<Block> = reader.array("voronoi/lists")?;
@@ -275,7 +236,7 @@ impl Saved for Voronoi {
             blocks,
             filters: Filters::default(),
             anchors: reader.array("voronoi/anchors")?,
-            report: P2mReport { lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes },
+            report: report.into(),
         })
     }
 }
