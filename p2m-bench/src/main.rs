@@ -17,6 +17,7 @@ mod kdop;
 mod measure;
 mod memory;
 mod octree;
+mod paper;
 mod provenance;
 mod queries;
 mod rays;
@@ -63,6 +64,8 @@ enum Command {
     Kdop(KdopArguments),
     /// Rays: the figures of the k-DOP tree's manual, or the first hit against rivals; fails if ours differ
     Ray(RayArguments),
+    /// The evaluation of the P2M paper on our models: writes paper.md with its tables and plots; fails if ours differ
+    Paper(PaperArguments),
     /// Saving and loading indexes, against building them
     Saved(SavedArguments),
     /// The settings of the octree: resolution, domain, threads
@@ -251,6 +254,7 @@ fn main() -> Result<ExitCode> {
         Command::Delaunay(arguments) => delaunays(&arguments)?,
         Command::Batch(arguments) => batches(&arguments)?,
         Command::Saved(arguments) => saved_indexes(&arguments)?,
+        Command::Paper(arguments) => paper_page(&arguments)?,
     };
     Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
@@ -290,6 +294,28 @@ fn query(arguments: &QueryArguments) -> Result<bool> {
             .all(|entry| entry.sets.iter().flatten().all(|set| set.agreement.is_clean()));
     }
     Ok(good)
+}
+
+#[derive(Args)]
+struct PaperArguments {
+    /// The folder of models [default: that of the variable P2M_MODELS, or ../shared/models]
+    #[arg(long)]
+    models: Option<PathBuf>,
+    /// Less of everything, in minutes
+    #[arg(long)]
+    quick: bool,
+    /// The folder for paper.md and the folder paper of its plots [default: docs, and target/paper with --quick]
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// Whether all answers of ours are bitwise the same.
+fn paper_page(arguments: &PaperArguments) -> Result<bool> {
+    let PaperArguments { models, quick, out } = arguments;
+    let usual = || std::env::var_os("P2M_MODELS").map_or_else(|| PathBuf::from("../shared/models"), PathBuf::from);
+    let models = models.clone().unwrap_or_else(usual);
+    let out = out.clone().unwrap_or_else(|| PathBuf::from(if *quick { "target/paper" } else { "docs" }));
+    paper::write(&models, *quick, &out)
 }
 
 #[derive(Args)]

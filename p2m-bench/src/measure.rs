@@ -6,6 +6,7 @@ use crate::memory;
 use crate::queries::{Queries, spread};
 use crate::scene::Scene;
 use cpu_time::ThreadTime;
+use nalgebra::Point3;
 use p2m_testkit::queries::QuerySet;
 use std::hint::black_box;
 
@@ -146,9 +147,14 @@ pub(crate) fn weigh<V>(
 
 /// Measures one query set and appends its figures to every entry.
 pub(crate) fn measure_set(scene: &Scene, set: QuerySet, entries: &mut [Entry<'_>], effort: &Effort) {
-    let queries = Queries::new(set.generate(&scene.double, effort.queries, effort.seed));
+    measure(set.generate(&scene.double, effort.queries, effort.seed), entries, effort.rounds);
+}
+
+/// Measures queries of any kind.
+pub(crate) fn measure(queries: Vec<Point3<f64>>, entries: &mut [Entry<'_>], rounds: usize) {
+    let queries = Queries::new(queries);
     let mut runs: Vec<Run> = entries.iter().map(|entry| Run::new(entry, &queries)).collect();
-    for round in 0..effort.rounds {
+    for round in 0..rounds {
         for at in rotated(entries.len(), round) {
             runs[at].round(&entries[at]);
         }
@@ -260,7 +266,6 @@ fn checksum(answers: &[Answer]) -> u64 {
 mod tests {
     use super::*;
     use crate::backends;
-    use nalgebra::Point3;
     use p2m_core::{Element, Soup};
 
     #[test]

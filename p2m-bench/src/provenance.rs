@@ -81,6 +81,12 @@ impl Provenance {
         }
     }
 
+    /// All but command and date.
+    pub(crate) fn machine(&self) -> String {
+        let Self { label, commit, cpu, rustc, flags, .. } = self;
+        format!("{cpu}; build `{label}`: {rustc}, {flags}; commit {commit}")
+    }
+
     /// The columns that [`Provenance::fields`] fills.
     pub(crate) const COLUMNS: [&'static str; 7] =
         ["label", "date", "commit", "cpu", "rustc", "flags", "target_features"];

@@ -112,6 +112,12 @@ impl std::str::FromStr for QuerySet {
     }
 }
 
+/// Points that are uniform in the box of a scene that is not empty, scaled about its centre.
+#[must_use]
+pub fn scaled_box(soup: &Soup<f64>, scale: f64, count: usize, seed: u64) -> Vec<Point3<f64>> {
+    in_box(&Frame::new(soup), scale, count, &mut ChaCha8Rng::seed_from_u64(seed))
+}
+
 /// The diagonal of a scene's box, 1 for a scene that is one point: the unit of offsets and differences.
 #[must_use]
 pub fn diagonal(soup: &Soup<f64>) -> f64 {

@@ -1,0 +1,156 @@
+//! Figures 10 to 17 and 20 to 22, of what was measured.
+
+use super::cited;
+use super::plot::{Bars, Mark, Plot, Series};
+use super::scenes::stem;
+use super::study::Study;
+use anyhow::Result;
+use std::path::Path;
+
+/// Contenders of plots, in the order of their colours.
+pub(super) const COMPARED: [&str; 5] = ["p2m", "aabb", "parry3d", "parry3d-f64", "octree"];
+/// The colour of what is cited.
+const CITED: usize = 6;
+const FACES: &str = "primitives";
+
+fn series(name: &str, mark: Mark, colour: usize, points: impl Iterator<Item = (f64, f64)>) -> Series {
+    Series { name: name.to_owned(), mark, colour, points: points.collect() }
+}
+
+/// A value of each study over its size.
+fn over_size<'a>(
+    studies: &'a [&Study],
+    value: impl Fn(&Study) -> Option<f64> + 'a,
+) -> impl Iterator<Item = (f64, f64)> + 'a {
+    studies.iter().filter_map(move |study| Some((study.primitives as f64, value(study)?)))
+}
+
+fn cited_at(name: &str, value: f64) -> Series {
+    series(&format!("{name} (cited)"), Mark::Cross, CITED, std::iter::once((cited::DRAGON, value)))
+}
+
+/// A mean and a maximum over sizes.
+fn mean_and_most(
+    studies: &[&Study],
+    y: &'static str,
+    mean: impl Fn(&Study) -> Option<f64>,
+    most: impl Fn(&Study) -> Option<f64>,
+) -> Plot {
+    let series = vec![
+        series("mean", Mark::Line, 0, over_size(studies, mean)),
+        series("most", Mark::Dashes, 1, over_size(studies, most)),
+    ];
+    Plot { x: FACES, y, logarithmic: [true, true], series }
+}
+
+/// What each contender has, over sizes.
+fn compared(
+    studies: &[&Study],
+    mark: Mark,
+    y: &'static str,
+    value: impl Fn(&Study, &str) -> Option<f64> + Copy,
+) -> Plot {
+    let all = COMPARED.iter().enumerate();
+    let series = all.map(|(i, name)| series(name, mark, i, over_size(studies, move |study| value(study, name))));
+    let series = series.filter(|series| !series.points.is_empty()).collect();
+    Plot { x: FACES, y, logarithmic: [true, true], series }
+}
+
+fn build(study: &Study, name: &str) -> Option<f64> {
+    study.contender(name)?.build
+}
+
+fn microseconds(study: &Study, name: &str) -> Option<f64> {
+    Some(study.query(name)? / 1e3)
+}
+
+/// What is plotted.
+pub(super) struct Figures<'a> {
+    /// The swept model, by size.
+    pub(super) sweep: &'a [&'a Study],
+    /// The five models of the tables.
+    pub(super) five: &'a [&'a Study],
+    /// That of them with boxes and threads.
+    pub(super) dragon: &'a Study,
+    pub(super) boxes: &'a [f64],
+    pub(super) threads: &'a [usize],
+    /// All models.
+    pub(super) scattered: &'a [&'a Study],
+}
+
+impl Figures<'_> {
+    /// Writes them all into a folder, as fig10.svg and so on.
+    pub(super) fn write(&self, folder: &Path) -> Result<()> {
+        let to = |name: &str| folder.join(format!("{name}.svg"));
+        let sweep = self.sweep;
+        let lists = |value: fn(&p2m_core::Lists) -> f64| move |s: &Study| s.inside.lists.as_ref().map(value);
+        let mut lists =
+            mean_and_most(sweep, "primitives of a list", lists(|lists| lists.mean), lists(|lists| lists.most as f64));
+        lists.series.extend(["mean", "most"].into_iter().zip(cited::LISTS).map(|(name, value)| cited_at(name, value)));
+        lists.write(&to("fig10"))?;
+
+        let mut stages = compared(sweep, Mark::Line, "seconds to build", build);
+        stages.series.push(cited_at("P2M", cited::BUILD));
+        stages.write(&to("fig11"))?;
+
+        mean_and_most(
+            sweep,
+            "packets looked at for a list",
+            |s| Some(s.inside.report.candidates as f64 / s.inside.report.lists.max(1) as f64),
+            |s| Some(s.inside.report.most_candidates as f64),
+        )
+        .write(&to("fig12"))?;
+
+        let breakdown = |study: &&Study| {
+            let name = stem(&study.name).to_owned();
+            let bar = |breakdown: super::study::Breakdown| vec![breakdown.locate, breakdown.whole - breakdown.locate];
+            let kd_tree = study.with_kd_tree.map(|with| (format!("{name}, KD-tree"), bar(with)));
+            [Some((name, bar(study.inside.breakdown))), kd_tree]
+        };
+        let mut bars: Vec<(String, Vec<f64>)> = self.five.iter().flat_map(breakdown).flatten().collect();
+        let cited = vec![cited::LOCATE * 1e3, (cited::QUERY - cited::LOCATE) * 1e3];
+        bars.push(("the paper's Dragon (cited)".to_owned(), cited));
+        Bars { x: "nanoseconds of a query", parts: vec!["locate the cell", "go through its list"], bars }
+            .write(&to("fig13"))?;
+
+        let mut queries = compared(sweep, Mark::Line, "microseconds of a query", microseconds);
+        queries.series.push(cited_at("P2M", cited::QUERY));
+        queries.write(&to("fig14"))?;
+
+        mean_and_most(
+            sweep,
+            "sites on the way to the cell, and nodes",
+            |s| Some(s.inside.visits.nodes.mean),
+            |s| Some(s.inside.visits.nodes.most as f64),
+        )
+        .write(&to("fig15"))?;
+
+        self.over(self.boxes, "side of the box of queries / side of that of the scene", |m| &m.boxes)
+            .write(&to("fig16"))?;
+        let threads: Vec<f64> = self.threads.iter().map(|count| *count as f64).collect();
+        self.over(&threads, "threads", |measured| &measured.threads).write(&to("fig17"))?;
+
+        let scattered = self.scattered;
+        compared(scattered, Mark::Dot, "seconds to build", build).write(&to("fig20"))?;
+        compared(scattered, Mark::Dot, "microseconds of a query", microseconds).write(&to("fig21"))?;
+        let bytes = |study: &Study, name: &str| Some(study.contender(name)?.bytes as f64 / 1e6);
+        let mut memory = compared(scattered, Mark::Dot, "megabytes, scene included", bytes);
+        memory.series.push(cited_at("P2M", cited::BYTES / 1e6));
+        memory.write(&to("fig22"))
+    }
+
+    /// What each contender took for the large model, over something else than its size.
+    fn over(
+        &self,
+        at: &[f64],
+        x: &'static str,
+        times: impl Fn(&super::study::Measured) -> &Vec<Option<f64>> + Copy,
+    ) -> Plot {
+        let all = COMPARED.iter().enumerate().filter_map(|(i, name)| {
+            let times = times(self.dragon.contender(name)?);
+            let points = at.iter().zip(times).filter_map(|(x, time)| Some((*x, time.as_ref()? / 1e3)));
+            Some(series(name, Mark::Line, i, points))
+        });
+        Plot { x, y: "microseconds of a query", logarithmic: [true, true], series: all.collect() }
+    }
+}

@@ -1,0 +1,149 @@
+//! The scenes: models of a folder, and what is made of them.
+
+use super::profile::{Profile, Resolution};
+use super::surfaces::{coarsened, fanned};
+use crate::scene::Scene;
+use anyhow::{Context, Result, bail};
+use p2m_core::PrimitiveSet;
+use p2m_mixed::generate::{
+    Cylinder, IcoSphere, Sphere, Subdivide, TorusKnot, cylinder, gapped, ico_sphere, penetrating, sphere, subdivide,
+    torus_knot,
+};
+use std::path::{Path, PathBuf};
+
+/// By how much of an edge subdivision displaces its middle.
+const AMPLITUDE: f64 = 0.02;
+/// Triangles of a triangulation of Table 4 for each of the surface.
+const PARTS: u32 = 16;
+
+/// A folder of models.
+pub(super) struct Models(pub(super) PathBuf);
+
+impl Models {
+    /// Says which models are missing, before anything is measured.
+    pub(super) fn check(&self, profile: &Profile) -> Result<()> {
+        let single = [profile.swept, profile.torn].into_iter().chain(profile.mixed);
+        let lists = [profile.five, profile.long, profile.pairs, profile.scattered.unwrap_or_default()];
+        let all = lists.into_iter().flatten().copied().chain(single);
+        let missing: Vec<&str> = all.filter(|name| !is_made(name) && !self.0.join(name).is_file()).collect();
+        if missing.is_empty() {
+            return Ok(());
+        }
+        bail!("{} has no {}", self.0.display(), missing.join(", "))
+    }
+
+    /// The model of that name.
+    pub(super) fn read(&self, name: &str) -> Result<Scene> {
+        let made = match name {
+            "torus knot" => torus_knot(&TorusKnot::default().with_rings(250).with_sides(15))?,
+            "cylinder" => cylinder(&Cylinder::default().with_sides(75).with_bands(25).with_cap_bands(12))?,
+            _ => return Scene::read(&self.0.join(name)),
+        };
+        Scene::new(name.to_owned(), made)
+    }
+
+    /// The model at a resolution.
+    pub(super) fn at(&self, name: &str, resolution: Resolution) -> Result<Scene> {
+        let model = self.read(name)?;
+        let soup = match resolution {
+            Resolution::Own => return Ok(model),
+            Resolution::Coarsened(wanted) => coarsened(&model.double, wanted),
+            Resolution::Subdivided(wanted) => {
+                let options = Subdivide::default().with_amplitude(AMPLITUDE);
+                subdivide(&coarsened(&model.double, wanted), &options)?
+            }
+        };
+        Scene::new(format!("{} at {}", stem(name), soup.len()), soup)
+    }
+
+    /// One surface in bad triangles and in good ones, as many of both, about as many as wanted.
+    pub(super) fn pair(&self, name: &str, wanted: usize) -> Result<[Scene; 2]> {
+        let surface = coarsened(&self.read(name)?.double, wanted / PARTS as usize);
+        let good = subdivide(&surface, &Subdivide::default().with_levels(PARTS.ilog(4)))?;
+        let bad = fanned(&surface, PARTS);
+        let name = stem(name);
+        Ok([Scene::new(format!("{name}, bad"), bad)?, Scene::new(format!("{name}, good"), good)?])
+    }
+
+    /// A surface as it is, and torn in two ways.
+    pub(super) fn torn(&self, name: &str) -> Result<[Scene; 3]> {
+        let own = self.read(name)?.double;
+        let (apart, across) = (gapped(&own, 0.5)?, penetrating(&own, 5.0)?);
+        let scenes = [("watertight", own), ("gapped", apart), ("penetrating", across)];
+        let [a, b, c] = scenes.map(|(way, soup)| Scene::new(format!("{}, {way}", stem(name)), soup));
+        Ok([a?, b?, c?])
+    }
+
+    /// The scenes of Figures 20 to 22.
+    pub(super) fn scattered(&self, profile: &Profile) -> Result<Vec<Scene>> {
+        let names: Vec<String> = match profile.scattered {
+            Some(names) => names.iter().map(|name| (*name).to_owned()).collect(),
+            None => self.all()?,
+        };
+        let scenes: Result<Vec<Scene>> = names.iter().map(|name| self.read(name)).collect();
+        Ok(scenes?.into_iter().filter(|scene| scene.len() >= profile.least).collect())
+    }
+
+    /// The names of all scenes of the folder, in order.
+    fn all(&self) -> Result<Vec<String>> {
+        let folder = std::fs::read_dir(&self.0).with_context(|| self.0.display().to_string())?;
+        let mut names = Vec::new();
+        for entry in folder {
+            let name = entry?.file_name().to_string_lossy().into_owned();
+            if p2m_mixed::Format::from_path(Path::new(&name)).is_ok() {
+                names.push(name);
+            }
+        }
+        names.sort();
+        Ok(names)
+    }
+}
+
+/// Whether it is generated.
+fn is_made(name: &str) -> bool {
+    Path::new(name).extension().is_none()
+}
+
+/// A name without its extension.
+pub(super) fn stem(name: &str) -> &str {
+    Path::new(name).file_stem().and_then(|stem| stem.to_str()).unwrap_or(name)
+}
+
+/// Spheres of about so many triangles: of meridians and parallels, and of an icosahedron.
+pub(super) fn spheres(triangles: u32) -> Result<[Scene; 2]> {
+    let meridians = (triangles / 2).isqrt();
+    let lines = sphere(&Sphere::default().with_meridians(meridians).with_bands(meridians + 1))?;
+    let even = ico_sphere(&IcoSphere::default().with_frequency((triangles / 20).isqrt()))?;
+    Ok([Scene::new("sphere of meridians".to_owned(), lines)?, Scene::new("sphere of an icosahedron".to_owned(), even)?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::paper::surfaces::quality;
+
+    #[test]
+    fn pairs_are_one_surface_with_as_many_triangles() {
+        let models = Models(PathBuf::from("nowhere"));
+        for name in ["torus knot", "cylinder"] {
+            let [bad, good] = models.pair(name, 16_000).unwrap();
+            assert_eq!(bad.len(), good.len());
+            assert!(bad.len().abs_diff(16_000) < 4_000, "{}", bad.len());
+            assert!(quality(&bad.double).0 * 3.0 < quality(&good.double).0);
+        }
+        assert!(models.pair("camel.off", 1000).is_err());
+    }
+
+    #[test]
+    fn spheres_have_about_as_many_triangles() {
+        for scene in spheres(20_000).unwrap() {
+            assert!(scene.len().abs_diff(20_000) < 1_500, "{}", scene.describe());
+        }
+    }
+
+    #[test]
+    fn missing_models_are_named() {
+        let error = Models(PathBuf::from("nowhere")).check(&super::super::profile::QUICK).unwrap_err().to_string();
+        assert!(error.contains("nowhere has no camel.off") && !error.contains("torus"), "{error}");
+    }
+}
