@@ -12,7 +12,7 @@ use p2m::{
 };
 use p2m_testkit::ball::Ball;
 use p2m_testkit::families::shape;
-use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
+use p2m_testkit::scenes::{self, KINDS, LAYOUTS, queries, random_soups, to_f32};
 use p2m_testkit::{oracle::Distance, rng};
 use rand::RngExt;
 use std::fmt::Debug;
@@ -205,29 +205,8 @@ impl<T: Real, S: PrimitiveSet<T>> BuildIndex<T, S> for BruteForceOf<T, S> {
     }
 }
 
-#[allow(clippy::cast_possible_truncation, reason = "rounding to f32 is meant")]
-fn to_f32(p: Point3<f64>) -> Point3<f32> {
-    p.map(|x| x as f32)
-}
-
 fn corners<const N: usize>(soup: &Soup<f64>, indices: &[u32; N]) -> [Point3<f64>; N] {
     indices.map(|i| soup.positions()[i as usize])
-}
-
-/// Random scenes of every kind and layout, of sizes from none to several hundred.
-fn random_soups(name: &'static str) -> impl Iterator<Item = (u64, Soup<f64>)> {
-    (0..240).map(move |seed| {
-        let mut rng = rng(name, seed);
-        let kinds = KINDS[seed as usize % 4];
-        let layout = LAYOUTS[seed as usize / 4 % 6];
-        let len = [0, 1, 2, 5, 30, 300, 700][rng.random_range(0..7)];
-        (seed, scenes::soup(&mut rng, kinds, layout, len))
-    })
-}
-
-fn queries(seed: u64, soup: &Soup<f64>) -> Vec<Point3<f64>> {
-    let mut rng = rng("queries", seed);
-    (0..60).map(|_| scenes::query(&mut rng, soup.positions())).collect()
 }
 
 fn agrees<T: Real, S: PrimitiveSet<T> + Copy, I: BuildIndex<T, S>>(seed: u64, set: S, queries: &[Point3<T>])

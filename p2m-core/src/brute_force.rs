@@ -1,8 +1,8 @@
 //! The oracle of everything else: every primitive, every time.
 
 use crate::{
-    Best, BuildError, BuildIndex, ClosestPoint, Collector, Counting, Examine, Primitive, PrimitiveId, PrimitiveSet,
-    Real, check_set,
+    Best, BuildError, BuildIndex, ClosestPoint, Collector, Counting, Examine, Near, NearQuery, Primitive, PrimitiveId,
+    PrimitiveSet, Real, check_set,
 };
 use nalgebra::Point3;
 
@@ -38,6 +38,15 @@ impl<T: Real, S: PrimitiveSet<T>> ClosestPoint<T> for BruteForce<S> {
     fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
         for id in (0..self.set.len()).map(PrimitiveId::new) {
             best.offer(id, self.set.get(id).project(query));
+        }
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>> NearQuery<T> for BruteForce<S> {
+    fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>) {
+        let mut ids = (0..self.set.len()).map(PrimitiveId::new);
+        while let Some(id) = ids.next().filter(|_| !near.is_done()) {
+            near.offer(id, self.set.get(id).project(query));
         }
     }
 }

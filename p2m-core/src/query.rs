@@ -154,8 +154,7 @@ impl<T: Real> Best<T> {
         let shrink = if factor > 1.0 { ROUND_DOWN / (factor * factor) } else { 1.0 };
         // A distance counts as it will be reported, so somewhat beyond the radius; nothing is within NaN.
         let radius = options.max_distance.to_f64_above();
-        // Further by what a distance loses in rounding: near zero a smallest subnormal.
-        let prune = Key::of_offset([radius + f64::from_bits(1), 0.0, 0.0]).square_above() * ROUND_UP;
+        let prune = square_within(radius);
         let minimum = Minimum { radius, shrink, prune, best: None, key: Key::INFINITY, certified: f64::INFINITY };
         Self { hint: options.hint, minimum, scalar: PhantomData }
     }
@@ -198,22 +197,30 @@ impl<T: Real> Best<T> {
         if !self.minimum.within(p.key) {
             return None;
         }
-        let distance = T::of_f64(p.key.distance());
         // What was pruned is farther than the bound it was pruned by, the bound itself being within 5 u on the square.
         let exact = p.key.distance();
         let pruned = exact * shrink.sqrt() * ROUND_DOWN;
-        let bound = if certified < pruned { certified } else { pruned };
-        // One smallest subnormal for each rounding near zero; an infinite error leaves nothing to certify.
-        let bound = bound * ROUND_DOWN - 2.0 * f64::from_bits(1);
-        let lower_bound = if bound > 0.0 { T::of_f64_below(bound) } else { T::zero() };
-        Some(Closest {
-            point: narrow(p.point.coords.into()),
-            distance,
-            lower_bound,
-            primitive,
-            feature: p.feature,
-            barycentric: p.barycentric.map(T::of_f64),
-        })
+        Some(answer(primitive, &p, if certified < pruned { certified } else { pruned }))
+    }
+}
+
+/// The square above which a lower bound is beyond a radius.
+pub(crate) fn square_within(radius: f64) -> f64 {
+    // Further by what a distance loses in rounding: near zero a smallest subnormal.
+    Key::of_offset([radius + f64::from_bits(1), 0.0, 0.0]).square_above() * ROUND_UP
+}
+
+/// An answer, of which the distance is not below some bound but for roundings.
+pub(crate) fn answer<T: Real>(primitive: PrimitiveId, p: &Projection, bound: f64) -> Closest<T> {
+    // One smallest subnormal for each rounding near zero; an infinite error leaves nothing to certify.
+    let bound = bound * ROUND_DOWN - 2.0 * f64::from_bits(1);
+    Closest {
+        point: narrow(p.point.coords.into()),
+        distance: T::of_f64(p.key.distance()),
+        lower_bound: if bound > 0.0 { T::of_f64_below(bound) } else { T::zero() },
+        primitive,
+        feature: p.feature,
+        barycentric: p.barycentric.map(T::of_f64),
     }
 }
 

@@ -2,8 +2,8 @@ use nalgebra::Point3;
 use p2m_core::interception::{Hints, Octree, Partition, Progress, SIDE_BY_SIDE, SortedLists, Voronoi};
 use p2m_core::saved::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{
-    Best, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Counting, Examine, Isa, PrimitiveSet, QueryOptions,
-    Real, check_set,
+    Best, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Counting, Examine, Isa, Near, NearQuery,
+    PrimitiveSet, QueryOptions, Real, check_set,
 };
 use std::marker::PhantomData;
 
@@ -158,6 +158,12 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> ClosestPoint<T> for Interception
                 queries.iter().zip(out).for_each(|(query, to)| *to = self.closest_point_with(query, options));
             }
         }
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>, P: Partition> NearQuery<T> for InterceptionIndex<T, S, P> {
+    fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>) {
+        self.visit(query, near);
     }
 }
 

@@ -100,6 +100,30 @@ pub fn scene(rng: &mut impl Rng, kinds: Kinds, layout: Layout, len: usize) -> (V
     (positions, elements)
 }
 
+/// Random scenes of every kind and layout, of sizes from none to several hundred, with their seeds.
+pub fn random_soups(name: &'static str) -> impl Iterator<Item = (u64, Soup<f64>)> {
+    (0..240).map(move |seed| {
+        let mut rng = crate::rng(name, seed);
+        let kinds = KINDS[seed as usize % 4];
+        let layout = LAYOUTS[seed as usize / 4 % 6];
+        let len = [0, 1, 2, 5, 30, 300, 700][rng.random_range(0..7)];
+        (seed, soup(&mut rng, kinds, layout, len))
+    })
+}
+
+/// Sixty queries around a scene.
+#[must_use]
+pub fn queries(seed: u64, soup: &Soup<f64>) -> Vec<Point3<f64>> {
+    let mut rng = crate::rng("queries", seed);
+    (0..60).map(|_| query(&mut rng, soup.positions())).collect()
+}
+
+/// The point, to nearest.
+#[must_use]
+pub fn to_f32(p: Point3<f64>) -> Point3<f32> {
+    p.map(f32::of_f64)
+}
+
 /// The scene as a soup of f64.
 pub fn soup(rng: &mut impl Rng, kinds: Kinds, layout: Layout, len: usize) -> Soup<f64> {
     let (positions, elements) = scene(rng, kinds, layout, len);

@@ -28,10 +28,9 @@ use study::{Study, Wanted};
 
 /// The page, with names of what is measured.
 const PAGE: &str = include_str!("page.md");
-/// Contenders of Table 3, besides those that are compared everywhere: the paper's locator and its list filter. Not for
+/// Contenders of Table 3, besides those that are compared everywhere: the paper's lists, and its list filter. Not for
 /// spheres: without added sites each of their lists would have all triangles.
-const PAPERS: &[&str] = &[KD_TREE, "p2m-long", "p2m-long-rstar"];
-const KD_TREE: &str = "p2m-kiddo";
+const PAPERS: &[&str] = &["p2m-long", "p2m-long-rstar"];
 
 /// Measures everything and writes paper.md, with its plots in the folder paper, into a folder. Whether answers of ours
 /// were bitwise the same everywhere.
@@ -49,37 +48,37 @@ fn write_profile(profile: &Profile, command: &str, models: Models, out: &Path) -
     std::fs::create_dir_all(&plots).with_context(|| plots.display().to_string())?;
 
     for name in profile.five {
-        all.read(name, PAPERS)?;
+        all.read(name, Some(PAPERS))?;
     }
     for name in profile.long {
-        all.read(name, PAPERS)?;
+        all.read(name, Some(PAPERS))?;
     }
     let spheres = spheres(profile.sphere)?;
     for scene in &spheres {
-        all.add(scene, &[KD_TREE])?;
+        all.add(scene, Some(&[]))?;
     }
     let mut sweep = Vec::new();
     for resolution in profile.resolutions {
         let scene = all.models.at(profile.swept, *resolution)?;
-        all.add(&scene, &[])?;
+        all.add(&scene, None)?;
         sweep.push(scene.name);
     }
     let mut pairs = Vec::new();
     for name in profile.pairs {
         let scenes = all.models.pair(name, profile.pair_size)?;
-        let [bad, good] = scenes.each_ref().map(|scene| all.study(scene, &[]));
+        let [bad, good] = scenes.each_ref().map(|scene| all.study(scene, None));
         pairs.push((scenes, [bad?, good?]));
     }
     let torn = all.models.torn(profile.torn)?;
     for scene in &torn {
-        all.add(scene, &[])?;
+        all.add(scene, None)?;
     }
     if let Some(name) = profile.mixed {
-        all.read(name, &[])?;
+        all.read(name, None)?;
     }
     let mut scattered = Vec::new();
     for scene in all.models.scattered(profile)? {
-        all.add(&scene, &[])?;
+        all.add(&scene, None)?;
         scattered.push(scene.name);
     }
 
@@ -147,14 +146,14 @@ struct Studies<'a> {
 }
 
 impl Studies<'_> {
-    fn read(&mut self, name: &str, more: &[&str]) -> Result<()> {
+    fn read(&mut self, name: &str, papers: Option<&[&str]>) -> Result<()> {
         let scene = self.models.read(name)?;
-        self.add(&scene, more)
+        self.add(&scene, papers)
     }
 
-    fn add(&mut self, scene: &Scene, more: &[&str]) -> Result<()> {
+    fn add(&mut self, scene: &Scene, papers: Option<&[&str]>) -> Result<()> {
         if !self.known.contains_key(&scene.name) {
-            let study = self.study(scene, more)?;
+            let study = self.study(scene, papers)?;
             self.known.insert(scene.name.clone(), study);
         }
         Ok(())
@@ -164,16 +163,17 @@ impl Studies<'_> {
         &self.known[name]
     }
 
-    /// Measures a scene, with more contenders than those that are compared everywhere.
-    fn study(&self, scene: &Scene, more: &[&str]) -> Result<Study> {
+    /// Measures a scene; as the paper does, if wanted: with its KD-tree, and more contenders than those that are compared
+    /// everywhere.
+    fn study(&self, scene: &Scene, papers: Option<&[&str]>) -> Result<Study> {
         let Profile { queries, rounds, builds, boxes, swept, .. } = *self.profile;
-        let contenders: Vec<&str> = COMPARED.iter().chain(more).copied().collect();
         let is_swept = scene.name == swept;
         let wanted = Wanted {
-            contenders: &contenders,
+            contenders: &COMPARED,
+            more: papers.unwrap_or_default(),
             boxes: if is_swept { boxes } else { &[] },
             threads: if is_swept { &self.threads } else { &[] },
-            kd_tree: more.contains(&KD_TREE),
+            kd_tree: papers.is_some(),
         };
         Study::of(scene, wanted, &Effort { rounds, queries, builds, seed: 1 })
     }

@@ -46,7 +46,7 @@ const FONT: (&str, u32) = ("sans-serif", 14);
 /// Room above the highest point.
 const ROOM: f64 = 1.15;
 
-/// Distinct for most people who see colours otherwise, too [Okabe and Ito].
+/// Distinct for most people who see colours otherwise, too \[Okabe2008\].
 const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),

@@ -21,6 +21,8 @@ use std::time::Instant;
 pub(super) struct Wanted<'a> {
     /// Names of contenders.
     pub(super) contenders: &'a [&'a str],
+    /// Of those that are built once, and asked in the box of ten times the size alone.
+    pub(super) more: &'a [&'a str],
     /// Factors by which boxes of queries are larger than that of the scene.
     pub(super) boxes: &'a [f64],
     /// Numbers of threads.
@@ -34,7 +36,7 @@ pub(super) struct Study {
     pub(super) name: String,
     pub(super) primitives: usize,
     pub(super) inside: Inside,
-    /// Times of a query by contenders, where they were wanted by KD-tree.
+    /// The same index with the paper's KD-tree, where that was wanted.
     pub(super) with_kd_tree: Option<Breakdown>,
     pub(super) contenders: Vec<Measured>,
     /// Whether answers of ours were bitwise the same.
@@ -93,14 +95,19 @@ impl Study {
         } else {
             None
         };
-        let selected: Vec<&'static Backend> =
-            backends::ALL.iter().filter(|backend| wanted.contenders.contains(&backend.name)).collect();
-        let mut entries = measure::build_all(scene, &selected, effort.builds);
+        let named = |names: &[&str]| -> Vec<&'static Backend> {
+            backends::ALL.iter().filter(|backend| names.contains(&backend.name)).collect()
+        };
+        let mut entries = measure::build_all(scene, &named(wanted.contenders), effort.builds);
+        let count = entries.len();
+        entries.extend(measure::build_all(scene, &named(wanted.more), 1));
         measure::measure(far, &mut entries, effort.rounds);
+        let usual = &mut entries[..count];
         for scale in wanted.boxes {
-            measure::measure(scaled_box(soup, *scale, effort.queries, effort.seed), &mut entries, effort.rounds);
+            measure::measure(scaled_box(soup, *scale, effort.queries, effort.seed), usual, effort.rounds);
         }
-        let threads = threads(soup, &entries, wanted.threads, effort)?;
+        let mut threads = threads(soup, usual, wanted.threads, effort)?;
+        threads.resize(entries.len(), Vec::new());
         let contenders: Vec<Measured> =
             entries.iter().zip(threads).map(|(entry, threads)| Measured::of(entry, threads)).collect();
         let ours = entries.iter().filter(|entry| entry.backend.ours).flat_map(|entry| entry.sets.iter().flatten());

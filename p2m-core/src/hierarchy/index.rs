@@ -2,8 +2,8 @@ use super::{PacketTree, Volume};
 use crate::saved::{self, LoadError, Reader, Writer};
 use crate::{
     Aabb, Best, BoxQuery, BuildError, BuildIndex, Closest, ClosestLeaf, ClosestPoint, Collector, Counting, Directions,
-    Examine, Hits, Isa, Kdop, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector, RayQuery, Real,
-    check_set,
+    Examine, Hits, Isa, Kdop, Near, NearQuery, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector,
+    RayQuery, Real, check_set,
 };
 use nalgebra::Point3;
 use std::marker::PhantomData;
@@ -136,6 +136,12 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestPoint<T> for TreeIndex<T, S,
     fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
         best.offer_hint(&self.set, query);
         self.tree.search_nearest(&self.set, query, best);
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>, V: Volume> NearQuery<T> for TreeIndex<T, S, V> {
+    fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>) {
+        self.visit(query, near);
     }
 }
 

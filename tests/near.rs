@@ -1,0 +1,213 @@
+//! The k nearest primitives, all within a distance, whether there is any, and the closest of some, on every backend
+//! against the primitives one by one.
+#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
+#![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
+
+use nalgebra::Point3;
+use p2m::{
+    AabbTree, BruteForce, BuildIndex, Closest, ClosestPoint, KdopTree, Near, NearQuery, OctreeIndex, P2mIndex,
+    Primitive, PrimitiveId, PrimitiveSet, Projection, QueryOptions, Real, Soup,
+};
+use p2m_testkit::rng;
+use p2m_testkit::scenes::{Kinds, Layout, narrow, queries, random_soups, soup, to_f32};
+use rand::RngExt;
+use std::fmt::Debug;
+use std::ops::ControlFlow;
+
+type Kdop14<T, S> = KdopTree<T, S, 14>;
+
+macro_rules! backends {
+    ($($name:ident: $index:ident),+ $(,)?) => {
+        $(mod $name {
+            use super::*;
+
+            #[test]
+            fn agrees_on_random_scenes_in_f64() {
+                for (seed, soup) in random_soups("near f64") {
+                    agrees::<f64, $index<f64, _>>(seed, &soup, &queries(seed, &soup));
+                }
+            }
+
+            #[test]
+            fn agrees_on_random_scenes_in_f32() {
+                for (seed, soup) in random_soups("near f32") {
+                    let queries: Vec<_> = queries(seed, &soup).into_iter().map(to_f32).collect();
+                    agrees::<f32, $index<f32, _>>(seed, &narrow(&soup).expect("fits f32"), &queries);
+                }
+            }
+
+            #[test]
+            fn agrees_at_extreme_scales() {
+                for (seed, soup) in random_soups("near scales").step_by(3) {
+                    let e = [-1060, -1000, -600, -400, 400, 600, 1000, 1021][seed as usize % 8];
+                    let scale = |p: &Point3<f64>| p.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
+                    let queries: Vec<_> =
+                        queries(seed, &soup).iter().map(scale).filter(|q| q.iter().all(|x| x.is_finite())).collect();
+                    let Ok(soup) = Soup::new(soup.positions().iter().map(scale).collect(), soup.elements()) else {
+                        continue;
+                    };
+                    agrees::<f64, $index<f64, _>>(seed, &soup, &queries);
+                }
+            }
+        })+
+    };
+}
+
+backends! {
+    aabb: AabbTree,
+    kdop_14: Kdop14,
+    octree: OctreeIndex,
+    p2m_index: P2mIndex,
+}
+
+/// All primitives with their nearest points, nearest first.
+fn sorted<T: Real>(soup: &Soup<T>, query: &Point3<T>) -> Vec<(PrimitiveId, Projection)> {
+    let ids = (0..soup.len()).map(PrimitiveId::new);
+    let mut all: Vec<_> = ids.map(|id| (id, soup.get(id).project(query))).collect();
+    all.sort_by(|a, b| a.1.key.cmp(&b.1.key).then(a.0.cmp(&b.0)));
+    all
+}
+
+/// Everything of an answer but its bound.
+type Known<T> = (PrimitiveId, T, Point3<T>, [T; 3]);
+
+fn known<T: Real>(closest: &Closest<T>) -> Known<T> {
+    (closest.primitive, closest.distance, closest.point, closest.barycentric)
+}
+
+fn expected<T: Real>((id, projection): &(PrimitiveId, Projection)) -> Known<T> {
+    let point = projection.point.map(T::of_f64);
+    (*id, T::of_f64(projection.key.distance()), point, projection.barycentric.map(T::of_f64))
+}
+
+fn agrees<'a, T: Real, I: NearQuery<T> + BuildIndex<T, &'a Soup<T>>>(
+    seed: u64,
+    soup: &'a Soup<T>,
+    queries: &[Point3<T>],
+) where
+    I::Error: Debug,
+{
+    let index = I::build(soup, &I::Options::default()).expect("valid scene");
+    let brute = BruteForce::new(soup).expect("valid scene");
+    let mut rng = rng("near options", seed);
+    for (i, q) in queries.iter().enumerate() {
+        let say = || format!("seed {seed}, query {i} {q:?}");
+        let all = sorted(soup, q);
+        let exactly = |expected_of: &[(PrimitiveId, Projection)], found: &[Closest<T>]| {
+            assert_eq!(
+                found.iter().map(known).collect::<Vec<_>>(),
+                expected_of.iter().map(expected).collect::<Vec<_>>(),
+                "{}",
+                say()
+            );
+            assert!(found.iter().all(|c| c.lower_bound <= c.distance), "{}", say());
+        };
+        let k = [0, 1, 2, 7, soup.len() / 2, soup.len(), soup.len() + 3][rng.random_range(0..7)];
+        exactly(&all[..k.min(all.len())], &index.k_nearest(q, k, T::INFINITY));
+
+        // The radius is the distance of some primitive, or beside it.
+        let some = all.get(rng.random_range(0..all.len().clamp(1, 40)));
+        let radius = some.map_or(T::one(), |(_, p)| T::of_f64(p.key.distance()));
+        let radius = [radius, radius * T::of_f64(0.99), radius * T::of_f64(1.01)][rng.random_range(0..3)];
+        let count = all.iter().take_while(|(_, p)| T::of_f64(p.key.distance()) <= radius).count();
+        let within = index.all_within(q, radius);
+        exactly(&all[..count], &within);
+        exactly(&all[..count.min(k)], &index.k_nearest(q, k, radius));
+        assert_eq!(index.is_any_within(q, radius), count > 0, "{}", say());
+        let options = QueryOptions::default().with_max_distance(radius);
+        assert_eq!(within.first().map(known), brute.closest_point_with(q, &options).as_ref().map(known), "{}", say());
+        for index in [&index as &dyn NearQuery<T>, &brute] {
+            let mut visited = Vec::new();
+            let flow = index.visit_within(q, radius, &mut |closest| {
+                visited.push(*closest);
+                ControlFlow::Continue(())
+            });
+            visited.sort_by_key(|c| within.iter().position(|other| other.primitive == c.primitive));
+            assert!(flow.is_continue() && visited == within, "{}", say());
+            // An end, and nothing after it.
+            let (mut rest, end) = (3, count >= 3);
+            let flow = index.visit_within(q, radius, &mut |_| {
+                rest -= 1;
+                if rest == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+            assert_eq!((flow.is_break(), rest), (end, if end { 0 } else { 3 - count }), "{}", say());
+        }
+
+        let odd = |id: PrimitiveId| (id.index() * 7 + seed as usize) % 5 == 0;
+        let first = all[..count].iter().find(|(id, _)| odd(*id)).map(expected);
+        let found = index.closest_point_among(q, &options, &mut |id| odd(id));
+        assert_eq!(found.as_ref().map(known), first, "{}", say());
+        assert_eq!(index.closest_point_among(q, &options, &mut |_| false), None);
+    }
+}
+
+#[test]
+fn what_cannot_be_has_a_stated_answer() {
+    let soup = random_soups("stated").find(|(_, soup)| soup.len() > 100).expect("one of them").1;
+    let index = AabbTree::build(&soup, &Default::default()).expect("valid scene");
+    let at = soup.positions()[0];
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert!(index.k_nearest(&Point3::new(0.0, bad, 0.0), 3, f64::INFINITY).is_empty());
+        assert!(!index.is_any_within(&Point3::new(bad, 0.0, 0.0), f64::INFINITY));
+    }
+    for radius in [f64::NAN, -1.0, f64::NEG_INFINITY, -f64::from_bits(1)] {
+        assert!(index.all_within(&at, radius).is_empty() && !index.is_any_within(&at, radius), "{radius}");
+    }
+    assert!(index.is_any_within(&at, 0.0) && index.is_any_within(&at, f64::INFINITY));
+    assert_eq!(index.all_within(&at, f64::INFINITY).len(), soup.len());
+    let empty = AabbTree::<f64, _>::build(Soup::new(vec![], []).expect("empty"), &Default::default()).expect("valid");
+    assert!(empty.k_nearest(&at, 3, f64::INFINITY).is_empty() && !empty.is_any_within(&at, f64::INFINITY));
+}
+
+/// A lost bound or a lost end would show here.
+#[test]
+fn searches_end_early() {
+    let soup = soup(&mut rng("near sheet", 0), Kinds::Triangles, Layout::Sheet, 20_000);
+    let index = AabbTree::build(&soup, &Default::default()).expect("valid scene");
+    let mut rng = rng("near counters", 0);
+    let mut sums = [0; 4];
+    for _ in 0..200 {
+        let q = p2m_testkit::scenes::query(&mut rng, soup.positions());
+        let radius = index.closest_point(&q).expect("not empty").distance;
+        let mut asked = 0;
+        let mut ask = |_: PrimitiveId| {
+            asked += 1;
+            true
+        };
+        assert!(index.closest_point_among(&q, &QueryOptions::default(), &mut ask).is_some());
+        sums[0] += asked;
+        sums[1] += index.k_nearest(&q, 8, f64::INFINITY).len();
+        let counted = Counted(&index, std::cell::Cell::new(0));
+        assert!(counted.is_any_within(&q, radius * 1.5));
+        sums[2] += counted.1.replace(0);
+        counted.k_nearest(&q, 8, f64::INFINITY);
+        sums[3] += counted.1.get();
+    }
+    println!("asked {}, found {}, packets for any {}, for eight {}", sums[0], sums[1], sums[2], sums[3]);
+    assert_eq!(sums[1], 1_600);
+    let most = [330, 1_600, 220, 750];
+    assert!((0..4).all(|i| sums[i] <= most[i]), "{sums:?}");
+}
+
+/// A tree that counts packets.
+struct Counted<'a, I>(&'a I, std::cell::Cell<usize>);
+
+impl NearQuery<f64> for Counted<'_, AabbTree<f64, &Soup<f64>>> {
+    fn search_near(&self, query: &Point3<f64>, near: &mut Near<'_>) {
+        self.0.visit(query, &mut Packets(near, &self.1));
+    }
+}
+
+struct Packets<'a, 'b>(&'a mut Near<'b>, &'a std::cell::Cell<usize>);
+
+impl p2m::Collector for Packets<'_, '_> {
+    fn prune_above(&self) -> f64 {
+        self.0.prune_above()
+    }
+    fn offer(&mut self, id: PrimitiveId, projection: Projection) {
+        self.0.offer(id, projection);
+    }
+    fn visit_packet(&mut self) {
+        self.1.set(self.1.get() + 1);
+    }
+}
