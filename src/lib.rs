@@ -53,7 +53,9 @@
 //! | `bvh` | [`AabbTree`] | yes |
 //! | `interception` | [`OctreeIndex`], [`P2mIndex`] | yes |
 //! | `kiddo` | `KdTreeLocator`, the paper's way to the nearest vertex, for [`P2mIndexWith`] | no |
-//! | `rstar` | `RegionTree`, the paper's filter of long lists, for [`P2mIndexWith`] | no |
+//! | `rstar` | `RegionTree`, the paper's filter of long lists, for [`P2mIndexWith`]; `scene::adapters::RstarIndex` | no |
+//! | `parry` | `scene::adapters::ParryIndex`, the tree of parry3d-f64 as an index | no |
+//! | `mint` | positions of the crate mint in [`scene`] | no |
 //! | `kdop` | [`KdopTree`] | yes |
 //! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `mixed` | [`scene`]: reading scenes and points from files | yes |

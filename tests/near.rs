@@ -5,14 +5,12 @@
 
 use nalgebra::Point3;
 use p2m::{
-    AabbTree, BruteForce, BuildIndex, Closest, ClosestPoint, KdopTree, Near, NearQuery, OctreeIndex, P2mIndex,
-    Primitive, PrimitiveId, PrimitiveSet, Projection, QueryOptions, Real, Soup,
+    AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopTree, Near, NearQuery, OctreeIndex, P2mIndex, PrimitiveId,
+    PrimitiveSet, Projection, QueryOptions, Real, Soup,
 };
-use p2m_testkit::rng;
 use p2m_testkit::scenes::{Kinds, Layout, narrow, queries, random_soups, soup, to_f32};
-use rand::RngExt;
+use p2m_testkit::{near_check, rng};
 use std::fmt::Debug;
-use std::ops::ControlFlow;
 
 type Kdop14<T, S> = KdopTree<T, S, 14>;
 
@@ -60,26 +58,6 @@ backends! {
     p2m_index: P2mIndex,
 }
 
-/// All primitives with their nearest points, nearest first.
-fn sorted<T: Real>(soup: &Soup<T>, query: &Point3<T>) -> Vec<(PrimitiveId, Projection)> {
-    let ids = (0..soup.len()).map(PrimitiveId::new);
-    let mut all: Vec<_> = ids.map(|id| (id, soup.get(id).project(query))).collect();
-    all.sort_by(|a, b| a.1.key.cmp(&b.1.key).then(a.0.cmp(&b.0)));
-    all
-}
-
-/// Everything of an answer but its bound.
-type Known<T> = (PrimitiveId, T, Point3<T>, [T; 3]);
-
-fn known<T: Real>(closest: &Closest<T>) -> Known<T> {
-    (closest.primitive, closest.distance, closest.point, closest.barycentric)
-}
-
-fn expected<T: Real>((id, projection): &(PrimitiveId, Projection)) -> Known<T> {
-    let point = projection.point.map(T::of_f64);
-    (*id, T::of_f64(projection.key.distance()), point, projection.barycentric.map(T::of_f64))
-}
-
 fn agrees<'a, T: Real, I: NearQuery<T> + BuildIndex<T, &'a Soup<T>>>(
     seed: u64,
     soup: &'a Soup<T>,
@@ -87,58 +65,8 @@ fn agrees<'a, T: Real, I: NearQuery<T> + BuildIndex<T, &'a Soup<T>>>(
 ) where
     I::Error: Debug,
 {
-    let index = I::build(soup, &I::Options::default()).expect("valid scene");
-    let brute = BruteForce::new(soup).expect("valid scene");
-    let mut rng = rng("near options", seed);
-    for (i, q) in queries.iter().enumerate() {
-        let say = || format!("seed {seed}, query {i} {q:?}");
-        let all = sorted(soup, q);
-        let exactly = |expected_of: &[(PrimitiveId, Projection)], found: &[Closest<T>]| {
-            assert_eq!(
-                found.iter().map(known).collect::<Vec<_>>(),
-                expected_of.iter().map(expected).collect::<Vec<_>>(),
-                "{}",
-                say()
-            );
-            assert!(found.iter().all(|c| c.lower_bound <= c.distance), "{}", say());
-        };
-        let k = [0, 1, 2, 7, soup.len() / 2, soup.len(), soup.len() + 3][rng.random_range(0..7)];
-        exactly(&all[..k.min(all.len())], &index.k_nearest(q, k, T::INFINITY));
-
-        // The radius is the distance of some primitive, or beside it.
-        let some = all.get(rng.random_range(0..all.len().clamp(1, 40)));
-        let radius = some.map_or(T::one(), |(_, p)| T::of_f64(p.key.distance()));
-        let radius = [radius, radius * T::of_f64(0.99), radius * T::of_f64(1.01)][rng.random_range(0..3)];
-        let count = all.iter().take_while(|(_, p)| T::of_f64(p.key.distance()) <= radius).count();
-        let within = index.all_within(q, radius);
-        exactly(&all[..count], &within);
-        exactly(&all[..count.min(k)], &index.k_nearest(q, k, radius));
-        assert_eq!(index.is_any_within(q, radius), count > 0, "{}", say());
-        let options = QueryOptions::default().with_max_distance(radius);
-        assert_eq!(within.first().map(known), brute.closest_point_with(q, &options).as_ref().map(known), "{}", say());
-        for index in [&index as &dyn NearQuery<T>, &brute] {
-            let mut visited = Vec::new();
-            let flow = index.visit_within(q, radius, &mut |closest| {
-                visited.push(*closest);
-                ControlFlow::Continue(())
-            });
-            visited.sort_by_key(|c| within.iter().position(|other| other.primitive == c.primitive));
-            assert!(flow.is_continue() && visited == within, "{}", say());
-            // An end, and nothing after it.
-            let (mut rest, end) = (3, count >= 3);
-            let flow = index.visit_within(q, radius, &mut |_| {
-                rest -= 1;
-                if rest == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            });
-            assert_eq!((flow.is_break(), rest), (end, if end { 0 } else { 3 - count }), "{}", say());
-        }
-
-        let odd = |id: PrimitiveId| (id.index() * 7 + seed as usize) % 5 == 0;
-        let first = all[..count].iter().find(|(id, _)| odd(*id)).map(expected);
-        let found = index.closest_point_among(q, &options, &mut |id| odd(id));
-        assert_eq!(found.as_ref().map(known), first, "{}", say());
-        assert_eq!(index.closest_point_among(q, &options, &mut |_| false), None);
-    }
+    near_check::agrees(seed, soup, queries, &I::build(soup, &I::Options::default()).expect("valid scene"));
+    near_check::agrees(seed, soup, &queries[..queries.len().min(5)], &BruteForce::new(soup).expect("valid scene"));
 }
 
 #[test]

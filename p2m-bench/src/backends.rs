@@ -14,6 +14,7 @@ use p2m_interception::{
     SortedLists, Voronoi,
 };
 use p2m_kdop::{Choice, KdopOptions, KdopTree};
+use p2m_mixed::adapters::{ParryIndex, RstarIndex};
 use std::marker::PhantomData;
 
 /// Every contender, in the order of the tables.
@@ -36,6 +37,8 @@ pub(crate) const ALL: &[Backend] = &[
     Backend { name: "p2m-long", prepare: |s| p2m_filtered::<SortedLists>(s, long_lists()), ..OURS },
     Backend { name: "p2m-long-rstar", prepare: |s| p2m_filtered::<RegionTree>(s, long_lists()), ..OURS },
     Backend { name: "p2m-batch", prepare: p2m_in_batches, ..OURS },
+    Backend { name: "rstar", prepare: |s| over_soup::<f64, RstarIndex<_, _>>(s), ..OURS },
+    Backend { name: "parry-tree", prepare: |s| over_soup::<f64, ParryIndex<_, _>>(s), ..OURS },
     Backend { name: "kdop-6", prepare: kdop::<f64, 6>, ..OURS },
     Backend { name: "kdop-14", prepare: kdop::<f64, 14>, ..OURS },
     Backend { name: "kdop-18", prepare: kdop::<f64, 18>, ..OURS },

@@ -21,7 +21,10 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(any(feature = "parry", feature = "rstar"))]
+pub mod adapters;
 mod answers;
+mod assemble;
 mod builder;
 mod bytes;
 mod camera;

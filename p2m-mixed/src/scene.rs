@@ -8,8 +8,8 @@ use std::io::{self, BufRead, BufReader};
 use std::ops::Range;
 use std::path::Path;
 
-/// A scene and what its file says beyond it.
-#[derive(Debug, Clone, PartialEq)]
+/// A scene: from a file, with what that says beyond it, or of parts that are [added](Scene::add).
+#[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Scene {
     /// The primitives, numbered in the order of the file. Polygons are cut into triangles: those of one polygon have
@@ -22,7 +22,8 @@ pub struct Scene {
     /// file a triangle counts the elements `face`, a segment the elements `edge`, a point the elements `point`; a
     /// file that has both `face` and `tristrips` goes on with the strips after the last face. In STL files facets
     /// are counted, in OFF files faces of any number of vertices. In a point cloud (vertices alone, in any format
-    /// that has them) it is the number of the vertex.
+    /// that has them) it is the number of the vertex. Of parts that were [added](Scene::add) primitives are counted
+    /// from 0 in each.
     pub sources: Vec<u32>,
     /// The named parts of the scene, in ascending order and apart from each other; primitives may be in none.
     ///

@@ -8,6 +8,7 @@ pub mod ball;
 pub mod families;
 pub mod left_first;
 pub mod line_filter;
+pub mod near_check;
 pub mod oracle;
 pub mod paper;
 pub mod queries;

@@ -1,0 +1,78 @@
+//! How much room cables and pipes have beside a mesh: for each segment the least distance of its axis from the
+//! triangles, to a tolerance, less the radius of the pipe.
+//!
+//! `cargo run --release --example clearance -- [SCENE] [RADIUS]`, with the carried scene and pipes of radius 0.02 unless
+//! told otherwise: its triangles are the mesh, its segments the pipes.
+//!
+//! A distance changes by at most as much as its place moves. So between two places of a pipe that are h apart it is at
+//! least (a + b - h) / 2, of the distances a and b there, and the part where that is least is halved until it is certain.
+
+use nalgebra::Point3;
+use p2m::{AabbTree, BuildIndex, ClosestPoint, Element, NearQuery, Soup};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Half of the room between what is proved and what is found, as a part of the diagonal of the scene.
+const TOLERANCE: f64 = 1e-6;
+
+/// Two places of an axis with their distances.
+type Part = [(Point3<f64>, f64); 2];
+
+/// No place between the ends is nearer than this.
+fn bound([(a, at_a), (b, at_b)]: &Part) -> f64 {
+    ((at_a + at_b - (b - a).norm()) / 2.0).max(0.0)
+}
+
+/// The least distance of an axis from what is indexed, to a tolerance, and how often that was asked.
+fn clearance<I: ClosestPoint<f64>>(index: &I, axis: [Point3<f64>; 2], tolerance: f64) -> Option<(f64, usize)> {
+    let at = |p: Point3<f64>| index.closest_point(&p).map(|answer| (p, answer.distance));
+    let ends = [at(axis[0])?, at(axis[1])?];
+    let (mut least, mut asked) = (ends[0].1.min(ends[1].1), 2);
+    // Numbers of parts, the one with the least bound on top: bits of numbers that are not negative have their order.
+    let mut parts: Vec<Part> = vec![ends];
+    let mut next = BinaryHeap::from([(Reverse(bound(&ends).to_bits()), 0)]);
+    while let Some((Reverse(bits), number)) = next.pop() {
+        if f64::from_bits(bits) >= least - tolerance {
+            break;
+        }
+        let [a, b] = parts[number];
+        let middle = at(nalgebra::center(&a.0, &b.0))?;
+        asked += 1;
+        least = least.min(middle.1);
+        for part in [[a, middle], [middle, b]] {
+            next.push((Reverse(bound(&part).to_bits()), parts.len()));
+            parts.push(part);
+        }
+    }
+    Some((least, asked))
+}
+
+fn main() -> anyhow::Result<()> {
+    let mut arguments = std::env::args().skip(1);
+    let name = arguments.next().unwrap_or_else(|| "scenes/knot_and_cables.obj".to_owned());
+    let radius: f64 = arguments.next().map_or(Ok(0.02), |text| text.parse())?;
+    let scene = p2m::scene::read_scene(name.as_ref())?.soup;
+    let places = scene.positions();
+    let mesh = Soup::new(places.to_vec(), scene.triangles().iter().map(|t| Element::Triangle(*t)))?;
+    let index = AabbTree::build(&mesh, &Default::default())?;
+
+    let bounds = p2m::PrimitiveSet::aabb(&scene);
+    let tolerance = TOLERANCE * (bounds.max - bounds.min).norm();
+    let pipes: Vec<[Point3<f64>; 2]> = scene.segments().iter().map(|s| s.map(|i| places[i as usize])).collect();
+    let found: Option<Vec<(f64, usize)>> = pipes.iter().map(|axis| clearance(&index, *axis, tolerance)).collect();
+    let Some(found) = found.filter(|found| !found.is_empty()) else {
+        println!("{name} has no mesh or no pipes");
+        return Ok(());
+    };
+    let (tightest, least) =
+        found.iter().map(|f| f.0).enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
+    let touching = found.iter().filter(|(distance, _)| *distance <= radius).count();
+    println!("{} pipes beside {} triangles", pipes.len(), mesh.triangles().len());
+    println!("the least clearance is {:.6}, of pipe {tightest}", least - radius);
+    println!("{touching} pipes touch the mesh");
+    println!("{:.2} queries a pipe", found.iter().map(|f| f.1).sum::<usize>() as f64 / pipes.len() as f64);
+    // Whether anything is that near needs no distance: at the ends of the pipes, which are places of theirs.
+    let near = pipes.iter().filter(|axis| axis.iter().any(|end| index.is_any_within(end, radius))).count();
+    println!("{near} of these already at an end: {}", near <= touching);
+    Ok(())
+}

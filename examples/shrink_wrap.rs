@@ -1,0 +1,48 @@
+//! Shrink-wraps a cloud of points onto a scene: each goes to the closest point.
+//!
+//! `cargo run --release --example shrink_wrap -- [SCENE] [WRAP.ply]`, with the carried scene and no file unless told
+//! otherwise. The cloud is a sphere of points around the scene. That they arrived is checked with brute force.
+
+use anyhow::Context;
+use nalgebra::Point3;
+use p2m::scene::generate::{IcoSphere, ico_sphere};
+use p2m::{BruteForce, BuildIndex, Closest, ClosestPoint, OctreeIndex, QueryOptions, Soup};
+
+/// Works with every index, and compiles to the one it is called with.
+fn wrap<I: ClosestPoint<f64>>(index: &I, cloud: &[Point3<f64>]) -> Option<Vec<Closest<f64>>> {
+    let mut answers = vec![None; cloud.len()];
+    index.closest_points_into(cloud, &QueryOptions::default(), &mut answers);
+    answers.into_iter().collect()
+}
+
+fn main() -> anyhow::Result<()> {
+    let mut arguments = std::env::args().skip(1);
+    let name = arguments.next().unwrap_or_else(|| "scenes/knot_and_cables.obj".to_owned());
+    let scene = p2m::scene::read_scene(name.as_ref())?.soup;
+    let index = OctreeIndex::build(&scene, &Default::default())?;
+
+    let bounds = p2m::PrimitiveSet::aabb(&scene);
+    let (centre, radius) = (nalgebra::center(&bounds.min, &bounds.max), (bounds.max - bounds.min).norm() * 0.6);
+    let sphere = ico_sphere(&IcoSphere::default().with_frequency(30))?;
+    let cloud: Vec<Point3<f64>> = sphere.positions().iter().map(|p| centre + p.coords * radius).collect();
+    let answers = wrap(&index, &cloud).context("the scene is empty")?;
+
+    let moves = || answers.iter().map(|answer| answer.distance);
+    println!(
+        "{} points moved by {:.6} to {:.6}",
+        cloud.len(),
+        moves().fold(f64::MAX, f64::min),
+        moves().fold(0.0, f64::max)
+    );
+    println!("{:.6} on average", moves().sum::<f64>() / cloud.len() as f64);
+    let brute = BruteForce::new(&scene)?;
+    let wrapped: Vec<Point3<f64>> = answers.iter().map(|answer| answer.point).collect();
+    let left = wrapped.iter().filter_map(|p| brute.closest_point(p)).map(|c| c.distance).fold(0.0, f64::max);
+    println!("on the scene up to rounding: {}", left <= 1e-12 * radius);
+    if let Some(out) = arguments.next() {
+        let wrap = Soup::new(wrapped, sphere.elements())?;
+        p2m::scene::write_ply(&wrap.into(), std::io::BufWriter::new(std::fs::File::create(&out)?))?;
+        println!("{out}");
+    }
+    Ok(())
+}

@@ -1,0 +1,84 @@
+//! The R*-tree of the crate rstar.
+
+use super::ROUND_DOWN;
+use nalgebra::Point3;
+use p2m_core::{
+    Best, BuildError, BuildIndex, ClosestPoint, Collector, Near, NearQuery, Primitive, PrimitiveId, PrimitiveSet, Real,
+    check_set,
+};
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+use std::marker::PhantomData;
+
+type Entry = GeomWithData<Rectangle<[f64; 3]>, PrimitiveId>;
+
+/// An index over a set of primitives by an R*-tree of their boxes \[Beckmann1990\].
+///
+/// Boxes come nearest first, until the next one is farther than what was found.
+///
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::{BuildIndex, ClosestPoint, Segment};
+/// use p2m_mixed::adapters::RstarIndex;
+///
+/// let wires = [Segment::new(Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 0.0, 0.0))];
+/// let index = RstarIndex::build(&wires, &())?;
+/// assert_eq!(index.closest_point(&Point3::new(1.0, 2.0, 0.0)).unwrap().distance, 2.0);
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
+///
+/// # Complexity
+/// Build O(n log n); queries expected O(log n).
+#[derive(Debug, Clone)]
+pub struct RstarIndex<T: Real, S> {
+    set: S,
+    scalar: PhantomData<T>,
+    tree: RTree<Entry>,
+}
+
+impl<T: Real, S: PrimitiveSet<T>> RstarIndex<T, S> {
+    /// The set it was built over.
+    pub fn set(&self) -> &S {
+        &self.set
+    }
+
+    /// Offers to any collector every primitive that it could want. `query` is finite.
+    pub fn visit<C: Collector>(&self, query: &Point3<T>, collector: &mut C) {
+        let place: [f64; 3] = query.coords.map(Real::to_f64).into();
+        for (entry, square) in self.tree.nearest_neighbor_iter_with_distance_2(place) {
+            if square * ROUND_DOWN > collector.prune_above() {
+                return;
+            }
+            collector.offer(entry.data, self.set.get(entry.data).project(query));
+        }
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>> ClosestPoint<T> for RstarIndex<T, S> {
+    fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
+        best.offer_hint(&self.set, query);
+        self.visit(query, best);
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>> NearQuery<T> for RstarIndex<T, S> {
+    fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>) {
+        self.visit(query, near);
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>> BuildIndex<T, S> for RstarIndex<T, S> {
+    type Options = ();
+    type Error = BuildError;
+
+    fn build(set: S, (): &()) -> Result<Self, BuildError> {
+        check_set(&set)?;
+        let entry = |id: PrimitiveId| {
+            let bounds = set.get(id).aabb().to_f64();
+            let bounds = AABB::from_corners(bounds.min.coords.into(), bounds.max.coords.into());
+            GeomWithData::new(Rectangle::from_aabb(bounds), id)
+        };
+        let tree = RTree::bulk_load((0..set.len()).map(PrimitiveId::new).map(entry).collect());
+        Ok(Self { set, scalar: PhantomData, tree })
+    }
+}

@@ -1,0 +1,182 @@
+//! Scenes from what a program has: parts under names, one after the other.
+
+use crate::scene::{Object, Scene};
+use nalgebra::Point3;
+use p2m_core::{BuildError, Element, PrimitiveId, PrimitiveSet, Soup};
+use std::ops::Range;
+
+impl Scene {
+    /// Adds a part under a name (or, with an empty name, under none); the ids that its primitives got.
+    ///
+    /// To turn, scale or move it first, [`Transform::apply`](crate::generate::Transform::apply) it: coordinates are
+    /// transformed once, and queries are as fast as ever.
+    ///
+    /// ```
+    /// use nalgebra::Point3;
+    /// use p2m_core::{BruteForce, ClosestPoint};
+    /// use p2m_mixed::Scene;
+    /// use p2m_mixed::generate::{IcoSphere, Transform, ico_sphere};
+    ///
+    /// let ball = ico_sphere(&IcoSphere::default()).unwrap();
+    /// let mut scene = Scene::default();
+    /// scene.add("ball", &Transform::default().translated([9.0, 0.0, 0.0]).apply(&ball).unwrap())?;
+    /// scene.add_triangles("floor", &[[-5.0, -5.0, -1.0], [5.0, -5.0, -1.0], [0.0, 9.0, -1.0]], &[[0, 1, 2]])?;
+    /// scene.add_polyline("wire", &[Point3::new(0.0, 0.0, 3.0), Point3::new(1.0, 0.0, 3.0), Point3::new(1.0, 2.0, 3.0)])?;
+    /// scene.add_points("", &[[0.0, 0.0, 9.0]])?;
+    ///
+    /// let answer = BruteForce::new(&scene.soup)?.closest_point(&Point3::new(1.0, 1.0, 2.0)).unwrap();
+    /// assert_eq!(scene.object_of(answer.primitive).unwrap().name, "wire");
+    /// # Ok::<(), p2m_core::BuildError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`BuildError::TooMany`] for more primitives than ids; the scene is then as it was.
+    ///
+    /// # Complexity
+    /// O(1) for each vertex and primitive of the part.
+    pub fn add(&mut self, name: &str, part: &Soup<f64>) -> Result<Range<usize>, BuildError> {
+        let start = self.soup.len();
+        let end = start + part.len();
+        let (first, vertices) = (self.soup.positions().len(), part.positions().len());
+        // Vertices are numbered by u32, and primitives have to be more than these to need as many.
+        if end > PrimitiveId::MAX_COUNT || u32::try_from(first + vertices).is_err() {
+            return Err(BuildError::TooMany { len: end });
+        }
+        for position in part.positions() {
+            self.soup.push_position(*position);
+        }
+        let shifted = |i: u32| i + u32::try_from(first).expect("checked above");
+        let mut next = [0; 3];
+        for element in part.elements() {
+            let element = match element {
+                Element::Point(p) => Element::Point(shifted(p)),
+                Element::Segment(s) => Element::Segment(s.map(shifted)),
+                Element::Triangle(t) => Element::Triangle(t.map(shifted)),
+            };
+            let count = &mut next[element.indices().len() - 1];
+            self.sources.push(*count);
+            *count += 1;
+            self.soup.push(element).expect("a part is valid, and there is room");
+        }
+        if !name.is_empty() && start < end {
+            self.objects.push(Object { name: name.to_owned(), ids: start..end });
+        }
+        Ok(start..end)
+    }
+
+    /// Adds triangles, each of three numbers of positions.
+    ///
+    /// # Errors
+    /// As [`Soup::new`], with ids and positions counted in this part; the scene is then as it was.
+    pub fn add_triangles<P: Copy + Into<Point3<f64>>>(
+        &mut self,
+        name: &str,
+        positions: &[P],
+        triangles: &[[u32; 3]],
+    ) -> Result<Range<usize>, BuildError> {
+        self.add_elements(name, positions, triangles.iter().map(|t| Element::Triangle(*t)))
+    }
+
+    /// Adds segments, each of two numbers of positions.
+    ///
+    /// # Errors
+    /// As [`add_triangles`](Self::add_triangles).
+    pub fn add_segments<P: Copy + Into<Point3<f64>>>(
+        &mut self,
+        name: &str,
+        positions: &[P],
+        segments: &[[u32; 2]],
+    ) -> Result<Range<usize>, BuildError> {
+        self.add_elements(name, positions, segments.iter().map(|s| Element::Segment(*s)))
+    }
+
+    /// Adds the segments from each position to the next; none for a single position.
+    ///
+    /// # Errors
+    /// As [`add_triangles`](Self::add_triangles).
+    pub fn add_polyline<P: Copy + Into<Point3<f64>>>(
+        &mut self,
+        name: &str,
+        positions: &[P],
+    ) -> Result<Range<usize>, BuildError> {
+        self.add_elements(name, positions, (1..number_of(positions)?).map(|i| Element::Segment([i - 1, i])))
+    }
+
+    /// Adds positions as points.
+    ///
+    /// # Errors
+    /// As [`add_triangles`](Self::add_triangles).
+    pub fn add_points<P: Copy + Into<Point3<f64>>>(
+        &mut self,
+        name: &str,
+        positions: &[P],
+    ) -> Result<Range<usize>, BuildError> {
+        self.add_elements(name, positions, (0..number_of(positions)?).map(Element::Point))
+    }
+
+    fn add_elements<P: Copy + Into<Point3<f64>>>(
+        &mut self,
+        name: &str,
+        positions: &[P],
+        elements: impl Iterator<Item = Element>,
+    ) -> Result<Range<usize>, BuildError> {
+        self.add(name, &Soup::new(positions.iter().map(|p| (*p).into()).collect(), elements)?)
+    }
+
+    /// The named part that a primitive is in, if it is in one.
+    ///
+    /// # Complexity
+    /// O(log n) for n parts.
+    #[must_use]
+    pub fn object_of(&self, id: PrimitiveId) -> Option<&Object> {
+        let next = self.objects.partition_point(|object| object.ids.start <= id.index());
+        self.objects[..next].last().filter(|object| object.ids.contains(&id.index()))
+    }
+}
+
+/// How many positions there are, as a number of one.
+fn number_of<P>(positions: &[P]) -> Result<u32, BuildError> {
+    u32::try_from(positions.len()).map_err(|_| BuildError::TooMany { len: positions.len() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CORNERS: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+
+    #[test]
+    fn parts_keep_their_names_and_numbers() {
+        let mut scene = Scene::default();
+        assert_eq!(scene.add_triangles("a", &CORNERS, &[[0, 1, 2], [2, 1, 0]]).unwrap(), 0..2);
+        assert_eq!(scene.add_polyline("b", &CORNERS).unwrap(), 2..4);
+        assert_eq!(scene.add_points("", &CORNERS[..1]).unwrap(), 4..5);
+        assert_eq!(scene.add_triangles("a", &CORNERS, &[[0, 2, 1]]).unwrap(), 5..6);
+        assert_eq!(scene.add_segments("empty", &CORNERS, &[]).unwrap(), 6..6);
+        assert_eq!(scene.add_segments("c", &CORNERS.map(Point3::from), &[[2, 0]]).unwrap(), 6..7);
+        let name = |i: usize| scene.object_of(PrimitiveId::new(i)).map(|object| object.name.as_str());
+        let names: Vec<_> = (0..8).map(name).collect();
+        assert_eq!(names, [Some("a"), Some("a"), Some("b"), Some("b"), None, Some("a"), Some("c"), None]);
+        assert_eq!(scene.objects.len(), 4);
+        assert_eq!(scene.sources, [0, 1, 0, 1, 0, 0, 0]);
+        assert_eq!(scene.soup.segments(), [[3, 4], [4, 5], [12, 10]]);
+        assert_eq!(scene.soup.triangles()[2], [7, 9, 8]);
+        assert_eq!(scene.soup.positions().len(), 13);
+    }
+
+    #[test]
+    fn what_is_refused_leaves_the_scene_as_it_was() {
+        let mut scene = Scene::default();
+        scene.add_triangles("a", &CORNERS, &[[0, 1, 2]]).unwrap();
+        let before = scene.clone();
+        let id = PrimitiveId::new(1);
+        let error = scene.add_triangles("b", &CORNERS, &[[0, 1, 2], [0, 1, 3]]).unwrap_err();
+        assert_eq!(error, BuildError::IndexOutOfRange { id, index: 3, len: 3 });
+        let bad = [[0.0; 3], [f64::NAN; 3]];
+        assert_eq!(scene.add_points("b", &bad).unwrap_err(), BuildError::NonFinite { id });
+        assert_eq!(scene, before);
+        assert_eq!(scene.add_polyline("one", &CORNERS[..1]).unwrap(), 1..1);
+        assert_eq!(scene.add_polyline::<[f64; 3]>("none", &[]).unwrap(), 1..1);
+        assert_eq!(scene.objects, before.objects);
+    }
+}

@@ -1,0 +1,59 @@
+//! Trees of other crates, held to the contract of ours.
+#![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
+
+use nalgebra::Point3;
+use p2m_core::{BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, NearQuery, PrimitiveSet, Real, Soup};
+use p2m_mixed::adapters::{ParryIndex, RstarIndex};
+use p2m_testkit::near_check;
+use p2m_testkit::scenes::{narrow, queries, random_soups, to_f32};
+
+macro_rules! adapters {
+    ($($name:ident: $index:ident),+ $(,)?) => {
+        $(mod $name {
+            use super::*;
+
+            #[test]
+            fn agrees_on_random_scenes() {
+                for (seed, soup) in random_soups(stringify!($name)) {
+                    let queries = queries(seed, &soup);
+                    agrees::<f64, $index<f64, _>>(seed, &soup, &queries);
+                    let single: Vec<_> = queries.into_iter().map(to_f32).collect();
+                    agrees::<f32, $index<f32, _>>(seed, &narrow(&soup).expect("fits f32"), &single);
+                }
+            }
+
+            #[test]
+            fn agrees_at_extreme_scales() {
+                for (seed, soup) in random_soups("scales of adapters").step_by(3) {
+                    let e = [-1060, -1000, -600, -400, 400, 600, 1000, 1021][seed as usize % 8];
+                    let scale = |p: &Point3<f64>| p.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
+                    let queries: Vec<_> =
+                        queries(seed, &soup).iter().map(scale).filter(|q| q.iter().all(|x| x.is_finite())).collect();
+                    let Ok(soup) = Soup::new(soup.positions().iter().map(scale).collect(), soup.elements()) else {
+                        continue;
+                    };
+                    agrees::<f64, $index<f64, _>>(seed, &soup, &queries);
+                }
+            }
+        })+
+    };
+}
+
+adapters! {
+    parry: ParryIndex,
+    rstar: RstarIndex,
+}
+
+fn agrees<'a, T: Real, I>(seed: u64, soup: &'a Soup<T>, queries: &[Point3<T>])
+where
+    I: NearQuery<T> + BuildIndex<T, &'a Soup<T>, Options = (), Error = BuildError>,
+{
+    let index = I::build(soup, &()).expect("valid scene");
+    let brute = BruteForce::new(soup).expect("valid scene");
+    let known = |c: Option<Closest<T>>| c.map(|c| (c.point, c.distance, c.primitive, c.feature, c.barycentric));
+    for q in queries {
+        assert_eq!(known(index.closest_point(q)), known(brute.closest_point(q)), "seed {seed}, {q:?}");
+        assert_eq!(index.closest_point(q).is_some(), !soup.is_empty());
+    }
+    near_check::agrees(seed, soup, queries, &index);
+}

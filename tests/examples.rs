@@ -1,0 +1,79 @@
+//! The example programs, run, and what they print.
+#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Where cargo puts examples: beside the folder of tests.
+fn folder() -> PathBuf {
+    let test = std::env::current_exe().expect("a program");
+    test.ancestors().nth(2).expect("a folder of builds").join("examples")
+}
+
+/// What an example prints, run in the root of the project.
+fn output(name: &str, arguments: &[&str]) -> String {
+    let program = folder().join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
+    let output = Command::new(&program)
+        .args(arguments)
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")))
+        .output()
+        .unwrap_or_else(|error| panic!("{}: {error}", program.display()));
+    assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// The numbers of a text, in their order.
+fn numbers(text: &str) -> Vec<f64> {
+    text.split(|c: char| !(c.is_ascii_digit() || ".-e".contains(c)))
+        .filter_map(|word| word.trim_end_matches('.').parse().ok())
+        .collect()
+}
+
+#[test]
+fn a_cloud_is_wrapped_onto_the_scene() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let wrap = folder.path().join("wrap.ply");
+    let text = output("shrink_wrap", &["scenes/knot_and_cables.obj", wrap.to_str().expect("text")]);
+    let found = numbers(&text);
+    assert!(found[0] == 9002.0 && found[1] > 0.0 && found[1] < found[3] && found[3] < found[2], "{text}");
+    assert!(text.contains("on the scene up to rounding: true"), "{text}");
+    assert_eq!(p2m::scene::read_scene(&wrap).expect("written").soup.triangles().len(), 18_000);
+}
+
+#[test]
+fn cables_have_room_beside_the_tube() {
+    let text = output("clearance", &[]);
+    assert!(text.starts_with("480 pipes beside 3600 triangles"), "{text}");
+    assert!(text.contains("already at an end: true"), "{text}");
+    // Wider pipes have as much less room.
+    let least = |text: &str| numbers(text.lines().nth(1).expect("a line"))[0];
+    let wide = output("clearance", &["scenes/knot_and_cables.obj", "0.03"]);
+    assert!((least(&text) - least(&wide) - 0.01).abs() < 2e-6, "{text}{wide}");
+    assert!(numbers(text.lines().nth(3).expect("a line"))[0] < 100.0, "{text}");
+}
+
+#[test]
+fn tracks_are_snapped_to_their_streets() {
+    let text = output("snap_track", &[]);
+    // Every 50th place is too far away, unless it is near a crossing.
+    assert!(text.starts_with("800 places beside 3280 parts of streets\n784 are on a street, 16 on none"), "{text}");
+    let right = numbers(text.lines().nth(2).expect("a line"))[0];
+    assert!((650.0..=784.0).contains(&right), "{text}");
+}
+
+#[test]
+fn a_sphere_that_is_moved_is_as_far_as_it_was_moved() {
+    let text = output("hausdorff", &[]);
+    let found = numbers(&text);
+    let (there, back, distance, more) = (found[0], found[1], found[2], found[3]);
+    assert!((0.5 - more..=0.5 + 1e-4).contains(&distance), "{text}");
+    assert!((there - back).abs() <= more && distance == there.max(back), "{text}");
+    let same = output("hausdorff", &["scenes/knot_and_cables.obj", "scenes/knot_and_cables.obj"]);
+    assert!(numbers(&same)[2] == 0.0, "{same}");
+}
+
+#[test]
+fn the_examples_of_the_manual_run() {
+    assert!(output("kdop_distance", &[]).contains("at a distance of"));
+    assert!(!output("kdop_ray", &[]).is_empty());
+}
