@@ -53,7 +53,7 @@ pub(crate) struct Args {
     indexing: Indexing,
 
     /// How many random points of the box, and how many middles of primitives, to ask about
-    #[arg(long, value_name = "N", value_parser = whole, default_value_t = 10_000, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=100_000_000), default_value_t = 10_000, allow_negative_numbers = true)]
     queries: u64,
 
     /// Scale the box of the scene about its centre by this factor before filling it

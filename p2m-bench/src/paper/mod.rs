@@ -28,9 +28,10 @@ use study::{Study, Wanted};
 
 /// The page, with names of what is measured.
 const PAGE: &str = include_str!("page.md");
-/// Contenders of Table 3, besides those that are compared everywhere: the paper's lists, and its list filter. Not for
-/// spheres: without added sites each of their lists would have all triangles.
-const PAPERS: &[&str] = &["p2m-long", "p2m-long-rstar"];
+/// Contenders of Table 3, besides those that are compared everywhere: the paper's locator, lists and list filter. The
+/// last two not for spheres: without added sites each of their lists would have all triangles.
+const PAPERS: &[&str] = &[KD_TREE, "p2m-long", "p2m-long-rstar"];
+const KD_TREE: &str = "p2m-kiddo";
 
 /// Measures everything and writes paper.md, with its plots in the folder paper, into a folder. Whether answers of ours
 /// were bitwise the same everywhere.
@@ -47,38 +48,41 @@ fn write_profile(profile: &Profile, command: &str, models: Models, out: &Path) -
     let plots = out.join("paper");
     std::fs::create_dir_all(&plots).with_context(|| plots.display().to_string())?;
 
+    // What cannot be read is to be known before anything is measured.
+    let scattered_scenes = all.models.scattered(profile)?;
     for name in profile.five {
-        all.read(name, Some(PAPERS))?;
+        all.read(name, PAPERS)?;
     }
     for name in profile.long {
-        all.read(name, Some(PAPERS))?;
+        all.read(name, PAPERS)?;
     }
     let spheres = spheres(profile.sphere)?;
     for scene in &spheres {
-        all.add(scene, Some(&[]))?;
+        all.add(scene, &[KD_TREE])?;
     }
+    all.read(profile.swept, &[])?;
     let mut sweep = Vec::new();
     for resolution in profile.resolutions {
         let scene = all.models.at(profile.swept, *resolution)?;
-        all.add(&scene, None)?;
+        all.add(&scene, &[])?;
         sweep.push(scene.name);
     }
     let mut pairs = Vec::new();
     for name in profile.pairs {
         let scenes = all.models.pair(name, profile.pair_size)?;
-        let [bad, good] = scenes.each_ref().map(|scene| all.study(scene, None));
+        let [bad, good] = scenes.each_ref().map(|scene| all.study(scene, &[]));
         pairs.push((scenes, [bad?, good?]));
     }
     let torn = all.models.torn(profile.torn)?;
     for scene in &torn {
-        all.add(scene, None)?;
+        all.add(scene, &[])?;
     }
     if let Some(name) = profile.mixed {
-        all.read(name, None)?;
+        all.read(name, &[])?;
     }
     let mut scattered = Vec::new();
-    for scene in all.models.scattered(profile)? {
-        all.add(&scene, None)?;
+    for scene in scattered_scenes {
+        all.add(&scene, &[])?;
         scattered.push(scene.name);
     }
 
@@ -112,6 +116,8 @@ fn write_profile(profile: &Profile, command: &str, models: Models, out: &Path) -
         ("queries", profile.queries.to_string()),
         ("rounds", profile.rounds.to_string()),
         ("answers", answers.to_owned()),
+        ("scope", profile.scope.to_owned()),
+        ("threads", all.threads.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")),
         ("swept", scenes::stem(profile.swept).to_owned()),
         ("table 1", tables::lists(&ten)),
         ("table 1 cited", cited::table_1()),
@@ -146,14 +152,14 @@ struct Studies<'a> {
 }
 
 impl Studies<'_> {
-    fn read(&mut self, name: &str, papers: Option<&[&str]>) -> Result<()> {
+    fn read(&mut self, name: &str, more: &[&str]) -> Result<()> {
         let scene = self.models.read(name)?;
-        self.add(&scene, papers)
+        self.add(&scene, more)
     }
 
-    fn add(&mut self, scene: &Scene, papers: Option<&[&str]>) -> Result<()> {
+    fn add(&mut self, scene: &Scene, more: &[&str]) -> Result<()> {
         if !self.known.contains_key(&scene.name) {
-            let study = self.study(scene, papers)?;
+            let study = self.study(scene, more)?;
             self.known.insert(scene.name.clone(), study);
         }
         Ok(())
@@ -163,17 +169,15 @@ impl Studies<'_> {
         &self.known[name]
     }
 
-    /// Measures a scene; as the paper does, if wanted: with its KD-tree, and more contenders than those that are compared
-    /// everywhere.
-    fn study(&self, scene: &Scene, papers: Option<&[&str]>) -> Result<Study> {
+    /// Measures a scene, with more contenders than those that are compared everywhere.
+    fn study(&self, scene: &Scene, more: &[&str]) -> Result<Study> {
         let Profile { queries, rounds, builds, boxes, swept, .. } = *self.profile;
         let is_swept = scene.name == swept;
         let wanted = Wanted {
             contenders: &COMPARED,
-            more: papers.unwrap_or_default(),
+            more,
             boxes: if is_swept { boxes } else { &[] },
             threads: if is_swept { &self.threads } else { &[] },
-            kd_tree: papers.is_some(),
         };
         Study::of(scene, wanted, &Effort { rounds, queries, builds, seed: 1 })
     }
@@ -186,6 +190,7 @@ mod tests {
 
     /// Everything that is generated, and a little of that.
     const LEAST: Profile = Profile {
+        scope: "A test.",
         queries: 200,
         rounds: 2,
         builds: 1,
@@ -217,6 +222,8 @@ mod tests {
         }
         let plots: Vec<&str> = page.split("](paper/").skip(1).map(|rest| rest.split(')').next().unwrap()).collect();
         assert_eq!(plots.len(), 11);
+        // Spheres have no long lists, and nothing else is left out.
+        assert_eq!(page.matches(" - |").count(), 6, "{page}");
         for plot in plots {
             assert!(folder.path().join("paper").join(plot).is_file(), "{plot}");
         }

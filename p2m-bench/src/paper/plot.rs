@@ -281,6 +281,18 @@ mod tests {
         for word in ["camel", "lucy", "locate", "list"] {
             assert!(text.contains(word), "{word}: {text}");
         }
+        // Bars of each part, as wide as their numbers.
+        let widths = |part: usize| -> Vec<f64> {
+            let RGBColor(r, g, b) = colour(part);
+            let filled = format!("fill=\"#{r:02X}{g:02X}{b:02X}\"");
+            let bars = text.split("<rect").filter(|rect| rect.contains(&filled));
+            let width = |rect: &str| rect.split("width=\"").nth(1).and_then(|w| w.split('"').next()?.parse().ok());
+            bars.filter_map(width).collect()
+        };
+        let (first, second) = (widths(0), widths(1));
+        assert_eq!((first.len(), second.len()), (3, 3), "two bars and a name: {text}");
+        assert!((second[0] / first[0] - 2.0).abs() < 0.02 && (first[1] / first[0] - 3.0).abs() < 0.03, "{first:?}");
+        assert!((first[1] / second[1] - 6.0).abs() < 0.1, "{second:?}");
     }
 
     #[test]

@@ -13,6 +13,8 @@ pub(super) enum Resolution {
 
 /// What is measured, of which models.
 pub(super) struct Profile {
+    /// What there is to say about it at the head of the page.
+    pub(super) scope: &'static str,
     pub(super) queries: usize,
     pub(super) rounds: usize,
     pub(super) builds: usize,
@@ -43,9 +45,10 @@ use Resolution::{Coarsened, Own, Subdivided};
 
 /// What docs/paper.md has.
 pub(super) const FULL: Profile = Profile {
+    scope: "What is said about tables and plots is said of this page.",
     queries: 100_000,
     rounds: 5,
-    builds: 5,
+    builds: 3,
     five: &["camel.off", "armadillo.obj", "sponza_66k.obj", "lucy_100k.ply", "dragon_871k.ply"],
     swept: "dragon_871k.ply",
     resolutions: &[
@@ -71,6 +74,7 @@ pub(super) const FULL: Profile = Profile {
 
 /// The same tables and plots in less time, with less in them.
 pub(super) const QUICK: Profile = Profile {
+    scope: "**A quick look**: few models, little ones; what is said below is said of the full page, docs/paper.md.",
     queries: 20_000,
     rounds: 5,
     builds: 1,

@@ -2,15 +2,14 @@
 
 use crate::backends::{self, p2m_options};
 use crate::contender::{Absent, Answer, Backend};
-use crate::measure::{self, Effort, Entry, Spread, rotated};
+use crate::measure::{self, Effort, Entry, SetFigures, Spread, rotated};
 use crate::queries::Queries;
 use crate::scene::Scene;
 use anyhow::Result;
 use cpu_time::ThreadTime;
 use nalgebra::Point3;
-use p2m_core::interception::Locator;
 use p2m_core::{ClosestPoint, Lists, PrimitiveSet, Soup, StageTimes, Visits};
-use p2m_interception::{Hints, KdTreeLocator, P2mIndexWith, P2mReport, SortedLists, Stage};
+use p2m_interception::{P2mIndex, P2mReport, Stage};
 use p2m_testkit::queries::{QuerySet, scaled_box};
 use rayon::prelude::*;
 use std::hint::black_box;
@@ -27,8 +26,6 @@ pub(super) struct Wanted<'a> {
     pub(super) boxes: &'a [f64],
     /// Numbers of threads.
     pub(super) threads: &'a [usize],
-    /// Whether to break down the time of the index with the paper's KD-tree as well.
-    pub(super) kd_tree: bool,
 }
 
 /// What was measured.
@@ -36,8 +33,6 @@ pub(super) struct Study {
     pub(super) name: String,
     pub(super) primitives: usize,
     pub(super) inside: Inside,
-    /// The same index with the paper's KD-tree, where that was wanted.
-    pub(super) with_kd_tree: Option<Breakdown>,
     pub(super) contenders: Vec<Measured>,
     /// Whether answers of ours were bitwise the same.
     pub(super) agrees: bool,
@@ -88,13 +83,6 @@ impl Study {
         let soup = &scene.double;
         let far = QuerySet::Box10.generate(soup, effort.queries, effort.seed);
         let inside = Inside::of(soup, &far, effort.rounds)?;
-        let with_kd_tree = if wanted.kd_tree {
-            let index =
-                P2mIndexWith::<f64, _, KdTreeLocator, SortedLists>::build_with_progress(soup, &p2m_options(), &|_| ())?;
-            Some(Breakdown::of(&index, &far, effort.rounds))
-        } else {
-            None
-        };
         let named = |names: &[&str]| -> Vec<&'static Backend> {
             backends::ALL.iter().filter(|backend| names.contains(&backend.name)).collect()
         };
@@ -110,10 +98,11 @@ impl Study {
         threads.resize(entries.len(), Vec::new());
         let contenders: Vec<Measured> =
             entries.iter().zip(threads).map(|(entry, threads)| Measured::of(entry, threads)).collect();
-        let ours = entries.iter().filter(|entry| entry.backend.ours).flat_map(|entry| entry.sets.iter().flatten());
-        let agrees = ours.map(|set| set.agreement.is_clean()).fold(true, |all, clean| all & clean);
+        // One of ours that is absent does not agree.
+        let is_clean = |set: &Result<SetFigures, Absent>| set.as_ref().is_ok_and(|set| set.agreement.is_clean());
+        let agrees = entries.iter().filter(|entry| entry.backend.ours).all(|entry| entry.sets.iter().all(is_clean));
         eprintln!("{} primitives of {} in {:.1?}", soup.len(), scene.name, start.elapsed());
-        Ok(Self { name: scene.name.clone(), primitives: soup.len(), inside, with_kd_tree, contenders, agrees })
+        Ok(Self { name: scene.name.clone(), primitives: soup.len(), inside, contenders, agrees })
     }
 
     /// A contender that was measured, if it could be.
@@ -130,7 +119,7 @@ impl Study {
 impl Inside {
     fn of(soup: &Soup<f64>, queries: &[Point3<f64>], rounds: usize) -> Result<Self> {
         let times = StageTimes::new(|| ThreadTime::now().as_duration());
-        let index = P2mIndexWith::<f64, _, Hints, SortedLists>::build_with_progress(soup, &p2m_options(), &|told| {
+        let index = P2mIndex::<f64, _>::build_with_progress(soup, &p2m_options(), &|told| {
             times.tell(told);
         })?;
         let stages = times.finish().into_iter().map(|(stage, time)| (stage, time.as_secs_f64())).collect();
@@ -147,11 +136,7 @@ impl Inside {
 
 impl Breakdown {
     /// Locating alone and whole queries in turns.
-    fn of<L: Locator>(
-        index: &P2mIndexWith<f64, &Soup<f64>, L, SortedLists>,
-        queries: &[Point3<f64>],
-        rounds: usize,
-    ) -> Self {
+    fn of(index: &P2mIndex<f64, &Soup<f64>>, queries: &[Point3<f64>], rounds: usize) -> Self {
         let (mut locate, mut whole) = (Vec::new(), Vec::new());
         for _ in 0..rounds {
             locate.push(nanoseconds(queries, |query| index.partition().site_of(query)));

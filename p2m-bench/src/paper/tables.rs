@@ -89,9 +89,7 @@ pub(super) fn queries(studies: &[&Study]) -> String {
     ]);
     for study in studies {
         let mut row = vec![stem(&study.name).to_owned()];
-        row.extend(["parry3d", "parry3d-f64", "aabb"].map(|name| query(study, name)));
-        row.push(study.with_kd_tree.map_or("-".to_owned(), |with| format!("{:.2}", with.whole / 1e3)));
-        row.push(query(study, "p2m"));
+        row.extend(["parry3d", "parry3d-f64", "aabb", "p2m-kiddo", "p2m"].map(|name| query(study, name)));
         row.extend([ratio(study, "parry3d", "p2m"), ratio(study, "parry3d-f64", "p2m")]);
         row.extend(["p2m-long", "p2m-long-rstar"].map(|name| query(study, name)));
         row.push(ratio(study, "p2m-long", "p2m-long-rstar"));
