@@ -12,8 +12,8 @@ use p2m::{AabbTree, BuildIndex, ClosestPoint, Element, NearQuery, Soup};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Half of the room between what is proved and what is found, as a part of the diagonal of the scene.
-const TOLERANCE: f64 = 1e-6;
+/// The room between what is proved and what is found, as a part of the diagonal of the scene.
+const TOLERANCE: f64 = 1e-4;
 
 /// Two places of an axis with their distances.
 type Part = [(Point3<f64>, f64); 2];
@@ -57,7 +57,9 @@ fn main() -> anyhow::Result<()> {
     let index = AabbTree::build(&mesh, &Default::default())?;
 
     let bounds = p2m::PrimitiveSet::aabb(&scene);
-    let tolerance = TOLERANCE * (bounds.max - bounds.min).norm();
+    // Not below what coordinates can tell.
+    let tolerance =
+        TOLERANCE * (bounds.max - bounds.min).norm() + 1e-12 * bounds.min.coords.amax().max(bounds.max.coords.amax());
     let pipes: Vec<[Point3<f64>; 2]> = scene.segments().iter().map(|s| s.map(|i| places[i as usize])).collect();
     let found: Option<Vec<(f64, usize)>> = pipes.iter().map(|axis| clearance(&index, *axis, tolerance)).collect();
     let Some(found) = found.filter(|found| !found.is_empty()) else {

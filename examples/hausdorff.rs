@@ -2,15 +2,15 @@
 //! tolerance, both ways.
 //!
 //! `cargo run --release --example hausdorff -- [A] [B]`; without files of two spheres of triangles, one of which is moved
-//! by (0.3, 0, 0.4): the distance of a convex surface from itself moved is the way, 0.5, if it is moved by less than
-//! its width.
+//! by (0.3, 0, 0.4): the distance of a convex surface from itself moved is the way, 0.5. Only triangles count.
 //!
 //! A distance changes by at most as much as its place moves. So on a triangle it is at most that of a vertex and the
 //! longest side from there, and the triangle where that is most is cut until it is certain.
 
+use anyhow::Context;
 use nalgebra::{Point3, Vector3};
 use p2m::scene::generate::{IcoSphere, ico_sphere};
-use p2m::{AabbTree, BuildIndex, ClosestPoint, Soup};
+use p2m::{AabbTree, BuildIndex, ClosestPoint, Element, PrimitiveSet, Soup};
 use std::collections::BinaryHeap;
 
 const TOLERANCE: f64 = 1e-3;
@@ -27,11 +27,14 @@ fn bound(corners: &[Corner; 3]) -> f64 {
 /// How far a point of the surface can be from what is indexed: at least this, and at most by the tolerance more.
 fn directed<I: ClosestPoint<f64>>(surface: &Soup<f64>, index: &I, tolerance: f64) -> Option<f64> {
     let at = |p: Point3<f64>| index.closest_point(&p).map(|answer| (p, answer.distance));
-    let corners: Vec<Corner> = surface.positions().iter().map(|p| at(*p)).collect::<Option<_>>()?;
-    let mut parts: Vec<[Corner; 3]> = surface.triangles().iter().map(|t| t.map(|i| corners[i as usize])).collect();
+    let mut parts: Vec<[Corner; 3]> = Vec::new();
+    for triangle in surface.triangles() {
+        let [a, b, c] = triangle.map(|i| at(surface.positions()[i as usize]));
+        parts.push([a?, b?, c?]);
+    }
     // Numbers of parts, the one with the greatest bound on top: bits of numbers that are not negative have their order.
     let mut next: BinaryHeap<(u64, usize)> = (0..).zip(&parts).map(|(i, part)| (bound(part).to_bits(), i)).collect();
-    let mut greatest = corners.iter().map(|corner| corner.1).fold(0.0, f64::max);
+    let mut greatest = parts.iter().flatten().map(|corner| corner.1).fold(0.0, f64::max);
     while let Some((bits, number)) = next.pop() {
         if f64::from_bits(bits) <= greatest + tolerance {
             break;
@@ -50,22 +53,27 @@ fn directed<I: ClosestPoint<f64>>(surface: &Soup<f64>, index: &I, tolerance: f64
 
 fn main() -> anyhow::Result<()> {
     let names: Vec<String> = std::env::args().skip(1).collect();
+    let surface = |name: &String| -> anyhow::Result<Soup<f64>> {
+        let scene = p2m::scene::read_scene(name.as_ref())?.soup;
+        anyhow::ensure!(!scene.triangles().is_empty(), "{name} has no triangles");
+        Ok(Soup::new(scene.positions().to_vec(), scene.triangles().iter().map(|t| Element::Triangle(*t)))?)
+    };
     let [a, b] = if let [a, b] = &names[..] {
-        [p2m::scene::read_scene(a.as_ref())?.soup, p2m::scene::read_scene(b.as_ref())?.soup]
+        [surface(a)?, surface(b)?]
     } else {
+        anyhow::ensure!(names.is_empty(), "two scenes, or none");
         let sphere = ico_sphere(&IcoSphere::default().with_frequency(20))?;
         let moved = sphere.positions().iter().map(|p| p + Vector3::new(0.3, 0.0, 0.4)).collect();
         let other = Soup::new(moved, sphere.elements())?;
         [sphere, other]
     };
     let indexes = [AabbTree::build(&a, &Default::default())?, AabbTree::build(&b, &Default::default())?];
-    let bounds = p2m::PrimitiveSet::aabb(&a);
-    let tolerance = TOLERANCE * (bounds.max - bounds.min).norm();
-    let (there, back) = (directed(&a, &indexes[1], tolerance), directed(&b, &indexes[0], tolerance));
-    let (Some(there), Some(back)) = (there, back) else {
-        println!("one of the scenes is empty");
-        return Ok(());
-    };
+    let bounds = a.aabb().union(&b.aabb());
+    // Not below what coordinates can tell.
+    let largest = bounds.min.coords.amax().max(bounds.max.coords.amax());
+    let tolerance = TOLERANCE * (bounds.max - bounds.min).norm() + 1e-12 * largest;
+    let there = directed(&a, &indexes[1], tolerance).context("the second is empty")?;
+    let back = directed(&b, &indexes[0], tolerance).context("the first is empty")?;
     println!("from the first to the second {there:.4}, back {back:.4}");
     println!("the Hausdorff distance is {:.4}, and at most {tolerance:.4} more", there.max(back));
     Ok(())

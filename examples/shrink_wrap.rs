@@ -38,7 +38,8 @@ fn main() -> anyhow::Result<()> {
     let brute = BruteForce::new(&scene)?;
     let wrapped: Vec<Point3<f64>> = answers.iter().map(|answer| answer.point).collect();
     let left = wrapped.iter().filter_map(|p| brute.closest_point(p)).map(|c| c.distance).fold(0.0, f64::max);
-    println!("on the scene up to rounding: {}", left <= 1e-12 * radius);
+    let size = radius + centre.coords.amax();
+    println!("on the scene up to rounding: {}", left <= 1e-12 * size);
     if let Some(out) = arguments.next() {
         let wrap = Soup::new(wrapped, sphere.elements())?;
         p2m::scene::write_ply(&wrap.into(), std::io::BufWriter::new(std::fs::File::create(&out)?))?;

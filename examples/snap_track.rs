@@ -28,7 +28,7 @@ fn track() -> Vec<(Point3<f64>, bool)> {
         for part in 0..10 {
             // Errors of up to 15 metres, and of 30 at every 50th place.
             let number = f64::from(step * 10 + part);
-            let error = if (step * 10 + part) % 50 == 49 { 30.0 } else { 15.0 * (number * 1.7).sin() };
+            let error = if (step * 10 + part) % 50 == 45 { 30.0 } else { 15.0 * (number * 1.7).sin() };
             let way = f64::from(part) * BLOCK / 10.0 + BLOCK / 20.0;
             let (x, y) = (f64::from(x) * BLOCK, f64::from(y) * BLOCK);
             let place =

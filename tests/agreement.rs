@@ -12,7 +12,7 @@ use p2m::{
 };
 use p2m_testkit::ball::Ball;
 use p2m_testkit::families::shape;
-use p2m_testkit::scenes::{self, KINDS, LAYOUTS, queries, random_soups, to_f32};
+use p2m_testkit::scenes::{self, KINDS, LAYOUTS, extreme_soups, queries, random_soups, to_f32};
 use p2m_testkit::{oracle::Distance, rng};
 use rand::RngExt;
 use std::fmt::Debug;
@@ -37,14 +37,7 @@ macro_rules! on_soups {
 
         #[test]
         fn agrees_at_extreme_scales() {
-            for (seed, soup) in random_soups("scales") {
-                let e = [-1060, -1000, -600, -400, 400, 600, 1000, 1021][seed as usize % 8];
-                let scale = |p: &Point3<f64>| p.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
-                let queries: Vec<_> =
-                    queries(seed, &soup).iter().map(scale).filter(|q| q.iter().all(|x| x.is_finite())).collect();
-                let Ok(soup) = Soup::new(soup.positions().iter().map(scale).collect(), soup.elements()) else {
-                    continue;
-                };
+            for (seed, soup, queries) in extreme_soups("scales") {
                 agrees::<f64, &Soup<f64>, $index<f64, _>>(seed, &soup, &queries);
             }
         }

@@ -14,6 +14,7 @@ use p2m::{
 use p2m_testkit::rays::{self, AIMS};
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS, narrow};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use std::fmt::{self, Debug, Formatter};
 use std::sync::LazyLock;
 
@@ -126,7 +127,7 @@ fn check<T: Real>(case: &Case, soup: &Soup<T>, point: impl Fn(&Point3<f64>) -> P
         let radius = expected.map_or(T::one(), |c| c.distance) * T::of_f64(1.0 + (case.seed % 3) as f64 * 0.3);
         let hint = PrimitiveId::new(case.seed as usize % (soup.len() + 1));
         let options = QueryOptions::default().with_max_distance(radius).with_hint(hint);
-        let odd = |id: PrimitiveId| (id.index() as u64 ^ case.seed) % 3 == 0;
+        let odd = |id: PrimitiveId| (id.index() as u64 ^ case.seed).is_multiple_of(3);
         for (name, index) in indexes {
             let found = index.closest_point(&query);
             prop_assert_eq!(found.as_ref().map(known), expected.as_ref().map(known), "{}, {:?}", name, query);
@@ -173,8 +174,20 @@ fn check<T: Real>(case: &Case, soup: &Soup<T>, point: impl Fn(&Point3<f64>) -> P
     Ok(())
 }
 
+/// The same cases each time, unless the variable PROPTEST_RNG_SEED or PROPTEST_CASES says otherwise.
+fn config() -> ProptestConfig {
+    let usual = ProptestConfig::default();
+    let is_told = |name: &str| std::env::var_os(name).is_some();
+    ProptestConfig {
+        cases: if is_told("PROPTEST_CASES") { usual.cases } else { 1000 },
+        rng_seed: if is_told("PROPTEST_RNG_SEED") { usual.rng_seed } else { RngSeed::Fixed(1) },
+        failure_persistence: None,
+        ..usual
+    }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(config())]
 
     #[test]
     fn every_backend_answers_every_query_as_brute_force_in_f64(case in cases()) {

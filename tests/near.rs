@@ -8,7 +8,7 @@ use p2m::{
     AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopTree, Near, NearQuery, OctreeIndex, P2mIndex, PrimitiveId,
     PrimitiveSet, Projection, QueryOptions, Real, Soup,
 };
-use p2m_testkit::scenes::{Kinds, Layout, narrow, queries, random_soups, soup, to_f32};
+use p2m_testkit::scenes::{Kinds, Layout, extreme_soups, narrow, queries, random_soups, soup, to_f32};
 use p2m_testkit::{near_check, rng};
 use std::fmt::Debug;
 
@@ -36,14 +36,7 @@ macro_rules! backends {
 
             #[test]
             fn agrees_at_extreme_scales() {
-                for (seed, soup) in random_soups("near scales").step_by(3) {
-                    let e = [-1060, -1000, -600, -400, 400, 600, 1000, 1021][seed as usize % 8];
-                    let scale = |p: &Point3<f64>| p.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
-                    let queries: Vec<_> =
-                        queries(seed, &soup).iter().map(scale).filter(|q| q.iter().all(|x| x.is_finite())).collect();
-                    let Ok(soup) = Soup::new(soup.positions().iter().map(scale).collect(), soup.elements()) else {
-                        continue;
-                    };
+                for (seed, soup, queries) in extreme_soups("near scales").step_by(3) {
                     agrees::<f64, $index<f64, _>>(seed, &soup, &queries);
                 }
             }

@@ -44,8 +44,10 @@ impl<T: Real, S: PrimitiveSet<T>> ClosestPoint<T> for BruteForce<S> {
 
 impl<T: Real, S: PrimitiveSet<T>> NearQuery<T> for BruteForce<S> {
     fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>) {
-        let mut ids = (0..self.set.len()).map(PrimitiveId::new);
-        while let Some(id) = ids.next().filter(|_| !near.is_done()) {
+        for id in (0..self.set.len()).map(PrimitiveId::new) {
+            if near.is_done() {
+                return;
+            }
             near.offer(id, self.set.get(id).project(query));
         }
     }

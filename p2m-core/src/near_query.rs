@@ -33,10 +33,10 @@ use std::ops::ControlFlow;
 /// ```
 ///
 /// # Complexity
-/// Expected O(log n + k) for trees and k answers; O(n) for brute force. The interception indexes ask their trees: lists
-/// know the nearest primitive alone.
+/// Expected O(log n + k log k) for trees and k answers, and as much for the closest one among some after k that are not
+/// wanted; O(n) for brute force. The interception indexes ask their trees: lists know the nearest primitive alone.
 pub trait NearQuery<T: Real> {
-    /// Offers to `near` every primitive that it could want. `query` is finite.
+    /// Offers to `near` every primitive that it could want, each once at most. `query` is finite.
     fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>);
 
     /// The nearest primitives, at most `k` and none beyond the radius, nearest first.
@@ -91,7 +91,8 @@ pub trait NearQuery<T: Real> {
 
 /// [`NearQuery::search_near`] for any query, if something is wanted at all.
 fn ask<T: Real>(index: &(impl NearQuery<T> + ?Sized), query: &Point3<T>, near: &mut Near<'_>) {
-    if query.iter().all(|x| x.is_finite()) && !near.is_done() {
+    // Not for a radius of NaN either.
+    if query.iter().all(|x| x.is_finite()) && !near.is_done() && near.radius >= 0.0 {
         index.search_near(query, near);
     }
 }
@@ -180,7 +181,8 @@ impl<'a> Near<'a> {
 
 /// The answer that a primitive is on its own.
 fn of_one<T: Real>(id: PrimitiveId, projection: &Projection) -> Closest<T> {
-    answer(id, projection, projection.key.distance() - projection.error)
+    // A distance above the range is at least its end.
+    answer(id, projection, projection.key.distance().min(f64::MAX) - projection.error)
 }
 
 impl Collector for Near<'_> {

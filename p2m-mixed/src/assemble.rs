@@ -6,7 +6,8 @@ use p2m_core::{BuildError, Element, PrimitiveId, PrimitiveSet, Soup};
 use std::ops::Range;
 
 impl Scene {
-    /// Adds a part under a name (or, with an empty name, under none); the ids that its primitives got.
+    /// Adds a part under a name, without blanks around it (or, if nothing is left of that, under none); the ids that its
+    /// primitives got.
     ///
     /// To turn, scale or move it first, [`Transform::apply`](crate::generate::Transform::apply) it: coordinates are
     /// transformed once, and queries are as fast as ever.
@@ -30,22 +31,27 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// [`BuildError::TooMany`] for more primitives than ids; the scene is then as it was.
+    /// [`BuildError::TooMany`] for more primitives than ids, or more vertices than u32 can number; the scene is then as it
+    /// was.
     ///
     /// # Complexity
-    /// O(1) for each vertex and primitive of the part.
+    /// O(1) for each vertex and primitive of the part. A part without primitives leaves nothing.
     pub fn add(&mut self, name: &str, part: &Soup<f64>) -> Result<Range<usize>, BuildError> {
         let start = self.soup.len();
         let end = start + part.len();
-        let (first, vertices) = (self.soup.positions().len(), part.positions().len());
-        // Vertices are numbered by u32, and primitives have to be more than these to need as many.
-        if end > PrimitiveId::MAX_COUNT || u32::try_from(first + vertices).is_err() {
-            return Err(BuildError::TooMany { len: end });
+        if start == end {
+            return Ok(start..end);
         }
+        let first = self.soup.positions().len();
+        // Vertices are numbered by u32: more of them than that are too many for the scene as well.
+        let last = u32::try_from(first + part.positions().len());
+        let (Ok(first), Ok(_), true) = (u32::try_from(first), last, end <= PrimitiveId::MAX_COUNT) else {
+            return Err(BuildError::TooMany { len: end });
+        };
         for position in part.positions() {
             self.soup.push_position(*position);
         }
-        let shifted = |i: u32| i + u32::try_from(first).expect("checked above");
+        let shifted = |i: u32| i + first;
         let mut next = [0; 3];
         for element in part.elements() {
             let element = match element {
@@ -56,9 +62,11 @@ impl Scene {
             let count = &mut next[element.indices().len() - 1];
             self.sources.push(*count);
             *count += 1;
-            self.soup.push(element).expect("a part is valid, and there is room");
+            // Never refused: a part is valid, and there is room.
+            self.soup.push(element)?;
         }
-        if !name.is_empty() && start < end {
+        let name = name.trim();
+        if !name.is_empty() {
             self.objects.push(Object { name: name.to_owned(), ids: start..end });
         }
         Ok(start..end)
@@ -149,8 +157,8 @@ mod tests {
     fn parts_keep_their_names_and_numbers() {
         let mut scene = Scene::default();
         assert_eq!(scene.add_triangles("a", &CORNERS, &[[0, 1, 2], [2, 1, 0]]).unwrap(), 0..2);
-        assert_eq!(scene.add_polyline("b", &CORNERS).unwrap(), 2..4);
-        assert_eq!(scene.add_points("", &CORNERS[..1]).unwrap(), 4..5);
+        assert_eq!(scene.add_polyline(" b\n", &CORNERS).unwrap(), 2..4);
+        assert_eq!(scene.add_points(" ", &CORNERS[..1]).unwrap(), 4..5);
         assert_eq!(scene.add_triangles("a", &CORNERS, &[[0, 2, 1]]).unwrap(), 5..6);
         assert_eq!(scene.add_segments("empty", &CORNERS, &[]).unwrap(), 6..6);
         assert_eq!(scene.add_segments("c", &CORNERS.map(Point3::from), &[[2, 0]]).unwrap(), 6..7);
@@ -162,6 +170,13 @@ mod tests {
         assert_eq!(scene.soup.segments(), [[3, 4], [4, 5], [12, 10]]);
         assert_eq!(scene.soup.triangles()[2], [7, 9, 8]);
         assert_eq!(scene.soup.positions().len(), 13);
+    }
+
+    #[test]
+    fn positions_may_be_those_of_mint() {
+        let mut scene = Scene::default();
+        scene.add_points("", &[mint::Point3 { x: 1.0, y: 2.0, z: 3.0 }]).unwrap();
+        assert_eq!(scene.soup.positions(), [Point3::new(1.0, 2.0, 3.0)]);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use nalgebra::Point3;
 use p2m_core::{BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, NearQuery, PrimitiveSet, Real, Soup};
 use p2m_mixed::adapters::{ParryIndex, RstarIndex};
 use p2m_testkit::near_check;
-use p2m_testkit::scenes::{narrow, queries, random_soups, to_f32};
+use p2m_testkit::scenes::{extreme_soups, narrow, queries, random_soups, to_f32};
 
 macro_rules! adapters {
     ($($name:ident: $index:ident),+ $(,)?) => {
@@ -24,14 +24,7 @@ macro_rules! adapters {
 
             #[test]
             fn agrees_at_extreme_scales() {
-                for (seed, soup) in random_soups("scales of adapters").step_by(3) {
-                    let e = [-1060, -1000, -600, -400, 400, 600, 1000, 1021][seed as usize % 8];
-                    let scale = |p: &Point3<f64>| p.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
-                    let queries: Vec<_> =
-                        queries(seed, &soup).iter().map(scale).filter(|q| q.iter().all(|x| x.is_finite())).collect();
-                    let Ok(soup) = Soup::new(soup.positions().iter().map(scale).collect(), soup.elements()) else {
-                        continue;
-                    };
+                for (seed, soup, queries) in extreme_soups("scales of adapters").step_by(3) {
                     agrees::<f64, $index<f64, _>>(seed, &soup, &queries);
                 }
             }

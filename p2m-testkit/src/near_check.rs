@@ -3,7 +3,8 @@
 use crate::rng;
 use nalgebra::Point3;
 use p2m_core::{
-    Closest, ClosestPoint, NearQuery, Primitive, PrimitiveId, PrimitiveSet, Projection, QueryOptions, Real, Soup,
+    Closest, ClosestPoint, Feature, NearQuery, Primitive, PrimitiveId, PrimitiveSet, Projection, QueryOptions, Real,
+    Soup,
 };
 use rand::RngExt;
 use std::ops::ControlFlow;
@@ -17,18 +18,18 @@ fn sorted<T: Real>(soup: &Soup<T>, query: &Point3<T>) -> Vec<(PrimitiveId, Proje
 }
 
 /// Everything of an answer but its bound.
-type Known<T> = (PrimitiveId, T, Point3<T>, [T; 3]);
+type Known<T> = (PrimitiveId, T, Point3<T>, Feature, [T; 3]);
 
 fn known<T: Real>(closest: &Closest<T>) -> Known<T> {
-    (closest.primitive, closest.distance, closest.point, closest.barycentric)
+    (closest.primitive, closest.distance, closest.point, closest.feature, closest.barycentric)
 }
 
 fn expected<T: Real>((id, projection): &(PrimitiveId, Projection)) -> Known<T> {
     let point = projection.point.map(T::of_f64);
-    (*id, T::of_f64(projection.key.distance()), point, projection.barycentric.map(T::of_f64))
+    (*id, T::of_f64(projection.key.distance()), point, projection.feature, projection.barycentric.map(T::of_f64))
 }
 
-/// Whether an index over a soup answers every question of [`NearQuery`] as its primitives do one by one, bit for bit.
+/// Whether an index over a soup answers every question of [`NearQuery`] as its primitives do one by one, number for number.
 ///
 /// # Panics
 /// If it does not.
@@ -49,7 +50,14 @@ pub fn agrees<T: Real>(
                 "{}",
                 say()
             );
-            assert!(found.iter().all(|c| c.lower_bound <= c.distance), "{}", say());
+            for (closest, (_, projection)) in found.iter().zip(expected_of) {
+                // Its own distance less its own error, but for some roundings; finite where the distance is.
+                let least = projection.key.distance().min(f64::MAX) - projection.error;
+                let most = T::of_f64(least * (1.0 - 32.0 * T::UNIT_ROUNDOFF)) - T::of_f64(4.0 * T::SMALLEST_SUBNORMAL);
+                let bound = closest.lower_bound;
+                assert!(bound <= closest.distance && bound.to_f64() <= least.max(0.0), "{}: {bound:?}", say());
+                assert!(bound >= most, "{}: {bound:?}, not {most:?}", say());
+            }
         };
         let k = [0, 1, 2, 7, soup.len() / 2, soup.len(), soup.len() + 3][rng.random_range(0..7)];
         exactly(&all[..k.min(all.len())], &index.k_nearest(q, k, T::INFINITY));
@@ -82,7 +90,7 @@ pub fn agrees<T: Real>(
             assert_eq!((flow.is_break(), rest), (end, if end { 0 } else { 3 - count }), "{}", say());
         }
 
-        let odd = |id: PrimitiveId| (id.index() * 7 + seed as usize) % 5 == 0;
+        let odd = |id: PrimitiveId| (id.index() as u64 * 7 + seed).is_multiple_of(5);
         let first = all[..count].iter().find(|(id, _)| odd(*id)).map(expected);
         let found = index.closest_point_among(q, &options, &mut |id| odd(id));
         assert_eq!(found.as_ref().map(known), first, "{}", say());

@@ -102,12 +102,23 @@ pub fn scene(rng: &mut impl Rng, kinds: Kinds, layout: Layout, len: usize) -> (V
 
 /// Random scenes of every kind and layout, of sizes from none to several hundred, with their seeds.
 pub fn random_soups(name: &'static str) -> impl Iterator<Item = (u64, Soup<f64>)> {
-    (0..240).map(move |seed| {
+    (0..240).zip(0..).map(move |(seed, number): (u64, usize)| {
         let mut rng = crate::rng(name, seed);
-        let kinds = KINDS[seed as usize % 4];
-        let layout = LAYOUTS[seed as usize / 4 % 6];
+        let kinds = KINDS[number % 4];
+        let layout = LAYOUTS[number / 4 % 6];
         let len = [0, 1, 2, 5, 30, 300, 700][rng.random_range(0..7)];
         (seed, soup(&mut rng, kinds, layout, len))
+    })
+}
+
+/// The same scaled to both ends of the range of f64, with queries: those of which that leaves something finite.
+pub fn extreme_soups(name: &'static str) -> impl Iterator<Item = (u64, Soup<f64>, Vec<Point3<f64>>)> {
+    random_soups(name).filter_map(|(seed, soup)| {
+        let e = [-1060, -1000, -600, -400, 400, 600, 1000, 1021][usize::try_from(seed).ok()? % 8];
+        let scale = |p: &Point3<f64>| p.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
+        let queries = queries(seed, &soup).iter().map(scale).filter(|q| q.iter().all(|x| x.is_finite())).collect();
+        let soup = Soup::new(soup.positions().iter().map(scale).collect(), soup.elements()).ok()?;
+        Some((seed, soup, queries))
     })
 }
 

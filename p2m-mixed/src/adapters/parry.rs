@@ -11,7 +11,7 @@ use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 use std::cell::RefCell;
 use std::marker::PhantomData;
 
-/// Bounds that are not finite are this: parry leaves out what costs as much as the largest number.
+/// No bound is above this: parry leaves out what costs as much as the largest number.
 const FAR: f64 = 1e300;
 
 /// An index over a set of primitives by the tree of boxes of parry.
@@ -44,7 +44,7 @@ impl<T: Real, S: PrimitiveSet<T>> ParryIndex<T, S> {
     /// Offers to any collector every primitive that it could want. `query` is finite.
     pub fn visit<C: Collector>(&self, query: &Point3<T>, collector: &mut C) {
         let place = query.coords.map(Real::to_f64);
-        // Both functions that parry calls look at it.
+        // Parry takes functions that change nothing.
         let collector = RefCell::new(collector);
         // What is as far as the bound may tie, so that is not the bound for parry, which goes below it.
         let cost = |collector: &C| collector.prune_above().next_up().min(f64::MAX);
