@@ -205,7 +205,7 @@ fn some_middles(soup: &Soup<f64>, count: u64) -> Vec<Point3<f64>> {
 
 /// What a primitive is coloured by.
 fn value(index: &dyn Closest, middle: &Point3<f64>) -> f64 {
-    let packets = || Counting::of_queries([middle], |query, counting| index.examine(query, counting))[1];
+    let packets = || Counting::of_query(middle, |query, counting| index.examine(query, counting))[1];
     index.list_length(middle).unwrap_or_else(packets) as f64
 }
 

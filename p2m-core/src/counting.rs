@@ -23,16 +23,22 @@ impl<T: Real> Counting<T> {
         Self { best, nodes: 0, packets: 0, primitives: 0 }
     }
 
-    /// Nodes, packets and primitives of some queries with default options, each searched by `visit`, in all.
+    /// Nodes, packets and primitives of a query with default options, searched by `visit`.
+    pub fn of_query(query: &Point3<T>, visit: impl FnOnce(&Point3<T>, &mut Self)) -> [usize; 3] {
+        let mut counting = Self::new(Best::new(&QueryOptions::default()));
+        visit(query, &mut counting);
+        [counting.nodes, counting.packets, counting.primitives]
+    }
+
+    /// The same of some queries in all.
     pub fn of_queries<'a>(
         queries: impl IntoIterator<Item = &'a Point3<T>>,
         visit: impl Fn(&Point3<T>, &mut Self),
     ) -> [usize; 3] {
         let mut sums = [0; 3];
         for query in queries {
-            let mut counting = Self::new(Best::new(&QueryOptions::default()));
-            visit(query, &mut counting);
-            sums = [sums[0] + counting.nodes, sums[1] + counting.packets, sums[2] + counting.primitives];
+            let counts = Self::of_query(query, &visit);
+            sums = [0, 1, 2].map(|i| sums[i] + counts[i]);
         }
         sums
     }

@@ -1,7 +1,7 @@
 //! Statistics of indexes: how long lists are, and what queries cost in what does not depend on the machine.
 
 use crate::interception::{Progress, Stage};
-use crate::{Best, Counting, QueryOptions, Real};
+use crate::{Counting, Real};
 use nalgebra::Point3;
 use std::sync::Mutex;
 use std::time::Duration;
@@ -91,9 +91,8 @@ impl Visits {
     pub fn of<T: Real>(index: &(impl Examine<T> + ?Sized), queries: &[Point3<T>]) -> Self {
         let mut loads = [Load::default(); 3];
         for query in queries {
-            let mut counting = Counting::new(Best::new(&QueryOptions::default()));
-            index.examine(query, &mut counting);
-            for (load, count) in loads.iter_mut().zip([counting.nodes, counting.packets, counting.primitives]) {
+            let counts = Counting::of_query(query, |query, counting| index.examine(query, counting));
+            for (load, count) in loads.iter_mut().zip(counts) {
                 *load = Load { mean: load.mean + count as f64, most: load.most.max(count) };
             }
         }
