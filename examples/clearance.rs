@@ -8,7 +8,7 @@
 //! least (a + b - h) / 2, of the distances a and b there, and the part where that is least is halved until it is certain.
 
 use nalgebra::Point3;
-use p2m::{AabbTree, BuildIndex, ClosestPoint, Element, NearQuery, Soup};
+use p2m::{AabbTree, BuildIndex, ClosestPoint, NearQuery};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -53,8 +53,8 @@ fn main() -> anyhow::Result<()> {
     let radius: f64 = arguments.next().map_or(Ok(0.02), |text| text.parse())?;
     let scene = p2m::scene::read_scene(name.as_ref())?.soup;
     let places = scene.positions();
-    let mesh = Soup::new(places.to_vec(), scene.triangles().iter().map(|t| Element::Triangle(*t)))?;
-    let index = AabbTree::build(&mesh, &Default::default())?;
+    // The mesh alone, borrowed from the scene of both.
+    let index = AabbTree::build(scene.triangle_set(), &Default::default())?;
 
     let bounds = p2m::PrimitiveSet::aabb(&scene);
     // Not below what coordinates can tell.
@@ -69,7 +69,7 @@ fn main() -> anyhow::Result<()> {
     let (tightest, least) =
         found.iter().map(|f| f.0).enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
     let touching = found.iter().filter(|(distance, _)| *distance <= radius).count();
-    println!("{} pipes beside {} triangles", pipes.len(), mesh.triangles().len());
+    println!("{} pipes beside {} triangles", pipes.len(), scene.triangles().len());
     println!("the least clearance is {:.6}, of pipe {tightest}", least - radius);
     println!("{touching} pipes touch the mesh");
     println!("{:.2} queries a pipe", found.iter().map(|f| f.1).sum::<usize>() as f64 / pipes.len() as f64);

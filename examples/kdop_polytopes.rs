@@ -7,8 +7,9 @@
 
 use anyhow::Context;
 use nalgebra::Vector3;
+use p2m::backend::Directions;
 use p2m::kdop::{Polytope, write_polytopes_ply};
-use p2m::{Directions, KdopOptions, KdopTree};
+use p2m::{KdopOptions, KdopTree};
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::PathBuf;

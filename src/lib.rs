@@ -34,17 +34,31 @@
 //! # Ok::<(), p2m::BuildError>(())
 //! ```
 //!
+//! # Which question
+//!
+//! | what | trait | of |
+//! |---|---|---|
+//! | the closest point, within a distance, from a hint, to an epsilon | [`ClosestPoint`] | every index |
+//! | the same for many places, on all cores | [`batch`] | every index |
+//! | the k nearest, all within a distance, any, the closest of some | [`NearQuery`] | every index |
+//! | what a ray meets | [`RayQuery`] | trees and brute force |
+//! | what meets a box | [`BoxQuery`] | trees and brute force |
+//! | what a query costs | [`Examine`] | every index |
+//!
 //! # Which index
+//!
+//! If in doubt, [`AabbTree`]: it is built in no time and fast everywhere.
 //!
 //! | type | what it is | feature |
 //! |---|---|---|
 //! | [`BruteForce`] | every primitive, every time: the oracle, and right for a handful of queries | |
 //! | [`AabbTree`] | boxes split by surface area, searched nearest first | `bvh` |
-//! | [`OctreeIndex`] | cells with lists of what can be nearest in them: no search, for more memory | `interception` |
+//! | [`OctreeIndex`] | cells with short lists of what can be nearest in them, a tree elsewhere: no search, for more memory | `interception` |
 //! | [`P2mIndex`] | the same with the cells of the vertices: fastest far away, for still more memory | `interception` |
 //! | [`KdopTree`] | trees of polytopes of K faces: closer to what does not lie along the axes | `kdop` |
 //!
-//! Write functions over `I: ClosestPoint<T>` to leave the choice to the caller, or take `&dyn ClosestPoint<T>`.
+//! Write functions over `I: ClosestPoint<T>` to leave the choice to the caller, or take `&dyn ClosestPoint<T>`. The page
+//! "Which type do I need" (module `guide`, docs/guide.md) has an example for every choice of scene, index and question.
 //!
 //! # Cargo features
 //!
@@ -54,7 +68,8 @@
 //! | `interception` | [`OctreeIndex`], [`P2mIndex`] | yes |
 //! | `kiddo` | `KdTreeLocator`, the paper's way to the nearest vertex, for [`P2mIndexWith`] | no |
 //! | `rstar` | `RegionTree`, the paper's filter of long lists, for [`P2mIndexWith`]; `scene::adapters::RstarIndex` | no |
-//! | `parry` | `scene::adapters::ParryIndex`, the tree of parry3d-f64 as an index | no |
+//! | `parry` | shapes of parry3d-f64 in [`scene`]s; its tree as an index, `scene::adapters::ParryIndex` | no |
+//! | `parry-f32` | shapes of parry3d in [`scene`]s | no |
 //! | `mint` | positions of the crate mint in [`scene`] | no |
 //! | `kdop` | [`KdopTree`] | yes |
 //! | `rayon` | building and [`batch`] on all cores | yes |
@@ -63,7 +78,15 @@
 
 #[cfg(feature = "bvh")]
 pub use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
-pub use p2m_core::*;
+/// What an index of your own is made of, and what examines others: collectors, hierarchies, the kernel, Delaunay
+/// tetrahedra. The crate `p2m-core` as a whole.
+pub use p2m_core as backend;
+pub use p2m_core::hierarchy::SplitOptions;
+pub use p2m_core::{
+    Aabb, BoxQuery, BruteForce, BuildError, BuildIndex, Closest, ClosestLeaf, ClosestPoint, Element, Examine, Feature,
+    Hit, Indexed, Isa, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet, Projection, QueryOptions, Ray, RayError,
+    RayQuery, Real, Segment, Shape, Side, Soup, Triangle, Visits, batch, saved,
+};
 #[cfg(feature = "kiddo")]
 pub use p2m_interception::KdTreeLocator;
 #[cfg(feature = "rstar")]
@@ -80,6 +103,10 @@ pub use p2m_kdop::{KdopOptions, KdopTree};
 /// Scenes from files and generators.
 #[cfg(feature = "mixed")]
 pub use p2m_mixed as scene;
+
+#[doc = include_str!("../docs/guide.md")]
+#[cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
+pub mod guide {}
 
 /// The README's example, compiled and run.
 #[cfg(all(doctest, feature = "bvh", feature = "mixed"))]

@@ -5,10 +5,10 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
+use p2m::backend::{Best, Directions, Key};
 use p2m::{
-    AabbTree, Best, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Directions, Feature, KdopOptions,
-    KdopTree, Key, OctreeIndex, P2mIndex, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment,
-    Shape, Soup, Triangle,
+    AabbTree, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Feature, KdopOptions, KdopTree, OctreeIndex,
+    P2mIndex, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment, Shape, Soup, Triangle,
 };
 use p2m_testkit::ball::Ball;
 use p2m_testkit::families::shape;

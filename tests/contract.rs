@@ -5,7 +5,8 @@
 #![allow(clippy::cast_possible_truncation, reason = "rounding to f32 is meant")]
 
 use nalgebra::Point3;
-use p2m::{BruteForce, Key, Shape};
+use p2m::backend::Key;
+use p2m::{BruteForce, Shape};
 use p2m::{Closest, ClosestPoint, Feature, Point, Primitive, PrimitiveSet, Projection, QueryOptions, Real};
 use p2m_testkit::families::{self, Case, shape};
 use p2m_testkit::{oracle::Distance, rng};

@@ -1,7 +1,7 @@
 //! The example programs, run, and what they print.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 
-use p2m::{AabbTree, BuildIndex, ClosestPoint, Element, Soup};
+use p2m::{AabbTree, BuildIndex, ClosestPoint};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -55,8 +55,7 @@ fn cables_have_room_beside_the_tube() {
     assert!(asked > 2.0 && asked < 100.0, "{text}");
     // No nearer than what places of the axes say, and hardly farther.
     let scene = p2m::scene::read_scene("scenes/knot_and_cables.obj".as_ref()).expect("carried").soup;
-    let mesh = Soup::new(scene.positions().to_vec(), scene.triangles().iter().map(|t| Element::Triangle(*t)));
-    let index = AabbTree::build(mesh.expect("valid"), &Default::default()).expect("valid");
+    let index = AabbTree::build(scene.triangle_set(), &Default::default()).expect("valid");
     let distances = scene.segments().iter().flat_map(|s| {
         let [a, b] = s.map(|i| scene.positions()[i as usize]);
         (0..=50).map(move |i| a + (b - a) * (f64::from(i) / 50.0))

@@ -3,10 +3,11 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Rotation3, Vector3};
-use p2m::hierarchy::{TreeIndex, Volume};
+use p2m::backend::hierarchy::{TreeIndex, Volume};
+use p2m::backend::{Counting, Directions};
 use p2m::{
-    Aabb, AabbTree, BoxQuery, BruteForce, BuildError, BuildIndex, ClosestLeaf, ClosestPoint, Counting, Directions, Isa,
-    KdopOptions, KdopTree, Primitive, PrimitiveSet, Soup,
+    Aabb, AabbTree, BoxQuery, BruteForce, BuildError, BuildIndex, ClosestLeaf, ClosestPoint, Isa, KdopOptions,
+    KdopTree, Primitive, PrimitiveSet, Soup,
 };
 use p2m_testkit::left_first::LeftFirst;
 use p2m_testkit::queries::QuerySet;

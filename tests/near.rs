@@ -4,8 +4,9 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::Point3;
+use p2m::backend::Near;
 use p2m::{
-    AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopTree, Near, NearQuery, OctreeIndex, P2mIndex, PrimitiveId,
+    AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopTree, NearQuery, OctreeIndex, P2mIndex, PrimitiveId,
     PrimitiveSet, Projection, QueryOptions, Real, Soup,
 };
 use p2m_testkit::scenes::{Kinds, Layout, extreme_soups, narrow, queries, random_soups, soup, to_f32};
@@ -121,7 +122,7 @@ impl NearQuery<f64> for Counted<'_, AabbTree<f64, &Soup<f64>>> {
 
 struct Packets<'a, 'b>(&'a mut Near<'b>, &'a std::cell::Cell<usize>);
 
-impl p2m::Collector for Packets<'_, '_> {
+impl p2m::backend::Collector for Packets<'_, '_> {
     fn prune_above(&self) -> f64 {
         self.0.prune_above()
     }

@@ -4,9 +4,10 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
+use p2m::backend::{Collector, Counting};
 use p2m::{
-    Aabb, BruteForce, BuildIndex, ClosestPoint, Collector, Counting, Domain, Isa, OctreeIndex, OctreeOptions, Point,
-    PrimitiveId, PrimitiveSet, Projection, Segment, Shape, Soup,
+    Aabb, BruteForce, BuildIndex, ClosestPoint, Domain, Isa, OctreeIndex, OctreeOptions, Point, PrimitiveId,
+    PrimitiveSet, Projection, Segment, Shape, Soup,
 };
 use p2m_testkit::rng;
 use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};
@@ -114,7 +115,7 @@ fn cells_do_not_depend_on_the_number_of_threads() {
     let mut rng = rng("octree threads", 0);
     let places: Vec<_> = (0..2000).map(|_| query(&mut rng, &soup)).collect();
     let cells = |parallel| {
-        let splits = p2m::hierarchy::SplitOptions::default().with_parallel(parallel);
+        let splits = p2m::backend::hierarchy::SplitOptions::default().with_parallel(parallel);
         let index = built(&soup, &OctreeOptions::default().with_splits(splits));
         let lists: Vec<_> = places.iter().map(|place| index.partition().list_length(place)).collect();
         (index.report(), lists)

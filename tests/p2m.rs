@@ -4,10 +4,11 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
-use p2m::interception::{Partition, Progress, Stage};
+use p2m::backend::Counting;
+use p2m::backend::interception::{Partition, Progress, Stage};
 use p2m::{
-    Aabb, BruteForce, BuildIndex, ClosestPoint, Counting, Isa, P2mIndex, P2mOptions, Point, Primitive, PrimitiveSet,
-    Projection, Segment, Shape, Soup, Triangle,
+    Aabb, BruteForce, BuildIndex, ClosestPoint, Isa, P2mIndex, P2mOptions, Point, Primitive, PrimitiveSet, Projection,
+    Segment, Shape, Soup, Triangle,
 };
 use p2m_testkit::ball::Ball;
 use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};

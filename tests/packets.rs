@@ -3,9 +3,10 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
+use p2m::backend::{Best, Collector, Counting};
 use p2m::{
-    AabbOptions, AabbTree, Best, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Counting, Isa,
-    Point, Primitive, PrimitiveId, PrimitiveSet, Projection, QueryOptions, Real, Segment, Shape, Soup, Triangle, batch,
+    AabbOptions, AabbTree, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Isa, Point, Primitive,
+    PrimitiveId, PrimitiveSet, Projection, QueryOptions, Real, Segment, Shape, Soup, Triangle, batch,
 };
 use p2m_testkit::rng;
 use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};

@@ -6,10 +6,9 @@
 #![cfg(all(feature = "bvh", feature = "kdop", feature = "mixed"))]
 
 use nalgebra::{Point3, Vector3};
-use p2m::hierarchy::{TreeIndex, Volume};
-use p2m::{
-    Aabb, AabbTree, BuildIndex, Crossing, Element, KdopTree, PrimitiveId, PrimitiveSet, Ray, RayCollector, Side, Soup,
-};
+use p2m::backend::hierarchy::{TreeIndex, Volume};
+use p2m::backend::{Crossing, RayCollector};
+use p2m::{Aabb, AabbTree, BuildIndex, Element, KdopTree, PrimitiveId, PrimitiveSet, Ray, Side, Soup};
 use p2m_testkit::line_filter::LineFilter;
 use p2m_testkit::ray_check::{Truth, agrees};
 use p2m_testkit::rays::{AIMS, ray};

@@ -4,9 +4,10 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
+use p2m::backend::{Crossing, Directions, Hits, RayCollector, RayHit};
 use p2m::{
-    Aabb, AabbTree, BruteForce, BuildIndex, Crossing, Directions, Element, Feature, Hit, Hits, Isa, KdopTree,
-    Primitive, PrimitiveId, PrimitiveSet, Projection, Ray, RayCollector, RayError, RayHit, RayQuery, Real, Side, Soup,
+    Aabb, AabbTree, BruteForce, BuildIndex, Element, Feature, Hit, Isa, KdopTree, Primitive, PrimitiveId, PrimitiveSet,
+    Projection, Ray, RayError, RayQuery, Real, Side, Soup,
 };
 use p2m_testkit::families::{SCALES, wild};
 use p2m_testkit::ray_check::{Truth, agrees, bits};

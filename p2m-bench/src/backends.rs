@@ -1,13 +1,14 @@
 //! Our contenders, and the list of all. A new backend is one entry of [`ALL`].
 
 use crate::contender::{Absent, Answer, Backend, Contender, Prepared, Ready, Scalar, ScalarKind};
+use crate::kinds::{aabb_by_kind, aabb_of_set, aabb_of_triangles};
 use crate::rivals::{parry_double, parry_single};
 use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_bvh::{AabbOptions, AabbTree};
 use p2m_core::{
     BruteForce, BuildIndex, Closest, ClosestPoint, Directions, DirectionsError, Isa, PrimitiveId, PrimitiveSet,
-    QueryOptions, Shape, Soup, Triangle,
+    QueryOptions, Soup,
 };
 use p2m_interception::{
     Hints, InterceptionIndex, KdTreeLocator, ListFilter, Octree, OctreeOptions, P2mOptions, Partition, RegionTree,
@@ -25,6 +26,8 @@ pub(crate) const ALL: &[Backend] = &[
     Backend { name: "aabb-avx2", prepare: |s| aabb::<f64>(s, Some("avx2")), ..OURS },
     Backend { name: "aabb-portable", prepare: |s| aabb::<f64>(s, Some("portable")), ..OURS },
     Backend { name: "aabb-tri", prepare: aabb_of_triangles, ..OURS },
+    Backend { name: "aabb-set", prepare: aabb_of_set, ..OURS },
+    Backend { name: "aabb-by-kind", prepare: aabb_by_kind, ..OURS },
     Backend { name: "octree", prepare: |s| octree::<f64>(s, None, 1.0), ..OURS },
     Backend { name: "octree-avx2", prepare: |s| octree::<f64>(s, Some("avx2"), 1.0), ..OURS },
     Backend { name: "octree-portable", prepare: |s| octree::<f64>(s, Some("portable"), 1.0), ..OURS },
@@ -116,12 +119,12 @@ fn answer<T: Scalar>(closest: Option<Closest<T>>) -> Answer {
 }
 
 #[allow(clippy::cast_possible_truncation, reason = "ids are below 2^30")]
-fn id_of(primitive: PrimitiveId) -> u32 {
+pub(crate) fn id_of(primitive: PrimitiveId) -> u32 {
     primitive.index() as u32
 }
 
 /// An index over a set.
-fn build<'a, T, I, S>(set: S, options: &I::Options) -> Result<Ready<'a>, Absent>
+pub(crate) fn build<'a, T, I, S>(set: S, options: &I::Options) -> Result<Ready<'a>, Absent>
 where
     T: Scalar,
     S: PrimitiveSet<T>,
@@ -283,18 +286,6 @@ pub(crate) fn kdop_backend(name: &str) -> &'static Backend {
 /// What the scene requires.
 pub(crate) fn frame(scene: &Scene) -> Choice {
     Choice::from_scene(&scene.double).expect("a scene is finite")
-}
-
-/// The AABB tree over the triangles written out, where there is nothing else: shows what a set of mixed kinds costs.
-fn aabb_of_triangles(scene: &Scene) -> Result<Prepared<'_>, Absent> {
-    let triangles: Option<Vec<Triangle<f64>>> = (0..scene.len())
-        .map(|i| match scene.double.get(PrimitiveId::new(i)) {
-            Shape::Triangle(triangle) => Some(triangle),
-            _ => None,
-        })
-        .collect();
-    let triangles = triangles.ok_or_else(|| Absent("the scene has other primitives than triangles".to_owned()))?;
-    Ok(Prepared { build: Box::new(|| build::<f64, AabbTree<_, _>, _>(triangles, &aabb_options())), borrowed: 0 })
 }
 
 #[cfg(test)]

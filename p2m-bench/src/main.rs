@@ -14,6 +14,7 @@ mod batch;
 mod contender;
 mod delaunay;
 mod kdop;
+mod kinds;
 mod measure;
 mod memory;
 mod octree;

@@ -23,7 +23,10 @@
 use p2m_core::Aabb;
 use p2m_core::hierarchy::TreeIndex;
 
-pub use p2m_core::hierarchy::{SplitOptions as AabbOptions, SplitRule};
+pub use p2m_core::hierarchy::SplitRule;
+
+/// Options of an [`AabbTree`]: those of splits, there are no others.
+pub type AabbOptions = p2m_core::hierarchy::SplitOptions;
 
 /// An AABB tree over a set of primitives, which it keeps.
 pub type AabbTree<T, S> = TreeIndex<T, S, Aabb<f64>>;

@@ -24,7 +24,8 @@ fn help() -> String {
         "\
 The table has the columns qx,qy,qz,x,y,z,distance,primitive,feature: the query, its closest point in the scene, their \
 distance, the number of the primitive from 0 and the part of it that holds the point. The last six are empty where \
-there is no answer. Numbers are the shortest that read back the same. A summary goes to the standard error.
+there is no answer. Of a scene with named objects there is one column more, object: the name of that of the primitive, \
+empty where it is in none. Numbers are the shortest that read back the same. A summary goes to the standard error.
 
 Primitives are numbered in the order of the file. Polygons are cut into triangles, and it is the triangles that count.
 
@@ -128,7 +129,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     }
     let mut answers = Answers::default();
     let write = || -> io::Result<Duration> {
-        let mut writer = AnswerWriter::new(&mut output, out_format, queries.len())?;
+        let mut writer = AnswerWriter::with_objects(&mut output, out_format, queries.len(), &scene.objects)?;
         let questions = Questions { name: "queries", count: queries.len(), iter: queries };
         let answer = |queries: &[_], answers: &mut [_]| index.closest_points_into(queries, &options, answers);
         let time = ask(&pool, questions, answer, |query, answer| {

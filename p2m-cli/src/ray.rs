@@ -14,7 +14,7 @@ use anyhow::Context;
 use clap::{ArgGroup, ValueEnum};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Hit, Ray, RayError};
-use p2m_mixed::{AnswerFormat, HitWriter, NumberWriter, PointFormat, Scene};
+use p2m_mixed::{AnswerFormat, HitWriter, NumberWriter, Object, PointFormat, Scene};
 use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -35,7 +35,8 @@ do, count and crossings it has one more, called hit (0 or 1), count or crossings
 parameter,x,y,z,primitive,side,w0,w1,w2: the parameter t and the point of the hit, the number of the primitive from 0, the \
 side of the triangle that is met (front, back, or along for one in its plane, and for segments and points), and the weights \
 of the primitive's vertices. With --mode first and any each ray has one line, where the last nine are empty if it \
-meets nothing; with --mode all it has a line for each of its hits, by parameter and then by primitive. Numbers are the \
+meets nothing; with --mode all it has a line for each of its hits, by parameter and then by primitive. Of a scene with named \
+objects hits have one column more, object: the name of that of the primitive, empty where it is in none. Numbers are the \
 shortest that read back the same. A summary goes to the standard error.
 
 Answers as NPY are an array of NumPy with the fields origin, direction and ray, and hit, count or crossings, or parameter, \
@@ -173,7 +174,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let build = start.elapsed();
 
     let pool = asking.pool()?;
-    let task = Task { index: &*index, pool: &pool, rays, output: &mut output, format: out_format };
+    let (index, output_file, objects) = (&*index, &mut output, scene.objects.as_slice());
+    let task = Task { index, pool: &pool, rays, output: output_file, format: out_format, objects };
     let (asked, findings) = task.run(args.mode).with_context(|| output.cannot_write())?;
     let bytes = output.bytes();
     output.finish()?;
@@ -245,6 +247,7 @@ struct Task<'a> {
     rays: Rays<'a>,
     output: &'a mut Output,
     format: AnswerFormat,
+    objects: &'a [Object],
 }
 
 impl Task<'_> {
@@ -289,7 +292,7 @@ impl Task<'_> {
         question: impl Fn(&dyn Index, &Ray) -> A + Sync,
         slice: fn(&A) -> &[Hit],
     ) -> io::Result<(Duration, Findings)> {
-        let mut writer = HitWriter::new(self.output, self.format, records)?;
+        let mut writer = HitWriter::with_objects(self.output, self.format, records, self.objects)?;
         let time = ask(self.pool, self.rays, each(self.index, question), |ray, answer| {
             let (number, hits) = (findings.rays(), slice(answer));
             findings.add_hits(hits);

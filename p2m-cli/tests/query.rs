@@ -54,6 +54,30 @@ fn the_summary_tells_what_was_done() {
 }
 
 #[test]
+fn objects_are_named_in_tables() {
+    let folder = TempDir::new().unwrap();
+    let scene =
+        write(&folder, "s.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 5\np 4\no big, \"flat\"\nf 1 2 3\no wire\nl 1 4\n");
+    let points = write(&folder, "p.csv", "x,y,z\n0.25,0.25,-1\n-1,-1,3\n0,0,9\n100,0,0\n");
+    let query = |scene: &str, backend: &str| {
+        table(&["query", scene, "--points", &points, "--max-distance", "9", "--backend", backend])
+    };
+    let expected = format!(
+        "{HEADER},object\n0.25,0.25,-1.0,0.25,0.25,0.0,1.0,1,face,\"big, \"\"flat\"\"\"\n\
+        -1.0,-1.0,3.0,0.0,0.0,3.0,1.4142135623730951,2,edge0,wire\n0.0,0.0,9.0,0.0,0.0,5.0,4.0,0,vertex0,\n\
+        100.0,0.0,0.0,,,,,,,\n"
+    );
+    for backend in ["brute", "aabb", "kdop", "octree", "p2m"] {
+        assert_eq!(query(&scene, backend), expected);
+    }
+    let saved = path(&folder, "s.p2m");
+    table(&["build", &scene, "--backend", "aabb", "--out", &saved]);
+    assert_eq!(query(&saved, "aabb"), expected);
+    let again = write(&folder, "again.csv", &expected);
+    assert_eq!(table(&["query", &scene, "--points", &again, "--max-distance", "9"]), expected);
+}
+
+#[test]
 fn directions_of_the_scene_are_explained() {
     let query = ["query", SCENE, "--random", "5", "--backend", "kdop"];
     let summary = |k: &str| text(&p2m(&[&query[..], &["--k", k]].concat()).stderr);

@@ -42,6 +42,18 @@ fn backends_and_threads_give_the_same_table() {
 }
 
 #[test]
+fn objects_are_named_in_tables() {
+    let folder = TempDir::new().unwrap();
+    let named = SQUARES.replace("f 5 6 7", "o floor\nf 5 6 7").replace("l 8 9", "o wire\nl 8 9");
+    let scene = write(&folder, "s.obj", named);
+    let rays = write(&folder, "r.csv", "0.2,0.3,5,0,0,-1\n1.1,1,5,0,0,-1\n9,9,9,1,0,0\n");
+    let table = table(&["ray", &scene, "--rays", &rays]);
+    let ends: Vec<_> = table.lines().map(|line| line.split(',').next_back().unwrap()).collect();
+    assert_eq!(ends, ["object", "", "floor", ""]);
+    assert!(table.starts_with(&format!("{HITS},object\n")), "{table}");
+}
+
+#[test]
 fn modes_agree_with_one_another() {
     let run = |mode: &str| table(&["ray", SCENE, "--random", "500", "--radius", "0.05", "--mode", mode]);
     let [met, any, first, all, count] = ["do", "any", "first", "all", "count"].map(run);

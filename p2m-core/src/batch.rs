@@ -15,8 +15,8 @@ pub struct BatchOptions {
     /// Answer along a space-filling curve. Queries that come in such an order anyway (a scan, a grid) save the sorting
     /// without.
     pub reorder: bool,
-    /// Try the primitive of the previous answer first. Without, an index may answer several queries side by side, as the
-    /// P2M index does.
+    /// Try the primitive of the previous answer first, which pays for trees. Without, an index may answer several queries
+    /// side by side, as the P2M index does.
     pub hints: bool,
     /// Use all threads of the current pool; needs the feature `rayon`, without which one thread does it all.
     pub parallel: bool,

@@ -31,8 +31,10 @@ use std::ops::ControlFlow;
 /// `BoxIntersectsAPrimitive` and `GetPrimitivesInABox` in \[Cavarga2021\], the latter of which does not test the
 /// primitives of the leaves.
 pub trait BoxQuery<T: Real> {
-    /// Calls `visit` once for every primitive that meets `bounds`, in any order, until it breaks; then returns what it
-    /// broke with.
+    /// Calls `visit` once for every primitive that meets `bounds`, in any order, until it breaks; whether it did.
+    ///
+    /// # Complexity
+    /// O(n) for brute force; trees open the nodes that meet the box.
     fn visit_box(&self, bounds: &Aabb<T>, visit: &mut dyn FnMut(PrimitiveId) -> ControlFlow<()>) -> ControlFlow<()>;
 
     /// Whether any primitive meets the box.

@@ -39,19 +39,21 @@ pub trait NearQuery<T: Real> {
     /// Offers to `near` every primitive that it could want, each once at most. `query` is finite.
     fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>);
 
-    /// The nearest primitives, at most `k` and none beyond the radius, nearest first.
+    /// The nearest primitives, at most `k` and none beyond the radius (in units of the scene; infinity for no limit),
+    /// nearest first.
     fn k_nearest(&self, query: &Point3<T>, k: usize, radius: T) -> Vec<Closest<T>> {
         let mut near = Near::nearest(k, radius);
         ask(self, query, &mut near);
         near.finish()
     }
 
-    /// All primitives within the radius, nearest first.
+    /// All primitives within the radius, nearest first. [`visit_within`](Self::visit_within) needs no memory for them.
     fn all_within(&self, query: &Point3<T>, radius: T) -> Vec<Closest<T>> {
         self.k_nearest(query, usize::MAX, radius)
     }
 
-    /// Calls `visit` for each primitive within the radius, in an order that depends on the backend, until it breaks.
+    /// Calls `visit` for each primitive within the radius, in an order that depends on the backend, until it breaks; whether
+    /// it did.
     fn visit_within(
         &self,
         query: &Point3<T>,
@@ -75,8 +77,8 @@ pub trait NearQuery<T: Real> {
         near.is_done()
     }
 
-    /// The closest point of the primitives for whose ids `among` says so; it is asked for those alone that are near, and
-    /// has to say the same each time. Of the options the hint and epsilon do not matter.
+    /// The closest point of the primitives whose ids `among` accepts. It is asked about those alone that are near, perhaps
+    /// more than once, and has to say the same each time. Of the options the largest distance alone matters.
     fn closest_point_among(
         &self,
         query: &Point3<T>,

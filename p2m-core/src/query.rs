@@ -19,7 +19,7 @@ pub struct QueryOptions<T: Real> {
     /// Answers farther than this are no answers; the bound is inclusive. Unlimited by default. With a negative or NaN
     /// bound nothing is near enough.
     pub max_distance: T,
-    /// A primitive that is probably near: the previous answer along a path, say. It changes the work, never an exact
+    /// A primitive that is probably near: that of the previous answer along a path, say. It changes the work, never an exact
     /// answer. Ignored if there is no such primitive.
     pub hint: Option<PrimitiveId>,
     /// The reported distance may exceed the true one by this fraction of it: reported <= (1 + epsilon) true, apart
@@ -52,6 +52,9 @@ impl<T: Real> QueryOptions<T> {
 }
 
 /// The answer to a query. Lengths are in units of the scene.
+///
+/// The distance has no sign: a place inside of a closed mesh has its distance from the surface. It is inside where a ray
+/// from it crosses the surface an odd number of times ([`RayQuery::crossings`](crate::RayQuery::crossings)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Closest<T: Real> {
@@ -66,7 +69,8 @@ pub struct Closest<T: Real> {
     pub primitive: PrimitiveId,
     /// The part of that primitive that holds it.
     pub feature: Feature,
-    /// Weights of that primitive's vertices, >= 0, adding up to 1 within 4 u; unused ones are 0.
+    /// Weights of that primitive's vertices in their order (three of a triangle, two of a segment, one of a point), >= 0,
+    /// adding up to 1 within 4 u; the others are 0.
     pub barycentric: [T; 3],
 }
 

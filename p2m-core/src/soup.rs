@@ -54,6 +54,9 @@ impl Slot {
 /// overhead, a mixed one pays four bytes a primitive. Every index is in range and every position that a primitive
 /// uses is finite. Degenerate primitives are ordinary members.
 ///
+/// Coordinates have any unit, the same on all axes, and primitives are straight: longitudes and latitudes have to be
+/// projected first. In f32 coordinates of 5,000,000 are half a unit apart; f64 has room for any place on earth.
+///
 /// ```
 /// use p2m_core::{Element, Soup, PrimitiveSet};
 /// use nalgebra::Point3;
@@ -157,7 +160,7 @@ impl<T: Real> Soup<T> {
         Ok(id)
     }
 
-    /// Adds a position that primitives to come may use; its number. It may be anything as long as none does.
+    /// Adds a position and returns its number, for [`Element`]s to come. It may be anything as long as none uses it.
     pub fn push_position(&mut self, position: Point3<T>) -> usize {
         push_by_half(&mut self.positions, position);
         self.positions.len() - 1

@@ -1,7 +1,8 @@
 //! Interception indexes: what can be nearest anywhere in a cell is found once and kept.
 //!
-//! A query locates its cell and tests a short list: it neither searches nor turns back ([`p2m_core::interception`]).
-//! That takes longer to build and more memory than a tree. Answers are bitwise those of
+//! A query locates its cell and tests a short list: it neither searches nor turns back ([`p2m_core::interception`]). Where
+//! lists would be long, outside of the domain of cells, and for [`NearQuery`](p2m_core::NearQuery) a tree over the same
+//! primitives answers. That takes longer to build and more memory than a tree. Answers are bitwise those of
 //! [`BruteForce`](p2m_core::BruteForce).
 //!
 //! ```

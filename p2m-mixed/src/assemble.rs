@@ -1,6 +1,6 @@
 //! Scenes from what a program has: parts under names, one after the other.
 
-use crate::scene::{Object, Scene};
+use crate::scene::{Object, Scene, object_of};
 use nalgebra::Point3;
 use p2m_core::{BuildError, Element, PrimitiveId, PrimitiveSet, Soup};
 use std::ops::Range;
@@ -137,8 +137,7 @@ impl Scene {
     /// O(log n) for n parts.
     #[must_use]
     pub fn object_of(&self, id: PrimitiveId) -> Option<&Object> {
-        let next = self.objects.partition_point(|object| object.ids.start <= id.index());
-        self.objects[..next].last().filter(|object| object.ids.contains(&id.index()))
+        object_of(&self.objects, id)
     }
 }
 

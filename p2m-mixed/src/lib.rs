@@ -1,9 +1,9 @@
-//! Scenes of triangles, segments and points from files, and a synthetic one.
+//! Scenes of triangles, segments and points: from files, from parts, from generators.
 //!
 //! [`read_scene`] reads OBJ, PLY, STL and OFF files into a [`Scene`], [`read_points`] reads query points from XYZ, CSV,
 //! NPY and PLY files. Both tell where and why a file is refused ([`ReadError`]), and a scene tells what it left out
 //! ([`Scene::skipped`]). [`write_scene`] is the way back, [`AnswerWriter`] writes what was answered, [`generate`] makes
-//! scenes from nothing.
+//! scenes from nothing, [`Scene::add`] and its like put them together.
 //!
 //! ```
 //! use p2m_core::{BruteForce, ClosestPoint};
@@ -21,7 +21,7 @@
 
 #![forbid(unsafe_code)]
 
-#[cfg(any(feature = "parry", feature = "rstar"))]
+#[cfg(any(feature = "parry", feature = "parry-f32", feature = "rstar"))]
 pub mod adapters;
 mod answers;
 mod assemble;

@@ -1,7 +1,7 @@
 //! Scenes as they come from files.
 
 use crate::{Format, Place, ReadError, Reason, read_obj, read_off, read_p2m, read_ply, read_stl};
-use p2m_core::{Element, Soup};
+use p2m_core::{Element, PrimitiveId, Soup};
 use std::fmt;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
@@ -13,7 +13,8 @@ use std::path::Path;
 #[non_exhaustive]
 pub struct Scene {
     /// The primitives, numbered in the order of the file. Polygons are cut into triangles: those of one polygon have
-    /// consecutive ids and its winding.
+    /// consecutive ids and its winding. In f64, as coordinates are in files; for an f32 scene make a `Soup<f32>` of the
+    /// positions, rounded, and the elements.
     pub soup: Soup<f64>,
     /// Where each primitive comes from: `sources[id]` is the number of its statement among those of the same kind,
     /// from 0, in the order of the file. Kinds are counted apart.
@@ -60,6 +61,12 @@ pub struct Object {
     pub ids: Range<usize>,
 }
 
+/// The object that a primitive is in, of those in ascending order.
+pub(crate) fn object_of(objects: &[Object], id: PrimitiveId) -> Option<&Object> {
+    let next = objects.partition_point(|object| object.ids.start <= id.index());
+    objects[..next].last().filter(|object| object.ids.contains(&id.index()))
+}
+
 /// Something in a file that is no part of the scene. It displays as a list may show it: `2 x usemtl`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
@@ -80,7 +87,7 @@ impl fmt::Display for Skipped {
     }
 }
 
-/// Reads a scene, in the format that the extension of its name says, in any case.
+/// Reads a scene from a file in the format that its extension says: obj, ply, stl, off or p2m, in any case.
 ///
 /// # Errors
 /// [`ReadError`] names file, place and reason. A file is read whole or not at all.
@@ -90,7 +97,7 @@ pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
     read_scene_from(open(path, &name)?, format, &name)
 }
 
-/// Reads a scene from the standard input, say; `name` is for messages.
+/// Reads a scene from whatever can be read, such as the standard input; `name` is for messages.
 ///
 /// The file is read once from its beginning to its end. While it is, at most three times the memory of the finished
 /// scene is needed, whatever the file announces, besides small buffers and the longest line of a text.

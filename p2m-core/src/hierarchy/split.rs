@@ -32,7 +32,7 @@ pub enum SplitRule {
     Median,
 }
 
-/// How a set is split.
+/// How a set is split. Most programs have use for `rule` and `parallel` alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SplitOptions {

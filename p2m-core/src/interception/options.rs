@@ -26,12 +26,14 @@ pub struct OctreeOptions {
     pub splits: SplitOptions,
     /// Where queries are expected.
     pub domain: Domain,
-    /// How little a cell has to save to be split: 0.3 is usual, 1 gives about one and a half times the memory.
+    /// How fine cells are: larger is finer, 1 takes about one and a half times the memory of 0.3, which is the default. Without
+    /// a positive number there are no cells, and the tree answers everything.
     pub resolution: f64,
-    /// What cells may take, in bytes for each primitive of the scene (for at least 10,000 primitives).
+    /// What cells may take, in bytes for each primitive of the scene (for at least 10,000 primitives). 190 by
+    /// default.
     pub memory: f64,
     /// How many times packets may be tested while building, at one point each, for each primitive (for at least
-    /// 10,000).
+    /// 10,000). 200 by default.
     pub work: f64,
 }
 
@@ -118,13 +120,14 @@ impl std::fmt::Display for OctreeReport {
 pub struct P2mOptions {
     /// How the packets of the tree are made, and whether all threads are used.
     pub splits: SplitOptions,
-    /// Lists of more packets are left to the tree; 2048 is the most.
+    /// Lists of more packets are left to the tree: 96 by default. More than 2048 count as 2048.
     pub longest: usize,
-    /// So many sites may be added for each vertex of a packet (one that several packets have counts several times),
+    /// At most so many sites are added for each vertex of a packet (one that several packets have counts several times),
     /// where many primitives are about as near as the nearest vertex: on long edges and wide faces, and in the middle
-    /// of round shapes.
+    /// of round shapes. 0.5 by default.
     pub added: f64,
-    /// Lists of more primitives have a [`ListFilter`](super::ListFilter), if the index is one with filters.
+    /// Lists of more primitives have a [`ListFilter`](super::ListFilter), if the index is one with filters, which `P2mIndex`
+    /// is not. 64 by default.
     pub filter_above: usize,
 }
 

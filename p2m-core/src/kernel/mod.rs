@@ -23,8 +23,8 @@ pub use vector::power_of_two;
 use vector::{V3, bounds, clamp, scale_by_power};
 
 /// Bound on the error of a distance in units of u M, where M is the largest distance from the query to a vertex of
-/// the primitive: |computed - true| <= `ERROR_CONSTANT` u M + eta. Proved in docs/accuracy.md; the largest error ever
-/// observed is below 3.5.
+/// the primitive: |computed - true| <= `ERROR_CONSTANT` u M + eta. Proved in docs/accuracy.md; the largest error
+/// observed is 3.3 u M.
 pub const ERROR_CONSTANT: f64 = 8.0;
 
 /// Triangles whose height is below this part of their longest edge are slivers: they get that height in double-double,

@@ -16,7 +16,10 @@ use crate::real::wide;
 use crate::{Aabb, Ray, RayHit, Real};
 use nalgebra::Point3;
 
-/// The part of a primitive that holds its nearest point; numbered locally to the primitive.
+/// The part of a primitive that holds its nearest point, by its number in that primitive: neighbours in a mesh have numbers
+/// of their own.
+///
+/// A point has `Vertex(0)`; a segment `Vertex(0)`, `Vertex(1)` and `Edge(0)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Feature {
     /// Vertex i.

@@ -23,7 +23,7 @@ pub enum RayError {
         /// The upper end.
         max: f64,
     },
-    /// A radius is not negative, and finite.
+    /// The radius is negative, infinite or NaN.
     #[error("{0} is no radius")]
     Radius(f64),
 }
@@ -31,7 +31,8 @@ pub enum RayError {
 /// The points origin + t direction for all t of a range: a ray from 0 on, a line from minus infinity, a piece of one
 /// otherwise.
 ///
-/// The direction has any length but zero; t counts in its lengths. Everything is kept in f64, in which the coordinates
+/// The direction has any length but zero; t counts in its lengths, so it is a distance for a direction of length 1 alone.
+/// Everything is kept in f64, in which the coordinates
 /// of an f32 scene are exact.
 ///
 /// ```

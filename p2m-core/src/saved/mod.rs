@@ -19,6 +19,29 @@
 //! Sums tell damage, not malice: whoever makes a file on purpose can make one that gives wrong answers or panics.
 //! Nothing that is read is undefined for any bytes, but for a mapped file that changes.
 
+//!
+//! ```
+//! use p2m_core::saved::{SavedFile, Writer};
+//! use p2m_core::{BuildIndex, ClosestPoint, KdopOptions, Kdop, Point, hierarchy::TreeIndex};
+//! use nalgebra::Point3;
+//!
+//! // Of the type of an index that can be saved: AabbTree, KdopTree, OctreeIndex or P2mIndex.
+//! type Index<'a> = TreeIndex<f64, &'a [Point<f64>], Kdop<14>>;
+//!
+//! let scene = [1.0, 5.0].map(|x| Point::new(Point3::new(x, 0.0, 0.0)));
+//! let index = Index::build(&scene, &KdopOptions::default())?;
+//! let mut file = Vec::new(); // or a File
+//! let mut writer = Writer::default();
+//! index.save(&mut writer);
+//! writer.write(&mut file)?;
+//!
+//! // Later, over the same scene: it is not in the file, unless `p2m_mixed::save_scene` put it there.
+//! let file = SavedFile::read(&file[..])?; // or SavedFile::open, for a path
+//! let index = Index::load(&scene, file.checked()?)?;
+//! assert_eq!(index.closest_point(&Point3::new(4.0, 0.0, 0.0)).unwrap().distance, 1.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
 mod array;
 mod file;
 mod index;

@@ -1,12 +1,14 @@
 //! Answers to files.
 
+mod names;
 mod rays;
 mod records;
 
 pub use rays::{HitWriter, NumberWriter};
 
-use crate::AnswerFormat;
+use crate::{AnswerFormat, Object};
 use nalgebra::Point3;
+use names::Names;
 use p2m_core::{Closest, Feature};
 use records::{Fields, Header, Records};
 use std::io::{self, Write};
@@ -19,7 +21,8 @@ use std::io::{self, Write};
 /// # CSV
 /// The columns `qx,qy,qz,x,y,z,distance,primitive,feature`: the query, the closest point, its distance, the id of the
 /// primitive, and the part of it that holds the point, in the words of [`Feature`]. Numbers are the shortest that read
-/// back as the same ones. The last six are empty where there is no answer.
+/// back as the same ones. The last six are empty where there is no answer. With [objects](Self::with_objects) there is
+/// one column more, `object`: the name of the one that holds the point, empty where none does.
 ///
 /// # NPY
 /// A structured array of shape `(count,)`, little-endian, without gaps; a record has 96 bytes, and every number stands
@@ -64,6 +67,7 @@ use std::io::{self, Write};
 pub struct AnswerWriter<W: Write> {
     records: Records<W>,
     format: AnswerFormat,
+    names: Names,
 }
 
 /// Bytes of a record of an array, and of a vertex.
@@ -76,8 +80,18 @@ impl<W: Write> AnswerWriter<W> {
     /// # Errors
     /// Those of `writer`.
     pub fn new(writer: W, format: AnswerFormat, count: u64) -> io::Result<Self> {
+        Self::with_objects(writer, format, count, &[])
+    }
+
+    /// Begins a file of `count` answers. If there are any, a table tells the names of these objects, which are those of
+    /// [`Scene::objects`](crate::Scene::objects) in their order; arrays and clouds have numbers alone.
+    ///
+    /// # Errors
+    /// Those of `writer`.
+    pub fn with_objects(writer: W, format: AnswerFormat, count: u64, objects: &[Object]) -> io::Result<Self> {
+        let names = Names::new(objects);
         let header = match format {
-            AnswerFormat::Csv => Header::Line("qx,qy,qz,x,y,z,distance,primitive,feature".to_owned()),
+            AnswerFormat::Csv => Header::Line(names.header("qx,qy,qz,x,y,z,distance,primitive,feature")),
             AnswerFormat::Npy => Header::Npy(
                 "('query', '<f8', (3,)), ('point', '<f8', (3,)), ('distance', '<f8'), ('lower_bound', '<f8'), \
                 ('barycentric', '<f8', (3,)), ('primitive', '<i4'), ('feature_kind', '<i2'), ('feature_number', '<i2')"
@@ -89,7 +103,7 @@ impl<W: Write> AnswerWriter<W> {
                 Header::Ply(doubles.into_iter().chain(others).collect())
             }
         };
-        Ok(Self { records: Records::new(writer, header, Some(count))?, format })
+        Ok(Self { records: Records::new(writer, header, Some(count))?, format, names })
     }
 
     /// Writes the answer to a query.
@@ -99,7 +113,10 @@ impl<W: Write> AnswerWriter<W> {
     pub fn write(&mut self, query: &Point3<f64>, answer: Option<&Closest<f64>>) -> io::Result<()> {
         let out = self.records.next()?;
         match self.format {
-            AnswerFormat::Csv => row(out, query, answer),
+            AnswerFormat::Csv => {
+                row(out, query, answer)?;
+                self.names.end_line(out, answer.map(|a| a.primitive))
+            }
             AnswerFormat::Npy => {
                 let mut record = Fields::<RECORD>::default();
                 record.numbers(query.coords.as_ref());
@@ -145,9 +162,9 @@ impl<W: Write> AnswerWriter<W> {
 fn row(out: &mut dyn Write, query: &Point3<f64>, answer: Option<&Closest<f64>>) -> io::Result<()> {
     write!(out, "{:?},{:?},{:?},", query.x, query.y, query.z)?;
     match answer {
-        None => writeln!(out, ",,,,,"),
+        None => write!(out, ",,,,,"),
         Some(Closest { point, distance, primitive, feature, .. }) => {
-            writeln!(out, "{:?},{:?},{:?},{distance:?},{primitive},{feature}", point.x, point.y, point.z)
+            write!(out, "{:?},{:?},{:?},{distance:?},{primitive},{feature}", point.x, point.y, point.z)
         }
     }
 }

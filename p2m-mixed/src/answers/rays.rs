@@ -1,7 +1,8 @@
 //! What rays meet.
 
+use super::names::Names;
 use super::records::{Fields, Header, Records};
-use crate::AnswerFormat;
+use crate::{AnswerFormat, Object};
 use p2m_core::{Hit, Ray, Side};
 use std::io::{self, Write};
 
@@ -15,7 +16,8 @@ use std::io::{self, Write};
 /// The columns `ray,ox,oy,oz,dx,dy,dz,parameter,x,y,z,primitive,side,w0,w1,w2`: the number of the ray, its origin and its
 /// direction, the parameter and the point of the hit, the id of the primitive, from where it is met (`front`, `back` or
 /// `along`, see [`Side`]), and the weights of its vertices. Numbers are the shortest that read back as the same ones.
-/// The last nine are empty where there is no hit.
+/// The last nine are empty where there is no hit. With [objects](Self::with_objects) there is one column more, `object`: the
+/// name of the one that is met, empty where none is.
 ///
 /// # NPY
 /// A structured array of shape `(count,)`, little-endian, without gaps; a record has 120 bytes, and every number stands
@@ -55,6 +57,7 @@ use std::io::{self, Write};
 pub struct HitWriter<W: Write> {
     records: Records<W>,
     format: AnswerFormat,
+    names: Names,
 }
 
 /// Writes a number for each ray, in the order of the rays.
@@ -94,8 +97,18 @@ impl<W: Write> HitWriter<W> {
     /// # Errors
     /// Those of `writer`.
     pub fn new(writer: W, format: AnswerFormat, count: Option<u64>) -> io::Result<Self> {
+        Self::with_objects(writer, format, count, &[])
+    }
+
+    /// The same, with the names of these objects in a table, as
+    /// [`AnswerWriter::with_objects`](crate::AnswerWriter::with_objects) has them.
+    ///
+    /// # Errors
+    /// Those of `writer`.
+    pub fn with_objects(writer: W, format: AnswerFormat, count: Option<u64>, objects: &[Object]) -> io::Result<Self> {
+        let names = Names::new(objects);
         let header = match format {
-            AnswerFormat::Csv => line("parameter,x,y,z,primitive,side,w0,w1,w2"),
+            AnswerFormat::Csv => line(&names.header("parameter,x,y,z,primitive,side,w0,w1,w2")),
             AnswerFormat::Npy => npy(
                 "('parameter', '<f8'), ('point', '<f8', (3,)), ('barycentric', '<f8', (3,)), ('primitive', '<i4'), \
                 ('side', '<i4')",
@@ -105,7 +118,7 @@ impl<W: Write> HitWriter<W> {
                 ply(doubles.into_iter().chain([("int", "primitive"), ("int", "side")]))
             }
         };
-        Ok(Self { records: Records::new(writer, header, count)?, format })
+        Ok(Self { records: Records::new(writer, header, count)?, format, names })
     }
 
     /// Writes a hit of a ray, or that there is none.
@@ -116,7 +129,10 @@ impl<W: Write> HitWriter<W> {
         let out = self.records.next()?;
         if self.format == AnswerFormat::Csv {
             row(out, number, ray)?;
-            let Some(hit) = hit else { return writeln!(out, ",,,,,,,,") };
+            let Some(hit) = hit else {
+                write!(out, ",,,,,,,,")?;
+                return self.names.end_line(out, None);
+            };
             let (parameter, primitive) = (hit.parameter, hit.primitive);
             let side = match hit.side {
                 Side::Front => "front",
@@ -124,7 +140,8 @@ impl<W: Write> HitWriter<W> {
                 Side::Along => "along",
             };
             let ([x, y, z], [a, b, c]): ([f64; 3], _) = (hit.point().coords.into(), hit.barycentric());
-            return writeln!(out, "{parameter:?},{x:?},{y:?},{z:?},{primitive},{side},{a:?},{b:?},{c:?}");
+            write!(out, "{parameter:?},{x:?},{y:?},{z:?},{primitive},{side},{a:?},{b:?},{c:?}")?;
+            return self.names.end_line(out, Some(primitive));
         }
         let mut record = record::<HIT>(self.format, number, ray);
         match hit {

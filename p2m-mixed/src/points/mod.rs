@@ -46,7 +46,7 @@ pub fn read_points(path: &Path) -> Result<Vec<Point3<f64>>, ReadError> {
     read_points_from(open(path, &name)?, format, &name)
 }
 
-/// Reads points from the standard input, say; `name` is for messages.
+/// Reads points from whatever can be read, such as the standard input; `name` is for messages.
 ///
 /// ```
 /// use p2m_mixed::{PointFormat, read_points_from};

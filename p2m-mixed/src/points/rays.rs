@@ -51,7 +51,7 @@ pub fn read_rays(path: &Path) -> Result<Vec<Ray>, ReadError> {
     read_rays_from(open(path, &name)?, format, &name)
 }
 
-/// Reads rays from the standard input, say; `name` is for messages.
+/// Reads rays from whatever can be read, such as the standard input; `name` is for messages.
 ///
 /// ```
 /// use p2m_mixed::{PointFormat, read_rays_from};

@@ -1,0 +1,137 @@
+//! Primitives of one kind over shared positions, as a set of their own.
+
+use crate::{Point, PrimitiveId, PrimitiveSet, Real, Segment, Soup, Triangle};
+use nalgebra::Point3;
+
+/// The primitives of one kind of a [`Soup`], which is borrowed: triangles for N = 3, segments for 2, points for 1.
+///
+/// An index over it compiles to the kernel of that kind alone. Primitives are numbered in their order, which are the ids of
+/// the soup where that has no other kind; [`Soup::triangle_ids`] and its like tell them where it has.
+///
+/// ```
+/// use p2m_core::{BruteForce, ClosestPoint, Element, Soup};
+/// use nalgebra::Point3;
+///
+/// let positions = vec![Point3::new(0.0, 0.0, 0.0), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0)];
+/// let soup = Soup::new(positions, [Element::Point(2), Element::Segment([0, 1]), Element::Segment([0, 2])])?;
+/// let wires = BruteForce::new(soup.segment_set())?;
+/// let answer = wires.closest_point(&Point3::new(0.1, 2.0, 0.0)).expect("two segments");
+/// assert_eq!(answer.primitive.index(), 1);
+/// let id = soup.segment_ids().nth(answer.primitive.index()).expect("a segment of the scene");
+/// assert_eq!(id.index(), 2);
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Indexed<'a, T: Real, const N: usize> {
+    positions: &'a [Point3<T>],
+    elements: &'a [[u32; N]],
+}
+
+impl<T: Real, const N: usize> Indexed<'_, T, N> {
+    #[inline(always)]
+    fn corners(&self, id: PrimitiveId) -> [Point3<T>; N] {
+        self.elements[id.index()].map(|i| self.positions[i as usize])
+    }
+}
+
+/// A kind of primitives: how many corners, which type, and how it is made of them.
+macro_rules! set_of_kind {
+    ($n:literal, $primitive:ident, $corners:pat, $made:expr) => {
+        impl<T: Real> PrimitiveSet<T> for Indexed<'_, T, $n> {
+            type Primitive<'b>
+                = $primitive<T>
+            where
+                Self: 'b;
+
+            #[inline(always)]
+            fn len(&self) -> usize {
+                self.elements.len()
+            }
+
+            #[inline(always)]
+            fn get(&self, id: PrimitiveId) -> $primitive<T> {
+                let $corners = self.corners(id);
+                $made
+            }
+        }
+    };
+}
+
+set_of_kind!(1, Point, [a], Point::new(a));
+set_of_kind!(2, Segment, [a, b], Segment::new(a, b));
+set_of_kind!(3, Triangle, [a, b, c], Triangle::new(a, b, c));
+
+impl<T: Real> Soup<T> {
+    /// Its triangles, as a set of their own.
+    #[must_use]
+    pub fn triangle_set(&self) -> Indexed<'_, T, 3> {
+        Indexed { positions: self.positions(), elements: self.triangles() }
+    }
+
+    /// Its segments, as a set of their own.
+    #[must_use]
+    pub fn segment_set(&self) -> Indexed<'_, T, 2> {
+        Indexed { positions: self.positions(), elements: self.segments() }
+    }
+
+    /// Its points, as a set of their own.
+    #[must_use]
+    pub fn point_set(&self) -> Indexed<'_, T, 1> {
+        Indexed { positions: self.positions(), elements: self.points().as_chunks().0 }
+    }
+
+    /// The ids of its triangles, in their order: the i-th one is that of number i in [`Soup::triangle_set`].
+    pub fn triangle_ids(&self) -> impl Iterator<Item = PrimitiveId> + '_ {
+        self.ids_of(3)
+    }
+
+    /// The ids of its segments, in their order.
+    pub fn segment_ids(&self) -> impl Iterator<Item = PrimitiveId> + '_ {
+        self.ids_of(2)
+    }
+
+    /// The ids of its points, in their order.
+    pub fn point_ids(&self) -> impl Iterator<Item = PrimitiveId> + '_ {
+        self.ids_of(1)
+    }
+
+    /// The ids of primitives with so many corners.
+    fn ids_of(&self, corners: usize) -> impl Iterator<Item = PrimitiveId> + '_ {
+        let ids = (0..self.len()).map(PrimitiveId::new);
+        ids.filter(move |id| self.element(*id).indices().len() == corners)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Element, Shape};
+
+    #[test]
+    fn sets_of_a_kind_are_the_soup_without_the_others() {
+        let positions = (0..5).map(|i| Point3::new(f64::from(i), f64::from(i * i), 1.0)).collect();
+        let elements = [
+            Element::Segment([3, 1]),
+            Element::Triangle([4, 0, 2]),
+            Element::Point(4),
+            Element::Segment([0, 4]),
+            Element::Point(0),
+        ];
+        let soup: Soup<f64> = Soup::new(positions, elements).unwrap();
+        let all = |i: PrimitiveId| soup.get(i);
+        let triangles: Vec<_> = soup.triangle_ids().map(all).collect();
+        let segments: Vec<_> = soup.segment_ids().map(all).collect();
+        let points: Vec<_> = soup.point_ids().map(all).collect();
+        assert_eq!((triangles.len(), segments.len(), points.len()), (1, 2, 2));
+        for (i, triangle) in triangles.into_iter().enumerate() {
+            assert_eq!(Shape::Triangle(soup.triangle_set().get(PrimitiveId::new(i))), triangle);
+        }
+        for (i, segment) in segments.into_iter().enumerate() {
+            assert_eq!(Shape::Segment(soup.segment_set().get(PrimitiveId::new(i))), segment);
+        }
+        for (i, point) in points.into_iter().enumerate() {
+            assert_eq!(Shape::Point(soup.point_set().get(PrimitiveId::new(i))), point);
+        }
+        assert_eq!((soup.triangle_set().len(), soup.segment_set().len(), soup.point_set().len()), (1, 2, 2));
+    }
+}
