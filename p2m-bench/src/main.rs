@@ -13,6 +13,7 @@ mod backends;
 mod batch;
 mod contender;
 mod delaunay;
+mod field;
 mod kdop;
 mod kinds;
 mod measure;
@@ -67,6 +68,8 @@ enum Command {
     Ray(RayArguments),
     /// The evaluation of the P2M paper on our models: writes paper.md with its tables and plots; fails if ours differ
     Paper(PaperArguments),
+    /// Distance fields on a grid, against rivals and the figures of the article; fails if ours differ
+    Field(FieldArguments),
     /// Saving and loading indexes, against building them
     Saved(SavedArguments),
     /// The settings of the octree: resolution, domain, threads
@@ -254,6 +257,7 @@ fn main() -> Result<ExitCode> {
         Command::Octree(arguments) => octrees(&arguments)?,
         Command::Delaunay(arguments) => delaunays(&arguments)?,
         Command::Batch(arguments) => batches(&arguments)?,
+        Command::Field(arguments) => fields(&arguments)?,
         Command::Saved(arguments) => saved_indexes(&arguments)?,
         Command::Paper(arguments) => paper_page(&arguments)?,
     };
@@ -327,6 +331,37 @@ struct SavedArguments {
     /// How often to load
     #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
     rounds: usize,
+}
+
+#[derive(Args)]
+struct FieldArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    /// Points along the longest side
+    #[arg(long, default_value_t = 256, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(2..=2048))]
+    resolution: usize,
+    /// Every how many-th slab of sixteen layers is filled
+    #[arg(long, default_value_t = 1, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    stride: usize,
+    /// Only the figures of the article, beside ours
+    #[arg(long)]
+    article: bool,
+}
+
+/// Whether all fields of ours are the same.
+fn fields(arguments: &FieldArguments) -> Result<bool> {
+    println!("{}", Provenance::collect(None));
+    let mut good = true;
+    for path in &arguments.scenes {
+        let scene = Scene::read(path)?;
+        if arguments.article {
+            field::print_article(&scene)?;
+        } else {
+            good &= field::print(&scene, arguments.resolution, arguments.stride)?;
+        }
+    }
+    Ok(good)
 }
 
 /// Whether all loaded indexes answer as those that were built.

@@ -9,6 +9,7 @@ mod boxes;
 mod build;
 mod convert;
 mod faces;
+mod field;
 mod findings;
 mod generate;
 mod indexing;
@@ -18,6 +19,7 @@ mod interrupt;
 mod json;
 mod modify;
 mod output;
+mod picture;
 mod progress;
 mod query;
 mod ray;
@@ -57,6 +59,7 @@ enum Command {
     Query(query::Args),
     Build(build::Args),
     Stats(stats::Args),
+    Field(field::Args),
     Ray(ray::Args),
     Info(info::Args),
     Convert(convert::Args),
@@ -73,6 +76,7 @@ impl Command {
             Self::Query(_) => "p2m query".to_owned(),
             Self::Build(_) => "p2m build".to_owned(),
             Self::Stats(_) => "p2m stats".to_owned(),
+            Self::Field(_) => "p2m field".to_owned(),
             Self::Ray(_) => "p2m ray".to_owned(),
             Self::Info(_) => "p2m info".to_owned(),
             Self::Convert(_) => "p2m convert".to_owned(),
@@ -110,6 +114,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Query(args) => query::run(args),
         Command::Build(args) => build::run(args),
         Command::Stats(args) => stats::run(args),
+        Command::Field(args) => field::run(args),
         Command::Ray(args) => ray::run(args),
         Command::Info(args) => info::run(args),
         Command::Convert(args) => convert::run(args),

@@ -5,6 +5,7 @@ use crate::indexing::Indexing;
 use crate::input::read_scene_and_index;
 use crate::json;
 use crate::output::Output;
+use crate::picture::write_png;
 use crate::progress::{Progress, Unit};
 use crate::sampling::{Queries, Region};
 use crate::summary::Indexed;
@@ -179,10 +180,7 @@ impl Args {
         };
         let rows = (0..height).into_par_iter();
         let bytes: Vec<u8> = rows.flat_map_iter(|row| (0..width).flat_map(move |column| pixel(row, column))).collect();
-        let cannot_write = output.cannot_write();
-        let mut encoder = png::Encoder::new(output, width, height);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.write_header().and_then(|mut writer| writer.write_image_data(&bytes)).with_context(|| cannot_write)
+        write_png(output, [width, height], &bytes)
     }
 }
 

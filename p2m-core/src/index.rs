@@ -72,6 +72,21 @@ pub trait ClosestPoint<T: Real> {
     }
 }
 
+/// What an index that is borrowed answers.
+impl<T: Real, I: ClosestPoint<T> + ?Sized> ClosestPoint<T> for &I {
+    fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
+        (**self).search(query, best);
+    }
+
+    fn closest_point_with(&self, query: &Point3<T>, options: &QueryOptions<T>) -> Option<Closest<T>> {
+        (**self).closest_point_with(query, options)
+    }
+
+    fn closest_points_into(&self, queries: &[Point3<T>], options: &QueryOptions<T>, out: &mut [Option<Closest<T>>]) {
+        (**self).closest_points_into(queries, options, out);
+    }
+}
+
 /// How an index is built; apart from [`ClosestPoint`] so that the latter stays usable as `dyn`.
 ///
 /// ```

@@ -54,7 +54,8 @@ impl<T: Real> QueryOptions<T> {
 /// The answer to a query. Lengths are in units of the scene.
 ///
 /// The distance has no sign: a place inside of a closed mesh has its distance from the surface. It is inside where a ray
-/// from it crosses the surface an odd number of times ([`RayQuery::crossings`](crate::RayQuery::crossings)).
+/// from it crosses the surface an odd number of times ([`RayQuery::crossings`](crate::RayQuery::crossings)); crate
+/// p2m-mixed has signed distances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Closest<T: Real> {

@@ -134,6 +134,18 @@ formats! {
     }
 }
 
+formats! {
+    /// The formats of distance fields, see [`write_field`](crate::field::write_field).
+    FieldFormat {
+        /// An array of NumPy.
+        Npy = "npy",
+        /// An image of VTK.
+        Vti = "vti",
+        /// The values alone.
+        Raw = "raw",
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -18,7 +18,6 @@
 //!
 //! Sums tell damage, not malice: whoever makes a file on purpose can make one that gives wrong answers or panics.
 //! Nothing that is read is undefined for any bytes, but for a mapped file that changes.
-
 //!
 //! ```
 //! use p2m_core::saved::{SavedFile, Writer};

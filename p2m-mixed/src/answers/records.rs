@@ -66,7 +66,7 @@ impl Header {
     fn bytes(&self, count: u64) -> Vec<u8> {
         match self {
             Self::Line(line) => format!("{line}\n").into_bytes(),
-            Self::Npy(fields) => npy(fields, count),
+            Self::Npy(fields) => npy_header(&format!("[{fields}]"), &format!("({count},)"), false),
             Self::Ply(properties) => {
                 let mut header = format!("ply\nformat binary_little_endian 1.0\nelement vertex {count}\n");
                 for (scalar, name) in properties {
@@ -79,8 +79,9 @@ impl Header {
 }
 
 /// A header as NumPy writes it: version 1.0, filled up to a multiple of 64 bytes.
-fn npy(fields: &str, count: u64) -> Vec<u8> {
-    let mut description = format!("{{'descr': [{fields}], 'fortran_order': False, 'shape': ({count},), }}");
+pub(crate) fn npy_header(descr: &str, shape: &str, is_fortran: bool) -> Vec<u8> {
+    let order = if is_fortran { "True" } else { "False" };
+    let mut description = format!("{{'descr': {descr}, 'fortran_order': {order}, 'shape': {shape}, }}");
     // Magic, version and length take 10 bytes, and a line end comes last.
     while !(10 + description.len() + 1).is_multiple_of(64) {
         description.push(' ');

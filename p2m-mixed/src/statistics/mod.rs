@@ -8,16 +8,15 @@
 pub mod figure;
 mod notes;
 mod objects;
-mod places;
 mod shape;
 
 pub use notes::{FAR, Note, SPREAD};
 pub use objects::{ObjectCounts, objects};
 
+use crate::places::{Places, UNUSED, by_place};
 use nalgebra::Point3;
 use p2m_core::kernel::SLIVER_SINE;
 use p2m_core::{Aabb, Element, PrimitiveSet, Soup};
-use places::{Places, by_place};
 use shape::{Measure, length};
 
 /// Triangles whose longest edge is more than so many times the height over it are [thin](Shapes::thin). An equilateral
@@ -333,7 +332,7 @@ fn locate(soup: &Soup<f64>, places: &Places, bounds: &Aabb<f64>) -> Location {
     let mut seen = vec![false; places.len];
     let mut location = Location::default();
     for (p, &place) in soup.positions().iter().zip(&places.of) {
-        if place == places::UNUSED || std::mem::replace(&mut seen[place as usize], true) {
+        if place == UNUSED || std::mem::replace(&mut seen[place as usize], true) {
             continue;
         }
         for &x in p.iter() {

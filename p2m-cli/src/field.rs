@@ -1,0 +1,343 @@
+//! `p2m field`: distances on a grid.
+
+use crate::backend::{Backend, Built, Closest, Search, Source};
+use crate::indexing::Indexing;
+use crate::input::{is_standard, or_option, read_scene_and_index};
+use crate::json;
+use crate::output::Output;
+use crate::picture::write_png;
+use crate::progress::{Progress, Unit};
+use crate::summary::Indexed;
+use crate::usage::{not_negative, one_of, positive, usage};
+use anyhow::{Context, anyhow};
+use clap::ValueEnum;
+use p2m_core::{Aabb, ClosestPoint, PrimitiveSet, Soup};
+use p2m_mixed::FieldFormat;
+use p2m_mixed::field::{
+    FieldOptions, Grid, RefineOptions, distances, refined, signed_distances, slice, write_cells, write_field,
+};
+use p2m_mixed::sign::{SignError, SignedDistance};
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+fn help() -> String {
+    format!(
+        "\
+The grid covers the scaled box of the scene: N points along its longest side, ends included, and as many along the others at \
+the same spacing. Values are rounded to f32.
+
+NPY files are arrays of NumPy, field[i, j, k] with x, y and z; VTI files are images of VTK, with origin and spacing; RAW files have the \
+values alone, little-endian, x fastest. With --refine the file is NPY: an array of cells with the fields origin, size and values (at \
+the corners: x runs fastest, z slowest).
+
+With --signed distances are negative inside. A closed surface is told by its normals, and by rays where these are in doubt; others \
+(with holes, or facing here and there) by winding numbers, where inside is from where more than a half of all directions meet a back. \
+NaN stands where there is no telling.
+
+{}
+
+Examples:
+  p2m field bunny.obj --resolution 256 --signed --out bunny.vti --slice bunny.png
+  p2m field scan.ply --resolution 512 --band 0.02 --out band.npy
+  p2m field part.stl --refine 0.001 --signed --out cells.npy --json",
+        json::STABILITY
+    )
+}
+
+/// Compute the distance from a scene at each point of a grid, signed or not
+#[derive(clap::Args)]
+#[command(after_help = help())]
+pub(crate) struct Args {
+    #[command(flatten)]
+    indexing: Indexing,
+
+    /// Points along the longest side of the grid
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..=1 << 12), allow_negative_numbers = true)]
+    resolution: u32,
+
+    /// Scale the box of the scene about its centre by this factor before filling it
+    #[arg(long, value_name = "S", default_value_t = 1.2, value_parser = positive, allow_negative_numbers = true)]
+    box_scale: f64,
+
+    /// Negative distances inside; needs a scene of triangles [possible values of RULE: auto, closed, winding]
+    #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum)]
+    signed: Option<Signs>,
+
+    /// Compute distances up to this alone, in the unit of the scene; the field has this value beyond
+    #[arg(long, value_name = "W", value_parser = not_negative, allow_negative_numbers = true, conflicts_with = "refine")]
+    band: Option<f64>,
+
+    /// An octree instead of a grid, cut where the surface is while the interpolated distance is off by more than this, in the
+    /// middle of a cell, of its faces or its edges
+    #[arg(long, value_name = "ERROR", value_parser = positive, allow_negative_numbers = true, conflicts_with_all = ["resolution", "slice", "out_format", "threads"])]
+    refine: Option<f64>,
+
+    /// Cut cells at most so often
+    #[arg(long, value_name = "D", default_value_t = 8, value_parser = clap::value_parser!(u32).range(0..=16), requires = "refine", allow_negative_numbers = true)]
+    depth: u32,
+
+    /// Where to write the field
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+
+    /// The format of the field, if the extension of its file does not tell
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<FieldFormat>(FieldFormat::NAMES), ignore_case = true)]
+    out_format: Option<FieldFormat>,
+
+    /// A picture of the layer in the middle, across z: a PNG file
+    #[arg(long, value_name = "FILE")]
+    slice: Option<PathBuf>,
+
+    /// How many threads to use, up to 1024; all cores by default
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
+    threads: Option<u16>,
+
+    /// Report as one JSON object on the standard output, instead of a summary on the standard error
+    #[arg(long)]
+    json: bool,
+}
+
+/// How inside is told.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Signs {
+    /// As a closed surface if it is one, otherwise by winding numbers
+    Auto,
+    /// As a closed surface, or not at all
+    Closed,
+    /// By winding numbers
+    Winding,
+}
+
+/// Winding numbers are computed to this.
+const ACCURACY: f64 = 0.01;
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+    let scene_args = &args.indexing.scene;
+    if args.json && is_standard(&args.out) {
+        return Err(usage("--json reports on the standard output, so the field has to go to a file"));
+    }
+    let out_format = args.format()?;
+    Output::refuse_inputs(&args.out, &[&scene_args.path])?;
+    Output::refuse_terminal(&args.out, out_format.name())?;
+    if let Some(slice) = &args.slice {
+        Output::refuse_inputs(slice, &[&scene_args.path])?;
+        if slice == &args.out || is_standard(slice) {
+            return Err(usage("--slice needs a file of its own"));
+        }
+    }
+    let format = scene_args.format()?;
+    let start = Instant::now();
+    let (scene, saved) = read_scene_and_index(&scene_args.path, format)?;
+    let read = start.elapsed();
+    let soup = &scene.soup;
+    let grid =
+        Grid::around(&soup.aabb(), args.resolution as usize, args.box_scale).with_context(|| scene_args.name())?;
+    // Before any work, so that it is not lost to a wrong name.
+    let mut output = Output::open(Some(&args.out))?;
+    let picture = args.slice.as_ref().map(|path| Output::open(Some(path))).transpose()?;
+
+    let threads = args.threads.map_or(0, usize::from); // 0 is all of them
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|e| anyhow!("cannot start threads: {e}"))?;
+    let start = Instant::now();
+    let (backend, faces) = args.indexing.choice(saved.as_ref())?;
+    let source = Source { soup, faces, saved: saved.as_ref() };
+    let Built { index, about, loaded, .. } = backend.build(source).with_context(|| scene_args.name())?;
+    let index = match args.signed {
+        None => Index::Unsigned(&*index),
+        Some(signs) => signs.of(&*index, soup).with_context(|| scene_args.name())?,
+    };
+    let build = start.elapsed();
+
+    let start = Instant::now();
+    let made = pool.install(|| args.make(&index, backend, &grid))?;
+    let filled = start.elapsed();
+    match &made {
+        Made::Cells(cells) => write_cells(cells, &mut output),
+        Made::Field(values) => write_field(&grid, values, out_format, &mut output),
+    }
+    .with_context(|| output.cannot_write())?;
+    let bytes = output.bytes();
+    output.finish()?;
+    if let (Some(mut picture), Made::Field(values)) = (picture, &made) {
+        let (size, pixels) = slice(&grid, values, 2, grid.counts()[2] / 2);
+        let size = size.map(u32::try_from);
+        let [Ok(width), Ok(height)] = size else { return Err(anyhow!("the slice is too large for a picture")) };
+        write_png(&mut picture, [width, height], &pixels)?;
+        picture.finish()?;
+    }
+
+    let (scene_name, backend) = (scene_args.name(), backend.name());
+    let indexed = Indexed { scene_name, scene: &scene, format, backend, about, loaded, read, build };
+    let report = Report {
+        grid: &grid,
+        made: &made,
+        signs: index.rule(),
+        threads: if args.refine.is_some() { 1 } else { pool.current_num_threads() },
+        filled,
+    };
+    if args.json {
+        let end = json!({
+            "seconds": {
+                "read": read.as_secs_f64(),
+                "build": build.as_secs_f64(),
+                "field": filled.as_secs_f64(),
+            },
+            "out": { "file": args.out.display().to_string(), "format": out_format.name(), "bytes": bytes },
+        });
+        return json::print(&json::joined([indexed.json("field"), report.json(), end]));
+    }
+    let mut text = String::new();
+    // Nothing fails in writing to memory; the file is complete, and whether anybody reads this is not our concern.
+    let _ = indexed.write(&mut text, None);
+    let _ = report.write(&mut text);
+    let _ = writeln!(io::stderr(), "{text}written  {}, {bytes} bytes", args.out.display());
+    Ok(())
+}
+
+impl Args {
+    fn format(&self) -> anyhow::Result<FieldFormat> {
+        match self.out_format {
+            Some(format) => Ok(format),
+            None if self.refine.is_some() => match FieldFormat::from_path(&self.out) {
+                Ok(FieldFormat::Vti | FieldFormat::Raw) => {
+                    Err(usage("--refine writes cells as NPY: choose another name"))
+                }
+                _ => Ok(FieldFormat::Npy),
+            },
+            None => FieldFormat::from_path(&self.out).map_err(|e| or_option(&e, "--out-format")),
+        }
+    }
+
+    fn make(&self, index: &Index<'_>, backend: Backend, grid: &Grid) -> anyhow::Result<Made> {
+        if let Some(error) = self.refine {
+            let progress = Progress::start("cutting cells", None, Unit::None);
+            let counts = grid.counts();
+            let bounds = Aabb { min: grid.origin(), max: grid.point(counts.map(|n| n - 1)) };
+            let cells =
+                refined(&bounds, &|place| index.distance(place), &RefineOptions::new(error).with_depth(self.depth));
+            drop(progress);
+            return Ok(Made::Cells(cells));
+        }
+        let progress = Progress::start("filling the grid", Some(grid.len() as u64), Unit::Items("points"));
+        // Trees gain from hints, cells from several queries at a time.
+        let hints = matches!(backend, Backend::Search(Search::Aabb | Search::Kdop));
+        let mut options = FieldOptions::default().with_hints(hints);
+        if let Some(band) = self.band {
+            options = options.with_band(band);
+        }
+        let count = |points: usize| progress.add(points as u64);
+        let values = match index {
+            Index::Unsigned(index) => distances(*index, grid, &options, &count)?,
+            Index::Signed(signed, _) => signed_distances(signed, grid, &options, &count)?,
+        };
+        Ok(Made::Field(values))
+    }
+}
+
+/// What the file gets.
+enum Made {
+    Field(Vec<f32>),
+    Cells(Vec<p2m_mixed::field::Cell>),
+}
+
+/// An index, with signs or without.
+enum Index<'a> {
+    Unsigned(&'a dyn Closest),
+    Signed(SignedDistance<'a, &'a dyn Closest>, &'static str),
+}
+
+impl Signs {
+    fn of<'a>(self, index: &'a dyn Closest, soup: &'a Soup<f64>) -> Result<Index<'a>, SignError> {
+        let _progress = Progress::start("looking for inside and outside", None, Unit::None);
+        if self != Self::Winding {
+            match SignedDistance::new(index, soup) {
+                Ok(signed) => return Ok(Index::Signed(signed, "closed")),
+                Err(SignError::Open { .. } | SignError::NotOriented { .. }) if self == Self::Auto => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(Index::Signed(SignedDistance::with_winding_numbers(index, soup, ACCURACY)?, "winding"))
+    }
+}
+
+impl Index<'_> {
+    /// How inside is told.
+    fn rule(&self) -> Option<&'static str> {
+        match self {
+            Self::Unsigned(_) => None,
+            Self::Signed(_, rule) => Some(rule),
+        }
+    }
+
+    fn distance(&self, place: &nalgebra::Point3<f64>) -> f64 {
+        let distance = match self {
+            Self::Unsigned(index) => index.closest_point(place).map(|answer| answer.distance),
+            Self::Signed(signed, _) => signed.closest_point(place).and_then(|answer| answer.distance()),
+        };
+        distance.unwrap_or(f64::NAN)
+    }
+}
+
+struct Report<'a> {
+    grid: &'a Grid,
+    made: &'a Made,
+    signs: Option<&'static str>,
+    threads: usize,
+    filled: Duration,
+}
+
+impl Report<'_> {
+    /// The least and the largest value, and how many are below zero.
+    fn values(&self) -> (f64, f64, usize, usize) {
+        let all: Box<dyn Iterator<Item = f64>> = match self.made {
+            Made::Field(values) => Box::new(values.iter().map(|x| f64::from(*x))),
+            Made::Cells(cells) => Box::new(cells.iter().flat_map(|cell| cell.values)),
+        };
+        all.fold((f64::INFINITY, f64::NEG_INFINITY, 0, 0), |(min, max, inside, undefined), x| {
+            (min.min(x), max.max(x), inside + usize::from(x < 0.0), undefined + usize::from(x.is_nan()))
+        })
+    }
+
+    fn json(&self) -> Value {
+        let (min, max, inside, undefined) = self.values();
+        let origin: [f64; 3] = self.grid.origin().into();
+        let (grid, cells) = match self.made {
+            Made::Field(_) => {
+                let counts = self.grid.counts();
+                (json!({ "counts": counts, "origin": origin, "spacing": self.grid.spacing() }), Value::Null)
+            }
+            Made::Cells(cells) => (Value::Null, json!(cells.len())),
+        };
+        json!({
+            "grid": grid,
+            "cells": cells,
+            "signs": self.signs,
+            "values": { "min": json::number(min), "max": json::number(max), "inside": inside, "undefined": undefined },
+            "threads": self.threads,
+        })
+    }
+
+    #[allow(clippy::cast_precision_loss, reason = "numbers for people to read")]
+    fn write(&self, text: &mut String) -> std::fmt::Result {
+        let (min, max, inside, undefined) = self.values();
+        let threads = if self.threads == 1 { "1 thread".to_owned() } else { format!("{} threads", self.threads) };
+        match self.made {
+            Made::Field(values) => {
+                let [x, y, z] = self.grid.counts();
+                let each = self.filled.as_nanos() as f64 / values.len() as f64;
+                writeln!(text, "field    {x} x {y} x {z} points, {} apart", self.grid.spacing())?;
+                writeln!(text, "filled   in {:.3?} on {threads}: {each:.0} ns per point", self.filled)?;
+            }
+            Made::Cells(cells) => writeln!(text, "field    {} cells, cut in {:.3?}", cells.len(), self.filled)?,
+        }
+        write!(text, "distance min {min}, max {max}")?;
+        if let Some(rule) = self.signs {
+            write!(text, "; {inside} values inside, {undefined} undefined, by the rule {rule}")?;
+        }
+        writeln!(text)
+    }
+}

@@ -1,0 +1,154 @@
+//! Regular grids.
+
+use nalgebra::Point3;
+use p2m_core::Aabb;
+
+/// Why there is no such grid.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GridError {
+    /// No points, or more than a field can hold.
+    #[error("a grid of {0} x {1} x {2} points is none, or has more than 2^40")]
+    Count(usize, usize, usize),
+    /// The spacing is not positive and finite, or the grid reaches beyond the range of f64.
+    #[error("a spacing of {0} is none for a grid in the range of numbers")]
+    Spacing(f64),
+    /// There is no memory for its values.
+    #[error("there is no memory for {0} values")]
+    Memory(usize),
+    /// There is nothing around which to put a grid.
+    #[error("the scene is empty: there is nothing around which to put a grid")]
+    Empty,
+}
+
+/// Points at equal distances along the axes: that of the number (i, j, k) is origin + spacing (i, j, k), rounded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    origin: Point3<f64>,
+    spacing: f64,
+    counts: [usize; 3],
+}
+
+impl Grid {
+    /// The most points.
+    const MOST: u64 = 1 << 40;
+
+    /// # Errors
+    /// [`GridError`].
+    pub fn new(origin: Point3<f64>, spacing: f64, counts: [usize; 3]) -> Result<Self, GridError> {
+        let [x, y, z] = counts;
+        let total = x.checked_mul(y).and_then(|n| n.checked_mul(z));
+        if !total.is_some_and(|n| (1..=Self::MOST).contains(&(n as u64))) {
+            return Err(GridError::Count(x, y, z));
+        }
+        let grid = Self { origin, spacing, counts };
+        let last = grid.point(counts.map(|n| n - 1));
+        let is_in_range = spacing > 0.0 && [origin, last].iter().flat_map(|p| p.iter()).all(|x| x.is_finite());
+        if is_in_range { Ok(grid) } else { Err(GridError::Spacing(spacing)) }
+    }
+
+    /// `resolution` points along the longest side of a box that is scaled about its centre, ends included, and as many along
+    /// the others as cover them; two at least along each axis.
+    ///
+    /// # Errors
+    /// [`GridError`]; for a box without extent, too.
+    pub fn around(bounds: &Aabb<f64>, resolution: usize, scale: f64) -> Result<Self, GridError> {
+        if bounds.min.x > bounds.max.x {
+            return Err(GridError::Empty);
+        }
+        let resolution = resolution.max(2);
+        // Halves first: the difference of two finite numbers may not be finite.
+        let half: [f64; 3] = std::array::from_fn(|k| (bounds.max[k] * 0.5 - bounds.min[k] * 0.5) * scale);
+        let longest = half.into_iter().fold(0.0, f64::max);
+        #[allow(clippy::cast_precision_loss, reason = "a number of points")]
+        let spacing = longest / (resolution - 1) as f64 * 2.0;
+        if !(spacing > 0.0 && spacing.is_finite()) {
+            return Err(GridError::Spacing(spacing));
+        }
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most the resolution")]
+        let counts = half.map(|half| {
+            let steps = (half / spacing * 2.0 - 1e-9).ceil();
+            if steps >= 1.0 { (steps as usize).saturating_add(1).min(resolution) } else { 2 }
+        });
+        #[allow(clippy::cast_precision_loss, reason = "a number of points")]
+        let origin = std::array::from_fn::<f64, 3, _>(|k| {
+            let centre = bounds.min[k] * 0.5 + bounds.max[k] * 0.5;
+            centre - spacing * ((counts[k] - 1) as f64 * 0.5)
+        });
+        Self::new(origin.into(), spacing, counts)
+    }
+
+    /// The point of the number (0, 0, 0).
+    #[must_use]
+    pub fn origin(&self) -> Point3<f64> {
+        self.origin
+    }
+
+    /// The distance of neighbours, in units of the scene.
+    #[must_use]
+    pub fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
+    /// How many points there are along each axis.
+    #[must_use]
+    pub fn counts(&self) -> [usize; 3] {
+        self.counts
+    }
+
+    /// How many points there are.
+    #[must_use]
+    #[allow(clippy::len_without_is_empty, reason = "there is one at least")]
+    pub fn len(&self) -> usize {
+        self.counts.iter().product()
+    }
+
+    /// A point.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss, reason = "below 2^40")]
+    pub fn point(&self, number: [usize; 3]) -> Point3<f64> {
+        std::array::from_fn::<f64, 3, _>(|k| self.origin[k] + self.spacing * number[k] as f64).into()
+    }
+
+    /// Where the value of a point stands in a field: x runs fastest, z slowest.
+    #[must_use]
+    pub fn number(&self, [i, j, k]: [usize; 3]) -> usize {
+        (k * self.counts[1] + j) * self.counts[0] + i
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bounds(max: [f64; 3]) -> Aabb<f64> {
+        Aabb { min: Point3::origin(), max: Point3::from(max) }
+    }
+
+    #[test]
+    fn grids_cover_their_box_about_its_centre() {
+        let grid = Grid::around(&bounds([8.0, 4.0, 0.0]), 9, 1.0).unwrap();
+        assert_eq!((grid.counts(), grid.spacing(), grid.len()), ([9, 5, 2], 1.0, 90));
+        assert_eq!(grid.origin(), Point3::new(0.0, 0.0, -0.5));
+        assert_eq!(grid.point([8, 4, 1]), Point3::new(8.0, 4.0, 0.5));
+        assert_eq!(grid.number([8, 4, 1]), 89);
+        let grid = Grid::around(&bounds([8.0, 3.5, 2.0]), 5, 2.0).unwrap();
+        assert_eq!((grid.counts(), grid.spacing()), ([5, 3, 2], 4.0));
+        assert_eq!(grid.origin(), Point3::new(-4.0, 1.75 - 4.0, -1.0));
+    }
+
+    #[test]
+    fn what_is_no_grid_is_refused() {
+        assert_eq!(Grid::around(&Aabb::empty(), 5, 1.0), Err(GridError::Empty));
+        assert!(matches!(Grid::around(&bounds([0.0; 3]), 5, 1.0), Err(GridError::Spacing(_))));
+        assert!(matches!(Grid::around(&bounds([f64::MAX; 3]), 5, 3.0), Err(GridError::Spacing(_))));
+        assert!(matches!(Grid::around(&bounds([1e-323; 3]), 64, 1.0), Err(GridError::Spacing(_))));
+        assert!(Grid::around(&bounds([1.0; 3]), usize::MAX, 1.0).is_err());
+        let new = |spacing, counts| Grid::new(Point3::origin(), spacing, counts);
+        assert_eq!(new(1.0, [0, 1, 1]), Err(GridError::Count(0, 1, 1)));
+        assert_eq!(new(1.0, [usize::MAX, 2, 1]), Err(GridError::Count(usize::MAX, 2, 1)));
+        assert!(matches!(new(-1.0, [2, 2, 2]), Err(GridError::Spacing(_))));
+        assert!(matches!(new(f64::NAN, [1, 1, 1]), Err(GridError::Spacing(_))));
+        assert_eq!(Grid::around(&bounds([f64::MAX; 3]), 5, 1.0).unwrap().counts(), [5, 5, 5]);
+    }
+}

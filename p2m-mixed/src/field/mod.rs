@@ -1,0 +1,25 @@
+//! Distance fields: the distance at every point of a grid, or of an octree that is fine where the surface is.
+//!
+//! ```
+//! use p2m_core::BruteForce;
+//! use p2m_mixed::field::{FieldOptions, Grid, distances};
+//! use p2m_mixed::generate::{IcoSphere, ico_sphere};
+//!
+//! let ball = ico_sphere(&IcoSphere::default()).unwrap();
+//! let grid = Grid::around(&p2m_core::PrimitiveSet::aabb(&ball), 9, 1.25).unwrap();
+//! let field = distances(&BruteForce::new(&ball).unwrap(), &grid, &FieldOptions::default(), &|_| ()).unwrap();
+//! assert_eq!(field.len(), 9 * 9 * 9);
+//! assert!((field[grid.number([4, 4, 4])] - 1.0).abs() < 0.02); // the centre
+//! ```
+
+mod dense;
+mod grid;
+mod refined;
+mod slice;
+mod write;
+
+pub use dense::{FieldOptions, distances, signed_distances};
+pub use grid::{Grid, GridError};
+pub use refined::{Cell, RefineOptions, refined};
+pub use slice::slice;
+pub use write::{write_cells, write_field};

@@ -1,0 +1,197 @@
+//! Distance fields: every value is the answer of a single query, whatever the way to it.
+
+#![cfg(all(feature = "bvh", feature = "interception", feature = "mixed"))]
+
+use nalgebra::Point3;
+use p2m::scene::field::{FieldOptions, Grid, RefineOptions, distances, refined, signed_distances, slice, write_field};
+use p2m::scene::generate::{IcoSphere, KnotAndCables, TorusKnot, ico_sphere, knot_and_cables, torus_knot};
+use p2m::scene::sign::SignedDistance;
+use p2m::{AabbTree, BruteForce, BuildIndex, ClosestPoint, OctreeIndex, P2mIndex, PrimitiveSet, Soup};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+fn knot() -> Soup<f64> {
+    torus_knot(&TorusKnot::default().with_rings(60).with_sides(8)).expect("valid")
+}
+
+fn places(grid: &Grid) -> impl Iterator<Item = Point3<f64>> + '_ {
+    let [x, y, _] = grid.counts();
+    (0..grid.len()).map(move |n| grid.point([n % x, n / x % y, n / (x * y)]))
+}
+
+#[test]
+fn fields_are_single_answers_by_every_index_and_on_all_threads() {
+    let soup = knot_and_cables(&KnotAndCables::default()).expect("valid");
+    // Neither a multiple of slabs nor of batches.
+    let grid = Grid::around(&soup.aabb(), 69, 1.3).expect("a box");
+    let brute = BruteForce::new(&soup).expect("valid");
+    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let expected: Vec<f32> =
+        places(&grid).map(|place| tree.closest_point(&place).expect("not empty").distance as f32).collect();
+    for (n, place) in places(&grid).enumerate().step_by(997) {
+        assert_eq!(expected[n], brute.closest_point(&place).expect("not empty").distance as f32);
+    }
+    let octree = OctreeIndex::build(&soup, &Default::default()).expect("valid");
+    let p2m = P2mIndex::build(&soup, &Default::default()).expect("valid");
+    for hints in [true, false] {
+        for parallel in [true, false] {
+            let options = FieldOptions::default().with_hints(hints).with_parallel(parallel);
+            let done = AtomicUsize::new(0);
+            let progress = |points| {
+                done.fetch_add(points, Ordering::Relaxed);
+            };
+            assert!(distances(&tree, &grid, &options, &progress).as_ref() == Ok(&expected));
+            assert_eq!(done.into_inner(), grid.len());
+            assert!(distances(&octree, &grid, &options, &|_| ()).as_ref() == Ok(&expected));
+            assert!(distances(&p2m, &grid, &options, &|_| ()).as_ref() == Ok(&expected));
+        }
+    }
+}
+
+#[test]
+fn bands_are_cut_from_whole_fields() {
+    let soup = knot();
+    let grid = Grid::around(&soup.aabb(), 53, 1.5).expect("a box");
+    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let whole = distances(&tree, &grid, &FieldOptions::default(), &|_| ()).expect("memory");
+    for band in [0.0, 1e-3, 0.05, 0.3, 100.0] {
+        let asked = Counted(&tree, AtomicUsize::new(0));
+        let options = FieldOptions::default().with_band(band);
+        let found = distances(&asked, &grid, &options, &|_| ()).expect("memory");
+        let expected: Vec<f32> = whole.iter().map(|x| x.min(band as f32)).collect();
+        assert!(found == expected, "{band}");
+        let asked = asked.1.into_inner();
+        println!("{asked} of {} points asked for a band of {band}", grid.len());
+        if band < 0.06 {
+            assert!(asked < grid.len() / 4, "{band}: {asked} of {}", grid.len());
+        }
+    }
+}
+
+/// Counts what is asked.
+struct Counted<'a, I>(&'a I, AtomicUsize);
+
+impl<I: ClosestPoint<f64>> ClosestPoint<f64> for Counted<'_, I> {
+    fn search(&self, query: &Point3<f64>, best: &mut p2m::backend::Best<f64>) {
+        self.1.fetch_add(1, Ordering::Relaxed);
+        self.0.search(query, best);
+    }
+}
+
+/// Fields have the signs of single answers, with and without a band.
+fn has_signs_of_answers(soup: &Soup<f64>, signed: &SignedDistance<'_, AabbTree<f64, &Soup<f64>>>, least: usize) {
+    // Through the middle, where the sign of an open surface changes far from it.
+    let grid = Grid::around(&soup.aabb(), 47, 1.2).expect("a box");
+    let value = |place: Point3<f64>, band: f64| {
+        let answer = signed.closest_point(&place).expect("not empty");
+        answer.distance().map_or(f32::NAN, |d| d.clamp(-band, band) as f32).to_bits()
+    };
+    for band in [f64::INFINITY, 0.05] {
+        let expected: Vec<u32> = places(&grid).map(|place| value(place, band)).collect();
+        let inside = expected.iter().filter(|x| f32::from_bits(**x) < 0.0).count();
+        assert!(inside > least, "{inside}");
+        for hints in [true, false] {
+            let options = FieldOptions::default().with_hints(hints).with_band(band);
+            let found = signed_distances(signed, &grid, &options, &|_| ()).expect("memory");
+            assert!(found.iter().map(|x| x.to_bits()).eq(expected.iter().copied()), "{band} {hints}");
+        }
+    }
+}
+
+#[test]
+fn signs_of_fields_are_those_of_single_answers() {
+    let soup = knot();
+    let tree = |soup| AabbTree::build(soup, &Default::default()).expect("valid");
+    has_signs_of_answers(&soup, &SignedDistance::new(tree(&soup), &soup).expect("closed"), 500);
+    let winding = SignedDistance::with_winding_numbers(tree(&soup), &soup, 0.01).expect("triangles");
+    has_signs_of_answers(&soup, &winding, 500);
+    // Half a ball: where it is open the sign changes far from the surface, and is undefined in between.
+    let ball = ico_sphere(&IcoSphere::default().with_frequency(8)).expect("valid");
+    let is_low = |t: &[u32; 3]| t.iter().all(|i| ball.positions()[*i as usize].x <= 0.0);
+    let half = ball.triangles().iter().filter(|t| is_low(t)).copied().collect();
+    let half = Soup::from_triangles(ball.positions().to_vec(), half).expect("valid");
+    let winding = SignedDistance::with_winding_numbers(tree(&half), &half, 0.01).expect("triangles");
+    has_signs_of_answers(&half, &winding, 500);
+}
+
+#[test]
+fn an_empty_scene_is_infinitely_far() {
+    let grid = Grid::new(Point3::origin(), 1.0, [3, 2, 2]).expect("valid");
+    let nothing: Soup<f64> = Soup::default();
+    let tree = AabbTree::build(&nothing, &Default::default()).expect("valid");
+    for band in [f64::INFINITY, 2.0] {
+        let field = distances(&tree, &grid, &FieldOptions::default().with_band(band), &|_| ());
+        assert_eq!(field, Ok(vec![f32::INFINITY; 12]));
+    }
+}
+
+#[test]
+fn refined_cells_tile_their_cube_and_follow_the_surface() {
+    let ball = ico_sphere(&IcoSphere::default().with_frequency(16)).expect("valid");
+    let signed =
+        SignedDistance::new(AabbTree::build(&ball, &Default::default()).expect("valid"), &ball).expect("closed");
+    let distance = |place: &Point3<f64>| signed.closest_point(place).and_then(|s| s.distance()).expect("defined");
+    let mut last = 0;
+    for error in [0.1, 0.02, 0.004] {
+        let cells = refined(&ball.aabb(), &distance, &RefineOptions::new(error));
+        let side = (ball.aabb().max - ball.aabb().min).max();
+        let volume: f64 = cells.iter().map(|cell| cell.size.powi(3)).sum();
+        assert!((volume / side.powi(3) - 1.0).abs() < 1e-9, "{volume}");
+        assert!(cells.len() > last, "{error}: {} cells", cells.len());
+        last = cells.len();
+        // Near the surface, at places where nothing was asked.
+        let mut worst = 0.0f64;
+        for cell in &cells {
+            for n in 0..27 {
+                let steps = [n % 3, n / 3 % 3, n / 9].map(|s| f64::from(s) * 0.35 + 0.1);
+                let place = Point3::from([0, 1, 2].map(|k| cell.origin[k] + cell.size * steps[k]));
+                let value = distance(&place);
+                if value.abs() < cell.size / 4.0 {
+                    worst = worst.max((cell.value(&place) - value).abs());
+                }
+            }
+        }
+        println!("{} cells for {error}, at most {worst:.4} off near the surface", cells.len());
+        assert!(worst < 1.5 * error, "{error}: {worst}");
+    }
+    // No finer than told.
+    let coarse = refined(&ball.aabb(), &distance, &RefineOptions::new(1e-9).with_depth(3));
+    assert!(coarse.len() <= 512 && coarse.iter().any(|cell| cell.size < 0.3));
+    let far = RefineOptions::new(0.1).with_relative(0.01);
+    assert!(
+        refined(&ball.aabb(), &distance, &far).len() > refined(&ball.aabb(), &distance, &RefineOptions::new(0.1)).len()
+    );
+}
+
+#[test]
+fn files_and_slices_have_every_value_in_its_place() {
+    let grid = Grid::new(Point3::new(1.0, 2.0, 3.0), 0.25, [3, 2, 4]).expect("valid");
+    let values: Vec<f32> = (0..24u8).map(f32::from).collect();
+    let file = |format| {
+        let mut bytes = Vec::new();
+        write_field(&grid, &values, format, &mut bytes).expect("memory");
+        bytes
+    };
+    let raw = file(p2m::scene::FieldFormat::Raw);
+    assert_eq!(raw.len(), 96);
+    let npy = file(p2m::scene::FieldFormat::Npy);
+    let header = String::from_utf8_lossy(&npy[10..npy.len() - 96]).into_owned();
+    assert!(header.starts_with("{'descr': '<f4', 'fortran_order': True, 'shape': (3, 2, 4), }"), "{header}");
+    assert!(npy.len() % 64 == 32 && npy.ends_with(&raw));
+    let vti = file(p2m::scene::FieldFormat::Vti);
+    let text = String::from_utf8_lossy(&vti);
+    assert!(text.contains("WholeExtent=\"0 2 0 1 0 3\" Origin=\"1.0 2.0 3.0\" Spacing=\"0.25 0.25 0.25\""), "{text}");
+    let start = vti.windows(2).position(|w| w == b"\n_").expect("the data") + 2;
+    assert_eq!((&vti[start..start + 8], &vti[start + 8..start + 104]), (&96u64.to_le_bytes()[..], &raw[..]));
+    assert!(write_field(&grid, &values[1..], p2m::scene::FieldFormat::Raw, Vec::new()).is_err());
+
+    // One point inside, one without a number.
+    let mut values = vec![4.0f32; 24];
+    values[grid.number([2, 0, 1])] = -4.0;
+    values[grid.number([0, 1, 1])] = f32::NAN;
+    let ([width, height], pixels) = slice(&grid, &values, 2, 1);
+    assert_eq!((width, height, pixels.len()), (513, 342, 3 * 513 * 342));
+    let pixel = |x: usize, y: usize| &pixels[3 * (y * width + x)..][..3];
+    assert_eq!(pixel(0, 0), [153; 3]); // above, to the left: no number
+    assert!(pixel(512, 341)[0] > 200 && pixel(512, 341)[2] < 40); // below, to the right: inside
+    assert!(pixel(0, 341)[2] > 150 && pixel(0, 341)[0] < 50);
+}

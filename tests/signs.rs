@@ -1,0 +1,381 @@
+//! Signed distances: against rays, that decide without rounding, and against surfaces of which the distance is known.
+
+#![cfg(all(feature = "bvh", feature = "interception", feature = "mixed"))]
+
+use nalgebra::{Point3, Vector3};
+use p2m::scene::generate::{IcoSphere, SkewedGear, TorusKnot, Transform, ico_sphere, skewed_gear, torus_knot};
+use p2m::scene::sign::{Sign, SignError, SignedDistance, WindingNumbers, meets_itself};
+use p2m::{
+    AabbTree, BruteForce, BuildIndex, Closest, Element, OctreeIndex, P2mIndex, PrimitiveSet, Ray, RayQuery, Soup,
+};
+use p2m_testkit::queries::QuerySet;
+use p2m_testkit::{model_files, rng};
+use rand::RngExt;
+
+/// Queries to each model and set: half of 10^5 for each of two sets in the long run, which takes minutes.
+fn count() -> usize {
+    std::env::var("P2M_SIGNS").map_or(5_000, |text| text.parse().expect("P2M_SIGNS is a number"))
+}
+
+fn tree(soup: &Soup<f64>) -> AabbTree<f64, &Soup<f64>> {
+    AabbTree::build(soup, &Default::default()).expect("valid")
+}
+
+/// Whether a line to somewhere else than the library's crosses the surface an odd number of times behind the query.
+fn is_inside(index: &impl RayQuery<f64>, query: &Point3<f64>) -> bool {
+    let ray = Ray::new(query, &Vector3::new(-0.31, 0.17, -0.83)).expect("finite");
+    index.crossings(&ray) % 2 == 1
+}
+
+/// What rays say, beside the surface.
+fn expected(index: &impl RayQuery<f64>, query: &Point3<f64>, closest: &Closest<f64>) -> Sign {
+    let here = Ray::new(query, &Vector3::new(0.4, 0.5, -0.6)).expect("finite").with_range(0.0, 0.0).expect("one place");
+    if closest.distance == 0.0 || closest.lower_bound <= 0.0 && index.do_intersect(&here) {
+        Sign::Boundary
+    } else if is_inside(index, query) {
+        Sign::Inside
+    } else {
+        Sign::Outside
+    }
+}
+
+/// Signs of a closed surface are those of rays; how many were in doubt.
+fn agrees_with_rays(name: &str, soup: &Soup<f64>, sets: &[QuerySet], count: usize) -> (usize, u64) {
+    let index = tree(soup);
+    let signed = SignedDistance::new(tree(soup), soup).expect("closed");
+    let mut inside = 0;
+    for set in sets {
+        for query in set.generate(soup, count, 3) {
+            let answer = signed.closest_point(&query).expect("not empty");
+            let expected = expected(&index, &query, &answer.closest);
+            assert_eq!(answer.sign, expected, "{name}, {set}, {query:?}: {:?}", answer.closest);
+            let distance = answer.distance().expect("defined");
+            let is_boundary = expected == Sign::Boundary;
+            assert_eq!(distance.abs(), if is_boundary { 0.0 } else { answer.closest.distance });
+            assert_eq!(distance < 0.0, expected == Sign::Inside);
+            inside += usize::from(expected == Sign::Inside);
+        }
+    }
+    (inside, signed.doubts())
+}
+
+#[test]
+fn signs_of_closed_models_are_those_of_rays() {
+    let sets = [QuerySet::Box1, QuerySet::Near];
+    let mut closed = 0;
+    for path in model_files() {
+        let name = path.file_name().expect("a file").to_string_lossy().into_owned();
+        let soup = p2m::scene::read_scene(&path).expect("readable").soup;
+        // Too slow to find out: thousands of slivers in one plane.
+        let is_gear = name.starts_with("gear_");
+        let meets = if is_gear { SignedDistance::new(tree(&soup), &soup).map(|_| None) } else { meets_itself(&soup) };
+        match meets {
+            Err(error) => println!("{name}: {error}"),
+            Ok(Some([one, other])) => println!("{name}: {one} and {other} meet"),
+            Ok(None) if name == "gear_diff_ring.stl" => println!("{name}: meets itself"),
+            Ok(None) => {
+                closed += 1;
+                let (inside, doubts) = agrees_with_rays(&name, &soup, &sets, count());
+                println!("{name}: {inside} of {} inside, {doubts} in doubt", 2 * count());
+                assert!(inside > 0 || name == "degenerate_small.obj", "{name}"); // all of its sheets are there twice
+            }
+        }
+    }
+    assert!(closed >= 6 || model_files().is_empty(), "{closed} closed models");
+}
+
+#[test]
+fn generated_surfaces_have_the_signs_of_rays() {
+    let knot = torus_knot(&TorusKnot::default()).expect("valid");
+    let gear = skewed_gear(&SkewedGear::default()).expect("valid");
+    for (name, soup) in [("knot", knot), ("gear", gear)] {
+        let (inside, doubts) =
+            agrees_with_rays(name, &soup, &[QuerySet::Box1, QuerySet::Near, QuerySet::Surface], 3000);
+        println!("{name}: {inside} of 9000 inside, {doubts} in doubt");
+        assert!(inside > 1000, "{name}");
+    }
+}
+
+/// Eight corners, twelve triangles with their fronts outside.
+fn cube(min: [f64; 3], max: [f64; 3]) -> Soup<f64> {
+    let at = |i: usize| Point3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { min[k] } else { max[k] }));
+    let faces: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    Soup::from_triangles((0..8).map(at).collect(), triangles).expect("valid")
+}
+
+fn joined(parts: &[Soup<f64>]) -> Soup<f64> {
+    let mut scene = p2m::scene::Scene::default();
+    for part in parts {
+        scene.add("", part).expect("room");
+    }
+    scene.soup
+}
+
+fn flipped(soup: &Soup<f64>) -> Soup<f64> {
+    let triangles = soup.triangles().iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+    Soup::from_triangles(soup.positions().to_vec(), triangles).expect("valid")
+}
+
+/// A lattice of places around and in a scene, some of which are on its faces, edges and vertices.
+fn lattice() -> impl Iterator<Item = Point3<f64>> {
+    (0..11usize.pow(3)).map(|i| Point3::from([i, i / 11, i / 121].map(|i| (i % 11) as f64 * 0.5 - 1.0)))
+}
+
+#[test]
+fn parts_may_be_inside_out_or_inside_of_others_or_touch() {
+    let big = cube([0.0; 3], [3.0; 3]);
+    let small = cube([1.0; 3], [2.0; 3]);
+    // At an edge, and at a corner alone: four triangles at an edge, two fans at a vertex.
+    let at_edge = cube([3.0, 3.0, 0.0], [4.0, 4.0, 3.0]);
+    let at_corner = cube([3.0; 3], [4.0; 3]);
+    let unshared = |soup: &Soup<f64>| {
+        let positions = soup.triangles().iter().flatten().map(|i| soup.positions()[*i as usize]).collect();
+        Soup::new(positions, (0..soup.len() as u32).map(|t| Element::Triangle([3 * t, 3 * t + 1, 3 * t + 2])))
+            .expect("valid")
+    };
+    let scenes = [
+        ("cube", big.clone()),
+        ("inside out", flipped(&big)),
+        ("unshared", unshared(&big)),
+        ("cavity", joined(&[big.clone(), flipped(&small)])),
+        ("cavity with its front inside", joined(&[big.clone(), small.clone()])),
+        ("common edge", joined(&[big.clone(), at_edge.clone()])),
+        ("common edge, one inside out", joined(&[big.clone(), flipped(&at_edge)])),
+        ("common corner", joined(&[big.clone(), at_corner])),
+    ];
+    for (name, soup) in scenes {
+        let brute = BruteForce::new(&soup).expect("valid");
+        let signed = SignedDistance::new(tree(&soup), &soup).expect("closed");
+        let mut seen = [0; 3];
+        for query in lattice() {
+            let answer = signed.closest_point(&query).expect("not empty");
+            let expected = expected(&brute, &query, &answer.closest);
+            assert_eq!(answer.sign, expected, "{name}, {query}");
+            seen[expected as usize] += 1;
+        }
+        assert!(seen.iter().all(|n| *n > 20), "{name}: {seen:?}");
+    }
+}
+
+#[test]
+fn surfaces_that_meet_themselves_are_told() {
+    let whole = cube([0.0; 3], [2.0; 3]);
+    assert_eq!(meets_itself(&whole), Ok(None));
+    assert_eq!(meets_itself(&joined(&[whole.clone(), cube([0.5; 3], [1.5; 3])])), Ok(None));
+    let pair = meets_itself(&joined(&[whole.clone(), cube([1.0; 3], [3.0; 3])])).expect("closed").expect("they meet");
+    assert!(pair[0].index() < 12 && pair[1].index() >= 12, "{pair:?}");
+    let beside = cube([2.0, 0.5, 0.5], [3.0, 1.5, 1.5]);
+    assert!(meets_itself(&joined(&[whole, beside])).expect("closed").is_some(), "a part of a face touches another one");
+}
+
+#[test]
+fn far_and_tiny_queries_have_signs() {
+    // A thin plate, both sides of which are equally far from far away; and one that is open there is none.
+    let plate = cube([0.0; 3], [1.0, 1.0, 1e-6]);
+    let signed = SignedDistance::new(tree(&plate), &plate).expect("closed");
+    for far in [1e3, 1e12, 1e100, 1e300] {
+        for sign in [1.0, -1.0] {
+            let answer = signed.closest_point(&Point3::new(0.5, 0.25, sign * far)).expect("not empty");
+            assert_eq!(answer.sign, Sign::Outside);
+        }
+    }
+    assert_eq!(signed.closest_point(&Point3::new(0.5, 0.25, 5e-7)).expect("not empty").sign, Sign::Inside);
+    // Two tetrahedra that touch at the origin, and queries beside it nearer than squares can be.
+    let up = |z: f64| [[0.0, 0.0, 0.0], [0.1, 0.0, z], [-0.1, 0.1, z], [-0.1, -0.1, z]].map(Point3::from);
+    let positions: Vec<Point3<f64>> = up(1.0).into_iter().chain(up(-1.0)).collect();
+    let faces = |o: u32, turn: bool| {
+        [[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]
+            .map(|[a, b, c]| if turn { [o + a, o + c, o + b] } else { [o + a, o + b, o + c] })
+    };
+    let triangles = faces(0, false).into_iter().chain(faces(4, true)).collect();
+    let soup = Soup::from_triangles(positions, triangles).expect("valid");
+    let signed = SignedDistance::new(tree(&soup), &soup).expect("closed");
+    for size in [1e-320, 1e-300, 1e-160, 1e-3] {
+        let at = |x: f64, z: f64| signed.closest_point(&Point3::new(x * size, 0.0, z * size)).expect("not empty").sign;
+        assert_eq!((at(1.0, 0.0), at(0.0, 1.0), at(0.0, -1.0)), (Sign::Outside, Sign::Inside, Sign::Inside), "{size}");
+    }
+    for scale in [1e-250, 1e-150, 1e-90, 1e90, 1e150, 1e250] {
+        let block = cube([-scale; 3], [scale; 3]);
+        let signed = SignedDistance::new(tree(&block), &block).expect("closed");
+        let at =
+            |x: f64| signed.closest_point(&Point3::new(x * scale, 0.1 * scale, 0.2 * scale)).expect("not empty").sign;
+        assert_eq!((at(0.5), at(1.0), at(1.5)), (Sign::Inside, Sign::Boundary, Sign::Outside), "{scale}");
+        // That on the surface may be, but for rounding of its distance.
+        assert!(signed.doubts() <= 1, "{scale}");
+    }
+}
+
+#[test]
+fn what_is_no_closed_surface_is_refused() {
+    let whole = cube([0.0; 3], [1.0; 3]);
+    let error = |soup: &Soup<f64>| SignedDistance::new(tree(soup), soup).err();
+    let mut triangles = whole.triangles().to_vec();
+    let last = triangles.pop().expect("twelve");
+    let open = Soup::from_triangles(whole.positions().to_vec(), triangles.clone()).expect("valid");
+    assert_eq!(error(&open), Some(SignError::Open { triangle: 2, edge: 1 }));
+    triangles.push([last[0], last[2], last[1]]);
+    let turned = Soup::from_triangles(whole.positions().to_vec(), triangles).expect("valid");
+    assert_eq!(error(&turned), Some(SignError::NotOriented { triangle: 2, edge: 1 }));
+    let mut mixed = whole.clone();
+    mixed.push(Element::Segment([0, 7])).expect("valid");
+    assert_eq!(error(&mixed), Some(SignError::OtherKinds { others: 1 }));
+    let message = error(&open).expect("open").to_string();
+    assert_eq!(message, "the surface is open at edge 1 of triangle 2; winding numbers have signs for it");
+    for accuracy in [0.0, 0.5, -1.0, f64::NAN] {
+        assert!(matches!(WindingNumbers::new(&whole, accuracy), Err(SignError::Accuracy(_))));
+    }
+    let nothing = Soup::default();
+    let signed = SignedDistance::new(tree(&nothing), &nothing).expect("no error");
+    assert!(signed.closest_point(&Point3::origin()).is_none());
+    let winding = SignedDistance::with_winding_numbers(tree(&whole), &whole, 0.01).expect("triangles");
+    assert!(winding.closest_point(&Point3::new(f64::NAN, 0.0, 0.0)).is_none());
+}
+
+#[test]
+fn every_backend_has_the_same_signs() {
+    let soup = torus_knot(&TorusKnot::default().with_rings(60).with_sides(8)).expect("valid");
+    let aabb = SignedDistance::new(tree(&soup), &soup).expect("closed");
+    let octree = OctreeIndex::build(&soup, &Default::default()).expect("valid");
+    let octree = SignedDistance::new(octree, &soup).expect("closed");
+    let p2m = P2mIndex::build(&soup, &Default::default()).expect("valid");
+    let p2m = SignedDistance::new(p2m, &soup).expect("closed");
+    for query in QuerySet::Box1.generate(&soup, 1000, 5) {
+        let known = |c: Option<p2m::scene::sign::Signed>| c.map(|c| (c.distance(), c.sign, c.closest.primitive));
+        let expected = known(aabb.closest_point(&query));
+        assert_eq!(known(octree.closest_point(&query)), expected);
+        assert_eq!(known(p2m.closest_point(&query)), expected);
+    }
+}
+
+/// Distances of meshes with their vertices on a surface are those of the surface, but for what the mesh is from it.
+fn is_near_analytic(name: &str, soup: &Soup<f64>, error: f64, analytic: impl Fn(&Point3<f64>) -> f64) {
+    let signed = SignedDistance::new(tree(soup), soup).expect("closed");
+    let winding = SignedDistance::with_winding_numbers(tree(soup), soup, 0.01).expect("triangles");
+    for query in QuerySet::Box1.generate(soup, 2000, 11) {
+        let expected = analytic(&query);
+        let found = signed.closest_point(&query).and_then(|s| s.distance()).expect("defined");
+        assert!((found - expected).abs() <= error, "{name}, {query}: {found} for {expected}");
+        let by_winding = winding.closest_point(&query).and_then(|s| s.distance());
+        assert_eq!(by_winding, Some(found), "{name}, {query}");
+    }
+}
+
+#[test]
+fn distances_are_those_of_a_sphere_a_box_and_a_torus() {
+    let ball = ico_sphere(&IcoSphere::default().with_frequency(24)).expect("valid");
+    // The lowest height of a face below the sphere.
+    let height = ball.triangles().iter().map(|t| {
+        let sum: Vector3<f64> = t.iter().map(|i| ball.positions()[*i as usize].coords).sum();
+        1.0 - (sum / 3.0).norm()
+    });
+    let sag = height.fold(0.0, f64::max);
+    assert!(sag > 1e-4 && sag < 2e-3, "{sag}");
+    is_near_analytic("sphere", &ball, 1.5 * sag, |q| q.coords.norm() - 1.0);
+
+    let block = cube([-1.0, -2.0, -3.0], [1.0, 2.0, 3.0]);
+    is_near_analytic("box", &block, 1e-14, |q| {
+        let beyond = q.coords.abs() - Vector3::new(1.0, 2.0, 3.0);
+        beyond.map(|x| x.max(0.0)).norm() + beyond.max().min(0.0)
+    });
+
+    let (around, across) = (192, 96);
+    let turn = |i: u32, n: u32| (f64::from(i % n) / f64::from(n) * std::f64::consts::TAU).sin_cos();
+    let places = (0..around * across).map(|i| {
+        let ((s, c), (v, u)) = (turn(i / across, around), turn(i % across, across));
+        Point3::new((2.0 + u) * c, (2.0 + u) * s, v)
+    });
+    let number = |i: u32, k: u32| (i % around) * across + k % across;
+    let triangles = (0..around * across).flat_map(|i| {
+        let (i, k) = (i / across, i % across);
+        let [a, b, c, d] = [number(i, k), number(i + 1, k), number(i + 1, k + 1), number(i, k + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    let torus = Soup::from_triangles(places.collect(), triangles.collect()).expect("valid");
+    // A chord of half angle h is off its arc by r (1 - cos h): of the tube, and of the widest circle; both add up.
+    let off = |r: f64, n: u32| r * (1.0 - (std::f64::consts::PI / f64::from(n)).cos());
+    is_near_analytic("torus", &torus, off(1.0, across) + off(3.0, around), |q| {
+        let from_circle = q.x.hypot(q.y) - 2.0;
+        from_circle.hypot(q.z) - 1.0
+    });
+}
+
+#[test]
+fn winding_numbers_are_within_their_bound() {
+    let knot = torus_knot(&TorusKnot::default()).expect("valid");
+    let half: Vec<[u32; 3]> =
+        knot.triangles().iter().enumerate().filter(|(i, _)| i % 3 != 0).map(|(_, t)| *t).collect();
+    let holes = Soup::from_triangles(knot.positions().to_vec(), half).expect("valid");
+    let mut random = rng("winding numbers", 0);
+    let loose: Vec<Point3<f64>> =
+        (0..6000).map(|_| Point3::from([0; 3].map(|_| random.random_range(-1.0..1.0)))).collect();
+    let loose = Soup::from_triangles(loose, (0..2000).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect()).expect("valid");
+    let far = Transform::default().scaled(1e-3).translated([1e4, -3e4, 2e4]).apply(&knot).expect("valid");
+    let tiny = Transform::default().scaled(1e-140).apply(&knot).expect("valid");
+    let huge = Transform::default().scaled(1e140).apply(&knot).expect("valid");
+    // A position that nothing uses says nothing about the scale.
+    let mut unused = cube([-1.0; 3], [1.0; 3]);
+    unused.push_position(Point3::new(1e200, 0.0, 0.0));
+    let winding = WindingNumbers::new(&unused, 0.01).expect("triangles");
+    assert!((winding.number(&Point3::origin()) - 1.0).abs() < 1e-12);
+    for far in [1e30, 1e160, 1e200, 1e300] {
+        assert!(winding.number(&Point3::new(far, -far, 0.0)).abs() < 1e-80, "{far}");
+    }
+    let scenes = [("knot", knot), ("holes", holes), ("loose", loose), ("far", far), ("tiny", tiny), ("huge", huge)];
+    for (name, soup) in &scenes {
+        for accuracy in [0.2, 0.01, 1e-4] {
+            let winding = WindingNumbers::new(soup, accuracy).expect("triangles");
+            let mut worst = 0.0f64;
+            for set in [QuerySet::Box1, QuerySet::Near, QuerySet::Box10] {
+                for query in set.generate(soup, 300, 7) {
+                    let (found, exact) = (winding.number(&query), winding.exact_number(&query));
+                    worst = worst.max((found - exact).abs());
+                }
+            }
+            assert!(worst <= accuracy + 1e-9, "{name}: {worst} for {accuracy}");
+            println!("{name}, {accuracy}: at most {worst:.1e}");
+        }
+    }
+}
+
+#[test]
+fn winding_numbers_of_closed_models_have_the_signs_of_rays() {
+    for path in model_files() {
+        let name = path.file_name().expect("a file").to_string_lossy().into_owned();
+        if !["bunny.obj", "camel.off", "dragon_100k.obj", "lucy_100k.ply"].contains(&name.as_str()) {
+            continue;
+        }
+        let soup = p2m::scene::read_scene(&path).expect("readable").soup;
+        let winding = SignedDistance::with_winding_numbers(tree(&soup), &soup, 0.01).expect("triangles");
+        let index = tree(&soup);
+        for set in [QuerySet::Box1, QuerySet::Near] {
+            for query in set.generate(&soup, 500, 4) {
+                let found = winding.closest_point(&query).expect("not empty");
+                let expected = if is_inside(&index, &query) { Sign::Inside } else { Sign::Outside };
+                assert!(found.sign == expected || found.closest.distance == 0.0, "{name}, {query}");
+            }
+        }
+        println!("{name}: {} of 1000 in doubt", winding.doubts());
+    }
+}
+
+#[test]
+fn in_the_middle_of_a_hole_there_is_no_sign() {
+    // Half of a cube that is cut at x = 0 and open there: where it is cut its winding number is a half.
+    let half = cube([-1.0; 3], [1.0; 3]);
+    let open: Vec<[u32; 3]> = half
+        .triangles()
+        .iter()
+        .filter(|t| !t.iter().all(|i| half.positions()[*i as usize].x == 1.0))
+        .copied()
+        .collect();
+    let positions = half.positions().iter().map(|p| Point3::new(p.x.min(0.0), p.y, p.z)).collect();
+    let half = Soup::from_triangles(positions, open).expect("valid");
+    let winding = SignedDistance::with_winding_numbers(tree(&half), &half, 0.01).expect("triangles");
+    let at = |x: f64| winding.closest_point(&Point3::new(x, 0.1, 0.2)).expect("not empty");
+    let number = WindingNumbers::new(&half, 0.01).expect("triangles").exact_number(&Point3::new(0.0, 0.1, 0.2));
+    // Seen from where it is cut, the half of a cube covers half of all directions.
+    assert!((number - 0.5).abs() < 1e-12, "{number}");
+    assert_eq!((at(0.0).sign, at(0.0).distance()), (Sign::Undefined, None));
+    assert_eq!((at(-0.1).sign, at(0.1).sign), (Sign::Inside, Sign::Outside));
+}
