@@ -72,6 +72,7 @@
 //! | `parry-f32` | shapes of parry3d in [`scene`]s | no |
 //! | `mint` | positions of the crate mint in [`scene`] | no |
 //! | `kdop` | [`KdopTree`] | yes |
+//! | `advisor` | `scene::advisor`: which index a scene and its queries call for | no |
 //! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `mixed` | [`scene`]: reading scenes and points from files | yes |
 #![forbid(unsafe_code)]

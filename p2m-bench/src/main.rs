@@ -8,6 +8,7 @@
 //! column `label` of a record, say which build it was.
 #![forbid(unsafe_code)]
 
+mod advise;
 mod agree;
 mod backends;
 mod batch;
@@ -68,6 +69,8 @@ enum Command {
     Ray(RayArguments),
     /// The evaluation of the P2M paper on our models: writes paper.md with its tables and plots; fails if ours differ
     Paper(PaperArguments),
+    /// What is recommended for 10^5 and 10^7 queries, against what would have been best
+    Advise(AdviseArguments),
     /// Distance fields on a grid, against rivals and the figures of the article; fails if ours differ
     Field(FieldArguments),
     /// Saving and loading indexes, against building them
@@ -257,6 +260,7 @@ fn main() -> Result<ExitCode> {
         Command::Octree(arguments) => octrees(&arguments)?,
         Command::Delaunay(arguments) => delaunays(&arguments)?,
         Command::Batch(arguments) => batches(&arguments)?,
+        Command::Advise(arguments) => advice(&arguments)?,
         Command::Field(arguments) => fields(&arguments)?,
         Command::Saved(arguments) => saved_indexes(&arguments)?,
         Command::Paper(arguments) => paper_page(&arguments)?,
@@ -331,6 +335,35 @@ struct SavedArguments {
     /// How often to load
     #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
     rounds: usize,
+}
+
+#[derive(Args)]
+struct AdviseArguments {
+    /// Files of scenes; those of less than 1,000 primitives are left out
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+}
+
+/// A table; there is nothing to fail.
+fn advice(arguments: &AdviseArguments) -> Result<bool> {
+    println!("{}", Provenance::collect(None));
+    let mut table = table::Table::new(advise::HEAD);
+    let mut worst = [1.0f64, 0.0];
+    for path in &arguments.scenes {
+        let scene = Scene::read(path)?;
+        if scene.len() >= 1000 {
+            let [ratio, share] = advise::add_rows(&scene, &mut table)?;
+            worst = [worst[0].max(ratio), worst[1].max(share)];
+        }
+    }
+    println!(
+        "One thread, thread CPU time; totals are building and all queries, from {} of them. At worst {:.2} times the best, and \
+         {:.1} % of the job for advice.\n\n{table}",
+        advise::QUERIES,
+        worst[0],
+        100.0 * worst[1]
+    );
+    Ok(true)
 }
 
 #[derive(Args)]

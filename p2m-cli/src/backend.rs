@@ -10,6 +10,7 @@ use p2m_core::saved::{self, Reader, Saved, Writer};
 use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Examine, RayQuery, Soup, StageTimes};
 use p2m_interception::{InterceptionIndex, Octree, OctreeReport, P2mReport, Partition, Stage, Voronoi};
 use p2m_kdop::KdopTree;
+use p2m_mixed::advisor::{Choice, Workload, recommend};
 use std::time::{Duration, Instant};
 
 /// Backends that answer every kind of question.
@@ -180,6 +181,58 @@ impl ValueEnum for Backend {
             Self::Search(search) => search.to_possible_value(),
             Self::Octree => Some(PossibleValue::new(self.name()).help(octree)),
             Self::P2m => Some(PossibleValue::new(self.name()).help(p2m)),
+        }
+    }
+}
+
+/// What a user asks for: a backend, or to choose one.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    Named(Backend),
+    Auto,
+}
+
+impl ValueEnum for Wanted {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: &[Wanted] = &[
+            Wanted::Named(Backend::Search(Search::Brute)),
+            Wanted::Named(Backend::Search(Search::Aabb)),
+            Wanted::Named(Backend::Search(Search::Kdop)),
+            Wanted::Named(Backend::Octree),
+            Wanted::Named(Backend::P2m),
+            Wanted::Auto,
+        ];
+        ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        match self {
+            Self::Named(backend) => backend.to_possible_value(),
+            Self::Auto => {
+                Some(PossibleValue::new("auto").help("The one that `p2m advise` recommends for so many queries"))
+            }
+        }
+    }
+}
+
+impl Wanted {
+    /// The backend that was named, that of the file if there is one with an index, or that which is advised.
+    pub(crate) fn resolve(
+        wanted: Option<Self>,
+        saved: Option<&Reader>,
+        soup: &Soup<f64>,
+        workload: &Workload<'_>,
+    ) -> anyhow::Result<Backend> {
+        match wanted {
+            Some(Self::Named(backend)) => Ok(backend),
+            None => Ok(Backend::of_saved(saved).unwrap_or(Backend::Search(Search::Aabb))),
+            Some(Self::Auto) => Ok(match recommend(soup, workload)?.choice() {
+                Choice::Brute => Backend::Search(Search::Brute),
+                Choice::Aabb => Backend::Search(Search::Aabb),
+                Choice::Kdop => Backend::Search(Search::Kdop),
+                Choice::Octree => Backend::Octree,
+                Choice::P2m => Backend::P2m,
+            }),
         }
     }
 }

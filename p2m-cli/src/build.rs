@@ -1,7 +1,7 @@
 //! `p2m build`: an index in a file, for other commands to use.
 
-use crate::backend::{About, Backend, Built, Search, Source};
-use crate::indexing::Indexing;
+use crate::backend::{About, Built, Source};
+use crate::indexing::{Indexing, MANY};
 use crate::input::read_scene;
 use crate::json;
 use crate::output::Output;
@@ -53,8 +53,8 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let scene_args = &args.indexing.scene;
-    let (backend, faces) = args.indexing.choice(None)?;
-    if backend == Backend::Search(Search::Brute) {
+    args.indexing.check()?;
+    if args.indexing.is_brute() {
         return Err(usage("--backend brute has no index to save"));
     }
     if args.json && crate::input::is_standard(&args.out) {
@@ -70,6 +70,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let mut output = Output::open(Some(&args.out))?;
 
     let start = Instant::now();
+    let (backend, faces) = args.indexing.choice(None, &scene.soup, MANY)?;
     let source = Source { soup: &scene.soup, faces, saved: None };
     let Built { index, about, loaded, .. } = backend.build(source).with_context(|| scene_args.name())?;
     let build = start.elapsed();

@@ -143,7 +143,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|e| anyhow!("cannot start threads: {e}"))?;
     let start = Instant::now();
-    let (backend, faces) = args.indexing.choice(saved.as_ref())?;
+    let (backend, faces) = args.indexing.choice(saved.as_ref(), soup, grid.len() as u64)?;
     let source = Source { soup, faces, saved: saved.as_ref() };
     let Built { index, about, loaded, .. } = backend.build(source).with_context(|| scene_args.name())?;
     let index = match args.signed {

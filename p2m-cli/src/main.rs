@@ -3,6 +3,7 @@
 
 #![forbid(unsafe_code)]
 
+mod advise;
 mod asking;
 mod backend;
 mod boxes;
@@ -60,6 +61,7 @@ enum Command {
     Build(build::Args),
     Stats(stats::Args),
     Field(field::Args),
+    Advise(advise::Args),
     Ray(ray::Args),
     Info(info::Args),
     Convert(convert::Args),
@@ -77,6 +79,7 @@ impl Command {
             Self::Build(_) => "p2m build".to_owned(),
             Self::Stats(_) => "p2m stats".to_owned(),
             Self::Field(_) => "p2m field".to_owned(),
+            Self::Advise(_) => "p2m advise".to_owned(),
             Self::Ray(_) => "p2m ray".to_owned(),
             Self::Info(_) => "p2m info".to_owned(),
             Self::Convert(_) => "p2m convert".to_owned(),
@@ -115,6 +118,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Build(args) => build::run(args),
         Command::Stats(args) => stats::run(args),
         Command::Field(args) => field::run(args),
+        Command::Advise(args) => advise::run(args),
         Command::Ray(args) => ray::run(args),
         Command::Info(args) => info::run(args),
         Command::Convert(args) => convert::run(args),

@@ -1,7 +1,7 @@
 //! `p2m query`: closest points as a table.
 
 use crate::asking::{Asking, Questions, ask};
-use crate::backend::{Backend, Built, Search, Source};
+use crate::backend::{Backend, Built, Search, Source, Wanted};
 use crate::faces;
 use crate::input::{self, SceneArgs, point_format, read_points, read_scene_and_index};
 use crate::json;
@@ -11,7 +11,9 @@ use crate::summary::{Answers, Indexed, Run};
 use crate::usage::{not_negative, one_of, positive, whole};
 use anyhow::Context;
 use clap::ArgGroup;
+use nalgebra::Point3;
 use p2m_core::QueryOptions;
+use p2m_mixed::advisor::{Place, Workload};
 use p2m_mixed::{AnswerWriter, PointFormat, Scene};
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -97,7 +99,7 @@ pub(crate) struct Args {
 
     /// How to search [default: aabb, or as a saved index does]
     #[arg(long, value_enum)]
-    backend: Option<Backend>,
+    backend: Option<Wanted>,
 
     #[command(flatten)]
     asking: Asking,
@@ -109,14 +111,16 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let (format, out_format) = (scene_args.format()?, asking.format()?);
     let start = Instant::now();
     let (scene, saved) = read_scene_and_index(&scene_args.path, format)?;
-    let queries = queries(args, &scene)?;
+    let (queries, sample) = queries(args, &scene)?;
     let read = start.elapsed();
     // Before any work, so that it is not lost to a wrong name.
     let mut output = Output::open(Some(&asking.out))?;
 
     let start = Instant::now();
     let saved = saved.as_ref();
-    let backend = args.backend.or_else(|| Backend::of_saved(saved)).unwrap_or(Backend::Search(Search::Aabb));
+    let place = sample.as_deref().map_or(Place::Box, Place::Points);
+    let workload = Workload::new(queries.len(), place);
+    let backend = Wanted::resolve(args.backend, saved, &scene.soup, &workload).with_context(|| scene_args.name())?;
     let faces = faces::only_for(backend == Backend::Search(Search::Kdop), asking.k)?;
     let source = Source { soup: &scene.soup, faces, saved };
     let Built { index, about, loaded, .. } = backend.build(source).with_context(|| scene_args.name())?;
@@ -156,16 +160,23 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn queries(args: &Args, scene: &Scene) -> anyhow::Result<Queries> {
+/// And some of them where they are points of a file.
+fn queries(args: &Args, scene: &Scene) -> anyhow::Result<(Queries, Option<Vec<Point3<f64>>>)> {
     if let Some(path) = &args.points {
-        return Ok(Queries::list(read_points(path, point_format(path, args.points_format, "--points-format")?)?));
+        let points = read_points(path, point_format(path, args.points_format, "--points-format")?)?;
+        let some = points.iter().step_by(points.len().div_ceil(SAMPLE).max(1)).copied().collect();
+        return Ok((Queries::list(points), Some(some)));
     }
     let region = Region::around(&scene.soup, args.box_scale);
-    Ok(match args.grid {
+    let queries = match args.grid {
         Some(side) => Queries::grid(region, side),
         None => Queries::random(region, args.random.unwrap_or(0), args.seed),
-    })
+    };
+    Ok((queries, None))
 }
+
+/// Points by which a backend is chosen.
+const SAMPLE: usize = 16_384;
 
 /// Which points were asked about, for the report.
 fn asked_about(args: &Args) -> Value {

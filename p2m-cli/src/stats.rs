@@ -1,7 +1,7 @@
 //! `p2m stats`: what an index is made of and what its queries cost, in what does not depend on the machine.
 
 use crate::backend::{Built, Closest, Source, Stages};
-use crate::indexing::Indexing;
+use crate::indexing::{Indexing, MANY};
 use crate::input::read_scene_and_index;
 use crate::json;
 use crate::output::Output;
@@ -98,7 +98,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
 
     let start = Instant::now();
     let saved = saved.as_ref();
-    let (backend, faces) = args.indexing.choice(saved)?;
+    let (backend, faces) = args.indexing.choice(saved, &scene.soup, MANY)?;
     let source = Source { soup: &scene.soup, faces, saved };
     let Built { index, about, loaded, stages } = backend.build(source).with_context(|| scene_args.name())?;
     let build = start.elapsed();

@@ -28,7 +28,7 @@ fn every_key_is_documented() {
     let folder = TempDir::new().unwrap();
     let text = "vn 0 0 1\nv 0 0 0\nv 0.1 0 0\nv 0 1 0\nv 9 9 9\no a\nf 1 2 3\nf 1 2 2\n";
     let (scene, out) = (write(&folder, "s.obj", text), path(&folder, "s.stl"));
-    let (answers, saved) = (path(&folder, "a.csv"), path(&folder, "s.p2m"));
+    let (answers, saved, field) = (path(&folder, "a.csv"), path(&folder, "s.p2m"), path(&folder, "f.npy"));
     let points = write(&folder, "q.xyz", "1 2 3\n");
     let mut found = BTreeSet::new();
     for arguments in [
@@ -39,6 +39,9 @@ fn every_key_is_documented() {
         &["query", &scene, "--random", "2", "--out", &answers, "--json"],
         &["query", &scene, "--points", &points, "--out", &answers, "--json"],
         &["stats", &scene, "--backend", "octree", "--json"],
+        &["field", &scene, "--resolution", "3", "--out", &field, "--json"],
+        &["field", &scene, "--refine", "1", "--signed", "--out", &field, "--json"],
+        &["advise", &scene, "--queries", "2", "--near", "--json"],
         &["build", &scene, "--backend", "p2m", "--out", &saved, "--json"],
     ] {
         keys(&json(arguments), &mut found);

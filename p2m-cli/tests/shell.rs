@@ -6,8 +6,8 @@ use common::*;
 use std::fs;
 use tempfile::TempDir;
 
-const COMMANDS: [&str; 11] =
-    ["query", "build", "stats", "field", "ray", "info", "boxes", "convert", "generate", "completions", "man"];
+const COMMANDS: [&str; 12] =
+    ["query", "build", "stats", "field", "advise", "ray", "info", "boxes", "convert", "generate", "completions", "man"];
 
 #[test]
 fn every_shell_gets_completions() {

@@ -23,6 +23,8 @@
 
 #[cfg(any(feature = "parry", feature = "parry-f32", feature = "rstar"))]
 pub mod adapters;
+#[cfg(feature = "advisor")]
+pub mod advisor;
 mod answers;
 mod assemble;
 mod builder;
