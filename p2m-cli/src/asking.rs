@@ -71,15 +71,20 @@ impl Asking {
 
     /// The threads.
     pub(crate) fn pool(&self) -> anyhow::Result<ThreadPool> {
-        let threads = self.threads.map_or(0, usize::from); // 0 is all of them
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.map_err(|e| anyhow!("cannot start threads: {e}")) // as text: its source says the same again
+        pool(self.threads)
     }
 
     /// The file of the answers, for the report.
     pub(crate) fn written(&self, format: AnswerFormat, bytes: u64) -> Value {
         json!({ "file": self.out.display().to_string(), "format": format.name(), "bytes": bytes })
     }
+}
+
+/// So many threads, or as many as there are cores.
+pub(crate) fn pool(threads: Option<u16>) -> anyhow::Result<ThreadPool> {
+    let threads = threads.map_or(0, usize::from); // 0 is all of them
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|e| anyhow!("cannot start threads: {e}")) // as text: its source says the same again
 }
 
 /// Questions that are asked before their answers are written: enough to keep all threads busy, few enough to hold.

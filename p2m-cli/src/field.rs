@@ -1,5 +1,6 @@
 //! `p2m field`: distances on a grid.
 
+use crate::asking::pool;
 use crate::backend::{Backend, Built, Closest, Search, Source};
 use crate::indexing::Indexing;
 use crate::input::{is_standard, or_option, read_scene_and_index};
@@ -139,9 +140,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let mut output = Output::open(Some(&args.out))?;
     let picture = args.slice.as_ref().map(|path| Output::open(Some(path))).transpose()?;
 
-    let threads = args.threads.map_or(0, usize::from); // 0 is all of them
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|e| anyhow!("cannot start threads: {e}"))?;
+    let pool = pool(args.threads)?;
     let start = Instant::now();
     let (backend, faces) = args.indexing.choice(saved.as_ref(), soup, grid.len() as u64)?;
     let source = Source { soup, faces, saved: saved.as_ref() };

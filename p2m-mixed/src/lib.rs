@@ -47,6 +47,7 @@ pub mod sign;
 pub mod statistics;
 mod stl;
 mod text;
+mod vector;
 mod write;
 
 pub use answers::{AnswerWriter, HitWriter, NumberWriter};

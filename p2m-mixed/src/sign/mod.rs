@@ -216,17 +216,6 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
     }
 }
 
-/// Whether a scene is a closed surface, as [`SignedDistance::new`] wants it.
-///
-/// # Errors
-/// Why it is none.
-///
-/// # Complexity
-/// O(n log n).
-pub fn is_closed(soup: &Soup<f64>) -> Result<(), SignError> {
-    Topology::new(soup).map(|_| ())
-}
-
 /// Two triangles of a closed surface that meet elsewhere than at common vertices, if there are any: the lowest one that has an
 /// edge which meets another one.
 ///
@@ -250,37 +239,4 @@ fn check_kinds(soup: &Soup<f64>) -> Result<(), SignError> {
         0 => Ok(()),
         others => Err(SignError::OtherKinds { others }),
     }
-}
-
-type V3 = [f64; 3];
-
-fn sub(a: V3, b: V3) -> V3 {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn add(a: V3, b: V3) -> V3 {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-fn scaled(a: V3, s: f64) -> V3 {
-    a.map(|x| x * s)
-}
-
-fn dot(a: V3, b: V3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: V3, b: V3) -> V3 {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-/// Of several vectors; positive.
-fn largest_component(vectors: &[V3]) -> f64 {
-    vectors.iter().flatten().fold(0.0, |largest, x| x.abs().max(largest))
-}
-
-/// The length at any scale.
-fn length(a: V3) -> f64 {
-    let size = largest_component(&[a]);
-    if size > 0.0 && size.is_finite() { size * dot(a.map(|x| x / size), a.map(|x| x / size)).sqrt() } else { size }
 }

@@ -9,7 +9,8 @@
 //! two ways say the same for surfaces that are inside out, and for parts inside of others.
 
 use super::topology::{NONE, Topology};
-use super::{Sign, SignError, V3, add, cross, dot, largest_component, length, scaled, sub};
+use super::{Sign, SignError};
+use crate::vector::{V3, add, cross, dot, largest, length, scaled, sub};
 use nalgebra::{Point3, Vector3};
 use p2m_core::hierarchy::TreeIndex;
 use p2m_core::{Aabb, BuildIndex, Closest, ClosestPoint, Feature, PrimitiveSet, Ray, RayQuery, Soup};
@@ -80,18 +81,18 @@ impl<'a> Pseudonormals<'a> {
 
     /// Asks on both sides of the largest triangle of each part, nearer and nearer until that is the closest one.
     fn find_fronts(&mut self, parts: &[u32], index: &impl ClosestPoint<f64>) {
-        let mut largest = vec![(0.0, NONE); parts.len()];
+        let mut of_parts = vec![(0.0, NONE); parts.len()];
         for (t, (triangle, part)) in self.soup.triangles().iter().zip(parts).enumerate() {
             let corners = corners(self.soup, *triangle);
             let edges = [sub(corners[1], corners[0]), sub(corners[2], corners[0])];
-            let unit = 1.0 / largest_component(&edges);
+            let unit = 1.0 / largest(&edges);
             let size = length(cross(scaled(edges[0], unit), scaled(edges[1], unit))).sqrt() / unit;
-            let best = &mut largest[*part as usize];
+            let best = &mut of_parts[*part as usize];
             if unit_normal(corners).is_some() && size.is_finite() && size > best.0 {
                 *best = (size, u32::try_from(t).unwrap_or(NONE));
             }
         }
-        let fronts: Vec<Front> = largest.iter().map(|(size, t)| self.front(*size, *t, parts, index)).collect();
+        let fronts: Vec<Front> = of_parts.iter().map(|(size, t)| self.front(*size, *t, parts, index)).collect();
         self.fronts = parts.iter().map(|part| fronts[*part as usize]).collect();
     }
 
@@ -192,7 +193,7 @@ fn corners(soup: &Soup<f64>, triangle: [u32; 3]) -> [V3; 3] {
 /// The normal of a triangle; `None` of one that is a sliver, or out of range.
 fn unit_normal(corners: [V3; 3]) -> Option<V3> {
     let edges = [sub(corners[1], corners[0]), sub(corners[2], corners[0])];
-    let size = largest_component(&edges);
+    let size = largest(&edges);
     let [e, f] = edges.map(|edge| edge.map(|x| x / size));
     let normal = cross(e, f);
     let length = length(normal);
@@ -204,7 +205,7 @@ fn unit_normal(corners: [V3; 3]) -> Option<V3> {
 fn angle(corners: [V3; 3], i: usize) -> f64 {
     let to = |k: usize| {
         let edge = sub(corners[(i + k) % 3], corners[i]);
-        let size = largest_component(&[edge]);
+        let size = largest(&[edge]);
         edge.map(|x| x / size)
     };
     let (e, f) = (to(1), to(2));

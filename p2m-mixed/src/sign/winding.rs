@@ -10,7 +10,8 @@
 //! A node stands for its triangles where that is at most `accuracy` times its part of the area of the scene; so all of them together
 //! are wrong by at most `accuracy`, beside rounding. For each node that is a distance, computed at build.
 
-use super::{Sign, SignError, V3, add, check_kinds, cross, dot, length, scaled, sub};
+use super::{Sign, SignError, check_kinds};
+use crate::vector::{V3, add, cross, dot, length, scaled, sub};
 use nalgebra::Point3;
 use p2m_core::kernel::power_of_two;
 use p2m_core::{PrimitiveSet, Soup};

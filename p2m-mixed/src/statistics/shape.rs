@@ -4,6 +4,7 @@
 //! where a triangle is so flat that its area is mostly rounding error. Results that f64 cannot hold are given as the
 //! nearest number that it can.
 
+use crate::vector::{V3, cross, largest, norm_squared, sub};
 use dashu_int::{IBig, ops::BitTest};
 use nalgebra::Point3;
 use p2m_core::kernel::power_of_two;
@@ -13,8 +14,6 @@ use p2m_core::kernel::power_of_two;
 const UNCERTAIN_SINE: f64 = power_of_two(-26);
 /// Offsets from 2^-200 to 2^200 have fourth powers in the range of f64.
 const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-200)..=power_of_two(200);
-
-type V3 = [f64; 3];
 
 /// What a triangle measures.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -147,22 +146,6 @@ fn times_power_of_two(mut x: f64, mut e: i32) -> f64 {
         }
     }
     x * power_of_two(e)
-}
-
-fn sub(a: V3, b: V3) -> V3 {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn cross(a: V3, b: V3) -> V3 {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn norm_squared(a: V3) -> f64 {
-    a[0] * a[0] + a[1] * a[1] + a[2] * a[2]
-}
-
-fn largest(vectors: &[V3]) -> f64 {
-    vectors.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()))
 }
 
 #[cfg(test)]
