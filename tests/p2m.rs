@@ -416,3 +416,25 @@ fn lookups_do_little() {
         assert!((0..3).all(|i| sums[i] <= most[i]), "{name}: {sums:?}");
     }
 }
+
+/// Cells of a town are cut by planes that are the same but for rounding: what is left of them must not grow without end.
+#[test]
+fn a_part_of_a_flat_town_is_built_within_its_memory() {
+    let Some(folder) = p2m_testkit::models() else { return };
+    let town = p2m::scene::read_scene(&folder.join("rotterdam_city_far_from_origin.obj")).expect("a scene").soup;
+    let shapes: Vec<Shape<f64>> = (0..town.len()).map(|i| town.get(p2m::PrimitiveId::new(i))).collect();
+    let middle = |shape: &Shape<f64>| nalgebra::center(&shape.aabb().min, &shape.aabb().max);
+    let centre = middle(&shapes[shapes.len() / 2]);
+    let mut part = shapes;
+    part.sort_by(|a, b| (middle(a) - centre).norm_squared().total_cmp(&(middle(b) - centre).norm_squared()));
+    for count in [5500, 6000, 7000] {
+        let index = built(&part[..count]);
+        assert!(index.memory() < 1000 * count, "{} bytes", index.memory());
+        let brute = BruteForce::new(&part[..count]).expect("valid");
+        for shape in part[..count].iter().step_by(count / 20) {
+            let query = middle(shape) + vector(&mut rng("town", count as u64)) * 3.0;
+            let key = |c: Option<p2m::Closest<f64>>| c.map(|c| (c.distance.to_bits(), c.primitive));
+            assert_eq!(key(index.closest_point(&query)), key(brute.closest_point(&query)));
+        }
+    }
+}

@@ -322,6 +322,9 @@ impl Cell {
         for (way, face) in ways.iter().zip((0..u32::MAX).rev()) {
             next.clip(part, |x| margin - dot(sub(*x, y), *way), face, &y, slack);
             std::mem::swap(part, next);
+            if !part.is_simple() {
+                return None;
+            }
         }
         // The largest part of the way to another site by which that one has to be left behind.
         let mut most = 0.0f64;

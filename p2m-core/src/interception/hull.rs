@@ -40,6 +40,13 @@ impl Hull {
         (self.reach, self.error) = (self.reach.max(reach), self.error.max(error));
     }
 
+    /// Whether it has about as many edges as a polytope with three of them at each corner. Planes that are nearly the same as others, as
+    /// those of cells in a plane are, may cut a face more than twice by rounding; what is left then has an edge between any two of the cuts, and each
+    /// further plane many times as many.
+    pub(super) fn is_simple(&self) -> bool {
+        self.edges.len() <= 2 * self.corners.len() + 16
+    }
+
     /// Makes it the part of another one where `height` is at least zero, which is linear: the new face gets the number
     /// `face`.
     pub(super) fn clip(&mut self, whole: &Self, height: impl Fn(&V3) -> f64, face: u32, site: &V3, slack: f64) {
@@ -123,6 +130,7 @@ mod tests {
                     break;
                 }
                 assert_eq!(hull.corners.len() + faces.len(), hull.edges.len() + 2, "case {case}, face {face}");
+                assert!(hull.is_simple());
                 cuts += 1;
                 for (corner, faces) in hull.corners.iter().zip(&hull.faces) {
                     for (number, (normal, offset)) in (6..).zip(&planes) {
@@ -142,5 +150,35 @@ mod tests {
             }
         }
         assert!(cuts > 1000, "{cuts}");
+    }
+
+    /// Planes that are the same but for rounding, as those of cells in a plane are.
+    #[test]
+    fn what_rounding_has_made_of_a_polytope_is_told_before_it_grows() {
+        let mut told = 0;
+        for case in 0..300 {
+            let mut rng = p2m_testkit::rng("hulls of rounding", case);
+            let mut hull = cube();
+            for face in 6..14 {
+                let normal: V3 = p2m_testkit::vector(&mut rng).into();
+                let mut next = Hull::default();
+                next.clip(&hull, |x| dot(sub(*x, [0.5; 3]), normal) + 0.2, face, &[0.5; 3], 0.0);
+                hull = next;
+            }
+            let normal: V3 = p2m_testkit::vector(&mut rng).into();
+            for face in 14..80 {
+                let [tilt, offset]: [V3; 2] = [(); 2].map(|()| p2m_testkit::vector(&mut rng).into());
+                let normal: V3 = std::array::from_fn(|k| normal[k] + 2e-16 * tilt[k]);
+                let mut next = Hull::default();
+                next.clip(&hull, |x| dot(sub(*x, [0.5; 3]), normal) + 1e-16 * offset[0], face, &[0.5; 3], 0.0);
+                hull = next;
+                if !hull.is_simple() {
+                    told += 1;
+                    break;
+                }
+                assert!(hull.corners.len() < 1000, "{} corners", hull.corners.len());
+            }
+        }
+        assert!(told > 10, "{told}");
     }
 }
