@@ -1,14 +1,17 @@
 //! Which index a scene and its queries call for.
 //!
-//! [`recommend`] estimates for each index how long it takes to build, to answer all queries, and what memory it takes, and chooses the
-//! one with the least time in all that fits. It asks a *patch*, over which each index that may win is built and asked: the primitives
-//! around one of them for queries near the surface, some from everywhere for others. What that gives for a primitive and for a query is scaled to the whole scene: building by the number of
-//! primitives, queries by 1.17 for each doubling. Indexes that take longer to build than the tree does to be built and
-//! to answer everything cannot win, and are not asked.
+//! [`recommend`] estimates for each index how long it takes to build, to answer all queries, and what memory it takes, and chooses
+//! the one with the least time in all that fits. It asks a *patch*, over which each index that may win is built and asked: the
+//! primitives around a few of them for queries near the surface, some from everywhere for others. What that gives for a primitive
+//! and for a query is scaled to the whole scene: building by the number of primitives, queries by a growth for each doubling that
+//! is known for each index ([`Choice`]). Indexes that take longer to build than the tree does to be built and to answer everything
+//! cannot win, and are not asked; nor are cells of slivers, which end at trees, and those that already take long for a handful of
+//! primitives.
 //!
 //! The patch is as large as the time for advice permits, a part of what the job takes; and where indexes are close to each other
-//! they are asked once more over a larger one. So advice is never a large part of the job. Where there is not even time for a small patch, the
-//! figures of docs/paper.md decide.
+//! they are asked once more over a larger one. So advice is never a large part of the job. Where there is not even time for a small
+//! patch, the figures of docs/paper.md decide. Constants were found on the models of `p2m-bench advise`, which tells how good they
+//! are.
 //!
 //! Estimates are for one thread. They depend on the machine and its load, so advice may differ from run to run where two indexes are about as
 //! good.
@@ -58,6 +61,20 @@ impl Choice {
         }
     }
 
+    /// Queries take so much longer for each doubling of the scene, from a patch of it or from a thinned one (observed, in the mean
+    /// over the models).
+    fn growth(self, is_near: bool) -> f64 {
+        match (self, is_near) {
+            (Self::Brute, _) => 2.0,
+            (Self::Aabb | Self::Kdop, true) => 1.11,
+            (Self::Octree, true) => 1.15,
+            (Self::P2m, true) => 1.12,
+            (Self::Aabb | Self::Kdop, false) => 1.27,
+            (Self::Octree, false) => 1.23,
+            (Self::P2m, false) => 1.24,
+        }
+    }
+
     /// What is known before anything is measured.
     fn prior(self) -> Prior {
         let prior = |build, near, inside, bytes| Prior { build, near, inside, bytes };
@@ -90,19 +107,31 @@ struct Prior {
 const PRIOR_SIZE: f64 = 100_000.0;
 /// Brute force, for a primitive and query.
 const BRUTE: f64 = 48e-9;
-/// Queries take so much longer for each doubling of the scene (observed: 1.1 to 1.25).
-const GROWTH: f64 = 1.17;
 /// The part of the job that is spent on a first patch, with all that may win; and on both patches, the second one with those that are
 /// close to the best.
 const FIRST: f64 = 0.022;
-const SECOND: f64 = 0.022;
+const SECOND: f64 = 0.021;
+/// The first part where trees alone may win, which take about as long as expected.
+const TREES: f64 = 0.027;
 /// Within this times the best.
 const CLOSE: f64 = 1.6;
 /// Patches have so many primitives at least and at most.
 const FEWEST: usize = 300;
 const MOST: usize = 65_536;
+/// Parts of a patch.
+const PATCHES: usize = 4;
+/// Patches face few ways, which flatters k-DOPs by this (observed).
+const FLATTERED: f64 = 1.08;
 /// Seconds for each primitive of the scene to find a patch.
-const FINDING: f64 = 5e-9;
+const FINDING: f64 = 30e-9;
+/// Primitives of a probe of the P2M index, the seconds that each takes usually, and how many times that is too long.
+const PROBE: usize = 300;
+const THINNED: f64 = 50e-6;
+const TOO_LONG: f64 = 1.2;
+/// The height of a sliver in longest edges,
+const SLIVER: f64 = 1.0 / 256.0;
+/// and the time that k-DOPs take for them in that of boxes (observed).
+const KDOP_OF_SLIVERS: f64 = 0.75;
 /// Queries that are timed, at least and at most.
 const QUERIES: [usize; 2] = [64, 512];
 
@@ -250,7 +279,7 @@ pub fn recommend(soup: &Soup<f64>, workload: &Workload<'_>) -> Result<Advice, Bu
         let prior = choice.prior();
         let query = match choice {
             Choice::Brute => BRUTE * count,
-            _ => (if is_near { prior.near } else { prior.inside }) * GROWTH.powf(doublings(PRIOR_SIZE)),
+            _ => (if is_near { prior.near } else { prior.inside }) * choice.growth(true).powf(doublings(PRIOR_SIZE)),
         };
         Estimate {
             choice,
@@ -263,23 +292,45 @@ pub fn recommend(soup: &Soup<f64>, workload: &Workload<'_>) -> Result<Advice, Bu
             why: Why::Best,
         }
     });
+    let of_slivers = is_of_slivers(soup);
+    if of_slivers {
+        estimates[2].query = estimates[1].query * KDOP_OF_SLIVERS;
+    }
     let total = |e: &Estimate| e.build + queries * e.query;
     let of_tree = total(&estimates[1]);
     // Those that may win: trees, and what is not built for longer than the tree takes for all (twice, for priors are rough).
-    let may_win = |e: &Estimate| e.choice != Choice::Brute && e.build < 2.0 * of_tree;
+    let is_tree = |e: &Estimate| matches!(e.choice, Choice::Aabb | Choice::Kdop);
+    let may_win = |e: &Estimate| is_tree(e) || e.choice != Choice::Brute && !of_slivers && e.build < 2.0 * of_tree;
     let least = |estimates: &[Estimate; 5]| estimates.iter().map(total).fold(f64::INFINITY, f64::min);
+    if !is_near && may_win(&estimates[4]) && soup.len() > PROBE {
+        // Cells of a thinned scene take longer, some of them a hundred times, and have long lists then.
+        let (build, ..) = Choice::P2m.measure(&thinned(soup, PROBE)?, &[])?;
+        let each = build / PROBE as f64;
+        if each > TOO_LONG * THINNED {
+            (estimates[4].build, estimates[4].query) = (each * count, estimates[1].query);
+        } else {
+            estimates[4].build = 1.5 * each * count;
+        }
+    }
+    // What building took for each primitive of a patch, or may take.
+    let mut each = estimates.map(|e| e.build / count);
     let mut patch = 0;
-    let mut spent = 0.0;
+    let mut spent = start.elapsed().as_secs_f64();
     for (share, contenders) in [(FIRST, f64::INFINITY), (SECOND, CLOSE)] {
         let best = least(&estimates);
-        // Priors may be wrong by a factor of two.
-        let job = if patch == 0 { best / 2.0 } else { best };
-        let budget = (job * share).min(workload.patience.as_secs_f64()) - spent;
+        // Priors may be wrong by a factor of two, but for trees.
+        let trees_alone = estimates.iter().all(|e| !may_win(e) || is_tree(e));
+        let share = match patch {
+            0 if trees_alone => TREES,
+            0 => share / 2.0,
+            _ => share,
+        };
+        let budget = (best * share).min(workload.patience.as_secs_f64()) - spent;
         let is_asked = |e: &Estimate| may_win(e) && total(e) <= contenders * best;
         if patch > 0 && estimates.iter().filter(|e| is_asked(e)).count() < 2 {
             break;
         }
-        let a_primitive: f64 = estimates.iter().filter(|e| is_asked(e)).map(|e| e.build / count).sum();
+        let a_primitive: f64 = estimates.iter().zip(&each).filter(|(e, _)| is_asked(e)).map(|(_, each)| *each).sum();
         // A third of the budget is for queries.
         let a_query: f64 = estimates.iter().filter(|e| is_asked(e)).map(|e| 2.0 * e.query).sum();
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
@@ -295,13 +346,26 @@ pub fn recommend(soup: &Soup<f64>, workload: &Workload<'_>) -> Result<Advice, Bu
         let part = if is_near { patch_of(soup, size)? } else { thinned(soup, size)? };
         patch = part.len();
         let places = places(soup, &part, place, asked);
-        let (times, growth) = (count / patch as f64, GROWTH.powf(doublings(patch as f64)));
-        for estimate in estimates.iter_mut().filter(|e| is_asked(e)) {
+        let times = count / patch as f64;
+        // Vertices of a thinned scene are hardly shared, and a P2M index has cells of vertices.
+        let cells = (times * soup.positions().len() as f64 / part.positions().len().max(1) as f64).sqrt();
+        for (estimate, each) in estimates.iter_mut().zip(&mut each).filter(|(e, _)| is_asked(e)) {
             let (build, query, memory) = estimate.choice.measure(&part, &places)?;
+            let growth = estimate.choice.growth(is_near).powf(doublings(patch as f64));
+            let is_flattered = estimate.choice == Choice::Kdop && !of_slivers && patch < soup.len();
+            let growth = if is_flattered { growth * FLATTERED } else { growth };
+            let times = if estimate.choice == Choice::P2m { cells } else { times };
             (estimate.build, estimate.query, estimate.memory) = (build * times, query * growth, memory * times);
+            // It grows, if it does, by less than this for twice as many.
+            *each = 1.3 * build / patch as f64;
             estimate.is_measured = true;
         }
         spent = start.elapsed().as_secs_f64();
+    }
+    if of_slivers {
+        // Cells end at trees.
+        let of_tree = estimates[1].query;
+        estimates[3..].iter_mut().for_each(|e| e.query = of_tree);
     }
     estimates.iter_mut().for_each(|e| e.total = total(e));
     let fits = |e: &Estimate| e.memory <= workload.memory as f64;
@@ -320,6 +384,19 @@ pub fn recommend(soup: &Soup<f64>, workload: &Workload<'_>) -> Result<Advice, Bu
         };
     }
     Ok(Advice { estimates, seconds: start.elapsed().as_secs_f64(), patch })
+}
+
+/// Whether most primitives are slivers: places have many of them about as near, so lists are long and cells end at trees. Patches, in
+/// which few of them come together, do not show it.
+fn is_of_slivers(soup: &Soup<f64>) -> bool {
+    let is_sliver = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|i| soup.positions()[i as usize]);
+        let longest = (b - a).norm_squared().max((c - b).norm_squared()).max((a - c).norm_squared());
+        (b - a).cross(&(c - a)).norm() < SLIVER * longest
+    };
+    let step = soup.triangles().len().div_ceil(4096).max(1);
+    let slivers = soup.triangles().iter().step_by(step).filter(|t| is_sliver(t)).count();
+    2 * slivers * step > soup.len()
 }
 
 impl Choice {
@@ -375,15 +452,30 @@ fn middle(soup: &Soup<f64>, i: usize) -> Point3<f64> {
     Point3::from(bounds.min.coords * 0.5 + bounds.max.coords * 0.5)
 }
 
-/// The primitives around the one in the middle of their order.
+/// The primitives around some of them, from everywhere in their order: around one alone they would face one way.
 fn patch_of(soup: &Soup<f64>, count: usize) -> Result<Soup<f64>, BuildError> {
-    let centre = middle(soup, soup.len() / 2);
-    let mut ways: Vec<(f64, usize)> = (0..soup.len()).map(|i| ((middle(soup, i) - centre).norm_squared(), i)).collect();
-    if count < ways.len() {
-        ways.select_nth_unstable_by(count, |a, b| a.0.total_cmp(&b.0));
-        ways.truncate(count);
+    if count >= soup.len() {
+        return part_of(soup, 0..soup.len());
     }
-    part_of(soup, ways.into_iter().map(|(_, i)| i))
+    let centres: [Point3<f64>; PATCHES] =
+        std::array::from_fn(|i| middle(soup, soup.len() * (2 * i + 1) / (2 * PATCHES)));
+    let mut nearest: [Vec<(f64, usize)>; PATCHES] = Default::default();
+    for i in 0..soup.len() {
+        let middle = middle(soup, i);
+        let ways = centres.iter().map(|centre| (middle - centre).norm_squared()).enumerate();
+        // Each primitive is of one patch.
+        if let Some((patch, way)) = ways.reduce(|a, b| if b.1 < a.1 { b } else { a }) {
+            nearest[patch].push((way, i));
+        }
+    }
+    for ways in &mut nearest {
+        let own = count / PATCHES;
+        if own < ways.len() {
+            ways.select_nth_unstable_by(own, |a, b| a.0.total_cmp(&b.0));
+            ways.truncate(own);
+        }
+    }
+    part_of(soup, nearest.into_iter().flatten().map(|(_, i)| i))
 }
 
 /// Primitives from everywhere in a scene: what is about as far from much of it stays so.
