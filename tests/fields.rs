@@ -3,10 +3,13 @@
 #![cfg(all(feature = "bvh", feature = "interception", feature = "mixed"))]
 
 use nalgebra::Point3;
-use p2m::scene::field::{FieldOptions, Grid, RefineOptions, distances, refined, signed_distances, slice, write_field};
+use p2m::scene::field::{
+    CandidateLists, FieldOptions, Grid, GridError, RefineOptions, distances, distances_by_lists, refined,
+    signed_distances, signed_distances_by_lists, slice, write_field,
+};
 use p2m::scene::generate::{IcoSphere, KnotAndCables, TorusKnot, ico_sphere, knot_and_cables, torus_knot};
 use p2m::scene::sign::SignedDistance;
-use p2m::{AabbTree, BruteForce, BuildIndex, ClosestPoint, OctreeIndex, P2mIndex, PrimitiveSet, Soup};
+use p2m::{Aabb, AabbTree, BruteForce, BuildIndex, ClosestPoint, OctreeIndex, P2mIndex, PrimitiveSet, Soup};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn knot() -> Soup<f64> {
@@ -45,6 +48,69 @@ fn fields_are_single_answers_by_every_index_and_on_all_threads() {
             assert!(distances(&p2m, &grid, &options, &|_| ()).as_ref() == Ok(&expected));
         }
     }
+    let lists = CandidateLists::new(&soup).expect("plain");
+    for parallel in [true, false] {
+        let done = AtomicUsize::new(0);
+        let progress = |points| {
+            done.fetch_add(points, Ordering::Relaxed);
+        };
+        let options = FieldOptions::default().with_parallel(parallel);
+        assert!(distances_by_lists(&lists, &grid, &options, &progress).as_ref() == Ok(&expected));
+        assert_eq!(done.into_inner(), grid.len());
+    }
+}
+
+/// Models of all kinds, around the whole and close to the surface, where values have few digits in common with their distance from zero.
+#[test]
+fn fields_by_lists_are_those_of_a_tree_on_models() {
+    for name in [
+        "bunny.obj",
+        "gear_skewed_57k_rotated.ply",
+        "mixed_armadillo_camel_wireframe.obj",
+        "political_borders_lines.obj",
+        "rotterdam_city_far_from_origin.obj",
+        "heavily_nonmanifold.obj",
+        "degenerate_sliding.off",
+        "zero_area_triangle.stl",
+    ] {
+        let Some(path) = p2m_testkit::models().map(|folder| folder.join(name)) else { return };
+        let soup = p2m::scene::read_scene(&path).expect("a scene").soup;
+        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let lists = CandidateLists::new(&soup).expect("plain");
+        let bounds = soup.aabb();
+        let corner = soup.positions()[soup.positions().len() / 2];
+        let close = (bounds.max - bounds.min) * 1e-3;
+        let close = Aabb { min: corner - close, max: corner + close };
+        for (bounds, resolution) in [(bounds, 33), (close, 17)] {
+            let grid = Grid::around(&bounds, resolution, 1.3).expect("a box");
+            let expected = distances(&tree, &grid, &FieldOptions::default(), &|_| ()).expect("memory");
+            let found = distances_by_lists(&lists, &grid, &FieldOptions::default(), &|_| ()).expect("memory");
+            let differ = expected.iter().zip(&found).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+            assert_eq!(differ, 0, "{name}, {} points", grid.len());
+        }
+    }
+}
+
+#[test]
+fn there_are_no_lists_of_what_is_out_of_range_or_not_its_vertices() {
+    let point = |x: f64| [p2m::Point::new(Point3::new(x, 0.0, 0.0))];
+    assert!(CandidateLists::new(&point(1e75)).is_some());
+    assert!(CandidateLists::new(&point(1e76)).is_none() && CandidateLists::new(&point(f64::NAN)).is_none());
+    let far = Grid::new(Point3::new(0.0, 1e76, 0.0), 1.0, [2, 2, 2]).expect("valid");
+    let near = point(1.0);
+    let lists = CandidateLists::new(&near).expect("plain");
+    assert_eq!(distances_by_lists(&lists, &far, &FieldOptions::default(), &|_| ()), Err(GridError::Range));
+
+    struct Ball;
+    impl p2m::Primitive<f64> for Ball {
+        fn aabb(&self) -> Aabb<f64> {
+            Aabb { min: Point3::new(-1.0, -1.0, -1.0), max: Point3::new(1.0, 1.0, 1.0) }
+        }
+        fn project(&self, query: &Point3<f64>) -> p2m::Projection {
+            p2m::Projection::new(query, *query, p2m::Feature::Face, [1.0, 0.0, 0.0], 0.0)
+        }
+    }
+    assert!(CandidateLists::new(&[Ball]).is_none());
 }
 
 #[test]
@@ -64,6 +130,8 @@ fn bands_are_cut_from_whole_fields() {
         if band < 0.06 {
             assert!(asked < grid.len() / 4, "{band}: {asked} of {}", grid.len());
         }
+        let lists = CandidateLists::new(&soup).expect("plain");
+        assert!(distances_by_lists(&lists, &grid, &options, &|_| ()).as_ref() == Ok(&expected), "{band}");
     }
 }
 
@@ -94,6 +162,10 @@ fn has_signs_of_answers(soup: &Soup<f64>, signed: &SignedDistance<'_, AabbTree<f
             let found = signed_distances(signed, &grid, &options, &|_| ()).expect("memory");
             assert!(found.iter().map(|x| x.to_bits()).eq(expected.iter().copied()), "{band} {hints}");
         }
+        let lists = CandidateLists::new(soup).expect("plain");
+        let options = FieldOptions::default().with_band(band);
+        let found = signed_distances_by_lists(&lists, signed, &grid, &options, &|_| ()).expect("memory");
+        assert!(found.iter().map(|x| x.to_bits()).eq(expected.iter().copied()), "{band} by lists");
     }
 }
 
@@ -121,6 +193,61 @@ fn an_empty_scene_is_infinitely_far() {
     for band in [f64::INFINITY, 2.0] {
         let field = distances(&tree, &grid, &FieldOptions::default().with_band(band), &|_| ());
         assert_eq!(field, Ok(vec![f32::INFINITY; 12]));
+        let lists = CandidateLists::new(&nothing).expect("plain");
+        let field = distances_by_lists(&lists, &grid, &FieldOptions::default().with_band(band), &|_| ());
+        assert_eq!(field, Ok(vec![f32::INFINITY; 12]));
+    }
+}
+
+/// Closed surfaces so large and so small that f32 hardly tells distances.
+#[test]
+fn signs_by_lists_are_right_where_f32_has_no_digits() {
+    let cube = |side: f64| {
+        let corner = |i: u32| Point3::from([0, 1, 2].map(|k| f64::from(i >> k & 1) * side));
+        let faces = [
+            [0, 2, 1],
+            [1, 2, 3],
+            [4, 5, 6],
+            [5, 7, 6],
+            [0, 1, 4],
+            [1, 5, 4],
+            [2, 6, 3],
+            [3, 6, 7],
+            [0, 4, 2],
+            [2, 4, 6],
+            [1, 3, 5],
+            [3, 7, 5],
+        ];
+        Soup::from_triangles((0..8).map(corner).collect(), faces.to_vec()).expect("valid")
+    };
+    for (side, low, spacing) in [(1e40, -5e38, 1e39), (1e-44, -0.8e-45, 1.3e-45), (1.0, -0.25, 0.1)] {
+        let soup = cube(side);
+        let tree = |soup| AabbTree::build(soup, &Default::default()).expect("valid");
+        let signed = SignedDistance::new(tree(&soup), &soup).expect("closed");
+        let winding = SignedDistance::with_winding_numbers(tree(&soup), &soup, 0.01).expect("triangles");
+        let lists = CandidateLists::new(&soup).expect("plain");
+        let grid = Grid::new(Point3::from([low; 3]), spacing, [12; 3]).expect("valid");
+        let options = FieldOptions::default();
+        let bits = |field: Vec<f32>| field.into_iter().map(f32::to_bits).collect::<Vec<_>>();
+        let expected = bits(signed_distances(&signed, &grid, &options, &|_| ()).expect("memory"));
+        assert!(expected.iter().any(|x| f32::from_bits(*x).is_sign_negative()), "{side:e}");
+        let found = bits(signed_distances_by_lists(&lists, &signed, &grid, &options, &|_| ()).expect("memory"));
+        assert!(found == expected, "{side:e}");
+        let found = bits(signed_distances_by_lists(&lists, &winding, &grid, &options, &|_| ()).expect("memory"));
+        let single = bits(signed_distances(&winding, &grid, &options, &|_| ()).expect("memory"));
+        assert!(found == single, "{side:e} by winding numbers");
+    }
+}
+
+#[test]
+fn grids_of_any_shape_are_filled() {
+    let soup = knot();
+    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let lists = CandidateLists::new(&soup).expect("plain");
+    for counts in [[1, 1, 1], [1, 97, 1], [130, 1, 1], [1, 1, 33], [3, 5, 17], [65, 64, 1], [2, 300, 16]] {
+        let grid = Grid::new(Point3::new(-1.0, -0.5, -0.3), 0.03, counts).expect("valid");
+        let expected = distances(&tree, &grid, &FieldOptions::default(), &|_| ());
+        assert!(distances_by_lists(&lists, &grid, &FieldOptions::default(), &|_| ()) == expected, "{counts:?}");
     }
 }
 

@@ -8,14 +8,17 @@ use crate::queries::Queries;
 use crate::rivals::{parry_double, parry_single};
 use crate::scene::Scene;
 use crate::table::Table;
-use anyhow::{Result, anyhow};
+use anyhow::{Context as _, Result, anyhow};
 use cpu_time::ThreadTime;
 use p2m_bvh::AabbTree;
-use p2m_core::{BruteForce, BuildIndex, ClosestPoint, PrimitiveSet};
+use p2m_core::candidates::CandidateLists;
+use p2m_core::{BruteForce, BuildIndex, ClosestPoint, PrimitiveSet, Soup};
 use p2m_interception::{Domain, OctreeIndex, P2mIndex};
-use p2m_mixed::field::{FieldOptions, Grid, distances, signed_distances};
+use p2m_mixed::field::{
+    FieldOptions, Grid, distances, distances_by_lists, signed_distances, signed_distances_by_lists,
+};
 use p2m_mixed::generate::{IcoSphere, ico_sphere};
-use p2m_mixed::sign::SignedDistance;
+use p2m_mixed::sign::{SignError, SignedDistance};
 
 /// Layers that contenders fill in turn.
 const LAYERS: usize = 16;
@@ -108,16 +111,25 @@ fn mean(times: &[f64]) -> f64 {
     times.iter().sum::<f64>() / times.len().max(1) as f64
 }
 
+/// What puts signs to the answers of a tree.
+type Sided<'a> = fn(Tree<'a>, &'a Soup<f64>) -> Result<SignedDistance<'a, Tree<'a>>, SignError>;
+type Tree<'a> = AabbTree<f64, &'a Soup<f64>>;
+
+/// Something with the seconds and the bytes that it took.
+fn built<B>(build: impl FnOnce() -> Result<B>) -> Result<(B, f64, usize)> {
+    let start = ThreadTime::now();
+    let (built, bytes) = measured(build);
+    let seconds = start.elapsed().as_secs_f64();
+    Ok((built?, seconds, bytes))
+}
+
 /// An index of ours by its build.
 fn ours<'a, I: ClosestPoint<f64> + Sync + 'a>(
     name: &'static str,
     build: impl FnOnce() -> Result<I>,
     options: FieldOptions,
 ) -> Result<Built<'a>> {
-    let start = ThreadTime::now();
-    let (index, bytes) = measured(build);
-    let seconds = start.elapsed().as_secs_f64();
-    let index = index?;
+    let (index, seconds, bytes) = built(build)?;
     let fill = Box::new(move |grid: &Grid| distances(&index, grid, &options, &|_| ()).expect("memory"));
     Ok(Built { name, seconds, bytes, fill, times: Vec::new(), difference: 0.0 })
 }
@@ -136,15 +148,31 @@ fn contenders<'a>(scene: &'a Scene, grid: &Grid) -> Result<Vec<Built<'a>>> {
         ours("p2m", || Ok(P2mIndex::build(soup, &p2m_options())?), hints)?,
         ours("p2m, side by side", || Ok(P2mIndex::build(soup, &p2m_options())?), several)?,
     ];
+    let (lists, seconds, bytes) = built(|| CandidateLists::new(soup).context("a scene out of range"))?;
+    let fill = Box::new(move |grid: &Grid| distances_by_lists(&lists, grid, &hints, &|_| ()).expect("memory"));
+    all.push(Built { name: "lists", seconds, bytes, fill, times: Vec::new(), difference: 0.0 });
     if soup.triangles().len() == soup.len() {
-        let start = ThreadTime::now();
-        let (signed, bytes) = measured(|| {
-            SignedDistance::new(AabbTree::build(soup, &aabb_options())?, soup).map_err(anyhow::Error::from)
-        });
-        if let Ok(signed) = signed {
-            let seconds = start.elapsed().as_secs_f64();
+        if let Ok((signed, seconds, bytes)) =
+            built(|| Ok(SignedDistance::new(AabbTree::build(soup, &aabb_options())?, soup)?))
+        {
             let fill = Box::new(move |grid: &Grid| signed_distances(&signed, grid, &hints, &|_| ()).expect("memory"));
             all.push(Built { name: "aabb, signed", seconds, bytes, fill, times: Vec::new(), difference: 0.0 });
+        }
+        let ways: [(&'static str, Sided<'a>); 2] = [
+            ("lists, signed", |tree, soup| SignedDistance::new(tree, soup)),
+            ("lists, winding", |tree, soup| SignedDistance::with_winding_numbers(tree, soup, 0.01)),
+        ];
+        for (name, sided) in ways {
+            let both = built(|| {
+                let lists = CandidateLists::new(soup).context("a scene out of range")?;
+                Ok((lists, sided(AabbTree::build(soup, &aabb_options())?, soup)?))
+            });
+            if let Ok(((lists, signed), seconds, bytes)) = both {
+                let fill = Box::new(move |grid: &Grid| {
+                    signed_distances_by_lists(&lists, &signed, grid, &hints, &|_| ()).expect("memory")
+                });
+                all.push(Built { name, seconds, bytes, fill, times: Vec::new(), difference: 0.0 });
+            }
         }
     }
     all.extend(rival("parry3d", parry_single(scene)));
@@ -156,8 +184,7 @@ fn rival<'a>(name: &'static str, prepared: Result<Prepared<'a>, Absent>) -> Opti
     let build = prepared.ok()?.build;
     let start = ThreadTime::now();
     let (ready, bytes) = measured(build);
-    let seconds = start.elapsed().as_secs_f64();
-    let ready = ready.ok()?;
+    let (ready, seconds) = (ready.ok()?, start.elapsed().as_secs_f64());
     #[allow(clippy::cast_possible_truncation, reason = "fields are f32")]
     let fill = Box::new(move |grid: &Grid| {
         let [x, y, z] = grid.counts();
@@ -211,6 +238,16 @@ pub(crate) fn print_article(scene: &Scene) -> Result<()> {
         "1.25 s (the tree is about 4 % of it)".to_owned(),
         format!("{:.3}, of which the tree is {:.1} %", build + field, 100.0 * build / (build + field)),
     ]);
+    let mut by_lists = Vec::new();
+    let seconds = time(&mut || {
+        let lists = CandidateLists::new(&scene.double).expect("in range");
+        by_lists = distances_by_lists(&lists, &grid, &one_thread(), &|_| ()).expect("memory");
+    });
+    assert!(
+        by_lists == distances(&tree, &grid, &one_thread(), &|_| ()).expect("memory"),
+        "fields of lists and tree differ"
+    );
+    table.push(vec!["the same by lists".to_owned(), "-".to_owned(), format!("{seconds:.3}")]);
     println!("\n## The article's figures\n\nOne thread, thread CPU time.\n\n{table}");
     Ok(())
 }

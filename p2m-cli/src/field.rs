@@ -1,7 +1,7 @@
 //! `p2m field`: distances on a grid.
 
 use crate::asking::pool;
-use crate::backend::{Backend, Built, Closest, Search, Source};
+use crate::backend::{About, Backend, Closest, Search, Source};
 use crate::indexing::Indexing;
 use crate::input::{is_standard, or_option, read_scene_and_index};
 use crate::json;
@@ -12,10 +12,13 @@ use crate::summary::Indexed;
 use crate::usage::{not_negative, one_of, positive, usage};
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
+use nalgebra::Point3;
+use p2m_core::candidates::{CandidateLists, LARGEST};
 use p2m_core::{Aabb, ClosestPoint, PrimitiveSet, Soup};
 use p2m_mixed::FieldFormat;
 use p2m_mixed::field::{
-    FieldOptions, Grid, RefineOptions, distances, refined, signed_distances, slice, write_cells, write_field,
+    FieldOptions, Grid, RefineOptions, distances, distances_by_lists, refined, signed_distances,
+    signed_distances_by_lists, slice, write_cells, write_field,
 };
 use p2m_mixed::sign::{SignError, SignedDistance};
 use serde_json::{Value, json};
@@ -28,7 +31,8 @@ fn help() -> String {
     format!(
         "\
 The grid covers the scaled box of the scene: N points along its longest side, ends included, and as many along the others at \
-the same spacing. Values are rounded to f32.
+the same spacing. Values are rounded to f32. Unless a backend is named, distances come from lists of what can be nearest in blocks of the grid if \
+it has as many points as the scene has primitives, which is faster and has the same values; signs ask an AABB tree.
 
 NPY files are arrays of NumPy, field[i, j, k] with x, y and z; VTI files are images of VTK, with origin and spacing; RAW files have the \
 values alone, little-endian, x fastest. With --refine the file is NPY: an array of cells with the fields origin, size and values (at \
@@ -142,17 +146,37 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
 
     let pool = pool(args.threads)?;
     let start = Instant::now();
-    let (backend, faces) = args.indexing.choice(saved.as_ref(), soup, grid.len() as u64)?;
-    let source = Source { soup, faces, saved: saved.as_ref() };
-    let Built { index, about, loaded, .. } = backend.build(source).with_context(|| scene_args.name())?;
-    let index = match args.signed {
-        None => Index::Unsigned(&*index),
-        Some(signs) => signs.of(&*index, soup).with_context(|| scene_args.name())?,
+    let lists = if args.indexing.is_open() && args.refine.is_none() { lists(soup, &grid) } else { None };
+    let mut backend = LISTS;
+    let (mut about, mut loaded) = (About::Nothing, false);
+    let mut hints = true;
+    let mut built = None;
+    if lists.is_none() || args.signed.is_some() {
+        let (search, faces) = match lists {
+            // For signs.
+            Some(_) => (Backend::of_saved(saved.as_ref()).unwrap_or(Backend::Search(Search::Aabb)), None),
+            None => args.indexing.choice(saved.as_ref(), soup, grid.len() as u64)?,
+        };
+        let source = Source { soup, faces, saved: saved.as_ref() };
+        let index = search.build(source).with_context(|| scene_args.name())?;
+        if lists.is_none() {
+            backend = search.name();
+        }
+        // Trees gain from hints, cells from several queries at a time.
+        hints = matches!(search, Backend::Search(Search::Aabb | Search::Kdop));
+        (about, loaded) = (index.about, index.loaded);
+        built = Some(index.index);
+    }
+    let index = match (&built, args.signed) {
+        (Some(index), Some(signs)) => Some(signs.of(&**index, soup).with_context(|| scene_args.name())?),
+        (Some(index), None) => Some(Index::Unsigned(&**index)),
+        (None, _) => None,
     };
+    let source = Distances { lists, index, hints };
     let build = start.elapsed();
 
     let start = Instant::now();
-    let made = pool.install(|| args.make(&index, backend, &grid))?;
+    let made = pool.install(|| args.make(&source, &grid))?;
     let filled = start.elapsed();
     match &made {
         Made::Cells(cells) => write_cells(cells, &mut output),
@@ -169,12 +193,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         picture.finish()?;
     }
 
-    let (scene_name, backend) = (scene_args.name(), backend.name());
+    let scene_name = scene_args.name();
     let indexed = Indexed { scene_name, scene: &scene, format, backend, about, loaded, read, build };
     let report = Report {
         grid: &grid,
         made: &made,
-        signs: index.rule(),
+        signs: source.index.as_ref().and_then(Index::rule),
         threads: if args.refine.is_some() { 1 } else { pool.current_num_threads() },
         filled,
     };
@@ -211,30 +235,55 @@ impl Args {
         }
     }
 
-    fn make(&self, index: &Index<'_>, backend: Backend, grid: &Grid) -> anyhow::Result<Made> {
+    fn make(&self, source: &Distances<'_>, grid: &Grid) -> anyhow::Result<Made> {
         if let Some(error) = self.refine {
             let progress = Progress::start("cutting cells", None, Unit::None);
             let counts = grid.counts();
             let bounds = Aabb { min: grid.origin(), max: grid.point(counts.map(|n| n - 1)) };
-            let cells =
-                refined(&bounds, &|place| index.distance(place), &RefineOptions::new(error).with_depth(self.depth));
+            let distance = |place: &Point3<f64>| source.index.as_ref().map_or(f64::NAN, |index| index.distance(place));
+            let cells = refined(&bounds, &distance, &RefineOptions::new(error).with_depth(self.depth));
             drop(progress);
             return Ok(Made::Cells(cells));
         }
         let progress = Progress::start("filling the grid", Some(grid.len() as u64), Unit::Items("points"));
-        // Trees gain from hints, cells from several queries at a time.
-        let hints = matches!(backend, Backend::Search(Search::Aabb | Search::Kdop));
-        let mut options = FieldOptions::default().with_hints(hints);
+        let mut options = FieldOptions::default().with_hints(source.hints);
         if let Some(band) = self.band {
             options = options.with_band(band);
         }
         let count = |points: usize| progress.add(points as u64);
-        let values = match index {
-            Index::Unsigned(index) => distances(*index, grid, &options, &count)?,
-            Index::Signed(signed, _) => signed_distances(signed, grid, &options, &count)?,
+        let values = match (&source.lists, &source.index) {
+            (Some(lists), Some(Index::Signed(signed, _))) => {
+                signed_distances_by_lists(lists, signed, grid, &options, &count)?
+            }
+            (Some(lists), _) => distances_by_lists(lists, grid, &options, &count)?,
+            (None, Some(Index::Signed(signed, _))) => signed_distances(signed, grid, &options, &count)?,
+            (None, Some(Index::Unsigned(index))) => distances(*index, grid, &options, &count)?,
+            (None, None) => return Err(anyhow!("there is nothing that tells distances")),
         };
         Ok(Made::Field(values))
     }
+}
+
+/// What tells distances: lists or an index, and an index beside lists for signs.
+struct Distances<'a> {
+    lists: Option<CandidateLists<'a, Soup<f64>>>,
+    index: Option<Index<'a>>,
+    hints: bool,
+}
+
+/// How reports call lists.
+const LISTS: &str = "lists";
+
+/// Lists, if the grid is fine enough for them to pay, coordinates are in their range, and there is memory.
+fn lists<'a>(soup: &'a Soup<f64>, grid: &Grid) -> Option<CandidateLists<'a, Soup<f64>>> {
+    let last = grid.point(grid.counts().map(|n| n - 1));
+    if grid.len() < soup.len() {
+        return None;
+    }
+    let is_in_range = |place: &Point3<f64>| place.iter().all(|x| x.abs() <= LARGEST);
+    let is_in_range = is_in_range(&grid.origin()) && is_in_range(&last);
+    let _progress = Progress::start("sorting primitives", None, Unit::None);
+    CandidateLists::new(soup).filter(|_| is_in_range)
 }
 
 /// What the file gets.
@@ -272,7 +321,7 @@ impl Index<'_> {
         }
     }
 
-    fn distance(&self, place: &nalgebra::Point3<f64>) -> f64 {
+    fn distance(&self, place: &Point3<f64>) -> f64 {
         let distance = match self {
             Self::Unsigned(index) => index.closest_point(place).map(|answer| answer.distance),
             Self::Signed(signed, _) => signed.closest_point(place).and_then(|answer| answer.distance()),

@@ -36,6 +36,11 @@ impl Indexing {
         self.backend == Some(Wanted::Named(Backend::Search(Search::Brute)))
     }
 
+    /// Whether neither an index nor faces were named.
+    pub(crate) fn is_open(&self) -> bool {
+        matches!(self.backend, None | Some(Wanted::Auto)) && self.k.is_none()
+    }
+
     /// The backend: the one that was named, or of the file if there is one with an index, or for so many queries in the
     /// box; and the faces of k-DOPs.
     ///

@@ -24,7 +24,14 @@ fn backends_and_threads_give_the_same_field() {
     for backend in ["aabb", "kdop", "octree", "p2m"] {
         assert!(field("other.raw", &["--backend", backend]) == expected, "{backend}");
     }
+    // By lists.
     assert!(field("one.raw", &["--threads", "1"]) == expected);
+    assert!(field("auto.raw", &["--backend", "auto"]) == expected);
+    let report = |more: &[&str]| {
+        let out = path(&folder, "reported.raw");
+        json(&[&["field", SCENE, "--resolution", "24", "--json", "--out", &out], more].concat())["backend"].clone()
+    };
+    assert_eq!([report(&[]), report(&["--backend", "aabb"])], ["lists", "aabb"]);
     assert!(field("whole.vti", &[]).windows(expected.len()).any(|w| w == expected));
     assert!(field("named", &["--out-format", "npy"]).ends_with(&expected));
     let band = path(&folder, "band.raw");

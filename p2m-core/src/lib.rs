@@ -23,6 +23,7 @@ mod approximate;
 pub mod batch;
 mod box_query;
 mod brute_force;
+pub mod candidates;
 mod counting;
 pub mod delaunay;
 mod error;

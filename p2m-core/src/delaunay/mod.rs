@@ -24,6 +24,7 @@ mod check;
 mod compact;
 mod insert;
 mod order;
+pub(crate) use order::along_the_curve;
 mod scale;
 #[cfg(test)]
 mod tests;

@@ -72,7 +72,7 @@ pub(super) fn bounds(points: impl IntoIterator<Item = V3>) -> [V3; 2] {
 
 /// Sorts the numbers of points along the curve through their box; equal points become neighbours, in the order of their
 /// numbers.
-pub(super) fn along_the_curve(points: &[V3], numbers: &mut [u32]) {
+pub(crate) fn along_the_curve(points: &[V3], numbers: &mut [u32]) {
     let [low, high] = bounds(numbers.iter().map(|&i| points[i as usize]));
     let side = sub(high, low).into_iter().fold(0.0, larger);
     if side == 0.0 || numbers.is_empty() {

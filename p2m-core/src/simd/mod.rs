@@ -62,6 +62,29 @@ pub(crate) trait EightLanes: Lanes {
     fn sorted_keys(self, limit: f32, keys: &mut [u32; 8]) -> usize;
 }
 
+/// Eight f64 that are computed with at once, with roundings as of [`Lanes`].
+pub(crate) trait Doubles: Copy {
+    /// The same number in every lane.
+    fn splat(x: f64) -> Self;
+    /// The first eight numbers of a slice, which has that many.
+    fn load(from: &[f64]) -> Self;
+    /// Writes the lanes to the front of a slice.
+    fn store(self, to: &mut [f64]);
+    fn sub(self, other: Self) -> Self;
+    fn mul(self, other: Self) -> Self;
+    /// self * factor + summand.
+    fn mul_add(self, factor: Self, summand: Self) -> Self;
+    /// The smaller one, `other` if either is NaN.
+    fn min(self, other: Self) -> Self;
+    /// The larger one, `other` if either is NaN.
+    fn max(self, other: Self) -> Self;
+    fn sqrt(self) -> Self;
+    /// `yes` where self <= limit, `no` elsewhere and where either is NaN.
+    fn if_at_most(self, limit: Self, yes: Self, no: Self) -> Self;
+    /// One bit for each lane, the first one lowest: whether self <= limit; not if either is NaN.
+    fn at_most(self, limit: Self) -> u8;
+}
+
 /// A lower bound of the number that a key was made of.
 #[inline(always)]
 pub(crate) fn number_of_key(key: u32) -> f32 {
@@ -80,6 +103,8 @@ pub(crate) trait InstructionSet {
     type Eight: EightLanes;
     /// As many lanes as are computed fastest: 8 or 16.
     type Wide: Lanes;
+    /// Eight f64.
+    type Doubles: Doubles;
 }
 
 /// Something to compute with an instruction set. `run` and everything it calls has to be `#[inline(always)]`, or it is
@@ -186,6 +211,59 @@ mod tests {
                         };
                         assert!(exact, "{isa}: method {method} lane {lane}: {f} for {e}");
                     }
+                }
+            }
+        }
+    }
+
+    /// What every method of eight f64 makes of the same numbers.
+    struct AllDoubles<'a>(&'a [[f64; 8]; 4]);
+
+    impl Operation for AllDoubles<'_> {
+        type Output = (Vec<[f64; 8]>, u8);
+        #[inline(always)]
+        fn run<I: InstructionSet>(self) -> Self::Output {
+            let [a, b, c, d] = self.0;
+            let (a, b, c, d) = (I::Doubles::load(a), I::Doubles::load(b), I::Doubles::load(c), I::Doubles::load(d));
+            let (nan, zero) = (I::Doubles::splat(f64::NAN), I::Doubles::splat(0.0));
+            let results = [
+                a.mul_add(b, c),
+                a.sub(b),
+                a.mul(b),
+                a.min(b),
+                a.max(b),
+                a.if_at_most(b, c, d),
+                a.max(zero).sqrt(),
+                nan.min(a),
+                nan.max(a),
+                nan.if_at_most(a, c, d),
+            ];
+            let mut numbers = vec![[0.0; 8]; results.len()];
+            for (to, from) in numbers.iter_mut().zip(results) {
+                from.store(to);
+            }
+            (numbers, a.at_most(b))
+        }
+    }
+
+    #[test]
+    fn every_instruction_set_computes_doubles_as_the_portable_one_does() {
+        for case in 0..2000 {
+            let mut rng = p2m_testkit::rng("doubles", case);
+            let mut x = [[0.0; 8]; 4];
+            x.as_flattened_mut().fill_with(|| rng.random_range(-1.0..1.0));
+            (x[1][2], x[0][5], x[1][5], x[0][7], x[1][7]) = (x[0][2], 0.0, -0.0, 1e300, f64::INFINITY);
+            let (expected, expected_mask) = Isa::PORTABLE.run(AllDoubles(&x));
+            let by_hand = (0..8).fold(0, |mask, i| mask | u8::from(x[0][i] <= x[1][i]) << i);
+            assert_eq!(expected_mask, by_hand);
+            assert_eq!(expected[3][0], x[0][0].min(x[1][0]));
+            for isa in Isa::available() {
+                let (found, mask) = isa.run(AllDoubles(&x));
+                assert_eq!(mask, expected_mask, "{isa}");
+                assert_eq!(found[1..], expected[1..], "{isa}");
+                for i in 0..7 {
+                    // Fused or not.
+                    assert!((found[0][i] - expected[0][i]).abs() <= f64::EPSILON, "{isa}");
                 }
             }
         }

@@ -2,11 +2,15 @@
 
 #![allow(clippy::needless_range_loop, reason = "several arrays side by side")]
 
-use super::{EightLanes, InstructionSet, Lanes};
+use super::{Doubles, EightLanes, InstructionSet, Lanes};
 
 /// Eight lanes in an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Eight([f32; 8]);
+
+/// Eight f64 in an array.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct EightDoubles([f64; 8]);
 
 /// The reference that other instruction sets are tested against, and what runs where there is no other.
 pub(crate) struct Portable;
@@ -14,6 +18,7 @@ pub(crate) struct Portable;
 impl InstructionSet for Portable {
     type Eight = Eight;
     type Wide = Eight;
+    type Doubles = EightDoubles;
 }
 
 impl Eight {
@@ -136,5 +141,69 @@ impl EightLanes for Eight {
             }
         }
         count
+    }
+}
+
+impl EightDoubles {
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        let mut result = [0.0; 8];
+        for i in 0..8 {
+            result[i] = f(self.0[i], other.0[i]);
+        }
+        Self(result)
+    }
+}
+
+impl Doubles for EightDoubles {
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        Self([x; 8])
+    }
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        let mut lanes = [0.0; 8];
+        lanes.copy_from_slice(&from[..8]);
+        Self(lanes)
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        to[..8].copy_from_slice(&self.0);
+    }
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, summand: Self) -> Self {
+        self.mul(factor).zip(summand, |a, b| a + b)
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a < b { a } else { b })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.zip(self, |a, _| a.sqrt())
+    }
+    #[inline(always)]
+    fn if_at_most(self, limit: Self, yes: Self, no: Self) -> Self {
+        let mut result = [0.0; 8];
+        for i in 0..8 {
+            result[i] = if self.0[i] <= limit.0[i] { yes.0[i] } else { no.0[i] };
+        }
+        Self(result)
+    }
+    #[inline(always)]
+    fn at_most(self, limit: Self) -> u8 {
+        (0..8).fold(0, |mask, i| mask | u8::from(self.0[i] <= limit.0[i]) << i)
     }
 }

@@ -8,6 +8,7 @@
 //! answers, too: by winding numbers for each point, of closed surfaces that of the middle of the block, since there is no surface in it (of one that meets
 //! itself that is the sign of the part nearest to the middle).
 
+use super::layers::Layers;
 use super::{Grid, GridError};
 use crate::sign::{Sign, SignedDistance};
 use nalgebra::Point3;
@@ -87,8 +88,20 @@ pub fn signed_distances<I: ClosestPoint<f64> + Sync>(
     sample.field(progress)
 }
 
-fn band(options: &FieldOptions) -> f64 {
+pub(super) fn band(options: &FieldOptions) -> f64 {
     options.band.max(0.0)
+}
+
+/// What a field has for a distance and a sign.
+#[allow(clippy::cast_possible_truncation, reason = "values are rounded to f32")]
+pub(super) fn signed_value(distance: f64, band: f64, sign: Sign) -> f32 {
+    let distance = distance.min(band) as f32;
+    match sign {
+        Sign::Outside => distance,
+        Sign::Inside => -distance,
+        Sign::Boundary => 0.0,
+        Sign::Undefined => f32::NAN,
+    }
 }
 
 /// What tells signs.
@@ -123,7 +136,7 @@ impl<I: ClosestPoint<f64> + Sync + ?Sized> Sampler<'_, I> {
         let fill = |(slab, values): (usize, &mut [f32])| {
             if self.band < f64::INFINITY {
                 let counts = [x, y, values.len() / layer];
-                self.blocks([0, 0, slab * SLAB], counts, &mut Slab { first: slab * SLAB * layer, values });
+                self.blocks([0, 0, slab * SLAB], counts, &mut Layers { grid: self.grid, first: slab * SLAB, values });
             } else {
                 self.rows(slab * SLAB, values);
             }
@@ -183,33 +196,22 @@ impl<I: ClosestPoint<f64> + Sync + ?Sized> Sampler<'_, I> {
     fn value(&self, query: &Point3<f64>, answer: Option<&Closest<f64>>) -> f32 {
         let Some(answer) = answer else { return f32::INFINITY };
         let sign = self.signs.as_ref().map_or(Sign::Outside, |signs| (signs.near)(query, answer));
-        self.with_sign(answer.distance, sign)
-    }
-
-    #[allow(clippy::cast_possible_truncation, reason = "values are rounded to f32")]
-    fn with_sign(&self, distance: f64, sign: Sign) -> f32 {
-        let distance = distance.min(self.band) as f32;
-        match sign {
-            Sign::Outside => distance,
-            Sign::Inside => -distance,
-            Sign::Boundary => 0.0,
-            Sign::Undefined => f32::NAN,
-        }
+        signed_value(answer.distance, self.band, sign)
     }
 
     /// All points of a block that are in the band.
-    fn blocks(&self, first: [usize; 3], counts: [usize; 3], slab: &mut Slab<'_>) {
+    fn blocks(&self, first: [usize; 3], counts: [usize; 3], layers: &mut Layers<'_>) {
         // Blocks of the slab about as wide as it is deep.
         for j in (0..counts[1]).step_by(SLAB) {
             for i in (0..counts[0]).step_by(SLAB) {
                 let first = [first[0] + i, first[1] + j, first[2]];
                 let counts = [SLAB.min(counts[0] - i), SLAB.min(counts[1] - j), counts[2]];
-                self.block(first, counts, None, slab);
+                self.block(first, counts, None, layers);
             }
         }
     }
 
-    fn block(&self, first: [usize; 3], counts: [usize; 3], hint: Option<Closest<f64>>, slab: &mut Slab<'_>) {
+    fn block(&self, first: [usize; 3], counts: [usize; 3], hint: Option<Closest<f64>>, layers: &mut Layers<'_>) {
         let last: [usize; 3] = std::array::from_fn(|k| first[k] + counts[k] - 1);
         let [low, high] = [self.grid.point(first), self.grid.point(last)];
         let middle = Point3::from(std::array::from_fn::<f64, 3, _>(|k| low[k] * 0.5 + high[k] * 0.5));
@@ -226,9 +228,9 @@ impl<I: ClosestPoint<f64> + Sync + ?Sized> Sampler<'_, I> {
         if is_single || answer.is_none_or(|answer| answer.lower_bound > reach) {
             let value = self.value(&middle, answer.as_ref());
             let far = self.signs.as_ref().filter(|_| !is_single && answer.is_some());
-            slab.fill(self.grid, first, counts, |number| {
+            layers.fill(first, counts, |number| {
                 let sign = far.and_then(|signs| (signs.far)(&self.grid.point(number)));
-                sign.map_or(value, |sign| self.with_sign(self.band, sign))
+                sign.map_or(value, |sign| signed_value(self.band, self.band, sign))
             });
             return;
         }
@@ -238,26 +240,7 @@ impl<I: ClosestPoint<f64> + Sync + ?Sized> Sampler<'_, I> {
             let counts: [usize; 3] = std::array::from_fn(|k| halves[k][side(k)]);
             if counts.iter().all(|n| *n > 0) {
                 let first = std::array::from_fn(|k| first[k] + side(k) * halves[k][0]);
-                self.block(first, counts, answer, slab);
-            }
-        }
-    }
-}
-
-/// The values of some layers.
-struct Slab<'a> {
-    /// The number of the first one.
-    first: usize,
-    values: &'a mut [f32],
-}
-
-impl Slab<'_> {
-    fn fill(&mut self, grid: &Grid, first: [usize; 3], counts: [usize; 3], value: impl Fn([usize; 3]) -> f32) {
-        for (j, k) in (0..counts[1] * counts[2]).map(|n| (n % counts[1], n / counts[1])) {
-            let row = [first[0], first[1] + j, first[2] + k];
-            let start = grid.number(row) - self.first;
-            for (i, out) in self.values[start..start + counts[0]].iter_mut().enumerate() {
-                *out = value([row[0] + i, row[1], row[2]]);
+                self.block(first, counts, answer, layers);
             }
         }
     }

@@ -13,6 +13,9 @@ pub enum GridError {
     /// The spacing is not positive and finite, or the grid reaches beyond the range of f64.
     #[error("a spacing of {0} is none for a grid in the range of numbers")]
     Spacing(f64),
+    /// Coordinates are too large for the squares that lists are made by.
+    #[error("coordinates above 2^250 are out of range for fields by lists")]
+    Range,
     /// There is no memory for its values.
     #[error("there is no memory for {0} values")]
     Memory(usize),

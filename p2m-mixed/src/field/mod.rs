@@ -10,16 +10,25 @@
 //! let field = distances(&BruteForce::new(&ball).unwrap(), &grid, &FieldOptions::default(), &|_| ()).unwrap();
 //! assert_eq!(field.len(), 9 * 9 * 9);
 //! assert!((field[grid.number([4, 4, 4])] - 1.0).abs() < 0.02); // the centre
+//!
+//! // The same without an index, and much faster for fine grids.
+//! use p2m_mixed::field::{CandidateLists, distances_by_lists};
+//! let lists = CandidateLists::new(&ball).unwrap();
+//! assert_eq!(distances_by_lists(&lists, &grid, &FieldOptions::default(), &|_| ()).unwrap(), field);
 //! ```
 
 mod dense;
 mod grid;
+mod layers;
+mod listed;
 mod refined;
 mod slice;
 mod write;
 
 pub use dense::{FieldOptions, distances, signed_distances};
 pub use grid::{Grid, GridError};
+pub use listed::{distances_by_lists, signed_distances_by_lists};
+pub use p2m_core::candidates::CandidateLists;
 pub use refined::{Cell, RefineOptions, refined};
 pub use slice::slice;
 pub use write::{write_cells, write_field};

@@ -23,6 +23,7 @@
 //! # Ok::<(), p2m_mixed::sign::SignError>(())
 //! ```
 
+mod boundary;
 mod pseudonormal;
 mod topology;
 mod winding;
@@ -127,7 +128,7 @@ pub struct SignedDistance<'a, I> {
 /// What tells the sign.
 enum Sides<'a> {
     Closed(Box<Pseudonormals<'a>>),
-    Winding(WindingNumbers<'a>),
+    Winding(Box<WindingNumbers<'a>>),
 }
 
 impl Sides<'_> {
@@ -175,7 +176,7 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
     /// # Complexity
     /// That of [`WindingNumbers::new`].
     pub fn with_winding_numbers(index: I, soup: &'a Soup<f64>, accuracy: f64) -> Result<Self, SignError> {
-        Ok(Self { index, sides: Sides::Winding(WindingNumbers::new(soup, accuracy)?) })
+        Ok(Self { index, sides: Sides::Winding(Box::new(WindingNumbers::new(soup, accuracy)?)) })
     }
 
     /// The index.
@@ -204,6 +205,23 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
         match &self.sides {
             Sides::Closed(_) => None,
             Sides::Winding(winding) => Some(winding.sign(place)),
+        }
+    }
+
+    /// Whether places that no surface is between have the same sign: by winding numbers of an open one they need not.
+    pub(crate) fn changes_at_surface(&self) -> bool {
+        match &self.sides {
+            Sides::Closed(_) => true,
+            Sides::Winding(winding) => winding.is_closed(),
+        }
+    }
+
+    /// The sign of all places within `radius` of one that is not on the surface, between which and it no surface is; `None` where they may
+    /// differ.
+    pub(crate) fn sign_within(&self, radius: f64, place: &Point3<f64>) -> Option<Sign> {
+        match &self.sides {
+            Sides::Closed(_) => Some(self.closest_point(place)?.sign),
+            Sides::Winding(winding) => winding.sign_within(radius, place),
         }
     }
 

@@ -10,6 +10,7 @@
 //! A node stands for its triangles where that is at most `accuracy` times its part of the area of the scene; so all of them together
 //! are wrong by at most `accuracy`, beside rounding. For each node that is a distance, computed at build.
 
+use super::boundary::Boundary;
 use super::{Sign, SignError, check_kinds};
 use crate::vector::{V3, add, cross, dot, length, scaled, sub};
 use nalgebra::Point3;
@@ -37,6 +38,10 @@ pub struct WindingNumbers<'a> {
     /// What coordinates are multiplied by: a power of two.
     unit: f64,
     accuracy: f64,
+    boundary: Boundary,
+    /// The scales of distances for [`ROUGH`] and [`SHARED`].
+    rough: f64,
+    shared: f64,
     /// The triangles, node by node.
     order: Vec<u32>,
     /// A node, then the nodes of its first half, then those of its second one.
@@ -47,8 +52,10 @@ pub struct WindingNumbers<'a> {
 /// Triangles that are one dipole from far away.
 struct Node {
     centre: V3,
-    /// The square of the distance from which on it is one.
-    far: f64,
+    /// No vertex is farther from the centre.
+    radius: f64,
+    /// It is one from this distance beyond the radius on.
+    beyond: f64,
     /// The sum of normals times areas, over 4 pi.
     normal: V3,
     /// The sum of these times the offset of the centroid from the centre: one row for each component of the normal.
@@ -60,6 +67,10 @@ struct Node {
 
 /// Triangles of a leaf.
 const LEAF: usize = 8;
+/// The accuracy that is enough for most signs.
+const ROUGH: f64 = 0.45;
+/// The accuracy that tells the sign of many places near each other.
+const SHARED: f64 = 0.2;
 /// Winding numbers this near to a half tell nothing: what rounding may do.
 const ROUNDING: f64 = 1e-9;
 
@@ -81,9 +92,12 @@ impl<'a> WindingNumbers<'a> {
         // Coordinates up to about 1, so that no area and no product of lengths leaves the range.
         #[allow(clippy::cast_possible_truncation, reason = "exponents of f64")]
         let exponent = if largest > 0.0 { (largest.log2() as i32).clamp(-1000, 1000) } else { 0 };
+        let boundary = Boundary::new(soup)?;
         let count = u32::try_from(soup.triangles().len()).unwrap_or(u32::MAX);
         let (order, nodes, doubts) = ((0..count).collect(), Vec::new(), AtomicU64::new(0));
-        let mut numbers = Self { soup, unit: power_of_two(-exponent), accuracy, order, nodes, doubts };
+        let [rough, shared] = [ROUGH, SHARED].map(|a| (accuracy / a).sqrt().sqrt().min(1.0) * (1.0 + 1e-12));
+        let mut numbers =
+            Self { soup, unit: power_of_two(-exponent), accuracy, boundary, rough, shared, order, nodes, doubts };
         if count > 0 {
             let area: f64 = (0..count).map(|t| length(numbers.triangle(t).normal)).sum();
             let mut order = std::mem::take(&mut numbers.order);
@@ -141,8 +155,7 @@ impl<'a> WindingNumbers<'a> {
             normal = add(normal, part);
             moments = [0, 1, 2].map(|k| add(moments[k], scaled(offset, part[k])));
         }
-        let far = (radius + rho) * (1.0 + 1e-12);
-        Node { centre, far: far * far, normal, moments, triangles, second: 0 }
+        Node { centre, radius, beyond: rho * (1.0 + 1e-12), normal, moments, triangles, second: 0 }
     }
 
     fn triangle(&self, number: u32) -> Triangle {
@@ -161,6 +174,11 @@ impl<'a> WindingNumbers<'a> {
     /// (observed). Triangles of less than 1e-100 of the scene count as nothing.
     #[must_use]
     pub fn number(&self, query: &Point3<f64>) -> f64 {
+        self.number_within(query, 1.0)
+    }
+
+    /// The same within the accuracy divided by the fourth power of `scale`, since that is how the bound goes down with the distance.
+    fn number_within(&self, query: &Point3<f64>, scale: f64) -> f64 {
         let query = scaled((*query).into(), self.unit);
         let mut sum = 0.0;
         // Halving triangles ends after 30 levels.
@@ -172,9 +190,10 @@ impl<'a> WindingNumbers<'a> {
             let node = &self.nodes[number as usize];
             let offset = sub(node.centre, query);
             let square = dot(offset, offset);
+            let far = (node.radius + node.beyond * scale) * (1.0 + 1e-12);
             if !square.is_finite() {
                 // So far away that nothing is left of the node.
-            } else if square > node.far {
+            } else if square > far * far {
                 sum += node.far_away(offset, square);
             } else if node.second == 0 {
                 sum += self.near(query, node.triangles.clone());
@@ -203,7 +222,11 @@ impl<'a> WindingNumbers<'a> {
     }
 
     pub(super) fn sign(&self, query: &Point3<f64>) -> Sign {
-        let mut beyond = self.number(query).abs() - 0.5;
+        // Mostly it is about 0 or 1, so a rough one tells which side of a half it is on.
+        let mut beyond = self.number_within(query, self.rough).abs() - 0.5;
+        if beyond.abs() <= ROUGH + ROUNDING {
+            beyond = self.number(query).abs() - 0.5;
+        }
         if beyond.abs() <= self.accuracy + ROUNDING {
             self.doubts.fetch_add(1, Ordering::Relaxed);
             beyond = self.exact_number(query).abs() - 0.5;
@@ -215,6 +238,25 @@ impl<'a> WindingNumbers<'a> {
         } else {
             Sign::Undefined
         }
+    }
+
+    /// The sign of all places within `radius` of one, between which and it no triangle is; `None` where they may differ.
+    pub(super) fn sign_within(&self, radius: f64, place: &Point3<f64>) -> Option<Sign> {
+        if self.boundary.is_none() {
+            return Some(self.sign(place));
+        }
+        let change = self.boundary.change_within(radius, place);
+        let least = change + SHARED + self.accuracy + 2.0 * ROUNDING;
+        if least >= 0.5 {
+            return None;
+        }
+        let beyond = self.number_within(place, self.shared).abs() - 0.5;
+        (beyond.abs() > least).then_some(if beyond > 0.0 { Sign::Inside } else { Sign::Outside })
+    }
+
+    /// Whether numbers are whole and change at triangles alone.
+    pub(super) fn is_closed(&self) -> bool {
+        self.boundary.is_none()
     }
 
     pub(super) fn doubts(&self) -> u64 {

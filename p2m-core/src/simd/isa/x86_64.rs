@@ -3,7 +3,7 @@
 //! The types are private to this folder and appear only as parameters of an [`Operation`] that one of the two entries
 //! runs; so wherever their methods run, the processor has been asked. That is the reason of every block below.
 
-use crate::simd::{EightLanes, InstructionSet, Lanes, Operation};
+use crate::simd::{Doubles, EightLanes, InstructionSet, Lanes, Operation};
 use std::arch::x86_64::*;
 
 pub(super) fn has_avx2() -> bool {
@@ -50,17 +50,27 @@ pub(super) struct Eight(__m256);
 #[derive(Clone, Copy)]
 pub(super) struct Sixteen(__m512);
 
+/// Eight f64 in two 256-bit registers.
+#[derive(Clone, Copy)]
+pub(super) struct Pair(__m256d, __m256d);
+
+/// Eight f64 in a 512-bit register.
+#[derive(Clone, Copy)]
+pub(super) struct EightDoubles(__m512d);
+
 pub(super) struct Avx2;
 pub(super) struct Avx512;
 
 impl InstructionSet for Avx2 {
     type Eight = Eight;
     type Wide = Eight;
+    type Doubles = Pair;
 }
 
 impl InstructionSet for Avx512 {
     type Eight = Eight;
     type Wide = Sixteen;
+    type Doubles = EightDoubles;
 }
 
 /// A method of which the body is one expression of intrinsics.
@@ -222,5 +232,71 @@ impl Lanes for Sixteen {
         }
         at_most(self: Self, limit: Self) -> u32 { u32::from(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(self.0, limit.0)) }
         smallest(self: Self) -> f32 { _mm512_reduce_min_ps(self.0) }
+    }
+}
+
+impl Doubles for Pair {
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        let from: &[f64; 8] = from[..8].try_into().expect("eight numbers");
+        // SAFETY: as everywhere, and the array has twice 32 bytes to read.
+        unsafe { Self(_mm256_loadu_pd(from.as_ptr()), _mm256_loadu_pd(from[4..].as_ptr())) }
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        let to: &mut [f64; 8] = (&mut to[..8]).try_into().expect("room for eight numbers");
+        // SAFETY: as everywhere, and the array has twice 32 bytes to write.
+        unsafe {
+            _mm256_storeu_pd(to.as_mut_ptr(), self.0);
+            _mm256_storeu_pd(to[4..].as_mut_ptr(), self.1);
+        }
+    }
+    intrinsics! {
+        splat(x: f64) -> Self { Self(_mm256_set1_pd(x), _mm256_set1_pd(x)) }
+        sub(self: Self, b: Self) -> Self { Self(_mm256_sub_pd(self.0, b.0), _mm256_sub_pd(self.1, b.1)) }
+        mul(self: Self, b: Self) -> Self { Self(_mm256_mul_pd(self.0, b.0), _mm256_mul_pd(self.1, b.1)) }
+        mul_add(self: Self, b: Self, c: Self) -> Self {
+            Self(_mm256_fmadd_pd(self.0, b.0, c.0), _mm256_fmadd_pd(self.1, b.1, c.1))
+        }
+        min(self: Self, b: Self) -> Self { Self(_mm256_min_pd(self.0, b.0), _mm256_min_pd(self.1, b.1)) }
+        max(self: Self, b: Self) -> Self { Self(_mm256_max_pd(self.0, b.0), _mm256_max_pd(self.1, b.1)) }
+        sqrt(self: Self) -> Self { Self(_mm256_sqrt_pd(self.0), _mm256_sqrt_pd(self.1)) }
+        if_at_most(self: Self, limit: Self, yes: Self, no: Self) -> Self { Self(
+            _mm256_blendv_pd(no.0, yes.0, _mm256_cmp_pd::<_CMP_LE_OQ>(self.0, limit.0)),
+            _mm256_blendv_pd(no.1, yes.1, _mm256_cmp_pd::<_CMP_LE_OQ>(self.1, limit.1)),
+        ) }
+        at_most(self: Self, limit: Self) -> u8 {{
+            let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(self.0, limit.0));
+            let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(self.1, limit.1));
+            (low | high << 4).to_le_bytes()[0]
+        }}
+    }
+}
+
+impl Doubles for EightDoubles {
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        let from: &[f64; 8] = from[..8].try_into().expect("eight numbers");
+        // SAFETY: as everywhere, and the array has 64 bytes to read.
+        Self(unsafe { _mm512_loadu_pd(from.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        let to: &mut [f64; 8] = (&mut to[..8]).try_into().expect("room for eight numbers");
+        // SAFETY: as everywhere, and the array has 64 bytes to write.
+        unsafe { _mm512_storeu_pd(to.as_mut_ptr(), self.0) }
+    }
+    intrinsics! {
+        splat(x: f64) -> Self { Self(_mm512_set1_pd(x)) }
+        sub(self: Self, other: Self) -> Self { Self(_mm512_sub_pd(self.0, other.0)) }
+        mul(self: Self, other: Self) -> Self { Self(_mm512_mul_pd(self.0, other.0)) }
+        mul_add(self: Self, factor: Self, summand: Self) -> Self { Self(_mm512_fmadd_pd(self.0, factor.0, summand.0)) }
+        min(self: Self, other: Self) -> Self { Self(_mm512_min_pd(self.0, other.0)) }
+        max(self: Self, other: Self) -> Self { Self(_mm512_max_pd(self.0, other.0)) }
+        sqrt(self: Self) -> Self { Self(_mm512_sqrt_pd(self.0)) }
+        if_at_most(self: Self, limit: Self, yes: Self, no: Self) -> Self {
+            Self(_mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, limit.0), no.0, yes.0))
+        }
+        at_most(self: Self, limit: Self) -> u8 { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, limit.0) }
     }
 }

@@ -1,0 +1,162 @@
+//! A bounding volume hierarchy of boxes: primitives along a Hilbert curve, eight in a group, and eight groups in one, up to a single
+//! group.
+
+use super::flat::Flat;
+use crate::delaunay::along_the_curve;
+use crate::kernel::vector::{V3, larger, norm_squared, sub};
+use crate::{PrimitiveId, PrimitiveSet};
+
+/// Members of a group.
+const MEMBERS: usize = 8;
+/// At most, of which each may have a group that is not full.
+const LEVELS: usize = 11;
+
+/// Primitives in their order along the curve, and groups of them.
+#[derive(Debug)]
+pub(super) struct Groups {
+    pub(super) flats: Vec<Flat>,
+    pub(super) ids: Vec<PrimitiveId>,
+    /// The groups of primitives, the groups of these, and so on; the last one has all.
+    groups: Vec<Group>,
+}
+
+/// The box around some neighbours.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Group {
+    pub(super) bounds: [V3; 2],
+    members: [u32; 2],
+    of_groups: bool,
+}
+
+/// A primitive or a group: its number, with the upper bit for groups.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Item(u32);
+
+/// What an [`Item`] is.
+#[derive(Clone, Copy)]
+pub(super) enum Is<'a> {
+    One(&'a Flat),
+    Many(&'a Group),
+}
+
+const GROUP: u32 = 1 << 31;
+
+impl Item {
+    /// The place of a primitive; `None` for a group.
+    pub(super) fn one(self) -> Option<usize> {
+        (self.0 & GROUP == 0).then_some(self.0 as usize)
+    }
+}
+
+impl Group {
+    #[inline(always)]
+    pub(super) fn members(&self) -> impl ExactSizeIterator<Item = Item> + use<> {
+        let bit = if self.of_groups { GROUP } else { 0 };
+        (self.members[0]..self.members[1]).map(move |i| Item(i | bit))
+    }
+
+    #[inline(always)]
+    pub(super) fn squared_diagonal(&self) -> f64 {
+        norm_squared(sub(self.bounds[1], self.bounds[0]))
+    }
+
+    /// The square of the distance of its box from a place, roughly.
+    fn square(&self, place: V3) -> f64 {
+        let [low, high] = &self.bounds;
+        norm_squared([0, 1, 2].map(|k: usize| larger(larger(low[k] - place[k], place[k] - high[k]), 0.0)))
+    }
+
+    #[allow(clippy::cast_possible_truncation, reason = "fewer than primitives, of which there are at most 2^30")]
+    fn of(bounds: impl Iterator<Item = [V3; 2]>, first: usize, of_groups: bool) -> Self {
+        let (mut all, mut count) = ([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], 0);
+        for [low, high] in bounds {
+            for k in 0..3 {
+                all[0][k] = all[0][k].min(low[k]);
+                all[1][k] = all[1][k].max(high[k]);
+            }
+            count += 1;
+        }
+        Self { bounds: all, members: [first as u32, (first + count) as u32], of_groups }
+    }
+}
+
+impl Groups {
+    /// `None` if a primitive is not told by its vertices, or if there is no memory.
+    pub(super) fn new<S: PrimitiveSet<f64> + ?Sized>(set: &S) -> Option<Self> {
+        let count = set.len();
+        let ids = || (0..count).map(PrimitiveId::new);
+        let middles: Vec<V3> = ids()
+            .map(|id| {
+                let bounds = crate::Primitive::aabb(&set.get(id));
+                std::array::from_fn(|k| bounds.min[k] * 0.5 + bounds.max[k] * 0.5)
+            })
+            .collect();
+        let mut order: Vec<u32> = ids().map(PrimitiveId::number).collect();
+        along_the_curve(&middles, &mut order);
+        drop(middles);
+        let ids: Vec<PrimitiveId> = order.into_iter().map(|i| PrimitiveId::new(i as usize)).collect();
+        let mut flats = Vec::new();
+        flats.try_reserve_exact(count).ok()?;
+        for id in &ids {
+            flats.push(Flat::of(&set.get(*id))?);
+        }
+        let mut groups: Vec<Group> = Vec::with_capacity(count.div_ceil(MEMBERS - 1) + LEVELS);
+        for (n, members) in ids.chunks(MEMBERS).enumerate() {
+            let bounds = members.iter().map(|id| {
+                let bounds = crate::Primitive::aabb(&set.get(*id));
+                [bounds.min.coords.into(), bounds.max.coords.into()]
+            });
+            groups.push(Group::of(bounds, n * MEMBERS, false));
+        }
+        let mut first = 0;
+        while groups.len() - first > 1 {
+            let end = groups.len();
+            for start in (first..end).step_by(MEMBERS) {
+                let members = groups[start..end.min(start + MEMBERS)].iter().map(|group| group.bounds);
+                let group = Group::of(members.collect::<Vec<_>>().into_iter(), start, true);
+                groups.push(group);
+            }
+            first = end;
+        }
+        Some(Self { flats, ids, groups })
+    }
+
+    #[inline(always)]
+    pub(super) fn get(&self, item: Item) -> Is<'_> {
+        let number = (item.0 & !GROUP) as usize;
+        if item.0 & GROUP == 0 { Is::One(&self.flats[number]) } else { Is::Many(&self.groups[number]) }
+    }
+
+    /// The group of all; `None` if there is nothing.
+    #[allow(clippy::cast_possible_truncation, reason = "fewer than primitives")]
+    pub(super) fn all(&self) -> Option<Item> {
+        self.groups.len().checked_sub(1).map(|last| Item(last as u32 | GROUP))
+    }
+
+    /// The primitive that is found by way of the nearest boxes, which is among the nearer ones of an item.
+    pub(super) fn near(&self, mut item: Item, place: V3) -> &Flat {
+        loop {
+            match self.get(item) {
+                Is::One(flat) => return flat,
+                Is::Many(group) => {
+                    let square = |item: &Item| match self.get(*item) {
+                        Is::One(flat) => flat.square(place),
+                        Is::Many(group) => group.square(place),
+                    };
+                    item = group
+                        .members()
+                        .map(|item| (square(&item), item))
+                        .reduce(|a, b| if b.0 < a.0 { b } else { a })
+                        .expect("groups are not empty")
+                        .1;
+                }
+            }
+        }
+    }
+
+    pub(super) fn memory(&self) -> usize {
+        self.flats.capacity() * size_of::<Flat>()
+            + self.ids.capacity() * size_of::<PrimitiveId>()
+            + self.groups.capacity() * size_of::<Group>()
+    }
+}
