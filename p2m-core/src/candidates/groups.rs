@@ -3,8 +3,9 @@
 
 use super::flat::Flat;
 use crate::delaunay::along_the_curve;
-use crate::kernel::vector::{V3, larger, norm_squared, sub};
-use crate::{PrimitiveId, PrimitiveSet};
+use crate::kernel::vector::{V3, norm_squared, sub};
+use crate::{Aabb, Primitive, PrimitiveId, PrimitiveSet};
+use nalgebra::Point3;
 
 /// Members of a group.
 const MEMBERS: usize = 8;
@@ -60,23 +61,17 @@ impl Group {
         norm_squared(sub(self.bounds[1], self.bounds[0]))
     }
 
-    /// The square of the distance of its box from a place, roughly.
-    fn square(&self, place: V3) -> f64 {
-        let [low, high] = &self.bounds;
-        norm_squared([0, 1, 2].map(|k: usize| larger(larger(low[k] - place[k], place[k] - high[k]), 0.0)))
+    fn aabb(&self) -> Aabb<f64> {
+        let [min, max] = self.bounds.map(Point3::from);
+        Aabb { min, max }
     }
 
     #[allow(clippy::cast_possible_truncation, reason = "fewer than primitives, of which there are at most 2^30")]
-    fn of(bounds: impl Iterator<Item = [V3; 2]>, first: usize, of_groups: bool) -> Self {
-        let (mut all, mut count) = ([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], 0);
-        for [low, high] in bounds {
-            for k in 0..3 {
-                all[0][k] = all[0][k].min(low[k]);
-                all[1][k] = all[1][k].max(high[k]);
-            }
-            count += 1;
-        }
-        Self { bounds: all, members: [first as u32, (first + count) as u32], of_groups }
+    fn of(members: impl ExactSizeIterator<Item = Aabb<f64>>, first: usize, of_groups: bool) -> Self {
+        let members_end = first + members.len();
+        let all = members.fold(Aabb::empty(), |all, one| all.union(&one));
+        let bounds = [all.min.coords.into(), all.max.coords.into()];
+        Self { bounds, members: [first as u32, members_end as u32], of_groups }
     }
 }
 
@@ -87,7 +82,7 @@ impl Groups {
         let ids = || (0..count).map(PrimitiveId::new);
         let middles: Vec<V3> = ids()
             .map(|id| {
-                let bounds = crate::Primitive::aabb(&set.get(id));
+                let bounds = set.get(id).aabb();
                 std::array::from_fn(|k| bounds.min[k] * 0.5 + bounds.max[k] * 0.5)
             })
             .collect();
@@ -102,18 +97,14 @@ impl Groups {
         }
         let mut groups: Vec<Group> = Vec::with_capacity(count.div_ceil(MEMBERS - 1) + LEVELS);
         for (n, members) in ids.chunks(MEMBERS).enumerate() {
-            let bounds = members.iter().map(|id| {
-                let bounds = crate::Primitive::aabb(&set.get(*id));
-                [bounds.min.coords.into(), bounds.max.coords.into()]
-            });
-            groups.push(Group::of(bounds, n * MEMBERS, false));
+            groups.push(Group::of(members.iter().map(|id| set.get(*id).aabb()), n * MEMBERS, false));
         }
         let mut first = 0;
         while groups.len() - first > 1 {
             let end = groups.len();
             for start in (first..end).step_by(MEMBERS) {
-                let members = groups[start..end.min(start + MEMBERS)].iter().map(|group| group.bounds);
-                let group = Group::of(members.collect::<Vec<_>>().into_iter(), start, true);
+                let members = &groups[start..end.min(start + MEMBERS)];
+                let group = Group::of(members.iter().map(Group::aabb), start, true);
                 groups.push(group);
             }
             first = end;
@@ -141,7 +132,7 @@ impl Groups {
                 Is::Many(group) => {
                     let square = |item: &Item| match self.get(*item) {
                         Is::One(flat) => flat.square(place),
-                        Is::Many(group) => group.square(place),
+                        Is::Many(group) => group.aabb().lower_bound(&place.into()),
                     };
                     item = group
                         .members()

@@ -48,7 +48,7 @@ mod lanes;
 mod narrow;
 
 use crate::simd::Isa;
-use crate::{Aabb, Best, Collector, Primitive, PrimitiveId, PrimitiveSet, QueryOptions};
+use crate::{Aabb, Best, Collector, Primitive, PrimitiveSet, QueryOptions, check_set};
 use evaluate::Evaluate;
 use groups::{Groups, Item};
 use nalgebra::Point3;
@@ -127,9 +127,8 @@ impl<'a, S: PrimitiveSet<f64> + ?Sized> CandidateLists<'a, S> {
     pub fn new(set: &'a S) -> Option<Self> {
         let Aabb { min, max } = set.aabb();
         let is_plain = set.is_empty() || min.iter().chain(max.iter()).all(|x| x.abs() <= LARGEST);
-        // Not for NaN, which boxes may leave out.
-        let is_finite = || (0..set.len()).all(|i| set.get(PrimitiveId::new(i)).is_finite());
-        if !is_plain || !is_finite() {
+        // NaN, which boxes may leave out, is refused as by indexes.
+        if !is_plain || check_set(set).is_err() {
             return None;
         }
         Some(Self { set, groups: Groups::new(set)?, isa: Isa::best() })

@@ -3,7 +3,7 @@ use super::lanes::squares;
 use super::*;
 use crate::kernel::vector::{V3, largest, norm_squared, sub};
 use crate::simd::{Doubles, InstructionSet, Operation};
-use crate::{BruteForce, ClosestPoint, Element, Soup};
+use crate::{BruteForce, ClosestPoint, Element, PrimitiveId, Soup};
 use rand::{Rng, RngExt};
 
 /// A scene of some kinds, with slivers and degenerate primitives, spread over `size` around `centre`.

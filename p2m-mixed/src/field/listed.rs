@@ -26,8 +26,7 @@ use p2m_core::{Aabb, ClosestPoint, PrimitiveSet};
 /// [`GridError::Memory`], and [`GridError::Range`] for coordinates above 2^250.
 ///
 /// # Complexity
-/// O(k) for each point, with k candidates in its block, and O(n) for n primitives and each of the first blocks: about n 2^l for level l of
-/// their halving in eight. 4 bytes a point, and 4 bytes for each candidate of the blocks around one.
+/// O(k) for each point, with k candidates in its block. 4 bytes a point, and 4 bytes for each candidate of the blocks around one.
 pub fn distances_by_lists<S: PrimitiveSet<f64> + Sync + ?Sized>(
     lists: &CandidateLists<'_, S>,
     grid: &Grid,
