@@ -38,7 +38,9 @@
 //!
 //! | what | trait | of |
 //! |---|---|---|
-//! | the closest point, within a distance, from a hint, to an epsilon | [`ClosestPoint`] | every index |
+//! | the closest point, within a distance, from a hint | [`ClosestPoint`] | every index |
+//! | the same with an approximation of a stated error | [`QueryOptions`] | every index |
+//! | the same proved: the nearest primitive of the real numbers, the distance rounded once | [`CertifiedQuery`] | every index |
 //! | the same for many places, on all cores | [`batch`] | every index |
 //! | the k nearest, all within a distance, any, the closest of some | [`NearQuery`] | every index |
 //! | what a ray meets | [`RayQuery`] | trees and brute force |
@@ -84,9 +86,10 @@ pub use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
 pub use p2m_core as backend;
 pub use p2m_core::hierarchy::SplitOptions;
 pub use p2m_core::{
-    Aabb, BoxQuery, BruteForce, BuildError, BuildIndex, Closest, ClosestLeaf, ClosestPoint, Element, Examine, Feature,
-    Hit, Indexed, Isa, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet, Projection, QueryOptions, Ray, RayError,
-    RayQuery, Real, Segment, Shape, Side, Soup, Triangle, Visits, batch, saved,
+    Aabb, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestLeaf,
+    ClosestPoint, Element, Examine, Feature, Hit, Indexed, Isa, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet,
+    Projection, QueryOptions, Ray, RayError, RayQuery, Real, Segment, Shape, Side, Soup, StoredInF32, Triangle, Visits,
+    batch, saved,
 };
 #[cfg(feature = "kiddo")]
 pub use p2m_interception::KdTreeLocator;

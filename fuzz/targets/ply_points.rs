@@ -1,2 +1,2 @@
 #![no_main]
-libfuzzer_sys::fuzz_target!(|file: &[u8]| p2m_fuzz::points(file, p2m_mixed::PointFormat::Ply));
+libfuzzer_sys::fuzz_target!(|file: &[u8]| p2m_fuzz::readers::points(file, p2m_mixed::PointFormat::Ply));

@@ -3,7 +3,6 @@
 use crate::backends::{aabb_options, octree_options, p2m_options};
 use crate::measure::Spread;
 use crate::scene::Scene;
-use crate::table::Table;
 use anyhow::Result;
 use cpu_time::ThreadTime;
 use nalgebra::Point3;
@@ -13,6 +12,7 @@ use p2m_interception::{OctreeIndex, P2mIndex};
 use p2m_kdop::{KdopOptions, KdopTree};
 use p2m_mixed::advisor::{Choice, Place, Workload, recommend};
 use p2m_testkit::queries::QuerySet;
+use p2m_tradeoff::Table;
 
 /// Queries that are timed.
 pub(crate) const QUERIES: usize = 20_000;

@@ -1,5 +1,6 @@
 //! Our contenders, and the list of all. A new backend is one entry of [`ALL`].
 
+use crate::bvh_crate;
 use crate::contender::{Absent, Answer, Backend, Contender, Prepared, Ready, Scalar, ScalarKind};
 use crate::kinds::{aabb_by_kind, aabb_of_set, aabb_of_triangles};
 use crate::rivals::{parry_double, parry_single};
@@ -54,8 +55,11 @@ pub(crate) const ALL: &[Backend] = &[
     Backend { name: "brute-f32", exhaustive: true, prepare: |s| over_soup::<f32, BruteForce<_>>(s), ..OURS_SINGLE },
     Backend { name: "octree-f32", prepare: |s| octree::<f32>(s, None, 1.0), ..OURS_SINGLE },
     Backend { name: "aabb-f32", prepare: |s| aabb::<f32>(s, None), ..OURS_SINGLE },
+    Backend { name: "kdop-14-f32", prepare: kdop::<f32, 14>, ..OURS_SINGLE },
+    Backend { name: "p2m-f32", prepare: |s| p2m::<f32>(s, None), ..OURS_SINGLE },
     Backend { name: YARDSTICK, scalar: ScalarKind::Single, prepare: parry_single, ..RIVAL },
     Backend { name: YARDSTICK_DOUBLE, prepare: parry_double, ..RIVAL },
+    Backend { name: "bvh", prepare: bvh, ..RIVAL },
 ];
 
 /// What `query` measures unless told otherwise.
@@ -219,7 +223,7 @@ fn p2m_filtered<F: ListFilter + 'static>(scene: &Scene, options: P2mOptions) -> 
 
 /// As in the paper: no site is added, and lists may be long.
 fn long_lists() -> P2mOptions {
-    p2m_options().with_longest(2048).with_added(0.0)
+    p2m_options().with_longest(2048).with_added(0.0).with_memory(1e5).with_work(1e6)
 }
 
 /// The P2M index, asked for several queries at a time.
@@ -261,6 +265,12 @@ fn kdop_of_scene(scene: &Scene) -> Result<Prepared<'_>, Absent> {
         18 => kdop_with::<18>(scene, choice.directions()),
         _ => kdop_with::<26>(scene, choice.directions()),
     }
+}
+
+/// The crate bvh, with a distance of its own.
+fn bvh(scene: &Scene) -> Result<Prepared<'_>, Absent> {
+    let build = bvh_crate::tree(scene);
+    Ok(Prepared { build: Box::new(move || Ok(Box::new(build()?) as Ready<'_>)), borrowed: 0 })
 }
 
 /// The k-DOP tree of these directions.

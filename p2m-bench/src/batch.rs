@@ -1,13 +1,13 @@
 //! `p2m-bench batch`: many queries at once, by order, hints and threads.
 
 use crate::scene::Scene;
-use crate::table::Table;
 use anyhow::{Context, Result};
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_core::batch::{BatchOptions, closest_points_into};
 use p2m_core::{BuildIndex, Closest, ClosestPoint};
 use p2m_testkit::queries::QuerySet;
+use p2m_tradeoff::Table;
 use std::time::Instant;
 
 /// Prints wall times of batches over a scene; whether all answers are those of single queries.

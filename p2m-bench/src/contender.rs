@@ -3,7 +3,8 @@
 use crate::queries::QuerySlice;
 use crate::scene::Scene;
 use nalgebra::Point3;
-use p2m_core::{Real, Soup};
+use p2m_core::Soup;
+use p2m_tradeoff::queries::Scalar as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The answer to a query.
@@ -19,6 +20,11 @@ pub(crate) struct Answer {
 impl Answer {
     /// No answer.
     pub(crate) const NONE: Self = Self { distance: f64::NAN, id: u32::MAX };
+
+    /// Whether there was no answer: of `None`, not a distance that is NaN.
+    pub(crate) fn is_none(&self) -> bool {
+        self.distance.is_nan() && self.id == u32::MAX
+    }
 
     /// Whether both are the same bits.
     pub(crate) fn same_distance(&self, other: &Self) -> bool {
@@ -57,27 +63,19 @@ impl<C: Contender> Batch for C {
     }
 }
 
-/// The two scalars, as places where to find queries and scene.
-pub(crate) trait Scalar: Real {
-    /// The queries in this scalar.
-    fn of(queries: QuerySlice<'_>) -> &[Point3<Self>];
+/// The two scalars, as places where to find the scene besides queries.
+pub(crate) trait Scalar: p2m_tradeoff::queries::Scalar {
     /// The scene in this scalar and its heap bytes, unless the scene overflows.
     fn soup(scene: &Scene) -> Result<(&Soup<Self>, usize), Absent>;
 }
 
 impl Scalar for f64 {
-    fn of(queries: QuerySlice<'_>) -> &[Point3<f64>] {
-        queries.double
-    }
     fn soup(scene: &Scene) -> Result<(&Soup<f64>, usize), Absent> {
         Ok((&scene.double, scene.double_bytes))
     }
 }
 
 impl Scalar for f32 {
-    fn of(queries: QuerySlice<'_>) -> &[Point3<f32>] {
-        queries.single
-    }
     fn soup(scene: &Scene) -> Result<(&Soup<f32>, usize), Absent> {
         let soup = scene.single.as_ref().ok_or_else(|| Absent("the scene overflows f32".to_owned()))?;
         Ok((soup, scene.single_bytes))

@@ -3,11 +3,11 @@
 use crate::measure::Spread;
 use crate::memory;
 use crate::scene::Scene;
-use crate::table::Table;
 use anyhow::{Context, Result};
 use cpu_time::ThreadTime;
 use p2m_core::delaunay::{Delaunay, Work};
 use p2m_testkit::{rng, vector};
+use p2m_tradeoff::Table;
 use std::path::PathBuf;
 
 /// Bounding sites for queries in ten times the box.

@@ -7,7 +7,6 @@ use crate::memory::measured;
 use crate::queries::Queries;
 use crate::rivals::{parry_double, parry_single};
 use crate::scene::Scene;
-use crate::table::Table;
 use anyhow::{Context as _, Result, anyhow};
 use cpu_time::ThreadTime;
 use p2m_bvh::AabbTree;
@@ -19,6 +18,7 @@ use p2m_mixed::field::{
 };
 use p2m_mixed::generate::{IcoSphere, ico_sphere};
 use p2m_mixed::sign::{SignError, SignedDistance};
+use p2m_tradeoff::Table;
 
 /// Layers that contenders fill in turn.
 const LAYERS: usize = 16;

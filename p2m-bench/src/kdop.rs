@@ -8,7 +8,6 @@ use crate::backends::{frame, kdop_backend};
 use crate::contender::Backend;
 use crate::measure::{Effort, Spread, build_all, measure_set};
 use crate::scene::Scene;
-use crate::table::Table;
 use anyhow::Result;
 use nalgebra::{Point3, Rotation3, Vector3};
 use p2m_bvh::{AabbOptions, AabbTree};
@@ -16,6 +15,7 @@ use p2m_core::{BuildIndex, Counting, Directions, Soup};
 use p2m_kdop::{KdopOptions, KdopTree};
 use p2m_testkit::left_first::LeftFirst;
 use p2m_testkit::queries::QuerySet;
+use p2m_tradeoff::Table;
 use std::f64::consts::PI;
 
 /// Angles about x and then y, in parts of pi.

@@ -8,12 +8,15 @@
 //! column `label` of a record, say which build it was.
 #![forbid(unsafe_code)]
 
+mod adversaries;
 mod advise;
 mod agree;
 mod backends;
 mod batch;
+mod bvh_crate;
 mod contender;
 mod delaunay;
+mod extremes;
 mod field;
 mod kdop;
 mod kinds;
@@ -21,25 +24,23 @@ mod measure;
 mod memory;
 mod octree;
 mod paper;
-mod provenance;
-mod queries;
 mod rays;
 mod report;
 mod rivals;
 mod saved;
 mod scene;
 mod splits;
-mod table;
+mod tradeoff;
 mod verify;
 
 use crate::contender::{Backend, ScalarKind};
 use crate::measure::Effort;
-use crate::provenance::Provenance;
 use crate::scene::Scene;
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use p2m_testkit::queries::QuerySet;
+use p2m_tradeoff::{Provenance, Table, queries};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -69,10 +70,21 @@ enum Command {
     Ray(RayArguments),
     /// The evaluation of the P2M paper on our models: writes paper.md with its tables and plots; fails if ours differ
     Paper(PaperArguments),
+    /// Speed against accuracy of all backends and settings: writes report.html, its plots and report.csv
+    Report(ReportArguments),
+    /// The accuracy contract where others break: writes extremes.md; fails if ours break it anywhere
+    Extremes(ExtremesArguments),
+    /// Two records of `report`: what became faster or slower beyond noise, and which errors changed
+    Compare(CompareArguments),
     /// What is recommended for 10^5 and 10^7 queries, against what would have been best
     Advise(AdviseArguments),
     /// Distance fields on a grid, against rivals and the figures of the article; fails if ours differ
     Field(FieldArguments),
+    /// Scenes that are made to be bad: writes adversaries.md; fails if a budget is exceeded or an answer is wrong
+    Adversaries(AdversariesArguments),
+    /// One rival over one of these, for `adversaries`
+    #[command(hide = true)]
+    Rival(RivalArguments),
     /// Saving and loading indexes, against building them
     Saved(SavedArguments),
     /// The settings of the octree: resolution, domain, threads
@@ -242,6 +254,11 @@ struct DelaunayArguments {
     rounds: usize,
 }
 
+/// Of this program, run from its checkout.
+pub(crate) fn provenance(label: Option<&str>) -> Provenance {
+    Provenance::collect(label, Some(env!("CARGO_MANIFEST_DIR").as_ref()))
+}
+
 fn backend_names() -> PossibleValuesParser {
     backends::ALL.iter().map(|backend| backend.name).collect::<Vec<_>>().into()
 }
@@ -262,7 +279,12 @@ fn main() -> Result<ExitCode> {
         Command::Batch(arguments) => batches(&arguments)?,
         Command::Advise(arguments) => advice(&arguments)?,
         Command::Field(arguments) => fields(&arguments)?,
+        Command::Adversaries(arguments) => adversaries(&arguments)?,
+        Command::Rival(arguments) => rival(&arguments)?,
         Command::Saved(arguments) => saved_indexes(&arguments)?,
+        Command::Report(arguments) => tradeoff_page(&arguments)?,
+        Command::Extremes(arguments) => extreme_page(&arguments)?,
+        Command::Compare(arguments) => compare_records(&arguments)?,
         Command::Paper(arguments) => paper_page(&arguments)?,
     };
     Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
@@ -277,7 +299,7 @@ fn select(common: &Common, wanted: impl Fn(&Backend) -> bool) -> Vec<&'static Ba
 fn query(arguments: &QueryArguments) -> Result<bool> {
     let common = &arguments.common;
     let selected = select(common, |b| arguments.backends.iter().any(|name| name == b.name));
-    let provenance = Provenance::collect(arguments.label.as_deref());
+    let provenance = provenance(arguments.label.as_deref());
     let effort =
         Effort { rounds: arguments.rounds, queries: arguments.queries, builds: arguments.builds, seed: common.seed };
     let mut record = arguments.csv.as_deref().map(report::Record::open).transpose()?;
@@ -321,10 +343,81 @@ struct PaperArguments {
 /// Whether all answers of ours are bitwise the same.
 fn paper_page(arguments: &PaperArguments) -> Result<bool> {
     let PaperArguments { models, quick, out } = arguments;
-    let usual = || std::env::var_os("P2M_MODELS").map_or_else(|| PathBuf::from("../shared/models"), PathBuf::from);
-    let models = models.clone().unwrap_or_else(usual);
+    let models = models.clone().unwrap_or_else(usual_models);
     let out = out.clone().unwrap_or_else(|| PathBuf::from(if *quick { "target/paper" } else { "docs" }));
     paper::write(&models, *quick, &out)
+}
+
+/// Where models are unless said otherwise.
+fn usual_models() -> PathBuf {
+    std::env::var_os("P2M_MODELS").map_or_else(|| PathBuf::from("../shared/models"), PathBuf::from)
+}
+
+#[derive(Args)]
+struct ReportArguments {
+    /// The folder of models [default: that of the variable P2M_MODELS, or ../shared/models]; without those that are needed, generated
+    /// scenes stand in
+    #[arg(long)]
+    models: Option<PathBuf>,
+    /// Three scenes and fewer queries, in two minutes
+    #[arg(long)]
+    quick: bool,
+    /// The folder for report.html, report.csv and the folder report of plots [default: docs, and target/report with --quick]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Name of this build in page and record [default: native with AVX2 at compile time, else portable]
+    #[arg(long)]
+    label: Option<String>,
+}
+
+/// Whether all promises were kept.
+fn tradeoff_page(arguments: &ReportArguments) -> Result<bool> {
+    let ReportArguments { models, quick, out, label } = arguments;
+    let models = models.clone().unwrap_or_else(usual_models);
+    let out = out.clone().unwrap_or_else(|| PathBuf::from(if *quick { "target/report" } else { "docs" }));
+    tradeoff::write(&models, *quick, &out, &provenance(label.as_deref()))
+}
+
+#[derive(Args)]
+struct ExtremesArguments {
+    /// Answers about isolated primitives that are checked
+    #[arg(long, default_value_t = 1_000_000)]
+    cases: u64,
+    /// Scenes of each family, each asked about by every backend
+    #[arg(long, default_value_t = 4)]
+    scenes: u64,
+    /// Of all random numbers
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Write the page here instead of printing it
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// Whether ours kept all that they promise.
+fn extreme_page(arguments: &ExtremesArguments) -> Result<bool> {
+    let &ExtremesArguments { cases, scenes, seed, ref out } = arguments;
+    extremes::write(&extremes::Amount { cases, scenes, seed }, out.as_deref(), &provenance(None))
+}
+
+#[derive(Args)]
+struct CompareArguments {
+    /// The record of before
+    first: PathBuf,
+    /// The record of after
+    second: PathBuf,
+}
+
+/// A table; only what cannot be compared fails.
+fn compare_records(arguments: &CompareArguments) -> Result<bool> {
+    let read = |path: &PathBuf| -> Result<Vec<p2m_tradeoff::record::Line>> {
+        let name = || path.display().to_string();
+        let text = std::fs::read_to_string(path).with_context(name)?;
+        p2m_tradeoff::record::read_record(&text).with_context(name)
+    };
+    let (first, second) = (read(&arguments.first)?, read(&arguments.second)?);
+    print!("{}", p2m_tradeoff::compare::compare(&first, &second)?);
+    Ok(true)
 }
 
 #[derive(Args)]
@@ -338,6 +431,37 @@ struct SavedArguments {
 }
 
 #[derive(Args)]
+struct AdversariesArguments {
+    /// Primitives of each scene
+    #[arg(long, default_value_t = 20_000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    primitives: usize,
+    /// The page to write [default: the standard output]
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// Whether all budgets were kept and all answers right.
+fn adversaries(arguments: &AdversariesArguments) -> Result<bool> {
+    adversaries::print(arguments.primitives, arguments.out.as_deref(), &provenance(None))
+}
+
+#[derive(Args)]
+struct RivalArguments {
+    /// Its name
+    backend: String,
+    /// The scene
+    adversary: String,
+    /// Primitives of the scene
+    primitives: usize,
+}
+
+/// Prints what came of it, for the program that asked.
+fn rival(arguments: &RivalArguments) -> Result<bool> {
+    adversaries::attempt(&arguments.backend, &arguments.adversary, arguments.primitives)?;
+    Ok(true)
+}
+
+#[derive(Args)]
 struct AdviseArguments {
     /// Files of scenes; those of less than 1,000 primitives are left out
     #[arg(required = true)]
@@ -346,8 +470,8 @@ struct AdviseArguments {
 
 /// A table; there is nothing to fail.
 fn advice(arguments: &AdviseArguments) -> Result<bool> {
-    println!("{}", Provenance::collect(None));
-    let mut table = table::Table::new(advise::HEAD);
+    println!("{}", provenance(None));
+    let mut table = Table::new(advise::HEAD);
     let mut worst = [1.0f64, 0.0];
     for path in &arguments.scenes {
         let scene = Scene::read(path)?;
@@ -384,7 +508,7 @@ struct FieldArguments {
 
 /// Whether all fields of ours are the same.
 fn fields(arguments: &FieldArguments) -> Result<bool> {
-    println!("{}", Provenance::collect(None));
+    println!("{}", provenance(None));
     let mut good = true;
     for path in &arguments.scenes {
         let scene = Scene::read(path)?;
@@ -399,7 +523,7 @@ fn fields(arguments: &FieldArguments) -> Result<bool> {
 
 /// Whether all loaded indexes answer as those that were built.
 fn saved_indexes(arguments: &SavedArguments) -> Result<bool> {
-    println!("{}", Provenance::collect(None));
+    println!("{}", provenance(None));
     let mut good = true;
     for path in &arguments.scenes {
         good &= saved::print(&Scene::read(path)?, arguments.rounds)?;
@@ -411,7 +535,7 @@ fn saved_indexes(arguments: &SavedArguments) -> Result<bool> {
 fn octrees(arguments: &BatchArguments) -> Result<bool> {
     let BatchArguments { scenes, sets, threads, rounds, queries, seed } = arguments;
     let effort = Effort { rounds: *rounds, queries: *queries, builds: 3, seed: *seed };
-    println!("{}", Provenance::collect(None));
+    println!("{}", provenance(None));
     println!("{rounds} rounds in turns, {queries} queries a round, seed {seed}.");
     let mut good = true;
     for path in scenes {
@@ -422,7 +546,7 @@ fn octrees(arguments: &BatchArguments) -> Result<bool> {
 
 /// Whether all triangulations are valid.
 fn delaunays(arguments: &DelaunayArguments) -> Result<bool> {
-    println!("{}", Provenance::collect(None));
+    println!("{}", provenance(None));
     println!("One thread, thread CPU time.");
     delaunay::print(&arguments.scenes, arguments.rounds)
 }
@@ -430,7 +554,7 @@ fn delaunays(arguments: &DelaunayArguments) -> Result<bool> {
 /// Whether all batches agree with single queries.
 fn batches(arguments: &BatchArguments) -> Result<bool> {
     let BatchArguments { scenes, sets, threads, rounds, queries, seed } = arguments;
-    println!("{}", Provenance::collect(None));
+    println!("{}", provenance(None));
     println!("Wall time, {rounds} rounds in turns, batches of {queries}, seed {seed}.");
     let mut good = true;
     for path in scenes {
@@ -444,7 +568,7 @@ fn batches(arguments: &BatchArguments) -> Result<bool> {
 fn kdops(arguments: &KdopArguments) -> Result<bool> {
     let KdopArguments { scenes, turned, set, rounds, queries, seed } = arguments;
     let effort = Effort { rounds: *rounds, queries: *queries, builds: *rounds, seed: *seed };
-    println!("{}", Provenance::collect(None));
+    println!("{}", provenance(None));
     println!("One thread, thread CPU time, {rounds} rounds in turns, {queries} queries of {set} a round, seed {seed}.");
     kdop::print_cited();
     let mut good = true;
@@ -462,7 +586,7 @@ fn kdops(arguments: &KdopArguments) -> Result<bool> {
 fn ray(arguments: &RayArguments) -> Result<bool> {
     let RayArguments { scenes, turned, rivals, backends, sets, rays, rounds, seed, csv, label } = arguments;
     let versus = *rivals || !backends.is_empty();
-    let provenance = Provenance::collect(label.as_deref());
+    let provenance = provenance(label.as_deref());
     let mut record = csv.as_deref().map(report::Record::open).transpose()?;
     println!("{provenance}");
     println!("One thread, thread CPU time, {rounds} rounds in turns, seed {seed}.");
@@ -495,7 +619,7 @@ fn ray(arguments: &RayArguments) -> Result<bool> {
 fn splits(arguments: &SplitsArguments) -> Result<bool> {
     let SplitsArguments { scenes, sets, rounds, queries, seed } = arguments;
     let effort = Effort { rounds: *rounds, queries: *queries, builds: *rounds, seed: *seed };
-    println!("{}", Provenance::collect(None));
+    println!("{}", provenance(None));
     println!("One thread, thread CPU time, {rounds} rounds in turns, {queries} queries a round, seed {seed}.");
     let mut good = true;
     for path in scenes {
@@ -509,7 +633,7 @@ fn verify_all(arguments: &VerifyArguments) -> Result<bool> {
     let oracles = select(common, |b| b.ours && b.exhaustive);
     let named = |b: &Backend| arguments.backends.is_empty() || arguments.backends.iter().any(|name| name == b.name);
     let contenders = select(common, |b| b.ours && !b.exhaustive && named(b));
-    println!("{}", Provenance::collect(None));
+    println!("{}", provenance(None));
     println!(
         "{} queries of each set, seed {}: how many answers equal those of brute force.",
         arguments.queries, common.seed

@@ -4,12 +4,12 @@ use crate::backends::{OURS, octree_options, over_soup_with};
 use crate::contender::Backend;
 use crate::measure::{Effort, Spread, build_all, measure_set};
 use crate::scene::Scene;
-use crate::table::Table;
 use anyhow::{Context, Result};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Aabb, BuildIndex, PrimitiveSet};
 use p2m_interception::{Domain, OctreeIndex, OctreeOptions};
 use p2m_testkit::queries::QuerySet;
+use p2m_tradeoff::Table;
 use std::time::Instant;
 
 /// A setting.

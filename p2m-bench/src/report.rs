@@ -3,11 +3,11 @@
 use crate::backends::{YARDSTICK, YARDSTICK_DOUBLE};
 use crate::contender::Absent;
 use crate::measure::{BuildFigures, Entry, SetFigures, Spread};
-use crate::provenance::Provenance;
 use crate::scene::Scene;
-use crate::table::{Table, csv_line};
 use anyhow::{Context, Result, bail};
 use p2m_testkit::queries::QuerySet;
+use p2m_tradeoff::Provenance;
+use p2m_tradeoff::{Table, csv_line};
 use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;

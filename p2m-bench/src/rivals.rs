@@ -7,8 +7,8 @@
 use nalgebra::Point3;
 use p2m_core::{Real, Soup};
 
-pub(crate) use double::prepare as parry_double;
-pub(crate) use single::prepare as parry_single;
+pub(crate) use double::{prepare as parry_double, shapes as double};
+pub(crate) use single::{prepare as parry_single, shapes as single};
 
 /// The two crates of parry have the same names for different types.
 macro_rules! parry {
@@ -24,7 +24,7 @@ macro_rules! parry {
             use $parry::shape::{Polyline, TriMesh};
 
             /// One of the two, or both.
-            struct Parry {
+            pub(crate) struct Parry {
                 mesh: Option<TriMesh>,
                 lines: Option<Polyline>,
             }
@@ -56,8 +56,14 @@ macro_rules! parry {
                 }
             }
 
-            /// Copies the positions, as a user of parry has to.
+            /// The contender of the list.
             pub(crate) fn prepare<'a>(scene: &'a Scene) -> Result<Prepared<'a>, Absent> {
+                let build = shapes(scene)?;
+                Ok(Prepared { build: Box::new(move || Ok(Box::new(build()?) as Ready<'a>)), borrowed: 0 })
+            }
+
+            /// Copies the positions, as a user of parry has to; what it returns builds the shapes.
+            pub(crate) fn shapes(scene: &Scene) -> Result<impl FnOnce() -> Result<Parry, Absent> + use<>, Absent> {
                 let (soup, _) = <$scalar as Scalar>::soup(scene)?;
                 if !soup.points().is_empty() {
                     return Err(Absent("no shape for points".to_owned()));
@@ -68,16 +74,16 @@ macro_rules! parry {
                 let (triangle_positions, triangles) = used_positions(soup, soup.triangles());
                 let (segment_positions, segments) = used_positions(soup, soup.segments());
                 let (triangle_positions, segment_positions) = (vectors(triangle_positions), vectors(segment_positions));
-                let build = move || -> Result<Ready<'a>, Absent> {
+                let build = move || -> Result<Parry, Absent> {
                     // parry refuses an empty mesh.
                     let mesh = (!triangles.is_empty())
                         .then(|| TriMesh::new(triangle_positions, triangles))
                         .transpose()
                         .map_err(|error| Absent(error.to_string()))?;
                     let lines = (!segments.is_empty()).then(|| Polyline::new(segment_positions, Some(segments)));
-                    Ok(Box::new(Parry { mesh, lines }))
+                    Ok(Parry { mesh, lines })
                 };
-                Ok(Prepared { build: Box::new(build), borrowed: 0 })
+                Ok(build)
             }
         }
     };

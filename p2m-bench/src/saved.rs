@@ -3,7 +3,6 @@
 use crate::backends::{aabb_options, octree_options, p2m_options};
 use crate::measure::Spread;
 use crate::scene::Scene;
-use crate::table::Table;
 use anyhow::Result;
 use p2m_bvh::AabbTree;
 use p2m_core::saved::{SavedFile, Writer};
@@ -12,6 +11,7 @@ use p2m_interception::{OctreeIndex, P2mIndex};
 use p2m_kdop::{KdopOptions, KdopTree};
 use p2m_mixed::{load_scene, save_scene};
 use p2m_testkit::queries::QuerySet;
+use p2m_tradeoff::Table;
 use std::fs::File;
 use std::io::BufWriter;
 use std::time::Instant;

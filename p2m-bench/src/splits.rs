@@ -4,12 +4,12 @@ use crate::backends::{OURS, over_soup_with};
 use crate::contender::Backend;
 use crate::measure::{Effort, Spread, build_all, measure_set};
 use crate::scene::Scene;
-use crate::table::Table;
 use nalgebra::Point3;
 use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
 use p2m_core::BuildIndex;
 use p2m_core::Counting;
 use p2m_testkit::queries::QuerySet;
+use p2m_tradeoff::Table;
 
 /// A rule, whose radius is in diagonals of the scene's box here.
 struct Rule {

@@ -7,7 +7,7 @@ use clap::builder::PossibleValue;
 use p2m_bvh::AabbTree;
 use p2m_core::hierarchy::{TreeIndex, Volume};
 use p2m_core::saved::{self, Reader, Saved, Writer};
-use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Examine, RayQuery, Soup, StageTimes};
+use p2m_core::{BruteForce, BuildIndex, CertifiedQuery, ClosestPoint, Examine, RayQuery, Soup, StageTimes};
 use p2m_interception::{InterceptionIndex, Octree, OctreeReport, P2mReport, Partition, Stage, Voronoi};
 use p2m_kdop::KdopTree;
 use p2m_mixed::advisor::{Choice, Workload, recommend};
@@ -25,7 +25,7 @@ pub(crate) enum Search {
 }
 
 /// What they build.
-pub(crate) trait Closest: ClosestPoint<f64> + Examine<f64> + Sync {
+pub(crate) trait Closest: ClosestPoint<f64> + CertifiedQuery<f64> + Examine<f64> + Sync {
     /// Adds it to a file.
     fn save<'s>(&'s self, writer: &mut Writer<'s>);
 }

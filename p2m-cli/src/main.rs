@@ -3,6 +3,7 @@
 
 #![forbid(unsafe_code)]
 
+mod accuracy;
 mod advise;
 mod asking;
 mod backend;
@@ -28,6 +29,7 @@ mod sampling;
 mod shell;
 mod stats;
 mod summary;
+mod tradeoff;
 mod usage;
 
 use clap::{CommandFactory, Parser, Subcommand};
@@ -62,6 +64,7 @@ enum Command {
     Stats(stats::Args),
     Field(field::Args),
     Advise(advise::Args),
+    Tradeoff(tradeoff::Args),
     Ray(ray::Args),
     Info(info::Args),
     Convert(convert::Args),
@@ -80,6 +83,7 @@ impl Command {
             Self::Stats(_) => "p2m stats".to_owned(),
             Self::Field(_) => "p2m field".to_owned(),
             Self::Advise(_) => "p2m advise".to_owned(),
+            Self::Tradeoff(_) => "p2m tradeoff".to_owned(),
             Self::Ray(_) => "p2m ray".to_owned(),
             Self::Info(_) => "p2m info".to_owned(),
             Self::Convert(_) => "p2m convert".to_owned(),
@@ -119,6 +123,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Stats(args) => stats::run(args),
         Command::Field(args) => field::run(args),
         Command::Advise(args) => advise::run(args),
+        Command::Tradeoff(args) => tradeoff::run(args),
         Command::Ray(args) => ray::run(args),
         Command::Info(args) => info::run(args),
         Command::Convert(args) => convert::run(args),

@@ -1,5 +1,6 @@
 //! `p2m query`: closest points as a table.
 
+use crate::accuracy::Accuracy;
 use crate::asking::{Asking, Questions, ask};
 use crate::backend::{Backend, Built, Search, Source, Wanted};
 use crate::faces;
@@ -12,7 +13,6 @@ use crate::usage::{not_negative, one_of, positive, whole};
 use anyhow::Context;
 use clap::ArgGroup;
 use nalgebra::Point3;
-use p2m_core::QueryOptions;
 use p2m_mixed::advisor::{Place, Workload};
 use p2m_mixed::{AnswerWriter, PointFormat, Scene};
 use serde_json::{Value, json};
@@ -38,6 +38,8 @@ Answers as NPY are an array of NumPy with the fields query, point, distance, low
 feature_kind (0 a vertex, 1 an edge, 2 the face) and feature_number; as PLY a cloud of the queries that viewers can colour \
 by distance. Where there is no answer, numbers are NaN and -1.
 
+No distance is smaller than the true one but for rounding. With --epsilon, --near-enough or --budget it may be larger, by what the line `error` of the summary says at most: every answer has a lower bound that is certain (lower_bound in NPY).
+
 Points from a CSV file are taken from its columns qx, qy, qz, or else x, y, z (also like 'X [m]'), or else Points:0, \
 Points:1, Points:2, or else from the first three columns; so the table itself can be asked about again. XYZ and TXT \
 files have three or more columns separated by blanks. NPY files are arrays of three columns. Of PLY files the vertices are \
@@ -52,6 +54,7 @@ Examples:
   p2m query bunny.obj --points scan.xyz --max-distance 0.5 --out answers.csv
   p2m query scene.ply --random 100000 --seed 7 --box-scale 1.5 --backend aabb > answers.csv
   p2m query scene.obj --grid 64 --out field.npy --json
+  p2m query city.obj --points scan.xyz --epsilon 0.01 --out rough.npy
   p2m query turned.stl --random 100000 --backend kdop --k scene --out answers.csv
   p2m generate torus-knot | p2m query - --format obj --random 1000 --out distances.ply",
         json::STABILITY
@@ -103,6 +106,9 @@ pub(crate) struct Args {
 
     #[command(flatten)]
     asking: Asking,
+
+    #[command(flatten)]
+    accuracy: Accuracy,
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
@@ -127,15 +133,13 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let build = start.elapsed();
 
     let pool = asking.pool()?;
-    let mut options = QueryOptions::default();
-    if let Some(max_distance) = args.max_distance {
-        options = options.with_max_distance(max_distance);
-    }
+    let accuracy = &args.accuracy;
+    let options = accuracy.options(args.max_distance);
     let mut answers = Answers::default();
     let write = || -> io::Result<Duration> {
         let mut writer = AnswerWriter::with_objects(&mut output, out_format, queries.len(), &scene.objects)?;
         let questions = Questions { name: "queries", count: queries.len(), iter: queries };
-        let answer = |queries: &[_], answers: &mut [_]| index.closest_points_into(queries, &options, answers);
+        let answer = |queries: &[_], answers: &mut [_]| accuracy.ask(&*index, queries, &options, answers);
         let time = ask(&pool, questions, answer, |query, answer| {
             answers.add(answer.as_ref());
             writer.write(query, answer.as_ref())
@@ -152,7 +156,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let run = Run { indexed, threads, asked };
     if asking.json {
         let max_distance = args.max_distance.map_or(Value::Null, json::number);
-        let report = answers.json(&run.indexed.cells(), &max_distance, &asked_about(args));
+        let report = answers.json(&run.indexed.cells(), &max_distance, &accuracy.json(), &asked_about(args));
         return json::print(&run.json("query", report, &asking.written(out_format, bytes)));
     }
     // The answers are complete; whether anybody reads this is not our concern.

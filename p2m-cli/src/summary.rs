@@ -203,6 +203,8 @@ impl fmt::Display for Spread {
 pub(crate) struct Answers {
     queries: u64,
     distances: Spread,
+    /// How much larger than the true ones they are at most.
+    errors: Spread,
 }
 
 impl Answers {
@@ -210,6 +212,7 @@ impl Answers {
         self.queries += 1;
         if let Some(closest) = answer {
             self.distances.add(closest.distance);
+            self.errors.add(closest.distance - closest.lower_bound);
         }
     }
 
@@ -218,16 +221,18 @@ impl Answers {
     }
 
     /// The report: of queries that came from `asked_about`, within `max_distance`.
-    pub(crate) fn json(&self, cells: &Value, max_distance: &Value, asked_about: &Value) -> Value {
+    pub(crate) fn json(&self, cells: &Value, max_distance: &Value, accuracy: &Value, asked_about: &Value) -> Value {
         let answered = self.distances.count();
         json!({
             "cells": cells,
             "max_distance": max_distance,
+            "accuracy": accuracy,
             "asked_about": asked_about,
             "queries": self.queries,
             "answered": answered,
             "unanswered": self.queries - answered,
             "distance": self.distances.json(),
+            "error": self.errors.json(),
         })
     }
 }
@@ -238,6 +243,7 @@ impl fmt::Display for Answers {
         writeln!(f, "answers  {answered}, without answer {}", self.queries - answered)?;
         if answered > 0 {
             writeln!(f, "distance {}", self.distances)?;
+            writeln!(f, "error    max {:?}, mean {:?}, at most", self.errors.max, self.errors.mean())?;
         }
         Ok(())
     }

@@ -82,7 +82,7 @@ pub fn closest_points_into<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(
     out: &mut [Option<Closest<T>>],
 ) {
     assert_eq!(queries.len(), out.len(), "one answer for each query");
-    let hints = batch.hints && options.hint.is_none() && options.epsilon == T::zero();
+    let hints = batch.hints && options.hint.is_none() && !options.is_approximate();
     let share = Share { index, options, hints };
     if !batch.reorder {
         return share.answer(queries, batch.parallel, out);

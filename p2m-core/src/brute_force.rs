@@ -1,8 +1,8 @@
 //! The oracle of everything else: every primitive, every time.
 
 use crate::{
-    Best, BuildError, BuildIndex, ClosestPoint, Collector, Counting, Examine, Near, NearQuery, Primitive, PrimitiveId,
-    PrimitiveSet, Real, check_set,
+    Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Counting, Examine, Near, NearQuery,
+    Primitive, PrimitiveId, PrimitiveSet, Real, Shape, check_set, shape_of,
 };
 use nalgebra::Point3;
 
@@ -50,6 +50,12 @@ impl<T: Real, S: PrimitiveSet<T>> NearQuery<T> for BruteForce<S> {
             }
             near.offer(id, self.set.get(id).project(query));
         }
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>> CertifiedQuery<T> for BruteForce<S> {
+    fn shape(&self, id: PrimitiveId) -> Option<Shape<T>> {
+        shape_of(&self.set, id)
     }
 }
 

@@ -54,6 +54,18 @@ impl<T: Real> Collector for Counting<T> {
     fn prune_given(&self, square: f64) -> f64 {
         self.best.prune_given(square)
     }
+    fn is_approximate(&self) -> bool {
+        self.best.is_approximate()
+    }
+    fn prune_held(&self, square: f64) -> f64 {
+        self.best.prune_held(square)
+    }
+    fn is_content(&self, held: f64) -> bool {
+        self.best.is_content(held)
+    }
+    fn forgo(&mut self, square: f64) {
+        self.best.forgo(square);
+    }
     fn is_nearest_only(&self) -> bool {
         self.best.is_nearest_only()
     }
@@ -63,8 +75,10 @@ impl<T: Real> Collector for Counting<T> {
     }
     fn visit_node(&mut self) {
         self.nodes += 1;
+        self.best.visit_node();
     }
     fn visit_packet(&mut self) {
         self.packets += 1;
+        self.best.visit_packet();
     }
 }

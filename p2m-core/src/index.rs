@@ -21,13 +21,17 @@ use nalgebra::Point3;
 /// - **N2 identity**: the true distance of the returned primitive exceeds d by at most the sum of both error bounds.
 /// - **N3 agreement**: every exact backend returns the same bits for distance and primitive. Ties go to the lowest id
 ///   among equal keys.
-/// - **N4 invariance**: the same bits under permutation of primitives (up to ids) and of a primitive's vertices, and
-///   under scaling by powers of two while input and results stay normal.
+/// - **N4 invariance**: the same bits (but for the signs of zeros) under permutation of primitives (up to ids) and of a
+///   primitive's vertices, and under scaling by powers of two while input and results stay normal and are zero or
+///   at least 2^-200 of the largest coordinate (observed; products of smaller ones may underflow).
 /// - **N5 point**: a vertex is answered verbatim; any other point lies in the primitive's box and within 4 u |q| + 8 u
 ///   M of the primitive.
 /// - **N6 totality**: `None` for an empty set, when nothing lies within the (inclusive) radius, and for a query that is
 ///   not finite. No query panics. A degenerate primitive is the set it spans.
-/// - **N7 approximation**: `lower_bound` <= d always; with epsilon, d^ <= (1 + epsilon) d up to the error of N1.
+/// - **N7 approximation**: `lower_bound` <= d always; with epsilon, d^ <= (1 + epsilon) d up to the error of N1; with a
+///   distance that is near enough, d^ is at most that or exact.
+///
+/// [`CertifiedQuery`](crate::CertifiedQuery) has N8: the nearest primitive without doubt, and its distance rounded once.
 ///
 /// Usable as a generic bound and as `dyn ClosestPoint<T>`:
 ///
@@ -111,7 +115,8 @@ pub trait BuildIndex<T: Real, S: PrimitiveSet<T>>: ClosestPoint<T> + Sized {
     /// both in one value.
     ///
     /// # Errors
-    /// [`BuildError::NonFinite`](crate::BuildError::NonFinite) and [`BuildError::TooMany`](crate::BuildError::TooMany)
-    /// (more than 2^30 primitives) of the indexes of this project; one of your own may have others. An empty set is none.
+    /// [`BuildError::NonFinite`](crate::BuildError::NonFinite), [`BuildError::TooMany`](crate::BuildError::TooMany) (more than
+    /// 2^30 primitives) and [`BuildError::OutOfMemory`](crate::BuildError::OutOfMemory) of the indexes of this project; one of
+    /// your own may have others. An empty set is none.
     fn build(set: S, options: &Self::Options) -> Result<Self, Self::Error>;
 }

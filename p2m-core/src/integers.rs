@@ -100,7 +100,7 @@ impl Fraction {
 }
 
 /// mantissa 2^unit, rounded once; unit >= -1077.
-fn round_bits(mantissa: u64, unit: i64) -> f64 {
+pub(crate) fn round_bits(mantissa: u64, unit: i64) -> f64 {
     let length = i64::from(64 - mantissa.leading_zeros());
     // Bits below the last one of the result.
     let extra = (length - 53).max(-1074 - unit).max(0);

@@ -1,5 +1,6 @@
 //! More than the one closest point: the k nearest primitives, all within a distance, whether there is any, and the
-//! closest one of those that a caller wants.
+//! closest one of those that a caller wants; and all that may be nearest but for rounding, from which a
+//! [certified](crate::CertifiedQuery) answer is chosen.
 //!
 //! One collector, [`Near`], does all of that, so a backend writes one method and searches are compiled once for all of
 //! these questions.
@@ -92,7 +93,7 @@ pub trait NearQuery<T: Real> {
 }
 
 /// [`NearQuery::search_near`] for any query, if something is wanted at all.
-fn ask<T: Real>(index: &(impl NearQuery<T> + ?Sized), query: &Point3<T>, near: &mut Near<'_>) {
+pub(crate) fn ask<T: Real>(index: &(impl NearQuery<T> + ?Sized), query: &Point3<T>, near: &mut Near<'_>) {
     // Not for a radius of NaN either.
     if query.iter().all(|x| x.is_finite()) && !near.is_done() && near.radius >= 0.0 {
         index.search_near(query, near);
@@ -117,16 +118,26 @@ enum Wanted<'a> {
     Nearest(usize, BinaryHeap<Found>),
     /// Every one.
     All(&'a mut dyn FnMut(PrimitiveId, &Projection) -> ControlFlow<()>),
+    /// Those that may be nearest: some primitive is truly at most `reach` far.
+    Contest { reach: f64, found: Vec<Found> },
 }
 
 /// Nothing is of interest any more.
 const DONE: f64 = f64::NEG_INFINITY;
 
 /// A primitive and its nearest point, ordered by key and id.
-struct Found {
+pub(crate) struct Found {
     key: Key,
-    id: PrimitiveId,
-    projection: Projection,
+    pub(crate) id: PrimitiveId,
+    pub(crate) projection: Projection,
+}
+
+impl Found {
+    /// Its true distance is at least this, but for the rounding of this difference.
+    fn at_least(&self) -> f64 {
+        // A distance above the range is at least its end; an error above the range leaves nothing known.
+        self.key.distance().min(f64::MAX) - self.projection.error
+    }
 }
 
 impl PartialEq for Found {
@@ -160,6 +171,18 @@ impl<'a> Near<'a> {
         Self::within(radius, Wanted::All(visit))
     }
 
+    /// All that may be nearest, if the nearest is within the radius.
+    pub(crate) fn contest<T: Real>(radius: T) -> Self {
+        Self::within(radius, Wanted::Contest { reach: radius.to_f64_above(), found: Vec::new() })
+    }
+
+    /// What may be nearest.
+    pub(crate) fn contestants(self) -> Vec<Found> {
+        let Wanted::Contest { reach, mut found } = self.wanted else { return Vec::new() };
+        found.retain(|one| one.at_least() <= reach);
+        found
+    }
+
     fn within<T: Real>(radius: T, wanted: Wanted<'a>) -> Self {
         // A distance counts as it will be reported, so somewhat beyond the radius; nothing is within NaN.
         let radius = radius.to_f64_above();
@@ -176,7 +199,7 @@ impl<'a> Near<'a> {
     fn finish<T: Real>(self) -> Vec<Closest<T>> {
         match self.wanted {
             Wanted::Nearest(_, found) => found.into_sorted_vec().iter().map(|f| of_one(f.id, &f.projection)).collect(),
-            Wanted::All(_) => Vec::new(),
+            Wanted::All(_) | Wanted::Contest { .. } => Vec::new(),
         }
     }
 }
@@ -192,8 +215,35 @@ impl Collector for Near<'_> {
         self.prune
     }
 
+    /// The same in a contest: some primitive is that near.
+    fn prune_given(&self, square: f64) -> f64 {
+        if self.is_nearest_only() && square < self.prune { square } else { self.prune }
+    }
+
+    fn is_nearest_only(&self) -> bool {
+        matches!(self.wanted, Wanted::Contest { .. })
+    }
+
+    fn wants_near_ties(&self) -> bool {
+        self.is_nearest_only()
+    }
+
     fn offer(&mut self, id: PrimitiveId, projection: Projection) {
         let key = projection.key;
+        if let Wanted::Contest { reach, found } = &mut self.wanted {
+            let one = Found { key, id, projection };
+            // Rounded up, with a smallest subnormal for the distance.
+            let at_most = (key.distance() + projection.error) * (1.0 + 4.0 * f64::EPSILON) + 2.0 * f64::from_bits(1);
+            if one.at_least() <= *reach {
+                found.push(one);
+            }
+            // Not for NaN either.
+            if at_most < *reach {
+                *reach = at_most;
+                self.prune = self.prune.min(square_within(at_most));
+            }
+            return;
+        }
         // Not what comes after the end, in a loop that does not look.
         let is_near = !self.is_done() && key.distance() <= self.radius;
         if !is_near {
@@ -224,6 +274,7 @@ impl Collector for Near<'_> {
                     self.prune = DONE;
                 }
             }
+            Wanted::Contest { .. } => {}
         }
     }
 }

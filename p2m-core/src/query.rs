@@ -1,4 +1,13 @@
 //! What a query asks and gets, and the running best that decides everything between them.
+//!
+//! # Approximation
+//!
+//! Three options give up exactness: a relative error (epsilon), a distance that is near enough, and a budget of visits.
+//! A search that honours them *holds* a primitive as soon as it knows from both sides how far it is, before it is evaluated:
+//! it is evaluated first in the end, so the answer is never farther than what is held. Parts of the scene whose lower bound
+//! exceeds the distance held / (1 + epsilon) are left out, and parts that a search does not come to are left out with the
+//! smallest of their bounds ([`Best::forgo`]). So the answer's lower bound is certified whatever was asked, and the error is
+//! known to the caller without another query (docs/accuracy.md, N7).
 
 use crate::real::narrow;
 use crate::{Feature, Key, Primitive, PrimitiveId, PrimitiveSet, Projection, Real};
@@ -25,11 +34,20 @@ pub struct QueryOptions<T: Real> {
     /// The reported distance may exceed the true one by this fraction of it: reported <= (1 + epsilon) true, apart
     /// from rounding (contract N7). 0 by default; a negative or NaN value counts as 0.
     pub epsilon: T,
+    /// An answer at most this far is near enough: the search may end there. An answer that is farther is as exact as it
+    /// would be without. 0 by default; a negative or NaN value counts as 0.
+    pub near_enough: T,
+    /// So many nodes and packets may be visited, and those that it takes to find any answer; then the best one found so
+    /// far is the answer. The interception indexes visit the sites on the way to a cell and the packets of its list: with
+    /// a budget of 0 the answer is what the cell itself tells. Unlimited by default. If there is a largest distance as
+    /// well, `None` says that nothing was found within it, not that there is nothing. [`BruteForce`](crate::BruteForce), indexes over trees of other
+    /// crates have no use for it: their answers are exact.
+    pub budget: u32,
 }
 
 impl<T: Real> Default for QueryOptions<T> {
     fn default() -> Self {
-        Self { max_distance: T::INFINITY, hint: None, epsilon: T::zero() }
+        Self { max_distance: T::INFINITY, hint: None, epsilon: T::zero(), near_enough: T::zero(), budget: u32::MAX }
     }
 }
 
@@ -48,6 +66,21 @@ impl<T: Real> QueryOptions<T> {
     #[must_use]
     pub fn with_epsilon(self, epsilon: T) -> Self {
         Self { epsilon, ..self }
+    }
+    /// With a distance that is near enough.
+    #[must_use]
+    pub fn with_near_enough(self, near_enough: T) -> Self {
+        Self { near_enough, ..self }
+    }
+    /// With so many visits at most.
+    #[must_use]
+    pub fn with_budget(self, budget: u32) -> Self {
+        Self { budget, ..self }
+    }
+    /// Whether the answer may differ from the exact one.
+    #[must_use]
+    pub fn is_approximate(&self) -> bool {
+        self.epsilon > T::zero() || self.near_enough > T::zero() || self.budget < u32::MAX
     }
 }
 
@@ -71,7 +104,8 @@ pub struct Closest<T: Real> {
     /// The part of that primitive that holds it.
     pub feature: Feature,
     /// Weights of that primitive's vertices in their order (three of a triangle, two of a segment, one of a point), >= 0,
-    /// adding up to 1 within 4 u; the others are 0.
+    /// adding up to 1 within 4 u; the others are 0. Vertices in these parts add up to `point` within 4 u |query| + 8 u M and 8 u of
+    /// the largest coordinate of a vertex (observed, `p2m_testkit::contract`).
     pub barycentric: [T; 3],
 }
 
@@ -100,6 +134,42 @@ pub trait Collector {
         self.prune_above()
     }
 
+    /// Whether a collector of the nearest primitive wants all that are as near but for rounding as well: everything that filters leave is
+    /// then evaluated and offered. Not by default.
+    #[inline(always)]
+    fn wants_near_ties(&self) -> bool {
+        false
+    }
+
+    /// Whether it may be content with less than everything that it could want: searches then ask it what follows from a
+    /// primitive that they [hold](Self::prune_held), and whether they may end. Not by default.
+    #[inline(always)]
+    fn is_approximate(&self) -> bool {
+        false
+    }
+
+    /// As [`prune_given`](Self::prune_given) if that primitive is certain to be offered, or one that is as near: a
+    /// collector that is content with less than the nearest may then skip still more.
+    #[inline(always)]
+    fn prune_held(&self, square: f64) -> f64 {
+        self.prune_given(square)
+    }
+
+    /// Whether the search may end: some primitive is known to be at most `held` far (infinity for none) and is certain to be offered,
+    /// or one that is as near. What was not searched is to be [given up](Self::forgo).
+    #[inline(always)]
+    fn is_content(&self, held: f64) -> bool {
+        let _ = held;
+        false
+    }
+
+    /// A part of the scene is not searched although it may hold what is wanted: the squares of all distances to it are at least
+    /// `square`, but for 16 u.
+    #[inline(always)]
+    fn forgo(&mut self, square: f64) {
+        let _ = square;
+    }
+
     /// Whether only the nearest primitive counts, and ties with it: a candidate that is farther than some primitive
     /// need not be offered. Not by default.
     #[inline(always)]
@@ -110,11 +180,12 @@ pub trait Collector {
     /// Takes a candidate.
     fn offer(&mut self, id: PrimitiveId, projection: Projection);
 
-    /// Called once for every node of a tree that is visited, and for every site on the way to a Voronoi cell. Does nothing unless somebody counts.
+    /// Called once for every node of a tree that is visited, and for every site on the way to a
+    /// Voronoi cell. For those who count, and those who keep a budget.
     #[inline(always)]
     fn visit_node(&mut self) {}
 
-    /// Called once for every packet of primitives that is filtered. Does nothing unless somebody counts.
+    /// Called once for every packet of primitives that is filtered; likewise.
     #[inline(always)]
     fn visit_packet(&mut self) {}
 }
@@ -138,8 +209,14 @@ pub(crate) struct Minimum {
     prune: f64,
     best: Option<(PrimitiveId, Projection)>,
     key: Key,
-    /// The smallest `distance - error` among all candidates.
+    /// The smallest `distance - error` among all candidates, or bound of what was given up.
     certified: f64,
+    /// Whether the answer may be another one.
+    approximate: bool,
+    /// The largest distance that is near enough.
+    near_enough: f64,
+    /// Visits that are left, if there is a budget.
+    budget: u32,
 }
 
 /// Relative errors of a few roundings are absorbed by this factor: 1 + 16 u of f64.
@@ -160,7 +237,19 @@ impl<T: Real> Best<T> {
         // A distance counts as it will be reported, so somewhat beyond the radius; nothing is within NaN.
         let radius = options.max_distance.to_f64_above();
         let prune = square_within(radius);
-        let minimum = Minimum { radius, shrink, prune, best: None, key: Key::INFINITY, certified: f64::INFINITY };
+        let near_enough = options.near_enough.to_f64();
+        let minimum = Minimum {
+            radius,
+            shrink,
+            prune,
+            best: None,
+            key: Key::INFINITY,
+            certified: f64::INFINITY,
+            approximate: options.is_approximate(),
+            // Not for NaN either.
+            near_enough: if near_enough > 0.0 { near_enough } else { -1.0 },
+            budget: options.budget,
+        };
         Self { hint: options.hint, minimum, scalar: PhantomData }
     }
 
@@ -174,13 +263,7 @@ impl<T: Real> Best<T> {
     /// A part of the scene will not be searched although it may hold the answer; `square` is a lower bound as for
     /// [`Collector::prune_above`]. The answer is then approximate, and its certified lower bound says so.
     pub fn forgo(&mut self, square: f64) {
-        // A bound on a box is at most 5 u too large, and wrong by some subnormals near zero; above the range it is at
-        // least its end.
-        let square = if square < f64::MAX { square } else { f64::MAX };
-        let bound = (square * ROUND_DOWN - 4.0 * f64::from_bits(1)).max(0.0).sqrt();
-        if bound < self.minimum.certified {
-            self.minimum.certified = bound;
-        }
+        self.minimum.forgo(square);
     }
 
     /// The nearest point so far, as it was before rounding.
@@ -247,8 +330,32 @@ impl<T: Real> Collector for Best<T> {
         self.minimum.is_nearest_only()
     }
     #[inline(always)]
+    fn is_approximate(&self) -> bool {
+        self.minimum.approximate
+    }
+    #[inline(always)]
+    fn prune_held(&self, square: f64) -> f64 {
+        self.minimum.prune_held(square)
+    }
+    #[inline(always)]
+    fn is_content(&self, held: f64) -> bool {
+        self.minimum.is_content(held)
+    }
+    #[inline(always)]
+    fn forgo(&mut self, square: f64) {
+        self.minimum.forgo(square);
+    }
+    #[inline(always)]
     fn offer(&mut self, id: PrimitiveId, projection: Projection) {
         self.minimum.offer(id, projection);
+    }
+    #[inline(always)]
+    fn visit_node(&mut self) {
+        self.minimum.visit_node();
+    }
+    #[inline(always)]
+    fn visit_packet(&mut self) {
+        self.minimum.visit_packet();
     }
 }
 
@@ -270,6 +377,49 @@ impl Collector for Minimum {
         // Not shrunk by epsilon: that primitive may be beyond the radius, or be left out for a candidate that is a
         // little farther, and what may be left out for a candidate depends on that candidate alone.
         if square < self.prune { square } else { self.prune }
+    }
+
+    #[inline(always)]
+    fn is_approximate(&self) -> bool {
+        self.approximate
+    }
+
+    #[inline(always)]
+    fn prune_held(&self, square: f64) -> f64 {
+        // What is beyond the radius is no answer that others may be compared with.
+        let within = square * ROUND_UP < self.radius * self.radius;
+        let own = if within { square * self.shrink } else { square };
+        if own < self.prune { own } else { self.prune }
+    }
+
+    #[inline(always)]
+    fn is_content(&self, held: f64) -> bool {
+        let best = self.key.distance();
+        let held = if best < held { best } else { held };
+        // What is beyond the radius is no answer; with nothing held, everything is still to be found.
+        held < f64::INFINITY && (self.budget == 0 || held <= self.near_enough && held <= self.radius)
+    }
+
+    #[inline(always)]
+    fn visit_node(&mut self) {
+        // An exact search makes nothing of it.
+        self.budget = self.budget.saturating_sub(1);
+    }
+
+    #[inline(always)]
+    fn visit_packet(&mut self) {
+        self.budget = self.budget.saturating_sub(1);
+    }
+
+    #[inline(always)]
+    fn forgo(&mut self, square: f64) {
+        // A bound on a box is at most 5 u too large, and wrong by some subnormals near zero; above the range it is at
+        // least its end.
+        let square = if square < f64::MAX { square } else { f64::MAX };
+        let bound = (square * ROUND_DOWN - 4.0 * f64::from_bits(1)).max(0.0).sqrt();
+        if bound < self.certified {
+            self.certified = bound;
+        }
     }
 
     #[inline(always)]

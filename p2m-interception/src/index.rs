@@ -2,8 +2,8 @@ use nalgebra::Point3;
 use p2m_core::interception::{Hints, Octree, Partition, Progress, SIDE_BY_SIDE, SortedLists, Voronoi};
 use p2m_core::saved::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{
-    Best, BuildError, BuildIndex, Closest, ClosestPoint, Collector, Counting, Examine, Isa, Near, NearQuery,
-    PrimitiveSet, QueryOptions, Real, check_set,
+    Best, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestPoint, Collector, Counting, Examine, Isa, Near,
+    NearQuery, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, check_set, shape_of,
 };
 use std::marker::PhantomData;
 
@@ -46,7 +46,7 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> InterceptionIndex<T, S, P> {
     /// of each percent, from any thread ([`StageTimes`](p2m_core::StageTimes) sums their times).
     ///
     /// # Errors
-    /// For a coordinate that is not finite and for more primitives than ids.
+    /// For a coordinate that is not finite, for more primitives than ids, and where the memory that it may need is refused.
     pub fn build_with_progress(
         set: S,
         options: &P::Options,
@@ -56,7 +56,7 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> InterceptionIndex<T, S, P> {
         S: Sync,
     {
         check_set(&set)?;
-        let partition = P::build(&set, options, progress);
+        let partition = P::build(&set, options, progress)?;
         Ok(Self { set, scalar: PhantomData, partition })
     }
 
@@ -164,6 +164,12 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> ClosestPoint<T> for Interception
 impl<T: Real, S: PrimitiveSet<T>, P: Partition> NearQuery<T> for InterceptionIndex<T, S, P> {
     fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>) {
         self.visit(query, near);
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>, P: Partition> CertifiedQuery<T> for InterceptionIndex<T, S, P> {
+    fn shape(&self, id: PrimitiveId) -> Option<Shape<T>> {
+        shape_of(&self.set, id)
     }
 }
 

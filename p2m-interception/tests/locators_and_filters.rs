@@ -3,37 +3,100 @@
 use nalgebra::Point3;
 use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Counting, Soup};
 use p2m_interception::{
-    Hints, KdTreeLocator, ListFilter, Locator, LocatorSites, P2mIndexWith, P2mOptions, Region, RegionTree, SortedLists,
+    Hints, KdTreeLocator, ListFilter, Locator, LocatorSites, P2mIndexWith, P2mOptions, Region, RegionTree,
 };
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
 use p2m_testkit::{rng, vector};
+use std::sync::Mutex;
 
-/// A locator that is always wrong, and one that knows nothing.
-struct First(usize);
-struct Nothing;
+/// One index of any locator and filter: each type of an index compiles every search anew.
+type Index<'a> = P2mIndexWith<f64, &'a Soup<f64>, AnyLocator, AnyFilter>;
 
-impl Locator for First {
+/// Which locator and which filter an index has that is built now.
+static PARTS: Mutex<(LocatorKind, FilterKind)> = Mutex::new((LocatorKind::Hints, FilterKind::Tree));
+
+#[derive(Clone, Copy, Debug)]
+enum LocatorKind {
+    Hints,
+    KdTree,
+    /// The first site, wherever the query is.
+    First,
+    /// Knows nothing.
+    Nothing,
+}
+
+enum AnyLocator {
+    Hints(Box<Hints>),
+    KdTree(KdTreeLocator),
+    Always(Option<usize>),
+}
+
+impl Locator for AnyLocator {
     fn new(sites: &LocatorSites<'_>) -> Self {
-        Self(sites.first())
+        match PARTS.lock().expect("no panic").0 {
+            LocatorKind::Hints => Self::Hints(Box::new(Hints::new(sites))),
+            LocatorKind::KdTree => Self::KdTree(KdTreeLocator::new(sites)),
+            LocatorKind::First => Self::Always(Some(sites.first())),
+            LocatorKind::Nothing => Self::Always(None),
+        }
     }
-    fn start(&self, _: &[f64; 3]) -> Option<usize> {
-        Some(self.0)
+    fn start(&self, place: &[f64; 3]) -> Option<usize> {
+        match self {
+            Self::Hints(hints) => hints.start(place),
+            Self::KdTree(tree) => tree.start(place),
+            Self::Always(site) => *site,
+        }
     }
     fn memory(&self) -> usize {
         0
     }
 }
 
-impl Locator for Nothing {
-    fn new(_: &LocatorSites<'_>) -> Self {
-        Self
+#[derive(Clone, Copy, Debug)]
+enum FilterKind {
+    Tree,
+    /// Finds boxes one by one.
+    OneByOne,
+    /// Leaves nothing out.
+    All,
+}
+
+enum AnyFilter {
+    Tree(RegionTree),
+    OneByOne { regions: Vec<Region>, takes_all: bool },
+}
+
+impl ListFilter for AnyFilter {
+    const IS_USED: bool = true;
+
+    fn new(regions: Vec<Region>) -> Self {
+        match PARTS.lock().expect("no panic").1 {
+            FilterKind::Tree => Self::Tree(RegionTree::new(regions)),
+            FilterKind::OneByOne => Self::OneByOne { regions, takes_all: false },
+            FilterKind::All => Self::OneByOne { regions, takes_all: true },
+        }
     }
-    fn start(&self, _: &[f64; 3]) -> Option<usize> {
-        None
+    fn containing(&self, place: &[f64; 3]) -> impl Iterator<Item = &Region> {
+        let found: Vec<&Region> = match self {
+            Self::Tree(tree) => tree.containing(place).collect(),
+            Self::OneByOne { regions, takes_all } => {
+                regions.iter().filter(|region| *takes_all || region.contains(place)).collect()
+            }
+        };
+        found.into_iter()
     }
     fn memory(&self) -> usize {
         0
     }
+}
+
+/// With filters of lists of more than so many primitives.
+fn built(soup: &Soup<f64>, locator: LocatorKind, filter: FilterKind, above: usize) -> Index<'_> {
+    // One at a time.
+    static TURN: Mutex<()> = Mutex::new(());
+    let _turn = TURN.lock().expect("no panic");
+    *PARTS.lock().expect("no panic") = (locator, filter);
+    Index::build(soup, &P2mOptions::default().with_filter_above(above)).expect("valid")
 }
 
 type Answers = Vec<Option<(u64, usize)>>;
@@ -49,50 +112,8 @@ fn answers(index: &impl ClosestPoint<f64>, queries: &[Point3<f64>]) -> [Answers;
     ]
 }
 
-fn built<L: Locator>(soup: &Soup<f64>) -> P2mIndexWith<f64, &Soup<f64>, L, SortedLists> {
-    P2mIndexWith::build(soup, &Default::default()).expect("valid")
-}
-
-/// A filter that leaves nothing out.
-struct All(Vec<Region>);
-
-impl ListFilter for All {
-    const IS_USED: bool = true;
-
-    fn new(regions: Vec<Region>) -> Self {
-        Self(regions)
-    }
-    fn containing(&self, _: &[f64; 3]) -> impl Iterator<Item = &Region> {
-        self.0.iter()
-    }
-    fn memory(&self) -> usize {
-        0
-    }
-}
-
-/// One that finds boxes one by one.
-struct OneByOne(Vec<Region>);
-
-impl ListFilter for OneByOne {
-    const IS_USED: bool = true;
-
-    fn new(regions: Vec<Region>) -> Self {
-        Self(regions)
-    }
-    fn containing(&self, place: &[f64; 3]) -> impl Iterator<Item = &Region> {
-        self.0.iter().filter(|region| region.contains(place))
-    }
-    fn memory(&self) -> usize {
-        0
-    }
-}
-
-fn filtered<F: ListFilter>(soup: &Soup<f64>, above: usize) -> P2mIndexWith<f64, &Soup<f64>, Hints, F> {
-    P2mIndexWith::build(soup, &P2mOptions::default().with_filter_above(above)).expect("valid")
-}
-
 /// Packets that queries look at, in all.
-fn packets<F: ListFilter>(index: &P2mIndexWith<f64, &Soup<f64>, Hints, F>, queries: &[Point3<f64>]) -> usize {
+fn packets(index: &Index<'_>, queries: &[Point3<f64>]) -> usize {
     Counting::of_queries(queries, |query, counting| index.visit(query, counting))[1]
 }
 
@@ -107,14 +128,11 @@ fn every_filter_leaves_the_answer() {
                 (0..150).map(|i| Point3::from(vector(&mut rng) * [1.0, 4.0, 9.0][i % 3])).collect();
             queries.extend(soup.positions().iter().take(50));
             let expected = answers(&BruteForce::new(&soup).expect("valid"), &queries);
-            let trees = filtered::<RegionTree>(&soup, 0);
-            let (chosen, everything) = (filtered::<OneByOne>(&soup, 0), filtered::<All>(&soup, 0));
+            let filtered = |filter, above| built(&soup, LocatorKind::Hints, filter, above);
+            let trees = filtered(FilterKind::Tree, 0);
+            let [chosen, everything] = [FilterKind::OneByOne, FilterKind::All].map(|filter| filtered(filter, 0));
             assert_eq!(answers(&trees, &queries), expected, "{kinds:?} {layout:?}");
-            assert_eq!(
-                answers(&filtered::<RegionTree>(&soup, 30), &queries),
-                expected,
-                "{kinds:?} {layout:?}, long ones"
-            );
+            assert_eq!(answers(&filtered(FilterKind::Tree, 30), &queries), expected, "{kinds:?} {layout:?}, long ones");
             assert_eq!(answers(&everything, &queries), expected, "{kinds:?} {layout:?}, all");
             // What lies on the border of a box is in it for both.
             assert_eq!(packets(&trees, &queries), packets(&chosen, &queries), "{kinds:?} {layout:?}");
@@ -138,12 +156,13 @@ fn every_locator_leads_to_the_answer() {
                 (0..150).map(|i| Point3::from(vector(&mut rng) * [1.0, 20.0, 1e9][i % 3])).collect();
             queries.extend(soup.positions().iter().take(50));
             let expected = answers(&BruteForce::new(&soup).expect("valid"), &queries);
-            let kd_tree = built::<KdTreeLocator>(&soup);
-            lists += kd_tree.report().lists;
-            assert_eq!(answers(&kd_tree, &queries), expected, "{kinds:?} {layout:?}");
-            assert_eq!(answers(&built::<First>(&soup), &queries), expected, "{kinds:?} {layout:?}, first");
-            assert_eq!(answers(&built::<Nothing>(&soup), &queries), expected, "{kinds:?} {layout:?}, nothing");
+            for locator in [LocatorKind::KdTree, LocatorKind::First, LocatorKind::Nothing] {
+                let index = built(&soup, locator, FilterKind::Tree, usize::MAX);
+                assert_eq!(index.report().filtered, 0);
+                lists += index.report().lists;
+                assert_eq!(answers(&index, &queries), expected, "{kinds:?} {layout:?}, {locator:?}");
+            }
         }
     }
-    assert!(lists > 5_000, "{lists}");
+    assert!(lists > 15_000, "{lists}");
 }

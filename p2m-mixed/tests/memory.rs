@@ -1,6 +1,5 @@
-//! How much memory reading takes: within three times what the scene holds, for large files of every format.
-//!
-//! One test, because memory is counted for the whole process.
+//! How much memory reading takes: within three times what the scene holds, for large files of every format; and building a tree
+//! of another crate: no more than was asked for in advance.
 
 mod common;
 
@@ -12,6 +11,9 @@ use peak_alloc::PeakAlloc;
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
+
+/// One test at a time, because memory is counted for the whole process.
+static TURN: std::sync::Mutex<()> = std::sync::Mutex::new(());
 
 /// Buffers of a fixed size.
 const FIXED: usize = 1 << 17;
@@ -66,6 +68,7 @@ fn grid(n: u32, is_mixed: bool) -> Scene {
 
 #[test]
 fn reading_takes_no_more_than_three_times_the_scene() {
+    let _turn = TURN.lock();
     // Just behind a power of two, where vectors that grow are largest beside what they hold; and just before.
     for n in [363, 361, 400, 460] {
         let scene = grid(n, false);
@@ -142,6 +145,31 @@ fn reading_takes_no_more_than_three_times_the_scene() {
         if Format::from_path(&path).is_ok() {
             let (scene, held, peak) = measure(|| read_scene(&path).unwrap());
             check_peak(&path.display().to_string(), &scene, held, peak);
+        }
+    }
+}
+
+/// What is asked for in advance counts as taken, so more than that is what building takes beyond it.
+#[cfg(all(feature = "parry", feature = "rstar"))]
+#[test]
+fn trees_of_other_crates_take_no_more_than_they_ask_for() {
+    use p2m_core::BuildIndex;
+    use p2m_mixed::adapters::{ParryIndex, RstarIndex};
+
+    fn peak<'a, I: BuildIndex<f64, &'a Soup<f64>, Options = ()>>(soup: &'a Soup<f64>) -> usize {
+        let before = MEMORY.current_usage();
+        MEMORY.reset_peak_usage();
+        assert!(I::build(soup, &()).is_ok());
+        MEMORY.peak_usage() - before
+    }
+    let _turn = TURN.lock();
+    for count in [1, 2, 3, 5, 17, 100, 1000, 5000, 20_000] {
+        let mut rng = p2m_testkit::rng("trees of other crates", count as u64);
+        for layout in p2m_testkit::scenes::LAYOUTS {
+            let soup = p2m_testkit::scenes::soup(&mut rng, p2m_testkit::scenes::Kinds::Mixed, layout, count);
+            let n = soup.len();
+            let taken = [peak::<ParryIndex<f64, _>>(&soup), peak::<RstarIndex<f64, _>>(&soup)];
+            assert_eq!(taken, [448 * n + 1024, 512 * n], "{n} {layout:?}");
         }
     }
 }

@@ -5,11 +5,52 @@ use rand::{Rng, RngExt};
 
 type V = [f64; 3];
 
+/// What a case has been drawn from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Family {
+    /// Small integers.
+    Lattice,
+    /// Coordinates of any magnitude.
+    Wild,
+    /// Almost parallel to an axis.
+    AlmostFlat,
+    /// Vertices and query within some units in the last place of an f32.
+    Neighbours,
+    /// A shape of a size, a place and a query.
+    Shaped {
+        /// The sine of the smallest angle; of a segment about its length.
+        sine: f64,
+        /// Scaled by 2^scale.
+        scale: i32,
+        /// How far from the origin, before scaling.
+        offset: f64,
+        /// Whether one edge is tiny.
+        needle: bool,
+        /// Where the query is.
+        place: &'static str,
+    },
+}
+
+impl std::fmt::Display for Family {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Lattice => write!(f, "lattice"),
+            Self::Wild => write!(f, "coordinates of any magnitude"),
+            Self::AlmostFlat => write!(f, "almost parallel to an axis"),
+            Self::Neighbours => write!(f, "neighbours of an f32"),
+            Self::Shaped { sine, scale, offset, needle, place } => {
+                let needle = if *needle { "needle, " } else { "" };
+                write!(f, "{needle}sine {sine:e}, scale 2^{scale}, offset {offset:e}, query {place}")
+            }
+        }
+    }
+}
+
 /// One isolated primitive and a query.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// Which family it belongs to, for reports.
-    pub family: String,
+    /// Which family it belongs to.
+    pub family: Family,
     /// The query.
     pub query: V,
     /// One to three vertices.
@@ -29,12 +70,43 @@ pub fn shape<T: Real>(vertices: &[[T; 3]]) -> Shape<T> {
 
 /// Exponents of the power-of-two scales: from subnormal coordinates to the edge of overflow.
 pub const SCALES: [i32; 12] = [-1070, -1000, -500, -270, -249, -240, 0, 248, 250, 500, 1000, 1020];
+/// The same for f32.
+pub const SCALES_OF_F32: [i32; 12] = [-146, -140, -126, -120, -75, -63, 0, 62, 75, 100, 120, 124];
 /// Distances of the primitive from the origin, before scaling.
 pub const OFFSETS: [f64; 4] = [0.0, 1e3, 1e8, 1e15];
 /// Sines of the smallest angle.
 pub const SINES: [f64; 11] = [1.0, 1e-2, 1e-3, 1e-4, 1e-8, 1e-12, 1e-15, 2e-16, 6e-17, 1e-17, 0.0];
 
-fn unit(rng: &mut impl Rng) -> V {
+/// The range of a scalar.
+#[derive(Clone, Copy, Debug)]
+pub struct Span {
+    /// Scales of shapes, zero being one of them.
+    pub scales: &'static [i32],
+    /// The exponents of its smallest and its largest numbers, and of what is far from both.
+    low: i32,
+    high: i32,
+    middle: i32,
+    largest: f64,
+    is_single: bool,
+}
+
+impl Span {
+    /// Of f64.
+    pub const F64: Self =
+        Self { scales: &SCALES, low: -1074, high: 1023, middle: 300, largest: f64::MAX, is_single: false };
+    /// Of f32.
+    pub const F32: Self =
+        Self { scales: &SCALES_OF_F32, low: -149, high: 127, middle: 40, largest: f32::MAX as f64, is_single: true };
+
+    /// The nearest number of the scalar, at most the largest.
+    #[allow(clippy::cast_possible_truncation, reason = "rounds")]
+    fn rounded(&self, x: f64) -> f64 {
+        let x = x.clamp(-self.largest, self.largest);
+        if self.is_single { f64::from(x as f32) } else { x }
+    }
+}
+
+pub(crate) fn unit(rng: &mut impl Rng) -> V {
     loop {
         let v: V = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
         let n = norm(v);
@@ -67,7 +139,7 @@ fn pick<T: Copy>(rng: &mut impl Rng, from: &[T]) -> T {
 }
 
 /// A triangle of size about one whose height over its longest side is about `sine` times that side.
-fn triangle(rng: &mut impl Rng, sine: f64) -> [V; 3] {
+pub(crate) fn triangle(rng: &mut impl Rng, sine: f64) -> [V; 3] {
     if sine == 0.0 && rng.random_bool(0.5) {
         // Exactly collinear or with repeated vertices: small integers along one direction.
         let direction: V = std::array::from_fn(|_| f64::from(rng.random_range(-3..=3)));
@@ -107,20 +179,25 @@ fn lattice(rng: &mut impl Rng) -> Case {
         let base = combine([(1.0 - quarters, vertices[i]), (quarters, vertices[j])]);
         let height = 2f64.powi(rng.random_range(-10..58));
         let query = combine([(1.0, base), (height, normal(&vertices))]);
-        return Case { family: format!("3 vertices, lattice, query {height:e} normals above"), query, vertices };
+        return Case { family: Family::Lattice, query, vertices };
     }
     let far = if rng.random_bool(0.5) { rng.random_range(0..50) } else { rng.random_range(50..56) };
     let query = std::array::from_fn(|_| (2f64.powi(far) * rng.random_range(-6.0..6.0f64)).round());
-    Case { family: format!("{count} vertices, lattice, query at 2^{far}"), query, vertices }
+    Case { family: Family::Lattice, query, vertices }
 }
 
 /// Coordinates of any magnitude, each for itself, from a small pool so that some coincide.
 #[must_use]
 pub fn wild(rng: &mut impl Rng) -> Case {
-    let (low, high) = [(-1074, 1023), (-1074, 0), (0, 1023), (-300, 300)][rng.random_range(0..4)];
+    wild_in(rng, &Span::F64)
+}
+
+fn wild_in(rng: &mut impl Rng, span: &Span) -> Case {
+    let Span { low, high, middle, .. } = *span;
+    let (low, high) = [(low, high), (low, 0), (0, high), (-middle, middle)][rng.random_range(0..4)];
     let pool: [f64; 6] = std::array::from_fn(|_| match rng.random_range(0..10) {
         0 => 0.0,
-        1 => f64::MAX,
+        1 => span.largest,
         _ => {
             let e: i32 = rng.random_range(low..=high);
             let mantissa: f64 = if rng.random_bool(0.5) { 1.0 } else { rng.random_range(1.0..2.0) };
@@ -131,11 +208,7 @@ pub fn wild(rng: &mut impl Rng) -> Case {
     let query = std::array::from_fn(|_| coordinate());
     let vertices: [V; 3] = std::array::from_fn(|_| std::array::from_fn(|_| coordinate()));
     let count = rng.random_range(1..=3);
-    Case {
-        family: format!("{count} vertices, coordinates of 2^{low} to 2^{high}"),
-        query,
-        vertices: vertices[..count].to_vec(),
-    }
+    Case { family: Family::Wild, query, vertices: vertices[..count].to_vec() }
 }
 
 /// Edges and faces that are almost parallel to the axes: their box is thin, and a foot easily leaves it by rounding.
@@ -147,7 +220,7 @@ fn almost_flat(rng: &mut impl Rng) -> Case {
         v[axis] = level * (1.0 + f64::from(rng.random_range(-3..=3)) * f64::EPSILON);
     }
     let query = std::array::from_fn(|_| rng.random_range(-2.0..2.0));
-    Case { family: format!("{count} vertices, almost parallel to axis {axis}"), query, vertices }
+    Case { family: Family::AlmostFlat, query, vertices }
 }
 
 /// Vertices and query within a few units in the last place of one point, whose coordinates are any f32.
@@ -167,14 +240,30 @@ fn neighbours(rng: &mut impl Rng) -> Case {
         })
     };
     let vertices = vec![near(), near(), near()];
-    Case { family: "3 vertices, neighbours of an f32".to_owned(), query: near(), vertices }
+    Case { family: Family::Neighbours, query: near(), vertices }
 }
 
 /// Case `rng` of all families, with 1 to 3 vertices.
 pub fn case(rng: &mut impl Rng) -> Case {
+    case_in(rng, &Span::F64)
+}
+
+/// The same in the range of a scalar, all numbers being of that scalar, and not all of them zero.
+pub fn case_in(rng: &mut impl Rng, span: &Span) -> Case {
+    loop {
+        let Case { family, query, vertices } = drawn(rng, span);
+        let rounded = |v: V| v.map(|x| span.rounded(x));
+        let case = Case { family, query: rounded(query), vertices: vertices.into_iter().map(rounded).collect() };
+        if case.vertices.as_flattened().iter().chain(&case.query).any(|x| *x != 0.0) {
+            return case;
+        }
+    }
+}
+
+fn drawn(rng: &mut impl Rng, span: &Span) -> Case {
     match rng.random_range(0..100) {
         0..10 => return lattice(rng),
-        10..13 => return wild(rng),
+        10..13 => return wild_in(rng, span),
         13..18 => return almost_flat(rng),
         18..23 => return neighbours(rng),
         _ => {}
@@ -188,7 +277,7 @@ pub fn case(rng: &mut impl Rng) -> Case {
         3
     };
     let sine = pick(rng, &SINES);
-    let scale = if rng.random_bool(0.5) { 0 } else { pick(rng, &SCALES) };
+    let scale = if rng.random_bool(0.5) { 0 } else { pick(rng, span.scales) };
     let offset = if rng.random_bool(0.5) { 0.0 } else { pick(rng, &OFFSETS) };
     let shift = unit(rng).map(|x| x * offset);
     let mut vertices: Vec<V> =
@@ -197,14 +286,14 @@ pub fn case(rng: &mut impl Rng) -> Case {
         // A short segment in place of a flat triangle.
         vertices[1] = std::array::from_fn(|k| vertices[0][k] + sine * (vertices[1][k] - vertices[0][k]));
     }
-    if count == 3 && rng.random_bool(0.1) {
+    let needle = count == 3 && rng.random_bool(0.1);
+    if needle {
         // A needle: one edge is tiny.
         let tiny = 2f64.powi(-rng.random_range(1..60));
         vertices[2] = combine([(1.0, vertices[0]), (tiny, unit(rng))]);
     }
     let (place, mut query) = query(rng, &vertices);
-    let short = rng.random_bool(0.2);
-    if short {
+    if rng.random_bool(0.2) {
         // Few digits: components that are equal, sums that are exact, feet that are on the box.
         let few = |v: V| v.map(|x| if x == 0.0 { x } else { (x * 2f64.powi(20)).round() * 2f64.powi(-20) });
         vertices.iter_mut().for_each(|v| *v = few(*v));
@@ -213,11 +302,9 @@ pub fn case(rng: &mut impl Rng) -> Case {
     let factor =
         |x: f64| if scale >= -500 { x * 2f64.powi(scale) } else { x * 2f64.powi(-500) * 2f64.powi(scale + 500) };
     // Offsets times the largest scales would overflow: they stay at the edge of the range.
-    let clip = |v: V| v.map(|x| factor(x).clamp(-f64::MAX, f64::MAX));
+    let clip = |v: V| v.map(|x| factor(x).clamp(-span.largest, span.largest));
     Case {
-        family: format!(
-            "{count} vertices, sine {sine:e}, scale 2^{scale}, offset {offset:e}, few digits {short}, query {place}"
-        ),
+        family: Family::Shaped { sine, scale, offset, needle, place },
         query: clip(query),
         vertices: vertices.into_iter().map(clip).collect(),
     }

@@ -4,7 +4,11 @@
 #![forbid(unsafe_code)]
 #![allow(clippy::missing_panics_doc, reason = "a test kit panics where a test should fail")]
 
+pub mod adversaries;
 pub mod ball;
+pub mod contract;
+pub mod enclosure;
+pub mod extremes;
 pub mod families;
 pub mod left_first;
 pub mod line_filter;
@@ -17,6 +21,7 @@ pub mod ray_oracle;
 pub mod rays;
 pub mod scenes;
 mod surface;
+pub mod truth;
 
 use nalgebra::Vector3;
 use rand::{Rng, RngExt, SeedableRng};

@@ -37,7 +37,7 @@ pub fn agrees<T: Real>(
     seed: u64,
     soup: &Soup<T>,
     queries: &[Point3<T>],
-    index: &(impl NearQuery<T> + ClosestPoint<T>),
+    index: &(impl NearQuery<T> + ClosestPoint<T> + ?Sized),
 ) {
     let mut rng = rng("near options", seed);
     for (i, q) in queries.iter().enumerate() {

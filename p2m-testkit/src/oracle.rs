@@ -156,8 +156,8 @@ impl Distance {
             let limit = Self::new([0.0; 3], &[[f64::MAX, 0.0, 0.0]]);
             return if computed > 0.0 && self.compare(&limit) == Ordering::Greater { 0.0 } else { f64::INFINITY };
         }
-        // Where it cannot matter it would only make numbers longer.
-        let eta = if self.unit < lowest_bit(eta) + 174 { eta } else { 0.0 };
+        // Where it cannot matter beside u M it would only make numbers longer; the distance may be any part of M.
+        let eta = if relative || self.unit < lowest_bit(eta) + 174 { eta } else { 0.0 };
         // 2 max(bits, 64) bits below the lowest bit of anything: u M is at least 2^(unit - 53).
         let fine = self.unit.min(lowest_bit(computed)).min(lowest_bit(eta)) - 160;
         let (distance, reach) = self.fixed(fine);
@@ -176,22 +176,46 @@ impl Distance {
         ratio.to_f64().value() / f64::from(1 << 20)
     }
 
-    /// Whether the true distance is at least `bound`.
+    /// Whether the true distance is at least `bound`; it is not if that is infinite or NaN.
     #[must_use]
     pub fn is_at_least(&self, bound: f64) -> bool {
         if bound <= 0.0 {
             return true;
         }
+        if !bound.is_finite() {
+            return false;
+        }
         self.compare(&Self::new([0.0; 3], &[[bound, 0.0, 0.0]])) != Ordering::Less
+    }
+
+    /// The true distance as the sum of a rounded one and what that leaves, to more than 110 bits. Of scenes whose scale
+    /// is not extreme: neither is to leave the range of f64.
+    #[must_use]
+    pub fn length(&self) -> [f64; 2] {
+        // 118 bits of the distance, or somewhat less or more.
+        let of = |x: &IBig| i64::try_from(x.bit_len()).expect("small");
+        let bits = (of(&self.square.numerator) - of(&self.square.denominator)) / 2;
+        let fine = self.unit + (bits - 118).min(0);
+        let (distance, _) = self.fixed(fine);
+        let rounded = distance.to_f64().value();
+        let rest = (IBig::from(distance) - integer(rounded, 0)).to_f64().value();
+        let exponent = i32::try_from(fine).expect("small");
+        [rounded, rest].map(|x| x * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2))
     }
 
     /// The largest distance from the query to a vertex, within a few roundings.
     #[must_use]
     pub fn reach(&self) -> f64 {
+        self.of_reach(1.0)
+    }
+
+    /// So many times that; only the result has to be in range.
+    #[must_use]
+    pub fn of_reach(&self, factor: f64) -> f64 {
         let fine = self.unit - 64;
         let (_, reach) = self.fixed(fine);
         let excess = reach.bit_len().saturating_sub(64);
-        let leading = (reach >> excess).to_f64().value();
+        let leading = (reach >> excess).to_f64().value() * factor;
         let exponent = i32::try_from(fine).expect("small") + i32::try_from(excess).expect("small");
         // In two steps, so that neither factor leaves the range of f64.
         leading * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2)
@@ -302,7 +326,30 @@ mod tests {
         assert!((d.error(one_off, 53, 0.0) - expected).abs() < 1e-5);
         assert_eq!(d.error(f64::NAN, 53, 0.0), f64::INFINITY);
         assert_eq!(d.error(f64::INFINITY, 53, 0.0), f64::INFINITY);
+        // A distance of 2.2e-309, rounded, of vertices that are whole multiples of 2^-344.
+        let long = [[-7.794685076942073e307, 4.9483662130201084e-88, -44.0], [0.00390625, 0.0, 0.0]];
+        let d309 = Distance::new([0.0; 3], &long);
+        assert_eq!(d309.relative_error(2.2050281480702e-309, 53, f64::from_bits(1)), 0.0);
+        assert!(d309.relative_error(2.2050281480702e-309, 53, 0.0) > 1.0);
         assert!((d.reach() - 17f64.sqrt()).abs() < 1e-14);
         assert!(d.is_at_least(1.0) && !d.is_at_least(one_off));
+    }
+
+    #[test]
+    fn lengths_have_twice_as_many_digits() {
+        // The diagonal of a square, whose root is known; and a whole number.
+        let [rounded, rest] = Distance::new([0.0; 3], &[[1.0, 1.0, 0.0]]).length();
+        assert_eq!((rounded, rest), (std::f64::consts::SQRT_2, -9.667_293_313_452_913e-17));
+        assert_eq!(Distance::new([0.0, 0.0, 3.0], &T).length(), [3.0, 0.0]);
+        assert_eq!(Distance::new([1e-3, 1e-3, 0.0], &T).length(), [0.0, 0.0]);
+        // Near the surface, seen from far corners: the error is in units of the latter.
+        let query = [0.1, 0.2, 1e-9];
+        let [near, rest] = Distance::new(query, &T).length();
+        assert_eq!((near, rest.abs() < 1e-30), (1e-9, true));
+        // However near: the height over a plane that is not along the axes, 1 / sqrt(3) of a unit in the last place.
+        let tilted = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let [near, rest] = Distance::new([0.25, 0.25, 0.5 + 2f64.powi(-53)], &tilted).length();
+        let expected = 2f64.powi(-53) / 3f64.sqrt();
+        assert!((near - expected).abs() <= expected * f64::EPSILON && rest != 0.0, "{near:e} + {rest:e}, {expected:e}");
     }
 }

@@ -1,7 +1,7 @@
 //! The figures of the paper \[Zong2023\], of its own machine, models and rivals. What is computed from
 //! these (ratios to rivals, microseconds a face) is said on the page.
 
-use crate::table::Table;
+use p2m_tradeoff::Table;
 
 fn table(head: &[&str], rows: &[&[&str]]) -> String {
     let mut table = Table::new(head.iter().copied());

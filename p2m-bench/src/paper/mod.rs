@@ -6,7 +6,6 @@
 mod cited;
 mod figures;
 mod page;
-mod plot;
 mod profile;
 mod scenes;
 mod study;
@@ -14,7 +13,6 @@ mod surfaces;
 mod tables;
 
 use crate::measure::Effort;
-use crate::provenance::Provenance;
 use crate::scene::Scene;
 use anyhow::{Context, Result};
 use figures::{COMPARED, Figures};
@@ -107,7 +105,7 @@ fn write_profile(profile: &Profile, command: &str, models: Models, out: &Path) -
     let studies = || all.known.values().chain(pairs.iter().flat_map(|(_, studies)| studies));
     let agrees = studies().map(|study| study.agrees).fold(true, |all, agrees| all & agrees);
     let answers = if agrees { "All answers of ours were bitwise the same." } else { "ANSWERS OF OURS DIFFER." };
-    let provenance = Provenance::collect(None);
+    let provenance = crate::provenance(None);
     let values = [
         ("command", command.to_owned()),
         ("machine", provenance.machine()),

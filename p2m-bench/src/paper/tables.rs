@@ -4,7 +4,7 @@ use super::scenes::stem;
 use super::study::Study;
 use super::surfaces::quality;
 use crate::scene::Scene;
-use crate::table::Table;
+use p2m_tradeoff::Table;
 
 /// A contender's query in microseconds, with the least and the greatest of all rounds.
 fn query(study: &Study, name: &str) -> String {

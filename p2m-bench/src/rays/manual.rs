@@ -6,11 +6,11 @@ use super::measure::{Contender, Figures, first_part, measure, verify};
 use crate::contender::catch;
 use crate::measure::{Effort, Spread};
 use crate::scene::Scene;
-use crate::table::Table;
 use anyhow::{Result, anyhow};
 use p2m_core::{Directions, Ray};
 use p2m_testkit::left_first::LeftFirst;
 use p2m_testkit::queries::QuerySet;
+use p2m_tradeoff::Table;
 
 const COLUMNS: [&str; 5] = ["aabb", "kdop-6", "kdop-14", "kdop-18", "kdop-26"];
 const HEAD: [&str; 5] = ["AABB", "6-DOP", "14-DOP", "18-DOP", "26-DOP"];

@@ -6,12 +6,12 @@ use super::measure::{Contender, Differences, Figures, ROUNDING, first_part, meas
 use crate::contender::{Absent, catch};
 use crate::measure::{BuildFigures, Effort, Spread, weigh};
 use crate::memory;
-use crate::provenance::Provenance;
 use crate::report::{Line, Record, significant};
 use crate::scene::Scene;
-use crate::table::Table;
 use anyhow::Result;
 use p2m_testkit::queries::QuerySet;
+use p2m_tradeoff::Provenance;
+use p2m_tradeoff::Table;
 
 /// A contender in a scene.
 struct Entry<'a> {
@@ -164,7 +164,7 @@ mod tests {
         let triangle = Element::Triangle([0, 1, 2]);
         for (elements, contenders) in [(vec![triangle], 11), (vec![triangle, Element::Point(3)], 8)] {
             let scene = Scene::new("test".into(), Soup::new(p.clone(), elements).unwrap()).unwrap();
-            let provenance = Provenance::collect(None);
+            let provenance = crate::provenance(None);
             let mut record = Record::open(&path).unwrap();
             let sets = [QuerySet::Box1, QuerySet::Grid];
             assert!(print(&scene, &sets, &[], &effort, &provenance, Some(&mut record)).unwrap());

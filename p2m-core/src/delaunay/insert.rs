@@ -33,6 +33,9 @@ pub(super) const FACES: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 
 /// Vertices of the faces around a cavity that have places in the table of edges: those of 124 faces.
 const PLACES: usize = 64;
 
+/// For each tetrahedron that there may be at a time so many may be made.
+const MADE: u64 = 8;
+
 /// In the first vertex of a tetrahedron: in the cavity,
 const INSIDE: u32 = 1 << 31;
 /// or tested, and not in it. Numbers of sites are below.
@@ -65,6 +68,10 @@ pub(super) struct Insertion {
     sites: Vec<Site>,
     tetrahedra: Vec<Tetrahedron>,
     free: Vec<u32>,
+    /// So many may there be,
+    most: usize,
+    /// and so many be made.
+    most_made: u64,
     /// Where the next walk begins.
     last: u32,
     cavity: Vec<u32>,
@@ -115,10 +122,10 @@ impl<S: Iterator<Item = usize>> Operation for All<'_, S> {
 impl Insertion {
     /// The tetrahedra of the six bounding sites, around the diagonal from 0 to 1. They are at the same distance from
     /// their centre, exactly, so any diagonal is Delaunay.
-    pub(super) fn new(sites: &[V3]) -> Self {
+    pub(super) fn new(sites: &[V3], most: usize) -> Self {
         let ring = [2, 4, 3, 5];
         // Points in space have seven times as many; on a surface there are some more, with the removed ones.
-        let mut tetrahedra = Vec::with_capacity(15 * sites.len() / 2);
+        let mut tetrahedra = Vec::with_capacity((15 * sites.len() / 2).min(most.saturating_add(4)));
         tetrahedra.extend((0..4u32).map(|i| {
             let [a, b] = [ring[i as usize], ring[(i as usize + 1) % 4]];
             // Opposite to a lies the next one, opposite to b the one before.
@@ -131,6 +138,8 @@ impl Insertion {
             sites: sites.iter().map(|&point| Site { point, round: 0, place: 0 }).collect(),
             tetrahedra,
             free: Vec::new(),
+            most: most.min(Delaunay::NONE as usize),
+            most_made: (most as u64).saturating_mul(MADE),
             last: 0,
             cavity: Vec::new(),
             boundary: Vec::new(),
@@ -140,14 +149,16 @@ impl Insertion {
         }
     }
 
-    /// Inserts a site other than all before; whether there are numbers enough for its tetrahedra.
+    /// Inserts a site other than all before; whether its tetrahedra are not too many.
     #[must_use]
     #[inline(always)]
     fn insert(&mut self, site: u32) -> bool {
         let p = self.sites[site as usize].point;
         let start = self.locate(p);
         self.find_cavity(start, p);
-        if self.tetrahedra.len() + self.boundary.len() >= Delaunay::NONE as usize {
+        let more = self.boundary.len().saturating_sub(self.free.len());
+        if self.tetrahedra.len() + more >= self.most || self.work.created + self.boundary.len() as u64 > self.most_made
+        {
             return false;
         }
         self.fill(site);
@@ -163,7 +174,7 @@ impl Insertion {
         true
     }
 
-    /// Inserts sites other than all before, each once; whether there are numbers enough for their tetrahedra.
+    /// Inserts sites other than all before, each once; whether their tetrahedra are not too many.
     #[must_use]
     pub(super) fn insert_all(&mut self, sites: impl Iterator<Item = usize>) -> bool {
         Isa::best().run(All { insertion: self, sites })

@@ -46,7 +46,7 @@ pub enum DelaunayError {
         /// The first such point.
         index: usize,
     },
-    /// More points, or tetrahedra, than numbers.
+    /// More points, or tetrahedra, than numbers, or more tetrahedra than allowed.
     #[error("{len} points are too many, or have too many tetrahedra")]
     TooMany {
         /// How many points there are.
@@ -125,6 +125,16 @@ impl Delaunay {
     /// tetrahedra. While building 32 bytes a tetrahedron and 60 a point, besides what remains
     /// ([`memory`](Self::memory)).
     pub fn new(points: &[[f64; 3]], reach: f64) -> Result<Self, DelaunayError> {
+        Self::within(points, reach, Self::NONE as usize)
+    }
+
+    /// The same with at most `most` tetrahedra at a time and eight times as many in all, most of which go again: points in
+    /// space have seven each, and 30 are made for each (observed); points on two skew lines have a quarter of the square of
+    /// their number.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and [`DelaunayError::TooMany`] for more than that, as soon as it is known.
+    pub fn within(points: &[[f64; 3]], reach: f64, most: usize) -> Result<Self, DelaunayError> {
         let too_many = DelaunayError::TooMany { len: points.len() };
         if !(Self::LEAST_REACH..=Self::LARGEST_REACH).contains(&reach) {
             return Err(DelaunayError::Reach { reach });
@@ -136,7 +146,7 @@ impl Delaunay {
             return Err(too_many);
         }
         let scale::Sites { sites, unit, site_of } = scale::sites(points, reach);
-        let mut insertion = Insertion::new(&sites);
+        let mut insertion = Insertion::new(&sites, most);
         if !insertion.insert_all(order::rounds(BOUNDING..sites.len())) {
             return Err(too_many);
         }

@@ -1,9 +1,9 @@
 use super::{PacketTree, Volume};
 use crate::saved::{self, LoadError, Reader, Writer};
 use crate::{
-    Aabb, Best, BoxQuery, BuildError, BuildIndex, Closest, ClosestLeaf, ClosestPoint, Collector, Counting, Directions,
-    Examine, Hits, Isa, Kdop, Near, NearQuery, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector,
-    RayQuery, Real, check_set,
+    Aabb, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Collector,
+    Counting, Directions, Examine, Hits, Isa, Kdop, Near, NearQuery, Primitive, PrimitiveId, PrimitiveSet,
+    QueryOptions, Ray, RayCollector, RayQuery, Real, Shape, check_room, check_set, shape_of,
 };
 use nalgebra::Point3;
 use std::marker::PhantomData;
@@ -27,12 +27,13 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// Builds the tree: as [`BuildIndex::build`], but also for volumes without usual options, such as k-DOPs of any K.
     ///
     /// # Errors
-    /// For a coordinate that is not finite and for more primitives than ids.
+    /// For a coordinate that is not finite, for more primitives than ids, and where [`PacketTree::build_bytes`] are refused.
     pub fn build_with(set: S, options: &V::Options) -> Result<Self, BuildError>
     where
         S: Sync,
     {
         check_set(&set)?;
+        check_room(PacketTree::<V>::build_bytes(set.len()))?;
         let tree = PacketTree::build(&set, options);
         Ok(Self { set, scalar: PhantomData, tree })
     }
@@ -58,7 +59,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// threads are used matters: directions and splits stay those that it was built with.
     ///
     /// # Errors
-    /// [`BuildError::OtherLength`] and [`BuildError::NonFinite`]; the tree is then as it was.
+    /// [`BuildError::OtherLength`], [`BuildError::NonFinite`] and [`BuildError::OutOfMemory`]; the tree is then as it was.
     ///
     /// # Complexity
     /// O(n).
@@ -70,6 +71,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
             return Err(BuildError::OtherLength { len: set.len(), expected: self.set.len() });
         }
         check_set(&set)?;
+        check_room(PacketTree::<V>::build_bytes(set.len()))?;
         self.tree.refit(&set, options);
         self.set = set;
         Ok(())
@@ -142,6 +144,12 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestPoint<T> for TreeIndex<T, S,
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> NearQuery<T> for TreeIndex<T, S, V> {
     fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>) {
         self.visit(query, near);
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>, V: Volume> CertifiedQuery<T> for TreeIndex<T, S, V> {
+    fn shape(&self, id: PrimitiveId) -> Option<Shape<T>> {
+        shape_of(&self.set, id)
     }
 }
 

@@ -276,20 +276,44 @@ pub(super) fn search<I: InstructionSet, C: Collector>(
     place: &Place,
     filter: &mut Filter<'_, C>,
 ) {
-    for block in std::iter::once(first).chain(&rest[..usize::from(first.more)]) {
+    let rest = &rest[..usize::from(first.more)];
+    for (number, block) in std::iter::once(first).chain(rest).enumerate() {
+        if filter.is_content() {
+            forgo::<I, C>(std::iter::once(first).chain(rest).skip(number), place, filter);
+            return;
+        }
         let bounds: I::Eight = block.lower_bounds(place);
         let mut keys = [0u32; WIDTH];
         let count = bounds.sorted_keys(filter.limit(), &mut keys);
         block.prefetch(tree, &keys, count);
-        let mut rest = count;
-        while rest > 0 {
-            rest -= 1;
-            let key = keys[rest];
+        let mut left = count;
+        while left > 0 {
+            left -= 1;
+            let key = keys[left];
             let lane = lane_of_key(key);
             if lane < usize::from(block.len) && number_of_key(key) <= filter.limit() {
+                if filter.is_content() {
+                    filter.forgo(number_of_key(key));
+                    break;
+                }
                 filter.packet::<I>(block.packets[lane] as usize, u32::from(block.lanes[lane]));
             }
         }
+    }
+}
+
+/// Gives up some blocks of a list.
+#[cold]
+#[inline(always)]
+fn forgo<'b, I: InstructionSet, C: Collector>(
+    blocks: impl Iterator<Item = &'b Block>,
+    place: &Place,
+    filter: &mut Filter<'_, C>,
+) {
+    let mut bounds = [0.0; WIDTH];
+    for block in blocks {
+        block.lower_bounds::<I::Eight>(place).store(&mut bounds);
+        filter.forgo(bounds[..usize::from(block.len)].iter().copied().fold(f32::INFINITY, f32::min));
     }
 }
 

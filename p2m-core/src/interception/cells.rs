@@ -32,7 +32,7 @@ use std::ops::Range;
 pub(super) struct Cells<'a> {
     pub(super) tree: &'a PacketTree,
     pub(super) sites: &'a Sites,
-    pub(super) limits: Limits,
+    pub(super) limits: Limits<'a>,
     /// Lists of more primitives have a filter.
     pub(super) filter_above: usize,
 }
@@ -46,8 +46,8 @@ pub(super) struct Lists<F> {
 }
 
 impl Cells<'_> {
-    /// The lists of all sites. `teller` is told how many of these are done.
-    pub(super) fn lists<F: ListFilter>(&self, report: &mut P2mReport, teller: &Teller<'_>) -> Lists<F> {
+    /// The lists of all sites; `None` where these take too much. `teller` is told how many are done.
+    pub(super) fn lists<F: ListFilter>(&self, report: &mut P2mReport, teller: &Teller<'_>) -> Option<Lists<F>> {
         teller.begin(Stage::Lists);
         let sites = self.sites.delaunay.sites();
         let tetrahedra = self.sites.delaunay.tetrahedra();
@@ -70,7 +70,11 @@ impl Cells<'_> {
         report.added = self.sites.added;
         let outlines = Outlines::of(self.tree);
         let work = |share| self.share(share, &around, &features, &outlines);
+        let allowance = self.limits.allowance;
         in_shares(sites.len(), self.limits.parallel, work, |share: Share<F>| {
+            if !allowance.holds::<Block>(blocks.len() + share.blocks.len()) {
+                return;
+            }
             for made in share.cells {
                 let to = &mut records[made.site];
                 (to.owner, to.list) = (features.owners[made.site], TREE);
@@ -99,7 +103,7 @@ impl Cells<'_> {
             report.primitives += share.primitives;
         });
         fans.sites = records.into();
-        Lists { fans, blocks, filters }
+        (!allowance.is_over()).then_some(Lists { fans, blocks, filters })
     }
 
     /// The lists of some sites.
@@ -121,6 +125,9 @@ impl Cells<'_> {
         };
         let mut cell = Cell::default();
         for site in sites {
+            if self.limits.allowance.is_over() {
+                break;
+            }
             let own = around.of(site);
             let mut made = Made { site, list: List::Tree, outside: None, filter: None };
             if let Some(anchor) = self.sites.anchor_of(site) {
@@ -143,6 +150,7 @@ impl Cells<'_> {
                     made.list = List::Blocks(first..share.blocks.len());
                 }
             }
+            self.limits.allowance.spend(std::mem::take(&mut cell.values.tests));
             share.cells.push(made);
         }
         share
@@ -208,6 +216,8 @@ struct Known {
     crossed: Vec<u16>,
     /// The region of a lane.
     region: Vec<V3>,
+    /// How many times packets were tested at a corner, and primitives evaluated.
+    tests: usize,
 }
 
 impl Cell {
@@ -378,6 +388,7 @@ impl Known {
     /// The values of a packet at the corners of a hull.
     fn compute(&mut self, hull: &Hull, packet: &Packet, tree: &PacketTree) {
         self.values.clear();
+        self.tests += hull.corners.len();
         self.near = tree.isa().run(Values { hull, packet, values: &mut self.values });
         self.refine(hull, packet, tree);
         self.below.clear();
@@ -410,6 +421,7 @@ impl Known {
                 if values[lane] > 0.0 {
                     continue;
                 }
+                self.tests += 1;
                 let mut best = Best::<f64>::new(&QueryOptions::default());
                 packet.offer(lane, &tree.leaves.vertices, hull.corners[i], f64::INFINITY, &mut best);
                 let Some(closest) = best.finish() else { continue };

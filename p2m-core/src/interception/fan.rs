@@ -5,10 +5,12 @@
 //! products do not tell, f64 does, and integers at last; so a walk ends at a site that certainly has q in its closed
 //! cell, and never runs in a circle, for each step is one to a nearer site.
 
+use super::features::NONE;
 use super::nearer;
 use super::voronoi::{AUXILIARY, TREE};
 use crate::kernel::power_of_two;
 use crate::kernel::vector::{V3, norm_squared, sub};
+use crate::packet::LANES;
 use crate::packet::frame_unit;
 use crate::saved::{Array, LoadError, Reader, Writer};
 use crate::simd::{InstructionSet, Lanes, prefetch_lines};
@@ -146,6 +148,13 @@ impl Site {
     #[inline(always)]
     pub(super) fn has_list(&self) -> bool {
         self.list != TREE && self.list != AUXILIARY
+    }
+
+    /// A primitive that has the site as a vertex, as packet and lane.
+    #[inline(always)]
+    pub(super) fn holder(&self) -> Option<(usize, usize)> {
+        let owner = self.owner as usize;
+        (self.list != AUXILIARY && self.owner != NONE).then_some((owner / LANES, owner % LANES))
     }
 }
 

@@ -39,7 +39,7 @@ impl<L: Locator, F: ListFilter> LookUp for Voronoi<L, F> {
             let found = Found { site, is_nearest: false };
             return tree.isa().run(Answer { index: self, found, query, place, collector, evaluate, finish });
         }
-        tree.isa().run(Search { tree, query, reach: f64::INFINITY, collector, evaluate, finish });
+        tree.isa().run(Search { tree, query, reach: f64::INFINITY, held: None, collector, evaluate, finish });
     }
 
     fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
@@ -153,8 +153,9 @@ impl<C: Collector, L: Locator, F: ListFilter> Answer<'_, C, L, F> {
         let tree = &index.tree;
         let site = &index.fans.sites[found.site];
         let reach = index.reach(site, &query, &place);
+        let held = site.holder();
         if !site.has_list() {
-            return Search { tree, query, reach, collector, evaluate, finish }.run::<I>();
+            return Search { tree, query, reach, held, collector, evaluate, finish }.run::<I>();
         }
         // What comes next, if the list has more than a block.
         index.prefetch_block(site.list as usize);
@@ -163,6 +164,7 @@ impl<C: Collector, L: Locator, F: ListFilter> Answer<'_, C, L, F> {
             filter.add(packet, lane);
             return filter.evaluate_waiting();
         }
+        filter.hold(held, reach);
         if let Some(list) = index.filters.of(found.site) {
             for (packet, lanes) in Filters::packets(list, &query) {
                 filter.packet::<I>(packet as usize, u32::from(lanes));
@@ -243,8 +245,16 @@ impl<L: Locator, F: ListFilter> Operation for Several<'_, L, F> {
                 (Some(found), Some(place)) => {
                     Answer { index, found, query, place, collector: minimum, evaluate, finish }.search::<I>();
                 }
-                _ => Search { tree: &index.tree, query, reach: f64::INFINITY, collector: minimum, evaluate, finish }
-                    .run::<I>(),
+                _ => Search {
+                    tree: &index.tree,
+                    query,
+                    reach: f64::INFINITY,
+                    held: None,
+                    collector: minimum,
+                    evaluate,
+                    finish,
+                }
+                .run::<I>(),
             }
         }
     }

@@ -12,6 +12,7 @@
 //! bounds (`block`). Where a list would be too long, and outside of the domain, the tree over the same packets answers.
 //! docs/octree.md and docs/p2m.md have the proofs.
 
+mod allowance;
 mod block;
 mod cells;
 mod corner;

@@ -2,10 +2,10 @@
 
 use super::block::{self, Block, Place};
 use super::cube::DEEPEST;
-use super::options::{Domain, OctreeOptions, OctreeReport};
+use super::options::{Domain, FORESEEN, OctreeOptions, OctreeReport};
 use super::partition::{LookUp, Partition};
 use super::progress::{Progress, Stage};
-use super::refine::{Cell, Done, NODE, PACKET, Refinement};
+use super::refine::{Cell, Done, Refinement, Searched, way_bytes};
 use crate::hierarchy::PacketTree;
 use crate::hierarchy::wide::search::{Evaluate, Filter, Search, finish_nearest};
 use crate::hierarchy::wide::volume::Rounded;
@@ -15,7 +15,9 @@ use crate::query::Minimum;
 use crate::real::{narrow, wide};
 use crate::saved::{Array, LoadError, Reader, Saved, Writer};
 use crate::simd::{InstructionSet, Operation, prefetch_lines};
-use crate::{Aabb, Best, Collector, Counting, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Real};
+use crate::{
+    Aabb, Best, BuildError, Collector, Counting, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Real, check_room,
+};
 use nalgebra::Point3;
 use std::collections::HashMap;
 use std::sync::atomic::AtomicU64;
@@ -42,6 +44,8 @@ const FINEST: f64 = 1e9;
 const COARSEST: f64 = 1e-9;
 /// Budgets are for at least so many primitives.
 const FEW: usize = 10_000;
+/// As many times the work of a refinement is done in vain at most, for one that is within the budgets.
+const IN_VAIN: u64 = 5;
 
 /// Codes of eight cubes, x lowest.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -59,6 +63,25 @@ pub struct Octree {
     rows: Array<Row>,
     blocks: Array<Block>,
     report: OctreeReport,
+}
+
+/// What building may need at a time besides the set, in bytes: the tree, the cells three times, for they are made one by one and then
+/// put together, and of each thread what the cells on the way to its own cannot rule out.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates; NaN is nothing")]
+fn build_bytes(len: usize, options: &OctreeOptions) -> usize {
+    let cells = 3.0 * options.memory.clamp(0.0, FORESEEN) * len.max(FEW) as f64;
+    let ways = threads(options.splits.parallel) * way_bytes(len);
+    PacketTree::<Aabb<f64>>::build_bytes(len).saturating_add(cells as usize).saturating_add(ways)
+}
+
+/// How many threads take part.
+fn threads(parallel: bool) -> usize {
+    #[cfg(feature = "rayon")]
+    if parallel {
+        return rayon::current_num_threads();
+    }
+    let _ = parallel;
+    1
 }
 
 /// The codes of cells, as they are made.
@@ -79,25 +102,22 @@ impl Octree {
     ) {
         let tree = &self.tree;
         let owners = owners(tree);
-        let nearest = |x: V3| {
+        let search = |x: V3| {
             // Nearest to a rounded place: any point of the scene will do.
-            let mut best = Best::<T>::new(&QueryOptions::default());
-            tree.search_nearest(set, &narrow(x), &mut best);
-            best.nearest_point().unwrap_or([f64::INFINITY; 3])
-        };
-        let search_cost = |x: V3| {
-            let [nodes, packets, _] =
-                Counting::<T>::of_queries([&narrow(x)], |query, all| tree.search(set, query, all));
-            PACKET * packets as f64 + NODE * nodes as f64
+            let mut counting = Counting::<T>::new(Best::new(&QueryOptions::default()));
+            tree.search(set, &narrow(x), &mut counting);
+            let Counting { best, nodes, packets, primitives } = counting;
+            Searched { nearest: best.nearest_point().unwrap_or([f64::INFINITY; 3]), nodes, packets, primitives }
         };
         let count = tree.packets().1.max(FEW) as f64;
         let most = [options.memory, options.work].map(|budget| (budget * count) as u64);
         // NaN is no resolution either.
         let mut resolution = if options.resolution > 0.0 { options.resolution.min(FINEST) } else { 0.0 };
         let mut percent = 0;
+        let mut in_vain = 0;
         let (cells, done) = loop {
-            if resolution < COARSEST {
-                // Not even the coarsest cells are within the budgets.
+            if resolution < COARSEST || in_vain > most[1].saturating_mul(IN_VAIN) {
+                // Not even the coarsest cells are within the budgets, or it takes too long to find those that are.
                 return;
             }
             let done = Done {
@@ -111,8 +131,7 @@ impl Octree {
             let refinement = Refinement {
                 tree,
                 owners: &owners,
-                nearest: &nearest,
-                search_cost: &search_cost,
+                search: &search,
                 domain: options.domain,
                 slack: shape.slack,
                 even: &shape.even,
@@ -126,6 +145,7 @@ impl Octree {
                 break (cells, refinement.done);
             }
             percent = refinement.done.percent.into_inner();
+            in_vain += refinement.done.work.into_inner();
             resolution = coarser(resolution);
         };
         self.report.work = done.work.into_inner();
@@ -335,7 +355,7 @@ impl LookUp for Octree {
                 let place = Place { rounded: Rounded::of(local), local, cells };
                 tree.isa().run(Lookup { octree: self, code, query, place, collector, evaluate, finish });
             }
-            _ => tree.isa().run(Search { tree, query, reach: f64::INFINITY, collector, evaluate, finish }),
+            _ => tree.isa().run(Search { tree, query, reach: f64::INFINITY, held: None, collector, evaluate, finish }),
         }
     }
 
@@ -352,7 +372,8 @@ impl Partition for Octree {
         set: &S,
         options: &OctreeOptions,
         progress: &(dyn Fn(Progress) + Sync),
-    ) -> Self {
+    ) -> Result<Self, BuildError> {
+        check_room(build_bytes(set.len(), options))?;
         progress(Progress { stage: Stage::Tree, part: 0.0 });
         let tree = PacketTree::build(set, &options.splits);
         progress(Progress { stage: Stage::Octree, part: 0.0 });
@@ -370,7 +391,7 @@ impl Partition for Octree {
             octree.refine(set, options, &shape, progress);
         }
         progress(Progress { stage: Stage::Octree, part: 1.0 });
-        octree
+        Ok(octree)
     }
 
     fn tree(&self) -> &PacketTree {

@@ -3,6 +3,9 @@
 use crate::Aabb;
 use crate::hierarchy::SplitOptions;
 
+/// Budgets of memory may be without end: no more than this is asked for in advance, in bytes for each primitive.
+pub(super) const FORESEEN: f64 = 16384.0;
+
 /// Where queries are to be expected: model only what a scene and its queries require. Elsewhere the tree answers, just
 /// as right.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,8 +32,8 @@ pub struct OctreeOptions {
     /// How fine cells are: larger is finer, 1 takes about one and a half times the memory of 0.3, which is the default. Without
     /// a positive number there are no cells, and the tree answers everything.
     pub resolution: f64,
-    /// What cells may take, in bytes for each primitive of the scene (for at least 10,000 primitives). 190 by
-    /// default.
+    /// What cells may take, in bytes for each primitive of the scene (for at least 10,000 primitives). 190 by default. Above
+    /// 16 KiB no more is asked for in advance, so a build that needs more may run out of memory instead of failing.
     pub memory: f64,
     /// How many times packets may be tested while building, at one point each, for each primitive (for at least
     /// 10,000). 200 by default.
@@ -114,7 +117,8 @@ impl std::fmt::Display for OctreeReport {
     }
 }
 
-/// How a P2M index is built.
+/// How a P2M index is built. Budgets are upper limits: where one would be exceeded, or there are more than sixteen Delaunay
+/// tetrahedra for each vertex of a packet, there are no cells, and the tree answers everything.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct P2mOptions {
@@ -129,11 +133,25 @@ pub struct P2mOptions {
     /// Lists of more primitives have a [`ListFilter`](super::ListFilter), if the index is one with filters, which `P2mIndex`
     /// is not. 64 by default.
     pub filter_above: usize,
+    /// What the lists, and while building the packets around all corners of cells, may take each, in bytes for each primitive
+    /// (for at least 1000): 3072 by default. Where that is exceeded, the tree answers alone. Above 16 KiB no more is asked for
+    /// in advance, so a build that needs more may run out of memory instead of failing.
+    pub memory: f64,
+    /// How many times packets may be tested while building, at one point each, for each primitive (for at least 1000).
+    /// 20,000 by default. Where that is exceeded, the tree answers alone.
+    pub work: f64,
 }
 
 impl Default for P2mOptions {
     fn default() -> Self {
-        Self { splits: SplitOptions::default(), longest: 96, added: 0.5, filter_above: 64 }
+        Self {
+            splits: SplitOptions::default(),
+            longest: 96,
+            added: 0.5,
+            filter_above: 64,
+            memory: 3072.0,
+            work: 20_000.0,
+        }
     }
 }
 
@@ -157,6 +175,16 @@ impl P2mOptions {
     #[must_use]
     pub fn with_filter_above(self, filter_above: usize) -> Self {
         Self { filter_above, ..self }
+    }
+    /// With another memory budget.
+    #[must_use]
+    pub fn with_memory(self, memory: f64) -> Self {
+        Self { memory, ..self }
+    }
+    /// With another build budget.
+    #[must_use]
+    pub fn with_work(self, work: f64) -> Self {
+        Self { work, ..self }
     }
 }
 

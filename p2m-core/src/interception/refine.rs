@@ -36,9 +36,11 @@ const LONGEST: usize = 256;
 const LONG: usize = 24;
 /// Nanoseconds of a packet that is tested, of a further block and of a node of the tree (observed; their ratios
 /// matter).
-pub(super) const PACKET: f64 = 40.0;
+const PACKET: f64 = 40.0;
 const BLOCK: f64 = 15.0;
-pub(super) const NODE: f64 = 30.0;
+const NODE: f64 = 30.0;
+/// Searches of more packets and primitives are work of their own.
+const USUAL: usize = 512;
 /// What a query gains by a list in the place of the tree.
 const SEARCH: f64 = 300.0;
 /// Part of its cost that a cell loses by a split.
@@ -59,15 +61,22 @@ pub(super) enum Cell {
     Split(Box<[Cell; 8]>),
 }
 
+/// What a search of the tree finds, and visits.
+pub(super) struct Searched {
+    /// The nearest point of the scene, of any primitive.
+    pub(super) nearest: V3,
+    pub(super) nodes: usize,
+    pub(super) packets: usize,
+    pub(super) primitives: usize,
+}
+
 /// What the refinement of all cells shares.
 pub(super) struct Refinement<'a> {
     pub(super) tree: &'a PacketTree,
     /// For each vertex of the tree the lowest primitive that has it.
     pub(super) owners: &'a [PrimitiveId],
-    /// The nearest point of the scene, of any primitive.
-    pub(super) nearest: &'a (dyn Fn(V3) -> V3 + Sync),
-    /// What a search of the tree takes, from the nodes and packets that it visits.
-    pub(super) search_cost: &'a (dyn Fn(V3) -> f64 + Sync),
+    /// A search of the tree.
+    pub(super) search: &'a (dyn Fn(V3) -> Searched + Sync),
     pub(super) domain: Domain,
     /// By how much a dominator has to be nearer.
     pub(super) slack: f64,
@@ -131,6 +140,13 @@ struct Item {
     found: [Found; 8],
 }
 
+/// Bytes of the items of all cells on the way to one, with their seven siblings, in a scene of so many primitives: those of
+/// as many levels as are full, at most (observed).
+pub(super) fn way_bytes(primitives: usize) -> usize {
+    const LEVELS: usize = 16;
+    LEVELS * 8 * primitives.min(FINE) * size_of::<Item>()
+}
+
 /// The primitive that seems nearest to a point.
 #[derive(Clone, Copy)]
 struct Nearest {
@@ -166,10 +182,24 @@ struct Middle {
 }
 
 impl Refinement<'_> {
+    /// A search of the tree. A usual one is part of what splits count; where most of the scene is about as near, it takes as
+    /// long as the scene is large.
+    fn search(&self, x: V3) -> Searched {
+        let searched = (self.search)(x);
+        let tests = searched.packets + searched.primitives;
+        self.done.add_work(if tests > USUAL { tests } else { 0 });
+        searched
+    }
+
+    /// The nearest point of the scene.
+    fn nearest(&self, x: V3) -> V3 {
+        self.search(x).nearest
+    }
+
     /// The cells of the cube.
     pub(super) fn cells(&self, low: V3, side: f64) -> Cell {
         let at = |c: usize| -> V3 { std::array::from_fn(|k| low[k] + if c >> k & 1 == 1 { side } else { 0.0 }) };
-        let corners = std::array::from_fn(|c| Corner { x: at(c), y: (self.nearest)(at(c)) });
+        let corners = std::array::from_fn(|c| Corner { x: at(c), y: self.nearest(at(c)) });
         let root = Candidate { child: self.tree.root, bounds: *self.tree.bounds() };
         self.coarse(&Cube { low, side, level: 0, corners }, vec![root], 1.0)
     }
@@ -259,7 +289,7 @@ impl Refinement<'_> {
         self.done.add_work(19 * 8);
         let lattice: [Corner; LATTICE] = std::array::from_fn(|at| match corner_on(at) {
             Some(corner) => cube.corners[corner],
-            None => Corner { x: cube.point(at), y: (self.nearest)(cube.point(at)) },
+            None => Corner { x: cube.point(at), y: self.nearest(cube.point(at)) },
         });
         self.split(cube.children(&lattice).map(|child| (child, ())), true, |child, ()| {
             self.coarse(child, candidates.clone(), share * 0.125)
@@ -364,7 +394,7 @@ impl Refinement<'_> {
     /// `whole`.
     fn nearest_of(&self, near: &Nearest, whole: bool, x: V3) -> V3 {
         if !whole || near.distance == f64::INFINITY {
-            return (self.nearest)(x);
+            return self.nearest(x);
         }
         let mut best = Best::<f64>::new(&QueryOptions::default());
         let packet = &self.tree.leaves.packets[near.packet as usize];
@@ -464,7 +494,8 @@ impl Refinement<'_> {
         }
         let tests = middle.boxes.min(middle.corners) as f64;
         let list = PACKET * tests + BLOCK * len as f64 / WIDTH as f64;
-        list > (self.search_cost)(cube.point(MIDDLE))
+        let Searched { nodes, packets, .. } = self.search(cube.point(MIDDLE));
+        list > PACKET * packets as f64 + NODE * nodes as f64
     }
 
     /// The lanes of an item without those that can only tie with a lower primitive: where a vertex is the nearest point

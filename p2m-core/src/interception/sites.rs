@@ -11,10 +11,11 @@
 //! added in rounds, each with new tetrahedra, until no ball meets too much, a round does not help, or the budget is
 //! spent.
 
+use super::allowance::{Allowance, most_tetrahedra};
 use super::progress::{Stage, Teller};
 use super::shares::in_shares;
 use super::sphere;
-use crate::delaunay::{BOUNDING, Delaunay, DelaunayError};
+use crate::delaunay::{BOUNDING, Delaunay};
 use crate::hierarchy::PacketTree;
 use crate::hierarchy::wide::ball::Selection;
 use crate::kernel::vector::{V3, exponent, norm_squared, scale_by_power, sub};
@@ -64,8 +65,11 @@ impl Corner {
     const UNKNOWN: Self = Self { place: [0.0; 3], error: 0.0, radius: 0.0, first: 0, full: true };
 
     /// The packets that may meet its ball; `false` if there are more than `most`, or if nothing can be told.
-    fn ball(&self, tree: &PacketTree, slack: f64, most: usize, met: &mut Vec<Selection>) -> bool {
-        tree.ball(self.place, self.radius + 2.0 * self.error + slack, most, met)
+    fn ball(&self, tree: &PacketTree, limits: Limits<'_>, most: usize, met: &mut Vec<Selection>) -> bool {
+        let mut tests = 0;
+        let is_whole = tree.ball(self.place, self.radius + 2.0 * self.error + limits.slack, most, met, &mut tests);
+        limits.allowance.spend(tests);
+        is_whole
     }
 }
 
@@ -81,7 +85,7 @@ impl Corners {
     fn new(
         tree: &PacketTree,
         delaunay: &Delaunay,
-        limits: Limits,
+        limits: Limits<'_>,
         known: Option<&Known<'_>>,
         progress: &dyn Fn(usize, usize),
     ) -> Self {
@@ -92,7 +96,7 @@ impl Corners {
             limits.parallel,
             |share| Self::share(tree, delaunay, limits, known, share),
             |share: Self| {
-                corners.append(share);
+                corners.append(share, limits);
                 progress(corners.all.len(), count);
             },
         );
@@ -103,7 +107,7 @@ impl Corners {
     fn share(
         tree: &PacketTree,
         delaunay: &Delaunay,
-        limits: Limits,
+        limits: Limits<'_>,
         known: Option<&Known<'_>>,
         numbers: Range<usize>,
     ) -> Self {
@@ -117,12 +121,16 @@ impl Corners {
             }
             met.clear();
             let mut corner = Corner::UNKNOWN;
+            if limits.allowance.is_over() {
+                corners.push(corner, std::iter::empty());
+                continue;
+            }
             let own = tetrahedron.iter().map(|v| *v as usize).find(|v| *v >= BOUNDING);
             if let (Some(own), Some(centre)) = (own, sphere::centre(&tetrahedron.map(|v| sites[v as usize]))) {
                 corner.place = centre.place.map(|x| x * unit);
                 corner.error = centre.error * unit;
                 corner.radius = norm_squared(sub(centre.place, sites[own])).sqrt() * unit * (1.0 + 8.0 * f64::EPSILON);
-                corner.full = !corner.ball(tree, limits.slack, CROWDED.min(limits.most), &mut met);
+                corner.full = !corner.ball(tree, limits, CROWDED.min(limits.most), &mut met);
             }
             let kept = if corner.full { &[] } else { &met[..] };
             corners.push(corner, kept.iter().map(|s| s.packet));
@@ -131,7 +139,7 @@ impl Corners {
     }
 
     /// The same with all packets of crowded balls, if these are not too many for a list.
-    fn finished(self, tree: &PacketTree, limits: Limits) -> Self {
+    fn finished(self, tree: &PacketTree, limits: Limits<'_>) -> Self {
         if limits.most <= CROWDED || self.full() == 0 {
             return self;
         }
@@ -143,7 +151,8 @@ impl Corners {
             for number in numbers {
                 let corner = self.all[number];
                 met.clear();
-                if corner.full && corner.radius > 0.0 && corner.ball(tree, limits.slack, limits.most, &mut met) {
+                let again = corner.full && corner.radius > 0.0 && !limits.allowance.is_over();
+                if again && corner.ball(tree, limits, limits.most, &mut met) {
                     share.push(Corner { full: false, ..corner }, met.iter().map(|s| s.packet));
                 } else {
                     share.push(corner, self.packets(number).iter().copied());
@@ -151,13 +160,18 @@ impl Corners {
             }
             share
         };
-        in_shares(count, limits.parallel, work, |share| corners.append(share));
+        in_shares(count, limits.parallel, work, |share| corners.append(share, limits));
         corners.push(Corner::UNKNOWN, std::iter::empty());
         corners
     }
 
-    fn append(&mut self, share: Self) {
+    /// Adds what a share has; its corners without their packets where there is no room for these.
+    fn append(&mut self, share: Self, limits: Limits<'_>) {
         let first = self.packets.len();
+        if !limits.allowance.holds::<u32>(first + share.packets.len()) {
+            self.all.resize(self.all.len() + share.all.len(), Corner { first: number(first), ..Corner::UNKNOWN });
+            return;
+        }
         self.packets.extend_from_slice(&share.packets);
         let moved = |corner: Corner| Corner { first: number(first + corner.first as usize), ..corner };
         self.all.extend(share.all.into_iter().map(moved));
@@ -197,7 +211,7 @@ pub(super) struct Sites {
 
 /// How many sites there may be, and what a list may have.
 #[derive(Clone, Copy)]
-pub(super) struct Limits {
+pub(super) struct Limits<'a> {
     /// By how much a dominator has to be nearer.
     pub(super) slack: f64,
     /// Packets of a list.
@@ -206,6 +220,8 @@ pub(super) struct Limits {
     pub(super) added: usize,
     /// Whether all threads are used.
     pub(super) parallel: bool,
+    /// What building may take.
+    pub(super) allowance: &'a Allowance,
 }
 
 /// A point that is added.
@@ -216,17 +232,13 @@ struct Added {
 }
 
 impl Sites {
-    /// Those of the vertices of a tree, which lie in `bounds`, and more. `teller` is told of its stages.
-    pub(super) fn new(
-        tree: &PacketTree,
-        bounds: &Aabb<f64>,
-        limits: Limits,
-        teller: &Teller<'_>,
-    ) -> Result<Self, DelaunayError> {
+    /// Those of the vertices of a tree, which lie in `bounds`, and more; `None` where that takes too much. `teller` is told of
+    /// its stages.
+    pub(super) fn new(tree: &PacketTree, bounds: &Aabb<f64>, limits: Limits<'_>, teller: &Teller<'_>) -> Option<Self> {
         let progress = |done, all| teller.reach([5.0, 30.0], done, all);
         let triangulated = |points: &[V3]| {
             teller.begin(Stage::Delaunay);
-            let delaunay = Delaunay::new(points, BOUNDING_DISTANCE);
+            let delaunay = Delaunay::within(points, BOUNDING_DISTANCE, most_tetrahedra(points.len())).ok();
             teller.begin(Stage::Balls);
             delaunay
         };
@@ -236,13 +248,16 @@ impl Sites {
         let mut delaunay = triangulated(&points)?;
         let mut corners = Corners::new(tree, &delaunay, limits, None, &progress);
         for _ in 0..ROUNDS {
-            let more = Crowds { tree, corners: &corners, bounds }.added(limits.added - added.len());
+            let more = Crowds { tree, corners: &corners, bounds, limits }.added(limits.added - added.len());
+            if limits.allowance.is_over() {
+                return None;
+            }
             if more.is_empty() {
                 break;
             }
             points.extend(more.iter().map(|a| a.place));
             let before = points.len() - more.len();
-            let Ok(next) = triangulated(&points) else {
+            let Some(next) = triangulated(&points) else {
                 points.truncate(before);
                 break;
             };
@@ -257,6 +272,9 @@ impl Sites {
             }
         }
         let corners = corners.finished(tree, limits);
+        if limits.allowance.is_over() {
+            return None;
+        }
         // A site at a point of the scene is no auxiliary one.
         let mut anchors: Vec<(usize, V3)> = Vec::new();
         let mut own = vec![false; delaunay.sites().len()];
@@ -271,7 +289,7 @@ impl Sites {
         }
         anchors.sort_unstable_by_key(|(site, _)| *site);
         let added = added.iter().filter(|point| point.anchor.is_none()).count();
-        Ok(Self { delaunay, corners, anchors, added })
+        Some(Self { delaunay, corners, anchors, added })
     }
 
     /// How many cells have a corner that is full.
@@ -337,6 +355,7 @@ struct Crowds<'a> {
     tree: &'a PacketTree,
     corners: &'a Corners,
     bounds: &'a Aabb<f64>,
+    limits: Limits<'a>,
 }
 
 /// A cube of a grid: the exponent of its side, and its place.
@@ -368,7 +387,7 @@ impl Crowds<'_> {
         let mut taken: HashSet<Cube> = HashSet::new();
         let mut added = Vec::new();
         for (number, count) in clusters {
-            if added.len() >= budget {
+            if added.len() >= budget || self.limits.allowance.is_over() {
                 break;
             }
             let corner = &self.corners.all[number];
@@ -397,8 +416,8 @@ impl Crowds<'_> {
     /// meet its ball.
     fn near(&self, corner: &Corner) -> Vec<(f64, V3)> {
         let leaves = &self.tree.leaves;
-        let mut met = Vec::new();
-        self.tree.ball(corner.place, corner.radius + 2.0 * corner.error, LOOKED_AT, &mut met);
+        let (mut met, mut tests) = (Vec::new(), 0);
+        self.tree.ball(corner.place, corner.radius + 2.0 * corner.error, LOOKED_AT, &mut met, &mut tests);
         let mut points = Vec::new();
         for Selection { packet, lanes } in met {
             let packet = &leaves.packets[packet as usize];
@@ -408,6 +427,7 @@ impl Crowds<'_> {
                 points.extend(best.finish().map(|closest| (closest.distance, closest.point.coords.into())));
             }
         }
+        self.limits.allowance.spend(tests + points.len());
         points.sort_by(|a: &(f64, V3), b| a.0.total_cmp(&b.0));
         points
     }

@@ -5,13 +5,14 @@
 //! the answer in the cell only if it meets one of their circumscribed balls, so one ball query for each tetrahedron
 //! serves four lists: no flooding, no cutting of cells. Six far sites close the cells of the hull.
 
+use super::allowance::Allowance;
 use super::block::{self, Block};
 use super::cells::{Cells, Lists};
 use super::fan::Fans;
 use super::hints::Hints;
 use super::list_filter::{Filters, ListFilter, SortedLists};
 use super::locator::{Locator, LocatorSites};
-use super::options::{P2mOptions, P2mReport};
+use super::options::{FORESEEN, P2mOptions, P2mReport};
 use super::partition::Partition;
 use super::progress::{Progress, Stage, Teller};
 use super::sites::{BOUNDING_DISTANCE, Limits, Sites};
@@ -19,7 +20,7 @@ use crate::hierarchy::PacketTree;
 use crate::kernel::vector::V3;
 use crate::real::wide;
 use crate::saved::{Array, LoadError, Reader, Saved, Writer};
-use crate::{Aabb, Isa, PrimitiveId, PrimitiveSet, Real};
+use crate::{Aabb, BuildError, Isa, PrimitiveId, PrimitiveSet, Real, check_room};
 use nalgebra::Point3;
 
 /// The list of a cell that the tree answers; else the number of its first block.
@@ -32,6 +33,11 @@ const LONGEST: usize = 2048;
 const MOST_LEFT: usize = 4;
 /// The cube of the domain is so many times as wide as the scene.
 const REACH: f64 = 10.0;
+/// Bytes of each site that there may be, while building, besides the tree: seven tetrahedra or so, twice while sites are
+/// added, with what meets their balls. Observed are 600 to 3900; of fewer sites more, for what does not depend on them.
+const EACH: usize = 4608;
+const FEW: usize = 1000;
+
 /// An interception index whose cells are those of the vertices, over a set of primitives that it does not keep.
 #[derive(Clone, Debug)]
 pub struct Voronoi<L = Hints, F = SortedLists> {
@@ -58,6 +64,18 @@ impl<L: Locator, F: ListFilter> Voronoi<L, F> {
         let first = &self.blocks[site];
         let rest = &self.blocks[self.fans.sites[site].list as usize..][..usize::from(first.more)];
         std::iter::once(first).chain(rest)
+    }
+
+    /// What making the cells may need at a time besides the tree, in bytes.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+    fn cell_bytes(&self, options: &P2mOptions) -> usize {
+        // Not for NaN; and more than as many as there are were never seen.
+        let added = if options.added > 0.0 { options.added.min(1.0) } else { 0.0 };
+        let sites = self.tree.leaves.vertices.len().max(FEW) as f64 * (1.0 + added);
+        // That is with the usual budget; of what there is besides, the packets around corners and the lists may each take all.
+        let besides = (options.memory.clamp(0.0, FORESEEN) - P2mOptions::default().memory).max(0.0);
+        let primitives = self.tree.packets().1.max(FEW) as f64;
+        (sites * EACH as f64 + 2.0 * besides * primitives) as usize
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
@@ -87,10 +105,13 @@ impl<L: Locator, F: ListFilter> Voronoi<L, F> {
         let slack = far / (1u64 << 40) as f64;
         let most = options.longest.min(LONGEST);
         let parallel = options.splits.parallel;
-        let limits =
-            Limits { parallel, slack, most, added: (tree.leaves.vertices.len() as f64 * options.added) as usize };
-        // What cannot be triangulated is left to the tree, too: there are more vertices than numbers.
-        let Ok(sites) = Sites::new(tree, &bounds, limits, teller) else { return };
+        let added = (tree.leaves.vertices.len() as f64 * options.added) as usize;
+        let allowance = &Allowance::new(options.memory, options.work, tree.packets().1);
+        let limits = Limits { parallel, slack, most, added, allowance };
+        let Some(sites) = Sites::new(tree, &bounds, limits, teller) else {
+            self.report.trees = tree.leaves.vertices.len();
+            return;
+        };
         // To find one's cell in vain costs more than the few lists save.
         let left = sites.left_to_the_tree();
         if left * MOST_LEFT > sites.delaunay.sites().len() {
@@ -98,7 +119,12 @@ impl<L: Locator, F: ListFilter> Voronoi<L, F> {
             return;
         }
         let cells = Cells { tree, sites: &sites, limits, filter_above: options.filter_above };
-        let Lists { fans, mut blocks, filters } = cells.lists(&mut self.report, teller);
+        let mut report = self.report;
+        let Some(Lists { fans, mut blocks, filters }) = cells.lists(&mut report, teller) else {
+            self.report.trees = sites.delaunay.sites().len();
+            return;
+        };
+        self.report = report;
         self.slack = slack;
         let Sites { delaunay, anchors, .. } = sites;
         (self.unit, self.per_unit) = (delaunay.unit(), delaunay.unit().recip());
@@ -126,7 +152,8 @@ impl<L: Locator, F: ListFilter> Partition for Voronoi<L, F> {
         set: &S,
         options: &P2mOptions,
         progress: &(dyn Fn(Progress) + Sync),
-    ) -> Self {
+    ) -> Result<Self, BuildError> {
+        check_room(PacketTree::<Aabb<f64>>::build_bytes(set.len()))?;
         let teller = Teller::new(progress, Stage::Tree);
         let tree = PacketTree::build(set, &options.splits);
         let report = P2mReport { tree_bytes: tree.memory(), ..P2mReport::default() };
@@ -144,9 +171,11 @@ impl<L: Locator, F: ListFilter> Partition for Voronoi<L, F> {
             anchors: Array::default(),
             report,
         };
+        let (tree, own) = (index.tree.memory(), index.cell_bytes(options));
+        check_room(own).map_err(|_| BuildError::OutOfMemory { bytes: tree.saturating_add(own) })?;
         index.make_cells(options, &teller);
         teller.reach([0.0, 100.0], 1, 1);
-        index
+        Ok(index)
     }
 
     fn tree(&self) -> &PacketTree {

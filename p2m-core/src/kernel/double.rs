@@ -55,6 +55,12 @@ impl Double {
         two_sum(a, -b)
     }
 
+    /// a b without error.
+    #[inline(always)]
+    pub(crate) fn product(a: f64, b: f64) -> Self {
+        two_product(a, b)
+    }
+
     /// The value rounded to f64.
     pub(crate) fn round(self) -> f64 {
         self.high

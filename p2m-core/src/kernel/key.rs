@@ -64,7 +64,9 @@ impl Key {
             s if s >= TIER_BITS => 1,
             _ => 0,
         };
-        Self { square: scale_by_power(square, shift - tier * TIER_SHIFT), tier }
+        let square = scale_by_power(square, shift - tier * TIER_SHIFT);
+        // What is too small for the lowest tier, far below the smallest subnormal, is zero: the one that there is.
+        if square == 0.0 { Self::ZERO } else { Self { square, tier } }
     }
 
     /// The length itself, rounded to nearest: the square root of the key. Infinite when it exceeds every f64.
@@ -156,6 +158,15 @@ mod tests {
                 assert_eq!(Key::of_offset(scaled), Key::of_scaled_offset(o, e));
                 assert_eq!(Key::of_offset(scaled).distance(), scale_by_power(at_one.distance(), e));
             }
+        }
+    }
+
+    #[test]
+    fn there_is_one_zero() {
+        for exponent in [-1300, -1336, -1338, -1400, -3000] {
+            let (tiny, zero) = (Key::of_scaled_offset([1.0, 0.0, 0.0], exponent), Key::ZERO);
+            assert_eq!(tiny == zero, exponent < -1337, "{exponent}: {tiny:?}");
+            assert_eq!(tiny == zero, tiny.cmp(&zero) == Ordering::Equal);
         }
     }
 

@@ -16,7 +16,8 @@
 //! index has its arrays there, and nothing is copied or converted but what is small. [`SavedFile::open`] maps a file,
 //! which several processes then share; [`SavedFile::read`] copies it. [`SavedFile::checked`] looks at all sums.
 //!
-//! Sums tell damage, not malice: whoever makes a file on purpose can make one that gives wrong answers or panics.
+//! Sums tell damage, not malice: whoever makes a file on purpose can make one that gives wrong answers, panics, or searches
+//! without end.
 //! Nothing that is read is undefined for any bytes, but for a mapped file that changes.
 //!
 //! ```

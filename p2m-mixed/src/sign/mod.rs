@@ -151,7 +151,7 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
     /// others), and that no two sheets of it are closer to each other than the error of a distance, 16 u M with the farthest
     /// vertex of the closest triangle at the distance M. Cited
     /// \[Baerentzen2005\], for distances without rounding; observed on all models that are closed and do not meet themselves
-    /// (`cargo test --test signs`). Which way the surface is oriented does not matter, nor whether parts of it are inside of
+    /// (`cargo test --test all signs::`). Which way the surface is oriented does not matter, nor whether parts of it are inside of
     /// others.
     ///
     /// # Errors

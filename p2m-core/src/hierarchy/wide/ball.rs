@@ -16,11 +16,19 @@ pub(crate) struct Selection {
 
 impl<V: Volume> PacketTree<V> {
     /// Adds the lanes that may be at most `radius` away from a point to `found`, none that is nearer being left out:
-    /// those of at most `most` packets. `false` if there are more, or if f32 cannot place the point.
-    pub(crate) fn ball(&self, centre: [f64; 3], radius: f64, most: usize, found: &mut Vec<Selection>) -> bool {
+    /// those of at most `most` packets. `false` if there are more, or if f32 cannot place the point. `tests` grows by
+    /// the packets that were tested.
+    pub(crate) fn ball(
+        &self,
+        centre: [f64; 3],
+        radius: f64,
+        most: usize,
+        found: &mut Vec<Selection>,
+        tests: &mut usize,
+    ) -> bool {
         let Some(local) = V::Node::query(&self.shape, &self.frame, &centre) else { return false };
         let limit = self.frame.square_above(radius * radius * (1.0 + 4.0 * f64::EPSILON));
-        self.isa.run(Ball { tree: self, local, centre, radius, limit, most, full: false, found })
+        self.isa.run(Ball { tree: self, local, centre, radius, limit, most, full: false, found, tests })
     }
 }
 
@@ -35,6 +43,8 @@ struct Ball<'a, V: Volume> {
     /// There are more.
     full: bool,
     found: &'a mut Vec<Selection>,
+    /// Packets that were tested.
+    tests: &'a mut usize,
 }
 
 impl<V: Volume> Operation for Ball<'_, V> {
@@ -61,6 +71,7 @@ impl<V: Volume> Walk<V> for Ball<'_, V> {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded up; sixteen lanes")]
     fn visit_packet<I: InstructionSet>(&mut self, number: usize) -> ControlFlow<()> {
+        *self.tests += 1;
         let packet = &self.tree.leaves.packets[number];
         let lanes = match packet.local(&self.centre) {
             None => packet.lanes(),
@@ -115,8 +126,8 @@ mod tests {
                 let expected = distances.iter().filter(|d| **d <= radius).count();
                 for isa in Isa::available() {
                     let tree = tree.clone().with_isa(isa);
-                    let mut found = Vec::new();
-                    assert!(tree.ball(centre.coords.into(), radius, usize::MAX, &mut found));
+                    let (mut found, mut tests) = (Vec::new(), 0);
+                    assert!(tree.ball(centre.coords.into(), radius, usize::MAX, &mut found, &mut tests));
                     let mut ids = vec![false; set.len()];
                     for Selection { packet, lanes } in &found {
                         let own = tree.leaves.packets[*packet as usize].ids();
@@ -129,10 +140,11 @@ mod tests {
                     met += expected;
                     others += ids.iter().filter(|found| **found).count() - expected;
                     let packets = found.len();
+                    assert!(tests >= packets, "{tests}");
                     found.clear();
-                    assert!(!tree.ball(centre.coords.into(), radius, packets - 1, &mut found), "{packets}");
+                    assert!(!tree.ball(centre.coords.into(), radius, packets - 1, &mut found, &mut tests), "{packets}");
                     found.clear();
-                    assert!(tree.ball(centre.coords.into(), radius, packets, &mut found));
+                    assert!(tree.ball(centre.coords.into(), radius, packets, &mut found, &mut tests));
                 }
             }
         }

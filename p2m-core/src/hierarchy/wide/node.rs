@@ -202,6 +202,13 @@ impl Frame {
         }
     }
 
+    /// The square of a length in the frame, a bound of a node, in the scene, rounded down.
+    pub(crate) fn square_below(&self, square: f32) -> f64 {
+        // As `square_above`.
+        let square = f64::from(square) * (1.0 - power_of_two(-19)) - power_of_two(-120);
+        square.max(0.0) * (self.unit * self.unit)
+    }
+
     /// The square of a length of the scene in the frame, rounded up.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded up before")]

@@ -180,6 +180,10 @@ impl FrameLine {
             let d = line.direction[k];
             // The box is symmetric about the centre of the frame.
             let reach = half[k] * frame.per_unit + radius + BESIDE;
+            // So far from the origin along this axis that the rounding of its centre hides the scene.
+            if reach > 2.0 * WIDEST {
+                return None;
+            }
             let [low, high] = [-reach - q[k], reach - q[k]];
             if d == 0.0 {
                 if low > 0.0 || high < 0.0 {

@@ -11,7 +11,7 @@ use super::volume::{Volume, WideNode};
 use super::walk::{Walk, walk};
 use super::{Leaves, PacketTree};
 use crate::kernel::vertices::{SIDE_BY_SIDE, certain_vertices};
-use crate::packet::{LANES, Packet, ROUND_UP, at_most, smallest};
+use crate::packet::{LANES, Local, Packet, ROUND_UP, at_most, smallest};
 use crate::query::Minimum;
 use crate::simd::{InstructionSet, Lanes, Operation};
 use crate::{Collector, Isa, PrimitiveId};
@@ -28,8 +28,10 @@ pub(crate) type Evaluate<'a, C> = &'a dyn Fn(&mut C, PrimitiveId, f64);
 pub(crate) struct Search<'a, V: Volume, C> {
     pub(crate) tree: &'a PacketTree<V>,
     pub(crate) query: [f64; 3],
-    /// Some primitive is known to be at most this far.
+    /// Some primitive is known to be at most this far,
     pub(crate) reach: f64,
+    /// perhaps the one in this packet and lane.
+    pub(crate) held: Option<(usize, usize)>,
     pub(crate) collector: &'a mut C,
     pub(crate) evaluate: Evaluate<'a, C>,
     pub(crate) finish: fn(&mut Filter<'_, C>),
@@ -42,7 +44,8 @@ impl<V: Volume, C: Collector> Operation for Search<'_, V, C> {
     fn run<I: InstructionSet>(self) {
         let tree = self.tree;
         let Some(local) = V::Node::query(&tree.shape, &tree.frame, &self.query) else { return self.run_far() };
-        let filter = Filter::new(tree, self.query, self.reach, self.collector, self.evaluate, self.finish);
+        let mut filter = Filter::new(tree, self.query, self.reach, self.collector, self.evaluate, self.finish);
+        filter.hold(self.held, self.reach);
         let mut nearest = Nearest { filter, shape: &tree.shape, local };
         walk::<I, V, _>(tree, &mut nearest);
         nearest.filter.evaluate_waiting();
@@ -58,6 +61,9 @@ impl<V: Volume, C: Collector> Search<'_, V, C> {
         let place = nalgebra::Point3::from(query);
         let mut stack = vec![(0.0, tree.root)];
         while let Some((bound, child)) = stack.pop() {
+            if collector.is_approximate() && collector.is_content(f64::INFINITY) {
+                return collector.forgo(stack.iter().fold(bound, |least, waiting| least.min(waiting.0)));
+            }
             if bound > collector.prune_above() || child == Child::NONE {
                 continue;
             }
@@ -104,6 +110,14 @@ impl<V: Volume, C: Collector> Walk<V> for Nearest<'_, V, C> {
         self.filter.packet::<I>(number, self.filter.leaves.packets[number].lanes());
         ControlFlow::Continue(())
     }
+    #[inline(always)]
+    fn is_content(&self) -> bool {
+        self.filter.is_content()
+    }
+    #[inline(always)]
+    fn forgo(&mut self, bound: f32) {
+        self.filter.forgo(bound);
+    }
 }
 
 /// Offers the primitive in a lane to the collector, unless its key exceeds `square`.
@@ -118,6 +132,8 @@ fn offer<C: Collector>(
     evaluate: Evaluate<'_, C>,
 ) {
     let id = packet.ids()[lane];
+    // What is nearer by rounding alone is no reason to leave out another one.
+    let square = if collector.wants_near_ties() { f64::INFINITY } else { square };
     if !packet.has_vertices() {
         evaluate(collector, id, square);
     } else {
@@ -150,6 +166,10 @@ pub(crate) struct Filter<'a, C> {
     keep: f64,
     /// The square above which nodes are skipped, in their frame.
     limit: f32,
+    /// Whether the collector may be content with less than the nearest primitive.
+    approximate: bool,
+    /// The candidate that is evaluated first, and how far it is at most.
+    held: Option<(Candidate, f64)>,
     waiting: [Candidate; CANDIDATES],
     count: usize,
 }
@@ -165,6 +185,7 @@ impl<'a, C: Collector> Filter<'a, C> {
         evaluate: Evaluate<'a, C>,
         finish: fn(&mut Filter<'_, C>),
     ) -> Self {
+        let approximate = collector.is_approximate();
         let mut filter = Self {
             leaves: &tree.leaves,
             frame: &tree.frame,
@@ -176,6 +197,8 @@ impl<'a, C: Collector> Filter<'a, C> {
             reach,
             keep: 0.0,
             limit: 0.0,
+            approximate,
+            held: None,
             waiting: [Candidate::default(); CANDIDATES],
             count: 0,
         };
@@ -196,13 +219,65 @@ impl<'a, C: Collector> Filter<'a, C> {
         self.wait(Candidate { low: 0.0, packet: packet as u32, lane: lane as u32 });
     }
 
+    /// Whether the search may end.
+    #[inline(always)]
+    pub(crate) fn is_content(&self) -> bool {
+        self.approximate && self.collector.is_content(self.held_distance())
+    }
+
+    /// What has this bound, a square in the frame of the scene, and what is farther is not searched.
+    #[inline(always)]
+    pub(crate) fn forgo(&mut self, bound: f32) {
+        self.collector.forgo(self.frame.square_below(bound));
+    }
+
+    #[inline(always)]
+    fn held_distance(&self) -> f64 {
+        self.held.map_or(f64::INFINITY, |(_, distance)| distance)
+    }
+
+    /// Holds the primitive in a packet and lane, which is at most `distance` far, for an approximate search.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "places fit")]
+    pub(crate) fn hold(&mut self, place: Option<(usize, usize)>, distance: f64) {
+        if self.approximate
+            && let Some((packet, lane)) = place
+        {
+            // Once something nearer is held it must not wait: the search comes to it where it matters, and of two that are the
+            // same the wrong one could be dropped as a tie.
+            let candidate = Candidate { low: f32::INFINITY, packet: packet as u32, lane: lane as u32 };
+            self.hold_candidate(candidate, distance);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn hold_candidate(&mut self, candidate: Candidate, distance: f64) {
+        if let Some((before, _)) = self.held.replace((candidate, distance))
+            && before.low < f32::INFINITY
+        {
+            self.wait(before);
+        }
+        self.update();
+    }
+
     /// Brings the bounds up to date with the reach and the collector.
     #[inline(always)]
     fn update(&mut self) {
         let bound = self.collector.prune_above().sqrt() * (1.0 + 4.0 * f64::EPSILON);
         self.keep = if self.reach < bound { self.reach } else { bound };
         let square = self.reach * self.reach * (1.0 + 4.0 * f64::EPSILON);
-        self.limit = self.frame.square_above(self.collector.prune_given(square));
+        let mut prune = self.collector.prune_given(square);
+        if self.approximate {
+            let held = self.held_distance();
+            let skip = self.collector.prune_held(held * held * (1.0 + 4.0 * f64::EPSILON));
+            if skip < prune {
+                prune = skip;
+                let bound = skip.sqrt() * (1.0 + 4.0 * f64::EPSILON);
+                self.keep = if bound < self.keep { bound } else { self.keep };
+            }
+        }
+        self.limit = self.frame.square_above(prune);
     }
 
     /// Looks at some lanes of a packet.
@@ -236,19 +311,50 @@ impl<'a, C: Collector> Filter<'a, C> {
                 let keep = (reach + local.excess) * ROUND_UP;
                 found &= at_most::<I::Wide>(&squares, keep * keep);
             }
+            if self.approximate && here < self.held_distance() {
+                found &= !self.hold_nearest(number, &local, &squares, here);
+                let keep = ((self.keep * packet.per_unit()) as f32 + local.excess) * ROUND_UP;
+                found &= at_most::<I::Wide>(&squares, keep * keep);
+            }
         }
         while found != 0 {
             let lane = found.trailing_zeros() as usize;
             found &= found - 1;
-            let low = squares[lane].sqrt() * (1.0 - f32::EPSILON) - local.excess;
-            // In the frame of the scene, where f32 has room; a difference of f32 about 1 or above does not underflow.
-            let low = f64::from(low) * packet.unit() * self.frame.per_unit;
             packet.prefetch_vertices(lane, &self.leaves.vertices);
-            self.wait(candidate(low as f32, lane));
+            self.wait(candidate(self.low(packet, &local, squares[lane]), lane));
         }
         if !self.collector.is_nearest_only() {
             self.evaluate_waiting();
         }
+    }
+
+    /// The lower bound of a candidate, from what the filter found.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "what reads it allows for that")]
+    fn low(&self, packet: &Packet, local: &Local, square: f32) -> f32 {
+        let low = square.sqrt() * (1.0 - f32::EPSILON) - local.excess;
+        // In the frame of the scene, where f32 has room; a difference of f32 about 1 or above does not underflow.
+        (f64::from(low) * packet.unit() * self.frame.per_unit) as f32
+    }
+
+    /// The same bound in the scene.
+    #[inline(always)]
+    fn low_in_scene(&self, low: f32) -> f64 {
+        f64::from(low) * (1.0 - f64::from(f32::EPSILON)) * self.frame.unit
+    }
+
+    /// Holds the lane of a packet with the smallest square, which is at most `distance` far. Returns its bit.
+    #[cold]
+    #[inline(never)]
+    #[allow(clippy::cast_possible_truncation, reason = "places fit")]
+    fn hold_nearest(&mut self, number: usize, local: &Local, squares: &[f32; LANES], distance: f64) -> u32 {
+        let packet = &self.leaves.packets[number];
+        let used = (0..LANES).filter(|lane| packet.lanes() >> lane & 1 == 1);
+        let Some(lane) = used.min_by(|a, b| squares[*a].total_cmp(&squares[*b])) else { return 0 };
+        packet.prefetch_vertices(lane, &self.leaves.vertices);
+        let low = self.low(packet, local, squares[lane]);
+        self.hold_candidate(Candidate { low, packet: number as u32, lane: lane as u32 }, distance);
+        1 << lane
     }
 
     #[inline(always)]
@@ -302,6 +408,9 @@ impl<'a, C: Collector> Filter<'a, C> {
 
     #[inline(always)]
     fn finish(&mut self) {
+        if self.approximate {
+            self.finish_held();
+        }
         let mut first = 0;
         for i in 1..self.count {
             if self.waiting[i].low < self.waiting[first].low {
@@ -309,13 +418,13 @@ impl<'a, C: Collector> Filter<'a, C> {
             }
         }
         self.waiting.swap(0, first);
-        if self.count > FEW && self.collector.is_nearest_only() {
+        if self.count > FEW && self.collector.is_nearest_only() && !self.collector.wants_near_ties() {
             self.drop_ties();
         }
         for i in 0..self.count {
             let Candidate { low, packet, lane } = self.waiting[i];
             // Less for its rounding.
-            if f64::from(low) * (1.0 - f64::from(f32::EPSILON)) * self.frame.unit <= self.keep {
+            if self.low_in_scene(low) <= self.keep {
                 // The reach is at least a unit of a frame: its square does not underflow, as that of a bound on keys
                 // may.
                 let reach = self.reach * self.reach * (1.0 + 4.0 * f64::EPSILON);
@@ -327,6 +436,26 @@ impl<'a, C: Collector> Filter<'a, C> {
             }
         }
         self.count = 0;
+    }
+}
+
+impl<C: Collector> Filter<'_, C> {
+    /// Evaluates what is held, and gives up what waits if that is enough.
+    #[cold]
+    #[inline(never)]
+    fn finish_held(&mut self) {
+        let Some((Candidate { packet, lane, .. }, _)) = self.held.take() else { return };
+        let (packet, lane) = (&self.leaves.packets[packet as usize], lane as usize);
+        // Whatever the collector skips for the sake of what it has: more was skipped for the sake of this one.
+        offer(self.leaves, packet, lane, self.query, f64::INFINITY, self.collector, self.evaluate);
+        if self.collector.is_content(f64::INFINITY) {
+            for candidate in &self.waiting[..self.count] {
+                let low = self.low_in_scene(candidate.low).max(0.0);
+                self.collector.forgo(low * low);
+            }
+            self.count = 0;
+        }
+        self.update();
     }
 }
 

@@ -355,11 +355,12 @@ mod tests {
                     _ => at + vector(&mut rng) * (near.heights[0] + near.heights[1]),
                 };
                 let query = SlabNode::query(&slabs, &frame, &q.into()).expect("near enough");
+                let distances: [f64; WIDTH - 1] =
+                    std::array::from_fn(|place| distance(&exact[place], normals, &q) * frame.per_unit);
                 for isa in Isa::available() {
                     let bounds = isa.run(Bounds(&node, &slabs, &query));
                     assert!(bounds[WIDTH - 1] > f32::MAX || bounds[WIDTH - 1].is_nan(), "an empty place");
-                    for place in 0..WIDTH - 1 {
-                        let distance = distance(&exact[place], normals, &q) * frame.per_unit;
+                    for (place, distance) in distances.into_iter().enumerate() {
                         let bound = f64::from(bounds[place]);
                         let limit = distance * distance * (1.0 + 2f64.powi(-20)) + 2f64.powi(-120);
                         assert!(bound <= limit, "{isa}: {bound:e} for {:e}, {q:?}", distance * distance);

@@ -22,6 +22,16 @@ pub(super) trait Walk<V: Volume> {
     fn visit_node(&mut self);
     /// A packet is visited; breaks to end the search.
     fn visit_packet<I: InstructionSet>(&mut self, number: usize) -> ControlFlow<()>;
+    /// Whether the search ends although there is more to visit: that is then [given up](Self::forgo). Not by default.
+    #[inline(always)]
+    fn is_content(&self) -> bool {
+        false
+    }
+    /// What has this number and those above it are not visited.
+    #[inline(always)]
+    fn forgo(&mut self, bound: f32) {
+        let _ = bound;
+    }
 }
 
 /// Goes through a tree.
@@ -44,7 +54,13 @@ fn walk_with<I: InstructionSet, V: Volume, W: Walk<V>, const STACK: usize>(tree:
     if at == Child::NONE {
         return;
     }
+    // Of the child that is visited.
+    let mut bound = 0.0;
     loop {
+        if walk.is_content() {
+            let waiting = keys[..top].iter().map(|key| number_of_key(*key));
+            return walk.forgo(waiting.fold(bound, f32::min));
+        }
         if at.is_packet() {
             if walk.visit_packet::<I>(at.number()).is_break() {
                 return;
@@ -62,6 +78,7 @@ fn walk_with<I: InstructionSet, V: Volume, W: Walk<V>, const STACK: usize>(tree:
             tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(2).min(STACK - 1)])]);
             if count > 0 {
                 top += count - 1;
+                bound = number_of_key(keys[top]);
                 at = node.children()[lane_of_key(keys[top])];
                 continue;
             }
@@ -72,7 +89,8 @@ fn walk_with<I: InstructionSet, V: Volume, W: Walk<V>, const STACK: usize>(tree:
             }
             top -= 1;
             let key = keys[top];
-            if number_of_key(key) <= walk.limit() {
+            bound = number_of_key(key);
+            if bound <= walk.limit() {
                 at = tree.nodes[Child(parents[top]).number()].children()[lane_of_key(key)];
                 break;
             }

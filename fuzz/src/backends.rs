@@ -1,0 +1,92 @@
+//! Every backend by a number.
+
+use super::bytes::Bytes;
+use p2m::backend::Directions;
+use p2m::{
+    AabbTree, BoxQuery, BuildError, BuildIndex, CertifiedQuery, ClosestLeaf, ClosestPoint, Domain, Isa, KdopTree,
+    NearQuery, OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, PrimitiveSet, RayQuery, Real, Soup,
+};
+
+/// An index that answers what all do.
+pub trait Index<T: Real>: ClosestPoint<T> + NearQuery<T> + CertifiedQuery<T> + Sync {}
+impl<T: Real, I: ClosestPoint<T> + NearQuery<T> + CertifiedQuery<T> + Sync> Index<T> for I {}
+
+/// An index that answers about rays and boxes as well.
+pub trait Tree<T: Real>: Index<T> + RayQuery<T> + BoxQuery<T> + ClosestLeaf<T> {}
+impl<T: Real, I: Index<T> + RayQuery<T> + BoxQuery<T> + ClosestLeaf<T>> Tree<T> for I {}
+
+/// The trees.
+pub const TREES: [&str; 4] = ["aabb", "kdop-6", "kdop-14", "kdop-26"];
+/// What there is beside them, for closest points.
+pub const OTHERS: [&str; 4] = ["octree", "p2m", "rstar", "parry"];
+
+type Built<'a, I> = Result<(&'static str, Box<I>), BuildError>;
+
+fn isa(bytes: &mut Bytes<'_>) -> Isa {
+    let mut available = Isa::available();
+    // The best one for a zero.
+    available.reverse();
+    bytes.pick(&available)
+}
+
+fn kdop<'a, T: Real, const K: usize>(soup: &'a Soup<T>, isa: Isa) -> Result<Box<dyn Tree<T> + 'a>, BuildError>
+where
+    Directions<K>: Default,
+{
+    Ok(Box::new(KdopTree::<T, _, K>::build(soup, &Default::default())?.with_isa(isa)))
+}
+
+/// A tree, with any instruction set.
+///
+/// # Errors
+/// Those of building it.
+pub fn tree<'a, T: Real>(bytes: &mut Bytes<'_>, soup: &'a Soup<T>) -> Built<'a, dyn Tree<T> + 'a> {
+    let (name, isa) = (bytes.pick(&TREES), isa(bytes));
+    let built = match name {
+        "aabb" => Box::new(AabbTree::<T, _>::build(soup, &Default::default())?.with_isa(isa)),
+        "kdop-6" => kdop::<T, 6>(soup, isa)?,
+        "kdop-14" => kdop::<T, 14>(soup, isa)?,
+        _ => kdop::<T, 26>(soup, isa)?,
+    };
+    Ok((name, built))
+}
+
+/// An index of any kind, with any instruction set and some options; a tree of another crate if its feature is on, and
+/// the tree of boxes otherwise.
+///
+/// # Errors
+/// Those of building it.
+pub fn index<'a, T: Real>(bytes: &mut Bytes<'_>, soup: &'a Soup<T>) -> Built<'a, dyn Index<T> + 'a> {
+    let number = bytes.below(TREES.len() + OTHERS.len());
+    let Some(name) = number.checked_sub(TREES.len()).map(|number| OTHERS[number]) else {
+        let (name, built) = tree(&mut Bytes::new(&[number as u8, bytes.byte()]), soup)?;
+        return Ok((name, built));
+    };
+    let isa = isa(bytes);
+    let built: Box<dyn Index<T> + 'a> = match name {
+        "octree" => {
+            let usual = OctreeOptions::default();
+            let options = match bytes.below(4) {
+                0 | 1 => usual,
+                2 => usual.with_domain(Domain::Box(soup.aabb().to_f64())),
+                _ => usual.with_domain(Domain::Band(f64::from(bytes.byte()) * 0.125)).with_resolution(1.0),
+            };
+            Box::new(OctreeIndex::build(soup, &options)?.with_isa(isa))
+        }
+        "p2m" => {
+            let usual = P2mOptions::default();
+            let options = match bytes.below(3) {
+                0 => usual,
+                1 => usual.with_longest(2048).with_added(2.0),
+                _ => usual.with_added(0.0),
+            };
+            Box::new(P2mIndex::build(soup, &options)?.with_isa(isa))
+        }
+        #[cfg(feature = "rstar")]
+        "rstar" => Box::new(p2m::scene::adapters::RstarIndex::build(soup, &())?),
+        #[cfg(feature = "parry")]
+        "parry" => Box::new(p2m::scene::adapters::ParryIndex::build(soup, &())?),
+        _ => Box::new(AabbTree::build(soup, &Default::default())?),
+    };
+    Ok((name, built))
+}

@@ -1,0 +1,103 @@
+//! Closest points of scenes from bytes: every backend against brute force, bit for bit, and against rational arithmetic.
+//!
+//! The first byte says what is asked, the second one the scalar, the next ones choose a backend; then come the scene
+//! and up to four queries.
+
+use super::answers::{Asked, QUESTIONS};
+use super::backends::{index, tree};
+use super::boxes;
+use super::bytes::Bytes;
+use super::scene::{Drawn, place};
+use nalgebra::Point3;
+use p2m::{AabbTree, BruteForce, BuildError, BuildIndex, Real, Soup};
+use p2m_testkit::near_check;
+use p2m_testkit::scenes::{narrow, to_f32};
+
+/// What an input came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Reached {
+    /// The mode of the scene, the backend and the question.
+    Answers(&'static str, &'static str, &'static str),
+    /// A scene that has to be refused, and was.
+    Refused,
+}
+
+struct Input<'a> {
+    question: usize,
+    is_single: bool,
+    backend: Bytes<'a>,
+    drawn: Drawn,
+    queries: Vec<Point3<f64>>,
+    seed: u64,
+}
+
+impl<'a> Input<'a> {
+    fn new(input: &'a [u8]) -> Self {
+        let mut bytes = Bytes::new(input);
+        let (question, is_single) = (bytes.below(QUESTIONS.len()), bytes.byte() % 4 == 1);
+        let backend = Bytes::new(bytes.take(3));
+        let seed = u64::from(bytes.byte());
+        let drawn = Drawn::new(&mut bytes, 40);
+        let queries = (0..=bytes.below(4)).map(|_| drawn.query(&mut bytes)).collect();
+        Self { question, is_single, backend, drawn, queries, seed }
+    }
+}
+
+/// What an input is, as a program.
+#[must_use]
+pub fn source(input: &[u8]) -> String {
+    let input = Input::new(input);
+    let queries: String = input.queries.iter().map(|query| format!("\nlet query = {};", place(query))).collect();
+    format!("// {}\n{}{queries}", QUESTIONS[input.question], input.drawn.source())
+}
+
+/// Asks what an input asks.
+///
+/// # Panics
+/// If an answer is wrong.
+pub fn check(input: &[u8]) -> Reached {
+    let input = Input::new(input);
+    let Ok(soup) = input.drawn.soup() else {
+        refused(&input.drawn);
+        return Reached::Refused;
+    };
+    match narrow(&soup).filter(|_| input.is_single) {
+        Some(single) => ask(input, &single, to_f32),
+        None => ask(input, &soup, |query| query),
+    }
+}
+
+fn ask<T: Real>(mut input: Input<'_>, soup: &Soup<T>, place: impl Fn(Point3<f64>) -> Point3<T>) -> Reached {
+    let brute = BruteForce::new(soup).expect("finite");
+    let queries: Vec<Point3<T>> = input.queries.iter().map(|query| place(*query)).collect();
+    let name = match QUESTIONS[input.question] {
+        "boxes" => {
+            let (name, tree) = tree(&mut input.backend, soup).expect("finite");
+            boxes::check(soup, &*tree, name, &queries);
+            name
+        }
+        question => {
+            let (name, index) = index(&mut input.backend, soup).expect("finite");
+            let asked = Asked { soup, brute: &brute, index: &*index, name, seed: input.seed };
+            match question {
+                "batches" => asked.in_batches(&queries),
+                "near" => {
+                    let finite: Vec<_> = queries.into_iter().filter(|q| q.iter().all(|x| x.is_finite())).collect();
+                    near_check::agrees(input.seed, soup, &finite, &*index);
+                }
+                _ => queries.iter().for_each(|query| asked.one(question, query)),
+            }
+            name
+        }
+    };
+    Reached::Answers(input.drawn.mode, name, QUESTIONS[input.question])
+}
+
+/// A scene with a coordinate that is not finite is refused by what is built over its primitives, too.
+fn refused(drawn: &Drawn) {
+    let shapes = drawn.shapes();
+    let id = drawn.soup().expect_err("not finite");
+    let error = Some(BuildError::NonFinite { id });
+    assert_eq!(BruteForce::new::<f64>(&shapes).err(), error);
+    assert_eq!(AabbTree::<f64, _>::build(&shapes, &Default::default()).err(), error);
+}

@@ -1,0 +1,123 @@
+//! What every file has to satisfy, whatever is in it: reading it does not panic and takes memory in proportion to its
+//! size; and what it holds can be written in every format and reads back as the same.
+
+use super::memory;
+use nalgebra::Point3;
+use p2m_core::{BruteForce, ClosestPoint, Element, Point, PrimitiveSet, Soup};
+use p2m_mixed::{
+    AnswerFormat, AnswerWriter, Format, Object, PointFormat, Scene, read_points_from, read_scene_from, stl_rounding,
+    write_ply_ascii, write_scene, write_stl,
+};
+
+/// Memory that a reader may take for a byte of the file, besides buffers of a fixed size.
+///
+/// The largest that is needed is for a polygon whose corners are two bytes each.
+const PER_BYTE: usize = 256;
+
+fn measured<T>(file: &[u8], read: impl FnOnce() -> T) -> T {
+    memory::at_most(PER_BYTE * file.len(), read)
+}
+
+/// Reads a scene, writes it, and reads it again.
+pub fn scene(file: &[u8], format: Format) {
+    let scene = match measured(file, || read_scene_from(file, format, "fuzz")) {
+        Ok(scene) => scene,
+        Err(error) => return assert!(!error.to_string().is_empty()),
+    };
+    assert_eq!(scene.sources.len(), scene.soup.len());
+    check_objects(&scene.objects, scene.soup.len());
+    assert!(scene.skipped.iter().all(|s| s.count > 0 && !s.to_string().is_empty()));
+
+    for format in [Format::Obj, Format::Off, Format::Ply] {
+        let mut written = Vec::new();
+        write_scene(&scene, format, &mut written).unwrap();
+        let again = read_scene_from(&written[..], format, "again").unwrap();
+        assert!(again.skipped.is_empty(), "{format}: {:?}", again.skipped);
+        let expected = match format {
+            Format::Ply => bits(&scene.soup),
+            // What the documentation of the writers says.
+            _ if scene.soup.len() == 0 => Vec::new(),
+            _ => bits(&scene.soup).into_iter().map(finite_or_origin).collect(),
+        };
+        assert_eq!(bits(&again.soup), expected, "{format}");
+        assert!(again.soup.elements().eq(scene.soup.elements()), "{format}");
+        if format == Format::Obj {
+            assert_eq!(again.objects, scene.objects);
+        }
+    }
+
+    let mut written = Vec::new();
+    write_ply_ascii(&scene, &mut written).unwrap();
+    let again = read_scene_from(&written[..], Format::Ply, "again").unwrap();
+    assert!(again.soup.elements().eq(scene.soup.elements()));
+    let same = |a: f64, b: f64| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
+    let pairs = again.soup.positions().iter().zip(scene.soup.positions());
+    assert!(pairs.clone().all(|(a, b)| (0..3).all(|k| same(a[k], b[k]))));
+    assert_eq!(pairs.len(), scene.soup.positions().len());
+
+    stl(&scene);
+}
+
+fn check_objects(objects: &[Object], len: usize) {
+    let mut end = 0;
+    for object in objects {
+        assert!(end <= object.ids.start && object.ids.start < object.ids.end && object.ids.end <= len);
+        assert!(!object.name.is_empty());
+        end = object.ids.end;
+    }
+}
+
+fn stl(scene: &Scene) {
+    let rounding = stl_rounding(scene);
+    let mut written = Vec::new();
+    let is_all_triangles = scene.soup.elements().all(|e| matches!(e, Element::Triangle(_)));
+    let result = write_stl(scene, &mut written);
+    assert_eq!(result.is_ok(), is_all_triangles && rounding.largest.is_finite());
+    if result.is_err() {
+        return assert!(written.is_empty());
+    }
+    let again = read_scene_from(&written[..], Format::Stl, "again").unwrap();
+    assert!(again.skipped.is_empty());
+    assert_eq!(again.soup.triangles().len(), scene.soup.triangles().len());
+    let corner = |soup: &Soup<f64>, i: u32| soup.positions()[i as usize].map(|x| x as f32);
+    let pairs = again.soup.triangles().as_flattened().iter().zip(scene.soup.triangles().as_flattened());
+    for (&i, &j) in pairs {
+        assert_eq!(corner(&again.soup, i), corner(&scene.soup, j)); // 0 and -0 are equal
+    }
+    // Once it has been an STL file, it stays the same.
+    let mut twice = Vec::new();
+    write_stl(&again, &mut twice).unwrap();
+    assert_eq!(read_scene_from(&twice[..], Format::Stl, "twice").unwrap().soup, again.soup);
+}
+
+fn bits(soup: &Soup<f64>) -> Vec<[u64; 3]> {
+    soup.positions().iter().map(|p| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits()]).collect()
+}
+
+fn finite_or_origin(position: [u64; 3]) -> [u64; 3] {
+    if position.iter().all(|x| f64::from_bits(*x).is_finite()) { position } else { [0; 3] }
+}
+
+/// Reads points, answers them, and reads the queries out of the answers.
+pub fn points(file: &[u8], format: PointFormat) {
+    let points = match measured(file, || read_points_from(file, format, "fuzz")) {
+        Ok(points) => points,
+        Err(error) => return assert!(!error.to_string().is_empty()),
+    };
+    assert!(points.iter().flat_map(|p| p.iter()).all(|x| x.is_finite()));
+    let scene = [Point::new(Point3::new(0.5, -1.0, 1e-3))];
+    let index = BruteForce::new(&scene).unwrap();
+    for format in [AnswerFormat::Csv, AnswerFormat::Npy, AnswerFormat::Ply] {
+        let mut writer = AnswerWriter::new(Vec::new(), format, points.len() as u64).unwrap();
+        for (i, point) in points.iter().enumerate() {
+            let answer = index.closest_point(point);
+            writer.write(point, answer.as_ref().filter(|_| i % 3 != 1)).unwrap();
+        }
+        let written = writer.finish().unwrap();
+        let again = read_points_from(&written[..], format.name().parse().unwrap(), "again").unwrap();
+        let bits = |points: &[Point3<f64>]| -> Vec<[u64; 3]> {
+            points.iter().map(|p| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits()]).collect()
+        };
+        assert_eq!(bits(&again), bits(&points), "{format}");
+    }
+}

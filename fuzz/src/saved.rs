@@ -1,0 +1,342 @@
+//! Files of saved indexes from bytes: damaged, changed on purpose, or made up.
+//!
+//! The first byte says which of these it is, and the next two choose a whole file. Damage has to be told, or to change no
+//! answer. A file that is changed with its sums mended passes for a whole one: `p2m::saved` promises that it is read or
+//! refused, in memory in proportion to its size, and that nothing is undefined; asked, it may answer wrongly or panic. A
+//! search in it may also go round in circles, so it is stopped.
+
+use super::bytes::Bytes;
+use super::memory;
+use nalgebra::Point3;
+use p2m::backend::{Best, Collector};
+use p2m::saved::{LoadError, Reader, SavedFile, Writer};
+use p2m::scene::{Scene, load_scene, read_p2m, save_scene, write_p2m};
+use p2m::{
+    AabbTree, BuildIndex, ClosestPoint, Element, KdopTree, OctreeIndex, P2mIndex, PrimitiveId, Projection,
+    QueryOptions, Soup,
+};
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
+use std::sync::{LazyLock, Once};
+use twox_hash::XxHash3_64;
+
+/// Memory for a byte of a file.
+const PER_BYTE: usize = 64;
+/// Steps of a search in a file that was changed on purpose.
+const STEPS: usize = 20_000;
+/// Bytes of the head, and of an entry of the table, as p2m-core/src/saved has them.
+const HEAD: usize = 64;
+
+type Answers = Vec<Option<(u64, PrimitiveId, [u64; 3])>>;
+
+/// What became of an input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Reached {
+    /// Refused.
+    Refused,
+    /// Answered, rightly where that is promised.
+    Answered,
+    /// Read, but not asked without a panic.
+    Unusable,
+}
+
+/// [`Best`] that ends a search by a panic after so many steps.
+struct Stopped {
+    best: Best<f64>,
+    left: usize,
+}
+
+impl Stopped {
+    fn step(&mut self) {
+        self.left = self.left.checked_sub(1).expect("round in circles");
+    }
+}
+
+impl Collector for Stopped {
+    fn prune_above(&self) -> f64 {
+        self.best.prune_above()
+    }
+    fn prune_given(&self, square: f64) -> f64 {
+        self.best.prune_given(square)
+    }
+    fn prune_above_for(&self, id: PrimitiveId) -> f64 {
+        self.best.prune_above_for(id)
+    }
+    fn is_nearest_only(&self) -> bool {
+        self.best.is_nearest_only()
+    }
+    fn offer(&mut self, id: PrimitiveId, projection: Projection) {
+        self.step();
+        self.best.offer(id, projection);
+    }
+    fn visit_node(&mut self) {
+        self.step();
+    }
+    fn visit_packet(&mut self) {
+        self.step();
+    }
+}
+
+/// A loaded index: asked as it is, and step by step.
+trait Loaded: ClosestPoint<f64> {
+    fn step_by_step(&self, query: &Point3<f64>);
+}
+
+type LoadedFrom<'a> = Result<Box<dyn Loaded + 'a>, LoadError>;
+
+/// A kind of index: its file, and what is loaded from one.
+struct Kind {
+    saved: fn(&Scene) -> Vec<u8>,
+    loaded: for<'a> fn(&'a Soup<f64>, &Reader) -> LoadedFrom<'a>,
+    name: &'static str,
+}
+
+macro_rules! kinds {
+    ($all:ident: $($name:literal: $index:ident $(<$k:literal>)?,)*) => {
+        $(impl Loaded for $index<f64, &Soup<f64> $(, $k)?> {
+            fn step_by_step(&self, query: &Point3<f64>) {
+                self.visit(query, &mut Stopped { best: Best::new(&QueryOptions::default()), left: STEPS });
+            }
+        })*
+        const $all: &[Kind] = &[$(Kind {
+            name: $name,
+            saved: |scene| {
+                let index = $index::<f64, &Soup<f64> $(, $k)?>::build(&scene.soup, &Default::default()).expect("finite");
+                let (mut writer, mut bytes) = (Writer::default(), Vec::new());
+                save_scene(scene, &mut writer);
+                index.save(&mut writer);
+                writer.write(&mut bytes).expect("memory");
+                bytes
+            },
+            loaded: |soup, reader| Ok(Box::new($index::<f64, &Soup<f64> $(, $k)?>::load(soup, reader)?)),
+        },)*];
+    };
+}
+
+kinds! {
+    KINDS:
+    "aabb": AabbTree,
+    "kdop-14": KdopTree<14>,
+    "kdop-26": KdopTree<26>,
+    "octree": OctreeIndex,
+    "p2m": P2mIndex,
+}
+
+/// A bent strip that is worth cells, a tripod, one point, nothing.
+fn scenes() -> [Scene; 4] {
+    let at = |i: i32, j: i32| {
+        let (x, y) = (f64::from(i) * 0.5, f64::from(j) * 0.5);
+        Point3::new(x, y, x * x * 0.125 - x * y * 0.25)
+    };
+    let (long, wide) = (9, 7);
+    let positions = (0..long * wide).map(|n| at(n / wide, n % wide)).collect();
+    let corner = |i: i32, j: i32| u32::try_from(i * wide + j).expect("not negative");
+    let cells = (0..long - 1).flat_map(|i| (0..wide - 1).map(move |j| (i, j)));
+    let triangles = cells.flat_map(|(i, j)| {
+        let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+        [Element::Triangle([a, b, c]), Element::Triangle([a, c, d])]
+    });
+    let strip = Soup::new(positions, triangles.collect::<Vec<_>>()).expect("finite");
+    let text = "o feet\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\np 1\no legs\nl 1 2\nl 1 3\no roof\nf 2 3 4\n";
+    let tripod = p2m::scene::read_obj(text.as_bytes(), "tripod").expect("a scene");
+    let point = Soup::new(vec![Point3::new(1.0, 2.0, 3.0)], [Element::Point(0)]).expect("finite");
+    [Scene::from(strip), tripod, Scene::from(point), Scene::default()]
+}
+
+/// A whole file and what it answers.
+struct Whole {
+    bytes: Vec<u8>,
+    answers: Answers,
+}
+
+/// Of every scene and kind.
+static WHOLE: LazyLock<Vec<Whole>> = LazyLock::new(|| {
+    let of = |scene: &Scene, kind: &Kind| {
+        let bytes = (kind.saved)(scene);
+        let answers = asked(&bytes).expect("whole");
+        Whole { bytes, answers }
+    };
+    scenes().iter().flat_map(|scene| KINDS.iter().map(move |kind| of(scene, kind))).collect()
+});
+
+fn places(soup: &Soup<f64>) -> Vec<Point3<f64>> {
+    let mut places =
+        [[0.0; 3], [1.1, 0.7, 0.2], [-3.0, 9.0, 1.0], [1e4, -2e5, 7e3], [1e200, 0.0, 0.0]].map(Point3::from).to_vec();
+    places.extend(soup.positions().iter().step_by(5).take(6).filter(|p| p.iter().all(|x| x.is_finite())));
+    places
+}
+
+/// The index of a file over the scene of the file, given to `use_it`.
+fn loaded<R>(bytes: &[u8], use_it: impl FnOnce(&Soup<f64>, &dyn Loaded) -> R) -> Result<R, LoadError> {
+    let missing = |section: &str| LoadError::Missing { section: section.to_owned() };
+    let mut scene = None;
+    let limit = PER_BYTE * bytes.len();
+    let file = memory::at_most(limit, || SavedFile::read(bytes))?;
+    let reader = file.checked()?;
+    let soup = &scene.insert(memory::at_most(limit, || load_scene(reader))?).soup;
+    let name = p2m::saved::kind(reader)?;
+    let kind = KINDS.iter().find(|kind| kind.name == name).ok_or_else(|| missing(&name))?;
+    let index = memory::at_most(limit, || (kind.loaded)(soup, reader))?;
+    Ok(use_it(soup, &*index))
+}
+
+/// What the index of a file answers.
+fn asked(bytes: &[u8]) -> Result<Answers, LoadError> {
+    let bits = |c: p2m::Closest<f64>| (c.distance.to_bits(), c.primitive, [0, 1, 2].map(|k| c.point[k].to_bits()));
+    loaded(bytes, |soup, index| {
+        let places = places(soup);
+        let mut answers: Answers = places.iter().map(|q| index.closest_point(q).map(bits)).collect();
+        let mut side_by_side = vec![None; 2 * places.len()];
+        index.closest_points_into(&[&places[..], &places].concat(), &QueryOptions::default(), &mut side_by_side);
+        answers.extend(side_by_side.into_iter().map(|c| c.map(bits)));
+        answers
+    })
+}
+
+thread_local! {
+    /// Whether a panic of this thread is nobody's business.
+    static IS_EXPECTED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether something ends without a panic; a fuzzer would end at one.
+fn ends(work: impl FnOnce()) -> bool {
+    static QUIET: Once = Once::new();
+    QUIET.call_once(|| {
+        let usual = take_hook();
+        set_hook(Box::new(move |info| {
+            if !IS_EXPECTED.get() {
+                usual(info);
+            }
+        }));
+    });
+    IS_EXPECTED.set(true);
+    let ended = catch_unwind(AssertUnwindSafe(work)).is_ok();
+    IS_EXPECTED.set(false);
+    ended
+}
+
+/// A file that passes for a whole one: it is read or refused, and its searches end.
+fn on_purpose(bytes: &[u8]) -> Reached {
+    let read = loaded(bytes, |soup, index| {
+        places(soup).iter().fold(Reached::Answered, |all, place| {
+            if ends(|| index.step_by_step(place)) { all } else { Reached::Unusable }
+        })
+    });
+    let scene = memory::at_most(PER_BYTE * bytes.len(), || read_p2m(bytes, "fuzz"));
+    if let Ok(scene) = scene {
+        let mut written = Vec::new();
+        write_p2m(&scene, &mut written).expect("memory");
+        let again = read_p2m(&written[..], "again").expect("whole");
+        assert!(again.soup.elements().eq(scene.soup.elements()) && again.objects == scene.objects);
+    }
+    told(read).unwrap_or(Reached::Refused)
+}
+
+/// What was read; an error has something to say.
+fn told<R>(read: Result<R, LoadError>) -> Option<R> {
+    if let Err(error) = &read {
+        assert!(!matches!(error, LoadError::Io(_)) && !error.to_string().is_empty(), "{error:?}");
+    }
+    read.ok()
+}
+
+fn number(bytes: &[u8], at: usize) -> Option<usize> {
+    usize::try_from(u64::from_le_bytes(bytes.get(at..)?.get(..8)?.try_into().ok()?)).ok()
+}
+
+/// Where the entries of the table are, as far as there is one.
+fn entries(bytes: &[u8]) -> impl Iterator<Item = usize> + use<> {
+    let announced = bytes.get(12..16).map_or(0, |n| u32::from_le_bytes(n.try_into().expect("four")) as usize);
+    let room = (bytes.len() / HEAD).saturating_sub(1);
+    (0..announced.min(room)).map(|i| HEAD * (1 + i))
+}
+
+/// Where the section of an entry is, if it is in the file.
+fn section(bytes: &[u8], entry: usize) -> Option<std::ops::Range<usize>> {
+    let [offset, count, size] = [32, 40, 48].map(|k| number(bytes, entry + k));
+    let end = offset?.checked_add(count?.checked_mul(size?)?)?;
+    (end <= bytes.len()).then_some(offset?..end)
+}
+
+/// Puts right what tells damage: the length and all sums.
+fn mend(bytes: &mut [u8]) {
+    let all: Vec<usize> = entries(bytes).collect();
+    for entry in &all {
+        if let Some(section) = section(bytes, *entry) {
+            let sum = XxHash3_64::oneshot(&bytes[section]);
+            bytes[entry + 56..entry + 64].copy_from_slice(&sum.to_le_bytes());
+        }
+    }
+    if bytes.len() < HEAD {
+        return;
+    }
+    let sum = XxHash3_64::oneshot(&bytes[HEAD..HEAD * (1 + all.len())]);
+    let length = bytes.len() as u64;
+    bytes[16..24].copy_from_slice(&length.to_le_bytes());
+    bytes[24..32].copy_from_slice(&sum.to_le_bytes());
+}
+
+/// Changes a file as the bytes of an input say, in the head, the table, or a section.
+fn change(file: &mut Vec<u8>, bytes: &mut Bytes<'_>) {
+    while !bytes.is_empty() && !file.is_empty() {
+        let what = bytes.below(8);
+        let all: Vec<_> = entries(file).collect();
+        let parts = all.iter().filter_map(|entry| section(file, *entry)).filter(|part| !part.is_empty());
+        let mut parts: Vec<_> = parts.collect();
+        parts.extend(all.iter().map(|entry| entry + 32..entry + 56));
+        parts.push(0..file.len().min(HEAD));
+        let place = |bytes: &mut Bytes<'_>| {
+            let part = &parts[bytes.below(256) % parts.len()];
+            part.start + bytes.pair() % part.len()
+        };
+        let at = place(bytes);
+        let mut put = |at: usize, own: &[u8]| {
+            // Numbers are where they can be.
+            let at = at - at % own.len();
+            if let Some(to) = file.get_mut(at..at + own.len()) {
+                to.copy_from_slice(own);
+            }
+        };
+        match what {
+            0 => put(at, &[bytes.byte()]),
+            1 => file[at] ^= 1 << bytes.below(8),
+            2 => put(at, &bytes.pick(&[0, 1, 2, 8, 1 << 30, 1 << 31, 3 << 30, u32::MAX - 1, u32::MAX]).to_le_bytes()),
+            3 => put(at, &u32::from(bytes.byte()).to_le_bytes()),
+            4 => put(at, &bytes.pick(&[0.0, -1.0, 1e-300, f64::MAX, f64::INFINITY, f64::NAN]).to_le_bytes()),
+            5 => put(at, &bytes.word().to_le_bytes()),
+            6 => {
+                let (from, len) = (place(bytes), 1 + usize::from(bytes.byte()));
+                let len = len.min(file.len() - at.max(from));
+                file.copy_within(from..from + len, at);
+            }
+            _ => match bytes.signed() {
+                more @ 0.. => file.resize(file.len() + usize::from(more.unsigned_abs()), 0),
+                less => file.truncate(file.len().saturating_sub(usize::from(less.unsigned_abs()))),
+            },
+        }
+    }
+}
+
+/// Reads what an input makes.
+///
+/// # Panics
+/// If a promise is not kept.
+pub fn check(input: &[u8]) -> Reached {
+    let mut bytes = Bytes::new(input);
+    let (way, scene, kind) = (bytes.below(3), bytes.below(4), bytes.below(KINDS.len()));
+    let whole = &WHOLE[scene * KINDS.len() + kind];
+    let mut file = match way {
+        0 | 1 => whole.bytes.clone(),
+        _ => bytes.rest().to_vec(),
+    };
+    if way < 2 {
+        change(&mut file, &mut bytes);
+    }
+    if way == 0 {
+        let Some(answers) = told(asked(&file)) else { return Reached::Refused };
+        assert_eq!(answers, whole.answers, "another answer");
+        return Reached::Answered;
+    }
+    mend(&mut file);
+    on_purpose(&file)
+}

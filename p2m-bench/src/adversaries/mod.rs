@@ -1,0 +1,273 @@
+//! `p2m-bench adversaries`: scenes that are made to be bad, over every backend: what building takes, what is kept and what
+//! queries look at, held against budgets; and what becomes of rivals.
+
+mod rivals;
+
+pub(crate) use rivals::attempt;
+
+use crate::backends::{aabb_options, octree_options, p2m_options};
+use crate::memory;
+use anyhow::{Context, Result};
+use cpu_time::ThreadTime;
+use nalgebra::Point3;
+use p2m_bvh::AabbTree;
+use p2m_core::hierarchy::{PacketTree, Volume};
+use p2m_core::interception::{Progress, Stage};
+use p2m_core::{Aabb, BruteForce, ClosestPoint, Examine, Kdop, KdopOptions, PrimitiveSet, Soup, Visits};
+use p2m_interception::{OctreeIndex, P2mIndex};
+use p2m_kdop::KdopTree;
+use p2m_testkit::adversaries::{ADVERSARIES, Adversary, queries};
+use p2m_tradeoff::{Provenance, Table};
+use rivals::Outcome;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Queries of each scene.
+const QUERIES: usize = 300;
+/// Budgets are for at least so many primitives.
+const FEW: usize = 10_000;
+/// The page, with two places to fill.
+const PAGE: &str = include_str!("page.md");
+
+/// What a backend may take for each primitive.
+struct Budget {
+    name: &'static str,
+    /// Microseconds of one thread.
+    build: f64,
+    /// Bytes at a time while building, besides the scene,
+    peak: usize,
+    /// and afterwards.
+    kept: usize,
+}
+
+const AABB: Budget = Budget { name: "aabb", build: 20.0, peak: 448, kept: 160 };
+const KDOP: Budget = Budget { name: "kdop-14", build: 20.0, peak: 576, kept: 176 };
+const OCTREE: Budget = Budget { name: "octree", build: 1000.0, peak: 2048, kept: 352 };
+const P2M: Budget = Budget { name: "p2m", build: 2000.0, peak: 21_248, kept: 5632 };
+
+impl Budget {
+    /// As a row of the page's table of budgets.
+    fn row(&self) -> Vec<String> {
+        let Self { name, build, peak, kept } = self;
+        vec![(*name).to_owned(), build.to_string(), peak.to_string(), kept.to_string()]
+    }
+}
+
+/// What an index took.
+struct Taken {
+    /// Seconds of one thread.
+    build: f64,
+    /// Bytes.
+    peak: usize,
+    kept: usize,
+    depth: usize,
+    /// Whether the tree answers in place of cells.
+    way_out: String,
+}
+
+/// One scene at work.
+struct Trial<'a> {
+    adversary: &'static Adversary,
+    soup: &'a Soup<f64>,
+    queries: Vec<Point3<f64>>,
+    expected: Vec<Option<(u64, usize)>>,
+    table: &'a mut Table,
+    good: bool,
+}
+
+impl Trial<'_> {
+    /// Adds the row of an index.
+    fn row<I: ClosestPoint<f64> + Examine<f64>>(&mut self, budget: &Budget, index: &I, taken: &Taken) {
+        let count = self.soup.len();
+        let allowed = count.max(FEW);
+        let answers = self.queries.iter().map(|q| index.closest_point(q)).map(key);
+        let is_right = answers.eq(self.expected.iter().copied());
+        let within = taken.build <= budget.build * 1e-6 * allowed as f64
+            && taken.peak <= budget.peak * allowed
+            && taken.kept <= budget.kept * allowed;
+        self.good &= is_right && within;
+        let visits = Visits::of(index, &self.queries);
+        let lengths = index.list_lengths();
+        let longest = lengths.iter().max().map_or_else(String::new, usize::to_string);
+        let each = |bytes: usize| (bytes / count).to_string();
+        self.table.push(vec![
+            self.adversary.name.to_owned(),
+            budget.name.to_owned(),
+            format!("{:.2}", taken.build * 1e6 / count as f64),
+            each(taken.peak),
+            each(taken.kept),
+            taken.depth.to_string(),
+            longest,
+            format!("{:.0} / {}", visits.nodes.mean, visits.nodes.most),
+            format!("{:.0} / {}", visits.packets.mean, visits.packets.most),
+            format!("{:.0} / {}", visits.primitives.mean, visits.primitives.most),
+            taken.way_out.clone(),
+            match (is_right, within) {
+                (true, true) => "yes",
+                (true, false) => "EXCEEDED",
+                (false, _) => "WRONG",
+            }
+            .to_owned(),
+        ]);
+    }
+}
+
+/// Adds the rows of rivals, without a budget to keep.
+fn add_rivals(adversary: &'static Adversary, count: usize, table: &mut Table) -> Result<()> {
+    for name in rivals::RIVALS {
+        let Outcome { build, wrong, end } = Outcome::by_this_program(name, adversary, count)?;
+        let mut row = vec![String::new(); HEAD.len()];
+        row[0] = adversary.name.to_owned();
+        row[1] = name.to_owned();
+        if let Some((seconds, peak, kept)) = build {
+            row[2] = format!("{:.2}", seconds * 1e6 / count as f64);
+            row[3] = (peak / count).to_string();
+            row[4] = (kept / count).to_string();
+        }
+        row[HEAD.len() - 2] = end.unwrap_or_default();
+        row[HEAD.len() - 1] =
+            wrong.filter(|wrong| *wrong > 0).map_or_else(String::new, |wrong| format!("{wrong} wrong"));
+        table.push(row);
+    }
+    Ok(())
+}
+
+fn key(closest: Option<p2m_core::Closest<f64>>) -> Option<(u64, usize)> {
+    closest.map(|c| (c.distance.to_bits(), c.primitive.index()))
+}
+
+/// What building a tree takes, without what is asked for before.
+fn of_tree<V: Volume>(soup: &Soup<f64>, options: &V::Options) -> Taken {
+    let before = memory::current();
+    memory::reset_peak();
+    let start = ThreadTime::now();
+    let tree = PacketTree::<V>::build(soup, options);
+    let build = start.elapsed().as_secs_f64();
+    let peak = memory::peak().saturating_sub(before);
+    Taken { build, peak, kept: tree.memory(), depth: tree.depth(), way_out: String::new() }
+}
+
+/// What `build` takes from a stage on, and what it makes. What is asked for before that is not counted.
+fn since<I>(stage: Stage, build: impl FnOnce(&(dyn Fn(Progress) + Sync)) -> I) -> (I, f64, usize) {
+    let before = memory::current();
+    let has_begun = AtomicBool::new(false);
+    let start = ThreadTime::now();
+    let index = build(&|progress| {
+        if progress.stage == stage && !has_begun.swap(true, Ordering::Relaxed) {
+            memory::reset_peak();
+        }
+    });
+    let seconds = start.elapsed().as_secs_f64();
+    let peak = if has_begun.into_inner() { memory::peak().saturating_sub(before) } else { 0 };
+    (index, seconds, peak)
+}
+
+/// Adds the rows of a scene; whether all budgets were kept and all answers right.
+fn add_rows(adversary: &'static Adversary, count: usize, table: &mut Table) -> Result<bool> {
+    let soup = &adversary.soup(count);
+    let queries = queries(soup, QUERIES);
+    let brute = BruteForce::new(soup).context("an adversary is finite")?;
+    let expected = queries.iter().map(|q| key(brute.closest_point(q))).collect();
+    let mut trial = Trial { adversary, soup, queries, expected, table, good: true };
+
+    let options = aabb_options();
+    let tree = of_tree::<Aabb<f64>>(soup, &options);
+    trial.row(&AABB, &AabbTree::build_with(soup, &options)?, &tree);
+    let options = KdopOptions::default().with_splits(aabb_options());
+    let taken = of_tree::<Kdop<14>>(soup, &options);
+    trial.row(&KDOP, &KdopTree::<f64, _, 14>::build_with(soup, &options)?, &taken);
+
+    let options = octree_options(1.0);
+    let (index, build, peak) =
+        since(Stage::Tree, |progress| OctreeIndex::build_with_progress(soup, &options, progress));
+    let index = index?;
+    let report = index.report();
+    let way_out = match report.lists + report.singles {
+        0 => "the tree".to_owned(),
+        _ if report.resolution < options.resolution => format!("resolution {:.3}", report.resolution),
+        _ => "no".to_owned(),
+    };
+    trial.row(&OCTREE, &index, &Taken { build, peak, kept: index.memory(), depth: report.depth, way_out });
+
+    let options = p2m_options();
+    let (index, build, peak) =
+        since(Stage::Delaunay, |progress| P2mIndex::build_with_progress(soup, &options, progress));
+    let index = index?;
+    let report = index.report();
+    let way_out = match report.lists {
+        0 => "the tree".to_owned(),
+        _ if report.trees > 0 => {
+            format!("{:.1} % of cells", 100.0 * report.trees as f64 / (report.lists + report.trees) as f64)
+        }
+        _ => "no".to_owned(),
+    };
+    // Before the first stage it is the tree's.
+    let peak = peak.max(tree.peak);
+    trial.row(&P2M, &index, &Taken { build, peak, kept: index.memory(), depth: tree.depth, way_out });
+    Ok(trial.good)
+}
+
+/// Prints the page, or writes it to a file; whether all budgets were kept and all answers right.
+pub(crate) fn print(count: usize, out: Option<&Path>, provenance: &Provenance) -> Result<bool> {
+    let mut table = Table::new(HEAD);
+    let mut good = true;
+    for adversary in ADVERSARIES {
+        good &= add_rows(adversary, count, &mut table)?;
+        add_rivals(adversary, count, &mut table)?;
+    }
+    let mut budgets = Table::new(["backend", "build us", "bytes while building", "bytes of the index"]);
+    [AABB, KDOP, OCTREE, P2M].iter().for_each(|budget| budgets.push(budget.row()));
+    let mut scenes = Table::new(["scene", "what it is"]);
+    ADVERSARIES.iter().for_each(|a| scenes.push(vec![a.name.to_owned(), a.about.to_owned()]));
+    let page = PAGE
+        .replace("{{provenance}}", provenance.to_string().trim_end())
+        .replace("{{count}}", &count.to_string())
+        .replace("{{budgets}}", budgets.to_string().trim_end())
+        .replace("{{scenes}}", scenes.to_string().trim_end())
+        .replace("{{table}}", table.to_string().trim_end());
+    match out {
+        Some(path) => std::fs::write(path, page).with_context(|| path.display().to_string())?,
+        None => print!("{page}"),
+    }
+    println!(
+        "{}",
+        if good {
+            "All budgets are kept, and all answers those of brute force."
+        } else {
+            "EXCEEDED or WRONG, see above."
+        }
+    );
+    Ok(good)
+}
+
+const HEAD: [&str; 12] = [
+    "scene",
+    "backend",
+    "build us",
+    "peak B",
+    "index B",
+    "depth",
+    "longest list",
+    "nodes",
+    "packets",
+    "evaluated",
+    "way out",
+    "kept",
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Times and the memory of the process are those of other tests as well.
+    #[test]
+    fn small_adversaries_are_answered_as_brute_force_does() {
+        for adversary in ADVERSARIES {
+            let mut table = Table::new(HEAD);
+            add_rows(adversary, 200, &mut table).unwrap();
+            let text = table.to_string();
+            assert_eq!(["aabb", "kdop-14", "octree", "p2m"].map(|name| text.contains(name)), [true; 4], "{text}");
+            assert!(!text.contains("WRONG"), "{text}");
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! The crate bvh as a contender. It has the tree and the search; the distance to a primitive is its user's.
+
+use crate::contender::{Absent, Answer, Contender};
+use crate::scene::Scene;
+use bvh::aabb::{Aabb, Bounded};
+use bvh::bounding_hierarchy::BHShape;
+use bvh::bvh::Bvh;
+use bvh::point_query::PointDistance;
+use nalgebra::Point3;
+use p2m_core::{PrimitiveId, PrimitiveSet};
+
+/// One to three vertices, and the place of their leaf.
+struct Primitive {
+    vertices: Vertices,
+    node: usize,
+}
+
+/// Vertices of a triangle, a segment or a point.
+enum Vertices {
+    Triangle([Point3<f64>; 3]),
+    Segment([Point3<f64>; 2]),
+    Point([Point3<f64>; 1]),
+}
+
+impl Vertices {
+    fn all(&self) -> &[Point3<f64>] {
+        match self {
+            Self::Triangle(vertices) => vertices,
+            Self::Segment(vertices) => vertices,
+            Self::Point(vertices) => vertices,
+        }
+    }
+}
+
+impl Bounded<f64, 3> for Primitive {
+    fn aabb(&self) -> Aabb<f64, 3> {
+        self.vertices.all().iter().fold(Aabb::empty(), |bounds, vertex| bounds.grow(vertex))
+    }
+}
+
+impl BHShape<f64, 3> for Primitive {
+    fn set_bh_node_index(&mut self, node: usize) {
+        self.node = node;
+    }
+    fn bh_node_index(&self) -> usize {
+        self.node
+    }
+}
+
+impl PointDistance<f64, 3> for Primitive {
+    #[inline(always)]
+    fn distance_squared(&self, query: Point3<f64>) -> f64 {
+        match &self.vertices {
+            Vertices::Triangle(vertices) => (query - on_triangle(&query, vertices)).norm_squared(),
+            Vertices::Segment(vertices) => (query - on_segment(&query, vertices)).norm_squared(),
+            Vertices::Point([vertex]) => (query - vertex).norm_squared(),
+        }
+    }
+}
+
+/// The closest point on a segment, clamped.
+fn on_segment(query: &Point3<f64>, [a, b]: &[Point3<f64>; 2]) -> Point3<f64> {
+    let along = b - a;
+    let (part, length) = (along.dot(&(query - a)), along.norm_squared());
+    if part <= 0.0 {
+        *a
+    } else if part >= length {
+        *b
+    } else {
+        a + along * (part / length)
+    }
+}
+
+/// The closest point on a triangle, by its regions (Ericson, Real-Time Collision Detection, 5.1.5).
+pub(crate) fn on_triangle(query: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> Point3<f64> {
+    let (ab, ac, ap) = (b - a, c - a, query - a);
+    let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return *a;
+    }
+    let bp = query - b;
+    let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
+    if d3 >= 0.0 && d4 <= d3 {
+        return *b;
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return a + ab * (d1 / (d1 - d3));
+    }
+    let cp = query - c;
+    let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
+    if d6 >= 0.0 && d5 <= d6 {
+        return *c;
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return a + ac * (d2 / (d2 - d6));
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
+        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    }
+    let scale = 1.0 / (va + vb + vc);
+    a + ab * (vb * scale) + ac * (vc * scale)
+}
+
+/// The tree and its primitives.
+pub(crate) struct Tree {
+    tree: Bvh<f64, 3>,
+    primitives: Vec<Primitive>,
+}
+
+/// Copies the primitives, as a user of the crate has to, and builds on one thread.
+pub(crate) fn tree(scene: &Scene) -> impl FnOnce() -> Result<Tree, Absent> + use<> {
+    let soup = &scene.double;
+    let vertices = |i: usize| match *soup.get(PrimitiveId::new(i)).vertices() {
+        [a, b, c] => Vertices::Triangle([a, b, c]),
+        [a, b] => Vertices::Segment([a, b]),
+        ref others => Vertices::Point([others[0]]),
+    };
+    let mut primitives: Vec<_> = (0..soup.len()).map(|i| Primitive { vertices: vertices(i), node: 0 }).collect();
+    move || Ok(Tree { tree: Bvh::build(&mut primitives), primitives })
+}
+
+impl Contender for Tree {
+    type Scalar = f64;
+
+    #[inline(always)]
+    fn query(&self, query: &Point3<f64>) -> Answer {
+        let found = self.tree.nearest_to(*query, &self.primitives);
+        found.map_or(Answer::NONE, |(_, distance)| Answer { distance, id: u32::MAX })
+    }
+}

@@ -1,0 +1,208 @@
+//! `p2m-bench extremes`: the accuracy contract where others break, as a page.
+
+mod example;
+mod primitives;
+mod rival;
+mod scenes;
+pub(crate) mod tally;
+
+use anyhow::{Context, Result, ensure};
+use example::Example;
+use p2m_testkit::extremes::Extreme;
+use p2m_testkit::oracle::Distance;
+use p2m_tradeoff::{Provenance, Table};
+use rival::{Kind, RIVALS};
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::Instant;
+
+/// How much is checked.
+pub(crate) struct Amount {
+    /// Answers about isolated primitives.
+    pub(crate) cases: u64,
+    /// Scenes of each family.
+    pub(crate) scenes: u64,
+    /// Of all random numbers.
+    pub(crate) seed: u64,
+}
+
+/// Checks everything and writes the page, or prints it. Whether ours broke no promise.
+pub(crate) fn write(amount: &Amount, out: Option<&Path>, provenance: &Provenance) -> Result<bool> {
+    // Rivals panic, which is caught and counted; a line for each would bury everything else.
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| ()));
+    let start = Instant::now();
+    let (alone, together) = (primitives::run(amount.cases, amount.seed), scenes::run(amount.scenes, amount.seed));
+    let broken = alone.broken + together.broken;
+    let page = page(amount, &alone, &together, provenance);
+    std::panic::set_hook(usual);
+    let page = page?;
+    match out {
+        Some(path) => std::fs::write(path, &page).with_context(|| path.display().to_string())?,
+        None => print!("{page}"),
+    }
+    alone.shown.iter().chain(&together.shown).for_each(|what| eprintln!("BROKEN {what}"));
+    println!(
+        "{} answers of ours held against the truth, {} more against each other in {:.0?}, {broken} promises broken.",
+        alone.checked.iter().sum::<u64>() + together.queries,
+        alone.invariant + together.checked,
+        start.elapsed()
+    );
+    Ok(broken == 0)
+}
+
+fn page(
+    amount: &Amount,
+    alone: &primitives::Findings,
+    together: &scenes::Findings,
+    provenance: &Provenance,
+) -> Result<String> {
+    let mut page = String::from("# Extremes\n\n");
+    let Amount { cases, scenes, seed } = amount;
+    writeln!(
+        page,
+        "Made by `cargo run --release -p p2m-bench -- extremes --cases {cases} --scenes {scenes} --seed {seed} --out docs/extremes.md`.\n\n{provenance}\nErrors are in units of u M: u is 2^-53 \
+         or 2^-24, M the distance from the query to the farthest vertex of the primitive. \"Fails\" are NaN, infinity for what is in range, and no answer.\n"
+    )?;
+    writeln!(page, "## What was checked\n")?;
+    let mut table = Table::new(["", "answers", "promises broken"]);
+    let mut row = |what: &str, count: u64, broken: String| table.push(vec![what.to_owned(), count.to_string(), broken]);
+    for (scalar, count) in ["f64", "f32"].into_iter().zip(alone.checked) {
+        row(
+            &format!("isolated primitives in {scalar} against the truth: N1, N5, N6, N7"),
+            count,
+            alone.broken.to_string(),
+        );
+    }
+    row("the same against those of another order or scale: N4", alone.invariant, "counted above".to_owned());
+    row(
+        "scenes, brute force against the truth of every primitive: N1, N2, N6, N7",
+        together.queries,
+        together.broken.to_string(),
+    );
+    row("scenes, every backend against brute force: N3, N6", together.checked, "counted above".to_owned());
+    writeln!(page, "{table}")?;
+    writeln!(
+        page,
+        "Broken promises of isolated primitives are those of both scalars. Cases of a scalar are drawn in its own range, and none has zeros alone. In scenes \
+         distances and primitives are compared; points and weights are functions of the primitive.\n"
+    )?;
+    writeln!(
+        page,
+        "The truth is a pair of bounds, from a point of the primitive and a plane before it, in twice the precision (`p2m_testkit::enclosure`); where they \
+         are too far apart to tell, as for {} of the isolated primitives and {} of those of scenes, it is rational arithmetic.\n",
+        alone.rational, together.rational
+    )?;
+    writeln!(page, "## Isolated primitives\n")?;
+    writeln!(
+        page,
+        "The largest error of a distance, and parts of what is worse. Sines, needles and places of queries are of scale one at the \
+         origin, offsets of scale one, scales at the origin. Rivals are asked about every twentieth of their scalar.\n"
+    )?;
+    let mut table = Table::new(["", "p2m f64", "p2m f32"].into_iter().chain(RIVALS.iter().map(|r| r.name)));
+    for (label, tallies) in &alone.rows {
+        table.push(std::iter::once(label.clone()).chain(tallies.iter().map(tally::Tally::cell)).collect());
+    }
+    writeln!(page, "{table}")?;
+    RIVALS.iter().try_for_each(|rival| writeln!(page, "- {}: {}.", rival.name, rival.about))?;
+    writeln!(page, "\n## Small scenes\n")?;
+    writeln!(
+        page,
+        "Queries on, near, equidistant and far; at scales of both scalars except where the family has its own. All backends of ours have the same bits, so \
+         one column is all of them; a column of its own is for what is not. Where a scene is too small, too large or too far away for cells, the octree and the P2M index \
+         are their trees: \"cells\" says in how many of the scenes in f64 they are more.\n"
+    )?;
+    let subjects = scenes::subjects();
+    let shown = ["aabb", "aabb-f32", "parry3d-f64", "parry3d", "bvh"];
+    let columns: Vec<usize> =
+        shown.iter().filter_map(|name| subjects.iter().position(|subject| subject.name == *name)).collect();
+    let mut table = Table::new(["", "ours f64", "ours f32", "parry3d-f64", "parry3d", "bvh", "cells: octree, p2m"]);
+    for ((family, tallies), [scenes, octree, p2m]) in Extreme::ALL.iter().zip(&together.rows).zip(&together.cells) {
+        let part = |count: &u64| format!("{} %", count * 100 / scenes.max(&1));
+        let cells = columns.iter().map(|column| tallies[*column].cell()).chain([part(octree) + ", " + &part(p2m)]);
+        table.push(std::iter::once(family.name().to_owned()).chain(cells).collect());
+    }
+    writeln!(page, "{table}")?;
+    let ours: Vec<&str> = subjects.iter().filter(|subject| subject.ours).map(|subject| subject.name).collect();
+    writeln!(page, "Ours: {}.\n", ours.join(", "))?;
+    for (why, count) in &together.absent {
+        writeln!(page, "- Left out of {count} scenes: {why}.")?;
+    }
+    writeln!(
+        page,
+        "\nScenes at which building takes too long or too much memory, for us and for rivals, are in [adversaries.md](adversaries.md)."
+    )?;
+    writeln!(page, "\n## What rivals get wrong\n")?;
+    writeln!(
+        page,
+        "The plainest case of each kind that was found, as f64. Each was asked again from what is written here and judged again, by rational arithmetic.\n"
+    )?;
+    let mut examples = alone.examples.clone();
+    examples.sort_by_key(|example| example.rival);
+    for example in &examples {
+        writeln!(page, "{}\n", described(example)?)?;
+    }
+    writeln!(page, "Over scenes, with the primitives that it takes:\n")?;
+    let mut examples: Vec<_> = together.examples.iter().cloned().map(Example::reduced).collect();
+    examples.sort_by_key(|example| (example.rival, example.kind));
+    for example in &examples {
+        let said =
+            example.confirmed().with_context(|| format!("{} is right when asked again: {example:?}", example.rival))?;
+        writeln!(page, "- {} {said}: {}.\n", versioned(example.rival), example.text())?;
+    }
+    Ok(page)
+}
+
+/// A crate with the version that was built.
+fn versioned(name: &str) -> String {
+    let lock = include_str!("../../../Cargo.lock");
+    let entry = format!("name = \"{name}\"\nversion = \"");
+    let version = lock.split_once(&entry).and_then(|(_, rest)| rest.split_once('"')).map(|(version, _)| version);
+    version.map_or_else(|| name.to_owned(), |version| format!("{name} {version}"))
+}
+
+/// A case, asked once more from its own text.
+fn described(example: &primitives::Example) -> Result<String> {
+    let text = example.text();
+    let numbers = text.split(|c: char| !(c.is_ascii_digit() || "+-.e".contains(c))).filter(|part| !part.is_empty());
+    let numbers = numbers.map(str::parse::<f64>).collect::<Result<Vec<_>, _>>()?;
+    let points: Vec<[f64; 3]> = numbers.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect();
+    let (query, vertices) = (points[0], &points[1..]);
+    let rival = &RIVALS[example.rival];
+    let again = rival.ask(query, vertices).and_then(|said| said.kind());
+    ensure!(again == Some(example.kind), "{} is right when asked again: {example:?}", rival.name);
+    let said = match example.kind {
+        Kind::Panic => "panics".to_owned(),
+        _ => format!("answers {:e}", rival.distance(query, vertices)),
+    };
+    let distance = Distance::new(query, vertices).length()[0];
+    Ok(format!(
+        "- {} {said}: query `{query:?}`, vertices `{vertices:?}`. The distance is {distance:e}.",
+        versioned(rival.name)
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ours_break_nothing_and_rivals_are_asked_twice() {
+        let amount = Amount { cases: 30_000, scenes: 1, seed: 7 };
+        let (alone, together) = (primitives::run(amount.cases, amount.seed), scenes::run(amount.scenes, amount.seed));
+        assert!(alone.checked.iter().all(|count| *count >= 15_000), "{:?}", alone.checked);
+        assert!(alone.invariant > 20_000 && together.checked > 1000, "{} {}", alone.invariant, together.checked);
+        assert_eq!((alone.broken, together.broken), (0, 0), "{:?} {:?}", alone.shown, together.shown);
+        let mut wrong = alone.examples.iter().find(|e| e.rival == 2 && e.kind == Kind::Wrong).expect("slivers").clone();
+        assert!(described(&wrong).unwrap().contains("Ericson answers"));
+        wrong.kind = Kind::Panic;
+        assert!(described(&wrong).is_err(), "it does not panic");
+        for example in together.examples {
+            let (count, mut example) = (example.vertices.len(), example.reduced());
+            assert!(example.is_confirmed() && example.vertices.len() <= count, "{example:?}");
+            // Ours is none of that.
+            example.rival = "aabb";
+            assert!(!example.is_confirmed(), "{example:?}");
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! How exact answers are to be: the options that trade accuracy for speed, and the one that does the opposite.
+
+use crate::usage::finite_not_negative;
+use nalgebra::Point3;
+use p2m_core::{CertifiedQuery, ClosestPoint, QueryOptions};
+use serde_json::{Value, json};
+
+#[derive(clap::Args)]
+#[command(next_help_heading = "Accuracy")]
+pub(crate) struct Accuracy {
+    /// Distances may be too large by this part of themselves: 0.01 allows for one per cent
+    #[arg(long, value_name = "E", value_parser = finite_not_negative, allow_negative_numbers = true, conflicts_with = "certified")]
+    epsilon: Option<f64>,
+
+    /// An answer at most this far, in the unit of the scene, is near enough: look no further
+    #[arg(long, value_name = "R", value_parser = finite_not_negative, allow_negative_numbers = true, conflicts_with = "certified")]
+    near_enough: Option<f64>,
+
+    /// Answer with the best that so many visits of nodes and packets find, and those that it takes to find anything.
+    ///
+    /// With 0 the interception indexes (octree, p2m) answer with what the cell itself tells.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32), allow_negative_numbers = true, conflicts_with = "certified")]
+    budget: Option<u32>,
+
+    /// Prove every answer: the nearest primitive of the real numbers that coordinates are, and the distance rounded once
+    #[arg(long)]
+    certified: bool,
+}
+
+impl Accuracy {
+    /// The options of queries, and those of this kind.
+    pub(crate) fn options(&self, max_distance: Option<f64>) -> QueryOptions<f64> {
+        let usual = QueryOptions::default();
+        usual
+            .with_max_distance(max_distance.unwrap_or(usual.max_distance))
+            .with_epsilon(self.epsilon.unwrap_or(usual.epsilon))
+            .with_near_enough(self.near_enough.unwrap_or(usual.near_enough))
+            .with_budget(self.budget.unwrap_or(usual.budget))
+    }
+
+    /// Answers as it is wanted.
+    pub(crate) fn ask<I: ClosestPoint<f64> + CertifiedQuery<f64> + ?Sized>(
+        &self,
+        index: &I,
+        queries: &[Point3<f64>],
+        options: &QueryOptions<f64>,
+        answers: &mut [Option<p2m_core::Closest<f64>>],
+    ) {
+        if !self.certified {
+            return index.closest_points_into(queries, options, answers);
+        }
+        for (query, answer) in queries.iter().zip(answers) {
+            let certified = index.certified_closest_point(query, options);
+            *answer = certified.expect("primitives of scenes have vertices");
+        }
+    }
+
+    /// For the report.
+    pub(crate) fn json(&self) -> Value {
+        json!({
+            "epsilon": self.epsilon,
+            "near_enough": self.near_enough,
+            "budget": self.budget,
+            "certified": self.certified,
+        })
+    }
+}

@@ -1,0 +1,127 @@
+//! `p2m field`: grids, octrees, signs, pictures.
+
+use crate::common::*;
+use std::fs;
+use tempfile::TempDir;
+
+/// The values of a raw file.
+fn values(path: &str) -> Vec<f32> {
+    let bytes = fs::read(path).unwrap();
+    bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect()
+}
+
+#[test]
+fn backends_and_threads_give_the_same_field() {
+    let folder = TempDir::new().unwrap();
+    let field = |name: &str, more: &[&str]| {
+        let out = path(&folder, name);
+        table(&[&["field", SCENE, "--resolution", "24", "--out", &out], more].concat());
+        fs::read(out).unwrap()
+    };
+    let expected = field("brute.raw", &["--backend", "brute"]);
+    for backend in ["aabb", "kdop", "octree", "p2m"] {
+        assert!(field("other.raw", &["--backend", backend]) == expected, "{backend}");
+    }
+    // By lists.
+    assert!(field("one.raw", &["--threads", "1"]) == expected);
+    assert!(field("auto.raw", &["--backend", "auto"]) == expected);
+    let report = |more: &[&str]| {
+        let out = path(&folder, "reported.raw");
+        json(&[&["field", SCENE, "--resolution", "24", "--json", "--out", &out], more].concat())["backend"].clone()
+    };
+    assert_eq!([report(&[]), report(&["--backend", "aabb"])], ["lists", "aabb"]);
+    assert!(field("whole.vti", &[]).windows(expected.len()).any(|w| w == expected));
+    assert!(field("named", &["--out-format", "npy"]).ends_with(&expected));
+    let band = path(&folder, "band.raw");
+    table(&["field", SCENE, "--resolution", "24", "--band", "0.1", "--out", &band]);
+    let whole = path(&folder, "brute.raw");
+    assert!(values(&band).iter().zip(values(&whole)).all(|(b, w)| *b == w.min(0.1)));
+}
+
+#[test]
+fn signs_are_told_by_closed_surfaces_and_by_winding_numbers() {
+    let folder = TempDir::new().unwrap();
+    let knot = path(&folder, "knot.ply");
+    table(&["generate", "torus-knot", "--out", &knot]);
+    let [closed, winding] = ["closed.raw", "winding.raw"].map(|name| path(&folder, name));
+    let picture = path(&folder, "slice.png");
+    let report =
+        json(&["field", &knot, "--signed", "--resolution", "40", "--out", &closed, "--slice", &picture, "--json"]);
+    assert_eq!(report["signs"], "closed");
+    let counts: Vec<u64> = report["grid"]["counts"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
+    let all = values(&closed);
+    assert_eq!(counts.iter().product::<u64>(), all.len() as u64);
+    let inside = all.iter().filter(|x| **x < 0.0).count();
+    assert!(inside > 100);
+    assert_eq!(report["values"]["inside"], inside);
+    assert_eq!(report["values"]["undefined"], 0);
+    assert!(fs::read(&picture).unwrap().starts_with(b"\x89PNG"));
+    let report = json(&["field", &knot, "--signed=winding", "--resolution", "40", "--out", &winding, "--json"]);
+    assert_eq!(report["signs"], "winding");
+    assert_eq!(values(&winding), all);
+
+    // With a hole, by winding numbers; or not at all.
+    let whole = path(&folder, "knot.obj");
+    table(&["convert", &knot, &whole]);
+    let text = fs::read_to_string(whole).unwrap();
+    let cut = text.rfind("\nf ").unwrap();
+    let open = write(&folder, "open.obj", &text[..=cut]);
+    let out = path(&folder, "open.npy");
+    assert_eq!(json(&["field", &open, "--signed", "--resolution", "9", "--out", &out, "--json"])["signs"], "winding");
+    let message = failure(&["field", &open, "--signed=closed", "--out", &out], 1);
+    assert!(message.contains("open at edge"), "{message}");
+    let message = failure(&["field", SCENE, "--signed", "--out", &out], 1);
+    assert!(message.contains("480 of the primitives are no triangles"), "{message}");
+}
+
+#[test]
+fn cells_are_finer_for_smaller_errors() {
+    let folder = TempDir::new().unwrap();
+    let out = path(&folder, "cells.npy");
+    let cells = |error: &str| {
+        let report = json(&["field", SCENE, "--refine", error, "--out", &out, "--json"]);
+        let count = report["cells"].as_u64().unwrap();
+        let bytes = fs::read(&out).unwrap();
+        assert_eq!(bytes.len() as u64 - 96 * count, 192);
+        count
+    };
+    let [coarse, fine] = ["0.2", "0.05"].map(cells);
+    assert!(coarse > 8 && fine > coarse, "{coarse} {fine}");
+}
+
+#[test]
+fn the_summary_tells_the_grid() {
+    let folder = TempDir::new().unwrap();
+    let out = path(&folder, "f.npy");
+    let output = p2m(&["field", SCENE, "--resolution", "16", "--threads", "1", "--out", &out]);
+    let summary = text(&output.stderr);
+    for part in
+        ["field    ", " points, ", "filled   in ", "on 1 thread: ", "ns per point", "distance min ", "written  "]
+    {
+        assert!(summary.contains(part), "{part}: {summary}");
+    }
+}
+
+#[test]
+fn wrong_usage_is_told_what_is_wrong() {
+    let folder = TempDir::new().unwrap();
+    let out = path(&folder, "f.npy");
+    let empty = write(&folder, "empty.obj", "");
+    for (arguments, code, message) in [
+        (&["field", &empty, "--out", &out][..], 1, "the scene is empty"),
+        (&["field", SCENE, "--out", "field.dat"], 1, "unknown extension 'dat', expected one of npy, vti, raw"),
+        (&["field", SCENE, "--resolution", "1", "--out", &out], 2, "1 is not in 2..="),
+        (&["field", SCENE, "--band", "-1", "--out", &out], 2, "'-1'"),
+        (&["field", SCENE, "--refine", "0.1", "--band", "1", "--out", &out], 2, "cannot be used with"),
+        (&["field", SCENE, "--json", "--out", "-", "--out-format", "npy"], 2, "the field has to go to a file"),
+        (&["field", SCENE, "--out", SCENE, "--out-format", "npy"], 1, "would be written over"),
+        (&["field", SCENE, "--out", &out, "--slice", SCENE], 1, "would be written over"),
+        (&["field", SCENE, "--out", &out, "--slice", &out], 2, "a file of its own"),
+        (&["field", SCENE, "--refine", "0.1", "--out", "cells.vti"], 2, "--refine writes cells as NPY"),
+        (&["field", SCENE, "--depth", "3", "--out", &out], 2, "--refine"),
+    ] {
+        let found = failure(arguments, code);
+        assert!(found.contains(message), "{arguments:?}: {found}");
+    }
+    assert!(!std::path::Path::new(&out).exists());
+}

@@ -1,0 +1,21 @@
+//! The program, by what it prints, writes and returns. `cargo test -p p2m-cli --test all query::` runs the tests of one command.
+
+mod advise;
+mod boxes;
+mod build;
+mod common;
+mod convert;
+mod field;
+mod files;
+mod generate;
+mod info;
+mod interrupt;
+mod json;
+mod query;
+mod ray;
+mod shell;
+mod stats;
+mod terminal;
+mod tradeoff;
+mod transcript;
+mod usage;

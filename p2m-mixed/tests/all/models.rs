@@ -1,0 +1,83 @@
+//! Files of the wild, with the counts that their list states.
+
+use crate::common::{bits, read_back};
+use p2m_mixed::{Format, WriteError, read_scene, stl_rounding, write_stl};
+
+/// Name, triangles, segments.
+const MODELS: &[(&str, usize, usize)] = &[
+    ("bunny.obj", 28_576, 0),
+    ("armadillo.obj", 86_482, 0),
+    ("dragon_100k.obj", 100_000, 0),
+    ("lucy_100k.ply", 99_970, 0),
+    ("dragon_871k.ply", 871_414, 0),
+    ("dragon_48k_nonmanifold.ply", 47_794, 0),
+    ("bunny_subdivided_278k.ply", 277_804, 0),
+    ("gear_skewed_57k.ply", 56_692, 0),
+    ("gear_skewed_57k_rotated.ply", 56_692, 0),
+    ("mixed_armadillo_camel_wireframe.obj", 86_482, 29_304),
+    ("rotterdam_city_far_from_origin.obj", 38_772, 0),
+    ("hotel_room_nonmanifold.ply", 99_029, 0),
+    ("heavily_nonmanifold.obj", 41_262, 0),
+    ("political_borders_lines.obj", 0, 94_161),
+    ("track_lines.obj", 0, 16_266),
+    ("rings_lines.obj", 0, 6_144),
+    ("degenerate_small.obj", 24, 0),
+    // 40,211 faces, quadrilaterals among them.
+    ("sponza_66k.obj", 66_450, 0),
+    ("camel.off", 19_536, 0),
+    ("gear_diff_ring.stl", 57_640, 0),
+    ("thingi10k_1514499_slivers.stl", 26_700, 0),
+    ("thingi10k_73416.stl", 76_840, 0),
+    ("degenerate_sliding.off", 8, 0),
+    ("zero_area_triangle.stl", 14, 0),
+];
+
+#[test]
+fn models_have_the_counts_of_their_list() {
+    let Some(folder) = p2m_testkit::models() else { return };
+    for &(name, triangles, segments) in MODELS {
+        let scene = read_scene(&folder.join(name)).unwrap();
+        let found = (scene.soup.triangles().len(), scene.soup.segments().len(), scene.soup.points().len());
+        assert_eq!(found, (triangles, segments, 0), "{name}");
+    }
+    let files = std::fs::read_dir(&folder).unwrap().filter_map(|f| f.unwrap().file_name().into_string().ok());
+    for file in files.filter(|f| f.parse::<std::path::PathBuf>().is_ok_and(|p| Format::from_path(&p).is_ok())) {
+        assert!(MODELS.iter().any(|&(name, ..)| name == file), "{file} is not in the list");
+    }
+}
+
+#[test]
+fn models_are_written_and_read_back_as_the_same_scene() {
+    let Some(folder) = p2m_testkit::models() else { return };
+    for &(name, _, segments) in MODELS {
+        let scene = read_scene(&folder.join(name)).unwrap();
+        for format in [Format::Obj, Format::Ply, Format::Off] {
+            let again = read_back(&scene, format);
+            assert_eq!(again.soup, scene.soup, "{name} as {format}");
+            assert_eq!(bits(&again), bits(&scene), "{name} as {format}");
+        }
+        assert_eq!(read_back(&scene, Format::Obj).objects, scene.objects, "{name}");
+        if segments > 0 {
+            let error = write_stl(&scene, Vec::new()).unwrap_err();
+            assert!(matches!(error, WriteError::NotATriangle { .. }), "{name}: {error}");
+            continue;
+        }
+        // The corners of each triangle, in single precision; positions are numbered anew.
+        let again = read_back(&scene, Format::Stl);
+        let (before, after) = (scene.soup.triangles(), again.soup.triangles());
+        assert_eq!(before.len(), after.len(), "{name}");
+        let rounding = stl_rounding(&scene);
+        let mut largest = 0.0f64;
+        for (&i, &j) in before.as_flattened().iter().zip(after.as_flattened()) {
+            let (p, q) = (scene.soup.positions()[i as usize], again.soup.positions()[j as usize]);
+            assert_eq!(p.map(|x| f64::from(x as f32)), q, "{name}");
+            largest = largest.max((p - q).amax());
+        }
+        assert_eq!(rounding.largest, largest, "{name}");
+        assert_eq!(rounding.count == 0, largest == 0.0, "{name}");
+        if name.ends_with(".stl") {
+            assert_eq!(rounding.count, 0, "{name}");
+            assert_eq!((&again.soup, bits(&again)), (&scene.soup, bits(&scene)), "{name}");
+        }
+    }
+}

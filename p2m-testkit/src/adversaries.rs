@@ -1,0 +1,330 @@
+//! Scenes that are bad for indexes: that make trees deep, lists long, cells many, Delaunay tetrahedra quadratic in number,
+//! or builds slow. Each for any number of primitives.
+
+use crate::{rng, vector};
+use nalgebra::{Point3, Vector3};
+use p2m_core::{Element, Point, PrimitiveSet, Segment, Shape, Soup, Triangle};
+use rand::{Rng, RngExt};
+use std::f64::consts::TAU;
+
+/// A family of scenes.
+#[derive(Clone, Copy, Debug)]
+pub struct Adversary {
+    /// Its name in tables.
+    pub name: &'static str,
+    /// What it is, and what it makes bad.
+    pub about: &'static str,
+    make: fn(usize) -> Vec<Shape<f64>>,
+}
+
+/// All of them, in the order of the tables.
+pub const ADVERSARIES: &[Adversary] = &[
+    Adversary { name: "identical", about: "the same triangle again and again: nothing to split by", make: identical },
+    Adversary { name: "one place", about: "points at one place: no size at all", make: one_place },
+    Adversary { name: "nested", about: "triangles in a corner, over 1000 octaves: deep trees", make: nested },
+    Adversary {
+        name: "staircase",
+        about: "segments of which each is longer than all before, over 580 octaves: every split by cost takes one off",
+        make: staircase,
+    },
+    Adversary { name: "fan", about: "triangles with one apex, as narrow as they are many: long lists", make: fan },
+    Adversary { name: "comb", about: "long thin triangles through one point: boxes that overlap", make: comb },
+    Adversary {
+        name: "star",
+        about: "segments from one point to a sphere: one site has all others around it",
+        make: star,
+    },
+    Adversary { name: "sphere", about: "points on a sphere: all are nearest in the middle", make: sphere },
+    Adversary {
+        name: "spheres",
+        about: "the same points on sixteen concentric spheres: the same again",
+        make: spheres,
+    },
+    Adversary {
+        name: "skew points",
+        about: "points on two skew lines: all pairs make Delaunay tetrahedra",
+        make: skew_points,
+    },
+    Adversary { name: "skew wires", about: "two skew wires of segments: the same", make: skew_wires },
+    Adversary { name: "helices", about: "two helices around each other: the same", make: helices },
+    Adversary { name: "moment curve", about: "points (t, t^2, t^3): every pair is an edge", make: moment_curve },
+    Adversary { name: "grid", about: "points of a grid: cospherical everywhere", make: grid },
+    Adversary {
+        name: "needles",
+        about: "long thin triangles at random in a box: boxes that tell nothing",
+        make: needles,
+    },
+    Adversary { name: "sheets", about: "large parallel squares on top of each other: no vertex is near", make: sheets },
+    Adversary { name: "line", about: "segments on a line but for rounding: flat tetrahedra", make: line },
+    Adversary { name: "plane", about: "triangles in an askew plane but for rounding: the same", make: plane },
+    Adversary { name: "huge and tiny", about: "triangles of 10^6 and of 1 in turns", make: |n| sizes(n, 1e6) },
+    Adversary { name: "huger and tiny", about: "triangles of 10^12 and of 1 in turns", make: |n| sizes(n, 1e12) },
+    Adversary {
+        name: "one over all",
+        about: "a huge triangle over tiny ones: in the way of every split",
+        make: one_over_all,
+    },
+    Adversary {
+        name: "two clouds",
+        about: "two dense clouds of points far apart: grids that are empty",
+        make: two_clouds,
+    },
+];
+
+impl Adversary {
+    /// The one of a name.
+    #[must_use]
+    pub fn named(name: &str) -> &'static Self {
+        ADVERSARIES.iter().find(|adversary| adversary.name == name).expect("a name of the list")
+    }
+
+    /// One with so many primitives.
+    #[must_use]
+    pub fn soup(&self, n: usize) -> Soup<f64> {
+        let mut soup = Soup::default();
+        for shape in (self.make)(n) {
+            let mut own = [0; 3];
+            for (to, p) in own.iter_mut().zip(shape.vertices()) {
+                *to = u32::try_from(soup.push_position(*p)).expect("few positions");
+            }
+            let element = match shape.vertices().len() {
+                1 => Element::Point(own[0]),
+                2 => Element::Segment([own[0], own[1]]),
+                _ => Element::Triangle(own),
+            };
+            soup.push(element).expect("finite");
+        }
+        soup.shrink_to_fit();
+        soup
+    }
+}
+
+/// Queries for any scene that is not empty: its middle and the origin, where these scenes are worst, then vertices, places between
+/// vertices, near these, in and around its box, and far away.
+#[must_use]
+pub fn queries(soup: &Soup<f64>, count: usize) -> Vec<Point3<f64>> {
+    let random = &mut rng("adversaries", count as u64);
+    let bounds = soup.aabb();
+    let (middle, size) = (nalgebra::center(&bounds.min, &bounds.max), bounds.max - bounds.min);
+    let vertex = |random: &mut dyn FnMut(usize) -> usize| soup.positions()[random(soup.positions().len())];
+    let some = (2..count).map(|i| {
+        let mut number = |n: usize| random.random_range(0..n);
+        let (a, b) = (vertex(&mut number), vertex(&mut number));
+        match i % 6 {
+            0 => a,
+            1 => nalgebra::center(&a, &b),
+            2 => a + vector(random) * ((b - a).norm() * 2f64.powi(-random.random_range(0..40))),
+            3 => middle + vector(random).component_mul(&size) * 0.525,
+            4 => middle + vector(random) * (size.max() * 5.0),
+            _ => middle + vector(random) * (size.max() * 1e-3),
+        }
+    });
+    [middle, Point3::origin()].into_iter().chain(some).take(count).collect()
+}
+
+/// The part of the way that `i` of `n` is.
+fn part(i: usize, n: usize) -> f64 {
+    i as f64 / n as f64
+}
+
+/// 2 to the power of any number.
+fn power(exponent: f64) -> f64 {
+    let whole = exponent.floor();
+    #[allow(clippy::cast_possible_truncation, reason = "exponents of f64")]
+    let scale = 2f64.powi(whole as i32);
+    scale * (exponent - whole).exp2()
+}
+
+fn triangle([a, b, c]: [Point3<f64>; 3]) -> Shape<f64> {
+    Triangle::new(a, b, c).into()
+}
+
+fn points(places: impl Iterator<Item = Point3<f64>>) -> Vec<Shape<f64>> {
+    places.map(|p| Point::new(p).into()).collect()
+}
+
+/// A direction at random.
+fn direction(random: &mut impl Rng) -> Vector3<f64> {
+    loop {
+        let v = vector(random);
+        if (0.01..1.0).contains(&v.norm_squared()) {
+            return v.normalize();
+        }
+    }
+}
+
+fn identical(n: usize) -> Vec<Shape<f64>> {
+    let corner = [[0.1, 0.2, 0.3], [1.1, 0.3, 0.2], [0.2, 1.4, 0.5]].map(Point3::from);
+    vec![triangle(corner); n]
+}
+
+fn one_place(n: usize) -> Vec<Shape<f64>> {
+    vec![Point::new(Point3::new(0.1, 0.2, 0.3)).into(); n]
+}
+
+fn nested(n: usize) -> Vec<Shape<f64>> {
+    let of_size = |s: f64| triangle([Point3::new(s, 0.0, 0.0), Point3::new(0.0, s, 0.0), Point3::new(0.0, 0.0, s)]);
+    (0..n).map(|i| of_size(power(-1000.0 * part(i, n)))).collect()
+}
+
+fn staircase(n: usize) -> Vec<Shape<f64>> {
+    let at = |i: usize| power(580.0 * part(i, n) - 290.0);
+    (0..n).map(|i| Segment::new(Point3::new(at(i), 0.0, at(i)), Point3::new(at(i + 1), 0.0, at(i))).into()).collect()
+}
+
+/// A place on a circle around the axis z.
+fn on_circle(turns: f64, radius: f64, z: f64) -> Point3<f64> {
+    let (sine, cosine) = (turns * TAU).sin_cos();
+    Point3::new(radius * cosine, radius * sine, z)
+}
+
+fn fan(n: usize) -> Vec<Shape<f64>> {
+    let rim = |i: usize| on_circle(part(i, n), 0.5, 0.0);
+    (0..n).map(|i| triangle([Point3::new(0.0, 0.0, 0.3), rim(i), rim(i + 1)])).collect()
+}
+
+fn comb(n: usize) -> Vec<Shape<f64>> {
+    let random = &mut rng("comb", 0);
+    (0..n)
+        .map(|_| {
+            let (way, aside) = (direction(random), vector(random) * 1e-3);
+            triangle([Point3::from(-way), Point3::from(way), Point3::from(aside)])
+        })
+        .collect()
+}
+
+fn star(n: usize) -> Vec<Shape<f64>> {
+    let random = &mut rng("star", 0);
+    (0..n).map(|_| Segment::new(Point3::origin(), Point3::from(direction(random))).into()).collect()
+}
+
+fn sphere(n: usize) -> Vec<Shape<f64>> {
+    let random = &mut rng("sphere", 0);
+    points((0..n).map(|_| Point3::from(direction(random))))
+}
+
+fn spheres(n: usize) -> Vec<Shape<f64>> {
+    const SPHERES: usize = 16;
+    let random = &mut rng("spheres", 0);
+    let ways: Vec<Vector3<f64>> = (0..n.div_ceil(SPHERES)).map(|_| direction(random)).collect();
+    points((0..n).map(|i| Point3::from(ways[i / SPHERES] * part(i % SPHERES + 1, SPHERES))))
+}
+
+/// Place `t` from 0 to 1 on one of two lines.
+fn on_skew_line(first: bool, t: f64) -> Point3<f64> {
+    if first { Point3::new(t - 0.5, 0.0, -0.5) } else { Point3::new(0.0, t - 0.5, 0.5) }
+}
+
+fn skew_points(n: usize) -> Vec<Shape<f64>> {
+    points((0..n).map(|i| on_skew_line(i.is_multiple_of(2), part(i / 2, n.div_ceil(2)))))
+}
+
+fn skew_wires(n: usize) -> Vec<Shape<f64>> {
+    let half = n.div_ceil(2);
+    let on = |i: usize, next: usize| on_skew_line(i.is_multiple_of(2), part(i / 2 + next, half));
+    (0..n).map(|i| Segment::new(on(i, 0), on(i, 1)).into()).collect()
+}
+
+fn helices(n: usize) -> Vec<Shape<f64>> {
+    let half = n.div_ceil(2);
+    let on = |i: usize, next: usize| {
+        let t = part(i / 2 + next, half);
+        on_circle(t + if i.is_multiple_of(2) { 0.0 } else { 0.5 }, 1.0, t * TAU)
+    };
+    (0..n).map(|i| Segment::new(on(i, 0), on(i, 1)).into()).collect()
+}
+
+fn moment_curve(n: usize) -> Vec<Shape<f64>> {
+    points((0..n).map(|i| part(i + 1, n)).map(|t| Point3::new(t, t * t, t * t * t)))
+}
+
+fn grid(n: usize) -> Vec<Shape<f64>> {
+    let side = (1..).find(|side| side * side * side >= n).expect("numbers have roots");
+    points((0..n).map(|i| Point3::from([i % side, i / side % side, i / side / side].map(|x| x as f64))))
+}
+
+fn needles(n: usize) -> Vec<Shape<f64>> {
+    let random = &mut rng("needles", 0);
+    (0..n)
+        .map(|_| {
+            let (a, b, aside) = (vector(random), vector(random), vector(random) * 1e-6);
+            triangle([Point3::from(a), Point3::from(b), Point3::from(b + aside)])
+        })
+        .collect()
+}
+
+fn sheets(n: usize) -> Vec<Shape<f64>> {
+    let at = |x: f64, y: f64, i: usize| Point3::new(x, y, part(i / 2, n));
+    (0..n)
+        .map(|i| {
+            let other = if i.is_multiple_of(2) { at(1.0, 0.0, i) } else { at(0.0, 1.0, i) };
+            triangle([at(0.0, 0.0, i), other, at(1.0, 1.0, i)])
+        })
+        .collect()
+}
+
+fn line(n: usize) -> Vec<Shape<f64>> {
+    let at = |i: usize| Point3::new(0.1, 0.3, -0.7) + Vector3::new(0.3, 0.7, 0.9) * part(i, n);
+    (0..n).map(|i| Segment::new(at(i), at(i + 1)).into()).collect()
+}
+
+fn plane(n: usize) -> Vec<Shape<f64>> {
+    let random = &mut rng("plane", 0);
+    let (u, v) = (Vector3::new(0.3, 0.7, 0.9), Vector3::new(-0.8, 0.1, 0.3));
+    let size = 2.0 / (n as f64).sqrt();
+    (0..n)
+        .map(|_| {
+            let corner: [f64; 2] = [random.random(), random.random()];
+            triangle([(); 3].map(|()| {
+                let [s, t] = corner.map(|x| x + size * random.random::<f64>());
+                Point3::new(0.1, 0.3, -0.7) + u * s + v * t
+            }))
+        })
+        .collect()
+}
+
+fn sizes(n: usize, huge: f64) -> Vec<Shape<f64>> {
+    let random = &mut rng("sizes", 0);
+    (0..n)
+        .map(|i| {
+            let (place, size) = (vector(random) * huge, if i.is_multiple_of(2) { huge } else { 1.0 });
+            triangle([(); 3].map(|()| Point3::from(place + vector(random) * size)))
+        })
+        .collect()
+}
+
+fn one_over_all(n: usize) -> Vec<Shape<f64>> {
+    let random = &mut rng("one over all", 0);
+    let huge = [[-1e3, -1e3, 0.5], [1e3, -1e3, 0.5], [0.0, 1e3, 0.5]].map(Point3::from);
+    let size = 1.0 / (n as f64).sqrt();
+    let tiny = (1..n).map(|_| {
+        let place = vector(random).component_mul(&Vector3::new(1.0, 1.0, 0.0));
+        triangle([(); 3].map(|()| Point3::from(place + vector(random) * size)))
+    });
+    std::iter::once(triangle(huge)).chain(tiny).collect()
+}
+
+fn two_clouds(n: usize) -> Vec<Shape<f64>> {
+    let random = &mut rng("two clouds", 0);
+    points(
+        (0..n).map(|i| {
+            Point3::from(vector(random) * 1e-6 + Vector3::repeat(if i.is_multiple_of(2) { 1.0 } else { -1.0 }))
+        }),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_adversary_has_as_many_primitives_as_asked_for() {
+        for adversary in ADVERSARIES {
+            for n in [1, 2, 3, 17, 500] {
+                let soup = adversary.soup(n);
+                assert_eq!(soup.len(), n, "{}", adversary.name);
+                assert!(queries(&soup, 40).iter().flat_map(|q| q.iter()).all(|x| x.is_finite()), "{}", adversary.name);
+            }
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! The true distance to one primitive: by bounds if they decide, by rational arithmetic if they do not.
+
+use crate::enclosure::Enclosure;
+use crate::oracle::Distance;
+use std::cell::{Cell, OnceCell};
+
+thread_local! {
+    static RATIONAL: Cell<u64> = const { Cell::new(0) };
+}
+
+/// How many distances of this thread needed rational arithmetic so far.
+#[must_use]
+pub fn rational_distances() -> u64 {
+    RATIONAL.get()
+}
+
+/// The distance from a query to the convex hull of one to three vertices.
+#[derive(Clone, Debug)]
+pub struct Truth<'a> {
+    query: [f64; 3],
+    vertices: &'a [[f64; 3]],
+    enclosure: Option<Enclosure>,
+    exact: OnceCell<Distance>,
+}
+
+impl<'a> Truth<'a> {
+    /// Of finite coordinates.
+    ///
+    /// # Panics
+    /// Without one to three vertices.
+    #[must_use]
+    pub fn new(query: [f64; 3], vertices: &'a [[f64; 3]]) -> Self {
+        Self { query, vertices, enclosure: Enclosure::new(query, vertices), exact: OnceCell::new() }
+    }
+
+    /// In rational arithmetic.
+    pub fn exact(&self) -> &Distance {
+        self.exact.get_or_init(|| {
+            RATIONAL.set(RATIONAL.get() + 1);
+            Distance::new(self.query, self.vertices)
+        })
+    }
+
+    /// [`Distance::error`], at most a thousandth above it.
+    #[must_use]
+    pub fn error(&self, computed: f64, bits: u32, eta: f64) -> f64 {
+        let fast = self.enclosure.and_then(|e| e.error(computed, bits, eta));
+        fast.unwrap_or_else(|| self.exact().error(computed, bits, eta))
+    }
+
+    /// [`Distance::relative_error`], at most a thousandth above it.
+    #[must_use]
+    pub fn relative_error(&self, computed: f64, bits: u32, eta: f64) -> f64 {
+        let fast = self.enclosure.and_then(|e| e.relative_error(computed, bits, eta));
+        fast.unwrap_or_else(|| self.exact().relative_error(computed, bits, eta))
+    }
+
+    /// Whether the distance is at least `bound`; it is not if that is infinite or NaN.
+    #[must_use]
+    pub fn is_at_least(&self, bound: f64) -> bool {
+        if bound <= 0.0 {
+            return true;
+        }
+        let fast = self.enclosure.and_then(|e| e.is_at_least(bound));
+        fast.unwrap_or_else(|| self.exact().is_at_least(bound))
+    }
+
+    /// So many times the largest distance from the query to a vertex, within a few roundings.
+    #[must_use]
+    pub fn of_reach(&self, factor: f64) -> f64 {
+        self.enclosure.map_or_else(|| self.exact().of_reach(factor), |e| e.of_reach(factor))
+    }
+}

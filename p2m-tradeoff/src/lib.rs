@@ -1,0 +1,63 @@
+//! Measures speed against accuracy of backends, and reports it.
+//!
+//! A backend answers faster when it may be less accurate. [`settings`] lists the ways to ask for that, [`measure`]
+//! asks everyone in turns and compares the answers with what is true, and what comes out ([`Curve`]: a backend, [`Point`]: one
+//! of its settings) becomes a page ([`page`]), a table ([`text`]), a record ([`record`]) and, of two records, a
+//! comparison ([`compare`]).
+//!
+//! ```
+//! use nalgebra::Point3;
+//! use p2m_core::{BruteForce, Point};
+//! use p2m_tradeoff::queries::Queries;
+//! use p2m_tradeoff::settings::SETTINGS;
+//! use p2m_tradeoff::{Asked, Build, Effort, Entrant, Truth, measure};
+//!
+//! let sites = [Point::new(Point3::new(0.0, 0.0, 0.0)), Point::new(Point3::new(4.0, 0.0, 0.0))];
+//! let index = BruteForce::new(&sites).unwrap();
+//! let entrants: Vec<Entrant<'_>> = SETTINGS[..2]
+//!     .iter()
+//!     .map(|setting| Entrant {
+//!         backend: "brute".to_owned(),
+//!         setting: setting.name.to_owned(),
+//!         promise: setting.promise(4.0),
+//!         subject: Box::new(Asked::new(&index, setting.options::<f64>(4.0))),
+//!         build: Build::default(),
+//!     })
+//!     .collect();
+//! let queries = Queries::new(vec![Point3::new(0.0, 3.0, 0.0)]);
+//! let truths = [Truth { distance: 3.0, rest: 0.0, reach: 3.0, id: 0 }];
+//! let curves = measure(&entrants, &queries, &truths, &Effort { rounds: 5, seconds: 0.1 }, &|_| ());
+//! assert_eq!(curves[0].points[0].errors.scaled.max, 0.0);
+//! ```
+#![forbid(unsafe_code)]
+
+pub mod compare;
+mod csv;
+mod curve;
+mod economy;
+mod error;
+mod errors;
+mod measure;
+pub mod page;
+pub mod plot;
+mod provenance;
+pub mod queries;
+pub mod record;
+#[cfg(test)]
+mod sample;
+pub mod settings;
+mod spread;
+mod subject;
+mod table;
+pub mod text;
+
+pub use csv::{csv_line, csv_records};
+pub use curve::{Build, Curve, Latency, Point, SceneFigures, SetFigures};
+pub use economy::{Cost, break_even, cheapest, usual_costs};
+pub use error::{PlotError, RecordError};
+pub use errors::{Errors, Truth, Worst};
+pub use measure::{Effort, Entrant, measure, rotated, thread_seconds};
+pub use provenance::Provenance;
+pub use spread::{Spread, percentile};
+pub use subject::{Answer, Asked, AskedForProof, Respond, Subject, clock_nanoseconds};
+pub use table::Table;

@@ -1,0 +1,296 @@
+//! Everything that was measured as one page that needs nothing else: no other file, no network, no script.
+
+mod html;
+mod plots;
+mod scene;
+mod verdict;
+
+use crate::curve::SceneFigures;
+use crate::error::PlotError;
+use crate::plot::{Mark, Plot, Series};
+use crate::provenance::Provenance;
+use crate::settings::SETTINGS;
+use crate::text::error;
+use html::Html;
+use plots::{Colours, Unit};
+
+/// A quantity of each backend that depends on another one, as a plot and a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    /// Its head.
+    pub title: String,
+    /// What was done.
+    pub about: String,
+    /// The names of what is given and of what was measured.
+    pub axes: [&'static str; 2],
+    /// Backends, and their points.
+    pub lines: Vec<(String, Vec<(f64, f64)>)>,
+}
+
+/// What a page is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Page<'a> {
+    /// By what it was measured.
+    pub provenance: &'a Provenance,
+    /// How, in sentences: rounds, queries, seed, how long it took.
+    pub effort: &'a str,
+    /// What answers were compared with, in sentences.
+    pub truth: &'a str,
+    /// What reading the clock takes, in nanoseconds.
+    pub clock: f64,
+    /// What was measured.
+    pub scenes: &'a [SceneFigures],
+    /// What was measured besides.
+    pub sweeps: &'a [Sweep],
+    /// What the names of backends stand for: names and sentences.
+    pub backends: &'a [(&'a str, &'a str)],
+}
+
+const STYLE: &str = include_str!("style.css");
+
+impl Page<'_> {
+    /// The page as HTML.
+    ///
+    /// # Errors
+    /// [`PlotError::Draw`]
+    pub fn html(&self) -> Result<String, PlotError> {
+        let colours = self.colours();
+        let mut html = Html::default();
+        html.raw("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+        html.raw("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
+        html.text("title", "Closest points: speed against accuracy");
+        html.within("style", "", |html| html.raw(STYLE));
+        html.raw("</head>\n<body>\n");
+        html.text("h1", "Closest points: speed against accuracy");
+        self.write_head(&mut html);
+        self.write_verdict(&mut html);
+        self.write_contents(&mut html);
+        self.write_compared(&mut html);
+        self.write_reading(&mut html);
+        for scene in self.scenes {
+            scene::write(&mut html, scene, &colours)?;
+        }
+        self.write_sweeps(&mut html, &colours)?;
+        html.raw("</body>\n</html>\n");
+        Ok(html.finish())
+    }
+
+    /// The plots that stand well alone, with names for their files: speed over the largest relative error.
+    ///
+    /// # Errors
+    /// [`PlotError::Draw`]
+    pub fn plots(&self) -> Result<Vec<(String, String)>, PlotError> {
+        let colours = self.colours();
+        let mut plots = Vec::new();
+        for scene in self.scenes {
+            for set in &scene.sets {
+                match plots::pareto(set, &colours, Unit::Relative, |worst| worst.max).svg() {
+                    Err(PlotError::Empty) => {}
+                    svg => plots.push((file_name(&format!("{} {}", stem(&scene.name), set.name)), svg?)),
+                }
+            }
+        }
+        for sweep in self.sweeps {
+            plots.push((file_name(&sweep.title), sweep_plot(sweep, &colours).svg()?));
+        }
+        Ok(plots)
+    }
+
+    /// Every backend has its colour, in the order of its first appearance.
+    fn colours(&self) -> Colours {
+        let mut names: Vec<String> = Vec::new();
+        let curves = self.scenes.iter().flat_map(|scene| scene.sets.iter().flat_map(|set| &set.curves));
+        for name in curves.map(|curve| &curve.name) {
+            if !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
+        Colours(names)
+    }
+
+    fn write_head(&self, html: &mut Html) {
+        html.paragraph(
+            "Given a scene of triangles, segments and points, and a place: which point of the scene is closest to it? There are several \
+             ways to find out (backends), and each can be told to be less exact (settings). This page says what each costs and how wrong it \
+             is, as measured, so that one can be chosen.",
+        );
+        html.within("div", "class=\"machine\"", |html| {
+            html.paragraph(&format!(
+                "Measured on {} by `{}`: {}.",
+                self.provenance.date,
+                self.provenance.command,
+                self.provenance.machine()
+            ));
+            html.paragraph(self.effort);
+        });
+    }
+
+    /// Ways to the scenes.
+    fn write_contents(&self, html: &mut Html) {
+        html.within("nav", "", |html| {
+            html.words("The scenes in detail: ");
+            for (i, scene) in self.scenes.iter().enumerate() {
+                html.words(if i > 0 { ", " } else { "" });
+                html.within("a", &format!("href=\"#{}\"", scene::anchor(&scene.name)), |html| html.words(&scene.name));
+            }
+            html.words(".");
+        });
+    }
+
+    fn write_compared(&self, html: &mut Html) {
+        html.text("h2", "What was compared");
+        html.text("h3", "Backends");
+        html.terms(self.backends.iter().copied());
+        html.text("h3", "Settings");
+        html.terms(SETTINGS.iter().map(|setting| (setting.name, setting.about)));
+    }
+
+    fn write_verdict(&self, html: &mut Html) {
+        html.text("h2", "In short");
+        html.paragraph(
+            "The fastest backend and setting for each scene and set of queries: once whatever answers with no error but rounding (16 u M at \
+             most) with its default, then with a largest error of 1 % and of 10 % of the distance, where a setting counts only if it is faster beyond \
+             noise. The last three columns have the backend that takes the least time altogether, building included, without errors but \
+             rounding. All of it on one thread; what the names mean is said below.",
+        );
+        html.within("div", "class=\"words\"", |html| html.table(&verdict::head(), 2, &verdict::rows(self.scenes)));
+        let promised =
+            self.scenes.iter().flat_map(|s| s.sets.iter().flat_map(|set| set.curves.iter().flat_map(|c| &c.points)));
+        let (mut answers, mut broken) = (0, 0);
+        for point in promised {
+            answers += point.errors.compared;
+            broken += point.errors.broken;
+        }
+        html.paragraph(&format!(
+            "{broken} of {answers} answers were farther from the truth than their setting promises (rivals and budgets promise nothing but their lower bounds)."
+        ));
+    }
+
+    fn write_reading(&self, html: &mut Html) {
+        html.text("h2", "How to read it");
+        let clock = format!(
+            "Each one timed by itself, by the wall clock; nothing is subtracted. Reading the clock takes {:.0} ns here, measured, and is \
+             part of each figure. The largest ones show what else the machine does.",
+            self.clock
+        );
+        let truth = format!("Those of the distance. {}", self.truth);
+        html.terms([
+            (
+                "A point in a plot",
+                "One setting of one backend: how long a query takes (the median of the rounds) and how wrong it is (the worst, or what one \
+                 query in a thousand exceeds). The line through points is one backend, from its most exact setting on; dots beside it are \
+                 settings that are both slower and less exact than another, crosses those of a scene that is kept in f32. What is below and to the left of a point beats it in both. With a mouse, a point \
+                 tells its name.",
+            ),
+            ("exact", "At the left end of an axis: where errors of 0 lie, which a logarithmic axis has no place for."),
+            (
+                "Time",
+                "Thread CPU time of one thread, one query at a time, contenders taking turns; in brackets the least and the most of the \
+                 rounds. A slow contender gets fewer queries, which is remarked. What is more than 30 times slower than the fastest is in \
+                 the tables alone.",
+            ),
+            ("Errors", &truth),
+            (
+                "u M",
+                "What roundings can be measured by: u = 2^-53, and M is the largest distance from the query to a corner of the nearest \
+                 primitive. An error of 8 u M in a scene of a metre is less than 1e-15 metres.",
+            ),
+            (
+                "Relative errors",
+                "Parts of the true distance. Queries on the surface itself have distances that are nothing but roundings (or 0, which is left \
+                 out): read u M there.",
+            ),
+            (
+                "Bound gap",
+                "Every answer of ours comes with a certified lower bound of the true distance. This is the largest part of an answer that the \
+                 bound leaves open.",
+            ),
+            (
+                "Other primitive",
+                "How often another primitive than the nearest is named. Of equally near ones it is the one of the lowest number. Rivals are not \
+                 asked for it.",
+            ),
+            (
+                "Remarks",
+                "What is wrong with answers, if anything is. `no \
+                 faster`: rounds were not all faster than all of the default of the same backend.",
+            ),
+            ("How long single queries take", &clock),
+            (
+                "From how many queries on",
+                "The time to build divided by the time that each query saves. The row is what one has, the column what one would take instead. \
+                 `never`: slower to ask; `always`: neither slower to build nor to ask.",
+            ),
+        ]);
+    }
+
+    fn write_sweeps(&self, html: &mut Html, colours: &Colours) -> Result<(), PlotError> {
+        if self.sweeps.is_empty() {
+            return Ok(());
+        }
+        html.text("h2", "With size and with threads");
+        for sweep in self.sweeps {
+            html.text("h3", &sweep.title);
+            html.paragraph(&sweep.about);
+            let svg = sweep_plot(sweep, colours).svg()?;
+            html.within("div", "class=\"figures\"", |html| {
+                html.figure(&svg, &format!("{} over {}", sweep.axes[1], sweep.axes[0]))
+            });
+            let (head, rows) = sweep_table(sweep);
+            html.table(&head.iter().map(String::as_str).collect::<Vec<_>>(), 1, &rows);
+        }
+        Ok(())
+    }
+}
+
+fn sweep_plot(sweep: &Sweep, colours: &Colours) -> Plot {
+    let series =
+        sweep.lines.iter().map(|(name, points)| Series { mark: Mark::Line, ..colours.line(name, points.clone()) });
+    Plot {
+        x: sweep.axes[0],
+        y: sweep.axes[1],
+        series: series.collect(),
+        size: plots::SIZE,
+        legend: plots::LEGEND,
+        ..Plot::default()
+    }
+}
+
+/// A column for each backend, a row for each given value.
+fn sweep_table(sweep: &Sweep) -> (Vec<String>, Vec<Vec<String>>) {
+    let mut given: Vec<f64> = sweep.lines.iter().flat_map(|(_, points)| points.iter().map(|p| p.0)).collect();
+    given.sort_by(f64::total_cmp);
+    given.dedup();
+    let head = std::iter::once(sweep.axes[0].to_owned()).chain(sweep.lines.iter().map(|(name, _)| name.clone()));
+    let rows = given.iter().map(|x| {
+        let value = |points: &[(f64, f64)]| {
+            points.iter().find(|p| p.0.total_cmp(x).is_eq()).map_or("-".to_owned(), |p| figure(p.1))
+        };
+        std::iter::once(format!("{x}")).chain(sweep.lines.iter().map(|(_, points)| value(points))).collect()
+    });
+    (head.collect(), rows.collect())
+}
+
+/// About three digits.
+fn figure(value: f64) -> String {
+    match value {
+        x if x >= 100.0 => format!("{x:.0}"),
+        x if x >= 10.0 => format!("{x:.1}"),
+        x if x >= 0.01 => format!("{x:.3}"),
+        x => error(x),
+    }
+}
+
+/// A name without an extension.
+fn stem(name: &str) -> &str {
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
+}
+
+/// A name that every file system takes.
+fn file_name(text: &str) -> String {
+    let kept = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c.to_ascii_lowercase() } else { '-' };
+    format!("{}.svg", text.chars().map(kept).collect::<String>())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,202 @@
+//! The section of a scene.
+
+use super::html::Html;
+use super::plots::{Colours, Unit, latencies, pareto, totals};
+use crate::curve::{Curve, Point, SceneFigures, SetFigures};
+use crate::economy::{break_even, cheapest, usual_costs};
+use crate::error::PlotError;
+use crate::settings::{SETTINGS, Storage};
+use crate::text::{bytes, count, error, failures, gain, seconds};
+
+/// Writes the section.
+pub(super) fn write(html: &mut Html, scene: &SceneFigures, colours: &Colours) -> Result<(), PlotError> {
+    html.within("h2", &format!("id=\"{}\"", anchor(&scene.name)), |html| html.words(&scene.name));
+    html.paragraph(&scene.about);
+    html.text("h3", "Building");
+    html.paragraph(
+        "Seconds on one thread, and heap bytes for each primitive besides those of the scene itself. A setting has a line where it has an \
+         index of its own.",
+    );
+    html.table(&["backend", "setting", "seconds", "bytes a primitive"], 2, &builds(scene));
+    for note in &scene.notes {
+        html.paragraph(note);
+    }
+    scene.sets.iter().try_for_each(|set| write_set(html, set, colours))
+}
+
+/// By what the head of a scene is found.
+pub(super) fn anchor(name: &str) -> String {
+    name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect()
+}
+
+/// A row for each index: settings that share one have one row.
+fn builds(scene: &SceneFigures) -> Vec<Vec<String>> {
+    let Some(set) = scene.sets.first() else { return Vec::new() };
+    let mut rows = Vec::new();
+    for curve in &set.curves {
+        let mut known = None;
+        for point in &curve.points {
+            if known != Some(point.build) {
+                let build = point.build;
+                rows.push(vec![
+                    curve.name.clone(),
+                    point.setting.clone(),
+                    seconds(build.seconds),
+                    bytes(build.bytes_each),
+                ]);
+            }
+            known = Some(point.build);
+        }
+    }
+    rows
+}
+
+fn write_set(html: &mut Html, set: &SetFigures, colours: &Colours) -> Result<(), PlotError> {
+    html.text("h3", &format!("Queries: {}", set.name));
+    html.paragraph(&set.about);
+    let plots = [
+        (
+            pareto(set, colours, Unit::Relative, |worst| worst.max),
+            "Speed and the largest relative error. Lower is faster, further left is more accurate.",
+        ),
+        (
+            pareto(set, colours, Unit::Relative, |worst| worst.p999),
+            "Speed and the relative error that one query in a thousand exceeds.",
+        ),
+        (pareto(set, colours, Unit::Scaled, |worst| worst.max), "The same for the largest error in units of u M."),
+        (
+            pareto(set, colours, Unit::Scaled, |worst| worst.p999),
+            "The error in units of u M that one query in a thousand exceeds.",
+        ),
+        (
+            latencies(set, colours),
+            "How long single queries take, by the default settings: the further to the right, the rarer.",
+        ),
+        (totals(set, colours), "Building and asking together: the lowest line is the cheapest for so many queries."),
+    ];
+    let drawn = plots.into_iter().filter_map(|(plot, caption)| match plot.svg() {
+        // Without a query away from the scene there is no relative error.
+        Err(PlotError::Empty) => None,
+        svg => Some(svg.map(|svg| (svg, caption))),
+    });
+    let drawn = drawn.collect::<Result<Vec<_>, PlotError>>()?;
+    let far = super::plots::drawn(set).1;
+    if !far.is_empty() {
+        html.paragraph(&format!("Not drawn, for it takes too long: {}.", far.join(", ")));
+    }
+    html.within("div", "class=\"figures\"", |html| {
+        drawn.iter().for_each(|(svg, caption)| html.figure(svg, caption));
+    });
+    html.text("h4", "What each setting buys");
+    html.paragraph(&format!("{} queries, but for those of whom another number is said.", most_queries(set)));
+    html.table(&SETTING_HEAD, 2, &setting_rows(set));
+    html.text("h4", "How long single queries take, in ns");
+    html.table(&["backend", "setting", "50 %", "90 %", "99 %", "99.9 %", "all"], 2, &latency_rows(set));
+    html.text("h4", "From how many queries on a longer build pays");
+    write_economy(html, set);
+    Ok(())
+}
+
+const SETTING_HEAD: [&str; 11] = [
+    "backend",
+    "setting",
+    "ns per query",
+    "as fast",
+    "error, relative",
+    "99.9 %",
+    "error, u M",
+    "99.9 %",
+    "bound gap",
+    "other primitive",
+    "remarks",
+];
+
+fn setting_rows(set: &SetFigures) -> Vec<Vec<String>> {
+    let most = most_queries(set);
+    let all = set.curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)));
+    all.map(|(curve, point)| {
+        let (ns, errors) = (&point.nanoseconds, &point.errors);
+        vec![
+            curve.name.clone(),
+            point.setting.clone(),
+            format!("{:.0} ({:.0} to {:.0})", ns.median, ns.min, ns.max),
+            gain(curve, ns.median),
+            error(errors.relative.max),
+            error(errors.relative.p999),
+            error(errors.scaled.max),
+            error(errors.scaled.p999),
+            error(errors.gap),
+            errors.other_ids.map_or("-".to_owned(), |other| share(other, errors.compared)),
+            where_it_fails(curve, point, most),
+        ]
+    })
+    .collect()
+}
+
+/// A part of a whole in percent.
+fn share(part: usize, whole: usize) -> String {
+    if part == 0 { "0".to_owned() } else { format!("{} %", error(100.0 * part as f64 / whole as f64)) }
+}
+
+/// Of any point.
+fn most_queries(set: &SetFigures) -> usize {
+    set.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.queries)).max().unwrap_or(0)
+}
+
+/// In words; `most` are the queries of who was asked most.
+fn where_it_fails(curve: &Curve, point: &Point, most: usize) -> String {
+    let mut words = Vec::new();
+    if point.queries < most {
+        words.push(format!("{} queries", point.queries));
+    }
+    let failures = failures(&point.errors);
+    if !failures.is_empty() {
+        words.push(failures);
+    }
+    let rounded = SETTINGS.iter().any(|s| s.name == point.setting && s.storage == Storage::Single);
+    if rounded && point.errors.bounds_above > 0 {
+        words.push("of the rounded scene".to_owned());
+    }
+    let usual = curve.usual().filter(|usual| usual.setting != point.setting);
+    if usual.is_some_and(|usual| usual.nanoseconds.min <= point.nanoseconds.max) {
+        words.push("no faster".to_owned());
+    }
+    words.join(", ")
+}
+
+fn latency_rows(set: &SetFigures) -> Vec<Vec<String>> {
+    let all = set.curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)));
+    all.filter_map(|(curve, point)| {
+        let l = point.latency?;
+        let mut row = vec![curve.name.clone(), point.setting.clone()];
+        // One in a thousand is seen only among so many.
+        let all = [(l.p50, 2), (l.p90, 10), (l.p99, 100), (l.p999, 1000), (l.max, 1)];
+        row.extend(all.map(|(ns, least)| if point.queries < least { "-".to_owned() } else { ns.to_string() }));
+        Some(row)
+    })
+    .collect()
+}
+
+/// Who is cheapest when, and a table of pairs.
+fn write_economy(html: &mut Html, set: &SetFigures) {
+    let costs = usual_costs(&set.curves);
+    let only: Vec<_> = costs.iter().map(|(_, cost)| *cost).collect();
+    let turns = cheapest(&only).into_iter().map(|(i, from)| match from {
+        0.0 => costs[i].0.to_owned(),
+        _ => format!("{} from {} queries on", costs[i].0, count(from)),
+    });
+    html.paragraph(&format!("Cheapest of all, building included: {}.", turns.collect::<Vec<_>>().join(", then ")));
+    let head: Vec<&str> = std::iter::once("instead of").chain(costs.iter().map(|(name, _)| *name)).collect();
+    let cell = |i: usize, j: usize| match break_even(only[i], only[j]) {
+        _ if i == j => String::new(),
+        None => "never".to_owned(),
+        Some(0.0) => "always".to_owned(),
+        Some(queries) => count(queries),
+    };
+    let rows: Vec<Vec<String>> = costs
+        .iter()
+        .enumerate()
+        .map(|(i, (name, _))| std::iter::once((*name).to_owned()).chain((0..costs.len()).map(|j| cell(i, j))).collect())
+        .collect();
+    html.table(&head, 1, &rows);
+}

@@ -1,0 +1,135 @@
+//! Where a figure comes from: machine, compiler, flags, commit, command.
+
+use std::path::Path;
+use std::process::Command;
+
+/// What is said above every table and in every line of a record.
+#[derive(Clone, Debug)]
+pub struct Provenance {
+    /// Which build this is: `portable` or `native` unless the user says otherwise.
+    pub label: String,
+    /// UTC.
+    pub date: String,
+    /// Of the checkout, with a mark if files differ from it; or the version.
+    pub commit: String,
+    /// Model, and which instruction sets it has.
+    pub cpu: String,
+    /// Version.
+    pub rustc: String,
+    /// Profile, optimisation and RUSTFLAGS.
+    pub flags: String,
+    /// Instruction sets that the compiler was allowed to use everywhere.
+    pub target_features: String,
+    /// The command line.
+    pub command: String,
+}
+
+/// The names of those features for which a macro says so, at compile time or at run time.
+macro_rules! features {
+    ($has:ident) => {
+        features!($has: "sse2", "sse4.1", "avx", "avx2", "fma", "bmi2", "avx512f", "avx512dq", "avx512vl")
+    };
+    ($has:ident: $($name:tt),+) => {
+        [$(($name, $has!($name))),+].iter().filter(|(_, has)| *has).map(|(name, _)| *name).collect::<Vec<_>>().join(" ")
+    };
+}
+
+/// Whether the compiler may use a feature everywhere.
+macro_rules! compiled {
+    ($name:tt) => {
+        cfg!(target_feature = $name)
+    };
+}
+
+/// Whether the processor has a feature.
+#[cfg(target_arch = "x86_64")]
+macro_rules! detected {
+    ($name:tt) => {
+        std::arch::is_x86_feature_detected!($name)
+    };
+}
+#[cfg(not(target_arch = "x86_64"))]
+macro_rules! detected {
+    ($name:tt) => {
+        false
+    };
+}
+
+impl Provenance {
+    /// Of this program, now; a program that runs from a checkout says where that is, any other is known by its version.
+    #[must_use]
+    pub fn collect(label: Option<&str>, checkout: Option<&Path>) -> Self {
+        let native = cfg!(target_feature = "avx2");
+        let rustflags = env!("P2M_TRADEOFF_RUSTFLAGS");
+        Self {
+            label: label.unwrap_or(if native { "native" } else { "portable" }).to_owned(),
+            date: output("date", &["-u", "+%Y-%m-%dT%H:%MZ"]).unwrap_or_default(),
+            commit: checkout.map_or_else(|| concat!("version ", env!("CARGO_PKG_VERSION")).to_owned(), commit),
+            cpu: format!("{} (has {})", cpu_model(), features!(detected)),
+            rustc: env!("P2M_TRADEOFF_RUSTC").to_owned(),
+            flags: format!(
+                "{} opt-level {} RUSTFLAGS \"{rustflags}\"",
+                env!("P2M_TRADEOFF_PROFILE"),
+                env!("P2M_TRADEOFF_OPT_LEVEL")
+            ),
+            target_features: features!(compiled),
+            command: command(),
+        }
+    }
+
+    /// All but command and date.
+    #[must_use]
+    pub fn machine(&self) -> String {
+        let Self { label, commit, cpu, rustc, flags, .. } = self;
+        format!("{cpu}; build `{label}`: {rustc}, {flags}; commit {commit}")
+    }
+
+    /// The columns that [`Provenance::fields`] fills.
+    pub const COLUMNS: [&'static str; 7] = ["label", "date", "commit", "cpu", "rustc", "flags", "target_features"];
+
+    /// For a record.
+    #[must_use]
+    pub fn fields(&self) -> [String; 7] {
+        let Self { label, date, commit, cpu, rustc, flags, target_features, .. } = self.clone();
+        [label, date, commit, cpu, rustc, flags, target_features]
+    }
+}
+
+impl std::fmt::Display for Provenance {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        writeln!(f, "Build `{}`: {}, {}, compiled for {}.", self.label, self.rustc, self.flags, self.target_features)?;
+        writeln!(f, "CPU: {}. Commit {}, {}.", self.cpu, self.commit, self.date)?;
+        writeln!(f, "Command: `{}`", self.command)
+    }
+}
+
+/// The command line, of the program its name alone.
+fn command() -> String {
+    let mut arguments = std::env::args();
+    let program = arguments.next().unwrap_or_default();
+    let name = Path::new(&program).file_name().map_or(program.clone(), |name| name.to_string_lossy().into_owned());
+    std::iter::once(name).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+/// The commit of a checkout, marked if files differ from it.
+fn commit(checkout: &Path) -> String {
+    let root = checkout.to_string_lossy();
+    let git = |arguments: &[&str]| output("git", &[&["-C", &*root], arguments].concat());
+    let mut commit = git(&["rev-parse", "--short", "HEAD"]).unwrap_or_else(|| "unknown".to_owned());
+    if git(&["status", "--porcelain", "--untracked-files=no"]).is_some_and(|changes| !changes.is_empty()) {
+        commit.push_str("+changes");
+    }
+    commit
+}
+
+fn cpu_model() -> String {
+    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = info.lines().find(|line| line.starts_with("model name")).and_then(|line| line.split(": ").nth(1));
+    model.unwrap_or(std::env::consts::ARCH).trim().to_owned()
+}
+
+/// What a command prints, `None` if it fails.
+fn output(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok().filter(|output| output.status.success())?;
+    Some(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}

@@ -1,0 +1,123 @@
+//! Query sets in both scalars, and parts of them.
+
+use nalgebra::Point3;
+use p2m_core::{Real, Soup};
+
+/// Queries as every contender wants them.
+#[derive(Clone, Debug)]
+pub struct Queries {
+    double: Vec<Point3<f64>>,
+    single: Vec<Point3<f32>>,
+}
+
+/// Some of them.
+#[derive(Clone, Copy, Debug)]
+pub struct QuerySlice<'a> {
+    /// In f64.
+    pub double: &'a [Point3<f64>],
+    /// The same rounded to f32.
+    pub single: &'a [Point3<f32>],
+}
+
+impl Queries {
+    /// Rounds once for all.
+    #[must_use]
+    pub fn new(double: Vec<Point3<f64>>) -> Self {
+        let single = double.iter().map(|p| p.map(f32::of_f64)).collect();
+        Self { double, single }
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.double.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.double.is_empty()
+    }
+
+    /// Those at the given places.
+    ///
+    /// # Panics
+    /// If there is no such place.
+    #[must_use]
+    pub fn gather(&self, chosen: &[usize]) -> Self {
+        Self {
+            double: chosen.iter().map(|&i| self.double[i]).collect(),
+            single: chosen.iter().map(|&i| self.single[i]).collect(),
+        }
+    }
+
+    /// Those in a range.
+    ///
+    /// # Panics
+    /// If the range is not within them.
+    #[must_use]
+    pub fn slice(&self, range: std::ops::Range<usize>) -> QuerySlice<'_> {
+        QuerySlice { double: &self.double[range.clone()], single: &self.single[range] }
+    }
+
+    /// All of them.
+    #[must_use]
+    pub fn all(&self) -> QuerySlice<'_> {
+        self.slice(0..self.len())
+    }
+}
+
+/// The two scalars, as places where to find queries.
+pub trait Scalar: Real {
+    /// The queries in this scalar.
+    fn of(queries: QuerySlice<'_>) -> &[Point3<Self>];
+}
+
+impl Scalar for f64 {
+    fn of(queries: QuerySlice<'_>) -> &[Point3<f64>] {
+        queries.double
+    }
+}
+
+impl Scalar for f32 {
+    fn of(queries: QuerySlice<'_>) -> &[Point3<f32>] {
+        queries.single
+    }
+}
+
+/// The same scene in f32; `None` if a coordinate that it uses overflows.
+#[must_use]
+pub fn rounded(soup: &Soup<f64>) -> Option<Soup<f32>> {
+    let positions = soup.positions().iter().map(|p| p.map(f32::of_f64)).collect();
+    Soup::new(positions, soup.elements()).ok()
+}
+
+/// About `count` (never more, but at least one) of `total` places, spread evenly in at most 50 runs of neighbours: a
+/// slow contender gets the same mixture, and on the lattice the same order, as the others.
+#[must_use]
+pub fn spread(total: usize, count: usize) -> Vec<usize> {
+    if count >= total {
+        return (0..total).collect();
+    }
+    let runs = count.clamp(1, 50);
+    let length = (count / runs).max(1);
+    (0..runs).flat_map(|run| (0..length).map(move |i| run * total / runs + i)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spread_is_increasing_and_within_bounds() {
+        for total in [1, 2, 49, 50, 51, 99, 101, 1000, 1037] {
+            for count in [0, 1, 2, 49, 50, 73, 99, 100, 999, 2000] {
+                let chosen = spread(total, count);
+                assert!(chosen.windows(2).all(|w| w[0] < w[1]), "{total} {count}");
+                assert!(chosen.last().is_some_and(|last| *last < total));
+                assert!(chosen.len() <= count.max(1) && 2 * chosen.len() >= count.min(total));
+            }
+        }
+        assert_eq!(spread(200_000, 20_000).len(), 20_000);
+    }
+}

@@ -1,0 +1,52 @@
+//! Figures for tests.
+
+use crate::curve::{Build, Curve, Latency, Point, SceneFigures, SetFigures};
+use crate::errors::{Errors, Worst};
+use crate::provenance::Provenance;
+use crate::spread::Spread;
+
+/// A provenance with a comma.
+pub(crate) fn provenance() -> Provenance {
+    let [label, date, commit, cpu, rustc, flags, target_features, command] =
+        ["portable", "2026-01-01", "abc", "a <processor>, fast", "rustc 1", "release", "sse2", "p2m tradeoff"]
+            .map(str::to_owned);
+    Provenance { label, date, commit, cpu, rustc, flags, target_features, command }
+}
+
+/// A point of so many nanoseconds and so large a relative error.
+pub(crate) fn point(setting: &str, ns: f64, error: f64, seconds: f64) -> Point {
+    let worst = |max: f64| Worst { max, p999: max / 2.0 };
+    let errors = Errors {
+        compared: 100,
+        unanswered: 0,
+        scaled: worst(error * 1e14),
+        relative: worst(error),
+        gap: 1e-15,
+        bounds_above: 0,
+        other_ids: Some(0),
+        broken: 0,
+    };
+    Point {
+        setting: setting.to_owned(),
+        queries: 100,
+        rounds: 5,
+        nanoseconds: Spread { median: ns, min: ns * 0.95, max: ns * 1.1 },
+        errors,
+        latency: Some(Latency { p50: 100, p90: 200, p99: 400, p999: 800, max: 1600 }),
+        build: Build { seconds, bytes_each: Some(65.5) },
+    }
+}
+
+/// A scene of a set and two backends.
+pub(crate) fn scene() -> SceneFigures {
+    let curve = |name: &str, points| Curve { name: name.to_owned(), points };
+    let tree = curve("aabb", vec![point("default", 1000.5, 0.0, 0.1), point("epsilon 0.1", 500.0, 0.05, 0.1)]);
+    let cells = curve("p2m", vec![point("default", 100.25, 1e-16, 5.0)]);
+    SceneFigures {
+        name: "a \"scene\", of two".to_owned(),
+        about: "2 triangles & 1 segment".to_owned(),
+        primitives: 3,
+        sets: vec![SetFigures { name: "1x".to_owned(), about: "uniform".to_owned(), curves: vec![tree, cells] }],
+        notes: vec!["bvh is left out: <no> reason".to_owned()],
+    }
+}

@@ -1,0 +1,141 @@
+//! What is measured: something that answers queries, many in one call, so that a query costs no dynamic call but those
+//! of the backend itself.
+
+use crate::queries::{QuerySlice, Scalar};
+use nalgebra::Point3;
+use p2m_core::{CertifiedQuery, Closest, ClosestPoint, QueryOptions};
+use std::time::Instant;
+
+/// The answer to a query, as far as it is compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Answer {
+    /// The distance; NaN if there was no answer.
+    pub distance: f64,
+    /// The certified lower bound; NaN if there is none.
+    pub lower_bound: f64,
+    /// The primitive; [`u32::MAX`] if it is not known.
+    pub id: u32,
+}
+
+impl Answer {
+    /// No answer.
+    pub const NONE: Self = Self { distance: f64::NAN, lower_bound: f64::NAN, id: u32::MAX };
+
+    /// Of a distance alone.
+    #[must_use]
+    pub const fn of_distance(distance: f64) -> Self {
+        Self { distance, ..Self::NONE }
+    }
+}
+
+impl<T: Scalar> From<Option<Closest<T>>> for Answer {
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "ids are below 2^30")]
+    fn from(closest: Option<Closest<T>>) -> Self {
+        closest.map_or(Self::NONE, |c| Self {
+            distance: c.distance.to_f64(),
+            lower_bound: c.lower_bound.to_f64(),
+            id: c.primitive.index() as u32,
+        })
+    }
+}
+
+/// Something that answers one query at a time. [`Subject`] follows.
+pub trait Respond: Sync {
+    /// The scalar of its queries.
+    type Scalar: Scalar;
+    /// Answers a query.
+    fn respond(&self, query: &Point3<Self::Scalar>) -> Answer;
+}
+
+/// The same with its scalar erased: the loop over queries is compiled for each one.
+pub trait Subject: Sync {
+    /// Answers queries in their order.
+    ///
+    /// # Panics
+    /// If the subject does, which those of this project do not.
+    fn answer(&self, queries: QuerySlice<'_>, answers: &mut [Answer]);
+
+    /// The same, with the nanoseconds of wall time of each query by itself, those of reading the clock included.
+    ///
+    /// # Panics
+    /// As [`answer`](Self::answer).
+    fn answer_timed(&self, queries: QuerySlice<'_>, answers: &mut [Answer], nanoseconds: &mut [u64]);
+}
+
+impl<R: Respond> Subject for R {
+    fn answer(&self, queries: QuerySlice<'_>, answers: &mut [Answer]) {
+        for (query, answer) in R::Scalar::of(queries).iter().zip(answers) {
+            *answer = self.respond(query);
+        }
+    }
+
+    fn answer_timed(&self, queries: QuerySlice<'_>, answers: &mut [Answer], nanoseconds: &mut [u64]) {
+        for ((query, answer), nanoseconds) in R::Scalar::of(queries).iter().zip(answers).zip(nanoseconds) {
+            let start = Instant::now();
+            *answer = self.respond(query);
+            *nanoseconds = elapsed(start);
+        }
+    }
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "584 years")]
+fn elapsed(start: Instant) -> u64 {
+    start.elapsed().as_nanos() as u64
+}
+
+/// What two readings of the clock take, in nanoseconds: the median of many.
+#[must_use]
+pub fn clock_nanoseconds() -> f64 {
+    const READINGS: usize = 10_000;
+    let mut all: Vec<u64> = (0..READINGS).map(|_| elapsed(Instant::now())).collect();
+    all.sort_unstable();
+    all[READINGS / 2] as f64
+}
+
+/// An index that is asked with options.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked<T: Scalar, I> {
+    index: I,
+    options: QueryOptions<T>,
+}
+
+impl<T: Scalar, I: ClosestPoint<T> + Sync> Asked<T, I> {
+    /// The index is often borrowed: several settings ask the same one.
+    pub fn new(index: I, options: QueryOptions<T>) -> Self {
+        Self { index, options }
+    }
+}
+
+impl<T: Scalar, I: ClosestPoint<T> + Sync> Respond for Asked<T, I> {
+    type Scalar = T;
+
+    #[inline(always)]
+    fn respond(&self, query: &Point3<T>) -> Answer {
+        self.index.closest_point_with(query, &self.options).into()
+    }
+}
+
+/// An index that is asked for certified answers.
+#[derive(Clone, Copy, Debug)]
+pub struct AskedForProof<T: Scalar, I> {
+    index: I,
+    options: QueryOptions<T>,
+}
+
+impl<T: Scalar, I> AskedForProof<T, I> {
+    /// The index is often borrowed: several settings ask the same one.
+    pub fn new(index: I) -> Self {
+        Self { index, options: QueryOptions::default() }
+    }
+}
+
+impl<T: Scalar, I: CertifiedQuery<T> + Sync> Respond for AskedForProof<T, &I> {
+    type Scalar = T;
+
+    /// No answer where there is no proof.
+    #[inline(always)]
+    fn respond(&self, query: &Point3<T>) -> Answer {
+        self.index.certified_closest_point(query, &self.options).ok().flatten().into()
+    }
+}

@@ -1,0 +1,141 @@
+//! Curves as a table for a terminal.
+
+use crate::curve::{Curve, Latency, SetFigures};
+use crate::errors::Errors;
+use crate::table::Table;
+
+/// What one in a thousand exceeds is seen only among so many.
+const IN_A_THOUSAND: usize = 1000;
+
+/// What each setting of each backend has, in a set of queries.
+#[must_use]
+pub fn table(set: &SetFigures) -> Table {
+    let head = [
+        "backend",
+        "setting",
+        "ns",
+        "speed",
+        "max error",
+        "99.9 %",
+        "in u M",
+        "bound gap",
+        "p50 ns",
+        "p99.9 ns",
+        "build s",
+        "B each",
+        "",
+    ];
+    let mut table = Table::new(head);
+    for curve in &set.curves {
+        for point in &curve.points {
+            let Errors { relative, scaled, gap, .. } = point.errors;
+            let latency = |of: fn(&Latency) -> u64, least: usize| {
+                let seen = point.latency.as_ref().filter(|_| point.queries >= least);
+                seen.map_or("-".to_owned(), |latency| of(latency).to_string())
+            };
+            table.push(vec![
+                curve.name.clone(),
+                point.setting.clone(),
+                format!("{:.0}", point.nanoseconds.median),
+                gain(curve, point.nanoseconds.median),
+                error(relative.max),
+                if point.queries < IN_A_THOUSAND { "-".to_owned() } else { error(relative.p999) },
+                error(scaled.max),
+                error(gap),
+                latency(|l| l.p50, 2),
+                latency(|l| l.p999, IN_A_THOUSAND),
+                seconds(point.build.seconds),
+                bytes(point.build.bytes_each),
+                failures(&point.errors),
+            ]);
+        }
+    }
+    table
+}
+
+/// How many times as fast as the usual setting of its backend.
+#[must_use]
+pub fn gain(curve: &Curve, nanoseconds: f64) -> String {
+    curve.usual().map_or("-".to_owned(), |usual| format!("{:.2}x", usual.nanoseconds.median / nanoseconds))
+}
+
+/// What is wrong with answers, in words; nothing if nothing is.
+#[must_use]
+pub fn failures(errors: &Errors) -> String {
+    let count = |count: usize, what: &str| (count > 0).then(|| format!("{count} of {} {what}", errors.compared));
+    let all = [
+        count(errors.unanswered, "unanswered"),
+        count(errors.broken, "farther than promised"),
+        count(errors.bounds_above, "bounds above the truth"),
+    ];
+    all.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// An error, with one digit behind the point.
+#[must_use]
+pub fn error(value: f64) -> String {
+    match value {
+        x if x.is_nan() => "-".to_owned(),
+        x if x <= 0.0 => "0".to_owned(),
+        x if (0.1..1000.0).contains(&x) => format!("{x:.1}"),
+        x => format!("{x:.1e}"),
+    }
+}
+
+/// Seconds, with three digits.
+#[must_use]
+pub fn seconds(value: f64) -> String {
+    match value {
+        x if x < 1e-3 => format!("{x:.1e}"),
+        x if x < 10.0 => format!("{x:.3}"),
+        x => format!("{x:.1}"),
+    }
+}
+
+/// Bytes of a primitive, if they were counted.
+#[must_use]
+pub fn bytes(value: Option<f64>) -> String {
+    value.map_or("-".to_owned(), |bytes| format!("{bytes:.0}"))
+}
+
+/// How many, short: 1,234 or 1.2 million.
+#[must_use]
+pub fn count(value: f64) -> String {
+    match value {
+        x if x < 1e3 => format!("{x:.0}"),
+        x if x < 1e5 => format!("{:.1} thousand", x / 1e3),
+        x if x < 1e6 => format!("{:.0} thousand", x / 1e3),
+        x if x < 1e9 => format!("{:.1} million", x / 1e6),
+        x => format!("{:.0} million", x / 1e6),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn every_point_has_a_row() {
+        let scene = sample::scene();
+        let text = table(&scene.sets[0]).to_string();
+        assert_eq!(text.lines().count(), 2 + 3, "{text}");
+        assert!(text.contains("2.00x") && text.contains("| p2m "), "{text}");
+    }
+
+    #[test]
+    fn failures_are_told() {
+        let mut errors = sample::point("default", 1.0, 0.0, 0.0).errors;
+        assert_eq!(failures(&errors), "");
+        errors.broken = 2;
+        errors.bounds_above = 1;
+        assert_eq!(failures(&errors), "2 of 100 farther than promised, 1 of 100 bounds above the truth");
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!([0.0, 0.5, 12.34, 1e-16, 4e15, f64::NAN].map(error), ["0", "0.5", "12.3", "1.0e-16", "4.0e15", "-"]);
+        assert_eq!([1e-4, 0.5, 12.0].map(seconds), ["1.0e-4", "0.500", "12.0"]);
+        assert_eq!([12.0, 12_345.0, 2e6, 3e9].map(count), ["12", "12.3 thousand", "2.0 million", "3000 million"]);
+    }
+}

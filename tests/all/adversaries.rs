@@ -1,0 +1,209 @@
+//! Scenes that are made to be bad (p2m-testkit's `adversaries`), over every backend: answers are those of brute force, and what
+//! is counted stays under its bounds. docs/adversaries.md states them; `p2m-bench adversaries` measures times and memory.
+#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
+
+use nalgebra::Point3;
+use p2m::backend::delaunay::{Delaunay, DelaunayError};
+use p2m::backend::hierarchy::{PacketTree, Volume};
+use p2m::backend::interception::Partition;
+use p2m::{
+    AabbOptions, AabbTree, BruteForce, BuildError, BuildIndex, ClosestPoint, Examine, KdopOptions, KdopTree,
+    OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, Point, PrimitiveId, PrimitiveSet, Soup, Visits,
+};
+use p2m_testkit::adversaries::{ADVERSARIES, Adversary, queries};
+use p2m_testkit::ball::Ball;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+const COUNT: usize = 2_000;
+const QUERIES: usize = 40;
+/// Nodes on the way to a packet, however the scene is.
+const DEPTH: usize = 66;
+/// Bytes of a primitive in trees.
+const TREE: usize = 160;
+/// Those of a site with its neighbours, and of its places in the grids, besides lists.
+const SITE: usize = 512;
+
+fn answers(index: &impl ClosestPoint<f64>, queries: &[Point3<f64>]) -> Vec<Option<(u64, PrimitiveId)>> {
+    queries.iter().map(|q| index.closest_point(q).map(|c| (c.distance.to_bits(), c.primitive))).collect()
+}
+
+/// Holds an index against brute force, and what its queries visit against what there is.
+fn holds<I: ClosestPoint<f64> + Examine<f64>, V: Volume>(
+    name: &str,
+    index: &I,
+    tree: &PacketTree<V>,
+    soup: &Soup<f64>,
+) {
+    let queries = queries(soup, QUERIES);
+    let brute = BruteForce::new(soup).expect("valid");
+    for ((q, found), expected) in queries.iter().zip(answers(index, &queries)).zip(answers(&brute, &queries)) {
+        assert_eq!(found, expected, "{name} {q:?}");
+    }
+    let visits = Visits::of(index, &queries);
+    // Nothing is looked at twice, but for what is evaluated early, being held to be near.
+    assert!(visits.packets.most <= tree.packets().0, "{name}: {visits:?}");
+    assert!(visits.primitives.most <= soup.len() + 1, "{name}: {visits:?}");
+    assert!(tree.depth() <= DEPTH, "{name}: {}", tree.depth());
+    assert!(tree.memory() <= TREE * soup.len().max(64), "{name}: {} bytes of tree", tree.memory());
+}
+
+fn splits() -> AabbOptions {
+    AabbOptions::default()
+}
+
+#[test]
+fn every_backend_answers_within_its_bounds() {
+    std::thread::scope(|scope| {
+        for part in 0..2 {
+            scope.spawn(move || ADVERSARIES.iter().skip(part).step_by(2).for_each(every_backend));
+        }
+    });
+}
+
+fn every_backend(adversary: &Adversary) {
+    let name = adversary.name;
+    let soup = &adversary.soup(COUNT);
+    let aabb = AabbTree::build(soup, &splits()).expect("valid");
+    holds(&format!("{name}, aabb"), &aabb, aabb.tree(), soup);
+    let kdop = KdopTree::<f64, _, 14>::build(soup, &KdopOptions::default().with_splits(splits())).expect("valid");
+    holds(&format!("{name}, kdop"), &kdop, kdop.tree(), soup);
+
+    let options = OctreeOptions::default();
+    let octree = OctreeIndex::build(soup, &options).expect("valid");
+    holds(&format!("{name}, octree"), &octree, octree.partition().tree(), soup);
+    let report = octree.report();
+    let (bytes, work) = (options.memory * 10_000.0, options.work * 10_000.0);
+    assert!(report.bytes as f64 <= bytes && report.work as f64 <= work, "{name}: {report}");
+    assert!(report.depth <= 30 && report.entries <= 256 * report.lists, "{name}: {report}");
+    assert!(octree.list_lengths().into_iter().all(|len| len <= 256 * 16), "{name}");
+
+    let options = P2mOptions::default();
+    let p2m = P2mIndex::build(soup, &options).expect("valid");
+    holds(&format!("{name}, p2m"), &p2m, p2m.partition().tree(), soup);
+    let report = p2m.report();
+    let sites = report.lists + report.trees + report.auxiliary;
+    // A vertex that several packets have counts several times.
+    let vertices: usize = (0..soup.len()).map(|i| p2m::Primitive::vertices(&soup.get(PrimitiveId::new(i))).len()).sum();
+    assert!(sites <= 6 + 3 * vertices / 2 + soup.len(), "{name}: {report}");
+    assert!(report.bytes as f64 <= options.memory * COUNT as f64 + (SITE * sites) as f64, "{name}: {report}");
+    assert!(report.entries <= options.longest * report.lists, "{name}: {report}");
+    assert!(p2m.list_lengths().into_iter().all(|len| len <= options.longest * 16), "{name}");
+    if ["skew points", "skew wires", "helices", "moment curve"].contains(&name) {
+        assert!(report.lists == 0 && report.bytes == 0, "{name}: {report}");
+    }
+}
+
+/// Points on two skew lines: every pair of neighbours on one makes a tetrahedron with every pair on the other.
+#[test]
+fn quadratic_tetrahedra_are_given_up() {
+    let points = |n: usize| -> Vec<[f64; 3]> {
+        let soup = Adversary::named("skew points").soup(n);
+        soup.positions().iter().map(|p| [p.x, p.y, p.z]).collect()
+    };
+    let few = points(400);
+    let all = Delaunay::new(&few, 300.0).expect("finite");
+    let count = all.tetrahedra().len();
+    assert!(count > 199 * 199, "{count}");
+    let too_many = |points: &[[f64; 3]], most: usize| match Delaunay::within(points, 300.0, most) {
+        Err(DelaunayError::TooMany { len }) => assert_eq!(len, points.len()),
+        other => panic!("{most}: {other:?}"),
+    };
+    too_many(&few, count - 1);
+    too_many(&few, 0);
+    // Of some millions of tetrahedra a few are made.
+    too_many(&points(4_000), 16 * 4_000);
+    let within = Delaunay::within(&few, 300.0, 2 * count).expect("few enough");
+    assert_eq!((within.tetrahedra(), within.work()), (all.tetrahedra(), all.work()));
+}
+
+#[test]
+fn cells_of_vertices_that_take_too_much_are_left_to_the_tree() {
+    let soup = &Adversary::named("grid").soup(COUNT);
+    let built = |options: &P2mOptions| P2mIndex::build(soup, options).expect("valid");
+    let usual = built(&P2mOptions::default());
+    assert_eq!((usual.report().lists, usual.report().trees), (COUNT, 0));
+    let queries = queries(soup, QUERIES);
+    for (memory, work) in
+        [(100.0, 1e5), (1.0, 1e5), (1e5, 100.0), (0.0, 1e5), (1e5, -1.0), (f64::NAN, 1e5), (1e5, f64::NAN)]
+    {
+        for parallel in [false, true] {
+            let options = P2mOptions::default().with_memory(memory).with_work(work);
+            let index = built(&options.with_splits(splits().with_parallel(parallel)));
+            let report = index.report();
+            assert!(report.lists == 0 && report.bytes == 0 && report.trees >= COUNT, "{memory} {work}: {report}");
+            assert_eq!(answers(&index, &queries), answers(&usual, &queries));
+        }
+    }
+    let ample = built(&P2mOptions::default().with_memory(f64::INFINITY).with_work(f64::INFINITY));
+    assert_eq!(ample.report(), usual.report());
+}
+
+/// Primitives that count how often they are asked for.
+struct Counted<'a> {
+    balls: &'a [Ball],
+    asked: AtomicUsize,
+}
+
+impl PrimitiveSet<f64> for Counted<'_> {
+    type Primitive<'a>
+        = Ball
+    where
+        Self: 'a;
+
+    fn len(&self) -> usize {
+        self.balls.len()
+    }
+    fn get(&self, id: PrimitiveId) -> Ball {
+        self.asked.fetch_add(1, Relaxed);
+        self.balls[id.index()]
+    }
+}
+
+/// Where everything is as near, a search for one corner of a cell looks at the whole scene: that counts as work.
+#[test]
+fn corners_of_cubes_that_take_the_whole_scene_are_few() {
+    let balls = vec![Ball { centre: Point3::new(0.1, 0.2, 0.3), radius: 0.5 }; 8_000];
+    let set = Counted { balls: &balls, asked: AtomicUsize::new(0) };
+    let index = OctreeIndex::build(&set, &OctreeOptions::default()).expect("valid");
+    let asked = set.asked.load(Relaxed);
+    println!("{asked} times; {}", index.report());
+    // The budget, as often as it may be spent, and the tree and its last searches.
+    let options = OctreeOptions::default();
+    assert!((asked as f64) < 7.0 * options.work * 10_000.0, "{asked}");
+}
+
+/// More primitives than ids, of which none is ever asked for.
+struct Absurd(usize);
+
+impl PrimitiveSet<f64> for Absurd {
+    type Primitive<'a>
+        = Point<f64>
+    where
+        Self: 'a;
+
+    fn len(&self) -> usize {
+        self.0
+    }
+    fn get(&self, id: PrimitiveId) -> Point<f64> {
+        panic!("primitive {id} of {} was asked for", self.0)
+    }
+}
+
+#[test]
+fn more_primitives_than_ids_are_an_error_before_anything_else() {
+    fn error<'a, I: BuildIndex<f64, &'a Absurd, Error = BuildError>>(set: &'a Absurd) -> Option<BuildError> {
+        I::build(set, &Default::default()).err()
+    }
+    for len in [(1 << 30) + 1, u32::MAX as usize, 1 << 40, usize::MAX] {
+        let set = &Absurd(len);
+        let errors = [
+            error::<BruteForce<_>>(set),
+            error::<AabbTree<f64, _>>(set),
+            error::<KdopTree<f64, _, 6>>(set),
+            error::<KdopTree<f64, _, 14>>(set),
+            error::<OctreeIndex<f64, _>>(set),
+            error::<P2mIndex<f64, _>>(set),
+        ];
+        assert_eq!(errors, [Some(BuildError::TooMany { len }); 6]);
+    }
+}

@@ -1,0 +1,265 @@
+//! Box queries against exact rational arithmetic and brute force, and the leaf nearest to a point.
+#![cfg(feature = "bvh")]
+#![allow(clippy::float_cmp, reason = "exact results are what is tested")]
+
+use nalgebra::Point3;
+use p2m::{
+    Aabb, AabbTree, BoxQuery, BruteForce, BuildIndex, ClosestLeaf, ClosestPoint, Primitive, PrimitiveId, PrimitiveSet,
+    Real, Shape, Soup, SplitRule,
+};
+use p2m_testkit::families::shape;
+use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};
+use p2m_testkit::{oracle, rng};
+use rand::{Rng, RngExt};
+
+fn aabb([min, max]: [[f64; 3]; 2]) -> Aabb<f64> {
+    Aabb { min: Point3::from(min), max: Point3::from(max) }
+}
+
+/// Two corners in order.
+fn sorted(a: [f64; 3], b: [f64; 3]) -> [[f64; 3]; 2] {
+    [std::array::from_fn(|k| a[k].min(b[k])), std::array::from_fn(|k| a[k].max(b[k]))]
+}
+
+/// On a lattice of a few points hulls touch boxes at faces, edges and corners all the time.
+#[test]
+fn primitives_meet_boxes_as_exact_arithmetic_says() {
+    let mut rng = rng("boxes on a lattice", 0);
+    let (mut met, mut touched, mut missed) = (0, 0, 0);
+    for round in 0..60_000 {
+        let side = rng.random_range(2..8);
+        let mut lattice = || std::array::from_fn(|_| f64::from(rng.random_range(-side..=side)));
+        let vertices: Vec<[f64; 3]> = (0..round % 3 + 1).map(|_| lattice()).collect();
+        let corners = sorted(lattice(), lattice());
+        let expected = oracle::meets_box(&vertices, &corners);
+        let e = [0, -1074, -600, -301, 290, 700, 1020][round / 3 % 7];
+        let scale = |p: [f64; 3]| p.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
+        let found = shape(&vertices.iter().map(|v| scale(*v)).collect::<Vec<_>>()).meets_box(&aabb(corners.map(scale)));
+        assert_eq!(found, expected, "{vertices:?} {corners:?} at 2^{e}");
+        // Shrunk by less than the lattice could bridge: what only touched does not meet any more.
+        let inner = [corners[0].map(|x| x + 1e-9), corners[1].map(|x| x - 1e-9)];
+        let inside = (0..3).all(|k| inner[0][k] <= inner[1][k]) && oracle::meets_box(&vertices, &inner);
+        assert_eq!(shape(&vertices).meets_box(&aabb(inner)), inside, "{vertices:?} {inner:?}");
+        met += usize::from(inside);
+        touched += usize::from(expected && !inside);
+        missed += usize::from(!expected);
+    }
+    println!("{met} met, {touched} touched, {missed} missed");
+    assert!(met.min(touched).min(missed) > 6000, "the lattice should have all three: {met} {touched} {missed}");
+}
+
+/// A box with one corner at, and one ulp beside, the rounded point of a face or an edge: the sign hangs on the last
+/// bit.
+#[test]
+fn the_last_bit_decides_whether_a_corner_touches() {
+    let mut rng = rng("corners near faces", 0);
+    let mut both = [0; 2];
+    for round in 0..20_000 {
+        let e: i32 = [0, -1000, 900, 30][round % 4];
+        let mut random = || std::array::from_fn(|_| (rng.random::<f64>() - 0.5) * 2f64.powi(e));
+        let vertices: Vec<[f64; 3]> = (0..2 + round % 2).map(|_| random()).collect();
+        let far = random();
+        let weights: Vec<f64> = vertices.iter().map(|_| rng.random::<f64>()).collect();
+        let sum: f64 = weights.iter().sum();
+        let mut corner: [f64; 3] =
+            std::array::from_fn(|k| vertices.iter().zip(&weights).map(|(v, w)| v[k] * w / sum).sum());
+        for _ in 0..rng.random_range(0..3) {
+            let k = rng.random_range(0..3);
+            corner[k] = if rng.random() { corner[k].next_up() } else { corner[k].next_down() };
+        }
+        let corners = sorted(corner, far);
+        let expected = oracle::meets_box(&vertices, &corners);
+        both[usize::from(expected)] += 1;
+        assert_eq!(shape(&vertices).meets_box(&aabb(corners)), expected, "{vertices:?} {corners:?}");
+    }
+    assert!(both[0].min(both[1]) > 4000, "{both:?}");
+}
+
+#[test]
+fn boxes_that_are_odd_have_stated_answers() {
+    let t = shape(&[[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]]);
+    let meets = |corners| t.meets_box(&aabb(corners));
+    let inf = f64::INFINITY;
+    assert!(meets([[-inf; 3], [inf; 3]]));
+    assert!(meets([[2.0, 2.0, -inf], [inf, inf, inf]]) && !meets([[2.1, 2.0, -inf], [inf, inf, inf]]));
+    assert!(meets([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0]]), "a box may be a point");
+    assert!(!meets([[1.0, 1.0, 1.0], [2.0, 2.0, -1.0]]), "empty on one axis");
+    assert!(!meets([[3.0, 3.0, -1.0], [1.0, 1.0, 1.0]]), "empty, although its corners enclose the face");
+    for at in 0..6 {
+        let mut corners = [[-1.0; 3], [1.0; 3]];
+        corners[at / 3][at % 3] = f64::NAN;
+        assert!(!meets(corners), "NaN at {at}");
+    }
+    let empty = <AabbTree<f64, Vec<Shape<f64>>>>::build(Vec::new(), &Default::default()).unwrap();
+    assert!(!empty.meets_box(&aabb([[-inf; 3], [inf; 3]])) && empty.closest_leaf(&Point3::origin()).is_none());
+    let tree = AabbTree::build([t], &Default::default()).unwrap();
+    assert!(tree.meets_box(&aabb([[-inf; 3], [inf; 3]])) && !tree.meets_box(&aabb([[1.0; 3], [-1.0; 3]])));
+    assert!(tree.closest_leaf(&Point3::new(f64::NAN, 0.0, 0.0)).is_none());
+}
+
+/// Boxes of all sizes and of none around and between the positions of a scene, touching them more often than not.
+fn random_box<R: Rng>(rng: &mut R, soup: &Soup<f64>, bounds: &Aabb<f64>) -> Aabb<f64> {
+    let id = PrimitiveId::new(rng.random_range(0..soup.len()));
+    let primitive = soup.get(id);
+    let vertex = primitive.vertices()[rng.random_range(0..primitive.vertices().len())];
+    let decades = rng.random_range(-5.0..0.5);
+    let size = (bounds.max - bounds.min) * 10f64.powf(decades);
+    // On each axis the box begins at the vertex, ends there, holds it, or begins an ulp beyond it.
+    let ends: [[f64; 2]; 3] = std::array::from_fn(|k| {
+        let (v, size) = (vertex[k], size[k] * rng.random::<f64>());
+        match rng.random_range(0..6) {
+            0 | 1 => [v, v + size],
+            2 | 3 => [v - size, v],
+            4 => [v - size * 0.3, v + size * 0.7],
+            _ => [v.next_up(), v.next_up() + size],
+        }
+    });
+    aabb([ends.map(|e| e[0]), ends.map(|e| e[1])])
+}
+
+/// The primitives among those with these boxes whose boxes meet `bounds`.
+fn candidates<T: Real>(boxes: &[Aabb<T>], bounds: &Aabb<T>) -> Vec<PrimitiveId> {
+    boxes.iter().enumerate().filter(|(_, b)| b.meets(bounds)).map(|(i, _)| PrimitiveId::new(i)).collect()
+}
+
+/// Those of them that meet `bounds`.
+fn meeting<T: Real>(soup: &Soup<T>, candidates: &[PrimitiveId], bounds: &Aabb<T>) -> Vec<PrimitiveId> {
+    candidates.iter().copied().filter(|id| soup.get(*id).meets_box(bounds)).collect()
+}
+
+#[test]
+fn trees_find_the_same_primitives_as_brute_force_in_random_scenes() {
+    let mut rng = rng("boxes in scenes", 0);
+    for kinds in KINDS {
+        for layout in LAYOUTS {
+            for rule in [SplitRule::Sah, SplitRule::AdaptiveSah, SplitRule::Ball { radius: 0.1 }, SplitRule::Median] {
+                let (positions, elements) = scenes::scene(&mut rng, kinds, layout, 300);
+                let soup = Soup::new(positions.into_iter().map(Point3::from).collect(), elements).unwrap();
+                let tree = AabbTree::build(&soup, &p2m::AabbOptions::default().with_rule(rule)).unwrap();
+                let brute = BruteForce::new(&soup).unwrap();
+                let (mut found, mut expected) = (Vec::new(), Vec::new());
+                for _ in 0..100 {
+                    let bounds = random_box(&mut rng, &soup, &soup.aabb());
+                    tree.primitives_in_box_into(&bounds, &mut found);
+                    brute.primitives_in_box_into(&bounds, &mut expected);
+                    assert_eq!(found, expected, "{kinds:?} {layout:?} {rule:?} {bounds:?}");
+                    assert_eq!(tree.meets_box(&bounds), !expected.is_empty());
+                }
+            }
+        }
+    }
+}
+
+/// Every split rule is searched exactly; only the work differs.
+#[test]
+fn split_rules_change_no_answer() {
+    let mut rng = rng("split rules", 0);
+    for layout in LAYOUTS {
+        let (positions, elements) = scenes::scene(&mut rng, Kinds::Mixed, layout, 500);
+        let soup = Soup::new(positions.into_iter().map(Point3::from).collect(), elements).unwrap();
+        let brute = BruteForce::new(&soup).unwrap();
+        let rules = [0.0, 0.01, 1.0, 1e300, f64::INFINITY, f64::NAN, -1.0].map(|radius| SplitRule::Ball { radius });
+        for rule in rules.into_iter().chain([SplitRule::AdaptiveSah, SplitRule::Median]) {
+            let tree = AabbTree::build(&soup, &p2m::AabbOptions::default().with_rule(rule)).unwrap();
+            for _ in 0..50 {
+                let query = random_box(&mut rng, &soup, &soup.aabb()).min;
+                let [a, b] = [tree.closest_point(&query).unwrap(), brute.closest_point(&query).unwrap()];
+                assert_eq!((a.distance, a.primitive), (b.distance, b.primitive), "{layout:?} {rule:?} {query}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_nearest_leaf_is_an_upper_bound_with_a_certificate() {
+    let mut rng = rng("closest leaf", 0);
+    let (mut exact, mut certified, mut total) = (0, 0, 0);
+    for layout in LAYOUTS {
+        for e in [0, -1000, -500, 500, 1000] {
+            if layout == Layout::Sizes && e != 0 {
+                continue; // beyond the range of f64
+            }
+            let (positions, elements) = scenes::scene(&mut rng, Kinds::Mixed, layout, 500);
+            let scale = |p: Point3<f64>| p.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
+            let soup = Soup::new(positions.into_iter().map(|p| scale(Point3::from(p))).collect(), elements).unwrap();
+            let tree = AabbTree::build(&soup, &Default::default()).unwrap();
+            for _ in 0..100 {
+                let query = random_box(&mut rng, &soup, &soup.aabb()).max;
+                if !query.iter().all(|x| x.is_finite()) {
+                    continue;
+                }
+                let leaf = tree.closest_leaf(&query).expect("finite");
+                let best = tree.closest_point(&query).expect("finite");
+                assert!(
+                    leaf.distance >= best.distance,
+                    "{layout:?} 2^{e} {query}: {} {}",
+                    leaf.distance,
+                    best.distance
+                );
+                let vertices: Vec<[f64; 3]> =
+                    soup.get(best.primitive).vertices().iter().map(|v| v.coords.into()).collect();
+                let truth = oracle::Distance::new(query.coords.into(), &vertices);
+                assert!(truth.is_at_least(leaf.lower_bound), "{layout:?} 2^{e} {query}");
+                // Where squares leave the range, any leaf is as near as any other.
+                if e == 0 {
+                    exact += usize::from(leaf.distance == best.distance);
+                    certified += usize::from(leaf.lower_bound * 2.0 > best.distance);
+                    total += 1;
+                }
+            }
+        }
+    }
+    println!("exact {exact} times of {total}, certified above half of the truth {certified} times");
+    // Neither useless nor exact by itself.
+    assert!(exact > total / 4 && exact < total && certified > total / 4, "{exact}, {certified} of {total}");
+}
+
+#[cfg(feature = "mixed")]
+#[test]
+fn trees_find_the_same_primitives_as_brute_force_in_every_model() {
+    const BOXES: usize = 10_000;
+    for path in p2m_testkit::model_files() {
+        let soup = p2m::scene::read_scene(&path).expect("readable").soup;
+        let name = path.file_name().expect("a file").to_string_lossy().into_owned();
+        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let boxes: Vec<Aabb<f64>> = (0..soup.len()).map(|i| soup.get(PrimitiveId::new(i)).aabb()).collect();
+        let counts: Vec<[usize; 2]> = std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..2)
+                .map(|thread| {
+                    let (soup, tree, boxes, name) = (&soup, &tree, &boxes, &name);
+                    scope.spawn(move || {
+                        let mut rng = rng("boxes in models", thread);
+                        let scene = soup.aabb();
+                        let mut found = Vec::new();
+                        let (mut met, mut checked) = (0, 0);
+                        for _ in 0..BOXES / 2 {
+                            let bounds = random_box(&mut rng, soup, &scene);
+                            tree.primitives_in_box_into(&bounds, &mut found);
+                            let candidates = candidates(boxes, &bounds);
+                            assert_eq!(found, meeting(soup, &candidates, &bounds), "{name} {bounds:?}");
+                            assert_eq!(tree.meets_box(&bounds), !found.is_empty(), "{name} {bounds:?}");
+                            met += found.len();
+                            // Rational arithmetic has its say on those whose boxes meet, a few of each.
+                            for id in candidates.into_iter().take(2) {
+                                let primitive = soup.get(id);
+                                let vertices: Vec<[f64; 3]> =
+                                    primitive.vertices().iter().map(|v| v.coords.into()).collect();
+                                let corners = [bounds.min.coords.into(), bounds.max.coords.into()];
+                                assert_eq!(
+                                    found.binary_search(&id).is_ok(),
+                                    oracle::meets_box(&vertices, &corners),
+                                    "{name} {id} {bounds:?}"
+                                );
+                                checked += 1;
+                            }
+                        }
+                        [met, checked]
+                    })
+                })
+                .collect();
+            threads.into_iter().map(|t| t.join().expect("no panic")).collect()
+        });
+        let sum = |k: usize| counts.iter().map(|c| c[k]).sum::<usize>();
+        println!("{name}: {BOXES} boxes, {} primitives found, {} checked exactly", sum(0), sum(1));
+    }
+}

@@ -1,0 +1,147 @@
+//! The same bits from every backend, on every instruction set, for any number of threads, and in every run.
+//!
+//! Fifty thousand answers are one number, which stands here, for each backend, instruction set and number of threads: more than a
+//! million of each scalar. Scenes are made with additions, multiplications and comparisons alone, so
+//! the number does not depend on a mathematical library either.
+#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "rayon"))]
+
+use nalgebra::Point3;
+use p2m::backend::Isa;
+use p2m::batch::{BatchOptions, closest_points_into};
+use p2m::{
+    AabbTree, BuildIndex, Closest, ClosestPoint, Feature, KdopTree, OctreeIndex, P2mIndex, PrimitiveSet, QueryOptions,
+    Real, Soup,
+};
+use p2m_testkit::scenes::{self, Kinds, Layout};
+use rand::RngExt;
+use std::fmt::Debug;
+
+/// Answers of each backend each time.
+const ANSWERS: usize = 50_000;
+/// What they add up to, in f64 and in f32.
+const EXPECTED: [u64; 2] = [0x1ac3_5da1_fcdd_df14, 0xf722_b457_7191_f48f];
+
+const SCENES: [(Kinds, Layout, usize); 5] = [
+    (Kinds::Mixed, Layout::Uniform, 300),
+    (Kinds::Mixed, Layout::Strewn, 5000),
+    (Kinds::Mixed, Layout::Lattice, 400),
+    (Kinds::Segments, Layout::Far, 2000),
+    (Kinds::Triangles, Layout::Strewn, 20_000),
+];
+
+fn scene(number: usize) -> (Soup<f64>, Vec<Point3<f64>>) {
+    let (kinds, layout, len) = SCENES[number];
+    let mut rng = p2m_testkit::rng("determinism", number as u64);
+    let soup = scenes::soup(&mut rng, kinds, layout, len);
+    let bounds = soup.aabb();
+    let (centre, size) = (bounds.min + (bounds.max - bounds.min) * 0.5, (bounds.max - bounds.min) * 0.6);
+    let mut query = |i: usize| match i % 4 {
+        // On the scene, and where there are ties.
+        0 => soup.positions()[rng.random_range(0..soup.positions().len())],
+        _ => centre + size.map(|x| x * rng.random_range(-1.0..1.0)),
+    };
+    let queries = (0..ANSWERS / SCENES.len()).map(&mut query).collect();
+    (soup, queries)
+}
+
+/// FNV-1a of all bits of all answers, in their order, but those of the certified bound: it is lower by the error of each candidate that
+/// was evaluated, and which ones are depends on where a search began.
+fn hash<T: Real>(mut hash: u64, answers: &[Option<Closest<T>>]) -> u64 {
+    let mut add = |x: u64| hash = (hash ^ x).wrapping_mul(0x0100_0000_01b3);
+    for answer in answers {
+        let Closest { point, distance, primitive, feature, barycentric, .. } = answer.expect("an answer");
+        point.iter().chain([&distance]).chain(&barycentric).for_each(|x| add(x.to_f64().to_bits()));
+        add(primitive.index() as u64);
+        add(match feature {
+            Feature::Vertex(i) => u64::from(i),
+            Feature::Edge(i) => 10 + u64::from(i),
+            Feature::Face => 20,
+        });
+    }
+    hash
+}
+
+/// What is asked of each index.
+trait Answers<T: Real>: Send + Sync {
+    /// On one thread and that instruction set.
+    fn alone(&self, isa: Isa, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>>;
+    /// In batches of the current pool of threads.
+    fn together(&self, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>>;
+}
+
+macro_rules! answers {
+    ($($index:ty),+) => {
+        $(impl<T: Real> Answers<T> for $index {
+            fn alone(&self, isa: Isa, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>> {
+                let index = self.clone().with_isa(isa);
+                queries.iter().map(|query| index.closest_point(query)).collect()
+            }
+
+            fn together(&self, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>> {
+                let mut answers = vec![None; queries.len()];
+                closest_points_into(self, queries, &QueryOptions::default(), &BatchOptions::default(), &mut answers);
+                answers
+            }
+        })+
+    };
+}
+answers!(AabbTree<T, &Soup<T>>, KdopTree<T, &Soup<T>, 14>, OctreeIndex<T, &Soup<T>>, P2mIndex<T, &Soup<T>>);
+
+fn built<'a, T, I>(soup: &'a Soup<T>) -> Box<dyn Answers<T> + 'a>
+where
+    T: Real,
+    I: BuildIndex<T, &'a Soup<T>, Options: Default, Error: Debug> + Answers<T> + 'a,
+{
+    Box::new(I::build(soup, &Default::default()).expect("valid"))
+}
+
+fn check<T: Real>(of: impl Fn(usize) -> (Soup<T>, Vec<Point3<T>>), expected: u64) {
+    let mut hashes: Vec<(String, u64)> = Vec::new();
+    let mut add =
+        |name: String, answers: &[Option<Closest<T>>]| match hashes.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, so_far)) => *so_far = hash(*so_far, answers),
+            None => hashes.push((name, hash(0xcbf2_9ce4_8422_2325, answers))),
+        };
+    for number in 0..SCENES.len() {
+        let (soup, queries) = of(number);
+        // Built by different numbers of threads as well.
+        for threads in [1, 3, 8] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            let indexes = pool.install(|| {
+                [
+                    ("aabb", built::<T, AabbTree<_, _>>(&soup)),
+                    ("kdop", built::<T, KdopTree<_, _, 14>>(&soup)),
+                    ("octree", built::<T, OctreeIndex<_, _>>(&soup)),
+                    ("p2m", built::<T, P2mIndex<_, _>>(&soup)),
+                ]
+            });
+            for (name, index) in &indexes {
+                add(format!("{name}, {threads} threads"), &pool.install(|| index.together(&queries)));
+                if threads == 1 {
+                    for isa in Isa::available() {
+                        add(format!("{name}, {}", isa.name()), &index.alone(isa, &queries));
+                    }
+                }
+            }
+        }
+    }
+    for (name, hash) in &hashes {
+        assert_eq!(*hash, expected, "{name}: {hash:#x}");
+    }
+    assert_eq!(hashes.len(), 4 * (3 + Isa::available().len()));
+    println!("{} answers, {expected:#x}", hashes.len() * ANSWERS);
+}
+
+#[test]
+fn a_million_answers_are_the_same_bits_in_f64() {
+    check(scene, EXPECTED[0]);
+}
+
+#[test]
+fn a_million_answers_are_the_same_bits_in_f32() {
+    let single = |number: usize| {
+        let (soup, queries) = scene(number);
+        (scenes::narrow(&soup).expect("fits f32"), queries.into_iter().map(scenes::to_f32).collect())
+    };
+    check::<f32>(single, EXPECTED[1]);
+}

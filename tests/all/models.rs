@@ -1,0 +1,124 @@
+//! Agreement with brute force, bit for bit, on real meshes: far from the origin, non-manifold, degenerate, lines,
+//! mixed. Skips, and says so, where there is no folder of models.
+
+#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
+
+use nalgebra::Point3;
+use p2m::kdop::Choice;
+use p2m::{
+    AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopOptions, KdopTree, OctreeIndex, P2mIndex, PrimitiveSet, Real,
+    Soup,
+};
+use p2m_testkit::model_files;
+use p2m_testkit::queries::QuerySet;
+use p2m_testkit::scenes::narrow;
+
+/// Queries of a set. All indexes are asked all of them.
+const QUERIES: usize = 200;
+/// Brute force is asked all of them where there are at most so many primitives, and every eighth where there are more: it would take
+/// most of the time of all tests.
+const MANY: usize = 20_000;
+/// Larger models have the trees in f64 alone: the other indexes would take half of the time that is left.
+const TOO_MANY: usize = 300_000;
+
+/// `P2M_MODELS=all cargo test --release --test all models::` leaves nothing out.
+fn is_in_full() -> bool {
+    std::env::var_os("P2M_MODELS").is_some_and(|what| what == "all")
+}
+
+/// Distance bits and primitive of each answer, computed by two threads.
+fn answers<T: Real, I: ClosestPoint<T> + Sync>(index: &I, queries: &[Point3<T>]) -> Vec<(u64, usize)> {
+    let one =
+        |q| index.closest_point(q).map(|c| (c.distance.to_f64().to_bits(), c.primitive.index())).expect("an answer");
+    std::thread::scope(|scope| {
+        let (left, right) = queries.split_at(queries.len() / 2);
+        let left = scope.spawn(move || left.iter().map(one).collect::<Vec<_>>());
+        let mut right: Vec<_> = right.iter().map(one).collect();
+        let mut all = left.join().expect("no panic");
+        all.append(&mut right);
+        all
+    })
+}
+
+/// Compares trees of boxes, of k-DOPs and of the scene's own directions, the octree and the P2M index, with each other and with
+/// brute force. How many answers brute force confirmed.
+fn agrees<T: Real>(name: &str, set: QuerySet, soup: &Soup<T>, trees: &Trees<'_, T>, queries: &[Point3<T>]) -> usize {
+    let boxes = answers(&trees.0, queries);
+    let every = if soup.len() > MANY && !is_in_full() { 8 } else { 1 };
+    let asked: Vec<_> = queries.iter().step_by(every).copied().collect();
+    let brute = answers(&BruteForce::new(soup).expect("valid"), &asked);
+    let of_brute: Vec<_> = boxes.iter().step_by(every).copied().collect();
+    let mut pairs = vec![
+        ("brute force", &asked[..], of_brute, brute),
+        ("k-DOPs", queries, answers(&trees.1, queries), boxes.clone()),
+        ("the scene's k-DOPs", queries, answers(&trees.2, queries), boxes.clone()),
+    ];
+    pairs.extend(trees.3.iter().map(|index| ("octree", queries, answers(index, queries), boxes.clone())));
+    pairs.extend(trees.4.iter().map(|index| ("p2m", queries, answers(index, queries), boxes.clone())));
+    for (index, queries, found, expected) in pairs {
+        for ((query, found), expected) in queries.iter().zip(found).zip(expected) {
+            assert_eq!(found, expected, "{name}, {index} and boxes, {set}: {query:?}");
+        }
+    }
+    asked.len()
+}
+
+/// Of boxes, of the usual 14 faces, and of 26 faces along a frame; an octree, and a P2M index.
+struct Trees<'a, T: Real>(
+    AabbTree<T, &'a Soup<T>>,
+    KdopTree<T, &'a Soup<T>, 14>,
+    KdopTree<T, &'a Soup<T>, 26>,
+    Option<OctreeIndex<T, &'a Soup<T>>>,
+    Option<P2mIndex<T, &'a Soup<T>>>,
+);
+
+impl<'a, T: Real> Trees<'a, T> {
+    fn build(soup: &'a Soup<T>, choice: &Choice) -> Self {
+        let is_small = soup.len() <= TOO_MANY || is_in_full();
+        let own = KdopOptions::new(choice.frame_directions::<26>().expect("thirteen"));
+        Self(
+            AabbTree::build(soup, &Default::default()).expect("valid"),
+            KdopTree::build(soup, &Default::default()).expect("valid"),
+            KdopTree::build_with(soup, &own).expect("valid"),
+            is_small.then(|| OctreeIndex::build(soup, &Default::default()).expect("valid")),
+            // Its cells are made from f64 for both scalars, and take a while.
+            (size_of::<T>() == 8 && is_small).then(|| P2mIndex::build(soup, &Default::default()).expect("valid")),
+        )
+    }
+}
+
+#[test]
+fn trees_agree_with_brute_force_on_every_model_in_f64() {
+    let (mut count, mut confirmed) = (0, 0);
+    for path in model_files() {
+        let name = path.file_name().expect("a file").to_string_lossy().into_owned();
+        let soup = p2m::scene::read_scene(&path).expect("readable").soup;
+        let trees = Trees::build(&soup, &Choice::from_scene(&soup).expect("valid"));
+        for set in QuerySet::ALL {
+            let queries = set.generate(&soup, QUERIES, 1);
+            confirmed += agrees(&name, set, &soup, &trees, &queries);
+            count += queries.len();
+        }
+        println!("{name}: {} primitives agree", soup.len());
+    }
+    println!("{count} queries, {confirmed} of them by brute force");
+}
+
+#[test]
+fn trees_agree_with_brute_force_on_every_model_in_f32() {
+    for path in model_files() {
+        let name = path.file_name().expect("a file").to_string_lossy().into_owned();
+        let wide = p2m::scene::read_scene(&path).expect("readable").soup;
+        if wide.len() > TOO_MANY && !is_in_full() {
+            println!("{name}: left out");
+            continue;
+        }
+        let soup = narrow(&wide).expect("models fit f32");
+        let trees = Trees::build(&soup, &Choice::from_scene(&wide).expect("valid"));
+        for set in QuerySet::ALL {
+            // A quarter of the queries: the scalar changes the boxes, not the kernel.
+            let queries: Vec<_> = set.generate(&wide, QUERIES / 4, 2).iter().map(|q| q.map(f32::of_f64)).collect();
+            agrees(&name, set, &soup, &trees, &queries);
+        }
+    }
+}

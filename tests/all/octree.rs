@@ -1,0 +1,282 @@
+//! The octree: domains, budgets, threads, instruction sets, progress, other collectors, and how much work is done. That
+//! its answers are those of brute force is tested in `agreement`.
+#![cfg(feature = "interception")]
+#![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
+
+use nalgebra::{Point3, Vector3};
+use p2m::backend::{Collector, Counting};
+use p2m::{
+    Aabb, BruteForce, BuildIndex, ClosestPoint, Domain, Isa, OctreeIndex, OctreeOptions, Point, PrimitiveId,
+    PrimitiveSet, Projection, Segment, Shape, Soup,
+};
+use p2m_testkit::rng;
+use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};
+use rand::{Rng, RngExt};
+use std::sync::Mutex;
+
+fn sheet(len: usize) -> Soup<f64> {
+    scenes::soup(&mut rng("octree sheet", 0), Kinds::Triangles, Layout::Sheet, len)
+}
+
+fn built<'a>(soup: &'a Soup<f64>, options: &OctreeOptions) -> OctreeIndex<f64, &'a Soup<f64>> {
+    OctreeIndex::build(soup, options).expect("valid")
+}
+
+/// In, around and far from the box of a scene.
+fn query(rng: &mut impl Rng, soup: &Soup<f64>) -> Point3<f64> {
+    let bounds = soup.aabb();
+    let size = bounds.max - bounds.min;
+    let reach = [0.6, 0.6, 2.0, 12.0, 1e4][rng.random_range(0..5)];
+    let offset = Vector3::from_fn(|_, _| rng.random_range(-reach..reach));
+    match rng.random_range(0..3) {
+        0 => soup.positions()[rng.random_range(0..soup.positions().len())] + offset * (size.max() * 1e-3),
+        _ => nalgebra::center(&bounds.min, &bounds.max) + offset * size.max(),
+    }
+}
+
+#[test]
+fn domains_change_the_work_and_never_the_answer() {
+    let mut rng = rng("octree domains", 0);
+    for kinds in KINDS {
+        for layout in LAYOUTS {
+            let soup = scenes::soup(&mut rng, kinds, layout, 600);
+            let bounds = soup.aabb();
+            let half = (bounds.max - bounds.min) * 0.2;
+            let away = bounds.max + half;
+            let domains = [
+                Domain::Everywhere,
+                Domain::Box(Aabb { min: bounds.min + half, max: bounds.max - half }),
+                Domain::Box(Aabb { min: away, max: away + half }),
+                Domain::Band(half.max() * 0.1),
+                // Of no use, and no harm.
+                Domain::Box(Aabb::empty()),
+                Domain::Box(Aabb { min: [f64::NAN; 3].into(), max: away }),
+                Domain::Box(Aabb { min: [-f64::MAX; 3].into(), max: [f64::MAX; 3].into() }),
+                Domain::Box(Aabb { min: away, max: away }),
+                Domain::Band(-1.0),
+                Domain::Band(f64::NAN),
+                Domain::Band(f64::INFINITY),
+            ];
+            let brute = BruteForce::new(&soup).expect("valid");
+            let queries: Vec<_> = (0..60).map(|_| query(&mut rng, &soup)).collect();
+            for domain in domains {
+                let index = built(&soup, &OctreeOptions::default().with_domain(domain));
+                for q in &queries {
+                    let key = |c: p2m::Closest<f64>| (c.distance.to_bits(), c.primitive);
+                    let (found, expected) = (index.closest_point(q).map(key), brute.closest_point(q).map(key));
+                    assert_eq!(found, expected, "{kinds:?} {layout:?} {domain:?} {q}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_not_asked_for_is_not_made() {
+    let soup = sheet(20_000);
+    let bounds = soup.aabb();
+    let bytes = |domain| built(&soup, &OctreeOptions::default().with_domain(domain)).report();
+    let all = bytes(Domain::Everywhere);
+    let band = bytes(Domain::Band((bounds.max - bounds.min).norm() * 0.02));
+    let corner = Aabb { min: bounds.min, max: nalgebra::center(&bounds.min, &bounds.max) };
+    let part = bytes(Domain::Box(corner));
+    println!("everywhere: {all}\nband: {band}\na corner: {part}");
+    assert!(band.bytes < all.bytes && part.bytes < all.bytes && band.work < all.work && part.work < all.work);
+    // Outside of the domain the tree answers.
+    let index = built(&soup, &OctreeOptions::default().with_domain(Domain::Box(corner)));
+    assert_eq!(index.partition().list_length(&(bounds.max + Vector3::repeat(1.0))), None);
+    let inside = nalgebra::center(&corner.min, &corner.max);
+    assert!(index.partition().list_length(&inside).is_some());
+}
+
+#[test]
+fn budgets_are_kept() {
+    let soup = sheet(20_000);
+    let count = soup.len() as f64;
+    let usual = built(&soup, &OctreeOptions::default()).report();
+    assert!(usual.bytes as f64 <= OctreeOptions::default().memory * count && usual.lists > 1000, "{usual}");
+    for memory in [60.0, 10.0, 0.001, 0.0, -1.0, f64::NAN] {
+        let report = built(&soup, &OctreeOptions::default().with_memory(memory)).report();
+        println!("{memory} bytes: {report}");
+        assert!(report.bytes as f64 <= memory.max(0.0) * count, "{memory}: {report}");
+        assert!(report.resolution < usual.resolution);
+    }
+    for work in [20.0, 2.0, 0.0] {
+        let report = built(&soup, &OctreeOptions::default().with_work(work)).report();
+        assert!(report.work as f64 <= work * count && report.bytes < usual.bytes, "{work}: {report}");
+    }
+    let fine = built(&soup, &OctreeOptions::default().with_resolution(1.0).with_memory(1e4).with_work(1e5)).report();
+    assert!(fine.bytes > usual.bytes && fine.resolution == 1.0, "{fine}");
+}
+
+#[test]
+fn cells_do_not_depend_on_the_number_of_threads() {
+    let soup = sheet(5_000);
+    let mut rng = rng("octree threads", 0);
+    let places: Vec<_> = (0..2000).map(|_| query(&mut rng, &soup)).collect();
+    let cells = |parallel| {
+        let splits = p2m::backend::hierarchy::SplitOptions::default().with_parallel(parallel);
+        let index = built(&soup, &OctreeOptions::default().with_splits(splits));
+        let lists: Vec<_> = places.iter().map(|place| index.partition().list_length(place)).collect();
+        (index.report(), lists)
+    };
+    let expected = cells(false);
+    for _ in 0..3 {
+        assert!(cells(true) == expected);
+    }
+    assert!(expected.1.iter().flatten().count() > 1000);
+}
+
+#[test]
+fn every_instruction_set_answers_the_same() {
+    let mut rng = rng("octree instruction sets", 0);
+    for kinds in KINDS {
+        let soup = scenes::soup(&mut rng, kinds, LAYOUTS[0], 2_000);
+        let queries: Vec<_> = (0..300).map(|_| query(&mut rng, &soup)).collect();
+        let brute = BruteForce::new(&soup).expect("valid");
+        let expected: Vec<_> =
+            queries.iter().map(|q| brute.closest_point(q).map(|c| (c.distance, c.primitive))).collect();
+        for isa in Isa::available() {
+            let index = built(&soup, &OctreeOptions::default()).with_isa(isa);
+            let found: Vec<_> =
+                queries.iter().map(|q| index.closest_point(q).map(|c| (c.distance, c.primitive))).collect();
+            assert!(found == expected, "{isa} {kinds:?}");
+        }
+    }
+}
+
+#[test]
+fn progress_goes_from_nothing_to_all() {
+    let soup = sheet(5_000);
+    for memory in [1e4, 20.0] {
+        let parts = Mutex::new(Vec::new());
+        let options = OctreeOptions::default().with_memory(memory);
+        let index = OctreeIndex::build_with_progress(&soup, &options, &|progress| {
+            parts.lock().expect("whole").push(progress.part);
+        });
+        assert_eq!(index.expect("valid").set().len(), 5_000);
+        let mut parts = parts.into_inner().expect("whole");
+        assert!(parts.iter().all(|part| (0.0..=1.0).contains(part)) && parts.last() == Some(&1.0));
+        assert!(parts.len() > 20, "{parts:?}");
+        parts.dedup();
+        let len = parts.len();
+        parts.sort_by(f64::total_cmp);
+        parts.dedup();
+        assert_eq!(parts.len(), len, "each once");
+    }
+}
+
+/// All primitives within a distance.
+struct Within(f64, Vec<PrimitiveId>);
+
+impl Collector for Within {
+    fn prune_above(&self) -> f64 {
+        self.0 * self.0
+    }
+    fn offer(&mut self, id: PrimitiveId, projection: Projection) {
+        if projection.key.distance() <= self.0 {
+            self.1.push(id);
+        }
+    }
+}
+
+#[test]
+fn other_collectors_get_all_that_they_want() {
+    let soup = sheet(3_000);
+    let index = built(&soup, &OctreeOptions::default());
+    let size = (soup.aabb().max - soup.aabb().min).norm();
+    let mut rng = rng("octree collectors", 0);
+    let mut sum = 0;
+    for _ in 0..50 {
+        let q = query(&mut rng, &soup);
+        let mut within = Within(size * 0.1, Vec::new());
+        index.visit(&q, &mut within);
+        within.1.sort();
+        within.1.dedup();
+        let ids = (0..soup.len()).map(PrimitiveId::new);
+        let expected: Vec<_> =
+            ids.filter(|id| p2m::Primitive::project(&soup.get(*id), &q).key.distance() <= size * 0.1).collect();
+        assert!(within.1 == expected);
+        sum += expected.len();
+    }
+    assert!(sum > 500, "{sum}");
+}
+
+/// Lost bounds, lost lists or coarser cells would show here first.
+#[test]
+fn lookups_do_little() {
+    let soup = sheet(20_000);
+    let index = built(&soup, &OctreeOptions::default());
+    let mut rng = rng("octree counters", 0);
+    let bounds = soup.aabb();
+    let size = bounds.max - bounds.min;
+    for (name, reach, most) in [("around", 0.52, [10, 3_400, 1_350]), ("far", 4.9, [250, 2_100, 1_100])] {
+        let centre = nalgebra::center(&bounds.min, &bounds.max);
+        let mut place = || centre + Vector3::from_fn(|k, _| rng.random_range(-reach..reach) * size[k]);
+        let queries: Vec<_> = (0..1000).map(|_| place()).collect();
+        let sums = Counting::of_queries(&queries, |query, counting| index.visit(query, counting));
+        println!("{name}: per 1000 queries {sums:?} nodes, packets, primitives");
+        assert!((0..3).all(|i| sums[i] <= most[i]), "{name}: {sums:?}");
+    }
+}
+
+/// Rounding may put a query into the cell beside its own: what ties everywhere in that cell may be the nearest here.
+#[test]
+fn queries_beside_a_face_that_rounding_moves_across_it_lose_nothing() {
+    let mut found = 0;
+    for shift in [36.0f64, 36.5, 37.0] {
+        let mut rng = rng("face", 0);
+        // So near to a face of cells, the plane x = 0, that a difference to the end of the domain cannot tell.
+        let a = 2f64.powf(-shift);
+        let along = Vector3::new(-(2f64.powi(-5)), 0.0, 0.0);
+        let vertices: Vec<_> =
+            (0..8).map(|_| Point3::new(-a, rng.random_range(-0.5..0.5), rng.random_range(-0.5..0.5))).collect();
+        let mut shapes: Vec<Shape<f64>> = vertices.iter().map(|v| Point::new(*v).into()).collect();
+        shapes.extend(vertices.iter().map(|v| Shape::from(Segment::new(*v, v + along))));
+        shapes.extend([-0.6, 0.6].map(|x| Shape::from(Point::new(Point3::new(x, 0.0, 0.0)))));
+        let reach = 1.9 * 2f64.powf(18.2);
+        let domain = Domain::Box(Aabb { min: [-reach; 3].into(), max: [reach; 3].into() });
+        let options = OctreeOptions::default().with_domain(domain).with_resolution(2e3).with_memory(2e4).with_work(2e4);
+        let index = OctreeIndex::<f64, _>::build(&shapes[..], &options).expect("valid");
+        println!("{}", index.report());
+        let brute = BruteForce::new(&shapes[..]).expect("valid");
+        for v in &vertices {
+            for part in [0.3, 0.5, 0.9] {
+                let q = v - Vector3::x() * (a * part);
+                let key = |c: p2m::Closest<f64>| (c.distance.to_bits(), c.primitive);
+                assert_eq!(index.closest_point(&q).map(key), brute.closest_point(&q).map(key), "{shift} {q}");
+                found += usize::from(index.partition().list_length(&q).is_some());
+            }
+        }
+    }
+    assert!(found > 30, "{found}");
+}
+
+#[test]
+fn budgets_without_end_are_those_that_suffice() {
+    let soup = scenes::soup(&mut rng("budgets without end", 0), Kinds::Mixed, Layout::Uniform, 300);
+    let enough = built(&soup, &OctreeOptions::default().with_memory(1e4).with_work(1e4)).report();
+    let usual = built(&soup, &OctreeOptions::default()).report();
+    assert!(enough.bytes >= usual.bytes && enough.lists > 0, "{enough}\n{usual}");
+    for budget in [1e15, f64::MAX, f64::INFINITY] {
+        let report = built(&soup, &OctreeOptions::default().with_memory(budget).with_work(budget)).report();
+        assert_eq!(report.bytes, enough.bytes, "{budget:e}: {report}");
+    }
+}
+
+#[test]
+fn any_resolution_ends() {
+    let soup = sheet(1_200);
+    for resolution in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1e9, 10.0, 1e-9] {
+        for memory in [0.0, 2.0, 190.0] {
+            let options = OctreeOptions::default().with_resolution(resolution).with_memory(memory);
+            let report = built(&soup, &options).report();
+            let usual = built(&soup, &OctreeOptions::default().with_memory(memory)).report();
+            // Who asks for more has no less.
+            assert!(
+                resolution.is_nan() || resolution <= 1.0 || report.bytes >= usual.bytes,
+                "{resolution} {memory}: {report}\n{usual}"
+            );
+        }
+    }
+}

@@ -1,0 +1,390 @@
+//! What is left out of lists is never the answer, and added sites change none: where many primitives have a vertex or
+//! an edge, are the same, have vertices that are nearly one, or are as far from the middle of a round shape.
+#![cfg(feature = "interception")]
+
+use nalgebra::{Point3, Vector3};
+use p2m::{
+    BruteForce, BuildIndex, Closest, ClosestPoint, Element, Isa, P2mIndex, P2mOptions, P2mReport, PrimitiveSet, Real,
+    Soup,
+};
+use p2m_testkit::scenes::narrow;
+use p2m_testkit::{rng, vector};
+
+/// Random numbers of a case of a test.
+struct Numbers(Box<dyn FnMut() -> Vector3<f64>>);
+
+impl Numbers {
+    fn new(name: &str, case: usize) -> Self {
+        let mut rng = rng(name, case as u64);
+        Self(Box::new(move || vector(&mut rng)))
+    }
+
+    /// In the cube from -1 to 1.
+    fn vector(&mut self) -> Vector3<f64> {
+        (self.0)()
+    }
+
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from zero to n")]
+    fn below(&mut self, n: usize) -> usize {
+        ((self.vector().x + 1.0) * 0.5 * n as f64) as usize
+    }
+
+    fn pick<A: Copy>(&mut self, all: &[A]) -> A {
+        all[self.below(all.len())]
+    }
+
+    fn shuffle<A>(&mut self, all: &mut [A]) {
+        (1..all.len()).for_each(|i| all.swap(i, self.below(i + 1)));
+    }
+
+    /// In a cube of whole numbers from 0 to n.
+    fn whole(&mut self, n: usize) -> Point3<f64> {
+        Point3::from([(); 3].map(|()| self.below(n + 1) as f64))
+    }
+}
+
+/// The same distance, by its bits, and primitive as brute force, with each instruction set, one query at a time and
+/// side by side.
+fn agrees<T: Real>(name: &str, soup: &Soup<T>, options: &P2mOptions, queries: &[Point3<T>]) -> P2mReport {
+    let key = |c: Closest<T>| (c.distance.to_f64().to_bits(), c.primitive.index());
+    let brute = BruteForce::new(soup).expect("valid");
+    let expected: Vec<_> = queries.iter().map(|q| brute.closest_point(q).map(key)).collect();
+    let mut index = P2mIndex::build(soup, options).expect("valid");
+    for isa in Isa::available() {
+        index = index.with_isa(isa);
+        let mut several = vec![None; queries.len()];
+        index.closest_points_into(queries, &Default::default(), &mut several);
+        for ((q, several), expected) in queries.iter().zip(several).zip(&expected) {
+            assert_eq!(index.closest_point(q).map(key), *expected, "{name} {isa} {q:?}");
+            assert_eq!(several.map(key), *expected, "{name} {isa} side by side {q:?}");
+        }
+    }
+    index.report()
+}
+
+fn vertices(element: Element) -> Vec<u32> {
+    match element {
+        Element::Point(a) => vec![a],
+        Element::Segment(ab) => ab.to_vec(),
+        Element::Triangle(abc) => abc.to_vec(),
+    }
+}
+
+/// On vertices and near them, on edges and near them, in the box, around, and beyond the domain.
+fn queries(numbers: &mut Numbers, soup: &Soup<f64>, count: usize) -> Vec<Point3<f64>> {
+    let bounds = soup.aabb();
+    let (centre, size) = (nalgebra::center(&bounds.min, &bounds.max), (bounds.max - bounds.min).max());
+    let elements: Vec<_> = soup.elements().collect();
+    (0..count)
+        .map(|i| {
+            let own = vertices(numbers.pick(&elements));
+            let [a, b] = [(); 2].map(|()| soup.positions()[numbers.pick(&own) as usize]);
+            let on_edge = a + (b - a) * [0.5, 0.25, numbers.vector().x.abs()][numbers.below(3)];
+            let little = numbers.vector() * (size * 0.5f64.powi([2, 4, 6, 12, 24, 36, 48][numbers.below(7)]));
+            match i % 8 {
+                0 => a,
+                1 => a + little,
+                2 => on_edge,
+                3 | 4 => on_edge + little,
+                5 => centre + numbers.vector() * (size * 0.6),
+                6 => centre + numbers.vector() * (size * 4.9),
+                _ => centre + numbers.vector() * (size * 9.0),
+            }
+        })
+        .collect()
+}
+
+/// Triangles by their corners, in a random order of ids.
+fn of_triangles(numbers: &mut Numbers, mut triangles: Vec<[Point3<f64>; 3]>) -> Soup<f64> {
+    numbers.shuffle(&mut triangles);
+    let elements = (0..u32::try_from(triangles.len()).expect("few")).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+    Soup::from_triangles(triangles.concat(), elements.collect()).expect("finite")
+}
+
+fn in_another_order<A: Copy>(numbers: &mut Numbers, [a, b, c]: [A; 3]) -> [A; 3] {
+    numbers.pick(&[[a, b, c], [b, c, a], [c, a, b], [a, c, b], [c, b, a], [b, a, c]])
+}
+
+/// A surface of revolution around the z axis, closed by a vertex at each end of its outline of radii and heights.
+struct Lathe {
+    positions: Vec<Point3<f64>>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Lathe {
+    fn new(outline: &[[f64; 2]], around: u32) -> Self {
+        let [[_, top], inner @ .., [_, bottom]] = outline else { panic!("an outline has two ends") };
+        let rings = u32::try_from(inner.len()).expect("few");
+        let mut positions: Vec<Point3<f64>> = Vec::new();
+        for [radius, height] in inner {
+            positions.extend((0..around).map(|j| {
+                let (s, c) = (f64::from(j) * std::f64::consts::TAU / f64::from(around)).sin_cos();
+                Point3::new(radius * c, radius * s, *height)
+            }));
+        }
+        positions.extend([Point3::new(0.0, 0.0, *top), Point3::new(0.0, 0.0, *bottom)]);
+        let at = |i: u32, j: u32| i * around + j % around;
+        let mut triangles = Vec::new();
+        for j in 0..around {
+            triangles.push([rings * around, at(0, j), at(0, j + 1)]);
+            for i in 0..rings - 1 {
+                let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+                triangles.extend([[a, d, c], [a, c, b]]);
+            }
+            triangles.push([rings * around + 1, at(rings - 1, j + 1), at(rings - 1, j)]);
+        }
+        Self { positions, triangles }
+    }
+
+    /// A sphere of the radius 1, with 2 (rings - 1) triangles for each of those around an end.
+    fn sphere(rings: u32, around: u32) -> Self {
+        let outline = (0..=rings).map(|i| {
+            let (s, c) = (f64::from(i) * std::f64::consts::PI / f64::from(rings)).sin_cos();
+            // The middle is at zero.
+            [s, if 2 * i == rings { 0.0 } else { c }]
+        });
+        Self::new(&outline.collect::<Vec<_>>(), around)
+    }
+
+    /// A cylinder of the height 1.
+    fn cylinder(radius: f64, rings: u32, around: u32) -> Self {
+        let rims = (0..rings).map(|i| [radius, 0.5 - f64::from(i) / f64::from(rings - 1)]);
+        let outline: Vec<_> = [[0.0, 0.5]].into_iter().chain(rims).chain([[0.0, -0.5]]).collect();
+        Self::new(&outline, around)
+    }
+
+    fn soup(self) -> Soup<f64> {
+        Soup::from_triangles(self.positions, self.triangles).expect("finite")
+    }
+
+    /// The corners of all triangles.
+    fn corners(&self) -> Vec<[Point3<f64>; 3]> {
+        self.triangles.iter().map(|own| own.map(|i| self.positions[i as usize])).collect()
+    }
+}
+
+/// Around the middle, where all is as near, and on the axis.
+fn in_the_middle(numbers: &mut Numbers, count: usize) -> Vec<Point3<f64>> {
+    (0..count)
+        .map(|i| {
+            let v = numbers.vector();
+            match i % 4 {
+                0 => Point3::new(0.0, 0.0, 0.5 * v.z),
+                1 => Point3::from(v * 0.2),
+                2 => Point3::from(v * 1e-9),
+                _ => Point3::from(v.map(|x| (8.0 * x).round() / 8.0)),
+            }
+        })
+        .collect()
+}
+
+/// Triangles that share an edge.
+fn book(
+    numbers: &mut Numbers,
+    spine: [Point3<f64>; 2],
+    mut apex: impl FnMut(&mut Numbers) -> Point3<f64>,
+) -> Soup<f64> {
+    let mut pages = Vec::new();
+    for _ in 0..3 + numbers.below(6) {
+        let page = [spine[0], spine[1], apex(numbers)];
+        pages.push(in_another_order(numbers, page));
+    }
+    // Some of them twice.
+    for _ in 0..numbers.below(3) {
+        let page = numbers.pick(&pages);
+        pages.push(in_another_order(numbers, page));
+    }
+    of_triangles(numbers, pages)
+}
+
+/// An edge of many triangles belongs to the lowest of them, and the others are in no list for its sake.
+#[test]
+fn books_agree() {
+    let (mut lists, mut primitives) = (0, 0);
+    for case in 0..24 {
+        let mut numbers = Numbers::new("books", case);
+        // Small books apart from each other, large ones through each other, or on a lattice, where everything ties.
+        let mut triangles = Vec::new();
+        for _ in 0..40 {
+            let size = [0.05, 0.5][case % 2];
+            let book = if case % 3 == 0 {
+                let from = numbers.whole(8);
+                let to = from + numbers.pick(&[Vector3::x(), Vector3::y() * 2.0, Vector3::new(1.0, 1.0, 0.0)]);
+                book(&mut numbers, [from, to], |n| from + n.vector().map(|x| (2.0 * x).round()))
+            } else {
+                let from = Point3::from(numbers.vector());
+                let to = from + numbers.vector() * size;
+                book(&mut numbers, [from, to], |n| from + n.vector() * size)
+            };
+            triangles.extend(book.triangles().iter().map(|own| own.map(|i| book.positions()[i as usize])));
+        }
+        let soup = of_triangles(&mut numbers, triangles);
+        let mut all = queries(&mut numbers, &soup, 600);
+        all.extend((0..200).map(|_| numbers.whole(24).map(|x| 0.5 * x - 2.0)));
+        let report = agrees(&format!("case {case}"), &soup, &P2mOptions::default(), &all);
+        lists += report.lists;
+        primitives += report.primitives;
+    }
+    println!("{lists} lists of {primitives}");
+    assert!(lists > 5_000, "{lists}");
+    // 20 each; 26 if nothing were left out for what it shares with lower ones.
+    assert!(primitives < 23 * lists, "{primitives} in {lists}");
+}
+
+/// Of primitives that are the same the lowest answers; of a triangle, its edges and its vertices the lowest that has
+/// the nearest feature.
+#[test]
+fn duplicates_agree() {
+    let (mut lists, mut primitives) = (0, 0);
+    for case in 0..24 {
+        let mut numbers = Numbers::new("duplicates", case);
+        let mut mesh = if case % 2 == 0 { Lathe::sphere(6, 8) } else { Lathe::cylinder(0.5, 4, 4) };
+        // A lattice, or in general position.
+        let noise = [0.0, 0.1][case / 2 % 2];
+        mesh.positions.iter_mut().for_each(|p| *p = p.map(|x| (8.0 * x).round() / 8.0) + numbers.vector() * noise);
+        let mut elements = Vec::new();
+        for own in &mesh.triangles {
+            for _ in 0..=numbers.below(3) {
+                elements.push(Element::Triangle(in_another_order(&mut numbers, *own)));
+            }
+            let [a, b, c] = in_another_order(&mut numbers, *own);
+            match numbers.below(4) {
+                0 => elements.extend([Element::Segment([a, b]), Element::Segment([b, a])]),
+                1 => elements.extend([Element::Segment([b, c]), Element::Point(c)]),
+                2 => elements.extend([Element::Point(a), Element::Point(a)]),
+                _ => {}
+            }
+        }
+        // Points around, that tie with each other on the borders of their cells and nowhere else.
+        for _ in 0..60 {
+            elements.push(Element::Point(u32::try_from(mesh.positions.len()).expect("few")));
+            mesh.positions.push(numbers.whole(8).map(|x| 0.25 * x - 1.0));
+        }
+        numbers.shuffle(&mut elements);
+        let soup = Soup::new(mesh.positions, elements).expect("finite");
+        let mut all = queries(&mut numbers, &soup, 600);
+        all.extend(in_the_middle(&mut numbers, 800));
+        let report = agrees(&format!("case {case}"), &soup, &P2mOptions::default(), &all);
+        lists += report.lists;
+        primitives += report.primitives;
+    }
+    println!("{lists} lists of {primitives}");
+    assert!(lists > 1_500, "{lists}");
+    // 27 each; 44 if nothing were left out for what it shares with lower ones.
+    assert!(primitives < 32 * lists, "{primitives} in {lists}");
+}
+
+/// Vertices that are one site, but not the same: each may be the nearest one.
+#[test]
+fn snapped_vertices_of_round_shapes_agree() {
+    let tiny = 0.5f64.powi(170);
+    for (case, mesh) in [Lathe::sphere(26, 40), Lathe::cylinder(0.5, 25, 40)].into_iter().enumerate() {
+        let mut numbers = Numbers::new("snapped", case);
+        let mut triangles = mesh.corners();
+        let mut snapped = Vec::new();
+        for p in triangles.iter_mut().flatten().filter(|p| p.z == 0.0) {
+            p.z = tiny * (numbers.below(33) as f64 - 16.0);
+            snapped.push(*p);
+        }
+        assert_eq!(snapped.len(), 240, "six triangles have each vertex of the middle");
+        let soup = of_triangles(&mut numbers, triangles);
+        let mut elements: Vec<_> = soup.elements().collect();
+        // Some of their vertices are points as well.
+        let is_snapped = |i: &u32| soup.positions()[*i as usize].z.abs() < 0.5f64.powi(160);
+        let points = (0..u32::try_from(soup.positions().len()).expect("few")).filter(is_snapped);
+        elements.extend(points.step_by(7).map(Element::Point));
+        numbers.shuffle(&mut elements);
+        let soup = Soup::new(soup.positions().to_vec(), elements).expect("finite");
+        let mut all = queries(&mut numbers, &soup, 1_000);
+        all.extend(in_the_middle(&mut numbers, 200));
+        all.extend((0..600).map(|i| {
+            let p = numbers.pick(&snapped);
+            let (x, y) = (p.x * [1.0, 1.5, 0.5][i % 3], p.y * [1.0, 1.5, 0.5][i % 3]);
+            Point3::new(x, y, tiny * 20.0 * numbers.vector().z)
+        }));
+        let report = agrees(&format!("case {case}"), &soup, &P2mOptions::default(), &all);
+        println!("{report}");
+        assert!(report.added + report.auxiliary > 0 && report.lists > 500, "{report}");
+    }
+}
+
+/// A sphere with a spike and a dent.
+fn spiked(dent: f64) -> Lathe {
+    let mut mesh = Lathe::sphere(26, 40);
+    let [out, inside] = [6 * 40 + 3, 14 * 40 + 20];
+    mesh.positions[out] *= 3.0;
+    mesh.positions[inside] *= 1.0 - dent;
+    mesh
+}
+
+/// Round shapes, the last two of them much longer than wide or of triangles that are.
+fn round_shapes() -> [(&'static str, Lathe); 6] {
+    [
+        ("sphere", Lathe::sphere(26, 40)),
+        ("cylinder", Lathe::cylinder(0.5, 26, 40)),
+        ("spiked", spiked(0.001)),
+        ("dented", spiked(0.8)),
+        ("thin", Lathe::cylinder(0.01, 26, 40)),
+        ("of long triangles", Lathe::cylinder(0.5, 2, 400)),
+    ]
+}
+
+/// Lists of most vertices, and added sites but for two shapes, whose balls meet little.
+fn has_sites_and_lists(name: &str, report: &P2mReport) {
+    println!("{name}: {report}");
+    let long = name == "of long triangles";
+    assert!(report.lists > 900, "{name}: {report}");
+    assert_eq!(report.auxiliary > 0, long || ["sphere", "cylinder", "spiked"].contains(&name), "{name}: {report}");
+    assert_eq!(report.added > 0, long, "{name}: {report}");
+}
+
+/// A middle that is none of all, and an axis that is near.
+#[test]
+fn spikes_dents_and_cylinders_agree() {
+    for (name, mesh) in round_shapes() {
+        let mut numbers = Numbers::new(name, 64);
+        let soup = mesh.soup();
+        let mut all = queries(&mut numbers, &soup, 600);
+        all.extend(in_the_middle(&mut numbers, 200));
+        // Beside the axis of the thin cylinder, and along the spike and the dent.
+        all.extend((0..150).map(|_| Point3::from(numbers.vector().component_mul(&Vector3::new(0.01, 0.01, 0.6)))));
+        all.extend((0..150).map(|_| soup.positions()[[243, 580][numbers.below(2)]] * (1.2 * numbers.vector().x)));
+        has_sites_and_lists(name, &agrees(name, &soup, &P2mOptions::default(), &all));
+    }
+}
+
+#[test]
+fn round_shapes_in_f32_agree() {
+    for (name, mesh) in round_shapes() {
+        let mut numbers = Numbers::new(name, 32);
+        let wide = mesh.soup();
+        let mut all = queries(&mut numbers, &wide, 450);
+        all.extend(in_the_middle(&mut numbers, 200));
+        let all: Vec<Point3<f32>> = all.iter().map(|q| q.map(f32::of_f64)).collect();
+        let soup = narrow(&wide).expect("small");
+        has_sites_and_lists(name, &agrees(name, &soup, &P2mOptions::default(), &all));
+    }
+}
+
+/// Budgets that are no numbers, none or more than there can be.
+#[test]
+fn odd_options_agree() {
+    let mut numbers = Numbers::new("odd options", 0);
+    let soup = Lathe::sphere(11, 25).soup();
+    assert_eq!(soup.triangles().len(), 500);
+    let mut all = queries(&mut numbers, &soup, 200);
+    all.extend(in_the_middle(&mut numbers, 100));
+    for added in [0.0, 1e-9, 1e9, f64::INFINITY, f64::NAN, -1.0] {
+        let reports = [0, 1, 2, 96, 2048, usize::MAX].map(|longest| {
+            let options = P2mOptions::default().with_added(added).with_longest(longest);
+            let report = agrees(&format!("{added} {longest}"), &soup, &options, &all);
+            println!("{added} {longest}: {report}");
+            assert!(added > 1e-9 || report.added + report.auxiliary == 0, "{added} {longest}: {report}");
+            report
+        });
+        assert_eq!(reports[0].lists, 0, "{added}: no list of none");
+        assert!(reports[3].lists > 200, "{added}: {}", reports[3]);
+        assert_eq!(reports[3].auxiliary > 0, added > 1.0, "{added}: {}", reports[3]);
+        assert_eq!(reports[4], reports[5], "{added}: 2048 is the most");
+    }
+}

@@ -1,0 +1,341 @@
+//! What approximate answers promise, for every backend, option and scalar: the error that was asked for, a lower bound that
+//! is not above the distance, and the exact answer wherever the option leaves nothing to give up.
+//!
+//! `P2M_APPROXIMATIONS=10000000 cargo test --release --test all approximate` checks so many answers of every backend and
+//! option (the usual number is printed).
+#![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
+
+use nalgebra::Point3;
+use p2m::backend::{Best, Counting, Examine};
+use p2m::scene::generate::Kind;
+use p2m::{
+    AabbTree, BruteForce, BuildIndex, CertifiedQuery, Closest, ClosestPoint, KdopTree, OctreeIndex, P2mIndex,
+    Primitive, PrimitiveSet, QueryOptions, Real, Soup, StoredInF32,
+};
+use p2m_testkit::oracle::Distance;
+use p2m_testkit::scenes::{self, KINDS, LAYOUTS, narrow};
+use rand::{Rng, RngExt};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Answers of each backend, if nothing else is wanted.
+const USUAL: usize = 60_000;
+/// Primitives of a scene at most.
+const LARGEST: usize = 1200;
+
+/// An index with counters.
+trait Index<T: Real>: ClosestPoint<T> + Examine<T> + Sync {}
+impl<T: Real, I: ClosestPoint<T> + Examine<T> + Sync> Index<T> for I {}
+
+/// All but the certified bound.
+fn known<T: Real>(c: &Closest<T>) -> impl PartialEq + std::fmt::Debug + use<T> {
+    (c.primitive, c.distance, c.point, c.feature, c.barycentric)
+}
+
+struct Case<'a, T: Real> {
+    soup: &'a Soup<T>,
+    name: &'a str,
+    index: &'a dyn Index<T>,
+    query: Point3<T>,
+    exact: Closest<T>,
+    /// The same for certain.
+    truth: Closest<T>,
+    /// How many lower bounds were so close that only rational arithmetic could tell.
+    compared: &'a mut usize,
+    checked: &'a mut usize,
+}
+
+impl<T: Real> Case<'_, T> {
+    /// What holds for every answer.
+    fn ask(&mut self, options: &QueryOptions<T>) -> Closest<T> {
+        let found = self.index.closest_point_with(&self.query, options).expect("there is something");
+        let say = || format!("{}, {options:?} at {:?}: {found:?}, not {:?}", self.name, self.query, self.exact);
+        assert!(found.lower_bound <= self.exact.distance && found.distance >= self.exact.distance, "{}", say());
+        let own = self.soup.get(found.primitive).project(&self.query);
+        assert_eq!(T::of_f64(own.key.distance()), found.distance, "{}: the distance of another primitive", say());
+        *self.checked += 1;
+        if found.lower_bound > self.truth.lower_bound {
+            *self.compared += 1;
+            let vertices: Vec<[f64; 3]> = (self.soup.get(self.truth.primitive).vertices().iter())
+                .map(|v| v.map(|x| x.to_f64()).coords.into())
+                .collect();
+            let distance = Distance::new(self.query.map(|x| x.to_f64()).coords.into(), &vertices);
+            assert!(distance.is_at_least(found.lower_bound.to_f64()), "{}: the bound is too large", say());
+        }
+        found
+    }
+
+    fn check(&mut self) {
+        let usual = QueryOptions::default();
+        let exact = self.exact;
+        let u = T::UNIT_ROUNDOFF;
+        let (distance, rounding) = (exact.distance.to_f64(), (exact.distance - exact.lower_bound).to_f64());
+        for epsilon in [1e-9, 0.001, 0.03, 0.3, 3.0] {
+            let found = self.ask(&usual.with_epsilon(T::of_f64(epsilon)));
+            let most = (1.0 + epsilon) * (1.0 + 8.0 * u);
+            let reached = found.distance.to_f64();
+            assert!(
+                reached <= distance * most + T::SMALLEST_SUBNORMAL,
+                "{}: {epsilon}: {found:?}, {exact:?}",
+                self.name
+            );
+            // And the bound says so, but for the roundings of candidates.
+            let told = (found.lower_bound.to_f64() + 4.0 * rounding) * most * (1.0 + 8.0 * u);
+            assert!(reached <= told + T::SMALLEST_SUBNORMAL, "{}: {epsilon}: bound of {found:?}, {exact:?}", self.name);
+        }
+        for part in [0.25, 0.999, 1.0, 1.5, 4.0, f64::INFINITY] {
+            // Also where the distance is zero.
+            let near = T::of_f64(if part < f64::INFINITY { distance * part } else { part });
+            let found = self.ask(&usual.with_near_enough(near));
+            assert!(
+                found.distance <= near || known(&found) == known(&exact),
+                "{}: {near:?}: {found:?}, {exact:?}",
+                self.name
+            );
+        }
+        // Anything at all, but not nothing.
+        self.ask(&usual.with_near_enough(T::INFINITY));
+        for budget in [0, 1, 3, 10, 100] {
+            self.ask(&usual.with_budget(budget));
+        }
+        let found = self.ask(&usual.with_budget(u32::MAX - 1));
+        assert_eq!(known(&found), known(&exact), "{}: a budget for everything", self.name);
+        // All together, and with a radius: what is found keeps the sum of what was asked for.
+        let options = usual.with_epsilon(T::of_f64(0.5)).with_near_enough(exact.distance * T::of_f64(1.2));
+        let found = self.ask(&options.with_max_distance(exact.distance));
+        assert!(found.distance == exact.distance, "{}: {found:?}, {exact:?}", self.name);
+        let short = exact.distance.to_f64() * 0.99;
+        if short < distance {
+            let options = options.with_max_distance(T::of_f64(short)).with_budget(5);
+            assert_eq!(self.index.closest_point_with(&self.query, &options), None, "{}: beyond the radius", self.name);
+        }
+    }
+}
+
+fn check_scene<T: Real>(soup: &Soup<T>, queries: &[Point3<T>], counts: &mut [usize; 2]) {
+    let brute = BruteForce::new(soup).expect("valid");
+    let tree = AabbTree::build(soup, &Default::default()).expect("valid");
+    let kdop = KdopTree::<T, _, 14>::build(soup, &Default::default()).expect("valid");
+    let octree = OctreeIndex::build(soup, &Default::default()).expect("valid");
+    let p2m = P2mIndex::build(soup, &Default::default()).expect("valid");
+    let indexes: [(&str, &dyn Index<T>); 4] = [("aabb", &tree), ("kdop", &kdop), ("octree", &octree), ("p2m", &p2m)];
+    for query in queries {
+        let Some(exact) = tree.closest_point(query) else { continue };
+        let truth = tree.certified_closest_point(query, &Default::default()).expect("vertices").expect("found");
+        // Brute force takes what it is asked for as leave, not as order.
+        if soup.len() < 1000 {
+            let rough = QueryOptions::default().with_budget(0).with_near_enough(T::INFINITY);
+            let found = brute.closest_point_with(query, &rough).map(|c| known(&c));
+            assert_eq!(found, Some(known(&exact)), "brute force at {query:?}");
+        }
+        for (name, index) in indexes {
+            let [checked, compared] = counts;
+            Case { soup, name, index, query: *query, exact, truth, compared, checked }.check();
+        }
+    }
+}
+
+fn answers() -> usize {
+    std::env::var("P2M_APPROXIMATIONS").map_or(USUAL, |n| n.parse().expect("a number of answers"))
+}
+
+/// The first primitives of scenes of all kinds.
+fn sources() -> Vec<Soup<f64>> {
+    let generated = Kind::all().into_iter().map(|kind| kind.generate().expect("default options"));
+    let random = KINDS
+        .into_iter()
+        .flat_map(|kinds| LAYOUTS.map(|layout| (kinds, layout)))
+        .map(|(kinds, layout)| scenes::soup(&mut p2m_testkit::rng("approximation", 0), kinds, layout, 400));
+    let first = |soup: Soup<f64>| {
+        Soup::new(soup.positions().to_vec(), soup.elements().take(LARGEST)).expect("of a valid scene")
+    };
+    // So many slivers beside each other that more are candidates than can wait.
+    let gear = std::iter::once(scenes::skewed_gear(1500));
+    generated.chain(random).map(first).chain(gear).collect()
+}
+
+/// Counts of answers checked and of bounds that rational arithmetic had to tell, in f64 and in f32.
+fn check_scales(soup: &Soup<f64>, each: usize, rng: &mut impl Rng) -> [[usize; 2]; 2] {
+    let [mut double, mut single] = [[0; 2]; 2];
+    for exponent in [0, -350, 450] {
+        let scale = |p: &Point3<f64>| p.map(|x| x * 2f64.powi(exponent));
+        let positions = soup.positions().iter().map(scale).collect();
+        let scaled = Soup::new(positions, soup.elements()).expect("far from the ends");
+        let queries: Vec<_> = (0..each / 3).map(|_| scale(&scenes::query(rng, soup.positions()))).collect();
+        check_scene(&scaled, &queries, &mut double);
+        if let Some(narrowed) = narrow(&scaled) {
+            let queries: Vec<_> = queries.iter().map(|q| scenes::to_f32(*q)).collect();
+            check_scene(&narrowed, &queries, &mut single);
+        }
+    }
+    [double, single]
+}
+
+#[test]
+fn approximate_answers_keep_what_they_promise() {
+    let sources = sources();
+    // Eighteen answers a query of each of four backends; scales of f64 have no scene in f32.
+    let each = answers().div_ceil(4 * 18 * sources.len()).next_multiple_of(3);
+    let counts = Mutex::new([[0; 2]; 2]);
+    let next = AtomicUsize::new(0);
+    let work = || {
+        loop {
+            let i = next.fetch_add(1, Ordering::Relaxed);
+            let Some(soup) = sources.get(i) else { return };
+            let [double, single] = check_scales(soup, each, &mut p2m_testkit::rng("approximation", i as u64 + 1));
+            let mut counts = counts.lock().expect("no check failed");
+            for (sum, count) in counts.as_flattened_mut().iter_mut().zip([double, single].as_flattened()) {
+                *sum += count;
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, Into::into) {
+            scope.spawn(work);
+        }
+    });
+    let [double, single] = counts.into_inner().expect("no check failed");
+    println!("answers, and lower bounds that rational arithmetic had to tell: {double:?} in f64, {single:?} in f32");
+    assert!(double[0] + single[0] >= answers(), "{double:?}, {single:?}");
+}
+
+/// Where more primitives are candidates than can wait, some are evaluated before the search is over: what it holds after
+/// that has to be evaluated all the same.
+#[test]
+fn slivers_side_by_side_keep_epsilon() {
+    let soup = scenes::skewed_gear(3000);
+    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let mut rng = p2m_testkit::rng("slivers side by side", 0);
+    for _ in 0..40_000 {
+        let query = Point3::from([0; 3].map(|_| rng.random_range(-1.2..1.2)));
+        let exact = tree.closest_point(&query).expect("found");
+        for epsilon in [0.001, 0.01] {
+            let found = tree.closest_point_with(&query, &QueryOptions::default().with_epsilon(epsilon)).expect("found");
+            let most = exact.distance * (1.0 + epsilon) * (1.0 + f64::EPSILON);
+            assert!(found.distance <= most, "{epsilon} at {query:?}: {found:?}, {exact:?}");
+            assert!(found.lower_bound <= exact.distance, "{epsilon} at {query:?}: {found:?}, {exact:?}");
+        }
+    }
+}
+
+/// A budget is kept, but for the way to a first answer, and more of it is never worse.
+#[test]
+fn budgets_are_kept_and_pay() {
+    let soup = p2m::scene::generate::torus_knot(&Default::default()).expect("default options");
+    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let octree = OctreeIndex::build(&soup, &Default::default()).expect("valid");
+    let p2m = P2mIndex::build(&soup, &Default::default()).expect("valid");
+    let indexes: [(&str, &dyn Index<f64>); 3] = [("aabb", &tree), ("octree", &octree), ("p2m", &p2m)];
+    let mut rng = p2m_testkit::rng("budgets", 0);
+    let queries: Vec<_> = (0..300).map(|_| Point3::from([0; 3].map(|_| rng.random_range(-1.5..1.5)))).collect();
+    for (name, index) in indexes {
+        let (mut least, mut errors) = ([usize::MAX; 2], Vec::new());
+        for budget in [0, 4, 16, 64, 256] {
+            let mut error = 0.0;
+            for query in &queries {
+                let options = QueryOptions::default().with_budget(budget);
+                let mut counting = Counting::new(Best::new(&options));
+                index.examine(query, &mut counting);
+                let visits = counting.nodes + counting.packets;
+                // A path from the root to a packet, or the sites on the way to a cell.
+                assert!(visits <= budget as usize + 20, "{name}: {visits} visits for {budget}");
+                least = [least[0].min(visits), least[1].min(counting.primitives)];
+                let found = counting.best.finish().expect("found");
+                error += found.distance / index.closest_point(query).expect("found").distance - 1.0;
+            }
+            errors.push(error / 300.0);
+        }
+        println!("{name}: mean relative errors {errors:?}, at least {least:?} visits and primitives");
+        assert!(errors.is_sorted_by(|more, less| more >= less), "{name}: {errors:?}");
+        assert!(errors[4] < 1e-3, "{name}: {errors:?}");
+    }
+}
+
+/// The exact answer of a cell that has one primitive says so, whatever was asked for.
+#[test]
+fn what_is_certain_leaves_nothing_open() {
+    let mut rng = p2m_testkit::rng("certain cells", 0);
+    let soup = scenes::soup(&mut rng, scenes::Kinds::Triangles, scenes::Layout::Uniform, 300);
+    let index = P2mIndex::build(&soup, &Default::default()).expect("valid");
+    let mut exact = 0;
+    for _ in 0..200 {
+        let query = Point3::from([0; 3].map(|_| rng.random_range(-4.0..4.0)));
+        let expected = index.closest_point(&query).expect("found");
+        let options = QueryOptions::default().with_budget(0);
+        let found = index.closest_point_with(&query, &options).expect("found");
+        exact += usize::from(found == expected);
+    }
+    println!("{exact} of 200 first guesses have the bound of an exact answer");
+    assert!(exact > 20, "{exact}");
+}
+
+/// Distances beyond the range of f32 are none in f64.
+#[test]
+fn what_is_kept_in_f32_is_as_far_as_in_f64() {
+    let soup = Soup::new(vec![Point3::<f64>::origin()], [p2m::Element::Point(0)]).expect("valid");
+    let index = StoredInF32::<BruteForce<Soup<f32>>>::build(&soup, &()).expect("valid");
+    let found = index.closest_point(&Point3::from([3e38; 3])).expect("found");
+    let expected = 3e38 * 3f64.sqrt();
+    assert!((found.distance - expected).abs() <= found.distance - found.lower_bound, "{found:?}");
+    // The bound is in range.
+    assert!(found.lower_bound > f64::from(f32::MAX) * 0.999_999, "{found:?}");
+}
+
+/// What is kept in f32 answers about the scene in f64, within what it says.
+#[test]
+fn scenes_kept_in_f32_are_as_exact_as_they_say() {
+    let mut rng = p2m_testkit::rng("stored", 0);
+    let mut worst = [0.0f64; 2];
+    for soup in sources() {
+        for (scale, offset) in [(1.0, 0.0), (1.0, 1e6), (1e-9, 1e-3), (1e20, -3e25), (1e-43, 0.0), (1e-60, 0.0)] {
+            let place = |p: &Point3<f64>| p.map(|x| x * scale + offset);
+            let soup = Soup::new(soup.positions().iter().map(place).collect(), soup.elements()).expect("finite");
+            let exact = AabbTree::build(&soup, &Default::default()).expect("valid");
+            let Ok(index) = StoredInF32::<AabbTree<f32, Soup<f32>>>::build(&soup, &Default::default()) else {
+                continue;
+            };
+            let size = soup.aabb().max - soup.aabb().min;
+            for _ in 0..20 {
+                let query = scenes::query(&mut rng, soup.positions());
+                let Some(found) = index.closest_point(&query) else { continue };
+                let expected = exact.closest_point(&query).expect("found");
+                let error = found.distance - found.lower_bound;
+                let off = (found.distance - expected.distance).abs();
+                assert!(found.lower_bound <= expected.distance, "{query:?}: {found:?}, {expected:?}");
+                assert!(off <= error || found.lower_bound == 0.0, "{query:?}: {found:?}, {expected:?}");
+                let inside = (query - soup.aabb().min).amax() < 2.0 * size.amax();
+                if inside && size.amax() > 1e-30 && found.lower_bound > 0.0 {
+                    worst = [worst[0].max(error / size.amax()), worst[1].max(off / error)];
+                }
+                let rough =
+                    index.closest_point_with(&query, &QueryOptions::default().with_epsilon(0.1)).expect("found");
+                assert!(rough.lower_bound <= expected.distance, "{query:?}: {rough:?}, {expected:?}");
+                // The same where it is one of several to collect.
+                let mut best = Best::new(&QueryOptions::default());
+                index.search(&query, &mut best);
+                let collected = best.finish().expect("found");
+                assert!(collected.lower_bound <= expected.distance, "{query:?}: {collected:?}, {expected:?}");
+                assert_eq!((collected.distance, collected.point), (found.distance, found.point));
+                // What is certainly within a radius is found.
+                let radius = expected.distance + 2.0 * error;
+                let near = QueryOptions::default().with_max_distance(radius);
+                assert_eq!(index.closest_point_with(&query, &near), Some(found), "{query:?}: {radius:?}");
+            }
+        }
+    }
+    println!("largest error over the size of the scene, and part of it that was needed: {worst:?}");
+    // 2^-24 for vertices, query and distance, and the root of three.
+    assert!(worst[0] < 1e-6 && worst[1] > 0.1, "{worst:?}");
+}
+
+/// A distance of 63.03 smallest subnormals is rounded to 63 of them.
+#[test]
+fn subnormal_distances_kept_in_f32_know_that_they_were_rounded() {
+    let place = Point3::new(3.588400265892133e-39, 2.364836333069033e-38, 3.588311984088881e-39);
+    let query = Point3::new(3.588400265892133e-39, 2.36483605280934e-38, 3.588400265892133e-39);
+    let soup = Soup::new(vec![place], [p2m::Element::Point(0)]).expect("finite");
+    let index = StoredInF32::<AabbTree<f32, Soup<f32>>>::build(&soup, &Default::default()).expect("in range");
+    let found = index.closest_point(&query).expect("found");
+    let off = (found.distance - (query - place).norm()).abs();
+    assert!(off > 0.0 && off <= found.distance - found.lower_bound, "{off:e}: {found:?}");
+}

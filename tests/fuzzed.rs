@@ -1,0 +1,167 @@
+//! What fuzz targets check, on their seeds and on what once failed (`fuzz/crashes`), without a nightly compiler.
+//!
+//! `P2M_FUZZED=fuzz/corpus cargo test --test fuzzed` adds a folder with a folder for each target, such as fuzzing leaves.
+//! `P2M_SEED=1 cargo test --test fuzzed seeds_are` writes the seeds of scenes and saved indexes anew.
+#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
+
+#[allow(unreachable_pub, reason = "a crate of its own")]
+#[path = "../fuzz/src/lib.rs"]
+mod fuzz;
+
+use fuzz::{QUESTIONS, backends, queries, rays, readers, saved, scene};
+use p2m::scene::{Format, PointFormat};
+use rand::RngExt;
+use std::collections::BTreeSet;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+type Check = fn(&[u8]);
+
+const TARGETS: [(&str, Check); 11] = [
+    ("obj", |file| readers::scene(file, Format::Obj)),
+    ("ply", |file| readers::scene(file, Format::Ply)),
+    ("stl", |file| readers::scene(file, Format::Stl)),
+    ("off", |file| readers::scene(file, Format::Off)),
+    ("xyz", |file| readers::points(file, PointFormat::Xyz)),
+    ("csv", |file| readers::points(file, PointFormat::Csv)),
+    ("npy", |file| readers::points(file, PointFormat::Npy)),
+    ("ply_points", |file| readers::points(file, PointFormat::Ply)),
+    ("queries", |input| {
+        queries::check(input);
+    }),
+    ("rays", |input| {
+        rays::check(input);
+    }),
+    ("saved", |input| {
+        saved::check(input);
+    }),
+];
+
+/// Memory is measured, so one test works at a time.
+static ALONE: Mutex<()> = Mutex::new(());
+
+fn folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz").join(name)
+}
+
+/// The files of a folder, in order; none if there is no such folder.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let mut files: Vec<_> =
+        std::fs::read_dir(folder).into_iter().flatten().map(|entry| entry.expect("a file").path()).collect();
+    files.sort();
+    files
+}
+
+fn inputs(target: &str) -> Vec<Vec<u8>> {
+    files(&folder("seeds").join(target)).iter().map(|file| std::fs::read(file).expect("readable")).collect()
+}
+
+#[test]
+fn every_seed_and_everything_that_once_failed_passes() {
+    let _alone = ALONE.lock();
+    let mut folders = vec![folder("seeds"), folder("crashes")];
+    folders.extend(std::env::var_os("P2M_FUZZED").map(PathBuf::from));
+    let mut failed = Vec::new();
+    for (target, check) in TARGETS {
+        let mut count = 0;
+        for file in folders.iter().flat_map(|folder| files(&folder.join(target))) {
+            let input = std::fs::read(&file).expect("readable");
+            count += 1;
+            if catch_unwind(AssertUnwindSafe(|| check(&input))).is_err() {
+                let source = match target {
+                    "queries" => queries::source(&input),
+                    "rays" => rays::source(&input),
+                    _ => String::new(),
+                };
+                eprintln!("{} fails\n{source}", file.display());
+                failed.push(file);
+            }
+        }
+        assert!(count > 0, "nothing for {target}");
+    }
+    assert!(failed.is_empty(), "{failed:?}");
+}
+
+/// Each has a line in the table of its folder, and each line a file.
+#[test]
+fn what_once_failed_is_explained() {
+    let text = std::fs::read_to_string(folder("crashes/README.md")).expect("a page");
+    let lines = text.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next());
+    let explained: BTreeSet<String> = lines.map(str::to_owned).collect();
+    let there = TARGETS.iter().flat_map(|(target, _)| {
+        let name = move |file: &PathBuf| format!("{target}/{}", file.file_name().expect("a file").display());
+        files(&folder("crashes").join(target)).iter().map(name).collect::<Vec<_>>()
+    });
+    assert_eq!(explained, there.collect());
+}
+
+#[test]
+fn seeds_reach_every_backend_and_question() {
+    let _alone = ALONE.lock();
+    let reached: BTreeSet<_> = inputs("queries").iter().map(|input| queries::check(input)).collect();
+    assert!(reached.contains(&queries::Reached::Refused));
+    let all = |wanted: &[&str], of: fn(&queries::Reached) -> Option<&'static str>| {
+        let found: BTreeSet<_> = reached.iter().filter_map(of).collect();
+        assert_eq!(found, wanted.iter().copied().collect());
+    };
+    use queries::Reached::Answers;
+    all(&scene::MODES, |r| if let Answers(mode, ..) = r { Some(mode) } else { None });
+    all(&[backends::TREES, backends::OTHERS].concat(), |r| if let Answers(_, name, _) = r { Some(name) } else { None });
+    all(&QUESTIONS, |r| if let Answers(.., question) = r { Some(question) } else { None });
+    let trees: BTreeSet<_> = inputs("rays").iter().filter_map(|input| rays::check(input)).collect();
+    assert!(backends::TREES.iter().all(|name| trees.iter().any(|(tree, rays)| tree == name && *rays > 0)));
+    let reached: BTreeSet<_> = inputs("saved").iter().map(|input| saved::check(input)).collect();
+    assert_eq!(reached.len(), 3, "{reached:?}");
+}
+
+/// Seeds for scenes are bytes at random after a head that says what is asked of which backend; those for saved indexes
+/// are some changes of whole files.
+#[test]
+fn seeds_are_those_that_are_made_here() {
+    let mut made = Vec::new();
+    let mut random = |name: String, head: &[u8], len: usize| {
+        let mut rng = p2m_testkit::rng(&name, 0);
+        let bytes: Vec<u8> = head.iter().copied().chain((0..len).map(|_| rng.random())).collect();
+        made.push((name, bytes));
+    };
+    for (q, question) in QUESTIONS.iter().enumerate() {
+        for (m, mode) in scene::MODES.iter().enumerate() {
+            // In f64 but for the lattice of every second question; backend, instruction set, option; seed; mode.
+            let is_single = u8::from(m == 0 && q % 2 == 1);
+            let head = [q as u8, is_single, (q * 5 + m) as u8, 0, 1, m as u8 * 3, m as u8];
+            random(format!("queries/{question}-{mode}"), &head, if m == 1 { 300 } else { 180 });
+        }
+    }
+    for (m, mode) in scene::MODES.iter().enumerate() {
+        for tree in 0..4 {
+            random(format!("rays/{mode}-{tree}"), &[tree, tree, 0, 7, m as u8], 120);
+        }
+    }
+    for kind in 0..5 {
+        for scene in 0..2 {
+            random(format!("saved/damaged-{kind}-{scene}"), &[0, scene, kind], 5);
+            for round in 0..3 {
+                random(format!("saved/changed-{kind}-{scene}-{round}"), &[1, scene, kind], 40);
+            }
+        }
+    }
+    // A point at infinity.
+    let infinity = f64::INFINITY.to_le_bytes();
+    made.push(("queries/infinity".into(), [&[0, 0, 0, 0, 0, 0, 1][..], &infinity, &[0; 45], &[1, 0, 0]].concat()));
+    // The first child of the first node is a node that is not there, or the first node.
+    made.push(("saved/child-that-is-not-there".into(), vec![1, 0, 0, 2, 7, 0, 0, 4]));
+    made.push(("saved/child-of-itself".into(), vec![1, 0, 0, 2, 7, 0, 0, 0]));
+    // A file of four sections without names, and no file.
+    let head = b"\x89P2M\r\n\x1a\n\x01\0\0\0\x04\0\0\0";
+    made.push(("saved/made-up".into(), [&[2, 0, 0][..], head, &[0; 400]].concat()));
+    made.push(("saved/nothing".into(), vec![0, 3, 0]));
+    let is_wanted = std::env::var_os("P2M_SEED").is_some();
+    for (name, bytes) in made {
+        let path = folder("seeds").join(&name);
+        if is_wanted {
+            std::fs::write(&path, &bytes).expect("written");
+        }
+        assert_eq!(std::fs::read(&path).ok(), Some(bytes), "{name}");
+    }
+}

@@ -1,0 +1,135 @@
+//! Random scenes that are built, asked, moved, saved, loaded and dropped on all cores, for as long as one likes: nothing is lost, and
+//! memory stays flat.
+//!
+//! `P2M_SOAK=600 cargo test --release --test soak -- --nocapture` does it for ten minutes; by default it is a moment.
+#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
+
+use nalgebra::Point3;
+use p2m::saved::{SavedFile, Writer};
+use p2m::{AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopTree, OctreeIndex, P2mIndex, PrimitiveId, Soup};
+use p2m_testkit::extremes::Extreme;
+use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
+use peak_alloc::PeakAlloc;
+use rand::{Rng, RngExt};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
+
+/// Seconds, if nothing else is wanted.
+const USUAL: f64 = 3.0;
+/// Memory is looked at so often.
+const PARTS: usize = 10;
+
+type Answers = Vec<Option<(u64, PrimitiveId)>>;
+
+fn answers(index: &(impl ClosestPoint<f64> + ?Sized), queries: &[Point3<f64>]) -> Answers {
+    queries.iter().map(|q| index.closest_point(q).map(|c| (c.distance.to_bits(), c.primitive))).collect()
+}
+
+fn brute(soup: &Soup<f64>, queries: &[Point3<f64>]) -> Answers {
+    answers(&BruteForce::new(soup).expect("valid"), queries)
+}
+
+/// A small scene that is hard, or a larger one that is not.
+fn scene(rng: &mut impl Rng) -> (Soup<f64>, Vec<Point3<f64>>) {
+    if rng.random_bool(0.5) {
+        return Extreme::ALL[rng.random_range(0..Extreme::ALL.len())].generate(rng, 32);
+    }
+    let (kinds, layout) = (KINDS[rng.random_range(0..4)], LAYOUTS[rng.random_range(0..6)]);
+    let len = [0, 1, 100, 3000][rng.random_range(0..4)];
+    let soup = scenes::soup(rng, kinds, layout, len);
+    let queries = (0..32).map(|_| scenes::query(rng, soup.positions())).collect();
+    (soup, queries)
+}
+
+/// The same elements elsewhere: each vertex moves by up to a tenth of itself.
+fn moved(rng: &mut impl Rng, soup: &Soup<f64>) -> Soup<f64> {
+    let positions = soup.positions().iter().map(|p| p.map(|x| x * rng.random_range(0.9..1.0)));
+    Soup::new(positions.collect(), soup.elements()).expect("smaller numbers are finite")
+}
+
+/// How many answers one scene was worth.
+fn cycle(seed: u64) -> u64 {
+    let mut rng = p2m_testkit::rng("soak", seed);
+    let (soup, queries) = scene(&mut rng);
+    let expected = brute(&soup, &queries);
+    let elsewhere = moved(&mut rng, &soup);
+    let expected_there = brute(&elsewhere, &queries);
+    let mut count = 0;
+    let mut same = |found: Answers, expected: &Answers, what: &str| {
+        assert_eq!(found, *expected, "seed {seed}: {what}");
+        count += found.len() as u64;
+    };
+    macro_rules! index {
+        ($name:literal, $index:ty) => {{
+            let index = <$index>::build(&soup, &Default::default()).expect("valid");
+            same(answers(&index, &queries), &expected, concat!($name, " built"));
+            let (mut writer, mut bytes) = (Writer::default(), Vec::new());
+            index.save(&mut writer);
+            writer.write(&mut bytes).expect("memory");
+            drop(index);
+            let file = SavedFile::read(&bytes[..]).expect("written whole");
+            let index = <$index>::load(&soup, file.checked().expect("undamaged")).expect("the same set");
+            same(answers(&index, &queries), &expected, concat!($name, " loaded"));
+            index
+        }};
+    }
+    macro_rules! tree {
+        ($name:literal, $index:ty) => {{
+            let mut index = index!($name, $index);
+            index.refit(&elsewhere, &Default::default()).expect("as many primitives");
+            same(answers(&index, &queries), &expected_there, concat!($name, " moved"));
+        }};
+    }
+    tree!("aabb", AabbTree<f64, &Soup<f64>>);
+    tree!("kdop", KdopTree<f64, &Soup<f64>, 14>);
+    index!("octree", OctreeIndex<f64, &Soup<f64>>);
+    index!("p2m", P2mIndex<f64, &Soup<f64>>);
+    count
+}
+
+#[test]
+fn nothing_is_lost_and_memory_is_flat() {
+    let seconds: f64 = std::env::var("P2M_SOAK").map_or(USUAL, |s| s.parse().expect("seconds"));
+    // Once before, so that what is allocated only once is there.
+    for seed in 0..50 {
+        cycle(seed);
+    }
+    let before = MEMORY.current_usage();
+    let (scenes, answers) = (AtomicU64::new(50), AtomicU64::new(0));
+    // The largest use of each part of the time, as each thread sees it between two scenes.
+    let most: [AtomicUsize; PARTS] = Default::default();
+    let start = Instant::now();
+    let failed = Mutex::new(false);
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, Into::into) {
+            scope.spawn(|| {
+                while start.elapsed() < Duration::from_secs_f64(seconds) && !*failed.lock().expect("plain") {
+                    let seed = scenes.fetch_add(1, Ordering::Relaxed);
+                    let Ok(count) = std::panic::catch_unwind(|| cycle(seed)) else {
+                        *failed.lock().expect("plain") = true;
+                        return;
+                    };
+                    answers.fetch_add(count, Ordering::Relaxed);
+                    #[allow(clippy::cast_sign_loss, reason = "time is not negative")]
+                    let part = (start.elapsed().as_secs_f64() / seconds * PARTS as f64) as usize;
+                    most[part.min(PARTS - 1)].fetch_max(MEMORY.current_usage(), Ordering::Relaxed);
+                }
+            });
+        }
+    });
+    assert!(!failed.into_inner().expect("plain"), "see above");
+    let after = MEMORY.current_usage();
+    let most = most.map(AtomicUsize::into_inner);
+    println!(
+        "{} scenes, {} answers in {:.0?}; {before} bytes before, {after} after, at most {most:?} between two scenes",
+        scenes.into_inner() - 50,
+        answers.into_inner(),
+        start.elapsed()
+    );
+    // Threads keep some small buffers.
+    assert!(after <= before + (1 << 16), "{before} bytes before, {after} after");
+}
