@@ -12,9 +12,6 @@ use peak_alloc::PeakAlloc;
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// One test at a time, because memory is counted for the whole process.
-static TURN: std::sync::Mutex<()> = std::sync::Mutex::new(());
-
 /// Buffers of a fixed size.
 const FIXED: usize = 1 << 17;
 
@@ -66,9 +63,16 @@ fn grid(n: u32, is_mixed: bool) -> Scene {
     Soup::new(positions, elements).unwrap().into()
 }
 
+/// The only test of its program: memory is counted for the whole process, and a harness that runs several frees what they printed
+/// whenever it likes.
 #[test]
+fn memory_is_within_what_is_promised() {
+    reading_takes_no_more_than_three_times_the_scene();
+    #[cfg(all(feature = "parry", feature = "rstar"))]
+    trees_of_other_crates_take_no_more_than_they_ask_for();
+}
+
 fn reading_takes_no_more_than_three_times_the_scene() {
-    let _turn = TURN.lock();
     // Just behind a power of two, where vectors that grow are largest beside what they hold; and just before.
     for n in [363, 361, 400, 460] {
         let scene = grid(n, false);
@@ -151,7 +155,6 @@ fn reading_takes_no_more_than_three_times_the_scene() {
 
 /// What is asked for in advance counts as taken, so more than that is what building takes beyond it.
 #[cfg(all(feature = "parry", feature = "rstar"))]
-#[test]
 fn trees_of_other_crates_take_no_more_than_they_ask_for() {
     use p2m_core::BuildIndex;
     use p2m_mixed::adapters::{ParryIndex, RstarIndex};
@@ -162,7 +165,6 @@ fn trees_of_other_crates_take_no_more_than_they_ask_for() {
         assert!(I::build(soup, &()).is_ok());
         MEMORY.peak_usage() - before
     }
-    let _turn = TURN.lock();
     for count in [1, 2, 3, 5, 17, 100, 1000, 5000, 20_000] {
         let mut rng = p2m_testkit::rng("trees of other crates", count as u64);
         for layout in p2m_testkit::scenes::LAYOUTS {
