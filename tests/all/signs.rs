@@ -66,13 +66,12 @@ fn signs_of_closed_models_are_those_of_rays() {
     for path in model_files() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
         let soup = p2m::scene::read_scene(&path).expect("readable").soup;
-        // Too slow to find out: thousands of slivers in one plane.
-        let is_gear = name.starts_with("gear_");
+        // Too slow to find out: thousands of slivers in one plane along two axes.
+        let is_gear = name == "gear_skewed_57k.ply";
         let meets = if is_gear { SignedDistance::new(tree(&soup), &soup).map(|_| None) } else { meets_itself(&soup) };
         match meets {
             Err(error) => println!("{name}: {error}"),
             Ok(Some([one, other])) => println!("{name}: {one} and {other} meet"),
-            Ok(None) if name == "gear_diff_ring.stl" => println!("{name}: meets itself"),
             Ok(None) => {
                 closed += 1;
                 let (inside, doubts) = agrees_with_rays(&name, &soup, &sets, count());

@@ -17,6 +17,11 @@ pub trait RayCollector<'r> {
         f64::INFINITY
     }
 
+    /// Whether a hit of this primitive matters: one of which it does not is not tested exactly.
+    fn wants(&self, _primitive: PrimitiveId) -> bool {
+        true
+    }
+
     /// Takes a hit, in any order; breaks if no other one matters.
     fn offer(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()>;
 

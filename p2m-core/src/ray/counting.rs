@@ -65,6 +65,9 @@ impl<'r, C: RayCollector<'r>> RayCollector<'r> for RayCounting<C> {
     fn limit(&self) -> f64 {
         self.collector.limit()
     }
+    fn wants(&self, primitive: PrimitiveId) -> bool {
+        self.collector.wants(primitive)
+    }
     fn offer(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()> {
         self.collector.offer(primitive, crossing)
     }
@@ -88,6 +91,32 @@ mod tests {
     use crate::hierarchy::TreeIndex;
     use crate::{BuildIndex, Hits, Kdop, KdopOptions, Triangle};
     use nalgebra::{Point3, Vector3};
+
+    /// Wants the hit of one primitive.
+    #[derive(Clone)]
+    struct Only(usize, Vec<PrimitiveId>);
+
+    impl<'r> RayCollector<'r> for Only {
+        fn wants(&self, primitive: PrimitiveId) -> bool {
+            primitive.index() == self.0
+        }
+        fn offer(&mut self, primitive: PrimitiveId, _: &Crossing<'r>) -> ControlFlow<()> {
+            self.1.push(primitive);
+            ControlFlow::Continue(())
+        }
+    }
+
+    #[test]
+    fn what_is_not_wanted_is_not_tested() {
+        let points = [0.0, 1.0, 2.0].map(|x| crate::Point::new(Point3::new(x, 0.0, 0.0)));
+        let tree = TreeIndex::<f64, _, Kdop<6>>::build(&points, &KdopOptions::default()).unwrap();
+        let ray = Ray::new(&Point3::new(-1.0, 0.0, 0.0), &Vector3::x()).unwrap();
+        for wanted in 0..3 {
+            let mut counting = RayCounting::new(Only(wanted, Vec::new()));
+            tree.visit_ray(&ray, &mut counting);
+            assert_eq!((counting.primitives, counting.collector.1), (1, vec![PrimitiveId::new(wanted)]));
+        }
+    }
 
     #[test]
     fn what_is_counted_is_what_is_wanted() {

@@ -235,7 +235,7 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
 }
 
 /// Two triangles of a closed surface that meet elsewhere than at common vertices, if there are any: the lowest one that has an
-/// edge which meets another one.
+/// edge which meets another one, and the lowest one that this edge meets.
 ///
 /// Edges are asked for as rays, whose directions are rounded: what touches within that may be told or not. Triangles that have a
 /// common vertex are taken to meet there alone, so sheets that lie on each other with common vertices are not told.
@@ -244,7 +244,7 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
 /// As [`SignedDistance::new`].
 ///
 /// # Complexity
-/// A search along each edge: microseconds, but milliseconds where thousands of long slivers lie in one plane.
+/// A search along each edge: a few microseconds, but milliseconds where thousands of long slivers lie in one plane along two axes.
 pub fn meets_itself(soup: &Soup<f64>) -> Result<Option<[PrimitiveId; 2]>, SignError> {
     let topology = Topology::new(soup)?;
     let rays = Rays::build(soup, &Default::default())?;

@@ -4,7 +4,8 @@ use super::pseudonormal::Rays;
 use super::{SignError, check_kinds};
 use crate::places::{Forest, Places, UNUSED, by_place};
 use nalgebra::Point3;
-use p2m_core::{Ray, RayQuery, Soup};
+use p2m_core::{Crossing, PrimitiveId, Ray, RayCollector, Soup};
+use std::ops::ControlFlow;
 
 /// No triangle: more than two have the edge, or the triangle has corners at one place.
 pub(super) const NONE: u32 = u32::MAX;
@@ -91,14 +92,34 @@ impl Topology {
                 // No ray: the ends are one place, or so far apart that there is no number for it.
                 let Ok(ray) = Ray::new(&at(ends[0]), &(at(ends[1]) - at(ends[0]))) else { continue };
                 let ray = ray.with_range(0.0, 1.0).expect("one is above zero");
-                let ends = self.places.of(ends);
-                let is_apart = |other: usize| self.places.of(soup.triangles()[other]).iter().all(|p| !ends.contains(p));
-                let hits = rays.all_intersections(&ray);
-                if let Some(hit) = hits.iter().find(|hit| is_apart(hit.primitive.index())) {
-                    return Some([t, hit.primitive.index()]);
+                let mut apart = Apart { places: &self.places, soup, ends: self.places.of(ends), lowest: None };
+                rays.visit_ray(&ray, &mut apart);
+                if let Some(other) = apart.lowest {
+                    return Some([t, other.index()]);
                 }
             }
         }
         None
+    }
+}
+
+/// The lowest triangle that an edge meets, of those without a corner at one of its ends: the others all meet it there, which only
+/// exact arithmetic could tell.
+struct Apart<'a> {
+    places: &'a Places,
+    soup: &'a Soup<f64>,
+    ends: [u32; 2],
+    lowest: Option<PrimitiveId>,
+}
+
+impl<'r> RayCollector<'r> for Apart<'_> {
+    fn wants(&self, triangle: PrimitiveId) -> bool {
+        let corners = self.places.of(self.soup.triangles()[triangle.index()]);
+        self.lowest.is_none_or(|lowest| triangle < lowest) && corners.iter().all(|place| !self.ends.contains(place))
+    }
+
+    fn offer(&mut self, triangle: PrimitiveId, _: &Crossing<'r>) -> ControlFlow<()> {
+        self.lowest = Some(triangle);
+        ControlFlow::Continue(())
     }
 }

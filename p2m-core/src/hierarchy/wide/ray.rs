@@ -63,9 +63,12 @@ impl<'r, C: RayCollector<'r>> Tests<'_, 'r, C> {
     /// Tests the primitive in a lane of a packet; breaks if no other one matters.
     #[inline(always)]
     fn test(&mut self, packet: usize, lane: usize) -> ControlFlow<()> {
-        self.hits.visit_primitive();
         let packet = &self.leaves.packets[packet];
         let id = packet.ids()[lane];
+        if !self.hits.wants(id) {
+            return ControlFlow::Continue(());
+        }
+        self.hits.visit_primitive();
         let limit = self.hits.limit();
         let (places, count) = packet.vertices_of(lane);
         let crossing = if count == 0 {
