@@ -117,9 +117,28 @@ fn random_box<R: Rng>(rng: &mut R, soup: &Soup<f64>, bounds: &Aabb<f64>) -> Aabb
     aabb([ends.map(|e| e[0]), ends.map(|e| e[1])])
 }
 
-/// The primitives among those with these boxes whose boxes meet `bounds`.
-fn candidates<T: Real>(boxes: &[Aabb<T>], bounds: &Aabb<T>) -> Vec<PrimitiveId> {
-    boxes.iter().enumerate().filter(|(_, b)| b.meets(bounds)).map(|(i, _)| PrimitiveId::new(i)).collect()
+/// The boxes of primitives, and one around each run of them, as they stand in the file: that is looked at first.
+struct Boxes<T: Real> {
+    each: Vec<Aabb<T>>,
+    runs: Vec<Aabb<T>>,
+}
+
+impl<T: Real> Boxes<T> {
+    const RUN: usize = 64;
+
+    fn new(soup: &Soup<T>) -> Self {
+        let each: Vec<_> = (0..soup.len()).map(|i| soup.get(PrimitiveId::new(i)).aabb()).collect();
+        let around = |run: &[Aabb<T>]| run.iter().fold(Aabb::empty(), |all, b| all.union(b));
+        let runs = each.chunks(Self::RUN).map(around).collect();
+        Self { each, runs }
+    }
+
+    /// The primitives whose boxes meet `bounds`.
+    fn meeting(&self, bounds: &Aabb<T>) -> Vec<PrimitiveId> {
+        let runs = self.runs.iter().enumerate().filter(|(_, run)| run.meets(bounds));
+        let members = runs.flat_map(|(i, _)| (i * Self::RUN..self.each.len()).take(Self::RUN));
+        members.filter(|&i| self.each[i].meets(bounds)).map(PrimitiveId::new).collect()
+    }
 }
 
 /// Those of them that meet `bounds`.
@@ -222,7 +241,7 @@ fn trees_find_the_same_primitives_as_brute_force_in_every_model() {
         let soup = p2m::scene::read_scene(&path).expect("readable").soup;
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
         let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
-        let boxes: Vec<Aabb<f64>> = (0..soup.len()).map(|i| soup.get(PrimitiveId::new(i)).aabb()).collect();
+        let boxes = Boxes::new(&soup);
         let counts: Vec<[usize; 2]> = std::thread::scope(|scope| {
             let threads: Vec<_> = (0..2)
                 .map(|thread| {
@@ -235,7 +254,7 @@ fn trees_find_the_same_primitives_as_brute_force_in_every_model() {
                         for _ in 0..BOXES / 2 {
                             let bounds = random_box(&mut rng, soup, &scene);
                             tree.primitives_in_box_into(&bounds, &mut found);
-                            let candidates = candidates(boxes, &bounds);
+                            let candidates = boxes.meeting(&bounds);
                             assert_eq!(found, meeting(soup, &candidates, &bounds), "{name} {bounds:?}");
                             assert_eq!(tree.meets_box(&bounds), !found.is_empty(), "{name} {bounds:?}");
                             met += found.len();
