@@ -1,4 +1,4 @@
-//! What fuzz targets check, each as a function of the bytes of an input; `tests/fuzzed.rs` of the workspace gives them the
+//! What fuzz targets check, each as a function of the bytes of an input; `tests/all/fuzzed.rs` of the workspace gives them the
 //! seeds and what once failed.
 //!
 //! - [`readers`]: files of scenes and points.

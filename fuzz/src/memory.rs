@@ -1,19 +1,13 @@
 //! How much memory a piece of work takes.
 
-use peak_alloc::PeakAlloc;
-
-#[global_allocator]
-static MEMORY: PeakAlloc = PeakAlloc;
-
 /// Buffers of a fixed size, in bytes.
 const FIXED: usize = 1 << 17;
 
-/// Works, and fails if that took more than so many bytes at a time, besides [`FIXED`]. Nothing else may be going on.
+/// Works, and fails if that took more than so many bytes at a time, besides [`FIXED`]; on this thread, which is the only one that
+/// reading works on.
 pub fn at_most<T>(bytes: usize, work: impl FnOnce() -> T) -> T {
-    let before = MEMORY.current_usage();
-    MEMORY.reset_peak_usage();
-    let result = work();
-    let taken = MEMORY.peak_usage().saturating_sub(before);
+    let mut result = None;
+    let taken = allocation_counter::measure(|| result = Some(work())).bytes_max as usize;
     assert!(taken <= FIXED + bytes, "{taken} bytes taken, {bytes} and {FIXED} expected");
-    result
+    result.expect("done")
 }

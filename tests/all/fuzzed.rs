@@ -1,11 +1,11 @@
 //! What fuzz targets check, on their seeds and on what once failed (`fuzz/crashes`), without a nightly compiler.
 //!
-//! `P2M_FUZZED=fuzz/corpus cargo test --test fuzzed` adds a folder with a folder for each target, such as fuzzing leaves.
-//! `P2M_SEED=1 cargo test --test fuzzed seeds_are` writes the seeds of scenes and saved indexes anew.
+//! `P2M_FUZZED=fuzz/corpus cargo test --test all fuzzed::` adds a folder with a folder for each target, such as fuzzing leaves.
+//! `P2M_SEED=1 cargo test --test all fuzzed::seeds_are` writes the seeds of scenes and saved indexes anew.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 
 #[allow(unreachable_pub, reason = "a crate of its own")]
-#[path = "../fuzz/src/lib.rs"]
+#[path = "../../fuzz/src/lib.rs"]
 mod fuzz;
 
 use fuzz::{QUESTIONS, backends, queries, rays, readers, saved, scene};
@@ -14,7 +14,6 @@ use rand::RngExt;
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 
 type Check = fn(&[u8]);
 
@@ -38,9 +37,6 @@ const TARGETS: [(&str, Check); 11] = [
     }),
 ];
 
-/// Memory is measured, so one test works at a time.
-static ALONE: Mutex<()> = Mutex::new(());
-
 fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz").join(name)
 }
@@ -59,7 +55,6 @@ fn inputs(target: &str) -> Vec<Vec<u8>> {
 
 #[test]
 fn every_seed_and_everything_that_once_failed_passes() {
-    let _alone = ALONE.lock();
     let mut folders = vec![folder("seeds"), folder("crashes")];
     folders.extend(std::env::var_os("P2M_FUZZED").map(PathBuf::from));
     let mut failed = Vec::new();
@@ -98,7 +93,6 @@ fn what_once_failed_is_explained() {
 
 #[test]
 fn seeds_reach_every_backend_and_question() {
-    let _alone = ALONE.lock();
     let reached: BTreeSet<_> = inputs("queries").iter().map(|input| queries::check(input)).collect();
     assert!(reached.contains(&queries::Reached::Refused));
     let all = |wanted: &[&str], of: fn(&queries::Reached) -> Option<&'static str>| {

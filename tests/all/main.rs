@@ -1,7 +1,7 @@
 //! The tests that hold backends against each other and against the oracle, as one program: what they have in common is
 //! compiled once. `cargo test --test all signs::` runs those of one module.
 //!
-//! Programs of their own beside it are those that need an allocator of their own (`fuzzed`, `out_of_memory`, `soak`), and
+//! Programs of their own beside it are those that need an allocator of their own (`out_of_memory`, `soak`), and
 //! `examples`, which runs other programs.
 
 mod adversaries;
@@ -11,6 +11,7 @@ mod consistency;
 mod contract;
 mod determinism;
 mod fields;
+mod fuzzed;
 mod kdop;
 mod models;
 mod near;

@@ -1,13 +1,13 @@
-//! Readers, writers, generators and adapters, as one program; beside it those that count allocations (`memory`, `robustness`).
+//! Readers, writers, generators and adapters, as one program; its allocator counts for each thread.
 
 mod adapters;
 mod answers;
-#[path = "../common/mod.rs"]
 mod common;
 mod generator;
 mod generator_kinds;
 mod generator_modifiers;
 mod generator_support;
+mod memory;
 mod models;
 mod npy;
 mod obj;
@@ -16,6 +16,7 @@ mod picture;
 mod ply;
 mod polygons;
 mod rays;
+mod robustness;
 mod statistics;
 mod stl;
 mod write;

@@ -1,26 +1,19 @@
 //! How much memory reading takes: within three times what the scene holds, for large files of every format; and building a tree
 //! of another crate: no more than was asked for in advance.
 
-mod common;
-
-use common::written;
+use crate::common::written;
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveSet, Soup};
 use p2m_mixed::{Format, Scene, read_scene, read_scene_from};
-use peak_alloc::PeakAlloc;
-
-#[global_allocator]
-static MEMORY: PeakAlloc = PeakAlloc;
 
 /// Buffers of a fixed size.
 const FIXED: usize = 1 << 17;
 
 /// Reads a scene; what it holds, and how much was taken at most.
 fn measure(read: impl FnOnce() -> Scene) -> (Scene, usize, usize) {
-    let before = MEMORY.current_usage();
-    MEMORY.reset_peak_usage();
-    let scene = read();
-    (scene, MEMORY.current_usage() - before, MEMORY.peak_usage() - before)
+    let mut scene = None;
+    let taken = allocation_counter::measure(|| scene = Some(read()));
+    (scene.expect("a scene"), usize::try_from(taken.bytes_current).expect("not negative"), taken.bytes_max as usize)
 }
 
 /// What the scene holds according to its documentation, apart from names.
@@ -63,15 +56,7 @@ fn grid(n: u32, is_mixed: bool) -> Scene {
     Soup::new(positions, elements).unwrap().into()
 }
 
-/// The only test of its program: memory is counted for the whole process, and a harness that runs several frees what they printed
-/// whenever it likes.
 #[test]
-fn memory_is_within_what_is_promised() {
-    reading_takes_no_more_than_three_times_the_scene();
-    #[cfg(all(feature = "parry", feature = "rstar"))]
-    trees_of_other_crates_take_no_more_than_they_ask_for();
-}
-
 fn reading_takes_no_more_than_three_times_the_scene() {
     // Just behind a power of two, where vectors that grow are largest beside what they hold; and just before.
     for n in [363, 361, 400, 460] {
@@ -155,15 +140,13 @@ fn reading_takes_no_more_than_three_times_the_scene() {
 
 /// What is asked for in advance counts as taken, so more than that is what building takes beyond it.
 #[cfg(all(feature = "parry", feature = "rstar"))]
+#[test]
 fn trees_of_other_crates_take_no_more_than_they_ask_for() {
     use p2m_core::BuildIndex;
     use p2m_mixed::adapters::{ParryIndex, RstarIndex};
 
     fn peak<'a, I: BuildIndex<f64, &'a Soup<f64>, Options = ()>>(soup: &'a Soup<f64>) -> usize {
-        let before = MEMORY.current_usage();
-        MEMORY.reset_peak_usage();
-        assert!(I::build(soup, &()).is_ok());
-        MEMORY.peak_usage() - before
+        allocation_counter::measure(|| assert!(I::build(soup, &()).is_ok())).bytes_max as usize
     }
     for count in [1, 2, 3, 5, 17, 100, 1000, 5000, 20_000] {
         let mut rng = p2m_testkit::rng("trees of other crates", count as u64);

@@ -1,8 +1,6 @@
 //! Broken files: an error or a scene, never a panic, and never much memory. What is read is written and read back.
 
-mod common;
-
-use common::{
+use crate::common::{
     ENCODINGS, RICH_NPY, RICH_OBJ, RICH_OFF, RICH_STL, elements, npy, obj, off, ply, read_back, rich_binary_off,
     rich_binary_stl, rich_ply, stl,
 };
@@ -11,15 +9,17 @@ use p2m_core::Ray;
 use p2m_mixed::{
     AnswerFormat, AnswerWriter, Format, HitWriter, PointFormat, ReadError, Scene, read_points_from, read_rays_from,
 };
-use peak_alloc::PeakAlloc;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-#[global_allocator]
-static MEMORY: PeakAlloc = PeakAlloc;
-
 /// Far more than the files at hand need, far less than their headers can announce.
-const MEGABYTES: f32 = 64.0;
+const MOST: u64 = 64 << 20;
+
+/// Works, and fails if that took more than [`MOST`] bytes at a time.
+fn with_little_memory(work: impl FnOnce()) {
+    let taken = allocation_counter::measure(work).bytes_max;
+    assert!(taken < MOST, "{taken} bytes");
+}
 
 /// Reads a file and checks what comes of it; whether it is one.
 type Reader = fn(&[u8]) -> bool;
@@ -112,72 +112,75 @@ fn check_rays(rays: Result<Vec<Ray>, ReadError>) -> bool {
 
 #[test]
 fn truncation_at_every_byte() {
-    for (bytes, read, most) in files() {
-        assert!(read(&bytes));
-        let ends = (0..bytes.len()).filter(|&end| read(&bytes[..end])).count();
-        assert!(ends <= most, "{ends}");
-    }
-    assert!(MEMORY.peak_usage_as_mb() < MEGABYTES, "{}", MEMORY.peak_usage_as_mb());
+    with_little_memory(|| {
+        for (bytes, read, most) in files() {
+            assert!(read(&bytes));
+            let ends = (0..bytes.len()).filter(|&end| read(&bytes[..end])).count();
+            assert!(ends <= most, "{ends}");
+        }
+    });
 }
 
 #[test]
 fn random_damage() {
-    let mut rng = ChaCha8Rng::seed_from_u64(1);
-    let mut read_well = 0;
-    for round in 0..5000 {
-        for (mut bytes, read, _) in files() {
-            for _ in 0..=round % 4 {
-                let at = rng.random_range(0..bytes.len());
-                match rng.random_range(0..6) {
-                    0 => bytes[at] = rng.random(),
-                    1 => bytes[at] ^= 1 << rng.random_range(0..8),
-                    2 => bytes[at] = *b"0123456789-+.#/\\\n\r eE".get(rng.random_range(0..21)).unwrap(),
-                    3 => bytes.insert(at, rng.random()),
-                    4 => drop(bytes.remove(at)),
-                    _ => {
-                        // A piece of the file in another place.
-                        let from = rng.random_range(0..bytes.len());
-                        let piece = bytes[from..bytes.len().min(from + 20)].to_vec();
-                        bytes.splice(at..at, piece);
+    with_little_memory(|| {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let mut read_well = 0;
+        for round in 0..5000 {
+            for (mut bytes, read, _) in files() {
+                for _ in 0..=round % 4 {
+                    let at = rng.random_range(0..bytes.len());
+                    match rng.random_range(0..6) {
+                        0 => bytes[at] = rng.random(),
+                        1 => bytes[at] ^= 1 << rng.random_range(0..8),
+                        2 => bytes[at] = *b"0123456789-+.#/\\\n\r eE".get(rng.random_range(0..21)).unwrap(),
+                        3 => bytes.insert(at, rng.random()),
+                        4 => drop(bytes.remove(at)),
+                        _ => {
+                            // A piece of the file in another place.
+                            let from = rng.random_range(0..bytes.len());
+                            let piece = bytes[from..bytes.len().min(from + 20)].to_vec();
+                            bytes.splice(at..at, piece);
+                        }
                     }
                 }
+                read_well += usize::from(read(&bytes));
             }
-            read_well += usize::from(read(&bytes));
         }
-    }
-    assert!(read_well > 500, "{read_well}: the damage should not always be noticed");
-    assert!(MEMORY.peak_usage_as_mb() < MEGABYTES, "{}", MEMORY.peak_usage_as_mb());
+        assert!(read_well > 500, "{read_well}: the damage should not always be noticed");
+    });
 }
 
 #[test]
 fn noise() {
-    let mut rng = ChaCha8Rng::seed_from_u64(2);
-    for length in 0..2000 {
-        let mut bytes = vec![0; length];
-        rng.fill_bytes(&mut bytes);
-        check(obj(&bytes));
-        check(ply(&bytes));
-        check(stl(&bytes));
-        check(off(&bytes));
-        for format in [PointFormat::Xyz, PointFormat::Csv, PointFormat::Npy, PointFormat::Ply] {
-            check_points(read_points_from(&bytes[..], format, "t"));
-            check_rays(read_rays_from(&bytes[..], format, "t"));
+    with_little_memory(|| {
+        let mut rng = ChaCha8Rng::seed_from_u64(2);
+        for length in 0..2000 {
+            let mut bytes = vec![0; length];
+            rng.fill_bytes(&mut bytes);
+            check(obj(&bytes));
+            check(ply(&bytes));
+            check(stl(&bytes));
+            check(off(&bytes));
+            for format in [PointFormat::Xyz, PointFormat::Csv, PointFormat::Npy, PointFormat::Ply] {
+                check_points(read_points_from(&bytes[..], format, "t"));
+                check_rays(read_rays_from(&bytes[..], format, "t"));
+            }
+            // Facets and faces without end, all of them of noise.
+            check(stl([&[0; 80][..], &[0xff; 4], &bytes].concat()));
+            check(off([b"OFF BINARY\n", &[0, 0, 0, 2, 0x7f, 0xff, 0xff, 0xff, 0, 0, 0, 0][..], &bytes].concat()));
+            // Noise behind a header.
+            for encoding in ENCODINGS {
+                let mut file = rich_ply(encoding);
+                let data = file.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
+                file.truncate(data);
+                file.extend(&bytes);
+                check(ply(&file));
+            }
+            // Noise of the letters of the format.
+            let text: Vec<u8> = bytes.iter().map(|b| b"vflp0123456789 -\n\n/#\\."[usize::from(*b) % 22]).collect();
+            check(obj(&text));
+            check(off([b"OFF\n9 9 9\n", &text[..]].concat()));
         }
-        // Facets and faces without end, all of them of noise.
-        check(stl([&[0; 80][..], &[0xff; 4], &bytes].concat()));
-        check(off([b"OFF BINARY\n", &[0, 0, 0, 2, 0x7f, 0xff, 0xff, 0xff, 0, 0, 0, 0][..], &bytes].concat()));
-        // Noise behind a header.
-        for encoding in ENCODINGS {
-            let mut file = rich_ply(encoding);
-            let data = file.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
-            file.truncate(data);
-            file.extend(&bytes);
-            check(ply(&file));
-        }
-        // Noise of the letters of the format.
-        let text: Vec<u8> = bytes.iter().map(|b| b"vflp0123456789 -\n\n/#\\."[usize::from(*b) % 22]).collect();
-        check(obj(&text));
-        check(off([b"OFF\n9 9 9\n", &text[..]].concat()));
-    }
-    assert!(MEMORY.peak_usage_as_mb() < MEGABYTES, "{}", MEMORY.peak_usage_as_mb());
+    });
 }
