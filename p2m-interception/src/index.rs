@@ -163,7 +163,7 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> ClosestPoint<T> for Interception
 
 impl<T: Real, S: PrimitiveSet<T>, P: Partition> NearQuery<T> for InterceptionIndex<T, S, P> {
     fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>) {
-        self.visit(query, near);
+        self.partition.search_near(&self.set, query, near);
     }
 }
 

@@ -143,7 +143,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestPoint<T> for TreeIndex<T, S,
 
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> NearQuery<T> for TreeIndex<T, S, V> {
     fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>) {
-        self.visit(query, near);
+        self.tree.search_near(&self.set, query, near);
     }
 }
 

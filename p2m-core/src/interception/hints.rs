@@ -139,6 +139,8 @@ impl Hints {
 }
 
 impl Locator for Hints {
+    const IS_USUAL: bool = true;
+
     fn new(sites: &LocatorSites<'_>) -> Self {
         let count = sites.places().count() as f64;
         let [mut near, mut far] = [(sites.own, CELLS * count), (sites.domain, SIDE.powi(3).min(CELLS * count))]

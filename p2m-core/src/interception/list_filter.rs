@@ -42,7 +42,11 @@ impl Region {
 ///
 /// A list has at least those in whose boxes the query is; to choose more is no mistake, but takes time, so answers do
 /// not depend on the filter. A list without a filter is searched in the order of lower bounds on the distances.
-pub trait ListFilter: Send + Sync + Sized {
+pub trait ListFilter: Send + Sync + Sized + 'static {
+    /// Whether this is [`SortedLists`], with which queries are compiled in this crate.
+    #[doc(hidden)]
+    const IS_USUAL: bool = false;
+
     /// Whether there are filters at all.
     const IS_USED: bool;
 
@@ -61,6 +65,7 @@ pub trait ListFilter: Send + Sync + Sized {
 pub enum SortedLists {}
 
 impl ListFilter for SortedLists {
+    const IS_USUAL: bool = true;
     const IS_USED: bool = false;
 
     fn new(_: Vec<Region>) -> Self {

@@ -10,7 +10,11 @@ use crate::simd::Isa;
 ///
 /// Any site will do: from there the index walks to the nearest one, of which it is certain. So answers do not depend on
 /// the locator, and it may err, but for numbers that no site has: for these searches panic.
-pub trait Locator: Send + Sync + Sized {
+pub trait Locator: Send + Sync + Sized + 'static {
+    /// Whether this is [`Hints`](super::Hints), with which queries are compiled in this crate.
+    #[doc(hidden)]
+    const IS_USUAL: bool = false;
+
     /// For some sites.
     fn new(sites: &LocatorSites<'_>) -> Self;
 

@@ -11,9 +11,8 @@ use super::list_filter::{Filters, ListFilter};
 use super::locator::Locator;
 use super::partition::{LookUp, SIDE_BY_SIDE};
 use super::voronoi::{AUXILIARY, Voronoi};
-use crate::Collector;
 use crate::hierarchy::PacketTree;
-use crate::hierarchy::wide::search::{Evaluate, Filter, Search, finish_nearest};
+use crate::hierarchy::wide::search::{Evaluate, Filter, Search, finish, finish_nearest};
 use crate::hierarchy::wide::volume::Rounded;
 use crate::kernel::vector::{V3, norm_squared, sub};
 use crate::packet::LANES;
@@ -21,7 +20,9 @@ use crate::predicates::staged::RANGE;
 use crate::query::Minimum;
 use crate::real::wide;
 use crate::simd::{InstructionSet, Operation, prefetch_lines};
+use crate::{Collector, Near};
 use nalgebra::Point3;
+use std::any::Any;
 
 impl<L: Locator, F: ListFilter> LookUp for Voronoi<L, F> {
     #[inline(always)]
@@ -33,17 +34,28 @@ impl<L: Locator, F: ListFilter> LookUp for Voronoi<L, F> {
         finish: fn(&mut Filter<'_, C>),
     ) {
         let tree = &self.tree;
-        if let Some(place) = self.place(&query)
+        if collector.is_nearest_only()
+            && let Some(place) = self.place(&query)
             && let Some(site) = self.locator.as_ref().and_then(|locator| locator.start(&place))
         {
             let found = Found { site, is_nearest: false };
             return tree.isa().run(Answer { index: self, found, query, place, collector, evaluate, finish });
         }
-        tree.isa().run(Search { tree, query, reach: f64::INFINITY, held: None, collector, evaluate, finish });
+        tree.run(query, collector, evaluate, finish);
     }
 
     fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
+        if const { Self::IS_USUAL } {
+            return usual::nearest(self.as_usual(), query, minimum, evaluate);
+        }
         self.look_up(query, minimum, evaluate, finish_nearest);
+    }
+
+    fn near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>) {
+        if const { Self::IS_USUAL } {
+            return usual::near(self.as_usual(), query, near, evaluate);
+        }
+        self.look_up(query, near, evaluate, finish);
     }
 
     fn nearest_of_several(
@@ -52,11 +64,48 @@ impl<L: Locator, F: ListFilter> LookUp for Voronoi<L, F> {
         minimums: [&mut Minimum; SIDE_BY_SIDE],
         evaluates: [Evaluate<'_, Minimum>; SIDE_BY_SIDE],
     ) {
+        if const { Self::IS_USUAL } {
+            return usual::nearest_of_several(self.as_usual(), queries, minimums, evaluates);
+        }
         self.tree.isa().run(Several { index: self, queries, minimums, evaluates });
     }
 }
 
+/// What an index with the usual locator and filter is asked, in functions that are not generic: so it is compiled once, in this
+/// crate, and not again wherever such an index is asked.
+mod usual {
+    use super::*;
+
+    #[inline(never)]
+    pub(super) fn nearest(index: &Voronoi, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
+        index.look_up(query, minimum, evaluate, finish_nearest);
+    }
+
+    #[inline(never)]
+    pub(super) fn near<'n>(index: &Voronoi, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>) {
+        index.look_up(query, near, evaluate, finish);
+    }
+
+    #[inline(never)]
+    pub(super) fn nearest_of_several(
+        index: &Voronoi,
+        queries: &[V3; SIDE_BY_SIDE],
+        minimums: [&mut Minimum; SIDE_BY_SIDE],
+        evaluates: [Evaluate<'_, Minimum>; SIDE_BY_SIDE],
+    ) {
+        index.tree.isa().run(Several { index, queries, minimums, evaluates });
+    }
+}
+
 impl<L: Locator, F: ListFilter> Voronoi<L, F> {
+    /// Whether this is [`Voronoi`] with what it has by default.
+    const IS_USUAL: bool = L::IS_USUAL && F::IS_USUAL;
+
+    fn as_usual(&self) -> &Voronoi {
+        let index: &dyn Any = self;
+        index.downcast_ref().expect("the usual locator and filter")
+    }
+
     /// The number of the site in whose cell a place is, the first step of every query: `None` outside of the domain.
     #[must_use]
     pub fn site_of(&self, query: &Point3<f64>) -> Option<usize> {

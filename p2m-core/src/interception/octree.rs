@@ -7,7 +7,7 @@ use super::partition::{LookUp, Partition};
 use super::progress::{Progress, Stage};
 use super::refine::{Cell, Done, Refinement, Searched, way_bytes};
 use crate::hierarchy::PacketTree;
-use crate::hierarchy::wide::search::{Evaluate, Filter, Search, finish_nearest};
+use crate::hierarchy::wide::search::{Evaluate, Filter, finish, finish_nearest};
 use crate::hierarchy::wide::volume::Rounded;
 use crate::kernel::vector::V3;
 use crate::packet::LANES;
@@ -16,7 +16,7 @@ use crate::real::{narrow, wide};
 use crate::saved::{Array, LoadError, Reader, Saved, Writer};
 use crate::simd::{InstructionSet, Operation, prefetch_lines};
 use crate::{
-    Aabb, Best, BuildError, Collector, Counting, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Real, check_room,
+    Aabb, Best, BuildError, Collector, Counting, Isa, Near, PrimitiveId, PrimitiveSet, QueryOptions, Real, check_room,
 };
 use nalgebra::Point3;
 use std::collections::HashMap;
@@ -351,16 +351,20 @@ impl LookUp for Octree {
         let tree = &self.tree;
         let (code, cells) = self.cell_of(&query);
         match tree.frame.local(&query) {
-            Some(local) if code != TREE => {
+            Some(local) if code != TREE && collector.is_nearest_only() => {
                 let place = Place { rounded: Rounded::of(local), local, cells };
                 tree.isa().run(Lookup { octree: self, code, query, place, collector, evaluate, finish });
             }
-            _ => tree.isa().run(Search { tree, query, reach: f64::INFINITY, held: None, collector, evaluate, finish }),
+            _ => tree.run(query, collector, evaluate, finish),
         }
     }
 
     fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
         self.look_up(query, minimum, evaluate, finish_nearest);
+    }
+
+    fn near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>) {
+        self.look_up(query, near, evaluate, finish);
     }
 }
 

@@ -7,7 +7,7 @@ use crate::hierarchy::wide::search::{Evaluate, Filter, finish};
 use crate::kernel::vector::V3;
 use crate::query::Minimum;
 use crate::real::wide;
-use crate::{Best, BuildError, Collector, Isa, PrimitiveId, PrimitiveSet, Real};
+use crate::{Best, BuildError, Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
 use nalgebra::Point3;
 
 /// A partition with its lists, over a set of primitives that it does not keep: every method that needs the set is given
@@ -36,16 +36,17 @@ pub trait Partition: LookUp + Sized {
     /// Offers to `collector` every primitive of the set that it could want. `query` is finite.
     #[inline]
     fn search<T: Real, S: PrimitiveSet<T>, C: Collector>(&self, set: &S, query: &Point3<T>, collector: &mut C) {
-        if collector.is_nearest_only() {
-            self.look_up(wide(query), collector, &evaluation(set, query), finish);
-        } else {
-            self.tree().search(set, query, collector);
-        }
+        self.look_up(wide(query), collector, &evaluation(set, query), finish);
     }
 
     /// The same for the nearest primitive.
     fn search_nearest<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
         self.nearest(wide(query), best.minimum(), &evaluation(set, query));
+    }
+
+    /// The same for what is near.
+    fn search_near<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, near: &mut Near<'_>) {
+        self.near(wide(query), near, &evaluation(set, query));
     }
 
     /// The same for several queries, which may be answered side by side.
@@ -91,7 +92,8 @@ pub const SIDE_BY_SIDE: usize = 16;
 
 /// The way of a query to its cell and through its list.
 pub(crate) trait LookUp {
-    /// Offers to a collector of nearest primitives every one that it could want.
+    /// Offers to a collector every primitive that it could want: from the list of the cell to one of nearest primitives, from the
+    /// tree to others.
     fn look_up<C: Collector>(
         &self,
         query: V3,
@@ -100,10 +102,13 @@ pub(crate) trait LookUp {
         finish: fn(&mut Filter<'_, C>),
     );
 
-    /// The same for the nearest one, in a function of its own: what is not generic is compiled once.
+    /// The same for the nearest one, in a function of its own: what is not generic is compiled once, in this crate.
     fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>);
 
-    /// The same for several queries.
+    /// The same for what is near,
+    fn near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>);
+
+    /// and for the nearest ones of several queries.
     fn nearest_of_several(
         &self,
         queries: &[V3; SIDE_BY_SIDE],

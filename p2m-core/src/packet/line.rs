@@ -304,6 +304,7 @@ fn middle<L: Lanes>(min: L, max: L) -> (L, L) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::packet::Member;
     use crate::simd::Operation;
     use crate::{Aabb, Crossing, Element, Isa, Primitive, PrimitiveId, PrimitiveSet, Shape, Soup};
     use nalgebra::{Point3, Vector3};
@@ -359,10 +360,11 @@ mod tests {
             let ids: Vec<_> = (0..16).map(PrimitiveId::new).collect();
             let bounds = PrimitiveSet::aabb(&soup);
             let packet = if kind == Kind::Box {
-                let all: Vec<_> = ids.iter().map(|id| Anything(soup.get(*id))).collect();
-                Packet::new(&all, &ids, kind, &bounds, 0.0).0
+                let all: Vec<_> = ids.iter().map(|id| Member::of(&Anything(soup.get(*id)))).collect();
+                Packet::new(&ids, &all, kind, &bounds, 0.0).0
             } else {
-                Packet::new(&soup, &ids, kind, &bounds, 0.0).0
+                let all: Vec<_> = ids.iter().map(|id| Member::of(&soup.get(*id))).collect();
+                Packet::new(&ids, &all, kind, &bounds, 0.0).0
             };
             let size = (bounds.max - bounds.min).norm();
             for _ in 0..8 {

@@ -27,7 +27,7 @@ use crate::kernel::power_of_two;
 use crate::kernel::vector::V3 as Vertex;
 use crate::real::wide;
 use crate::simd::{InstructionSet, Lanes, prefetch};
-use crate::{Aabb, Collector, Primitive, PrimitiveId, PrimitiveSet, Projection, Real};
+use crate::{Aabb, Collector, Primitive, PrimitiveId, Projection, Real};
 use distance::{V3, beyond, edge, triangle};
 pub(crate) use line::Line;
 use nalgebra::Point3;
@@ -57,6 +57,40 @@ impl Kind {
         }
     }
 }
+
+/// A primitive of a packet in f64: so packets and nodes are made by the same code for all sets.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Member {
+    pub(crate) kind: Kind,
+    pub(crate) bounds: Aabb<f64>,
+    vertices: [Vertex; 3],
+}
+
+impl Member {
+    /// Of a primitive.
+    pub(crate) fn of<T: Real>(primitive: &impl Primitive<T>) -> Self {
+        let kind = Kind::of(primitive);
+        let mut vertices = [[0.0; 3]; 3];
+        if kind != Kind::Box {
+            vertices.iter_mut().zip(primitive.vertices()).for_each(|(to, vertex)| *to = wide(vertex));
+        }
+        Self { kind, bounds: primitive.aabb().to_f64(), vertices }
+    }
+
+    /// Those that span it; none for a box.
+    pub(crate) fn vertices(&self) -> &[Vertex] {
+        let count = match self.kind {
+            Kind::Point => 1,
+            Kind::Segment => 2,
+            Kind::Triangle => 3,
+            Kind::Box => 0,
+        };
+        &self.vertices[..count]
+    }
+}
+
+/// The members of a set by their ids.
+pub(crate) type Members<'a> = &'a (dyn Fn(PrimitiveId) -> Member + Sync);
 
 /// Up to sixteen primitives in a frame of their own.
 ///
@@ -119,14 +153,14 @@ impl Packet {
         }
     }
 
-    /// Packs the primitives `ids` of a set, at most sixteen of one kind, with the box around all of
-    /// them, and gives their exact vertices, each once. Units below `finest` are not needed.
+    /// Packs primitives of these ids, at most sixteen of one kind or all of them as boxes, with the box around all of them, and
+    /// gives their exact vertices, each once. Units below `finest` are not needed.
     ///
     /// # Panics
     /// For more than sixteen ids, or none.
-    pub(crate) fn new<T: Real, S: PrimitiveSet<T> + ?Sized>(
-        set: &S,
+    pub(crate) fn new(
         ids: &[PrimitiveId],
+        primitives: &[Member],
         kind: Kind,
         bounds: &Aabb<f64>,
         finest: f64,
@@ -149,17 +183,16 @@ impl Packet {
         };
         let mut exact = Vec::new();
         for lane in 0..LANES {
-            let id = ids[if lane < ids.len() { lane } else { 0 }];
-            packet.ids[lane] = id;
-            let primitive = set.get(id);
+            let place = if lane < ids.len() { lane } else { 0 };
+            let primitive = &primitives[place];
+            packet.ids[lane] = ids[place];
             if kind == Kind::Box {
-                let bounds = primitive.aabb();
-                packet.put(lane, 0, wide(&bounds.min), f64::floor);
-                packet.put(lane, 1, wide(&bounds.max), f64::ceil);
+                packet.put(lane, 0, wide(&primitive.bounds.min), f64::floor);
+                packet.put(lane, 1, wide(&primitive.bounds.max), f64::ceil);
             } else {
                 for (v, vertex) in primitive.vertices().iter().enumerate() {
-                    packet.put(lane, v, wide(vertex), f64::round);
-                    packet.corners[v][lane] = place_of(&mut exact, wide(vertex));
+                    packet.put(lane, v, *vertex, f64::round);
+                    packet.corners[v][lane] = place_of(&mut exact, *vertex);
                 }
             }
         }
@@ -431,7 +464,7 @@ fn scale(e: i32) -> f64 {
 mod tests {
     use super::*;
     use crate::simd::{Isa, Operation};
-    use crate::{Primitive, Shape};
+    use crate::{Primitive, PrimitiveSet, Shape};
     use rand::{Rng, RngExt};
 
     struct Squares<'a>(&'a Packet, &'a Local, f32);
@@ -503,7 +536,7 @@ mod tests {
             let queries: Vec<_> = (0..8).map(|_| query(&mut rng, &shapes) * scale).collect();
             let shapes: Vec<Shape<f64>> = shapes.iter().map(|s| scaled(s, scale)).collect();
             let ids: Vec<PrimitiveId> = (0..len).map(PrimitiveId::new).collect();
-            let (packet, _) = Packet::new(&shapes, &ids, kind, &shapes.aabb(), scale * 2f64.powi(-36));
+            let (packet, _) = Packet::new(&ids, &members(&shapes), kind, &shapes.aabb(), scale * 2f64.powi(-36));
             assert_eq!((packet.ids(), packet.lanes().count_ones() as usize), (ids.as_slice(), len));
             for q in queries {
                 let Some(local) = packet.local(&q.coords.into()) else {
@@ -536,6 +569,10 @@ mod tests {
         assert!(worst[0] > 0.5 && worst[1] > 0.5, "{worst:?}");
     }
 
+    fn members(primitives: &[impl Primitive<f64>]) -> Vec<Member> {
+        primitives.iter().map(Member::of).collect()
+    }
+
     fn scaled(shape: &Shape<f64>, factor: f64) -> Shape<f64> {
         let v: Vec<Point3<f64>> = shape.vertices().iter().map(|p| p * factor).collect();
         match *v.as_slice() {
@@ -558,7 +595,7 @@ mod tests {
             .collect();
         let ids: Vec<PrimitiveId> = (0..LANES).map(PrimitiveId::new).collect();
         let bounds = shapes.aabb().union(&Aabb::of_points(&[Point3::origin(), Point3::from([40_000.0; 3])]));
-        let (packet, _) = Packet::new(&shapes, &ids, Kind::Triangle, &bounds, 0.0);
+        let (packet, _) = Packet::new(&ids, &members(&shapes), Kind::Triangle, &bounds, 0.0);
         for tiny in [1e-10, 1e-22, 1e-24, 1e-30, 1e-40, 0.0] {
             let local = packet.local(&[-tiny, 1000.0, 1000.0]).expect("near");
             for isa in Isa::available() {
@@ -583,7 +620,7 @@ mod tests {
         let ids = [PrimitiveId::new(0)];
         for size in [1e-200, 1e200, f64::MAX] {
             let set = [crate::Segment::new(Point3::from([-size; 3]), Point3::from([size; 3]))];
-            let (packet, _) = Packet::new(&set, &ids, Kind::Segment, &set.aabb(), 0.0);
+            let (packet, _) = Packet::new(&ids, &members(&set), Kind::Segment, &set.aabb(), 0.0);
             assert!(packet.local(&[0.0; 3]).is_none(), "{size}");
         }
     }

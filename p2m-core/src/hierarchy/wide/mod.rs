@@ -19,18 +19,19 @@ pub(crate) mod volume;
 mod walk;
 
 use super::Hierarchy;
-use crate::packet::{Kind, LANES, Packet};
+use crate::kernel::vector::V3;
+use crate::packet::{Kind, LANES, Member, Members, Packet};
 use crate::real::wide;
 use crate::saved::Array;
 use crate::simd::{Isa, prefetch_lines};
 use crate::{
-    Aabb, Best, Collector, Crossing, Directions, Hits, Kdop, Primitive, PrimitiveId, PrimitiveSet, Ray, RayCollector,
-    Real,
+    Aabb, Best, Collector, Crossing, Directions, Hits, Kdop, Near, Primitive, PrimitiveId, PrimitiveSet, Ray,
+    RayCollector, Real,
 };
 use nalgebra::Point3;
 use node::{Child, Frame, WIDTH};
-use ray::RaySearch;
-use search::{Search, finish};
+use ray::{Intersect, RaySearch};
+use search::{Evaluate, Filter, Search, finish};
 use volume::{TreeOptions, WideNode};
 
 pub use parts::Part;
@@ -106,13 +107,18 @@ impl<V: Volume> PacketTree<V> {
     /// O(n log n) time expected, and O(K n) for k-DOPs; O(n) memory.
     #[must_use]
     pub fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, options: &V::Options) -> Self {
-        let (shape, options) = (options.shape(), options.splits());
         let of_id = |i: usize| {
             let primitive = set.get(PrimitiveId::new(i));
             (primitive.aabb(), Kind::of(&primitive))
         };
         let (boxes, kinds): (Vec<Aabb<T>>, Vec<Kind>) = (0..set.len()).map(of_id).unzip();
-        let mut binary = Hierarchy::build(&boxes, options, |id| boxes[id.index()].to_f64(), Aabb::union);
+        Self::build_of(&boxes, &kinds, &|id| Member::of(&set.get(id)), options)
+    }
+
+    /// The same for all sets of a scalar.
+    fn build_of<T: Real>(boxes: &[Aabb<T>], kinds: &[Kind], members: Members<'_>, options: &V::Options) -> Self {
+        let (shape, options) = (options.shape(), options.splits());
+        let mut binary = Hierarchy::build(boxes, options, |id| boxes[id.index()].to_f64(), Aabb::union);
         let bounds = binary.nodes.first().map_or(Aabb::empty(), |root| root.volume);
         // One packet after the other for each leaf, kinds apart.
         let mut ranges: Vec<(std::ops::Range<usize>, Kind)> = Vec::new();
@@ -136,9 +142,10 @@ impl<V: Volume> PacketTree<V> {
         let order = binary.order;
         let pack = |(places, kind): &(std::ops::Range<usize>, Kind)| {
             let ids = &order[places.clone()];
-            let bounds = ids.iter().map(|id| boxes[id.index()].to_f64()).fold(Aabb::empty(), |a, b| a.union(&b));
-            let enclosed = V::Node::enclose(&shape, &frame, set, ids, &bounds);
-            (Packet::new(set, ids, *kind, &bounds, frame.unit * FINEST), (bounds, enclosed))
+            let primitives = gather(members, ids);
+            let bounds = around(&primitives);
+            let enclosed = V::Node::enclose(&shape, &frame, &primitives, &bounds);
+            (Packet::new(ids, &primitives, *kind, &bounds, frame.unit * FINEST), (bounds, enclosed))
         };
         let (packed, bounded): (Vec<_>, Vec<_>) = map(&ranges, options.parallel, pack).into_iter().unzip();
         let (packet_boxes, packet_bounds): (Vec<_>, Vec<_>) = bounded.into_iter().unzip();
@@ -156,7 +163,7 @@ impl<V: Volume> PacketTree<V> {
             depth,
             nodes,
             leaves,
-            len: set.len(),
+            len: boxes.len(),
         };
         tree.bound_nodes(&packet_bounds);
         tree
@@ -193,31 +200,28 @@ impl<V: Volume> PacketTree<V> {
     /// # Complexity
     /// O(n).
     pub fn refit<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(&mut self, set: &S, options: &V::Options) {
-        let parallel = options.splits().parallel;
         assert_eq!(set.len(), self.len, "as many primitives as before");
-        let bounds_of = |packet: &Packet| {
-            let boxes = packet.ids().iter().map(|id| set.get(*id).aabb().to_f64());
-            boxes.fold(Aabb::empty(), |a, b| a.union(&b))
-        };
-        let packet_boxes = map(&self.leaves.packets, parallel, bounds_of);
+        self.refit_to(&|id| Member::of(&set.get(id)), options.splits().parallel);
+    }
+
+    /// The same for all sets.
+    fn refit_to(&mut self, members: Members<'_>, parallel: bool) {
+        let packet_boxes = map(&self.leaves.packets, parallel, |packet| around(&gather(members, packet.ids())));
         self.bounds = packet_boxes.iter().fold(Aabb::empty(), |a, b| a.union(b));
         self.frame = Frame::around(&self.bounds);
         self.half = ray::half_box(&self.frame, &self.bounds);
         let finest = self.frame.unit * FINEST;
         let pack = |(packet, bounds): &(&Packet, &Aabb<f64>)| {
-            let ids = packet.ids();
+            let primitives = gather(members, packet.ids());
             // A primitive may have become one of another kind.
-            let mut kinds = ids.iter().map(|id| Kind::of(&set.get(*id)));
-            let first = kinds.next().unwrap_or(Kind::Box);
-            let kind = if kinds.all(|kind| kind == first) { first } else { Kind::Box };
-            Packet::new(set, ids, kind, bounds, finest)
+            let first = primitives[0].kind;
+            let kind = if primitives.iter().all(|primitive| primitive.kind == first) { first } else { Kind::Box };
+            let enclosed = V::Node::enclose(&self.shape, &self.frame, &primitives, bounds);
+            (Packet::new(packet.ids(), &primitives, kind, bounds, finest), enclosed)
         };
         let bounded: Vec<_> = self.leaves.packets.iter().zip(&packet_boxes).collect();
-        let enclose = |(packet, bounds): &(&Packet, &Aabb<f64>)| {
-            V::Node::enclose(&self.shape, &self.frame, set, packet.ids(), bounds)
-        };
-        let packet_bounds = map(&bounded, parallel, enclose);
-        self.leaves = Leaves::new(map(&bounded, parallel, pack));
+        let (packed, packet_bounds): (Vec<_>, Vec<_>) = map(&bounded, parallel, pack).into_iter().unzip();
+        self.leaves = Leaves::new(packed);
         self.bound_nodes(&packet_bounds);
     }
 
@@ -230,16 +234,19 @@ impl<V: Volume> PacketTree<V> {
         query: &Point3<T>,
         collector: &mut C,
     ) {
-        let (query, evaluate) = (wide(query), evaluation(set, query));
-        self.isa.run(Search {
-            tree: self,
-            query,
-            reach: f64::INFINITY,
-            held: None,
-            collector,
-            evaluate: &evaluate,
-            finish,
-        });
+        self.run(wide(query), collector, &evaluation(set, query), finish);
+    }
+
+    /// The same for all sets. The callers that are not generic compile it once for what they ask.
+    #[inline(always)]
+    pub(crate) fn run<C: Collector>(
+        &self,
+        query: V3,
+        collector: &mut C,
+        evaluate: Evaluate<'_, C>,
+        finish: fn(&mut Filter<'_, C>),
+    ) {
+        self.isa.run(Search { tree: self, query, reach: f64::INFINITY, held: None, collector, evaluate, finish });
     }
 
     /// The same for the nearest primitive.
@@ -253,6 +260,17 @@ impl<V: Volume> PacketTree<V> {
         V::nearest(self, wide(query), best.minimum(), &evaluation(set, query));
     }
 
+    /// The same for what is near.
+    #[inline]
+    pub(crate) fn search_near<T: Real, S: PrimitiveSet<T> + ?Sized>(
+        &self,
+        set: &S,
+        query: &Point3<T>,
+        near: &mut Near<'_>,
+    ) {
+        V::near(self, wide(query), near, &evaluation(set, query));
+    }
+
     /// Offers to a collector every hit of a ray with the set over which the tree was built that it could want.
     #[inline]
     pub fn search_ray<'r, T: Real, S: PrimitiveSet<T> + ?Sized, C: RayCollector<'r>>(
@@ -263,8 +281,19 @@ impl<V: Volume> PacketTree<V> {
     ) {
         let only_crossings = collector.only_crossings();
         let Some(radius) = self.radius_of(ray, only_crossings) else { return };
-        let intersect = intersection(set, ray, only_crossings);
-        self.isa.run(RaySearch { tree: self, ray, radius, hits: collector, intersect: &intersect });
+        self.run_ray(ray, radius, collector, &intersection(set, ray, only_crossings));
+    }
+
+    /// The same for all sets.
+    #[inline(always)]
+    pub(crate) fn run_ray<'r, C: RayCollector<'r>>(
+        &self,
+        ray: &'r Ray,
+        radius: f64,
+        hits: &mut C,
+        intersect: Intersect<'_, 'r>,
+    ) {
+        self.isa.run(RaySearch { tree: self, ray, radius, hits, intersect });
     }
 
     /// The same for the hits that its methods want.
@@ -381,6 +410,16 @@ const FEW: usize = 64;
 
 /// Units of packets below this part of the scene's are not needed: 2^-36.
 const FINEST: f64 = 1.0 / (1u64 << 36) as f64;
+
+/// The members of a packet.
+fn gather(members: Members<'_>, ids: &[PrimitiveId]) -> Vec<Member> {
+    ids.iter().map(|id| members(*id)).collect()
+}
+
+/// The box around some primitives.
+fn around(primitives: &[Member]) -> Aabb<f64> {
+    primitives.iter().fold(Aabb::empty(), |all, one| all.union(&one.bounds))
+}
 
 /// Offers a primitive of a set to a collector, unless its key exceeds a square.
 pub(crate) fn evaluation<T: Real, S: PrimitiveSet<T> + ?Sized, C: Collector>(

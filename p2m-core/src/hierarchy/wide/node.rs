@@ -3,9 +3,10 @@
 use super::ray::FrameLine;
 use super::ray_slab::{Piece, SlabRay};
 use super::volume::{Rounded, WideNode};
+use crate::Aabb;
 use crate::kernel::{exponent, power_of_two};
+use crate::packet::Member;
 use crate::simd::Lanes;
-use crate::{Aabb, PrimitiveId, PrimitiveSet, Real};
 use nalgebra::Point3;
 
 /// Children of a node.
@@ -85,13 +86,7 @@ impl WideNode for BoxNode {
         self.max.iter_mut().zip(high).for_each(|(row, x)| row[place] = x);
     }
 
-    fn enclose<T: Real, S: PrimitiveSet<T> + ?Sized>(
-        (): &(),
-        frame: &Frame,
-        _: &S,
-        _: &[PrimitiveId],
-        bounds: &Aabb<f64>,
-    ) -> Corners {
+    fn enclose((): &(), frame: &Frame, _: &[Member], bounds: &Aabb<f64>) -> Corners {
         frame.enclose(bounds)
     }
 

@@ -281,6 +281,7 @@ mod tests {
     use super::super::slabs::SlabNode;
     use super::*;
     use crate::kdop::Slabs;
+    use crate::packet::Member;
     use crate::{Directions, Isa, PrimitiveSet, Triangle};
     use nalgebra::{Point3, Vector3};
     use p2m_testkit::vector;
@@ -318,9 +319,8 @@ mod tests {
             let frame = Frame::around(&bounds);
             let mut node = N::new([Child::packet(0); WIDTH]);
             for place in 0..WIDTH - 1 {
-                let ids = [PrimitiveId::new(place)];
-                let own = crate::Primitive::aabb(&triangles[place]);
-                node.put(place, &N::enclose(shape, &frame, &triangles[..], &ids, &own));
+                let own = Member::of(&triangles[place]);
+                node.put(place, &N::enclose(shape, &frame, &[own], &own.bounds));
             }
             for _ in 0..8 {
                 let vertices = triangles[rng.random_range(0..WIDTH - 1)].vertices;

@@ -10,9 +10,10 @@ use super::ray_slab::{Piece, SlabRay};
 use super::volume::WideNode;
 use crate::kdop::Slabs;
 use crate::kernel::power_of_two;
+use crate::packet::Member;
 use crate::real::wide;
 use crate::simd::Lanes;
-use crate::{Aabb, Kdop, Primitive, PrimitiveId, PrimitiveSet, Real};
+use crate::{Aabb, Kdop};
 use nalgebra::{Point3, Vector3};
 
 /// Eight k-DOPs side by side. Unused ones are empty: their distance is infinite or NaN.
@@ -76,13 +77,7 @@ impl<const K: usize> WideNode for SlabNode<K> {
     }
 
     #[allow(clippy::cast_possible_truncation, reason = "rounded up")]
-    fn enclose<T: Real, S: PrimitiveSet<T> + ?Sized>(
-        shape: &Slabs<K>,
-        frame: &Frame,
-        set: &S,
-        ids: &[PrimitiveId],
-        _: &Aabb<f64>,
-    ) -> [f32; K] {
+    fn enclose(shape: &Slabs<K>, frame: &Frame, primitives: &[Member], _: &Aabb<f64>) -> [f32; K] {
         let normals = shape.directions.normals();
         let mut heights = [f64::NEG_INFINITY; K];
         let mut add = |corner: [f64; 3]| {
@@ -93,14 +88,11 @@ impl<const K: usize> WideNode for SlabNode<K> {
                 heights[2 * j + 1] = heights[2 * j + 1].max(-product);
             }
         };
-        for id in ids {
-            let primitive = set.get(*id);
-            let vertices = primitive.vertices();
-            vertices.iter().for_each(|vertex| add(wide(vertex)));
-            if vertices.is_empty() || vertices.len() > 3 {
+        for primitive in primitives {
+            primitive.vertices().iter().for_each(|vertex| add(*vertex));
+            if primitive.vertices().is_empty() {
                 // The corners of its box.
-                let bounds = primitive.aabb();
-                let [min, max] = [wide(&bounds.min), wide(&bounds.max)];
+                let [min, max] = [wide(&primitive.bounds.min), wide(&primitive.bounds.max)];
                 (0..8).for_each(|i| add([0, 1, 2].map(|k: usize| if i >> k & 1 == 0 { min[k] } else { max[k] })));
             }
         }
@@ -337,9 +329,9 @@ mod tests {
                     let v = vector(&mut rng);
                     Point3::from(centre + (v - flat * (v.dot(&flat) * [0.0, 0.9, 1.0][rng.random_range(0..3)])) * size)
                 });
-                let set = [Triangle { vertices: corners }];
                 boxes[place] = Aabb::of_points(&corners);
-                node.put(place, &SlabNode::enclose(&slabs, &frame, &set, &[PrimitiveId::new(0)], &boxes[place]));
+                let own = Member::of(&Triangle { vertices: corners });
+                node.put(place, &SlabNode::enclose(&slabs, &frame, &[own], &boxes[place]));
                 exact[place] = Kdop::of_points(directions, &corners);
             }
             for _ in 0..8 {
@@ -401,11 +393,10 @@ mod tests {
 
     /// Heights of a set in the frame around it, and the frame.
     fn enclosed<const K: usize>(slabs: &Slabs<K>, points: &[Point3<f64>]) -> (Frame, [f32; K]) {
-        let set: Vec<_> = points.iter().map(|p| crate::Point::new(*p)).collect();
-        let ids: Vec<_> = (0..set.len()).map(PrimitiveId::new).collect();
+        let own: Vec<_> = points.iter().map(|p| Member::of(&crate::Point::new(*p))).collect();
         let bounds = Aabb::of_points(points);
         let frame = Frame::around(&bounds);
-        (frame, SlabNode::enclose(slabs, &frame, &set[..], &ids, &bounds))
+        (frame, SlabNode::enclose(slabs, &frame, &own, &bounds))
     }
 
     #[test]

@@ -6,15 +6,18 @@
 use super::super::SplitOptions;
 use super::PacketTree;
 use super::node::{BoxNode, Child, Frame, WIDTH};
-use super::ray::{FrameLine, Intersect, RaySearch};
-use super::search::{Evaluate, Search, finish_nearest};
+use super::ray::{FrameLine, Intersect};
+use super::search::{Evaluate, finish, finish_nearest};
 use super::slabs::SlabNode;
 use crate::kdop::Slabs;
+use crate::kernel::vector::V3;
+use crate::packet::Member;
 use crate::query::Minimum;
 use crate::saved::{LoadError, Reader, Writer};
 use crate::simd::Lanes;
-use crate::{Aabb, Directions, Hits, Kdop, KdopOptions, PrimitiveId, PrimitiveSet, Ray, Real};
+use crate::{Aabb, Directions, Hits, Kdop, KdopOptions, Near, Ray};
 use nalgebra::Vector3;
+use std::any::Any;
 use std::fmt::Debug;
 
 /// What the nodes of a [`PacketTree`](super::PacketTree) are bounded by: [`Aabb<f64>`] or [`Kdop<K>`](Kdop).
@@ -48,13 +51,19 @@ pub(crate) trait Nodes: Sized {
     /// and takes it from there.
     fn load_shape(reader: &Reader) -> Result<Self::Shape, LoadError>;
 
-    /// What a ray meets, for the same reason in a function of its own.
-    fn rays<'r>(tree: &PacketTree<Self>, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>)
+    /// The search of a tree for the nearest primitive, in a function of its own: what is not generic is compiled once, in this
+    /// crate.
+    fn nearest(tree: &PacketTree<Self>, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>)
     where
         Self: Volume;
 
-    /// The search of a tree for the nearest primitive, in a function of its own: what is not generic is compiled once.
-    fn nearest(tree: &PacketTree<Self>, query: [f64; 3], minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>)
+    /// The same for what is near,
+    fn near<'n>(tree: &PacketTree<Self>, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>)
+    where
+        Self: Volume;
+
+    /// and for what a ray meets.
+    fn rays<'r>(tree: &PacketTree<Self>, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>)
     where
         Self: Volume;
 }
@@ -74,21 +83,45 @@ impl Nodes for Aabb<f64> {
         Ok(())
     }
 
-    fn rays<'r>(tree: &PacketTree, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>) {
-        tree.isa.run(RaySearch { tree, ray, radius, hits, intersect });
+    fn nearest(tree: &PacketTree, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
+        tree.run(query, minimum, evaluate, finish_nearest);
     }
 
-    fn nearest(tree: &PacketTree, query: [f64; 3], minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
-        tree.isa.run(Search {
-            tree,
-            query,
-            reach: f64::INFINITY,
-            held: None,
-            collector: minimum,
-            evaluate,
-            finish: finish_nearest,
-        });
+    fn near<'n>(tree: &PacketTree, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>) {
+        tree.run(query, near, evaluate, finish);
     }
+
+    fn rays<'r>(tree: &PacketTree, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>) {
+        tree.run_ray(ray, radius, hits, intersect);
+    }
+}
+
+/// A call of a method of trees of k-DOPs, in a function of its own for the usual numbers of faces, those of CGAL's package: so
+/// their searches are compiled once, in this crate, and not again wherever such a tree is asked. The condition is decided before
+/// code is made, so the other branches are compiled for no K.
+macro_rules! compiled_once {
+    ($method:ident<$life:lifetime>($tree:ident, $($argument:ident: $type:ty),*; $($last:ident),*)) => {
+        match K {
+            6 => compiled_once!(6, $method<$life>($tree, $($argument: $type),*; $($last),*)),
+            14 => compiled_once!(14, $method<$life>($tree, $($argument: $type),*; $($last),*)),
+            18 => compiled_once!(18, $method<$life>($tree, $($argument: $type),*; $($last),*)),
+            26 => compiled_once!(26, $method<$life>($tree, $($argument: $type),*; $($last),*)),
+            _ => $tree.$method($($argument,)* $($last),*),
+        }
+    };
+    ($k:literal, $method:ident<$life:lifetime>($tree:ident, $($argument:ident: $type:ty),*; $($last:ident),*)) => {{
+        #[inline(never)]
+        fn usual<$life>(tree: &PacketTree<Kdop<$k>>, $($argument: $type),*) {
+            tree.$method($($argument,)* $($last),*);
+        }
+        usual(of_same_kind($tree), $($argument),*)
+    }};
+}
+
+/// A tree as one of the same K.
+fn of_same_kind<const K: usize, const SAME: usize>(tree: &PacketTree<Kdop<K>>) -> &PacketTree<Kdop<SAME>> {
+    let tree: &dyn Any = tree;
+    tree.downcast_ref().expect("the same number of faces")
 }
 
 impl<const K: usize> Nodes for Kdop<K> {
@@ -111,20 +144,16 @@ impl<const K: usize> Nodes for Kdop<K> {
         Ok(Slabs::new(&directions))
     }
 
-    fn rays<'r>(tree: &PacketTree<Self>, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>) {
-        tree.isa.run(RaySearch { tree, ray, radius, hits, intersect });
+    fn nearest(tree: &PacketTree<Self>, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
+        compiled_once!(run<'n>(tree, query: V3, minimum: &'n mut Minimum, evaluate: Evaluate<'_, Minimum>; finish_nearest));
     }
 
-    fn nearest(tree: &PacketTree<Self>, query: [f64; 3], minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
-        tree.isa.run(Search {
-            tree,
-            query,
-            reach: f64::INFINITY,
-            held: None,
-            collector: minimum,
-            evaluate,
-            finish: finish_nearest,
-        });
+    fn near<'n>(tree: &PacketTree<Self>, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>) {
+        compiled_once!(run<'n>(tree, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>; finish));
+    }
+
+    fn rays<'r>(tree: &PacketTree<Self>, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>) {
+        compiled_once!(run_ray<'r>(tree, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>; ));
     }
 }
 
@@ -179,14 +208,8 @@ pub(crate) trait WideNode: Copy + Debug + Send + Sync {
     /// Sets the bounds of a child.
     fn put(&mut self, place: usize, bounds: &Self::Bounds);
 
-    /// The bounds of the primitives `ids` of a set, of which `bounds` is the common box.
-    fn enclose<T: Real, S: PrimitiveSet<T> + ?Sized>(
-        shape: &Self::Shape,
-        frame: &Frame,
-        set: &S,
-        ids: &[PrimitiveId],
-        bounds: &Aabb<f64>,
-    ) -> Self::Bounds;
+    /// The bounds of some primitives, of which `bounds` is the common box.
+    fn enclose(shape: &Self::Shape, frame: &Frame, primitives: &[Member], bounds: &Aabb<f64>) -> Self::Bounds;
     /// The smallest bounds around both.
     fn join(a: &Self::Bounds, b: &Self::Bounds) -> Self::Bounds;
 

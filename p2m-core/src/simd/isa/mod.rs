@@ -88,7 +88,7 @@ impl Isa {
     #[inline(always)]
     pub(crate) fn run<O: Operation>(self, operation: O) -> O::Output {
         match self.0 {
-            Kind::Portable => operation.run::<Portable>(),
+            Kind::Portable => run_portable(operation),
             // SAFETY: there is no way to such a value but `available`, which has asked the processor.
             #[cfg(target_arch = "x86_64")]
             Kind::Avx2 => unsafe { x86_64::run_avx2(operation) },
@@ -97,6 +97,12 @@ impl Isa {
             Kind::Avx512 => unsafe { x86_64::run_avx512(operation) },
         }
     }
+}
+
+/// In a function of its own as the others are: it is compiled once for each operation, not wherever one is run.
+#[inline(never)]
+fn run_portable<O: Operation>(operation: O) -> O::Output {
+    operation.run::<Portable>()
 }
 
 impl Default for Isa {
