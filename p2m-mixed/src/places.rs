@@ -55,7 +55,7 @@ impl Places {
             let [a, b] = self.of(*s);
             forest.unite(a, b);
         }
-        debug_assert!(self.len > 0 || soup.is_empty());
+        assert!(self.len > 0 || soup.is_empty(), "a scene has the places of its vertices");
         forest.trees
     }
 }

@@ -208,6 +208,17 @@ where
 {
     let brute = BruteForce::new(set).expect("valid scene");
     let index = I::build(set, &I::Options::default()).expect("valid scene");
+    agrees_with(&brute, seed, set.len(), queries, &index);
+}
+
+/// An index of so many primitives, on everything. Not generic, as it is compiled for many.
+fn agrees_with<T: Real>(
+    brute: &dyn ClosestPoint<T>,
+    seed: u64,
+    len: usize,
+    queries: &[Point3<T>],
+    index: &dyn ClosestPoint<T>,
+) {
     let mut rng = rng("options", seed);
     // Everything but the certified bound, which depends on what was evaluated, is the same.
     let without_bound = |c: Option<Closest<T>>| c.map(|c| (c.point, c.distance, c.primitive, c.feature, c.barycentric));
@@ -220,12 +231,12 @@ where
         assert_eq!(without_bound(found), without_bound(expected), "{}", say());
         assert_eq!(found, batch[i], "{}: batch", say());
         let (Some(found), Some(expected)) = (found, expected) else {
-            assert_eq!(set.len(), 0, "{}", say());
+            assert_eq!(len, 0, "{}", say());
             continue;
         };
         assert!(found.lower_bound <= found.distance, "{}", say());
         // A hint, good or bad or out of range, changes nothing.
-        let hint = PrimitiveId::new(rng.random_range(0..set.len() + 1));
+        let hint = PrimitiveId::new(rng.random_range(0..len + 1));
         let hinted = index.closest_point_with(q, &QueryOptions::default().with_hint(hint));
         assert_eq!(without_bound(hinted), without_bound(Some(expected)), "{}: hint {hint}", say());
         // A radius changes whether, not what.

@@ -117,27 +117,39 @@ fn random_box<R: Rng>(rng: &mut R, soup: &Soup<f64>, bounds: &Aabb<f64>) -> Aabb
     aabb([ends.map(|e| e[0]), ends.map(|e| e[1])])
 }
 
-/// The boxes of primitives, and one around each run of them, as they stand in the file: that is looked at first.
+/// The boxes of primitives by the cells of a grid, and one around each run of them: that is looked at first.
 struct Boxes<T: Real> {
-    each: Vec<Aabb<T>>,
+    each: Vec<(PrimitiveId, Aabb<T>)>,
     runs: Vec<Aabb<T>>,
 }
 
 impl<T: Real> Boxes<T> {
     const RUN: usize = 64;
+    /// Cells along an axis.
+    const CELLS: f64 = 32.0;
 
     fn new(soup: &Soup<T>) -> Self {
-        let each: Vec<_> = (0..soup.len()).map(|i| soup.get(PrimitiveId::new(i)).aabb()).collect();
-        let around = |run: &[Aabb<T>]| run.iter().fold(Aabb::empty(), |all, b| all.union(b));
+        let ids = (0..soup.len()).map(PrimitiveId::new);
+        let mut each: Vec<_> = ids.map(|id| (id, soup.get(id).aabb())).collect();
+        let scene = soup.aabb().to_f64();
+        let size = scene.max - scene.min;
+        each.sort_by_cached_key(|(_, own)| {
+            let at = own.to_f64().min - scene.min;
+            // What is no number, in a flat scene, is 0.
+            [0, 1, 2].map(|k: usize| (at[k] / size[k] * Self::CELLS) as u32)
+        });
+        let around = |run: &[(PrimitiveId, Aabb<T>)]| run.iter().fold(Aabb::empty(), |all, (_, own)| all.union(own));
         let runs = each.chunks(Self::RUN).map(around).collect();
         Self { each, runs }
     }
 
-    /// The primitives whose boxes meet `bounds`.
+    /// The primitives whose boxes meet `bounds`, by their ids.
     fn meeting(&self, bounds: &Aabb<T>) -> Vec<PrimitiveId> {
-        let runs = self.runs.iter().enumerate().filter(|(_, run)| run.meets(bounds));
-        let members = runs.flat_map(|(i, _)| (i * Self::RUN..self.each.len()).take(Self::RUN));
-        members.filter(|&i| self.each[i].meets(bounds)).map(PrimitiveId::new).collect()
+        let runs = self.each.chunks(Self::RUN).zip(&self.runs).filter(|(_, run)| run.meets(bounds));
+        let members = runs.flat_map(|(members, _)| members).filter(|(_, own)| own.meets(bounds));
+        let mut found: Vec<_> = members.map(|(id, _)| *id).collect();
+        found.sort_unstable();
+        found
     }
 }
 

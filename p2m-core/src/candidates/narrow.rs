@@ -147,7 +147,7 @@ impl Operation for Narrow<'_> {
         least.store(&mut squares);
         let farthest = squares.into_iter().fold(0.0, larger).sqrt();
         let nearest = larger((farthest - error) * (1.0 - 1e-9) - 2.0 * ball.radius, 0.0);
-        debug_assert!(!items.is_empty(), "one is nearest");
+        assert!(!items.is_empty(), "one is nearest");
         Candidates { items, nearest, reach: own_reach, part: Some(*part) }
     }
 }

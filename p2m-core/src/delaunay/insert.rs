@@ -215,7 +215,7 @@ impl Insertion {
                 };
                 // Of the corners as seen from p: the other way round.
                 if is_beyond {
-                    debug_assert_ne!(next, Delaunay::NONE, "inside the bounding sites");
+                    assert_ne!(next, Delaunay::NONE, "inside the bounding sites");
                     (from, at) = (at, next);
                     continue 'walk;
                 }

@@ -176,7 +176,7 @@ impl Block {
         let mut block = Self::new(entries, level);
         block.exponent = exponent as i8;
         block.base = base;
-        debug_assert_eq!(y.map(f64::to_bits), reference(y).map(f64::to_bits), "a point that blocks can have");
+        assert_eq!(y.map(f64::to_bits), reference(y).map(f64::to_bits), "a point that blocks can have");
         block.y = y.map(|x| (x / REFERENCE) as i16);
         block.bounds = [[255; WIDTH]; 8];
         for (i, entry) in entries.iter().enumerate() {

@@ -124,6 +124,12 @@ impl<'r> RayCollector<'r> for Hits<'r> {
 }
 
 impl<'r> Hits<'r> {
+    /// In the order of their parameters and then of ids.
+    pub(super) fn sorted(mut self) -> Vec<Hit> {
+        self.all.sort_unstable_by(|a, b| a.parameter.total_cmp(&b.parameter).then(a.primitive.cmp(&b.primitive)));
+        self.all
+    }
+
     /// Keeps the hit with the least parameter, and of equal ones the lowest id. Parameters are computed only where their
     /// bounds do not decide.
     fn offer_first(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) {

@@ -102,8 +102,7 @@ pub trait RayQuery<T: Real> {
     fn all_intersections(&self, ray: &Ray) -> Vec<Hit> {
         let mut hits = Hits::all();
         self.search_ray(ray, &mut hits);
-        hits.all.sort_unstable_by(|a, b| a.parameter.total_cmp(&b.parameter).then(a.primitive.cmp(&b.primitive)));
-        hits.all
+        hits.sorted()
     }
 
     /// How many primitives are met.

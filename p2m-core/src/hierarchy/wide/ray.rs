@@ -318,8 +318,8 @@ mod tests {
             let bounds = triangles[..].aabb();
             let frame = Frame::around(&bounds);
             let mut node = N::new([Child::packet(0); WIDTH]);
-            for place in 0..WIDTH - 1 {
-                let own = Member::of(&triangles[place]);
+            for (place, triangle) in triangles.iter().enumerate() {
+                let own = Member::of(triangle);
                 node.put(place, &N::enclose(shape, &frame, &[own], &own.bounds));
             }
             for _ in 0..8 {

@@ -79,10 +79,14 @@ impl<V: Volume, C: Collector> Search<'_, V, C> {
             collector.visit_node();
             let from = stack.len();
             stack.extend(tree.child_boxes(child).map(|(bounds, child)| (bounds.lower_bound(&place), child)));
-            // The nearest one last.
-            stack[from..].sort_by(|a, b| b.0.total_cmp(&a.0));
+            nearest_last(&mut stack[from..]);
         }
     }
+}
+
+/// Sorts children by their bounds. Not generic, for sorting is much code.
+fn nearest_last(children: &mut [(f64, Child)]) {
+    children.sort_by(|a, b| b.0.total_cmp(&a.0));
 }
 
 /// A search on its way through the nodes.
