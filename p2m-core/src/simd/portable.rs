@@ -1,18 +1,18 @@
-//! Lanes without any instruction set in particular: arrays, which compilers turn into what every processor has.
-
-#![allow(clippy::needless_range_loop, reason = "several arrays side by side")]
+//! Lanes of the crate `wide`: the vector instructions that every processor of the architecture has (SSE2, NEON), and
+//! arrays where there are none.
 
 use super::{Doubles, EightLanes, InstructionSet, Lanes};
+use wide::{f32x8, f64x4};
 
-/// Eight lanes in an array.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Eight([f32; 8]);
+/// Eight lanes.
+#[derive(Clone, Copy)]
+pub(crate) struct Eight(f32x8);
 
-/// Eight f64 in an array.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct EightDoubles([f64; 8]);
+/// Eight f64, the first four apart from the last four.
+#[derive(Clone, Copy)]
+pub(crate) struct EightDoubles(f64x4, f64x4);
 
-/// The reference that other instruction sets are tested against, and what runs where there is no other.
+/// The reference that other instruction sets are tested against, and the one that runs where there is no other.
 pub(crate) struct Portable;
 
 impl InstructionSet for Portable {
@@ -23,12 +23,19 @@ impl InstructionSet for Portable {
 
 impl Eight {
     #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
-        let mut result = [0.0; 8];
-        for i in 0..8 {
-            result[i] = f(self.0[i], other.0[i]);
-        }
-        Self(result)
+    fn of<A: Copy + Into<f32>>(from: &[A]) -> Self {
+        let from: &[A; 8] = from[..8].try_into().expect("eight numbers");
+        let [a, b, c, d, e, f, g, h] = *from;
+        Self(f32x8::new([a.into(), b.into(), c.into(), d.into(), e.into(), f.into(), g.into(), h.into()]))
+    }
+
+    #[inline(always)]
+    fn widen(self) -> [f64x4; 2] {
+        let [a, b, c, d, e, f, g, h] = self.0.to_array();
+        [
+            f64x4::new([a.into(), b.into(), c.into(), d.into()]),
+            f64x4::new([e.into(), f.into(), g.into(), h.into()]),
+        ]
     }
 }
 
@@ -37,89 +44,74 @@ impl Lanes for Eight {
 
     #[inline(always)]
     fn splat(x: f32) -> Self {
-        Self([x; 8])
+        Self(f32x8::splat(x))
     }
     #[inline(always)]
     fn load(from: &[f32]) -> Self {
-        let mut lanes = [0.0; 8];
-        lanes.copy_from_slice(&from[..8]);
-        Self(lanes)
+        Self::of(from)
     }
     #[inline(always)]
     fn load_u16(from: &[u16]) -> Self {
-        let mut lanes = [0.0; 8];
-        for (lane, x) in lanes.iter_mut().zip(&from[..8]) {
-            *lane = f32::from(*x);
-        }
-        Self(lanes)
+        Self::of(from)
     }
     #[inline(always)]
     fn load_u8(from: &[u8]) -> Self {
-        let mut lanes = [0.0; 8];
-        for (lane, x) in lanes.iter_mut().zip(&from[..8]) {
-            *lane = f32::from(*x);
-        }
-        Self(lanes)
+        Self::of(from)
     }
     #[inline(always)]
     fn store(self, to: &mut [f32]) {
-        to[..8].copy_from_slice(&self.0);
+        to[..8].copy_from_slice(&self.0.to_array());
     }
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
+        Self(self.0 + other.0)
     }
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
+        Self(self.0 - other.0)
     }
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        self.zip(other, |a, b| a * b)
+        Self(self.0 * other.0)
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, summand: Self) -> Self {
-        // Rounded twice: a fused operation would be a call where the processor has none.
-        self.mul(factor).add(summand)
+        // It is rounded twice: a fused operation would be a call where the processor has none.
+        Self(self.0 * factor.0 + summand.0)
     }
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounds to nearest, as promised")]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
-        let mut result = [0.0; 8];
-        for i in 0..8 {
-            let [a, b, c, d] = [a.0[i], b.0[i], c.0[i], d.0[i]].map(f64::from);
-            // Products of two f32 are exact, and so is the difference under the condition of the trait.
-            result[i] = (a * b - c * d) as f32;
-        }
-        Self(result)
+        let ([a, e], [b, f], [c, g], [d, h]) = (a.widen(), b.widen(), c.widen(), d.widen());
+        // Products of two f32 are exact, and so is the difference under the condition of the trait.
+        let ([a, b, c, d], [e, f, g, h]) = ((a * b - c * d).to_array(), (e * f - g * h).to_array());
+        Self(f32x8::new([a as f32, b as f32, c as f32, d as f32, e as f32, f as f32, g as f32, h as f32]))
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a < b { a } else { b })
+        Self(self.0.simd_lt(other.0).bitselect(self.0, other.0))
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a > b { a } else { b })
+        Self(other.0.simd_lt(self.0).bitselect(self.0, other.0))
     }
     #[inline(always)]
     fn reciprocal(self) -> Self {
-        self.zip(self, |a, _| 1.0 / a)
+        Self(f32x8::ONE / self.0)
     }
     #[inline(always)]
     fn if_below(self, limit: Self, yes: Self, no: Self) -> Self {
-        let mut result = [0.0; 8];
-        for i in 0..8 {
-            result[i] = if self.0[i] < limit.0[i] { yes.0[i] } else { no.0[i] };
-        }
-        Self(result)
+        Self(self.0.simd_lt(limit.0).bitselect(yes.0, no.0))
     }
     #[inline(always)]
     fn at_most(self, limit: Self) -> u32 {
-        (0..8).fold(0, |mask, i| mask | u32::from(self.0[i] <= limit.0[i]) << i)
+        self.0.simd_le(limit.0).to_bitmask()
     }
     #[inline(always)]
     fn smallest(self) -> f32 {
-        self.0.into_iter().fold(f32::INFINITY, |a, b| if b < a { b } else { a })
+        let [a, b, c, d, e, f, g, h] = self.0.to_array();
+        let min = |a: f32, b: f32| if a < b { a } else { b };
+        min(min(min(a, e), min(b, f)), min(min(c, g), min(d, h)))
     }
 }
 
@@ -128,7 +120,7 @@ impl EightLanes for Eight {
     fn sorted_keys(self, limit: f32, keys: &mut [u32; 8]) -> usize {
         *keys = [0; 8];
         let mut count = 0;
-        for (lane, x) in (0u32..).zip(self.0) {
+        for (lane, x) in (0u32..).zip(self.0.to_array()) {
             if x <= limit {
                 let key = x.to_bits() & !15 | 8 | lane;
                 let mut place = count;
@@ -144,66 +136,56 @@ impl EightLanes for Eight {
     }
 }
 
-impl EightDoubles {
-    #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        let mut result = [0.0; 8];
-        for i in 0..8 {
-            result[i] = f(self.0[i], other.0[i]);
-        }
-        Self(result)
-    }
-}
-
 impl Doubles for EightDoubles {
     #[inline(always)]
     fn splat(x: f64) -> Self {
-        Self([x; 8])
+        Self(f64x4::splat(x), f64x4::splat(x))
     }
     #[inline(always)]
     fn load(from: &[f64]) -> Self {
-        let mut lanes = [0.0; 8];
-        lanes.copy_from_slice(&from[..8]);
-        Self(lanes)
+        let from: &[f64; 8] = from[..8].try_into().expect("eight numbers");
+        let [a, b, c, d, e, f, g, h] = *from;
+        Self(f64x4::new([a, b, c, d]), f64x4::new([e, f, g, h]))
     }
     #[inline(always)]
     fn store(self, to: &mut [f64]) {
-        to[..8].copy_from_slice(&self.0);
+        to[..4].copy_from_slice(&self.0.to_array());
+        to[4..8].copy_from_slice(&self.1.to_array());
     }
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
+        Self(self.0 - other.0, self.1 - other.1)
     }
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        self.zip(other, |a, b| a * b)
+        Self(self.0 * other.0, self.1 * other.1)
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, summand: Self) -> Self {
-        self.mul(factor).zip(summand, |a, b| a + b)
+        Self(self.0 * factor.0 + summand.0, self.1 * factor.1 + summand.1)
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a < b { a } else { b })
+        let [a, b] = [self.0.simd_lt(other.0), self.1.simd_lt(other.1)];
+        Self(a.bitselect(self.0, other.0), b.bitselect(self.1, other.1))
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a > b { a } else { b })
+        let [a, b] = [other.0.simd_lt(self.0), other.1.simd_lt(self.1)];
+        Self(a.bitselect(self.0, other.0), b.bitselect(self.1, other.1))
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        self.zip(self, |a, _| a.sqrt())
+        Self(self.0.sqrt(), self.1.sqrt())
     }
     #[inline(always)]
     fn if_at_most(self, limit: Self, yes: Self, no: Self) -> Self {
-        let mut result = [0.0; 8];
-        for i in 0..8 {
-            result[i] = if self.0[i] <= limit.0[i] { yes.0[i] } else { no.0[i] };
-        }
-        Self(result)
+        let [a, b] = [self.0.simd_le(limit.0), self.1.simd_le(limit.1)];
+        Self(a.bitselect(yes.0, no.0), b.bitselect(yes.1, no.1))
     }
     #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "eight bits")]
     fn at_most(self, limit: Self) -> u8 {
-        (0..8).fold(0, |mask, i| mask | u8::from(self.0[i] <= limit.0[i]) << i)
+        (self.0.simd_le(limit.0).to_bitmask() | self.1.simd_le(limit.1).to_bitmask() << 4) as u8
     }
 }
