@@ -3,6 +3,7 @@
 use crate::input::{SceneArgs, point_format, read_points, read_scene};
 use crate::json;
 use crate::output::Output;
+use crate::streams::Streams;
 use crate::usage::{not_negative, one_of, positive, whole};
 use anyhow::Context;
 use clap::ArgGroup;
@@ -71,11 +72,13 @@ pub(crate) struct Args {
     json: bool,
 }
 
-pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
-    let scene = read_scene(&args.scene.path, format)?;
-    let points =
-        args.points.as_ref().map(|path| read_points(path, point_format(path, args.points_format, "--points-format")?));
+    let scene = read_scene(streams, &args.scene.path, format)?;
+    let points = args
+        .points
+        .as_ref()
+        .map(|path| read_points(streams, path, point_format(path, args.points_format, "--points-format")?));
     let points = points.transpose()?;
     let place = match &points {
         Some(points) => Place::Points(points),
@@ -94,7 +97,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let advice = recommend(&scene.soup, &workload).with_context(|| args.scene.name())?;
     if args.json {
         let estimates: Vec<Value> = advice.estimates.iter().map(estimate).collect();
-        return json::print(&json!({
+        let report = json!({
             "p2m": "advise",
             "version": json::VERSION,
             "scene": { "file": args.scene.name(), "format": format.name() },
@@ -103,12 +106,13 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
             "estimates": estimates,
             "patch": advice.patch,
             "seconds": { "advice": advice.seconds },
-        }));
+        });
+        return json::print(streams, &report);
     }
     let mut text = String::new();
     // Nothing fails in writing to memory.
     let _ = table(&mut text, &advice);
-    let mut output = Output::open(None)?;
+    let mut output = Output::open(streams, None)?;
     output.write_all(text.as_bytes()).with_context(|| output.cannot_write())?;
     output.finish()
 }

@@ -4,6 +4,7 @@ use crate::faces::Faces;
 use crate::input::{SceneArgs, is_standard, or_option};
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
+use crate::streams::Streams;
 use crate::usage::{one_of, usage};
 use anyhow::anyhow;
 use p2m_mixed::AnswerFormat;
@@ -57,14 +58,14 @@ impl Asking {
     }
 
     /// The format of the answers: the given one, or that of the extension; CSV for names that have none.
-    pub(crate) fn format(&self) -> anyhow::Result<AnswerFormat> {
+    pub(crate) fn format(&self, streams: &Streams) -> anyhow::Result<AnswerFormat> {
         let format = match self.out_format {
             Some(format) => format,
             None if is_standard(&self.out) || self.out.extension().is_none() => AnswerFormat::Csv,
             None => AnswerFormat::from_path(&self.out).map_err(|e| or_option(&e, "--out-format"))?,
         };
         if format != AnswerFormat::Csv {
-            Output::refuse_terminal(&self.out, format.name())?;
+            Output::refuse_terminal(streams, &self.out, format.name())?;
         }
         Ok(format)
     }
@@ -102,12 +103,13 @@ pub(crate) struct Questions<I> {
 
 /// Asks chunk by chunk on all threads, and hands on every question with its answer, in order; how long the asking took.
 pub(crate) fn ask<Q: Sync, A: Clone + Default + Send>(
+    streams: &Streams,
     pool: &ThreadPool,
     mut questions: Questions<impl Iterator<Item = Q>>,
     answer: impl Fn(&[Q], &mut [A]) + Sync,
     mut take: impl FnMut(&Q, &A) -> io::Result<()>,
 ) -> io::Result<Duration> {
-    let progress = Progress::start("asking", Some(questions.count), Unit::Items(questions.name));
+    let progress = Progress::start(streams, "asking", Some(questions.count), Unit::Items(questions.name));
     let mut time = Duration::ZERO;
     let (mut chunk, mut answers) = (Vec::new(), Vec::new());
     loop {

@@ -2,6 +2,7 @@
 
 use crate::faces::{Faces, Used, WithTree};
 use crate::progress::{Progress, Unit};
+use crate::streams::Streams;
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 use p2m_bvh::AabbTree;
@@ -111,9 +112,9 @@ impl Search {
     }
 
     /// The index of the file, or a new one.
-    pub(crate) fn build<'a>(self, source: Source<'a>) -> anyhow::Result<Built<Box<dyn Index + 'a>>> {
+    pub(crate) fn build<'a>(self, streams: &Streams, source: Source<'a>) -> anyhow::Result<Built<Box<dyn Index + 'a>>> {
         let soup = source.soup;
-        let progress = Progress::start("building the index", None, Unit::None);
+        let progress = Progress::start(streams, "building the index", None, Unit::None);
         let built: Built<Box<dyn Index + 'a>> = match self {
             Self::Brute => Built {
                 index: Box::new(BruteForce::build(soup, &())?),
@@ -257,14 +258,18 @@ impl Backend {
     }
 
     /// The index of the file, or a new one.
-    pub(crate) fn build<'a>(self, source: Source<'a>) -> anyhow::Result<Built<Box<dyn Closest + 'a>>> {
+    pub(crate) fn build<'a>(
+        self,
+        streams: &Streams,
+        source: Source<'a>,
+    ) -> anyhow::Result<Built<Box<dyn Closest + 'a>>> {
         match self {
             Self::Search(search) => {
-                let Built { index, about, loaded, stages } = search.build(source)?;
+                let Built { index, about, loaded, stages } = search.build(streams, source)?;
                 Ok(Built { index, about, loaded, stages })
             }
-            Self::Octree => interception::<Octree>(source, About::Cubes),
-            Self::P2m => interception::<Voronoi>(source, About::Cells),
+            Self::Octree => interception::<Octree>(streams, source, About::Cubes),
+            Self::P2m => interception::<Voronoi>(streams, source, About::Cells),
         }
     }
 }
@@ -272,6 +277,7 @@ impl Backend {
 /// An interception index, which takes a while to build.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part is from 0 to 1")]
 fn interception<'a, P: Partition + Saved + Sync + 'static>(
+    streams: &Streams,
     source: Source<'a>,
     about: fn(P::Report) -> About,
 ) -> anyhow::Result<Built<Box<dyn Closest + 'a>>> {
@@ -281,7 +287,7 @@ fn interception<'a, P: Partition + Saved + Sync + 'static>(
     let index: InterceptionIndex<f64, _, P> = if let Some(reader) = saved {
         InterceptionIndex::load(source.soup, reader)?
     } else {
-        let bar = Progress::start("finding cells", Some(100), Unit::Percent);
+        let bar = Progress::start(streams, "finding cells", Some(100), Unit::Percent);
         InterceptionIndex::build_with_progress(source.soup, &Default::default(), &|progress| {
             times.tell(progress);
             bar.reach((progress.part * 100.0) as u64);

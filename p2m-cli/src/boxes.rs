@@ -5,6 +5,7 @@ use crate::input::{SceneArgs, read_scene};
 use crate::json;
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
+use crate::streams::Streams;
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use nalgebra::Point3;
@@ -15,7 +16,7 @@ use p2m_kdop::{KdopTree, Polytope};
 use p2m_mixed::picture::{Panel, View, box_edges, write_picture_ply, write_svg};
 use p2m_mixed::statistics::figure::Count;
 use serde_json::json;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::PathBuf;
 
 fn help() -> String {
@@ -110,7 +111,7 @@ impl From<ViewName> for View {
 
 const MAX_DOTS: usize = 4000;
 
-pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let is_ply = match args.out.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
         Some("svg") => false,
         Some("ply") => true,
@@ -118,8 +119,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     };
     Output::refuse_inputs(&args.out, &[&args.scene.path])?;
     let format = args.scene.format()?;
-    let scene = read_scene(&args.scene.path, format)?;
-    let progress = Progress::start("building", None, Unit::None);
+    let scene = read_scene(streams, &args.scene.path, format)?;
+    let progress = Progress::start(streams, "building", None, Unit::None);
     let levels = usize::from(args.levels);
     let drawn = match args.k {
         None => AabbTree::build(&scene.soup, &Default::default())
@@ -131,7 +132,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let choice = faces.as_ref().and_then(|faces| faces.choice.as_ref());
     drop(progress);
     let (drawn, mut panels): (Vec<Drawn>, Vec<Panel>) = drawn.into_iter().unzip();
-    let mut output = Output::open(Some(&args.out))?;
+    let mut output = Output::open(streams, Some(&args.out))?;
     let written = if is_ply {
         write_picture_ply(&panels, &mut output)
     } else {
@@ -152,12 +153,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
             "choice": choice,
             "panels": panels,
         });
-        return json::print(&report);
+        return json::print(streams, &report);
     }
     // The picture is complete; whether anybody reads this is not our concern.
-    let _ = panels.iter().try_for_each(|panel| writeln!(io::stderr(), "{}", panel.title));
+    let _ = panels.iter().try_for_each(|panel| writeln!(streams.stderr(), "{}", panel.title));
     if let Some(choice) = choice {
-        let _ = writeln!(io::stderr(), "k-DOPs: {choice}");
+        let _ = writeln!(streams.stderr(), "k-DOPs: {choice}");
     }
     Ok(())
 }

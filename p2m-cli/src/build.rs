@@ -5,13 +5,14 @@ use crate::indexing::{Indexing, MANY};
 use crate::input::read_scene;
 use crate::json;
 use crate::output::Output;
+use crate::streams::Streams;
 use crate::summary::Indexed;
 use crate::usage::usage;
 use anyhow::Context;
 use p2m_core::saved::Writer;
 use p2m_mixed::{Format, save_scene};
 use serde_json::json;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -51,7 +52,7 @@ pub(crate) struct Args {
     json: bool,
 }
 
-pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let scene_args = &args.indexing.scene;
     args.indexing.check()?;
     if args.indexing.is_brute() {
@@ -61,22 +62,22 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         return Err(usage("--json reports on the standard output, so the index has to go to a file"));
     }
     Output::refuse_inputs(&args.out, &[&scene_args.path])?;
-    Output::refuse_terminal(&args.out, Format::P2m.name())?;
+    Output::refuse_terminal(streams, &args.out, Format::P2m.name())?;
     let format = scene_args.format()?;
     let start = Instant::now();
-    let scene = read_scene(&scene_args.path, format)?;
+    let scene = read_scene(streams, &scene_args.path, format)?;
     let read = start.elapsed();
     // Before any work, so that it is not lost to a wrong name.
-    let mut output = Output::open(Some(&args.out))?;
+    let mut output = Output::open(streams, Some(&args.out))?;
 
     let start = Instant::now();
     let (backend, faces) = args.indexing.choice(None, &scene.soup, MANY)?;
     let source = Source { soup: &scene.soup, faces, saved: None };
-    let Built { index, about, loaded, .. } = backend.build(source).with_context(|| scene_args.name())?;
+    let Built { index, about, loaded, .. } = backend.build(streams, source).with_context(|| scene_args.name())?;
     let build = start.elapsed();
 
     let start = Instant::now();
-    output = output.with_progress();
+    output = output.with_progress(streams);
     let mut writer = Writer::default();
     save_scene(&scene, &mut writer);
     index.save(&mut writer);
@@ -101,11 +102,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
             },
             "out": { "file": out.to_string(), "bytes": bytes },
         });
-        return json::print(&json::joined([indexed.json("build"), end]));
+        return json::print(streams, &json::joined([indexed.json("build"), end]));
     }
     let mut text = String::new();
     // Nothing fails in writing to memory; the file is complete, and whether anybody reads this is not our concern.
     let _ = indexed.write(&mut text, None);
-    let _ = writeln!(io::stderr(), "{text}written  {out}, {bytes} bytes in {written:.3?}");
+    let _ = writeln!(streams.stderr(), "{text}written  {out}, {bytes} bytes in {written:.3?}");
     Ok(())
 }

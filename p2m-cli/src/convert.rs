@@ -5,6 +5,7 @@ use crate::input::{self, is_standard, or_option, read_scene_and_index, scene_for
 use crate::json;
 use crate::modify::{self, Modifiers};
 use crate::output::Output;
+use crate::streams::Streams;
 use crate::usage::{one_of, usage};
 use anyhow::{Context, anyhow};
 use p2m_core::{Element, PrimitiveSet};
@@ -12,7 +13,7 @@ use p2m_mixed::statistics::Counts;
 use p2m_mixed::statistics::figure::{Count, Figure};
 use p2m_mixed::{Format, Scene, WriteError, stl_rounding, write_scene};
 use serde_json::{Value, json};
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Write a scene in another format, or changed
@@ -64,17 +65,17 @@ Examples:
     )
 }
 
-pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let from = scene_format(&args.from_file, args.from, "--from")?;
-    let target = Target::new(&args.to_file, args.to, None)?;
+    let target = Target::new(streams, &args.to_file, args.to, None)?;
     target.check_report(args.json)?;
     Output::refuse_inputs(&args.to_file, &[&args.from_file])?;
-    let (read, saved) = read_scene_and_index(&args.from_file, from)?;
+    let (read, saved) = read_scene_and_index(streams, &args.from_file, from)?;
     let has_index = saved.is_some_and(|reader| p2m_core::saved::kind(&reader).is_ok());
     let before = Counts::of(&read.soup);
     let polygons = polygons(&read);
-    let scene = args.modifiers.apply(read)?;
-    let mut written = target.write(&scene)?;
+    let scene = args.modifiers.apply(streams, read)?;
+    let mut written = target.write(streams, &scene)?;
     if target.format != Format::P2m {
         written.lose_polygons(polygons);
     }
@@ -82,14 +83,15 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         written.losses.push(Loss::Index);
     }
     if args.json {
-        return json::print(&json!({
+        let report = json!({
             "p2m": "convert",
             "version": json::VERSION,
             "in": { "file": input::name(&args.from_file), "format": from.name(), "primitives": json::counts(&before) },
             "changes": args.modifiers.json(),
             "out": written.json(),
             "skipped": json::skipped(&scene),
-        }));
+        });
+        return json::print(streams, &report);
     }
     let mut text = format!("in       {} ({from}): {}\n", input::name(&args.from_file), counted(&before));
     if !scene.skipped.is_empty() {
@@ -98,7 +100,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     }
     text += &written.text();
     // The file is complete; whether anybody reads this is not our concern.
-    let _ = write!(io::stderr(), "{text}");
+    let _ = write!(streams.stderr(), "{text}");
     Ok(())
 }
 
@@ -110,7 +112,12 @@ pub(crate) struct Target<'a> {
 
 impl<'a> Target<'a> {
     /// The format is the given one, or that of the extension; on the standard output `default`, if there is one.
-    pub(crate) fn new(path: &'a Path, given: Option<Format>, default: Option<Format>) -> anyhow::Result<Self> {
+    pub(crate) fn new(
+        streams: &Streams,
+        path: &'a Path,
+        given: Option<Format>,
+        default: Option<Format>,
+    ) -> anyhow::Result<Self> {
         let format = match given.or_else(|| default.filter(|_| is_standard(path))) {
             Some(format) => format,
             None if is_standard(path) => {
@@ -122,7 +129,7 @@ impl<'a> Target<'a> {
             None => Format::from_path(path).map_err(|e| or_option(&e, "--to"))?,
         };
         if matches!(format, Format::Ply | Format::Stl | Format::P2m) {
-            Output::refuse_terminal(path, format.name())?;
+            Output::refuse_terminal(streams, path, format.name())?;
         }
         Ok(Self { path, format })
     }
@@ -135,8 +142,8 @@ impl<'a> Target<'a> {
         Ok(())
     }
 
-    pub(crate) fn write(&self, scene: &Scene) -> anyhow::Result<Written> {
-        let mut output = Output::open(Some(self.path))?.with_progress();
+    pub(crate) fn write(&self, streams: &Streams, scene: &Scene) -> anyhow::Result<Written> {
+        let mut output = Output::open(streams, Some(self.path))?.with_progress(streams);
         match write_scene(scene, self.format, &mut output) {
             Ok(()) => {}
             Err(e @ WriteError::NotATriangle { .. }) => {

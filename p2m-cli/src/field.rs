@@ -8,6 +8,7 @@ use crate::json;
 use crate::output::Output;
 use crate::picture::write_png;
 use crate::progress::{Progress, Unit};
+use crate::streams::Streams;
 use crate::summary::Indexed;
 use crate::usage::{not_negative, one_of, positive, usage};
 use anyhow::{Context, anyhow};
@@ -23,7 +24,7 @@ use p2m_mixed::field::{
 use p2m_mixed::sign::{SignError, SignedDistance};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -119,14 +120,14 @@ enum Signs {
 /// Winding numbers are computed to this.
 const ACCURACY: f64 = 0.01;
 
-pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let scene_args = &args.indexing.scene;
     if args.json && is_standard(&args.out) {
         return Err(usage("--json reports on the standard output, so the field has to go to a file"));
     }
     let out_format = args.format()?;
     Output::refuse_inputs(&args.out, &[&scene_args.path])?;
-    Output::refuse_terminal(&args.out, out_format.name())?;
+    Output::refuse_terminal(streams, &args.out, out_format.name())?;
     if let Some(slice) = &args.slice {
         Output::refuse_inputs(slice, &[&scene_args.path])?;
         if slice == &args.out || is_standard(slice) {
@@ -135,18 +136,18 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     }
     let format = scene_args.format()?;
     let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(&scene_args.path, format)?;
+    let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format)?;
     let read = start.elapsed();
     let soup = &scene.soup;
     let grid =
         Grid::around(&soup.aabb(), args.resolution as usize, args.box_scale).with_context(|| scene_args.name())?;
     // Before any work, so that it is not lost to a wrong name.
-    let mut output = Output::open(Some(&args.out))?;
-    let picture = args.slice.as_ref().map(|path| Output::open(Some(path))).transpose()?;
+    let mut output = Output::open(streams, Some(&args.out))?;
+    let picture = args.slice.as_ref().map(|path| Output::open(streams, Some(path))).transpose()?;
 
     let pool = pool(args.threads)?;
     let start = Instant::now();
-    let lists = if args.indexing.is_open() && args.refine.is_none() { lists(soup, &grid) } else { None };
+    let lists = if args.indexing.is_open() && args.refine.is_none() { lists(streams, soup, &grid) } else { None };
     let mut backend = LISTS;
     let (mut about, mut loaded) = (About::Nothing, false);
     let mut hints = true;
@@ -158,7 +159,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
             None => args.indexing.choice(saved.as_ref(), soup, grid.len() as u64)?,
         };
         let source = Source { soup, faces, saved: saved.as_ref() };
-        let index = search.build(source).with_context(|| scene_args.name())?;
+        let index = search.build(streams, source).with_context(|| scene_args.name())?;
         if lists.is_none() {
             backend = search.name();
         }
@@ -168,7 +169,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         built = Some(index.index);
     }
     let index = match (&built, args.signed) {
-        (Some(index), Some(signs)) => Some(signs.of(&**index, soup).with_context(|| scene_args.name())?),
+        (Some(index), Some(signs)) => Some(signs.of(streams, &**index, soup).with_context(|| scene_args.name())?),
         (Some(index), None) => Some(Index::Unsigned(&**index)),
         (None, _) => None,
     };
@@ -176,7 +177,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let build = start.elapsed();
 
     let start = Instant::now();
-    let made = pool.install(|| args.make(&source, &grid))?;
+    let progress = match args.refine {
+        Some(_) => Progress::start(streams, "cutting cells", None, Unit::None),
+        None => Progress::start(streams, "filling the grid", Some(grid.len() as u64), Unit::Items("points")),
+    };
+    let made = pool.install(|| args.make(&source, &grid, &progress))?;
+    drop(progress);
     let filled = start.elapsed();
     match &made {
         Made::Cells(cells) => write_cells(cells, &mut output),
@@ -211,13 +217,13 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
             },
             "out": { "file": args.out.display().to_string(), "format": out_format.name(), "bytes": bytes },
         });
-        return json::print(&json::joined([indexed.json("field"), report.json(), end]));
+        return json::print(streams, &json::joined([indexed.json("field"), report.json(), end]));
     }
     let mut text = String::new();
     // Nothing fails in writing to memory; the file is complete, and whether anybody reads this is not our concern.
     let _ = indexed.write(&mut text, None);
     let _ = report.write(&mut text);
-    let _ = writeln!(io::stderr(), "{text}written  {}, {bytes} bytes", args.out.display());
+    let _ = writeln!(streams.stderr(), "{text}written  {}, {bytes} bytes", args.out.display());
     Ok(())
 }
 
@@ -235,17 +241,14 @@ impl Args {
         }
     }
 
-    fn make(&self, source: &Distances<'_>, grid: &Grid) -> anyhow::Result<Made> {
+    fn make(&self, source: &Distances<'_>, grid: &Grid, progress: &Progress) -> anyhow::Result<Made> {
         if let Some(error) = self.refine {
-            let progress = Progress::start("cutting cells", None, Unit::None);
             let counts = grid.counts();
             let bounds = Aabb { min: grid.origin(), max: grid.point(counts.map(|n| n - 1)) };
             let distance = |place: &Point3<f64>| source.index.as_ref().map_or(f64::NAN, |index| index.distance(place));
             let cells = refined(&bounds, &distance, &RefineOptions::new(error).with_depth(self.depth));
-            drop(progress);
             return Ok(Made::Cells(cells));
         }
-        let progress = Progress::start("filling the grid", Some(grid.len() as u64), Unit::Items("points"));
         let mut options = FieldOptions::default().with_hints(source.hints);
         if let Some(band) = self.band {
             options = options.with_band(band);
@@ -275,14 +278,14 @@ struct Distances<'a> {
 const LISTS: &str = "lists";
 
 /// Lists, if the grid is fine enough for them to pay, coordinates are in their range, and there is memory.
-fn lists<'a>(soup: &'a Soup<f64>, grid: &Grid) -> Option<CandidateLists<'a, Soup<f64>>> {
+fn lists<'a>(streams: &Streams, soup: &'a Soup<f64>, grid: &Grid) -> Option<CandidateLists<'a, Soup<f64>>> {
     let last = grid.point(grid.counts().map(|n| n - 1));
     if grid.len() < soup.len() {
         return None;
     }
     let is_in_range = |place: &Point3<f64>| place.iter().all(|x| x.abs() <= LARGEST);
     let is_in_range = is_in_range(&grid.origin()) && is_in_range(&last);
-    let _progress = Progress::start("sorting primitives", None, Unit::None);
+    let _progress = Progress::start(streams, "sorting primitives", None, Unit::None);
     CandidateLists::new(soup).filter(|_| is_in_range)
 }
 
@@ -299,8 +302,8 @@ enum Index<'a> {
 }
 
 impl Signs {
-    fn of<'a>(self, index: &'a dyn Closest, soup: &'a Soup<f64>) -> Result<Index<'a>, SignError> {
-        let _progress = Progress::start("looking for inside and outside", None, Unit::None);
+    fn of<'a>(self, streams: &Streams, index: &'a dyn Closest, soup: &'a Soup<f64>) -> Result<Index<'a>, SignError> {
+        let _progress = Progress::start(streams, "looking for inside and outside", None, Unit::None);
         if self != Self::Winding {
             match SignedDistance::new(index, soup) {
                 Ok(signed) => return Ok(Index::Signed(signed, "closed")),

@@ -5,6 +5,7 @@ use crate::input::is_standard;
 use crate::json;
 use crate::modify::{self, Modifiers};
 use crate::progress::{Progress, Unit};
+use crate::streams::Streams;
 use crate::usage::{finite, one_of, whole};
 use clap::{Args as ClapArgs, Subcommand, value_parser};
 use p2m_mixed::generate::{
@@ -12,7 +13,7 @@ use p2m_mixed::generate::{
 };
 use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::PathBuf;
 
 /// Make a scene from nothing, the same on every machine
@@ -290,28 +291,29 @@ impl Command {
     }
 }
 
-pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let (kind, options, destination) = args.kind.parts();
-    let target = Target::new(&destination.out, destination.to, Some(Format::Obj))?;
+    let target = Target::new(streams, &destination.out, destination.to, Some(Format::Obj))?;
     target.check_report(destination.json)?;
-    let progress = Progress::start("making the scene", None, Unit::None);
+    let progress = Progress::start(streams, "making the scene", None, Unit::None);
     let soup = kind.generate().map_err(modify::refused)?;
     drop(progress);
-    let scene = destination.modifiers.apply(Scene::from(soup))?;
-    let written = target.write(&scene)?;
+    let scene = destination.modifiers.apply(streams, Scene::from(soup))?;
+    let written = target.write(streams, &scene)?;
     if destination.json {
-        return json::print(&json!({
+        let report = json!({
             "p2m": "generate",
             "version": json::VERSION,
             "kind": kind.name(),
             "options": options,
             "changes": destination.modifiers.json(),
             "out": written.json(),
-        }));
+        });
+        return json::print(streams, &report);
     }
     if !is_standard(&destination.out) {
         // The file is complete; whether anybody reads this is not our concern.
-        let _ = write!(io::stderr(), "made     {}\n{}", kind.description(), written.text());
+        let _ = write!(streams.stderr(), "made     {}\n{}", kind.description(), written.text());
     }
     Ok(())
 }

@@ -4,6 +4,7 @@ use crate::input::{SceneArgs, read_scene_and_index};
 use crate::json;
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
+use crate::streams::Streams;
 use anyhow::Context;
 use p2m_mixed::statistics::figure::{Count, Exact, Figure, Share};
 use p2m_mixed::statistics::{Counts, Extremes, ObjectCounts, Statistics, objects};
@@ -41,19 +42,19 @@ Examples:
     )
 }
 
-pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
-    let (scene, saved) = read_scene_and_index(&args.scene.path, format)?;
+    let (scene, saved) = read_scene_and_index(streams, &args.scene.path, format)?;
     let index = saved.and_then(|reader| p2m_core::saved::kind(&reader).ok());
-    let progress = Progress::start("counting", None, Unit::None);
+    let progress = Progress::start(streams, "counting", None, Unit::None);
     let statistics = Statistics::of(&scene.soup);
     let objects = objects(&scene);
     drop(progress);
     let name = args.scene.name();
     if args.json {
-        return json::print(&report(&name, format, index, &scene, &objects, &statistics));
+        return json::print(streams, &report(&name, format, index, &scene, &objects, &statistics));
     }
-    let mut output = Output::open(None)?;
+    let mut output = Output::open(streams, None)?;
     write!(output, "{}", Report { name, format, index, scene: &scene, objects: &objects, statistics: &statistics })
         .with_context(|| output.cannot_write())?;
     output.finish()

@@ -1,6 +1,7 @@
 //! Files to read, among them the standard input under the name `-`.
 
 use crate::progress::{Progress, Unit};
+use crate::streams::Streams;
 use crate::usage::{one_of, usage};
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
@@ -76,14 +77,18 @@ pub(crate) fn or_option(error: &ReadError, option: &str) -> anyhow::Error {
 }
 
 /// A scene, and what a saved index has besides it.
-pub(crate) fn read_scene_and_index(path: &Path, format: Format) -> anyhow::Result<(Scene, Option<Reader>)> {
+pub(crate) fn read_scene_and_index(
+    streams: &Streams,
+    path: &Path,
+    format: Format,
+) -> anyhow::Result<(Scene, Option<Reader>)> {
     if format != Format::P2m {
-        return Ok((p2m_mixed::read_scene_from(open(path)?, format, &name(path))?, None));
+        return Ok((p2m_mixed::read_scene_from(open(streams, path)?, format, &name(path))?, None));
     }
     // What is no file cannot be mapped.
     let is_file = fs::metadata(path).is_ok_and(|metadata| metadata.is_file()) && !is_standard(path);
-    let mut stream = if is_file { None } else { Some(open(path)?) };
-    let progress = is_file.then(|| Progress::start(&format!("checking {}", name(path)), None, Unit::None));
+    let mut stream = if is_file { None } else { Some(open(streams, path)?) };
+    let progress = is_file.then(|| Progress::start(streams, &format!("checking {}", name(path)), None, Unit::None));
     let mut load = || -> Result<_, LoadError> {
         let file = stream.as_mut().map_or_else(|| SavedFile::open(path), SavedFile::read)?;
         let reader = file.checked()?;
@@ -95,27 +100,27 @@ pub(crate) fn read_scene_and_index(path: &Path, format: Format) -> anyhow::Resul
 }
 
 /// Reads a scene.
-pub(crate) fn read_scene(path: &Path, format: Format) -> anyhow::Result<Scene> {
-    Ok(read_scene_and_index(path, format)?.0)
+pub(crate) fn read_scene(streams: &Streams, path: &Path, format: Format) -> anyhow::Result<Scene> {
+    Ok(read_scene_and_index(streams, path, format)?.0)
 }
 
 /// Reads points.
-pub(crate) fn read_points(path: &Path, format: PointFormat) -> anyhow::Result<Vec<Point3<f64>>> {
-    Ok(p2m_mixed::read_points_from(open(path)?, format, &name(path))?)
+pub(crate) fn read_points(streams: &Streams, path: &Path, format: PointFormat) -> anyhow::Result<Vec<Point3<f64>>> {
+    Ok(p2m_mixed::read_points_from(open(streams, path)?, format, &name(path))?)
 }
 
 /// Reads rays.
-pub(crate) fn read_rays(path: &Path, format: PointFormat) -> anyhow::Result<Vec<Ray>> {
-    Ok(p2m_mixed::read_rays_from(open(path)?, format, &name(path))?)
+pub(crate) fn read_rays(streams: &Streams, path: &Path, format: PointFormat) -> anyhow::Result<Vec<Ray>> {
+    Ok(p2m_mixed::read_rays_from(open(streams, path)?, format, &name(path))?)
 }
 
 /// Opens a file, and shows how far it is read.
-fn open(path: &Path) -> anyhow::Result<Counted> {
+fn open<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<Counted<'a>> {
     let name = name(path);
     let what = format!("reading {name}");
     if is_standard(path) {
-        let reader: Box<dyn BufRead> = Box::new(BufReader::with_capacity(BUFFER, io::stdin()));
-        return Ok(Counted { reader, progress: Progress::start(&what, None, Unit::Bytes) });
+        let reader = Box::new(BufReader::with_capacity(BUFFER, streams.stdin()));
+        return Ok(Counted { reader, progress: Progress::start(streams, &what, None, Unit::Bytes) });
     }
     let cannot_read = || format!("{name}: cannot be read");
     let file = File::open(path).with_context(cannot_read)?;
@@ -127,16 +132,16 @@ fn open(path: &Path) -> anyhow::Result<Counted> {
     // A pipe has no length.
     let total = metadata.is_file().then_some(metadata.len());
     let reader = Box::new(BufReader::with_capacity(BUFFER, file));
-    Ok(Counted { reader, progress: Progress::start(&what, total, Unit::Bytes) })
+    Ok(Counted { reader, progress: Progress::start(streams, &what, total, Unit::Bytes) })
 }
 
 /// Counts what is read.
-struct Counted {
-    reader: Box<dyn BufRead>,
+struct Counted<'a> {
+    reader: Box<dyn BufRead + 'a>,
     progress: Progress,
 }
 
-impl Read for Counted {
+impl Read for Counted<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.reader.read(buffer)?;
         self.progress.add(count as u64);
@@ -144,7 +149,7 @@ impl Read for Counted {
     }
 }
 
-impl BufRead for Counted {
+impl BufRead for Counted<'_> {
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
         self.reader.fill_buf()
     }

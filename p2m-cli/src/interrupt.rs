@@ -1,6 +1,6 @@
 //! Ctrl-C and its like: unfinished files are removed, and the exit code is 128 plus the number of the signal.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Files that do not have their final name yet.
@@ -12,10 +12,39 @@ pub(crate) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Starts to listen for SIGINT, SIGTERM, SIGHUP and SIGQUIT, as far as they are ours to handle (see [`is_ignored`]).
-/// Where there are no such signals, nothing happens.
+/// Keeps a file on the list of unfinished files until it is dropped.
+pub(crate) struct Listed(PathBuf);
+
+impl Listed {
+    /// Adds `file` to the list `unfinished`.
+    pub(crate) fn new(unfinished: &mut Vec<PathBuf>, file: &Path) -> Self {
+        unfinished.push(file.to_path_buf());
+        Self(file.to_path_buf())
+    }
+}
+
+impl Drop for Listed {
+    fn drop(&mut self) {
+        unfinished().retain(|file| *file != self.0);
+    }
+}
+
+/// Listens for SIGINT, SIGTERM, SIGHUP and SIGQUIT, which then remove unfinished files and end the process, with 128 plus
+/// the number of the signal as its exit code.
+///
+/// A signal that the process was started to ignore stays ignored. On systems without these signals nothing happens.
+///
+/// # Errors
+/// Fails if the system refuses a handler or a thread.
+pub fn listen() -> std::io::Result<()> {
+    #[cfg(unix)]
+    wait_for_signals()?;
+    Ok(())
+}
+
+/// Starts a thread that handles the first signal among those that are not ignored (see [`is_ignored`]).
 #[cfg(unix)]
-pub(crate) fn listen() -> std::io::Result<()> {
+fn wait_for_signals() -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
     use std::io::{IsTerminal, Write};
     let signals: Vec<i32> = [SIGINT, SIGTERM, SIGHUP, SIGQUIT].into_iter().filter(|&s| !is_ignored(s)).collect();
@@ -35,11 +64,6 @@ pub(crate) fn listen() -> std::io::Result<()> {
             std::process::exit(128 + signal);
         }
     })?;
-    Ok(())
-}
-
-#[cfg(not(unix))]
-pub(crate) fn listen() -> std::io::Result<()> {
     Ok(())
 }
 

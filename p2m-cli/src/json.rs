@@ -4,6 +4,7 @@
 //! version keys are added, never removed, renamed or given another meaning. Numbers are numbers; what is not finite, or
 //! does not exist, is null.
 
+use crate::streams::Streams;
 use anyhow::Context;
 use p2m_mixed::statistics::Counts;
 use p2m_mixed::{Scene, Skipped};
@@ -20,9 +21,9 @@ version keys are added, but not removed, renamed or given another meaning. Lengt
 seconds; what does not exist is null, and so is what is infinite, like the end of a range without one.";
 
 /// Writes a report to the standard output.
-pub(crate) fn print(report: &Value) -> anyhow::Result<()> {
+pub(crate) fn print(streams: &Streams, report: &Value) -> anyhow::Result<()> {
     let write = || -> io::Result<()> {
-        let mut output = io::stdout().lock();
+        let mut output = streams.stdout();
         serde_json::to_writer_pretty(&mut output, report)?;
         writeln!(output)?;
         output.flush()

@@ -1,6 +1,7 @@
 //! Changes to scenes on their way from one file to another.
 
 use crate::progress::{Progress, Unit};
+use crate::streams::Streams;
 use crate::usage::{finite, positive, usage};
 use p2m_core::{Element, PrimitiveSet, Soup};
 use p2m_mixed::generate::{GenerateError, Subdivide, Transform, gapped, penetrating, subdivide};
@@ -59,13 +60,13 @@ chain runs: p2m convert a.obj - --to ply --rotate-z 30 | p2m convert - b.obj --f
 
 impl Modifiers {
     /// The scene after all changes. Names stay with their primitives and the parts of these.
-    pub(crate) fn apply(&self, scene: Scene) -> anyhow::Result<Scene> {
-        self.changed(scene).map_err(refused)
+    pub(crate) fn apply(&self, streams: &Streams, scene: Scene) -> anyhow::Result<Scene> {
+        self.changed(streams, scene).map_err(refused)
     }
 
-    fn changed(&self, mut scene: Scene) -> Result<Scene, GenerateError> {
+    fn changed(&self, streams: &Streams, mut scene: Scene) -> Result<Scene, GenerateError> {
         if let Some(levels) = self.subdivide {
-            let _progress = Progress::start("subdividing", None, Unit::None);
+            let _progress = Progress::start(streams, "subdividing", None, Unit::None);
             let options = Subdivide::default()
                 .with_levels(levels)
                 .with_amplitude(self.displace.unwrap_or(0.0))

@@ -1,32 +1,34 @@
 //! Where results go: the standard output, or a file that appears when it is complete.
 
 use crate::input::is_standard;
-use crate::interrupt::unfinished;
+use crate::interrupt::{Listed, unfinished};
 use crate::progress::{Progress, Unit};
+use crate::streams::{Stream, Streams};
 use crate::usage::usage;
 use anyhow::{Context, bail};
 use std::fs::{self, File};
-use std::io::{self, BufWriter, IsTerminal, StdoutLock, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
 /// A buffered destination. Dropped before [`finish`](Self::finish), or interrupted, a file is as it was before; only a
 /// process that ends without any chance to clean up (SIGKILL, or a limit of the system) leaves its unfinished work
 /// under the name `.p2m-*` in the same folder.
-pub(crate) struct Output {
-    sink: Sink,
+pub(crate) struct Output<'a> {
+    sink: Sink<'a>,
     name: String,
     bytes: u64,
     progress: Option<Progress>,
 }
 
-enum Sink {
-    Stdout(BufWriter<StdoutLock<'static>>),
+enum Sink<'a> {
+    Stdout(BufWriter<Stream<'a, dyn Write>>),
     /// Written under another name in the same directory, and renamed at the end.
     File {
         temporary: BufWriter<File>,
         path: TempPath,
         target: PathBuf,
+        listed: Listed,
     },
     /// A device or a pipe: renaming would replace it.
     Device(BufWriter<File>),
@@ -34,7 +36,7 @@ enum Sink {
 
 const BUFFER: usize = 1 << 16;
 
-impl Output {
+impl<'a> Output<'a> {
     /// Refuses to write over any of `inputs`, by whatever name or link `path` reaches it.
     ///
     /// A hard link is harmless: a new file takes its name, the input keeps its content under its own.
@@ -53,17 +55,17 @@ impl Output {
     }
 
     /// Refuses to write bytes to a terminal.
-    pub(crate) fn refuse_terminal(path: &Path, format: &str) -> anyhow::Result<()> {
-        if is_standard(path) && io::stdout().is_terminal() {
+    pub(crate) fn refuse_terminal(streams: &Streams, path: &Path, format: &str) -> anyhow::Result<()> {
+        if is_standard(path) && streams.is_stdout_terminal() {
             return Err(usage(format!("{format} is no text for a terminal: name a file, or pipe the output on")));
         }
         Ok(())
     }
 
     /// Opens `path`; the standard output if there is none or it is `-`. A link is followed; one to nothing is refused.
-    pub(crate) fn open(path: Option<&Path>) -> anyhow::Result<Self> {
+    pub(crate) fn open(streams: &'a Streams, path: Option<&Path>) -> anyhow::Result<Self> {
         let Some(path) = path.filter(|p| !is_standard(p)) else {
-            let sink = Sink::Stdout(BufWriter::with_capacity(BUFFER, io::stdout().lock()));
+            let sink = Sink::Stdout(BufWriter::with_capacity(BUFFER, streams.stdout()));
             return Ok(Self { sink, name: "the standard output".to_owned(), bytes: 0, progress: None });
         };
         let name = path.display().to_string();
@@ -72,8 +74,8 @@ impl Output {
     }
 
     /// Shows how much is written, if that takes long.
-    pub(crate) fn with_progress(mut self) -> Self {
-        self.progress = Some(Progress::start(&format!("writing {}", self.name), None, Unit::Bytes));
+    pub(crate) fn with_progress(mut self, streams: &Streams) -> Self {
+        self.progress = Some(Progress::start(streams, &format!("writing {}", self.name), None, Unit::Bytes));
         self
     }
 
@@ -97,7 +99,7 @@ fn cannot_write(name: &str) -> String {
     format!("{name}: cannot be written")
 }
 
-impl Write for Output {
+impl Write for Output<'_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let count = match &mut self.sink {
             Sink::Stdout(writer) => writer.write(bytes),
@@ -120,7 +122,7 @@ impl Write for Output {
     }
 }
 
-impl Sink {
+impl Sink<'_> {
     fn open(path: &Path) -> io::Result<Self> {
         // A link is followed, so that it goes on pointing where it does.
         let target = match fs::canonicalize(path) {
@@ -161,20 +163,42 @@ impl Sink {
         })?;
         // Apart, for errors of the two together name the file, too.
         let (temporary, path) = temporary.into_parts();
-        unfinished.push(path.to_path_buf());
-        Ok(Self::File { temporary: BufWriter::with_capacity(BUFFER, temporary), path, target })
+        let listed = Listed::new(&mut unfinished, &path);
+        Ok(Self::File { temporary: BufWriter::with_capacity(BUFFER, temporary), path, target, listed })
     }
 
     fn finish(self) -> io::Result<()> {
         match self {
             Self::Stdout(mut writer) => writer.flush(),
             Self::Device(mut writer) => writer.flush(),
-            Self::File { mut temporary, path, target } => {
+            Self::File { mut temporary, path, target, listed } => {
                 temporary.flush()?;
-                let mut unfinished = unfinished();
-                unfinished.retain(|unfinished| *unfinished != *path);
-                path.persist(target).map_err(|e| e.error)
+                let unfinished = unfinished();
+                let renamed = path.persist(target);
+                drop(unfinished);
+                drop(listed);
+                renamed.map_err(|e| e.error)
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_listed_until_it_is_finished_or_given_up() {
+        let folder = tempfile::tempdir().unwrap();
+        let streams = Streams::new(io::empty(), io::sink(), io::sink());
+        let listed = || unfinished().iter().filter(|file| file.starts_with(folder.path())).count();
+        let open = |name: &str| Output::open(&streams, Some(&folder.path().join(name))).unwrap();
+        let (given_up, finished) = (open("given_up"), open("finished"));
+        assert_eq!(listed(), 2);
+        drop(given_up);
+        assert_eq!(listed(), 1);
+        finished.finish().unwrap();
+        assert_eq!(listed(), 0);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 }

@@ -4,7 +4,7 @@ use crate::output::Output;
 use anyhow::Context;
 
 /// Writes rows of red, green and blue.
-pub(crate) fn write_png(output: &mut Output, [width, height]: [u32; 2], bytes: &[u8]) -> anyhow::Result<()> {
+pub(crate) fn write_png(output: &mut Output<'_>, [width, height]: [u32; 2], bytes: &[u8]) -> anyhow::Result<()> {
     let cannot_write = output.cannot_write();
     let mut encoder = png::Encoder::new(output, width, height);
     encoder.set_color(png::ColorType::Rgb);

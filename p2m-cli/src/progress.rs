@@ -1,7 +1,7 @@
 //! What a long run is doing, on the standard error if that is a terminal, and not before a second has passed.
 
+use crate::streams::Streams;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
@@ -32,10 +32,10 @@ const REFRESH: Duration = Duration::from_millis(100);
 
 impl Progress {
     /// Work called `what`, like `reading scene.ply`, of so many units if that is known.
-    pub(crate) fn start(what: &str, total: Option<u64>, unit: Unit) -> Self {
+    pub(crate) fn start(streams: &Streams, what: &str, total: Option<u64>, unit: Unit) -> Self {
         let done = Arc::new(AtomicU64::new(0));
         // On a terminal that cannot move its cursor the bar hides itself.
-        if !io::stderr().is_terminal() {
+        if !streams.is_stderr_terminal() {
             return Self { done, drawing: None };
         }
         let (stop, stopped) = mpsc::channel();

@@ -8,6 +8,7 @@ use crate::input::{self, SceneArgs, point_format, read_points, read_scene_and_in
 use crate::json;
 use crate::output::Output;
 use crate::sampling::{Queries, Region};
+use crate::streams::Streams;
 use crate::summary::{Answers, Indexed, Run};
 use crate::usage::{not_negative, one_of, positive, whole};
 use anyhow::Context;
@@ -111,16 +112,16 @@ pub(crate) struct Args {
     accuracy: Accuracy,
 }
 
-pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let (scene_args, asking) = (&args.scene, &args.asking);
     asking.check(scene_args, args.points.as_deref(), "points")?;
-    let (format, out_format) = (scene_args.format()?, asking.format()?);
+    let (format, out_format) = (scene_args.format()?, asking.format(streams)?);
     let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(&scene_args.path, format)?;
-    let (queries, sample) = queries(args, &scene)?;
+    let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format)?;
+    let (queries, sample) = queries(streams, args, &scene)?;
     let read = start.elapsed();
     // Before any work, so that it is not lost to a wrong name.
-    let mut output = Output::open(Some(&asking.out))?;
+    let mut output = Output::open(streams, Some(&asking.out))?;
 
     let start = Instant::now();
     let saved = saved.as_ref();
@@ -129,7 +130,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let backend = Wanted::resolve(args.backend, saved, &scene.soup, &workload).with_context(|| scene_args.name())?;
     let faces = faces::only_for(backend == Backend::Search(Search::Kdop), asking.k)?;
     let source = Source { soup: &scene.soup, faces, saved };
-    let Built { index, about, loaded, .. } = backend.build(source).with_context(|| scene_args.name())?;
+    let Built { index, about, loaded, .. } = backend.build(streams, source).with_context(|| scene_args.name())?;
     let build = start.elapsed();
 
     let pool = asking.pool()?;
@@ -140,7 +141,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         let mut writer = AnswerWriter::with_objects(&mut output, out_format, queries.len(), &scene.objects)?;
         let questions = Questions { name: "queries", count: queries.len(), iter: queries };
         let answer = |queries: &[_], answers: &mut [_]| accuracy.ask(&*index, queries, &options, answers);
-        let time = ask(&pool, questions, answer, |query, answer| {
+        let time = ask(streams, &pool, questions, answer, |query, answer| {
             answers.add(answer.as_ref());
             writer.write(query, answer.as_ref())
         })?;
@@ -157,17 +158,17 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     if asking.json {
         let max_distance = args.max_distance.map_or(Value::Null, json::number);
         let report = answers.json(&run.indexed.cells(), &max_distance, &accuracy.json(), &asked_about(args));
-        return json::print(&run.json("query", report, &asking.written(out_format, bytes)));
+        return json::print(streams, &run.json("query", report, &asking.written(out_format, bytes)));
     }
     // The answers are complete; whether anybody reads this is not our concern.
-    let _ = write!(io::stderr(), "{}{answers}", run.text("queries", "query", answers.queries()));
+    let _ = write!(streams.stderr(), "{}{answers}", run.text("queries", "query", answers.queries()));
     Ok(())
 }
 
 /// And some of them where they are points of a file.
-fn queries(args: &Args, scene: &Scene) -> anyhow::Result<(Queries, Option<Vec<Point3<f64>>>)> {
+fn queries(streams: &Streams, args: &Args, scene: &Scene) -> anyhow::Result<(Queries, Option<Vec<Point3<f64>>>)> {
     if let Some(path) = &args.points {
-        let points = read_points(path, point_format(path, args.points_format, "--points-format")?)?;
+        let points = read_points(streams, path, point_format(path, args.points_format, "--points-format")?)?;
         let some = points.iter().step_by(points.len().div_ceil(SAMPLE).max(1)).copied().collect();
         return Ok((Queries::list(points), Some(some)));
     }

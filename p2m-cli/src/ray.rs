@@ -8,6 +8,7 @@ use crate::input::{self, SceneArgs, point_format, read_rays, read_scene_and_inde
 use crate::json;
 use crate::output::Output;
 use crate::sampling::{Region, random_rays};
+use crate::streams::Streams;
 use crate::summary::{Indexed, Run};
 use crate::usage::{finite_not_negative, number, one_of, positive, usage, whole};
 use anyhow::Context;
@@ -153,29 +154,29 @@ impl Mode {
     }
 }
 
-pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let (scene_args, asking) = (&args.scene, &args.asking);
     asking.check(scene_args, args.rays.as_deref(), "rays")?;
     let along_x = Ray::new(&Point3::<f64>::origin(), &Vector3::x()).and_then(|ray| args.limited(&ray));
     along_x.map_err(|error| usage(format!("{error} (--min, --max)")))?;
-    let (format, out_format) = (scene_args.format()?, asking.format()?);
+    let (format, out_format) = (scene_args.format()?, asking.format(streams)?);
     let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(&scene_args.path, format)?;
-    let rays = rays(args, &scene)?;
+    let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format)?;
+    let rays = rays(streams, args, &scene)?;
     let read = start.elapsed();
     // Before any work, so that it is not lost to a wrong name.
-    let mut output = Output::open(Some(&asking.out))?;
+    let mut output = Output::open(streams, Some(&asking.out))?;
 
     let start = Instant::now();
     let saved = saved.as_ref();
     let backend = args.backend.or_else(|| Search::of_saved(saved)).unwrap_or(Search::Aabb);
     let source = Source { soup: &scene.soup, faces: faces::only_for(backend == Search::Kdop, asking.k)?, saved };
-    let Built { index, about, loaded, .. } = backend.build(source).with_context(|| scene_args.name())?;
+    let Built { index, about, loaded, .. } = backend.build(streams, source).with_context(|| scene_args.name())?;
     let build = start.elapsed();
 
     let pool = asking.pool()?;
     let (index, output_file, objects) = (&*index, &mut output, scene.objects.as_slice());
-    let task = Task { index, pool: &pool, rays, output: output_file, format: out_format, objects };
+    let task = Task { streams, index, pool: &pool, rays, output: output_file, format: out_format, objects };
     let (asked, findings) = task.run(args.mode).with_context(|| output.cannot_write())?;
     let bytes = output.bytes();
     output.finish()?;
@@ -185,10 +186,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let run = Run { indexed, threads, asked };
     if asking.json {
         let report = args.report(findings.json());
-        return json::print(&run.json("ray", report, &asking.written(out_format, bytes)));
+        return json::print(streams, &run.json("ray", report, &asking.written(out_format, bytes)));
     }
     // The answers are complete; whether anybody reads this is not our concern.
-    let _ = write!(io::stderr(), "{}{findings}", run.text("rays", "ray", findings.rays()));
+    let _ = write!(streams.stderr(), "{}{findings}", run.text("rays", "ray", findings.rays()));
     Ok(())
 }
 
@@ -225,10 +226,10 @@ impl Args {
 
 type Rays<'a> = Questions<Box<dyn Iterator<Item = Ray> + 'a>>;
 
-fn rays<'a>(args: &'a Args, scene: &Scene) -> anyhow::Result<Rays<'a>> {
+fn rays<'a>(streams: &Streams, args: &'a Args, scene: &Scene) -> anyhow::Result<Rays<'a>> {
     let (count, rays): (u64, Box<dyn Iterator<Item = Ray>>) = match &args.rays {
         Some(path) => {
-            let rays = read_rays(path, point_format(path, args.rays_format, "--rays-format")?)?;
+            let rays = read_rays(streams, path, point_format(path, args.rays_format, "--rays-format")?)?;
             (rays.len() as u64, Box::new(rays.into_iter()))
         }
         None => {
@@ -241,16 +242,17 @@ fn rays<'a>(args: &'a Args, scene: &Scene) -> anyhow::Result<Rays<'a>> {
 }
 
 /// Rays to ask, and where their answers go.
-struct Task<'a> {
+struct Task<'a, 's> {
+    streams: &'a Streams,
     index: &'a dyn Index,
     pool: &'a ThreadPool,
     rays: Rays<'a>,
-    output: &'a mut Output,
+    output: &'a mut Output<'s>,
     format: AnswerFormat,
     objects: &'a [Object],
 }
 
-impl Task<'_> {
+impl Task<'_, '_> {
     /// How long the asking took, and what came of it.
     fn run(self, mode: Mode) -> io::Result<(Duration, Findings)> {
         let (hits, one) = (Findings::with_numbers("hits"), Some(self.rays.count));
@@ -275,7 +277,7 @@ impl Task<'_> {
         question: impl Fn(&dyn Index, &Ray) -> u64 + Sync,
     ) -> io::Result<(Duration, Findings)> {
         let mut writer = NumberWriter::new(self.output, self.format, name, self.rays.count)?;
-        let time = ask(self.pool, self.rays, each(self.index, question), |ray, &number| {
+        let time = ask(self.streams, self.pool, self.rays, each(self.index, question), |ray, &number| {
             writer.write(findings.rays(), ray, number)?;
             findings.add(number);
             Ok(())
@@ -293,7 +295,7 @@ impl Task<'_> {
         slice: fn(&A) -> &[Hit],
     ) -> io::Result<(Duration, Findings)> {
         let mut writer = HitWriter::with_objects(self.output, self.format, records, self.objects)?;
-        let time = ask(self.pool, self.rays, each(self.index, question), |ray, answer| {
+        let time = ask(self.streams, self.pool, self.rays, each(self.index, question), |ray, answer| {
             let (number, hits) = (findings.rays(), slice(answer));
             findings.add_hits(hits);
             if hits.is_empty() && records.is_some() {

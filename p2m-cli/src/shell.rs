@@ -1,6 +1,7 @@
 //! `p2m completions` and `p2m man`: what shells and manuals want to know.
 
 use crate::output::Output;
+use crate::streams::Streams;
 use anyhow::Context;
 use clap_complete::Shell;
 use std::io::Write;
@@ -30,25 +31,25 @@ pub(crate) struct Man {
     out: Option<PathBuf>,
 }
 
-pub(crate) fn completions(args: &Completions, mut command: clap::Command) -> anyhow::Result<()> {
+pub(crate) fn completions(streams: &Streams, args: &Completions, mut command: clap::Command) -> anyhow::Result<()> {
     // It writes to memory: its own writing panics when the reader has gone.
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut command, "p2m", &mut script);
-    write(None, &script)
+    write(streams, None, &script)
 }
 
-pub(crate) fn man(args: &Man, mut command: clap::Command) -> anyhow::Result<()> {
+pub(crate) fn man(streams: &Streams, args: &Man, mut command: clap::Command) -> anyhow::Result<()> {
     command.build();
-    let Some(folder) = &args.out else { return write(None, &page(&command)?) };
+    let Some(folder) = &args.out else { return write(streams, None, &page(&command)?) };
     std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
-    write_pages(folder, &command)
+    write_pages(streams, folder, &command)
 }
 
 /// The page of a command and those of its subcommands, named like `p2m-generate-knot.1`.
-fn write_pages(folder: &Path, command: &clap::Command) -> anyhow::Result<()> {
+fn write_pages(streams: &Streams, folder: &Path, command: &clap::Command) -> anyhow::Result<()> {
     let name = command.get_display_name().unwrap_or_else(|| command.get_name());
-    write(Some(&folder.join(format!("{name}.1"))), &page(command)?)?;
-    command.get_subcommands().filter(|c| c.get_name() != "help").try_for_each(|c| write_pages(folder, c))
+    write(streams, Some(&folder.join(format!("{name}.1"))), &page(command)?)?;
+    command.get_subcommands().filter(|c| c.get_name() != "help").try_for_each(|c| write_pages(streams, folder, c))
 }
 
 fn page(command: &clap::Command) -> anyhow::Result<Vec<u8>> {
@@ -57,8 +58,8 @@ fn page(command: &clap::Command) -> anyhow::Result<Vec<u8>> {
     Ok(page)
 }
 
-fn write(path: Option<&Path>, content: &[u8]) -> anyhow::Result<()> {
-    let mut output = Output::open(path)?;
+fn write(streams: &Streams, path: Option<&Path>, content: &[u8]) -> anyhow::Result<()> {
+    let mut output = Output::open(streams, path)?;
     output.write_all(content).with_context(|| output.cannot_write())?;
     output.finish()
 }

@@ -8,6 +8,7 @@ use crate::output::Output;
 use crate::picture::write_png;
 use crate::progress::{Progress, Unit};
 use crate::sampling::{Queries, Region};
+use crate::streams::Streams;
 use crate::summary::Indexed;
 use crate::usage::{positive, whole};
 use anyhow::{Context, bail};
@@ -82,7 +83,7 @@ pub(crate) struct Args {
     json: bool,
 }
 
-pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let scene_args = &args.indexing.scene;
     if let Some(out) = &args.out {
         if !is(out, "ply") && !is(out, "png") {
@@ -92,18 +93,18 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     }
     let format = scene_args.format()?;
     let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(&scene_args.path, format)?;
+    let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format)?;
     let read = start.elapsed();
-    let picture = args.out.as_ref().map(|out| Output::open(Some(out))).transpose()?;
+    let picture = args.out.as_ref().map(|out| Output::open(streams, Some(out))).transpose()?;
 
     let start = Instant::now();
     let saved = saved.as_ref();
     let (backend, faces) = args.indexing.choice(saved, &scene.soup, MANY)?;
     let source = Source { soup: &scene.soup, faces, saved };
-    let Built { index, about, loaded, stages } = backend.build(source).with_context(|| scene_args.name())?;
+    let Built { index, about, loaded, stages } = backend.build(streams, source).with_context(|| scene_args.name())?;
     let build = start.elapsed();
 
-    let progress = Progress::start("asking", None, Unit::None);
+    let progress = Progress::start(streams, "asking", None, Unit::None);
     let region = Region::around(&scene.soup, args.box_scale);
     let random: Vec<_> = Queries::random(region, args.queries, args.seed).collect();
     let stats = Stats {
@@ -135,13 +136,13 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
             "seconds": { "read": read.as_secs_f64(), "build": build.as_secs_f64() },
             "out": args.out.as_ref().map(|out| json!({ "file": out.display().to_string() })),
         });
-        return json::print(&json::joined([indexed.json("stats"), stats.json(), end]));
+        return json::print(streams, &json::joined([indexed.json("stats"), stats.json(), end]));
     }
     let mut text = String::new();
     // Nothing fails in writing to memory.
     let _ = indexed.write(&mut text, None);
     let _ = write!(text, "{stats}");
-    let mut output = Output::open(None)?;
+    let mut output = Output::open(streams, None)?;
     output.write_all(text.as_bytes()).with_context(|| output.cannot_write())?;
     output.finish()
 }
@@ -160,7 +161,7 @@ fn direction(text: &str) -> Result<Vector3<f64>, String> {
 impl Args {
     /// Draws the scene in colours: what the ray through each pixel meets first, darker where it is met askew.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 255")]
-    fn draw(&self, soup: &Soup<f64>, values: &[f64], output: &mut Output) -> anyhow::Result<()> {
+    fn draw(&self, soup: &Soup<f64>, values: &[f64], output: &mut Output<'_>) -> anyhow::Result<()> {
         let camera = Camera::before(soup, &self.eye, self.width).filter(|_| !soup.is_empty());
         let camera = camera.context("nothing to draw: the scene is empty or has no extent")?;
         let tree = AabbTree::build(soup, &Default::default())?;

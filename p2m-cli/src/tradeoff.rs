@@ -4,6 +4,7 @@ use crate::input::{SceneArgs, point_format, read_points, read_scene};
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
 use crate::sampling::{Queries as Places, Region};
+use crate::streams::Streams;
 use crate::usage::{one_of, positive, whole};
 use anyhow::{Context, bail};
 use clap::{ArgGroup, ValueEnum};
@@ -201,7 +202,7 @@ where
 /// What is behind the points of a page, in words.
 const TRUTH: &str = "The truth is what certified answers say: the nearest primitive, and its distance rounded once.";
 
-pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let outputs = [&args.html, &args.csv];
     let inputs: Vec<&Path> =
         [Some(&args.scene.path), args.points.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
@@ -211,15 +212,15 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     if args.html.is_some() && args.html == args.csv {
         bail!("--html and --csv name the same file");
     }
-    let scene = read_scene(&args.scene.path, args.scene.format()?)?;
+    let scene = read_scene(streams, &args.scene.path, args.scene.format()?)?;
     if scene.soup.is_empty() {
         bail!("{}: there is nothing in it to ask about", args.scene.name());
     }
-    let (places, about) = args.places(&scene)?;
+    let (places, about) = args.places(streams, &scene)?;
     // Before any work, so that it is not lost to a wrong name.
-    let [html, csv] = outputs.map(|path| path.as_ref().map(|path| Output::open(Some(path))).transpose());
+    let [html, csv] = outputs.map(|path| path.as_ref().map(|path| Output::open(streams, Some(path))).transpose());
     let (html, csv) = (html?, csv?);
-    let figures = args.measured(&scene, places, about).with_context(|| args.scene.name())?;
+    let figures = args.measured(streams, &scene, places, about).with_context(|| args.scene.name())?;
 
     let (provenance, clock) = (Provenance::collect(None, None), clock_nanoseconds());
     let scenes = std::slice::from_ref(&figures);
@@ -242,21 +243,21 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         save(output, &record(&provenance, scenes, args.seed, clock))?;
     }
     let tables: Vec<String> = figures.sets.iter().map(|set| text::table(set).to_string()).collect();
-    save(Output::open(None)?, &tables.concat())
+    save(Output::open(streams, None)?, &tables.concat())
 }
 
-fn save(mut output: Output, text: &str) -> anyhow::Result<()> {
+fn save(mut output: Output<'_>, text: &str) -> anyhow::Result<()> {
     output.write_all(text.as_bytes()).with_context(|| output.cannot_write())?;
     output.finish()
 }
 
 impl Args {
     /// Where to ask, and what that is in words. Places that are not finite have no answers that could be compared.
-    fn places(&self, scene: &Scene) -> anyhow::Result<(Vec<Point3<f64>>, String)> {
+    fn places(&self, streams: &Streams, scene: &Scene) -> anyhow::Result<(Vec<Point3<f64>>, String)> {
         let region = Region::around(&scene.soup, self.box_scale);
         let (places, about) = match (&self.points, self.grid) {
             (Some(path), _) => {
-                let points = read_points(path, point_format(path, self.points_format, "--points-format")?)?;
+                let points = read_points(streams, path, point_format(path, self.points_format, "--points-format")?)?;
                 (points, format!("The points of {}.", crate::input::name(path)))
             }
             (None, Some(side)) => (
@@ -278,12 +279,19 @@ impl Args {
         Ok((places, about))
     }
 
-    fn measured(&self, scene: &Scene, places: Vec<Point3<f64>>, about: String) -> anyhow::Result<SceneFigures> {
+    fn measured(
+        &self,
+        streams: &Streams,
+        scene: &Scene,
+        places: Vec<Point3<f64>>,
+        about: String,
+    ) -> anyhow::Result<SceneFigures> {
         let soup = &scene.soup;
         let bounds = soup.aabb();
         let diagonal = (bounds.max - bounds.min).norm();
         let mut notes = Vec::new();
-        let progress = Progress::start("building indexes", Some(self.backends.len() as u64), Unit::Items("backends"));
+        let progress =
+            Progress::start(streams, "building indexes", Some(self.backends.len() as u64), Unit::Items("backends"));
         let mut indexes = Vec::new();
         for (i, kind) in self.backends.iter().enumerate() {
             if self.backends[..i].contains(kind) {
@@ -311,7 +319,7 @@ impl Args {
                 })
             })
             .collect();
-        let progress = Progress::start("asking", Some(100), Unit::Percent);
+        let progress = Progress::start(streams, "asking", Some(100), Unit::Percent);
         let effort = Effort { rounds: self.rounds, seconds: self.round_seconds };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 100")]
         let reach = |part: f64| progress.reach((part * 100.0) as u64);

@@ -1,12 +1,6 @@
 //! `p2m boxes`, end to end.
 
-use std::process::{Command, Output};
-
-fn p2m(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_p2m")).args(args).output().unwrap()
-}
-
-const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/knot_and_cables.obj");
+use crate::common::{SCENE, p2m};
 
 #[test]
 fn levels_and_leaves_are_drawn_and_listed() {
@@ -15,7 +9,7 @@ fn levels_and_leaves_are_drawn_and_listed() {
         let out = folder.path().join("boxes.svg");
         let run =
             p2m(&["boxes", SCENE, "--levels", levels, "--out", out.to_str().unwrap(), "--up", "y", "--view", "front"]);
-        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        assert_eq!(run.code, 0, "{}", String::from_utf8_lossy(&run.stderr));
         let (titles, svg) = (String::from_utf8(run.stderr).unwrap(), std::fs::read_to_string(&out).unwrap());
         let drawn = titles.lines().count();
         assert_eq!((panels.unwrap_or(drawn), svg.matches("<text").count()), (drawn, drawn), "{titles}");
@@ -43,7 +37,7 @@ fn levels_and_leaves_are_drawn_and_listed() {
 fn the_boxes_of_a_level_hold_the_scene() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("boxes.PLY");
-    assert!(p2m(&["boxes", SCENE, "--levels", "1", "--out", out.to_str().unwrap()]).status.success());
+    assert_eq!(p2m(&["boxes", SCENE, "--levels", "1", "--out", out.to_str().unwrap()]).code, 0);
     let [picture, scene] = [out.as_path(), SCENE.as_ref()].map(|p| p2m_mixed::read_scene(p).unwrap().soup);
     let bounds = p2m_core::PrimitiveSet::aabb(&scene);
     // The root first, then its children; boxes are rounded outwards by 2^-22 of the scene's size at most.
@@ -86,7 +80,7 @@ fn other_extensions_and_the_scene_itself_are_refused() {
     let before = std::fs::read(&scene).unwrap();
     for (out, message) in [("x.png", ".svg or .ply"), ("x", ".svg or .ply"), ("scene.ply", "it is an input")] {
         let run = p2m(&["boxes", scene.to_str().unwrap(), "--out", folder.path().join(out).to_str().unwrap()]);
-        assert_eq!(run.status.code(), Some(1));
+        assert_eq!(run.code, 1);
         assert!(String::from_utf8_lossy(&run.stderr).contains(message), "{out}");
     }
     assert_eq!(std::fs::read(&scene).unwrap(), before);

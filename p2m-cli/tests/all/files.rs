@@ -2,9 +2,9 @@
 
 use crate::common::*;
 use std::fs;
-use std::io::Read;
+use std::io::{self, Read, Write};
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use tempfile::TempDir;
 
 #[test]
@@ -13,19 +13,15 @@ fn files_are_written_whole() {
     let out = path(&folder, "a.csv");
     let run = |out: &str| p2m(&["query", SCENE, "--random", "100", "--out", out]);
     let output = run(&out);
-    assert_eq!((output.status.code(), text(&output.stdout)), (Some(0), String::new()));
+    assert_eq!((output.code, text(&output.stdout)), (0, String::new()));
     let expected = table(&["query", SCENE, "--random", "100"]);
     assert_eq!(fs::read_to_string(&out).unwrap(), expected);
     // Over an old file, and with a bare name in the current directory.
     fs::write(&out, "old").unwrap();
-    assert_eq!(run(&out).status.code(), Some(0));
+    assert_eq!(run(&out).code, 0);
     assert_eq!(fs::read_to_string(&out).unwrap(), expected);
-    let status = Command::new(env!("CARGO_BIN_EXE_p2m"))
-        .args(["query", SCENE, "--random", "100", "--out", "b.csv"])
-        .current_dir(&folder)
-        .stderr(Stdio::null())
-        .status();
-    assert!(status.unwrap().success());
+    let output = program(&["query", SCENE, "--random", "100", "--out", "b.csv"]).current_dir(&folder).output().unwrap();
+    assert!(output.status.success(), "{}", text(&output.stderr));
     assert_eq!(fs::read_to_string(folder.path().join("b.csv")).unwrap(), expected);
     assert_eq!(names(folder.path()), [PathBuf::from("a.csv"), PathBuf::from("b.csv")]);
 }
@@ -154,6 +150,24 @@ fn causes_are_told_once() {
     assert_eq!(message, format!("error: {directory}: cannot be read: is a directory\n"));
 }
 
+/// Breaks like a pipe whose reader leaves after three bytes.
+struct Left {
+    is_begun: bool,
+}
+
+impl Write for Left {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if std::mem::replace(&mut self.is_begun, true) {
+            return Err(io::ErrorKind::BrokenPipe.into());
+        }
+        Ok(bytes.len().min(3))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
 #[test]
 fn a_reader_that_leaves_is_no_error() {
     for arguments in [
@@ -162,16 +176,15 @@ fn a_reader_that_leaves_is_no_error() {
         &["generate", "torus-knot", "--subdivide", "2"],
         &["convert", SCENE, "-", "--to", "off", "--subdivide", "3"],
     ] {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_p2m"))
-            .args(arguments)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut first = [0; 3];
-        child.stdout.as_mut().unwrap().read_exact(&mut first).unwrap();
-        drop(child.stdout.take());
-        let output = child.wait_with_output().unwrap();
-        assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), String::new()), "{arguments:?}");
+        let (code, stderr) = p2m_into(arguments, "", Left { is_begun: false });
+        assert_eq!((code, text(&stderr)), (0, String::new()), "{arguments:?}");
     }
+    // The program meets a real pipe whose reader has left.
+    let mut query = program(&["query", SCENE, "--random", "50000"]);
+    let mut child = query.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut first = [0; 3];
+    child.stdout.as_mut().unwrap().read_exact(&mut first).unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), String::new()));
 }

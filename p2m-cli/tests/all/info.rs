@@ -106,7 +106,7 @@ fn the_carried_scene_has_its_figures() {
 fn scenes_come_from_the_standard_input() {
     let file = std::fs::read(SCENE).unwrap();
     let output = p2m_with(&["info", "-", "--format", "obj", "--json"], &file);
-    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(output.code, 0);
     let mut report: Value = serde_json::from_str(&text(&output.stdout)).unwrap();
     assert_eq!(report["file"], "standard input");
     report["file"] = SCENE.into();

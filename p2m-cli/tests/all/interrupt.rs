@@ -27,8 +27,8 @@ fn query(folder: &Path) -> Command {
 }
 
 fn long(name: &str, folder: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_p2m"));
-    command.arg(name).arg(SCENE).args(LONG).arg(folder.join("answers.csv"));
+    let mut command = program(&[name, SCENE]);
+    command.args(LONG).arg(folder.join("answers.csv"));
     command
 }
 

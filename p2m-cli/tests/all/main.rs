@@ -1,4 +1,4 @@
-//! The program, by what it prints, writes and returns. `cargo test -p p2m-cli --test all query::` runs the tests of one command.
+//! What `p2m` prints, writes and returns. `cargo test -p p2m-cli --test all query::` runs the tests of one command.
 
 mod advise;
 mod boxes;
@@ -11,6 +11,7 @@ mod generate;
 mod info;
 mod interrupt;
 mod json;
+mod program;
 mod query;
 mod ray;
 mod shell;

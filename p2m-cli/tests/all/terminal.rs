@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 /// What a terminal shows of a shell command; `None` without `script`.
 fn on_terminal(command: &str, environment: &[(&str, &str)]) -> Option<String> {
     let mut script = Command::new("script");
-    script.args(["-qec", command, "/dev/null"]).env("P2M", env!("CARGO_BIN_EXE_p2m")).env("SCENE", SCENE);
+    script.args(["-qec", command, "/dev/null"]).env("P2M", program(&[]).get_program()).env("SCENE", SCENE);
     script.env_remove("NO_COLOR").env("TERM", "xterm").stdin(Stdio::null());
     for (name, value) in environment {
         script.env(name, value);

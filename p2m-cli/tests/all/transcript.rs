@@ -16,7 +16,8 @@ const TRANSCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/transcrip
 
 /// What a command of the transcript prints, and its exit code if it is not 0.
 fn run(command: &str, folder: &Path) -> String {
-    let programs = Path::new(env!("CARGO_BIN_EXE_p2m")).parent().unwrap();
+    let program = program(&[]);
+    let programs = Path::new(program.get_program()).parent().unwrap();
     let path = format!("{}:{}", programs.display(), std::env::var("PATH").unwrap());
     let output = Command::new("sh")
         .args(["-c", &format!("exec 2>&1\n{command}")])

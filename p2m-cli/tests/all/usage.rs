@@ -46,7 +46,7 @@ fn wrong_usage_is_code_2() {
     ] {
         failure(arguments, 2);
     }
-    assert_eq!(p2m(&[]).status.code(), Some(2));
+    assert_eq!(p2m(&[]).code, 2);
 }
 
 #[test]

@@ -1,0 +1,202 @@
+//! The program `p2m` as a function, so that tests and other programs can run it within themselves.
+//!
+//! `p2m` reads a scene, asks for closest points or hits of rays, and writes a table; `p2m --help` lists all commands.
+
+#![forbid(unsafe_code)]
+
+mod accuracy;
+mod advise;
+mod asking;
+mod backend;
+mod boxes;
+mod build;
+mod convert;
+mod faces;
+mod field;
+mod findings;
+mod generate;
+mod indexing;
+mod info;
+mod input;
+mod interrupt;
+mod json;
+mod modify;
+mod output;
+mod picture;
+mod progress;
+mod query;
+mod ray;
+mod sampling;
+mod shell;
+mod stats;
+mod streams;
+mod summary;
+mod tradeoff;
+mod usage;
+
+pub use interrupt::listen;
+pub use streams::Streams;
+
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use std::ffi::OsString;
+use std::io::{self, Write};
+
+/// Closest points and hits of rays in scenes of triangles, segments and points
+#[derive(Parser)]
+#[command(name = "p2m", version, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "\
+Scenes are OBJ, PLY, STL and OFF files, and indexes that `p2m build` saved. A `-` in place of a file is the standard input or output.
+
+Examples:
+  p2m query scene.obj --random 1000 --out answers.csv
+  p2m ray scene.obj --random 1000 --out hits.csv
+  p2m info scene.obj
+  p2m convert scene.obj scene.ply
+  p2m generate torus-knot --out knot.obj
+
+The exit code is 0 for success, 1 for what could not be read, written or done, and 2 for wrong usage; 128 plus the number of \
+the signal after an interruption (130 for Ctrl-C), which leaves no half-written file.";
+
+#[derive(Subcommand)]
+enum Command {
+    Query(query::Args),
+    Build(build::Args),
+    Stats(stats::Args),
+    Field(field::Args),
+    Advise(advise::Args),
+    Tradeoff(tradeoff::Args),
+    Ray(ray::Args),
+    Info(info::Args),
+    Convert(convert::Args),
+    Generate(generate::Args),
+    Boxes(boxes::Args),
+    Completions(shell::Completions),
+    Man(shell::Man),
+}
+
+impl Command {
+    /// The words that lead to it.
+    fn path(&self) -> String {
+        match self {
+            Self::Query(_) => "p2m query".to_owned(),
+            Self::Build(_) => "p2m build".to_owned(),
+            Self::Stats(_) => "p2m stats".to_owned(),
+            Self::Field(_) => "p2m field".to_owned(),
+            Self::Advise(_) => "p2m advise".to_owned(),
+            Self::Tradeoff(_) => "p2m tradeoff".to_owned(),
+            Self::Ray(_) => "p2m ray".to_owned(),
+            Self::Info(_) => "p2m info".to_owned(),
+            Self::Convert(_) => "p2m convert".to_owned(),
+            Self::Generate(args) => format!("p2m generate {}", args.name()),
+            Self::Boxes(_) => "p2m boxes".to_owned(),
+            Self::Completions(_) => "p2m completions".to_owned(),
+            Self::Man(_) => "p2m man".to_owned(),
+        }
+    }
+
+    fn run(&self, streams: &Streams) -> anyhow::Result<()> {
+        match self {
+            Self::Query(args) => query::run(streams, args),
+            Self::Build(args) => build::run(streams, args),
+            Self::Stats(args) => stats::run(streams, args),
+            Self::Field(args) => field::run(streams, args),
+            Self::Advise(args) => advise::run(streams, args),
+            Self::Tradeoff(args) => tradeoff::run(streams, args),
+            Self::Ray(args) => ray::run(streams, args),
+            Self::Info(args) => info::run(streams, args),
+            Self::Convert(args) => convert::run(streams, args),
+            Self::Generate(args) => generate::run(streams, args),
+            Self::Boxes(args) => boxes::run(streams, args),
+            Self::Completions(args) => shell::completions(streams, args, Cli::command()),
+            Self::Man(args) => shell::man(streams, args, Cli::command()),
+        }
+    }
+}
+
+/// Runs the program with these arguments, of which the first is its name, and returns its exit code.
+///
+/// A run does not handle signals: a program that is to remove unfinished files at a signal calls [`listen`] first.
+pub fn run(streams: &Streams, arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let matches = streams.fit(Cli::command()).try_get_matches_from(arguments);
+    let command = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
+        Ok(cli) => cli.command,
+        Err(error) => {
+            // If the message cannot be written there is nobody to tell.
+            let _ = streams.show(&error);
+            return if error.use_stderr() { 2 } else { 0 };
+        }
+    };
+    match command.run(streams) {
+        Ok(()) => 0,
+        // Whoever reads our output has seen enough, like `head`.
+        Err(error) if is_closed_pipe(&error) => 0,
+        Err(error) => {
+            // If the message cannot be written there is nobody to tell.
+            let _ = writeln!(streams.stderr(), "error: {error:#}");
+            if error.is::<usage::Usage>() {
+                let _ = writeln!(streams.stderr(), "\nFor more information, try '{} --help'.", command.path());
+                return 2;
+            }
+            1
+        }
+    }
+}
+
+fn is_closed_pipe(error: &anyhow::Error) -> bool {
+    error.chain().any(|e| e.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every command of the tree with the words that lead to it.
+    fn walk(command: &clap::Command, path: &str, visit: &mut impl FnMut(&clap::Command, &str)) {
+        visit(command, path);
+        for sub in command.get_subcommands() {
+            walk(sub, &format!("{path} {}", sub.get_name()), visit);
+        }
+    }
+
+    /// The lines of examples in the help of a command.
+    fn examples(command: &clap::Command) -> Vec<String> {
+        let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+        let examples = help.lines().filter(|line| line.starts_with("  p2m "));
+        examples.map(|line| line.trim().to_owned()).collect()
+    }
+
+    #[test]
+    fn the_grammar_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_has_an_example_of_itself() {
+        let mut count = 0;
+        walk(&Cli::command(), "p2m", &mut |command, path| {
+            let examples = examples(command);
+            assert!(examples.iter().any(|e| e.contains(path)), "{path}: {examples:?}");
+            count += 1;
+        });
+        assert!(count > 15, "{count}");
+    }
+
+    /// Examples run as they stand: each program of a pipe is parsed.
+    #[test]
+    fn every_example_is_right_usage() {
+        walk(&Cli::command(), "p2m", &mut |command, path| {
+            for example in examples(command) {
+                let line = example.split(" > ").next().unwrap();
+                for words in line.split(" | ").map(str::split_whitespace).filter(|w| w.clone().next() == Some("p2m")) {
+                    let parsed = Cli::try_parse_from(words);
+                    assert!(parsed.is_ok(), "{path}: {example}: {}", parsed.err().unwrap());
+                }
+            }
+        });
+    }
+}

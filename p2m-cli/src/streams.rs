@@ -1,0 +1,90 @@
+//! The standard streams of a run.
+
+use std::cell::RefCell;
+use std::io::{self, IsTerminal, Read, Write};
+
+/// Holds the standard input, output and error of a run.
+pub struct Streams {
+    stdin: RefCell<Box<dyn Read>>,
+    stdout: RefCell<Box<dyn Write>>,
+    stderr: RefCell<Box<dyn Write>>,
+    /// Tells whether these are the streams of the process, which may be terminals.
+    is_process: bool,
+}
+
+impl Streams {
+    /// Takes the streams of this process, which show colours and progress bars where they are terminals.
+    #[must_use]
+    pub fn standard() -> Self {
+        Self { is_process: true, ..Self::new(io::stdin(), io::stdout(), io::stderr()) }
+    }
+
+    /// Makes streams of a reader and two writers, which all count as no terminals.
+    pub fn new(stdin: impl Read + 'static, stdout: impl Write + 'static, stderr: impl Write + 'static) -> Self {
+        Self {
+            stdin: RefCell::new(Box::new(stdin)),
+            stdout: RefCell::new(Box::new(stdout)),
+            stderr: RefCell::new(Box::new(stderr)),
+            is_process: false,
+        }
+    }
+
+    pub(crate) fn stdin(&self) -> Stream<'_, dyn Read> {
+        Stream(&self.stdin)
+    }
+
+    pub(crate) fn stdout(&self) -> Stream<'_, dyn Write> {
+        Stream(&self.stdout)
+    }
+
+    pub(crate) fn stderr(&self) -> Stream<'_, dyn Write> {
+        Stream(&self.stderr)
+    }
+
+    pub(crate) fn is_stdout_terminal(&self) -> bool {
+        self.is_process && io::stdout().is_terminal()
+    }
+
+    pub(crate) fn is_stderr_terminal(&self) -> bool {
+        self.is_process && io::stderr().is_terminal()
+    }
+
+    /// Gives help a fixed width, unless it is for the process, whose terminal sets the width.
+    pub(crate) fn fit(&self, command: clap::Command) -> clap::Command {
+        if self.is_process { command } else { command.term_width(WIDTH) }
+    }
+
+    /// Writes wrong usage to the standard error, and help and the version to the standard output.
+    pub(crate) fn show(&self, error: &clap::Error) -> io::Result<()> {
+        if self.is_process {
+            // Clap colours the text as the terminal and the environment ask for.
+            error.print()
+        } else if error.use_stderr() {
+            write!(self.stderr(), "{error}")
+        } else {
+            write!(self.stdout(), "{error}")
+        }
+    }
+}
+
+/// Help has this many columns where there is no terminal.
+const WIDTH: usize = 100;
+
+/// Lends one of the streams of a run.
+pub(crate) struct Stream<'a, S: ?Sized>(&'a RefCell<Box<S>>);
+
+impl Read for Stream<'_, dyn Read> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.0.borrow_mut().read(buffer)
+    }
+}
+
+impl Write for Stream<'_, dyn Write> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.borrow_mut().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.borrow_mut().flush()
+    }
+}
