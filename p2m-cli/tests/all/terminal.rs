@@ -21,7 +21,7 @@ fn on_terminal(command: &str, environment: &[(&str, &str)]) -> Option<String> {
     Some(text(&output.stdout))
 }
 
-const LONG: &str = "timeout 3 \"$P2M\" query \"$SCENE\" --random 100000000 --backend brute --out /dev/null";
+const LONG: &str = "timeout 3 \"$P2M\" query \"$SCENE\" --random 100000000 --backend brute --threads 1 --out /dev/null";
 
 #[test]
 fn long_work_shows_a_bar_on_a_terminal_only() {
