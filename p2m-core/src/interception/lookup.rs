@@ -170,7 +170,7 @@ impl Operation for Walk<'_> {
     }
 }
 
-/// A query in its cell; as an operation, one on its way there from the site that was found first.
+/// A query on its way to its cell from the site that was found first, as an operation.
 struct Answer<'a, C, L, F> {
     index: &'a Voronoi<L, F>,
     found: Found,
@@ -191,20 +191,25 @@ impl<C: Collector, L: Locator, F: ListFilter> Operation for Answer<'_, C, L, F> 
             self.collector.visit_node();
             index.prefetch_block(at);
         });
-        Answer { found, ..self }.search::<I>();
+        index.tree.isa().run(InCell(Answer { found, ..self }));
     }
 }
 
-impl<C: Collector, L: Locator, F: ListFilter> Answer<'_, C, L, F> {
+/// A query in its cell, as an operation of its own: it is compiled once, for single queries and for several.
+struct InCell<'a, C, L, F>(Answer<'a, C, L, F>);
+
+impl<C: Collector, L: Locator, F: ListFilter> Operation for InCell<'_, C, L, F> {
+    type Output = ();
+
     #[inline(always)]
-    fn search<I: InstructionSet>(self) {
-        let Self { index, found, query, place, collector, evaluate, finish } = self;
+    fn run<I: InstructionSet>(self) {
+        let Answer { index, found, query, place, collector, evaluate, finish } = self.0;
         let tree = &index.tree;
         let site = &index.fans.sites[found.site];
         let reach = index.reach(site, &query, &place);
         let held = site.holder();
         if !site.has_list() {
-            return Search { tree, query, reach, held, collector, evaluate, finish }.run::<I>();
+            return tree.isa().run(Search { tree, query, reach, held, collector, evaluate, finish });
         }
         // What comes next, if the list has more than a block.
         index.prefetch_block(site.list as usize);
@@ -288,22 +293,14 @@ impl<L: Locator, F: ListFilter> Operation for Several<'_, L, F> {
             }
         }
         let finish = finish_nearest;
+        let (tree, isa) = (&index.tree, index.tree.isa());
         for (i, (minimum, evaluate)) in minimums.into_iter().zip(evaluates).enumerate() {
-            let query = queries[i];
+            let (query, collector) = (queries[i], minimum);
             match (ways[i], places[i]) {
                 (Some(found), Some(place)) => {
-                    Answer { index, found, query, place, collector: minimum, evaluate, finish }.search::<I>();
+                    isa.run(InCell(Answer { index, found, query, place, collector, evaluate, finish }));
                 }
-                _ => Search {
-                    tree: &index.tree,
-                    query,
-                    reach: f64::INFINITY,
-                    held: None,
-                    collector: minimum,
-                    evaluate,
-                    finish,
-                }
-                .run::<I>(),
+                _ => isa.run(Search { tree, query, reach: f64::INFINITY, held: None, collector, evaluate, finish }),
             }
         }
     }

@@ -32,10 +32,7 @@ impl Eight {
     #[inline(always)]
     fn widen(self) -> [f64x4; 2] {
         let [a, b, c, d, e, f, g, h] = self.0.to_array();
-        [
-            f64x4::new([a.into(), b.into(), c.into(), d.into()]),
-            f64x4::new([e.into(), f.into(), g.into(), h.into()]),
-        ]
+        [f64x4::new([a.into(), b.into(), c.into(), d.into()]), f64x4::new([e.into(), f.into(), g.into(), h.into()])]
     }
 }
 

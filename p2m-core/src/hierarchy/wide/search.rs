@@ -72,7 +72,7 @@ impl<V: Volume, C: Collector> Search<'_, V, C> {
                 let packet = &tree.leaves.packets[child.number()];
                 for lane in 0..packet.ids().len() {
                     let limit = collector.prune_above();
-                    offer(&tree.leaves, packet, lane, query, limit, collector, evaluate);
+                    offer_apart(&tree.leaves, packet, lane, query, limit, collector, evaluate);
                 }
                 continue;
             }
@@ -82,6 +82,20 @@ impl<V: Volume, C: Collector> Search<'_, V, C> {
             nearest_last(&mut stack[from..]);
         }
     }
+}
+
+/// [`offer`] as a function of its own, so that it is compiled once for all volumes where its speed does not matter.
+#[inline(never)]
+fn offer_apart<C: Collector>(
+    leaves: &Leaves,
+    packet: &Packet,
+    lane: usize,
+    query: [f64; 3],
+    square: f64,
+    collector: &mut C,
+    evaluate: Evaluate<'_, C>,
+) {
+    offer(leaves, packet, lane, query, square, collector, evaluate);
 }
 
 /// Sorts children by their bounds. Not generic, for sorting is much code.
