@@ -1,0 +1,47 @@
+//! All tests with all of their cases, and the number of these.
+
+use crate::{Outcome, start};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::Command;
+use std::{env, fs};
+
+/// Runs the deep suite, then prints how many cases each file of tests had.
+pub(crate) fn run(filter: &[String]) -> Outcome {
+    let target = env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into());
+    let log = env::current_dir().map_err(|e| e.to_string())?.join(target).join("deep-cases");
+    // Tests append to it.
+    if let Some(folder) = log.parent() {
+        fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    }
+    fs::write(&log, "").map_err(|e| format!("{}: {e}", log.display()))?;
+    let mut tests = Command::new("cargo");
+    tests.args(["test", "--locked", "--workspace", "--profile", "deep", "--no-fail-fast", "--"]);
+    tests.args(filter).arg("--include-ignored").env("P2M_CASES", &log);
+    if env::var_os("P2M_DEEP").is_none() {
+        tests.env("P2M_DEEP", "1");
+    }
+    let outcome = start(&mut tests);
+    print_counts(&log)?;
+    outcome
+}
+
+/// Prints the sums of the lines `file:line<TAB>count`.
+fn print_counts(log: &Path) -> Outcome {
+    let text = fs::read_to_string(log).map_err(|e| format!("{}: {e}", log.display()))?;
+    let mut counts: BTreeMap<&str, [u64; 2]> = BTreeMap::new();
+    for line in text.lines() {
+        let parts = line.split_once('\t').and_then(|(place, count)| Some((place, count.parse::<u64>().ok()?)));
+        let (place, count) = parts.ok_or_else(|| format!("{}: not a place and a count: {line}", log.display()))?;
+        let file = place.rsplit_once(':').map_or(place, |(file, _)| file);
+        let sums = counts.entry(file).or_default();
+        *sums = [sums[0] + 1, sums[1] + count];
+    }
+    println!("\n{:<52} {:>8} {:>12}", "file", "loops", "cases");
+    for (file, [loops, cases]) in &counts {
+        println!("{file:<52} {loops:>8} {cases:>12}");
+    }
+    let [loops, cases] = counts.values().fold([0, 0], |[a, b], [c, d]| [a + c, b + d]);
+    println!("{:<52} {loops:>8} {cases:>12}", "all");
+    if cases == 0 { Err("no test has counted any case".to_owned()) } else { Ok(()) }
+}

@@ -1,0 +1,152 @@
+//! The tasks of whoever changes p2m, each as one command: `cargo xtask` lists them.
+//!
+//! A task prints the commands that it starts, so that each can be started alone. The first command that fails ends it.
+#![forbid(unsafe_code)]
+
+mod deep;
+mod promises;
+
+use std::path::Path;
+use std::process::{Command, ExitCode};
+
+/// A task, the arguments that it takes and the sentence that describes it.
+struct Task {
+    name: &'static str,
+    arguments: &'static str,
+    about: &'static str,
+    run: fn(&[String]) -> Outcome,
+}
+
+/// Whether a task went well, or the sentence that says why it did not.
+type Outcome = Result<(), String>;
+
+const TASKS: [Task; 10] = [
+    Task {
+        name: "quick",
+        arguments: "[FILTER]",
+        about: "Test the contract and the agreement of all backends, or the tests of them that a filter names",
+        run: |rest| cargo(&["test", "--locked", "--package", "p2m", "--test", "all", "--"], rest),
+    },
+    Task {
+        name: "test",
+        arguments: "[FILTER]",
+        about: "Run all tests, with a small part of their cases",
+        run: |rest| cargo(&["test", "--locked", "--workspace"], rest),
+    },
+    Task {
+        name: "deep",
+        arguments: "[FILTER]",
+        about: "Run all tests with all of their cases, and count these",
+        run: deep::run,
+    },
+    Task {
+        name: "lint",
+        arguments: "",
+        about: "Check the format and the lints of all code",
+        run: |_| lint(),
+    },
+    Task {
+        name: "docs",
+        arguments: "",
+        about: "Make the documentation, in which no link may be broken",
+        run: |_| docs(),
+    },
+    Task {
+        name: "promises",
+        arguments: "",
+        about: "Check what the manifests promise: lock files, Rust versions, features, targets",
+        run: |_| promises::check(),
+    },
+    Task {
+        name: "bench",
+        arguments: "[ARGUMENTS]",
+        about: "Measure against rivals: `cargo xtask bench query SCENE`",
+        run: |rest| cargo(&["run", "--locked", "--release", "--package", "p2m-bench", "--"], rest),
+    },
+    Task {
+        name: "fuzz",
+        arguments: "[SECONDS] [TARGET]..",
+        about: "Fuzz each target for so many seconds, 60 by default",
+        run: |rest| run("fuzz/run", if rest.is_empty() { &["60"] } else { &[] }, rest),
+    },
+    Task {
+        name: "measure",
+        arguments: "[REVISION] [STEP]..",
+        about: "Measure what tests, builds and checks cost in a fresh clone",
+        run: |rest| run(".ci/measure", &[], rest),
+    },
+    Task {
+        name: "ci",
+        arguments: "",
+        about: "Run everything that a change has to pass",
+        run: |rest| run(".ci/run", &[], rest),
+    },
+];
+
+fn main() -> ExitCode {
+    let mut arguments = std::env::args().skip(1);
+    let name = arguments.next();
+    let rest: Vec<String> = arguments.collect();
+    let Some(task) = TASKS.iter().find(|task| name.as_deref() == Some(task.name)) else {
+        println!("Usage: cargo xtask TASK\n");
+        for Task { name, arguments, about, .. } in &TASKS {
+            println!("  {:<30} {about}", format!("{name} {arguments}"));
+        }
+        // Asking for help is no mistake.
+        let asks = name.as_deref().is_none_or(|name| ["help", "-h", "--help"].contains(&name));
+        return if asks { ExitCode::SUCCESS } else { ExitCode::from(2) };
+    };
+    // Paths of tasks are those of the workspace, wherever they are called.
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("this crate is a folder of the workspace");
+    let outcome = std::env::set_current_dir(root).map_err(|e| format!("{}: {e}", root.display()));
+    match outcome.and_then(|()| (task.run)(&rest)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("error: {why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The lints of libraries and programs are all lints; tests may compare floats exactly, cast, and panic.
+fn lint() -> Outcome {
+    cargo(&["fmt", "--all", "--check"], &[])?;
+    let clippy = ["clippy", "--locked", "--workspace"];
+    let denied = ["--", "-D", "warnings"];
+    let allowed = ["-A", "clippy::float_cmp", "-A", "clippy::cast_possible_truncation"];
+    cargo(&[&clippy[..], &["--lib", "--bins"], &denied].concat(), &[])?;
+    let tests = ["--tests", "--examples"];
+    cargo(&[&clippy[..], &tests, &denied, &allowed, &["-A", "clippy::missing_panics_doc"]].concat(), &[])
+}
+
+fn docs() -> Outcome {
+    let mut command = Command::new("cargo");
+    command.args(["doc", "--locked", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings");
+    start(&mut command)
+}
+
+/// Runs cargo with arguments, and the rest of those of the task.
+fn cargo(arguments: &[&str], rest: &[String]) -> Outcome {
+    run("cargo", arguments, rest)
+}
+
+fn run(program: &str, arguments: &[&str], rest: &[String]) -> Outcome {
+    start(Command::new(program).args(arguments).args(rest))
+}
+
+/// Prints a command, runs it and waits for its end.
+fn start(command: &mut Command) -> Outcome {
+    let words: Vec<String> = [command.get_program()]
+        .into_iter()
+        .chain(command.get_args())
+        .map(|word| word.to_string_lossy().into_owned())
+        .collect();
+    let settings: Vec<String> = command
+        .get_envs()
+        .filter_map(|(name, value)| Some(format!("{}={:?} ", name.to_string_lossy(), value?)))
+        .collect();
+    let line = format!("{}{}", settings.concat(), words.join(" "));
+    println!("\n== {line}");
+    let status = command.status().map_err(|e| format!("{line}: cannot be started: {e}"))?;
+    if status.success() { Ok(()) } else { Err(format!("{line}: ended with {status}")) }
+}

@@ -1,0 +1,108 @@
+//! What the manifests promise to those who depend on p2m, checked.
+
+use crate::{Outcome, cargo};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// The features of the facade that stand alone.
+const FEATURES: [&str; 11] =
+    ["advisor", "bvh", "interception", "kdop", "kiddo", "mint", "mixed", "parry", "parry-f32", "rayon", "rstar"];
+
+/// Targets for which the library is checked where their standard library is installed: 32 bits, and another processor.
+const TARGETS: [&str; 3] = ["i686-unknown-linux-gnu", "aarch64-unknown-linux-gnu", "wasm32-unknown-unknown"];
+
+pub(crate) fn check() -> Outcome {
+    check_lock_files()?;
+    check_rust_version()?;
+    let library = ["check", "--locked", "--package", "p2m", "--no-default-features"];
+    cargo(&library, &[])?;
+    for feature in FEATURES {
+        cargo(&[&library[..], &["--features", feature]].concat(), &[])?;
+    }
+    cargo(&["check", "--locked", "--package", "p2m-mixed", "--features", "rstar"], &[])?;
+    check_targets()
+}
+
+/// Both lock files are those of their manifests.
+fn check_lock_files() -> Outcome {
+    for manifest in ["Cargo.toml", "fuzz/Cargo.toml"] {
+        output("cargo", &["metadata", "--locked", "--format-version", "1", "--manifest-path", manifest])?;
+    }
+    Ok(())
+}
+
+/// The promised Rust compiles all of the source, and no dependency needs a newer one.
+///
+/// Only a compiler of that version can tell what the source needs: lints know the versions of functions, but not those
+/// of the language.
+fn check_rust_version() -> Outcome {
+    let manifest = fs::read_to_string("Cargo.toml").map_err(|e| format!("Cargo.toml: {e}"))?;
+    let promised = manifest
+        .lines()
+        .find_map(|line| line.strip_prefix("rust-version = \"")?.strip_suffix('"'))
+        .ok_or("Cargo.toml promises no version of Rust")?;
+    let readme = fs::read_to_string("README.md").map_err(|e| format!("README.md: {e}"))?;
+    if !readme.contains(&format!("Rust ({promised} or newer)")) {
+        return Err(format!("README.md does not say that Rust {promised} is needed"));
+    }
+    let metadata = output("cargo", &["metadata", "--locked", "--format-version", "1"])?;
+    for needed in metadata.split("\"rust_version\":\"").skip(1).filter_map(|rest| rest.split('"').next()) {
+        if numbers(needed) > numbers(promised) {
+            return Err(format!("a dependency needs Rust {needed}, but {promised} is promised"));
+        }
+    }
+    // The compiler in use is the promised one, or rustup has the promised one.
+    let current = output("rustc", &["--version"])?;
+    let is_promised = |version: &str| version.split(' ').nth(1).is_some_and(|v| v.starts_with(&format!("{promised}.")));
+    if is_promised(&current) {
+        println!("Rust {promised} is promised, and compiles all of this");
+        return Ok(());
+    }
+    for toolchain in [format!("+{promised}"), format!("+{promised}.0")] {
+        if output("rustc", &[&toolchain, "--version"]).is_ok_and(|version| is_promised(&version)) {
+            return cargo(&[&toolchain, "check", "--locked", "--package", "p2m", "--package", "p2m-cli"], &[]);
+        }
+    }
+    Err(format!("Rust {promised} is promised, but is not installed, so nothing can check the promise"))
+}
+
+/// The numbers of a version.
+fn numbers(version: &str) -> Vec<u32> {
+    let mut numbers: Vec<u32> = version.split('.').map_while(|number| number.parse().ok()).collect();
+    numbers.resize(3, 0);
+    numbers
+}
+
+fn check_targets() -> Outcome {
+    let sysroot = output("rustc", &["--print", "sysroot"])?;
+    for target in TARGETS {
+        if Path::new(sysroot.trim()).join("lib/rustlib").join(target).join("lib").is_dir() {
+            cargo(&["check", "--locked", "--package", "p2m", "--target", target], &[])?;
+        } else {
+            println!("\n== skipped: the standard library of {target} is not installed (rustup target add {target})");
+        }
+    }
+    Ok(())
+}
+
+/// The standard output of a command that succeeds.
+fn output(program: &str, arguments: &[&str]) -> Result<String, String> {
+    let line = format!("{program} {}", arguments.join(" "));
+    let output = Command::new(program).args(arguments).output().map_err(|e| format!("{line}: {e}"))?;
+    if !output.status.success() {
+        return Err(format!("{line}: {}", String::from_utf8_lossy(&output.stderr).trim()));
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn versions_are_compared_by_their_numbers() {
+        assert!(numbers("1.95") > numbers("1.90.1") && numbers("1.9") < numbers("1.10"));
+        assert_eq!(numbers("1.95"), numbers("1.95.0"));
+    }
+}
