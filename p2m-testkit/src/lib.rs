@@ -5,7 +5,9 @@
 #![allow(clippy::missing_panics_doc, reason = "a test kit panics where a test should fail")]
 
 pub mod adversaries;
+pub mod asking;
 pub mod ball;
+pub mod compiled;
 pub mod contract;
 pub mod enclosure;
 pub mod extremes;
