@@ -37,27 +37,18 @@ pub(super) trait Walk<V: Volume> {
 /// Goes through a tree.
 #[inline(always)]
 pub(super) fn walk<I: InstructionSet, V: Volume, W: Walk<V>>(tree: &PacketTree<V>, walk: &mut W) {
-    let mut short = [[0u32; SHORT_STACK]; 2];
-    let mut long = Vec::new();
-    // One call with slices of either length, for the walk is compiled wherever it is called.
-    let [keys, parents]: [&mut [u32]; 2] = if tree.depth <= SHORT_DEPTH {
-        short.each_mut().map(|stack| &mut stack[..])
+    if tree.depth <= SHORT_DEPTH {
+        walk_with::<I, V, W, SHORT_STACK>(tree, walk);
     } else {
-        long.resize(2 * STACK, 0);
-        long.split_at_mut(STACK).into()
-    };
-    walk_with::<I, V, W>(tree, walk, keys, parents);
+        walk_with::<I, V, W, STACK>(tree, walk);
+    }
 }
 
-/// Goes through a tree. The stack has the keys of children in descending order, and the nodes whose children they are.
 #[inline(always)]
-fn walk_with<I: InstructionSet, V: Volume, W: Walk<V>>(
-    tree: &PacketTree<V>,
-    walk: &mut W,
-    keys: &mut [u32],
-    parents: &mut [u32],
-) {
-    let last = keys.len() - 1;
+fn walk_with<I: InstructionSet, V: Volume, W: Walk<V>, const STACK: usize>(tree: &PacketTree<V>, walk: &mut W) {
+    // Keys of children in descending order, and whose children they are.
+    let mut keys = [0u32; STACK];
+    let mut parents = [0u32; STACK];
     let mut top = 0;
     let mut at = tree.root;
     if at == Child::NONE {
@@ -83,8 +74,8 @@ fn walk_with<I: InstructionSet, V: Volume, W: Walk<V>>(
             parents[top..top + WIDTH].fill(at.0);
             // The nearest one and the next, whatever they are: a branch would be mispredicted. The keys behind the
             // last are 0, which is the first child.
-            tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(1).min(last)])]);
-            tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(2).min(last)])]);
+            tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(1).min(STACK - 1)])]);
+            tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(2).min(STACK - 1)])]);
             if count > 0 {
                 top += count - 1;
                 bound = number_of_key(keys[top]);
