@@ -39,12 +39,7 @@ const TASKS: [Task; 10] = [
         about: "Run all tests with all of their cases, and count these",
         run: deep::run,
     },
-    Task {
-        name: "lint",
-        arguments: "",
-        about: "Check the format and the lints of all code",
-        run: |_| lint(),
-    },
+    Task { name: "lint", arguments: "", about: "Check the format and the lints of all code", run: |_| lint() },
     Task {
         name: "docs",
         arguments: "",
