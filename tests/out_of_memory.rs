@@ -10,8 +10,8 @@ use p2m::{
     PrimitiveSet, Soup,
 };
 use p2m_testkit::adversaries::{ADVERSARIES, queries};
-use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};
-use p2m_testkit::{models, rng};
+use p2m_testkit::scenes::{self, Kinds, Layout, of_case};
+use p2m_testkit::{amount, cases, models, rng};
 use std::alloc::{GlobalAlloc, System};
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
@@ -142,22 +142,27 @@ fn all_backends(name: &str, soup: &Soup<f64>) {
 #[test]
 fn a_build_that_gets_what_it_says_it_may_need_needs_no_more() {
     let _turn = turn();
-    let random = &mut rng("out of memory", 0);
-    for kinds in KINDS {
-        for layout in LAYOUTS {
-            for count in [1, 30, 1_000] {
-                all_backends(&format!("{kinds:?} {layout:?} {count}"), &scenes::soup(random, kinds, layout, count));
-            }
-        }
+    for case in cases(72, 24) {
+        let (kinds, layout) = of_case(case);
+        let count = [1, 30, amount(1_000, 100)][((case + case / 24) % 3) as usize];
+        let soup = scenes::soup(&mut rng("out of memory", case), kinds, layout, count);
+        all_backends(&format!("case {case}: {kinds:?} {layout:?} {count}"), &soup);
     }
     for adversary in ADVERSARIES {
-        for count in [17, 1_000] {
+        let many = amount(1_000, 150);
+        for count in [17, many] {
             all_backends(&format!("{} {count}", adversary.name), &adversary.soup(count));
         }
-        let [taken, asked] = build_by_asking::<P2mIndex<f64, _>>(adversary.name, &adversary.soup(1_000), &long_lists());
+        let [taken, asked] = build_by_asking::<P2mIndex<f64, _>>(adversary.name, &adversary.soup(many), &long_lists());
         println!("{}: {taken} bytes were taken for long lists, {asked} asked for", adversary.name);
     }
-    // Large enough for several threads.
+}
+
+#[test]
+#[ignore = "deep: scenes are large enough for several threads"]
+fn a_large_build_that_gets_what_it_says_it_may_need_needs_no_more() {
+    let _turn = turn();
+    let random = &mut rng("out of memory, large", 0);
     all_backends("mixed", &scenes::soup(random, Kinds::Mixed, Layout::Uniform, 10_000));
     all_backends("skewed gear", &scenes::skewed_gear(1_000));
     let Some(folder) = models() else { return };

@@ -1,12 +1,14 @@
 //! Random scenes that are built, asked, moved, saved, loaded and dropped on all cores, for as long as one likes: nothing is lost, and
 //! memory stays flat.
 //!
-//! `P2M_SOAK=600 cargo test --release --test soak -- --nocapture` does it for ten minutes; by default it is a moment.
+//! `P2M_SOAK=600 cargo test --release --test soak -- --nocapture` does it for ten minutes. By default it is a moment, and three
+//! seconds with `P2M_DEEP`.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 
 use nalgebra::Point3;
 use p2m::saved::{SavedFile, Writer};
 use p2m::{AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopTree, OctreeIndex, P2mIndex, PrimitiveId, Soup};
+use p2m_testkit::amount;
 use p2m_testkit::extremes::Extreme;
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
 use peak_alloc::PeakAlloc;
@@ -18,8 +20,6 @@ use std::time::{Duration, Instant};
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Seconds, if nothing else is wanted.
-const USUAL: f64 = 3.0;
 /// Memory is looked at so often.
 const PARTS: usize = 10;
 
@@ -39,7 +39,7 @@ fn scene(rng: &mut impl Rng) -> (Soup<f64>, Vec<Point3<f64>>) {
         return Extreme::ALL[rng.random_range(0..Extreme::ALL.len())].generate(rng, 32);
     }
     let (kinds, layout) = (KINDS[rng.random_range(0..4)], LAYOUTS[rng.random_range(0..6)]);
-    let len = [0, 1, 100, 3000][rng.random_range(0..4)];
+    let len = [0, 1, 100, amount(3000, 200)][rng.random_range(0..4)];
     let soup = scenes::soup(rng, kinds, layout, len);
     let queries = (0..32).map(|_| scenes::query(rng, soup.positions())).collect();
     (soup, queries)
@@ -93,13 +93,14 @@ fn cycle(seed: u64) -> u64 {
 
 #[test]
 fn nothing_is_lost_and_memory_is_flat() {
-    let seconds: f64 = std::env::var("P2M_SOAK").map_or(USUAL, |s| s.parse().expect("seconds"));
+    let seconds: f64 = std::env::var("P2M_SOAK").map_or_else(|_| amount(3.0, 0.5), |s| s.parse().expect("seconds"));
     // Once before, so that what is allocated only once is there.
-    for seed in 0..50 {
+    let first = amount(50, 12);
+    for seed in 0..first {
         cycle(seed);
     }
     let before = MEMORY.current_usage();
-    let (scenes, answers) = (AtomicU64::new(50), AtomicU64::new(0));
+    let (scenes, answers) = (AtomicU64::new(first), AtomicU64::new(0));
     // The largest use of each part of the time, as each thread sees it between two scenes.
     let most: [AtomicUsize; PARTS] = Default::default();
     let start = Instant::now();
@@ -126,7 +127,7 @@ fn nothing_is_lost_and_memory_is_flat() {
     let most = most.map(AtomicUsize::into_inner);
     println!(
         "{} scenes, {} answers in {:.0?}; {before} bytes before, {after} after, at most {most:?} between two scenes",
-        scenes.into_inner() - 50,
+        scenes.into_inner() - first,
         answers.into_inner(),
         start.elapsed()
     );

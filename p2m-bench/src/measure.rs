@@ -264,7 +264,7 @@ mod tests {
     fn measured(elements: &[Element], check: impl FnOnce(&[Entry<'_>])) {
         let p = [[1.0, 0.0, 0.0], [2.0, 0.0, 1.0], [1.0, 3.0, 0.0], [5.0, 1.0, 2.0]].map(Point3::from).to_vec();
         let scene = Scene::new("test".into(), Soup::new(p, elements.iter().copied()).unwrap()).unwrap();
-        let effort = Effort { rounds: 2, queries: 300, builds: 2, seed: 1 };
+        let effort = Effort { rounds: 2, queries: p2m_testkit::amount(300, 60), builds: 2, seed: 1 };
         let mut entries = build_all(&scene, &backends::ALL.iter().collect::<Vec<_>>(), effort.builds);
         QuerySet::ALL.iter().for_each(|set| measure_set(&scene, *set, &mut entries, &effort));
         check(&entries);

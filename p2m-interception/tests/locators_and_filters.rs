@@ -5,8 +5,8 @@ use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Counting, Soup};
 use p2m_interception::{
     Hints, KdTreeLocator, ListFilter, Locator, LocatorSites, P2mIndexWith, P2mOptions, Region, RegionTree,
 };
-use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
-use p2m_testkit::{rng, vector};
+use p2m_testkit::scenes::{self, of_case};
+use p2m_testkit::{amount, cases, rng, vector};
 use std::sync::Mutex;
 
 /// One index of any locator and filter: each type of an index compiles every search anew.
@@ -120,49 +120,51 @@ fn packets(index: &Index<'_>, queries: &[Point3<f64>]) -> usize {
 #[test]
 fn every_filter_leaves_the_answer() {
     let (mut with_filter, mut all, mut fewer) = (0, 0, 0);
-    for (case, kinds) in KINDS.into_iter().enumerate() {
-        for layout in LAYOUTS {
-            let mut rng = rng("filters", case as u64);
-            let soup = scenes::soup(&mut rng, kinds, layout, 300);
-            let mut queries: Vec<_> =
-                (0..150).map(|i| Point3::from(vector(&mut rng) * [1.0, 4.0, 9.0][i % 3])).collect();
-            queries.extend(soup.positions().iter().take(50));
-            let expected = answers(&BruteForce::new(&soup).expect("valid"), &queries);
-            let filtered = |filter, above| built(&soup, LocatorKind::Hints, filter, above);
-            let trees = filtered(FilterKind::Tree, 0);
-            let [chosen, everything] = [FilterKind::OneByOne, FilterKind::All].map(|filter| filtered(filter, 0));
-            assert_eq!(answers(&trees, &queries), expected, "{kinds:?} {layout:?}");
-            assert_eq!(answers(&filtered(FilterKind::Tree, 30), &queries), expected, "{kinds:?} {layout:?}, long ones");
-            assert_eq!(answers(&everything, &queries), expected, "{kinds:?} {layout:?}, all");
-            // What lies on the border of a box is in it for both.
-            assert_eq!(packets(&trees, &queries), packets(&chosen, &queries), "{kinds:?} {layout:?}");
-            with_filter += trees.report().filtered;
-            all += packets(&everything, &queries);
-            fewer += packets(&trees, &queries);
-        }
+    let cases = cases(24, 24);
+    for case in cases.clone() {
+        let (mut rng, (kinds, layout)) = (rng("filters", case), of_case(case));
+        let soup = scenes::soup(&mut rng, kinds, layout, amount(300, 60));
+        let mut queries: Vec<_> =
+            (0..amount(150, 20)).map(|i| Point3::from(vector(&mut rng) * [1.0, 4.0, 9.0][i % 3])).collect();
+        queries.extend(soup.positions().iter().take(amount(50, 10)));
+        let expected = answers(&BruteForce::new(&soup).expect("valid"), &queries);
+        let filtered = |filter, above| built(&soup, LocatorKind::Hints, filter, above);
+        let trees = filtered(FilterKind::Tree, 0);
+        let [chosen, everything] = [FilterKind::OneByOne, FilterKind::All].map(|filter| filtered(filter, 0));
+        assert_eq!(answers(&trees, &queries), expected, "case {case}: {kinds:?} {layout:?}");
+        assert_eq!(
+            answers(&filtered(FilterKind::Tree, 30), &queries),
+            expected,
+            "case {case}: {kinds:?} {layout:?}, long ones"
+        );
+        assert_eq!(answers(&everything, &queries), expected, "case {case}: {kinds:?} {layout:?}, all");
+        // What lies on the border of a box is in it for both.
+        assert_eq!(packets(&trees, &queries), packets(&chosen, &queries), "case {case}: {kinds:?} {layout:?}");
+        with_filter += trees.report().filtered;
+        all += packets(&everything, &queries);
+        fewer += packets(&trees, &queries);
     }
-    assert!(with_filter > 5_000, "{with_filter}");
-    assert!(fewer * 3 < all * 2, "{fewer} of {all}");
+    assert!(cases.have_more_than(amount(208.0, 20.0), with_filter), "{with_filter}");
+    assert!(cases.is_replay() || fewer * 3 < all * 2, "{fewer} of {all}");
 }
 
 #[test]
 fn every_locator_leads_to_the_answer() {
     let mut lists = 0;
-    for (case, kinds) in KINDS.into_iter().enumerate() {
-        for layout in LAYOUTS {
-            let mut rng = rng("locators", case as u64);
-            let soup = scenes::soup(&mut rng, kinds, layout, 300);
-            let mut queries: Vec<_> =
-                (0..150).map(|i| Point3::from(vector(&mut rng) * [1.0, 20.0, 1e9][i % 3])).collect();
-            queries.extend(soup.positions().iter().take(50));
-            let expected = answers(&BruteForce::new(&soup).expect("valid"), &queries);
-            for locator in [LocatorKind::KdTree, LocatorKind::First, LocatorKind::Nothing] {
-                let index = built(&soup, locator, FilterKind::Tree, usize::MAX);
-                assert_eq!(index.report().filtered, 0);
-                lists += index.report().lists;
-                assert_eq!(answers(&index, &queries), expected, "{kinds:?} {layout:?}, {locator:?}");
-            }
+    let cases = cases(24, 24);
+    for case in cases.clone() {
+        let (mut rng, (kinds, layout)) = (rng("locators", case), of_case(case));
+        let soup = scenes::soup(&mut rng, kinds, layout, amount(300, 60));
+        let mut queries: Vec<_> =
+            (0..amount(150, 20)).map(|i| Point3::from(vector(&mut rng) * [1.0, 20.0, 1e9][i % 3])).collect();
+        queries.extend(soup.positions().iter().take(amount(50, 10)));
+        let expected = answers(&BruteForce::new(&soup).expect("valid"), &queries);
+        for locator in [LocatorKind::KdTree, LocatorKind::First, LocatorKind::Nothing] {
+            let index = built(&soup, locator, FilterKind::Tree, usize::MAX);
+            assert_eq!(index.report().filtered, 0);
+            lists += index.report().lists;
+            assert_eq!(answers(&index, &queries), expected, "case {case}: {kinds:?} {layout:?}, {locator:?}");
         }
     }
-    assert!(lists > 15_000, "{lists}");
+    assert!(cases.have_more_than(amount(625.0, 120.0), lists), "{lists}");
 }

@@ -195,15 +195,15 @@ mod tests {
     use super::*;
     use nalgebra::{Point3, Translation3, UnitQuaternion};
     use p2m_core::{Aabb, BuildIndex, Point, Primitive, PrimitiveSet, Soup};
-    use p2m_testkit::rng;
-    use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
+    use p2m_testkit::scenes::{self, KINDS, LAYOUTS, of_case};
+    use p2m_testkit::{cases, rng};
     use rand::RngExt;
 
     #[test]
     fn bounds_of_moved_heights_hold_and_are_those_themselves_without_movement() {
-        let mut rng = rng("moved heights", 0);
         let (from, to) = (Directions::<14>::default(), Directions::<18>::default());
-        for _ in 0..200 {
+        for case in cases(200, 60) {
+            let mut rng = rng("moved heights", case);
             let mut vector = || Vector3::from_fn(|_, _| rng.random_range(-3.0..3.0));
             let motion = Isometry3::new(vector(), vector());
             let points: Vec<_> = (0..5).map(|_| Point3::from(vector())).collect();
@@ -240,8 +240,9 @@ mod tests {
     fn flat_scenes_from_afar_meet_where_they_are_put() {
         let point = [Point::new(Point3::<f64>::origin())];
         let first = KdopTree::<f64, _, 14>::build(&point[..], &Default::default()).expect("valid");
-        let mut rng = rng("flat scenes from afar", 0);
-        for (round, far) in (0..600).map(|i| (i, [1e2, 1e4, 1e6, 1e9][i % 4])) {
+        for case in cases(600, 96) {
+            let (round, mut rng) = (case as usize, rng("flat scenes from afar", case));
+            let far = [1e2, 1e4, 1e6, 1e9][round % 4];
             let floor: Vec<_> = (0..40)
                 .map(|_| {
                     let mut p = Point3::from([(); 3].map(|()| far + rng.random_range(0.0..10.0)));
@@ -264,8 +265,8 @@ mod tests {
     /// The same without a movement, where sums of heights cancel, and with rotations that are none any more.
     #[test]
     fn turned_scenes_meet_where_they_are_put() {
-        let mut rng = rng("turned scenes", 0);
-        for round in 0..600 {
+        for case in cases(600, 96) {
+            let (round, mut rng) = (case as usize, rng("turned scenes", case));
             let mut vector = |size: f64| Vector3::from_fn(|_, _| rng.random_range(-size..size));
             let far = vector(1.0) * [1.0, 1e6, 1e12, 1e-310][round % 4];
             let scene: Vec<_> = (0..40).map(|_| Point::new(Point3::from(far + vector(1e-9 * far.amax())))).collect();
@@ -349,26 +350,24 @@ mod tests {
     /// Moved so that one point of a primitive lies on one of the other scene: that pair of leaves may meet.
     #[test]
     fn no_pair_that_touches_is_lost() {
-        let mut rng = rng("overlap", 0);
-        for round in 0..5 {
-            for kinds in KINDS {
-                for layout in LAYOUTS {
-                    let [a, b]: [Soup<f64>; 2] = [(); 2].map(|()| scenes::soup(&mut rng, kinds, layout, 150));
-                    let first = KdopTree::<f64, _, 14>::build(&a, &Default::default()).expect("valid");
-                    let second = KdopTree::<f64, _, 18>::build(&b, &Default::default()).expect("valid");
-                    let [i, j] = [a.len(), b.len()].map(|n| PrimitiveId::new(rng.random_range(0..n)));
-                    let [p, q] = [a.get(i).vertices()[0], b.get(j).vertices()[0]];
-                    let turn = Vector3::from_fn(|_, _| rng.random_range(-3.0..3.0)) * f64::from(round % 2);
-                    let turned = Isometry3::new(Vector3::zeros(), turn);
-                    let motion = Translation3::from(p - turned * q) * turned;
-                    let mut found = false;
-                    let _ = Overlap::new(&first, &second, &motion).visit(|of_a, of_b| {
-                        found |= of_a.contains(&i) && of_b.contains(&j);
-                        ControlFlow::Continue(())
-                    });
-                    assert!(found, "{kinds:?} {layout:?} round {round}");
-                }
-            }
+        for case in cases(120, 48) {
+            let (mut rng, (kinds, layout)) = (rng("overlap", case), of_case(case));
+            // Every other two dozen are turned as well.
+            let turned = if case / 24 % 2 == 1 { 1.0 } else { 0.0 };
+            let [a, b]: [Soup<f64>; 2] = [(); 2].map(|()| scenes::soup(&mut rng, kinds, layout, 150));
+            let first = KdopTree::<f64, _, 14>::build(&a, &Default::default()).expect("valid");
+            let second = KdopTree::<f64, _, 18>::build(&b, &Default::default()).expect("valid");
+            let [i, j] = [a.len(), b.len()].map(|n| PrimitiveId::new(rng.random_range(0..n)));
+            let [p, q] = [a.get(i).vertices()[0], b.get(j).vertices()[0]];
+            let turn = Vector3::from_fn(|_, _| rng.random_range(-3.0..3.0)) * turned;
+            let turned = Isometry3::new(Vector3::zeros(), turn);
+            let motion = Translation3::from(p - turned * q) * turned;
+            let mut found = false;
+            let _ = Overlap::new(&first, &second, &motion).visit(|of_a, of_b| {
+                found |= of_a.contains(&i) && of_b.contains(&j);
+                ControlFlow::Continue(())
+            });
+            assert!(found, "case {case}: {kinds:?} {layout:?}");
         }
     }
 

@@ -273,7 +273,8 @@ mod tests {
     #[test]
     fn bounds_hold_and_errors_are_those_of_rationals() {
         let (mut decided, mut total, mut told) = (0, 0, 0);
-        for seed in 0..60_000 {
+        let cases = crate::cases(60_000, 10_000);
+        for seed in cases.clone() {
             let mut rng = rng("enclosure", seed);
             let case = if seed % 5 == 0 { wild(&mut rng) } else { families::case(&mut rng) };
             let exact = Distance::new(case.query, &case.vertices);
@@ -304,6 +305,6 @@ mod tests {
             }
         }
         println!("{decided} of {total} decided without rational arithmetic, {told} comparisons");
-        assert!(decided > total / 2 && told > total, "{decided}, {told}, {total}");
+        assert!(cases.is_replay() || decided > total / 2 && told > total, "{decided}, {told}, {total}");
     }
 }

@@ -9,6 +9,7 @@ pub mod asking;
 pub mod ball;
 pub mod compiled;
 pub mod contract;
+pub mod depth;
 pub mod enclosure;
 pub mod extremes;
 pub mod families;
@@ -25,6 +26,7 @@ pub mod scenes;
 mod surface;
 pub mod truth;
 
+pub use depth::{Cases, amount, cases, depth, is_deep};
 use nalgebra::Vector3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -60,9 +62,30 @@ pub fn models() -> Option<std::path::PathBuf> {
     None
 }
 
+/// The most bytes of a model that tests look at where they are not deep.
+const SMALL: u64 = 700_000;
+
 /// The files of the models, smallest first; none, with a message, where there is no folder of them.
+///
+/// Only with `P2M_DEEP` are all of them there. Otherwise those of more than 700,000 bytes are left out, with a message.
 #[must_use]
 pub fn model_files() -> Vec<std::path::PathBuf> {
+    let size = |path: &std::path::PathBuf| std::fs::metadata(path).map_or(0, |m| m.len());
+    let mut files = all_model_files();
+    if !is_deep() {
+        let count = files.len();
+        files.retain(|path| size(path) <= SMALL);
+        if files.len() < count {
+            let left_out = count - files.len();
+            eprintln!("left out: {left_out} of {count} models, of more than {SMALL} bytes (P2M_DEEP=1 has them all)");
+        }
+    }
+    files
+}
+
+/// The files of all models, smallest first, at any depth; none, with a message, where there is no folder of them.
+#[must_use]
+pub fn all_model_files() -> Vec<std::path::PathBuf> {
     let Some(folder) = models() else { return Vec::new() };
     let mut files: Vec<_> = std::fs::read_dir(folder)
         .expect("the folder is there")

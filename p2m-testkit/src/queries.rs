@@ -1,6 +1,7 @@
 //! The query sets. All are drawn in f64 from a fixed seed, each set from a stream of its own, so that leaving one out
 //! changes no other.
 
+use crate::depth::Cases;
 use crate::surface::{SurfaceSampler, direction, normal};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{PrimitiveSet, Ray, Soup};
@@ -83,6 +84,15 @@ impl QuerySet {
                     .collect()
             }
         }
+    }
+
+    /// The queries with the numbers of these cases, of as many as there are with the last of them.
+    #[must_use]
+    pub fn of_cases(self, soup: &Soup<f64>, cases: &Cases, seed: u64) -> Vec<Point3<f64>> {
+        let numbers: Vec<usize> =
+            cases.clone().map(|case| usize::try_from(case).expect("so many fit memory")).collect();
+        let all = self.generate(soup, numbers.last().map_or(0, |last| last + 1), seed);
+        numbers.into_iter().filter_map(|number| all.get(number).copied()).collect()
     }
 
     /// Rays from these queries, their directions of length 1 and evenly distributed on the sphere.

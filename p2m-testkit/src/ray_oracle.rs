@@ -576,9 +576,9 @@ mod tests {
     #[test]
     fn fractions_round_as_the_processor_does() {
         let round = |n: f64, d: f64| (Ratio::from(n) / Ratio::from(d)).round();
-        let mut rng = crate::rng("fractions", 0);
-        for i in 0..20_000 {
+        for case in crate::cases(20_000, 5_000) {
             use rand::RngExt;
+            let (i, mut rng) = (case as usize, crate::rng("fractions", case));
             // Of few bits, so that ties are common, or of many; of all magnitudes.
             let bits = [3, 53][i % 2];
             let mut number = || {

@@ -100,18 +100,27 @@ pub fn scene(rng: &mut impl Rng, kinds: Kinds, layout: Layout, len: usize) -> (V
     (positions, elements)
 }
 
+/// The kinds and the layout of the scene of a case: any 24 cases in a row have every kind in every layout.
+#[must_use]
+#[allow(clippy::cast_possible_truncation, reason = "remainders are small")]
+pub fn of_case(case: u64) -> (Kinds, Layout) {
+    (KINDS[(case % 4) as usize], LAYOUTS[(case / 4 % 6) as usize])
+}
+
 /// Random scenes of every kind and layout, of sizes from none to several hundred, with their seeds.
+/// The larger ones are smaller where tests are not deep.
+#[track_caller]
 pub fn random_soups(name: &'static str) -> impl Iterator<Item = (u64, Soup<f64>)> {
-    (0..240).zip(0..).map(move |(seed, number): (u64, usize)| {
+    crate::cases(240, 24).map(move |seed| {
         let mut rng = crate::rng(name, seed);
-        let kinds = KINDS[number % 4];
-        let layout = LAYOUTS[number / 4 % 6];
-        let len = [0, 1, 2, 5, 30, 300, 700][rng.random_range(0..7)];
+        let (kinds, layout) = of_case(seed);
+        let len = [0, 1, 2, 5, 30, crate::amount(300, 60), crate::amount(700, 150)][rng.random_range(0..7)];
         (seed, soup(&mut rng, kinds, layout, len))
     })
 }
 
 /// The same scaled to both ends of the range of f64, with queries: those of which that leaves something finite.
+#[track_caller]
 pub fn extreme_soups(name: &'static str) -> impl Iterator<Item = (u64, Soup<f64>, Vec<Point3<f64>>)> {
     random_soups(name).filter_map(|(seed, soup)| {
         let e = [-1060, -1000, -600, -400, 400, 600, 1000, 1021][usize::try_from(seed).ok()? % 8];
@@ -122,11 +131,11 @@ pub fn extreme_soups(name: &'static str) -> impl Iterator<Item = (u64, Soup<f64>
     })
 }
 
-/// Sixty queries around a scene.
+/// Sixty queries around a scene, or eight where tests are not deep.
 #[must_use]
 pub fn queries(seed: u64, soup: &Soup<f64>) -> Vec<Point3<f64>> {
     let mut rng = crate::rng("queries", seed);
-    (0..60).map(|_| query(&mut rng, soup.positions())).collect()
+    (0..crate::amount(60, 8)).map(|_| query(&mut rng, soup.positions())).collect()
 }
 
 /// The point, to nearest.

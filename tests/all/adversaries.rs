@@ -12,10 +12,19 @@ use p2m::{
 };
 use p2m_testkit::adversaries::{ADVERSARIES, Adversary, queries};
 use p2m_testkit::ball::Ball;
+use p2m_testkit::{amount, is_deep};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-const COUNT: usize = 2_000;
-const QUERIES: usize = 40;
+/// Primitives of a scene.
+fn count() -> usize {
+    amount(2_000, 200)
+}
+
+/// Queries of a scene.
+fn asked() -> usize {
+    amount(40, 6)
+}
+
 /// Nodes on the way to a packet, however the scene is.
 const DEPTH: usize = 66;
 /// Bytes of a primitive in trees.
@@ -34,7 +43,7 @@ fn holds<I: ClosestPoint<f64> + Examine<f64>, V: Volume>(
     tree: &PacketTree<V>,
     soup: &Soup<f64>,
 ) {
-    let queries = queries(soup, QUERIES);
+    let queries = queries(soup, asked());
     let brute = BruteForce::new(soup).expect("valid");
     for ((q, found), expected) in queries.iter().zip(answers(index, &queries)).zip(answers(&brute, &queries)) {
         assert_eq!(found, expected, "{name} {q:?}");
@@ -44,7 +53,8 @@ fn holds<I: ClosestPoint<f64> + Examine<f64>, V: Volume>(
     assert!(visits.packets.most <= tree.packets().0, "{name}: {visits:?}");
     assert!(visits.primitives.most <= soup.len() + 1, "{name}: {visits:?}");
     assert!(tree.depth() <= DEPTH, "{name}: {}", tree.depth());
-    assert!(tree.memory() <= TREE * soup.len().max(64), "{name}: {} bytes of tree", tree.memory());
+    // Small trees have nodes that are almost empty.
+    assert!(tree.memory() <= TREE * soup.len().max(amount(64, 320)), "{name}: {} bytes of tree", tree.memory());
 }
 
 fn splits() -> AabbOptions {
@@ -62,13 +72,14 @@ fn every_backend_answers_within_its_bounds() {
 
 fn every_backend(adversary: &Adversary) {
     let name = adversary.name;
-    let soup = &adversary.soup(COUNT);
+    let soup = &adversary.soup(count());
     let aabb = AabbTree::build(soup, &splits()).expect("valid");
     holds(&format!("{name}, aabb"), &aabb, aabb.tree(), soup);
     let kdop = KdopTree::<f64, _, 14>::build(soup, &KdopOptions::default().with_splits(splits())).expect("valid");
     holds(&format!("{name}, kdop"), &kdop, kdop.tree(), soup);
 
     let options = OctreeOptions::default();
+    let options = options.with_work(options.work * amount(1.0, 0.04));
     let octree = OctreeIndex::build(soup, &options).expect("valid");
     holds(&format!("{name}, octree"), &octree, octree.partition().tree(), soup);
     let report = octree.report();
@@ -85,10 +96,11 @@ fn every_backend(adversary: &Adversary) {
     // A vertex that several packets have counts several times.
     let vertices: usize = (0..soup.len()).map(|i| p2m::Primitive::vertices(&soup.get(PrimitiveId::new(i))).len()).sum();
     assert!(sites <= 6 + 3 * vertices / 2 + soup.len(), "{name}: {report}");
-    assert!(report.bytes as f64 <= options.memory * COUNT as f64 + (SITE * sites) as f64, "{name}: {report}");
+    assert!(report.bytes as f64 <= options.memory * count() as f64 + (SITE * sites) as f64, "{name}: {report}");
     assert!(report.entries <= options.longest * report.lists, "{name}: {report}");
     assert!(p2m.list_lengths().into_iter().all(|len| len <= options.longest * 16), "{name}");
-    if ["skew points", "skew wires", "helices", "moment curve"].contains(&name) {
+    // Fewer primitives are not too much for it.
+    if is_deep() && ["skew points", "skew wires", "helices", "moment curve"].contains(&name) {
         assert!(report.lists == 0 && report.bytes == 0, "{name}: {report}");
     }
 }
@@ -118,19 +130,20 @@ fn quadratic_tetrahedra_are_given_up() {
 
 #[test]
 fn cells_of_vertices_that_take_too_much_are_left_to_the_tree() {
-    let soup = &Adversary::named("grid").soup(COUNT);
+    let soup = &Adversary::named("grid").soup(count());
     let built = |options: &P2mOptions| P2mIndex::build(soup, options).expect("valid");
     let usual = built(&P2mOptions::default());
-    assert_eq!((usual.report().lists, usual.report().trees), (COUNT, 0));
-    let queries = queries(soup, QUERIES);
+    assert_eq!((usual.report().lists, usual.report().trees), (count(), 0));
+    let queries = queries(soup, asked());
     for (memory, work) in
         [(100.0, 1e5), (1.0, 1e5), (1e5, 100.0), (0.0, 1e5), (1e5, -1.0), (f64::NAN, 1e5), (1e5, f64::NAN)]
     {
         for parallel in [false, true] {
-            let options = P2mOptions::default().with_memory(memory).with_work(work);
+            let part = amount(1.0, 0.1);
+            let options = P2mOptions::default().with_memory(memory * part).with_work(work * part);
             let index = built(&options.with_splits(splits().with_parallel(parallel)));
             let report = index.report();
-            assert!(report.lists == 0 && report.bytes == 0 && report.trees >= COUNT, "{memory} {work}: {report}");
+            assert!(report.lists == 0 && report.bytes == 0 && report.trees >= count(), "{memory} {work}: {report}");
             assert_eq!(answers(&index, &queries), answers(&usual, &queries));
         }
     }
@@ -161,14 +174,15 @@ impl PrimitiveSet<f64> for Counted<'_> {
 
 /// Where everything is as near, a search for one corner of a cell looks at the whole scene: that counts as work.
 #[test]
+#[ignore = "deep: the least budget of an octree is millions of searches for corners"]
 fn corners_of_cubes_that_take_the_whole_scene_are_few() {
     let balls = vec![Ball { centre: Point3::new(0.1, 0.2, 0.3), radius: 0.5 }; 8_000];
     let set = Counted { balls: &balls, asked: AtomicUsize::new(0) };
-    let index = OctreeIndex::build(&set, &OctreeOptions::default()).expect("valid");
+    let options = OctreeOptions::default();
+    let index = OctreeIndex::build(&set, &options).expect("valid");
     let asked = set.asked.load(Relaxed);
     println!("{asked} times; {}", index.report());
     // The budget, as often as it may be spent, and the tree and its last searches.
-    let options = OctreeOptions::default();
     assert!((asked as f64) < 7.0 * options.work * 10_000.0, "{asked}");
 }
 

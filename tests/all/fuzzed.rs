@@ -1,7 +1,7 @@
 //! What fuzz targets check, on their seeds and on what once failed (`fuzz/crashes`), without a nightly compiler.
 //!
 //! `P2M_FUZZED=fuzz/corpus cargo test --test all fuzzed::` adds a folder with a folder for each target, such as fuzzing leaves.
-//! `P2M_SEED=1 cargo test --test all fuzzed::seeds_are` writes the seeds of scenes and saved indexes anew.
+//! `P2M_BLESS=1 cargo test --test all fuzzed::seeds_are` writes the seeds of scenes and saved indexes anew.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 
 #[allow(unreachable_pub, reason = "a crate of its own")]
@@ -150,7 +150,7 @@ fn seeds_are_those_that_are_made_here() {
     let head = b"\x89P2M\r\n\x1a\n\x01\0\0\0\x04\0\0\0";
     made.push(("saved/made-up".into(), [&[2, 0, 0][..], head, &[0; 400]].concat()));
     made.push(("saved/nothing".into(), vec![0, 3, 0]));
-    let is_wanted = std::env::var_os("P2M_SEED").is_some();
+    let is_wanted = std::env::var_os("P2M_BLESS").is_some();
     for (name, bytes) in made {
         let path = folder("seeds").join(&name);
         if is_wanted {

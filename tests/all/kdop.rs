@@ -11,8 +11,8 @@ use p2m::{
 };
 use p2m_testkit::left_first::LeftFirst;
 use p2m_testkit::queries::QuerySet;
-use p2m_testkit::rng;
-use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
+use p2m_testkit::scenes::{self, KINDS, LAYOUTS, of_case};
+use p2m_testkit::{amount, cases, rng};
 use rand::RngExt;
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -42,64 +42,55 @@ where
 
 #[test]
 fn every_instruction_set_refitted_and_boxes_agree_with_brute_force() {
-    let mut rng = rng("kdop", 0);
-    for kinds in KINDS {
-        for layout in LAYOUTS {
-            let soup = scenes::soup(&mut rng, kinds, layout, 300);
-            let turn = Rotation3::new(Vector3::new(0.2, 0.4, 0.7));
-            let moved: Vec<_> = soup.positions().iter().map(|p| turn * p * 3.0).collect();
-            let moved = Soup::new(moved, soup.elements()).expect("finite");
-            for isa in Isa::available() {
-                let mut tree = built::<14>(&soup).with_isa(isa);
-                for (scene, refit) in [(&soup, false), (&moved, true)] {
-                    if refit {
-                        tree.refit(scene, &KdopOptions::default()).expect("as many");
-                    }
-                    let brute = BruteForce::new(scene).expect("valid");
-                    for _ in 0..40 {
-                        let q = scenes::query(&mut rng, scene.positions());
-                        let [found, expected] = [tree.closest_point(&q), brute.closest_point(&q)]
-                            .map(|c| c.map(|c| (c.distance, c.primitive, c.feature, c.point)));
-                        assert_eq!(found, expected, "{isa} {kinds:?} {layout:?} {q}");
-                        let leaf = tree.closest_leaf(&q).expect("not empty");
-                        assert!(
-                            leaf.distance >= expected.expect("one").0 && leaf.lower_bound <= expected.expect("one").0
-                        );
-                        let half = Vector3::from_fn(|_, _| rng.random_range(0.0..0.2))
-                            * (scene.aabb().max - scene.aabb().min).norm();
-                        let bounds = Aabb { min: q - half, max: q + half };
-                        let (mut found, mut expected) = (Vec::new(), Vec::new());
-                        tree.primitives_in_box_into(&bounds, &mut found);
-                        brute.primitives_in_box_into(&bounds, &mut expected);
-                        assert_eq!(found, expected, "{isa} {kinds:?} {layout:?} {bounds:?}");
-                    }
+    for case in cases(24, 24) {
+        let (mut rng, (kinds, layout)) = (rng("kdop", case), of_case(case));
+        let soup = scenes::soup(&mut rng, kinds, layout, amount(300, 80));
+        let turn = Rotation3::new(Vector3::new(0.2, 0.4, 0.7));
+        let moved: Vec<_> = soup.positions().iter().map(|p| turn * p * 3.0).collect();
+        let moved = Soup::new(moved, soup.elements()).expect("finite");
+        let tree = built::<14>(&soup);
+        for isa in Isa::available() {
+            let mut tree = tree.clone().with_isa(isa);
+            for (scene, refit) in [(&soup, false), (&moved, true)] {
+                if refit {
+                    tree.refit(scene, &KdopOptions::default()).expect("as many");
+                }
+                let brute = BruteForce::new(scene).expect("valid");
+                for _ in 0..amount(40, 5) {
+                    let q = scenes::query(&mut rng, scene.positions());
+                    let [found, expected] = [tree.closest_point(&q), brute.closest_point(&q)]
+                        .map(|c| c.map(|c| (c.distance, c.primitive, c.feature, c.point)));
+                    assert_eq!(found, expected, "case {case}: {isa} {kinds:?} {layout:?} {q}");
+                    let leaf = tree.closest_leaf(&q).expect("not empty");
+                    assert!(leaf.distance >= expected.expect("one").0 && leaf.lower_bound <= expected.expect("one").0);
+                    let half = Vector3::from_fn(|_, _| rng.random_range(0.0..0.2))
+                        * (scene.aabb().max - scene.aabb().min).norm();
+                    let bounds = Aabb { min: q - half, max: q + half };
+                    let (mut found, mut expected) = (Vec::new(), Vec::new());
+                    tree.primitives_in_box_into(&bounds, &mut found);
+                    brute.primitives_in_box_into(&bounds, &mut expected);
+                    assert_eq!(found, expected, "case {case}: {isa} {kinds:?} {layout:?} {bounds:?}");
                 }
             }
         }
     }
+    let mut rng = rng("kdop", u64::MAX);
     let few = scenes::soup(&mut rng, KINDS[0], LAYOUTS[0], 20);
     let other = scenes::soup(&mut rng, KINDS[0], LAYOUTS[0], 30);
     let error = built::<18>(&few).refit(&other, &KdopOptions::default());
     assert_eq!(error, Err(BuildError::OtherLength { len: other.len(), expected: few.len() }));
 }
 
-/// Nodes and packets of boxes, and of 6, 14, 18 and 26 faces.
-fn work_of_all(soup: &Soup<f64>, queries: &[Point3<f64>]) -> ([usize; 2], [[usize; 2]; 4]) {
-    let boxes = work(&AabbTree::build(soup, &Default::default()).expect("valid"), queries);
-    let rows = [
-        work(&built::<6>(soup), queries),
-        work(&built::<14>(soup), queries),
-        work(&built::<18>(soup), queries),
-        work(&built::<26>(soup), queries),
-    ];
-    (boxes, rows)
-}
-
 /// More faces, fewer nodes and packets; and all of them fewer than boxes. `most` is what the nodes of 14, 18 and 26
 /// faces are at most of those of 6, in percent, for queries in the box.
 fn falls(soup: &Soup<f64>, most: [usize; 3]) {
+    let boxes = AabbTree::build(soup, &Default::default()).expect("valid");
+    let trees = (built::<6>(soup), built::<14>(soup), built::<18>(soup), built::<26>(soup));
     for set in [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface] {
-        let (boxes, rows) = work_of_all(soup, &set.generate(soup, 2000, 1));
+        let queries = set.generate(soup, amount(2000, 200), 1);
+        let boxes = work(&boxes, &queries);
+        let rows =
+            [work(&trees.0, &queries), work(&trees.1, &queries), work(&trees.2, &queries), work(&trees.3, &queries)];
         println!("{set}: boxes {boxes:?}, k-DOPs {rows:?} nodes and packets");
         // The six-DOP of the axes is the box.
         let [six, fourteen, eighteen, all] = rows;
@@ -124,7 +115,7 @@ fn falls(soup: &Soup<f64>, most: [usize; 3]) {
 
 #[test]
 fn visits_fall_with_the_number_of_faces_on_a_turned_gear() {
-    falls(&scenes::skewed_gear(2000), [70, 66, 58]);
+    falls(&scenes::skewed_gear(amount(2000, 600)), amount([70, 66, 58], [74, 70, 64]));
     if let Some(soup) = model("gear_skewed_57k_rotated.ply") {
         falls(&soup, [65, 66, 53]);
     }
@@ -133,12 +124,12 @@ fn visits_fall_with_the_number_of_faces_on_a_turned_gear() {
 /// Nearest first, with the bound of two half-spaces and over nodes of eight, against the manual's way.
 #[test]
 fn far_fewer_nodes_are_visited_than_from_left_to_right() {
-    let mut all = vec![("a skewed gear", scenes::skewed_gear(2000))];
+    let mut all = vec![("a skewed gear", scenes::skewed_gear(amount(2000, 600)))];
     for name in ["dragon_100k.obj", "gear_skewed_57k_rotated.ply"] {
         all.extend(model(name).map(|soup| (name, soup)));
     }
     for (name, soup) in all {
-        let queries = QuerySet::Box1.generate(&soup, 500, 1);
+        let queries = QuerySet::Box1.generate(&soup, amount(500, 60), 1);
         let tree = built::<14>(&soup);
         let [nodes, packets] = work(&tree, &queries);
         let left_first = LeftFirst::of_packets(tree.tree());
@@ -153,7 +144,7 @@ fn far_fewer_nodes_are_visited_than_from_left_to_right() {
             sums[0], sums[1]
         );
         // The nodes of left first are binary and include the leaves.
-        assert!(sums[0] >= 4 * (nodes + packets), "{name}: {} of {nodes} and {packets}", sums[0]);
+        assert!(sums[0] * 10 >= amount(40, 33) * (nodes + packets), "{name}: {} of {nodes} and {packets}", sums[0]);
         assert!(sums[1] > packets, "{name}");
     }
 }
@@ -176,9 +167,9 @@ fn fewer_primitives_are_asked_by_box_queries_with_more_faces() {
         }
         asked.get()
     }
-    let soup = scenes::skewed_gear(500);
+    let soup = scenes::skewed_gear(amount(500, 300));
     let half = Vector3::repeat(0.03);
-    let queries = QuerySet::Near.generate(&soup, 300, 1);
+    let queries = QuerySet::Near.generate(&soup, amount(300, 50), 1);
     let boxes: Vec<_> = queries.iter().map(|q| Aabb { min: q - half, max: q + half }).collect();
     let counts = [asked::<6>(&soup, &boxes), asked::<14>(&soup, &boxes), asked::<26>(&soup, &boxes)];
     println!("{counts:?} primitives asked");

@@ -9,21 +9,26 @@ use p2m::{
     AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopOptions, KdopTree, OctreeIndex, P2mIndex, PrimitiveSet, Real,
     Soup,
 };
-use p2m_testkit::model_files;
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::scenes::narrow;
+use p2m_testkit::{amount, depth, model_files};
 
 /// Queries of a set. All indexes are asked all of them.
-const QUERIES: usize = 200;
+fn queries() -> usize {
+    amount(200, 12)
+}
+
 /// Brute force is asked all of them where there are at most so many primitives, and every eighth where there are more: it would take
 /// most of the time of all tests.
 const MANY: usize = 20_000;
 /// Larger models have the trees in f64 alone: the other indexes would take half of the time that is left.
-const TOO_MANY: usize = 300_000;
+fn too_many() -> usize {
+    amount(300_000, 5_000)
+}
 
-/// `P2M_MODELS=all cargo test --release --test all models::` leaves nothing out.
+/// `P2M_DEEP=2 cargo test --profile deep --test all models:: -- --include-ignored` leaves nothing out.
 fn is_in_full() -> bool {
-    std::env::var_os("P2M_MODELS").is_some_and(|what| what == "all")
+    depth() > 1
 }
 
 /// Distance bits and primitive of each answer, computed by two threads.
@@ -74,7 +79,7 @@ struct Trees<'a, T: Real>(
 
 impl<'a, T: Real> Trees<'a, T> {
     fn build(soup: &'a Soup<T>, choice: &Choice) -> Self {
-        let is_small = soup.len() <= TOO_MANY || is_in_full();
+        let is_small = soup.len() <= too_many() || is_in_full();
         let own = KdopOptions::new(choice.frame_directions::<26>().expect("thirteen"));
         Self(
             AabbTree::build(soup, &Default::default()).expect("valid"),
@@ -93,9 +98,13 @@ fn trees_agree_with_brute_force_on_every_model_in_f64() {
     for path in model_files() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
         let soup = p2m::scene::read_scene(&path).expect("readable").soup;
+        if soup.len() > amount(usize::MAX, 10_000) {
+            println!("{name}: left out");
+            continue;
+        }
         let trees = Trees::build(&soup, &Choice::from_scene(&soup).expect("valid"));
         for set in QuerySet::ALL {
-            let queries = set.generate(&soup, QUERIES, 1);
+            let queries = set.generate(&soup, queries(), 1);
             confirmed += agrees(&name, set, &soup, &trees, &queries);
             count += queries.len();
         }
@@ -109,7 +118,7 @@ fn trees_agree_with_brute_force_on_every_model_in_f32() {
     for path in model_files() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
         let wide = p2m::scene::read_scene(&path).expect("readable").soup;
-        if wide.len() > TOO_MANY && !is_in_full() {
+        if wide.len() > too_many() && !is_in_full() {
             println!("{name}: left out");
             continue;
         }
@@ -117,7 +126,7 @@ fn trees_agree_with_brute_force_on_every_model_in_f32() {
         let trees = Trees::build(&soup, &Choice::from_scene(&wide).expect("valid"));
         for set in QuerySet::ALL {
             // A quarter of the queries: the scalar changes the boxes, not the kernel.
-            let queries: Vec<_> = set.generate(&wide, QUERIES / 4, 2).iter().map(|q| q.map(f32::of_f64)).collect();
+            let queries: Vec<_> = set.generate(&wide, queries() / 4, 2).iter().map(|q| q.map(f32::of_f64)).collect();
             agrees(&name, set, &soup, &trees, &queries);
         }
     }

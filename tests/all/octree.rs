@@ -9,8 +9,8 @@ use p2m::{
     Aabb, BruteForce, BuildIndex, ClosestPoint, Domain, Isa, OctreeIndex, OctreeOptions, Point, PrimitiveId,
     PrimitiveSet, Projection, Segment, Shape, Soup,
 };
-use p2m_testkit::rng;
-use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};
+use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout, of_case};
+use p2m_testkit::{amount, cases, rng};
 use rand::{Rng, RngExt};
 use std::sync::Mutex;
 
@@ -36,36 +36,35 @@ fn query(rng: &mut impl Rng, soup: &Soup<f64>) -> Point3<f64> {
 
 #[test]
 fn domains_change_the_work_and_never_the_answer() {
-    let mut rng = rng("octree domains", 0);
-    for kinds in KINDS {
-        for layout in LAYOUTS {
-            let soup = scenes::soup(&mut rng, kinds, layout, 600);
-            let bounds = soup.aabb();
-            let half = (bounds.max - bounds.min) * 0.2;
-            let away = bounds.max + half;
-            let domains = [
-                Domain::Everywhere,
-                Domain::Box(Aabb { min: bounds.min + half, max: bounds.max - half }),
-                Domain::Box(Aabb { min: away, max: away + half }),
-                Domain::Band(half.max() * 0.1),
-                // Of no use, and no harm.
-                Domain::Box(Aabb::empty()),
-                Domain::Box(Aabb { min: [f64::NAN; 3].into(), max: away }),
-                Domain::Box(Aabb { min: [-f64::MAX; 3].into(), max: [f64::MAX; 3].into() }),
-                Domain::Box(Aabb { min: away, max: away }),
-                Domain::Band(-1.0),
-                Domain::Band(f64::NAN),
-                Domain::Band(f64::INFINITY),
-            ];
-            let brute = BruteForce::new(&soup).expect("valid");
-            let queries: Vec<_> = (0..60).map(|_| query(&mut rng, &soup)).collect();
-            for domain in domains {
-                let index = built(&soup, &OctreeOptions::default().with_domain(domain));
-                for q in &queries {
-                    let key = |c: p2m::Closest<f64>| (c.distance.to_bits(), c.primitive);
-                    let (found, expected) = (index.closest_point(q).map(key), brute.closest_point(q).map(key));
-                    assert_eq!(found, expected, "{kinds:?} {layout:?} {domain:?} {q}");
-                }
+    for case in cases(24, 24) {
+        let (mut rng, (kinds, layout)) = (rng("octree domains", case), of_case(case));
+        let soup = scenes::soup(&mut rng, kinds, layout, amount(600, 80));
+        let bounds = soup.aabb();
+        let half = (bounds.max - bounds.min) * 0.2;
+        let away = bounds.max + half;
+        let domains = [
+            Domain::Everywhere,
+            Domain::Box(Aabb { min: bounds.min + half, max: bounds.max - half }),
+            Domain::Box(Aabb { min: away, max: away + half }),
+            Domain::Band(half.max() * 0.1),
+            // Of no use, and no harm.
+            Domain::Box(Aabb::empty()),
+            Domain::Box(Aabb { min: [f64::NAN; 3].into(), max: away }),
+            Domain::Box(Aabb { min: [-f64::MAX; 3].into(), max: [f64::MAX; 3].into() }),
+            Domain::Box(Aabb { min: away, max: away }),
+            Domain::Band(-1.0),
+            Domain::Band(f64::NAN),
+            Domain::Band(f64::INFINITY),
+        ];
+        let brute = BruteForce::new(&soup).expect("valid");
+        let queries: Vec<_> = (0..amount(60, 8)).map(|_| query(&mut rng, &soup)).collect();
+        let key = |c: p2m::Closest<f64>| (c.distance.to_bits(), c.primitive);
+        let expected: Vec<_> = queries.iter().map(|q| brute.closest_point(q).map(key)).collect();
+        for domain in domains {
+            let index = built(&soup, &OctreeOptions::default().with_domain(domain));
+            for (q, expected) in queries.iter().zip(&expected) {
+                let found = index.closest_point(q).map(key);
+                assert_eq!(found, *expected, "case {case}: {kinds:?} {layout:?} {domain:?} {q}");
             }
         }
     }
@@ -73,7 +72,7 @@ fn domains_change_the_work_and_never_the_answer() {
 
 #[test]
 fn what_is_not_asked_for_is_not_made() {
-    let soup = sheet(20_000);
+    let soup = sheet(amount(20_000, 5_000));
     let bounds = soup.aabb();
     let bytes = |domain| built(&soup, &OctreeOptions::default().with_domain(domain)).report();
     let all = bytes(Domain::Everywhere);
@@ -91,17 +90,18 @@ fn what_is_not_asked_for_is_not_made() {
 
 #[test]
 fn budgets_are_kept() {
-    let soup = sheet(20_000);
-    let count = soup.len() as f64;
+    let soup = sheet(amount(20_000, 3_000));
+    // The least budget is that of ten thousand primitives.
+    let count = soup.len().max(10_000) as f64;
     let usual = built(&soup, &OctreeOptions::default()).report();
-    assert!(usual.bytes as f64 <= OctreeOptions::default().memory * count && usual.lists > 1000, "{usual}");
-    for memory in [60.0, 10.0, 0.001, 0.0, -1.0, f64::NAN] {
+    assert!(usual.bytes as f64 <= OctreeOptions::default().memory * count && usual.lists > soup.len() / 20, "{usual}");
+    for memory in [amount(60.0, 20.0), 10.0, 0.001, 0.0, -1.0, f64::NAN] {
         let report = built(&soup, &OctreeOptions::default().with_memory(memory)).report();
         println!("{memory} bytes: {report}");
         assert!(report.bytes as f64 <= memory.max(0.0) * count, "{memory}: {report}");
         assert!(report.resolution < usual.resolution);
     }
-    for work in [20.0, 2.0, 0.0] {
+    for work in [amount(20.0, 5.0), 2.0, 0.0] {
         let report = built(&soup, &OctreeOptions::default().with_work(work)).report();
         assert!(report.work as f64 <= work * count && report.bytes < usual.bytes, "{work}: {report}");
     }
@@ -111,9 +111,9 @@ fn budgets_are_kept() {
 
 #[test]
 fn cells_do_not_depend_on_the_number_of_threads() {
-    let soup = sheet(5_000);
+    let soup = sheet(amount(5_000, 2_000));
     let mut rng = rng("octree threads", 0);
-    let places: Vec<_> = (0..2000).map(|_| query(&mut rng, &soup)).collect();
+    let places: Vec<_> = (0..amount(2000, 400)).map(|_| query(&mut rng, &soup)).collect();
     let cells = |parallel| {
         let splits = p2m::backend::hierarchy::SplitOptions::default().with_parallel(parallel);
         let index = built(&soup, &OctreeOptions::default().with_splits(splits));
@@ -124,20 +124,21 @@ fn cells_do_not_depend_on_the_number_of_threads() {
     for _ in 0..3 {
         assert!(cells(true) == expected);
     }
-    assert!(expected.1.iter().flatten().count() > 1000);
+    assert!(expected.1.iter().flatten().count() > places.len() / 2);
 }
 
 #[test]
 fn every_instruction_set_answers_the_same() {
     let mut rng = rng("octree instruction sets", 0);
     for kinds in KINDS {
-        let soup = scenes::soup(&mut rng, kinds, LAYOUTS[0], 2_000);
-        let queries: Vec<_> = (0..300).map(|_| query(&mut rng, &soup)).collect();
+        let soup = scenes::soup(&mut rng, kinds, LAYOUTS[0], amount(2_000, 200));
+        let queries: Vec<_> = (0..amount(300, 60)).map(|_| query(&mut rng, &soup)).collect();
         let brute = BruteForce::new(&soup).expect("valid");
         let expected: Vec<_> =
             queries.iter().map(|q| brute.closest_point(q).map(|c| (c.distance, c.primitive))).collect();
+        let mut index = built(&soup, &OctreeOptions::default());
         for isa in Isa::available() {
-            let index = built(&soup, &OctreeOptions::default()).with_isa(isa);
+            index = index.with_isa(isa);
             let found: Vec<_> =
                 queries.iter().map(|q| index.closest_point(q).map(|c| (c.distance, c.primitive))).collect();
             assert!(found == expected, "{isa} {kinds:?}");
@@ -147,14 +148,14 @@ fn every_instruction_set_answers_the_same() {
 
 #[test]
 fn progress_goes_from_nothing_to_all() {
-    let soup = sheet(5_000);
+    let soup = sheet(amount(5_000, 2_000));
     for memory in [1e4, 20.0] {
         let parts = Mutex::new(Vec::new());
         let options = OctreeOptions::default().with_memory(memory);
         let index = OctreeIndex::build_with_progress(&soup, &options, &|progress| {
             parts.lock().expect("whole").push(progress.part);
         });
-        assert_eq!(index.expect("valid").set().len(), 5_000);
+        assert_eq!(index.expect("valid").set().len(), soup.len());
         let mut parts = parts.into_inner().expect("whole");
         assert!(parts.iter().all(|part| (0.0..=1.0).contains(part)) && parts.last() == Some(&1.0));
         assert!(parts.len() > 20, "{parts:?}");
@@ -205,12 +206,14 @@ fn other_collectors_get_all_that_they_want() {
 /// Lost bounds, lost lists or coarser cells would show here first.
 #[test]
 fn lookups_do_little() {
-    let soup = sheet(20_000);
+    let soup = sheet(amount(20_000, 4_000));
     let index = built(&soup, &OctreeOptions::default());
     let mut rng = rng("octree counters", 0);
     let bounds = soup.aabb();
     let size = bounds.max - bounds.min;
-    for (name, reach, most) in [("around", 0.52, [10, 3_400, 1_350]), ("far", 4.9, [250, 2_100, 1_100])] {
+    for (name, reach, most) in
+        [("around", 0.52, [10, 3_400, 1_350]), ("far", 4.9, amount([250, 2_100, 1_100], [100, 2_400, 1_050]))]
+    {
         let centre = nalgebra::center(&bounds.min, &bounds.max);
         let mut place = || centre + Vector3::from_fn(|k, _| rng.random_range(-reach..reach) * size[k]);
         let queries: Vec<_> = (0..1000).map(|_| place()).collect();
@@ -266,12 +269,14 @@ fn budgets_without_end_are_those_that_suffice() {
 
 #[test]
 fn any_resolution_ends() {
-    let soup = sheet(1_200);
-    for resolution in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1e9, 10.0, 1e-9] {
-        for memory in [0.0, 2.0, 190.0] {
-            let options = OctreeOptions::default().with_resolution(resolution).with_memory(memory);
-            let report = built(&soup, &options).report();
-            let usual = built(&soup, &OctreeOptions::default().with_memory(memory)).report();
+    let soup = sheet(amount(1_200, 100));
+    let all = [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1e9, 10.0, 1e-9];
+    for resolution in all.into_iter().skip(amount(0, 2)).step_by(amount(1, 5)) {
+        for memory in [0.0, 2.0, 190.0].into_iter().skip(amount(0, 2)) {
+            let options = OctreeOptions::default();
+            let options = options.with_memory(memory);
+            let report = built(&soup, &options.with_resolution(resolution)).report();
+            let usual = built(&soup, &options).report();
             // Who asks for more has no less.
             assert!(
                 resolution.is_nan() || resolution <= 1.0 || report.bytes >= usual.bytes,

@@ -11,8 +11,8 @@ use p2m::{
     Segment, Shape, Soup, Triangle,
 };
 use p2m_testkit::ball::Ball;
-use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout};
-use p2m_testkit::{rng, vector};
+use p2m_testkit::scenes::{self, Kinds, Layout, of_case};
+use p2m_testkit::{amount, cases, rng, vector};
 use rand::{Rng, RngExt};
 use std::sync::Mutex;
 
@@ -24,14 +24,15 @@ fn built<S: PrimitiveSet<f64> + Sync>(set: S) -> P2mIndex<f64, S> {
 fn agrees<S: PrimitiveSet<f64> + Sync + Copy>(name: &str, set: S, queries: &[Point3<f64>]) {
     let brute = BruteForce::new(set).expect("valid");
     let key = |c: p2m::Closest<f64>| (c.distance.to_bits(), c.primitive);
+    let expected: Vec<_> = queries.iter().map(|q| brute.closest_point(q).map(key)).collect();
+    let mut index = built(set);
     for isa in Isa::available() {
-        let index = built(set).with_isa(isa);
+        index = index.with_isa(isa);
         let mut side_by_side = vec![None; queries.len()];
         index.closest_points_into(queries, &Default::default(), &mut side_by_side);
-        for (q, other) in queries.iter().zip(side_by_side) {
-            let (found, expected) = (index.closest_point(q).map(key), brute.closest_point(q).map(key));
-            assert_eq!(found, expected, "{name} {isa} {q:?}");
-            assert_eq!(other.map(key), expected, "{name} {isa} side by side {q:?}");
+        for ((q, other), expected) in queries.iter().zip(side_by_side).zip(&expected) {
+            assert_eq!(index.closest_point(q).map(key), *expected, "{name} {isa} {q:?}");
+            assert_eq!(other.map(key), *expected, "{name} {isa} side by side {q:?}");
         }
     }
 }
@@ -83,12 +84,12 @@ fn lattice(n: i32, step: f64) -> Vec<Shape<f64>> {
 
 #[test]
 fn ties_of_lattices_go_to_the_lowest_id() {
-    for (n, step) in [(1, 1.0), (4, 0.25), (5, 0.2), (16, 0.0625)] {
+    for (n, step) in [(1, 1.0), (4, 0.25), (5, 0.2), (amount(16, 6), amount(0.0625, 0.125))] {
         let shapes = lattice(n, step);
         let mut rng = rng("p2m lattice", n as u64);
-        let mut all = queries(&mut rng, &shapes, 800);
+        let mut all = queries(&mut rng, &shapes, amount(800, 60));
         // On the planes between vertices.
-        all.extend((0..800).map(|_| {
+        all.extend((0..amount(800, 60)).map(|_| {
             let cells = [(); 3].map(|()| f64::from(rng.random_range(-4 * n..6 * n)) * 0.5);
             Point3::from(cells.map(|x| x * step - 0.5))
         }));
@@ -135,7 +136,7 @@ fn cylinder(n: u32) -> Vec<Shape<f64>> {
 /// triangles get sites on themselves.
 #[test]
 fn round_shapes_have_short_lists() {
-    let sphere = sphere(48, 64);
+    let sphere = sphere(amount(48, 26), amount(64, 40));
     let report = built(&sphere[..]).report();
     let mean = report.primitives as f64 / report.lists as f64;
     println!("sphere: {report}");
@@ -143,23 +144,26 @@ fn round_shapes_have_short_lists() {
     assert!(report.trees < 100 && report.added == 0 && mean < 40.0, "{report}");
     assert!((1..100).contains(&report.auxiliary), "{report}");
     let alone = P2mIndex::build(&sphere[..], &P2mOptions::default().with_added(0.0)).expect("valid").report();
-    assert!(alone.lists == 0 && alone.auxiliary == 0 && alone.trees > 2_000, "{alone}");
-    let report = built(&cylinder(400)[..]).report();
+    assert!(alone.lists == 0 && alone.auxiliary == 0 && alone.trees > sphere.len() / 3, "{alone}");
+    let report = built(&cylinder(amount(400, 200))[..]).report();
     println!("cylinder: {report}");
-    assert!(report.added > 50 && report.lists > 500 && report.trees * 4 < report.lists, "{report}");
+    assert!(
+        report.added > amount(50, 20) && report.lists > amount(500, 250) && report.trees * 4 < report.lists,
+        "{report}"
+    );
 }
 
 #[test]
 fn cells_do_not_depend_on_the_number_of_threads() {
     let (mut added, mut auxiliary) = (0, 0);
-    for shapes in [sphere(40, 48), cylinder(400)] {
+    for shapes in [amount(sphere(40, 48), sphere(16, 20)), cylinder(amount(400, 200))] {
         let [one, all] = [false, true].map(|parallel| {
             let splits = p2m::AabbOptions::default().with_parallel(parallel);
             P2mIndex::build(&shapes[..], &P2mOptions::default().with_splits(splits)).expect("valid")
         });
         assert_eq!(one.report(), all.report());
         (added, auxiliary) = (added + one.report().added, auxiliary + one.report().auxiliary);
-        for q in queries(&mut rng("p2m threads", 0), &shapes, 2_000) {
+        for q in queries(&mut rng("p2m threads", 0), &shapes, amount(2_000, 200)) {
             assert_eq!(one.partition().list(&q), all.partition().list(&q), "{q:?}");
         }
     }
@@ -168,22 +172,24 @@ fn cells_do_not_depend_on_the_number_of_threads() {
 
 #[test]
 fn symmetric_shapes_and_fans_of_slivers_agree() {
-    let fan = |j: u32| Triangle::new(Point3::new(0.0, 0.0, 0.3), rim(j, 200, 0.0), rim(j + 1, 200, 0.0)).into();
-    let fan: Vec<Shape<f64>> = (0..200).map(fan).collect();
-    let (small, large, cylinder) = (sphere(16, 24), sphere(40, 48), cylinder(400));
+    let slivers = amount(200, 60);
+    let fan = |j: u32| Triangle::new(Point3::new(0.0, 0.0, 0.3), rim(j, slivers, 0.0), rim(j + 1, slivers, 0.0)).into();
+    let fan: Vec<Shape<f64>> = (0..slivers).map(fan).collect();
+    let (small, large) = (sphere(amount(16, 8), amount(24, 12)), sphere(amount(40, 16), amount(48, 20)));
+    let cylinder = cylinder(amount(400, 100));
     for (name, shapes) in [("sphere", small), ("large sphere", large), ("fan", fan), ("cylinder", cylinder)] {
         let mut rng = rng(name, 0);
-        let mut all = queries(&mut rng, &shapes, 600);
+        let mut all = queries(&mut rng, &shapes, amount(600, 60));
         all.push(Point3::origin());
-        all.extend((0..100).map(|_| Point3::from(vector(&mut rng) * 1e-9)));
+        all.extend((0..amount(100, 10)).map(|_| Point3::from(vector(&mut rng) * 1e-9)));
         agrees(name, &shapes[..], &all);
     }
 }
 
 #[test]
 fn scenes_on_a_line_or_in_a_plane_and_small_ones_agree() {
-    let mut rng = rng("p2m flat", 0);
-    for case in 0..60 {
+    for seed in cases(60, 18) {
+        let (case, mut rng) = (seed as usize, rng("p2m flat", seed));
         let count = rng.random_range(1..40);
         let dimensions = case % 3 + 1;
         let place = vector(&mut rng) * [0.0, 1.0, 1e6][case % 3];
@@ -200,7 +206,7 @@ fn scenes_on_a_line_or_in_a_plane_and_small_ones_agree() {
                 _ => Point::new(point()).into(),
             })
             .collect();
-        let all: Vec<_> = queries(&mut rng, &shapes, 60).into_iter().flat_map(|q| [q, q + place]).collect();
+        let all: Vec<_> = queries(&mut rng, &shapes, amount(60, 15)).into_iter().flat_map(|q| [q, q + place]).collect();
         agrees(&format!("case {case}"), &shapes[..], &all);
     }
 }
@@ -218,8 +224,8 @@ fn vertices_that_become_one_site_agree() {
         .chain([Point::new(Point3::new(-1.0, 0.0, 0.0)).into()])
         .collect();
     let mut rng = rng("p2m snapped", 0);
-    let mut all = queries(&mut rng, &shapes, 400);
-    all.extend((0..200).map(|_| Point3::from(vector(&mut rng) * tiny * 8.0)));
+    let mut all = queries(&mut rng, &shapes, amount(400, 60));
+    all.extend((0..amount(200, 30)).map(|_| Point3::from(vector(&mut rng) * tiny * 8.0)));
     agrees("snapped", &shapes[..], &all);
 }
 
@@ -254,7 +260,7 @@ impl Primitive<f64> for Mixed {
 /// What shows no vertices may be large, far from all vertices, and the last of all.
 #[test]
 fn primitives_of_ones_own_agree_wherever_they_are() {
-    for case in 0..80 {
+    for case in cases(80, 28) {
         let mut rng = rng("p2m balls", case);
         let away = 10f64.powi(rng.random_range(0..6));
         let mut all: Vec<Mixed> = (0..rng.random_range(1..20))
@@ -296,8 +302,7 @@ fn slivers_and_vertices_that_are_nearly_one_agree() {
         vec![Triangle::new(a, b, d).into(), Segment::new(b, c).into(), Triangle::new(b, c, a).into()];
     shapes.extend(points.map(|p| Shape::from(Point::new(Point3::from(p)))));
     agrees("sliver", &shapes[..], &[Point3::new(-0.5708403546368517, -0.06606097613022954, 0.47953094376149297)]);
-    let mut asked = 0;
-    for case in 0..3_000 {
+    for case in cases(3_000, 120) {
         let mut rng = rng("p2m nearly one", case);
         let mut shapes: Vec<Shape<f64>> = (0..14).map(|_| Point::new(Point3::from(vector(&mut rng))).into()).collect();
         let v = shapes[rng.random_range(0..14)];
@@ -319,10 +324,8 @@ fn slivers_and_vertices_that_are_nearly_one_agree() {
                 nalgebra::center(&a, &v) + aside - way * (aside.dot(&way) / way.norm_squared())
             })
             .collect();
-        asked += queries.len();
         agrees(&format!("case {case}"), &shapes[..], &queries);
     }
-    assert_eq!(asked, 60_000);
 }
 
 /// Beside a flat scene f64 has no room left, far enough out.
@@ -345,34 +348,32 @@ fn sheet(len: usize) -> Soup<f64> {
 
 #[test]
 fn soups_agree_beyond_the_domain_and_on_its_border() {
-    let mut rng = rng("p2m soups", 0);
-    for kinds in KINDS {
-        for layout in LAYOUTS {
-            let soup = scenes::soup(&mut rng, kinds, layout, 400);
-            let bounds = soup.aabb();
-            let (centre, size) = (nalgebra::center(&bounds.min, &bounds.max), (bounds.max - bounds.min).max());
-            let mut all: Vec<_> = (0..100)
-                .map(|_| centre + vector(&mut rng) * (size * [0.6, 2.0, 5.1, 1e4][rng.random_range(0..4)]))
-                .collect();
-            // Where cells meet those of the bounding sites, if anywhere.
-            all.extend((0..20).map(|_| centre + vector(&mut rng).map(f64::signum) * (size * 5.0)));
-            all.extend((0..40).map(|_| {
-                let positions = soup.positions();
-                positions[rng.random_range(0..positions.len())] + vector(&mut rng) * (size * 1e-3)
-            }));
-            agrees(&format!("{kinds:?} {layout:?}"), &soup, &all);
-        }
+    for case in cases(24, 24) {
+        let (mut rng, (kinds, layout)) = (rng("p2m soups", case), of_case(case));
+        let soup = scenes::soup(&mut rng, kinds, layout, amount(400, 50));
+        let bounds = soup.aabb();
+        let (centre, size) = (nalgebra::center(&bounds.min, &bounds.max), (bounds.max - bounds.min).max());
+        let mut all: Vec<_> = (0..amount(100, 15))
+            .map(|_| centre + vector(&mut rng) * (size * [0.6, 2.0, 5.1, 1e4][rng.random_range(0..4)]))
+            .collect();
+        // Where cells meet those of the bounding sites, if anywhere.
+        all.extend((0..amount(20, 6)).map(|_| centre + vector(&mut rng).map(f64::signum) * (size * 5.0)));
+        all.extend((0..amount(40, 10)).map(|_| {
+            let positions = soup.positions();
+            positions[rng.random_range(0..positions.len())] + vector(&mut rng) * (size * 1e-3)
+        }));
+        agrees(&format!("case {case}: {kinds:?} {layout:?}"), &soup, &all);
     }
 }
 
 #[test]
 fn progress_goes_from_nothing_to_all() {
-    let soup = sheet(5_000);
+    let soup = sheet(amount(5_000, 1_000));
     let parts = Mutex::new(Vec::new());
     let index = P2mIndex::build_with_progress(&soup, &P2mOptions::default(), &|progress| {
         parts.lock().expect("whole").push(progress);
     });
-    assert_eq!(index.expect("valid").set().len(), 5_000);
+    assert_eq!(index.expect("valid").set().len(), soup.len());
     let parts = parts.into_inner().expect("whole");
     let rises = |w: &[Progress]| w[0].part < w[1].part || (w[0].part == w[1].part && w[0].stage != w[1].stage);
     assert!(parts.len() > 20 && parts.windows(2).all(rises), "{parts:?}");
@@ -385,15 +386,15 @@ fn progress_goes_from_nothing_to_all() {
 
 #[test]
 fn lists_that_are_too_long_are_left_to_the_tree() {
-    let soup = sheet(3_000);
+    let soup = sheet(amount(3_000, 800));
     let report = |longest| {
         let options = P2mOptions::default().with_longest(longest).with_added(0.0);
         P2mIndex::<f64, _>::build(&soup, &options).expect("valid").report()
     };
     let usual = report(128);
-    assert!(usual.lists > 1_000 && usual.trees == 0 && usual.entries > 2 * usual.lists, "{usual}");
+    assert!(usual.lists > soup.len() / 3 && usual.trees == 0 && usual.entries > 2 * usual.lists, "{usual}");
     let short = report(12);
-    assert!(short.trees > 100 && short.bytes < usual.bytes && short.entries <= 12 * short.lists, "{short}");
+    assert!(short.trees > soup.len() / 30 && short.bytes < usual.bytes && short.entries <= 12 * short.lists, "{short}");
     let none = report(0);
     assert!(none.lists == 0 && none.trees == usual.lists && none.bytes == 0, "{none}");
 }
@@ -401,13 +402,15 @@ fn lists_that_are_too_long_are_left_to_the_tree() {
 /// Lost lists, lost bounds, lost hints or a lost way to the answer far away would show here first.
 #[test]
 fn lookups_do_little() {
-    let soup = sheet(20_000);
+    let soup = sheet(amount(20_000, 4_000));
     let index = built(&soup);
     let mut rng = rng("p2m counters", 0);
     let bounds = soup.aabb();
     let size = bounds.max - bounds.min;
     println!("{}", index.report());
-    for (name, reach, most) in [("around", 0.52, [1_750, 2_900, 1_350]), ("far", 4.9, [1_850, 1_500, 1_100])] {
+    for (name, reach, most) in
+        [("around", 0.52, [1_750, 2_900, 1_350]), ("far", 4.9, [1_850, amount(1_500, 400), 1_100])]
+    {
         let centre = nalgebra::center(&bounds.min, &bounds.max);
         let mut place = || centre + Vector3::from_fn(|k, _| rng.random_range(-reach..reach) * size[k]);
         let queries: Vec<_> = (0..1000).map(|_| place()).collect();
@@ -426,8 +429,9 @@ fn a_part_of_a_flat_town_is_built_within_its_memory() {
     let middle = |shape: &Shape<f64>| nalgebra::center(&shape.aabb().min, &shape.aabb().max);
     let centre = middle(&shapes[shapes.len() / 2]);
     let mut part = shapes;
-    part.sort_by(|a, b| (middle(a) - centre).norm_squared().total_cmp(&(middle(b) - centre).norm_squared()));
-    for count in [5500, 6000, 7000] {
+    // The bits of numbers that are not negative are in their order.
+    part.sort_by_cached_key(|shape| (middle(shape) - centre).norm_squared().to_bits());
+    for count in amount(vec![5500, 6000, 7000], vec![600]) {
         let index = built(&part[..count]);
         assert!(index.memory() < 1000 * count, "{} bytes", index.memory());
         let brute = BruteForce::new(&part[..count]).expect("valid");

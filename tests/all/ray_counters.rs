@@ -6,8 +6,8 @@ use p2m::backend::{Directions, Hits, RayCounting};
 use p2m::{AabbTree, BruteForce, BuildIndex, KdopTree, Ray, RayQuery, Soup};
 use p2m_testkit::left_first::LeftFirst;
 use p2m_testkit::queries::QuerySet;
-use p2m_testkit::rng;
-use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
+use p2m_testkit::scenes::{self, KINDS, LAYOUTS, of_case};
+use p2m_testkit::{amount, cases, rng};
 use rand::RngExt;
 
 fn model(name: &str) -> Option<Soup<f64>> {
@@ -45,29 +45,28 @@ fn clipping_by_slabs_leaves_no_hit_out() {
         }
         hits
     }
-    let mut rng = rng("clipping by slabs", 0);
     let mut hits = 0;
-    for kinds in KINDS {
-        for layout in LAYOUTS {
-            let soup = scenes::soup(&mut rng, kinds, layout, 100);
-            let rays: Vec<_> = (0..60)
-                .filter_map(|_| {
-                    let [from, to] = [(); 2].map(|()| scenes::query(&mut rng, soup.positions()));
-                    let mut ray = Ray::through(&from, &to).ok()?;
-                    if rng.random_range(0..3) == 0 {
-                        // Along the faces of most slabs.
-                        let mut along = ray.direction();
-                        along[rng.random_range(0..3)] = 0.0;
-                        ray = Ray::new(&from, &along).ok()?;
-                    }
-                    let ray = if rng.random() { ray.line() } else { ray };
-                    if rng.random() { ray.with_radius(0.01).ok() } else { Some(ray) }
-                })
-                .collect();
-            hits += check::<6>(&soup, &rays) + check::<14>(&soup, &rays) + check::<26>(&soup, &rays);
-        }
+    let cases = cases(24, 24);
+    for case in cases.clone() {
+        let (mut rng, (kinds, layout)) = (rng("clipping by slabs", case), of_case(case));
+        let soup = scenes::soup(&mut rng, kinds, layout, 100);
+        let rays: Vec<_> = (0..amount(60, 12))
+            .filter_map(|_| {
+                let [from, to] = [(); 2].map(|()| scenes::query(&mut rng, soup.positions()));
+                let mut ray = Ray::through(&from, &to).ok()?;
+                if rng.random_range(0..3) == 0 {
+                    // Along the faces of most slabs.
+                    let mut along = ray.direction();
+                    along[rng.random_range(0..3)] = 0.0;
+                    ray = Ray::new(&from, &along).ok()?;
+                }
+                let ray = if rng.random() { ray.line() } else { ray };
+                if rng.random() { ray.with_radius(0.01).ok() } else { Some(ray) }
+            })
+            .collect();
+        hits += check::<6>(&soup, &rays) + check::<14>(&soup, &rays) + check::<26>(&soup, &rays);
     }
-    assert!(hits > 1000, "{hits}");
+    assert!(cases.have_more_than(amount(41.0, 8.0), hits), "{hits}");
 }
 
 /// Nodes and packets that a search for all hits visits, for all rays.
@@ -86,21 +85,32 @@ where
 /// Both counters of 6, 14, 18 and 26 faces.
 type Rows = [[usize; 2]; 4];
 
-fn rows(name: &str, soup: &Soup<f64>, rays: &[Ray]) -> (Rows, Rows) {
-    let boxes = work(&AabbTree::build(soup, &Default::default()).expect("valid"), rays);
-    let ours = [
-        work(&built::<6>(soup), rays),
-        work(&built::<14>(soup), rays),
-        work(&built::<18>(soup), rays),
-        work(&built::<26>(soup), rays),
-    ];
-    let theirs = [
-        manual::<6>(soup).along_all(rays),
-        manual::<14>(soup).along_all(rays),
-        manual::<18>(soup).along_all(rays),
-        manual::<26>(soup).along_all(rays),
-    ]
-    .map(|work| [work.nodes, work.leaves]);
+/// The trees that are compared: of boxes, of k-DOPs, and those of the manual.
+struct Trees<'a> {
+    boxes: AabbTree<f64, &'a Soup<f64>>,
+    ours: (Kdops<'a, 6>, Kdops<'a, 14>, Kdops<'a, 18>, Kdops<'a, 26>),
+    theirs: (LeftFirst<6>, LeftFirst<14>, LeftFirst<18>, LeftFirst<26>),
+}
+
+type Kdops<'a, const K: usize> = KdopTree<f64, &'a Soup<f64>, K>;
+
+impl<'a> Trees<'a> {
+    fn build(soup: &'a Soup<f64>) -> Self {
+        Self {
+            boxes: AabbTree::build(soup, &Default::default()).expect("valid"),
+            ours: (built(soup), built(soup), built(soup), built(soup)),
+            theirs: (manual(soup), manual(soup), manual(soup), manual(soup)),
+        }
+    }
+}
+
+fn rows(name: &str, trees: &Trees<'_>, rays: &[Ray]) -> (Rows, Rows) {
+    let Trees { boxes, ours, theirs } = trees;
+    let boxes = work(boxes, rays);
+    let ours = [work(&ours.0, rays), work(&ours.1, rays), work(&ours.2, rays), work(&ours.3, rays)];
+    let theirs =
+        [theirs.0.along_all(rays), theirs.1.along_all(rays), theirs.2.along_all(rays), theirs.3.along_all(rays)]
+            .map(|work| [work.nodes, work.leaves]);
     println!("{name}: boxes {boxes:?}, k-DOPs {ours:?} nodes and packets; {theirs:?} binary nodes and leaves");
     // The six-DOP of the axes is the box.
     for (six, boxes) in ours[0].iter().zip(boxes) {
@@ -112,9 +122,10 @@ fn rows(name: &str, soup: &Soup<f64>, rays: &[Ray]) -> (Rows, Rows) {
 /// More faces, less work, with either tree: as the table of the manual has it, where 56, 49 and 43 % of the nodes are
 /// left and 44, 32 and 25 % of the leaves.
 fn falls(name: &str, soup: &Soup<f64>, most: [[[usize; 2]; 3]; 2]) {
+    let trees = Trees::build(soup);
     // Few rays from the wider box meet anything.
     for (set, count) in [(QuerySet::Box10, 20_000), (QuerySet::Box1, 2000)] {
-        let (ours, theirs) = rows(&format!("{name}, {set}"), soup, &set.rays(soup, count, 1));
+        let (ours, theirs) = rows(&format!("{name}, {set}"), &trees, &set.rays(soup, count, 1));
         for (rows, most) in [ours, theirs].iter().zip(most) {
             for counter in [0, 1] {
                 let falling = rows.windows(2).all(|pair| pair[1][counter] < pair[0][counter]);

@@ -1,7 +1,5 @@
 //! Rays on real meshes: every answer against exact rational arithmetic, and closed surfaces that let nothing slip
 //! through. Skips, and says so, where there is no folder of models.
-//!
-//! `P2M_RAYS` is how many rays each model gets, and `P2M_LINES` how many lines each closed one.
 
 #![cfg(all(feature = "bvh", feature = "kdop", feature = "mixed"))]
 
@@ -12,29 +10,24 @@ use p2m::{Aabb, AabbTree, BuildIndex, Element, KdopTree, PrimitiveId, PrimitiveS
 use p2m_testkit::line_filter::LineFilter;
 use p2m_testkit::ray_check::{Truth, agrees};
 use p2m_testkit::rays::{AIMS, ray};
-use p2m_testkit::{model_files, rng};
+use p2m_testkit::{Cases, cases, model_files, rng};
 use rand::{Rng, RngExt};
 use std::collections::HashMap;
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-
-/// A number from the environment.
-fn number(name: &str, default: usize) -> usize {
-    std::env::var(name).map_or(default, |n| n.parse().expect("a number"))
-}
+use std::sync::Mutex;
 
 fn read(path: &Path) -> (String, Soup<f64>) {
     let name = path.file_name().expect("a file").to_string_lossy().into_owned();
     (name, p2m::scene::read_scene(path).expect("readable").soup)
 }
 
-/// The sum of what each of `count` cases returns, on all cores.
-fn on_all_cores<const N: usize>(count: usize, case: impl Fn(usize) -> [usize; N] + Sync) -> [usize; N] {
+/// The sum of what each of the cases returns, on all cores.
+fn on_all_cores<const N: usize>(cases: &Cases, case: impl Fn(u64) -> [usize; N] + Sync) -> [usize; N] {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let add = |a: [usize; N], b: [usize; N]| std::array::from_fn(|k| a[k] + b[k]);
-    let next = AtomicUsize::new(0);
-    let take = || Some(next.fetch_add(1, Relaxed)).filter(|i| *i < count);
+    let left = Mutex::new(cases.clone());
+    let take = || left.lock().expect("no panic").next();
     std::thread::scope(|scope| {
         let part = || std::iter::from_fn(take).map(&case).fold([0; N], add);
         let threads: Vec<_> = (0..cores).map(|_| scope.spawn(part)).collect();
@@ -44,7 +37,7 @@ fn on_all_cores<const N: usize>(count: usize, case: impl Fn(usize) -> [usize; N]
 
 #[test]
 fn every_model_is_met_as_exact_arithmetic_says() {
-    let count = number("P2M_RAYS", 300);
+    let cases = cases(300, 42);
     for path in model_files() {
         let (name, soup) = read(&path);
         let vertices = |i| soup.get(PrimitiveId::new(i)).vertices().iter().map(|v| v.coords.into()).collect();
@@ -54,11 +47,14 @@ fn every_model_is_met_as_exact_arithmetic_says() {
         let kdops = KdopTree::<f64, _, 14>::build(&soup, &Default::default()).expect("valid");
         let bounds = soup.aabb();
         let size = (bounds.max - bounds.min).amax();
-        let [asked, met, along, crossed] = on_all_cores(count, |i| {
-            let mut rng = rng("rays of models", i as u64);
-            let radius =
-                if (i / AIMS.len()).is_multiple_of(2) { 0.0 } else { size * 10f64.powi(-rng.random_range(4..12)) };
-            let ray = ray(&mut rng, &soup, &bounds, AIMS[i % AIMS.len()]).with_radius(radius).expect("valid");
+        let [asked, met, along, crossed] = on_all_cores(&cases, |i| {
+            let mut rng = rng("rays of models", i);
+            let radius = if (i / AIMS.len() as u64).is_multiple_of(2) {
+                0.0
+            } else {
+                size * 10f64.powi(-rng.random_range(4..12))
+            };
+            let ray = ray(&mut rng, &soup, &bounds, AIMS[i as usize % AIMS.len()]).with_radius(radius).expect("valid");
             let near = filter.near(&ray);
             let asked = near.len();
             let truth = Truth::new(&primitives, near, &ray);
@@ -76,9 +72,10 @@ fn every_model_is_met_as_exact_arithmetic_says() {
             sums
         });
         println!(
-            "{name}: {count} rays, {asked} decided exactly, {met} hits, {along} of them along, {crossed} crossings"
+            "{name}: {} rays, {asked} decided exactly, {met} hits, {along} of them along, {crossed} crossings",
+            cases.len()
         );
-        assert!(met > count / 10, "{name}: rays are aimed at it");
+        assert!(cases.have_more_than(0.1, met), "{name}: rays are aimed at it");
     }
 }
 
@@ -152,7 +149,7 @@ fn sides<V: Volume>(tree: &TreeIndex<f64, &Soup<f64>, V>, line: &Ray) -> [usize;
 /// As many crossings enter as leave, whatever edges and vertices a line is aimed at.
 #[test]
 fn closed_models_let_nothing_slip_through() {
-    let count = number("P2M_LINES", 5000);
+    let cases = cases(5000, 400);
     let closed = ["bunny.obj", "camel.off", "armadillo.obj", "lucy_100k.ply", "dragon_100k.obj"];
     for path in model_files().iter().filter(|path| closed.iter().any(|name| path.ends_with(name))) {
         let (name, soup) = read(path);
@@ -160,13 +157,13 @@ fn closed_models_let_nothing_slip_through() {
         let boxes = AabbTree::build(&soup, &Default::default()).expect("valid");
         let kdops = KdopTree::<f64, _, 14>::build(&soup, &Default::default()).expect("valid");
         let bounds = soup.aabb();
-        let [crossed, crossings] = on_all_cores(count, |i| {
-            let line = line(&mut rng("lines of models", i as u64), &soup, &bounds);
+        let [crossed, crossings] = on_all_cores(&cases, |i| {
+            let line = line(&mut rng("lines of models", i), &soup, &bounds);
             let [front, back] = if i % 2 == 0 { sides(&boxes, &line) } else { sides(&kdops, &line) };
             assert_eq!(front, back, "{name}, line {i} {line:?}");
             [usize::from(front > 0), front + back]
         });
-        println!("{name}: {crossed} of {count} lines cross it, {crossings} times");
-        assert!(crossed > count / 4, "{name}: lines are aimed at it");
+        println!("{name}: {crossed} of {} lines cross it, {crossings} times", cases.len());
+        assert!(cases.have_more_than(0.25, crossed), "{name}: lines are aimed at it");
     }
 }

@@ -9,13 +9,8 @@ use p2m::{
     AabbTree, BruteForce, BuildIndex, Closest, Element, OctreeIndex, P2mIndex, PrimitiveSet, Ray, RayQuery, Soup,
 };
 use p2m_testkit::queries::QuerySet;
-use p2m_testkit::{model_files, rng};
+use p2m_testkit::{Cases, amount, cases, model_files, rng};
 use rand::RngExt;
-
-/// Queries to each model and set: half of 10^5 for each of two sets in the long run, which takes minutes.
-fn count() -> usize {
-    std::env::var("P2M_SIGNS").map_or(5_000, |text| text.parse().expect("P2M_SIGNS is a number"))
-}
 
 fn tree(soup: &Soup<f64>) -> AabbTree<f64, &Soup<f64>> {
     AabbTree::build(soup, &Default::default()).expect("valid")
@@ -40,12 +35,12 @@ fn expected(index: &impl RayQuery<f64>, query: &Point3<f64>, closest: &Closest<f
 }
 
 /// Signs of a closed surface are those of rays; how many were in doubt.
-fn agrees_with_rays(name: &str, soup: &Soup<f64>, sets: &[QuerySet], count: usize) -> (usize, u64) {
+fn agrees_with_rays(name: &str, soup: &Soup<f64>, sets: &[QuerySet], cases: &Cases) -> (usize, u64) {
     let index = tree(soup);
     let signed = SignedDistance::new(tree(soup), soup).expect("closed");
     let mut inside = 0;
     for set in sets {
-        for query in set.generate(soup, count, 3) {
+        for query in set.of_cases(soup, cases, 3) {
             let answer = signed.closest_point(&query).expect("not empty");
             let expected = expected(&index, &query, &answer.closest);
             assert_eq!(answer.sign, expected, "{name}, {set}, {query:?}: {:?}", answer.closest);
@@ -62,6 +57,8 @@ fn agrees_with_rays(name: &str, soup: &Soup<f64>, sets: &[QuerySet], count: usiz
 #[test]
 fn signs_of_closed_models_are_those_of_rays() {
     let sets = [QuerySet::Box1, QuerySet::Near];
+    // Of each model and set. `P2M_DEEP=20` makes it 10^5, which takes minutes.
+    let cases = cases(5_000, 300);
     let mut closed = 0;
     for path in model_files() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
@@ -74,24 +71,25 @@ fn signs_of_closed_models_are_those_of_rays() {
             Ok(Some([one, other])) => println!("{name}: {one} and {other} meet"),
             Ok(None) => {
                 closed += 1;
-                let (inside, doubts) = agrees_with_rays(&name, &soup, &sets, count());
-                println!("{name}: {inside} of {} inside, {doubts} in doubt", 2 * count());
-                assert!(inside > 0 || name == "degenerate_small.obj", "{name}"); // all of its sheets are there twice
+                let (inside, doubts) = agrees_with_rays(&name, &soup, &sets, &cases);
+                println!("{name}: {inside} of {} inside, {doubts} in doubt", 2 * cases.len());
+                assert!(cases.is_replay() || inside > 0 || name == "degenerate_small.obj", "{name}"); // all of its sheets are there twice
             }
         }
     }
-    assert!(closed >= 6 || model_files().is_empty(), "{closed} closed models");
+    assert!(closed >= amount(6, 1) || model_files().is_empty(), "{closed} closed models");
 }
 
 #[test]
 fn generated_surfaces_have_the_signs_of_rays() {
     let knot = torus_knot(&TorusKnot::default()).expect("valid");
     let gear = skewed_gear(&SkewedGear::default()).expect("valid");
+    let cases = cases(3000, 200);
     for (name, soup) in [("knot", knot), ("gear", gear)] {
         let (inside, doubts) =
-            agrees_with_rays(name, &soup, &[QuerySet::Box1, QuerySet::Near, QuerySet::Surface], 3000);
-        println!("{name}: {inside} of 9000 inside, {doubts} in doubt");
-        assert!(inside > 1000, "{name}");
+            agrees_with_rays(name, &soup, &[QuerySet::Box1, QuerySet::Near, QuerySet::Surface], &cases);
+        println!("{name}: {inside} of {} inside, {doubts} in doubt", 3 * cases.len());
+        assert!(cases.have_more_than(0.33, inside), "{name}");
     }
 }
 
@@ -239,7 +237,7 @@ fn every_backend_has_the_same_signs() {
     let octree = SignedDistance::new(octree, &soup).expect("closed");
     let p2m = P2mIndex::build(&soup, &Default::default()).expect("valid");
     let p2m = SignedDistance::new(p2m, &soup).expect("closed");
-    for query in QuerySet::Box1.generate(&soup, 1000, 5) {
+    for query in QuerySet::Box1.of_cases(&soup, &cases(1000, 100), 5) {
         let known = |c: Option<p2m::scene::sign::Signed>| c.map(|c| (c.distance(), c.sign, c.closest.primitive));
         let expected = known(aabb.closest_point(&query));
         assert_eq!(known(octree.closest_point(&query)), expected);
@@ -251,7 +249,7 @@ fn every_backend_has_the_same_signs() {
 fn is_near_analytic(name: &str, soup: &Soup<f64>, error: f64, analytic: impl Fn(&Point3<f64>) -> f64) {
     let signed = SignedDistance::new(tree(soup), soup).expect("closed");
     let winding = SignedDistance::with_winding_numbers(tree(soup), soup, 0.01).expect("triangles");
-    for query in QuerySet::Box1.generate(soup, 2000, 11) {
+    for query in QuerySet::Box1.of_cases(soup, &cases(2000, 60), 11) {
         let expected = analytic(&query);
         let found = signed.closest_point(&query).and_then(|s| s.distance()).expect("defined");
         assert!((found - expected).abs() <= error, "{name}, {query}: {found} for {expected}");
@@ -278,7 +276,7 @@ fn distances_are_those_of_a_sphere_a_box_and_a_torus() {
         beyond.map(|x| x.max(0.0)).norm() + beyond.max().min(0.0)
     });
 
-    let (around, across) = (192, 96);
+    let (around, across) = amount((192, 96), (96, 48));
     let turn = |i: u32, n: u32| (f64::from(i % n) / f64::from(n) * std::f64::consts::TAU).sin_cos();
     let places = (0..around * across).map(|i| {
         let ((s, c), (v, u)) = (turn(i / across, around), turn(i % across, across));
@@ -301,14 +299,18 @@ fn distances_are_those_of_a_sphere_a_box_and_a_torus() {
 
 #[test]
 fn winding_numbers_are_within_their_bound() {
-    let knot = torus_knot(&TorusKnot::default()).expect("valid");
+    let options = TorusKnot::default();
+    let options = amount(options, options.with_rings(60).with_sides(8));
+    let knot = torus_knot(&options).expect("valid");
     let half: Vec<[u32; 3]> =
         knot.triangles().iter().enumerate().filter(|(i, _)| i % 3 != 0).map(|(_, t)| *t).collect();
     let holes = Soup::from_triangles(knot.positions().to_vec(), half).expect("valid");
     let mut random = rng("winding numbers", 0);
+    let loose_ones = amount(2000, 500);
     let loose: Vec<Point3<f64>> =
-        (0..6000).map(|_| Point3::from([0; 3].map(|_| random.random_range(-1.0..1.0)))).collect();
-    let loose = Soup::from_triangles(loose, (0..2000).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect()).expect("valid");
+        (0..3 * loose_ones).map(|_| Point3::from([0; 3].map(|_| random.random_range(-1.0..1.0)))).collect();
+    let loose =
+        Soup::from_triangles(loose, (0..loose_ones).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect()).expect("valid");
     let far = Transform::default().scaled(1e-3).translated([1e4, -3e4, 2e4]).apply(&knot).expect("valid");
     let tiny = Transform::default().scaled(1e-140).apply(&knot).expect("valid");
     let huge = Transform::default().scaled(1e140).apply(&knot).expect("valid");
@@ -320,13 +322,14 @@ fn winding_numbers_are_within_their_bound() {
     for far in [1e30, 1e160, 1e200, 1e300] {
         assert!(winding.number(&Point3::new(far, -far, 0.0)).abs() < 1e-80, "{far}");
     }
+    let cases = cases(300, 6);
     let scenes = [("knot", knot), ("holes", holes), ("loose", loose), ("far", far), ("tiny", tiny), ("huge", huge)];
     for (name, soup) in &scenes {
         for accuracy in [0.2, 0.01, 1e-4] {
             let winding = WindingNumbers::new(soup, accuracy).expect("triangles");
             let mut worst = 0.0f64;
             for set in [QuerySet::Box1, QuerySet::Near, QuerySet::Box10] {
-                for query in set.generate(soup, 300, 7) {
+                for query in set.of_cases(soup, &cases, 7) {
                     let (found, exact) = (winding.number(&query), winding.exact_number(&query));
                     worst = worst.max((found - exact).abs());
                 }
@@ -339,6 +342,7 @@ fn winding_numbers_are_within_their_bound() {
 
 #[test]
 fn winding_numbers_of_closed_models_have_the_signs_of_rays() {
+    let cases = cases(500, 25);
     for path in model_files() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
         if !["bunny.obj", "camel.off", "dragon_100k.obj", "lucy_100k.ply"].contains(&name.as_str()) {
@@ -348,13 +352,13 @@ fn winding_numbers_of_closed_models_have_the_signs_of_rays() {
         let winding = SignedDistance::with_winding_numbers(tree(&soup), &soup, 0.01).expect("triangles");
         let index = tree(&soup);
         for set in [QuerySet::Box1, QuerySet::Near] {
-            for query in set.generate(&soup, 500, 4) {
+            for query in set.of_cases(&soup, &cases, 4) {
                 let found = winding.closest_point(&query).expect("not empty");
                 let expected = if is_inside(&index, &query) { Sign::Inside } else { Sign::Outside };
                 assert!(found.sign == expected || found.closest.distance == 0.0, "{name}, {query}");
             }
         }
-        println!("{name}: {} of 1000 in doubt", winding.doubts());
+        println!("{name}: {} of {} in doubt", winding.doubts(), 2 * cases.len());
     }
 }
 

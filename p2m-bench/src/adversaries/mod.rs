@@ -264,7 +264,7 @@ mod tests {
     fn small_adversaries_are_answered_as_brute_force_does() {
         for adversary in ADVERSARIES {
             let mut table = Table::new(HEAD);
-            add_rows(adversary, 200, &mut table).unwrap();
+            add_rows(adversary, p2m_testkit::amount(200, 40), &mut table).unwrap();
             let text = table.to_string();
             assert_eq!(["aabb", "kdop-14", "octree", "p2m"].map(|name| text.contains(name)), [true; 4], "{text}");
             assert!(!text.contains("WRONG"), "{text}");

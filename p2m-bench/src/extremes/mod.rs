@@ -187,16 +187,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ours_break_nothing_and_rivals_are_asked_twice() {
-        let amount = Amount { cases: 30_000, scenes: 1, seed: 7 };
-        let (alone, together) = (primitives::run(amount.cases, amount.seed), scenes::run(amount.scenes, amount.seed));
-        assert!(alone.checked.iter().all(|count| *count >= 15_000), "{:?}", alone.checked);
-        assert!(alone.invariant > 20_000 && together.checked > 1000, "{} {}", alone.invariant, together.checked);
-        assert_eq!((alone.broken, together.broken), (0, 0), "{:?} {:?}", alone.shown, together.shown);
+    fn ours_break_nothing_over_single_primitives_and_rivals_are_asked_twice() {
+        let amount = Amount { cases: p2m_testkit::amount(30_000, 3_000), scenes: 0, seed: 7 };
+        let alone = primitives::run(amount.cases, amount.seed);
+        assert!(alone.checked.iter().all(|count| *count >= amount.cases / 2), "{:?}", alone.checked);
+        assert!(alone.invariant > amount.cases * 2 / 3, "{}", alone.invariant);
+        assert_eq!(alone.broken, 0, "{:?}", alone.shown);
         let mut wrong = alone.examples.iter().find(|e| e.rival == 2 && e.kind == Kind::Wrong).expect("slivers").clone();
         assert!(described(&wrong).unwrap().contains("Ericson answers"));
         wrong.kind = Kind::Panic;
         assert!(described(&wrong).is_err(), "it does not panic");
+    }
+
+    #[test]
+    #[ignore = "deep: every index is built over scenes of every extreme"]
+    fn ours_break_nothing_over_scenes_and_rivals_are_asked_twice() {
+        let together = scenes::run(1, 7);
+        assert!(together.checked > 1000, "{}", together.checked);
+        assert_eq!(together.broken, 0, "{:?}", together.shown);
         for example in together.examples {
             let (count, mut example) = (example.vertices.len(), example.reduced());
             assert!(example.is_confirmed() && example.vertices.len() <= count, "{example:?}");

@@ -207,6 +207,7 @@ mod tests {
     };
 
     #[test]
+    #[ignore = "deep: the page measures each of its scenes with every index"]
     fn the_page_and_all_of_its_plots_are_written() {
         let folder = tempfile::tempdir().unwrap();
         let models = Models(std::path::PathBuf::from("nowhere"));

@@ -116,6 +116,7 @@ mod tests {
     use p2m_tradeoff::settings::SETTINGS;
 
     #[test]
+    #[ignore = "deep: the page measures every setting of every backend"]
     fn page_record_and_plots_are_written() {
         let least = Profile {
             scenes: &QUICK.scenes[2..],

@@ -4,7 +4,7 @@ use super::*;
 use crate::integers::{self, common_exponent, difference};
 use crate::predicates::{insphere, orientation_3d};
 use dashu_int::IBig;
-use p2m_testkit::rng;
+use p2m_testkit::{amount, cases, rng};
 use rand::{Rng, RngExt};
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
@@ -93,8 +93,7 @@ fn grid(side: u32, spacing: f64) -> Vec<[f64; 3]> {
 
 #[test]
 fn sets_of_small_integers_obey_the_definition() {
-    let sets = std::env::var("P2M_DELAUNAY_SETS").map_or(2000, |n| n.parse().unwrap());
-    for case in 0..sets {
+    for case in cases(2000, 400) {
         let random = &mut rng("delaunay small integers", case);
         valid_by_definition(&small_integers(random));
     }
@@ -115,7 +114,7 @@ fn few_points_do() {
 #[test]
 fn random_points_do() {
     let random = &mut rng("delaunay uniform", 0);
-    valid(&uniform(random, 20_000));
+    valid(&uniform(random, amount(20_000, 4_000)));
     valid_by_definition(&uniform(random, 100));
     let twice = uniform(random, 500).repeat(3);
     assert_eq!(valid(&twice).sites().len(), BOUNDING + 500);
@@ -181,7 +180,7 @@ fn all_scales_do() {
         };
         (0..200).map(|_| [0; 3].map(|_| number(random))).collect()
     };
-    for case in 0..20 {
+    for case in cases(20, 4) {
         let random = &mut rng("delaunay exponents", case);
         valid(&mixed(random, -1000, 1000));
         valid(&mixed(random, -160, 1));
@@ -205,8 +204,8 @@ fn clusters_far_from_the_origin_do() {
 
 #[test]
 fn the_reach_is_that_asked_for() {
-    let random = &mut rng("delaunay reach", 0);
-    for case in 0..200 {
+    for case in cases(200, 60) {
+        let random = &mut rng("delaunay reach", case);
         let points = match case % 4 {
             0 => uniform(random, 20),
             1 => small_integers(random),
@@ -280,7 +279,7 @@ fn the_check_finds_what_is_broken() {
 #[test]
 fn the_check_finds_a_flip() {
     let random = &mut rng("delaunay flip", 0);
-    let good = valid(&uniform(random, 300));
+    let good = valid(&uniform(random, amount(300, 110)));
     let (sites, mut flips) = (good.sites(), 0);
     let orientation = |t: [u32; 4]| {
         let [a, b, c, d] = t.map(|v| sites[v as usize]);
@@ -304,7 +303,7 @@ fn the_check_finds_a_flip() {
         assert!(matches!(bad.check(), Err(Invalid::Sphere { .. })));
         flips += 1;
     }
-    assert!(flips > 100, "{flips}");
+    assert!(flips > amount(100, 30), "{flips}");
     let mut same = good.clone();
     same.neighbours = adjacent(&same.tetrahedra);
     assert_eq!(same.neighbours, good.neighbours);

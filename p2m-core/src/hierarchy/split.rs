@@ -273,7 +273,8 @@ mod tests {
     fn the_tree_is_the_same_for_any_number_of_threads() {
         let mut rng = p2m_testkit::rng("splits by threads", 0);
         let mut next = || rng.random::<f64>();
-        let boxes: Vec<Aabb<f64>> = (0..60_000).map(|_| point(next(), next(), next())).collect();
+        let boxes: Vec<Aabb<f64>> =
+            (0..p2m_testkit::amount(60_000, 20_000)).map(|_| point(next(), next(), next())).collect();
         let expected = build(&boxes, &SplitOptions::default().with_parallel(false));
         for threads in [1, 2, 5] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

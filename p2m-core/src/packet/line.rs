@@ -353,7 +353,8 @@ mod tests {
     #[test]
     fn lanes_that_are_met_are_never_left_out_and_few_others_pass() {
         let mut counts = [[0; 3]; 4];
-        for case in 0..6_000 {
+        let cases = p2m_testkit::cases(6_000, 1_200);
+        for case in cases.clone() {
             let mut rng = p2m_testkit::rng("lines and packets", case);
             let kind = [Kind::Triangle, Kind::Segment, Kind::Point, Kind::Box][case as usize % 4];
             let soup = set(&mut rng, kind);
@@ -407,7 +408,8 @@ mod tests {
         }
         for (kind, [all, hits, passed]) in ["points", "segments", "triangles", "boxes"].iter().zip(counts) {
             println!("{kind}: {passed} of {all} passed, {hits} are met");
-            assert!(hits * 50 > all && passed * 4 < all * if *kind == "boxes" { 4 } else { 3 }, "{kind}");
+            let is_worth_it = hits * 50 > all && passed * 4 < all * if *kind == "boxes" { 4 } else { 3 };
+            assert!(cases.is_replay() || is_worth_it, "{kind}");
         }
     }
 }

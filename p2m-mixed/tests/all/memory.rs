@@ -5,6 +5,7 @@ use crate::common::written;
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveSet, Soup};
 use p2m_mixed::{Format, Scene, read_scene, read_scene_from};
+use p2m_testkit::amount;
 
 /// Buffers of a fixed size.
 const FIXED: usize = 1 << 17;
@@ -59,7 +60,7 @@ fn grid(n: u32, is_mixed: bool) -> Scene {
 #[test]
 fn reading_takes_no_more_than_three_times_the_scene() {
     // Just behind a power of two, where vectors that grow are largest beside what they hold; and just before.
-    for n in [363, 361, 400, 460] {
+    for n in amount(vec![363, 361, 400, 460], vec![91]) {
         let scene = grid(n, false);
         for format in [Format::Obj, Format::Ply, Format::Stl, Format::Off] {
             let again = check(&format!("{n}, {format}"), &written(&scene, format), format);
@@ -112,7 +113,7 @@ fn reading_takes_no_more_than_three_times_the_scene() {
     }
 
     // One strip that is the whole file, and facets that share nothing: just behind a power of two again.
-    for count in [262_147i32, 300_000] {
+    for count in amount(vec![262_147i32, 300_000], vec![32_771]) {
         let mut strip = b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
             property float z\nelement tristrips 1\nproperty list int uchar vertex_indices\nend_header\n"
             .to_vec();
@@ -121,20 +122,16 @@ fn reading_takes_no_more_than_three_times_the_scene() {
         strip.extend((0..count).map(|i| (i % 3) as u8));
         check("strip", &strip, Format::Ply);
     }
-    for count in [76_460u32, 87_382, 100_000] {
+    for count in amount(vec![76_460u32, 87_382, 100_000], vec![10_923]) {
         let positions = (0..3 * count).map(|i| Point3::new(f64::from(i), 0.0, f64::from(i % 17))).collect();
         let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let apart: Scene = Soup::from_triangles(positions, triangles).unwrap().into();
         assert_eq!(check("apart", &written(&apart, Format::Stl), Format::Stl).soup, apart.soup);
     }
 
-    let Some(folder) = p2m_testkit::models() else { return };
-    for file in std::fs::read_dir(folder).unwrap() {
-        let path = file.unwrap().path();
-        if Format::from_path(&path).is_ok() {
-            let (scene, held, peak) = measure(|| read_scene(&path).unwrap());
-            check_peak(&path.display().to_string(), &scene, held, peak);
-        }
+    for path in p2m_testkit::model_files() {
+        let (scene, held, peak) = measure(|| read_scene(&path).unwrap());
+        check_peak(&path.display().to_string(), &scene, held, peak);
     }
 }
 
@@ -148,7 +145,7 @@ fn trees_of_other_crates_take_no_more_than_they_ask_for() {
     fn peak<'a, I: BuildIndex<f64, &'a Soup<f64>, Options = ()>>(soup: &'a Soup<f64>) -> usize {
         allocation_counter::measure(|| assert!(I::build(soup, &()).is_ok())).bytes_max as usize
     }
-    for count in [1, 2, 3, 5, 17, 100, 1000, 5000, 20_000] {
+    for count in [1, 2, 3, 5, 17, 100, 1000, 5000, 20_000].into_iter().take(amount(9, 7)) {
         let mut rng = p2m_testkit::rng("trees of other crates", count as u64);
         for layout in p2m_testkit::scenes::LAYOUTS {
             let soup = p2m_testkit::scenes::soup(&mut rng, p2m_testkit::scenes::Kinds::Mixed, layout, count);

@@ -2,6 +2,7 @@
 
 use crate::common::{bits, read_back};
 use p2m_mixed::{Format, WriteError, read_scene, stl_rounding, write_stl};
+use std::path::PathBuf;
 
 /// Name, triangles, segments.
 const MODELS: &[(&str, usize, usize)] = &[
@@ -34,23 +35,28 @@ const MODELS: &[(&str, usize, usize)] = &[
 
 #[test]
 fn models_have_the_counts_of_their_list() {
-    let Some(folder) = p2m_testkit::models() else { return };
-    for &(name, triangles, segments) in MODELS {
-        let scene = read_scene(&folder.join(name)).unwrap();
+    for (path, name, [triangles, segments]) in models() {
+        let scene = read_scene(&path).unwrap();
         let found = (scene.soup.triangles().len(), scene.soup.segments().len(), scene.soup.points().len());
         assert_eq!(found, (triangles, segments, 0), "{name}");
     }
-    let files = std::fs::read_dir(&folder).unwrap().filter_map(|f| f.unwrap().file_name().into_string().ok());
-    for file in files.filter(|f| f.parse::<std::path::PathBuf>().is_ok_and(|p| Format::from_path(&p).is_ok())) {
-        assert!(MODELS.iter().any(|&(name, ..)| name == file), "{file} is not in the list");
+    for path in p2m_testkit::all_model_files() {
+        assert!(MODELS.iter().any(|(name, ..)| path.ends_with(name)), "{} is not in the list", path.display());
     }
+}
+
+/// The models that are there at this depth, with their names and their numbers of triangles and segments.
+fn models() -> impl Iterator<Item = (PathBuf, &'static str, [usize; 2])> {
+    p2m_testkit::model_files().into_iter().filter_map(|path| {
+        let &(name, triangles, segments) = MODELS.iter().find(|(name, ..)| path.ends_with(name))?;
+        Some((path, name, [triangles, segments]))
+    })
 }
 
 #[test]
 fn models_are_written_and_read_back_as_the_same_scene() {
-    let Some(folder) = p2m_testkit::models() else { return };
-    for &(name, _, segments) in MODELS {
-        let scene = read_scene(&folder.join(name)).unwrap();
+    for (path, name, [_, segments]) in models() {
+        let scene = read_scene(&path).unwrap();
         for format in [Format::Obj, Format::Ply, Format::Off] {
             let again = read_back(&scene, format);
             assert_eq!(again.soup, scene.soup, "{name} as {format}");

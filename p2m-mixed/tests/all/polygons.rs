@@ -3,7 +3,8 @@
 use crate::common::obj;
 use nalgebra::Point3;
 use p2m_core::Element;
-use rand::{RngExt, SeedableRng};
+use p2m_testkit::{cases, rng};
+use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::collections::HashSet;
 use std::fmt::Write;
@@ -218,19 +219,23 @@ fn random_simple(rng: &mut ChaCha8Rng) -> Option<Vec<P>> {
     None
 }
 
+/// The first random polygon that is simple.
+fn simple(rng: &mut ChaCha8Rng) -> Vec<P> {
+    std::iter::repeat_with(|| random_simple(rng)).flatten().next().expect("some are")
+}
+
 #[test]
 fn random_simple_polygons() {
-    let mut rng = ChaCha8Rng::seed_from_u64(3);
-    let (mut simple, mut concave) = (0, 0);
-    while simple < 20_000 {
-        let Some(polygon) = random_simple(&mut rng) else { continue };
-        simple += 1;
+    let mut concave = 0;
+    let cases = cases(20_000, 1_500);
+    for case in cases.clone() {
+        let polygon = simple(&mut rng("simple polygons", case));
         let n = polygon.len();
         let turns = (0..n).map(|i| cross(polygon[i], polygon[(i + 1) % n], polygon[(i + 2) % n]).signum());
         concave += usize::from(turns.collect::<HashSet<_>>().is_superset(&HashSet::from([-1, 1])));
-        check(&polygon, &cut3(&lift(&polygon, simple % 3, [0, 1, -7][simple / 3 % 3])));
+        check(&polygon, &cut3(&lift(&polygon, case as usize % 3, [0, 1, -7][case as usize / 3 % 3])));
     }
-    assert!(concave > simple / 2, "{concave} of {simple}");
+    assert!(cases.have_more_than(0.5, concave), "{concave} of {}", cases.len());
 }
 
 #[test]
@@ -240,8 +245,8 @@ fn long_polygons() {
         assert_eq!(conflict(&polygon), None);
         check(&polygon, &cut3(&lift(&polygon, 1, 2)));
     }
-    let mut rng = ChaCha8Rng::seed_from_u64(4);
-    for round in 0..20 {
+    for case in cases(20, 6) {
+        let (round, mut rng) = (case as usize, rng("long polygons", case));
         // A star: corners in the order of their angle around the origin.
         let mut star: Vec<P> = (0..300).map(|_| [rng.random_range(-500..500), rng.random_range(-500..500)]).collect();
         #[allow(clippy::cast_precision_loss, reason = "small integers")]
@@ -255,12 +260,9 @@ fn long_polygons() {
 
 #[test]
 fn scaling_by_powers_of_two_changes_nothing() {
-    let mut rng = ChaCha8Rng::seed_from_u64(5);
-    let mut done = 0;
-    while done < 200 {
-        let Some(polygon) = random_simple(&mut rng) else { continue };
-        done += 1;
-        let corners = lift(&polygon, done % 3, 8);
+    for case in cases(200, 60) {
+        let polygon = simple(&mut rng("scaled polygons", case));
+        let corners = lift(&polygon, case as usize % 3, 8);
         let expected = cut3(&corners);
         for exponent in [-1073, -1000, -540, -300, 300, 540, 1000, 1016] {
             let half = exponent / 2;
@@ -334,9 +336,10 @@ fn spikes_and_repeated_corners_keep_outline_and_area() {
 fn polygons_that_cross_themselves_keep_their_outline() {
     check_edges(4, &cut3(&lift(&[[0, 0], [2, 2], [2, 0], [0, 2]], 0, 0)));
     check_edges(5, &cut3(&lift(&[[0, 3], [2, -3], [-3, 1], [3, 1], [-2, -3]], 0, 0)));
-    let mut rng = ChaCha8Rng::seed_from_u64(6);
     let mut fans = 0;
-    for round in 0..20_000 {
+    let cases = cases(20_000, 2_000);
+    for case in cases.clone() {
+        let (round, mut rng) = (case as usize, rng("crossed polygons", case));
         let n = rng.random_range(3..30);
         let size = rng.random_range(1..9);
         let polygon: Vec<P> = (0..n).map(|_| [rng.random_range(0..=size), rng.random_range(0..=size)]).collect();
@@ -350,16 +353,15 @@ fn polygons_that_cross_themselves_keep_their_outline() {
             fans += 1;
         }
     }
-    assert!((1000..19_000).contains(&fans), "{fans}");
+    let others = cases.len() - fans;
+    assert!(cases.have_more_than(0.05, fans) && cases.have_more_than(0.05, others), "{fans}");
 }
 
 #[test]
 fn polygons_that_are_not_planar_become_a_closed_patch() {
-    let mut rng = ChaCha8Rng::seed_from_u64(7);
-    let mut done = 0;
-    while done < 2000 {
-        let Some(polygon) = random_simple(&mut rng) else { continue };
-        done += 1;
+    for case in cases(2000, 200) {
+        let mut rng = rng("bent polygons", case);
+        let polygon = simple(&mut rng);
         let mut corners = lift(&polygon, 2, 0);
         for corner in &mut corners {
             corner[2] += rng.random_range(-0.01..0.01);
@@ -377,8 +379,8 @@ fn polygons_that_are_not_planar_become_a_closed_patch() {
 
 #[test]
 fn points_that_are_not_of_the_lattice() {
-    let mut rng = ChaCha8Rng::seed_from_u64(8);
-    for _ in 0..5000 {
+    for case in cases(5000, 400) {
+        let mut rng = rng("stars in any plane", case);
         // Stars around the origin, in a random plane.
         let n = rng.random_range(5..60);
         let (u, v) = (random_vector(&mut rng), random_vector(&mut rng));

@@ -106,10 +106,10 @@ mod tests {
     /// All that is within the radius is found, and little else; where there is more than asked for, that is said.
     #[test]
     fn balls_find_what_they_meet() {
-        let mut rng = p2m_testkit::rng("balls", 0);
         let (mut met, mut others) = (0, 0);
-        for round in 0..60 {
-            let scale = 2f64.powi([0, 40, -200][round % 3]);
+        for round in p2m_testkit::cases(60, 15) {
+            let mut rng = p2m_testkit::rng("balls", round);
+            let scale = 2f64.powi([0, 40, -200][(round % 3) as usize]);
             let mut point = |around: &Vector3<f64>, size: f64| Point3::from((around + vector(&mut rng) * size) * scale);
             let set: Vec<crate::Shape<f64>> = (0..400)
                 .map(|i| {

@@ -284,7 +284,7 @@ mod tests {
     use crate::packet::Member;
     use crate::{Directions, Isa, PrimitiveSet, Triangle};
     use nalgebra::{Point3, Vector3};
-    use p2m_testkit::vector;
+    use p2m_testkit::{Cases, cases, vector};
     use rand::RngExt;
 
     struct Entries<'a, N: WideNode>(&'a N, &'a N::Ray);
@@ -301,9 +301,9 @@ mod tests {
 
     /// Rays to points of some random triangles: how many were hit, all of whose places were entered, and how many other
     /// places were.
-    fn compare<N: WideNode>(shape: &N::Shape, name: &str) -> [usize; 2] {
+    fn compare<N: WideNode>(shape: &N::Shape, name: &str, cases: &Cases) -> [usize; 2] {
         let mut counts = [0; 2];
-        for case in 0..2_000 {
+        for case in cases.clone() {
             let mut rng = p2m_testkit::rng(name, case);
             let place = vector(&mut rng) * 2f64.powi(rng.random_range(-20..20));
             let scale = place.norm() * 2f64.powi(-rng.random_range(0..20));
@@ -370,11 +370,15 @@ mod tests {
 
     #[test]
     fn children_that_are_met_are_entered() {
-        let of_boxes = compare::<BoxNode>(&(), "rays and nodes");
-        let of_six = compare::<SlabNode<6>>(&Slabs::new(&Directions::default()), "rays and nodes");
-        let of_more = compare::<SlabNode<26>>(&Slabs::new(&Directions::default()), "rays and nodes");
+        let (name, cases) = ("rays and nodes", cases(2_000, 500));
+        let of_boxes = compare::<BoxNode>(&(), name, &cases);
+        let of_six = compare::<SlabNode<6>>(&Slabs::new(&Directions::default()), name, &cases);
+        let of_more = compare::<SlabNode<26>>(&Slabs::new(&Directions::default()), name, &cases);
         println!("hit, and entered besides: boxes {of_boxes:?}, 6-DOPs {of_six:?}, 26-DOPs {of_more:?}");
-        assert!(of_boxes[0] > 20_000 && of_boxes[0] == of_six[0] && of_six[0] == of_more[0]);
+        assert!(cases.have_more_than(10.0, of_boxes[0]) && of_boxes[0] == of_six[0] && of_six[0] == of_more[0]);
+        if cases.is_replay() {
+            return;
+        }
         assert!(of_more[1] * 3 < of_boxes[1] * 2 && of_boxes[1] < of_boxes[0], "{of_boxes:?} {of_more:?}");
         assert!(of_six[1].abs_diff(of_boxes[1]) * 100 < of_boxes[1], "{of_boxes:?} {of_six:?}");
     }
