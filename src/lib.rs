@@ -68,8 +68,8 @@
 //! |---|---|---|
 //! | `bvh` | [`AabbTree`] | yes |
 //! | `interception` | [`OctreeIndex`], [`P2mIndex`] | yes |
-//! | `kiddo` | `KdTreeLocator`, the paper's way to the nearest vertex, for [`P2mIndexWith`] | no |
-//! | `rstar` | `RegionTree`, the paper's filter of long lists, for [`P2mIndexWith`]; `scene::adapters::RstarIndex` | no |
+//! | `kiddo` | `KdTreeLocator`, the paper's way to the nearest vertex, for [`P2mOptions`] | no |
+//! | `rstar` | `RegionTree`, the paper's filter of long lists, for [`P2mOptions`]; `scene::adapters::RstarIndex` | no |
 //! | `parry` | shapes of parry3d-f64 in [`scene`]s; its tree as an index, `scene::adapters::ParryIndex` | no |
 //! | `parry-f32` | shapes of parry3d in [`scene`]s | no |
 //! | `mint` | positions of the crate mint in [`scene`] | no |
@@ -96,9 +96,7 @@ pub use p2m_interception::KdTreeLocator;
 #[cfg(feature = "rstar")]
 pub use p2m_interception::RegionTree;
 #[cfg(feature = "interception")]
-pub use p2m_interception::{
-    Domain, OctreeIndex, OctreeOptions, OctreeReport, P2mIndex, P2mIndexWith, P2mOptions, P2mReport,
-};
+pub use p2m_interception::{Domain, OctreeIndex, OctreeOptions, OctreeReport, P2mIndex, P2mOptions, P2mReport};
 /// What else there is about k-DOPs: polytopes, overlap of trees, directions from a scene.
 #[cfg(feature = "kdop")]
 pub use p2m_kdop as kdop;

@@ -12,8 +12,7 @@ use p2m_core::{
     QueryOptions, Soup,
 };
 use p2m_interception::{
-    Hints, InterceptionIndex, KdTreeLocator, ListFilter, Octree, OctreeOptions, P2mOptions, Partition, RegionTree,
-    SortedLists, Voronoi,
+    InterceptionIndex, KdTreeLocator, Octree, OctreeOptions, P2mOptions, Partition, RegionTree, Voronoi,
 };
 use p2m_kdop::{Choice, KdopOptions, KdopTree};
 use p2m_mixed::adapters::{ParryIndex, RstarIndex};
@@ -36,10 +35,14 @@ pub(crate) const ALL: &[Backend] = &[
     Backend { name: "octree-fine", prepare: |s| octree::<f64>(s, None, 10.0), ..OURS },
     Backend { name: "p2m", prepare: |s| p2m::<f64>(s, None), ..OURS },
     Backend { name: "p2m-avx2", prepare: |s| p2m::<f64>(s, Some("avx2")), ..OURS },
-    Backend { name: "p2m-kiddo", prepare: p2m_with_kd_tree, ..OURS },
-    Backend { name: "p2m-rstar", prepare: |s| p2m_filtered::<RegionTree>(s, p2m_options()), ..OURS },
-    Backend { name: "p2m-long", prepare: |s| p2m_filtered::<SortedLists>(s, long_lists()), ..OURS },
-    Backend { name: "p2m-long-rstar", prepare: |s| p2m_filtered::<RegionTree>(s, long_lists()), ..OURS },
+    Backend { name: "p2m-kiddo", prepare: |s| p2m_with(s, p2m_options().with_locator(KdTreeLocator::build)), ..OURS },
+    Backend { name: "p2m-rstar", prepare: |s| p2m_with(s, p2m_options().with_list_filter(RegionTree::build)), ..OURS },
+    Backend { name: "p2m-long", prepare: |s| p2m_with(s, long_lists()), ..OURS },
+    Backend {
+        name: "p2m-long-rstar",
+        prepare: |s| p2m_with(s, long_lists().with_list_filter(RegionTree::build)),
+        ..OURS
+    },
     Backend { name: "p2m-batch", prepare: p2m_in_batches, ..OURS },
     Backend { name: "rstar", prepare: |s| over_soup::<f64, RstarIndex<_, _>>(s), ..OURS },
     Backend { name: "parry-tree", prepare: |s| over_soup::<f64, ParryIndex<_, _>>(s), ..OURS },
@@ -211,14 +214,9 @@ fn p2m<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'a
     cells::<T, Voronoi>(scene, isa, p2m_options())
 }
 
-/// The P2M index with the paper's locator.
-fn p2m_with_kd_tree(scene: &Scene) -> Result<Prepared<'_>, Absent> {
-    cells::<f64, Voronoi<KdTreeLocator>>(scene, None, p2m_options())
-}
-
-/// The P2M index with some filter of long lists.
-fn p2m_filtered<F: ListFilter + 'static>(scene: &Scene, options: P2mOptions) -> Result<Prepared<'_>, Absent> {
-    cells::<f64, Voronoi<Hints, F>>(scene, None, options)
+/// The P2M index with options of its own.
+fn p2m_with(scene: &Scene, options: P2mOptions) -> Result<Prepared<'_>, Absent> {
+    cells::<f64, Voronoi>(scene, None, options)
 }
 
 /// As in the paper: no site is added, and lists may be long.

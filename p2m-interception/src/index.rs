@@ -1,5 +1,5 @@
 use nalgebra::Point3;
-use p2m_core::interception::{Hints, Octree, Partition, Progress, SIDE_BY_SIDE, SortedLists, Voronoi};
+use p2m_core::interception::{Octree, Partition, Progress, SIDE_BY_SIDE, Voronoi};
 use p2m_core::saved::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{
     Best, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestPoint, Collector, Counting, Examine, Isa, Near,
@@ -27,11 +27,7 @@ pub type OctreeIndex<T, S> = InterceptionIndex<T, S, Octree>;
 ///
 /// # References
 /// \[Zong2023\]
-pub type P2mIndex<T, S> = P2mIndexWith<T, S, Hints, SortedLists>;
-
-/// [`P2mIndex`] with another [`Locator`](p2m_core::interception::Locator) or
-/// [`ListFilter`](p2m_core::interception::ListFilter).
-pub type P2mIndexWith<T, S, L, F> = InterceptionIndex<T, S, Voronoi<L, F>>;
+pub type P2mIndex<T, S> = InterceptionIndex<T, S, Voronoi>;
 
 /// An interception index over a set of primitives, which it keeps.
 #[derive(Clone, Debug)]

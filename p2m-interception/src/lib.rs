@@ -26,12 +26,12 @@ mod kd_tree;
 #[cfg(feature = "rstar")]
 mod region_tree;
 
-pub use index::{InterceptionIndex, OctreeIndex, P2mIndex, P2mIndexWith};
+pub use index::{InterceptionIndex, OctreeIndex, P2mIndex};
 #[cfg(feature = "kiddo")]
 pub use kd_tree::KdTreeLocator;
 pub use p2m_core::interception::{
-    Domain, Hints, ListFilter, Locator, LocatorSites, Octree, OctreeOptions, OctreeReport, P2mOptions, P2mReport,
-    Partition, Progress, Region, SortedLists, Stage, Voronoi,
+    BuildListFilter, BuildLocator, Domain, ListFilter, Locator, LocatorSites, Octree, OctreeOptions, OctreeReport,
+    P2mOptions, P2mReport, Partition, Progress, Region, Stage, Voronoi,
 };
 #[cfg(feature = "rstar")]
 pub use region_tree::RegionTree;

@@ -1,102 +1,67 @@
 //! Answers depend neither on the locator nor on the filter of lists.
 
 use nalgebra::Point3;
+use p2m_core::saved::{SavedFile, Writer};
 use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Counting, Soup};
 use p2m_interception::{
-    Hints, KdTreeLocator, ListFilter, Locator, LocatorSites, P2mIndexWith, P2mOptions, Region, RegionTree,
+    BuildListFilter, BuildLocator, KdTreeLocator, ListFilter, Locator, LocatorSites, P2mIndex, P2mOptions, Region,
+    RegionTree,
 };
 use p2m_testkit::scenes::{self, of_case};
 use p2m_testkit::{amount, cases, rng, vector};
-use std::sync::Mutex;
+use std::sync::Arc;
 
-/// One index of any locator and filter: each type of an index compiles every search anew.
-type Index<'a> = P2mIndexWith<f64, &'a Soup<f64>, AnyLocator, AnyFilter>;
+type Index<'a> = P2mIndex<f64, &'a Soup<f64>>;
 
-/// Which locator and which filter an index has that is built now.
-static PARTS: Mutex<(LocatorKind, FilterKind)> = Mutex::new((LocatorKind::Hints, FilterKind::Tree));
+/// A locator that answers every query with the same site, or with none.
+#[derive(Debug)]
+struct Constant(Option<usize>);
 
-#[derive(Clone, Copy, Debug)]
-enum LocatorKind {
-    Hints,
-    KdTree,
-    /// The first site, wherever the query is.
-    First,
-    /// Knows nothing.
-    Nothing,
-}
-
-enum AnyLocator {
-    Hints(Box<Hints>),
-    KdTree(KdTreeLocator),
-    Always(Option<usize>),
-}
-
-impl Locator for AnyLocator {
-    fn new(sites: &LocatorSites<'_>) -> Self {
-        match PARTS.lock().expect("no panic").0 {
-            LocatorKind::Hints => Self::Hints(Box::new(Hints::new(sites))),
-            LocatorKind::KdTree => Self::KdTree(KdTreeLocator::new(sites)),
-            LocatorKind::First => Self::Always(Some(sites.first())),
-            LocatorKind::Nothing => Self::Always(None),
-        }
-    }
-    fn start(&self, place: &[f64; 3]) -> Option<usize> {
-        match self {
-            Self::Hints(hints) => hints.start(place),
-            Self::KdTree(tree) => tree.start(place),
-            Self::Always(site) => *site,
-        }
+impl Locator for Constant {
+    fn start(&self, _: &[f64; 3]) -> Option<usize> {
+        self.0
     }
     fn memory(&self) -> usize {
         0
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-enum FilterKind {
-    Tree,
-    /// Finds boxes one by one.
-    OneByOne,
-    /// Leaves nothing out.
-    All,
+fn first_site(sites: &LocatorSites<'_>) -> Arc<dyn Locator> {
+    Arc::new(Constant(Some(sites.first())))
 }
 
-enum AnyFilter {
-    Tree(RegionTree),
-    OneByOne { regions: Vec<Region>, takes_all: bool },
+fn no_site(_: &LocatorSites<'_>) -> Arc<dyn Locator> {
+    Arc::new(Constant(None))
 }
 
-impl ListFilter for AnyFilter {
-    const IS_USED: bool = true;
+/// A filter that looks at all regions one by one, and chooses all of them if it `takes_all`.
+#[derive(Debug)]
+struct OneByOne {
+    regions: Vec<Region>,
+    takes_all: bool,
+}
 
-    fn new(regions: Vec<Region>) -> Self {
-        match PARTS.lock().expect("no panic").1 {
-            FilterKind::Tree => Self::Tree(RegionTree::new(regions)),
-            FilterKind::OneByOne => Self::OneByOne { regions, takes_all: false },
-            FilterKind::All => Self::OneByOne { regions, takes_all: true },
-        }
-    }
-    fn containing(&self, place: &[f64; 3]) -> impl Iterator<Item = &Region> {
-        let found: Vec<&Region> = match self {
-            Self::Tree(tree) => tree.containing(place).collect(),
-            Self::OneByOne { regions, takes_all } => {
-                regions.iter().filter(|region| *takes_all || region.contains(place)).collect()
-            }
-        };
-        found.into_iter()
+impl ListFilter for OneByOne {
+    fn containing(&self, place: &[f64; 3], visit: &mut dyn FnMut(&Region)) {
+        self.regions.iter().filter(|region| self.takes_all || region.contains(place)).for_each(visit);
     }
     fn memory(&self) -> usize {
         0
     }
 }
 
-/// With filters of lists of more than so many primitives.
-fn built(soup: &Soup<f64>, locator: LocatorKind, filter: FilterKind, above: usize) -> Index<'_> {
-    // One at a time.
-    static TURN: Mutex<()> = Mutex::new(());
-    let _turn = TURN.lock().expect("no panic");
-    *PARTS.lock().expect("no panic") = (locator, filter);
-    Index::build(soup, &P2mOptions::default().with_filter_above(above)).expect("valid")
+fn one_by_one(regions: Vec<Region>) -> Arc<dyn ListFilter> {
+    Arc::new(OneByOne { regions, takes_all: false })
+}
+
+fn all_regions(regions: Vec<Region>) -> Arc<dyn ListFilter> {
+    Arc::new(OneByOne { regions, takes_all: true })
+}
+
+/// An index with filters of lists of more than so many primitives.
+fn filtered(soup: &Soup<f64>, filter: BuildListFilter, above: usize) -> Index<'_> {
+    let options = P2mOptions::default().with_list_filter(filter).with_filter_above(above);
+    Index::build(soup, &options).expect("valid")
 }
 
 type Answers = Vec<Option<(u64, usize)>>;
@@ -128,12 +93,11 @@ fn every_filter_leaves_the_answer() {
             (0..amount(150, 20)).map(|i| Point3::from(vector(&mut rng) * [1.0, 4.0, 9.0][i % 3])).collect();
         queries.extend(soup.positions().iter().take(amount(50, 10)));
         let expected = answers(&BruteForce::new(&soup).expect("valid"), &queries);
-        let filtered = |filter, above| built(&soup, LocatorKind::Hints, filter, above);
-        let trees = filtered(FilterKind::Tree, 0);
-        let [chosen, everything] = [FilterKind::OneByOne, FilterKind::All].map(|filter| filtered(filter, 0));
+        let trees = filtered(&soup, RegionTree::build, 0);
+        let (chosen, everything) = (filtered(&soup, one_by_one, 0), filtered(&soup, all_regions, 0));
         assert_eq!(answers(&trees, &queries), expected, "case {case}: {kinds:?} {layout:?}");
         assert_eq!(
-            answers(&filtered(FilterKind::Tree, 30), &queries),
+            answers(&filtered(&soup, RegionTree::build, 30), &queries),
             expected,
             "case {case}: {kinds:?} {layout:?}, long ones"
         );
@@ -159,12 +123,36 @@ fn every_locator_leads_to_the_answer() {
             (0..amount(150, 20)).map(|i| Point3::from(vector(&mut rng) * [1.0, 20.0, 1e9][i % 3])).collect();
         queries.extend(soup.positions().iter().take(amount(50, 10)));
         let expected = answers(&BruteForce::new(&soup).expect("valid"), &queries);
-        for locator in [LocatorKind::KdTree, LocatorKind::First, LocatorKind::Nothing] {
-            let index = built(&soup, locator, FilterKind::Tree, usize::MAX);
+        let locators: [(&str, BuildLocator); 3] =
+            [("k-d tree", KdTreeLocator::build), ("first site", first_site), ("no site", no_site)];
+        for (name, locator) in locators {
+            let index = Index::build(&soup, &P2mOptions::default().with_locator(locator)).expect("valid");
             assert_eq!(index.report().filtered, 0);
             lists += index.report().lists;
-            assert_eq!(answers(&index, &queries), expected, "case {case}: {kinds:?} {layout:?}, {locator:?}");
+            assert_eq!(answers(&index, &queries), expected, "case {case}: {kinds:?} {layout:?}, {name}");
         }
     }
     assert!(cases.have_more_than(amount(625.0, 120.0), lists), "{lists}");
+}
+
+#[test]
+fn a_saved_index_has_a_grid_in_the_place_of_another_locator() {
+    let soup = scenes::skewed_gear(400);
+    let queries: Vec<_> = soup.positions().iter().map(|p| p + vector(&mut rng("saved locators", 0)) * 0.1).collect();
+    let saved = |options: &P2mOptions| {
+        let index = Index::build(&soup, options).expect("valid");
+        let (mut writer, mut bytes) = (Writer::default(), Vec::new());
+        index.save(&mut writer);
+        writer.write(&mut bytes).expect("in memory");
+        bytes
+    };
+    let options = P2mOptions::default();
+    let bytes = saved(&options.with_locator(KdTreeLocator::build).with_list_filter(RegionTree::build));
+    let file = SavedFile::read(&bytes[..]).expect("complete");
+    let loaded = Index::load(&soup, file.checked().expect("whole")).expect("an index");
+    let built = Index::build(&soup, &options).expect("valid");
+    assert!(built.report().lists > 100, "{}", built.report());
+    assert_eq!(answers(&loaded, &queries), answers(&built, &queries));
+    // The same packets are looked at, so the lists and the sites that queries end at are the same.
+    assert_eq!(packets(&loaded, &queries), packets(&built, &queries));
 }

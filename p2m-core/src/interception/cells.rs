@@ -13,7 +13,7 @@ use super::corner::{AtPoints, Found, Least};
 use super::fan::{Fans, Outside};
 use super::features::{Features, Incidences, NONE};
 use super::hull::Hull;
-use super::list_filter::{Filters, ListFilter, Region};
+use super::list_filter::{BuildListFilter, Filters, ListFilter, Region};
 use super::matters::{Around, Missed, Outlines, Scene, Seen};
 use super::options::P2mReport;
 use super::progress::{Stage, Teller};
@@ -27,27 +27,28 @@ use crate::packet::{LANES, Packet};
 use crate::simd::{InstructionSet, Operation};
 use crate::{Best, QueryOptions};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// What is needed to make lists.
 pub(super) struct Cells<'a> {
     pub(super) tree: &'a PacketTree,
     pub(super) sites: &'a Sites,
     pub(super) limits: Limits<'a>,
-    /// Lists of more primitives have a filter.
-    pub(super) filter_above: usize,
+    /// Makes a filter for each list of more primitives than the number, if there are filters.
+    pub(super) filter: Option<(usize, BuildListFilter)>,
 }
 
 /// The sites with their neighbours, the blocks of their lists, the first one of each at its own number, and the filters
 /// of long ones.
-pub(super) struct Lists<F> {
+pub(super) struct Lists {
     pub(super) fans: Fans,
     pub(super) blocks: Vec<Block>,
-    pub(super) filters: Filters<F>,
+    pub(super) filters: Filters,
 }
 
 impl Cells<'_> {
     /// The lists of all sites; `None` where these take too much. `teller` is told how many are done.
-    pub(super) fn lists<F: ListFilter>(&self, report: &mut P2mReport, teller: &Teller<'_>) -> Option<Lists<F>> {
+    pub(super) fn lists(&self, report: &mut P2mReport, teller: &Teller<'_>) -> Option<Lists> {
         teller.begin(Stage::Lists);
         let sites = self.sites.delaunay.sites();
         let tetrahedra = self.sites.delaunay.tetrahedra();
@@ -65,13 +66,13 @@ impl Cells<'_> {
         let nothing =
             Block::of_list(&[Entry { packet: 0, lanes: 0, bounds: [[0.0; 3]; 2], f: [0.0; 8] }], Bounds::Boxes);
         let mut blocks = vec![nothing[0]; sites.len()];
-        let mut filters = Filters::new(sites.len());
+        let mut filters = if self.filter.is_some() { Filters::new(sites.len()) } else { Filters::default() };
         let mut records = fans.sites.edit(std::mem::take);
         report.added = self.sites.added;
         let outlines = Outlines::of(self.tree);
         let work = |share| self.share(share, &around, &features, &outlines);
         let allowance = self.limits.allowance;
-        in_shares(sites.len(), self.limits.parallel, work, |share: Share<F>| {
+        in_shares(sites.len(), self.limits.parallel, work, |share: Share| {
             if !allowance.holds::<Block>(blocks.len() + share.blocks.len()) {
                 return;
             }
@@ -107,13 +108,7 @@ impl Cells<'_> {
     }
 
     /// The lists of some sites.
-    fn share<F: ListFilter>(
-        &self,
-        sites: Range<usize>,
-        around: &Incidences,
-        features: &Features,
-        outlines: &Outlines,
-    ) -> Share<F> {
+    fn share(&self, sites: Range<usize>, around: &Incidences, features: &Features, outlines: &Outlines) -> Share {
         let corners = &self.sites.corners;
         let mut share = Share {
             cells: Vec::new(),
@@ -141,8 +136,10 @@ impl Cells<'_> {
                 if !entries.is_empty() {
                     let primitives: usize = entries.iter().map(|entry| entry.lanes.count_ones() as usize).sum();
                     share.primitives += primitives;
-                    made.filter =
-                        (F::IS_USED && primitives > self.filter_above).then(|| F::new(cell.regions(self, &entries)));
+                    made.filter = self
+                        .filter
+                        .filter(|(above, _)| primitives > *above)
+                        .map(|(_, build)| build(cell.regions(self, &entries)));
                     made.outside = cell.outside(self, features, &entries);
                     let first = share.blocks.len();
                     share.blocks.extend(Block::of_list(&entries, Bounds::Boxes));
@@ -158,8 +155,8 @@ impl Cells<'_> {
 }
 
 /// The lists of some sites.
-struct Share<F> {
-    cells: Vec<Made<F>>,
+struct Share {
+    cells: Vec<Made>,
     blocks: Vec<Block>,
     entries: usize,
     primitives: usize,
@@ -168,11 +165,11 @@ struct Share<F> {
 }
 
 /// What is known of a cell.
-struct Made<F> {
+struct Made {
     site: usize,
     list: List,
     outside: Option<Outside>,
-    filter: Option<F>,
+    filter: Option<Arc<dyn ListFilter>>,
 }
 
 enum List {

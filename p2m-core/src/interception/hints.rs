@@ -2,7 +2,7 @@
 //! its cells with several sites are cut into 64. A coarser one lies over the whole domain.
 
 use super::fan::Fans;
-use super::locator::{Locator, LocatorSites};
+use super::locator::LocatorSites;
 use crate::kernel::vector::V3;
 use crate::saved::{Array, LoadError, Reader, Writer};
 use crate::simd::{InstructionSet, Operation, prefetch};
@@ -19,9 +19,9 @@ pub(super) struct Grid {
     fine: Array<[u32; FINE * FINE * FINE]>,
 }
 
-/// Two grids: the usual [`Locator`].
+/// The default locator of an index: a fine grid around the scene and a coarse one over the whole domain.
 #[derive(Clone, Debug)]
-pub struct Hints {
+pub(super) struct Hints {
     near: Grid,
     far: Grid,
 }
@@ -109,6 +109,17 @@ impl Grid {
     fn save<'a>(&'a self, name: &str, writer: &mut Writer<'a>) {
         writer.put(&format!("{name}/cells"), &self.cells);
         writer.put(&format!("{name}/finer"), &self.fine);
+        self.save_shape(name, writer);
+    }
+
+    /// Saves copies of the arrays, for a grid that does not outlive the writer.
+    fn save_copy(&self, name: &str, writer: &mut Writer<'_>) {
+        writer.put_copy(&format!("{name}/cells"), &self.cells);
+        writer.put_copy(&format!("{name}/finer"), &self.fine);
+        self.save_shape(name, writer);
+    }
+
+    fn save_shape(&self, name: &str, writer: &mut Writer<'_>) {
         writer.put_copy(&format!("{name}/place"), &[[self.low[0], self.low[1], self.low[2], self.per_length]]);
         writer.put_copy(&format!("{name}/counts"), &[self.counts.map(|n| n as u64)]);
     }
@@ -133,15 +144,20 @@ impl Hints {
         self.far.save("hints/far", writer);
     }
 
+    /// Saves copies of the arrays, for a locator that does not outlive the writer.
+    pub(super) fn save_copy(&self, writer: &mut Writer<'_>) {
+        self.near.save_copy("hints/near", writer);
+        self.far.save_copy("hints/far", writer);
+    }
+
     pub(super) fn load(reader: &Reader) -> Result<Self, LoadError> {
         Ok(Self { near: Grid::load("hints/near", reader)?, far: Grid::load("hints/far", reader)? })
     }
 }
 
-impl Locator for Hints {
-    const IS_USUAL: bool = true;
-
-    fn new(sites: &LocatorSites<'_>) -> Self {
+impl Hints {
+    /// Makes both grids for some sites.
+    pub(super) fn new(sites: &LocatorSites<'_>) -> Self {
         let count = sites.places().count() as f64;
         let [mut near, mut far] = [(sites.own, CELLS * count), (sites.domain, SIDE.powi(3).min(CELLS * count))]
             .map(|([low, high], count)| Grid::new(low, high, count));
@@ -156,21 +172,21 @@ impl Locator for Hints {
     }
 
     #[inline(always)]
-    fn start(&self, place: &V3) -> Option<usize> {
+    pub(super) fn start(&self, place: &V3) -> Option<usize> {
         self.near.site(place).or_else(|| self.far.site(place))
     }
 
-    fn memory(&self) -> usize {
+    pub(super) fn memory(&self) -> usize {
         self.near.memory() + self.far.memory()
     }
 
     #[inline(always)]
-    fn prefetch(&self, place: &V3) {
+    pub(super) fn prefetch(&self, place: &V3) {
         let _ = self.near.prefetch(place) || self.far.prefetch(place);
     }
 
     #[inline(always)]
-    fn prefetch_more(&self, place: &V3) {
+    pub(super) fn prefetch_more(&self, place: &V3) {
         let _ = self.near.prefetch_fine(place) || self.far.prefetch_fine(place);
     }
 }

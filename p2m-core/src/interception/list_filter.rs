@@ -1,6 +1,8 @@
 //! Which primitives of a long list are worth a look, by where the query is.
 
 use crate::kernel::vector::V3;
+use std::fmt::Debug;
+use std::sync::Arc;
 
 /// A primitive of a list, with a box around all places of its cell where it may be the answer.
 ///
@@ -40,92 +42,62 @@ impl Region {
 
 /// Chooses among the primitives of a long list.
 ///
-/// A list has at least those in whose boxes the query is; to choose more is no mistake, but takes time, so answers do
-/// not depend on the filter. A list without a filter is searched in the order of lower bounds on the distances.
-pub trait ListFilter: Send + Sync + Sized + 'static {
-    /// Whether this is [`SortedLists`], with which queries are compiled in this crate.
-    #[doc(hidden)]
-    const IS_USUAL: bool = false;
+/// The choice has at least those primitives in whose boxes the query point is. Choosing more only takes time, so answers
+/// do not depend on the filter. A list without a filter is searched in the order of the lower bounds on its packets.
+pub trait ListFilter: Debug + Send + Sync {
+    /// Calls `visit` for each primitive in whose box a point is, once each, in any order.
+    fn containing(&self, place: &[f64; 3], visit: &mut dyn FnMut(&Region));
 
-    /// Whether there are filters at all.
-    const IS_USED: bool;
-
-    /// For the primitives of one list.
-    fn new(regions: Vec<Region>) -> Self;
-
-    /// The primitives in whose boxes a place is, each once, in any order.
-    fn containing(&self, place: &[f64; 3]) -> impl Iterator<Item = &Region>;
-
-    /// Heap memory, in bytes.
+    /// The heap memory that the filter owns, in bytes.
     fn memory(&self) -> usize;
 }
 
-/// No filter: all lists are searched in the order of lower bounds on the distances to their packets.
-#[derive(Clone, Copy, Debug)]
-pub enum SortedLists {}
+/// Makes the filter of one list from its regions: a function such as `RegionTree::build`.
+pub type BuildListFilter = fn(Vec<Region>) -> Arc<dyn ListFilter>;
 
-impl ListFilter for SortedLists {
-    const IS_USUAL: bool = true;
-    const IS_USED: bool = false;
-
-    fn new(_: Vec<Region>) -> Self {
-        unreachable!("no list has a filter")
-    }
-
-    fn containing(&self, _: &[f64; 3]) -> impl Iterator<Item = &Region> {
-        std::iter::empty()
-    }
-
-    fn memory(&self) -> usize {
-        0
-    }
-}
-
-/// The filters of an index: of each site its number among them, or [`NONE`].
-#[derive(Clone, Debug)]
-pub(super) struct Filters<F> {
+/// The filters of an index. `numbers` has the number of each site's filter, or [`NONE`]; it is empty without filters.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Filters {
     numbers: Vec<u32>,
-    all: Vec<F>,
+    all: Vec<Arc<dyn ListFilter>>,
 }
 
 const NONE: u32 = u32::MAX;
 
-impl<F> Default for Filters<F> {
-    fn default() -> Self {
-        Self { numbers: Vec::new(), all: Vec::new() }
-    }
-}
-
-impl<F: ListFilter> Filters<F> {
+impl Filters {
     pub(super) fn new(sites: usize) -> Self {
-        Self { numbers: vec![NONE; if F::IS_USED { sites } else { 0 }], all: Vec::new() }
+        Self { numbers: vec![NONE; sites], all: Vec::new() }
     }
 
-    pub(super) fn add(&mut self, site: usize, filter: F) {
+    pub(super) fn add(&mut self, site: usize, filter: Arc<dyn ListFilter>) {
         self.numbers[site] = u32::try_from(self.all.len()).expect("fewer than sites");
         self.all.push(filter);
     }
 
-    /// The filter of a site's list.
+    /// The filter of a site's list, if it has one.
     #[inline(always)]
-    pub(super) fn of(&self, site: usize) -> Option<&F> {
-        if F::IS_USED { self.all.get(self.numbers[site] as usize) } else { None }
+    pub(super) fn of(&self, site: usize) -> Option<&dyn ListFilter> {
+        if self.all.is_empty() {
+            return None;
+        }
+        self.all.get(self.numbers[site] as usize).map(|filter| &**filter)
     }
 
-    /// How many lists have one.
+    /// How many lists have a filter.
     pub(super) fn count(&self) -> usize {
         self.all.len()
     }
 
     pub(super) fn memory(&self) -> usize {
         self.numbers.capacity() * size_of::<u32>()
-            + self.all.capacity() * size_of::<F>()
-            + self.all.iter().map(F::memory).sum::<usize>()
+            + self.all.capacity() * size_of::<Arc<dyn ListFilter>>()
+            + self.all.iter().map(|filter| filter.memory()).sum::<usize>()
     }
 
-    /// The packets that a filter chooses for a place, in ascending order, with their lanes.
-    pub(super) fn packets(filter: &F, place: &V3) -> Vec<(u32, u16)> {
-        let mut chosen: Vec<_> = filter.containing(place).map(|region| (region.packet, region.lanes)).collect();
+    /// The packets that a filter chooses for a point, in ascending order, with their lanes.
+    pub(super) fn packets(filter: &dyn ListFilter, place: &V3) -> Vec<(u32, u16)> {
+        let mut chosen: Vec<(u32, u16)> = Vec::new();
+        filter.containing(place, &mut |region| chosen.push((region.packet, region.lanes)));
         chosen.sort_unstable();
         let packets = chosen.chunk_by(|a, b| a.0 == b.0);
         packets.map(|own| (own[0].0, own.iter().fold(0, |lanes, one| lanes | one.1))).collect()

@@ -1,36 +1,67 @@
 //! Where the walk to the cell of a query begins.
 
 use super::fan::Fans;
-use super::hints::{Fill, Grid};
+use super::hints::{Fill, Grid, Hints};
 use crate::delaunay::BOUNDING;
 use crate::kernel::vector::V3;
 use crate::simd::Isa;
+use std::fmt::Debug;
+use std::sync::Arc;
 
-/// Finds a site near a query.
+/// Finds a site near a query point.
 ///
-/// Any site will do: from there the index walks to the nearest one, of which it is certain. So answers do not depend on
-/// the locator, and it may err, but for numbers that no site has: for these searches panic.
-pub trait Locator: Send + Sync + Sized + 'static {
-    /// Whether this is [`Hints`](super::Hints), with which queries are compiled in this crate.
-    #[doc(hidden)]
-    const IS_USUAL: bool = false;
-
-    /// For some sites.
-    fn new(sites: &LocatorSites<'_>) -> Self;
-
-    /// The number of a site near a place in the domain; `None` for none, then the tree answers.
+/// Any site will do: the index walks from there to the nearest site, whose cell holds the query point. So answers do not
+/// depend on the locator. A number that no site has makes searches panic.
+pub trait Locator: Debug + Send + Sync {
+    /// Returns the number of a site near a point of the domain, or `None` if the tree should answer. The point is in the
+    /// units of [`LocatorSites::places`].
     fn start(&self, place: &[f64; 3]) -> Option<usize>;
 
-    /// Heap memory, in bytes.
+    /// The heap memory that the locator owns, in bytes.
     fn memory(&self) -> usize;
+}
 
-    /// Asks for the memory that [`start`](Self::start) reads first,
-    #[inline(always)]
-    fn prefetch(&self, _place: &[f64; 3]) {}
+/// Makes the locator of an index from its sites: a function such as `KdTreeLocator::build`.
+pub type BuildLocator = fn(&LocatorSites<'_>) -> Arc<dyn Locator>;
 
-    /// and for what it reads then.
+/// The locator of an index. Calls of the grid are direct, since it is the default.
+#[derive(Clone, Debug)]
+pub(super) enum AnyLocator {
+    Grid(Hints),
+    Other(Arc<dyn Locator>),
+}
+
+impl AnyLocator {
     #[inline(always)]
-    fn prefetch_more(&self, _place: &[f64; 3]) {}
+    pub(super) fn start(&self, place: &V3) -> Option<usize> {
+        match self {
+            Self::Grid(grid) => grid.start(place),
+            Self::Other(locator) => locator.start(place),
+        }
+    }
+
+    pub(super) fn memory(&self) -> usize {
+        match self {
+            Self::Grid(grid) => grid.memory(),
+            Self::Other(locator) => locator.memory(),
+        }
+    }
+
+    /// Prefetches the memory that [`start`](Self::start) reads first.
+    #[inline(always)]
+    pub(super) fn prefetch(&self, place: &V3) {
+        if let Self::Grid(grid) = self {
+            grid.prefetch(place);
+        }
+    }
+
+    /// Prefetches the memory that [`start`](Self::start) reads second.
+    #[inline(always)]
+    pub(super) fn prefetch_more(&self, place: &V3) {
+        if let Self::Grid(grid) = self {
+            grid.prefetch_more(place);
+        }
+    }
 }
 
 /// Sites by their numbers, in the units that places are given in.

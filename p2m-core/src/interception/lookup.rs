@@ -8,7 +8,6 @@
 use super::block::{self, Block, Place};
 use super::fan::{Fans, Found, Site};
 use super::list_filter::{Filters, ListFilter};
-use super::locator::Locator;
 use super::partition::{LookUp, SIDE_BY_SIDE};
 use super::voronoi::{AUXILIARY, Voronoi};
 use crate::hierarchy::PacketTree;
@@ -20,11 +19,10 @@ use crate::predicates::staged::RANGE;
 use crate::query::Minimum;
 use crate::real::wide;
 use crate::simd::{InstructionSet, Operation, prefetch_lines};
-use crate::{Collector, Near};
+use crate::{Aabb, Collector, Near};
 use nalgebra::Point3;
-use std::any::Any;
 
-impl<L: Locator, F: ListFilter> LookUp for Voronoi<L, F> {
+impl LookUp for Voronoi {
     #[inline(always)]
     fn look_up<C: Collector>(
         &self,
@@ -45,16 +43,10 @@ impl<L: Locator, F: ListFilter> LookUp for Voronoi<L, F> {
     }
 
     fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
-        if const { Self::IS_USUAL } {
-            return usual::nearest(self.as_usual(), query, minimum, evaluate);
-        }
         self.look_up(query, minimum, evaluate, finish_nearest);
     }
 
     fn near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>) {
-        if const { Self::IS_USUAL } {
-            return usual::near(self.as_usual(), query, near, evaluate);
-        }
         self.look_up(query, near, evaluate, finish);
     }
 
@@ -64,48 +56,11 @@ impl<L: Locator, F: ListFilter> LookUp for Voronoi<L, F> {
         minimums: [&mut Minimum; SIDE_BY_SIDE],
         evaluates: [Evaluate<'_, Minimum>; SIDE_BY_SIDE],
     ) {
-        if const { Self::IS_USUAL } {
-            return usual::nearest_of_several(self.as_usual(), queries, minimums, evaluates);
-        }
         self.tree.isa().run(Several { index: self, queries, minimums, evaluates });
     }
 }
 
-/// What an index with the usual locator and filter is asked, in functions that are not generic: so it is compiled once, in this
-/// crate, and not again wherever such an index is asked.
-mod usual {
-    use super::*;
-
-    #[inline(never)]
-    pub(super) fn nearest(index: &Voronoi, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
-        index.look_up(query, minimum, evaluate, finish_nearest);
-    }
-
-    #[inline(never)]
-    pub(super) fn near<'n>(index: &Voronoi, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>) {
-        index.look_up(query, near, evaluate, finish);
-    }
-
-    #[inline(never)]
-    pub(super) fn nearest_of_several(
-        index: &Voronoi,
-        queries: &[V3; SIDE_BY_SIDE],
-        minimums: [&mut Minimum; SIDE_BY_SIDE],
-        evaluates: [Evaluate<'_, Minimum>; SIDE_BY_SIDE],
-    ) {
-        index.tree.isa().run(Several { index, queries, minimums, evaluates });
-    }
-}
-
-impl<L: Locator, F: ListFilter> Voronoi<L, F> {
-    /// Whether this is [`Voronoi`] with what it has by default.
-    const IS_USUAL: bool = L::IS_USUAL && F::IS_USUAL;
-
-    fn as_usual(&self) -> &Voronoi {
-        let index: &dyn Any = self;
-        index.downcast_ref().expect("the usual locator and filter")
-    }
-
+impl Voronoi {
     /// The number of the site in whose cell a place is, the first step of every query: `None` outside of the domain.
     #[must_use]
     pub fn site_of(&self, query: &Point3<f64>) -> Option<usize> {
@@ -171,8 +126,8 @@ impl Operation for Walk<'_> {
 }
 
 /// A query on its way to its cell from the site that was found first, as an operation.
-struct Answer<'a, C, L, F> {
-    index: &'a Voronoi<L, F>,
+struct Answer<'a, C> {
+    index: &'a Voronoi,
     found: Found,
     query: V3,
     place: V3,
@@ -181,7 +136,7 @@ struct Answer<'a, C, L, F> {
     finish: fn(&mut Filter<'_, C>),
 }
 
-impl<C: Collector, L: Locator, F: ListFilter> Operation for Answer<'_, C, L, F> {
+impl<C: Collector> Operation for Answer<'_, C> {
     type Output = ();
 
     #[inline(always)]
@@ -196,9 +151,9 @@ impl<C: Collector, L: Locator, F: ListFilter> Operation for Answer<'_, C, L, F> 
 }
 
 /// A query in its cell, as an operation of its own: it is compiled once, for single queries and for several.
-struct InCell<'a, C, L, F>(Answer<'a, C, L, F>);
+struct InCell<'a, C>(Answer<'a, C>);
 
-impl<C: Collector, L: Locator, F: ListFilter> Operation for InCell<'_, C, L, F> {
+impl<C: Collector> Operation for InCell<'_, C> {
     type Output = ();
 
     #[inline(always)]
@@ -211,22 +166,53 @@ impl<C: Collector, L: Locator, F: ListFilter> Operation for InCell<'_, C, L, F> 
         if !site.has_list() {
             return tree.isa().run(Search { tree, query, reach, held, collector, evaluate, finish });
         }
+        let certain = Voronoi::certain(&found, site, &place);
+        if certain.is_none()
+            && let Some(list) = index.filters.of(found.site)
+        {
+            let search = Search { tree, query, reach, held, collector, evaluate, finish };
+            return search_filtered(InFilteredList { list, search });
+        }
         // What comes next, if the list has more than a block.
         index.prefetch_block(site.list as usize);
         let mut filter = Filter::new(tree, query, reach, collector, evaluate, finish);
-        if let Some((packet, lane)) = Voronoi::<L, F>::certain(&found, site, &place) {
+        if let Some((packet, lane)) = certain {
             filter.add(packet, lane);
             return filter.evaluate_waiting();
         }
         filter.hold(held, reach);
-        if let Some(list) = index.filters.of(found.site) {
-            for (packet, lanes) in Filters::packets(list, &query) {
-                filter.packet::<I>(packet as usize, u32::from(lanes));
-            }
-            return filter.evaluate_waiting();
-        }
         let (first, rest) = (&index.blocks[found.site], &index.blocks[site.list as usize..]);
         block::search::<I, C>(tree, first, rest, &in_frame(tree, &query), &mut filter);
+        filter.evaluate_waiting();
+    }
+}
+
+/// A query in the list of its cell, of which a filter chooses the primitives.
+struct InFilteredList<'a, C> {
+    list: &'a dyn ListFilter,
+    search: Search<'a, Aabb<f64>, C>,
+}
+
+/// Searches a list that has a filter. This is a function of its own because few indexes have filters, and its code in the
+/// search of the others would cost registers.
+#[cold]
+#[inline(never)]
+fn search_filtered<C: Collector>(query: InFilteredList<'_, C>) {
+    query.search.tree.isa().run(query);
+}
+
+impl<C: Collector> Operation for InFilteredList<'_, C> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        let Self { list, search } = self;
+        let Search { tree, query, reach, held, collector, evaluate, finish } = search;
+        let mut filter = Filter::new(tree, query, reach, collector, evaluate, finish);
+        filter.hold(held, reach);
+        for (packet, lanes) in Filters::packets(list, &query) {
+            filter.packet::<I>(packet as usize, u32::from(lanes));
+        }
         filter.evaluate_waiting();
     }
 }
@@ -238,14 +224,14 @@ fn in_frame(tree: &PacketTree, query: &V3) -> Place {
 }
 
 /// Several queries side by side, as an operation.
-struct Several<'a, L, F> {
-    index: &'a Voronoi<L, F>,
+struct Several<'a> {
+    index: &'a Voronoi,
     queries: &'a [V3; SIDE_BY_SIDE],
     minimums: [&'a mut Minimum; SIDE_BY_SIDE],
     evaluates: [Evaluate<'a, Minimum>; SIDE_BY_SIDE],
 }
 
-impl<L: Locator, F: ListFilter> Operation for Several<'_, L, F> {
+impl Operation for Several<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -306,7 +292,7 @@ impl<L: Locator, F: ListFilter> Operation for Several<'_, L, F> {
     }
 }
 
-impl<L: Locator, F: ListFilter> Voronoi<L, F> {
+impl Voronoi {
     /// Asks for what a query reads first in its cell.
     #[inline(always)]
     fn prefetch_answer(&self, found: &Found, place: &V3) {

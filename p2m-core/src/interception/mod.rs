@@ -36,9 +36,8 @@ mod sites;
 mod sphere;
 mod voronoi;
 
-pub use hints::Hints;
-pub use list_filter::{ListFilter, Region, SortedLists};
-pub use locator::{Locator, LocatorSites};
+pub use list_filter::{BuildListFilter, ListFilter, Region};
+pub use locator::{BuildLocator, Locator, LocatorSites};
 pub use octree::Octree;
 pub use options::{Domain, OctreeOptions, OctreeReport, P2mOptions, P2mReport};
 pub use partition::{Partition, SIDE_BY_SIDE};

@@ -1,5 +1,7 @@
 //! What can be chosen about an octree, and what it became.
 
+use super::list_filter::BuildListFilter;
+use super::locator::BuildLocator;
 use crate::Aabb;
 use crate::hierarchy::SplitOptions;
 
@@ -117,6 +119,22 @@ impl std::fmt::Display for OctreeReport {
     }
 }
 
+/// A function to build a part with. Two are equal if they have the same address, so equal functions may differ.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FnPointer<F>(pub(super) F);
+
+impl PartialEq for FnPointer<BuildLocator> {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::fn_addr_eq(self.0, other.0)
+    }
+}
+
+impl PartialEq for FnPointer<BuildListFilter> {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::fn_addr_eq(self.0, other.0)
+    }
+}
+
 /// How a P2M index is built. Budgets are upper limits: where one would be exceeded, or there are more than sixteen Delaunay
 /// tetrahedra for each vertex of a packet, there are no cells, and the tree answers everything.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,8 +148,11 @@ pub struct P2mOptions {
     /// where many primitives are about as near as the nearest vertex: on long edges and wide faces, and in the middle
     /// of round shapes. 0.5 by default.
     pub added: f64,
-    /// Lists of more primitives have a [`ListFilter`](super::ListFilter), if the index is one with filters, which `P2mIndex`
-    /// is not. 64 by default.
+    /// Makes the locator, by which a query finds a site near its own. By default it is a grid.
+    pub(super) locator: Option<FnPointer<BuildLocator>>,
+    /// Makes the filter of each long list. By default there are none.
+    pub(super) list_filter: Option<FnPointer<BuildListFilter>>,
+    /// If there are filters, a list of more primitives than this has one. 64 by default.
     pub filter_above: usize,
     /// What the lists, and while building the packets around all corners of cells, may take each, in bytes for each primitive
     /// (for at least 1000): 3072 by default. Where that is exceeded, the tree answers alone. Above 16 KiB no more is asked for
@@ -148,6 +169,8 @@ impl Default for P2mOptions {
             splits: SplitOptions::default(),
             longest: 96,
             added: 0.5,
+            locator: None,
+            list_filter: None,
             filter_above: 64,
             memory: 3072.0,
             work: 20_000.0,
@@ -170,6 +193,16 @@ impl P2mOptions {
     #[must_use]
     pub fn with_added(self, added: f64) -> Self {
         Self { added, ..self }
+    }
+    /// With another locator than a grid. Answers do not depend on it. A saved index has a grid instead.
+    #[must_use]
+    pub fn with_locator(self, build: BuildLocator) -> Self {
+        Self { locator: Some(FnPointer(build)), ..self }
+    }
+    /// With filters of long lists. Answers do not depend on them. A saved index has none.
+    #[must_use]
+    pub fn with_list_filter(self, build: BuildListFilter) -> Self {
+        Self { list_filter: Some(FnPointer(build)), ..self }
     }
     /// With filters for longer or shorter lists.
     #[must_use]

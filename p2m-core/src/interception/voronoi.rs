@@ -10,8 +10,8 @@ use super::block::{self, Block};
 use super::cells::{Cells, Lists};
 use super::fan::Fans;
 use super::hints::Hints;
-use super::list_filter::{Filters, ListFilter, SortedLists};
-use super::locator::{Locator, LocatorSites};
+use super::list_filter::Filters;
+use super::locator::{AnyLocator, LocatorSites};
 use super::options::{FORESEEN, P2mOptions, P2mReport};
 use super::partition::Partition;
 use super::progress::{Progress, Stage, Teller};
@@ -40,7 +40,7 @@ const FEW: usize = 1000;
 
 /// An interception index whose cells are those of the vertices, over a set of primitives that it does not keep.
 #[derive(Clone, Debug)]
-pub struct Voronoi<L = Hints, F = SortedLists> {
+pub struct Voronoi {
     pub(super) tree: PacketTree,
     /// Of the places of sites.
     pub(super) per_unit: f64,
@@ -50,15 +50,15 @@ pub struct Voronoi<L = Hints, F = SortedLists> {
     pub(super) low: V3,
     pub(super) high: V3,
     pub(super) fans: Fans,
-    pub(super) locator: Option<L>,
+    pub(super) locator: Option<AnyLocator>,
     pub(super) blocks: Array<Block>,
-    pub(super) filters: Filters<F>,
+    pub(super) filters: Filters,
     /// Of auxiliary sites points of the scene that are near.
     pub(super) anchors: Array<V3>,
     report: P2mReport,
 }
 
-impl<L: Locator, F: ListFilter> Voronoi<L, F> {
+impl Voronoi {
     /// The blocks of a site that has a list.
     fn blocks_of(&self, site: usize) -> impl Iterator<Item = &Block> {
         let first = &self.blocks[site];
@@ -81,9 +81,7 @@ impl<L: Locator, F: ListFilter> Voronoi<L, F> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
     fn make_cells(&mut self, options: &P2mOptions, teller: &Teller<'_>) {
         let tree = &self.tree;
-        // Around the vertices: primitives of your own may be elsewhere.
-        let vertices = tree.leaves.vertices.iter().map(|v| Point3::from(*v));
-        let bounds = vertices.fold(Aabb::empty(), |all, v| all.union(&Aabb { min: v, max: v }));
+        let bounds = vertex_bounds(tree);
         let half = (bounds.max - bounds.min).max() * 0.5;
         // No extent, or one that f32 cannot tell apart; not for NaN either, which comes of no vertices.
         if !tree.frame.is_plain() || half.is_nan() || half <= 0.0 {
@@ -92,8 +90,7 @@ impl<L: Locator, F: ListFilter> Voronoi<L, F> {
         let centre = wide(&nalgebra::center(&bounds.min, &bounds.max));
         let domain = half * REACH;
         let (low, high) = (centre.map(|x| x - domain), centre.map(|x| x + domain));
-        let pad = half * 0.25;
-        let own = [wide(&bounds.min).map(|x| x - pad), wide(&bounds.max).map(|x| x + pad)];
+        let own = padded(&bounds);
         // In the plane of a flat scene, far out, f64 has no room beside it.
         if (0..3).any(|k| own[0][k] >= own[1][k] || low[k] >= high[k]) {
             return;
@@ -118,7 +115,12 @@ impl<L: Locator, F: ListFilter> Voronoi<L, F> {
             self.report.trees = left;
             return;
         }
-        let cells = Cells { tree, sites: &sites, limits, filter_above: options.filter_above };
+        let cells = Cells {
+            tree,
+            sites: &sites,
+            limits,
+            filter: options.list_filter.map(|build| (options.filter_above, build.0)),
+        };
         let mut report = self.report;
         let Some(Lists { fans, mut blocks, filters }) = cells.lists(&mut report, teller) else {
             self.report.trees = sites.delaunay.sites().len();
@@ -131,12 +133,14 @@ impl<L: Locator, F: ListFilter> Voronoi<L, F> {
         self.anchors = anchors.into_iter().map(|(_, anchor)| anchor).collect::<Vec<_>>().into();
         drop(delaunay);
         (self.low, self.high) = (low, high);
-        let scaled = |p: V3| p.map(|x| x * self.per_unit);
-        let (own, all) = (own.map(scaled), [low, high].map(scaled));
-        teller.begin(Stage::Locator);
-        let sites = LocatorSites { fans: &fans, isa: self.tree.isa(), own, domain: all };
-        self.locator = Some(L::new(&sites));
         (self.fans, self.filters) = (fans, filters);
+        teller.begin(Stage::Locator);
+        let sites = self.locator_sites();
+        let locator = match options.locator {
+            Some(build) => AnyLocator::Other(build.0(&sites)),
+            None => AnyLocator::Grid(Hints::new(&sites)),
+        };
+        self.locator = Some(locator);
         self.report.filtered = self.filters.count();
         blocks.shrink_to_fit();
         self.blocks = blocks.into();
@@ -144,7 +148,28 @@ impl<L: Locator, F: ListFilter> Voronoi<L, F> {
     }
 }
 
-impl<L: Locator, F: ListFilter> Partition for Voronoi<L, F> {
+impl Voronoi {
+    /// The sites and the boxes that a locator is made from.
+    fn locator_sites(&self) -> LocatorSites<'_> {
+        let scaled = |p: V3| p.map(|x| x * self.per_unit);
+        let own = padded(&vertex_bounds(&self.tree)).map(scaled);
+        LocatorSites { fans: &self.fans, isa: self.tree.isa(), own, domain: [self.low, self.high].map(scaled) }
+    }
+}
+
+/// The box around the vertices of a tree. Primitives of one's own have none, so they may lie outside.
+fn vertex_bounds(tree: &PacketTree) -> Aabb<f64> {
+    let vertices = tree.leaves.vertices.iter().map(|v| Point3::from(*v));
+    vertices.fold(Aabb::empty(), |all, v| all.union(&Aabb { min: v, max: v }))
+}
+
+/// A box, larger on all sides by an eighth of its longest side.
+fn padded(bounds: &Aabb<f64>) -> [V3; 2] {
+    let pad = (bounds.max - bounds.min).max() * 0.125;
+    [wide(&bounds.min).map(|x| x - pad), wide(&bounds.max).map(|x| x + pad)]
+}
+
+impl Partition for Voronoi {
     type Options = P2mOptions;
     type Report = P2mReport;
 
@@ -189,7 +214,7 @@ impl<L: Locator, F: ListFilter> Partition for Voronoi<L, F> {
     fn parts(&self) -> Vec<(&'static str, usize)> {
         vec![
             ("sites", self.fans.memory() + self.anchors.memory()),
-            ("locator", self.locator.as_ref().map_or(0, L::memory)),
+            ("locator", self.locator.as_ref().map_or(0, AnyLocator::memory)),
             ("lists", self.blocks.memory()),
             ("filters", self.filters.memory()),
             ("tree", self.tree.memory()),
@@ -239,15 +264,17 @@ impl Saved for Voronoi {
         writer.put("voronoi/lists", &self.blocks);
         writer.put("voronoi/anchors", &self.anchors);
         self.fans.save(writer);
-        if let Some(locator) = &self.locator {
-            locator.save(writer);
+        match &self.locator {
+            Some(AnyLocator::Grid(grid)) => grid.save(writer),
+            Some(AnyLocator::Other(_)) => Hints::new(&self.locator_sites()).save_copy(writer),
+            None => {}
         }
         self.tree.save(writer);
     }
 
     fn load(reader: &Reader) -> Result<Self, LoadError> {
         let Head { per_unit, unit, slack, low, high, report, has_cells } = reader.one("voronoi")?;
-        let locator = if has_cells == 0 { None } else { Some(Hints::load(reader)?) };
+        let locator = if has_cells == 0 { None } else { Some(AnyLocator::Grid(Hints::load(reader)?)) };
         let fans = Fans::load(reader)?;
         let blocks: Array<Block> = reader.array("voronoi/lists")?;
         if blocks.len() < fans.sites.len() {
