@@ -3,9 +3,7 @@
 use super::answers::{Asked, known};
 use super::scene::vertices;
 use nalgebra::Point3;
-use p2m::{
-    AabbTree, Closest, ClosestPoint, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Soup, StoredInF32,
-};
+use p2m::{Closest, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Soup};
 use p2m_testkit::oracle::Distance;
 use std::cmp::Ordering;
 
@@ -56,22 +54,4 @@ pub fn check<T: Real>(asked: &Asked<'_, T>, query: &Point3<T>, exact: &Closest<T
         let options = rough.with_max_distance(short).with_budget(5);
         assert_eq!(asked.index.closest_point_with(query, &options), None, "{}: beyond {short:?}", say());
     }
-    let double = Soup::new(asked.soup.positions().iter().map(|p| p.map(T::to_f64)).collect(), asked.soup.elements());
-    kept_in_f32(&double.expect("finite"), &query.map(T::to_f64), epsilon);
-}
-
-/// What is kept in f32 is as exact as it says.
-fn kept_in_f32(soup: &Soup<f64>, query: &Point3<f64>, epsilon: f64) {
-    let Ok(index) = StoredInF32::<AabbTree<f32, Soup<f32>>>::build(soup, &Default::default()) else { return };
-    let Some(found) = index.closest_point(query) else { return };
-    let truth = nearest(soup, query);
-    let say = || format!("{query:?}, kept in f32: {found:?}");
-    assert!(truth.is_at_least(found.lower_bound), "{}", say());
-    let error = found.distance - found.lower_bound;
-    let above = (found.distance + error) * (1.0 + f64::EPSILON);
-    if found.lower_bound > 0.0 && above.is_finite() {
-        assert!(!truth.is_at_least(above.next_up()), "{}: farther than {above:e}", say());
-    }
-    let rough = index.closest_point_with(query, &QueryOptions::default().with_epsilon(epsilon)).expect("found");
-    assert!(truth.is_at_least(rough.lower_bound), "{}: epsilon {epsilon}: {rough:?}", say());
 }

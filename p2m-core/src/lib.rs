@@ -46,7 +46,6 @@ mod room;
 pub mod saved;
 mod set;
 mod simd;
-mod single;
 mod soup;
 mod stats;
 
@@ -68,6 +67,5 @@ pub use real::Real;
 pub use room::check_room;
 pub use set::{PrimitiveId, PrimitiveSet, check_set};
 pub use simd::Isa;
-pub use single::StoredInF32;
 pub use soup::{Element, Soup};
 pub use stats::{Examine, Lists, Load, StageTimes, Visits};

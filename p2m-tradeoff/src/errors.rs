@@ -93,14 +93,9 @@ impl Errors {
             gap: bounded().map(gap).fold(f64::NAN, f64::max),
             bounds_above: bounded().filter(above).count(),
             other_ids: named.then(|| pairs().filter(|(answer, truth)| answer.id != truth.id).count()),
-            broken: pairs().filter(|p| !promise.is_kept(error(p), p.1.distance, p.1.unit(), told(p.0))).count(),
+            broken: pairs().filter(|p| !promise.is_kept(error(p), p.1.distance, p.1.unit())).count(),
         }
     }
-}
-
-/// How far off an answer says that it may be: without end where its bound was cut at 0.
-fn told(answer: &Answer) -> f64 {
-    if answer.lower_bound > 0.0 { answer.distance - answer.lower_bound } else { f64::INFINITY }
 }
 
 /// A quotient, of which 0 over 0 is 0: no error, of something that has no size.

@@ -5,15 +5,6 @@
 use p2m_core::kernel::ERROR_CONSTANT;
 use p2m_core::{QueryOptions, Real};
 
-/// In which scalar a scene is kept and asked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Storage {
-    /// f64, as the scene is given.
-    Double,
-    /// f32, as [`StoredInF32`](p2m_core::StoredInF32) does.
-    Single,
-}
-
 /// What a query asks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ask {
@@ -36,8 +27,6 @@ pub struct Setting {
     pub name: &'static str,
     /// What it does, for who has not seen it.
     pub about: &'static str,
-    /// How the scene is kept.
-    pub storage: Storage,
     /// What is asked.
     pub ask: Ask,
 }
@@ -46,7 +35,6 @@ pub struct Setting {
 pub const DEFAULT: Setting = Setting {
     name: "default",
     about: "f64, no options: the closest point, its distance wrong by roundings alone",
-    storage: Storage::Double,
     ask: Ask::Exact,
 };
 
@@ -81,16 +69,10 @@ pub const SETTINGS: &[Setting] = &[
         ask: Ask::Budget(16),
         ..DEFAULT
     },
-    Setting {
-        name: "f32",
-        about: "`StoredInF32`: the scene kept in f32; its bytes include those of the scene",
-        storage: Storage::Single,
-        ..DEFAULT
-    },
 ];
 
 const fn within(name: &'static str, epsilon: f64, about: &'static str) -> Setting {
-    Setting { name, about, storage: Storage::Double, ask: Ask::Epsilon(epsilon) }
+    Setting { name, about, ask: Ask::Epsilon(epsilon) }
 }
 
 impl Setting {
@@ -109,13 +91,12 @@ impl Setting {
     /// What its answers promise.
     #[must_use]
     pub fn promise(&self, diagonal: f64) -> Promise {
-        match (self.storage, self.ask) {
-            (Storage::Single, _) => Promise::Told,
-            (Storage::Double, Ask::Exact) => Promise::within(0.0),
-            (Storage::Double, Ask::Certified) => Promise::LastPlace,
-            (Storage::Double, Ask::Epsilon(epsilon)) => Promise::within(epsilon),
-            (Storage::Double, Ask::NearEnough(part)) => Promise::Within { relative: 0.0, absolute: part * diagonal },
-            (Storage::Double, Ask::Budget(_)) => Promise::Nothing,
+        match self.ask {
+            Ask::Exact => Promise::within(0.0),
+            Ask::Certified => Promise::LastPlace,
+            Ask::Epsilon(epsilon) => Promise::within(epsilon),
+            Ask::NearEnough(part) => Promise::Within { relative: 0.0, absolute: part * diagonal },
+            Ask::Budget(_) => Promise::Nothing,
         }
     }
 }
@@ -127,8 +108,6 @@ pub enum Promise {
     Nothing,
     /// No more than one unit in the last place.
     LastPlace,
-    /// No more than its distance exceeds its lower bound, on either side.
-    Told,
     /// No farther than a part of the distance and a length, besides the roundings of the contract.
     Within {
         /// The part.
@@ -145,14 +124,12 @@ impl Promise {
         Self::Within { relative, absolute: 0.0 }
     }
 
-    /// Whether an answer at `error` from a distance keeps it; `unit` is u M, and `gap` how far off it
-    /// says that it may be.
+    /// Whether an answer at `error` from a distance keeps it; `unit` is u M.
     #[must_use]
-    pub fn is_kept(self, error: f64, distance: f64, unit: f64, gap: f64) -> bool {
+    pub fn is_kept(self, error: f64, distance: f64, unit: f64) -> bool {
         match self {
             Self::Nothing => true,
             Self::LastPlace => error <= distance.next_up() - distance,
-            Self::Told => error <= gap,
             // Once for the primitive that is answered and once for the nearest one (contract N1, N2, N7).
             Self::Within { relative, absolute } => {
                 error <= relative * distance + absolute + 2.0 * ERROR_CONSTANT * unit
@@ -180,7 +157,6 @@ mod tests {
             let options: QueryOptions<f64> = setting.options(1.0);
             match setting.promise(1.0) {
                 Promise::Nothing => assert!(options.budget < u32::MAX, "{}", setting.name),
-                Promise::Told => assert_eq!(setting.storage, Storage::Single),
                 Promise::LastPlace => assert_eq!(setting.ask, Ask::Certified),
                 Promise::Within { relative, absolute } => {
                     assert!((relative - options.epsilon).abs() <= 0.0, "{}", setting.name);
@@ -188,15 +164,9 @@ mod tests {
                 }
             }
         }
-        assert!(
-            Promise::within(0.1).is_kept(0.1, 1.0, 1e-16, 0.0) && !Promise::within(0.1).is_kept(0.2, 1.0, 1e-16, 0.0)
-        );
-        assert!(
-            Promise::within(0.0).is_kept(1e-16, 1.0, 1e-16, 0.0)
-                && !Promise::within(0.0).is_kept(1e-14, 1.0, 1e-16, 0.0)
-        );
-        assert!(Promise::Nothing.is_kept(9.0, 1.0, 0.0, 0.0));
-        assert!(Promise::LastPlace.is_kept(2e-16, 1.0, 1.0, 0.0) && !Promise::LastPlace.is_kept(3e-16, 1.0, 1.0, 0.0));
-        assert!(Promise::Told.is_kept(0.1, 1.0, 0.0, 0.1) && !Promise::Told.is_kept(0.2, 1.0, 0.0, 0.1));
+        assert!(Promise::within(0.1).is_kept(0.1, 1.0, 1e-16) && !Promise::within(0.1).is_kept(0.2, 1.0, 1e-16));
+        assert!(Promise::within(0.0).is_kept(1e-16, 1.0, 1e-16) && !Promise::within(0.0).is_kept(1e-14, 1.0, 1e-16));
+        assert!(Promise::Nothing.is_kept(9.0, 1.0, 0.0));
+        assert!(Promise::LastPlace.is_kept(2e-16, 1.0, 1.0) && !Promise::LastPlace.is_kept(3e-16, 1.0, 1.0));
     }
 }

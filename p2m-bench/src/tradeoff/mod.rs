@@ -87,7 +87,7 @@ fn measure_scene(
     threads: bool,
 ) -> Result<(SceneFigures, Option<Sweep>)> {
     eprintln!("{}", scene.describe());
-    let (indexes, notes) = build_all(scene, profile.builds, true);
+    let (indexes, notes) = build_all(scene, profile.builds);
     let mut sets = Vec::new();
     for set in SETS {
         let queries = set.generate(&scene.double, profile.queries, SEED);
