@@ -37,16 +37,12 @@ pub fn check<T: Real>(asked: &Asked<'_, T>, query: &Point3<T>, exact: &Closest<T
     let found = ask(asked, query, exact, &usual.with_epsilon(T::of_f64(epsilon)));
     let most = distance * ((1.0 + epsilon) * (1.0 + 8.0 * T::UNIT_ROUNDOFF)) + T::SMALLEST_SUBNORMAL;
     assert!(found.distance.to_f64() <= most, "{}: epsilon {epsilon}: {found:?}", say());
-    let part = [0.25, 0.999, 1.0, 1.5, 4.0, f64::INFINITY][seed % 6];
-    let near = T::of_f64(if part < f64::INFINITY { distance * part } else { part });
-    let found = ask(asked, query, exact, &usual.with_near_enough(near));
-    assert!(found.distance <= near || known(&found) == known(exact), "{}: {near:?} is enough: {found:?}", say());
     let hint = PrimitiveId::new(seed % (asked.soup.len() + 1));
     ask(asked, query, exact, &usual.with_budget([0, 1, 2, 3, 5, 9][seed % 6]).with_hint(hint));
     let found = ask(asked, query, exact, &usual.with_budget(u32::MAX - 1));
     assert_eq!(known(&found), known(exact), "{}: a budget for everything: {found:?}", say());
-    // All together, with a radius that holds something and one that does not.
-    let rough = usual.with_epsilon(T::of_f64(epsilon)).with_near_enough(near);
+    // With a radius that holds something and one that does not.
+    let rough = usual.with_epsilon(T::of_f64(epsilon));
     let found = ask(asked, query, exact, &rough.with_max_distance(exact.distance).with_hint(hint));
     assert_eq!(found.distance, exact.distance, "{}: {found:?}", say());
     let short = T::of_f64_below(distance * (1.0 - 1e-6));

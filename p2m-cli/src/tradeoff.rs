@@ -144,16 +144,16 @@ type Index<'a> = (Box<dyn Askable + 'a>, Build);
 
 /// An index of any type.
 trait Askable: Sync {
-    fn subject(&self, setting: &Setting, diagonal: f64) -> Box<dyn Subject + '_>;
+    fn subject(&self, setting: &Setting) -> Box<dyn Subject + '_>;
 }
 
 struct Ours<I>(I);
 
 impl<I: ClosestPoint<f64> + CertifiedQuery<f64> + Sync> Askable for Ours<I> {
-    fn subject(&self, setting: &Setting, diagonal: f64) -> Box<dyn Subject + '_> {
+    fn subject(&self, setting: &Setting) -> Box<dyn Subject + '_> {
         match setting.ask {
             Ask::Certified => Box::new(AskedForProof::new(&self.0)),
-            _ => Box::new(Asked::new(&self.0, setting.options::<f64>(diagonal))),
+            _ => Box::new(Asked::new(&self.0, setting.options::<f64>())),
         }
     }
 }
@@ -259,8 +259,6 @@ impl Args {
         about: String,
     ) -> anyhow::Result<SceneFigures> {
         let soup = &scene.soup;
-        let bounds = soup.aabb();
-        let diagonal = (bounds.max - bounds.min).norm();
         let progress =
             Progress::start(streams, "building indexes", Some(self.backends.len() as u64), Unit::Items("backends"));
         let mut indexes = Vec::new();
@@ -279,8 +277,8 @@ impl Args {
                 SETTINGS.iter().map(move |setting| Entrant {
                     backend: kind.name().to_owned(),
                     setting: setting.name.to_owned(),
-                    promise: setting.promise(diagonal),
-                    subject: index.subject(setting, diagonal),
+                    promise: setting.promise(),
+                    subject: index.subject(setting),
                     build: *build,
                 })
             })

@@ -28,8 +28,7 @@ use nalgebra::Point3;
 ///   M of the primitive.
 /// - **N6 totality**: `None` for an empty set, when nothing lies within the (inclusive) radius, and for a query that is
 ///   not finite. No query panics. A degenerate primitive is the set it spans.
-/// - **N7 approximation**: `lower_bound` <= d always; with epsilon, d^ <= (1 + epsilon) d up to the error of N1; with a
-///   distance that is near enough, d^ is at most that or exact.
+/// - **N7 approximation**: `lower_bound` <= d always; with epsilon, d^ <= (1 + epsilon) d up to the error of N1.
 ///
 /// [`CertifiedQuery`](crate::CertifiedQuery) has N8: the nearest primitive without doubt, and its distance rounded once.
 ///

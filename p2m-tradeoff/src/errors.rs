@@ -118,7 +118,7 @@ mod tests {
     fn errors_are_in_their_units() {
         let answers =
             [answer(1.0, 1.0, 7), answer(1.25, 0.75, 7), answer(1.0 + 8.0 * U, 1.0 + 2.0 * U, 8), Answer::NONE];
-        let errors = Errors::of(&answers, &[TRUTH; 4], Promise::within(0.1));
+        let errors = Errors::of(&answers, &[TRUTH; 4], Promise::Within(0.1));
         assert_eq!((errors.compared, errors.unanswered), (3, 1));
         assert_eq!(errors.scaled.max, 0.25 / (2.0 * U));
         assert_eq!((errors.relative.max, errors.gap), (0.25, 0.4));
@@ -130,7 +130,7 @@ mod tests {
     #[test]
     fn what_the_true_distance_has_beyond_rounding_counts() {
         let truth = Truth { rest: 0.25 * U, ..TRUTH };
-        let errors = Errors::of(&[answer(1.0, 1.0, 7)], &[truth], Promise::within(0.0));
+        let errors = Errors::of(&[answer(1.0, 1.0, 7)], &[truth], Promise::Within(0.0));
         assert_eq!((errors.scaled.max, errors.bounds_above), (0.125, 0));
         let below = Truth { rest: -0.25 * U, ..TRUTH };
         assert_eq!(Errors::of(&[answer(1.0, 1.0, 7)], &[below], Promise::Nothing).bounds_above, 1);

@@ -196,8 +196,8 @@ mod tests {
             .map(|(name, setting)| Entrant {
                 backend: (*name).to_owned(),
                 setting: setting.name.to_owned(),
-                promise: setting.promise(50.0),
-                subject: Box::new(Asked::new(&index, setting.options::<f64>(50.0))),
+                promise: setting.promise(),
+                subject: Box::new(Asked::new(&index, setting.options::<f64>())),
                 build: Build::default(),
             })
             .collect();

@@ -14,8 +14,6 @@ pub enum Ask {
     Certified,
     /// A point that is farther by this part of the distance at most.
     Epsilon(f64),
-    /// A point that is nearer than this part of the diagonal of the scene's box, or the closest one.
-    NearEnough(f64),
     /// The best that so many visits of nodes and packets find.
     Budget(u32),
 }
@@ -52,12 +50,6 @@ pub const SETTINGS: &[Setting] = &[
     within("epsilon 0.1", 0.1, "`QueryOptions::with_epsilon(0.1)`: at most 10 % farther"),
     within("epsilon 1", 1.0, "`QueryOptions::with_epsilon(1.0)`: at most twice as far"),
     Setting {
-        name: "near 0.01",
-        about: "`QueryOptions::with_near_enough(r)` with r a hundredth of the diagonal of the scene's box: at most r away, or the closest point",
-        ask: Ask::NearEnough(0.01),
-        ..DEFAULT
-    },
-    Setting {
         name: "budget 0",
         about: "`QueryOptions::with_budget(0)`: the first thing found; of `octree` and `p2m` what the cell itself tells",
         ask: Ask::Budget(0),
@@ -76,13 +68,12 @@ const fn within(name: &'static str, epsilon: f64, about: &'static str) -> Settin
 }
 
 impl Setting {
-    /// The options of a query, in a scene whose box has this diagonal.
+    /// The options of a query.
     #[must_use]
-    pub fn options<T: Real>(&self, diagonal: f64) -> QueryOptions<T> {
+    pub fn options<T: Real>(&self) -> QueryOptions<T> {
         let usual = QueryOptions::default();
         match self.ask {
             Ask::Exact | Ask::Certified => usual,
-            Ask::NearEnough(part) => usual.with_near_enough(T::of_f64(part * diagonal)),
             Ask::Budget(visits) => usual.with_budget(visits),
             Ask::Epsilon(epsilon) => usual.with_epsilon(T::of_f64(epsilon)),
         }
@@ -90,12 +81,11 @@ impl Setting {
 
     /// What its answers promise.
     #[must_use]
-    pub fn promise(&self, diagonal: f64) -> Promise {
+    pub fn promise(&self) -> Promise {
         match self.ask {
-            Ask::Exact => Promise::within(0.0),
+            Ask::Exact => Promise::Within(0.0),
             Ask::Certified => Promise::LastPlace,
-            Ask::Epsilon(epsilon) => Promise::within(epsilon),
-            Ask::NearEnough(part) => Promise::Within { relative: 0.0, absolute: part * diagonal },
+            Ask::Epsilon(epsilon) => Promise::Within(epsilon),
             Ask::Budget(_) => Promise::Nothing,
         }
     }
@@ -108,22 +98,11 @@ pub enum Promise {
     Nothing,
     /// No more than one unit in the last place.
     LastPlace,
-    /// No farther than a part of the distance and a length, besides the roundings of the contract.
-    Within {
-        /// The part.
-        relative: f64,
-        /// The length.
-        absolute: f64,
-    },
+    /// No farther than this part of the distance, besides the roundings of the contract.
+    Within(f64),
 }
 
 impl Promise {
-    /// A part of the distance.
-    #[must_use]
-    pub const fn within(relative: f64) -> Self {
-        Self::Within { relative, absolute: 0.0 }
-    }
-
     /// Whether an answer at `error` from a distance keeps it; `unit` is u M.
     #[must_use]
     pub fn is_kept(self, error: f64, distance: f64, unit: f64) -> bool {
@@ -131,9 +110,7 @@ impl Promise {
             Self::Nothing => true,
             Self::LastPlace => error <= distance.next_up() - distance,
             // Once for the primitive that is answered and once for the nearest one (contract N1, N2, N7).
-            Self::Within { relative, absolute } => {
-                error <= relative * distance + absolute + 2.0 * ERROR_CONSTANT * unit
-            }
+            Self::Within(part) => error <= part * distance + 2.0 * ERROR_CONSTANT * unit,
         }
     }
 }
@@ -154,18 +131,15 @@ mod tests {
     #[test]
     fn options_and_promises_are_of_the_same_size() {
         for setting in SETTINGS {
-            let options: QueryOptions<f64> = setting.options(1.0);
-            match setting.promise(1.0) {
+            let options: QueryOptions<f64> = setting.options();
+            match setting.promise() {
                 Promise::Nothing => assert!(options.budget < u32::MAX, "{}", setting.name),
                 Promise::LastPlace => assert_eq!(setting.ask, Ask::Certified),
-                Promise::Within { relative, absolute } => {
-                    assert!((relative - options.epsilon).abs() <= 0.0, "{}", setting.name);
-                    assert!((absolute - options.near_enough).abs() <= 0.0, "{}", setting.name);
-                }
+                Promise::Within(part) => assert!((part - options.epsilon).abs() <= 0.0, "{}", setting.name),
             }
         }
-        assert!(Promise::within(0.1).is_kept(0.1, 1.0, 1e-16) && !Promise::within(0.1).is_kept(0.2, 1.0, 1e-16));
-        assert!(Promise::within(0.0).is_kept(1e-16, 1.0, 1e-16) && !Promise::within(0.0).is_kept(1e-14, 1.0, 1e-16));
+        assert!(Promise::Within(0.1).is_kept(0.1, 1.0, 1e-16) && !Promise::Within(0.1).is_kept(0.2, 1.0, 1e-16));
+        assert!(Promise::Within(0.0).is_kept(1e-16, 1.0, 1e-16) && !Promise::Within(0.0).is_kept(1e-14, 1.0, 1e-16));
         assert!(Promise::Nothing.is_kept(9.0, 1.0, 0.0));
         assert!(Promise::LastPlace.is_kept(2e-16, 1.0, 1.0) && !Promise::LastPlace.is_kept(3e-16, 1.0, 1.0));
     }

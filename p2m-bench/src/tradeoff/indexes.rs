@@ -24,7 +24,7 @@ const BUILD_SECONDS: f64 = 10.0;
 /// An index that was built.
 pub(super) trait Built: Sync {
     /// What answers as a setting asks.
-    fn subject(&self, setting: &Setting, diagonal: f64) -> Box<dyn Subject + '_>;
+    fn subject(&self, setting: &Setting) -> Box<dyn Subject + '_>;
     /// Wall seconds of a batch on the threads of the current pool; `None` for rivals.
     fn batch(&self, queries: QuerySlice<'_>) -> Option<f64>;
 }
@@ -33,10 +33,10 @@ pub(super) trait Built: Sync {
 struct Ours<I>(I);
 
 impl<I: ClosestPoint<f64> + CertifiedQuery<f64> + Sync> Built for Ours<I> {
-    fn subject(&self, setting: &Setting, diagonal: f64) -> Box<dyn Subject + '_> {
+    fn subject(&self, setting: &Setting) -> Box<dyn Subject + '_> {
         match setting.ask {
             Ask::Certified => Box::new(AskedForProof::new(&self.0)),
-            _ => Box::new(Asked::new(&self.0, setting.options::<f64>(diagonal))),
+            _ => Box::new(Asked::new(&self.0, setting.options::<f64>())),
         }
     }
 
@@ -68,7 +68,7 @@ impl<C: Contender> Respond for AskedRival<'_, C> {
 }
 
 impl<C: Contender> Built for Rival<C> {
-    fn subject(&self, _: &Setting, _: f64) -> Box<dyn Subject + '_> {
+    fn subject(&self, _: &Setting) -> Box<dyn Subject + '_> {
         Box::new(AskedRival(&self.0))
     }
 
@@ -213,7 +213,7 @@ fn build(scene: &Scene, make: Make, builds: usize) -> Result<(Box<dyn Built + '_
 }
 
 /// Every setting of every index, or the usual one alone.
-pub(super) fn entrants<'a>(indexes: &'a [Index<'_>], diagonal: f64, usual: bool) -> Vec<Entrant<'a>> {
+pub(super) fn entrants<'a>(indexes: &'a [Index<'_>], usual: bool) -> Vec<Entrant<'a>> {
     let mut entrants = Vec::new();
     for index in indexes {
         let candidate = index.candidate;
@@ -221,8 +221,8 @@ pub(super) fn entrants<'a>(indexes: &'a [Index<'_>], diagonal: f64, usual: bool)
             entrants.push(Entrant {
                 backend: candidate.name.to_owned(),
                 setting: setting.name.to_owned(),
-                promise: if candidate.ours { setting.promise(diagonal) } else { Promise::Nothing },
-                subject: index.built.subject(setting, diagonal),
+                promise: if candidate.ours { setting.promise() } else { Promise::Nothing },
+                subject: index.built.subject(setting),
                 build: index.build,
             });
         }
@@ -242,8 +242,8 @@ mod tests {
         let scene = Scene::new("knot".to_owned(), soup).unwrap();
         let (indexes, notes) = build_all(&scene, 1);
         assert_eq!((indexes.len(), notes.len()), (ALL.len(), 0), "{notes:?}");
-        assert_eq!(entrants(&indexes, 1.0, false).len(), 4 * SETTINGS.len() + 4);
-        assert_eq!(entrants(&indexes, 1.0, true).len(), ALL.len());
+        assert_eq!(entrants(&indexes, false).len(), 4 * SETTINGS.len() + 4);
+        assert_eq!(entrants(&indexes, true).len(), ALL.len());
         let queries = Queries::new(vec![Point3::new(1.0, 2.0, 3.0); 100]);
         assert_eq!(indexes.iter().filter_map(|index| index.built.batch(queries.all())).count(), 5);
         // What they are is not asserted: other tests of this program allocate and free at the same time.

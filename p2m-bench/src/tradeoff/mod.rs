@@ -92,7 +92,7 @@ fn measure_scene(
     for set in SETS {
         let queries = set.generate(&scene.double, profile.queries, SEED);
         let truths = truth::truths(scene, &queries);
-        let entrants = entrants(&indexes, scene.diagonal(), false);
+        let entrants = entrants(&indexes, false);
         let curves = measure(&entrants, &Queries::new(queries), &truths, &profile.effort, &|_| ());
         let figures = SetFigures { name: set.name().to_owned(), about: about(set).to_owned(), curves };
         println!("\n## {}, {set}\n\n{}", scene.name, text::table(&figures));

@@ -31,13 +31,7 @@ pub(super) fn sizes(profile: &Profile, seed: u64) -> Result<Vec<Sweep>> {
         let queries = SET.generate(&scene.double, profile.queries, seed);
         let truths = truths(&scene, &queries);
         let (indexes, _) = build_all(&scene, profile.builds);
-        let curves = measure(
-            &entrants(&indexes, scene.diagonal(), true),
-            &Queries::new(queries),
-            &truths,
-            &profile.effort,
-            &|_| (),
-        );
+        let curves = measure(&entrants(&indexes, true), &Queries::new(queries), &truths, &profile.effort, &|_| ());
         for curve in &curves {
             let point = &curve.points[0];
             // Less than a byte for each primitive is nothing that grows with them.
