@@ -114,8 +114,7 @@ pub trait BuildIndex<T: Real, S: PrimitiveSet<T>>: ClosestPoint<T> + Sized {
     /// both in one value.
     ///
     /// # Errors
-    /// [`BuildError::NonFinite`](crate::BuildError::NonFinite), [`BuildError::TooMany`](crate::BuildError::TooMany) (more than
-    /// 2^30 primitives) and [`BuildError::OutOfMemory`](crate::BuildError::OutOfMemory) of the indexes of this project; one of
-    /// your own may have others. An empty set is none.
+    /// [`BuildError::NonFinite`](crate::BuildError::NonFinite) and [`BuildError::TooMany`](crate::BuildError::TooMany) (more than
+    /// 2^30 primitives) of the indexes of this project; one of your own may have others. An empty set is none.
     fn build(set: S, options: &Self::Options) -> Result<Self, Self::Error>;
 }

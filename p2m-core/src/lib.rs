@@ -42,7 +42,6 @@ mod primitive;
 mod query;
 mod ray;
 mod real;
-mod room;
 pub mod saved;
 mod set;
 mod simd;
@@ -64,7 +63,6 @@ pub use primitive::{Feature, Point, Primitive, Projection, Segment, Shape, Trian
 pub use query::{Best, Closest, Collector, QueryOptions};
 pub use ray::{Crossing, Hit, Hits, Ray, RayCollector, RayCounting, RayError, RayHit, RayQuery, Side};
 pub use real::Real;
-pub use room::check_room;
 pub use set::{PrimitiveId, PrimitiveSet, check_set};
 pub use simd::Isa;
 pub use soup::{Element, Soup};

@@ -140,13 +140,6 @@ struct Item {
     found: [Found; 8],
 }
 
-/// Bytes of the items of all cells on the way to one, with their seven siblings, in a scene of so many primitives: those of
-/// as many levels as are full, at most (observed).
-pub(super) fn way_bytes(primitives: usize) -> usize {
-    const LEVELS: usize = 16;
-    LEVELS * 8 * primitives.min(FINE) * size_of::<Item>()
-}
-
 /// The primitive that seems nearest to a point.
 #[derive(Clone, Copy)]
 struct Nearest {
