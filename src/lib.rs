@@ -88,8 +88,8 @@ pub use p2m_core::hierarchy::SplitOptions;
 pub use p2m_core::{
     Aabb, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestLeaf,
     ClosestPoint, Element, Examine, Feature, Hit, Indexed, Isa, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet,
-    Projection, QueryOptions, Ray, RayError, RayQuery, Real, Segment, Shape, Side, Soup, StoredInF32, Triangle, Visits,
-    batch, saved,
+    Projection, QueryOptions, Ray, RayError, RayQuery, Real, Segment, Shape, Side, Soup, Triangle, Visits, batch,
+    saved,
 };
 #[cfg(feature = "kiddo")]
 pub use p2m_interception::KdTreeLocator;

@@ -3,9 +3,7 @@
 use super::answers::{Asked, known};
 use super::scene::vertices;
 use nalgebra::Point3;
-use p2m::{
-    AabbTree, Closest, ClosestPoint, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Soup, StoredInF32,
-};
+use p2m::{Closest, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Soup};
 use p2m_testkit::oracle::Distance;
 use std::cmp::Ordering;
 
@@ -39,16 +37,12 @@ pub fn check<T: Real>(asked: &Asked<'_, T>, query: &Point3<T>, exact: &Closest<T
     let found = ask(asked, query, exact, &usual.with_epsilon(T::of_f64(epsilon)));
     let most = distance * ((1.0 + epsilon) * (1.0 + 8.0 * T::UNIT_ROUNDOFF)) + T::SMALLEST_SUBNORMAL;
     assert!(found.distance.to_f64() <= most, "{}: epsilon {epsilon}: {found:?}", say());
-    let part = [0.25, 0.999, 1.0, 1.5, 4.0, f64::INFINITY][seed % 6];
-    let near = T::of_f64(if part < f64::INFINITY { distance * part } else { part });
-    let found = ask(asked, query, exact, &usual.with_near_enough(near));
-    assert!(found.distance <= near || known(&found) == known(exact), "{}: {near:?} is enough: {found:?}", say());
     let hint = PrimitiveId::new(seed % (asked.soup.len() + 1));
     ask(asked, query, exact, &usual.with_budget([0, 1, 2, 3, 5, 9][seed % 6]).with_hint(hint));
     let found = ask(asked, query, exact, &usual.with_budget(u32::MAX - 1));
     assert_eq!(known(&found), known(exact), "{}: a budget for everything: {found:?}", say());
-    // All together, with a radius that holds something and one that does not.
-    let rough = usual.with_epsilon(T::of_f64(epsilon)).with_near_enough(near);
+    // With a radius that holds something and one that does not.
+    let rough = usual.with_epsilon(T::of_f64(epsilon));
     let found = ask(asked, query, exact, &rough.with_max_distance(exact.distance).with_hint(hint));
     assert_eq!(found.distance, exact.distance, "{}: {found:?}", say());
     let short = T::of_f64_below(distance * (1.0 - 1e-6));
@@ -56,22 +50,4 @@ pub fn check<T: Real>(asked: &Asked<'_, T>, query: &Point3<T>, exact: &Closest<T
         let options = rough.with_max_distance(short).with_budget(5);
         assert_eq!(asked.index.closest_point_with(query, &options), None, "{}: beyond {short:?}", say());
     }
-    let double = Soup::new(asked.soup.positions().iter().map(|p| p.map(T::to_f64)).collect(), asked.soup.elements());
-    kept_in_f32(&double.expect("finite"), &query.map(T::to_f64), epsilon);
-}
-
-/// What is kept in f32 is as exact as it says.
-fn kept_in_f32(soup: &Soup<f64>, query: &Point3<f64>, epsilon: f64) {
-    let Ok(index) = StoredInF32::<AabbTree<f32, Soup<f32>>>::build(soup, &Default::default()) else { return };
-    let Some(found) = index.closest_point(query) else { return };
-    let truth = nearest(soup, query);
-    let say = || format!("{query:?}, kept in f32: {found:?}");
-    assert!(truth.is_at_least(found.lower_bound), "{}", say());
-    let error = found.distance - found.lower_bound;
-    let above = (found.distance + error) * (1.0 + f64::EPSILON);
-    if found.lower_bound > 0.0 && above.is_finite() {
-        assert!(!truth.is_at_least(above.next_up()), "{}: farther than {above:e}", say());
-    }
-    let rough = index.closest_point_with(query, &QueryOptions::default().with_epsilon(epsilon)).expect("found");
-    assert!(truth.is_at_least(rough.lower_bound), "{}: epsilon {epsilon}: {rough:?}", say());
 }

@@ -11,7 +11,7 @@ use p2m_core::Counting;
 use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 
-/// A rule, whose radius is in diagonals of the scene's box here.
+/// A rule, and the backend that is built by it.
 struct Rule {
     backend: Backend,
     rule: SplitRule,
@@ -22,7 +22,7 @@ macro_rules! rule {
         Rule {
             backend: Backend {
                 name: $name,
-                prepare: |s| over_soup_with::<f64, AabbTree<_, _>>(s, options(s, $rule)),
+                prepare: |s| over_soup_with::<f64, AabbTree<_, _>>(s, options($rule)),
                 ..OURS
             },
             rule: $rule,
@@ -30,21 +30,11 @@ macro_rules! rule {
     };
 }
 
-const RULES: &[Rule] = &[
-    rule!("sah", SplitRule::Sah),
-    rule!("adaptive-sah", SplitRule::AdaptiveSah),
-    rule!("ball-0.001", SplitRule::Ball { radius: 0.001 }),
-    rule!("ball-0.01", SplitRule::Ball { radius: 0.01 }),
-    rule!("ball-0.1", SplitRule::Ball { radius: 0.1 }),
-    rule!("ball-1", SplitRule::Ball { radius: 1.0 }),
-    rule!("median", SplitRule::Median),
-];
+const RULES: &[Rule] =
+    &[rule!("sah", SplitRule::Sah), rule!("adaptive-sah", SplitRule::AdaptiveSah), rule!("median", SplitRule::Median)];
 
-fn options(scene: &Scene, rule: SplitRule) -> AabbOptions {
-    AabbOptions::default().with_parallel(false).with_rule(match rule {
-        SplitRule::Ball { radius } => SplitRule::Ball { radius: radius * scene.diagonal() },
-        other => other,
-    })
+fn options(rule: SplitRule) -> AabbOptions {
+    AabbOptions::default().with_parallel(false).with_rule(rule)
 }
 
 /// Prints the tables of a scene; whether all trees agree.
@@ -57,7 +47,7 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> bool {
     let mut table = Table::new(["split", "build s", "nodes", "depth"].into_iter().chain(sets.iter().map(|s| s.name())));
     let mut clean = true;
     for (rule, entry) in RULES.iter().zip(&entries) {
-        let tree = AabbTree::build(&scene.double, &options(scene, rule.rule)).expect("built before");
+        let tree = AabbTree::build(&scene.double, &options(rule.rule)).expect("built before");
         let (nodes, depth) = tree.tree().parts().fold((0, 0), |(n, deepest), part| (n + 1, part.depth.max(deepest)));
         let seconds = Spread::of(&entry.build.seconds).map_or(f64::NAN, |s| s.median);
         let mut row =
@@ -72,9 +62,7 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> bool {
         table.push(row);
     }
     println!("\n## {}\n", scene.describe());
-    println!(
-        "Per query: nodes visited / primitives offered / nanoseconds (median). Radii are in diagonals of the box.\n"
-    );
+    println!("Per query: nodes visited / primitives offered / nanoseconds (median).\n");
     println!("{table}");
     clean
 }

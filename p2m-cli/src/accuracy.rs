@@ -12,10 +12,6 @@ pub(crate) struct Accuracy {
     #[arg(long, value_name = "E", value_parser = finite_not_negative, allow_negative_numbers = true, conflicts_with = "certified")]
     epsilon: Option<f64>,
 
-    /// An answer at most this far, in the unit of the scene, is near enough: look no further
-    #[arg(long, value_name = "R", value_parser = finite_not_negative, allow_negative_numbers = true, conflicts_with = "certified")]
-    near_enough: Option<f64>,
-
     /// Answer with the best that so many visits of nodes and packets find, and those that it takes to find anything.
     ///
     /// With 0 the interception indexes (octree, p2m) answer with what the cell itself tells.
@@ -34,7 +30,6 @@ impl Accuracy {
         usual
             .with_max_distance(max_distance.unwrap_or(usual.max_distance))
             .with_epsilon(self.epsilon.unwrap_or(usual.epsilon))
-            .with_near_enough(self.near_enough.unwrap_or(usual.near_enough))
             .with_budget(self.budget.unwrap_or(usual.budget))
     }
 
@@ -59,7 +54,6 @@ impl Accuracy {
     pub(crate) fn json(&self) -> Value {
         json!({
             "epsilon": self.epsilon,
-            "near_enough": self.near_enough,
             "budget": self.budget,
             "certified": self.certified,
         })

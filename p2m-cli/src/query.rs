@@ -39,7 +39,7 @@ Answers as NPY are an array of NumPy with the fields query, point, distance, low
 feature_kind (0 a vertex, 1 an edge, 2 the face) and feature_number; as PLY a cloud of the queries that viewers can colour \
 by distance. Where there is no answer, numbers are NaN and -1.
 
-No distance is smaller than the true one but for rounding. With --epsilon, --near-enough or --budget it may be larger, by what the line `error` of the summary says at most: every answer has a lower bound that is certain (lower_bound in NPY).
+No distance is smaller than the true one but for rounding. With --epsilon or --budget it may be larger, by what the line `error` of the summary says at most: every answer has a lower bound that is certain (lower_bound in NPY).
 
 Points from a CSV file are taken from its columns qx, qy, qz, or else x, y, z (also like 'X [m]'), or else Points:0, \
 Points:1, Points:2, or else from the first three columns; so the table itself can be asked about again. XYZ and TXT \

@@ -10,13 +10,13 @@ use anyhow::{Context, bail};
 use clap::{ArgGroup, ValueEnum};
 use nalgebra::Point3;
 use p2m_bvh::{AabbOptions, AabbTree};
-use p2m_core::{BruteForce, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, PrimitiveSet, Soup, StoredInF32};
+use p2m_core::{BruteForce, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, PrimitiveSet, Soup};
 use p2m_interception::{OctreeIndex, OctreeOptions, P2mIndex, P2mOptions};
 use p2m_kdop::{KdopOptions, KdopTree};
 use p2m_mixed::{PointFormat, Scene};
 use p2m_tradeoff::page::Page;
 use p2m_tradeoff::queries::Queries;
-use p2m_tradeoff::settings::{Ask, SETTINGS, Setting, Storage};
+use p2m_tradeoff::settings::{Ask, SETTINGS, Setting};
 use p2m_tradeoff::{
     Asked, AskedForProof, Build, Effort, Entrant, Provenance, SceneFigures, SetFigures, Subject, Truth,
     clock_nanoseconds, measure, record::record, text, thread_seconds,
@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 
 const HELP: &str = "\
 Every backend is built over the scene, on one thread, and asked about the same places with every setting, in turns: the default, certified \
-answers, less exact ones, and the scene kept in f32. The table has for each the nanoseconds of a query (the median of the rounds), how many times \
+answers and less exact ones. The table has for each the nanoseconds of a query (the median of the rounds), how many times \
 as fast that is as the default of the same backend, the largest error of the distance relative to it and what one query in a thousand \
 exceeds, the largest error in units of u M (u is 2^-53, M the distance to the farthest corner of the nearest primitive), what the certified \
 lower bound leaves open, how long single queries take, the seconds to build, and what is wrong.
@@ -137,18 +137,6 @@ impl Kind {
             Self::P2m => built::<P2mIndex<_, _>>(soup, &P2mOptions::default().with_splits(splits)),
         }
     }
-
-    /// The same, with the scene kept in f32.
-    fn store(self, soup: &Soup<f64>) -> anyhow::Result<Index<'static>> {
-        let splits = AabbOptions::default().with_parallel(false);
-        match self {
-            Self::Brute => stored::<BruteForce<_>>(soup, &()),
-            Self::Aabb => stored::<AabbTree<_, _>>(soup, &splits),
-            Self::Kdop => stored::<KdopTree<_, _, 14>>(soup, &KdopOptions::default().with_splits(splits)),
-            Self::Octree => stored::<OctreeIndex<_, _>>(soup, &OctreeOptions::default().with_splits(splits)),
-            Self::P2m => stored::<P2mIndex<_, _>>(soup, &P2mOptions::default().with_splits(splits)),
-        }
-    }
 }
 
 /// An index, and what it cost.
@@ -156,25 +144,17 @@ type Index<'a> = (Box<dyn Askable + 'a>, Build);
 
 /// An index of any type.
 trait Askable: Sync {
-    fn subject(&self, setting: &Setting, diagonal: f64) -> Box<dyn Subject + '_>;
+    fn subject(&self, setting: &Setting) -> Box<dyn Subject + '_>;
 }
 
 struct Ours<I>(I);
 
 impl<I: ClosestPoint<f64> + CertifiedQuery<f64> + Sync> Askable for Ours<I> {
-    fn subject(&self, setting: &Setting, diagonal: f64) -> Box<dyn Subject + '_> {
+    fn subject(&self, setting: &Setting) -> Box<dyn Subject + '_> {
         match setting.ask {
             Ask::Certified => Box::new(AskedForProof::new(&self.0)),
-            _ => Box::new(Asked::new(&self.0, setting.options::<f64>(diagonal))),
+            _ => Box::new(Asked::new(&self.0, setting.options::<f64>())),
         }
-    }
-}
-
-struct Stored<I>(StoredInF32<I>);
-
-impl<I: ClosestPoint<f32> + Sync> Askable for Stored<I> {
-    fn subject(&self, setting: &Setting, diagonal: f64) -> Box<dyn Subject + '_> {
-        Box::new(Asked::new(&self.0, setting.options::<f64>(diagonal)))
     }
 }
 
@@ -189,14 +169,6 @@ where
 {
     let (index, seconds) = thread_seconds(|| I::build(soup, options));
     Ok((Box::new(Ours(index?)), cost(seconds)))
-}
-
-fn stored<I>(soup: &Soup<f64>, options: &I::Options) -> anyhow::Result<Index<'static>>
-where
-    I: BuildIndex<f32, Soup<f32>, Error = BuildError> + Sync + 'static,
-{
-    let (index, seconds) = thread_seconds(|| StoredInF32::<I>::build(soup, options));
-    Ok((Box::new(Stored(index?)), cost(seconds)))
 }
 
 /// What is behind the points of a page, in words.
@@ -287,9 +259,6 @@ impl Args {
         about: String,
     ) -> anyhow::Result<SceneFigures> {
         let soup = &scene.soup;
-        let bounds = soup.aabb();
-        let diagonal = (bounds.max - bounds.min).norm();
-        let mut notes = Vec::new();
         let progress =
             Progress::start(streams, "building indexes", Some(self.backends.len() as u64), Unit::Items("backends"));
         let mut indexes = Vec::new();
@@ -297,24 +266,19 @@ impl Args {
             if self.backends[..i].contains(kind) {
                 continue;
             }
-            indexes.push((*kind, Storage::Double, kind.build(soup)?));
-            match kind.store(soup) {
-                Ok(index) => indexes.push((*kind, Storage::Single, index)),
-                // The scene itself is finite.
-                Err(_) => notes.push(format!("`{}` in f32 is left out: the scene overflows f32.", kind.name())),
-            }
+            indexes.push((*kind, kind.build(soup)?));
             progress.add(1);
         }
         drop(progress);
         let truths = truths(soup, &places)?;
         let entrants: Vec<Entrant<'_>> = indexes
             .iter()
-            .flat_map(|(kind, storage, (index, build))| {
-                SETTINGS.iter().filter(|setting| setting.storage == *storage).map(move |setting| Entrant {
+            .flat_map(|(kind, (index, build))| {
+                SETTINGS.iter().map(move |setting| Entrant {
                     backend: kind.name().to_owned(),
                     setting: setting.name.to_owned(),
-                    promise: setting.promise(diagonal),
-                    subject: index.subject(setting, diagonal),
+                    promise: setting.promise(),
+                    subject: index.subject(setting),
                     build: *build,
                 })
             })
@@ -337,7 +301,13 @@ impl Args {
             (None, None) => "random",
         };
         let set = SetFigures { name: name.to_owned(), about, curves };
-        Ok(SceneFigures { name: self.scene.name(), about: contents, primitives: soup.len(), sets: vec![set], notes })
+        Ok(SceneFigures {
+            name: self.scene.name(),
+            about: contents,
+            primitives: soup.len(),
+            sets: vec![set],
+            notes: Vec::new(),
+        })
     }
 }
 

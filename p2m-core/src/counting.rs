@@ -60,8 +60,8 @@ impl<T: Real> Collector for Counting<T> {
     fn prune_held(&self, square: f64) -> f64 {
         self.best.prune_held(square)
     }
-    fn is_content(&self, held: f64) -> bool {
-        self.best.is_content(held)
+    fn is_content(&self, holds: bool) -> bool {
+        self.best.is_content(holds)
     }
     fn forgo(&mut self, square: f64) {
         self.best.forgo(square);

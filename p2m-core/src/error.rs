@@ -26,12 +26,6 @@ pub enum BuildError {
         /// How many there are, or were when counting stopped.
         len: usize,
     },
-    /// There is no memory for the index: see [`check_room`](crate::check_room).
-    #[error("no memory: {bytes} bytes may be needed")]
-    OutOfMemory {
-        /// What building may need at a time.
-        bytes: usize,
-    },
     /// An index is to be fitted to a set of another size.
     #[error("{len} primitives, but the index was built over {expected}")]
     OtherLength {

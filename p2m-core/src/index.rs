@@ -28,8 +28,7 @@ use nalgebra::Point3;
 ///   M of the primitive.
 /// - **N6 totality**: `None` for an empty set, when nothing lies within the (inclusive) radius, and for a query that is
 ///   not finite. No query panics. A degenerate primitive is the set it spans.
-/// - **N7 approximation**: `lower_bound` <= d always; with epsilon, d^ <= (1 + epsilon) d up to the error of N1; with a
-///   distance that is near enough, d^ is at most that or exact.
+/// - **N7 approximation**: `lower_bound` <= d always; with epsilon, d^ <= (1 + epsilon) d up to the error of N1.
 ///
 /// [`CertifiedQuery`](crate::CertifiedQuery) has N8: the nearest primitive without doubt, and its distance rounded once.
 ///
@@ -115,8 +114,7 @@ pub trait BuildIndex<T: Real, S: PrimitiveSet<T>>: ClosestPoint<T> + Sized {
     /// both in one value.
     ///
     /// # Errors
-    /// [`BuildError::NonFinite`](crate::BuildError::NonFinite), [`BuildError::TooMany`](crate::BuildError::TooMany) (more than
-    /// 2^30 primitives) and [`BuildError::OutOfMemory`](crate::BuildError::OutOfMemory) of the indexes of this project; one of
-    /// your own may have others. An empty set is none.
+    /// [`BuildError::NonFinite`](crate::BuildError::NonFinite) and [`BuildError::TooMany`](crate::BuildError::TooMany) (more than
+    /// 2^30 primitives) of the indexes of this project; one of your own may have others. An empty set is none.
     fn build(set: S, options: &Self::Options) -> Result<Self, Self::Error>;
 }

@@ -42,11 +42,9 @@ mod primitive;
 mod query;
 mod ray;
 mod real;
-mod room;
 pub mod saved;
 mod set;
 mod simd;
-mod single;
 mod soup;
 mod stats;
 
@@ -65,9 +63,7 @@ pub use primitive::{Feature, Point, Primitive, Projection, Segment, Shape, Trian
 pub use query::{Best, Closest, Collector, QueryOptions};
 pub use ray::{Crossing, Hit, Hits, Ray, RayCollector, RayCounting, RayError, RayHit, RayQuery, Side};
 pub use real::Real;
-pub use room::check_room;
 pub use set::{PrimitiveId, PrimitiveSet, check_set};
 pub use simd::Isa;
-pub use single::StoredInF32;
 pub use soup::{Element, Soup};
 pub use stats::{Examine, Lists, Load, StageTimes, Visits};

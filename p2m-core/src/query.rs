@@ -2,7 +2,7 @@
 //!
 //! # Approximation
 //!
-//! Three options give up exactness: a relative error (epsilon), a distance that is near enough, and a budget of visits.
+//! Two options give up exactness: a relative error (epsilon) and a budget of visits.
 //! A search that honours them *holds* a primitive as soon as it knows from both sides how far it is, before it is evaluated:
 //! it is evaluated first in the end, so the answer is never farther than what is held. Parts of the scene whose lower bound
 //! exceeds the distance held / (1 + epsilon) are left out, and parts that a search does not come to are left out with the
@@ -34,9 +34,6 @@ pub struct QueryOptions<T: Real> {
     /// The reported distance may exceed the true one by this fraction of it: reported <= (1 + epsilon) true, apart
     /// from rounding (contract N7). 0 by default; a negative or NaN value counts as 0.
     pub epsilon: T,
-    /// An answer at most this far is near enough: the search may end there. An answer that is farther is as exact as it
-    /// would be without. 0 by default; a negative or NaN value counts as 0.
-    pub near_enough: T,
     /// So many nodes and packets may be visited, and those that it takes to find any answer; then the best one found so
     /// far is the answer. The interception indexes visit the sites on the way to a cell and the packets of its list: with
     /// a budget of 0 the answer is what the cell itself tells. Unlimited by default. If there is a largest distance as
@@ -47,7 +44,7 @@ pub struct QueryOptions<T: Real> {
 
 impl<T: Real> Default for QueryOptions<T> {
     fn default() -> Self {
-        Self { max_distance: T::INFINITY, hint: None, epsilon: T::zero(), near_enough: T::zero(), budget: u32::MAX }
+        Self { max_distance: T::INFINITY, hint: None, epsilon: T::zero(), budget: u32::MAX }
     }
 }
 
@@ -67,11 +64,6 @@ impl<T: Real> QueryOptions<T> {
     pub fn with_epsilon(self, epsilon: T) -> Self {
         Self { epsilon, ..self }
     }
-    /// With a distance that is near enough.
-    #[must_use]
-    pub fn with_near_enough(self, near_enough: T) -> Self {
-        Self { near_enough, ..self }
-    }
     /// With so many visits at most.
     #[must_use]
     pub fn with_budget(self, budget: u32) -> Self {
@@ -80,7 +72,7 @@ impl<T: Real> QueryOptions<T> {
     /// Whether the answer may differ from the exact one.
     #[must_use]
     pub fn is_approximate(&self) -> bool {
-        self.epsilon > T::zero() || self.near_enough > T::zero() || self.budget < u32::MAX
+        self.epsilon > T::zero() || self.budget < u32::MAX
     }
 }
 
@@ -155,11 +147,11 @@ pub trait Collector {
         self.prune_given(square)
     }
 
-    /// Whether the search may end: some primitive is known to be at most `held` far (infinity for none) and is certain to be offered,
-    /// or one that is as near. What was not searched is to be [given up](Self::forgo).
+    /// Whether the search may end; `holds` says whether it holds some primitive that is certain to be offered, or one that is as near.
+    /// What was not searched is to be [given up](Self::forgo).
     #[inline(always)]
-    fn is_content(&self, held: f64) -> bool {
-        let _ = held;
+    fn is_content(&self, holds: bool) -> bool {
+        let _ = holds;
         false
     }
 
@@ -213,8 +205,6 @@ pub(crate) struct Minimum {
     certified: f64,
     /// Whether the answer may be another one.
     approximate: bool,
-    /// The largest distance that is near enough.
-    near_enough: f64,
     /// Visits that are left, if there is a budget.
     budget: u32,
 }
@@ -237,7 +227,6 @@ impl<T: Real> Best<T> {
         // A distance counts as it will be reported, so somewhat beyond the radius; nothing is within NaN.
         let radius = options.max_distance.to_f64_above();
         let prune = square_within(radius);
-        let near_enough = options.near_enough.to_f64();
         let minimum = Minimum {
             radius,
             shrink,
@@ -246,8 +235,6 @@ impl<T: Real> Best<T> {
             key: Key::INFINITY,
             certified: f64::INFINITY,
             approximate: options.is_approximate(),
-            // Not for NaN either.
-            near_enough: if near_enough > 0.0 { near_enough } else { -1.0 },
             budget: options.budget,
         };
         Self { hint: options.hint, minimum, scalar: PhantomData }
@@ -338,8 +325,8 @@ impl<T: Real> Collector for Best<T> {
         self.minimum.prune_held(square)
     }
     #[inline(always)]
-    fn is_content(&self, held: f64) -> bool {
-        self.minimum.is_content(held)
+    fn is_content(&self, holds: bool) -> bool {
+        self.minimum.is_content(holds)
     }
     #[inline(always)]
     fn forgo(&mut self, square: f64) {
@@ -393,11 +380,9 @@ impl Collector for Minimum {
     }
 
     #[inline(always)]
-    fn is_content(&self, held: f64) -> bool {
-        let best = self.key.distance();
-        let held = if best < held { best } else { held };
-        // What is beyond the radius is no answer; with nothing held, everything is still to be found.
-        held < f64::INFINITY && (self.budget == 0 || held <= self.near_enough && held <= self.radius)
+    fn is_content(&self, holds: bool) -> bool {
+        // As long as there is nothing, everything is still to be found.
+        self.budget == 0 && (holds || self.best.is_some())
     }
 
     #[inline(always)]

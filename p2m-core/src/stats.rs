@@ -115,10 +115,9 @@ impl Visits {
 /// let wires = [Segment::new(Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 1.0, 2.0))];
 /// let start = Instant::now();
 /// let times = StageTimes::new(move || start.elapsed());
-/// let cells: Voronoi = Partition::build(&wires, &Default::default(), &|progress| times.tell(progress))?;
+/// let cells: Voronoi = Partition::build(&wires, &Default::default(), &|progress| times.tell(progress));
 /// assert!(times.finish().iter().any(|(stage, _)| *stage == Stage::Tree));
 /// # drop(cells);
-/// # Ok::<(), p2m_core::BuildError>(())
 /// ```
 pub struct StageTimes<C> {
     /// The time since some moment.

@@ -42,7 +42,7 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> InterceptionIndex<T, S, P> {
     /// of each percent, from any thread ([`StageTimes`](p2m_core::StageTimes) sums their times).
     ///
     /// # Errors
-    /// For a coordinate that is not finite, for more primitives than ids, and where the memory that it may need is refused.
+    /// For a coordinate that is not finite, and for more primitives than ids.
     pub fn build_with_progress(
         set: S,
         options: &P::Options,
@@ -52,7 +52,7 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> InterceptionIndex<T, S, P> {
         S: Sync,
     {
         check_set(&set)?;
-        let partition = P::build(&set, options, progress)?;
+        let partition = P::build(&set, options, progress);
         Ok(Self { set, scalar: PhantomData, partition })
     }
 

@@ -94,19 +94,22 @@ impl fmt::Display for Choice {
     }
 }
 
-/// Seconds for building a primitive, and for a query of a scene of 100,000 near the surface and in its box; bytes a primitive.
-/// Those of dragon_100k in docs/paper.md.
+/// What is known of an index before anything is measured: the figures of dragon_100k in docs/paper.md.
 struct Prior {
+    /// Seconds that building takes for each primitive.
     build: f64,
+    /// Seconds of a query near the surface of that scene.
     near: f64,
+    /// Seconds of a query in the box of that scene.
     inside: f64,
+    /// Bytes of the index for each primitive.
     bytes: f64,
 }
 
 /// The primitives of that scene.
 const PRIOR_SIZE: f64 = 100_000.0;
-/// Brute force, for a primitive and query.
-const BRUTE: f64 = 48e-9;
+/// Seconds that a query of brute force takes for each primitive.
+const SECONDS_A_PRIMITIVE_OF_BRUTE_FORCE: f64 = 48e-9;
 /// The part of the job that is spent on a first patch, with all that may win; and on both patches, the second one with those that are
 /// close to the best.
 const FIRST: f64 = 0.022;
@@ -122,11 +125,13 @@ const MOST: usize = 65_536;
 const PATCHES: usize = 4;
 /// Patches face few ways, which flatters k-DOPs by this (observed).
 const FLATTERED: f64 = 1.08;
-/// Seconds for each primitive of the scene to find a patch.
-const FINDING: f64 = 30e-9;
-/// Primitives of a probe of the P2M index, the seconds that each takes usually, and how many times that is too long.
+/// Seconds that finding a patch takes for each primitive of the scene.
+const SECONDS_A_PRIMITIVE_OF_FINDING: f64 = 30e-9;
+/// The primitives of a probe, a thinned scene over which the P2M index is built on trial.
 const PROBE: usize = 300;
-const THINNED: f64 = 50e-6;
+/// Seconds that building a probe usually takes for each of its primitives.
+const SECONDS_A_PRIMITIVE_OF_A_PROBE: f64 = 50e-6;
+/// A probe that takes so many times as long is a reason not to build the P2M index.
 const TOO_LONG: f64 = 1.2;
 /// The height of a sliver in longest edges,
 const SLIVER: f64 = 1.0 / 256.0;
@@ -278,7 +283,7 @@ pub fn recommend(soup: &Soup<f64>, workload: &Workload<'_>) -> Result<Advice, Bu
     let mut estimates = Choice::ALL.map(|choice| {
         let prior = choice.prior();
         let query = match choice {
-            Choice::Brute => BRUTE * count,
+            Choice::Brute => SECONDS_A_PRIMITIVE_OF_BRUTE_FORCE * count,
             _ => (if is_near { prior.near } else { prior.inside }) * choice.growth(true).powf(doublings(PRIOR_SIZE)),
         };
         Estimate {
@@ -306,7 +311,7 @@ pub fn recommend(soup: &Soup<f64>, workload: &Workload<'_>) -> Result<Advice, Bu
         // Cells of a thinned scene take longer, some of them a hundred times, and have long lists then.
         let (build, ..) = Choice::P2m.measure(&thinned(soup, PROBE)?, &[])?;
         let each = build / PROBE as f64;
-        if each > TOO_LONG * THINNED {
+        if each > TOO_LONG * SECONDS_A_PRIMITIVE_OF_A_PROBE {
             (estimates[4].build, estimates[4].query) = (each * count, estimates[1].query);
         } else {
             estimates[4].build = 1.5 * each * count;
@@ -337,7 +342,7 @@ pub fn recommend(soup: &Soup<f64>, workload: &Workload<'_>) -> Result<Advice, Bu
         let asked = ((budget / 3.0 / a_query) as usize).clamp(QUERIES[0], QUERIES[1]);
         let asking = asked as f64 * a_query;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-        let affordable = ((budget - asking - 2.0 * FINDING * count) / a_primitive) as usize;
+        let affordable = ((budget - asking - 2.0 * SECONDS_A_PRIMITIVE_OF_FINDING * count) / a_primitive) as usize;
         // Twice as much as before, at least.
         let size = affordable.min(MOST).min(soup.len());
         if size < (2 * patch).max(FEWEST) {

@@ -93,14 +93,9 @@ impl Errors {
             gap: bounded().map(gap).fold(f64::NAN, f64::max),
             bounds_above: bounded().filter(above).count(),
             other_ids: named.then(|| pairs().filter(|(answer, truth)| answer.id != truth.id).count()),
-            broken: pairs().filter(|p| !promise.is_kept(error(p), p.1.distance, p.1.unit(), told(p.0))).count(),
+            broken: pairs().filter(|p| !promise.is_kept(error(p), p.1.distance, p.1.unit())).count(),
         }
     }
-}
-
-/// How far off an answer says that it may be: without end where its bound was cut at 0.
-fn told(answer: &Answer) -> f64 {
-    if answer.lower_bound > 0.0 { answer.distance - answer.lower_bound } else { f64::INFINITY }
 }
 
 /// A quotient, of which 0 over 0 is 0: no error, of something that has no size.
@@ -123,7 +118,7 @@ mod tests {
     fn errors_are_in_their_units() {
         let answers =
             [answer(1.0, 1.0, 7), answer(1.25, 0.75, 7), answer(1.0 + 8.0 * U, 1.0 + 2.0 * U, 8), Answer::NONE];
-        let errors = Errors::of(&answers, &[TRUTH; 4], Promise::within(0.1));
+        let errors = Errors::of(&answers, &[TRUTH; 4], Promise::Within(0.1));
         assert_eq!((errors.compared, errors.unanswered), (3, 1));
         assert_eq!(errors.scaled.max, 0.25 / (2.0 * U));
         assert_eq!((errors.relative.max, errors.gap), (0.25, 0.4));
@@ -135,7 +130,7 @@ mod tests {
     #[test]
     fn what_the_true_distance_has_beyond_rounding_counts() {
         let truth = Truth { rest: 0.25 * U, ..TRUTH };
-        let errors = Errors::of(&[answer(1.0, 1.0, 7)], &[truth], Promise::within(0.0));
+        let errors = Errors::of(&[answer(1.0, 1.0, 7)], &[truth], Promise::Within(0.0));
         assert_eq!((errors.scaled.max, errors.bounds_above), (0.125, 0));
         let below = Truth { rest: -0.25 * U, ..TRUTH };
         assert_eq!(Errors::of(&[answer(1.0, 1.0, 7)], &[below], Promise::Nothing).bounds_above, 1);

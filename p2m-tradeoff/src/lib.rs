@@ -19,8 +19,8 @@
 //!     .map(|setting| Entrant {
 //!         backend: "brute".to_owned(),
 //!         setting: setting.name.to_owned(),
-//!         promise: setting.promise(4.0),
-//!         subject: Box::new(Asked::new(&index, setting.options::<f64>(4.0))),
+//!         promise: setting.promise(),
+//!         subject: Box::new(Asked::new(&index, setting.options::<f64>())),
 //!         build: Build::default(),
 //!     })
 //!     .collect();

@@ -161,7 +161,7 @@ fn affordable(nanoseconds: f64, seconds: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::{SETTINGS, Storage};
+    use crate::settings::SETTINGS;
     use crate::subject::Asked;
     use nalgebra::Point3;
     use p2m_core::{BruteForce, ClosestPoint, Point as Site};
@@ -192,12 +192,12 @@ mod tests {
         let truths: Vec<Truth> = double.iter().map(truth).collect();
         let entrants: Vec<Entrant<'_>> = ["a", "b"]
             .iter()
-            .flat_map(|name| SETTINGS.iter().filter(|s| s.storage == Storage::Double).map(move |s| (name, s)))
+            .flat_map(|name| SETTINGS.iter().map(move |s| (name, s)))
             .map(|(name, setting)| Entrant {
                 backend: (*name).to_owned(),
                 setting: setting.name.to_owned(),
-                promise: setting.promise(50.0),
-                subject: Box::new(Asked::new(&index, setting.options::<f64>(50.0))),
+                promise: setting.promise(),
+                subject: Box::new(Asked::new(&index, setting.options::<f64>())),
                 build: Build::default(),
             })
             .collect();

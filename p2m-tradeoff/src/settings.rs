@@ -5,15 +5,6 @@
 use p2m_core::kernel::ERROR_CONSTANT;
 use p2m_core::{QueryOptions, Real};
 
-/// In which scalar a scene is kept and asked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Storage {
-    /// f64, as the scene is given.
-    Double,
-    /// f32, as [`StoredInF32`](p2m_core::StoredInF32) does.
-    Single,
-}
-
 /// What a query asks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ask {
@@ -23,8 +14,6 @@ pub enum Ask {
     Certified,
     /// A point that is farther by this part of the distance at most.
     Epsilon(f64),
-    /// A point that is nearer than this part of the diagonal of the scene's box, or the closest one.
-    NearEnough(f64),
     /// The best that so many visits of nodes and packets find.
     Budget(u32),
 }
@@ -36,8 +25,6 @@ pub struct Setting {
     pub name: &'static str,
     /// What it does, for who has not seen it.
     pub about: &'static str,
-    /// How the scene is kept.
-    pub storage: Storage,
     /// What is asked.
     pub ask: Ask,
 }
@@ -46,7 +33,6 @@ pub struct Setting {
 pub const DEFAULT: Setting = Setting {
     name: "default",
     about: "f64, no options: the closest point, its distance wrong by roundings alone",
-    storage: Storage::Double,
     ask: Ask::Exact,
 };
 
@@ -64,12 +50,6 @@ pub const SETTINGS: &[Setting] = &[
     within("epsilon 0.1", 0.1, "`QueryOptions::with_epsilon(0.1)`: at most 10 % farther"),
     within("epsilon 1", 1.0, "`QueryOptions::with_epsilon(1.0)`: at most twice as far"),
     Setting {
-        name: "near 0.01",
-        about: "`QueryOptions::with_near_enough(r)` with r a hundredth of the diagonal of the scene's box: at most r away, or the closest point",
-        ask: Ask::NearEnough(0.01),
-        ..DEFAULT
-    },
-    Setting {
         name: "budget 0",
         about: "`QueryOptions::with_budget(0)`: the first thing found; of `octree` and `p2m` what the cell itself tells",
         ask: Ask::Budget(0),
@@ -81,26 +61,19 @@ pub const SETTINGS: &[Setting] = &[
         ask: Ask::Budget(16),
         ..DEFAULT
     },
-    Setting {
-        name: "f32",
-        about: "`StoredInF32`: the scene kept in f32; its bytes include those of the scene",
-        storage: Storage::Single,
-        ..DEFAULT
-    },
 ];
 
 const fn within(name: &'static str, epsilon: f64, about: &'static str) -> Setting {
-    Setting { name, about, storage: Storage::Double, ask: Ask::Epsilon(epsilon) }
+    Setting { name, about, ask: Ask::Epsilon(epsilon) }
 }
 
 impl Setting {
-    /// The options of a query, in a scene whose box has this diagonal.
+    /// The options of a query.
     #[must_use]
-    pub fn options<T: Real>(&self, diagonal: f64) -> QueryOptions<T> {
+    pub fn options<T: Real>(&self) -> QueryOptions<T> {
         let usual = QueryOptions::default();
         match self.ask {
             Ask::Exact | Ask::Certified => usual,
-            Ask::NearEnough(part) => usual.with_near_enough(T::of_f64(part * diagonal)),
             Ask::Budget(visits) => usual.with_budget(visits),
             Ask::Epsilon(epsilon) => usual.with_epsilon(T::of_f64(epsilon)),
         }
@@ -108,14 +81,12 @@ impl Setting {
 
     /// What its answers promise.
     #[must_use]
-    pub fn promise(&self, diagonal: f64) -> Promise {
-        match (self.storage, self.ask) {
-            (Storage::Single, _) => Promise::Told,
-            (Storage::Double, Ask::Exact) => Promise::within(0.0),
-            (Storage::Double, Ask::Certified) => Promise::LastPlace,
-            (Storage::Double, Ask::Epsilon(epsilon)) => Promise::within(epsilon),
-            (Storage::Double, Ask::NearEnough(part)) => Promise::Within { relative: 0.0, absolute: part * diagonal },
-            (Storage::Double, Ask::Budget(_)) => Promise::Nothing,
+    pub fn promise(&self) -> Promise {
+        match self.ask {
+            Ask::Exact => Promise::Within(0.0),
+            Ask::Certified => Promise::LastPlace,
+            Ask::Epsilon(epsilon) => Promise::Within(epsilon),
+            Ask::Budget(_) => Promise::Nothing,
         }
     }
 }
@@ -127,36 +98,19 @@ pub enum Promise {
     Nothing,
     /// No more than one unit in the last place.
     LastPlace,
-    /// No more than its distance exceeds its lower bound, on either side.
-    Told,
-    /// No farther than a part of the distance and a length, besides the roundings of the contract.
-    Within {
-        /// The part.
-        relative: f64,
-        /// The length.
-        absolute: f64,
-    },
+    /// No farther than this part of the distance, besides the roundings of the contract.
+    Within(f64),
 }
 
 impl Promise {
-    /// A part of the distance.
+    /// Whether an answer at `error` from a distance keeps it; `unit` is u M.
     #[must_use]
-    pub const fn within(relative: f64) -> Self {
-        Self::Within { relative, absolute: 0.0 }
-    }
-
-    /// Whether an answer at `error` from a distance keeps it; `unit` is u M, and `gap` how far off it
-    /// says that it may be.
-    #[must_use]
-    pub fn is_kept(self, error: f64, distance: f64, unit: f64, gap: f64) -> bool {
+    pub fn is_kept(self, error: f64, distance: f64, unit: f64) -> bool {
         match self {
             Self::Nothing => true,
             Self::LastPlace => error <= distance.next_up() - distance,
-            Self::Told => error <= gap,
             // Once for the primitive that is answered and once for the nearest one (contract N1, N2, N7).
-            Self::Within { relative, absolute } => {
-                error <= relative * distance + absolute + 2.0 * ERROR_CONSTANT * unit
-            }
+            Self::Within(part) => error <= part * distance + 2.0 * ERROR_CONSTANT * unit,
         }
     }
 }
@@ -177,26 +131,16 @@ mod tests {
     #[test]
     fn options_and_promises_are_of_the_same_size() {
         for setting in SETTINGS {
-            let options: QueryOptions<f64> = setting.options(1.0);
-            match setting.promise(1.0) {
+            let options: QueryOptions<f64> = setting.options();
+            match setting.promise() {
                 Promise::Nothing => assert!(options.budget < u32::MAX, "{}", setting.name),
-                Promise::Told => assert_eq!(setting.storage, Storage::Single),
                 Promise::LastPlace => assert_eq!(setting.ask, Ask::Certified),
-                Promise::Within { relative, absolute } => {
-                    assert!((relative - options.epsilon).abs() <= 0.0, "{}", setting.name);
-                    assert!((absolute - options.near_enough).abs() <= 0.0, "{}", setting.name);
-                }
+                Promise::Within(part) => assert!((part - options.epsilon).abs() <= 0.0, "{}", setting.name),
             }
         }
-        assert!(
-            Promise::within(0.1).is_kept(0.1, 1.0, 1e-16, 0.0) && !Promise::within(0.1).is_kept(0.2, 1.0, 1e-16, 0.0)
-        );
-        assert!(
-            Promise::within(0.0).is_kept(1e-16, 1.0, 1e-16, 0.0)
-                && !Promise::within(0.0).is_kept(1e-14, 1.0, 1e-16, 0.0)
-        );
-        assert!(Promise::Nothing.is_kept(9.0, 1.0, 0.0, 0.0));
-        assert!(Promise::LastPlace.is_kept(2e-16, 1.0, 1.0, 0.0) && !Promise::LastPlace.is_kept(3e-16, 1.0, 1.0, 0.0));
-        assert!(Promise::Told.is_kept(0.1, 1.0, 0.0, 0.1) && !Promise::Told.is_kept(0.2, 1.0, 0.0, 0.1));
+        assert!(Promise::Within(0.1).is_kept(0.1, 1.0, 1e-16) && !Promise::Within(0.1).is_kept(0.2, 1.0, 1e-16));
+        assert!(Promise::Within(0.0).is_kept(1e-16, 1.0, 1e-16) && !Promise::Within(0.0).is_kept(1e-14, 1.0, 1e-16));
+        assert!(Promise::Nothing.is_kept(9.0, 1.0, 0.0));
+        assert!(Promise::LastPlace.is_kept(2e-16, 1.0, 1.0) && !Promise::LastPlace.is_kept(3e-16, 1.0, 1.0));
     }
 }

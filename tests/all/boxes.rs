@@ -163,10 +163,10 @@ fn meeting<T: Real>(soup: &Soup<T>, candidates: &[PrimitiveId], bounds: &Aabb<T>
 
 #[test]
 fn trees_find_the_same_primitives_as_brute_force_in_random_scenes() {
-    let rules = [SplitRule::Sah, SplitRule::AdaptiveSah, SplitRule::Ball { radius: 0.1 }, SplitRule::Median];
-    for case in cases(96, 96) {
+    let rules = [SplitRule::Sah, SplitRule::AdaptiveSah, SplitRule::Median];
+    for case in cases(72, 72) {
         let mut rng = rng("boxes in scenes", case);
-        let ((kinds, layout), rule) = (of_case(case), rules[(case / 24 % 4) as usize]);
+        let ((kinds, layout), rule) = (of_case(case), rules[(case / 24 % 3) as usize]);
         let soup = scenes::soup(&mut rng, kinds, layout, amount(300, 120));
         let tree = AabbTree::build(&soup, &p2m::AabbOptions::default().with_rule(rule)).unwrap();
         let brute = BruteForce::new(&soup).unwrap();
@@ -189,8 +189,7 @@ fn split_rules_change_no_answer() {
         let layout = LAYOUTS[(case % 6) as usize];
         let soup = scenes::soup(&mut rng, Kinds::Mixed, layout, amount(500, 150));
         let brute = BruteForce::new(&soup).unwrap();
-        let rules = [0.0, 0.01, 1.0, 1e300, f64::INFINITY, f64::NAN, -1.0].map(|radius| SplitRule::Ball { radius });
-        for rule in rules.into_iter().chain([SplitRule::AdaptiveSah, SplitRule::Median]) {
+        for rule in [SplitRule::AdaptiveSah, SplitRule::Median] {
             let tree = AabbTree::build(&soup, &p2m::AabbOptions::default().with_rule(rule)).unwrap();
             for _ in 0..amount(50, 8) {
                 let query = random_box(&mut rng, &soup, &soup.aabb()).min;

@@ -1,8 +1,8 @@
 //! The tests that hold backends against each other and against the oracle, as one program: what they have in common is
 //! compiled once. `cargo test --test all signs::` runs those of one module.
 //!
-//! Programs of their own beside it are those that need an allocator of their own (`out_of_memory`, `soak`), and
-//! `examples`, which runs other programs.
+//! Programs of their own beside it are `soak`, which needs an allocator of its own, and `examples`, which runs other
+//! programs.
 
 mod adversaries;
 mod agreement;

@@ -248,6 +248,29 @@ fn rays_moved_sets_and_primitives_of_ones_own_work_as_before() {
     assert!(matches!(P2mIndex::<f64, _>::load(fewer, file.unchecked()), Err(LoadError::OtherSet)));
 }
 
+/// Files that announce more than there can be are errors, and take no memory.
+#[test]
+fn sizes_that_are_merely_announced_are_refused() {
+    const ENOUGH: u64 = 1 << 20;
+    let mut file = Vec::new();
+    p2m::scene::write_p2m(&Scene::from(scenes::skewed_gear(10)), &mut file).expect("memory");
+    // The number of sections and the length in the head; of each section the offset, the number and the size of elements.
+    let sections = u32::from_le_bytes([file[12], file[13], file[14], file[15]]) as usize;
+    let places = (0..sections).flat_map(|section| [32, 40, 48].map(|field| (64 + 64 * section + field, 8)));
+    for (place, size) in [(12, 4), (16, 8)].into_iter().chain(places) {
+        for number in [u64::MAX, 1 << 60, u64::from(u32::MAX)] {
+            let mut other = file.clone();
+            other[place..place + size].copy_from_slice(&number.to_le_bytes()[..size]);
+            // As if it had been written so.
+            let sum = twox_hash::XxHash3_64::oneshot(&other[64..64 + 64 * sections]);
+            other[24..32].copy_from_slice(&sum.to_le_bytes());
+            let load = || -> Result<Scene, LoadError> { load_scene(SavedFile::read(&other[..])?.checked()?) };
+            let taken = allocation_counter::measure(|| assert!(load().is_err(), "{number} at {place}")).bytes_max;
+            assert!(taken < ENOUGH, "{number} at {place}: {taken} bytes");
+        }
+    }
+}
+
 #[test]
 fn single_precision_comes_back_as_well() {
     let wires: Vec<Segment<f32>> = (0..500u16)

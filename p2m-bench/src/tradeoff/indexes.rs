@@ -1,4 +1,4 @@
-//! What takes part: our backends in both scalars, and rivals.
+//! What takes part: our backends, and rivals.
 
 use crate::backends::{aabb_options, octree_options, p2m_options};
 use crate::bvh_crate;
@@ -10,11 +10,11 @@ use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_core::batch::{BatchOptions, closest_points_into};
-use p2m_core::{BruteForce, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, QueryOptions, Soup, StoredInF32};
+use p2m_core::{BruteForce, BuildIndex, CertifiedQuery, ClosestPoint, QueryOptions, Soup};
 use p2m_interception::{OctreeIndex, P2mIndex};
 use p2m_kdop::{KdopOptions, KdopTree};
 use p2m_tradeoff::queries::QuerySlice;
-use p2m_tradeoff::settings::{Ask, DEFAULT, Promise, SETTINGS, Setting, Storage};
+use p2m_tradeoff::settings::{Ask, DEFAULT, Promise, SETTINGS, Setting};
 use p2m_tradeoff::{Answer, Asked, AskedForProof, Build, Entrant, Respond, Spread, Subject};
 use std::time::Instant;
 
@@ -24,7 +24,7 @@ const BUILD_SECONDS: f64 = 10.0;
 /// An index that was built.
 pub(super) trait Built: Sync {
     /// What answers as a setting asks.
-    fn subject(&self, setting: &Setting, diagonal: f64) -> Box<dyn Subject + '_>;
+    fn subject(&self, setting: &Setting) -> Box<dyn Subject + '_>;
     /// Wall seconds of a batch on the threads of the current pool; `None` for rivals.
     fn batch(&self, queries: QuerySlice<'_>) -> Option<f64>;
 }
@@ -33,24 +33,11 @@ pub(super) trait Built: Sync {
 struct Ours<I>(I);
 
 impl<I: ClosestPoint<f64> + CertifiedQuery<f64> + Sync> Built for Ours<I> {
-    fn subject(&self, setting: &Setting, diagonal: f64) -> Box<dyn Subject + '_> {
+    fn subject(&self, setting: &Setting) -> Box<dyn Subject + '_> {
         match setting.ask {
             Ask::Certified => Box::new(AskedForProof::new(&self.0)),
-            _ => Box::new(Asked::new(&self.0, setting.options::<f64>(diagonal))),
+            _ => Box::new(Asked::new(&self.0, setting.options::<f64>())),
         }
-    }
-
-    fn batch(&self, queries: QuerySlice<'_>) -> Option<f64> {
-        Some(seconds_of_batch(&self.0, queries))
-    }
-}
-
-/// One of ours over a scene that is kept in f32.
-struct Stored<I>(StoredInF32<I>);
-
-impl<I: ClosestPoint<f32> + Sync> Built for Stored<I> {
-    fn subject(&self, setting: &Setting, diagonal: f64) -> Box<dyn Subject + '_> {
-        Box::new(Asked::new(&self.0, setting.options::<f64>(diagonal)))
     }
 
     fn batch(&self, queries: QuerySlice<'_>) -> Option<f64> {
@@ -81,7 +68,7 @@ impl<C: Contender> Respond for AskedRival<'_, C> {
 }
 
 impl<C: Contender> Built for Rival<C> {
-    fn subject(&self, _: &Setting, _: f64) -> Box<dyn Subject + '_> {
+    fn subject(&self, _: &Setting) -> Box<dyn Subject + '_> {
         Box::new(AskedRival(&self.0))
     }
 
@@ -103,11 +90,11 @@ pub(super) struct Candidate {
     /// What it is, for who has not seen it.
     pub(super) about: &'static str,
     /// Over the scene in f64, or in what scalar a rival has.
-    double: Make,
-    /// Over the scene in f32; `None` for rivals.
-    single: Option<Make>,
+    make: Make,
+    /// Whether it is ours, and its answers promise something.
+    ours: bool,
     /// Whether it has settings.
-    varied: bool,
+    pub(super) varied: bool,
 }
 
 /// All, in the order of tables and colours.
@@ -115,58 +102,58 @@ pub(super) const ALL: &[Candidate] = &[
     Candidate {
         name: "aabb",
         about: "our tree of boxes (`AabbTree`); quick to build, answers every kind of question",
-        double: |s| ours::<AabbTree<_, _>>(s, aabb_options()),
-        single: Some(|s| stored::<AabbTree<_, _>>(s, aabb_options())),
+        make: |s| ours::<AabbTree<_, _>>(s, aabb_options()),
+        ours: true,
         varied: true,
     },
     Candidate {
         name: "kdop",
         about: "our tree of polytopes with 14 faces (`KdopTree`), which fit closer what does not lie along the axes",
-        double: |s| ours::<KdopTree<_, _, 14>>(s, KdopOptions::default().with_splits(aabb_options())),
-        single: Some(|s| stored::<KdopTree<_, _, 14>>(s, KdopOptions::default().with_splits(aabb_options()))),
+        make: |s| ours::<KdopTree<_, _, 14>>(s, KdopOptions::default().with_splits(aabb_options())),
+        ours: true,
         varied: true,
     },
     Candidate {
         name: "octree",
         about: "our cubes with lists of what can be nearest in them (`OctreeIndex`)",
-        double: |s| ours::<OctreeIndex<_, _>>(s, octree_options(1.0)),
-        single: Some(|s| stored::<OctreeIndex<_, _>>(s, octree_options(1.0))),
+        make: |s| ours::<OctreeIndex<_, _>>(s, octree_options(1.0)),
+        ours: true,
         varied: true,
     },
     Candidate {
         name: "p2m",
         about: "our cells of the vertices with lists of what can be nearest in them (`P2mIndex`), one query at a time",
-        double: |s| ours::<P2mIndex<_, _>>(s, p2m_options()),
-        single: Some(|s| stored::<P2mIndex<_, _>>(s, p2m_options())),
+        make: |s| ours::<P2mIndex<_, _>>(s, p2m_options()),
+        ours: true,
         varied: true,
     },
     Candidate {
         name: "brute",
         about: "every primitive, every time (`BruteForce`)",
-        double: |s| ours::<BruteForce<_>>(s, ()),
-        single: None,
+        make: |s| ours::<BruteForce<_>>(s, ()),
+        ours: true,
         varied: false,
     },
     Candidate {
         name: "parry3d",
         about: "the crate parry3d 0.31, in f32: `TriMesh` and `Polyline`, the latter within the answer of the former",
-        double: |s| rival(rivals::single(s)?),
-        single: None,
+        make: |s| rival(rivals::single(s)?),
+        ours: false,
         varied: false,
     },
     Candidate {
         name: "parry3d-f64",
         about: "the same in f64",
-        double: |s| rival(rivals::double(s)?),
-        single: None,
+        make: |s| rival(rivals::double(s)?),
+        ours: false,
         varied: false,
     },
     Candidate {
         name: "bvh",
         about: "the crate bvh 0.13 in f64, `Bvh::nearest_to`; it leaves the distance to a primitive to its user: here it is the \
                 closest point on a triangle of Ericson's Real-Time Collision Detection, 5.1.5",
-        double: |s| rival(bvh_crate::tree(s)),
-        single: None,
+        make: |s| rival(bvh_crate::tree(s)),
+        ours: false,
         varied: false,
     },
 ];
@@ -183,18 +170,6 @@ where
     Ok(Prepared { build: Box::new(build), borrowed })
 }
 
-/// The scene in f32 is its own.
-fn stored<'a, I>(scene: &'a Scene, options: I::Options) -> Made<'a>
-where
-    I: BuildIndex<f32, Soup<f32>, Options: 'a, Error = BuildError> + Sync + 'a,
-{
-    let build = move || {
-        let index = StoredInF32::<I>::build(&scene.double, &options).map_err(|error| Absent(error.to_string()))?;
-        Ok(Box::new(Stored(index)) as Box<dyn Built>)
-    };
-    Ok(Prepared { build: Box::new(build), borrowed: 0 })
-}
-
 /// What it copied of the scene is its own.
 fn rival<'a, C: Contender + 'a>(build: impl FnOnce() -> Result<C, Absent> + 'a) -> Made<'a> {
     let build = move || Ok(Box::new(Rival(build()?)) as Box<dyn Built>);
@@ -205,35 +180,19 @@ fn rival<'a, C: Contender + 'a>(build: impl FnOnce() -> Result<C, Absent> + 'a) 
 pub(super) struct Index<'a> {
     /// Which one.
     pub(super) candidate: &'static Candidate,
-    /// Of which scalar, if it is ours.
-    storage: Storage,
     /// What answers.
     pub(super) built: Box<dyn Built + 'a>,
     /// Of its builds.
     pub(super) build: Build,
 }
 
-impl Index<'_> {
-    /// Whether the scene is kept in that scalar; a rival's scalar is its own.
-    pub(super) fn is(&self, storage: Storage) -> bool {
-        self.storage == storage
-    }
-}
-
-/// All that can be built over a scene, in f32 as well if `single`, and why others cannot, in sentences.
-pub(super) fn build_all(scene: &Scene, builds: usize, single: bool) -> (Vec<Index<'_>>, Vec<String>) {
+/// All that can be built over a scene, and why others cannot, in sentences.
+pub(super) fn build_all(scene: &Scene, builds: usize) -> (Vec<Index<'_>>, Vec<String>) {
     let (mut indexes, mut notes) = (Vec::new(), Vec::new());
     for candidate in ALL {
-        let makes = [(Storage::Double, Some(candidate.double)), (Storage::Single, candidate.single.filter(|_| single))];
-        for (storage, make) in makes {
-            let Some(make) = make else { continue };
-            match build(scene, make, builds) {
-                Ok((built, build)) => indexes.push(Index { candidate, storage, built, build }),
-                Err(Absent(why)) => {
-                    let scalar = if storage == Storage::Single { " in f32" } else { "" };
-                    notes.push(format!("`{}`{scalar} is left out here: {why}.", candidate.name));
-                }
-            }
+        match build(scene, candidate.make, builds) {
+            Ok((built, build)) => indexes.push(Index { candidate, built, build }),
+            Err(Absent(why)) => notes.push(format!("`{}` is left out here: {why}.", candidate.name)),
         }
     }
     (indexes, notes)
@@ -253,19 +212,17 @@ fn build(scene: &Scene, make: Make, builds: usize) -> Result<(Box<dyn Built + '_
     }
 }
 
-/// Every setting of every index; or the usual one of those in f64 alone.
-pub(super) fn entrants<'a>(indexes: &'a [Index<'_>], diagonal: f64, usual: bool) -> Vec<Entrant<'a>> {
+/// Every setting of every index, or the usual one alone.
+pub(super) fn entrants<'a>(indexes: &'a [Index<'_>], usual: bool) -> Vec<Entrant<'a>> {
     let mut entrants = Vec::new();
     for index in indexes {
         let candidate = index.candidate;
-        let settings = SETTINGS.iter().filter(|setting| setting.storage == index.storage);
-        for setting in settings.filter(|setting| **setting == DEFAULT || candidate.varied && !usual) {
-            let ours = candidate.single.is_some() || candidate.name == "brute";
+        for setting in SETTINGS.iter().filter(|setting| **setting == DEFAULT || candidate.varied && !usual) {
             entrants.push(Entrant {
                 backend: candidate.name.to_owned(),
                 setting: setting.name.to_owned(),
-                promise: if ours { setting.promise(diagonal) } else { Promise::Nothing },
-                subject: index.built.subject(setting, diagonal),
+                promise: if candidate.ours { setting.promise() } else { Promise::Nothing },
+                subject: index.built.subject(setting),
                 build: index.build,
             });
         }
@@ -283,12 +240,12 @@ mod tests {
     fn everyone_is_built_and_asked() {
         let soup = knot_and_cables(&KnotAndCables::default().with_rings(30)).unwrap();
         let scene = Scene::new("knot".to_owned(), soup).unwrap();
-        let (indexes, notes) = build_all(&scene, 1, true);
-        assert_eq!((indexes.len(), notes.len()), (ALL.len() + 4, 0), "{notes:?}");
-        assert_eq!(entrants(&indexes, 1.0, false).len(), 4 * SETTINGS.len() + 4);
-        assert_eq!(entrants(&indexes, 1.0, true).len(), ALL.len());
+        let (indexes, notes) = build_all(&scene, 1);
+        assert_eq!((indexes.len(), notes.len()), (ALL.len(), 0), "{notes:?}");
+        assert_eq!(entrants(&indexes, false).len(), 4 * SETTINGS.len() + 4);
+        assert_eq!(entrants(&indexes, true).len(), ALL.len());
         let queries = Queries::new(vec![Point3::new(1.0, 2.0, 3.0); 100]);
-        assert_eq!(indexes.iter().filter_map(|index| index.built.batch(queries.all())).count(), 9);
+        assert_eq!(indexes.iter().filter_map(|index| index.built.batch(queries.all())).count(), 5);
         // What they are is not asserted: other tests of this program allocate and free at the same time.
         assert!(indexes.iter().all(|index| index.build.seconds > 0.0 && index.build.bytes_each.is_some()));
     }

@@ -87,12 +87,12 @@ fn measure_scene(
     threads: bool,
 ) -> Result<(SceneFigures, Option<Sweep>)> {
     eprintln!("{}", scene.describe());
-    let (indexes, notes) = build_all(scene, profile.builds, true);
+    let (indexes, notes) = build_all(scene, profile.builds);
     let mut sets = Vec::new();
     for set in SETS {
         let queries = set.generate(&scene.double, profile.queries, SEED);
         let truths = truth::truths(scene, &queries);
-        let entrants = entrants(&indexes, scene.diagonal(), false);
+        let entrants = entrants(&indexes, false);
         let curves = measure(&entrants, &Queries::new(queries), &truths, &profile.effort, &|_| ());
         let figures = SetFigures { name: set.name().to_owned(), about: about(set).to_owned(), curves };
         println!("\n## {}, {set}\n\n{}", scene.name, text::table(&figures));

@@ -68,7 +68,7 @@ const WIREFRAME: Place = Place {
 const CARRIED: Place =
     Place { name: KNOT, otherwise: KNOT, about: "Generated: a tube of triangles with cables of segments around it." };
 
-/// What docs/report.html has.
+/// What the whole page has, which is docs/report.html unless another folder is named.
 pub(super) const FULL: Profile = Profile {
     scenes: &[
         DRAGON,

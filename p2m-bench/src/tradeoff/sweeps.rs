@@ -8,7 +8,6 @@ use crate::scene::Scene;
 use anyhow::Result;
 use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::page::Sweep;
-use p2m_tradeoff::settings::Storage;
 use p2m_tradeoff::{Spread, measure, rotated};
 
 /// Queries in the box of the scene.
@@ -31,14 +30,8 @@ pub(super) fn sizes(profile: &Profile, seed: u64) -> Result<Vec<Sweep>> {
         let scene = knot_of(*size)?;
         let queries = SET.generate(&scene.double, profile.queries, seed);
         let truths = truths(&scene, &queries);
-        let (indexes, _) = build_all(&scene, profile.builds, false);
-        let curves = measure(
-            &entrants(&indexes, scene.diagonal(), true),
-            &Queries::new(queries),
-            &truths,
-            &profile.effort,
-            &|_| (),
-        );
+        let (indexes, _) = build_all(&scene, profile.builds);
+        let curves = measure(&entrants(&indexes, true), &Queries::new(queries), &truths, &profile.effort, &|_| ());
         for curve in &curves {
             let point = &curve.points[0];
             // Less than a byte for each primitive is nothing that grows with them.
@@ -68,8 +61,7 @@ pub(super) fn threads(scene: &Scene, indexes: &[Index<'_>], profile: &Profile, s
         axes: ["threads", "ns per query, wall time"],
         lines: Vec::new(),
     };
-    let ours: Vec<_> =
-        indexes.iter().filter(|index| index.is(Storage::Double) && index.candidate.name != "brute").collect();
+    let ours: Vec<_> = indexes.iter().filter(|index| index.candidate.varied).collect();
     let most = std::thread::available_parallelism().map_or(1, usize::from);
     for threads in (0..usize::BITS).map(|i| 1 << i).take_while(|threads: &usize| *threads <= most) {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;

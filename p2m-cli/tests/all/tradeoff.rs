@@ -12,7 +12,7 @@ fn table_page_and_record_have_every_setting_of_every_backend() {
     let shown = table(&[&["tradeoff", SCENE, "--html", &html, "--csv", &csv][..], &few[..]].concat());
     let (page, record) = (fs::read_to_string(html).unwrap(), fs::read_to_string(csv).unwrap());
     for backend in ["aabb", "p2m"] {
-        for setting in ["default", "epsilon 0.1", "f32"] {
+        for setting in ["default", "epsilon 0.1", "certified"] {
             let has = |text: &str| text.lines().any(|line| line.contains(backend) && line.contains(setting));
             assert!(has(&shown) && has(&record), "{backend} {setting}: {shown}");
         }

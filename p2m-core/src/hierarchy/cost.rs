@@ -35,32 +35,19 @@ impl Bounds {
 struct Measure {
     /// Lengths are divided by this, so that nothing overflows.
     unit: f64,
-    /// In that unit; `None` for surface areas.
-    radius: Option<f64>,
 }
 
 impl Measure {
     /// For boxes inside of `bounds`, which is at half scale; `None` if numbers leave their range.
-    fn new(bounds: &Bounds, rule: SplitRule) -> Option<Self> {
-        let radius = match rule {
-            SplitRule::Ball { radius } => Some(if radius > 0.0 { radius * 0.5 } else { 0.0 }),
-            _ => None,
-        };
-        let unit = bounds.longest_side().max(radius.unwrap_or(0.0));
-        (unit > 0.0 && unit.is_finite()).then(|| Self { unit, radius: radius.map(|r| r / unit) })
+    fn new(bounds: &Bounds) -> Option<Self> {
+        let unit = bounds.longest_side();
+        (unit > 0.0 && unit.is_finite()).then_some(Self { unit })
     }
 
+    /// Half of the surface area.
     fn of(&self, bounds: &Bounds) -> f64 {
         let [x, y, z]: [f64; 3] = std::array::from_fn(|k| (bounds.max[k] - bounds.min[k]) / self.unit);
-        let half_area = x * y + y * z + z * x;
-        match self.radius {
-            None => half_area,
-            // Steiner's formula for the volume of a dilated box.
-            Some(r) => {
-                let edges = std::f64::consts::PI * (x + y + z);
-                x * y * z + r * (2.0 * half_area + r * (edges + r * (4.0 / 3.0 * std::f64::consts::PI)))
-            }
-        }
+        x * y + y * z + z * x
     }
 }
 
@@ -123,7 +110,7 @@ pub(super) fn best_cut(items: &[Item], bounds: &Bounds, centres: &Bounds, option
     if rule == SplitRule::Median {
         return None;
     }
-    let measure = Measure::new(bounds, rule)?;
+    let measure = Measure::new(bounds)?;
     let whole = measure.of(bounds);
     let on_axis = |axis: usize| Binning::new(axis, centres.min[axis], centres.max[axis]);
     let cheaper = |a: Option<Cut>, b: Option<Cut>| match (a, b) {

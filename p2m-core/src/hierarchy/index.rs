@@ -3,7 +3,7 @@ use crate::saved::{self, LoadError, Reader, Writer};
 use crate::{
     Aabb, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Collector,
     Counting, Directions, Examine, Hits, Isa, Kdop, Near, NearQuery, Primitive, PrimitiveId, PrimitiveSet,
-    QueryOptions, Ray, RayCollector, RayQuery, Real, Shape, check_room, check_set, shape_of,
+    QueryOptions, Ray, RayCollector, RayQuery, Real, Shape, check_set, shape_of,
 };
 use nalgebra::Point3;
 use std::marker::PhantomData;
@@ -27,13 +27,12 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// Builds the tree: as [`BuildIndex::build`], but also for volumes without usual options, such as k-DOPs of any K.
     ///
     /// # Errors
-    /// For a coordinate that is not finite, for more primitives than ids, and where [`PacketTree::build_bytes`] are refused.
+    /// For a coordinate that is not finite, and for more primitives than ids.
     pub fn build_with(set: S, options: &V::Options) -> Result<Self, BuildError>
     where
         S: Sync,
     {
         check_set(&set)?;
-        check_room(PacketTree::<V>::build_bytes(set.len()))?;
         let tree = PacketTree::build(&set, options);
         Ok(Self { set, scalar: PhantomData, tree })
     }
@@ -59,7 +58,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// threads are used matters: directions and splits stay those that it was built with.
     ///
     /// # Errors
-    /// [`BuildError::OtherLength`], [`BuildError::NonFinite`] and [`BuildError::OutOfMemory`]; the tree is then as it was.
+    /// [`BuildError::OtherLength`] and [`BuildError::NonFinite`]; the tree is then as it was.
     ///
     /// # Complexity
     /// O(n).
@@ -71,7 +70,6 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
             return Err(BuildError::OtherLength { len: set.len(), expected: self.set.len() });
         }
         check_set(&set)?;
-        check_room(PacketTree::<V>::build_bytes(set.len()))?;
         self.tree.refit(&set, options);
         self.set = set;
         Ok(())

@@ -10,7 +10,7 @@ use crate::{Aabb, PrimitiveId, Real};
 use nalgebra::Point3;
 
 /// Where nodes are split.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SplitRule {
     /// Where n_left A_left + n_right A_right is smallest, A being surface areas: the cost of random lines. 16 bins
@@ -20,14 +20,6 @@ pub enum SplitRule {
     /// The same cost along the longest side of the node alone, sampled coarsely first and then twice more finely around
     /// the best position, as in \[Cavarga2021\]; but primitives go to one side only, by their centres.
     AdaptiveSah,
-    /// The cost of random balls: A is the volume of the box dilated by `radius`, the distance (in units of the scene)
-    /// that most answers are expected to have. From volumes (0) it goes through surface areas to the sum of the sides
-    /// (large radii). A negative or NaN radius counts as 0; an infinite one halves nodes as [`Median`](Self::Median)
-    /// does. 16 bins along each axis.
-    Ball {
-        /// The expected distance.
-        radius: f64,
-    },
     /// Half of the primitives to each side, along the axis on which their centres spread most.
     Median,
 }

@@ -2,10 +2,10 @@
 
 use super::block::{self, Block, Place};
 use super::cube::DEEPEST;
-use super::options::{Domain, FORESEEN, OctreeOptions, OctreeReport};
+use super::options::{Domain, OctreeOptions, OctreeReport};
 use super::partition::{LookUp, Partition};
 use super::progress::{Progress, Stage};
-use super::refine::{Cell, Done, Refinement, Searched, way_bytes};
+use super::refine::{Cell, Done, Refinement, Searched};
 use crate::hierarchy::PacketTree;
 use crate::hierarchy::wide::search::{Evaluate, Filter, finish, finish_nearest};
 use crate::hierarchy::wide::volume::Rounded;
@@ -15,9 +15,7 @@ use crate::query::Minimum;
 use crate::real::{narrow, wide};
 use crate::saved::{Array, LoadError, Reader, Saved, Writer};
 use crate::simd::{InstructionSet, Operation, prefetch_lines};
-use crate::{
-    Aabb, Best, BuildError, Collector, Counting, Isa, Near, PrimitiveId, PrimitiveSet, QueryOptions, Real, check_room,
-};
+use crate::{Aabb, Best, Collector, Counting, Isa, Near, PrimitiveId, PrimitiveSet, QueryOptions, Real};
 use nalgebra::Point3;
 use std::collections::HashMap;
 use std::sync::atomic::AtomicU64;
@@ -63,25 +61,6 @@ pub struct Octree {
     rows: Array<Row>,
     blocks: Array<Block>,
     report: OctreeReport,
-}
-
-/// What building may need at a time besides the set, in bytes: the tree, the cells three times, for they are made one by one and then
-/// put together, and of each thread what the cells on the way to its own cannot rule out.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates; NaN is nothing")]
-fn build_bytes(len: usize, options: &OctreeOptions) -> usize {
-    let cells = 3.0 * options.memory.clamp(0.0, FORESEEN) * len.max(FEW) as f64;
-    let ways = threads(options.splits.parallel) * way_bytes(len);
-    PacketTree::<Aabb<f64>>::build_bytes(len).saturating_add(cells as usize).saturating_add(ways)
-}
-
-/// How many threads take part.
-fn threads(parallel: bool) -> usize {
-    #[cfg(feature = "rayon")]
-    if parallel {
-        return rayon::current_num_threads();
-    }
-    let _ = parallel;
-    1
 }
 
 /// The codes of cells, as they are made.
@@ -376,8 +355,7 @@ impl Partition for Octree {
         set: &S,
         options: &OctreeOptions,
         progress: &(dyn Fn(Progress) + Sync),
-    ) -> Result<Self, BuildError> {
-        check_room(build_bytes(set.len(), options))?;
+    ) -> Self {
         progress(Progress { stage: Stage::Tree, part: 0.0 });
         let tree = PacketTree::build(set, &options.splits);
         progress(Progress { stage: Stage::Octree, part: 0.0 });
@@ -395,7 +373,7 @@ impl Partition for Octree {
             octree.refine(set, options, &shape, progress);
         }
         progress(Progress { stage: Stage::Octree, part: 1.0 });
-        Ok(octree)
+        octree
     }
 
     fn tree(&self) -> &PacketTree {

@@ -5,9 +5,6 @@ use super::locator::BuildLocator;
 use crate::Aabb;
 use crate::hierarchy::SplitOptions;
 
-/// Budgets of memory may be without end: no more than this is asked for in advance, in bytes for each primitive.
-pub(super) const FORESEEN: f64 = 16384.0;
-
 /// Where queries are to be expected: model only what a scene and its queries require. Elsewhere the tree answers, just
 /// as right.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -34,8 +31,7 @@ pub struct OctreeOptions {
     /// How fine cells are: larger is finer, 1 takes about one and a half times the memory of 0.3, which is the default. Without
     /// a positive number there are no cells, and the tree answers everything.
     pub resolution: f64,
-    /// What cells may take, in bytes for each primitive of the scene (for at least 10,000 primitives). 190 by default. Above
-    /// 16 KiB no more is asked for in advance, so a build that needs more may run out of memory instead of failing.
+    /// What cells may take, in bytes for each primitive of the scene (for at least 10,000 primitives). 190 by default.
     pub memory: f64,
     /// How many times packets may be tested while building, at one point each, for each primitive (for at least
     /// 10,000). 200 by default.
@@ -155,8 +151,7 @@ pub struct P2mOptions {
     /// If there are filters, a list of more primitives than this has one. 64 by default.
     pub filter_above: usize,
     /// What the lists, and while building the packets around all corners of cells, may take each, in bytes for each primitive
-    /// (for at least 1000): 3072 by default. Where that is exceeded, the tree answers alone. Above 16 KiB no more is asked for
-    /// in advance, so a build that needs more may run out of memory instead of failing.
+    /// (for at least 1000): 3072 by default. Where that is exceeded, the tree answers alone.
     pub memory: f64,
     /// How many times packets may be tested while building, at one point each, for each primitive (for at least 1000).
     /// 20,000 by default. Where that is exceeded, the tree answers alone.

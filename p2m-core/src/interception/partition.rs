@@ -7,7 +7,7 @@ use crate::hierarchy::wide::search::{Evaluate, Filter, finish};
 use crate::kernel::vector::V3;
 use crate::query::Minimum;
 use crate::real::wide;
-use crate::{Best, BuildError, Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
+use crate::{Best, Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
 use nalgebra::Point3;
 
 /// A partition with its lists, over a set of primitives that it does not keep: every method that needs the set is given
@@ -23,15 +23,11 @@ pub trait Partition: LookUp + Sized {
 
     /// Builds it over a set whose boxes are finite. `progress` is told of each stage that begins, from this thread, and
     /// of each percent, from any thread.
-    ///
-    /// # Errors
-    /// [`BuildError::OutOfMemory`] where what it may need is refused ([`check_room`](crate::check_room)): before the tree is
-    /// built, and for the cells of vertices once more when it is.
     fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
         set: &S,
         options: &Self::Options,
         progress: &(dyn Fn(Progress) + Sync),
-    ) -> Result<Self, BuildError>;
+    ) -> Self;
 
     /// Offers to `collector` every primitive of the set that it could want. `query` is finite.
     #[inline]

@@ -34,21 +34,23 @@ const FORK: usize = 48;
 const LONGEST: usize = 256;
 /// Lists longer than this are held against the tree.
 const LONG: usize = 24;
-/// Nanoseconds of a packet that is tested, of a further block and of a node of the tree (observed; their ratios
-/// matter).
-const PACKET: f64 = 40.0;
-const BLOCK: f64 = 15.0;
-const NODE: f64 = 30.0;
+/// Nanoseconds that a query takes to test a packet, of a list or of the tree of boxes (observed on one processor; of these costs only the
+/// ratios matter, and the cells depend on each of them).
+const NANOSECONDS_A_PACKET: f64 = 40.0;
+/// Nanoseconds that a query takes to bound the packets of a block of a list.
+const NANOSECONDS_A_BLOCK: f64 = 15.0;
+/// Nanoseconds that a query takes to visit a node of the tree of boxes.
+const NANOSECONDS_A_NODE: f64 = 30.0;
 /// Searches of more packets and primitives are work of their own.
 const USUAL: usize = 512;
-/// What a query gains by a list in the place of the tree.
-const SEARCH: f64 = 300.0;
+/// Nanoseconds that a query gains by a list in the place of a search of the tree.
+const NANOSECONDS_A_SEARCH: f64 = 300.0;
 /// Part of its cost that a cell loses by a split.
 const GAIN: f64 = 0.5;
 /// What codes take of each split at most: eight rows for a node of two levels, which stands for five splits at least.
 const SPLIT_BYTES: u64 = (8 * size_of::<Row>()).div_ceil(5) as u64;
-/// Nanoseconds that have to be saved, in all packets' worth of cells.
-const WORTH: f64 = 100.0;
+/// Nanoseconds that a split has to save each query in a cell that has as many queries as there are for a packet.
+const NANOSECONDS_WORTH_A_SPLIT: f64 = 100.0;
 
 /// A cell that is done, or its eight children: child c lies above the middle on axis k if bit k of c is set.
 pub(super) enum Cell {
@@ -138,13 +140,6 @@ struct Item {
     lanes: u16,
     bounds: Aabb<f64>,
     found: [Found; 8],
-}
-
-/// Bytes of the items of all cells on the way to one, with their seven siblings, in a scene of so many primitives: those of
-/// as many levels as are full, at most (observed).
-pub(super) fn way_bytes(primitives: usize) -> usize {
-    const LEVELS: usize = 16;
-    LEVELS * 8 * primitives.min(FINE) * size_of::<Item>()
 }
 
 /// The primitive that seems nearest to a point.
@@ -239,7 +234,7 @@ impl Refinement<'_> {
 
     /// Whether a split pays.
     fn splits(&self, cube: &Cube, mass: f64, cost: f64) -> bool {
-        let worth = mass * cost * GAIN * self.resolution >= WORTH * self.per_packet;
+        let worth = mass * cost * GAIN * self.resolution >= NANOSECONDS_WORTH_A_SPLIT * self.per_packet;
         worth && cube.level < DEEPEST && !self.done.is_over()
     }
 
@@ -282,7 +277,7 @@ impl Refinement<'_> {
         // What is not a packet has eight of them at least.
         let near = |c: &Candidate| if c.child.is_packet() { 1.0 } else { 8.0 };
         let mass = self.mass(cube, candidates.iter().map(|c| (&c.bounds, near(c))));
-        if !self.splits(cube, mass, SEARCH) {
+        if !self.splits(cube, mass, NANOSECONDS_A_SEARCH) {
             return self.end(Cell::Tree, share);
         }
         // Searches of the tree for 19 corners, each of some packets.
@@ -341,7 +336,7 @@ impl Refinement<'_> {
         let mass = self.mass(cube, items.iter().map(|item| (&item.bounds, 1.0)));
         let tests = middle.boxes.min(middle.corners) as f64;
         let blocks = items.len() as f64 / WIDTH as f64;
-        let cost = PACKET * (tests - 1.0) + BLOCK * (blocks - 1.0).max(0.0);
+        let cost = NANOSECONDS_A_PACKET * (tests - 1.0) + NANOSECONDS_A_BLOCK * (blocks - 1.0).max(0.0);
         if !self.splits(cube, mass, cost) {
             return self.end(self.list(cube, &items, &middle), share);
         }
@@ -493,9 +488,9 @@ impl Refinement<'_> {
             return false;
         }
         let tests = middle.boxes.min(middle.corners) as f64;
-        let list = PACKET * tests + BLOCK * len as f64 / WIDTH as f64;
+        let list = NANOSECONDS_A_PACKET * tests + NANOSECONDS_A_BLOCK * len as f64 / WIDTH as f64;
         let Searched { nodes, packets, .. } = self.search(cube.point(MIDDLE));
-        list > PACKET * packets as f64 + NODE * nodes as f64
+        list > NANOSECONDS_A_PACKET * packets as f64 + NANOSECONDS_A_NODE * nodes as f64
     }
 
     /// The lanes of an item without those that can only tie with a lower primitive: where a vertex is the nearest point

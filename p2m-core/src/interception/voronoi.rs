@@ -12,7 +12,7 @@ use super::fan::Fans;
 use super::hints::Hints;
 use super::list_filter::Filters;
 use super::locator::{AnyLocator, LocatorSites};
-use super::options::{FORESEEN, P2mOptions, P2mReport};
+use super::options::{P2mOptions, P2mReport};
 use super::partition::Partition;
 use super::progress::{Progress, Stage, Teller};
 use super::sites::{BOUNDING_DISTANCE, Limits, Sites};
@@ -20,7 +20,7 @@ use crate::hierarchy::PacketTree;
 use crate::kernel::vector::V3;
 use crate::real::wide;
 use crate::saved::{Array, LoadError, Reader, Saved, Writer};
-use crate::{Aabb, BuildError, Isa, PrimitiveId, PrimitiveSet, Real, check_room};
+use crate::{Aabb, Isa, PrimitiveId, PrimitiveSet, Real};
 use nalgebra::Point3;
 
 /// The list of a cell that the tree answers; else the number of its first block.
@@ -33,10 +33,6 @@ const LONGEST: usize = 2048;
 const MOST_LEFT: usize = 4;
 /// The cube of the domain is so many times as wide as the scene.
 const REACH: f64 = 10.0;
-/// Bytes of each site that there may be, while building, besides the tree: seven tetrahedra or so, twice while sites are
-/// added, with what meets their balls. Observed are 600 to 3900; of fewer sites more, for what does not depend on them.
-const EACH: usize = 4608;
-const FEW: usize = 1000;
 
 /// An interception index whose cells are those of the vertices, over a set of primitives that it does not keep.
 #[derive(Clone, Debug)]
@@ -64,18 +60,6 @@ impl Voronoi {
         let first = &self.blocks[site];
         let rest = &self.blocks[self.fans.sites[site].list as usize..][..usize::from(first.more)];
         std::iter::once(first).chain(rest)
-    }
-
-    /// What making the cells may need at a time besides the tree, in bytes.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-    fn cell_bytes(&self, options: &P2mOptions) -> usize {
-        // Not for NaN; and more than as many as there are were never seen.
-        let added = if options.added > 0.0 { options.added.min(1.0) } else { 0.0 };
-        let sites = self.tree.leaves.vertices.len().max(FEW) as f64 * (1.0 + added);
-        // That is with the usual budget; of what there is besides, the packets around corners and the lists may each take all.
-        let besides = (options.memory.clamp(0.0, FORESEEN) - P2mOptions::default().memory).max(0.0);
-        let primitives = self.tree.packets().1.max(FEW) as f64;
-        (sites * EACH as f64 + 2.0 * besides * primitives) as usize
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
@@ -177,8 +161,7 @@ impl Partition for Voronoi {
         set: &S,
         options: &P2mOptions,
         progress: &(dyn Fn(Progress) + Sync),
-    ) -> Result<Self, BuildError> {
-        check_room(PacketTree::<Aabb<f64>>::build_bytes(set.len()))?;
+    ) -> Self {
         let teller = Teller::new(progress, Stage::Tree);
         let tree = PacketTree::build(set, &options.splits);
         let report = P2mReport { tree_bytes: tree.memory(), ..P2mReport::default() };
@@ -196,11 +179,9 @@ impl Partition for Voronoi {
             anchors: Array::default(),
             report,
         };
-        let (tree, own) = (index.tree.memory(), index.cell_bytes(options));
-        check_room(own).map_err(|_| BuildError::OutOfMemory { bytes: tree.saturating_add(own) })?;
         index.make_cells(options, &teller);
         teller.reach([0.0, 100.0], 1, 1);
-        Ok(index)
+        index
     }
 
     fn tree(&self) -> &PacketTree {

@@ -4,16 +4,12 @@ use super::ROUND_DOWN;
 use nalgebra::Point3;
 use p2m_core::{
     Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Near, NearQuery, Primitive, PrimitiveId,
-    PrimitiveSet, Real, Shape, check_room, check_set, shape_of,
+    PrimitiveSet, Real, Shape, check_set, shape_of,
 };
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 use std::cell::RefCell;
 use std::marker::PhantomData;
-
-/// What building takes for each primitive at most, and besides (observed: 392, and 912 for one alone).
-const BYTES: usize = 448;
-const FIXED: usize = 1024;
 
 /// No bound is above this: parry leaves out what costs as much as the largest number.
 const FAR: f64 = 1e300;
@@ -95,7 +91,6 @@ impl<T: Real, S: PrimitiveSet<T>> BuildIndex<T, S> for ParryIndex<T, S> {
 
     fn build(set: S, (): &()) -> Result<Self, BuildError> {
         check_set(&set)?;
-        check_room(set.len().saturating_mul(BYTES).saturating_add(FIXED))?;
         let boxes: Vec<Aabb> = (0..set.len())
             .map(|i| {
                 let bounds = set.get(PrimitiveId::new(i)).aabb().to_f64();

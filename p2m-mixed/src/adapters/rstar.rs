@@ -4,14 +4,11 @@ use super::ROUND_DOWN;
 use nalgebra::Point3;
 use p2m_core::{
     Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Near, NearQuery, Primitive, PrimitiveId,
-    PrimitiveSet, Real, Shape, check_room, check_set, shape_of,
+    PrimitiveSet, Real, Shape, check_set, shape_of,
 };
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use std::marker::PhantomData;
-
-/// What building takes for each primitive at most (observed).
-const BYTES: usize = 512;
 
 type Entry = GeomWithData<Rectangle<[f64; 3]>, PrimitiveId>;
 
@@ -82,7 +79,6 @@ impl<T: Real, S: PrimitiveSet<T>> BuildIndex<T, S> for RstarIndex<T, S> {
 
     fn build(set: S, (): &()) -> Result<Self, BuildError> {
         check_set(&set)?;
-        check_room(set.len().saturating_mul(BYTES))?;
         let entry = |id: PrimitiveId| {
             let bounds = set.get(id).aabb().to_f64();
             let bounds = AABB::from_corners(bounds.min.coords.into(), bounds.max.coords.into());

@@ -152,6 +152,20 @@ fn random_damage() {
     });
 }
 
+/// Files that announce more than there can be, and are some bytes long.
+#[test]
+fn sizes_that_are_merely_announced() {
+    let huge = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\nproperty double y\n\
+                property double z\nelement face 4000000000\nproperty list uint uint vertex_indices\nend_header\n";
+    let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000000, 3), }\n";
+    with_little_memory(|| {
+        assert!(!check(ply(huge.as_bytes())));
+        assert!(!check(stl([&[b' '; 80][..], &[0xff; 4]].concat())));
+        assert!(!check(off("OFF 4000000000 4000000000 0\n0 0 0\n")));
+        assert!(!check_points(read_points_from(&npy(header, &[])[..], PointFormat::Npy, "t")));
+    });
+}
+
 #[test]
 fn noise() {
     with_little_memory(|| {

@@ -179,7 +179,7 @@ impl Page<'_> {
                 "A point in a plot",
                 "One setting of one backend: how long a query takes (the median of the rounds) and how wrong it is (the worst, or what one \
                  query in a thousand exceeds). The line through points is one backend, from its most exact setting on; dots beside it are \
-                 settings that are both slower and less exact than another, crosses those of a scene that is kept in f32. What is below and to the left of a point beats it in both. With a mouse, a point \
+                 settings that are both slower and less exact than another. What is below and to the left of a point beats it in both. With a mouse, a point \
                  tells its name.",
             ),
             ("exact", "At the left end of an axis: where errors of 0 lie, which a logarithmic axis has no place for."),

@@ -4,7 +4,6 @@ use crate::curve::{Curve, Point, SetFigures};
 use crate::economy::usual_costs;
 use crate::errors::Worst;
 use crate::plot::{Mark, Plot, Series};
-use crate::settings::{SETTINGS, Storage};
 use crate::text::{count, error};
 
 /// Width and height of a plot of which two stand side by side.
@@ -53,12 +52,10 @@ enum Place {
     Front,
     /// Not.
     Behind,
-    /// Of a scene that is kept in f32.
-    Rounded,
 }
 
 impl Place {
-    const ALL: [Self; 3] = [Self::Front, Self::Behind, Self::Rounded];
+    const ALL: [Self; 2] = [Self::Front, Self::Behind];
 
     /// Of one after the other, the most exact one first.
     fn of(point: &Point, least: &mut f64) -> Self {
@@ -74,7 +71,6 @@ impl Place {
         match self {
             Self::Front => Mark::Line,
             Self::Behind => Mark::Dot,
-            Self::Rounded => Mark::Cross,
         }
     }
 }
@@ -93,7 +89,7 @@ pub(super) fn pareto(set: &SetFigures, colours: &Colours, unit: Unit, of: fn(&Wo
         let mut points: Vec<&Point> = curve.points.iter().collect();
         points.sort_by(|a, b| worst(a).total_cmp(&worst(b)));
         let mut least = f64::INFINITY;
-        points.retain(|point| place == if is_rounded(point) { Place::Rounded } else { Place::of(point, &mut least) });
+        points.retain(|point| place == Place::of(point, &mut least));
         let note = |point: &&Point| {
             format!(
                 "{}, {}: {:.0} ns, error {}",
@@ -115,11 +111,6 @@ pub(super) fn pareto(set: &SetFigures, colours: &Colours, unit: Unit, of: fn(&Wo
     let series = curves.into_iter().flat_map(|curve| Place::ALL.map(|place| series(curve, place)));
     let series = series.filter(|series| !series.points.is_empty()).collect();
     Plot { x, y: "ns per query", zero: Some("exact"), series, size: SIZE, legend: LEGEND, ..Plot::default() }
-}
-
-/// Whether a point is of a scene rounded to f32 by a setting of ours.
-fn is_rounded(point: &Point) -> bool {
-    SETTINGS.iter().any(|setting| setting.name == point.setting && setting.storage == Storage::Single)
 }
 
 /// How long single queries take, over how rare they are.

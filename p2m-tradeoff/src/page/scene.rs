@@ -5,7 +5,6 @@ use super::plots::{Colours, Unit, latencies, pareto, totals};
 use crate::curve::{Curve, Point, SceneFigures, SetFigures};
 use crate::economy::{break_even, cheapest, usual_costs};
 use crate::error::PlotError;
-use crate::settings::{SETTINGS, Storage};
 use crate::text::{bytes, count, error, failures, gain, seconds};
 
 /// Writes the section.
@@ -152,10 +151,6 @@ fn where_it_fails(curve: &Curve, point: &Point, most: usize) -> String {
     let failures = failures(&point.errors);
     if !failures.is_empty() {
         words.push(failures);
-    }
-    let rounded = SETTINGS.iter().any(|s| s.name == point.setting && s.storage == Storage::Single);
-    if rounded && point.errors.bounds_above > 0 {
-        words.push("of the rounded scene".to_owned());
     }
     let usual = curve.usual().filter(|usual| usual.setting != point.setting);
     if usual.is_some_and(|usual| usual.nanoseconds.min <= point.nanoseconds.max) {

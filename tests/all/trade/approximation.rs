@@ -9,7 +9,7 @@ use p2m::backend::{Best, Counting, Examine};
 use p2m::scene::generate::Kind;
 use p2m::{
     AabbTree, BruteForce, BuildIndex, CertifiedQuery, Closest, ClosestPoint, KdopTree, OctreeIndex, P2mIndex,
-    Primitive, PrimitiveSet, QueryOptions, Real, Soup, StoredInF32,
+    Primitive, PrimitiveSet, QueryOptions, Real, Soup,
 };
 use p2m_testkit::oracle::Distance;
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS, narrow};
@@ -80,25 +80,13 @@ impl<T: Real> Case<'_, T> {
             let told = (found.lower_bound.to_f64() + 4.0 * rounding) * most * (1.0 + 8.0 * u);
             assert!(reached <= told + T::SMALLEST_SUBNORMAL, "{}: {epsilon}: bound of {found:?}, {exact:?}", self.name);
         }
-        for part in [0.25, 0.999, 1.0, 1.5, 4.0, f64::INFINITY] {
-            // Also where the distance is zero.
-            let near = T::of_f64(if part < f64::INFINITY { distance * part } else { part });
-            let found = self.ask(&usual.with_near_enough(near));
-            assert!(
-                found.distance <= near || known(&found) == known(&exact),
-                "{}: {near:?}: {found:?}, {exact:?}",
-                self.name
-            );
-        }
-        // Anything at all, but not nothing.
-        self.ask(&usual.with_near_enough(T::INFINITY));
         for budget in [0, 1, 3, 10, 100] {
             self.ask(&usual.with_budget(budget));
         }
         let found = self.ask(&usual.with_budget(u32::MAX - 1));
         assert_eq!(known(&found), known(&exact), "{}: a budget for everything", self.name);
-        // All together, and with a radius: what is found keeps the sum of what was asked for.
-        let options = usual.with_epsilon(T::of_f64(0.5)).with_near_enough(exact.distance * T::of_f64(1.2));
+        // Within a radius that leaves nothing to give up, what is found is the nearest.
+        let options = usual.with_epsilon(T::of_f64(0.5));
         let found = self.ask(&options.with_max_distance(exact.distance));
         assert!(found.distance == exact.distance, "{}: {found:?}, {exact:?}", self.name);
         let short = exact.distance.to_f64() * 0.99;
@@ -121,7 +109,7 @@ fn check_scene<T: Real>(soup: &Soup<T>, queries: &[Point3<T>], counts: &mut [usi
         let truth = tree.certified_closest_point(query, &Default::default()).expect("vertices").expect("found");
         // Brute force takes what it is asked for as leave, not as order.
         if soup.len() < 1000 {
-            let rough = QueryOptions::default().with_budget(0).with_near_enough(T::INFINITY);
+            let rough = QueryOptions::default().with_budget(0).with_epsilon(T::of_f64(1.0));
             let found = brute.closest_point_with(query, &rough).map(|c| known(&c));
             assert_eq!(found, Some(known(&exact)), "brute force at {query:?}");
         }
@@ -189,8 +177,8 @@ fn approximate_answers_keep_what_they_promise() {
     });
     let [double, single] = counts.into_inner().expect("no check failed");
     println!("answers, and lower bounds that rational arithmetic had to tell: {double:?} in f64, {single:?} in f32");
-    // Eighteen answers a query of each of four backends.
-    assert!(cases.have_more_than(amount(500.0, 70.0), double[0] + single[0]), "{double:?}, {single:?}");
+    // Twelve answers a query of each of four backends.
+    assert!(cases.have_more_than(amount(320.0, 45.0), double[0] + single[0]), "{double:?}, {single:?}");
 }
 
 /// Where more primitives are candidates than can wait, some are evaluated before the search is over: what it holds after
@@ -264,78 +252,4 @@ fn what_is_certain_leaves_nothing_open() {
     }
     println!("{exact} of 200 first guesses have the bound of an exact answer");
     assert!(exact > 20, "{exact}");
-}
-
-/// Distances beyond the range of f32 are none in f64.
-#[test]
-fn what_is_kept_in_f32_is_as_far_as_in_f64() {
-    let soup = Soup::new(vec![Point3::<f64>::origin()], [p2m::Element::Point(0)]).expect("valid");
-    let index = StoredInF32::<BruteForce<Soup<f32>>>::build(&soup, &()).expect("valid");
-    let found = index.closest_point(&Point3::from([3e38; 3])).expect("found");
-    let expected = 3e38 * 3f64.sqrt();
-    assert!((found.distance - expected).abs() <= found.distance - found.lower_bound, "{found:?}");
-    // The bound is in range.
-    assert!(found.lower_bound > f64::from(f32::MAX) * 0.999_999, "{found:?}");
-}
-
-/// What is kept in f32 answers about the scene in f64, within what it says.
-#[test]
-fn scenes_kept_in_f32_are_as_exact_as_they_say() {
-    let places = [(1.0, 0.0), (1.0, 1e6), (1e-9, 1e-3), (1e20, -3e25), (1e-43, 0.0), (1e-60, 0.0)];
-    let mut worst = [0.0f64; 2];
-    let sources = sources();
-    let count = sources.len() as u64;
-    let cases = cases(6 * count, 2 * count);
-    for case in cases.clone() {
-        let mut rng = p2m_testkit::rng("stored", case);
-        let soup = &sources[(case % count) as usize];
-        let (scale, offset) = places[((case + 3 * (case / count)) % 6) as usize];
-        let place = |p: &Point3<f64>| p.map(|x| x * scale + offset);
-        let soup = Soup::new(soup.positions().iter().map(place).collect(), soup.elements()).expect("finite");
-        let exact = AabbTree::build(&soup, &Default::default()).expect("valid");
-        let Ok(index) = StoredInF32::<AabbTree<f32, Soup<f32>>>::build(&soup, &Default::default()) else {
-            continue;
-        };
-        let size = soup.aabb().max - soup.aabb().min;
-        for _ in 0..amount(20, 6) {
-            let query = scenes::query(&mut rng, soup.positions());
-            let Some(found) = index.closest_point(&query) else { continue };
-            let expected = exact.closest_point(&query).expect("found");
-            let error = found.distance - found.lower_bound;
-            let off = (found.distance - expected.distance).abs();
-            assert!(found.lower_bound <= expected.distance, "{query:?}: {found:?}, {expected:?}");
-            assert!(off <= error || found.lower_bound == 0.0, "{query:?}: {found:?}, {expected:?}");
-            let inside = (query - soup.aabb().min).amax() < 2.0 * size.amax();
-            if inside && size.amax() > 1e-30 && found.lower_bound > 0.0 {
-                worst = [worst[0].max(error / size.amax()), worst[1].max(off / error)];
-            }
-            let rough = index.closest_point_with(&query, &QueryOptions::default().with_epsilon(0.1)).expect("found");
-            assert!(rough.lower_bound <= expected.distance, "{query:?}: {rough:?}, {expected:?}");
-            // The same where it is one of several to collect.
-            let mut best = Best::new(&QueryOptions::default());
-            index.search(&query, &mut best);
-            let collected = best.finish().expect("found");
-            assert!(collected.lower_bound <= expected.distance, "{query:?}: {collected:?}, {expected:?}");
-            assert_eq!((collected.distance, collected.point), (found.distance, found.point));
-            // What is certainly within a radius is found.
-            let radius = expected.distance + 2.0 * error;
-            let near = QueryOptions::default().with_max_distance(radius);
-            assert_eq!(index.closest_point_with(&query, &near), Some(found), "{query:?}: {radius:?}");
-        }
-    }
-    println!("largest error over the size of the scene, and part of it that was needed: {worst:?}");
-    // 2^-24 for vertices, query and distance, and the root of three.
-    assert!(worst[0] < 1e-6 && (cases.is_replay() || worst[1] > 0.1), "{worst:?}");
-}
-
-/// A distance of 63.03 smallest subnormals is rounded to 63 of them.
-#[test]
-fn subnormal_distances_kept_in_f32_know_that_they_were_rounded() {
-    let place = Point3::new(3.588400265892133e-39, 2.364836333069033e-38, 3.588311984088881e-39);
-    let query = Point3::new(3.588400265892133e-39, 2.36483605280934e-38, 3.588400265892133e-39);
-    let soup = Soup::new(vec![place], [p2m::Element::Point(0)]).expect("finite");
-    let index = StoredInF32::<AabbTree<f32, Soup<f32>>>::build(&soup, &Default::default()).expect("in range");
-    let found = index.closest_point(&query).expect("found");
-    let off = (found.distance - (query - place).norm()).abs();
-    assert!(off > 0.0 && off <= found.distance - found.lower_bound, "{off:e}: {found:?}");
 }

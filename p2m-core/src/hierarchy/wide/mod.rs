@@ -88,13 +88,6 @@ impl<V: Volume> PacketTree<V> {
         &self.bounds
     }
 
-    /// What building a tree over so many primitives may need at a time besides the set, in bytes: 448 each for boxes. An upper
-    /// bound on what was observed, on all our scenes and on such as are made to be bad (docs/adversaries.md).
-    #[must_use]
-    pub fn build_bytes(len: usize) -> usize {
-        len.saturating_add(FEW).saturating_mul(EACH + size_of::<V::Node>() / 2)
-    }
-
     /// Nodes on the longest path from the root.
     #[must_use]
     pub fn depth(&self) -> usize {
@@ -402,11 +395,6 @@ impl Leaves {
         prefetch_lines(self.vertices.as_ptr().wrapping_add(first), bytes.min(8 * 64));
     }
 }
-
-/// Bytes of a primitive while building, besides its part of the nodes; and so many primitives more, for what does not depend on
-/// how many there are.
-const EACH: usize = 320;
-const FEW: usize = 64;
 
 /// Units of packets below this part of the scene's are not needed: 2^-36.
 const FINEST: f64 = 1.0 / (1u64 << 36) as f64;

@@ -61,7 +61,7 @@ impl<V: Volume, C: Collector> Search<'_, V, C> {
         let place = nalgebra::Point3::from(query);
         let mut stack = vec![(0.0, tree.root)];
         while let Some((bound, child)) = stack.pop() {
-            if collector.is_approximate() && collector.is_content(f64::INFINITY) {
+            if collector.is_approximate() && collector.is_content(false) {
                 return collector.forgo(stack.iter().fold(bound, |least, waiting| least.min(waiting.0)));
             }
             if bound > collector.prune_above() || child == Child::NONE {
@@ -240,7 +240,7 @@ impl<'a, C: Collector> Filter<'a, C> {
     /// Whether the search may end.
     #[inline(always)]
     pub(crate) fn is_content(&self) -> bool {
-        self.approximate && self.collector.is_content(self.held_distance())
+        self.approximate && self.collector.is_content(self.held.is_some())
     }
 
     /// What has this bound, a square in the frame of the scene, and what is farther is not searched.
@@ -466,7 +466,7 @@ impl<C: Collector> Filter<'_, C> {
         let (packet, lane) = (&self.leaves.packets[packet as usize], lane as usize);
         // Whatever the collector skips for the sake of what it has: more was skipped for the sake of this one.
         offer(self.leaves, packet, lane, self.query, f64::INFINITY, self.collector, self.evaluate);
-        if self.collector.is_content(f64::INFINITY) {
+        if self.collector.is_content(false) {
             for candidate in &self.waiting[..self.count] {
                 let low = self.low_in_scene(candidate.low).max(0.0);
                 self.collector.forgo(low * low);
