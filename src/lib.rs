@@ -2,7 +2,7 @@
 //!
 //! A scene is any mix of triangles, segments and points. An index answers closest-point queries over it; which index,
 //! is a type. All of them implement [`ClosestPoint`], keep one accuracy contract (stated there, derived in
-//! docs/accuracy.md) and return the same bits.
+//! docs/proofs/accuracy.md) and return the same bits.
 //!
 //! ```
 //! use nalgebra::Point3;

@@ -2,7 +2,7 @@
 //!
 //! Nodes of eight boxes over packets of sixteen primitives ([`PacketTree`](p2m_core::hierarchy::PacketTree)), searched
 //! nearest first with the vector instructions that the processor turns out to have. Boxes and packets only bound
-//! distances, in f32 and with proof (docs/filter.md); what may be the answer is evaluated by the kernel of the
+//! distances, in f32 and with proof (docs/proofs/filter.md); what may be the answer is evaluated by the kernel of the
 //! contract, so answers are bitwise those of [`BruteForce`](p2m_core::BruteForce).
 //!
 //! ```

@@ -16,7 +16,7 @@ use nalgebra::Point3;
 /// ([`Key`](crate::Key)).
 ///
 /// - **N1 distance**: for all finite input, |d^ - d| <= [`ERROR_CONSTANT`](crate::kernel::ERROR_CONSTANT) u M + eta
-///   (proved, see docs/accuracy.md; the largest observed is 3.3 u M), for points 4 u d + eta. Infinite only if d, or d
+///   (proved, see docs/proofs/accuracy.md; the largest observed is 3.3 u M), for points 4 u d + eta. Infinite only if d, or d
 ///   plus that error, exceeds the scalar's range.
 /// - **N2 identity**: the true distance of the returned primitive exceeds d by at most the sum of both error bounds.
 /// - **N3 agreement**: every exact backend returns the same bits for distance and primitive. Ties go to the lowest id

@@ -7,7 +7,7 @@
 //! it is evaluated first in the end, so the answer is never farther than what is held. Parts of the scene whose lower bound
 //! exceeds the distance held / (1 + epsilon) are left out, and parts that a search does not come to are left out with the
 //! smallest of their bounds ([`Best::forgo`]). So the answer's lower bound is certified whatever was asked, and the error is
-//! known to the caller without another query (docs/accuracy.md, N7).
+//! known to the caller without another query (docs/proofs/accuracy.md, N7).
 
 use crate::real::narrow;
 use crate::{Feature, Key, Primitive, PrimitiveId, PrimitiveSet, Projection, Real};

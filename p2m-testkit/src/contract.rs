@@ -1,4 +1,4 @@
-//! What an answer about one primitive promises (N1, N5, N6 and N7 of docs/accuracy.md), against the truth.
+//! What an answer about one primitive promises (N1, N5, N6 and N7 of docs/proofs/accuracy.md), against the truth.
 //!
 //! Of isolated primitives, because in a mesh the neighbours hide the errors of a kernel.
 
@@ -18,7 +18,7 @@ const WEIGHED: f64 = 8.0;
 /// A broken promise.
 #[derive(Clone, Debug)]
 pub struct Violation {
-    /// The clause, as in docs/accuracy.md.
+    /// The clause, as in docs/proofs/accuracy.md.
     pub clause: &'static str,
     /// What is wrong.
     pub what: String,

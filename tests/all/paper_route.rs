@@ -2,7 +2,7 @@
 //!
 //! Our lists have every pair of a vertex and a triangle that the paper's rule keeps, nearest somewhere or not. For if a
 //! feature is nearer than the vertex at a point of its vertical space in the cell, the point is in the region of the
-//! triangle (docs/p2m.md), and no side of that space has the whole region behind it; our cells hold the paper's, as
+//! triangle (docs/proofs/p2m.md), and no side of that space has the whole region behind it; our cells hold the paper's, as
 //! bounding sites are farther away. And both have every pair of which the triangle is the answer of brute force at some
 //! point of the cell; such points are searched for in what cells and vertical spaces have in common.
 #![cfg(feature = "interception")]

@@ -3,7 +3,7 @@
 //! The corner test says which primitives can beat the site v somewhere in its cell; with its function's values at the
 //! corners more can be said. Along an edge of the cell, where a primitive t may beat v at one end and not at the other,
 //! the function d(q, t)^2 - (|q - v| + s)^2 is concave and lies above its chord, so t cannot beat v beyond the zero of
-//! the chord. The corners and these zeros span all places where t may be the answer (the *region* of t, docs/p2m.md).
+//! the chord. The corners and these zeros span all places where t may be the answer (the *region* of t, docs/proofs/p2m.md).
 //!
 //! A feature of t matters only if it can be nearest in the region. If all that matter belong to a primitive of a lower
 //! id as well, t is never the answer: the other one is as near, by the same bits, and the lower id wins.

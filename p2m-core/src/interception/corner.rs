@@ -2,7 +2,7 @@
 //!
 //! Let C be a convex cell with corners x_i, y a point of the scene and t any closed set. If d(x_i, t) > |x_i - y| + s
 //! at all corners, then d(q, t) > |q - y| + s for every q of C: d(q, t)^2 - (|q - y| + s)^2 is concave, as an infimum
-//! of affine functions less a convex one, so it is least at a corner (docs/octree.md). So t is
+//! of affine functions less a convex one, so it is least at a corner (docs/proofs/octree.md). So t is
 //! never the answer in C, for the primitive that y belongs to is nearer, by more than all rounding if s is chosen so.
 //! It takes a single y for all corners; several may be tried.
 //!

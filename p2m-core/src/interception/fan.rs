@@ -1,7 +1,7 @@
 //! From a site to the nearest one: the walk over Delaunay neighbours.
 //!
 //! If a site v is not the nearest one to q, some Delaunay neighbour w of it is nearer: (q - v) . (w - v) > |w - v|^2 /
-//! 2 (docs/p2m.md). The ways w - v lie side by side as whole numbers of 16 bits, eight to a cache line. Where their
+//! 2 (docs/proofs/p2m.md). The ways w - v lie side by side as whole numbers of 16 bits, eight to a cache line. Where their
 //! products do not tell, f64 does, and integers at last; so a walk ends at a site that certainly has q in its closed
 //! cell, and never runs in a circle, for each step is one to a nearer site.
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 /// A primitive of a list, with a box around all places of its cell where it may be the answer.
 ///
-/// Boxes are in the coordinates of the scene, a little larger than the region of docs/p2m.md, and without end where
+/// Boxes are in the coordinates of the scene, a little larger than the region of docs/proofs/p2m.md, and without end where
 /// nothing is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {

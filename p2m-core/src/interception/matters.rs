@@ -4,7 +4,7 @@
 //! One that is nearest to an edge lies between its ends, and over no triangle that has the edge: that triangle would be
 //! nearer. One that is nearest to a vertex lies behind it along every edge that begins there, and is as near to it as
 //! to the site of the cell. So a feature is *missed* if all of the region is on the wrong side of a plane, or if the
-//! heights above two planes have a sum below zero: then each point is on the wrong side of one of the two. docs/p2m.md
+//! heights above two planes have a sum below zero: then each point is on the wrong side of one of the two. docs/proofs/p2m.md
 //! has the margins.
 
 use super::features::{Features, NONE, Shared};

@@ -10,7 +10,7 @@
 //! ([`Voronoi`]: `sites`, `sphere`, `hull`, `features`, `matters`, `cells`; located by a [`Locator`], `hints` unless
 //! told otherwise, and `fan`; `lookup`; long lists cut short by a [`ListFilter`]). Lists are lists of packets with the lanes that matter, eight to a block, with
 //! bounds (`block`). Where a list would be too long, and outside of the domain, the tree over the same packets answers.
-//! docs/octree.md and docs/p2m.md have the proofs.
+//! docs/proofs/octree.md and docs/proofs/p2m.md have the proofs.
 
 mod allowance;
 mod block;

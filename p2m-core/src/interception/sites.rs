@@ -25,7 +25,7 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 /// The distance of the bounding sites, in halves of the widest side: none of them is nearest in the domain, nor nearly
-/// (docs/p2m.md).
+/// (docs/proofs/p2m.md).
 pub(super) const BOUNDING_DISTANCE: f64 = 300.0;
 /// Balls that meet more packets get a site.
 const CROWDED: usize = 24;

@@ -1,7 +1,7 @@
 //! The contract kernel: what the distance from a query to a primitive is, bit for bit.
 //!
 //! `scalar` is the reference and the finish of every filter; a [`Key`] is the number by which it compares.
-//! See docs/accuracy.md for the error bound and its proof.
+//! See docs/proofs/accuracy.md for the error bound and its proof.
 
 #![allow(clippy::float_cmp, reason = "ties are equality of bits, and are decided here")]
 
@@ -23,7 +23,7 @@ pub use vector::power_of_two;
 use vector::{V3, bounds, clamp, scale_by_power};
 
 /// Bound on the error of a distance in units of u M, where M is the largest distance from the query to a vertex of
-/// the primitive: |computed - true| <= `ERROR_CONSTANT` u M + eta. Proved in docs/accuracy.md; the largest error
+/// the primitive: |computed - true| <= `ERROR_CONSTANT` u M + eta. Proved in docs/proofs/accuracy.md; the largest error
 /// observed is 3.3 u M.
 pub const ERROR_CONSTANT: f64 = 8.0;
 

@@ -11,7 +11,7 @@
 //!
 //! each accepted only where its weights are positive, so a lower-dimensional feature always covers what a higher one
 //! leaves out. Values of vertices and edges depend on their own end points alone (in any order) and therefore carry
-//! the same bits in every primitive that contains them. docs/accuracy.md derives the error bound.
+//! the same bits in every primitive that contains them. docs/proofs/accuracy.md derives the error bound.
 //!
 //! # Work
 //!

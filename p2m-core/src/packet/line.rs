@@ -2,7 +2,7 @@
 //!
 //! The line is taken to the foot of the centre of the packet, so it does not matter how far away it begins, and
 //! everything is projected along it to the two axes that it is steepest to. There a triangle that it meets has the
-//! origin inside, within a margin of one or two units of the frame; docs/rays.md has the proof. What is left is tested
+//! origin inside, within a margin of one or two units of the frame; docs/proofs/rays.md has the proof. What is left is tested
 //! exactly.
 
 use super::{Kind, LANES, Packet, TOP};

@@ -13,7 +13,7 @@
 //!
 //! > d - 1 - 32 u X <= sqrt(square) <= d + 1 + 88 u X,
 //!
-//! where d is its distance, the true one as well as the one that the kernel of the contract computes; docs/filter.md
+//! where d is its distance, the true one as well as the one that the kernel of the contract computes; docs/proofs/filter.md
 //! proves it. For other primitives, which are filtered by their boxes, the right inequality holds.
 //!
 //! Two things make the band independent of the shape of a triangle: edges and normals are made of differences of whole

@@ -3,7 +3,7 @@
 //! Everything is relative to the origin of the ray. A, B, C are the vertices of a triangle, D is the direction. The
 //! line passes the edge from A to B on the side that the sign of the moment D . (A x B) says; it meets the triangle if
 //! no two of the three moments have opposite signs, and lies in its plane if all are zero. The parameter of the plane is
-//! n . A / n . D with n = (B - A) x (C - A). docs/rays.md bounds the errors.
+//! n . A / n . D with n = (B - A) x (C - A). docs/proofs/rays.md bounds the errors.
 
 use super::TINY;
 use super::exact::Exact;

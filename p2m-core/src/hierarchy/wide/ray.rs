@@ -2,7 +2,7 @@
 //!
 //! The line of the ray is cut to the box of the scene, and begins where it enters that: so nodes can be clipped in f32
 //! wherever the ray comes from. Packets leave out what the line certainly misses; the rest is decided exactly.
-//! docs/rays.md has the proofs.
+//! docs/proofs/rays.md has the proofs.
 
 use super::node::Frame;
 use super::ray_slab::SLIGHT;

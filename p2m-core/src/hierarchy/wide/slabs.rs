@@ -2,7 +2,7 @@
 //!
 //! A child is at least as far as the intersection of two half-spaces: one that holds the box of the first three
 //! directions, across the way to its nearest point, and one behind a face of another direction. That is computed
-//! for every other direction, and the largest is kept; docs/kdop.md derives it, with its roundings.
+//! for every other direction, and the largest is kept; docs/proofs/kdop.md derives it, with its roundings.
 
 use super::node::{Child, Frame, WIDTH};
 use super::ray::FrameLine;
