@@ -7,7 +7,7 @@
 
 use anyhow::Context;
 use nalgebra::Vector3;
-use p2m::backend::Directions;
+use p2m::kdop::Directions;
 use p2m::kdop::{Polytope, write_polytopes_ply};
 use p2m::{KdopOptions, KdopTree};
 use std::fs::File;

@@ -74,30 +74,42 @@
 //! | `parry-f32` | shapes of parry3d in [`scene`]s | no |
 //! | `mint` | positions of the crate mint in [`scene`] | no |
 //! | `kdop` | [`KdopTree`] | yes |
-//! | `advisor` | `scene::advisor`: which index a scene and its queries call for | no |
+//! | `advisor` | `advisor`: which index a scene and its queries call for | no |
+//! | `field` | [`field`]: distances on grids, signs, winding numbers | yes |
 //! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `mixed` | [`scene`]: reading scenes and points from files | yes |
 #![forbid(unsafe_code)]
 
+/// Which index a scene and its queries call for.
+#[cfg(feature = "advisor")]
+pub use p2m_advisor as advisor;
+/// Everything else about trees of boxes: their nodes and packets, and trees of other volumes.
 #[cfg(feature = "bvh")]
-pub use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
-/// What an index of your own is made of, and what examines others: collectors, hierarchies, the kernel, Delaunay
-/// tetrahedra. The crate `p2m-core` as a whole.
+pub use p2m_bvh as bvh;
+#[cfg(feature = "bvh")]
+pub use p2m_bvh::{AabbOptions, AabbTree, SplitOptions, SplitRule};
+/// The parts of an index of your own, and of what examines others: collectors, the kernel, predicates. This is the crate
+/// `p2m-core` as a whole.
 pub use p2m_core as backend;
-pub use p2m_core::hierarchy::SplitOptions;
 pub use p2m_core::{
     Aabb, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestLeaf,
     ClosestPoint, Element, Examine, Feature, Hit, Indexed, Isa, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet,
     Projection, QueryOptions, Ray, RayError, RayQuery, Real, Segment, Shape, Side, Soup, Triangle, Visits, batch,
     saved,
 };
+/// Distance fields, and on which side of a surface a point is.
+#[cfg(feature = "field")]
+pub use p2m_field as field;
+/// Everything else about interception indexes: partitions, locators, Delaunay tetrahedra.
+#[cfg(feature = "interception")]
+pub use p2m_interception as interception;
 #[cfg(feature = "kiddo")]
 pub use p2m_interception::KdTreeLocator;
 #[cfg(feature = "rstar")]
 pub use p2m_interception::RegionTree;
 #[cfg(feature = "interception")]
 pub use p2m_interception::{Domain, OctreeIndex, OctreeOptions, OctreeReport, P2mIndex, P2mOptions, P2mReport};
-/// What else there is about k-DOPs: polytopes, overlap of trees, directions from a scene.
+/// Everything else about k-DOPs: polytopes, overlap of trees, directions from a scene.
 #[cfg(feature = "kdop")]
 pub use p2m_kdop as kdop;
 #[cfg(feature = "kdop")]

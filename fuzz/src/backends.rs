@@ -1,7 +1,7 @@
 //! Every backend by a number.
 
 use super::bytes::Bytes;
-use p2m::backend::Directions;
+use p2m::kdop::Directions;
 use p2m::{
     AabbTree, BoxQuery, BuildError, BuildIndex, CertifiedQuery, ClosestLeaf, ClosestPoint, Domain, Isa, KdopTree,
     NearQuery, OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, PrimitiveSet, RayQuery, Real, Soup,

@@ -6,11 +6,11 @@ use crate::scene::Scene;
 use anyhow::Result;
 use cpu_time::ThreadTime;
 use nalgebra::Point3;
+use p2m_advisor::{Choice, Place, Workload, recommend};
 use p2m_bvh::AabbTree;
 use p2m_core::{BruteForce, BuildIndex, ClosestPoint, QueryOptions};
 use p2m_interception::{OctreeIndex, P2mIndex};
 use p2m_kdop::{KdopOptions, KdopTree};
-use p2m_mixed::advisor::{Choice, Place, Workload, recommend};
 use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 

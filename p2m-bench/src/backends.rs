@@ -7,14 +7,12 @@ use crate::rivals::{parry_double, parry_single};
 use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_bvh::{AabbOptions, AabbTree};
-use p2m_core::{
-    BruteForce, BuildIndex, Closest, ClosestPoint, Directions, DirectionsError, Isa, PrimitiveId, PrimitiveSet,
-    QueryOptions, Soup,
-};
+use p2m_core::{BruteForce, BuildIndex, Closest, ClosestPoint, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Soup};
 use p2m_interception::{
     InterceptionIndex, KdTreeLocator, Octree, OctreeOptions, P2mOptions, Partition, RegionTree, Voronoi,
 };
 use p2m_kdop::{Choice, KdopOptions, KdopTree};
+use p2m_kdop::{Directions, DirectionsError};
 use p2m_mixed::adapters::{ParryIndex, RstarIndex};
 use std::marker::PhantomData;
 

@@ -5,7 +5,7 @@ use crate::memory;
 use crate::scene::Scene;
 use anyhow::{Context, Result};
 use cpu_time::ThreadTime;
-use p2m_core::delaunay::{Delaunay, Work};
+use p2m_interception::delaunay::{Delaunay, Work};
 use p2m_testkit::{rng, vector};
 use p2m_tradeoff::Table;
 use std::path::PathBuf;

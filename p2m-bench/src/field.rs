@@ -10,14 +10,12 @@ use crate::scene::Scene;
 use anyhow::{Context as _, Result, anyhow};
 use cpu_time::ThreadTime;
 use p2m_bvh::AabbTree;
-use p2m_core::candidates::CandidateLists;
 use p2m_core::{BruteForce, BuildIndex, ClosestPoint, PrimitiveSet, Soup};
+use p2m_field::grid_candidates::CandidateLists;
+use p2m_field::sign::{SignError, SignedDistance};
+use p2m_field::{FieldOptions, Grid, distances, distances_by_lists, signed_distances, signed_distances_by_lists};
 use p2m_interception::{Domain, OctreeIndex, P2mIndex};
-use p2m_mixed::field::{
-    FieldOptions, Grid, distances, distances_by_lists, signed_distances, signed_distances_by_lists,
-};
 use p2m_mixed::generate::{IcoSphere, ico_sphere};
-use p2m_mixed::sign::{SignError, SignedDistance};
 use p2m_tradeoff::Table;
 
 /// Layers that contenders fill in turn.

@@ -5,13 +5,14 @@ use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
+use p2m_advisor::{Choice, Workload, recommend};
 use p2m_bvh::AabbTree;
-use p2m_core::hierarchy::{TreeIndex, Volume};
+use p2m_bvh::{TreeIndex, Volume};
 use p2m_core::saved::{self, Reader, Saved, Writer};
-use p2m_core::{BruteForce, BuildIndex, CertifiedQuery, ClosestPoint, Examine, RayQuery, Soup, StageTimes};
+use p2m_core::{BruteForce, BuildIndex, CertifiedQuery, ClosestPoint, Examine, RayQuery, Soup};
+use p2m_interception::StageTimes;
 use p2m_interception::{InterceptionIndex, Octree, OctreeReport, P2mReport, Partition, Stage, Voronoi};
 use p2m_kdop::KdopTree;
-use p2m_mixed::advisor::{Choice, Workload, recommend};
 use std::time::{Duration, Instant};
 
 /// Backends that answer every kind of question.

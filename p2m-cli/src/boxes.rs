@@ -10,7 +10,7 @@ use anyhow::{Context, bail};
 use clap::ValueEnum;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
-use p2m_core::hierarchy::{PacketTree, Part, Volume};
+use p2m_bvh::{PacketTree, Part, Volume};
 use p2m_core::{BuildIndex, Soup};
 use p2m_kdop::{KdopTree, Polytope};
 use p2m_mixed::picture::{Panel, View, box_edges, write_picture_ply, write_svg};

@@ -124,7 +124,7 @@ fn build<'a, const K: usize, W: WithTree<'a>>(
     what: W,
 ) -> Result<W::Output, BuildError>
 where
-    p2m_core::Directions<K>: Default,
+    p2m_kdop::Directions<K>: Default,
 {
     let own = choice.map(|choice| choice.directions::<K>().expect("a choice of as many"));
     KdopTree::build_with(soup, &KdopOptions::new(own.unwrap_or_default())).map(|tree| what.with(tree))

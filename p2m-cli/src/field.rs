@@ -14,14 +14,14 @@ use crate::usage::{not_negative, one_of, positive, usage};
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
 use nalgebra::Point3;
-use p2m_core::candidates::{CandidateLists, LARGEST};
 use p2m_core::{Aabb, ClosestPoint, PrimitiveSet, Soup};
-use p2m_mixed::FieldFormat;
-use p2m_mixed::field::{
+use p2m_field::FieldFormat;
+use p2m_field::grid_candidates::{CandidateLists, LARGEST};
+use p2m_field::sign::{SignError, SignedDistance};
+use p2m_field::{
     FieldOptions, Grid, RefineOptions, distances, distances_by_lists, refined, signed_distances,
     signed_distances_by_lists, slice, write_cells, write_field,
 };
-use p2m_mixed::sign::{SignError, SignedDistance};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::Write;
@@ -292,7 +292,7 @@ fn lists<'a>(streams: &Streams, soup: &'a Soup<f64>, grid: &Grid) -> Option<Cand
 /// What the file gets.
 enum Made {
     Field(Vec<f32>),
-    Cells(Vec<p2m_mixed::field::Cell>),
+    Cells(Vec<p2m_field::Cell>),
 }
 
 /// An index, with signs or without.

@@ -3,9 +3,9 @@
 use crate::backend::{Backend, Search, Wanted};
 use crate::faces::{self, Faces};
 use crate::input::SceneArgs;
+use p2m_advisor::{Place, Workload};
 use p2m_core::Soup;
 use p2m_core::saved::Reader;
-use p2m_mixed::advisor::{Place, Workload};
 
 #[derive(clap::Args)]
 pub(crate) struct Indexing {

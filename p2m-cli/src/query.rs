@@ -14,7 +14,7 @@ use crate::usage::{not_negative, one_of, positive, whole};
 use anyhow::Context;
 use clap::ArgGroup;
 use nalgebra::Point3;
-use p2m_mixed::advisor::{Place, Workload};
+use p2m_advisor::{Place, Workload};
 use p2m_mixed::{AnswerWriter, PointFormat, Scene};
 use serde_json::{Value, json};
 use std::io::{self, Write};

@@ -1,9 +1,10 @@
 //! Many queries at once: reordered, with hints, on all cores.
 //!
 //! Queries that are near each other visit the same nodes, and the answer of one is nearly that of the next. So queries
-//! are answered along a curve that fills their box \[Morton1966\], each with the primitive of the one before as its
+//! are answered along a curve that fills their box \[Hamilton2006\], each with the primitive of the one before as its
 //! hint, and the answers put back into the order of the queries.
 
+use crate::curve;
 use crate::real::wide;
 use crate::{Aabb, Closest, ClosestPoint, QueryOptions, Real};
 use nalgebra::Point3;
@@ -87,7 +88,7 @@ pub fn closest_points_into<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(
     if !batch.reorder {
         return share.answer(queries, batch.parallel, out);
     }
-    let order = curve(queries, batch.parallel);
+    let order = sorted_along_curve(queries, batch.parallel);
     let mut block = Vec::with_capacity(BLOCK.min(queries.len()));
     let mut answers = vec![None; BLOCK.min(queries.len())];
     for places in order.chunks(BLOCK) {
@@ -129,7 +130,7 @@ impl<T: Real, I: ClosestPoint<T> + Sync + ?Sized> Share<'_, T, I> {
 }
 
 /// The places of the queries with their place on the curve, sorted.
-fn curve<T: Real>(queries: &[Point3<T>], parallel: bool) -> Vec<(u64, u32)> {
+fn sorted_along_curve<T: Real>(queries: &[Point3<T>], parallel: bool) -> Vec<(u64, u32)> {
     let finite = queries.iter().filter(|q| q.iter().all(|x| x.is_finite()));
     let bounds = finite.fold(Aabb::empty(), |b, q| b.union(&Aabb { min: *q, max: *q }));
     let (min, max) = (wide(&bounds.min), wide(&bounds.max));
@@ -139,8 +140,8 @@ fn curve<T: Real>(queries: &[Point3<T>], parallel: bool) -> Vec<(u64, u32)> {
         let q = wide(q);
         // NaN, and an axis without extent, become 0.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, which keeps the order")]
-        let cell = |k: usize| (((q[k] * 0.5 - min[k] * 0.5) * scale[k]) as u64).min(CELLS as u64 - 1);
-        spread(cell(0)) << 2 | spread(cell(1)) << 1 | spread(cell(2))
+        let cell = |k: usize| (((q[k] * 0.5 - min[k] * 0.5) * scale[k]) as u32).min((1 << BITS) - 1);
+        curve::position([cell(0), cell(1), cell(2)], BITS)
     };
     let place = |i: usize| u32::try_from(i).expect("fewer than 2^32 queries");
     let mut order: Vec<(u64, u32)> = queries.iter().enumerate().map(|(i, q)| (key(q), place(i))).collect();
@@ -154,35 +155,19 @@ fn curve<T: Real>(queries: &[Point3<T>], parallel: bool) -> Vec<(u64, u32)> {
     order
 }
 
-/// 2^21 cells on each axis.
-const CELLS: f64 = 2_097_152.0;
-
-/// Puts two zeros between the lowest 21 bits.
-fn spread(x: u64) -> u64 {
-    let x = (x | x << 32) & 0x1f_0000_0000_ffff;
-    let x = (x | x << 16) & 0x1f_0000_ff00_00ff;
-    let x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
-    let x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
-    (x | x << 2) & 0x1249_2492_4924_9249
-}
+/// The binary logarithm of the number of cells along each axis of the box around the queries.
+const BITS: u32 = 16;
+const CELLS: f64 = (1u32 << BITS) as f64;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn bits_are_spread() {
-        for bit in 0..21 {
-            assert_eq!(spread(1 << bit), 1 << (3 * bit));
-        }
-        assert_eq!(spread((1 << 21) - 1).count_ones(), 21);
-    }
-
-    #[test]
     fn the_curve_holds_every_query_once_and_neighbours_together() {
         let queries: Vec<Point3<f64>> =
             (0..4096u32).map(|i| Point3::new(f64::from(i % 16), f64::from(i / 16 % 16), f64::from(i / 256))).collect();
-        let order = curve(&queries, false);
+        let order = sorted_along_curve(&queries, false);
         let mut places: Vec<u32> = order.iter().map(|o| o.1).collect();
         let steps: f64 = places.windows(2).map(|w| (queries[w[0] as usize] - queries[w[1] as usize]).norm()).sum();
         assert!(steps / 4095.0 < 1.7, "{steps}");
@@ -193,7 +178,7 @@ mod tests {
     #[test]
     fn queries_of_all_kinds_have_a_place() {
         let queries = [f64::NAN, f64::INFINITY, f64::MAX, -f64::MAX, 0.0].map(|x| Point3::new(x, x, 1.0));
-        assert_eq!(curve(&queries, false).len(), 5);
-        assert!(curve::<f64>(&[], false).is_empty());
+        assert_eq!(sorted_along_curve(&queries, false).len(), 5);
+        assert!(sorted_along_curve::<f64>(&[], false).is_empty());
     }
 }

@@ -6,7 +6,7 @@ use dashu_int::{IBig, UBig};
 use std::cmp::Ordering;
 
 /// Three coordinates.
-pub(crate) type Vector = [IBig; 3];
+pub type Vector = [IBig; 3];
 
 /// Of a finite f64 the mantissa, signed, and the exponent of its lowest bit.
 fn decompose(x: f64) -> (i64, i32) {
@@ -21,7 +21,7 @@ fn decompose(x: f64) -> (i64, i32) {
 }
 
 /// The largest e for which all these finite numbers are multiples of 2^e; 0 if all are zero.
-pub(crate) fn common_exponent<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> i32 {
+pub fn common_exponent<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> i32 {
     let lowest = |x: &f64| {
         let (mantissa, exponent) = decompose(*x);
         (mantissa != 0).then(|| exponent + mantissa.trailing_zeros().cast_signed())
@@ -30,51 +30,51 @@ pub(crate) fn common_exponent<'a>(numbers: impl IntoIterator<Item = &'a f64>) ->
 }
 
 /// x / 2^exponent, for a multiple of that.
-pub(crate) fn integer(x: f64, exponent: i32) -> IBig {
+pub fn integer(x: f64, exponent: i32) -> IBig {
     let (mantissa, own) = decompose(x);
     let shift = (own - exponent).unsigned_abs() as usize;
     if own >= exponent { IBig::from(mantissa) << shift } else { IBig::from(mantissa) >> shift }
 }
 
 /// The same of a difference of two multiples.
-pub(crate) fn difference<const N: usize>(p: [f64; N], a: [f64; N], exponent: i32) -> [IBig; N] {
+pub fn difference<const N: usize>(p: [f64; N], a: [f64; N], exponent: i32) -> [IBig; N] {
     std::array::from_fn(|k| integer(p[k], exponent) - integer(a[k], exponent))
 }
 
-pub(crate) fn dot(a: &Vector, b: &Vector) -> IBig {
+pub fn dot(a: &Vector, b: &Vector) -> IBig {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
 /// One component of the cross product.
-pub(crate) fn cross_component(a: &Vector, b: &Vector, k: usize) -> IBig {
+pub fn cross_component(a: &Vector, b: &Vector, k: usize) -> IBig {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     &a[i] * &b[j] - &a[j] * &b[i]
 }
 
-pub(crate) fn cross(a: &Vector, b: &Vector) -> Vector {
+pub fn cross(a: &Vector, b: &Vector) -> Vector {
     std::array::from_fn(|k| cross_component(a, b, k))
 }
 
 /// Whether it is above, at or below zero.
-pub(crate) fn sign(x: &IBig) -> Ordering {
+pub fn sign(x: &IBig) -> Ordering {
     x.cmp(&IBig::ZERO)
 }
 
 /// A fraction; the denominator is above zero.
 #[derive(Clone, Debug)]
-pub(crate) struct Fraction {
-    pub(crate) numerator: IBig,
-    pub(crate) denominator: IBig,
+pub struct Fraction {
+    pub numerator: IBig,
+    pub denominator: IBig,
 }
 
 impl Fraction {
-    pub(crate) fn cmp(&self, other: &Self) -> Ordering {
+    pub fn cmp(&self, other: &Self) -> Ordering {
         (&self.numerator * &other.denominator).cmp(&(&other.numerator * &self.denominator))
     }
 
     /// The fraction times 2^exponent, rounded to the nearest f64, to the even one between two; infinite where that is
     /// beyond all of them, and never -0.
-    pub(crate) fn round(&self, exponent: i32) -> f64 {
+    pub fn round(&self, exponent: i32) -> f64 {
         let negative = sign(&self.numerator) == Ordering::Less;
         let numerator = (&self.numerator).unsigned_abs();
         let denominator = (&self.denominator).unsigned_abs();
@@ -100,7 +100,7 @@ impl Fraction {
 }
 
 /// mantissa 2^unit, rounded once; unit >= -1077.
-pub(crate) fn round_bits(mantissa: u64, unit: i64) -> f64 {
+pub fn round_bits(mantissa: u64, unit: i64) -> f64 {
     let length = i64::from(64 - mantissa.leading_zeros());
     // Bits below the last one of the result.
     let extra = (length - 53).max(-1074 - unit).max(0);

@@ -23,20 +23,15 @@ mod approximate;
 pub mod batch;
 mod box_query;
 mod brute_force;
-pub mod candidates;
 mod certified;
 mod counting;
-pub mod delaunay;
+mod curve;
 mod error;
-pub mod hierarchy;
 mod index;
 mod indexed;
 mod integers;
-pub mod interception;
-mod kdop;
 pub mod kernel;
 mod near_query;
-mod packet;
 pub mod predicates;
 mod primitive;
 mod query;
@@ -56,7 +51,6 @@ pub use counting::Counting;
 pub use error::BuildError;
 pub use index::{BuildIndex, ClosestPoint};
 pub use indexed::Indexed;
-pub use kdop::{Directions, DirectionsError, Kdop, KdopOptions};
 pub use kernel::Key;
 pub use near_query::{Near, NearQuery};
 pub use primitive::{Feature, Point, Primitive, Projection, Segment, Shape, Triangle};
@@ -66,4 +60,42 @@ pub use real::Real;
 pub use set::{PrimitiveId, PrimitiveSet, check_set};
 pub use simd::Isa;
 pub use soup::{Element, Soup};
-pub use stats::{Examine, Lists, Load, StageTimes, Visits};
+pub use stats::{Examine, Lists, Load, Visits};
+
+/// The inside of this crate, for its sibling crates: it may change at any time.
+#[doc(hidden)]
+pub mod engine {
+    pub mod curve {
+        pub use crate::curve::*;
+    }
+    pub mod double {
+        pub use crate::kernel::double::*;
+    }
+    pub mod integers {
+        pub use crate::integers::*;
+    }
+    pub mod number {
+        pub use crate::kernel::number::*;
+    }
+    pub mod query {
+        pub use crate::query::Minimum;
+    }
+    pub mod ray {
+        pub use crate::ray::{TINY, foot};
+    }
+    pub mod real {
+        pub use crate::real::{narrow, wide};
+    }
+    pub mod simd {
+        pub use crate::simd::*;
+    }
+    pub mod staged {
+        pub use crate::predicates::staged::*;
+    }
+    pub mod vector {
+        pub use crate::kernel::vector::*;
+    }
+    pub mod vertices {
+        pub use crate::kernel::vertices::*;
+    }
+}

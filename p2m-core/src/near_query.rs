@@ -93,7 +93,7 @@ pub trait NearQuery<T: Real> {
 }
 
 /// [`NearQuery::search_near`] for any query, if something is wanted at all.
-pub(crate) fn ask<T: Real>(index: &(impl NearQuery<T> + ?Sized), query: &Point3<T>, near: &mut Near<'_>) {
+pub fn ask<T: Real>(index: &(impl NearQuery<T> + ?Sized), query: &Point3<T>, near: &mut Near<'_>) {
     // Not for a radius of NaN either.
     if query.iter().all(|x| x.is_finite()) && !near.is_done() && near.radius >= 0.0 {
         index.search_near(query, near);
@@ -126,10 +126,10 @@ enum Wanted<'a> {
 const DONE: f64 = f64::NEG_INFINITY;
 
 /// A primitive and its nearest point, ordered by key and id.
-pub(crate) struct Found {
+pub struct Found {
     key: Key,
-    pub(crate) id: PrimitiveId,
-    pub(crate) projection: Projection,
+    pub id: PrimitiveId,
+    pub projection: Projection,
 }
 
 impl Found {
@@ -172,12 +172,12 @@ impl<'a> Near<'a> {
     }
 
     /// All that may be nearest, if the nearest is within the radius.
-    pub(crate) fn contest<T: Real>(radius: T) -> Self {
+    pub fn contest<T: Real>(radius: T) -> Self {
         Self::within(radius, Wanted::Contest { reach: radius.to_f64_above(), found: Vec::new() })
     }
 
     /// What may be nearest.
-    pub(crate) fn contestants(self) -> Vec<Found> {
+    pub fn contestants(self) -> Vec<Found> {
         let Wanted::Contest { reach, mut found } = self.wanted else { return Vec::new() };
         found.retain(|one| one.at_least() <= reach);
         found

@@ -192,7 +192,7 @@ pub struct Best<T: Real> {
 
 /// The same in f64, whatever the scalar of the scene: a search is compiled once for both.
 #[derive(Clone, Debug)]
-pub(crate) struct Minimum {
+pub struct Minimum {
     /// The largest distance within the radius.
     radius: f64,
     /// (1 + epsilon)^-2, rounded down
@@ -254,13 +254,13 @@ impl<T: Real> Best<T> {
     }
 
     /// The nearest point so far, as it was before rounding.
-    pub(crate) fn nearest_point(&self) -> Option<[f64; 3]> {
+    pub fn nearest_point(&self) -> Option<[f64; 3]> {
         self.minimum.best.as_ref().map(|(_, p)| p.point.coords.into())
     }
 
     /// What collects for it.
     #[inline(always)]
-    pub(crate) fn minimum(&mut self) -> &mut Minimum {
+    pub fn minimum(&mut self) -> &mut Minimum {
         &mut self.minimum
     }
 
@@ -280,13 +280,13 @@ impl<T: Real> Best<T> {
 }
 
 /// The square above which a lower bound is beyond a radius.
-pub(crate) fn square_within(radius: f64) -> f64 {
+pub fn square_within(radius: f64) -> f64 {
     // Further by what a distance loses in rounding: near zero a smallest subnormal.
     Key::of_offset([radius + f64::from_bits(1), 0.0, 0.0]).square_above() * ROUND_UP
 }
 
 /// An answer, of which the distance is not below some bound but for roundings.
-pub(crate) fn answer<T: Real>(primitive: PrimitiveId, p: &Projection, bound: f64) -> Closest<T> {
+pub fn answer<T: Real>(primitive: PrimitiveId, p: &Projection, bound: f64) -> Closest<T> {
     // One smallest subnormal for each rounding near zero; an infinite error leaves nothing to certify.
     let bound = bound * ROUND_DOWN - 2.0 * f64::from_bits(1);
     Closest {

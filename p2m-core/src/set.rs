@@ -25,7 +25,8 @@ impl PrimitiveId {
 
     /// As it is kept.
     #[inline(always)]
-    pub(crate) fn number(self) -> u32 {
+    #[doc(hidden)]
+    pub fn number(self) -> u32 {
         self.0
     }
 

@@ -1,10 +1,7 @@
 //! Statistics of indexes: how long lists are, and what queries cost in what does not depend on the machine.
 
-use crate::interception::{Progress, Stage};
 use crate::{Counting, Real};
 use nalgebra::Point3;
-use std::sync::Mutex;
-use std::time::Duration;
 
 /// What statistics ask an index.
 pub trait Examine<T: Real> {
@@ -104,76 +101,6 @@ impl Visits {
     }
 }
 
-/// Sums the times of the stages of a build: give [`tell`](Self::tell) what is told of progress.
-///
-/// ```
-/// use nalgebra::Point3;
-/// use p2m_core::interception::{Partition, Stage, Voronoi};
-/// use p2m_core::{Segment, StageTimes};
-/// use std::time::Instant;
-///
-/// let wires = [Segment::new(Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 1.0, 2.0))];
-/// let start = Instant::now();
-/// let times = StageTimes::new(move || start.elapsed());
-/// let cells: Voronoi = Partition::build(&wires, &Default::default(), &|progress| times.tell(progress));
-/// assert!(times.finish().iter().any(|(stage, _)| *stage == Stage::Tree));
-/// # drop(cells);
-/// ```
-pub struct StageTimes<C> {
-    /// The time since some moment.
-    clock: C,
-    seen: Mutex<Seen>,
-}
-
-#[derive(Default)]
-struct Seen {
-    times: Vec<(Stage, Duration)>,
-    /// The stage that is being done, and when it began.
-    current: Option<(Stage, Duration)>,
-}
-
-impl<C: Fn() -> Duration> StageTimes<C> {
-    /// With a clock that tells the time since some moment, the same one each time.
-    pub fn new(clock: C) -> Self {
-        Self { clock, seen: Mutex::default() }
-    }
-
-    /// Ends one stage and begins another, if that is what is told. The clock is asked only then.
-    ///
-    /// # Panics
-    /// If the clock panicked.
-    pub fn tell(&self, progress: Progress) {
-        let mut seen = self.seen.lock().expect("a clock that did not panic");
-        if seen.current.is_none_or(|(stage, _)| stage != progress.stage) {
-            let now = (self.clock)();
-            seen.end(now);
-            seen.current = Some((progress.stage, now));
-        }
-    }
-
-    /// The time of each stage, in the order in which they began for the first time; of one that came several times the
-    /// sum.
-    ///
-    /// # Panics
-    /// If the clock panicked.
-    pub fn finish(self) -> Vec<(Stage, Duration)> {
-        let mut seen = self.seen.into_inner().expect("a clock that did not panic");
-        seen.end((self.clock)());
-        seen.times
-    }
-}
-
-impl Seen {
-    fn end(&mut self, now: Duration) {
-        let Some((stage, began)) = self.current.take() else { return };
-        let time = now.saturating_sub(began);
-        match self.times.iter_mut().find(|(known, _)| *known == stage) {
-            Some((_, sum)) => *sum += time,
-            None => self.times.push((stage, time)),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -221,23 +148,5 @@ mod tests {
         let brute = Visits::of(&BruteForce::new(points).expect("valid"), &[at(0.0), at(9.0)]);
         assert_eq!((brute.nodes, brute.primitives, brute.without_list), (Load::default(), load(3.0, 3), 1.0));
         assert_eq!(Lists::of(&BruteForce::new(points).expect("valid")), None);
-    }
-
-    #[test]
-    fn a_stage_lasts_until_another_begins_and_may_come_again() {
-        let now = std::cell::Cell::new(0);
-        let times = StageTimes::new(|| Duration::from_secs(now.get()));
-        for (time, stage) in [(1, Stage::Tree), (3, Stage::Delaunay), (4, Stage::Balls), (4, Stage::Balls)] {
-            now.set(time);
-            times.tell(Progress { stage, part: 0.0 });
-        }
-        for (time, stage) in [(9, Stage::Delaunay), (11, Stage::Lists)] {
-            now.set(time);
-            times.tell(Progress { stage, part: 0.5 });
-        }
-        now.set(20);
-        let expected = [(Stage::Tree, 2), (Stage::Delaunay, 3), (Stage::Balls, 5), (Stage::Lists, 9)];
-        assert_eq!(times.finish(), expected.map(|(stage, time)| (stage, Duration::from_secs(time))));
-        assert!(StageTimes::new(|| Duration::ZERO).finish().is_empty());
     }
 }

@@ -1,5 +1,5 @@
+use crate::{Octree, Partition, Progress, SIDE_BY_SIDE, Voronoi};
 use nalgebra::Point3;
-use p2m_core::interception::{Octree, Partition, Progress, SIDE_BY_SIDE, Voronoi};
 use p2m_core::saved::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{
     Best, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestPoint, Collector, Counting, Examine, Isa, Near,
@@ -9,7 +9,7 @@ use std::marker::PhantomData;
 
 /// An interception index with cubes as cells.
 ///
-/// Queries outside of the refined box ([`OctreeOptions::domain`](p2m_core::interception::OctreeOptions::domain)) and
+/// Queries outside of the refined box ([`OctreeOptions::domain`](crate::OctreeOptions::domain)) and
 /// collectors of more than the nearest primitive are answered by the AABB tree over the same packets.
 ///
 /// # Complexity
@@ -39,7 +39,7 @@ pub struct InterceptionIndex<T: Real, S, P> {
 
 impl<T: Real, S: PrimitiveSet<T>, P: Partition> InterceptionIndex<T, S, P> {
     /// Builds the index as [`BuildIndex::build`], and tells `progress` of each stage that begins, from this thread, and
-    /// of each percent, from any thread ([`StageTimes`](p2m_core::StageTimes) sums their times).
+    /// of each percent, from any thread ([`StageTimes`](crate::StageTimes) sums their times).
     ///
     /// # Errors
     /// For a coordinate that is not finite, and for more primitives than ids.

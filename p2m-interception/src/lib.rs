@@ -1,6 +1,6 @@
 //! Interception indexes: what can be nearest anywhere in a cell is found once and kept.
 //!
-//! A query locates its cell and tests a short list: it neither searches nor turns back ([`p2m_core::interception`]). Where
+//! A query locates its cell and tests a short list: it neither searches nor turns back . Where
 //! lists would be long, outside of the domain of cells, and for [`NearQuery`](p2m_core::NearQuery) a tree over the same
 //! primitives answers. That takes longer to build and more memory than a tree. Answers are bitwise those of
 //! [`BruteForce`](p2m_core::BruteForce).
@@ -20,18 +20,23 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod delaunay;
 mod index;
-#[cfg(feature = "kiddo")]
-mod kd_tree;
-#[cfg(feature = "rstar")]
-mod region_tree;
+mod list;
+mod octree;
+mod options;
+mod parallel_chunks;
+mod partition;
+mod progress;
+mod voronoi;
 
 pub use index::{InterceptionIndex, OctreeIndex, P2mIndex};
+pub use octree::Octree;
+pub use options::{Domain, OctreeOptions, OctreeReport, P2mOptions, P2mReport};
+pub use partition::{Partition, SIDE_BY_SIDE};
+pub use progress::{Progress, Stage, StageTimes};
 #[cfg(feature = "kiddo")]
-pub use kd_tree::KdTreeLocator;
-pub use p2m_core::interception::{
-    BuildListFilter, BuildLocator, Domain, ListFilter, Locator, LocatorSites, Octree, OctreeOptions, OctreeReport,
-    P2mOptions, P2mReport, Partition, Progress, Region, Stage, Voronoi,
-};
+pub use voronoi::kd_tree_locator::KdTreeLocator;
 #[cfg(feature = "rstar")]
-pub use region_tree::RegionTree;
+pub use voronoi::region_tree::RegionTree;
+pub use voronoi::{BuildListFilter, BuildLocator, ListFilter, Locator, LocatorSites, Region, Voronoi};

@@ -32,14 +32,31 @@
 //! measured against.
 #![forbid(unsafe_code)]
 
-mod choice;
+mod direction_choice;
+mod directions;
+mod heights;
+mod kdop;
+mod node;
+mod options;
 mod overlap;
 mod polytope;
-pub use choice::Choice;
+#[cfg(test)]
+mod ray_entries;
+mod volume;
+
+pub use direction_choice::Choice;
+pub use directions::{Directions, DirectionsError};
+pub use kdop::Kdop;
+pub use options::KdopOptions;
 pub use overlap::Overlap;
-pub use p2m_core::hierarchy::{Part, SplitOptions, SplitRule};
-pub use p2m_core::{Directions, DirectionsError, Kdop, KdopOptions};
+pub use p2m_bvh::{Part, SplitOptions, SplitRule};
 pub use polytope::{Polytope, write_polytopes_ply};
 
 /// A k-DOP tree over a set of primitives, which it keeps.
-pub type KdopTree<T, S, const K: usize> = p2m_core::hierarchy::TreeIndex<T, S, Kdop<K>>;
+pub type KdopTree<T, S, const K: usize> = p2m_bvh::TreeIndex<T, S, Kdop<K>>;
+
+/// The inside of this crate: it may change at any time.
+#[doc(hidden)]
+pub mod engine {
+    pub use crate::volume::USUAL;
+}

@@ -7,7 +7,7 @@
 
 use crate::{Directions, Kdop, KdopTree};
 use nalgebra::{Isometry3, Matrix3, Vector3};
-use p2m_core::hierarchy::{PacketTree, Part};
+use p2m_bvh::{PacketTree, Part};
 use p2m_core::{PrimitiveId, Real};
 use std::ops::ControlFlow;
 

@@ -1,9 +1,7 @@
 //! The formats of files, by name and by extension.
 
 use crate::{Place, ReadError, Reason};
-use std::fmt;
 use std::path::Path;
-use std::str::FromStr;
 
 /// A name that is of no format.
 ///
@@ -21,6 +19,9 @@ pub struct UnknownFormat {
     pub supported: &'static [&'static str],
 }
 
+/// Defines an enum of formats with their names, which are extensions of files, too.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! formats {
     (
         $(#[$doc:meta])* $format:ident {
@@ -56,31 +57,41 @@ macro_rules! formats {
             /// The format that the extension of a file says, in any case.
             ///
             /// # Errors
-            /// [`Reason::UnknownExtension`] with the name of the file.
-            pub fn from_path(path: &Path) -> Result<Self, ReadError> {
+            /// `Reason::UnknownExtension` with the name of the file.
+            pub fn from_path(path: &std::path::Path) -> Result<Self, $crate::ReadError> {
                 let extension = path.extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
-                Self::named(&extension).ok_or_else(|| {
-                    let reason = Reason::UnknownExtension { extension, supported: Self::NAMES };
-                    ReadError::new(&path.display().to_string(), Place::File, reason)
-                })
+                let known = Self::named(&extension);
+                known.ok_or_else(|| $crate::engine::unknown_extension(path, extension, Self::NAMES))
             }
         }
 
-        impl fmt::Display for $format {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        impl std::fmt::Display for $format {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 f.pad(self.name())
             }
         }
 
-        impl FromStr for $format {
-            type Err = UnknownFormat;
+        impl std::str::FromStr for $format {
+            type Err = $crate::UnknownFormat;
 
             /// By name, in any case.
-            fn from_str(name: &str) -> Result<Self, UnknownFormat> {
-                Self::named(name).ok_or_else(|| UnknownFormat { name: name.to_owned(), supported: Self::NAMES })
+            fn from_str(name: &str) -> Result<Self, $crate::UnknownFormat> {
+                Self::named(name).ok_or_else(|| $crate::engine::unknown_format(name, Self::NAMES))
             }
         }
     };
+}
+
+/// The error for a file whose extension is that of no format.
+pub fn unknown_extension(path: &Path, extension: String, supported: &'static [&'static str]) -> ReadError {
+    let reason = Reason::UnknownExtension { extension, supported };
+    ReadError::new(&path.display().to_string(), Place::File, reason)
+}
+
+/// The error for a name of no format.
+#[must_use]
+pub fn unknown_format(name: &str, supported: &'static [&'static str]) -> UnknownFormat {
+    UnknownFormat { name: name.to_owned(), supported }
 }
 
 formats! {
@@ -131,18 +142,6 @@ formats! {
         Npy = "npy",
         /// The queries as a point cloud, with what was answered as properties.
         Ply = "ply",
-    }
-}
-
-formats! {
-    /// The formats of distance fields, see [`write_field`](crate::field::write_field).
-    FieldFormat {
-        /// An array of NumPy.
-        Npy = "npy",
-        /// An image of VTK.
-        Vti = "vti",
-        /// The values alone.
-        Raw = "raw",
     }
 }
 

@@ -23,15 +23,12 @@
 
 #[cfg(any(feature = "parry", feature = "parry-f32", feature = "rstar"))]
 pub mod adapters;
-#[cfg(feature = "advisor")]
-pub mod advisor;
 mod answers;
 mod assemble;
 mod builder;
 mod bytes;
 mod camera;
 mod error;
-pub mod field;
 mod format;
 pub mod generate;
 mod obj;
@@ -43,7 +40,6 @@ mod points;
 mod polygon;
 mod saved;
 mod scene;
-pub mod sign;
 pub mod statistics;
 mod stl;
 mod text;
@@ -53,7 +49,7 @@ mod write;
 pub use answers::{AnswerWriter, HitWriter, NumberWriter};
 pub use camera::Camera;
 pub use error::{HeaderProblem, Place, ReadError, Reason};
-pub use format::{AnswerFormat, FieldFormat, Format, PointFormat, UnknownFormat};
+pub use format::{AnswerFormat, Format, PointFormat, UnknownFormat};
 pub use obj::read_obj;
 pub use off::read_off;
 pub use ply::read_ply;
@@ -65,3 +61,16 @@ pub use stl::read_stl;
 pub use write::{
     StlRounding, WriteError, stl_rounding, write_obj, write_off, write_ply, write_ply_ascii, write_scene, write_stl,
 };
+
+/// The inside of this crate, for its sibling crates: it may change at any time.
+#[doc(hidden)]
+pub mod engine {
+    pub use crate::answers::npy_header;
+    pub use crate::format::{unknown_extension, unknown_format};
+    pub mod places {
+        pub use crate::places::*;
+    }
+    pub mod vector {
+        pub use crate::vector::*;
+    }
+}

@@ -4,23 +4,23 @@ use nalgebra::Point3;
 use p2m_core::{PrimitiveSet, Soup};
 
 /// No place: nothing uses the position.
-pub(crate) const UNUSED: u32 = u32::MAX;
+pub const UNUSED: u32 = u32::MAX;
 
 /// The distinct coordinates among the positions that primitives use; 0 and -0 are the same.
-pub(crate) struct Places {
+pub struct Places {
     /// The place of each position, from 0; `UNUSED` where there is none.
-    pub(crate) of: Vec<u32>,
+    pub of: Vec<u32>,
     /// How many there are.
-    pub(crate) len: usize,
+    pub len: usize,
     /// How many positions are used.
-    pub(crate) used: usize,
+    pub used: usize,
 }
 
 impl Places {
     /// # Complexity
     /// O(n log n) time; 32 bytes a used position while it runs, 4 bytes a position after.
     #[allow(clippy::cast_possible_truncation, reason = "positions are numbered by u32")]
-    pub(crate) fn new(soup: &Soup<f64>) -> Self {
+    pub fn new(soup: &Soup<f64>) -> Self {
         let mut of = vec![UNUSED; soup.positions().len()];
         let indices = soup.triangles().iter().flatten().chain(soup.segments().iter().flatten()).chain(soup.points());
         for &i in indices {
@@ -39,12 +39,12 @@ impl Places {
         Self { of, len, used: sorted.len() }
     }
 
-    pub(crate) fn of<const N: usize>(&self, indices: [u32; N]) -> [u32; N] {
+    pub fn of<const N: usize>(&self, indices: [u32; N]) -> [u32; N] {
         indices.map(|i| self.of[i as usize])
     }
 
     /// How many parts the scene has that share no place with each other.
-    pub(crate) fn components(&self, soup: &Soup<f64>) -> usize {
+    pub fn components(&self, soup: &Soup<f64>) -> usize {
         let mut forest = Forest::new(self.len);
         for t in soup.triangles() {
             let [a, b, c] = self.of(*t);
@@ -67,19 +67,19 @@ fn key(p: &Point3<f64>) -> [u64; 3] {
 }
 
 /// Disjoint sets.
-pub(crate) struct Forest {
+pub struct Forest {
     parent: Vec<u32>,
     trees: usize,
 }
 
 impl Forest {
     #[allow(clippy::cast_possible_truncation, reason = "whoever has more than u32 can number has no room for them")]
-    pub(crate) fn new(len: usize) -> Self {
+    pub fn new(len: usize) -> Self {
         Self { parent: (0..len as u32).collect(), trees: len }
     }
 
     /// The number of its set: that of a member.
-    pub(crate) fn root(&mut self, mut x: u32) -> u32 {
+    pub fn root(&mut self, mut x: u32) -> u32 {
         loop {
             let parent = self.parent[x as usize];
             if parent == x {
@@ -91,7 +91,7 @@ impl Forest {
         }
     }
 
-    pub(crate) fn unite(&mut self, a: u32, b: u32) {
+    pub fn unite(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         if a != b {
             self.parent[a.max(b) as usize] = a.min(b);
@@ -105,7 +105,7 @@ impl Forest {
 ///
 /// # Complexity
 /// O(n log n) for the most pairs at one place, O(n) for meshes.
-pub(crate) fn by_place<K: Copy + Default + Ord>(
+pub fn by_place<K: Copy + Default + Ord>(
     places: usize,
     pairs: impl Iterator<Item = (u32, K)> + Clone,
     mut visit: impl FnMut(&[K]),

@@ -1,38 +1,38 @@
 //! Three numbers and what is computed from them, without care for the range but in [`length`].
 
-pub(crate) type V3 = [f64; 3];
+pub type V3 = [f64; 3];
 
-pub(crate) fn sub(a: V3, b: V3) -> V3 {
+pub fn sub(a: V3, b: V3) -> V3 {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-pub(crate) fn add(a: V3, b: V3) -> V3 {
+pub fn add(a: V3, b: V3) -> V3 {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-pub(crate) fn scaled(a: V3, s: f64) -> V3 {
+pub fn scaled(a: V3, s: f64) -> V3 {
     a.map(|x| x * s)
 }
 
-pub(crate) fn dot(a: V3, b: V3) -> f64 {
+pub fn dot(a: V3, b: V3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(crate) fn cross(a: V3, b: V3) -> V3 {
+pub fn cross(a: V3, b: V3) -> V3 {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-pub(crate) fn norm_squared(a: V3) -> f64 {
+pub fn norm_squared(a: V3) -> f64 {
     dot(a, a)
 }
 
 /// The magnitude of the largest component of several.
-pub(crate) fn largest(vectors: &[V3]) -> f64 {
+pub fn largest(vectors: &[V3]) -> f64 {
     vectors.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()))
 }
 
 /// The length at any scale.
-pub(crate) fn length(a: V3) -> f64 {
+pub fn length(a: V3) -> f64 {
     let size = largest(&[a]);
     if size > 0.0 && size.is_finite() { size * norm_squared(a.map(|x| x / size)).sqrt() } else { size }
 }

@@ -4,10 +4,11 @@
 //! trait objects here, in functions that are not inlined elsewhere, and queries are asked here.
 
 use nalgebra::Point3;
+use p2m_bvh::TreeIndex;
 use p2m_core::batch::{self, BatchOptions};
-use p2m_core::hierarchy::TreeIndex;
-use p2m_core::{Aabb, ClosestPoint, Kdop, QueryOptions, Ray, RayQuery, Soup};
+use p2m_core::{Aabb, ClosestPoint, QueryOptions, Ray, RayQuery, Soup};
 use p2m_interception::{OctreeIndex, P2mIndex};
+use p2m_kdop::Kdop;
 use std::hint::black_box;
 
 /// An index of any kind.

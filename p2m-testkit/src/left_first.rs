@@ -5,8 +5,9 @@
 //! Written from the manual's description, for counting only.
 
 use nalgebra::{Point3, Vector3};
-use p2m_core::hierarchy::{PacketTree, Part};
-use p2m_core::{Directions, Kdop, Primitive, PrimitiveId, PrimitiveSet, Ray, Real};
+use p2m_bvh::{PacketTree, Part};
+use p2m_core::{Primitive, PrimitiveId, PrimitiveSet, Ray, Real};
+use p2m_kdop::{Directions, Kdop};
 use std::cell::Cell;
 
 /// A binary tree of k-DOPs.

@@ -43,7 +43,6 @@ pub const SETTINGS: &[Setting] = &[
         name: "certified",
         about: "`certified_closest_point`: the nearest primitive without doubt, its distance within half a unit in the last place",
         ask: Ask::Certified,
-        ..DEFAULT
     },
     within("epsilon 0.001", 0.001, "`QueryOptions::with_epsilon(0.001)`: at most 0.1 % farther than the closest point"),
     within("epsilon 0.01", 0.01, "`QueryOptions::with_epsilon(0.01)`: at most 1 % farther"),
@@ -53,13 +52,11 @@ pub const SETTINGS: &[Setting] = &[
         name: "budget 0",
         about: "`QueryOptions::with_budget(0)`: the first thing found; of `octree` and `p2m` what the cell itself tells",
         ask: Ask::Budget(0),
-        ..DEFAULT
     },
     Setting {
         name: "budget 16",
         about: "`QueryOptions::with_budget(16)`: the best of sixteen visits of nodes and packets",
         ask: Ask::Budget(16),
-        ..DEFAULT
     },
 ];
 

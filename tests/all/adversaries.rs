@@ -3,9 +3,9 @@
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 
 use nalgebra::Point3;
-use p2m::backend::delaunay::{Delaunay, DelaunayError};
-use p2m::backend::hierarchy::{PacketTree, Volume};
-use p2m::backend::interception::Partition;
+use p2m::bvh::{PacketTree, Volume};
+use p2m::interception::Partition;
+use p2m::interception::delaunay::{Delaunay, DelaunayError};
 use p2m::{
     AabbOptions, AabbTree, BruteForce, BuildError, BuildIndex, ClosestPoint, Examine, KdopOptions, KdopTree,
     OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, Point, PrimitiveId, PrimitiveSet, Soup, Visits,

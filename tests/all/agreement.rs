@@ -5,7 +5,8 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
-use p2m::backend::{Best, Directions, Key};
+use p2m::backend::{Best, Key};
+use p2m::kdop::Directions;
 use p2m::{
     AabbTree, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Feature, KdopOptions, KdopTree, OctreeIndex,
     P2mIndex, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment, Shape, Soup, Triangle,

@@ -3,12 +3,12 @@
 #![cfg(all(feature = "bvh", feature = "interception", feature = "mixed"))]
 
 use nalgebra::Point3;
-use p2m::scene::field::{
+use p2m::field::sign::SignedDistance;
+use p2m::field::{
     CandidateLists, FieldOptions, Grid, GridError, RefineOptions, distances, distances_by_lists, refined,
     signed_distances, signed_distances_by_lists, slice, write_field,
 };
 use p2m::scene::generate::{IcoSphere, KnotAndCables, TorusKnot, ico_sphere, knot_and_cables, torus_knot};
-use p2m::scene::sign::SignedDistance;
 use p2m::{Aabb, AabbTree, BruteForce, BuildIndex, ClosestPoint, OctreeIndex, P2mIndex, PrimitiveSet, Soup};
 use p2m_testkit::{amount, is_deep};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -300,18 +300,18 @@ fn files_and_slices_have_every_value_in_its_place() {
         write_field(&grid, &values, format, &mut bytes).expect("memory");
         bytes
     };
-    let raw = file(p2m::scene::FieldFormat::Raw);
+    let raw = file(p2m::field::FieldFormat::Raw);
     assert_eq!(raw.len(), 96);
-    let npy = file(p2m::scene::FieldFormat::Npy);
+    let npy = file(p2m::field::FieldFormat::Npy);
     let header = String::from_utf8_lossy(&npy[10..npy.len() - 96]).into_owned();
     assert!(header.starts_with("{'descr': '<f4', 'fortran_order': True, 'shape': (3, 2, 4), }"), "{header}");
     assert!(npy.len() % 64 == 32 && npy.ends_with(&raw));
-    let vti = file(p2m::scene::FieldFormat::Vti);
+    let vti = file(p2m::field::FieldFormat::Vti);
     let text = String::from_utf8_lossy(&vti);
     assert!(text.contains("WholeExtent=\"0 2 0 1 0 3\" Origin=\"1.0 2.0 3.0\" Spacing=\"0.25 0.25 0.25\""), "{text}");
     let start = vti.windows(2).position(|w| w == b"\n_").expect("the data") + 2;
     assert_eq!((&vti[start..start + 8], &vti[start + 8..start + 104]), (&96u64.to_le_bytes()[..], &raw[..]));
-    assert!(write_field(&grid, &values[1..], p2m::scene::FieldFormat::Raw, Vec::new()).is_err());
+    assert!(write_field(&grid, &values[1..], p2m::field::FieldFormat::Raw, Vec::new()).is_err());
 
     // One point inside, one without a number.
     let mut values = vec![4.0f32; 24];

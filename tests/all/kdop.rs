@@ -3,8 +3,9 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Rotation3, Vector3};
-use p2m::backend::hierarchy::{TreeIndex, Volume};
-use p2m::backend::{Counting, Directions};
+use p2m::backend::Counting;
+use p2m::bvh::{TreeIndex, Volume};
+use p2m::kdop::Directions;
 use p2m::{
     Aabb, AabbTree, BoxQuery, BruteForce, BuildError, BuildIndex, ClosestLeaf, ClosestPoint, Isa, KdopOptions,
     KdopTree, Primitive, PrimitiveSet, Soup,

@@ -115,7 +115,7 @@ fn cells_do_not_depend_on_the_number_of_threads() {
     let mut rng = rng("octree threads", 0);
     let places: Vec<_> = (0..amount(2000, 400)).map(|_| query(&mut rng, &soup)).collect();
     let cells = |parallel| {
-        let splits = p2m::backend::hierarchy::SplitOptions::default().with_parallel(parallel);
+        let splits = p2m::bvh::SplitOptions::default().with_parallel(parallel);
         let index = built(&soup, &OctreeOptions::default().with_splits(splits));
         let lists: Vec<_> = places.iter().map(|place| index.partition().list_length(place)).collect();
         (index.report(), lists)

@@ -5,7 +5,7 @@
 
 use nalgebra::{Point3, Vector3};
 use p2m::backend::Counting;
-use p2m::backend::interception::{Partition, Progress, Stage};
+use p2m::interception::{Partition, Progress, Stage};
 use p2m::{
     Aabb, BruteForce, BuildIndex, ClosestPoint, Isa, P2mIndex, P2mOptions, Point, Primitive, PrimitiveSet, Projection,
     Segment, Shape, Soup, Triangle,

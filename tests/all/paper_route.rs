@@ -8,7 +8,7 @@
 #![cfg(feature = "interception")]
 
 use nalgebra::{Point3, Vector3};
-use p2m::backend::interception::Partition;
+use p2m::interception::Partition;
 use p2m::{BruteForce, BuildIndex, ClosestPoint, P2mIndex, PrimitiveId, PrimitiveSet, Soup};
 use p2m_testkit::paper::{Mesh, NEARER, Polytope, Table, centre};
 use p2m_testkit::scenes::{self, Kinds, Layout};

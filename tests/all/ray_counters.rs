@@ -1,8 +1,9 @@
 //! How much work rays do: counters, which are deterministic.
 #![cfg(all(feature = "bvh", feature = "kdop"))]
 
-use p2m::backend::hierarchy::{TreeIndex, Volume};
-use p2m::backend::{Directions, Hits, RayCounting};
+use p2m::backend::{Hits, RayCounting};
+use p2m::bvh::{TreeIndex, Volume};
+use p2m::kdop::Directions;
 use p2m::{AabbTree, BruteForce, BuildIndex, KdopTree, Ray, RayQuery, Soup};
 use p2m_testkit::left_first::LeftFirst;
 use p2m_testkit::queries::QuerySet;

@@ -4,8 +4,8 @@
 #![cfg(all(feature = "bvh", feature = "kdop", feature = "mixed"))]
 
 use nalgebra::{Point3, Vector3};
-use p2m::backend::hierarchy::{TreeIndex, Volume};
 use p2m::backend::{Crossing, RayCollector};
+use p2m::bvh::{TreeIndex, Volume};
 use p2m::{Aabb, AabbTree, BuildIndex, Element, KdopTree, PrimitiveId, PrimitiveSet, Ray, Side, Soup};
 use p2m_testkit::line_filter::LineFilter;
 use p2m_testkit::ray_check::{Truth, agrees};

@@ -4,7 +4,8 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
-use p2m::backend::{Crossing, Directions, Hits, RayCollector, RayHit};
+use p2m::backend::{Crossing, Hits, RayCollector, RayHit};
+use p2m::kdop::Directions;
 use p2m::{
     Aabb, AabbTree, BruteForce, BuildIndex, Element, Feature, Hit, Isa, KdopTree, Primitive, PrimitiveId, PrimitiveSet,
     Projection, Ray, RayError, RayQuery, Real, Side, Soup,

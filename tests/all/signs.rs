@@ -3,8 +3,8 @@
 #![cfg(all(feature = "bvh", feature = "interception", feature = "mixed"))]
 
 use nalgebra::{Point3, Vector3};
+use p2m::field::sign::{Sign, SignError, SignedDistance, WindingNumbers, meets_itself};
 use p2m::scene::generate::{IcoSphere, SkewedGear, TorusKnot, Transform, ico_sphere, skewed_gear, torus_knot};
-use p2m::scene::sign::{Sign, SignError, SignedDistance, WindingNumbers, meets_itself};
 use p2m::{
     AabbTree, BruteForce, BuildIndex, Closest, Element, OctreeIndex, P2mIndex, PrimitiveSet, Ray, RayQuery, Soup,
 };
@@ -238,7 +238,7 @@ fn every_backend_has_the_same_signs() {
     let p2m = P2mIndex::build(&soup, &Default::default()).expect("valid");
     let p2m = SignedDistance::new(p2m, &soup).expect("closed");
     for query in QuerySet::Box1.of_cases(&soup, &cases(1000, 100), 5) {
-        let known = |c: Option<p2m::scene::sign::Signed>| c.map(|c| (c.distance(), c.sign, c.closest.primitive));
+        let known = |c: Option<p2m::field::sign::Signed>| c.map(|c| (c.distance(), c.sign, c.closest.primitive));
         let expected = known(aabb.closest_point(&query));
         assert_eq!(known(octree.closest_point(&query)), expected);
         assert_eq!(known(p2m.closest_point(&query)), expected);

@@ -7,9 +7,10 @@ use crate::contender::{Absent, Prepared};
 use crate::scene::Scene;
 use anyhow::{Result, anyhow};
 use p2m_bvh::AabbTree;
-use p2m_core::hierarchy::{TreeIndex, Volume};
-use p2m_core::{Aabb, BruteForce, BuildIndex, Directions, Isa, Kdop, Soup};
+use p2m_bvh::{TreeIndex, Volume};
+use p2m_core::{Aabb, BruteForce, BuildIndex, Isa, Soup};
 use p2m_kdop::KdopOptions;
+use p2m_kdop::{Directions, Kdop};
 
 /// Every contender, in the order of the tables.
 pub(crate) const ALL: &[Backend] = &[

@@ -3,7 +3,7 @@
 use crate::contender::{Absent, Prepared};
 use crate::scene::{Scene, single_point};
 use nalgebra::{Point3, Vector3};
-use p2m_core::hierarchy::{TreeIndex, Volume};
+use p2m_bvh::{TreeIndex, Volume};
 use p2m_core::{BruteForce, Hit, Hits, PrimitiveSet, Ray, RayCounting, RayQuery};
 use std::hint::black_box;
 

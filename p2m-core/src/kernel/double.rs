@@ -10,12 +10,12 @@ use std::ops::{Add, Div, Mul, Sub};
 
 /// What sums of a few products of double-double numbers may be off, in parts of the sizes of what is summed: 2^-95, where
 /// less than 2^-98 can be shown.
-pub(crate) const ROUNDING: f64 = power_of_two(-95);
+pub const ROUNDING: f64 = power_of_two(-95);
 
 #[derive(Clone, Copy)]
-pub(crate) struct Double {
-    pub(crate) high: f64,
-    pub(crate) low: f64,
+pub struct Double {
+    pub high: f64,
+    pub low: f64,
 }
 
 /// a + b without error.
@@ -51,18 +51,18 @@ fn two_product(a: f64, b: f64) -> Double {
 impl Double {
     /// a - b without error.
     #[inline(always)]
-    pub(crate) fn difference(a: f64, b: f64) -> Self {
+    pub fn difference(a: f64, b: f64) -> Self {
         two_sum(a, -b)
     }
 
     /// a b without error.
     #[inline(always)]
-    pub(crate) fn product(a: f64, b: f64) -> Self {
+    pub fn product(a: f64, b: f64) -> Self {
         two_product(a, b)
     }
 
     /// The value rounded to f64.
-    pub(crate) fn round(self) -> f64 {
+    pub fn round(self) -> f64 {
         self.high
     }
 }

@@ -5,20 +5,20 @@
 
 #![allow(clippy::float_cmp, reason = "ties are equality of bits, and are decided here")]
 
-pub(crate) mod double;
+pub mod double;
 mod key;
 mod line;
-pub(crate) mod number;
+pub mod number;
 mod plane;
-pub(crate) mod scalar;
+pub mod scalar;
 mod scaled;
-pub(crate) mod vector;
-pub(crate) mod vertices;
+pub mod vector;
+pub mod vertices;
 
 pub use key::Key;
 
 use crate::Feature;
-pub(crate) use vector::exponent;
+pub use vector::exponent;
 pub use vector::power_of_two;
 use vector::{V3, bounds, clamp, scale_by_power};
 
@@ -35,16 +35,16 @@ pub const SLIVER_SINE: f64 = 1.0 / 1024.0;
 ///
 /// Numbers and a small code, no payloads in an enum: they stay in registers on their way to a collector.
 #[derive(Clone, Copy)]
-pub(crate) struct Nearest {
-    pub(crate) key: Key,
+pub struct Nearest {
+    pub key: Key,
     /// From the query to the nearest point, divided by 2^`exponent`.
-    pub(crate) offset: V3,
-    pub(crate) exponent: i32,
-    pub(crate) feature: Feature,
+    pub offset: V3,
+    pub exponent: i32,
+    pub feature: Feature,
     /// Of the vertices.
-    pub(crate) weights: V3,
+    pub weights: V3,
     /// The largest component of an offset to a vertex.
-    pub(crate) size: f64,
+    pub size: f64,
 }
 
 /// Vertex i and its weights.
@@ -74,7 +74,7 @@ fn of_edge(i: usize, [a, b]: [f64; 2]) -> (Feature, V3) {
 impl Nearest {
     /// The nearest point of a primitive with these vertices, in its box; a vertex is given verbatim.
     #[inline(always)]
-    pub(crate) fn point<const N: usize>(&self, query: V3, vertices: &[V3; N]) -> V3 {
+    pub fn point<const N: usize>(&self, query: V3, vertices: &[V3; N]) -> V3 {
         match self.feature {
             Feature::Vertex(i) => vertices[usize::from(i)],
             Feature::Edge(i) => {
@@ -118,7 +118,7 @@ impl Nearest {
 
     /// How far the computed distance may be from the true one (without eta): `ERROR_CONSTANT` u M, M <= sqrt(3) size.
     #[inline(always)]
-    pub(crate) fn error(&self) -> f64 {
+    pub fn error(&self) -> f64 {
         /// Above sqrt(3) 2^-53 by more than the rounding of the product.
         const SQRT_3_U: f64 = 1.7321 * (f64::EPSILON / 2.0);
         (ERROR_CONSTANT * SQRT_3_U) * self.size

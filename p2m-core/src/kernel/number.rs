@@ -5,15 +5,15 @@
 use std::ops::{Add, Mul, Sub};
 
 /// What sums and products are made of.
-pub(crate) trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
+pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T {}
 
 #[inline(always)]
-pub(crate) fn cross<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
+pub fn cross<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[inline(always)]
-pub(crate) fn dot<T: Number>(a: [T; 3], b: [T; 3]) -> T {
+pub fn dot<T: Number>(a: [T; 3], b: [T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -3,62 +3,62 @@
 
 #![allow(clippy::inline_always, reason = "the kernels are one expression; calls would hide it from the optimiser")]
 
-pub(crate) type V3 = [f64; 3];
+pub type V3 = [f64; 3];
 
 #[inline(always)]
-pub(crate) fn sub(a: V3, b: V3) -> V3 {
+pub fn sub(a: V3, b: V3) -> V3 {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// (a0 b0 + a1 b1) + a2 b2, in this order everywhere.
 #[inline(always)]
-pub(crate) fn dot(a: V3, b: V3) -> f64 {
+pub fn dot(a: V3, b: V3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline(always)]
-pub(crate) fn norm_squared(a: V3) -> f64 {
+pub fn norm_squared(a: V3) -> f64 {
     dot(a, a)
 }
 
 #[inline(always)]
-pub(crate) fn add(a: V3, b: V3) -> V3 {
+pub fn add(a: V3, b: V3) -> V3 {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 /// s a + t b
 #[inline(always)]
-pub(crate) fn combine(s: f64, a: V3, t: f64, b: V3) -> V3 {
+pub fn combine(s: f64, a: V3, t: f64, b: V3) -> V3 {
     [s * a[0] + t * b[0], s * a[1] + t * b[1], s * a[2] + t * b[2]]
 }
 
 /// a + s b
 #[inline(always)]
-pub(crate) fn add_scaled(a: V3, s: f64, b: V3) -> V3 {
+pub fn add_scaled(a: V3, s: f64, b: V3) -> V3 {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
 }
 
 /// Smaller and larger by comparison, which compile to one instruction each; the operands are never NaN.
 #[inline(always)]
-pub(crate) fn smaller(a: f64, b: f64) -> f64 {
+pub fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
 #[inline(always)]
-pub(crate) fn larger(a: f64, b: f64) -> f64 {
+pub fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
 /// `x` moved into the box from `low` to `high`.
 #[inline(always)]
-pub(crate) fn clamp(x: V3, low: V3, high: V3) -> V3 {
+pub fn clamp(x: V3, low: V3, high: V3) -> V3 {
     let x = [smaller(x[0], high[0]), smaller(x[1], high[1]), smaller(x[2], high[2])];
     [larger(x[0], low[0]), larger(x[1], low[1]), larger(x[2], low[2])]
 }
 
 /// The corners of the smallest box around some vectors.
 #[inline(always)]
-pub(crate) fn bounds<const N: usize>(vectors: &[V3; N]) -> [V3; 2] {
+pub fn bounds<const N: usize>(vectors: &[V3; N]) -> [V3; 2] {
     let (mut low, mut high) = (vectors[0], vectors[0]);
     for v in &vectors[1..] {
         for k in 0..3 {
@@ -71,7 +71,7 @@ pub(crate) fn bounds<const N: usize>(vectors: &[V3; N]) -> [V3; 2] {
 
 /// The largest magnitude of any component; components are never NaN.
 #[inline(always)]
-pub(crate) fn largest(vectors: &[V3]) -> f64 {
+pub fn largest(vectors: &[V3]) -> f64 {
     let mut largest = 0.0;
     for x in vectors.as_flattened() {
         largest = larger(x.abs(), largest);
@@ -80,7 +80,7 @@ pub(crate) fn largest(vectors: &[V3]) -> f64 {
 }
 
 /// Lexicographic order of two vectors without NaN.
-pub(crate) fn lexicographically_less(a: V3, b: V3) -> bool {
+pub fn lexicographically_less(a: V3, b: V3) -> bool {
     a < b
 }
 
@@ -95,7 +95,7 @@ pub const fn power_of_two(e: i32) -> f64 {
 }
 
 /// floor(log2 |x|) for finite x other than zero, subnormal ones included.
-pub(crate) fn exponent(x: f64) -> i32 {
+pub fn exponent(x: f64) -> i32 {
     let biased = |x: f64| ((x.to_bits() >> 52) & 0x7ff) as i32;
     match biased(x) {
         0 => biased(x * power_of_two(64)) - 64 - 1023,
@@ -104,7 +104,7 @@ pub(crate) fn exponent(x: f64) -> i32 {
 }
 
 /// x 2^e, rounded once if the result is subnormal, for any e that occurs (|e| < 5000).
-pub(crate) fn scale_by_power(x: f64, e: i32) -> f64 {
+pub fn scale_by_power(x: f64, e: i32) -> f64 {
     if x == 0.0 || !x.is_finite() {
         return x;
     }

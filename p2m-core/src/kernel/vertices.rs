@@ -6,14 +6,14 @@ use super::scalar::{OUTWARD_MARGIN, PLAIN_MAX, PLAIN_MIN};
 use super::vector::{V3, larger, smaller};
 
 /// Triangles side by side.
-pub(crate) const SIDE_BY_SIDE: usize = 8;
+pub const SIDE_BY_SIDE: usize = 8;
 type Row = [f64; SIDE_BY_SIDE];
 
 /// The squares of the keys of triangles whose nearest point is certainly a vertex, bit for bit those of
 /// [`triangle`](super::scalar::triangle); infinity for the others. Coordinate k of corner v is in `corners[v][k]`.
 #[inline(always)]
 #[allow(clippy::needless_range_loop, reason = "rows side by side")]
-pub(crate) fn certain_vertices(query: V3, corners: &[[Row; 3]; 3]) -> Row {
+pub fn certain_vertices(query: V3, corners: &[[Row; 3]; 3]) -> Row {
     let mut offsets = *corners;
     let mut size = [0.0; SIDE_BY_SIDE];
     let mut squares = [[0.0; SIDE_BY_SIDE]; 3];

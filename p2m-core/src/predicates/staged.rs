@@ -16,11 +16,11 @@ use robust::{Coord3D, insphere, orient3d};
 use std::cmp::Ordering;
 
 /// Sizes of coordinates for which the stages are exact; 0 is as well.
-pub(crate) const RANGE: std::ops::RangeInclusive<f64> = power_of_two(-161)..=power_of_two(190);
+pub const RANGE: std::ops::RangeInclusive<f64> = power_of_two(-161)..=power_of_two(190);
 
 /// What decided a sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Stage {
+pub enum Stage {
     /// Whole numbers, of a common power of two.
     Whole,
     /// Double-double arithmetic.
@@ -82,8 +82,8 @@ fn columns<const N: usize>(rows: &[V3; N]) -> f64 {
 
 /// A number near another one.
 #[derive(Clone, Copy)]
-pub(crate) struct Estimate {
-    pub(crate) value: f64,
+pub struct Estimate {
+    pub value: f64,
     /// Above the distance of the two.
     bound: f64,
 }
@@ -97,26 +97,26 @@ impl Estimate {
 
     /// Whether the value has the sign of the other one, which is not 0.
     #[inline(always)]
-    pub(crate) fn is_certain(self) -> bool {
+    pub fn is_certain(self) -> bool {
         self.value.abs() > self.bound
     }
 
     /// The sign of the other one.
     #[inline(always)]
-    pub(crate) fn sign(self) -> Option<Ordering> {
+    pub fn sign(self) -> Option<Ordering> {
         self.is_certain().then_some(if self.value > 0.0 { Ordering::Greater } else { Ordering::Less })
     }
 }
 
 /// Of the determinant of the differences that these rows are rounded from.
 #[inline(always)]
-pub(crate) fn orientation_filter(rows: [V3; 3]) -> Estimate {
+pub fn orientation_filter(rows: [V3; 3]) -> Estimate {
     Estimate::new(determinant(rows), ORIENTATION_ERROR * columns(&rows))
 }
 
 /// The sign of the determinant of a - origin, b - origin, c - origin, where the filter could not tell.
 #[cold]
-pub(crate) fn orientation_exact([a, b, c]: [V3; 3], origin: V3) -> (Ordering, Stage) {
+pub fn orientation_exact([a, b, c]: [V3; 3], origin: V3) -> (Ordering, Stage) {
     if let Some(rows) = whole::rows(&[a, b, c], origin) {
         return (whole::orientation(rows), Stage::Whole);
     }
@@ -127,7 +127,7 @@ pub(crate) fn orientation_exact([a, b, c]: [V3; 3], origin: V3) -> (Ordering, St
 
 /// Of a number above 0 if e is inside the sphere through the other four, which are positively oriented.
 #[inline(always)]
-pub(crate) fn sphere_filter([a, b, c, d]: [V3; 4], e: V3) -> Estimate {
+pub fn sphere_filter([a, b, c, d]: [V3; 4], e: V3) -> Estimate {
     let rows = [sub(a, e), sub(b, e), sub(c, e), sub(d, e)];
     let lengths = squares(rows);
     let longest = larger(larger(lengths[0], lengths[1]), larger(lengths[2], lengths[3]));
@@ -136,7 +136,7 @@ pub(crate) fn sphere_filter([a, b, c, d]: [V3; 4], e: V3) -> Estimate {
 
 /// Whether e is inside (`Greater`), on or outside (`Less`) that sphere, where the filter could not tell.
 #[cold]
-pub(crate) fn sphere_exact(points: [V3; 4], e: V3) -> (Ordering, Stage) {
+pub fn sphere_exact(points: [V3; 4], e: V3) -> (Ordering, Stage) {
     if let Some(rows) = whole::rows(&points, e) {
         return (whole::sphere(rows), Stage::Whole);
     }

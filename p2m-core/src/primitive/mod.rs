@@ -86,25 +86,29 @@ impl Projection {
 
     /// The same as [`of_triangle`](Self::of_triangle) for one that is probably near.
     #[inline(always)]
-    pub(crate) fn of_near_triangle(query: [f64; 3], vertices: &[[f64; 3]; 3], square: f64) -> Option<Self> {
+    #[doc(hidden)]
+    pub fn of_near_triangle(query: [f64; 3], vertices: &[[f64; 3]; 3], square: f64) -> Option<Self> {
         Some(Self::from_nearest(&scalar::near_triangle(query, *vertices, square)?, query, vertices))
     }
 
     /// On a triangle, as the contract has it; `None` if its key certainly exceeds `square`.
     #[inline(always)]
-    pub(crate) fn of_triangle(query: [f64; 3], vertices: &[[f64; 3]; 3], square: f64) -> Option<Self> {
+    #[doc(hidden)]
+    pub fn of_triangle(query: [f64; 3], vertices: &[[f64; 3]; 3], square: f64) -> Option<Self> {
         Some(Self::from_nearest(&scalar::triangle(query, *vertices, square)?, query, vertices))
     }
 
     /// The same on a segment.
     #[inline(always)]
-    pub(crate) fn of_segment(query: [f64; 3], vertices: &[[f64; 3]; 2], square: f64) -> Option<Self> {
+    #[doc(hidden)]
+    pub fn of_segment(query: [f64; 3], vertices: &[[f64; 3]; 2], square: f64) -> Option<Self> {
         Some(Self::from_nearest(&scalar::segment(query, *vertices, square)?, query, vertices))
     }
 
     /// The same on a point.
     #[inline(always)]
-    pub(crate) fn of_point(query: [f64; 3], vertex: &[[f64; 3]; 1], square: f64) -> Option<Self> {
+    #[doc(hidden)]
+    pub fn of_point(query: [f64; 3], vertex: &[[f64; 3]; 1], square: f64) -> Option<Self> {
         Some(Self::from_nearest(&scalar::point(query, vertex[0], square)?, query, vertex))
     }
 

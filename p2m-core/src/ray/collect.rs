@@ -44,9 +44,11 @@ pub struct Hits<'r> {
     /// The first one, or any, if that is wanted.
     pub(super) one: Option<(PrimitiveId, Crossing<'r>)>,
     /// Every one, if that is wanted.
-    pub(super) all: Vec<Hit>,
+    #[doc(hidden)]
+    pub all: Vec<Hit>,
     /// How many there are, if that is wanted.
-    pub(super) count: usize,
+    #[doc(hidden)]
+    pub count: usize,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -149,7 +149,7 @@ impl<'a> Crossing<'a> {
 
     /// One of this project, by its vertices.
     #[inline(always)]
-    pub(crate) fn of_vertices(ray: &'a Ray, vertices: &[V3], limit: f64, only_crossings: bool) -> Option<Self> {
+    pub fn of_vertices(ray: &'a Ray, vertices: &[V3], limit: f64, only_crossings: bool) -> Option<Self> {
         match vertices {
             [a, b, c] => Self::of_triangle(ray, [*a, *b, *c], limit, only_crossings),
             _ if only_crossings => None,

@@ -28,7 +28,7 @@ struct Span {
 
 /// The point of the line of a ray that is nearest to `point`, and how far from the origin of the ray it lies, measured
 /// along `axis`, on which the direction is largest: each rounded once.
-pub(crate) fn foot(ray: &Ray, point: &V3, axis: usize) -> (V3, f64) {
+pub fn foot(ray: &Ray, point: &V3, axis: usize) -> (V3, f64) {
     let unit = common_exponent(ray.origin.iter().chain(point));
     let direction_unit = common_exponent(&ray.direction);
     let d = ray.direction.map(|x| integer(x, direction_unit));

@@ -47,11 +47,11 @@ pub enum RayError {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    pub(crate) origin: V3,
-    pub(crate) direction: V3,
-    pub(crate) min: f64,
-    pub(crate) max: f64,
-    pub(crate) radius: f64,
+    pub origin: V3,
+    pub direction: V3,
+    pub min: f64,
+    pub max: f64,
+    pub radius: f64,
 }
 
 impl Ray {

@@ -18,14 +18,14 @@ pub use counting::RayCounting;
 pub use crossing::{Crossing, Hit, RayHit, Side};
 pub use line::{Ray, RayError};
 
-pub(crate) use exact::foot;
+pub use exact::foot;
 
 use crate::kernel::power_of_two;
 use crate::{BruteForce, PrimitiveId, PrimitiveSet, Real};
 use std::ops::ControlFlow;
 
 /// More than what products, and parameters, may lack that underflow, in parts of what they are multiplied with.
-pub(crate) const TINY: f64 = power_of_two(-1000);
+pub const TINY: f64 = power_of_two(-1000);
 
 /// What a ray meets of a scene. A backend writes one method, [`search_ray`](Self::search_ray).
 ///

@@ -6,10 +6,10 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 /// The bytes of a file, which stay where they are.
-pub(crate) type FileBytes = Arc<dyn AsRef<[u8]> + Send + Sync>;
+pub type FileBytes = Arc<dyn AsRef<[u8]> + Send + Sync>;
 
 /// A slice that is read as fast as that of a `Vec`, wherever its elements are.
-pub(crate) struct Array<T> {
+pub struct Array<T> {
     /// Of the elements, which `owner` keeps where they are.
     pointer: *const T,
     len: usize,
@@ -30,7 +30,7 @@ unsafe impl<T: Send + Sync> Sync for Array<T> {}
 
 impl<T> Array<T> {
     /// Changes the elements.
-    pub(crate) fn edit<R>(&mut self, change: impl FnOnce(&mut Vec<T>) -> R) -> R
+    pub fn edit<R>(&mut self, change: impl FnOnce(&mut Vec<T>) -> R) -> R
     where
         T: Clone,
     {
@@ -46,7 +46,7 @@ impl<T> Array<T> {
     }
 
     /// Heap memory, in bytes; that of a file is not counted.
-    pub(crate) fn memory(&self) -> usize {
+    pub fn memory(&self) -> usize {
         match &self.owner {
             Owner::Vec(all) => all.capacity() * size_of::<T>(),
             Owner::File(_) => 0,

@@ -21,15 +21,16 @@
 //! Nothing that is read is undefined for any bytes, but for a mapped file that changes.
 //!
 //! ```
-//! use p2m_core::saved::{SavedFile, Writer};
-//! use p2m_core::{BuildIndex, ClosestPoint, KdopOptions, Kdop, Point, hierarchy::TreeIndex};
 //! use nalgebra::Point3;
+//! use p2m_bvh::AabbTree;
+//! use p2m_core::saved::{SavedFile, Writer};
+//! use p2m_core::{BuildIndex, ClosestPoint, Point};
 //!
 //! // Of the type of an index that can be saved: AabbTree, KdopTree, OctreeIndex or P2mIndex.
-//! type Index<'a> = TreeIndex<f64, &'a [Point<f64>], Kdop<14>>;
+//! type Index<'a> = AabbTree<f64, &'a [Point<f64>]>;
 //!
 //! let scene = [1.0, 5.0].map(|x| Point::new(Point3::new(x, 0.0, 0.0)));
-//! let index = Index::build(&scene, &KdopOptions::default())?;
+//! let index = Index::build(&scene, &Default::default())?;
 //! let mut file = Vec::new(); // or a File
 //! let mut writer = Writer::default();
 //! index.save(&mut writer);
@@ -47,7 +48,7 @@ mod file;
 mod index;
 mod sections;
 
-pub(crate) use array::Array;
+pub use array::Array;
 pub use file::SavedFile;
 pub use index::{Saved, kind, load, save};
 pub use sections::{Reader, Writer};

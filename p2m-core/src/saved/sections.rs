@@ -198,7 +198,7 @@ impl Reader {
     }
 
     /// A section, where it is.
-    pub(crate) fn array<T: AnyBitPattern>(&self, name: &str) -> Result<Array<T>, LoadError> {
+    pub fn array<T: AnyBitPattern>(&self, name: &str) -> Result<Array<T>, LoadError> {
         let missing = || LoadError::Missing { section: name.to_owned() };
         let entry = self.table.iter().find(|entry| entry.name() == name).ok_or_else(missing)?;
         let part = entry.part((*self.file).as_ref().len() as u64).filter(|_| entry.size == size_of::<T>() as u64);

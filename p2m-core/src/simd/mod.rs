@@ -11,13 +11,13 @@ mod isa;
 mod portable;
 
 pub use isa::Isa;
-pub(crate) use isa::{prefetch, prefetch_lines};
-pub(crate) use portable::Portable;
+pub use isa::{prefetch, prefetch_lines};
+pub use portable::Portable;
 
 /// Several f32 that are computed with at once.
 ///
 /// Addition, subtraction and multiplication round to nearest; [`mul_add`](Self::mul_add) rounds once or twice.
-pub(crate) trait Lanes: Copy {
+pub trait Lanes: Copy {
     /// How many.
     const LEN: usize;
     /// The same number in every lane.
@@ -53,7 +53,7 @@ pub(crate) trait Lanes: Copy {
 }
 
 /// Eight lanes, which can be sorted.
-pub(crate) trait EightLanes: Lanes {
+pub trait EightLanes: Lanes {
     /// The lanes that are at most `limit`, none of which is negative, as keys in descending order at the front of
     /// `keys`; the other keys are 0. Returns how many there are.
     ///
@@ -63,7 +63,7 @@ pub(crate) trait EightLanes: Lanes {
 }
 
 /// Eight f64 that are computed with at once, with roundings as of [`Lanes`].
-pub(crate) trait Doubles: Copy {
+pub trait Doubles: Copy {
     /// The same number in every lane.
     fn splat(x: f64) -> Self;
     /// The first eight numbers of a slice, which has that many.
@@ -87,18 +87,18 @@ pub(crate) trait Doubles: Copy {
 
 /// A lower bound of the number that a key was made of.
 #[inline(always)]
-pub(crate) fn number_of_key(key: u32) -> f32 {
+pub fn number_of_key(key: u32) -> f32 {
     f32::from_bits(key & !15)
 }
 
 /// The lane of a key.
 #[inline(always)]
-pub(crate) fn lane_of_key(key: u32) -> usize {
+pub fn lane_of_key(key: u32) -> usize {
     (key & 7) as usize
 }
 
 /// An instruction set, as the two types of lanes that it computes with.
-pub(crate) trait InstructionSet {
+pub trait InstructionSet {
     /// Eight lanes.
     type Eight: EightLanes;
     /// As many lanes as are computed fastest: 8 or 16.
@@ -109,7 +109,7 @@ pub(crate) trait InstructionSet {
 
 /// Something to compute with an instruction set. `run` and everything it calls has to be `#[inline(always)]`, or it is
 /// compiled without the instruction set.
-pub(crate) trait Operation {
+pub trait Operation {
     /// What comes of it.
     type Output;
     /// Computes it.

@@ -6,14 +6,14 @@ use wide::{f32x8, f64x4};
 
 /// Eight lanes.
 #[derive(Clone, Copy)]
-pub(crate) struct Eight(f32x8);
+pub struct Eight(f32x8);
 
 /// Eight f64, the first four apart from the last four.
 #[derive(Clone, Copy)]
-pub(crate) struct EightDoubles(f64x4, f64x4);
+pub struct EightDoubles(f64x4, f64x4);
 
 /// The reference that other instruction sets are tested against, and the one that runs where there is no other.
-pub(crate) struct Portable;
+pub struct Portable;
 
 impl InstructionSet for Portable {
     type Eight = Eight;

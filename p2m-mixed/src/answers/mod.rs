@@ -5,7 +5,7 @@ mod rays;
 mod records;
 
 pub use rays::{HitWriter, NumberWriter};
-pub(crate) use records::npy_header;
+pub use records::npy_header;
 
 use crate::{AnswerFormat, Object};
 use nalgebra::Point3;

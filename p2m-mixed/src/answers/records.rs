@@ -79,7 +79,7 @@ impl Header {
 }
 
 /// A header as NumPy writes it: version 1.0, filled up to a multiple of 64 bytes.
-pub(crate) fn npy_header(descr: &str, shape: &str, is_fortran: bool) -> Vec<u8> {
+pub fn npy_header(descr: &str, shape: &str, is_fortran: bool) -> Vec<u8> {
     let order = if is_fortran { "True" } else { "False" };
     let mut description = format!("{{'descr': {descr}, 'fortran_order': {order}, 'shape': {shape}, }}");
     // Magic, version and length take 10 bytes, and a line end comes last.

@@ -10,7 +10,7 @@ use super::{Operation, Portable};
 
 /// Asks for the cache line at an address before it is read; does nothing but that.
 #[inline(always)]
-pub(crate) fn prefetch(at: *const u8) {
+pub fn prefetch(at: *const u8) {
     #[cfg(target_arch = "x86_64")]
     x86_64::prefetch(at);
     #[cfg(not(target_arch = "x86_64"))]
@@ -19,7 +19,7 @@ pub(crate) fn prefetch(at: *const u8) {
 
 /// The same for all lines of some bytes from an address on.
 #[inline(always)]
-pub(crate) fn prefetch_lines<T>(at: *const T, bytes: usize) {
+pub fn prefetch_lines<T>(at: *const T, bytes: usize) {
     for line in 0..bytes.div_ceil(64) {
         prefetch(at.cast::<u8>().wrapping_add(64 * line));
     }
@@ -86,7 +86,7 @@ impl Isa {
 
     /// Computes with it.
     #[inline(always)]
-    pub(crate) fn run<O: Operation>(self, operation: O) -> O::Output {
+    pub fn run<O: Operation>(self, operation: O) -> O::Output {
         match self.0 {
             Kind::Portable => run_portable(operation),
             // SAFETY: there is no way to such a value but `available`, which has asked the processor.

@@ -1,0 +1,153 @@
+//! What may meet a ball: the lanes of all packets, by their filters.
+
+use crate::packet::{LANES, ROUND_UP, at_most};
+use crate::traverse::{Walk, walk};
+use crate::tree::PacketTree;
+use crate::tree::volume::{Volume, WideNode};
+use p2m_core::engine::simd::{InstructionSet, Lanes, Operation};
+use std::ops::ControlFlow;
+
+/// Some lanes of a packet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Selection {
+    pub packet: u32,
+    pub lanes: u16,
+}
+
+impl<V: Volume> PacketTree<V> {
+    /// Adds the lanes that may be at most `radius` away from a point to `found`, none that is nearer being left out:
+    /// those of at most `most` packets. `false` if there are more, or if f32 cannot place the point. `tests` grows by
+    /// the packets that were tested.
+    pub fn ball(
+        &self,
+        centre: [f64; 3],
+        radius: f64,
+        most: usize,
+        found: &mut Vec<Selection>,
+        tests: &mut usize,
+    ) -> bool {
+        let Some(local) = V::Node::query(&self.shape, &self.frame, &centre) else { return false };
+        let limit = self.frame.square_above(radius * radius * (1.0 + 4.0 * f64::EPSILON));
+        self.isa.run(Ball { tree: self, local, centre, radius, limit, most, full: false, found, tests })
+    }
+}
+
+struct Ball<'a, V: Volume> {
+    tree: &'a PacketTree<V>,
+    local: <V::Node as WideNode>::Query,
+    centre: [f64; 3],
+    radius: f64,
+    limit: f32,
+    /// So many packets more may be found.
+    most: usize,
+    /// There are more.
+    full: bool,
+    found: &'a mut Vec<Selection>,
+    /// Packets that were tested.
+    tests: &'a mut usize,
+}
+
+impl<V: Volume> Operation for Ball<'_, V> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(mut self) -> bool {
+        walk::<I, V, _>(self.tree, &mut self);
+        !self.full
+    }
+}
+
+impl<V: Volume> Walk<V> for Ball<'_, V> {
+    #[inline(always)]
+    fn bounds<L: Lanes>(&self, node: &V::Node) -> L {
+        node.lower_bounds(&self.tree.shape, &self.local)
+    }
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.limit
+    }
+    #[inline(always)]
+    fn visit_node(&mut self) {}
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "rounded up; sixteen lanes")]
+    fn visit_packet<I: InstructionSet>(&mut self, number: usize) -> ControlFlow<()> {
+        *self.tests += 1;
+        let packet = &self.tree.leaves.packets[number];
+        let lanes = match packet.local(&self.centre) {
+            None => packet.lanes(),
+            Some(local) => {
+                let limit = ((self.radius * packet.per_unit()) as f32 + local.excess) * ROUND_UP;
+                let mut squares = [0.0; LANES];
+                packet.squares::<I>(&local, limit, &mut squares);
+                at_most::<I::Wide>(&squares, limit * limit * ROUND_UP) & packet.lanes()
+            }
+        };
+        if lanes != 0 {
+            let Some(rest) = self.most.checked_sub(1) else {
+                self.full = true;
+                return ControlFlow::Break(());
+            };
+            self.most = rest;
+            self.found.push(Selection { packet: number as u32, lanes: lanes as u16 });
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::build::SplitOptions;
+    use nalgebra::{Point3, Vector3};
+    use p2m_core::{Aabb, Isa, Primitive, Segment, Triangle};
+    use p2m_testkit::vector;
+    use rand::RngExt;
+
+    /// All that is within the radius is found, and little else; where there is more than asked for, that is said.
+    #[test]
+    fn balls_find_what_they_meet() {
+        let (mut met, mut others) = (0, 0);
+        for round in p2m_testkit::cases(60, 15) {
+            let mut rng = p2m_testkit::rng("balls", round);
+            let scale = 2f64.powi([0, 40, -200][(round % 3) as usize]);
+            let mut point = |around: &Vector3<f64>, size: f64| Point3::from((around + vector(&mut rng) * size) * scale);
+            let set: Vec<p2m_core::Shape<f64>> = (0..400)
+                .map(|i| {
+                    let around = Vector3::from_fn(|k, _| (f64::from(i) * (1.0 + k as f64)).sin());
+                    let [a, b, c] = [(); 3].map(|()| point(&around, 0.1));
+                    if i % 3 == 0 { Segment::new(a, b).into() } else { Triangle::new(a, b, c).into() }
+                })
+                .collect();
+            let tree = PacketTree::<Aabb<f64>>::build(&set[..], &SplitOptions::default());
+            for _ in 0..20 {
+                let centre = Point3::from(vector(&mut rng) * scale * 2f64.powi(rng.random_range(-2..6)));
+                let distances: Vec<f64> = set.iter().map(|s| s.project(&centre).key.distance()).collect();
+                let radius = distances[rng.random_range(0..distances.len())];
+                let expected = distances.iter().filter(|d| **d <= radius).count();
+                for isa in Isa::available() {
+                    let tree = tree.clone().with_isa(isa);
+                    let (mut found, mut tests) = (Vec::new(), 0);
+                    assert!(tree.ball(centre.coords.into(), radius, usize::MAX, &mut found, &mut tests));
+                    let mut ids = vec![false; set.len()];
+                    for Selection { packet, lanes } in &found {
+                        let own = tree.leaves.packets[*packet as usize].ids();
+                        own.iter()
+                            .enumerate()
+                            .filter(|(l, _)| lanes >> l & 1 == 1)
+                            .for_each(|(_, id)| ids[id.index()] = true);
+                    }
+                    assert!(distances.iter().zip(&ids).all(|(d, found)| *found || *d > radius), "{isa} {round}");
+                    met += expected;
+                    others += ids.iter().filter(|found| **found).count() - expected;
+                    let packets = found.len();
+                    assert!(tests >= packets, "{tests}");
+                    found.clear();
+                    assert!(!tree.ball(centre.coords.into(), radius, packets - 1, &mut found, &mut tests), "{packets}");
+                    found.clear();
+                    assert!(tree.ball(centre.coords.into(), radius, packets, &mut found, &mut tests));
+                }
+            }
+        }
+        assert!(met > 100_000 && others * 50 < met, "{met} {others}");
+    }
+}

@@ -1,0 +1,79 @@
+//! Fields in files.
+
+use super::{Cell, FieldFormat, Grid};
+use p2m_mixed::engine::npy_header;
+use std::io::{self, Write};
+
+/// Writes a field in one of the formats.
+///
+/// - **NPY**: an array of NumPy of type `<f4` and shape (x, y, z), in Fortran's order: `field[i, j, k]` is at `Grid::point([i, j, k])`.
+/// - **VTI**: VTK's ImageData with origin and spacing, for ParaView and the like; the values are the point data `distance`.
+/// - **Raw**: the values alone, little-endian, x fastest.
+///
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_field::{FieldFormat, Grid, write_field};
+///
+/// let grid = Grid::new(Point3::origin(), 0.5, [2, 1, 1]).unwrap();
+/// let mut file = Vec::new();
+/// write_field(&grid, &[1.0, -2.0], FieldFormat::Raw, &mut file)?;
+/// assert_eq!(file, [0, 0, 128, 63, 0, 0, 0, 192]);
+/// # Ok::<(), std::io::Error>(())
+/// ```
+///
+/// # Errors
+/// Those of `writer`, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more or fewer values than points.
+pub fn write_field(grid: &Grid, values: &[f32], format: FieldFormat, mut writer: impl Write) -> io::Result<()> {
+    if values.len() != grid.len() {
+        let message = format!("there are {} values for {} points", values.len(), grid.len());
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+    }
+    let [x, y, z] = grid.counts();
+    match format {
+        FieldFormat::Npy => writer.write_all(&npy_header("'<f4'", &format!("({x}, {y}, {z})"), true))?,
+        FieldFormat::Raw => {}
+        FieldFormat::Vti => {
+            let extent = format!("0 {} 0 {} 0 {}", x - 1, y - 1, z - 1);
+            let (origin, spacing) = (grid.origin(), grid.spacing());
+            write!(
+                writer,
+                "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" \
+                 header_type=\"UInt64\">\n<ImageData WholeExtent=\"{extent}\" Origin=\"{:?} {:?} {:?}\" \
+                 Spacing=\"{spacing:?} {spacing:?} {spacing:?}\">\n<Piece Extent=\"{extent}\">\n\
+                 <PointData Scalars=\"distance\">\n<DataArray type=\"Float32\" Name=\"distance\" format=\"appended\" \
+                 offset=\"0\"/>\n</PointData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_",
+                origin.x, origin.y, origin.z
+            )?;
+            writer.write_all(&(4 * values.len() as u64).to_le_bytes())?;
+        }
+    }
+    let mut bytes = Vec::with_capacity(4 * CHUNK);
+    for values in values.chunks(CHUNK) {
+        bytes.clear();
+        bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+        writer.write_all(&bytes)?;
+    }
+    if format == FieldFormat::Vti {
+        writer.write_all(b"\n</AppendedData>\n</VTKFile>\n")?;
+    }
+    writer.flush()
+}
+
+/// Values that are written at a time.
+const CHUNK: usize = 1 << 14;
+
+/// Writes the cells of a refined field as a structured array of NumPy with the fields `origin` (`<f8`, 3), `size` (`<f8`) and `values`
+/// (`<f8`, 8), in the order of [`Cell::values`].
+///
+/// # Errors
+/// Those of `writer`.
+pub fn write_cells(cells: &[Cell], mut writer: impl Write) -> io::Result<()> {
+    let fields = "[('origin', '<f8', (3,)), ('size', '<f8'), ('values', '<f8', (8,))]";
+    writer.write_all(&npy_header(fields, &format!("({},)", cells.len()), false))?;
+    for cell in cells {
+        let numbers = cell.origin.iter().chain([&cell.size]).chain(&cell.values);
+        let bytes: Vec<u8> = numbers.flat_map(|x| x.to_le_bytes()).collect();
+        writer.write_all(&bytes)?;
+    }
+    writer.flush()
+}

@@ -1,0 +1,407 @@
+//! Insertion of points one by one \[Bowyer1981\], \[Watson1981\].
+//!
+//! A new point p removes the tetrahedra whose circumsphere has it strictly inside, the cavity, and is joined to the
+//! faces around it. No point is moved, not even symbolically, for
+//! - the tetrahedra that contain p, be it on a face or an edge, are in the cavity: but for its vertices a tetrahedron is
+//!   inside its sphere;
+//! - the cavity is connected. Let the power of p be the squared distance to the centre of a sphere less the squared
+//!   radius. On the way from a point of a tetrahedron straight to p the power of p in the spheres of the tetrahedra met
+//!   does not grow: they are Delaunay, so behind the plane of a common face the ball of the next one contains that of
+//!   the last. So if the first is in the cavity, all are;
+//! - the new tetrahedra have a volume above zero and do not overlap. Let t and t' be the tetrahedra on the two sides of
+//!   a face around the cavity, t inside. Spheres of both have the same circle in the plane of the face, so the powers
+//!   of p in both are equal if p is in that plane, and if p is on the side of t' that in t' is the lower one. But
+//!   that in t is below zero and that in t' is not. So p is strictly on the side of t. For the outer faces it is as
+//!   well, as all points are strictly inside the hull of the bounding sites.
+//!
+//! Walks end for the same reason: to keep out a point p that is on a sphere is to raise it by less than anything in the
+//! paraboloid over space, but by more than all the points before. So the tetrahedra are those of a regular
+//! triangulation in general position, in which no cycle of tetrahedra lies each in front of the next as seen from a
+//! point \[Edelsbrunner1990b\].
+
+#![allow(clippy::inline_always, reason = "or it is compiled without the instruction set")]
+
+use super::{Delaunay, Work};
+use p2m_core::engine::simd::{InstructionSet, Isa, Operation, prefetch};
+use p2m_core::engine::staged::{Stage, orientation_exact, orientation_filter, sphere_exact, sphere_filter};
+use p2m_core::engine::vector::{V3, sub};
+use std::cmp::Ordering;
+
+/// The face opposite to each vertex, so that orientation_3d of it and the vertex is `Greater`.
+pub(crate) const FACES: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
+
+/// Vertices of the faces around a cavity that have places in the table of edges: those of 124 faces.
+const PLACES: usize = 64;
+
+/// For each tetrahedron that there may be at a time so many may be made.
+const MADE: u64 = 8;
+
+/// In the first vertex of a tetrahedron: in the cavity,
+const INSIDE: u32 = 1 << 31;
+/// or tested, and not in it. Numbers of sites are below.
+const OUTSIDE: u32 = 1 << 30;
+
+/// Half a cache line.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+pub(crate) struct Tetrahedron {
+    /// In place of a removed one the first is [`Delaunay::NONE`]. While a cavity is found, the first has [`INSIDE`] or
+    /// [`OUTSIDE`] besides, once that is known.
+    pub(crate) vertices: [u32; 4],
+    /// Across the face opposite to each vertex.
+    pub(crate) neighbours: [u32; 4],
+}
+
+/// A site with what is known of it in the current insertion: half a cache line as well, never on two.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+struct Site {
+    point: V3,
+    /// For which site it was a vertex of the faces around the cavity last,
+    round: u32,
+    /// and the how manieth of those.
+    place: u32,
+}
+
+/// A triangulation that grows.
+pub(crate) struct Insertion {
+    sites: Vec<Site>,
+    tetrahedra: Vec<Tetrahedron>,
+    free: Vec<u32>,
+    /// So many may there be,
+    most: usize,
+    /// and so many be made.
+    most_made: u64,
+    /// Where the next walk begins.
+    last: u32,
+    cavity: Vec<u32>,
+    /// Faces around the cavity: a tetrahedron inside, and the vertex that its face is opposite to.
+    boundary: Vec<(u32, u32)>,
+    created: Vec<u32>,
+    /// Of an edge of a face around the cavity, from the place of one vertex to that of another: which of the created
+    /// tetrahedra has it. What is left of earlier insertions is not read.
+    edges: Box<[u8; PLACES * PLACES]>,
+    pub(crate) work: Work,
+}
+
+/// What `number` is the index of; it occurs.
+#[inline(always)]
+fn position(of: &[u32; 4], number: u32) -> usize {
+    // Without branches: which it is cannot be predicted.
+    usize::from(of[1] == number) + 2 * usize::from(of[2] == number) + 3 * usize::from(of[3] == number)
+}
+
+/// The edge between two places, in the table.
+#[inline(always)]
+fn edge(from: u8, to: u8) -> usize {
+    usize::from(from) % PLACES * PLACES + usize::from(to) % PLACES
+}
+
+/// Insertion of sites, with all instructions that there are. Only compilers use them: lanes are no more precise than
+/// one number at a time, and nothing is contracted, so the tetrahedra are the same on every processor.
+struct All<'a, S> {
+    insertion: &'a mut Insertion,
+    sites: S,
+}
+
+impl<S: Iterator<Item = usize>> Operation for All<'_, S> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> bool {
+        for site in self.sites {
+            #[allow(clippy::cast_possible_truncation, reason = "at most MAX_POINTS and six")]
+            if !self.insertion.insert(site as u32) {
+                return false;
+            }
+        }
+        true
+    }
+}
+
+impl Insertion {
+    /// The tetrahedra of the six bounding sites, around the diagonal from 0 to 1. They are at the same distance from
+    /// their centre, exactly, so any diagonal is Delaunay.
+    pub(crate) fn new(sites: &[V3], most: usize) -> Self {
+        let ring = [2, 4, 3, 5];
+        // Points in space have seven times as many; on a surface there are some more, with the removed ones.
+        let mut tetrahedra = Vec::with_capacity((15 * sites.len() / 2).min(most.saturating_add(4)));
+        tetrahedra.extend((0..4u32).map(|i| {
+            let [a, b] = [ring[i as usize], ring[(i as usize + 1) % 4]];
+            // Opposite to a lies the next one, opposite to b the one before.
+            Tetrahedron {
+                vertices: [0, 1, a, b],
+                neighbours: [Delaunay::NONE, Delaunay::NONE, (i + 1) % 4, (i + 3) % 4],
+            }
+        }));
+        Self {
+            sites: sites.iter().map(|&point| Site { point, round: 0, place: 0 }).collect(),
+            tetrahedra,
+            free: Vec::new(),
+            most: most.min(Delaunay::NONE as usize),
+            most_made: (most as u64).saturating_mul(MADE),
+            last: 0,
+            cavity: Vec::new(),
+            boundary: Vec::new(),
+            created: Vec::new(),
+            edges: Box::new([0; PLACES * PLACES]),
+            work: Work::default(),
+        }
+    }
+
+    /// Inserts a site other than all before; whether its tetrahedra are not too many.
+    #[must_use]
+    #[inline(always)]
+    fn insert(&mut self, site: u32) -> bool {
+        let p = self.sites[site as usize].point;
+        let start = self.locate(p);
+        self.find_cavity(start, p);
+        let more = self.boundary.len().saturating_sub(self.free.len());
+        if self.tetrahedra.len() + more >= self.most || self.work.created + self.boundary.len() as u64 > self.most_made
+        {
+            return false;
+        }
+        self.fill(site);
+        if !self.link(site) {
+            self.work.large_cavities += 1;
+            self.link_by_turning();
+        }
+        for &t in &self.cavity {
+            self.tetrahedra[t as usize].vertices[0] = Delaunay::NONE;
+        }
+        self.free.extend_from_slice(&self.cavity);
+        self.last = self.created[0];
+        true
+    }
+
+    /// Inserts sites other than all before, each once; whether their tetrahedra are not too many.
+    #[must_use]
+    pub(crate) fn insert_all(&mut self, sites: impl Iterator<Item = usize>) -> bool {
+        Isa::best().run(All { insertion: self, sites })
+    }
+
+    /// What has become of it, with the places of removed ones.
+    pub(crate) fn into_tetrahedra(self) -> Vec<Tetrahedron> {
+        self.tetrahedra
+    }
+
+    /// The vertices of a tetrahedron.
+    #[inline(always)]
+    fn corners(&self, [a, b, c, d]: [u32; 4]) -> [V3; 4] {
+        let at = |v: u32| &self.sites[v as usize].point;
+        let (a, b, c, d) = (at(a), at(b), at(c), at(d));
+        [[a[0], a[1], a[2]], [b[0], b[1], b[2]], [c[0], c[1], c[2]], [d[0], d[1], d[2]]]
+    }
+
+    /// A tetrahedron that contains p, maybe on a face.
+    #[inline(always)]
+    fn locate(&mut self, p: V3) -> u32 {
+        let (mut at, mut from) = (self.last, Delaunay::NONE);
+        'walk: loop {
+            self.work.steps += 1;
+            let Tetrahedron { vertices, neighbours } = self.tetrahedra[at as usize];
+            let corners = self.corners(vertices);
+            let offsets = [sub(corners[0], p), sub(corners[1], p), sub(corners[2], p), sub(corners[3], p)];
+            for ([i, j, k], next) in FACES.into_iter().zip(neighbours) {
+                if next == from {
+                    continue;
+                }
+                self.work.orientations += 1;
+                let estimate = orientation_filter([offsets[i], offsets[j], offsets[k]]);
+                let is_beyond = if estimate.is_certain() {
+                    estimate.value > 0.0
+                } else {
+                    self.orientation([corners[i], corners[j], corners[k]], p) == Ordering::Greater
+                };
+                // Of the corners as seen from p: the other way round.
+                if is_beyond {
+                    assert_ne!(next, Delaunay::NONE, "inside the bounding sites");
+                    (from, at) = (at, next);
+                    continue 'walk;
+                }
+            }
+            return at;
+        }
+    }
+
+    #[cold]
+    fn orientation(&mut self, face: [V3; 3], p: V3) -> Ordering {
+        let (sign, stage) = orientation_exact(face, p);
+        match stage {
+            Stage::Whole => self.work.whole_orientations += 1,
+            _ => self.work.adaptive_orientations += 1,
+        }
+        sign
+    }
+
+    /// Whether p is strictly inside the sphere of four vertices.
+    #[inline(always)]
+    fn conflicts(&mut self, vertices: [u32; 4], p: V3) -> bool {
+        self.work.spheres += 1;
+        let corners = self.corners(vertices);
+        let estimate = sphere_filter(corners, p);
+        if estimate.is_certain() { estimate.value > 0.0 } else { self.sphere(corners, p) == Ordering::Greater }
+    }
+
+    #[cold]
+    fn sphere(&mut self, corners: [V3; 4], p: V3) -> Ordering {
+        let (sign, stage) = sphere_exact(corners, p);
+        match stage {
+            Stage::Whole => self.work.whole_spheres += 1,
+            Stage::Double => self.work.double_spheres += 1,
+            Stage::Adaptive => self.work.adaptive_spheres += 1,
+        }
+        sign
+    }
+
+    /// Collects the tetrahedra in conflict with p, from one of them, and the faces around them.
+    ///
+    /// Which are in conflict cannot be predicted, and takes long to compute. So nothing branches on it: a tetrahedron
+    /// and its face are written to the end of both lists, and one of the two becomes longer.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "one of four faces")]
+    fn find_cavity(&mut self, start: u32, p: V3) {
+        self.tetrahedra[start as usize].vertices[0] |= INSIDE;
+        self.room_for(0, 0);
+        self.cavity[0] = start;
+        let (mut done, mut cavity, mut boundary) = (0, 1, 0);
+        while done < cavity {
+            let t = self.cavity[done];
+            done += 1;
+            self.room_for(cavity, boundary);
+            if done < cavity {
+                self.prefetch_neighbours(self.cavity[done]);
+            }
+            for (face, next) in self.tetrahedra[t as usize].neighbours.into_iter().enumerate() {
+                let mut conflict = false;
+                if let Some(&Tetrahedron { vertices, .. }) = self.tetrahedra.get(next as usize) {
+                    if vertices[0] & INSIDE != 0 {
+                        continue;
+                    }
+                    if vertices[0] & OUTSIDE == 0 {
+                        conflict = self.conflicts(vertices, p);
+                        self.tetrahedra[next as usize].vertices[0] |= if conflict { INSIDE } else { OUTSIDE };
+                    }
+                }
+                self.cavity[cavity] = next;
+                cavity += usize::from(conflict);
+                self.boundary[boundary] = (t, face as u32);
+                boundary += usize::from(!conflict);
+            }
+        }
+        self.cavity.truncate(cavity);
+        self.boundary.truncate(boundary);
+    }
+
+    /// Asks for the neighbours of a tetrahedron before they are read.
+    #[inline(always)]
+    fn prefetch_neighbours(&self, tetrahedron: u32) {
+        for next in self.tetrahedra[tetrahedron as usize].neighbours {
+            prefetch(self.tetrahedra.as_ptr().wrapping_add(next as usize).cast());
+        }
+    }
+
+    /// Makes the lists long enough for four more than so many.
+    #[inline(always)]
+    fn room_for(&mut self, cavity: usize, boundary: usize) {
+        if self.cavity.len() < cavity + 4 {
+            self.cavity.resize(2 * cavity + 64, 0);
+        }
+        if self.boundary.len() < boundary + 4 {
+            self.boundary.resize(2 * boundary + 64, (0, 0));
+        }
+    }
+
+    /// Makes the new tetrahedra: of those in the cavity that have a face around it, with the site in place of the
+    /// vertex behind the face. In the old ones they become the neighbours there.
+    #[inline(always)]
+    fn fill(&mut self, site: u32) {
+        self.created.clear();
+        for &(t, face) in &self.boundary {
+            let face = face as usize;
+            let old = self.tetrahedra[t as usize];
+            let mut new = Tetrahedron { vertices: old.vertices, neighbours: [Delaunay::NONE; 4] };
+            new.vertices[0] &= !INSIDE;
+            new.vertices[face] = site;
+            new.neighbours[face] = old.neighbours[face];
+            #[allow(clippy::cast_possible_truncation, reason = "checked")]
+            let number = self.free.pop().unwrap_or_else(|| {
+                self.tetrahedra.push(new);
+                self.tetrahedra.len() as u32 - 1
+            });
+            self.tetrahedra[number as usize] = new;
+            if let Some(beyond) = self.tetrahedra.get_mut(old.neighbours[face] as usize) {
+                beyond.vertices[0] &= !OUTSIDE;
+                let back = position(&beyond.neighbours, t);
+                beyond.neighbours[back] = number;
+            }
+            self.tetrahedra[t as usize].neighbours[face] = number;
+            self.created.push(number);
+        }
+        self.work.created += self.created.len() as u64;
+    }
+
+    /// Makes neighbours of the new tetrahedra that share an edge of faces around the cavity. Every such edge belongs to
+    /// two faces, which turn around it in opposite directions; whether there are places for all.
+    #[inline(always)]
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation, reason = "at most 124 faces and 64 vertices")]
+    fn link(&mut self, site: u32) -> bool {
+        if self.created.len() > 2 * PLACES - 4 {
+            return false;
+        }
+        let mut count = 0;
+        // Of each created tetrahedron, the places of the vertices of its face.
+        let mut places = [[0u8; 3]; 2 * PLACES - 4];
+        for (i, (places, (&(_, face), &number))) in
+            places.iter_mut().zip(self.boundary.iter().zip(&self.created)).enumerate()
+        {
+            let vertices = self.tetrahedra[number as usize].vertices;
+            for (place, k) in places.iter_mut().zip(FACES[face as usize]) {
+                let vertex = &mut self.sites[vertices[k] as usize];
+                // Without branches.
+                let new = vertex.round != site;
+                vertex.place = if new { count } else { vertex.place };
+                vertex.round = site;
+                count += u32::from(new);
+                *place = vertex.place as u8;
+            }
+            for k in 0..3 {
+                self.edges[edge(places[k], places[(k + 1) % 3])] = i as u8;
+            }
+        }
+        for (places, (&(_, face), &number)) in places.iter().zip(self.boundary.iter().zip(&self.created)) {
+            for k in 0..3 {
+                let other = self.edges[edge(places[(k + 1) % 3], places[k])];
+                self.tetrahedra[number as usize].neighbours[FACES[face as usize][(k + 2) % 3]] =
+                    self.created[usize::from(other)];
+            }
+        }
+        true
+    }
+
+    /// The same for any number of faces, by turning around the edges through the old tetrahedra.
+    fn link_by_turning(&mut self) {
+        for (&(t, face), &number) in self.boundary.iter().zip(&self.created) {
+            for side in (0..4).filter(|&side| side != face as usize) {
+                if self.tetrahedra[number as usize].neighbours[side] != Delaunay::NONE {
+                    continue;
+                }
+                // The edge and the vertex `pivot` make the face that is crossed, opposite to vertex `exit`.
+                let (mut at, mut exit, mut pivot) = (t, side, face as usize);
+                let other = loop {
+                    let old = &self.tetrahedra[at as usize];
+                    let next = old.neighbours[exit];
+                    let vertex = old.vertices[pivot] & !INSIDE;
+                    let old = &self.tetrahedra[next as usize];
+                    if old.vertices[0] & INSIDE == 0 {
+                        break next;
+                    }
+                    (exit, pivot, at) = (position(&old.vertices, vertex), position(&old.neighbours, at), next);
+                };
+                self.tetrahedra[number as usize].neighbours[side] = other;
+                self.tetrahedra[other as usize].neighbours[pivot] = number;
+            }
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! What every partition of space into cells with lists offers.
+
+use crate::progress::Progress;
+use nalgebra::Point3;
+use p2m_bvh::PacketTree;
+use p2m_bvh::engine::evaluation;
+use p2m_bvh::engine::nearest::{Evaluate, Filter, finish};
+use p2m_core::engine::query::Minimum;
+use p2m_core::engine::real::wide;
+use p2m_core::engine::vector::V3;
+use p2m_core::{Best, Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
+
+/// A partition with its lists, over a set of primitives that it does not keep: every method that needs the set is given
+/// the same one.
+///
+/// Sealed: searches rest on proofs about the cells.
+#[allow(private_bounds, reason = "that is what seals it")]
+pub trait Partition: LookUp + Sized {
+    /// How it is built.
+    type Options: Default;
+    /// What it is made of.
+    type Report;
+
+    /// Builds it over a set whose boxes are finite. `progress` is told of each stage that begins, from this thread, and
+    /// of each percent, from any thread.
+    fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
+        set: &S,
+        options: &Self::Options,
+        progress: &(dyn Fn(Progress) + Sync),
+    ) -> Self;
+
+    /// Offers to `collector` every primitive of the set that it could want. `query` is finite.
+    #[inline]
+    fn search<T: Real, S: PrimitiveSet<T>, C: Collector>(&self, set: &S, query: &Point3<T>, collector: &mut C) {
+        self.look_up(wide(query), collector, &evaluation(set, query), finish);
+    }
+
+    /// The same for the nearest primitive.
+    fn search_nearest<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
+        self.nearest(wide(query), best.minimum(), &evaluation(set, query));
+    }
+
+    /// The same for what is near.
+    fn search_near<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, near: &mut Near<'_>) {
+        self.near(wide(query), near, &evaluation(set, query));
+    }
+
+    /// The same for several queries, which may be answered side by side.
+    fn search_nearest_of_several<T: Real, S: PrimitiveSet<T>>(
+        &self,
+        set: &S,
+        queries: &[Point3<T>; SIDE_BY_SIDE],
+        best: &mut [Best<T>; SIDE_BY_SIDE],
+    ) {
+        let evaluations = queries.each_ref().map(|query| evaluation(set, query));
+        let evaluates = evaluations.each_ref().map(|evaluate| evaluate as Evaluate<'_, Minimum>);
+        self.nearest_of_several(&queries.each_ref().map(wide), best.each_mut().map(Best::minimum), evaluates);
+    }
+
+    /// The primitives of the list of the cell that a point is in, in ascending order: what a search in the cell may
+    /// come to look at. `None` where the tree answers.
+    fn list(&self, point: &Point3<f64>) -> Option<Vec<PrimitiveId>>;
+
+    /// How many primitives each list has.
+    fn list_lengths(&self) -> Vec<usize>;
+
+    /// The tree over the packets, which answers what cells do not.
+    fn tree(&self) -> &PacketTree;
+
+    /// What it is made of.
+    fn report(&self) -> Self::Report;
+
+    /// Heap memory it owns, by parts, in bytes.
+    fn parts(&self) -> Vec<(&'static str, usize)>;
+
+    /// All of it.
+    fn memory(&self) -> usize {
+        self.parts().iter().map(|part| part.1).sum()
+    }
+
+    /// Searches with another instruction set. Answers do not depend on it.
+    #[must_use]
+    fn with_isa(self, isa: Isa) -> Self;
+}
+
+/// How many queries are answered side by side.
+pub const SIDE_BY_SIDE: usize = 16;
+
+/// The way of a query to its cell and through its list.
+pub(crate) trait LookUp {
+    /// Offers to a collector every primitive that it could want: from the list of the cell to one of nearest primitives, from the
+    /// tree to others.
+    fn look_up<C: Collector>(
+        &self,
+        query: V3,
+        collector: &mut C,
+        evaluate: Evaluate<'_, C>,
+        finish: fn(&mut Filter<'_, C>),
+    );
+
+    /// The same for the nearest one, in a function of its own: what is not generic is compiled once, in this crate.
+    fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>);
+
+    /// The same for what is near,
+    fn near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>);
+
+    /// and for the nearest ones of several queries.
+    fn nearest_of_several(
+        &self,
+        queries: &[V3; SIDE_BY_SIDE],
+        minimums: [&mut Minimum; SIDE_BY_SIDE],
+        evaluates: [Evaluate<'_, Minimum>; SIDE_BY_SIDE],
+    ) {
+        for ((query, minimum), evaluate) in queries.iter().zip(minimums).zip(evaluates) {
+            self.nearest(*query, minimum, evaluate);
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Which of two points is nearer to a query, without rounding.
+//!
+//! |q - v|^2 - |q - w|^2 = (w - v) . (2 q - v - w). Its sign is told by f64 if that exceeds its error, else by
+//! double-double numbers, of which the differences are exact, else by integers.
+
+use p2m_core::engine::double::{self, Double};
+use p2m_core::engine::integers::{self, common_exponent, integer};
+use p2m_core::engine::number::dot;
+use p2m_core::engine::vector::V3;
+use std::cmp::Ordering;
+
+/// What the sum of three products may be off in f64, in parts of their sizes: seven roundings.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// How the distance from `q` to `v` compares with that to `w`. All coordinates are zero or between 2^-161 and 2^100 in
+/// size, so that no product matters that underflows.
+pub(crate) fn compare(q: &V3, v: &V3, w: &V3) -> Ordering {
+    let way: V3 = std::array::from_fn(|k| w[k] - v[k]);
+    let sum: V3 = std::array::from_fn(|k| (q[k] - v[k]) + (q[k] - w[k]));
+    let (mut s, mut size) = (0.0, 0.0);
+    for k in 0..3 {
+        s += way[k] * sum[k];
+        // The sum may cancel.
+        size += way[k].abs() * ((q[k] - v[k]).abs() + (q[k] - w[k]).abs());
+    }
+    if s.abs() > ROUNDING * size {
+        return s.total_cmp(&0.0);
+    }
+    let way: [Double; 3] = std::array::from_fn(|k| Double::difference(w[k], v[k]));
+    let sum: [Double; 3] = std::array::from_fn(|k| Double::difference(q[k], v[k]) + Double::difference(q[k], w[k]));
+    let s = dot(way, sum).round();
+    if s.abs() > double::ROUNDING * size {
+        return s.total_cmp(&0.0);
+    }
+    let exponent = common_exponent([*q, *v, *w].as_flattened());
+    let [q, v, w] = [q, v, w].map(|p| p.map(|x| integer(x, exponent)));
+    let way = std::array::from_fn(|k| &w[k] - &v[k]);
+    let sum = std::array::from_fn(|k| &q[k] + &q[k] - &v[k] - &w[k]);
+    integers::sign(&integers::dot(&way, &sum))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dashu_int::IBig;
+    use rand::RngExt;
+
+    /// Queries on the plane between two points, next to it by some bits, and anywhere.
+    #[test]
+    fn the_sign_is_that_of_the_integers() {
+        let mut ties = 0;
+        let cases = p2m_testkit::cases(20_000, 10_000);
+        for case in cases.clone() {
+            let mut rng = p2m_testkit::rng("nearer", case);
+            let scale = 2f64.powi(rng.random_range(-60..1));
+            let mut point = || -> V3 {
+                let bits = 1 << rng.random_range(2..30);
+                std::array::from_fn(|_| f64::from(rng.random_range(-bits..=bits)) / f64::from(bits) * scale)
+            };
+            let (v, w, beside) = (point(), point(), point());
+            // Swapping the offset from the middle on two axes keeps the distance if the ends differ by a swap as well.
+            let w = if rng.random() { [v[1], v[0], v[2]] } else { w };
+            let mut q = if rng.random() { [beside[0], beside[0], beside[2]] } else { beside };
+            if rng.random_range(0..3) == 0 {
+                q[0] += q[0] * f64::EPSILON * f64::from(rng.random_range(-2..=2));
+            }
+            let square = |p: &V3| -> IBig {
+                let exponent = common_exponent([q, *p, [2f64.powi(-200); 3]].as_flattened());
+                let d = integers::difference(q, *p, exponent);
+                integers::dot(&d, &d)
+            };
+            let expected = square(&v).cmp(&square(&w));
+            assert_eq!(compare(&q, &v, &w), expected, "{q:?} {v:?} {w:?}");
+            assert_eq!(compare(&q, &w, &v), expected.reverse());
+            ties += usize::from(expected == Ordering::Equal);
+        }
+        assert!(cases.have_more_than(0.05, ties), "{ties}");
+    }
+}

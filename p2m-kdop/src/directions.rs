@@ -1,0 +1,244 @@
+//! Directions of k-DOPs.
+
+use nalgebra::Vector3;
+
+/// The K unit normals of k-DOPs, K counting both signs: normal 2 j + 1 is the opposite of normal 2 j.
+///
+/// Three of them come first that are orthogonal to each other, if there are such, for these make the bounds of searches
+/// tightest; else three that are as far from one plane as any. The others keep their order.
+///
+/// ```
+/// use p2m_kdop::Directions;
+/// use nalgebra::Vector3;
+///
+/// let usual = Directions::<14>::default(); // the axes, then the diagonals of a cube
+/// assert_eq!(usual.normals()[1], -Vector3::x());
+/// let own = Directions::<8>::new(&[Vector3::new(1.0, 2.0, 0.0), Vector3::x(), Vector3::y(), Vector3::z()]).unwrap();
+/// assert_eq!(own.normals()[0], Vector3::x());
+/// assert!(Directions::<8>::new(&[Vector3::x(); 4]).is_err());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Directions<const K: usize> {
+    normals: [Vector3<f64>; K],
+    orthogonal: bool,
+}
+
+/// Why there are no k-DOPs of some directions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DirectionsError {
+    /// K is odd or less than 6: so few faces do not bound anything.
+    #[error("k-DOPs have an even number of faces, at least 6, not {k}")]
+    Faces {
+        /// The K of the type.
+        k: usize,
+    },
+    /// Opposites are not given: there are K / 2 directions.
+    #[error("{found} directions, but there are {expected}, without their opposites")]
+    Count {
+        /// Half of K.
+        expected: usize,
+        /// How many were given.
+        found: usize,
+    },
+    /// A direction has a coordinate that is not finite, or no length.
+    #[error("direction {index} is not finite or zero")]
+    NotADirection {
+        /// Its place.
+        index: usize,
+    },
+    /// Two directions are the same or opposite, or less than 1e-6 apart.
+    #[error("directions {first} and {second} are parallel")]
+    Parallel {
+        /// The place of one,
+        first: usize,
+        /// and that of the other.
+        second: usize,
+    },
+    /// All directions lie in a plane, or within 1e-6 of one: their k-DOPs are not bounded across it.
+    #[error("all directions lie in a plane")]
+    Flat,
+}
+
+/// The sine below which two directions count as parallel, and the volume below which three count as flat: 2^-20.
+const FLAT: f64 = 1.0 / (1u32 << 20) as f64;
+/// The cosine up to which directions count as orthogonal, far below what searches in f32 can tell: 2^-40.
+const ORTHOGONAL: f64 = 1.0 / (1u64 << 40) as f64;
+
+impl<const K: usize> Directions<K> {
+    /// Those of K / 2 vectors of any length, and their opposites.
+    ///
+    /// # Errors
+    /// [`DirectionsError`], for what bounds nothing.
+    pub fn new(directions: &[Vector3<f64>]) -> Result<Self, DirectionsError> {
+        if K < 6 || !K.is_multiple_of(2) {
+            return Err(DirectionsError::Faces { k: K });
+        }
+        if directions.len() != K / 2 {
+            return Err(DirectionsError::Count { expected: K / 2, found: directions.len() });
+        }
+        let mut units = Vec::with_capacity(K / 2);
+        for (index, direction) in directions.iter().enumerate() {
+            units.push(unit(direction).ok_or(DirectionsError::NotADirection { index })?);
+            for first in 0..index {
+                if units[first].cross(&units[index]).norm() <= FLAT {
+                    return Err(DirectionsError::Parallel { first, second: index });
+                }
+            }
+        }
+        let (triple, orthogonal) = leading(&units).ok_or(DirectionsError::Flat)?;
+        let others = (0..units.len()).filter(|i| !triple.contains(i));
+        let order: Vec<usize> = triple.into_iter().chain(others).collect();
+        let normals = std::array::from_fn(|i| {
+            let normal = units[order[i / 2]];
+            // Zeros of one sign.
+            if i % 2 == 0 { normal } else { -normal }.map(|x| x + 0.0)
+        });
+        Ok(Self { normals, orthogonal })
+    }
+
+    /// Those of a file, in their order; `None` if these are no such directions.
+    pub(crate) fn of_normals(normals: &[Vector3<f64>], orthogonal: bool) -> Option<Self> {
+        let normals: [Vector3<f64>; K] = normals.try_into().ok()?;
+        // Three roundings of a square, and those of the square root and the quotient.
+        let is_unit = |n: &Vector3<f64>| (n.norm_squared() - 1.0).abs() <= 16.0 * f64::EPSILON;
+        let fits = normals.chunks_exact(2).all(|pair| is_unit(&pair[0]) && pair[1] == -pair[0]);
+        let [u, v, w] = [normals[0], normals[2], normals[4]];
+        let first = if orthogonal { cosine(&u, &v, &w) <= ORTHOGONAL } else { volume(&u, &v, &w) > FLAT };
+        (fits && first).then_some(Self { normals, orthogonal })
+    }
+
+    /// The unit normals.
+    #[must_use]
+    pub fn normals(&self) -> &[Vector3<f64>; K] {
+        &self.normals
+    }
+
+    /// Whether the first three directions are orthogonal to each other.
+    #[must_use]
+    pub fn starts_orthogonal(&self) -> bool {
+        self.orthogonal
+    }
+}
+
+/// The vector at length 1; `None` if it has no direction.
+fn unit(v: &Vector3<f64>) -> Option<Vector3<f64>> {
+    // The largest component does not tell of NaN in another one.
+    let largest = v.amax();
+    (largest > 0.0 && v.iter().all(|x| x.is_finite())).then(|| {
+        let scaled = v / largest;
+        scaled / scaled.norm()
+    })
+}
+
+/// The largest cosine between three unit vectors, by magnitude.
+fn cosine(u: &Vector3<f64>, v: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
+    u.dot(v).abs().max(v.dot(w).abs()).max(w.dot(u).abs())
+}
+
+/// The volume of the box that they span.
+fn volume(u: &Vector3<f64>, v: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
+    u.cross(v).dot(w).abs()
+}
+
+/// Which three come first, and whether they are orthogonal; `None` if all lie in a plane.
+fn leading(units: &[Vector3<f64>]) -> Option<([usize; 3], bool)> {
+    let mut widest = (FLAT, None);
+    for a in 0..units.len() {
+        for b in a + 1..units.len() {
+            for c in b + 1..units.len() {
+                let [u, v, w] = [a, b, c].map(|i| units[i]);
+                if cosine(&u, &v, &w) <= ORTHOGONAL {
+                    return Some(([a, b, c], true));
+                }
+                let volume = volume(&u, &v, &w);
+                if volume > widest.0 {
+                    widest = (volume, Some([a, b, c]));
+                }
+            }
+        }
+    }
+    widest.1.map(|triple| (triple, false))
+}
+
+const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+const BODY_DIAGONALS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [-1.0, -1.0, 1.0], [1.0, -1.0, 1.0]];
+const FACE_DIAGONALS: [[f64; 3]; 6] =
+    [[1.0, 1.0, 0.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [1.0, -1.0, 0.0], [1.0, 0.0, -1.0], [0.0, 1.0, -1.0]];
+
+macro_rules! usual {
+    ($($(#[$about:meta])* $k:literal: $($set:expr),+;)*) => {
+        $(impl Default for Directions<$k> {
+            $(#[$about])*
+            fn default() -> Self {
+                let all: Vec<Vector3<f64>> = [$(&$set[..]),+].concat().into_iter().map(Vector3::from).collect();
+                Self::new(&all).expect("distinct directions")
+            }
+        })*
+    };
+}
+
+usual! {
+    /// The axes.
+    6: AXES;
+    /// The axes and the diagonals of a cube.
+    14: AXES, BODY_DIAGONALS;
+    /// The axes and the diagonals of the faces of a cube.
+    18: AXES, FACE_DIAGONALS;
+    /// All of these.
+    26: AXES, BODY_DIAGONALS, FACE_DIAGONALS;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_usual_sets_are_unit_vectors_and_their_opposites() {
+        fn check<const K: usize>(directions: &Directions<K>) {
+            assert!(directions.starts_orthogonal());
+            for pair in directions.normals().chunks(2) {
+                assert!((pair[0].norm() - 1.0).abs() < 1e-15 && pair[1] == -pair[0]);
+            }
+            assert_eq!(directions.normals()[4], Vector3::z());
+        }
+        check(&Directions::<6>::default());
+        check(&Directions::<14>::default());
+        check(&Directions::<18>::default());
+        check(&Directions::<26>::default());
+    }
+
+    #[test]
+    fn what_bounds_nothing_is_refused() {
+        let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
+        assert_eq!(Directions::<5>::new(&[x, y]), Err(DirectionsError::Faces { k: 5 }));
+        assert_eq!(Directions::<4>::new(&[x, y]), Err(DirectionsError::Faces { k: 4 }));
+        assert_eq!(Directions::<6>::new(&[x, y]), Err(DirectionsError::Count { expected: 3, found: 2 }));
+        let parallel = Err(DirectionsError::Parallel { first: 0, second: 2 });
+        assert_eq!(Directions::<6>::new(&[x, y, x * -3.0]), parallel);
+        assert_eq!(Directions::<6>::new(&[x, y, x + y * 1e-7]), parallel);
+        assert_eq!(Directions::<6>::new(&[x, y, x + y]), Err(DirectionsError::Flat));
+        assert_eq!(Directions::<6>::new(&[x, Vector3::zeros(), z]), Err(DirectionsError::NotADirection { index: 1 }));
+        for (index, component, bad) in
+            (0..27).map(|i| (i / 9, i / 3 % 3, [f64::NAN, f64::INFINITY, -f64::INFINITY][i % 3]))
+        {
+            let mut given = [x + y, y + z, z];
+            given[index][component] = bad;
+            let refused = Err(DirectionsError::NotADirection { index });
+            assert_eq!(Directions::<6>::new(&given), refused, "{bad} in component {component}");
+        }
+    }
+
+    #[test]
+    fn any_length_will_do_and_orthogonal_ones_come_first() {
+        let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let own = Directions::<10>::new(&[x + y, x * 1e300, y * 5e-324, x - y, z * -2.0]).expect("five");
+        assert_eq!([0, 2, 4].map(|i: usize| own.normals()[i]), [(x + y).normalize(), (x - y).normalize(), -z]);
+        assert!(own.starts_orthogonal() && own.normals()[6] == x && own.normals()[8] == y);
+        let skew = Directions::<8>::new(&[x, x + y * 1e-3, x + y, x + z]).expect("four");
+        assert!(!skew.starts_orthogonal());
+        assert!(!Directions::<6>::new(&[x, y + x * 2f64.powi(-39), z]).expect("three").starts_orthogonal());
+        assert!(Directions::<6>::new(&[x, y + x * 2f64.powi(-41), z]).expect("three").starts_orthogonal());
+        assert_eq!([0, 2, 4].map(|i: usize| skew.normals()[i]), [x, (x + y).normalize(), (x + z).normalize()]);
+    }
+}

@@ -1,0 +1,110 @@
+//! Tests: what a ray enters among the children of a node of boxes or of k-DOPs.
+
+use crate::Directions;
+use crate::heights::Slabs;
+use crate::node::SlabNode;
+use nalgebra::{Point3, Vector3};
+use p2m_bvh::engine::node::{BoxNode, Child, Frame, WIDTH};
+use p2m_bvh::engine::packet::Member;
+use p2m_bvh::engine::ray::{FrameLine, half_box, misses};
+use p2m_bvh::engine::volume::WideNode;
+use p2m_core::engine::simd::{InstructionSet, Lanes, Operation};
+use p2m_core::{Crossing, Isa, Primitive, PrimitiveSet, Ray, Triangle};
+use p2m_testkit::{Cases, cases, vector};
+use rand::RngExt;
+
+struct Entries<'a, N: WideNode>(&'a N, &'a N::Ray);
+
+impl<N: WideNode> Operation for Entries<'_, N> {
+    type Output = [f32; WIDTH];
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> [f32; WIDTH] {
+        let mut entries = [0.0; WIDTH];
+        self.0.entries::<I::Eight>(self.1).store(&mut entries);
+        entries
+    }
+}
+
+/// Rays to points of some random triangles: how many were hit, all of whose places were entered, and how many other
+/// places were.
+fn compare<N: WideNode>(shape: &N::Shape, name: &str, cases: &Cases) -> [usize; 2] {
+    let mut counts = [0; 2];
+    for case in cases.clone() {
+        let mut rng = p2m_testkit::rng(name, case);
+        let place = vector(&mut rng) * 2f64.powi(rng.random_range(-20..20));
+        let scale = place.norm() * 2f64.powi(-rng.random_range(0..20));
+        let at = |v: Vector3<f64>| Point3::from(place + v * scale);
+        let triangles: Vec<_> = (0..WIDTH - 1)
+            .map(|_| {
+                let (centre, size) = (vector(&mut rng), 2f64.powi(-rng.random_range(0..20)));
+                let [a, b, c] = [(); 3].map(|()| at(centre + vector(&mut rng) * size));
+                Triangle::new(a, b, c)
+            })
+            .collect();
+        let bounds = triangles[..].aabb();
+        let frame = Frame::around(&bounds);
+        let mut node = N::new([Child::packet(0); WIDTH]);
+        for (place, triangle) in triangles.iter().enumerate() {
+            let own = Member::of(triangle);
+            node.put(place, &N::enclose(shape, &frame, &[own], &own.bounds));
+        }
+        for _ in 0..8 {
+            let vertices = triangles[rng.random_range(0..WIDTH - 1)].vertices;
+            let weights = [(); 3].map(|()| rng.random_range(0.01..1.0));
+            let sum: f64 = weights.iter().sum();
+            let target = vertices.iter().zip(weights).map(|(v, w)| v.coords * (w / sum)).sum::<Vector3<f64>>();
+            let mut direction = vector(&mut rng);
+            match rng.random_range(0..4) {
+                0 => direction[rng.random_range(0..3)] = 0.0,
+                1 => direction[rng.random_range(0..3)] *= 2f64.powi(-rng.random_range(20..60)),
+                _ => {}
+            }
+            let distance = scale * 2f64.powi(rng.random_range(-20..48));
+            let ray = Ray::new(&Point3::from(target - direction * distance), &direction).expect("valid");
+            let ray = if rng.random() { ray.line() } else { ray };
+            let parameter = |triangle: &Triangle<f64>| {
+                Crossing::of(triangle, &ray, f64::INFINITY, false).map(|crossing| crossing.parameter())
+            };
+            let hits: Vec<Option<f64>> = triangles.iter().map(parameter).collect();
+            let line = FrameLine::line(&frame, &ray, 0.0);
+            let half = half_box(&frame, &bounds);
+            let piece = FrameLine::new(&frame, &half, &line, line.from(ray.min)).expect("plain");
+            if misses(&ray, 0.0, &frame, &half) || piece.is_none() {
+                assert!(hits.iter().all(Option::is_none), "{name} {case}: {ray:?}");
+                continue;
+            }
+            let piece = piece.expect("checked");
+            let local = N::ray(shape, &piece);
+            for isa in Isa::available() {
+                let entries = isa.run(Entries(&node, &local));
+                assert!(entries[WIDTH - 1] > f32::MAX, "an empty place");
+                for (hit, entry) in hits.iter().zip(entries) {
+                    match hit {
+                        Some(t) => {
+                            let limit = piece.limit(line.to(*t));
+                            assert!(entry >= 0.0 && entry <= limit, "{isa} {name} {case}: {entry:e} {limit:e}");
+                            counts[0] += 1;
+                        }
+                        None => counts[1] += usize::from(entry <= f32::MAX),
+                    }
+                }
+            }
+        }
+    }
+    counts
+}
+
+#[test]
+fn children_that_are_met_are_entered() {
+    let (name, cases) = ("rays and nodes", cases(2_000, 500));
+    let of_boxes = compare::<BoxNode>(&(), name, &cases);
+    let of_six = compare::<SlabNode<6>>(&Slabs::new(&Directions::default()), name, &cases);
+    let of_more = compare::<SlabNode<26>>(&Slabs::new(&Directions::default()), name, &cases);
+    println!("hit, and entered besides: boxes {of_boxes:?}, 6-DOPs {of_six:?}, 26-DOPs {of_more:?}");
+    assert!(cases.have_more_than(10.0, of_boxes[0]) && of_boxes[0] == of_six[0] && of_six[0] == of_more[0]);
+    if cases.is_replay() {
+        return;
+    }
+    assert!(of_more[1] * 3 < of_boxes[1] * 2 && of_boxes[1] < of_boxes[0], "{of_boxes:?} {of_more:?}");
+    assert!(of_six[1].abs_diff(of_boxes[1]) * 100 < of_boxes[1], "{of_boxes:?} {of_six:?}");
+}
