@@ -87,7 +87,6 @@ impl QuerySet {
     }
 
     /// The queries with the numbers of these cases, of as many as there are with the last of them.
-    #[must_use]
     pub fn of_cases(self, soup: &Soup<f64>, cases: &Cases, seed: u64) -> impl Iterator<Item = Point3<f64>> + use<> {
         let number = |case: u64| usize::try_from(case).expect("so many fit memory");
         let all = self.generate(soup, number(cases.end()), seed);
