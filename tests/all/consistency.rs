@@ -178,8 +178,14 @@ fn check<T: Real>(case: &Case, soup: &Soup<T>, point: impl Fn(&Point3<f64>) -> P
 /// again, and a failure makes it smaller in the same steps.
 fn on_all(check: impl Fn(&Case) -> Result<(), TestCaseError>) {
     for number in p2m_testkit::cases(1000, 24) {
-        let rng_seed = RngSeed::Fixed(number);
-        let config = ProptestConfig { cases: 1, rng_seed, failure_persistence: None, ..Default::default() };
+        let config = ProptestConfig {
+            cases: 1,
+            // A failure would be made smaller in no more than four steps for each case otherwise.
+            max_shrink_iters: 4000,
+            rng_seed: RngSeed::Fixed(number),
+            failure_persistence: None,
+            ..Default::default()
+        };
         TestRunner::new(config).run(&case(), |case| check(&case)).unwrap_or_else(|error| panic!("{error}"));
     }
 }
