@@ -83,6 +83,22 @@ pub fn model_files() -> Vec<std::path::PathBuf> {
     files
 }
 
+/// The file of a model that a test lists by its name; none, with a message, where there is no folder of models. Where tests are
+/// not deep, none as well if it is missing or has more than 700,000 bytes.
+///
+/// # Panics
+/// If tests are deep and there is a folder of models without this one.
+#[must_use]
+pub fn model_file(name: &str) -> Option<std::path::PathBuf> {
+    let path = models()?.join(name);
+    match std::fs::metadata(&path) {
+        Ok(file) if is_deep() || file.len() <= SMALL => return Some(path),
+        Ok(_) => eprintln!("left out: {name}, of more than {SMALL} bytes (P2M_DEEP=1 has it)"),
+        Err(error) => assert!(!is_deep(), "{} is in a list of models: {error}", path.display()),
+    }
+    None
+}
+
 /// The files of all models, smallest first, at any depth; none, with a message, where there is no folder of them.
 #[must_use]
 pub fn all_model_files() -> Vec<std::path::PathBuf> {

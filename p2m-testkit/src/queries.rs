@@ -87,12 +87,10 @@ impl QuerySet {
     }
 
     /// The queries with the numbers of these cases, of as many as there are with the last of them.
-    #[must_use]
-    pub fn of_cases(self, soup: &Soup<f64>, cases: &Cases, seed: u64) -> Vec<Point3<f64>> {
-        let numbers: Vec<usize> =
-            cases.clone().map(|case| usize::try_from(case).expect("so many fit memory")).collect();
-        let all = self.generate(soup, numbers.last().map_or(0, |last| last + 1), seed);
-        numbers.into_iter().filter_map(|number| all.get(number).copied()).collect()
+    pub fn of_cases(self, soup: &Soup<f64>, cases: &Cases, seed: u64) -> impl Iterator<Item = Point3<f64>> + use<> {
+        let number = |case: u64| usize::try_from(case).expect("so many fit memory");
+        let all = self.generate(soup, number(cases.end()), seed);
+        cases.clone().filter_map(move |case| all.get(number(case)).copied())
     }
 
     /// Rays from these queries, their directions of length 1 and evenly distributed on the sphere.

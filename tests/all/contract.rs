@@ -90,7 +90,7 @@ fn n4_order_and_scale_change_no_bit_in_either_scalar() {
             .unwrap_or_else(|broken| panic!("seed {seed}: {broken}\n{case:?}"));
     }
     println!("{compared:?} of {} cases, at most two each", cases.len());
-    assert!(compared.iter().all(|count| cases.have_more_than(1.125, *count as usize)), "{compared:?}");
+    assert!(compared.iter().all(|count| cases.have_more_than(45_000, *count as usize)), "{compared:?}");
 }
 
 /// Scaling by 2^e changes nothing but the exponents, as long as everything stays normal.
@@ -131,7 +131,7 @@ fn n4_scaling_by_powers_of_two_changes_no_bit() {
             require!(there.barycentric == here.barycentric, seed, case, "2^{e}: other weights");
         }
     }
-    assert!(cases.have_more_than(5.0, compared), "{compared}");
+    assert!(cases.have_more_than(300_000, compared), "{compared}");
 }
 
 #[test]
@@ -179,7 +179,7 @@ fn shared_features_have_the_same_key_in_every_primitive() {
         require!(triangle.key <= least(&edges), seed, case, "an edge is nearer");
         require!(least(&edges) <= least(&points), seed, case, "a vertex is nearer");
     }
-    assert!(cases.have_more_than(0.05, faces), "{faces}");
+    assert!(cases.have_more_than(10_000, faces), "{faces}");
 }
 
 /// Searches pass what they prune above: it may end the work, it never changes a value.

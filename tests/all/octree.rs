@@ -270,8 +270,8 @@ fn budgets_without_end_are_those_that_suffice() {
 #[test]
 fn any_resolution_ends() {
     let soup = sheet(amount(1_200, 100));
-    let all = [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1e9, 10.0, 1e-9];
-    for resolution in all.into_iter().skip(amount(0, 2)).step_by(amount(1, 5)) {
+    let all = vec![0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1e9, 10.0, 1e-9];
+    for resolution in amount(all, vec![f64::NAN, 10.0, 1e-9]) {
         for memory in [0.0, 2.0, 190.0].into_iter().skip(amount(0, 2)) {
             let options = OctreeOptions::default();
             let options = options.with_memory(memory);

@@ -116,7 +116,7 @@ fn collectors_of_more_than_the_nearest_get_all() {
             asked += 1;
         }
     }
-    assert!(cases.is_replay() || total > 8 * asked, "{total} found, {asked} times");
+    assert!(cases.have_more_than(amount(10_000, 8 * asked), total), "{total} found, {asked} times");
 }
 
 #[test]
@@ -212,7 +212,9 @@ fn batches_are_single_queries() {
         let (mut rng, layout) = (rng("batches", case), LAYOUTS[(case % 6) as usize]);
         let soup = scenes::soup(&mut rng, Kinds::Mixed, layout, amount(500, 200));
         let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
-        let mut queries: Vec<_> = (0..amount(2000, 100)).map(|_| query(&mut rng, &soup)).collect();
+        // Threads share 512 queries or more, so that where tests are not deep one case has them in three shares.
+        let count = amount(2000, if case == 0 { 1100 } else { 100 });
+        let mut queries: Vec<_> = (0..count).map(|_| query(&mut rng, &soup)).collect();
         (queries[3].y, queries[70].x) = (f64::NAN, f64::INFINITY);
         let near = QueryOptions::default().with_max_distance((soup.aabb().max - soup.aabb().min).norm() * 0.1);
         for options in [QueryOptions::default(), near, near.with_hint(PrimitiveId::new(7)), near.with_epsilon(0.1)] {

@@ -89,7 +89,7 @@ fn generated_surfaces_have_the_signs_of_rays() {
         let (inside, doubts) =
             agrees_with_rays(name, &soup, &[QuerySet::Box1, QuerySet::Near, QuerySet::Surface], &cases);
         println!("{name}: {inside} of {} inside, {doubts} in doubt", 3 * cases.len());
-        assert!(cases.have_more_than(0.33, inside), "{name}");
+        assert!(cases.have_more_than(1000, inside), "{name}");
     }
 }
 

@@ -6,7 +6,8 @@ use std::path::Path;
 use std::process::Command;
 use std::{env, fs};
 
-/// Runs the deep suite, then prints how many cases each file of tests had.
+/// Runs the deep suite, then prints how many loops over cases each file of tests ran, and how many cases these took. A loop that
+/// failed is not among them.
 pub(crate) fn run(filter: &[String]) -> Outcome {
     let target = env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into());
     let log = env::current_dir().map_err(|e| e.to_string())?.join(target).join("deep-cases");
@@ -26,7 +27,7 @@ pub(crate) fn run(filter: &[String]) -> Outcome {
     outcome
 }
 
-/// Prints the sums of the lines `file:line<TAB>count`.
+/// Prints the sums of the lines `file:line<TAB>count`, of which each loop has written one.
 fn print_counts(log: &Path) -> Outcome {
     let text = fs::read_to_string(log).map_err(|e| format!("{}: {e}", log.display()))?;
     let mut counts: BTreeMap<&str, [u64; 2]> = BTreeMap::new();

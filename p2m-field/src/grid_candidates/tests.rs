@@ -56,7 +56,8 @@ fn distances_to_one_primitive_are_right_to_a_part_of_the_error() {
         }
     }
     let mut worst = 0.0f64;
-    for case in cases(200_000, 20_000) {
+    let cases = cases(200_000, 20_000);
+    for case in cases.clone() {
         let mut rng = p2m_testkit::rng("candidates of one", case);
         let centre = [0.0; 3].map(|_: f64| rng.random_range(-1.0..1.0) * 10f64.powi(rng.random_range(-3..6)));
         let soup = scene(&mut rng, 1, centre, 1.0);
@@ -91,7 +92,7 @@ fn distances_to_one_primitive_are_right_to_a_part_of_the_error() {
         assert!((way - exact).abs() <= reach * ERROR / 4.0, "case {case}: {way:e} {exact:e} {reach:e}");
     }
     println!("at most {:.1} u of the reach", worst * 2f64.powi(53));
-    assert!(worst > 0.0 && worst < ERROR / 2.0, "{:.1} u", worst * 2f64.powi(53));
+    assert!((cases.is_replay() || worst > 0.0) && worst < ERROR / 2.0, "{:.1} u", worst * 2f64.powi(53));
 }
 
 #[test]

@@ -429,7 +429,7 @@ mod tests {
                 }
             }
         }
-        assert!(cases.have_more_than(3.3, compared) && close == compared, "{close} of {compared}");
+        assert!(cases.have_more_than(10_000, compared) && close == compared, "{close} of {compared}");
     }
 
     #[test]

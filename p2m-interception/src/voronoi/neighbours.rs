@@ -454,6 +454,6 @@ mod tests {
                 }
             }
         }
-        assert!(cases.have_more_than(33.0, ties) && cases.have_more_than(333.0, close), "{ties} {close}");
+        assert!(cases.have_more_than(2_000, ties) && cases.have_more_than(20_000, close), "{ties} {close}");
     }
 }

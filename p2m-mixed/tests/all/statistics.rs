@@ -5,6 +5,7 @@ use p2m_core::{Element, Soup};
 use p2m_mixed::read_scene;
 use p2m_mixed::statistics::figure::Share;
 use p2m_mixed::statistics::{Counts, Extremes, Note, Statistics, objects};
+use p2m_testkit::model_file;
 
 fn soup(positions: &[[f64; 3]], elements: &[Element]) -> Soup<f64> {
     Soup::new(positions.iter().map(|&p| Point3::from(p)).collect(), elements.iter().copied()).unwrap()
@@ -271,6 +272,10 @@ fn figures_are_finite_at_every_scale() {
 /// Name, zero area, slivers, non-manifold edges, duplicates, parts; as the list of the models has the figures that it
 /// has.
 const MODELS: &[(&str, [u64; 5])] = &[
+    ("degenerate_small.obj", [0, 0, 6, 12, 1]),
+    ("degenerate_sliding.off", [4, 0, 0, 0, 1]),
+    ("zero_area_triangle.stl", [1, 0, 0, 0, 1]),
+    ("camel.off", [0, 0, 0, 0, 1]),
     ("armadillo.obj", [0, 0, 0, 0, 1]),
     ("mixed_armadillo_camel_wireframe.obj", [0, 0, 0, 0, 2]),
     ("dragon_48k_nonmanifold.ply", [0, 0, 2094, 1254, 1]),
@@ -284,20 +289,18 @@ const MODELS: &[(&str, [u64; 5])] = &[
 
 #[test]
 fn models_have_the_figures_of_their_list() {
-    let files = p2m_testkit::model_files();
-    let there = |name: &&str| files.iter().find(|path| path.ends_with(name));
     for (name, expected) in MODELS {
-        let Some(path) = there(name) else { continue };
-        let s = Statistics::of(&read_scene(path).unwrap().soup);
+        let Some(path) = model_file(name) else { continue };
+        let s = Statistics::of(&read_scene(&path).unwrap().soup);
         let found = [s.shapes.zero_area, s.shapes.slivers, s.edges.non_manifold, s.duplicates.total(), s.components];
         assert_eq!(found, *expected, "{name}");
     }
-    for path in ["camel.off", "bunny.obj", "dragon_100k.obj", "lucy_100k.ply"].iter().filter_map(there) {
-        let (name, s) = (path.display(), Statistics::of(&read_scene(path).unwrap().soup));
+    for path in ["camel.off", "bunny.obj", "dragon_100k.obj", "lucy_100k.ply"].into_iter().filter_map(model_file) {
+        let (name, s) = (path.display(), Statistics::of(&read_scene(&path).unwrap().soup));
         assert!(s.edges.is_closed() && s.notes().is_empty(), "{name}: {:?}", s.notes());
     }
-    let Some(city) = there(&"rotterdam_city_far_from_origin.obj") else { return };
-    let city = Statistics::of(&read_scene(city).unwrap().soup);
+    let Some(city) = model_file("rotterdam_city_far_from_origin.obj") else { return };
+    let city = Statistics::of(&read_scene(&city).unwrap().soup);
     assert!(
         sentence(&city, "far_from_origin")
             .starts_with("the scene lies 4.452e5 units from the origin, 360 times its size")
