@@ -41,17 +41,17 @@ const fn rotate(bits: u8, by: u8) -> u8 {
     (bits << by | bits >> (3 - by)) & 7
 }
 
-/// Two levels of the curve at once: of a state and two octants, the outer one in the higher bits, the position of the inner
-/// octant on the curve and the state in it.
-const TWO_LEVELS: [[(u8, u8); 64]; 24] = {
-    let mut table = [[(0, 0); 64]; 24];
+/// Two levels of the curve at once. The index is a state times 64 and two octants, the outer one in the higher bits; the
+/// entry is the state in the inner octant times 64 and its position on the curve. Unused entries make the length a power of two.
+const TWO_LEVELS: [u16; 2048] = {
+    let mut table = [0; 2048];
     let mut state = 0;
     while state < 24 {
         let mut octants = 0;
         while octants < 64 {
             let (outer, between) = LEVEL[state][octants >> 3];
             let (inner, next) = LEVEL[between as usize][octants & 7];
-            table[state][octants] = (outer << 3 | inner, next);
+            table[state << 6 | octants] = (next as u16) << 6 | (outer << 3 | inner) as u16;
             octants += 1;
         }
         state += 1;
@@ -61,19 +61,19 @@ const TWO_LEVELS: [[(u8, u8); 64]; 24] = {
 
 /// The position on the curve of a cell of a cube that is cut into 2^bits cells along each side; `bits` is at most 21.
 #[must_use]
+#[inline]
 pub fn position([x, y, z]: [u32; 3], bits: u32) -> u64 {
     let octants = spread(x) | spread(y) << 1 | spread(z) << 2;
     let (mut key, mut state, mut left) = (0, 0, 3 * bits);
     if bits % 2 == 1 {
         left -= 3;
-        (key, state) = LEVEL[0][(octants >> left & 7) as usize];
+        let (place, next) = LEVEL[0][(octants >> left & 7) as usize];
+        (key, state) = (u64::from(place), u64::from(next) << 6);
     }
-    let mut key = u64::from(key);
     while left > 0 {
         left -= 6;
-        let (place, next) = TWO_LEVELS[usize::from(state)][(octants >> left & 63) as usize];
-        key = key << 6 | u64::from(place);
-        state = next;
+        let entry = u64::from(TWO_LEVELS[((state | octants >> left & 63) & 2047) as usize]);
+        (key, state) = (key << 6 | entry & 63, entry & !63);
     }
     key
 }

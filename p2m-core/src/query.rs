@@ -348,6 +348,7 @@ impl<T: Real> Collector for Best<T> {
 
 impl Minimum {
     /// Whether a distance is within the radius, as it will be reported.
+    #[inline]
     fn within(&self, key: Key) -> bool {
         key.distance() <= self.radius
     }

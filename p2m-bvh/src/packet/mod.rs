@@ -253,6 +253,7 @@ impl Packet {
     }
 
     /// Where the vertices of the primitive in a lane are among the exact vertices of the tree, and how many there are.
+    #[inline]
     pub fn vertices_of(&self, lane: usize) -> ([usize; 3], usize) {
         let count = match self.kind() {
             Kind::Box => 0,

@@ -21,6 +21,7 @@ pub struct SlabRay {
 
 impl SlabRay {
     #[allow(clippy::cast_possible_truncation, reason = "rounded outwards, and margins have room")]
+    #[inline]
     pub fn new(product: f64, growth: f64, margin: f64) -> Self {
         let turned = growth < 0.0;
         let product = if turned { -product } else { product };

@@ -177,6 +177,7 @@ impl Frame {
     }
 
     /// Whether lengths of the scene have plain squares, so that searches in f32 are possible at all.
+    #[inline]
     pub fn is_plain(&self) -> bool {
         PLAIN.contains(&self.unit)
     }

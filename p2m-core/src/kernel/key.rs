@@ -96,6 +96,7 @@ impl Key {
     }
 
     #[cold]
+    #[inline]
     fn compare_tiers(self, other: Self) -> Ordering {
         match (self.square == 0.0, other.square == 0.0) {
             (true, true) => Ordering::Equal,

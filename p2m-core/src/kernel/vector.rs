@@ -89,6 +89,7 @@ pub fn lexicographically_less(a: V3, b: V3) -> bool {
 /// # Panics
 /// Unless -1022 <= e <= 1023.
 #[must_use]
+#[inline(always)]
 pub const fn power_of_two(e: i32) -> f64 {
     assert!(e >= -1022 && e <= 1023);
     f64::from_bits(((1023 + e) as u64) << 52)
