@@ -45,7 +45,7 @@
 //! | the k nearest, all within a distance, any, the closest of some | [`NearQuery`] | every index |
 //! | what a ray meets | [`RayQuery`] | trees and brute force |
 //! | what meets a box | [`BoxQuery`] | trees and brute force |
-//! | what a query costs | [`Examine`] | every index |
+//! | what a query costs | [`Inspect`] | every index |
 //!
 //! # Which index
 //!
@@ -93,9 +93,9 @@ pub use p2m_bvh::{AabbOptions, AabbTree, SplitOptions, SplitRule};
 pub use p2m_core as backend;
 pub use p2m_core::{
     Aabb, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestLeaf,
-    ClosestPoint, Element, Examine, Feature, Hit, Indexed, Isa, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet,
-    Projection, QueryOptions, Ray, RayError, RayQuery, Real, Segment, Shape, Side, Soup, Triangle, Visits, batch,
-    saved,
+    ClosestPoint, Element, Feature, Hit, Indexed, Inspect, Isa, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet,
+    Projection, QueryCost, QueryOptions, Ray, RayError, RayQuery, Real, Segment, Shape, Side, Soup, Triangle, batch,
+    storage,
 };
 /// Distance fields, and on which side of a surface a point is.
 #[cfg(feature = "field")]

@@ -15,10 +15,10 @@
 //! this program.
 
 use nalgebra::Point3;
-use p2m::backend::{Best, Counting, Hits, RayCounting};
-use p2m::saved::{SavedFile, Writer};
+use p2m::backend::{Best, Hits, RayStatsCollector, StatsCollector};
 use p2m::scene::generate::{IcoSphere, Subdivide, ico_sphere, subdivide};
-use p2m::{AabbTree, BuildIndex, ClosestPoint, Examine, Isa, KdopTree, OctreeIndex, P2mIndex, Ray, Soup};
+use p2m::storage::{SavedFile, Writer};
+use p2m::{AabbTree, BuildIndex, ClosestPoint, Inspect, Isa, KdopTree, OctreeIndex, P2mIndex, Ray, Soup};
 use p2m_testkit::asking::{self, Way};
 use p2m_testkit::compiled;
 use p2m_testkit::queries::QuerySet;
@@ -141,11 +141,11 @@ struct Counted<'a, I> {
     counts: Mutex<Counts>,
 }
 
-impl<I: Examine<f64>> ClosestPoint<f64> for Counted<'_, I> {
+impl<I: Inspect<f64>> ClosestPoint<f64> for Counted<'_, I> {
     fn search(&self, query: &Point3<f64>, best: &mut Best<f64>) {
         best.offer_hint(self.soup, query);
-        let mut counting = Counting::new(best.clone());
-        self.index.examine(query, &mut counting);
+        let mut counting = StatsCollector::new(best.clone());
+        self.index.inspect(query, &mut counting);
         let found = [counting.nodes, counting.packets, counting.primitives];
         self.counts.lock().expect("one thread").iter_mut().zip(found).for_each(|(sum, count)| *sum += count);
         *best = counting.best;
@@ -153,7 +153,7 @@ impl<I: Examine<f64>> ClosestPoint<f64> for Counted<'_, I> {
 }
 
 /// The queries of all sets of closest points, to an index and to the same one as a trait object.
-fn point_tasks<'a, I: Examine<f64> + Sync>(
+fn point_tasks<'a, I: Inspect<f64> + Sync>(
     backend: &'static str,
     index: &'a I,
     object: &'a asking::Index<'a>,
@@ -178,10 +178,10 @@ fn ray_task<'a>(
     backend: &'static str,
     object: &'a dyn asking::Tree,
     rays: &'a [Ray],
-    visit: impl Fn(&'a Ray, &mut RayCounting<Hits<'a>>) + 'a,
+    visit: impl Fn(&'a Ray, &mut RayStatsCollector<Hits<'a>>) + 'a,
 ) -> Task<'a> {
     let ask = move || asking::ask_rays(object, rays);
-    let count = move || RayCounting::of_rays(rays, &Hits::first(), &visit);
+    let count = move || RayStatsCollector::of_rays(rays, &Hits::first(), &visit);
     Task { backend, set: "rays", ask: Box::new(ask), count: Box::new(count) }
 }
 

@@ -6,7 +6,7 @@
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 
 use nalgebra::Point3;
-use p2m::saved::{SavedFile, Writer};
+use p2m::storage::{SavedFile, Writer};
 use p2m::{AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopTree, OctreeIndex, P2mIndex, PrimitiveId, Soup};
 use p2m_testkit::amount;
 use p2m_testkit::extremes::Extreme;

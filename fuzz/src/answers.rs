@@ -52,7 +52,7 @@ impl<T: Real> Asked<'_, T> {
         assert_eq!(self.index.closest_point(query), None, "{}", self.say(query));
         assert_eq!(self.index.certified_closest_point(query, &QueryOptions::default()), Ok(None));
         assert!(self.index.all_within(query, T::INFINITY).is_empty(), "{}", self.say(query));
-        let rough = QueryOptions::default().with_budget(1);
+        let rough = QueryOptions::default().with_max_visits(1);
         assert_eq!(self.index.closest_point_with(query, &rough), None, "{}", self.say(query));
     }
 

@@ -38,8 +38,8 @@ pub fn check<T: Real>(asked: &Asked<'_, T>, query: &Point3<T>, exact: &Closest<T
     let most = distance * ((1.0 + epsilon) * (1.0 + 8.0 * T::UNIT_ROUNDOFF)) + T::SMALLEST_SUBNORMAL;
     assert!(found.distance.to_f64() <= most, "{}: epsilon {epsilon}: {found:?}", say());
     let hint = PrimitiveId::new(seed % (asked.soup.len() + 1));
-    ask(asked, query, exact, &usual.with_budget([0, 1, 2, 3, 5, 9][seed % 6]).with_hint(hint));
-    let found = ask(asked, query, exact, &usual.with_budget(u32::MAX - 1));
+    ask(asked, query, exact, &usual.with_max_visits([0, 1, 2, 3, 5, 9][seed % 6]).with_hint(hint));
+    let found = ask(asked, query, exact, &usual.with_max_visits(u32::MAX - 1));
     assert_eq!(known(&found), known(exact), "{}: a budget for everything: {found:?}", say());
     // With a radius that holds something and one that does not.
     let rough = usual.with_epsilon(T::of_f64(epsilon));
@@ -47,7 +47,7 @@ pub fn check<T: Real>(asked: &Asked<'_, T>, query: &Point3<T>, exact: &Closest<T
     assert_eq!(found.distance, exact.distance, "{}: {found:?}", say());
     let short = T::of_f64_below(distance * (1.0 - 1e-6));
     if short < exact.distance {
-        let options = rough.with_max_distance(short).with_budget(5);
+        let options = rough.with_max_distance(short).with_max_visits(5);
         assert_eq!(asked.index.closest_point_with(query, &options), None, "{}: beyond {short:?}", say());
     }
 }

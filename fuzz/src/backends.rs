@@ -77,8 +77,8 @@ pub fn index<'a, T: Real>(bytes: &mut Bytes<'_>, soup: &'a Soup<T>) -> Built<'a,
             let usual = P2mOptions::default();
             let options = match bytes.below(3) {
                 0 => usual,
-                1 => usual.with_longest(2048).with_added(2.0),
-                _ => usual.with_added(0.0),
+                1 => usual.with_max_list_packets(2048).with_max_extra_sites(2.0),
+                _ => usual.with_max_extra_sites(0.0),
             };
             Box::new(P2mIndex::build(soup, &options)?.with_isa(isa))
         }

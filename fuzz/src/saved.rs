@@ -1,7 +1,7 @@
 //! Files of saved indexes from bytes: damaged, changed on purpose, or made up.
 //!
 //! The first byte says which of these it is, and the next two choose a whole file. Damage has to be told, or to change no
-//! answer. A file that is changed with its sums mended passes for a whole one: `p2m::saved` promises that it is read or
+//! answer. A file that is changed with its sums mended passes for a whole one: `p2m::storage` promises that it is read or
 //! refused, in memory in proportion to its size, and that nothing is undefined; asked, it may answer wrongly or panic. A
 //! search in it may also go round in circles, so it is stopped.
 
@@ -9,8 +9,8 @@ use super::bytes::Bytes;
 use super::memory;
 use nalgebra::Point3;
 use p2m::backend::{Best, Collector};
-use p2m::saved::{LoadError, Reader, SavedFile, Writer};
 use p2m::scene::{Scene, load_scene, read_p2m, save_scene, write_p2m};
+use p2m::storage::{LoadError, Reader, SavedFile, Writer};
 use p2m::{
     AabbTree, BuildIndex, ClosestPoint, Element, KdopTree, OctreeIndex, P2mIndex, PrimitiveId, Projection,
     QueryOptions, Soup,
@@ -174,7 +174,7 @@ fn loaded<R>(bytes: &[u8], use_it: impl FnOnce(&Soup<f64>, &dyn Loaded) -> R) ->
     let file = memory::at_most(limit, || SavedFile::read(bytes))?;
     let reader = file.checked()?;
     let soup = &scene.insert(memory::at_most(limit, || load_scene(reader))?).soup;
-    let name = p2m::saved::kind(reader)?;
+    let name = p2m::storage::kind(reader)?;
     let kind = KINDS.iter().find(|kind| kind.name == name).ok_or_else(|| missing(&name))?;
     let index = memory::at_most(limit, || (kind.loaded)(soup, reader))?;
     Ok(use_it(soup, &*index))

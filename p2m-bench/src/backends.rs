@@ -11,7 +11,7 @@ use p2m_core::{BruteForce, BuildIndex, Closest, ClosestPoint, Isa, PrimitiveId, 
 use p2m_interception::{
     InterceptionIndex, KdTreeLocator, Octree, OctreeOptions, P2mOptions, Partition, RegionTree, Voronoi,
 };
-use p2m_kdop::{Choice, KdopOptions, KdopTree};
+use p2m_kdop::{DirectionChoice, KdopOptions, KdopTree};
 use p2m_kdop::{Directions, DirectionsError};
 use p2m_mixed::adapters::{ParryIndex, RstarIndex};
 use std::marker::PhantomData;
@@ -219,7 +219,7 @@ fn p2m_with(scene: &Scene, options: P2mOptions) -> Result<Prepared<'_>, Absent> 
 
 /// As in the paper: no site is added, and lists may be long.
 fn long_lists() -> P2mOptions {
-    p2m_options().with_longest(2048).with_added(0.0).with_memory(1e5).with_work(1e6)
+    p2m_options().with_max_list_packets(2048).with_max_extra_sites(0.0).with_memory(1e5).with_work(1e6)
 }
 
 /// The P2M index, asked for several queries at a time.
@@ -290,8 +290,8 @@ pub(crate) fn kdop_backend(name: &str) -> &'static Backend {
 }
 
 /// What the scene requires.
-pub(crate) fn frame(scene: &Scene) -> Choice {
-    Choice::from_scene(&scene.double).expect("a scene is finite")
+pub(crate) fn frame(scene: &Scene) -> DirectionChoice {
+    DirectionChoice::from_scene(&scene.double).expect("a scene is finite")
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use crate::scene::Scene;
 use anyhow::Result;
 use nalgebra::{Point3, Rotation3, Vector3};
 use p2m_bvh::{AabbOptions, AabbTree};
-use p2m_core::{BuildIndex, Counting, Soup};
+use p2m_core::{BuildIndex, Soup, StatsCollector};
 use p2m_kdop::Directions;
 use p2m_kdop::{KdopOptions, KdopTree};
 use p2m_testkit::left_first::LeftFirst;
@@ -106,8 +106,8 @@ pub(crate) fn print(scene: &Scene, set: QuerySet, effort: &Effort) -> bool {
     clean
 }
 
-fn count(queries: &[Point3<f64>], visit: impl Fn(&Point3<f64>, &mut Counting<f64>)) -> Work {
-    let [nodes, packets, _] = Counting::of_queries(queries, visit);
+fn count(queries: &[Point3<f64>], visit: impl Fn(&Point3<f64>, &mut StatsCollector<f64>)) -> Work {
+    let [nodes, packets, _] = StatsCollector::of_queries(queries, visit);
     [nodes, packets].map(|sum| sum as f64 / queries.len() as f64)
 }
 

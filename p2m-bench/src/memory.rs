@@ -1,6 +1,6 @@
 //! Heap memory, by an allocator that counts.
 //!
-//! Counting costs every allocation one or two atomic additions and turns growing in place into copying, for all
+//! StatsCollector costs every allocation one or two atomic additions and turns growing in place into copying, for all
 //! contenders alike. It shows in the build times of those that grow many vectors, and where all hits of a ray are asked
 //! for; other queries of none of them allocate, unless a traversal outgrows its inline stack.
 

@@ -5,7 +5,7 @@ use crate::measure::Spread;
 use crate::scene::Scene;
 use anyhow::Result;
 use p2m_bvh::AabbTree;
-use p2m_core::saved::{SavedFile, Writer};
+use p2m_core::storage::{SavedFile, Writer};
 use p2m_core::{BuildIndex, ClosestPoint, Soup};
 use p2m_interception::{OctreeIndex, P2mIndex};
 use p2m_kdop::{KdopOptions, KdopTree};

@@ -7,7 +7,7 @@ use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
 use p2m_core::BuildIndex;
-use p2m_core::Counting;
+use p2m_core::StatsCollector;
 use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 
@@ -69,6 +69,6 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> bool {
 
 /// Nodes visited and primitives offered per query: deterministic.
 fn work<S: p2m_core::PrimitiveSet<f64>>(tree: &AabbTree<f64, S>, queries: &[Point3<f64>]) -> [f64; 2] {
-    let [nodes, _, primitives] = Counting::of_queries(queries, |query, counting| tree.visit(query, counting));
+    let [nodes, _, primitives] = StatsCollector::of_queries(queries, |query, counting| tree.visit(query, counting));
     [nodes, primitives].map(|sum| sum as f64 / queries.len() as f64)
 }

@@ -1,10 +1,10 @@
 use crate::{PacketTree, Volume};
 use nalgebra::Point3;
-use p2m_core::saved::{self, LoadError, Reader, Writer};
+use p2m_core::storage::{self, LoadError, Reader, Writer};
 use p2m_core::{
-    Aabb, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Collector,
-    Counting, Examine, Hits, Isa, Near, NearQuery, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray,
-    RayCollector, RayQuery, Real, Shape, check_set, shape_of,
+    Aabb, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Collector, Hits,
+    Inspect, Isa, Near, NearQuery, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector, RayQuery,
+    Real, Shape, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
@@ -80,7 +80,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// # Panics
     /// If the file has an index already.
     pub fn save<'a>(&'a self, writer: &mut Writer<'a>) {
-        saved::save(&self.tree, &self.set, writer);
+        storage::save(&self.tree, &self.set, writer);
     }
 
     /// The tree of a file over a set like the one that it was built over, as if it had been built.
@@ -91,7 +91,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// # Complexity
     /// O(n) to look at the set and copy the nodes; packets and vertices stay in the file.
     pub fn load(set: S, reader: &Reader) -> Result<Self, LoadError> {
-        let tree = saved::load(&set, reader)?;
+        let tree = storage::load(&set, reader)?;
         Ok(Self { set, scalar: PhantomData, tree })
     }
 
@@ -122,8 +122,8 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     }
 }
 
-impl<T: Real, S: PrimitiveSet<T>, V: Volume> Examine<T> for TreeIndex<T, S, V> {
-    fn examine(&self, query: &Point3<T>, counting: &mut Counting<T>) {
+impl<T: Real, S: PrimitiveSet<T>, V: Volume> Inspect<T> for TreeIndex<T, S, V> {
+    fn inspect(&self, query: &Point3<T>, counting: &mut StatsCollector<T>) {
         self.visit(query, counting);
     }
 

@@ -32,7 +32,7 @@ mod tree;
 
 pub use build::{SplitOptions, SplitRule};
 pub use index::TreeIndex;
-pub use tree::{PacketTree, Part, Volume};
+pub use tree::{PacketTree, TreeNode, Volume};
 
 use p2m_core::Aabb;
 

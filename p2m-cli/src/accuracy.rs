@@ -30,7 +30,7 @@ impl Accuracy {
         usual
             .with_max_distance(max_distance.unwrap_or(usual.max_distance))
             .with_epsilon(self.epsilon.unwrap_or(usual.epsilon))
-            .with_budget(self.budget.unwrap_or(usual.budget))
+            .with_max_visits(self.budget.unwrap_or(usual.max_visits))
     }
 
     /// Answers as it is wanted.

@@ -8,10 +8,10 @@ use clap::builder::PossibleValue;
 use p2m_advisor::{Choice, Workload, recommend};
 use p2m_bvh::AabbTree;
 use p2m_bvh::{TreeIndex, Volume};
-use p2m_core::saved::{self, Reader, Saved, Writer};
-use p2m_core::{BruteForce, BuildIndex, CertifiedQuery, ClosestPoint, Examine, RayQuery, Soup};
+use p2m_core::storage::{self, Reader, Saved, Writer};
+use p2m_core::{BruteForce, BuildIndex, CertifiedQuery, ClosestPoint, Inspect, RayQuery, Soup};
 use p2m_interception::StageTimes;
-use p2m_interception::{InterceptionIndex, Octree, OctreeReport, P2mReport, Partition, Stage, Voronoi};
+use p2m_interception::{BuildStage, InterceptionIndex, Octree, OctreeReport, P2mReport, Partition, Voronoi};
 use p2m_kdop::KdopTree;
 use std::time::{Duration, Instant};
 
@@ -27,7 +27,7 @@ pub(crate) enum Search {
 }
 
 /// What they build.
-pub(crate) trait Closest: ClosestPoint<f64> + CertifiedQuery<f64> + Examine<f64> + Sync {
+pub(crate) trait Closest: ClosestPoint<f64> + CertifiedQuery<f64> + Inspect<f64> + Sync {
     /// Adds it to a file.
     fn save<'s>(&'s self, writer: &mut Writer<'s>);
 }
@@ -65,7 +65,7 @@ pub(crate) struct Built<I> {
 }
 
 /// The stages of a build, and how long they took.
-pub(crate) type Stages = Vec<(Stage, Duration)>;
+pub(crate) type Stages = Vec<(BuildStage, Duration)>;
 
 /// What there is to say about an index.
 pub(crate) enum About {
@@ -91,7 +91,7 @@ pub(crate) struct Source<'a> {
 impl<'a> Source<'a> {
     /// The file, if it has an index that fits.
     fn with(self, fits: impl Fn(&str) -> bool) -> Option<&'a Reader> {
-        self.saved.filter(|reader| saved::kind(reader).is_ok_and(|kind| fits(&kind)))
+        self.saved.filter(|reader| storage::kind(reader).is_ok_and(|kind| fits(&kind)))
     }
 }
 
@@ -254,7 +254,7 @@ impl Backend {
         if Faces::of_saved(None, reader).is_some() {
             return Some(Self::Search(Search::Kdop));
         }
-        let kind = saved::kind(reader).ok()?;
+        let kind = storage::kind(reader).ok()?;
         Self::value_variants().iter().find(|backend| backend.name() == kind).copied()
     }
 

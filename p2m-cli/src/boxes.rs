@@ -10,7 +10,7 @@ use anyhow::{Context, bail};
 use clap::ValueEnum;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
-use p2m_bvh::{PacketTree, Part, Volume};
+use p2m_bvh::{PacketTree, TreeNode, Volume};
 use p2m_core::{BuildIndex, Soup};
 use p2m_kdop::{KdopTree, Polytope};
 use p2m_mixed::picture::{Panel, View, box_edges, write_picture_ply, write_svg};
@@ -192,7 +192,7 @@ fn panels<V: Volume>(
 ) -> Vec<(Drawn, Panel)> {
     let parts: Vec<_> = tree.parts().collect();
     let deepest = parts.iter().map(|part| part.depth).max();
-    let panel = |level: Option<usize>, show: &dyn Fn(&Part<V>) -> bool| {
+    let panel = |level: Option<usize>, show: &dyn Fn(&TreeNode<V>) -> bool| {
         let shown: Vec<_> = parts.iter().filter(|part| show(part)).collect();
         let title = level.map_or("leaves".to_owned(), |level| format!("level {level}"));
         let noun = if shown.len() == 1 { one } else { many };
@@ -202,7 +202,7 @@ fn panels<V: Volume>(
         };
         (Drawn { level, boxes: shown.len() }, panel)
     };
-    let is_leaf = |part: &Part<V>| tree.primitives(part).is_some();
+    let is_leaf = |part: &TreeNode<V>| tree.primitives(part).is_some();
     let drawn = deepest.map_or(0, |deepest| levels.min(deepest + 1));
     let mut panels: Vec<_> = (0..drawn)
         .map(|level| panel(Some(level), &|part| part.depth == level || (part.depth < level && is_leaf(part))))

@@ -9,7 +9,7 @@ use crate::streams::Streams;
 use crate::summary::Indexed;
 use crate::usage::usage;
 use anyhow::Context;
-use p2m_core::saved::Writer;
+use p2m_core::storage::Writer;
 use p2m_mixed::{Format, save_scene};
 use serde_json::json;
 use std::io::Write;

@@ -71,7 +71,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     target.check_report(args.json)?;
     Output::refuse_inputs(&args.to_file, &[&args.from_file])?;
     let (read, saved) = read_scene_and_index(streams, &args.from_file, from)?;
-    let has_index = saved.is_some_and(|reader| p2m_core::saved::kind(&reader).is_ok());
+    let has_index = saved.is_some_and(|reader| p2m_core::storage::kind(&reader).is_ok());
     let before = Counts::of(&read.soup);
     let polygons = polygons(&read);
     let scene = args.modifiers.apply(streams, read)?;

@@ -2,9 +2,9 @@
 
 use crate::usage::usage;
 use clap::ValueEnum;
-use p2m_core::saved::{self, LoadError, Reader, Writer};
+use p2m_core::storage::{self, LoadError, Reader, Writer};
 use p2m_core::{BuildError, Soup};
-use p2m_kdop::{Choice, KdopOptions, KdopTree};
+use p2m_kdop::{DirectionChoice, KdopOptions, KdopTree};
 
 /// How the kinds of k-DOP trees begin.
 const KIND: &str = "kdop-";
@@ -76,7 +76,7 @@ impl Faces {
     /// How many the tree has that a file keeps, if there is one, and these are what is wanted. Where nothing is wanted
     /// any tree will do, and where a number is, not one whose directions are those of the scene.
     pub(crate) fn of_saved(wanted: Option<Self>, reader: &Reader) -> Option<usize> {
-        let kind = saved::kind(reader).ok()?;
+        let kind = storage::kind(reader).ok()?;
         let k = kind.strip_prefix(KIND)?.parse().ok().filter(|k| [6, 14, 18, 26].contains(k))?;
         let of_scene = reader.has(CHOICE);
         let fits = wanted.is_none_or(|faces| if of_scene { faces == Self::Scene } else { faces.k() == Some(k) });
@@ -106,7 +106,7 @@ impl Faces {
         soup: &'a Soup<f64>,
         what: W,
     ) -> Result<(W::Output, Used), BuildError> {
-        let choice = (self == Self::Scene).then(|| Choice::from_scene(soup)).transpose()?;
+        let choice = (self == Self::Scene).then(|| DirectionChoice::from_scene(soup)).transpose()?;
         let k = self.k().unwrap_or_else(|| choice.as_ref().map_or(6, |choice| choice.k));
         let output = match k {
             6 => build::<6, _>(soup, choice.as_ref(), what),
@@ -120,7 +120,7 @@ impl Faces {
 
 fn build<'a, const K: usize, W: WithTree<'a>>(
     soup: &'a Soup<f64>,
-    choice: Option<&Choice>,
+    choice: Option<&DirectionChoice>,
     what: W,
 ) -> Result<W::Output, BuildError>
 where

@@ -5,7 +5,7 @@ use crate::faces::{self, Faces};
 use crate::input::SceneArgs;
 use p2m_advisor::{Place, Workload};
 use p2m_core::Soup;
-use p2m_core::saved::Reader;
+use p2m_core::storage::Reader;
 
 #[derive(clap::Args)]
 pub(crate) struct Indexing {

@@ -6,7 +6,7 @@ use crate::usage::{one_of, usage};
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
 use p2m_core::Ray;
-use p2m_core::saved::{LoadError, Reader, SavedFile};
+use p2m_core::storage::{LoadError, Reader, SavedFile};
 use p2m_mixed::{Format, PointFormat, ReadError, Scene, load_scene};
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Read};

@@ -14,7 +14,7 @@ use crate::usage::{positive, whole};
 use anyhow::{Context, bail};
 use nalgebra::{Point3, Vector3};
 use p2m_bvh::AabbTree;
-use p2m_core::{BuildIndex, Counting, Lists, Load, PrimitiveSet, RayQuery, Soup, Visits};
+use p2m_core::{BuildIndex, ListStats, PrimitiveSet, QueryCost, RayQuery, Soup, Stat, StatsCollector};
 use p2m_mixed::Camera;
 use p2m_mixed::picture::{value_colours, write_values_ply};
 use p2m_mixed::statistics::figure::Count;
@@ -108,9 +108,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let region = Region::around(&scene.soup, args.box_scale);
     let random: Vec<_> = Queries::random(region, args.queries, args.seed).collect();
     let stats = Stats {
-        lists: Lists::of(&*index),
-        in_box: Visits::of(&*index, &random),
-        on_scene: Visits::of(&*index, &some_middles(&scene.soup, args.queries)),
+        lists: ListStats::of(&*index),
+        in_box: QueryCost::of(&*index, &random),
+        on_scene: QueryCost::of(&*index, &some_middles(&scene.soup, args.queries)),
         asked: random.len() as u64,
         parts: index.parts(),
         stages,
@@ -204,14 +204,14 @@ fn some_middles(soup: &Soup<f64>, count: u64) -> Vec<Point3<f64>> {
 
 /// What a primitive is coloured by.
 fn value(index: &dyn Closest, middle: &Point3<f64>) -> f64 {
-    let packets = || Counting::of_query(middle, |query, counting| index.examine(query, counting))[1];
+    let packets = || StatsCollector::of_query(middle, |query, counting| index.inspect(query, counting))[1];
     index.list_length(middle).unwrap_or_else(packets) as f64
 }
 
 struct Stats {
-    lists: Option<Lists>,
-    in_box: Visits,
-    on_scene: Visits,
+    lists: Option<ListStats>,
+    in_box: QueryCost,
+    on_scene: QueryCost,
     /// How many random points.
     asked: u64,
     parts: Vec<(&'static str, usize)>,
@@ -222,8 +222,8 @@ struct Stats {
 
 impl Stats {
     fn json(&self) -> Value {
-        let load = |load: &Load| json!({ "mean": load.mean, "most": load.most });
-        let visits = |visits: &Visits| {
+        let load = |load: &Stat| json!({ "mean": load.mean, "most": load.most });
+        let visits = |visits: &QueryCost| {
             json!({
                 "nodes": load(&visits.nodes),
                 "packets": load(&visits.packets),
@@ -260,14 +260,14 @@ impl fmt::Display for Stats {
     #[allow(clippy::cast_precision_loss, reason = "bytes for people to read")]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(lists) = &self.lists {
-            let Lists { count, mean, median, percent_90, percent_99, most, .. } = lists;
+            let ListStats { count, mean, median, percent_90, percent_99, most, .. } = lists;
             writeln!(
                 f,
                 "lists    {}: {mean:.1} primitives on average; half up to {median}, 90 % up to {percent_90}, 99 % up to \
                  {percent_99}, all up to {most}",
                 Count(*count as u64)
             )?;
-            let Visits { list, without_list, .. } = self.in_box;
+            let QueryCost { list, without_list, .. } = self.in_box;
             writeln!(
                 f,
                 "volume   {list:.1} primitives in the list at a random point; the tree answers {:.1} %",
@@ -275,7 +275,7 @@ impl fmt::Display for Stats {
             )?;
         }
         for (places, visits) in [("in the box", &self.in_box), ("on the scene", &self.on_scene)] {
-            let Visits { nodes, packets, primitives, .. } = visits;
+            let QueryCost { nodes, packets, primitives, .. } = visits;
             writeln!(
                 f,
                 "queries  {places}: {:.2} nodes, {:.2} packets, {:.2} primitives each; at most {}, {}, {}",

@@ -1,7 +1,7 @@
 //! Axis-aligned boxes.
 
 use crate::Real;
-use crate::real::wide;
+use crate::real::to_f64_array;
 use nalgebra::Point3;
 
 /// A box with sides along the axes. Empty if a lower corner exceeds the upper one.
@@ -51,7 +51,7 @@ impl<T: Real> Aabb<T> {
     #[inline]
     #[must_use]
     pub fn to_f64(&self) -> Aabb<f64> {
-        Aabb { min: Point3::from(wide(&self.min)), max: Point3::from(wide(&self.max)) }
+        Aabb { min: Point3::from(to_f64_array(&self.min)), max: Point3::from(to_f64_array(&self.max)) }
     }
 
     /// Whether every corner coordinate is finite. The empty box is not.
@@ -114,7 +114,7 @@ impl<T: Real> Aabb<T> {
     #[inline(always)]
     #[must_use]
     pub fn lower_bound(&self, query: &Point3<T>) -> f64 {
-        let (q, min, max) = (wide(query), wide(&self.min), wide(&self.max));
+        let (q, min, max) = (to_f64_array(query), to_f64_array(&self.min), to_f64_array(&self.max));
         let gap = |k: usize| {
             let below = min[k] - q[k];
             let above = q[k] - max[k];

@@ -5,7 +5,7 @@
 //! hint, and the answers put back into the order of the queries.
 
 use crate::curve;
-use crate::real::wide;
+use crate::real::to_f64_array;
 use crate::{Aabb, Closest, ClosestPoint, QueryOptions, Real};
 use nalgebra::Point3;
 
@@ -133,11 +133,11 @@ impl<T: Real, I: ClosestPoint<T> + Sync + ?Sized> Share<'_, T, I> {
 fn sorted_along_curve<T: Real>(queries: &[Point3<T>], parallel: bool) -> Vec<(u64, u32)> {
     let finite = queries.iter().filter(|q| q.iter().all(|x| x.is_finite()));
     let bounds = finite.fold(Aabb::empty(), |b, q| b.union(&Aabb { min: *q, max: *q }));
-    let (min, max) = (wide(&bounds.min), wide(&bounds.max));
+    let (min, max) = (to_f64_array(&bounds.min), to_f64_array(&bounds.max));
     // Halves first: the difference of two finite numbers may not be finite.
     let scale: [f64; 3] = std::array::from_fn(|k| CELLS / (max[k] * 0.5 - min[k] * 0.5));
     let key = |q: &Point3<T>| {
-        let q = wide(q);
+        let q = to_f64_array(q);
         // NaN, and an axis without extent, become 0.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, which keeps the order")]
         let cell = |k: usize| (((q[k] * 0.5 - min[k] * 0.5) * scale[k]) as u32).min((1 << BITS) - 1);

@@ -1,8 +1,8 @@
 //! The oracle of everything else: every primitive, every time.
 
 use crate::{
-    Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Counting, Examine, Near, NearQuery,
-    Primitive, PrimitiveId, PrimitiveSet, Real, Shape, check_set, shape_of,
+    Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Inspect, Near, NearQuery, Primitive,
+    PrimitiveId, PrimitiveSet, Real, Shape, StatsCollector, check_set, shape_of,
 };
 use nalgebra::Point3;
 
@@ -59,8 +59,8 @@ impl<T: Real, S: PrimitiveSet<T>> CertifiedQuery<T> for BruteForce<S> {
     }
 }
 
-impl<T: Real, S: PrimitiveSet<T>> Examine<T> for BruteForce<S> {
-    fn examine(&self, query: &Point3<T>, counting: &mut Counting<T>) {
+impl<T: Real, S: PrimitiveSet<T>> Inspect<T> for BruteForce<S> {
+    fn inspect(&self, query: &Point3<T>, counting: &mut StatsCollector<T>) {
         for id in (0..self.set.len()).map(PrimitiveId::new) {
             counting.offer(id, self.set.get(id).project(query));
         }

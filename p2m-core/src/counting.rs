@@ -5,7 +5,7 @@ use nalgebra::Point3;
 
 /// [`Best`] with counters: they are deterministic, so tests can hold a search to them where times only vary.
 #[derive(Clone, Debug)]
-pub struct Counting<T: Real> {
+pub struct StatsCollector<T: Real> {
     /// What decides.
     pub best: Best<T>,
     /// Nodes visited.
@@ -16,7 +16,7 @@ pub struct Counting<T: Real> {
     pub primitives: usize,
 }
 
-impl<T: Real> Counting<T> {
+impl<T: Real> StatsCollector<T> {
     /// Counts from zero around `best`.
     #[must_use]
     pub fn new(best: Best<T>) -> Self {
@@ -44,7 +44,7 @@ impl<T: Real> Counting<T> {
     }
 }
 
-impl<T: Real> Collector for Counting<T> {
+impl<T: Real> Collector for StatsCollector<T> {
     fn prune_above(&self) -> f64 {
         self.best.prune_above()
     }

@@ -37,17 +37,17 @@ mod primitive;
 mod query;
 mod ray;
 mod real;
-pub mod saved;
 mod set;
 mod simd;
 mod soup;
 mod stats;
+pub mod storage;
 
 pub use aabb::Aabb;
 pub use box_query::{BoxQuery, ClosestLeaf};
 pub use brute_force::BruteForce;
 pub use certified::{CertifiedQuery, CertifyError, shape_of};
-pub use counting::Counting;
+pub use counting::StatsCollector;
 pub use error::BuildError;
 pub use index::{BuildIndex, ClosestPoint};
 pub use indexed::Indexed;
@@ -55,12 +55,12 @@ pub use kernel::Key;
 pub use near_query::{Near, NearQuery};
 pub use primitive::{Feature, Point, Primitive, Projection, Segment, Shape, Triangle};
 pub use query::{Best, Closest, Collector, QueryOptions};
-pub use ray::{Crossing, Hit, Hits, Ray, RayCollector, RayCounting, RayError, RayHit, RayQuery, Side};
+pub use ray::{Crossing, Hit, Hits, Ray, RayCollector, RayError, RayHit, RayQuery, RayStatsCollector, Side};
 pub use real::Real;
 pub use set::{PrimitiveId, PrimitiveSet, check_set};
 pub use simd::Isa;
 pub use soup::{Element, Soup};
-pub use stats::{Examine, Lists, Load, Visits};
+pub use stats::{Inspect, ListStats, QueryCost, Stat};
 
 /// The inside of this crate, for its sibling crates: it may change at any time.
 #[doc(hidden)]
@@ -78,13 +78,13 @@ pub mod engine {
         pub use crate::kernel::number::*;
     }
     pub mod query {
-        pub use crate::query::Minimum;
+        pub use crate::query::BestF64;
     }
     pub mod ray {
         pub use crate::ray::{TINY, foot};
     }
     pub mod real {
-        pub use crate::real::{narrow, wide};
+        pub use crate::real::{from_f64_array, to_f64_array};
     }
     pub mod simd {
         pub use crate::simd::*;

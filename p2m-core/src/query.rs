@@ -2,14 +2,14 @@
 //!
 //! # Approximation
 //!
-//! Two options give up exactness: a relative error (epsilon) and a budget of visits.
+//! Two options give up exactness: a relative error (epsilon) and a max_visits of visits.
 //! A search that honours them *holds* a primitive as soon as it knows from both sides how far it is, before it is evaluated:
 //! it is evaluated first in the end, so the answer is never farther than what is held. Parts of the scene whose lower bound
 //! exceeds the distance held / (1 + epsilon) are left out, and parts that a search does not come to are left out with the
 //! smallest of their bounds ([`Best::forgo`]). So the answer's lower bound is certified whatever was asked, and the error is
 //! known to the caller without another query (docs/proofs/accuracy.md, N7).
 
-use crate::real::narrow;
+use crate::real::from_f64_array;
 use crate::{Feature, Key, Primitive, PrimitiveId, PrimitiveSet, Projection, Real};
 use nalgebra::Point3;
 use std::marker::PhantomData;
@@ -36,15 +36,15 @@ pub struct QueryOptions<T: Real> {
     pub epsilon: T,
     /// So many nodes and packets may be visited, and those that it takes to find any answer; then the best one found so
     /// far is the answer. The interception indexes visit the sites on the way to a cell and the packets of its list: with
-    /// a budget of 0 the answer is what the cell itself tells. Unlimited by default. If there is a largest distance as
+    /// a limit of 0 the answer is what the cell itself tells. Unlimited by default. If there is a largest distance as
     /// well, `None` says that nothing was found within it, not that there is nothing. [`BruteForce`](crate::BruteForce), indexes over trees of other
     /// crates have no use for it: their answers are exact.
-    pub budget: u32,
+    pub max_visits: u32,
 }
 
 impl<T: Real> Default for QueryOptions<T> {
     fn default() -> Self {
-        Self { max_distance: T::INFINITY, hint: None, epsilon: T::zero(), budget: u32::MAX }
+        Self { max_distance: T::INFINITY, hint: None, epsilon: T::zero(), max_visits: u32::MAX }
     }
 }
 
@@ -66,13 +66,13 @@ impl<T: Real> QueryOptions<T> {
     }
     /// With so many visits at most.
     #[must_use]
-    pub fn with_budget(self, budget: u32) -> Self {
-        Self { budget, ..self }
+    pub fn with_max_visits(self, max_visits: u32) -> Self {
+        Self { max_visits, ..self }
     }
     /// Whether the answer may differ from the exact one.
     #[must_use]
     pub fn is_approximate(&self) -> bool {
-        self.epsilon > T::zero() || self.budget < u32::MAX
+        self.epsilon > T::zero() || self.max_visits < u32::MAX
     }
 }
 
@@ -173,7 +173,7 @@ pub trait Collector {
     fn offer(&mut self, id: PrimitiveId, projection: Projection);
 
     /// Called once for every node of a tree that is visited, and for every site on the way to a
-    /// Voronoi cell. For those who count, and those who keep a budget.
+    /// Voronoi cell. For those who count, and those who keep a max_visits.
     #[inline(always)]
     fn visit_node(&mut self) {}
 
@@ -186,13 +186,13 @@ pub trait Collector {
 #[derive(Clone, Debug)]
 pub struct Best<T: Real> {
     hint: Option<PrimitiveId>,
-    minimum: Minimum,
+    minimum: BestF64,
     scalar: PhantomData<T>,
 }
 
 /// The same in f64, whatever the scalar of the scene: a search is compiled once for both.
 #[derive(Clone, Debug)]
-pub struct Minimum {
+pub struct BestF64 {
     /// The largest distance within the radius.
     radius: f64,
     /// (1 + epsilon)^-2, rounded down
@@ -205,8 +205,8 @@ pub struct Minimum {
     certified: f64,
     /// Whether the answer may be another one.
     approximate: bool,
-    /// Visits that are left, if there is a budget.
-    budget: u32,
+    /// QueryCost that are left, if there is a max_visits.
+    max_visits: u32,
 }
 
 /// Relative errors of a few roundings are absorbed by this factor: 1 + 16 u of f64.
@@ -227,7 +227,7 @@ impl<T: Real> Best<T> {
         // A distance counts as it will be reported, so somewhat beyond the radius; nothing is within NaN.
         let radius = options.max_distance.to_f64_above();
         let prune = square_within(radius);
-        let minimum = Minimum {
+        let minimum = BestF64 {
             radius,
             shrink,
             prune,
@@ -235,7 +235,7 @@ impl<T: Real> Best<T> {
             key: Key::INFINITY,
             certified: f64::INFINITY,
             approximate: options.is_approximate(),
-            budget: options.budget,
+            max_visits: options.max_visits,
         };
         Self { hint: options.hint, minimum, scalar: PhantomData }
     }
@@ -260,14 +260,14 @@ impl<T: Real> Best<T> {
 
     /// What collects for it.
     #[inline(always)]
-    pub fn minimum(&mut self) -> &mut Minimum {
+    pub fn minimum(&mut self) -> &mut BestF64 {
         &mut self.minimum
     }
 
     /// The answer.
     #[must_use]
     pub fn finish(self) -> Option<Closest<T>> {
-        let Minimum { certified, shrink, best, .. } = self.minimum;
+        let BestF64 { certified, shrink, best, .. } = self.minimum;
         let (primitive, p) = best?;
         if !self.minimum.within(p.key) {
             return None;
@@ -290,7 +290,7 @@ pub fn answer<T: Real>(primitive: PrimitiveId, p: &Projection, bound: f64) -> Cl
     // One smallest subnormal for each rounding near zero; an infinite error leaves nothing to certify.
     let bound = bound * ROUND_DOWN - 2.0 * f64::from_bits(1);
     Closest {
-        point: narrow(p.point.coords.into()),
+        point: from_f64_array(p.point.coords.into()),
         distance: T::of_f64(p.key.distance()),
         lower_bound: if bound > 0.0 { T::of_f64_below(bound) } else { T::zero() },
         primitive,
@@ -346,7 +346,7 @@ impl<T: Real> Collector for Best<T> {
     }
 }
 
-impl Minimum {
+impl BestF64 {
     /// Whether a distance is within the radius, as it will be reported.
     #[inline]
     fn within(&self, key: Key) -> bool {
@@ -354,7 +354,7 @@ impl Minimum {
     }
 }
 
-impl Collector for Minimum {
+impl Collector for BestF64 {
     #[inline(always)]
     fn prune_above(&self) -> f64 {
         self.prune
@@ -383,18 +383,18 @@ impl Collector for Minimum {
     #[inline(always)]
     fn is_content(&self, holds: bool) -> bool {
         // As long as there is nothing, everything is still to be found.
-        self.budget == 0 && (holds || self.best.is_some())
+        self.max_visits == 0 && (holds || self.best.is_some())
     }
 
     #[inline(always)]
     fn visit_node(&mut self) {
         // An exact search makes nothing of it.
-        self.budget = self.budget.saturating_sub(1);
+        self.max_visits = self.max_visits.saturating_sub(1);
     }
 
     #[inline(always)]
     fn visit_packet(&mut self) {
-        self.budget = self.budget.saturating_sub(1);
+        self.max_visits = self.max_visits.saturating_sub(1);
     }
 
     #[inline(always)]

@@ -87,13 +87,13 @@ impl Real for f32 {
 
 /// The point as an array of f64, exactly.
 #[inline(always)]
-pub fn wide<T: Real>(point: &Point3<T>) -> [f64; 3] {
+pub fn to_f64_array<T: Real>(point: &Point3<T>) -> [f64; 3] {
     [point.x.to_f64(), point.y.to_f64(), point.z.to_f64()]
 }
 
 /// Rounds an array of f64 to the nearest point.
 #[inline(always)]
-pub fn narrow<T: Real>(point: [f64; 3]) -> Point3<T> {
+pub fn from_f64_array<T: Real>(point: [f64; 3]) -> Point3<T> {
     Point3::new(T::of_f64(point[0]), T::of_f64(point[1]), T::of_f64(point[2]))
 }
 

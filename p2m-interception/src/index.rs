@@ -1,9 +1,9 @@
 use crate::{Octree, Partition, Progress, SIDE_BY_SIDE, Voronoi};
 use nalgebra::Point3;
-use p2m_core::saved::{self, LoadError, Reader, Saved, Writer};
+use p2m_core::storage::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{
-    Best, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestPoint, Collector, Counting, Examine, Isa, Near,
-    NearQuery, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, check_set, shape_of,
+    Best, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestPoint, Collector, Inspect, Isa, Near, NearQuery,
+    PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
 
@@ -96,7 +96,7 @@ impl<T: Real, S: PrimitiveSet<T>, P: Saved> InterceptionIndex<T, S, P> {
     /// # Panics
     /// If the file has an index already.
     pub fn save<'a>(&'a self, writer: &mut Writer<'a>) {
-        saved::save(&self.partition, &self.set, writer);
+        storage::save(&self.partition, &self.set, writer);
     }
 
     /// The cells of a file over a set like the one that they were built over, as if they had been built.
@@ -107,13 +107,13 @@ impl<T: Real, S: PrimitiveSet<T>, P: Saved> InterceptionIndex<T, S, P> {
     /// # Complexity
     /// O(n) to look at the set and copy the nodes of the tree; the rest stays in the file.
     pub fn load(set: S, reader: &Reader) -> Result<Self, LoadError> {
-        let partition = saved::load(&set, reader)?;
+        let partition = storage::load(&set, reader)?;
         Ok(Self { set, scalar: PhantomData, partition })
     }
 }
 
-impl<T: Real, S: PrimitiveSet<T>, P: Partition> Examine<T> for InterceptionIndex<T, S, P> {
-    fn examine(&self, query: &Point3<T>, counting: &mut Counting<T>) {
+impl<T: Real, S: PrimitiveSet<T>, P: Partition> Inspect<T> for InterceptionIndex<T, S, P> {
+    fn inspect(&self, query: &Point3<T>, counting: &mut StatsCollector<T>) {
         self.visit(query, counting);
     }
 

@@ -34,7 +34,7 @@ pub use index::{InterceptionIndex, OctreeIndex, P2mIndex};
 pub use octree::Octree;
 pub use options::{Domain, OctreeOptions, OctreeReport, P2mOptions, P2mReport};
 pub use partition::{Partition, SIDE_BY_SIDE};
-pub use progress::{Progress, Stage, StageTimes};
+pub use progress::{BuildStage, Progress, StageTimes};
 #[cfg(feature = "kiddo")]
 pub use voronoi::kd_tree_locator::KdTreeLocator;
 #[cfg(feature = "rstar")]

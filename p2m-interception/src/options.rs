@@ -139,11 +139,11 @@ pub struct P2mOptions {
     /// How the packets of the tree are made, and whether all threads are used.
     pub splits: SplitOptions,
     /// Lists of more packets are left to the tree: 96 by default. More than 2048 count as 2048.
-    pub longest: usize,
+    pub max_list_packets: usize,
     /// At most so many sites are added for each vertex of a packet (one that several packets have counts several times),
     /// where many primitives are about as near as the nearest vertex: on long edges and wide faces, and in the middle
     /// of round shapes. 0.5 by default.
-    pub added: f64,
+    pub max_extra_sites: f64,
     /// Makes the locator, by which a query finds a site near its own. By default it is a grid.
     pub(crate) locator: Option<FnPointer<BuildLocator>>,
     /// Makes the filter of each long list. By default there are none.
@@ -162,8 +162,8 @@ impl Default for P2mOptions {
     fn default() -> Self {
         Self {
             splits: SplitOptions::default(),
-            longest: 96,
-            added: 0.5,
+            max_list_packets: 96,
+            max_extra_sites: 0.5,
             locator: None,
             list_filter: None,
             filter_above: 64,
@@ -181,13 +181,13 @@ impl P2mOptions {
     }
     /// With lists of more or fewer packets.
     #[must_use]
-    pub fn with_longest(self, longest: usize) -> Self {
-        Self { longest, ..self }
+    pub fn with_max_list_packets(self, max_list_packets: usize) -> Self {
+        Self { max_list_packets, ..self }
     }
     /// With more or fewer sites.
     #[must_use]
-    pub fn with_added(self, added: f64) -> Self {
-        Self { added, ..self }
+    pub fn with_max_extra_sites(self, max_extra_sites: f64) -> Self {
+        Self { max_extra_sites, ..self }
     }
     /// With another locator than a grid. Answers do not depend on it. A saved index has a grid instead.
     #[must_use]

@@ -4,9 +4,9 @@ use crate::progress::Progress;
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::evaluation;
-use p2m_bvh::engine::nearest::{Evaluate, Filter, finish};
-use p2m_core::engine::query::Minimum;
-use p2m_core::engine::real::wide;
+use p2m_bvh::engine::nearest::{EvaluateFn, SearchState, finish};
+use p2m_core::engine::query::BestF64;
+use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
 use p2m_core::{Best, Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
 
@@ -32,17 +32,17 @@ pub trait Partition: LookUp + Sized {
     /// Offers to `collector` every primitive of the set that it could want. `query` is finite.
     #[inline]
     fn search<T: Real, S: PrimitiveSet<T>, C: Collector>(&self, set: &S, query: &Point3<T>, collector: &mut C) {
-        self.look_up(wide(query), collector, &evaluation(set, query), finish);
+        self.look_up(to_f64_array(query), collector, &evaluation(set, query), finish);
     }
 
     /// The same for the nearest primitive.
     fn search_nearest<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
-        self.nearest(wide(query), best.minimum(), &evaluation(set, query));
+        self.nearest(to_f64_array(query), best.minimum(), &evaluation(set, query));
     }
 
     /// The same for what is near.
     fn search_near<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, near: &mut Near<'_>) {
-        self.near(wide(query), near, &evaluation(set, query));
+        self.near(to_f64_array(query), near, &evaluation(set, query));
     }
 
     /// The same for several queries, which may be answered side by side.
@@ -53,8 +53,8 @@ pub trait Partition: LookUp + Sized {
         best: &mut [Best<T>; SIDE_BY_SIDE],
     ) {
         let evaluations = queries.each_ref().map(|query| evaluation(set, query));
-        let evaluates = evaluations.each_ref().map(|evaluate| evaluate as Evaluate<'_, Minimum>);
-        self.nearest_of_several(&queries.each_ref().map(wide), best.each_mut().map(Best::minimum), evaluates);
+        let evaluates = evaluations.each_ref().map(|evaluate| evaluate as EvaluateFn<'_, BestF64>);
+        self.nearest_of_several(&queries.each_ref().map(to_f64_array), best.each_mut().map(Best::minimum), evaluates);
     }
 
     /// The primitives of the list of the cell that a point is in, in ascending order: what a search in the cell may
@@ -94,22 +94,22 @@ pub(crate) trait LookUp {
         &self,
         query: V3,
         collector: &mut C,
-        evaluate: Evaluate<'_, C>,
-        finish: fn(&mut Filter<'_, C>),
+        evaluate: EvaluateFn<'_, C>,
+        finish: fn(&mut SearchState<'_, C>),
     );
 
     /// The same for the nearest one, in a function of its own: what is not generic is compiled once, in this crate.
-    fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>);
+    fn nearest(&self, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>);
 
     /// The same for what is near,
-    fn near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>);
+    fn near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>);
 
     /// and for the nearest ones of several queries.
     fn nearest_of_several(
         &self,
         queries: &[V3; SIDE_BY_SIDE],
-        minimums: [&mut Minimum; SIDE_BY_SIDE],
-        evaluates: [Evaluate<'_, Minimum>; SIDE_BY_SIDE],
+        minimums: [&mut BestF64; SIDE_BY_SIDE],
+        evaluates: [EvaluateFn<'_, BestF64>; SIDE_BY_SIDE],
     ) {
         for ((query, minimum), evaluate) in queries.iter().zip(minimums).zip(evaluates) {
             self.nearest(*query, minimum, evaluate);

@@ -7,7 +7,7 @@ use std::time::Duration;
 /// A stage of building an interception index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-pub enum Stage {
+pub enum BuildStage {
     /// The tree over the packets
     Tree,
     /// The Delaunay tetrahedra of the sites
@@ -22,7 +22,7 @@ pub enum Stage {
     Octree,
 }
 
-impl Stage {
+impl BuildStage {
     /// A word for it.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -41,7 +41,7 @@ impl Stage {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// What is being done.
-    pub stage: Stage,
+    pub stage: BuildStage,
     /// The part of all stages that is done, from 0 to 1: an estimate that never falls.
     pub part: f64,
 }
@@ -54,14 +54,14 @@ pub(crate) struct Teller<'a> {
 
 impl<'a> Teller<'a> {
     /// The first stage begins.
-    pub(crate) fn new(tell: &'a (dyn Fn(Progress) + Sync), stage: Stage) -> Self {
+    pub(crate) fn new(tell: &'a (dyn Fn(Progress) + Sync), stage: BuildStage) -> Self {
         let at = Progress { stage, part: 0.0 };
         tell(at);
         Self { tell, at: Cell::new(at) }
     }
 
     /// Another stage begins.
-    pub(crate) fn begin(&self, stage: Stage) {
+    pub(crate) fn begin(&self, stage: BuildStage) {
         self.at.set(Progress { stage, ..self.at.get() });
         (self.tell)(self.at.get());
     }
@@ -81,14 +81,14 @@ impl<'a> Teller<'a> {
 /// ```
 /// use nalgebra::Point3;
 /// use p2m_core::Segment;
-/// use p2m_interception::{Partition, Stage, StageTimes, Voronoi};
+/// use p2m_interception::{Partition, BuildStage, StageTimes, Voronoi};
 /// use std::time::Instant;
 ///
 /// let wires = [Segment::new(Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 1.0, 2.0))];
 /// let start = Instant::now();
 /// let times = StageTimes::new(move || start.elapsed());
 /// let cells: Voronoi = Partition::build(&wires, &Default::default(), &|progress| times.tell(progress));
-/// assert!(times.finish().iter().any(|(stage, _)| *stage == Stage::Tree));
+/// assert!(times.finish().iter().any(|(stage, _)| *stage == BuildStage::Tree));
 /// # drop(cells);
 /// ```
 pub struct StageTimes<C> {
@@ -99,9 +99,9 @@ pub struct StageTimes<C> {
 
 #[derive(Default)]
 struct Seen {
-    times: Vec<(Stage, Duration)>,
+    times: Vec<(BuildStage, Duration)>,
     /// The stage that is being done, and when it began.
-    current: Option<(Stage, Duration)>,
+    current: Option<(BuildStage, Duration)>,
 }
 
 impl<C: Fn() -> Duration> StageTimes<C> {
@@ -128,7 +128,7 @@ impl<C: Fn() -> Duration> StageTimes<C> {
     ///
     /// # Panics
     /// If the clock panicked.
-    pub fn finish(self) -> Vec<(Stage, Duration)> {
+    pub fn finish(self) -> Vec<(BuildStage, Duration)> {
         let mut seen = self.seen.into_inner().expect("a clock that did not panic");
         seen.end((self.clock)());
         seen.times
@@ -154,16 +154,19 @@ mod tests {
     fn a_stage_lasts_until_another_begins_and_may_come_again() {
         let now = std::cell::Cell::new(0);
         let times = StageTimes::new(|| Duration::from_secs(now.get()));
-        for (time, stage) in [(1, Stage::Tree), (3, Stage::Delaunay), (4, Stage::Balls), (4, Stage::Balls)] {
+        for (time, stage) in
+            [(1, BuildStage::Tree), (3, BuildStage::Delaunay), (4, BuildStage::Balls), (4, BuildStage::Balls)]
+        {
             now.set(time);
             times.tell(Progress { stage, part: 0.0 });
         }
-        for (time, stage) in [(9, Stage::Delaunay), (11, Stage::Lists)] {
+        for (time, stage) in [(9, BuildStage::Delaunay), (11, BuildStage::Lists)] {
             now.set(time);
             times.tell(Progress { stage, part: 0.5 });
         }
         now.set(20);
-        let expected = [(Stage::Tree, 2), (Stage::Delaunay, 3), (Stage::Balls, 5), (Stage::Lists, 9)];
+        let expected =
+            [(BuildStage::Tree, 2), (BuildStage::Delaunay, 3), (BuildStage::Balls, 5), (BuildStage::Lists, 9)];
         assert_eq!(times.finish(), expected.map(|(stage, time)| (stage, Duration::from_secs(time))));
         assert!(StageTimes::new(|| Duration::ZERO).finish().is_empty());
     }

@@ -1,8 +1,8 @@
 //! Answers depend neither on the locator nor on the filter of lists.
 
 use nalgebra::Point3;
-use p2m_core::saved::{SavedFile, Writer};
-use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Counting, Soup};
+use p2m_core::storage::{SavedFile, Writer};
+use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Soup, StatsCollector};
 use p2m_interception::{
     BuildListFilter, BuildLocator, KdTreeLocator, ListFilter, Locator, LocatorSites, P2mIndex, P2mOptions, Region,
     RegionTree,
@@ -79,7 +79,7 @@ fn answers(index: &impl ClosestPoint<f64>, queries: &[Point3<f64>]) -> [Answers;
 
 /// Packets that queries look at, in all.
 fn packets(index: &Index<'_>, queries: &[Point3<f64>]) -> usize {
-    Counting::of_queries(queries, |query, counting| index.visit(query, counting))[1]
+    StatsCollector::of_queries(queries, |query, counting| index.visit(query, counting))[1]
 }
 
 #[test]

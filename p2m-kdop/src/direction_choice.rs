@@ -10,7 +10,7 @@
 use crate::{Directions, DirectionsError, KdopOptions, KdopTree};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{
-    Aabb, BuildError, Counting, Primitive, PrimitiveId, PrimitiveSet, Real, Segment, Shape, Triangle, check_set,
+    Aabb, BuildError, Primitive, PrimitiveId, PrimitiveSet, Real, Segment, Shape, StatsCollector, Triangle, check_set,
 };
 use std::fmt;
 
@@ -18,7 +18,7 @@ use std::fmt;
 ///
 /// ```
 /// use p2m_core::{BuildIndex, ClosestPoint, Triangle};
-/// use p2m_kdop::{Choice, KdopOptions, KdopTree};
+/// use p2m_kdop::{DirectionChoice, KdopOptions, KdopTree};
 /// use nalgebra::{Point3, Rotation3, Vector3};
 ///
 /// // Long boards side by side, turned.
@@ -34,7 +34,7 @@ use std::fmt;
 ///         }
 ///     })
 ///     .collect();
-/// let choice = Choice::from_scene(&boards).unwrap();
+/// let choice = DirectionChoice::from_scene(&boards).unwrap();
 /// assert!(choice.is_turned());
 /// let directions = choice.directions::<6>().unwrap();
 /// let tree = KdopTree::<f64, _, 6>::build_with(&boards, &KdopOptions::new(directions)).unwrap();
@@ -43,7 +43,7 @@ use std::fmt;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Choice {
+pub struct DirectionChoice {
     /// How many faces, which is directions with both signs counted: 6, 14, 18 or 26.
     pub k: usize,
     /// The three that were found, orthogonal and of unit length.
@@ -84,7 +84,7 @@ const ALIGNED: f64 = 0.174;
 /// A frame is used if it wastes less than this part of what the axes do.
 const GAIN: f64 = 0.75;
 
-impl Choice {
+impl DirectionChoice {
     /// Looks at a scene, or at a sample of a large one: always the same one.
     ///
     /// # Errors
@@ -223,11 +223,11 @@ fn trial<const K: usize>(shapes: &[Shape<f64>], queries: &[Point3<f64>], frame: 
     let options = KdopOptions::new(along::<K>(frame).expect("as many directions"));
     let tree = KdopTree::<f64, _, K>::build_with(shapes, &options).expect("a scene that has been checked");
     let finite = queries.iter().filter(|q| q.iter().all(|x| x.is_finite()));
-    let [nodes, packets, _] = Counting::of_queries(finite, |query, counting| tree.visit(query, counting));
+    let [nodes, packets, _] = StatsCollector::of_queries(finite, |query, counting| tree.visit(query, counting));
     NANOSECONDS_A_QUERY + (node * nodes as f64 + NANOSECONDS_A_PACKET * packets as f64) / queries.len().max(1) as f64
 }
 
-impl fmt::Display for Choice {
+impl fmt::Display for DirectionChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let percent = |part: f64| 100.0 * part;
         let place = FACES.iter().position(|k| *k == self.k).unwrap_or(0);
@@ -353,14 +353,14 @@ mod tests {
 
     #[test]
     fn a_turned_scene_gets_its_own_frame_back() {
-        let straight = Choice::from_scene(&boxes(&Rotation3::identity())).expect("finite");
+        let straight = DirectionChoice::from_scene(&boxes(&Rotation3::identity())).expect("finite");
         assert!(!straight.is_turned() && straight.waste_of_axes < 0.05, "{straight}");
         assert_eq!(straight.directions::<14>(), Ok(Directions::default()));
         assert_eq!(straight.directions::<18>(), Ok(Directions::default()));
         assert_eq!(straight.directions::<26>(), Ok(Directions::default()));
         for turn in [Vector3::new(0.3, 0.5, 0.1), Vector3::new(0.0, 0.0, 0.8), Vector3::new(1.0, -2.0, 0.5)] {
             let turn = Rotation3::new(turn);
-            let choice = Choice::from_scene(&boxes(&turn)).expect("finite");
+            let choice = DirectionChoice::from_scene(&boxes(&turn)).expect("finite");
             assert!(choice.waste_of_frame < 0.05 && choice.work_along_frame.is_some(), "{choice:?}");
             let directions = choice.frame_directions::<6>().expect("a frame");
             assert!(directions.starts_orthogonal());
@@ -378,7 +378,7 @@ mod tests {
         let boards: Vec<_> = (0..1000)
             .map(|i| Triangle::new(at(0, i % 50, i / 50), at(1, i % 50, i / 50), at(1, i % 50 + 1, i / 50)))
             .collect();
-        let turned = Choice::from_scene(&boards).expect("finite");
+        let turned = DirectionChoice::from_scene(&boards).expect("finite");
         assert!(turned.is_turned(), "{turned:?}");
         assert!(turned.to_string().contains(" directions along a frame of the scene's own ("), "{turned}");
         assert_eq!(turned.directions::<26>(), turned.frame_directions());
@@ -390,7 +390,7 @@ mod tests {
                 Segment::new(Point3::origin(), Point3::new(r * t.cos(), r * t.sin(), z))
             })
             .collect();
-        let none = Choice::from_scene(&around).expect("finite");
+        let none = DirectionChoice::from_scene(&around).expect("finite");
         assert!(!none.is_turned() && none.to_string().contains("along the axes"), "{none}");
     }
 
@@ -398,7 +398,7 @@ mod tests {
     #[test]
     fn as_many_faces_as_the_scene_is_worth() {
         let chosen = |soup: &Soup<f64>| {
-            let choice = Choice::from_scene(soup).expect("finite");
+            let choice = DirectionChoice::from_scene(soup).expect("finite");
             println!("{choice}: {:.3?}", choice.work_along_axes);
             choice.k
         };
@@ -410,15 +410,15 @@ mod tests {
     #[test]
     fn any_scene_has_a_choice() {
         let nothing: [Triangle<f64>; 0] = [];
-        assert!(!Choice::from_scene(&nothing).expect("finite").is_turned());
+        assert!(!DirectionChoice::from_scene(&nothing).expect("finite").is_turned());
         let flat = [Triangle::<f64>::new(Point3::origin(), Point3::origin(), Point3::origin())];
-        assert_eq!(Choice::from_scene(&flat).expect("finite").directions::<6>(), Ok(Directions::default()));
+        assert_eq!(DirectionChoice::from_scene(&flat).expect("finite").directions::<6>(), Ok(Directions::default()));
         let large = [Segment::new(Point3::new(-f64::MAX, 0.0, 0.0), Point3::new(f64::MAX, f64::MAX, 0.0))];
-        assert!(Choice::from_scene(&large).expect("finite").directions::<6>().is_ok());
-        assert!(Choice::from_scene(&large).expect("finite").directions::<30>().is_err());
+        assert!(DirectionChoice::from_scene(&large).expect("finite").directions::<6>().is_ok());
+        assert!(DirectionChoice::from_scene(&large).expect("finite").directions::<30>().is_err());
         for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY] {
             let set = [large[0], Segment::new(Point3::origin(), Point3::new(0.0, bad, 0.0))];
-            assert_eq!(Choice::from_scene(&set), Err(BuildError::NonFinite { id: PrimitiveId::new(1) }));
+            assert_eq!(DirectionChoice::from_scene(&set), Err(BuildError::NonFinite { id: PrimitiveId::new(1) }));
         }
     }
 }

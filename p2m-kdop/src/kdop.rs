@@ -32,7 +32,7 @@ impl<const K: usize> Kdop<K> {
     pub fn of_points<T: Real>(directions: &Directions<K>, points: &[Point3<T>]) -> Self {
         let mut result = Self::empty();
         for point in points {
-            let x = Vector3::from(p2m_core::engine::real::wide(point));
+            let x = Vector3::from(p2m_core::engine::real::to_f64_array(point));
             for (height, normal) in result.heights.iter_mut().zip(directions.normals()) {
                 *height = height.max(above(normal, &x));
             }

@@ -44,12 +44,12 @@ mod polytope;
 mod ray_entries;
 mod volume;
 
-pub use direction_choice::Choice;
+pub use direction_choice::DirectionChoice;
 pub use directions::{Directions, DirectionsError};
 pub use kdop::Kdop;
 pub use options::KdopOptions;
 pub use overlap::Overlap;
-pub use p2m_bvh::{Part, SplitOptions, SplitRule};
+pub use p2m_bvh::{SplitOptions, SplitRule, TreeNode};
 pub use polytope::{Polytope, write_polytopes_ply};
 
 /// A k-DOP tree over a set of primitives, which it keeps.

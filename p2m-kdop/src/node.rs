@@ -7,13 +7,13 @@
 use crate::Kdop;
 use crate::heights::Slabs;
 use nalgebra::{Point3, Vector3};
-use p2m_bvh::engine::node::{Child, Frame, WIDTH};
+use p2m_bvh::engine::node::{Frame, NodeRef, WIDTH};
 use p2m_bvh::engine::packet::Member;
 use p2m_bvh::engine::ray::FrameLine;
 use p2m_bvh::engine::ray_slab::{Piece, SlabRay};
 use p2m_bvh::engine::volume::WideNode;
 use p2m_core::Aabb;
-use p2m_core::engine::real::wide;
+use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::simd::Lanes;
 use p2m_core::engine::vector::power_of_two;
 
@@ -22,7 +22,7 @@ use p2m_core::engine::vector::power_of_two;
 #[repr(C, align(64))]
 pub struct SlabNode<const K: usize> {
     heights: [[f32; WIDTH]; K],
-    children: [Child; WIDTH],
+    children: [NodeRef; WIDTH],
 }
 
 const _: () = assert!(size_of::<SlabNode<14>>() == 512);
@@ -54,12 +54,12 @@ impl<const K: usize> WideNode for SlabNode<K> {
 
     const NOTHING: [f32; K] = [f32::NEG_INFINITY; K];
 
-    fn new(children: [Child; WIDTH]) -> Self {
+    fn new(children: [NodeRef; WIDTH]) -> Self {
         Self { heights: [[f32::NEG_INFINITY; WIDTH]; K], children }
     }
 
     #[inline(always)]
-    fn children(&self) -> &[Child; WIDTH] {
+    fn children(&self) -> &[NodeRef; WIDTH] {
         &self.children
     }
 
@@ -69,7 +69,7 @@ impl<const K: usize> WideNode for SlabNode<K> {
         self.heights.into_iter()
     }
 
-    fn of_rows(rows: &[[f32; WIDTH]], children: [Child; WIDTH]) -> Self {
+    fn of_rows(rows: &[[f32; WIDTH]], children: [NodeRef; WIDTH]) -> Self {
         Self { heights: std::array::from_fn(|i| rows[i]), children }
     }
 
@@ -93,7 +93,7 @@ impl<const K: usize> WideNode for SlabNode<K> {
             primitive.vertices().iter().for_each(|vertex| add(*vertex));
             if primitive.vertices().is_empty() {
                 // The corners of its box.
-                let [min, max] = [wide(&primitive.bounds.min), wide(&primitive.bounds.max)];
+                let [min, max] = [to_f64_array(&primitive.bounds.min), to_f64_array(&primitive.bounds.max)];
                 (0..8).for_each(|i| add([0, 1, 2].map(|k: usize| if i >> k & 1 == 0 { min[k] } else { max[k] })));
             }
         }
@@ -250,14 +250,14 @@ mod tests {
     use crate::Directions;
     use nalgebra::Matrix3;
     use p2m_core::Triangle;
-    use p2m_core::engine::simd::{InstructionSet, Isa, Operation};
+    use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel};
     use p2m_testkit::oracle::is_product_at_most;
     use p2m_testkit::{Cases, cases};
     use rand::{Rng, RngExt};
 
     struct Bounds<'a, const K: usize>(&'a SlabNode<K>, &'a Slabs<K>, &'a [f32; K]);
 
-    impl<const K: usize> Operation for Bounds<'_, K> {
+    impl<const K: usize> SimdKernel for Bounds<'_, K> {
         type Output = [f32; WIDTH];
         #[inline(always)]
         fn run<I: InstructionSet>(self) -> [f32; WIDTH] {
@@ -318,7 +318,7 @@ mod tests {
         let mut counts = [0; 3];
         for case in nodes.clone() {
             let mut rng = p2m_testkit::rng(name, case);
-            let mut node = SlabNode::<K>::new([Child::packet(0); WIDTH]);
+            let mut node = SlabNode::<K>::new([NodeRef::packet(0); WIDTH]);
             let mut exact = [Kdop::<K>::empty(); WIDTH];
             let mut boxes = [Aabb::empty(); WIDTH];
             for place in 0..WIDTH - 1 {

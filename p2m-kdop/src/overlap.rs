@@ -7,7 +7,7 @@
 
 use crate::{Directions, Kdop, KdopTree};
 use nalgebra::{Isometry3, Matrix3, Vector3};
-use p2m_bvh::{PacketTree, Part};
+use p2m_bvh::{PacketTree, TreeNode};
 use p2m_core::{PrimitiveId, Real};
 use std::ops::ControlFlow;
 
@@ -159,14 +159,14 @@ impl<'a, const K: usize, const L: usize> Overlap<'a, K, L> {
         a.may_meet(&self.heights.0.around(b)) && b.may_meet(&self.heights.1.around(a))
     }
 
-    /// Visits all pairs of leaves that may meet, as their primitives, until `visit` breaks.
+    /// QueryCost all pairs of leaves that may meet, as their primitives, until `visit` breaks.
     ///
     /// # Complexity
     /// O(k log n) expected for k pairs, O(n m) at worst.
     pub fn visit(&self, mut visit: impl FnMut(&[PrimitiveId], &[PrimitiveId]) -> ControlFlow<()>) -> ControlFlow<()> {
         let (first, second) = self.trees;
         let (Some(a), Some(b)) = (first.root(), second.root()) else { return ControlFlow::Continue(()) };
-        let mut open: Vec<(Part<Kdop<K>>, Part<Kdop<L>>)> = vec![(a, b)];
+        let mut open: Vec<(TreeNode<Kdop<K>>, TreeNode<Kdop<L>>)> = vec![(a, b)];
         while let Some((a, b)) = open.pop() {
             if !self.may_meet(&a.volume, &b.volume) {
                 continue;

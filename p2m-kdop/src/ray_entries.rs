@@ -4,18 +4,18 @@ use crate::Directions;
 use crate::heights::Slabs;
 use crate::node::SlabNode;
 use nalgebra::{Point3, Vector3};
-use p2m_bvh::engine::node::{BoxNode, Child, Frame, WIDTH};
+use p2m_bvh::engine::node::{BoxNode, Frame, NodeRef, WIDTH};
 use p2m_bvh::engine::packet::Member;
 use p2m_bvh::engine::ray::{FrameLine, half_box, misses};
 use p2m_bvh::engine::volume::WideNode;
-use p2m_core::engine::simd::{InstructionSet, Lanes, Operation};
+use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
 use p2m_core::{Crossing, Isa, Primitive, PrimitiveSet, Ray, Triangle};
 use p2m_testkit::{Cases, cases, vector};
 use rand::RngExt;
 
 struct Entries<'a, N: WideNode>(&'a N, &'a N::Ray);
 
-impl<N: WideNode> Operation for Entries<'_, N> {
+impl<N: WideNode> SimdKernel for Entries<'_, N> {
     type Output = [f32; WIDTH];
     #[inline(always)]
     fn run<I: InstructionSet>(self) -> [f32; WIDTH] {
@@ -43,7 +43,7 @@ fn compare<N: WideNode>(shape: &N::Shape, name: &str, cases: &Cases) -> [usize; 
             .collect();
         let bounds = triangles[..].aabb();
         let frame = Frame::around(&bounds);
-        let mut node = N::new([Child::packet(0); WIDTH]);
+        let mut node = N::new([NodeRef::packet(0); WIDTH]);
         for (place, triangle) in triangles.iter().enumerate() {
             let own = Member::of(triangle);
             node.put(place, &N::enclose(shape, &frame, &[own], &own.bounds));

@@ -8,13 +8,13 @@ use crate::heights::Slabs;
 use crate::node::SlabNode;
 use crate::{Directions, Kdop, KdopOptions};
 use nalgebra::Vector3;
-use p2m_bvh::engine::nearest::{Evaluate, finish, finish_nearest};
+use p2m_bvh::engine::nearest::{EvaluateFn, finish, finish_nearest};
 use p2m_bvh::engine::ray::Intersect;
 use p2m_bvh::engine::volume::{Nodes, TreeOptions};
 use p2m_bvh::{PacketTree, SplitOptions, Volume};
-use p2m_core::engine::query::Minimum;
+use p2m_core::engine::query::BestF64;
 use p2m_core::engine::vector::V3;
-use p2m_core::saved::{LoadError, Reader, Writer};
+use p2m_core::storage::{LoadError, Reader, Writer};
 use p2m_core::{Aabb, Hits, Near, Ray};
 
 impl<const K: usize> Volume for Kdop<K> {
@@ -54,12 +54,12 @@ impl<const K: usize> Nodes for Kdop<K> {
     }
 
     #[inline(never)]
-    fn nearest(tree: &PacketTree<Self>, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
+    fn nearest(tree: &PacketTree<Self>, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
         tree.run(query, minimum, evaluate, finish_nearest);
     }
 
     #[inline(never)]
-    fn near<'n>(tree: &PacketTree<Self>, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>) {
+    fn near<'n>(tree: &PacketTree<Self>, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
         tree.run(query, near, evaluate, finish);
     }
 
@@ -71,8 +71,8 @@ impl<const K: usize> Nodes for Kdop<K> {
 
 /// The searches of a tree of k-DOPs, which this crate has to have code for if they are named.
 type Searches<const K: usize> = (
-    fn(&PacketTree<Kdop<K>>, V3, &mut Minimum, Evaluate<'_, Minimum>),
-    for<'n> fn(&PacketTree<Kdop<K>>, V3, &mut Near<'n>, Evaluate<'_, Near<'n>>),
+    fn(&PacketTree<Kdop<K>>, V3, &mut BestF64, EvaluateFn<'_, BestF64>),
+    for<'n> fn(&PacketTree<Kdop<K>>, V3, &mut Near<'n>, EvaluateFn<'_, Near<'n>>),
     for<'r> fn(&PacketTree<Kdop<K>>, &'r Ray, f64, &mut Hits<'r>, Intersect<'_, 'r>),
 );
 

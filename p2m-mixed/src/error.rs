@@ -75,7 +75,7 @@ pub enum Reason {
     Io(#[source] std::io::Error),
     /// It is no saved index, or a damaged one.
     #[error(transparent)]
-    Saved(p2m_core::saved::LoadError),
+    Saved(p2m_core::storage::LoadError),
     /// The primitives do not make a scene: there are too many.
     #[error("no scene can be made of it")]
     Build(#[source] BuildError),

@@ -2,7 +2,7 @@
 
 use crate::{Object, Place, ReadError, Reason, Scene, Skipped};
 use nalgebra::Point3;
-use p2m_core::saved::{LoadError, Reader, SavedFile, Writer};
+use p2m_core::storage::{LoadError, Reader, SavedFile, Writer};
 use p2m_core::{Element, Soup};
 use std::io::{self, BufRead, Write};
 

@@ -5,7 +5,7 @@
 //! Written from the manual's description, for counting only.
 
 use nalgebra::{Point3, Vector3};
-use p2m_bvh::{PacketTree, Part};
+use p2m_bvh::{PacketTree, TreeNode};
 use p2m_core::{Primitive, PrimitiveId, PrimitiveSet, Ray, Real};
 use p2m_kdop::{Directions, Kdop};
 use std::cell::Cell;
@@ -98,7 +98,7 @@ impl<const K: usize> LeftFirst<K> {
     }
 
     /// Puts a node over some parts and returns its place.
-    fn add(&mut self, tree: &PacketTree<Kdop<K>>, parts: &[Part<Kdop<K>>]) -> usize {
+    fn add(&mut self, tree: &PacketTree<Kdop<K>>, parts: &[TreeNode<Kdop<K>>]) -> usize {
         if let [part] = parts {
             let children: Vec<_> = tree.children(part).collect();
             if let Some(ids) = tree.primitives(part) {

@@ -50,12 +50,12 @@ pub const SETTINGS: &[Setting] = &[
     within("epsilon 1", 1.0, "`QueryOptions::with_epsilon(1.0)`: at most twice as far"),
     Setting {
         name: "budget 0",
-        about: "`QueryOptions::with_budget(0)`: the first thing found; of `octree` and `p2m` what the cell itself tells",
+        about: "`QueryOptions::with_max_visits(0)`: the first thing found; of `octree` and `p2m` what the cell itself tells",
         ask: Ask::Budget(0),
     },
     Setting {
         name: "budget 16",
-        about: "`QueryOptions::with_budget(16)`: the best of sixteen visits of nodes and packets",
+        about: "`QueryOptions::with_max_visits(16)`: the best of sixteen visits of nodes and packets",
         ask: Ask::Budget(16),
     },
 ];
@@ -71,7 +71,7 @@ impl Setting {
         let usual = QueryOptions::default();
         match self.ask {
             Ask::Exact | Ask::Certified => usual,
-            Ask::Budget(visits) => usual.with_budget(visits),
+            Ask::Budget(visits) => usual.with_max_visits(visits),
             Ask::Epsilon(epsilon) => usual.with_epsilon(T::of_f64(epsilon)),
         }
     }
@@ -130,7 +130,7 @@ mod tests {
         for setting in SETTINGS {
             let options: QueryOptions<f64> = setting.options();
             match setting.promise() {
-                Promise::Nothing => assert!(options.budget < u32::MAX, "{}", setting.name),
+                Promise::Nothing => assert!(options.max_visits < u32::MAX, "{}", setting.name),
                 Promise::LastPlace => assert_eq!(setting.ask, Ask::Certified),
                 Promise::Within(part) => assert!((part - options.epsilon).abs() <= 0.0, "{}", setting.name),
             }

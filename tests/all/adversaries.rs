@@ -7,8 +7,8 @@ use p2m::bvh::{PacketTree, Volume};
 use p2m::interception::Partition;
 use p2m::interception::delaunay::{Delaunay, DelaunayError};
 use p2m::{
-    AabbOptions, AabbTree, BruteForce, BuildError, BuildIndex, ClosestPoint, Examine, KdopOptions, KdopTree,
-    OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, Point, PrimitiveId, PrimitiveSet, Soup, Visits,
+    AabbOptions, AabbTree, BruteForce, BuildError, BuildIndex, ClosestPoint, Inspect, KdopOptions, KdopTree,
+    OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, Point, PrimitiveId, PrimitiveSet, QueryCost, Soup,
 };
 use p2m_testkit::adversaries::{ADVERSARIES, Adversary, queries};
 use p2m_testkit::ball::Ball;
@@ -37,7 +37,7 @@ fn answers(index: &impl ClosestPoint<f64>, queries: &[Point3<f64>]) -> Vec<Optio
 }
 
 /// Holds an index against brute force, and what its queries visit against what there is.
-fn holds<I: ClosestPoint<f64> + Examine<f64>, V: Volume>(
+fn holds<I: ClosestPoint<f64> + Inspect<f64>, V: Volume>(
     name: &str,
     index: &I,
     tree: &PacketTree<V>,
@@ -48,7 +48,7 @@ fn holds<I: ClosestPoint<f64> + Examine<f64>, V: Volume>(
     for ((q, found), expected) in queries.iter().zip(answers(index, &queries)).zip(answers(&brute, &queries)) {
         assert_eq!(found, expected, "{name} {q:?}");
     }
-    let visits = Visits::of(index, &queries);
+    let visits = QueryCost::of(index, &queries);
     // Nothing is looked at twice, but for what is evaluated early, being held to be near.
     assert!(visits.packets.most <= tree.packets().0, "{name}: {visits:?}");
     assert!(visits.primitives.most <= soup.len() + 1, "{name}: {visits:?}");
@@ -97,8 +97,8 @@ fn every_backend(adversary: &Adversary) {
     let vertices: usize = (0..soup.len()).map(|i| p2m::Primitive::vertices(&soup.get(PrimitiveId::new(i))).len()).sum();
     assert!(sites <= 6 + 3 * vertices / 2 + soup.len(), "{name}: {report}");
     assert!(report.bytes as f64 <= options.memory * count() as f64 + (SITE * sites) as f64, "{name}: {report}");
-    assert!(report.entries <= options.longest * report.lists, "{name}: {report}");
-    assert!(p2m.list_lengths().into_iter().all(|len| len <= options.longest * 16), "{name}");
+    assert!(report.entries <= options.max_list_packets * report.lists, "{name}: {report}");
+    assert!(p2m.list_lengths().into_iter().all(|len| len <= options.max_list_packets * 16), "{name}");
     // Fewer primitives are not too much for it.
     if is_deep() && ["skew points", "skew wires", "helices", "moment curve"].contains(&name) {
         assert!(report.lists == 0 && report.bytes == 0, "{name}: {report}");

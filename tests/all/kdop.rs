@@ -3,7 +3,7 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Rotation3, Vector3};
-use p2m::backend::Counting;
+use p2m::backend::StatsCollector;
 use p2m::bvh::{TreeIndex, Volume};
 use p2m::kdop::Directions;
 use p2m::{
@@ -22,7 +22,7 @@ type Tree<'a, const K: usize> = KdopTree<f64, &'a Soup<f64>, K>;
 
 /// Nodes and packets that a search of the tree visits, for all queries.
 fn work<V: Volume>(tree: &TreeIndex<f64, &Soup<f64>, V>, queries: &[Point3<f64>]) -> [usize; 2] {
-    let [nodes, packets, _] = Counting::of_queries(queries, |query, counting| tree.visit(query, counting));
+    let [nodes, packets, _] = StatsCollector::of_queries(queries, |query, counting| tree.visit(query, counting));
     [nodes, packets]
 }
 

@@ -4,7 +4,7 @@
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 
 use nalgebra::Point3;
-use p2m::kdop::Choice;
+use p2m::kdop::DirectionChoice;
 use p2m::{
     AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopOptions, KdopTree, OctreeIndex, P2mIndex, PrimitiveSet, Real,
     Soup,
@@ -78,7 +78,7 @@ struct Trees<'a, T: Real>(
 );
 
 impl<'a, T: Real> Trees<'a, T> {
-    fn build(soup: &'a Soup<T>, choice: &Choice) -> Self {
+    fn build(soup: &'a Soup<T>, choice: &DirectionChoice) -> Self {
         let is_small = soup.len() <= too_many() || is_in_full();
         let own = KdopOptions::new(choice.frame_directions::<26>().expect("thirteen"));
         Self(
@@ -102,7 +102,7 @@ fn trees_agree_with_brute_force_on_every_model_in_f64() {
             println!("{name}: left out");
             continue;
         }
-        let trees = Trees::build(&soup, &Choice::from_scene(&soup).expect("valid"));
+        let trees = Trees::build(&soup, &DirectionChoice::from_scene(&soup).expect("valid"));
         for set in QuerySet::ALL {
             let queries = set.generate(&soup, queries(), 1);
             confirmed += agrees(&name, set, &soup, &trees, &queries);
@@ -123,7 +123,7 @@ fn trees_agree_with_brute_force_on_every_model_in_f32() {
             continue;
         }
         let soup = narrow(&wide).expect("models fit f32");
-        let trees = Trees::build(&soup, &Choice::from_scene(&wide).expect("valid"));
+        let trees = Trees::build(&soup, &DirectionChoice::from_scene(&wide).expect("valid"));
         for set in QuerySet::ALL {
             // A quarter of the queries: the scalar changes the boxes, not the kernel.
             let queries: Vec<_> = set.generate(&wide, queries() / 4, 2).iter().map(|q| q.map(f32::of_f64)).collect();

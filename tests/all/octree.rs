@@ -4,7 +4,7 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
-use p2m::backend::{Collector, Counting};
+use p2m::backend::{Collector, StatsCollector};
 use p2m::{
     Aabb, BruteForce, BuildIndex, ClosestPoint, Domain, Isa, OctreeIndex, OctreeOptions, Point, PrimitiveId,
     PrimitiveSet, Projection, Segment, Shape, Soup,
@@ -217,7 +217,7 @@ fn lookups_do_little() {
         let centre = nalgebra::center(&bounds.min, &bounds.max);
         let mut place = || centre + Vector3::from_fn(|k, _| rng.random_range(-reach..reach) * size[k]);
         let queries: Vec<_> = (0..1000).map(|_| place()).collect();
-        let sums = Counting::of_queries(&queries, |query, counting| index.visit(query, counting));
+        let sums = StatsCollector::of_queries(&queries, |query, counting| index.visit(query, counting));
         println!("{name}: per 1000 queries {sums:?} nodes, packets, primitives");
         assert!((0..3).all(|i| sums[i] <= most[i]), "{name}: {sums:?}");
     }

@@ -4,8 +4,8 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
-use p2m::backend::Counting;
-use p2m::interception::{Partition, Progress, Stage};
+use p2m::backend::StatsCollector;
+use p2m::interception::{BuildStage, Partition, Progress};
 use p2m::{
     Aabb, BruteForce, BuildIndex, ClosestPoint, Isa, P2mIndex, P2mOptions, Point, Primitive, PrimitiveSet, Projection,
     Segment, Shape, Soup, Triangle,
@@ -143,7 +143,7 @@ fn round_shapes_have_short_lists() {
     // Of the vertices that are nearly one at the poles nothing is known.
     assert!(report.trees < 100 && report.added == 0 && mean < 40.0, "{report}");
     assert!((1..100).contains(&report.auxiliary), "{report}");
-    let alone = P2mIndex::build(&sphere[..], &P2mOptions::default().with_added(0.0)).expect("valid").report();
+    let alone = P2mIndex::build(&sphere[..], &P2mOptions::default().with_max_extra_sites(0.0)).expect("valid").report();
     assert!(alone.lists == 0 && alone.auxiliary == 0 && alone.trees > sphere.len() / 3, "{alone}");
     let report = built(&cylinder(amount(400, 200))[..]).report();
     println!("cylinder: {report}");
@@ -379,17 +379,17 @@ fn progress_goes_from_nothing_to_all() {
     let rises = |w: &[Progress]| w[0].part < w[1].part || (w[0].part == w[1].part && w[0].stage != w[1].stage);
     assert!(parts.len() > 20 && parts.windows(2).all(rises), "{parts:?}");
     assert!(parts[0].part >= 0.0 && parts.last().is_some_and(|last| last.part == 1.0), "{parts:?}");
-    let mut stages: Vec<Stage> = parts.iter().map(|progress| progress.stage).collect();
+    let mut stages: Vec<BuildStage> = parts.iter().map(|progress| progress.stage).collect();
     stages.dedup();
-    assert_eq!(stages[..4], [Stage::Tree, Stage::Delaunay, Stage::Balls, Stage::Lists]);
-    assert_eq!(stages[4..], [Stage::Locator]);
+    assert_eq!(stages[..4], [BuildStage::Tree, BuildStage::Delaunay, BuildStage::Balls, BuildStage::Lists]);
+    assert_eq!(stages[4..], [BuildStage::Locator]);
 }
 
 #[test]
 fn lists_that_are_too_long_are_left_to_the_tree() {
     let soup = sheet(amount(3_000, 800));
     let report = |longest| {
-        let options = P2mOptions::default().with_longest(longest).with_added(0.0);
+        let options = P2mOptions::default().with_max_list_packets(longest).with_max_extra_sites(0.0);
         P2mIndex::<f64, _>::build(&soup, &options).expect("valid").report()
     };
     let usual = report(128);
@@ -415,7 +415,7 @@ fn lookups_do_little() {
         let centre = nalgebra::center(&bounds.min, &bounds.max);
         let mut place = || centre + Vector3::from_fn(|k, _| rng.random_range(-reach..reach) * size[k]);
         let queries: Vec<_> = (0..1000).map(|_| place()).collect();
-        let sums = Counting::of_queries(&queries, |query, counting| index.visit(query, counting));
+        let sums = StatsCollector::of_queries(&queries, |query, counting| index.visit(query, counting));
         println!("{name}: per 1000 queries {sums:?} nodes and sites, packets, primitives");
         assert!((0..3).all(|i| sums[i] <= most[i]), "{name}: {sums:?}");
     }

@@ -3,7 +3,7 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
-use p2m::backend::{Best, Collector, Counting};
+use p2m::backend::{Best, Collector, StatsCollector};
 use p2m::{
     AabbOptions, AabbTree, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Isa, Point, Primitive,
     PrimitiveId, PrimitiveSet, Projection, QueryOptions, Real, Segment, Shape, Soup, Triangle, batch,
@@ -263,14 +263,14 @@ fn searches_do_little() {
         let mut sums = [0; 3];
         let mut hinted = 0;
         for q in &queries {
-            let mut counting = Counting::<f64>::new(Best::new(&QueryOptions::default()));
+            let mut counting = StatsCollector::<f64>::new(Best::new(&QueryOptions::default()));
             tree.visit(q, &mut counting);
             sums = [sums[0] + counting.nodes, sums[1] + counting.packets, sums[2] + counting.primitives];
             // With the answer known from the start, less is left to visit.
             let found = counting.best.finish().expect("not empty").primitive;
             let mut best = Best::<f64>::new(&QueryOptions::default());
             best.offer(found, soup.get(found).project(q));
-            let mut counting = Counting::new(best);
+            let mut counting = StatsCollector::new(best);
             tree.visit(q, &mut counting);
             hinted += counting.nodes + counting.packets;
         }

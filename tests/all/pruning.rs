@@ -400,7 +400,7 @@ fn odd_options_agree() {
     all.extend(in_the_middle(&mut numbers, amount(100, 8)));
     for added in amount(vec![0.0, 1e-9, 1e9, f64::INFINITY, f64::NAN, -1.0], vec![f64::NAN, f64::INFINITY]) {
         let reports = [0, 1, 2, 96, 2048, usize::MAX].map(|longest| {
-            let options = P2mOptions::default().with_added(added).with_longest(longest);
+            let options = P2mOptions::default().with_max_extra_sites(added).with_max_list_packets(longest);
             let report = agrees(&format!("{added} {longest}"), &soup, &options, &all);
             println!("{added} {longest}: {report}");
             assert!(added > 1e-9 || report.added + report.auxiliary == 0, "{added} {longest}: {report}");

@@ -1,7 +1,7 @@
 //! How much work rays do: counters, which are deterministic.
 #![cfg(all(feature = "bvh", feature = "kdop"))]
 
-use p2m::backend::{Hits, RayCounting};
+use p2m::backend::{Hits, RayStatsCollector};
 use p2m::bvh::{TreeIndex, Volume};
 use p2m::kdop::Directions;
 use p2m::{AabbTree, BruteForce, BuildIndex, KdopTree, Ray, RayQuery, Soup};
@@ -72,7 +72,8 @@ fn clipping_by_slabs_leaves_no_hit_out() {
 
 /// Nodes and packets that a search for all hits visits, for all rays.
 fn work<V: Volume>(tree: &TreeIndex<f64, &Soup<f64>, V>, rays: &[Ray]) -> [usize; 2] {
-    let [nodes, packets, _] = RayCounting::of_rays(rays, &Hits::all(), |ray, counting| tree.visit_ray(ray, counting));
+    let [nodes, packets, _] =
+        RayStatsCollector::of_rays(rays, &Hits::all(), |ray, counting| tree.visit_ray(ray, counting));
     [nodes, packets]
 }
 

@@ -2,8 +2,8 @@
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 
 use nalgebra::Point3;
-use p2m::saved::{LoadError, Reader, SavedFile, VERSION, Writer};
 use p2m::scene::{Scene, load_scene, save_scene};
+use p2m::storage::{LoadError, Reader, SavedFile, VERSION, Writer};
 use p2m::{
     AabbTree, BuildIndex, ClosestPoint, KdopTree, OctreeIndex, P2mIndex, Point, PrimitiveId, PrimitiveSet, Ray,
     RayQuery, Segment, Soup,
@@ -79,7 +79,7 @@ fn what_is_loaded_answers_as_what_was_saved() {
             let expected = (index.built)(&scene.soup, &queries);
             for file in [SavedFile::read(&bytes[..]).expect("read"), SavedFile::open(&path).expect("mapped")] {
                 let reader = file.checked().expect("whole");
-                assert_eq!(p2m::saved::kind(reader).expect("a kind"), index.name);
+                assert_eq!(p2m::storage::kind(reader).expect("a kind"), index.name);
                 let again = load_scene(reader).expect("a scene");
                 assert_eq!(again, scene, "case {case}: {} {kinds:?} {layout:?}", index.name);
                 let found = (index.loaded)(&again.soup, reader, &queries).expect("an index");
@@ -122,7 +122,7 @@ fn names_origins_and_what_was_skipped_come_back() {
     assert_eq!(p2m::scene::read_p2m(&file[..], "scene").expect("a scene"), scene);
     // A scene alone has no index.
     let saved = SavedFile::read(&file[..]).expect("read");
-    let error = p2m::saved::kind(saved.checked().expect("whole")).expect_err("none");
+    let error = p2m::storage::kind(saved.checked().expect("whole")).expect_err("none");
     assert!(matches!(error, LoadError::Missing { .. }), "{error}");
 }
 

@@ -12,9 +12,9 @@ use cpu_time::ThreadTime;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_bvh::{PacketTree, Volume};
-use p2m_core::{Aabb, BruteForce, ClosestPoint, Examine, PrimitiveSet, Soup, Visits};
+use p2m_core::{Aabb, BruteForce, ClosestPoint, Inspect, PrimitiveSet, QueryCost, Soup};
+use p2m_interception::{BuildStage, Progress};
 use p2m_interception::{OctreeIndex, P2mIndex};
-use p2m_interception::{Progress, Stage};
 use p2m_kdop::KdopTree;
 use p2m_kdop::{Kdop, KdopOptions};
 use p2m_testkit::adversaries::{ADVERSARIES, Adversary, queries};
@@ -78,7 +78,7 @@ struct Trial<'a> {
 
 impl Trial<'_> {
     /// Adds the row of an index.
-    fn row<I: ClosestPoint<f64> + Examine<f64>>(&mut self, budget: &Budget, index: &I, taken: &Taken) {
+    fn row<I: ClosestPoint<f64> + Inspect<f64>>(&mut self, budget: &Budget, index: &I, taken: &Taken) {
         let count = self.soup.len();
         let allowed = count.max(FEW);
         let answers = self.queries.iter().map(|q| index.closest_point(q)).map(key);
@@ -87,7 +87,7 @@ impl Trial<'_> {
             && taken.peak <= budget.peak * allowed
             && taken.kept <= budget.kept * allowed;
         self.good &= is_right && within;
-        let visits = Visits::of(index, &self.queries);
+        let visits = QueryCost::of(index, &self.queries);
         let lengths = index.list_lengths();
         let longest = lengths.iter().max().map_or_else(String::new, usize::to_string);
         let each = |bytes: usize| (bytes / count).to_string();
@@ -149,7 +149,7 @@ fn of_tree<V: Volume>(soup: &Soup<f64>, options: &V::Options) -> Taken {
 }
 
 /// What `build` takes from a stage on, and what it makes. What is asked for before that is not counted.
-fn since<I>(stage: Stage, build: impl FnOnce(&(dyn Fn(Progress) + Sync)) -> I) -> (I, f64, usize) {
+fn since<I>(stage: BuildStage, build: impl FnOnce(&(dyn Fn(Progress) + Sync)) -> I) -> (I, f64, usize) {
     let before = memory::current();
     let has_begun = AtomicBool::new(false);
     let start = ThreadTime::now();
@@ -180,7 +180,7 @@ fn add_rows(adversary: &'static Adversary, count: usize, table: &mut Table) -> R
 
     let options = octree_options(1.0);
     let (index, build, peak) =
-        since(Stage::Tree, |progress| OctreeIndex::build_with_progress(soup, &options, progress));
+        since(BuildStage::Tree, |progress| OctreeIndex::build_with_progress(soup, &options, progress));
     let index = index?;
     let report = index.report();
     let way_out = match report.lists + report.singles {
@@ -192,7 +192,7 @@ fn add_rows(adversary: &'static Adversary, count: usize, table: &mut Table) -> R
 
     let options = p2m_options();
     let (index, build, peak) =
-        since(Stage::Delaunay, |progress| P2mIndex::build_with_progress(soup, &options, progress));
+        since(BuildStage::Delaunay, |progress| P2mIndex::build_with_progress(soup, &options, progress));
     let index = index?;
     let report = index.report();
     let way_out = match report.lists {

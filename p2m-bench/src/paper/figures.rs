@@ -83,7 +83,7 @@ impl Figures<'_> {
     pub(super) fn write(&self, folder: &Path) -> Result<()> {
         let to = |name: &str| folder.join(format!("{name}.svg"));
         let sweep = self.sweep;
-        let lists = |value: fn(&p2m_core::Lists) -> f64| move |s: &Study| s.inside.lists.as_ref().map(value);
+        let lists = |value: fn(&p2m_core::ListStats) -> f64| move |s: &Study| s.inside.lists.as_ref().map(value);
         let mut lists =
             mean_and_most(sweep, "primitives of a list", lists(|lists| lists.mean), lists(|lists| lists.most as f64));
         lists.series.extend(["mean", "most"].into_iter().zip(cited::LISTS).map(|(name, value)| cited_at(name, value)));

@@ -8,9 +8,9 @@ use crate::scene::Scene;
 use anyhow::Result;
 use cpu_time::ThreadTime;
 use nalgebra::Point3;
-use p2m_core::{ClosestPoint, Lists, PrimitiveSet, Soup, Visits};
+use p2m_core::{ClosestPoint, ListStats, PrimitiveSet, QueryCost, Soup};
 use p2m_interception::StageTimes;
-use p2m_interception::{P2mIndex, P2mReport, Stage};
+use p2m_interception::{BuildStage, P2mIndex, P2mReport};
 use p2m_testkit::queries::{QuerySet, scaled_box};
 use rayon::prelude::*;
 use std::hint::black_box;
@@ -42,11 +42,11 @@ pub(super) struct Study {
 /// The P2M index from inside.
 pub(super) struct Inside {
     pub(super) report: P2mReport,
-    pub(super) lists: Option<Lists>,
+    pub(super) lists: Option<ListStats>,
     /// In the box of ten times the size.
-    pub(super) visits: Visits,
+    pub(super) visits: QueryCost,
     /// Seconds of stages.
-    pub(super) stages: Vec<(Stage, f64)>,
+    pub(super) stages: Vec<(BuildStage, f64)>,
     pub(super) parts: Vec<(&'static str, usize)>,
     pub(super) breakdown: Breakdown,
 }
@@ -126,10 +126,10 @@ impl Inside {
         let stages = times.finish().into_iter().map(|(stage, time)| (stage, time.as_secs_f64())).collect();
         Ok(Self {
             report: index.report(),
-            lists: Lists::of(&index),
-            visits: Visits::of(&index, queries),
+            lists: ListStats::of(&index),
+            visits: QueryCost::of(&index, queries),
             stages,
-            parts: p2m_core::Examine::parts(&index),
+            parts: p2m_core::Inspect::parts(&index),
             breakdown: Breakdown::of(&index, queries, rounds),
         })
     }

@@ -4,7 +4,7 @@ use crate::contender::{Absent, Prepared};
 use crate::scene::{Scene, single_point};
 use nalgebra::{Point3, Vector3};
 use p2m_bvh::{TreeIndex, Volume};
-use p2m_core::{BruteForce, Hit, Hits, PrimitiveSet, Ray, RayCounting, RayQuery};
+use p2m_core::{BruteForce, Hit, Hits, PrimitiveSet, Ray, RayQuery, RayStatsCollector};
 use std::hint::black_box;
 
 /// What is asked.
@@ -137,7 +137,7 @@ impl<S: PrimitiveSet<f64>, V: Volume> Ours for TreeIndex<f64, S, V> {
         (self.first_intersection(ray), self.all_intersections(ray))
     }
     fn work(&self, rays: &[Ray]) -> [usize; 3] {
-        RayCounting::of_rays(rays, &Hits::all(), |ray, counting| self.visit_ray(ray, counting))
+        RayStatsCollector::of_rays(rays, &Hits::all(), |ray, counting| self.visit_ray(ray, counting))
     }
 }
 

@@ -6,7 +6,7 @@
 //! are here.) A greedy choice from the root leaves the lowest nodes half empty.
 
 use crate::build::Node;
-use crate::tree::aabb_node::{Child, WIDTH};
+use crate::tree::aabb_node::{NodeRef, WIDTH};
 use p2m_core::Aabb;
 use std::ops::Range;
 
@@ -75,13 +75,13 @@ impl Binary {
     }
 
     /// The root, the children of the nodes, parents before children, and how many nodes are on the longest path.
-    pub(crate) fn collapse(&self) -> (Child, Vec<[Child; WIDTH]>, usize) {
-        let Some(root) = self.nodes.first() else { return (Child::NONE, Vec::new(), 0) };
+    pub(crate) fn collapse(&self) -> (NodeRef, Vec<[NodeRef; WIDTH]>, usize) {
+        let Some(root) = self.nodes.first() else { return (NodeRef::NONE, Vec::new(), 0) };
         if let Below::Packet(packet) = root.below {
-            return (Child::packet(packet), Vec::new(), 0);
+            return (NodeRef::packet(packet), Vec::new(), 0);
         }
         let forests = self.forests();
-        let mut nodes = vec![[Child::NONE; WIDTH]];
+        let mut nodes = vec![[NodeRef::NONE; WIDTH]];
         let mut longest = 0;
         let mut open = vec![(0, 0, 1)];
         while let Some((number, at, depth)) = open.pop() {
@@ -92,23 +92,23 @@ impl Binary {
             while let Some((at, room, opened)) = rooms.pop() {
                 let forest = forests[at][room - 1];
                 let child = match self.nodes[at].below {
-                    Below::Packet(packet) => Child::packet(packet),
+                    Below::Packet(packet) => NodeRef::packet(packet),
                     Below::Nodes([a, b]) if opened || (room > 1 && forest.left > 0) => {
                         let left = if opened { forests[at][0].left } else { forest.left };
                         rooms.extend([(b, room - left, false), (a, left, false)]);
                         continue;
                     }
                     Below::Nodes(_) => {
-                        nodes.push([Child::NONE; WIDTH]);
+                        nodes.push([NodeRef::NONE; WIDTH]);
                         open.push((nodes.len() - 1, at, depth + 1));
-                        Child::node(nodes.len() - 1)
+                        NodeRef::node(nodes.len() - 1)
                     }
                 };
                 nodes[number][place] = child;
                 place += 1;
             }
         }
-        (Child::node(0), nodes, longest)
+        (NodeRef::node(0), nodes, longest)
     }
 
     /// For each node the best forests of at most 1, 2, .. trees. That of one tree tells how the children of its root
@@ -196,8 +196,8 @@ mod tests {
             assert!((found - expected).abs() < 1e-12 * expected, "{len}: {found} for {expected}");
             // And the nodes are those: as many children in all as there are nodes and packets below the root.
             let (root, nodes, depth) = tree.collapse();
-            assert_eq!(root, Child::node(0));
-            let children: Vec<Child> = nodes.concat().into_iter().filter(|child| *child != Child::NONE).collect();
+            assert_eq!(root, NodeRef::node(0));
+            let children: Vec<NodeRef> = nodes.concat().into_iter().filter(|child| *child != NodeRef::NONE).collect();
             let packets: Vec<usize> = children.iter().filter(|c| c.is_packet()).map(|c| c.number()).collect();
             assert_eq!(packets.len() + nodes.len() - 1, children.len());
             assert!((0..len).all(|packet| packets.contains(&packet)) && packets.len() == len);

@@ -306,14 +306,14 @@ mod tests {
     use super::*;
     use crate::packet::Member;
     use nalgebra::{Point3, Vector3};
-    use p2m_core::engine::simd::Operation;
+    use p2m_core::engine::simd::SimdKernel;
     use p2m_core::{Aabb, Crossing, Element, Isa, Primitive, PrimitiveId, PrimitiveSet, Shape, Soup};
     use p2m_testkit::vector;
     use rand::{Rng, RngExt};
 
     struct Met<'a>(&'a Packet, &'a Line, [f64; 2]);
 
-    impl Operation for Met<'_> {
+    impl SimdKernel for Met<'_> {
         type Output = u32;
         #[inline(always)]
         fn run<I: InstructionSet>(self) -> u32 {

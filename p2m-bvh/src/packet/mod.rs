@@ -25,7 +25,7 @@ mod squared_distance;
 
 pub use line_filter::Line;
 use nalgebra::Point3;
-use p2m_core::engine::real::wide;
+use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::simd::{InstructionSet, Lanes, prefetch};
 use p2m_core::engine::vector::V3 as Vertex;
 use p2m_core::engine::vector::power_of_two;
@@ -72,7 +72,7 @@ impl Member {
         let kind = Kind::of(primitive);
         let mut vertices = [[0.0; 3]; 3];
         if kind != Kind::Box {
-            vertices.iter_mut().zip(primitive.vertices()).for_each(|(to, vertex)| *to = wide(vertex));
+            vertices.iter_mut().zip(primitive.vertices()).for_each(|(to, vertex)| *to = to_f64_array(vertex));
         }
         Self { kind, bounds: primitive.aabb().to_f64(), vertices }
     }
@@ -165,7 +165,7 @@ impl Packet {
         bounds: &Aabb<f64>,
         finest: f64,
     ) -> (Self, Vec<Vertex>) {
-        let [min, max] = [wide(&bounds.min), wide(&bounds.max)];
+        let [min, max] = [to_f64_array(&bounds.min), to_f64_array(&bounds.max)];
         let size = (0..3).map(|k| max[k] - min[k]).fold(0.0, f64::max);
         let unit = frame_unit(size).max(finest);
         let unit = if UNITS.contains(&unit) { unit } else { 0.0 };
@@ -187,8 +187,8 @@ impl Packet {
             let primitive = &primitives[place];
             packet.ids[lane] = ids[place];
             if kind == Kind::Box {
-                packet.put(lane, 0, wide(&primitive.bounds.min), f64::floor);
-                packet.put(lane, 1, wide(&primitive.bounds.max), f64::ceil);
+                packet.put(lane, 0, to_f64_array(&primitive.bounds.min), f64::floor);
+                packet.put(lane, 1, to_f64_array(&primitive.bounds.max), f64::ceil);
             } else {
                 for (v, vertex) in primitive.vertices().iter().enumerate() {
                     packet.put(lane, v, *vertex, f64::round);
@@ -457,13 +457,13 @@ fn scale(e: i32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use p2m_core::engine::simd::{Isa, Operation};
+    use p2m_core::engine::simd::{Isa, SimdKernel};
     use p2m_core::{Primitive, PrimitiveSet, Shape};
     use rand::{Rng, RngExt};
 
     struct Squares<'a>(&'a Packet, &'a Local, f32);
 
-    impl Operation for Squares<'_> {
+    impl SimdKernel for Squares<'_> {
         type Output = [f32; LANES];
         #[inline(always)]
         fn run<I: InstructionSet>(self) -> [f32; LANES] {

@@ -2,14 +2,14 @@
 
 use crate::traverse::STACK;
 use crate::tree::PacketTree;
-use crate::tree::aabb_node::Child;
+use crate::tree::aabb_node::NodeRef;
 use crate::tree::volume::{Volume, WideNode};
 use nalgebra::Point3;
 use p2m_core::{Aabb, PrimitiveId};
 use std::ops::ControlFlow;
 
 impl<V: Volume> PacketTree<V> {
-    /// Visits the primitives that meet a box, in the order of the leaves, until `visit` breaks. `meets` tells whether a
+    /// QueryCost the primitives that meet a box, in the order of the leaves, until `visit` breaks. `meets` tells whether a
     /// primitive does, which is asked only where the box of a node or packet does not tell.
     ///
     /// # Complexity
@@ -25,7 +25,7 @@ impl<V: Volume> PacketTree<V> {
         }
         // Children, and whether they are known from above to lie in the box.
         let mut stack = [(self.root, false); STACK];
-        let mut waiting = usize::from(self.root != Child::NONE);
+        let mut waiting = usize::from(self.root != NodeRef::NONE);
         while waiting > 0 {
             waiting -= 1;
             let (child, inside) = stack[waiting];
@@ -55,21 +55,21 @@ impl<V: Volume> PacketTree<V> {
     /// O(depth).
     pub fn nearest_leaf(&self, query: &Point3<f64>, mut aside: impl FnMut(f64)) -> &[PrimitiveId] {
         let mut at = self.root;
-        while at != Child::NONE && !at.is_packet() {
-            let mut nearest = (f64::INFINITY, Child::NONE);
+        while at != NodeRef::NONE && !at.is_packet() {
+            let mut nearest = (f64::INFINITY, NodeRef::NONE);
             for (bounds, child) in self.child_boxes(at) {
                 let bound = bounds.lower_bound(query);
-                let farther = if bound < nearest.0 || nearest.1 == Child::NONE {
+                let farther = if bound < nearest.0 || nearest.1 == NodeRef::NONE {
                     std::mem::replace(&mut nearest, (bound, child))
                 } else {
                     (bound, child)
                 };
-                if farther.1 != Child::NONE {
+                if farther.1 != NodeRef::NONE {
                     aside(farther.0);
                 }
             }
             at = nearest.1;
         }
-        if at == Child::NONE { &[] } else { self.leaves.packets[at.number()].ids() }
+        if at == NodeRef::NONE { &[] } else { self.leaves.packets[at.number()].ids() }
     }
 }

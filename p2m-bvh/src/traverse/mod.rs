@@ -6,7 +6,7 @@ pub(crate) mod range;
 pub(crate) mod ray;
 pub(crate) mod ray_slab;
 
-use crate::tree::aabb_node::{Child, WIDTH};
+use crate::tree::aabb_node::{NodeRef, WIDTH};
 use crate::tree::volume::{Volume, WideNode};
 use crate::tree::{MAX_WIDE_DEPTH, PacketTree};
 use p2m_core::engine::simd::{EightLanes, InstructionSet, Lanes, lane_of_key, number_of_key};
@@ -57,7 +57,7 @@ fn walk_with<I: InstructionSet, V: Volume, W: Walk<V>, const STACK: usize>(tree:
     let mut parents = [0u32; STACK];
     let mut top = 0;
     let mut at = tree.root;
-    if at == Child::NONE {
+    if at == NodeRef::NONE {
         return;
     }
     // Of the child that is visited.
@@ -97,7 +97,7 @@ fn walk_with<I: InstructionSet, V: Volume, W: Walk<V>, const STACK: usize>(tree:
             let key = keys[top];
             bound = number_of_key(key);
             if bound <= walk.limit() {
-                at = tree.nodes[Child(parents[top]).number()].children()[lane_of_key(key)];
+                at = tree.nodes[NodeRef(parents[top]).number()].children()[lane_of_key(key)];
                 break;
             }
         }

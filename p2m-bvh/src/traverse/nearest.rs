@@ -8,11 +8,11 @@
 
 use crate::packet::{LANES, Local, Packet, ROUND_UP, at_most, smallest};
 use crate::traverse::{Walk, walk};
-use crate::tree::aabb_node::{Child, Frame};
+use crate::tree::aabb_node::{Frame, NodeRef};
 use crate::tree::volume::{Volume, WideNode};
 use crate::tree::{Leaves, PacketTree};
-use p2m_core::engine::query::Minimum;
-use p2m_core::engine::simd::{InstructionSet, Lanes, Operation};
+use p2m_core::engine::query::BestF64;
+use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
 use p2m_core::engine::vertices::{SIDE_BY_SIDE, certain_vertices};
 use p2m_core::{Collector, Isa, PrimitiveId};
 use std::ops::ControlFlow;
@@ -22,7 +22,7 @@ const CANDIDATES: usize = 32;
 
 /// Offers a primitive of which the tree has only a box to the collector, unless its key exceeds a square. Not a type
 /// parameter: so searches do not depend on the set, and are compiled once for all of them.
-pub type Evaluate<'a, C> = &'a dyn Fn(&mut C, PrimitiveId, f64);
+pub type EvaluateFn<'a, C> = &'a dyn Fn(&mut C, PrimitiveId, f64);
 
 /// A search as an operation.
 pub struct Search<'a, V: Volume, C> {
@@ -33,18 +33,18 @@ pub struct Search<'a, V: Volume, C> {
     /// perhaps the one in this packet and lane.
     pub held: Option<(usize, usize)>,
     pub collector: &'a mut C,
-    pub evaluate: Evaluate<'a, C>,
-    pub finish: fn(&mut Filter<'_, C>),
+    pub evaluate: EvaluateFn<'a, C>,
+    pub finish: fn(&mut SearchState<'_, C>),
 }
 
-impl<V: Volume, C: Collector> Operation for Search<'_, V, C> {
+impl<V: Volume, C: Collector> SimdKernel for Search<'_, V, C> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
         let tree = self.tree;
         let Some(local) = V::Node::query(&tree.shape, &tree.frame, &self.query) else { return self.run_far() };
-        let mut filter = Filter::new(tree, self.query, self.reach, self.collector, self.evaluate, self.finish);
+        let mut filter = SearchState::new(tree, self.query, self.reach, self.collector, self.evaluate, self.finish);
         filter.hold(self.held, self.reach);
         let mut nearest = Nearest { filter, shape: &tree.shape, local };
         walk::<I, V, _>(tree, &mut nearest);
@@ -64,7 +64,7 @@ impl<V: Volume, C: Collector> Search<'_, V, C> {
             if collector.is_approximate() && collector.is_content(false) {
                 return collector.forgo(stack.iter().fold(bound, |least, waiting| least.min(waiting.0)));
             }
-            if bound > collector.prune_above() || child == Child::NONE {
+            if bound > collector.prune_above() || child == NodeRef::NONE {
                 continue;
             }
             if child.is_packet() {
@@ -93,19 +93,19 @@ fn offer_apart<C: Collector>(
     query: [f64; 3],
     square: f64,
     collector: &mut C,
-    evaluate: Evaluate<'_, C>,
+    evaluate: EvaluateFn<'_, C>,
 ) {
     offer(leaves, packet, lane, query, square, collector, evaluate);
 }
 
 /// Sorts children by their bounds. Not generic, for sorting is much code.
-fn nearest_last(children: &mut [(f64, Child)]) {
+fn nearest_last(children: &mut [(f64, NodeRef)]) {
     children.sort_by(|a, b| b.0.total_cmp(&a.0));
 }
 
 /// A search on its way through the nodes.
 struct Nearest<'a, V: Volume, C> {
-    filter: Filter<'a, C>,
+    filter: SearchState<'a, C>,
     shape: &'a V::Shape,
     local: <V::Node as WideNode>::Query,
 }
@@ -147,7 +147,7 @@ fn offer<C: Collector>(
     query: [f64; 3],
     square: f64,
     collector: &mut C,
-    evaluate: Evaluate<'_, C>,
+    evaluate: EvaluateFn<'_, C>,
 ) {
     let id = packet.ids()[lane];
     // What is nearer by rounding alone is no reason to leave out another one.
@@ -169,15 +169,15 @@ struct Candidate {
 }
 
 /// The state of a search.
-pub struct Filter<'a, C> {
+pub struct SearchState<'a, C> {
     leaves: &'a Leaves,
     /// Of the nodes.
     frame: &'a Frame,
     isa: Isa,
     query: [f64; 3],
     collector: &'a mut C,
-    evaluate: Evaluate<'a, C>,
-    finish: fn(&mut Filter<'_, C>),
+    evaluate: EvaluateFn<'a, C>,
+    finish: fn(&mut SearchState<'_, C>),
     /// Some primitive is known to be at most this far.
     reach: f64,
     /// The distance above which primitives are no candidates.
@@ -192,7 +192,7 @@ pub struct Filter<'a, C> {
     count: usize,
 }
 
-impl<'a, C: Collector> Filter<'a, C> {
+impl<'a, C: Collector> SearchState<'a, C> {
     /// Nothing seen yet, but some primitive is known to be at most `reach` far.
     #[inline(always)]
     pub fn new<V: Volume>(
@@ -200,8 +200,8 @@ impl<'a, C: Collector> Filter<'a, C> {
         query: [f64; 3],
         reach: f64,
         collector: &'a mut C,
-        evaluate: Evaluate<'a, C>,
-        finish: fn(&mut Filter<'_, C>),
+        evaluate: EvaluateFn<'a, C>,
+        finish: fn(&mut SearchState<'_, C>),
     ) -> Self {
         let approximate = collector.is_approximate();
         let mut filter = Self {
@@ -457,7 +457,7 @@ impl<'a, C: Collector> Filter<'a, C> {
     }
 }
 
-impl<C: Collector> Filter<'_, C> {
+impl<C: Collector> SearchState<'_, C> {
     /// Evaluates what is held, and gives up what waits if that is enough.
     #[cold]
     #[inline(never)]
@@ -483,20 +483,20 @@ const FEW: usize = 3;
 /// Evaluates the candidates that wait with the instruction set, in a function of its own: the traversal is better off
 /// with registers of its own.
 #[inline(never)]
-pub fn finish<C: Collector>(filter: &mut Filter<'_, C>) {
+pub fn finish<C: Collector>(filter: &mut SearchState<'_, C>) {
     filter.isa.run(Finish(filter));
 }
 
 /// The same for the nearest primitive: what is not generic is compiled once.
 #[inline(never)]
-pub fn finish_nearest(filter: &mut Filter<'_, Minimum>) {
+pub fn finish_nearest(filter: &mut SearchState<'_, BestF64>) {
     filter.isa.run(Finish(filter));
 }
 
 /// The evaluation of the candidates that wait.
-struct Finish<'a, 'b, C>(&'a mut Filter<'b, C>);
+struct Finish<'a, 'b, C>(&'a mut SearchState<'b, C>);
 
-impl<C: Collector> Operation for Finish<'_, '_, C> {
+impl<C: Collector> SimdKernel for Finish<'_, '_, C> {
     type Output = ();
 
     #[inline(always)]

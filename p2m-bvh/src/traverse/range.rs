@@ -4,7 +4,7 @@ use crate::packet::{LANES, ROUND_UP, at_most};
 use crate::traverse::{Walk, walk};
 use crate::tree::PacketTree;
 use crate::tree::volume::{Volume, WideNode};
-use p2m_core::engine::simd::{InstructionSet, Lanes, Operation};
+use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
 use std::ops::ControlFlow;
 
 /// Some lanes of a packet.
@@ -47,7 +47,7 @@ struct Ball<'a, V: Volume> {
     tests: &'a mut usize,
 }
 
-impl<V: Volume> Operation for Ball<'_, V> {
+impl<V: Volume> SimdKernel for Ball<'_, V> {
     type Output = bool;
 
     #[inline(always)]

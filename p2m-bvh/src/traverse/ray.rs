@@ -11,7 +11,7 @@ use crate::tree::aabb_node::Frame;
 use crate::tree::volume::{Volume, WideNode};
 use crate::tree::{Leaves, PacketTree};
 use p2m_core::engine::ray::TINY;
-use p2m_core::engine::simd::{InstructionSet, Lanes, Operation};
+use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
 use p2m_core::engine::vector::power_of_two;
 use p2m_core::{Aabb, Crossing, PrimitiveId, Ray, RayCollector};
 use std::ops::ControlFlow;
@@ -29,7 +29,7 @@ pub struct RaySearch<'a, 'r, V: Volume, C> {
     pub intersect: Intersect<'a, 'r>,
 }
 
-impl<'r, V: Volume, C: RayCollector<'r>> Operation for RaySearch<'_, 'r, V, C> {
+impl<'r, V: Volume, C: RayCollector<'r>> SimdKernel for RaySearch<'_, 'r, V, C> {
     type Output = ();
 
     #[inline(always)]
@@ -280,7 +280,7 @@ mod tests {
     use super::*;
     use crate::AabbTree;
     use nalgebra::{Point3, Vector3};
-    use p2m_core::{BuildIndex, Crossing, Hits, RayCounting, Triangle};
+    use p2m_core::{BuildIndex, Crossing, Hits, RayStatsCollector, Triangle};
 
     /// Wants the hit of one primitive.
     #[derive(Clone)]
@@ -302,7 +302,7 @@ mod tests {
         let tree = AabbTree::build(&points, &Default::default()).unwrap();
         let ray = Ray::new(&Point3::new(-1.0, 0.0, 0.0), &Vector3::x()).unwrap();
         for wanted in 0..3 {
-            let mut counting = RayCounting::new(Only(wanted, Vec::new()));
+            let mut counting = RayStatsCollector::new(Only(wanted, Vec::new()));
             tree.visit_ray(&ray, &mut counting);
             assert_eq!((counting.primitives, counting.collector.1), (1, vec![PrimitiveId::new(wanted)]));
         }
@@ -316,7 +316,7 @@ mod tests {
         let tree = AabbTree::build(square, &Default::default()).unwrap();
         let ray = Ray::new(&Point3::new(1.0, 1.0, 3.0), &Vector3::new(0.0, 0.0, -1.0)).unwrap();
         let search = |wanted: Hits<'static>| {
-            let mut counting = RayCounting::new(RayCounting::new(wanted));
+            let mut counting = RayStatsCollector::new(RayStatsCollector::new(wanted));
             tree.visit_ray(&ray, &mut counting);
             let inner = &counting.collector;
             assert_eq!(

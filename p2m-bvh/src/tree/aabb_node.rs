@@ -14,11 +14,11 @@ pub const WIDTH: usize = 8;
 
 /// A node or a packet, by its number; `NONE` for neither.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Child(pub u32);
+pub struct NodeRef(pub u32);
 
 const PACKET_BIT: u32 = 1 << 31;
 
-impl Child {
+impl NodeRef {
     pub const NONE: Self = Self(u32::MAX);
 
     pub fn node(number: usize) -> Self {
@@ -43,7 +43,7 @@ impl Child {
 pub struct BoxNode {
     min: [[f32; WIDTH]; 3],
     max: [[f32; WIDTH]; 3],
-    children: [Child; WIDTH],
+    children: [NodeRef; WIDTH],
 }
 
 const _: () = assert!(size_of::<BoxNode>() == 256);
@@ -60,12 +60,12 @@ impl WideNode for BoxNode {
 
     const NOTHING: Corners = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
-    fn new(children: [Child; WIDTH]) -> Self {
+    fn new(children: [NodeRef; WIDTH]) -> Self {
         Self { min: [[f32::INFINITY; WIDTH]; 3], max: [[f32::NEG_INFINITY; WIDTH]; 3], children }
     }
 
     #[inline(always)]
-    fn children(&self) -> &[Child; WIDTH] {
+    fn children(&self) -> &[NodeRef; WIDTH] {
         &self.children
     }
 
@@ -75,7 +75,7 @@ impl WideNode for BoxNode {
         self.min.into_iter().chain(self.max)
     }
 
-    fn of_rows(rows: &[[f32; WIDTH]], children: [Child; WIDTH]) -> Self {
+    fn of_rows(rows: &[[f32; WIDTH]], children: [NodeRef; WIDTH]) -> Self {
         let [min, max] = [0, 3].map(|first| std::array::from_fn(|k| rows[first + k]));
         Self { min, max, children }
     }

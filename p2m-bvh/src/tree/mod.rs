@@ -12,20 +12,20 @@ pub(crate) mod volume;
 
 use crate::build::{Hierarchy, MAX_DEPTH, collapse};
 use crate::packet::{Kind, LANES, Member, Members, Packet};
-use crate::traverse::nearest::{Evaluate, Filter, Search, finish};
+use crate::traverse::nearest::{EvaluateFn, Search, SearchState, finish};
 use crate::traverse::ray::{self, Intersect, RaySearch};
-use aabb_node::{Child, Frame, WIDTH};
+use aabb_node::{Frame, NodeRef, WIDTH};
 use nalgebra::Point3;
-use p2m_core::engine::real::wide;
+use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::simd::{Isa, prefetch_lines};
 use p2m_core::engine::vector::V3;
-use p2m_core::saved::Array;
+use p2m_core::storage::Array;
 use p2m_core::{
     Aabb, Best, Collector, Crossing, Hits, Near, Primitive, PrimitiveId, PrimitiveSet, Ray, RayCollector, Real,
 };
 use volume::{TreeOptions, WideNode};
 
-pub use view::Part;
+pub use view::TreeNode;
 pub use volume::Volume;
 
 /// No path from the root is longer: that of the binary tree, and one node more where a leaf has several kinds.
@@ -44,7 +44,7 @@ pub struct PacketTree<V: Volume = Aabb<f64>> {
     /// Around everything, as nodes have it.
     pub(crate) whole: <V::Node as WideNode>::Bounds,
     #[doc(hidden)]
-    pub root: Child,
+    pub root: NodeRef,
     /// Nodes on the longest path from the root.
     pub(crate) depth: usize,
     pub(crate) nodes: Vec<V::Node>,
@@ -165,7 +165,7 @@ impl<V: Volume> PacketTree<V> {
             let node = &mut self.nodes[number];
             for place in 0..WIDTH {
                 let child = node.children()[place];
-                if child == Child::NONE {
+                if child == NodeRef::NONE {
                     continue;
                 }
                 let own = if child.is_packet() { of_packets[child.number()] } else { of_nodes[child.number()] };
@@ -221,7 +221,7 @@ impl<V: Volume> PacketTree<V> {
         query: &Point3<T>,
         collector: &mut C,
     ) {
-        self.run(wide(query), collector, &evaluation(set, query), finish);
+        self.run(to_f64_array(query), collector, &evaluation(set, query), finish);
     }
 
     /// The same for all sets. The callers that are not generic compile it once for what they ask.
@@ -231,8 +231,8 @@ impl<V: Volume> PacketTree<V> {
         &self,
         query: V3,
         collector: &mut C,
-        evaluate: Evaluate<'_, C>,
-        finish: fn(&mut Filter<'_, C>),
+        evaluate: EvaluateFn<'_, C>,
+        finish: fn(&mut SearchState<'_, C>),
     ) {
         self.isa.run(Search { tree: self, query, reach: f64::INFINITY, held: None, collector, evaluate, finish });
     }
@@ -241,14 +241,14 @@ impl<V: Volume> PacketTree<V> {
     #[inline]
     #[doc(hidden)]
     pub fn search_nearest<T: Real, S: PrimitiveSet<T> + ?Sized>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
-        V::nearest(self, wide(query), best.minimum(), &evaluation(set, query));
+        V::nearest(self, to_f64_array(query), best.minimum(), &evaluation(set, query));
     }
 
     /// The same for what is near.
     #[inline]
     #[doc(hidden)]
     pub fn search_near<T: Real, S: PrimitiveSet<T> + ?Sized>(&self, set: &S, query: &Point3<T>, near: &mut Near<'_>) {
-        V::near(self, wide(query), near, &evaluation(set, query));
+        V::near(self, to_f64_array(query), near, &evaluation(set, query));
     }
 
     /// Offers to a collector every hit of a ray with the set over which the tree was built that it could want.
@@ -290,12 +290,12 @@ impl<V: Volume> PacketTree<V> {
     #[inline(always)]
     fn radius_of(&self, ray: &Ray, only_crossings: bool) -> Option<f64> {
         let radius = if self.leaves.has_others && !only_crossings { ray.radius } else { 0.0 };
-        (self.root != Child::NONE && !ray::misses(ray, radius, &self.frame, &self.half)).then_some(radius)
+        (self.root != NodeRef::NONE && !ray::misses(ray, radius, &self.frame, &self.half)).then_some(radius)
     }
 
     /// The children of a node, with boxes around them.
     #[doc(hidden)]
-    pub fn child_boxes(&self, node: Child) -> impl Iterator<Item = (Aabb<f64>, Child)> + '_ {
+    pub fn child_boxes(&self, node: NodeRef) -> impl Iterator<Item = (Aabb<f64>, NodeRef)> + '_ {
         let node = &self.nodes[node.number()];
         node.used().map(|place| (self.box_of(node, place), node.children()[place]))
     }
@@ -307,7 +307,7 @@ impl<V: Volume> PacketTree<V> {
 
     /// Asks for a node or a packet before it is read.
     #[inline(always)]
-    pub(crate) fn prefetch(&self, child: Child) {
+    pub(crate) fn prefetch(&self, child: NodeRef) {
         let (node, packet) = (self.nodes.as_ptr(), self.leaves.packets.as_ptr());
         let at: *const u8 = if child.is_packet() {
             packet.wrapping_add(child.number()).cast()

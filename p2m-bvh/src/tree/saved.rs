@@ -1,12 +1,12 @@
 //! Trees in files.
 
 use crate::traverse::ray;
-use crate::tree::aabb_node::{Child, Frame, WIDTH};
+use crate::tree::aabb_node::{Frame, NodeRef, WIDTH};
 use crate::tree::volume::{Nodes, Volume, WideNode};
 use crate::tree::{Leaves, PacketTree};
 use bytemuck::{Pod, Zeroable};
 use nalgebra::Point3;
-use p2m_core::saved::{LoadError, Reader, Saved, Writer};
+use p2m_core::storage::{LoadError, Reader, Saved, Writer};
 use p2m_core::{Aabb, Isa};
 
 /// What is no array.
@@ -44,7 +44,7 @@ impl<V: Volume> Saved for PacketTree<V> {
         writer.put_copy("tree", &[head]);
         V::save_shape(&self.shape, writer);
         // The bounds of everything as those of the first child of one more node.
-        let mut last = V::Node::new([Child::NONE; WIDTH]);
+        let mut last = V::Node::new([NodeRef::NONE; WIDTH]);
         last.put(0, &self.whole);
         let nodes = || self.nodes.iter().chain([&last]);
         let rows: Vec<[f32; WIDTH]> = nodes().flat_map(WideNode::rows).collect();
@@ -64,7 +64,7 @@ impl<V: Volume> Saved for PacketTree<V> {
         let rows = rows.chunks_exact(V::Node::ROWS);
         let mut nodes: Vec<V::Node> = rows
             .zip(children.chunks_exact(WIDTH))
-            .map(|(rows, own)| V::Node::of_rows(rows, std::array::from_fn(|i| Child(own[i]))))
+            .map(|(rows, own)| V::Node::of_rows(rows, std::array::from_fn(|i| NodeRef(own[i]))))
             .collect();
         let whole = nodes.pop().ok_or_else(|| inconsistent("tree/bounds"))?.at(0);
         if (nodes.len() + 1) * WIDTH != children.len() {
@@ -95,7 +95,7 @@ impl<V: Volume> Saved for PacketTree<V> {
             bounds,
             half: ray::half_box(&frame, &bounds),
             whole,
-            root: Child(head.root),
+            root: NodeRef(head.root),
             depth,
             nodes,
             leaves,

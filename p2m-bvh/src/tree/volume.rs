@@ -5,14 +5,14 @@
 
 use crate::build::SplitOptions;
 use crate::packet::Member;
-use crate::traverse::nearest::{Evaluate, finish, finish_nearest};
+use crate::traverse::nearest::{EvaluateFn, finish, finish_nearest};
 use crate::traverse::ray::{FrameLine, Intersect};
 use crate::tree::PacketTree;
-use crate::tree::aabb_node::{BoxNode, Child, Frame, WIDTH};
-use p2m_core::engine::query::Minimum;
+use crate::tree::aabb_node::{BoxNode, Frame, NodeRef, WIDTH};
+use p2m_core::engine::query::BestF64;
 use p2m_core::engine::simd::Lanes;
 use p2m_core::engine::vector::V3;
-use p2m_core::saved::{LoadError, Reader, Writer};
+use p2m_core::storage::{LoadError, Reader, Writer};
 use p2m_core::{Aabb, Hits, Near, Ray};
 use std::fmt::Debug;
 
@@ -61,12 +61,12 @@ pub trait Nodes: Sized {
 
     /// The search of a tree for the nearest primitive, in a function of its own: what is not generic is compiled once, in this
     /// crate.
-    fn nearest(tree: &PacketTree<Self>, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>)
+    fn nearest(tree: &PacketTree<Self>, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>)
     where
         Self: Volume;
 
     /// The same for what is near,
-    fn near<'n>(tree: &PacketTree<Self>, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>)
+    fn near<'n>(tree: &PacketTree<Self>, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>)
     where
         Self: Volume;
 
@@ -88,11 +88,11 @@ impl Nodes for Aabb<f64> {
         Ok(())
     }
 
-    fn nearest(tree: &PacketTree, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
+    fn nearest(tree: &PacketTree, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
         tree.run(query, minimum, evaluate, finish_nearest);
     }
 
-    fn near<'n>(tree: &PacketTree, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>) {
+    fn near<'n>(tree: &PacketTree, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
         tree.run(query, near, evaluate, finish);
     }
 
@@ -131,15 +131,15 @@ pub trait WideNode: Copy + Debug + Send + Sync {
     const NOTHING: Self::Bounds;
 
     /// A node with these children, whose bounds are still empty.
-    fn new(children: [Child; WIDTH]) -> Self;
-    /// The children; [`Child::NONE`] for unused places.
-    fn children(&self) -> &[Child; WIDTH];
+    fn new(children: [NodeRef; WIDTH]) -> Self;
+    /// The children; [`NodeRef::NONE`] for unused places.
+    fn children(&self) -> &[NodeRef; WIDTH];
     /// How many rows of numbers the bounds of the children are,
     const ROWS: usize;
     /// these rows,
     fn rows(&self) -> impl Iterator<Item = [f32; WIDTH]>;
     /// and a node of them.
-    fn of_rows(rows: &[[f32; WIDTH]], children: [Child; WIDTH]) -> Self;
+    fn of_rows(rows: &[[f32; WIDTH]], children: [NodeRef; WIDTH]) -> Self;
     /// Sets the bounds of a child.
     fn put(&mut self, place: usize, bounds: &Self::Bounds);
 
@@ -175,7 +175,7 @@ pub trait WideNode: Copy + Debug + Send + Sync {
 
     /// The places in use.
     fn used(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..WIDTH).filter(|&place| self.children()[place] != Child::NONE)
+        (0..WIDTH).filter(|&place| self.children()[place] != NodeRef::NONE)
     }
 }
 

@@ -5,7 +5,7 @@
 
 use super::{Candidate, decide, is_within};
 use crate::near_query::{Near, ask};
-use crate::real::wide;
+use crate::real::to_f64_array;
 use crate::{Closest, NearQuery, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape};
 use nalgebra::Point3;
 
@@ -67,7 +67,7 @@ pub trait CertifiedQuery<T: Real>: NearQuery<T> {
             let shape = self.shape(one.id).ok_or(CertifyError::NoVertices { id: one.id })?;
             let mut vertices = [[0.0; 3]; 3];
             let own = shape.vertices();
-            vertices.iter_mut().zip(own).for_each(|(to, vertex)| *to = wide(vertex));
+            vertices.iter_mut().zip(own).for_each(|(to, vertex)| *to = to_f64_array(vertex));
             Ok((vertices, own.len()))
         });
         let shapes: Vec<_> = shapes.collect::<Result<_, _>>()?;
@@ -81,7 +81,7 @@ pub trait CertifiedQuery<T: Real>: NearQuery<T> {
         if candidates.is_empty() {
             return Ok(None);
         }
-        let query = wide(query);
+        let query = to_f64_array(query);
         let decision = decide(query, &candidates);
         let winner = &candidates[decision.winner];
         if options.max_distance < T::INFINITY && !is_within(query, winner.vertices, options.max_distance.to_f64()) {

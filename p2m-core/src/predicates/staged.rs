@@ -20,7 +20,7 @@ pub const RANGE: std::ops::RangeInclusive<f64> = power_of_two(-161)..=power_of_t
 
 /// What decided a sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
+pub enum PredicateStage {
     /// Whole numbers, of a common power of two.
     Whole,
     /// Double-double arithmetic.
@@ -116,13 +116,13 @@ pub fn orientation_filter(rows: [V3; 3]) -> Estimate {
 
 /// The sign of the determinant of a - origin, b - origin, c - origin, where the filter could not tell.
 #[cold]
-pub fn orientation_exact([a, b, c]: [V3; 3], origin: V3) -> (Ordering, Stage) {
+pub fn orientation_exact([a, b, c]: [V3; 3], origin: V3) -> (Ordering, PredicateStage) {
     if let Some(rows) = whole::rows(&[a, b, c], origin) {
-        return (whole::orientation(rows), Stage::Whole);
+        return (whole::orientation(rows), PredicateStage::Whole);
     }
     // The sign that is documented there, for points below the plane.
     let sign = orient3d(coord(a), coord(b), coord(c), coord(origin));
-    (super::sign(sign), Stage::Adaptive)
+    (super::sign(sign), PredicateStage::Adaptive)
 }
 
 /// Of a number above 0 if e is inside the sphere through the other four, which are positively oriented.
@@ -136,14 +136,14 @@ pub fn sphere_filter([a, b, c, d]: [V3; 4], e: V3) -> Estimate {
 
 /// Whether e is inside (`Greater`), on or outside (`Less`) that sphere, where the filter could not tell.
 #[cold]
-pub fn sphere_exact(points: [V3; 4], e: V3) -> (Ordering, Stage) {
+pub fn sphere_exact(points: [V3; 4], e: V3) -> (Ordering, PredicateStage) {
     if let Some(rows) = whole::rows(&points, e) {
-        return (whole::sphere(rows), Stage::Whole);
+        return (whole::sphere(rows), PredicateStage::Whole);
     }
     if let Some(sign) = sphere_double(points, e) {
-        return (sign, Stage::Double);
+        return (sign, PredicateStage::Double);
     }
-    (sphere_adaptive(points, e), Stage::Adaptive)
+    (sphere_adaptive(points, e), PredicateStage::Adaptive)
 }
 
 /// The same by the adaptive predicate.

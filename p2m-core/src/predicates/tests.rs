@@ -1,6 +1,6 @@
 //! Every stage of the predicates against integers.
 
-use super::staged::{self, RANGE, Stage};
+use super::staged::{self, PredicateStage, RANGE};
 use super::*;
 use p2m_testkit::{Cases, cases, rng, vector};
 use rand::{Rng, RngExt};
@@ -26,7 +26,7 @@ fn check_sphere(points: [Point; 4], e: Point) -> [bool; 4] {
     let (sign, stage) = staged::sphere_exact(points, e);
     assert_eq!(sign, expected, "{stage:?} {points:?} {e:?}");
     assert_eq!(staged::sphere_adaptive(points, e), expected, "{points:?} {e:?}");
-    [filter.is_some(), stage == Stage::Whole, double.is_some(), true]
+    [filter.is_some(), stage == PredicateStage::Whole, double.is_some(), true]
 }
 
 fn check_orientation(points: [Point; 4]) -> [bool; 2] {
@@ -38,7 +38,7 @@ fn check_orientation(points: [Point; 4]) -> [bool; 2] {
     assert!(filter.is_none_or(|sign| sign == expected.reverse()), "{points:?}");
     let (sign, stage) = staged::orientation_exact([a, b, c], d);
     assert_eq!(sign, expected.reverse(), "{stage:?} {points:?}");
-    [filter.is_some(), stage == Stage::Whole]
+    [filter.is_some(), stage == PredicateStage::Whole]
 }
 
 /// Both predicates on many points; how often each stage was sure.

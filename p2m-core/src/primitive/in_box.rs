@@ -10,7 +10,7 @@
 //! infinite.
 
 use crate::predicates::{orientation_2d, orientation_3d};
-use crate::real::wide;
+use crate::real::to_f64_array;
 use crate::{Aabb, Real};
 use nalgebra::Point3;
 use std::cmp::Ordering::{self, Equal, Greater, Less};
@@ -27,8 +27,8 @@ pub(super) fn meets<T: Real, const N: usize>(vertices: &[Point3<T>; N], bounds: 
         return true;
     }
     let part = bounds.intersection(&own);
-    let corners = [wide(&part.min), wide(&part.max)];
-    let vertices = vertices.each_ref().map(wide);
+    let corners = [to_f64_array(&part.min), to_f64_array(&part.max)];
+    let vertices = vertices.each_ref().map(to_f64_array);
     match *vertices.as_slice() {
         [a, b] => (0..3).all(|axis| !line_separates(axis, a, b, Equal, &corners)),
         [a, b, c] => triangle_meets([a, b, c], &corners),

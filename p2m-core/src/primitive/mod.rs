@@ -12,7 +12,7 @@ pub use shape::Shape;
 pub use triangle::Triangle;
 
 use crate::kernel::{Key, Nearest, scalar};
-use crate::real::wide;
+use crate::real::to_f64_array;
 use crate::{Aabb, Ray, RayHit, Real};
 use nalgebra::Point3;
 
@@ -79,7 +79,7 @@ impl Projection {
         barycentric: [f64; 3],
         error: f64,
     ) -> Self {
-        let q = wide(query);
+        let q = to_f64_array(query);
         let key = Key::of_offset(std::array::from_fn(|k| point[k] - q[k]));
         Self { key, point, feature, barycentric, error }
     }

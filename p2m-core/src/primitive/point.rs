@@ -1,5 +1,5 @@
 use super::{Primitive, Projection, UNBOUNDED, in_box};
-use crate::real::wide;
+use crate::real::to_f64_array;
 use crate::{Aabb, Real};
 use nalgebra::Point3;
 
@@ -33,7 +33,7 @@ impl<T: Real> Primitive<T> for Point<T> {
 
     #[inline(always)]
     fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
-        Projection::of_point(wide(query), &[wide(&self.position)], square)
+        Projection::of_point(to_f64_array(query), &[to_f64_array(&self.position)], square)
     }
     #[inline(always)]
     fn vertices(&self) -> &[Point3<T>] {

@@ -1,5 +1,5 @@
 use super::{Primitive, Projection, UNBOUNDED, in_box};
-use crate::real::wide;
+use crate::real::to_f64_array;
 use crate::{Aabb, Real};
 use nalgebra::Point3;
 
@@ -31,7 +31,7 @@ impl<T: Real> Primitive<T> for Triangle<T> {
 
     #[inline(always)]
     fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
-        Projection::of_triangle(wide(query), &self.vertices.each_ref().map(wide), square)
+        Projection::of_triangle(to_f64_array(query), &self.vertices.each_ref().map(to_f64_array), square)
     }
     #[inline(always)]
     fn vertices(&self) -> &[Point3<T>] {

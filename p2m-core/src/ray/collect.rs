@@ -37,7 +37,7 @@ pub trait RayCollector<'r> {
 
 /// What is wanted of the hits, and what was found: handed to a backend by the methods of
 /// [`RayQuery`](super::RayQuery), which take it apart. One of your own serves to count what a search does
-/// ([`RayCounting`](super::RayCounting)).
+/// ([`RayStatsCollector`](super::RayStatsCollector)).
 #[derive(Clone, Debug)]
 pub struct Hits<'r> {
     wanted: Wanted,

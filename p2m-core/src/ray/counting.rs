@@ -6,22 +6,22 @@ use super::line::Ray;
 use crate::PrimitiveId;
 use std::ops::ControlFlow;
 
-/// A collector with counters, such as [`Hits`](crate::Hits): [`Counting`](crate::Counting) for rays.
+/// A collector with counters, such as [`Hits`](crate::Hits): [`StatsCollector`](crate::StatsCollector) for rays.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
 /// use p2m_bvh::AabbTree;
-/// use p2m_core::{BuildIndex, Hits, Point, Ray, RayCounting};
+/// use p2m_core::{BuildIndex, Hits, Point, Ray, RayStatsCollector};
 ///
 /// let points = [0.0, 1.0, 2.0].map(|x| Point::new(Point3::new(x, 0.0, 0.0)));
 /// let tree = AabbTree::build(&points, &Default::default()).unwrap();
 /// let rays = [Ray::new(&Point3::new(-1.0, 0.0, 0.0), &Vector3::x()).unwrap()];
 /// let [_nodes, _packets, primitives] =
-///     RayCounting::of_rays(&rays, &Hits::all(), |ray, counting| tree.visit_ray(ray, counting));
+///     RayStatsCollector::of_rays(&rays, &Hits::all(), |ray, counting| tree.visit_ray(ray, counting));
 /// assert_eq!(primitives, 3);
 /// ```
 #[derive(Clone, Debug)]
-pub struct RayCounting<C> {
+pub struct RayStatsCollector<C> {
     /// What decides.
     pub collector: C,
     /// Nodes visited.
@@ -32,7 +32,7 @@ pub struct RayCounting<C> {
     pub primitives: usize,
 }
 
-impl<C> RayCounting<C> {
+impl<C> RayStatsCollector<C> {
     /// Counts from zero around `collector`.
     #[must_use]
     pub fn new(collector: C) -> Self {
@@ -58,7 +58,7 @@ impl<C> RayCounting<C> {
     }
 }
 
-impl<'r, C: RayCollector<'r>> RayCollector<'r> for RayCounting<C> {
+impl<'r, C: RayCollector<'r>> RayCollector<'r> for RayStatsCollector<C> {
     fn only_crossings(&self) -> bool {
         self.collector.only_crossings()
     }

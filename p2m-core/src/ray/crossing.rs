@@ -10,7 +10,7 @@ use super::exact::Exact;
 use super::line::Ray;
 use super::plane::{PLAIN, Plane, U};
 use crate::kernel::vector::{V3, dot, sub};
-use crate::real::wide;
+use crate::real::to_f64_array;
 use crate::{Primitive, PrimitiveId, Real};
 use nalgebra::Point3;
 use std::cmp::Ordering;
@@ -132,9 +132,11 @@ impl<'a> Crossing<'a> {
     pub fn of<T: Real>(primitive: &impl Primitive<T>, ray: &'a Ray, limit: f64, only_crossings: bool) -> Option<Self> {
         match primitive.vertices() {
             [] => Self::of_hit(ray, primitive.intersect_ray(ray).filter(|_| !only_crossings)?),
-            [a] => Self::of_vertices(ray, &[wide(a)], limit, only_crossings),
-            [a, b] => Self::of_vertices(ray, &[wide(a), wide(b)], limit, only_crossings),
-            [a, b, c, ..] => Self::of_vertices(ray, &[wide(a), wide(b), wide(c)], limit, only_crossings),
+            [a] => Self::of_vertices(ray, &[to_f64_array(a)], limit, only_crossings),
+            [a, b] => Self::of_vertices(ray, &[to_f64_array(a), to_f64_array(b)], limit, only_crossings),
+            [a, b, c, ..] => {
+                Self::of_vertices(ray, &[to_f64_array(a), to_f64_array(b), to_f64_array(c)], limit, only_crossings)
+            }
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::Real;
 use crate::kernel::vector::V3;
-use crate::real::wide;
+use crate::real::to_f64_array;
 use nalgebra::{Point3, Vector3};
 
 /// Why a ray cannot be asked for.
@@ -60,7 +60,7 @@ impl Ray {
     /// # Errors
     /// [`RayError::NonFinite`] and [`RayError::ZeroDirection`].
     pub fn new<T: Real>(origin: &Point3<T>, direction: &Vector3<T>) -> Result<Self, RayError> {
-        let (origin, direction) = (wide(origin), wide(&Point3::from(*direction)));
+        let (origin, direction) = (to_f64_array(origin), to_f64_array(&Point3::from(*direction)));
         if !origin.iter().chain(&direction).all(|x| x.is_finite()) {
             return Err(RayError::NonFinite);
         }
@@ -75,7 +75,7 @@ impl Ray {
     /// # Errors
     /// [`RayError::ZeroDirection`] for equal points, [`RayError::NonFinite`], also where the difference overflows.
     pub fn through<T: Real>(origin: &Point3<T>, target: &Point3<T>) -> Result<Self, RayError> {
-        let [origin, target] = [wide(origin), wide(target)].map(Point3::from);
+        let [origin, target] = [to_f64_array(origin), to_f64_array(target)].map(Point3::from);
         Self::new(&origin, &(target - origin))
     }
 

@@ -14,7 +14,7 @@ mod line;
 mod plane;
 
 pub use collect::{Hits, RayCollector};
-pub use counting::RayCounting;
+pub use counting::RayStatsCollector;
 pub use crossing::{Crossing, Hit, RayHit, Side};
 pub use line::{Ray, RayError};
 

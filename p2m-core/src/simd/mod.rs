@@ -1,6 +1,6 @@
 //! Lanes of f32, and the choice of an instruction set at run time.
 //!
-//! Algorithms are written once over [`Lanes`]. An [`Operation`] that is handed to [`Isa::run`] is compiled once for
+//! Algorithms are written once over [`Lanes`]. An [`SimdKernel`] that is handed to [`Isa::run`] is compiled once for
 //! each instruction set, inside of a function that enables it; everything on the way is inlined, so nothing checks the
 //! processor again. Only the folder `isa` has `unsafe`.
 //!
@@ -109,7 +109,7 @@ pub trait InstructionSet {
 
 /// Something to compute with an instruction set. `run` and everything it calls has to be `#[inline(always)]`, or it is
 /// compiled without the instruction set.
-pub trait Operation {
+pub trait SimdKernel {
     /// What comes of it.
     type Output;
     /// Computes it.
@@ -124,7 +124,7 @@ mod tests {
     /// What every method makes of the same numbers, eight at a time.
     struct All<'a>(&'a [[f32; 16]; 4], &'a [u16; 16]);
 
-    impl Operation for All<'_> {
+    impl SimdKernel for All<'_> {
         type Output = (Vec<[f32; 16]>, Vec<u32>);
         #[inline(always)]
         fn run<I: InstructionSet>(self) -> Self::Output {
@@ -219,7 +219,7 @@ mod tests {
     /// What every method of eight f64 makes of the same numbers.
     struct AllDoubles<'a>(&'a [[f64; 8]; 4]);
 
-    impl Operation for AllDoubles<'_> {
+    impl SimdKernel for AllDoubles<'_> {
         type Output = (Vec<[f64; 8]>, u8);
         #[inline(always)]
         fn run<I: InstructionSet>(self) -> Self::Output {

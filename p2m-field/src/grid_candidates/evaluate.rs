@@ -3,7 +3,7 @@
 use super::groups::Groups;
 use super::lanes::squares;
 use super::{Candidates, ERROR, MARGIN, TINY};
-use p2m_core::engine::simd::{Doubles, InstructionSet, Operation};
+use p2m_core::engine::simd::{Doubles, InstructionSet, SimdKernel};
 
 /// Evaluates candidates at the places of a grid.
 pub(crate) struct Evaluate<'a> {
@@ -18,7 +18,7 @@ const PLACES: usize = 64;
 /// Places of a step.
 const STEP: usize = 8;
 
-impl Operation for Evaluate<'_> {
+impl SimdKernel for Evaluate<'_> {
     /// The values that are in doubt.
     type Output = Vec<usize>;
 

@@ -4,7 +4,7 @@ use super::groups::{Group, Groups, Is};
 use super::lanes::{squares, squares_from_box};
 use super::{Candidates, Detail, ERROR, MARGIN, TINY};
 use p2m_core::Aabb;
-use p2m_core::engine::simd::{Doubles, InstructionSet, Operation};
+use p2m_core::engine::simd::{Doubles, InstructionSet, SimdKernel};
 use p2m_core::engine::vector::{V3, larger, norm_squared, sub};
 
 /// The sphere around a box, for the distances that occur in it.
@@ -68,7 +68,7 @@ fn stays<D: Doubles>(squares: D, dominators: &[D; 8]) -> bool {
     stays
 }
 
-impl Operation for Narrow<'_> {
+impl SimdKernel for Narrow<'_> {
     type Output = Candidates;
 
     #[inline(always)]

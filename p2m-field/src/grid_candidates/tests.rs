@@ -1,7 +1,7 @@
 use super::flat::Flat;
 use super::lanes::squares;
 use super::*;
-use p2m_core::engine::simd::{Doubles, InstructionSet, Operation};
+use p2m_core::engine::simd::{Doubles, InstructionSet, SimdKernel};
 use p2m_core::engine::vector::{V3, largest, norm_squared, sub};
 use p2m_core::{BruteForce, ClosestPoint, Element, PrimitiveId, Soup};
 use p2m_testkit::cases;
@@ -46,7 +46,7 @@ fn axes(low: V3, side: f64, count: usize) -> [Vec<f64>; 3] {
 #[test]
 fn distances_to_one_primitive_are_right_to_a_part_of_the_error() {
     struct Lowered<'a>(&'a Flat, V3, f64);
-    impl Operation for Lowered<'_> {
+    impl SimdKernel for Lowered<'_> {
         type Output = f64;
         #[inline(always)]
         fn run<I: InstructionSet>(self) -> f64 {

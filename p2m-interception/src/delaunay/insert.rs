@@ -22,8 +22,8 @@
 #![allow(clippy::inline_always, reason = "or it is compiled without the instruction set")]
 
 use super::{Delaunay, Work};
-use p2m_core::engine::simd::{InstructionSet, Isa, Operation, prefetch};
-use p2m_core::engine::staged::{Stage, orientation_exact, orientation_filter, sphere_exact, sphere_filter};
+use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel, prefetch};
+use p2m_core::engine::staged::{PredicateStage, orientation_exact, orientation_filter, sphere_exact, sphere_filter};
 use p2m_core::engine::vector::{V3, sub};
 use std::cmp::Ordering;
 
@@ -104,7 +104,7 @@ struct All<'a, S> {
     sites: S,
 }
 
-impl<S: Iterator<Item = usize>> Operation for All<'_, S> {
+impl<S: Iterator<Item = usize>> SimdKernel for All<'_, S> {
     type Output = bool;
 
     #[inline(always)]
@@ -228,7 +228,7 @@ impl Insertion {
     fn orientation(&mut self, face: [V3; 3], p: V3) -> Ordering {
         let (sign, stage) = orientation_exact(face, p);
         match stage {
-            Stage::Whole => self.work.whole_orientations += 1,
+            PredicateStage::Whole => self.work.whole_orientations += 1,
             _ => self.work.adaptive_orientations += 1,
         }
         sign
@@ -247,9 +247,9 @@ impl Insertion {
     fn sphere(&mut self, corners: [V3; 4], p: V3) -> Ordering {
         let (sign, stage) = sphere_exact(corners, p);
         match stage {
-            Stage::Whole => self.work.whole_spheres += 1,
-            Stage::Double => self.work.double_spheres += 1,
-            Stage::Adaptive => self.work.adaptive_spheres += 1,
+            PredicateStage::Whole => self.work.whole_spheres += 1,
+            PredicateStage::Double => self.work.double_spheres += 1,
+            PredicateStage::Adaptive => self.work.adaptive_spheres += 1,
         }
         sign
     }

@@ -13,7 +13,7 @@
 
 use crate::octree::cell::DEEPEST;
 use p2m_bvh::PacketTree;
-use p2m_bvh::engine::nearest::Filter;
+use p2m_bvh::engine::nearest::SearchState;
 use p2m_bvh::engine::volume::Rounded;
 use p2m_core::engine::simd::{EightLanes, InstructionSet, Lanes, lane_of_key, number_of_key};
 use p2m_core::engine::vector::V3;
@@ -274,7 +274,7 @@ pub(crate) fn search<I: InstructionSet, C: Collector>(
     first: &Block,
     rest: &[Block],
     place: &Place,
-    filter: &mut Filter<'_, C>,
+    filter: &mut SearchState<'_, C>,
 ) {
     let rest = &rest[..usize::from(first.more)];
     for (number, block) in std::iter::once(first).chain(rest).enumerate() {
@@ -308,7 +308,7 @@ pub(crate) fn search<I: InstructionSet, C: Collector>(
 fn forgo<'b, I: InstructionSet, C: Collector>(
     blocks: impl Iterator<Item = &'b Block>,
     place: &Place,
-    filter: &mut Filter<'_, C>,
+    filter: &mut SearchState<'_, C>,
 ) {
     let mut bounds = [0.0; WIDTH];
     for block in blocks {
@@ -335,12 +335,12 @@ impl Place {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use p2m_core::engine::simd::{InstructionSet, Isa, Operation};
+    use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel};
     use rand::{Rng, RngExt};
 
     struct Bound<'a>(&'a Block, &'a Place);
 
-    impl Operation for Bound<'_> {
+    impl SimdKernel for Bound<'_> {
         type Output = [f32; WIDTH];
         #[inline(always)]
         fn run<I: InstructionSet>(self) -> [f32; WIDTH] {

@@ -13,7 +13,7 @@ use crate::octree::cell::Corner;
 use nalgebra::Point3;
 use p2m_bvh::engine::packet::{self, LANES, Packet, at_most, smallest};
 use p2m_core::Aabb;
-use p2m_core::engine::simd::{InstructionSet, Operation};
+use p2m_core::engine::simd::{InstructionSet, SimdKernel};
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 
 /// Eight corners with all their distances to dominators.
@@ -77,7 +77,7 @@ pub(crate) struct AtPoints<'a> {
     pub(crate) nearest: &'a mut [Option<(f64, usize)>],
 }
 
-impl Operation for AtPoints<'_> {
+impl SimdKernel for AtPoints<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -106,7 +106,7 @@ pub(crate) struct Keep<'a> {
     pub(crate) corners: &'a [usize; 8],
 }
 
-impl Operation for Keep<'_> {
+impl SimdKernel for Keep<'_> {
     type Output = u16;
 
     #[inline(always)]
@@ -137,7 +137,7 @@ pub(crate) struct Least<'a> {
     pub(crate) lanes: u16,
 }
 
-impl Operation for Least<'_> {
+impl SimdKernel for Least<'_> {
     type Output = [f64; 8];
 
     #[inline(always)]

@@ -19,9 +19,9 @@ use crate::list::corner_test::{AtPoints, Dominators, Found, Keep, Least};
 use crate::octree::Row;
 use crate::octree::cell::{BETWEEN, Corner, Cube, DEEPEST, LATTICE, LATTICE_OF, MIDDLE, corner_on};
 use crate::options::Domain;
-use crate::progress::{Progress, Stage};
+use crate::progress::{BuildStage, Progress};
 use p2m_bvh::PacketTree;
-use p2m_bvh::engine::node::Child;
+use p2m_bvh::engine::node::NodeRef;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 use p2m_core::{Aabb, Best, Isa, PrimitiveId, QueryOptions};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -117,7 +117,7 @@ impl Done<'_> {
         let percent = (all as f64 / ALL * 100.0) as u64;
         if self.percent.fetch_max(percent, Ordering::Relaxed) < percent {
             let part = (percent as f64 / 100.0).min(1.0);
-            (self.progress)(Progress { stage: Stage::Octree, part });
+            (self.progress)(Progress { stage: BuildStage::Octree, part });
         }
     }
 
@@ -129,7 +129,7 @@ impl Done<'_> {
 /// What a coarse cell cannot rule out.
 #[derive(Clone, Copy)]
 struct Candidate {
-    child: Child,
+    child: NodeRef,
     bounds: Aabb<f64>,
 }
 

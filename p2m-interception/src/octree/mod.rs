@@ -8,18 +8,18 @@ use crate::octree::build::{Cell, Done, Refinement, Searched};
 use crate::octree::cell::DEEPEST;
 use crate::options::{Domain, OctreeOptions, OctreeReport};
 use crate::partition::{LookUp, Partition};
-use crate::progress::{Progress, Stage};
+use crate::progress::{BuildStage, Progress};
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
-use p2m_bvh::engine::nearest::{Evaluate, Filter, finish, finish_nearest};
+use p2m_bvh::engine::nearest::{EvaluateFn, SearchState, finish, finish_nearest};
 use p2m_bvh::engine::packet::LANES;
 use p2m_bvh::engine::volume::Rounded;
-use p2m_core::engine::query::Minimum;
-use p2m_core::engine::real::{narrow, wide};
-use p2m_core::engine::simd::{InstructionSet, Operation, prefetch_lines};
+use p2m_core::engine::query::BestF64;
+use p2m_core::engine::real::{from_f64_array, to_f64_array};
+use p2m_core::engine::simd::{InstructionSet, SimdKernel, prefetch_lines};
 use p2m_core::engine::vector::V3;
-use p2m_core::saved::{Array, LoadError, Reader, Saved, Writer};
-use p2m_core::{Aabb, Best, Collector, Counting, Isa, Near, PrimitiveId, PrimitiveSet, QueryOptions, Real};
+use p2m_core::storage::{Array, LoadError, Reader, Saved, Writer};
+use p2m_core::{Aabb, Best, Collector, Isa, Near, PrimitiveId, PrimitiveSet, QueryOptions, Real, StatsCollector};
 use std::collections::HashMap;
 use std::sync::atomic::AtomicU64;
 
@@ -86,9 +86,9 @@ impl Octree {
         let owners = owners(tree);
         let search = |x: V3| {
             // Nearest to a rounded place: any point of the scene will do.
-            let mut counting = Counting::<T>::new(Best::new(&QueryOptions::default()));
-            tree.search(set, &narrow(x), &mut counting);
-            let Counting { best, nodes, packets, primitives } = counting;
+            let mut counting = StatsCollector::<T>::new(Best::new(&QueryOptions::default()));
+            tree.search(set, &from_f64_array(x), &mut counting);
+            let StatsCollector { best, nodes, packets, primitives } = counting;
             Searched { nearest: best.nearest_point().unwrap_or([f64::INFINITY; 3]), nodes, packets, primitives }
         };
         let count = tree.packets().1.max(FEW) as f64;
@@ -308,7 +308,7 @@ impl Octree {
     /// where the tree answers.
     #[must_use]
     pub fn list_length(&self, point: &Point3<f64>) -> Option<usize> {
-        let code = self.cell_of(&wide(point)).0;
+        let code = self.cell_of(&to_f64_array(point)).0;
         match code >> SHIFT {
             SINGLE => Some(1),
             LIST => {
@@ -327,8 +327,8 @@ impl LookUp for Octree {
         &self,
         query: V3,
         collector: &mut C,
-        evaluate: Evaluate<'_, C>,
-        finish: fn(&mut Filter<'_, C>),
+        evaluate: EvaluateFn<'_, C>,
+        finish: fn(&mut SearchState<'_, C>),
     ) {
         let tree = &self.tree;
         let (code, cells) = self.cell_of(&query);
@@ -341,11 +341,11 @@ impl LookUp for Octree {
         }
     }
 
-    fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
+    fn nearest(&self, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
         self.look_up(query, minimum, evaluate, finish_nearest);
     }
 
-    fn near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>) {
+    fn near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
         self.look_up(query, near, evaluate, finish);
     }
 }
@@ -359,9 +359,9 @@ impl Partition for Octree {
         options: &OctreeOptions,
         progress: &(dyn Fn(Progress) + Sync),
     ) -> Self {
-        progress(Progress { stage: Stage::Tree, part: 0.0 });
+        progress(Progress { stage: BuildStage::Tree, part: 0.0 });
         let tree = PacketTree::build(set, &options.splits);
-        progress(Progress { stage: Stage::Octree, part: 0.0 });
+        progress(Progress { stage: BuildStage::Octree, part: 0.0 });
         let tree_bytes = tree.memory();
         let mut octree = Self {
             tree,
@@ -375,7 +375,7 @@ impl Partition for Octree {
         if let Some(shape) = Shape::of(&octree.tree, options) {
             octree.refine(set, options, &shape, progress);
         }
-        progress(Progress { stage: Stage::Octree, part: 1.0 });
+        progress(Progress { stage: BuildStage::Octree, part: 1.0 });
         octree
     }
 
@@ -392,7 +392,7 @@ impl Partition for Octree {
     }
 
     fn list(&self, point: &Point3<f64>) -> Option<Vec<PrimitiveId>> {
-        let code = self.cell_of(&wide(point)).0;
+        let code = self.cell_of(&to_f64_array(point)).0;
         let number = (code & ((1 << SHIFT) - 1)) as usize;
         match code >> SHIFT {
             SINGLE => Some(vec![self.tree.leaves.packets[number / LANES].ids()[number % LANES]]),
@@ -463,7 +463,7 @@ impl Shape {
         let grain = side / 4096.0;
         let middle = domain.min + span * 0.5;
         let low: V3 = std::array::from_fn(|k| ((middle[k] - side * 0.5) / grain).floor() * grain);
-        let ends = [wide(&bounds.min), wide(&bounds.max)];
+        let ends = [to_f64_array(&bounds.min), to_f64_array(&bounds.max)];
         let scale = side * 4.0 + low.iter().chain(ends.as_flattened()).fold(0.0f64, |a, x| a.max(x.abs()));
         let share = |scale: f64, part: f64| {
             let half = extent * (scale * 0.5);
@@ -514,11 +514,11 @@ struct Lookup<'a, C> {
     query: V3,
     place: Place,
     collector: &'a mut C,
-    evaluate: Evaluate<'a, C>,
-    finish: fn(&mut Filter<'_, C>),
+    evaluate: EvaluateFn<'a, C>,
+    finish: fn(&mut SearchState<'_, C>),
 }
 
-impl<C: Collector> Operation for Lookup<'_, C> {
+impl<C: Collector> SimdKernel for Lookup<'_, C> {
     type Output = ();
 
     #[inline(always)]
@@ -526,7 +526,7 @@ impl<C: Collector> Operation for Lookup<'_, C> {
         let octree = self.octree;
         let tree = &octree.tree;
         let number = (self.code & !(7 << SHIFT)) as usize;
-        let mut filter = Filter::new(tree, self.query, f64::INFINITY, self.collector, self.evaluate, self.finish);
+        let mut filter = SearchState::new(tree, self.query, f64::INFINITY, self.collector, self.evaluate, self.finish);
         if self.code >> SHIFT == SINGLE {
             filter.add(number / LANES, number % LANES);
             return filter.evaluate_waiting();

@@ -13,7 +13,7 @@ use crate::list::block::{Block, Bounds, Entry};
 use crate::list::corner_test::{AtPoints, Found, Least};
 use crate::options::P2mReport;
 use crate::parallel_chunks::in_shares;
-use crate::progress::{Stage, Teller};
+use crate::progress::{BuildStage, Teller};
 use crate::voronoi::adjacency::{Features, Incidences, NONE};
 use crate::voronoi::cell_polytope::Hull;
 use crate::voronoi::feature_relevance::{Around, Missed, Outlines, Scene, Seen};
@@ -23,7 +23,7 @@ use crate::voronoi::sites::{Corners, Limits, Sites};
 use crate::voronoi::{AUXILIARY, TREE};
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::{LANES, Packet};
-use p2m_core::engine::simd::{InstructionSet, Operation};
+use p2m_core::engine::simd::{InstructionSet, SimdKernel};
 use p2m_core::engine::vector::{V3, dot, norm_squared, sub};
 use p2m_core::{Best, QueryOptions};
 use std::ops::Range;
@@ -49,7 +49,7 @@ pub(crate) struct Lists {
 impl Cells<'_> {
     /// The lists of all sites; `None` where these take too much. `teller` is told how many are done.
     pub(crate) fn lists(&self, report: &mut P2mReport, teller: &Teller<'_>) -> Option<Lists> {
-        teller.begin(Stage::Lists);
+        teller.begin(BuildStage::Lists);
         let sites = self.sites.delaunay.sites();
         let tetrahedra = self.sites.delaunay.tetrahedra();
         let around = Incidences::new(
@@ -462,7 +462,7 @@ struct Values<'a> {
     values: &'a mut Vec<[f32; LANES]>,
 }
 
-impl Operation for Values<'_> {
+impl SimdKernel for Values<'_> {
     type Output = u16;
 
     #[inline(always)]

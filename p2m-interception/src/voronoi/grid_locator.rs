@@ -3,9 +3,9 @@
 
 use crate::voronoi::locator::LocatorSites;
 use crate::voronoi::neighbours::Fans;
-use p2m_core::engine::simd::{InstructionSet, Operation, prefetch};
+use p2m_core::engine::simd::{InstructionSet, SimdKernel, prefetch};
 use p2m_core::engine::vector::V3;
-use p2m_core::saved::{Array, LoadError, Reader, Writer};
+use p2m_core::storage::{Array, LoadError, Reader, Writer};
 
 /// Sites by a grid of cells.
 #[derive(Clone, Debug)]
@@ -199,7 +199,7 @@ pub(crate) struct Fill<'a> {
     pub(crate) first: usize,
 }
 
-impl Operation for Fill<'_> {
+impl SimdKernel for Fill<'_> {
     type Output = ();
 
     #[inline(always)]

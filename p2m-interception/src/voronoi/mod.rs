@@ -29,7 +29,7 @@ pub use locator::{BuildLocator, Locator, LocatorSites};
 use crate::list::block::{self, Block};
 use crate::options::{P2mOptions, P2mReport};
 use crate::partition::Partition;
-use crate::progress::{Progress, Stage, Teller};
+use crate::progress::{BuildStage, Progress, Teller};
 use crate::voronoi::budget::Allowance;
 use crate::voronoi::cells::{Cells, Lists};
 use crate::voronoi::grid_locator::Hints;
@@ -39,9 +39,9 @@ use crate::voronoi::neighbours::Fans;
 use crate::voronoi::sites::{BOUNDING_DISTANCE, Limits, Sites};
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
-use p2m_core::engine::real::wide;
+use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
-use p2m_core::saved::{Array, LoadError, Reader, Saved, Writer};
+use p2m_core::storage::{Array, LoadError, Reader, Saved, Writer};
 use p2m_core::{Aabb, Isa, PrimitiveId, PrimitiveSet, Real};
 
 /// The list of a cell that the tree answers; else the number of its first block.
@@ -92,7 +92,7 @@ impl Voronoi {
         if !tree.frame.is_plain() || half.is_nan() || half <= 0.0 {
             return;
         }
-        let centre = wide(&nalgebra::center(&bounds.min, &bounds.max));
+        let centre = to_f64_array(&nalgebra::center(&bounds.min, &bounds.max));
         let domain = half * REACH;
         let (low, high) = (centre.map(|x| x - domain), centre.map(|x| x + domain));
         let own = padded(&bounds);
@@ -105,9 +105,9 @@ impl Voronoi {
         let far = half.max(size) * BOUNDING_DISTANCE + centre.iter().fold(0.0f64, |a, x| a.max(x.abs()));
         // Rounding of keys, of corners and of added points: all below 2^-44 of this.
         let slack = far / (1u64 << 40) as f64;
-        let most = options.longest.min(LONGEST);
+        let most = options.max_list_packets.min(LONGEST);
         let parallel = options.splits.parallel;
-        let added = (tree.leaves.vertices.len() as f64 * options.added) as usize;
+        let added = (tree.leaves.vertices.len() as f64 * options.max_extra_sites) as usize;
         let allowance = &Allowance::new(options.memory, options.work, tree.packets().1);
         let limits = Limits { parallel, slack, most, added, allowance };
         let Some(sites) = Sites::new(tree, &bounds, limits, teller) else {
@@ -139,7 +139,7 @@ impl Voronoi {
         drop(delaunay);
         (self.low, self.high) = (low, high);
         (self.fans, self.filters) = (fans, filters);
-        teller.begin(Stage::Locator);
+        teller.begin(BuildStage::Locator);
         let sites = self.locator_sites();
         let locator = match options.locator {
             Some(build) => AnyLocator::Other(build.0(&sites)),
@@ -171,7 +171,7 @@ fn vertex_bounds(tree: &PacketTree) -> Aabb<f64> {
 /// A box, larger on all sides by an eighth of its longest side.
 fn padded(bounds: &Aabb<f64>) -> [V3; 2] {
     let pad = (bounds.max - bounds.min).max() * 0.125;
-    [wide(&bounds.min).map(|x| x - pad), wide(&bounds.max).map(|x| x + pad)]
+    [to_f64_array(&bounds.min).map(|x| x - pad), to_f64_array(&bounds.max).map(|x| x + pad)]
 }
 
 impl Partition for Voronoi {
@@ -183,7 +183,7 @@ impl Partition for Voronoi {
         options: &P2mOptions,
         progress: &(dyn Fn(Progress) + Sync),
     ) -> Self {
-        let teller = Teller::new(progress, Stage::Tree);
+        let teller = Teller::new(progress, BuildStage::Tree);
         let tree = PacketTree::build(set, &options.splits);
         let report = P2mReport { tree_bytes: tree.memory(), ..P2mReport::default() };
         let mut index = Self {

@@ -13,7 +13,7 @@ use p2m_bvh::engine::packet::frame_unit;
 use p2m_core::engine::simd::{InstructionSet, Lanes, prefetch_lines};
 use p2m_core::engine::vector::power_of_two;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
-use p2m_core::saved::{Array, LoadError, Reader, Writer};
+use p2m_core::storage::{Array, LoadError, Reader, Writer};
 use std::cmp::Ordering;
 
 /// Neighbours of a block.
@@ -383,13 +383,13 @@ impl Next {
 mod tests {
     use super::*;
     use crate::delaunay::{BOUNDING, Delaunay};
-    use p2m_core::engine::simd::{Isa, Operation};
+    use p2m_core::engine::simd::{Isa, SimdKernel};
     use rand::RngExt;
     use std::collections::BTreeSet;
 
     struct Walk<'a>(&'a Fans, usize, &'a V3);
 
-    impl Operation for Walk<'_> {
+    impl SimdKernel for Walk<'_> {
         type Output = Found;
         #[inline(always)]
         fn run<I: InstructionSet>(self) -> Found {

@@ -12,12 +12,12 @@ use crate::voronoi::neighbours::{Fans, Found, Site};
 use crate::voronoi::{AUXILIARY, Voronoi};
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
-use p2m_bvh::engine::nearest::{Evaluate, Filter, Search, finish, finish_nearest};
+use p2m_bvh::engine::nearest::{EvaluateFn, Search, SearchState, finish, finish_nearest};
 use p2m_bvh::engine::packet::LANES;
 use p2m_bvh::engine::volume::Rounded;
-use p2m_core::engine::query::Minimum;
-use p2m_core::engine::real::wide;
-use p2m_core::engine::simd::{InstructionSet, Operation, prefetch_lines};
+use p2m_core::engine::query::BestF64;
+use p2m_core::engine::real::to_f64_array;
+use p2m_core::engine::simd::{InstructionSet, SimdKernel, prefetch_lines};
 use p2m_core::engine::staged::RANGE;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 use p2m_core::{Aabb, Collector, Near};
@@ -28,8 +28,8 @@ impl LookUp for Voronoi {
         &self,
         query: V3,
         collector: &mut C,
-        evaluate: Evaluate<'_, C>,
-        finish: fn(&mut Filter<'_, C>),
+        evaluate: EvaluateFn<'_, C>,
+        finish: fn(&mut SearchState<'_, C>),
     ) {
         let tree = &self.tree;
         if collector.is_nearest_only()
@@ -42,19 +42,19 @@ impl LookUp for Voronoi {
         tree.run(query, collector, evaluate, finish);
     }
 
-    fn nearest(&self, query: V3, minimum: &mut Minimum, evaluate: Evaluate<'_, Minimum>) {
+    fn nearest(&self, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
         self.look_up(query, minimum, evaluate, finish_nearest);
     }
 
-    fn near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: Evaluate<'_, Near<'n>>) {
+    fn near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
         self.look_up(query, near, evaluate, finish);
     }
 
     fn nearest_of_several(
         &self,
         queries: &[V3; SIDE_BY_SIDE],
-        minimums: [&mut Minimum; SIDE_BY_SIDE],
-        evaluates: [Evaluate<'_, Minimum>; SIDE_BY_SIDE],
+        minimums: [&mut BestF64; SIDE_BY_SIDE],
+        evaluates: [EvaluateFn<'_, BestF64>; SIDE_BY_SIDE],
     ) {
         self.tree.isa().run(Several { index: self, queries, minimums, evaluates });
     }
@@ -64,7 +64,7 @@ impl Voronoi {
     /// The number of the site in whose cell a place is, the first step of every query: `None` outside of the domain.
     #[must_use]
     pub fn site_of(&self, query: &Point3<f64>) -> Option<usize> {
-        let place = self.place(&wide(query))?;
+        let place = self.place(&to_f64_array(query))?;
         let start = self.locator.as_ref()?.start(&place)?;
         Some(self.tree.isa().run(Walk { fans: &self.fans, start, place }))
     }
@@ -116,7 +116,7 @@ struct Walk<'a> {
     place: V3,
 }
 
-impl Operation for Walk<'_> {
+impl SimdKernel for Walk<'_> {
     type Output = usize;
 
     #[inline(always)]
@@ -132,11 +132,11 @@ struct Answer<'a, C> {
     query: V3,
     place: V3,
     collector: &'a mut C,
-    evaluate: Evaluate<'a, C>,
-    finish: fn(&mut Filter<'_, C>),
+    evaluate: EvaluateFn<'a, C>,
+    finish: fn(&mut SearchState<'_, C>),
 }
 
-impl<C: Collector> Operation for Answer<'_, C> {
+impl<C: Collector> SimdKernel for Answer<'_, C> {
     type Output = ();
 
     #[inline(always)]
@@ -153,7 +153,7 @@ impl<C: Collector> Operation for Answer<'_, C> {
 /// A query in its cell, as an operation of its own: it is compiled once, for single queries and for several.
 struct InCell<'a, C>(Answer<'a, C>);
 
-impl<C: Collector> Operation for InCell<'_, C> {
+impl<C: Collector> SimdKernel for InCell<'_, C> {
     type Output = ();
 
     #[inline(always)]
@@ -175,7 +175,7 @@ impl<C: Collector> Operation for InCell<'_, C> {
         }
         // What comes next, if the list has more than a block.
         index.prefetch_block(site.list as usize);
-        let mut filter = Filter::new(tree, query, reach, collector, evaluate, finish);
+        let mut filter = SearchState::new(tree, query, reach, collector, evaluate, finish);
         if let Some((packet, lane)) = certain {
             filter.add(packet, lane);
             return filter.evaluate_waiting();
@@ -201,14 +201,14 @@ fn search_filtered<C: Collector>(query: InFilteredList<'_, C>) {
     query.search.tree.isa().run(query);
 }
 
-impl<C: Collector> Operation for InFilteredList<'_, C> {
+impl<C: Collector> SimdKernel for InFilteredList<'_, C> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
         let Self { list, search } = self;
         let Search { tree, query, reach, held, collector, evaluate, finish } = search;
-        let mut filter = Filter::new(tree, query, reach, collector, evaluate, finish);
+        let mut filter = SearchState::new(tree, query, reach, collector, evaluate, finish);
         filter.hold(held, reach);
         for (packet, lanes) in Filters::packets(list, &query) {
             filter.packet::<I>(packet as usize, u32::from(lanes));
@@ -227,11 +227,11 @@ fn in_frame(tree: &PacketTree, query: &V3) -> Place {
 struct Several<'a> {
     index: &'a Voronoi,
     queries: &'a [V3; SIDE_BY_SIDE],
-    minimums: [&'a mut Minimum; SIDE_BY_SIDE],
-    evaluates: [Evaluate<'a, Minimum>; SIDE_BY_SIDE],
+    minimums: [&'a mut BestF64; SIDE_BY_SIDE],
+    evaluates: [EvaluateFn<'a, BestF64>; SIDE_BY_SIDE],
 }
 
-impl Operation for Several<'_> {
+impl SimdKernel for Several<'_> {
     type Output = ();
 
     #[inline(always)]

@@ -13,7 +13,7 @@
 
 use crate::delaunay::{BOUNDING, Delaunay};
 use crate::parallel_chunks::in_shares;
-use crate::progress::{Stage, Teller};
+use crate::progress::{BuildStage, Teller};
 use crate::voronoi::budget::{Allowance, most_tetrahedra};
 use crate::voronoi::circumsphere;
 use p2m_bvh::PacketTree;
@@ -237,9 +237,9 @@ impl Sites {
     pub(crate) fn new(tree: &PacketTree, bounds: &Aabb<f64>, limits: Limits<'_>, teller: &Teller<'_>) -> Option<Self> {
         let progress = |done, all| teller.reach([5.0, 30.0], done, all);
         let triangulated = |points: &[V3]| {
-            teller.begin(Stage::Delaunay);
+            teller.begin(BuildStage::Delaunay);
             let delaunay = Delaunay::within(points, BOUNDING_DISTANCE, most_tetrahedra(points.len())).ok();
-            teller.begin(Stage::Balls);
+            teller.begin(BuildStage::Balls);
             delaunay
         };
         let vertices = &tree.leaves.vertices;

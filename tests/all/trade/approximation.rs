@@ -5,7 +5,7 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::Point3;
-use p2m::backend::{Best, Counting, Examine};
+use p2m::backend::{Best, Inspect, StatsCollector};
 use p2m::scene::generate::Kind;
 use p2m::{
     AabbTree, BruteForce, BuildIndex, CertifiedQuery, Closest, ClosestPoint, KdopTree, OctreeIndex, P2mIndex,
@@ -21,8 +21,8 @@ use std::sync::Mutex;
 const EXPONENTS: [i32; 3] = [0, -350, 450];
 
 /// An index with counters.
-trait Index<T: Real>: ClosestPoint<T> + Examine<T> + Sync {}
-impl<T: Real, I: ClosestPoint<T> + Examine<T> + Sync> Index<T> for I {}
+trait Index<T: Real>: ClosestPoint<T> + Inspect<T> + Sync {}
+impl<T: Real, I: ClosestPoint<T> + Inspect<T> + Sync> Index<T> for I {}
 
 /// All but the certified bound.
 fn known<T: Real>(c: &Closest<T>) -> impl PartialEq + std::fmt::Debug + use<T> {
@@ -81,9 +81,9 @@ impl<T: Real> Case<'_, T> {
             assert!(reached <= told + T::SMALLEST_SUBNORMAL, "{}: {epsilon}: bound of {found:?}, {exact:?}", self.name);
         }
         for budget in [0, 1, 3, 10, 100] {
-            self.ask(&usual.with_budget(budget));
+            self.ask(&usual.with_max_visits(budget));
         }
-        let found = self.ask(&usual.with_budget(u32::MAX - 1));
+        let found = self.ask(&usual.with_max_visits(u32::MAX - 1));
         assert_eq!(known(&found), known(&exact), "{}: a budget for everything", self.name);
         // Within a radius that leaves nothing to give up, what is found is the nearest.
         let options = usual.with_epsilon(T::of_f64(0.5));
@@ -91,7 +91,7 @@ impl<T: Real> Case<'_, T> {
         assert!(found.distance == exact.distance, "{}: {found:?}, {exact:?}", self.name);
         let short = exact.distance.to_f64() * 0.99;
         if short < distance {
-            let options = options.with_max_distance(T::of_f64(short)).with_budget(5);
+            let options = options.with_max_distance(T::of_f64(short)).with_max_visits(5);
             assert_eq!(self.index.closest_point_with(&self.query, &options), None, "{}: beyond the radius", self.name);
         }
     }
@@ -109,7 +109,7 @@ fn check_scene<T: Real>(soup: &Soup<T>, queries: &[Point3<T>], counts: &mut [usi
         let truth = tree.certified_closest_point(query, &Default::default()).expect("vertices").expect("found");
         // Brute force takes what it is asked for as leave, not as order.
         if soup.len() < 1000 {
-            let rough = QueryOptions::default().with_budget(0).with_epsilon(T::of_f64(1.0));
+            let rough = QueryOptions::default().with_max_visits(0).with_epsilon(T::of_f64(1.0));
             let found = brute.closest_point_with(query, &rough).map(|c| known(&c));
             assert_eq!(found, Some(known(&exact)), "brute force at {query:?}");
         }
@@ -223,9 +223,9 @@ fn budgets_are_kept_and_pay() {
         for budget in [0, 4, 16, 64, 256] {
             let mut error = 0.0;
             for query in &queries {
-                let options = QueryOptions::default().with_budget(budget);
-                let mut counting = Counting::new(Best::new(&options));
-                index.examine(query, &mut counting);
+                let options = QueryOptions::default().with_max_visits(budget);
+                let mut counting = StatsCollector::new(Best::new(&options));
+                index.inspect(query, &mut counting);
                 let visits = counting.nodes + counting.packets;
                 // A path from the root to a packet, or the sites on the way to a cell.
                 assert!(visits <= budget as usize + 20, "{name}: {visits} visits for {budget}");
@@ -251,7 +251,7 @@ fn what_is_certain_leaves_nothing_open() {
     for _ in 0..200 {
         let query = Point3::from([0; 3].map(|_| rng.random_range(-4.0..4.0)));
         let expected = index.closest_point(&query).expect("found");
-        let options = QueryOptions::default().with_budget(0);
+        let options = QueryOptions::default().with_max_visits(0);
         let found = index.closest_point_with(&query, &options).expect("found");
         exact += usize::from(found == expected);
     }

@@ -6,7 +6,7 @@
 #[cfg(target_arch = "x86_64")]
 mod x86_64;
 
-use super::{Operation, Portable};
+use super::{Portable, SimdKernel};
 
 /// Asks for the cache line at an address before it is read; does nothing but that.
 #[inline(always)]
@@ -86,7 +86,7 @@ impl Isa {
 
     /// Computes with it.
     #[inline(always)]
-    pub fn run<O: Operation>(self, operation: O) -> O::Output {
+    pub fn run<O: SimdKernel>(self, operation: O) -> O::Output {
         match self.0 {
             Kind::Portable => run_portable(operation),
             // SAFETY: there is no way to such a value but `available`, which has asked the processor.
@@ -101,7 +101,7 @@ impl Isa {
 
 /// In a function of its own as the others are: it is compiled once for each operation, not wherever one is run.
 #[inline(never)]
-fn run_portable<O: Operation>(operation: O) -> O::Output {
+fn run_portable<O: SimdKernel>(operation: O) -> O::Output {
     operation.run::<Portable>()
 }
 

@@ -1,9 +1,9 @@
 //! AVX2 with FMA, and AVX-512.
 //!
-//! The types are private to this folder and appear only as parameters of an [`Operation`] that one of the two entries
+//! The types are private to this folder and appear only as parameters of an [`SimdKernel`] that one of the two entries
 //! runs; so wherever their methods run, the processor has been asked. That is the reason of every block below.
 
-use crate::simd::{Doubles, EightLanes, InstructionSet, Lanes, Operation};
+use crate::simd::{Doubles, EightLanes, InstructionSet, Lanes, SimdKernel};
 use std::arch::x86_64::*;
 
 pub(super) fn has_avx2() -> bool {
@@ -23,7 +23,7 @@ pub(super) fn has_avx512() -> bool {
 /// The processor has AVX2, FMA and the scalar instructions that came before them.
 #[inline(never)]
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-pub(super) unsafe fn run_avx2<O: Operation>(operation: O) -> O::Output {
+pub(super) unsafe fn run_avx2<O: SimdKernel>(operation: O) -> O::Output {
     operation.run::<Avx2>()
 }
 
@@ -31,7 +31,7 @@ pub(super) unsafe fn run_avx2<O: Operation>(operation: O) -> O::Output {
 /// The same, and AVX-512 F and VL.
 #[inline(never)]
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl")]
-pub(super) unsafe fn run_avx512<O: Operation>(operation: O) -> O::Output {
+pub(super) unsafe fn run_avx512<O: SimdKernel>(operation: O) -> O::Output {
     operation.run::<Avx512>()
 }
 

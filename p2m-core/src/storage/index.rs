@@ -1,7 +1,7 @@
 //! Which index a file has, and over which set.
 
 use super::{LoadError, Reader, Writer};
-use crate::real::wide;
+use crate::real::to_f64_array;
 use crate::{Primitive, PrimitiveId, PrimitiveSet, Real};
 use nalgebra::Point3;
 use std::hash::Hasher;
@@ -75,7 +75,7 @@ fn fingerprint<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -> u64 {
         let (mut numbers, mut count) = ([0.0; 10], 0);
         if vertices.is_empty() || vertices.len() > 3 {
             let bounds = primitive.aabb();
-            for corner in [wide(&bounds.min), wide(&bounds.max)] {
+            for corner in [to_f64_array(&bounds.min), to_f64_array(&bounds.max)] {
                 numbers[3 * count..][..3].copy_from_slice(&corner);
                 count += 1;
             }
@@ -86,7 +86,7 @@ fn fingerprint<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -> u64 {
             }
         } else {
             for vertex in vertices {
-                numbers[3 * count..][..3].copy_from_slice(&wide(vertex));
+                numbers[3 * count..][..3].copy_from_slice(&to_f64_array(vertex));
                 count += 1;
             }
             numbers[9] = count as f64;

@@ -23,7 +23,7 @@
 //! ```
 //! use nalgebra::Point3;
 //! use p2m_bvh::AabbTree;
-//! use p2m_core::saved::{SavedFile, Writer};
+//! use p2m_core::storage::{SavedFile, Writer};
 //! use p2m_core::{BuildIndex, ClosestPoint, Point};
 //!
 //! // Of the type of an index that can be saved: AabbTree, KdopTree, OctreeIndex or P2mIndex.
