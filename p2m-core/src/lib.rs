@@ -19,17 +19,16 @@
 #![deny(unsafe_code)]
 
 mod aabb;
-mod approximate;
+mod approx_impls;
 pub mod batch;
 mod box_query;
 mod brute_force;
 mod certified;
-mod counting;
 mod curve;
 mod error;
+mod exact;
 mod index;
 mod indexed;
-mod integers;
 pub mod kernel;
 mod near_query;
 pub mod predicates;
@@ -41,13 +40,13 @@ mod set;
 mod simd;
 mod soup;
 mod stats;
+mod stats_collector;
 pub mod storage;
 
 pub use aabb::Aabb;
 pub use box_query::{BoxQuery, ClosestLeaf};
 pub use brute_force::BruteForce;
 pub use certified::{CertifiedQuery, CertifyError, shape_of};
-pub use counting::StatsCollector;
 pub use error::BuildError;
 pub use index::{BuildIndex, ClosestPoint};
 pub use indexed::Indexed;
@@ -61,6 +60,7 @@ pub use set::{PrimitiveId, PrimitiveSet, check_set};
 pub use simd::Isa;
 pub use soup::{Element, Soup};
 pub use stats::{Inspect, ListStats, QueryCost, Stat};
+pub use stats_collector::StatsCollector;
 
 /// The inside of this crate, for its sibling crates: it may change at any time.
 #[doc(hidden)]
@@ -69,13 +69,13 @@ pub mod engine {
         pub use crate::curve::*;
     }
     pub mod double {
-        pub use crate::kernel::double::*;
+        pub use crate::kernel::double_double::*;
     }
     pub mod integers {
-        pub use crate::integers::*;
+        pub use crate::exact::*;
     }
     pub mod number {
-        pub use crate::kernel::number::*;
+        pub use crate::kernel::arithmetic::*;
     }
     pub mod query {
         pub use crate::query::BestF64;
@@ -90,7 +90,7 @@ pub mod engine {
         pub use crate::simd::*;
     }
     pub mod staged {
-        pub use crate::predicates::staged::*;
+        pub use crate::predicates::adaptive::*;
     }
     pub mod vector {
         pub use crate::kernel::vector::*;

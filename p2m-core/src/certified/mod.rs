@@ -13,26 +13,26 @@
 //!
 //! # Stages
 //!
-//! 1. The kernel says which feature of a primitive is nearest; [`claim`] proves it by signs that are certain in f64, or
+//! 1. The kernel says which feature of a primitive is nearest; [`feature_certificate`] proves it by signs that are certain in f64, or
 //!    in double-double. The squared distance of the feature follows in double-double with a bound on its error
-//!    ([`double`]): about 2^-100 of it, unless the query is very near. Candidates whose nearest features are proved to be
+//!    ([`double_double`]): about 2^-100 of it, unless the query is very near. Candidates whose nearest features are proved to be
 //!    the same vertex, edge or face are equally near, whatever rounding says: it is computed once.
-//! 2. Integers of any length ([`exact`]) decide between those that are not told apart by then, find the feature where
+//! 2. Integers of any length ([`rational`]) decide between those that are not told apart by then, find the feature where
 //!    the claim was wrong or not to be proved, and round the distance where the first stage cannot tell how.
 //!
 //! What the kernel says changes the work, never the answer: a wrong claim fails to be proved.
 
-mod claim;
-mod double;
-mod exact;
+mod double_double;
+mod feature_certificate;
 mod query;
+mod rational;
 #[cfg(test)]
 mod tests;
 
 pub use query::{CertifiedQuery, CertifyError, shape_of};
 
 use crate::kernel::vector::V3;
-use crate::kernel::{Nearest, scalar};
+use crate::kernel::{Nearest, triangle};
 use crate::{Feature, PrimitiveId};
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -139,11 +139,11 @@ impl Candidate<'_> {
     }
 
     fn is_proved(&self, query: V3) -> bool {
-        claim::is_proved(query, self.vertices, self.feature)
+        feature_certificate::is_proved(query, self.vertices, self.feature)
     }
 
-    fn square(&self, query: V3) -> Option<double::Square> {
-        double::Square::new(query, self.vertices, self.feature)
+    fn square(&self, query: V3) -> Option<double_double::Square> {
+        double_double::Square::new(query, self.vertices, self.feature)
     }
 }
 
@@ -159,7 +159,7 @@ pub(crate) fn decide(query: [f64; 3], candidates: &[Candidate<'_>]) -> Decision 
 /// The first stage on its own: a running minimum that gives up at the first doubt.
 fn decide_fast(query: V3, candidates: &[Candidate<'_>]) -> Option<Decision> {
     let mut winner = 0;
-    let mut best: Option<double::Square> = None;
+    let mut best: Option<double_double::Square> = None;
     for (place, candidate) in candidates.iter().enumerate() {
         if !candidate.is_proved(query) {
             return None;
@@ -188,7 +188,7 @@ struct Group {
     place: usize,
     /// Whether the feature of that candidate is proved to hold the nearest point.
     proved: bool,
-    square: Option<double::Square>,
+    square: Option<double_double::Square>,
 }
 
 /// Both stages: the first leaves out what is certainly farther than another one, the second decides between the rest.
@@ -209,7 +209,7 @@ fn decide_closely(query: V3, candidates: &[Candidate<'_>]) -> Decision {
     }
     let exact = |group: &Group| {
         let Candidate { id, vertices, feature } = candidates[group.place];
-        (exact::Square::new(query, vertices, feature, group.proved), id, group.place)
+        (rational::Square::new(query, vertices, feature, group.proved), id, group.place)
     };
     let nearest = left.into_iter().map(exact).min_by(|(a, i, _), (b, j, _)| a.cmp(b).then(i.cmp(j)));
     let (square, _, winner) = nearest.expect("there are candidates, and the least one is not farther than itself");
@@ -269,19 +269,20 @@ fn within_by_kernel(nearest: &Nearest, radius: f64) -> Option<bool> {
 #[cold]
 #[inline(never)]
 fn within_closely(query: V3, vertices: &[V3], feature: Feature, radius: f64) -> bool {
-    let proved = claim::is_proved(query, vertices, feature);
-    let fast = || double::Square::new(query, vertices, feature)?.compare(&double::Square::of_length(radius)?);
+    let proved = feature_certificate::is_proved(query, vertices, feature);
+    let fast =
+        || double_double::Square::new(query, vertices, feature)?.compare(&double_double::Square::of_length(radius)?);
     let order = if proved { fast() } else { None };
-    let exact = || exact::Square::new(query, vertices, feature, proved).cmp(&exact::Square::of_length(radius));
+    let exact = || rational::Square::new(query, vertices, feature, proved).cmp(&rational::Square::of_length(radius));
     order.unwrap_or_else(exact) != Ordering::Greater
 }
 
 /// What the kernel says of a primitive.
 fn kernel(query: V3, vertices: &[V3]) -> Nearest {
     let nearest = match *vertices {
-        [a] => scalar::point(query, a, f64::INFINITY),
-        [a, b] => scalar::segment(query, [a, b], f64::INFINITY),
-        [a, b, c] => scalar::triangle(query, [a, b, c], f64::INFINITY),
+        [a] => triangle::point(query, a, f64::INFINITY),
+        [a, b] => triangle::segment(query, [a, b], f64::INFINITY),
+        [a, b, c] => triangle::triangle(query, [a, b, c], f64::INFINITY),
         _ => unreachable!("one to three vertices"),
     };
     nearest.expect("no key exceeds infinity")

@@ -246,7 +246,7 @@ fn what_is_shared_is_no_tie() {
         let [a, b, c, d]: [V3; 4] = std::array::from_fn(|_| vector(&mut rng).into());
         let above = |weights: [f64; 3], by: f64| -> V3 {
             let [e, f]: [V3; 2] = [b, c].map(|v| std::array::from_fn(|k| v[k] - a[k]));
-            let normal = crate::kernel::number::cross(e, f);
+            let normal = crate::kernel::arithmetic::cross(e, f);
             std::array::from_fn(|k| weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k] + by * normal[k])
         };
         let faces = [vec![a, b, c], vec![b, c, a], vec![c, b, a]];
@@ -390,9 +390,9 @@ fn distances_within_rounding_are_as_accurate_as_others() {
 
 /// Whether a claim is proved, which it may only be if the feature is as near as the primitive.
 fn proves(query: V3, vertices: &[V3], claim: Feature) -> bool {
-    let proved = claim::is_proved(query, vertices, claim);
+    let proved = feature_certificate::is_proved(query, vertices, claim);
     if proved {
-        let [by_claim, truth] = [true, false].map(|proved| exact::Square::new(query, vertices, claim, proved));
+        let [by_claim, truth] = [true, false].map(|proved| rational::Square::new(query, vertices, claim, proved));
         assert!(by_claim.cmp(&truth).is_eq(), "{query:?} {vertices:?} {claim:?}");
     }
     proved
@@ -468,7 +468,7 @@ fn roots_of_small_integers_round_as_the_processor_does() {
     for n in 0..3000 {
         let shape = [[f64::from(n), f64::from(n % 7), f64::from(n % 3)]];
         let square = f64::from(n * n + (n % 7) * (n % 7) + (n % 3) * (n % 3));
-        let exact = exact::Square::new([0.0; 3], &shape, Feature::Face, false).distance();
+        let exact = rational::Square::new([0.0; 3], &shape, Feature::Face, false).distance();
         assert_eq!(exact.nearest, square.sqrt());
         assert_eq!(decide([0.0; 3], &[candidate(&shape)]).distance, square.sqrt());
     }

@@ -5,13 +5,13 @@
 
 #![allow(clippy::float_cmp, reason = "ties are equality of bits, and are decided here")]
 
-pub mod double;
+pub mod arithmetic;
+pub mod double_double;
+mod edge;
+mod face;
 mod key;
-mod line;
-pub mod number;
-mod plane;
-pub mod scalar;
-mod scaled;
+mod rescaled;
+pub(crate) mod triangle;
 pub mod vector;
 pub mod vertices;
 

@@ -2,7 +2,7 @@
 //!
 //! Far from a mesh the triangles around a vertex tie; which of them has the lowest number is all that is left to know.
 
-use super::scalar::{OUTWARD_MARGIN, PLAIN_MAX, PLAIN_MIN};
+use super::triangle::{OUTWARD_MARGIN, PLAIN_MAX, PLAIN_MIN};
 use super::vector::{V3, larger, smaller};
 
 /// Triangles side by side.
@@ -10,7 +10,7 @@ pub const SIDE_BY_SIDE: usize = 8;
 type Row = [f64; SIDE_BY_SIDE];
 
 /// The squares of the keys of triangles whose nearest point is certainly a vertex, bit for bit those of
-/// [`triangle`](super::scalar::triangle); infinity for the others. Coordinate k of corner v is in `corners[v][k]`.
+/// [`triangle`](super::triangle::triangle); infinity for the others. Coordinate k of corner v is in `corners[v][k]`.
 #[inline(always)]
 #[allow(clippy::needless_range_loop, reason = "rows side by side")]
 pub fn certain_vertices(query: V3, corners: &[[Row; 3]; 3]) -> Row {
@@ -55,7 +55,7 @@ pub fn certain_vertices(query: V3, corners: &[[Row; 3]; 3]) -> Row {
 #[allow(clippy::needless_range_loop, reason = "rows side by side")]
 mod tests {
     use super::*;
-    use crate::kernel::scalar;
+    use crate::kernel::triangle::triangle;
     use rand::RngExt;
 
     #[test]
@@ -81,7 +81,7 @@ mod tests {
             let squares = certain_vertices(query, &corners);
             for i in 0..SIDE_BY_SIDE {
                 let vertices = [0, 1, 2].map(|v: usize| [0, 1, 2].map(|k: usize| corners[v][k][i]));
-                let key = scalar::triangle(query, vertices, f64::INFINITY).expect("nothing is beyond infinity").key;
+                let key = triangle(query, vertices, f64::INFINITY).expect("nothing is beyond infinity").key;
                 if squares[i] < f64::INFINITY {
                     assert_eq!(key.plain_square(), Some(squares[i]), "{query:?} {vertices:?}");
                     certain += 1;

@@ -16,12 +16,12 @@
 //! }
 //! ```
 
-pub(crate) mod staged;
+pub(crate) mod adaptive;
+mod fixed_point;
 #[cfg(test)]
 mod tests;
-mod whole;
 
-use crate::integers::{self, common_exponent, difference};
+use crate::exact::{self, common_exponent, difference};
 use crate::kernel::power_of_two;
 use dashu_int::IBig;
 use robust::{Coord, Coord3D, orient2d, orient3d};
@@ -71,7 +71,7 @@ pub fn orientation_3d(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> Ord
     }
     let exponent = common_exponent([a, b, c, d].as_flattened());
     let [b, c, d] = [b, c, d].map(|p| difference(p, a, exponent));
-    integers::sign(&integers::dot(&integers::cross(&b, &c), &d))
+    exact::sign(&exact::dot(&exact::cross(&b, &c), &d))
 }
 
 /// Whether `e` is inside the sphere through the other four ([`Ordering::Greater`]), on it (`Equal`), or outside, if
@@ -86,10 +86,10 @@ pub fn orientation_3d(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> Ord
 /// \[Shewchuk1997\]
 #[must_use]
 pub fn insphere(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3], e: [f64; 3]) -> Ordering {
-    let in_range = |x: &f64| *x == 0.0 || staged::RANGE.contains(&x.abs());
+    let in_range = |x: &f64| *x == 0.0 || adaptive::RANGE.contains(&x.abs());
     if [a, b, c, d, e].as_flattened().iter().all(in_range) {
         let points = [a, b, c, d];
-        return staged::sphere_filter(points, e).sign().unwrap_or_else(|| staged::sphere_exact(points, e).0);
+        return adaptive::sphere_filter(points, e).sign().unwrap_or_else(|| adaptive::sphere_exact(points, e).0);
     }
     integers_insphere([a, b, c, d], e)
 }
@@ -101,11 +101,11 @@ fn integers_insphere(points: [[f64; 3]; 4], e: [f64; 3]) -> Ordering {
     let mut sum = IBig::ZERO;
     for (i, row) in rows.iter().enumerate() {
         let [p, q, r] = [1, 2, 3].map(|k| &rows[(i + k) % 4]);
-        let term = integers::dot(row, row) * integers::dot(&integers::cross(p, q), r);
+        let term = exact::dot(row, row) * exact::dot(&exact::cross(p, q), r);
         // A cyclic shift of four rows is odd.
         sum += if i % 2 == 0 { term } else { -term };
     }
-    integers::sign(&sum)
+    exact::sign(&sum)
 }
 
 fn sign(x: f64) -> Ordering {

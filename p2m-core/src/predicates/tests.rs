@@ -1,6 +1,6 @@
 //! Every stage of the predicates against integers.
 
-use super::staged::{self, PredicateStage, RANGE};
+use super::adaptive::{self, PredicateStage, RANGE};
 use super::*;
 use p2m_testkit::{Cases, cases, rng, vector};
 use rand::{Rng, RngExt};
@@ -10,7 +10,7 @@ type Point = [f64; 3];
 fn integers_orientation([a, b, c, d]: [Point; 4]) -> Ordering {
     let exponent = common_exponent([a, b, c, d].as_flattened());
     let [b, c, d] = [b, c, d].map(|p| difference(p, a, exponent));
-    integers::sign(&integers::dot(&integers::cross(&b, &c), &d))
+    exact::sign(&exact::dot(&exact::cross(&b, &c), &d))
 }
 
 /// Whether all stages that are sure of a sign say what the integers say; those that were, of filter, whole numbers,
@@ -19,13 +19,13 @@ fn check_sphere(points: [Point; 4], e: Point) -> [bool; 4] {
     let expected = integers_insphere(points, e);
     let [a, b, c, d] = points;
     assert_eq!(insphere(a, b, c, d, e), expected, "{points:?} {e:?}");
-    let filter = staged::sphere_filter(points, e).sign();
+    let filter = adaptive::sphere_filter(points, e).sign();
     assert!(filter.is_none_or(|sign| sign == expected), "{points:?} {e:?}");
-    let double = staged::sphere_double(points, e);
+    let double = adaptive::sphere_double(points, e);
     assert!(double.is_none_or(|sign| sign == expected), "{points:?} {e:?}");
-    let (sign, stage) = staged::sphere_exact(points, e);
+    let (sign, stage) = adaptive::sphere_exact(points, e);
     assert_eq!(sign, expected, "{stage:?} {points:?} {e:?}");
-    assert_eq!(staged::sphere_adaptive(points, e), expected, "{points:?} {e:?}");
+    assert_eq!(adaptive::sphere_adaptive(points, e), expected, "{points:?} {e:?}");
     [filter.is_some(), stage == PredicateStage::Whole, double.is_some(), true]
 }
 
@@ -34,9 +34,9 @@ fn check_orientation(points: [Point; 4]) -> [bool; 2] {
     let [a, b, c, d] = points;
     assert_eq!(orientation_3d(a, b, c, d), expected, "{points:?}");
     // Of a, b, c as seen from d: the other way round.
-    let filter = staged::orientation_filter([a, b, c].map(|p| std::array::from_fn(|k| p[k] - d[k]))).sign();
+    let filter = adaptive::orientation_filter([a, b, c].map(|p| std::array::from_fn(|k| p[k] - d[k]))).sign();
     assert!(filter.is_none_or(|sign| sign == expected.reverse()), "{points:?}");
-    let (sign, stage) = staged::orientation_exact([a, b, c], d);
+    let (sign, stage) = adaptive::orientation_exact([a, b, c], d);
     assert_eq!(sign, expected.reverse(), "{stage:?} {points:?}");
     [filter.is_some(), stage == PredicateStage::Whole]
 }

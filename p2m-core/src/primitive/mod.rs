@@ -11,7 +11,7 @@ pub use segment::Segment;
 pub use shape::Shape;
 pub use triangle::Triangle;
 
-use crate::kernel::{Key, Nearest, scalar};
+use crate::kernel::{Key, Nearest, triangle as plain_kernel};
 use crate::real::to_f64_array;
 use crate::{Aabb, Ray, RayHit, Real};
 use nalgebra::Point3;
@@ -88,28 +88,28 @@ impl Projection {
     #[inline(always)]
     #[doc(hidden)]
     pub fn of_near_triangle(query: [f64; 3], vertices: &[[f64; 3]; 3], square: f64) -> Option<Self> {
-        Some(Self::from_nearest(&scalar::near_triangle(query, *vertices, square)?, query, vertices))
+        Some(Self::from_nearest(&plain_kernel::near_triangle(query, *vertices, square)?, query, vertices))
     }
 
     /// On a triangle, as the contract has it; `None` if its key certainly exceeds `square`.
     #[inline(always)]
     #[doc(hidden)]
     pub fn of_triangle(query: [f64; 3], vertices: &[[f64; 3]; 3], square: f64) -> Option<Self> {
-        Some(Self::from_nearest(&scalar::triangle(query, *vertices, square)?, query, vertices))
+        Some(Self::from_nearest(&plain_kernel::triangle(query, *vertices, square)?, query, vertices))
     }
 
     /// The same on a segment.
     #[inline(always)]
     #[doc(hidden)]
     pub fn of_segment(query: [f64; 3], vertices: &[[f64; 3]; 2], square: f64) -> Option<Self> {
-        Some(Self::from_nearest(&scalar::segment(query, *vertices, square)?, query, vertices))
+        Some(Self::from_nearest(&plain_kernel::segment(query, *vertices, square)?, query, vertices))
     }
 
     /// The same on a point.
     #[inline(always)]
     #[doc(hidden)]
     pub fn of_point(query: [f64; 3], vertex: &[[f64; 3]; 1], square: f64) -> Option<Self> {
-        Some(Self::from_nearest(&scalar::point(query, vertex[0], square)?, query, vertex))
+        Some(Self::from_nearest(&plain_kernel::point(query, vertex[0], square)?, query, vertex))
     }
 
     #[inline(always)]

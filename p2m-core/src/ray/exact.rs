@@ -5,7 +5,7 @@
 
 use super::crossing::Found;
 use super::line::Ray;
-use crate::integers::{Fraction, Vector, common_exponent, cross, cross_component, difference, dot, integer, sign};
+use crate::exact::{Fraction, Vector, common_exponent, cross, cross_component, difference, dot, integer, sign};
 use crate::kernel::vector::V3;
 use dashu_int::IBig;
 use std::cmp::Ordering;

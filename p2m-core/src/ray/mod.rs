@@ -6,17 +6,17 @@
 
 #![allow(clippy::float_cmp, reason = "nothing here has a tolerance")]
 
-mod collect;
-mod counting;
+mod collector;
 mod crossing;
 mod exact;
 mod line;
 mod plane;
+mod stats_collector;
 
-pub use collect::{Hits, RayCollector};
-pub use counting::RayStatsCollector;
+pub use collector::{Hits, RayCollector};
 pub use crossing::{Crossing, Hit, RayHit, Side};
 pub use line::{Ray, RayError};
+pub use stats_collector::RayStatsCollector;
 
 pub use exact::foot;
 

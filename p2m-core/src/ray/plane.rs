@@ -1,8 +1,8 @@
 //! Where a line meets the plane of a triangle, and with which weights: rounded to nearest, by double-double numbers where
 //! these leave no doubt.
 
-use crate::kernel::double::{Double, ROUNDING as DOUBLE};
-use crate::kernel::number::{cross, dot};
+use crate::kernel::arithmetic::{cross, dot};
+use crate::kernel::double_double::{Double, ROUNDING as DOUBLE};
 use crate::kernel::power_of_two;
 use crate::kernel::vector::V3;
 

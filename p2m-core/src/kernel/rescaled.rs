@@ -4,10 +4,10 @@
 //! with the same bits. Slow, and rare: f32 scenes never come here, f64 scenes only beyond 2^-250..2^250, for repeated
 //! vertices, and for distances that are tiny beside the primitive.
 
+use super::edge::{Foot, Line};
+use super::face::{EDGES, Plane};
 use super::key::Key;
-use super::line::{Foot, Line};
-use super::plane::{EDGES, Plane};
-use super::scalar::edge_precedes;
+use super::triangle::edge_precedes;
 use super::vector::{
     V3, bounds, clamp, exponent, larger, largest, lexicographically_less, norm_squared, power_of_two, scale_by_power,
     sub,

@@ -1,14 +1,14 @@
 //! Squared distances in integers of any length, and their roots, rounded once.
 //!
 //! Everything is relative to the query, and a multiple of a power of two that divides all coordinates of the query and
-//! the primitive. Which feature is nearest is told by the same signs as in [`claim`](super::claim), here of integers:
+//! the primitive. Which feature is nearest is told by the same signs as in [`feature_certificate`](super::feature_certificate), here of integers:
 //! nothing is uncertain. A point nearest to the query is a vertex, or inside of an edge that has a length, or inside of a
 //! face that has an area, and the conditions stated there are necessary as well; of a triangle without area every point
 //! is on an edge. So one of the features is always found.
 
 use super::{Rounded, exists};
 use crate::Feature;
-use crate::integers::{Fraction, Vector, common_exponent, cross, difference, dot, integer, round_bits, sign};
+use crate::exact::{Fraction, Vector, common_exponent, cross, difference, dot, integer, round_bits, sign};
 use crate::kernel::vector::V3;
 use dashu_int::ops::{BitTest, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};

@@ -1,6 +1,6 @@
 //! A collector of hits that counts what a search does.
 
-use super::collect::RayCollector;
+use super::collector::RayCollector;
 use super::crossing::Crossing;
 use super::line::Ray;
 use crate::PrimitiveId;

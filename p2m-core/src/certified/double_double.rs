@@ -19,11 +19,11 @@
 //! The constants exceed these by an eighth (the relative one by a seventh), which is more than the rounding of the bounds,
 //! errors of errors, and what underflows: squares of errors are above 2^-800.
 
-use super::claim::PLAIN;
+use super::feature_certificate::PLAIN;
 use super::{Rounded, U, ends};
 use crate::Feature;
-use crate::kernel::double::Double;
-use crate::kernel::number::{cross, dot};
+use crate::kernel::arithmetic::{cross, dot};
+use crate::kernel::double_double::Double;
 use crate::kernel::power_of_two;
 use crate::kernel::vector::{V3, larger};
 use std::cmp::Ordering;

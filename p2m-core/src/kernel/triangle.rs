@@ -23,16 +23,16 @@
 //!
 //! No step compares with an absolute constant. Plain f64 arithmetic is used while no square can leave its range
 //! ([`plain_scale`]); otherwise every feature is computed on offsets scaled by their own power of two
-//! ([`scaled`](super::scaled)), by the same functions and hence with the same bits. Which of several
+//! ([`rescaled`](super::rescaled)), by the same functions and hence with the same bits. Which of several
 //! formulas is used depends on ratios of lengths only: on shape, never on scale.
 
+use super::edge::Line;
+use super::face::{EDGES, Plane};
 use super::key::{Key, SQUARE_MIN};
-use super::line::Line;
-use super::plane::{EDGES, Plane};
 use super::vector::{
     V3, bounds, dot, larger, largest, lexicographically_less, norm_squared, power_of_two, smaller, sub,
 };
-use super::{Nearest, of_edge, of_vertex, scaled};
+use super::{Nearest, of_edge, of_vertex, rescaled};
 use crate::Feature;
 
 /// The scaled lane takes edges below 2^-100 of the distance for their end points; plain arithmetic demands a little
@@ -93,7 +93,7 @@ pub(crate) fn point(query: V3, vertex: V3, prune: f64) -> Option<Nearest> {
             let (feature, weights) = of_vertex(0);
             Nearest { key, offset, exponent: 0, feature, weights, size: largest(&[offset]) }
         }
-        None => scaled::point(query, vertex),
+        None => rescaled::point(query, vertex),
     })
 }
 
@@ -123,7 +123,7 @@ fn segment_features(query: V3, vertices: &[V3; 2], offsets: &[V3; 2], prune: f64
     let squares = [norm_squared(offsets[0]), norm_squared(offsets[1])];
     let line = Line::new(*offsets, squares);
     if !plain_scale(size, line.inverse) {
-        return Some(scaled::segment(query, *vertices));
+        return Some(rescaled::segment(query, *vertices));
     }
     let vertex = nearest_vertex(vertices, &squares);
     let mut best = (squares[vertex], offsets[vertex], of_vertex(vertex));
@@ -141,7 +141,7 @@ fn segment_features(query: V3, vertices: &[V3; 2], offsets: &[V3; 2], prune: f64
     }
     match plain_nearest(best, size) {
         Some(nearest) => Some(nearest),
-        None => Some(scaled::segment(query, *vertices)),
+        None => Some(rescaled::segment(query, *vertices)),
     }
 }
 
@@ -199,7 +199,7 @@ fn triangle_features(query: V3, vertices: &[V3; 3], offsets: &[V3; 3], bounds: [
         Line::new([offsets[2], offsets[0]], [squares[2], squares[0]]),
     ];
     if !plain_scale(size, larger(larger(lines[0].inverse, lines[1].inverse), lines[2].inverse)) {
-        return Some(scaled::triangle(query, *vertices));
+        return Some(rescaled::triangle(query, *vertices));
     }
     let plane = Plane::new(*offsets, &lines, size);
     let (face, doubt) = match &plane {
@@ -236,7 +236,7 @@ fn triangle_features(query: V3, vertices: &[V3; 3], offsets: &[V3; 3], bounds: [
     }
     match plain_nearest(best, size) {
         Some(nearest) => Some(nearest),
-        None => Some(scaled::triangle(query, *vertices)),
+        None => Some(rescaled::triangle(query, *vertices)),
     }
 }
 

@@ -1,8 +1,8 @@
 //! Feet of perpendiculars on the faces of triangles, slivers included.
 
-use super::double::Double;
-use super::line::{Foot, Line};
-use super::number;
+use super::arithmetic;
+use super::double_double::Double;
+use super::edge::{Foot, Line};
 use super::vector::{
     V3, add, add_scaled, clamp, combine, dot, exponent, larger, largest, lexicographically_less, norm_squared,
     power_of_two, scale_by_power, smaller, sub,
@@ -183,7 +183,7 @@ fn longest_edge(vertices: [V3; 3], lines: &[Line; 3]) -> usize {
 fn sliver_axes(plain: &Axes, n: V3, f: V3, a: V3) -> Option<Axes> {
     let d: [Double; 3] = std::array::from_fn(|k| Double::difference(f[k], n[k]));
     let side: [Double; 3] = std::array::from_fn(|k| Double::difference(a[k], n[k]));
-    let along = number::dot(side, d) / number::dot(d, d);
+    let along = arithmetic::dot(side, d) / arithmetic::dot(d, d);
     let height = std::array::from_fn(|k| (side[k] - along * d[k]).round());
     let height_squared = norm_squared(height);
     let needle = height_squared * plain.inverse < NEEDLE_SINE_SQUARED;
@@ -200,8 +200,8 @@ fn strictly_inside(n: V3, f: V3, a: V3) -> bool {
     let edge = |to: V3| -> [Double; 3] { std::array::from_fn(|k| Double::difference(to[k], n[k])) };
     let (e, s) = (edge(f), edge(a));
     let to_query = n.map(|x| Double::difference(0.0, x));
-    let [ee, es, ss] = [number::dot(e, e), number::dot(e, s), number::dot(s, s)];
-    let [qe, qs] = [number::dot(to_query, e), number::dot(to_query, s)];
+    let [ee, es, ss] = [arithmetic::dot(e, e), arithmetic::dot(e, s), arithmetic::dot(s, s)];
+    let [qe, qs] = [arithmetic::dot(to_query, e), arithmetic::dot(to_query, s)];
     // Cramer's rule; every weight times the determinant.
     let wf = ss * qe - es * qs;
     let wa = ee * qs - es * qe;

@@ -31,8 +31,8 @@
 
 use super::{U, ends, exists};
 use crate::Feature;
-use crate::kernel::double::Double;
-use crate::kernel::number::{Number, cross, dot};
+use crate::kernel::arithmetic::{Number, cross, dot};
+use crate::kernel::double_double::Double;
 use crate::kernel::power_of_two;
 use crate::kernel::vector::{V3, larger};
 

@@ -7,9 +7,9 @@
 
 #![allow(clippy::inline_always, reason = "one expression; calls would hide it from the optimiser")]
 
-use super::whole;
-use crate::kernel::double::Double;
-use crate::kernel::number::{Number, cross, dot};
+use super::fixed_point;
+use crate::kernel::arithmetic::{Number, cross, dot};
+use crate::kernel::double_double::Double;
 use crate::kernel::power_of_two;
 use crate::kernel::vector::{V3, larger, sub};
 use robust::{Coord3D, insphere, orient3d};
@@ -117,8 +117,8 @@ pub fn orientation_filter(rows: [V3; 3]) -> Estimate {
 /// The sign of the determinant of a - origin, b - origin, c - origin, where the filter could not tell.
 #[cold]
 pub fn orientation_exact([a, b, c]: [V3; 3], origin: V3) -> (Ordering, PredicateStage) {
-    if let Some(rows) = whole::rows(&[a, b, c], origin) {
-        return (whole::orientation(rows), PredicateStage::Whole);
+    if let Some(rows) = fixed_point::rows(&[a, b, c], origin) {
+        return (fixed_point::orientation(rows), PredicateStage::Whole);
     }
     // The sign that is documented there, for points below the plane.
     let sign = orient3d(coord(a), coord(b), coord(c), coord(origin));
@@ -137,8 +137,8 @@ pub fn sphere_filter([a, b, c, d]: [V3; 4], e: V3) -> Estimate {
 /// Whether e is inside (`Greater`), on or outside (`Less`) that sphere, where the filter could not tell.
 #[cold]
 pub fn sphere_exact(points: [V3; 4], e: V3) -> (Ordering, PredicateStage) {
-    if let Some(rows) = whole::rows(&points, e) {
-        return (whole::sphere(rows), PredicateStage::Whole);
+    if let Some(rows) = fixed_point::rows(&points, e) {
+        return (fixed_point::sphere(rows), PredicateStage::Whole);
     }
     if let Some(sign) = sphere_double(points, e) {
         return (sign, PredicateStage::Double);
