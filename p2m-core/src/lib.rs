@@ -33,6 +33,7 @@ pub mod kernel;
 mod near_query;
 pub mod predicates;
 mod primitive;
+#[macro_use]
 mod query;
 mod ray;
 mod real;

@@ -5,7 +5,7 @@
 //! One collector, [`Near`], does all of that, so a backend writes one method and searches are compiled once for all of
 //! these questions.
 
-use crate::query::{answer, square_within};
+use crate::query::answer::{answer, square_within};
 use crate::{Closest, Collector, Key, PrimitiveId, Projection, QueryOptions, Real};
 use nalgebra::Point3;
 use std::collections::BinaryHeap;
@@ -216,16 +216,16 @@ impl Collector for Near<'_> {
     }
 
     /// The same in a contest: some primitive is that near.
-    fn prune_given(&self, square: f64) -> f64 {
-        if self.is_nearest_only() && square < self.prune { square } else { self.prune }
+    fn prune_given_upper_bound(&self, square: f64) -> f64 {
+        if self.is_single_nearest() && square < self.prune { square } else { self.prune }
     }
 
-    fn is_nearest_only(&self) -> bool {
+    fn is_single_nearest(&self) -> bool {
         matches!(self.wanted, Wanted::Contest { .. })
     }
 
-    fn wants_near_ties(&self) -> bool {
-        self.is_nearest_only()
+    fn keeps_near_ties(&self) -> bool {
+        self.is_single_nearest()
     }
 
     fn offer(&mut self, id: PrimitiveId, projection: Projection) {

@@ -1,36 +1,36 @@
-//! A collector that counts what a search does.
+//! A collector that counts the work of a search.
 
 use crate::{Best, Collector, PrimitiveId, Projection, QueryOptions, Real};
 use nalgebra::Point3;
 
-/// [`Best`] with counters: they are deterministic, so tests can hold a search to them where times only vary.
+/// [`Best`] with counters of the work. Counts are deterministic, so tests can compare them where times would vary.
 #[derive(Clone, Debug)]
 pub struct StatsCollector<T: Real> {
-    /// What decides.
+    /// The collector that makes all decisions.
     pub best: Best<T>,
-    /// Nodes visited.
+    /// The number of nodes that were visited.
     pub nodes: usize,
-    /// Packets filtered.
+    /// The number of packets that were filtered.
     pub packets: usize,
-    /// Primitives that were offered.
+    /// The number of primitives that were offered.
     pub primitives: usize,
 }
 
 impl<T: Real> StatsCollector<T> {
-    /// Counts from zero around `best`.
+    /// Creates counters at zero around `best`.
     #[must_use]
     pub fn new(best: Best<T>) -> Self {
         Self { best, nodes: 0, packets: 0, primitives: 0 }
     }
 
-    /// Nodes, packets and primitives of a query with default options, searched by `visit`.
+    /// Returns the numbers of nodes, packets and primitives of a query with default options, searched by `visit`.
     pub fn of_query(query: &Point3<T>, visit: impl FnOnce(&Point3<T>, &mut Self)) -> [usize; 3] {
-        let mut counting = Self::new(Best::new(&QueryOptions::default()));
-        visit(query, &mut counting);
-        [counting.nodes, counting.packets, counting.primitives]
+        let mut stats = Self::new(Best::new(&QueryOptions::default()));
+        visit(query, &mut stats);
+        [stats.nodes, stats.packets, stats.primitives]
     }
 
-    /// The same of some queries in all.
+    /// Returns the sums of [`of_query`](Self::of_query) over several queries.
     pub fn of_queries<'a>(
         queries: impl IntoIterator<Item = &'a Point3<T>>,
         visit: impl Fn(&Point3<T>, &mut Self),
@@ -45,30 +45,7 @@ impl<T: Real> StatsCollector<T> {
 }
 
 impl<T: Real> Collector for StatsCollector<T> {
-    fn prune_above(&self) -> f64 {
-        self.best.prune_above()
-    }
-    fn prune_above_for(&self, id: PrimitiveId) -> f64 {
-        self.best.prune_above_for(id)
-    }
-    fn prune_given(&self, square: f64) -> f64 {
-        self.best.prune_given(square)
-    }
-    fn is_approximate(&self) -> bool {
-        self.best.is_approximate()
-    }
-    fn prune_held(&self, square: f64) -> f64 {
-        self.best.prune_held(square)
-    }
-    fn is_content(&self, holds: bool) -> bool {
-        self.best.is_content(holds)
-    }
-    fn forgo(&mut self, square: f64) {
-        self.best.forgo(square);
-    }
-    fn is_nearest_only(&self) -> bool {
-        self.best.is_nearest_only()
-    }
+    forward_collector_decisions!(best, []);
     fn offer(&mut self, id: PrimitiveId, projection: Projection) {
         self.primitives += 1;
         self.best.offer(id, projection);

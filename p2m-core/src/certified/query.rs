@@ -91,7 +91,7 @@ pub trait CertifiedQuery<T: Real>: NearQuery<T> {
         Ok(Some(Closest {
             distance: T::of_f64(decision.distance),
             lower_bound: T::of_f64_below(decision.lower),
-            ..crate::query::answer(one.id, &one.projection, 0.0)
+            ..crate::query::answer::answer(one.id, &one.projection, 0.0)
         }))
     }
 }
