@@ -4,7 +4,7 @@
 //! primitive, or those that share its nearest feature. [`decide`] tells which of them it is.
 
 use super::{Candidate, decide, is_within};
-use crate::near_query::{Near, ask};
+use crate::near_query::{Near, search_near_if_valid};
 use crate::real::to_f64_array;
 use crate::{Closest, NearQuery, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape};
 use nalgebra::Point3;
@@ -60,9 +60,9 @@ pub trait CertifiedQuery<T: Real>: NearQuery<T> {
         query: &Point3<T>,
         options: &QueryOptions<T>,
     ) -> Result<Option<Closest<T>>, CertifyError> {
-        let mut near = Near::contest(options.max_distance);
-        ask(self, query, &mut near);
-        let found = near.contestants();
+        let mut near = Near::for_certification(options.max_distance);
+        search_near_if_valid(self, query, &mut near);
+        let found = near.certification_candidates();
         let shapes = found.iter().map(|one| {
             let shape = self.shape(one.id).ok_or(CertifyError::NoVertices { id: one.id })?;
             let mut vertices = [[0.0; 3]; 3];
