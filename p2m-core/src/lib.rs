@@ -82,7 +82,7 @@ pub mod engine {
         pub use crate::query::BestF64;
     }
     pub mod ray {
-        pub use crate::ray::{TINY, foot};
+        pub use crate::ray::{UNDERFLOW_MARGIN as TINY, project_onto_ray as foot};
     }
     pub mod real {
         pub use crate::real::{from_f64_array, to_f64_array};

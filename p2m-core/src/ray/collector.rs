@@ -1,58 +1,60 @@
-//! What becomes of the hits that a search finds.
+//! Collectors of hits: they decide which hits a search has to find, and keep them.
 
-use super::crossing::{Crossing, Hit};
+use super::crossing::Crossing;
+use super::hit::Hit;
 use crate::PrimitiveId;
 use std::ops::ControlFlow;
 
-/// Decides which hits a search has to find.
+/// A collector of hits: it decides which hits a search has to find, and takes them.
 pub trait RayCollector<'r> {
-    /// Whether only crossings of the surface count (see [`RayQuery::crossings`](super::RayQuery::crossings)), rather
-    /// than every primitive that the ray meets.
+    /// Returns whether only crossings of the surface count (see [`RayQuery::crossings`](super::RayQuery::crossings)),
+    /// rather than every primitive that the ray hits. The default is `false`.
     fn only_crossings(&self) -> bool {
         false
     }
 
-    /// The parameter above which hits do not matter.
+    /// Returns the parameter above which hits are not needed. The default is infinity.
     fn limit(&self) -> f64 {
         f64::INFINITY
     }
 
-    /// Whether a hit of this primitive matters: one of which it does not is not tested exactly.
+    /// Returns whether a hit of this primitive is needed. A primitive that is not needed is not tested exactly. The
+    /// default is `true`.
     fn wants(&self, _primitive: PrimitiveId) -> bool {
         true
     }
 
-    /// Takes a hit, in any order; breaks if no other one matters.
+    /// Takes a hit, in any order, and breaks if no other hit is needed.
     fn offer(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()>;
 
-    /// A node is visited: the bounds of its children are tested.
+    /// Reports a visit to a node: the bounds of its children are tested.
     fn visit_node(&mut self) {}
 
-    /// A packet is visited: its primitives are filtered.
+    /// Reports a visit to a packet: its primitives are filtered.
     fn visit_packet(&mut self) {}
 
-    /// A primitive passed the filter, and is tested exactly.
+    /// Reports that a primitive passed the filter and is tested exactly.
     fn visit_primitive(&mut self) {}
 }
 
-/// What is wanted of the hits, and what was found: handed to a backend by the methods of
-/// [`RayQuery`](super::RayQuery), which take it apart. One of your own serves to count what a search does
+/// The hits that a method of [`RayQuery`](super::RayQuery) needs, and those that were found. A backend takes it as a
+/// [`RayCollector`]; your own code needs one to count the work of a search
 /// ([`RayStatsCollector`](super::RayStatsCollector)).
 #[derive(Clone, Debug)]
 pub struct Hits<'r> {
-    wanted: Wanted,
-    /// The first one, or any, if that is wanted.
+    mode: HitMode,
+    /// The first hit, or any hit, in the modes of one hit.
     pub(super) one: Option<(PrimitiveId, Crossing<'r>)>,
-    /// Every one, if that is wanted.
+    /// All hits, in the mode of all hits.
     #[doc(hidden)]
     pub all: Vec<Hit>,
-    /// How many there are, if that is wanted.
+    /// The number of hits, in the modes that count.
     #[doc(hidden)]
     pub count: usize,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Wanted {
+enum HitMode {
     Any,
     First,
     All,
@@ -61,45 +63,45 @@ enum Wanted {
 }
 
 impl Hits<'_> {
-    /// One hit, whichever is found first.
+    /// Creates a collector of one hit, whichever is found first.
     #[must_use]
     pub fn any() -> Self {
-        Self::new(Wanted::Any)
+        Self::new(HitMode::Any)
     }
 
-    /// The hit with the least parameter.
+    /// Creates a collector of the hit with the least parameter.
     #[must_use]
     pub fn first() -> Self {
-        Self::new(Wanted::First)
+        Self::new(HitMode::First)
     }
 
-    /// All hits.
+    /// Creates a collector of all hits.
     #[must_use]
     pub fn all() -> Self {
-        Self::new(Wanted::All)
+        Self::new(HitMode::All)
     }
 
-    /// Only how many there are.
+    /// Creates a collector that counts hits.
     #[must_use]
     pub fn count() -> Self {
-        Self::new(Wanted::Count)
+        Self::new(HitMode::Count)
     }
 
-    /// Only how often the surface is crossed.
+    /// Creates a collector that counts how often the surface is crossed.
     #[must_use]
     pub fn crossings() -> Self {
-        Self::new(Wanted::Crossings)
+        Self::new(HitMode::Crossings)
     }
 
-    fn new(wanted: Wanted) -> Self {
-        Self { wanted, one: None, all: Vec::new(), count: 0 }
+    fn new(mode: HitMode) -> Self {
+        Self { mode, one: None, all: Vec::new(), count: 0 }
     }
 }
 
 impl<'r> RayCollector<'r> for Hits<'r> {
     #[inline(always)]
     fn only_crossings(&self) -> bool {
-        self.wanted == Wanted::Crossings
+        self.mode == HitMode::Crossings
     }
 
     #[inline(always)]
@@ -112,28 +114,28 @@ impl<'r> RayCollector<'r> for Hits<'r> {
 
     #[inline]
     fn offer(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()> {
-        match self.wanted {
-            Wanted::Any => {
+        match self.mode {
+            HitMode::Any => {
                 self.one = Some((primitive, *crossing));
                 return ControlFlow::Break(());
             }
-            Wanted::First => self.offer_first(primitive, crossing),
-            Wanted::All => self.all.push(crossing.hit(primitive)),
-            Wanted::Count | Wanted::Crossings => self.count += 1,
+            HitMode::First => self.offer_first(primitive, crossing),
+            HitMode::All => self.all.push(crossing.hit(primitive)),
+            HitMode::Count | HitMode::Crossings => self.count += 1,
         }
         ControlFlow::Continue(())
     }
 }
 
 impl<'r> Hits<'r> {
-    /// In the order of their parameters and then of ids.
+    /// Returns all hits in the order of their parameters, and of equal parameters in the order of ids.
     pub(super) fn sorted(mut self) -> Vec<Hit> {
         self.all.sort_unstable_by(|a, b| a.parameter.total_cmp(&b.parameter).then(a.primitive.cmp(&b.primitive)));
         self.all
     }
 
-    /// Keeps the hit with the least parameter, and of equal ones the lowest id. Parameters are computed only where their
-    /// bounds do not decide.
+    /// Keeps the hit with the least parameter, and of equal parameters the one with the lowest id. Parameters are computed
+    /// only where their bounds do not decide.
     fn offer_first(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) {
         let Some((id, first)) = &mut self.one else {
             self.one = Some((primitive, *crossing));
