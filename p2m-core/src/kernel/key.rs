@@ -34,9 +34,9 @@ impl Key {
     /// The key of an offset, in units of the scene. A NaN component gives [`Key::INFINITY`]: NaN loses.
     #[inline]
     #[must_use]
-    pub fn of_offset(offset: [f64; 3]) -> Self {
+    pub fn from_offset(offset: [f64; 3]) -> Self {
         let square = norm_squared(offset);
-        Self::plain(square).unwrap_or_else(|| Self::of_scaled_offset(offset, 0))
+        Self::plain(square).unwrap_or_else(|| Self::from_scaled_offset(offset, 0))
     }
 
     /// The key of a square that needs no other tier. `None` for zero as well: a square of zero may be an underflow.
@@ -47,7 +47,7 @@ impl Key {
 
     /// The key of `offset` * 2^`exponent`.
     #[cold]
-    pub(super) fn of_scaled_offset(offset: V3, exponent: i32) -> Self {
+    pub(super) fn from_scaled_offset(offset: V3, exponent: i32) -> Self {
         if !offset.iter().all(|x| x.is_finite()) {
             return Self::INFINITY;
         }
@@ -129,7 +129,7 @@ mod tests {
     use super::*;
 
     fn key(x: f64) -> Key {
-        Key::of_offset([x, 0.0, 0.0])
+        Key::from_offset([x, 0.0, 0.0])
     }
 
     #[test]
@@ -144,10 +144,10 @@ mod tests {
                 assert_eq!(key(a).cmp(&key(b)), a.total_cmp(&b), "{a:e} {b:e} {i} {j}");
             }
         }
-        assert!(key(f64::MAX) < Key::of_offset([f64::MAX; 3]));
-        assert!(Key::of_offset([f64::MAX; 3]) < Key::INFINITY);
-        assert_eq!(Key::of_offset([f64::MAX; 3]).distance(), f64::INFINITY);
-        assert_eq!(Key::of_offset([f64::NAN, 1.0, 2.0]), Key::INFINITY);
+        assert!(key(f64::MAX) < Key::from_offset([f64::MAX; 3]));
+        assert!(Key::from_offset([f64::MAX; 3]) < Key::INFINITY);
+        assert_eq!(Key::from_offset([f64::MAX; 3]).distance(), f64::INFINITY);
+        assert_eq!(Key::from_offset([f64::NAN, 1.0, 2.0]), Key::INFINITY);
     }
 
     #[test]
@@ -155,9 +155,9 @@ mod tests {
         for o in [[0.3, -0.7, 0.1], [1e-9, 1.0, 3.0], [1.0 / 3.0; 3]] {
             for e in [-1000, -500, -402, -400, -398, -30, 0, 30, 398, 400, 402, 500, 1000] {
                 let scaled = o.map(|x| scale_by_power(x, e));
-                let at_one = Key::of_offset(o);
-                assert_eq!(Key::of_offset(scaled), Key::of_scaled_offset(o, e));
-                assert_eq!(Key::of_offset(scaled).distance(), scale_by_power(at_one.distance(), e));
+                let at_one = Key::from_offset(o);
+                assert_eq!(Key::from_offset(scaled), Key::from_scaled_offset(o, e));
+                assert_eq!(Key::from_offset(scaled).distance(), scale_by_power(at_one.distance(), e));
             }
         }
     }
@@ -165,7 +165,7 @@ mod tests {
     #[test]
     fn there_is_one_zero() {
         for exponent in [-1300, -1336, -1338, -1400, -3000] {
-            let (tiny, zero) = (Key::of_scaled_offset([1.0, 0.0, 0.0], exponent), Key::ZERO);
+            let (tiny, zero) = (Key::from_scaled_offset([1.0, 0.0, 0.0], exponent), Key::ZERO);
             assert_eq!(tiny == zero, exponent < -1337, "{exponent}: {tiny:?}");
             assert_eq!(tiny == zero, tiny.cmp(&zero) == Ordering::Equal);
         }
@@ -176,7 +176,7 @@ mod tests {
         for e in [-400, 400] {
             let at = power_of_two(e);
             for x in [at.next_down(), at, at.next_up()] {
-                assert_eq!(key(x), Key::of_scaled_offset([x, 0.0, 0.0], 0), "{x:e}");
+                assert_eq!(key(x), Key::from_scaled_offset([x, 0.0, 0.0], 0), "{x:e}");
             }
         }
     }

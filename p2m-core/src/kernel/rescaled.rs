@@ -58,7 +58,7 @@ impl<const N: usize> Scaled<N> {
         } else {
             (foot.offset, self.base + self.exponent)
         };
-        Nearest { key: Key::of_scaled_offset(offset, exponent), offset, exponent, feature, weights, size }
+        Nearest { key: Key::from_scaled_offset(offset, exponent), offset, exponent, feature, weights, size }
     }
 }
 
@@ -76,7 +76,7 @@ pub(super) fn point(query: V3, vertex: V3) -> Nearest {
 
 fn vertex_candidate(query: V3, index: usize, vertex: V3, size: f64) -> Nearest {
     let (offset, exponent) = Scaled::new(query, [vertex]).map_or(([0.0; 3], 0), |s| (s.raw[0], s.base));
-    let key = Key::of_scaled_offset(offset, exponent);
+    let key = Key::from_scaled_offset(offset, exponent);
     let (feature, weights) = of_vertex(index);
     Nearest { key, offset, exponent, feature, weights, size }
 }

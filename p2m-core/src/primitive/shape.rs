@@ -1,4 +1,10 @@
-use super::{Point, Primitive, Projection, Segment, Triangle};
+//! The primitives of a mixed scene.
+
+use super::interface::Primitive;
+use super::point::Point;
+use super::projection::Projection;
+use super::segment::Segment;
+use super::triangle::Triangle;
 use crate::{Aabb, Real};
 use nalgebra::Point3;
 
@@ -15,7 +21,7 @@ pub enum Shape<T: Real> {
 }
 
 impl<T: Real> Shape<T> {
-    /// The vertices, one to three.
+    /// Returns the one to three vertices.
     #[must_use]
     pub fn vertices(&self) -> &[Point3<T>] {
         match self {
