@@ -94,7 +94,7 @@ pub fn lane_of_key(key: u32) -> usize {
 pub trait InstructionSet {
     /// Eight f32.
     type Eight: EightLanes;
-    /// The number of f32, 8 or 16, that the instruction set computes fastest with.
+    /// Eight or sixteen f32, whichever the instruction set computes with faster.
     type Wide: Lanes;
     /// Eight f64.
     type Doubles: Doubles;
