@@ -2,14 +2,18 @@
 
 #![allow(clippy::float_cmp, reason = "what is proved is proved to the last bit")]
 
-use super::*;
-use crate::{Point, Primitive, Segment, Triangle};
+use super::candidate::Candidate;
+use super::decide::{DecidedBy, Decision, decide, is_within};
+use super::{feature_certificate, rational};
+use crate::kernel::vector::V3;
+use crate::{Feature, Point, Primitive, PrimitiveId, Segment, Triangle};
 use nalgebra::Point3;
 use p2m_testkit::families::{case, wild};
 use p2m_testkit::oracle::Distance;
 use p2m_testkit::{Cases, cases, rng, vector};
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
+use std::cmp::Ordering;
 
 type Shape = Vec<V3>;
 
@@ -149,7 +153,7 @@ fn check_relatives(name: &str, cases: Cases, mut draw: impl FnMut(&mut dyn Rng) 
         for _ in 0..rng.random_range(0..6) {
             shapes.push(relative(query, &shape, &mut rng));
         }
-        stages[check(query, &shapes, &mut rng).stage as usize] += 1;
+        stages[check(query, &shapes, &mut rng).decided_by as usize] += 1;
     }
     stages
 }
@@ -233,7 +237,7 @@ fn meshes_hardly_ever_need_integers() {
             let claims: Vec<Feature> = shapes.iter().map(|shape| claim(query, shape)).collect();
             decide(query, &candidates(&shapes, &[0, 1, 2, 3, 4, 5], &claims))
         };
-        exact += usize::from(decision.stage == Stage::Exact);
+        exact += usize::from(decision.decided_by == DecidedBy::Integers);
     }
     assert!(cases.have_fewer_than(20, exact), "{exact} of {}", cases.len());
 }
@@ -250,20 +254,20 @@ fn what_is_shared_is_no_tie() {
             std::array::from_fn(|k| weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k] + by * normal[k])
         };
         let faces = [vec![a, b, c], vec![b, c, a], vec![c, b, a]];
-        assert_eq!(check(above([0.3, 0.3, 0.4], 0.7), &faces, &mut rng).stage, Stage::Fast);
+        assert_eq!(check(above([0.3, 0.3, 0.4], 0.7), &faces, &mut rng).decided_by, DecidedBy::Floats);
         let edges = [vec![a, b], vec![b, a], vec![a, b, a]];
-        assert_eq!(check(above([0.4, 0.6, 0.0], -0.7), &edges, &mut rng).stage, Stage::Fast);
+        assert_eq!(check(above([0.4, 0.6, 0.0], -0.7), &edges, &mut rng).decided_by, DecidedBy::Floats);
         let away: V3 = std::array::from_fn(|k| 9.0 * a[k] - 3.0 * (b[k] + c[k] + d[k]));
         let vertices = [vec![a, b, c], vec![d, a], vec![b, a, d], vec![a]];
         let holds = vertices.iter().all(|v| Distance::new(away, v).compare(&Distance::new(away, &[a])).is_eq());
-        assert!(check(away, &vertices, &mut rng).stage == Stage::Fast || !holds);
+        assert!(check(away, &vertices, &mut rng).decided_by == DecidedBy::Floats || !holds);
         assert_eq!(check(a, &vertices, &mut rng).distance, 0.0);
     }
     let square = |i: i32, j: i32| vec![[0.0; 3], [f64::from(i), 0.0, 0.0], [0.0, f64::from(j), 0.0]];
     let grid = [square(1, 1), square(1, -1), square(-1, -1), square(-1, 1)];
-    assert_eq!(check([0.0, 0.0, 0.1], &grid, &mut rng("certified shared", 0)).stage, Stage::Fast);
+    assert_eq!(check([0.0, 0.0, 0.1], &grid, &mut rng("certified shared", 0)).decided_by, DecidedBy::Floats);
     let minus = [vec![[-0.0, 1.0, -0.0]], vec![[0.0, 1.0, 0.0], [0.0, 2.0, -0.0]]];
-    assert_eq!(check([0.0, -0.5, 0.0], &minus, &mut rng("certified shared", 0)).stage, Stage::Fast);
+    assert_eq!(check([0.0, -0.5, 0.0], &minus, &mut rng("certified shared", 0)).decided_by, DecidedBy::Floats);
 }
 
 #[test]
@@ -307,8 +311,8 @@ fn points_whose_squares_differ_by_one_are_told_apart() {
             assert_eq!(decision.winner, 1);
             let root = |s: &Shape| decide([0.0; 3], &[candidate(s)]).distance;
             one += usize::from(bits >= 30 && root(&shapes[0]) == root(&shapes[1]));
-            exact += usize::from(decision.stage == Stage::Exact);
-            assert!(bits > 40 || decision.stage == Stage::Fast, "{bits}");
+            exact += usize::from(decision.decided_by == DecidedBy::Integers);
+            assert!(bits > 40 || decision.decided_by == DecidedBy::Floats, "{bits}");
         }
     }
     assert!(cases.have_more_than(20, exact), "{exact}");
@@ -340,17 +344,18 @@ fn faces_edges_and_vertices_that_are_almost_equally_near_are_told_apart() {
             for shape in [&face, &edge] {
                 let decision = near(shape, &mut rng);
                 assert_eq!((decision.winner, decision.distance), (1, 3.0 * h));
-                stages[decision.stage as usize] += 1;
-                assert!(bits > 40 || decision.stage == Stage::Fast, "{bits} {number}");
+                stages[decision.decided_by as usize] += 1;
+                assert!(bits > 40 || decision.decided_by == DecidedBy::Floats, "{bits} {number}");
             }
             let tie = check_placed(&[face, edge, level, beside], 1 << bits, &mut rng);
-            assert_eq!((tie.stage, tie.distance), (Stage::Exact, 3.0 * h));
+            assert_eq!((tie.decided_by, tie.distance), (DecidedBy::Integers, 3.0 * h));
         }
     }
     assert!(cases.have_more_than(20, stages[1]), "{stages:?}");
 }
 
-/// Slanted edges and faces of integers, so that squares are fractions: c k / sqrt(1 + k^2) and the like, one step apart.
+/// Slanted edges and faces of integers, so that squares are fractions: c k / sqrt(1 + k^2) and the like, one step
+/// apart.
 #[test]
 fn fractions_that_almost_agree_are_told_apart() {
     for number in cases(4000, 500) {
@@ -398,8 +403,8 @@ fn proves(query: V3, vertices: &[V3], claim: Feature) -> bool {
     proved
 }
 
-/// Offsets and edges of 106 bits, of which dot products and sides cancel but for the last: with q and w perpendicular (or
-/// opposite), and a small beside them, (a - q) . (w - a) = a . (w + q - a), and (a - q) x (w - a) = a x (w - q).
+/// Offsets and edges of 106 bits, of which dot products and sides cancel but for the last: with q and w perpendicular
+/// (or opposite), and a small beside them, (a - q) . (w - a) = a . (w + q - a), and (a - q) x (w - a) = a x (w - q).
 #[test]
 fn what_cancels_to_the_last_bit_of_double_double_is_proved_only_if_it_is_true() {
     let mut counts = [0; 2];
@@ -441,7 +446,7 @@ fn distances_almost_half_way_between_floats_are_rounded_rightly() {
             vec![[x, -y, -z], [x, y, z]],
         ];
         for shape in shapes {
-            stages[check([q, 0.0, 0.0], &[shape], &mut rng).stage as usize] += 1;
+            stages[check([q, 0.0, 0.0], &[shape], &mut rng).decided_by as usize] += 1;
         }
     }
     assert!(stages.iter().all(|count| cases.have_more_than(1000, *count)), "{stages:?}");

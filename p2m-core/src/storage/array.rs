@@ -6,7 +6,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 /// The bytes of a file, whose address does not change.
-pub type FileBytes = Arc<dyn AsRef<[u8]> + Send + Sync>;
+pub(super) type FileBytes = Arc<dyn AsRef<[u8]> + Send + Sync>;
 
 /// An array that is owned or part of a file in memory. Reading it is as fast as reading a slice in both cases.
 pub struct Array<T> {
