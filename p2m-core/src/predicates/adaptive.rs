@@ -1,9 +1,9 @@
-//! Determinants in stages: f64 with a bound on its error, then whole numbers, then double-double, then robust.
+//! Signs of determinants in stages of growing precision: f64 with an error bound, fixed-point numbers, double-double,
+//! and the crate robust.
 //!
-//! For points whose coordinates are 0 or of a size in [`RANGE`]: then every coordinate is a multiple of 2^-213,
-//! products of k differences and all that rounding makes of them are multiples of 2^-213k, at least 2^-1065, and
-//! nothing underflows in any stage but the bounds themselves. Nothing overflows either: sums of products of five stay
-//! below 2^962.
+//! The coordinates of all points are 0 or of a magnitude in [`RANGE`]. So every coordinate is a multiple of 2^-213, and
+//! products of k differences, rounded or not, are multiples of 2^-213k, at least 2^-1065. Nothing underflows in any
+//! stage except the bounds themselves, and nothing overflows: sums of products of five factors stay below 2^962.
 
 #![allow(clippy::inline_always, reason = "one expression; calls would hide it from the optimiser")]
 
@@ -15,13 +15,13 @@ use crate::kernel::vector::{V3, larger, sub};
 use robust::{Coord3D, insphere, orient3d};
 use std::cmp::Ordering;
 
-/// Sizes of coordinates for which the stages are exact; 0 is as well.
+/// The magnitudes of coordinates for which the stages are exact. A coordinate may also be 0.
 pub const RANGE: std::ops::RangeInclusive<f64> = power_of_two(-161)..=power_of_two(190);
 
-/// What decided a sign.
+/// The stage that decided a sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PredicateStage {
-    /// Whole numbers, of a common power of two.
+    /// Fixed-point numbers: integers in units of a common power of two.
     Whole,
     /// Double-double arithmetic.
     Double,
@@ -32,45 +32,50 @@ pub enum PredicateStage {
 /// The unit roundoff of f64.
 const U: f64 = f64::EPSILON / 2.0;
 
-/// Of [`determinant`] in f64, see there. A ninth of it is for the rounding of the bound.
+/// A bound on the relative error of [`determinant`] in f64, which is derived there. A ninth of it is for the rounding
+/// of the bound.
 const ORIENTATION_ERROR: f64 = 54.0 * U;
-/// Of [`sphere`] in f64, see there. A seventeenth of it is for the rounding of the bound.
+/// A bound on the relative error of [`sphere`] in f64, which is derived there. A seventeenth of it is for the rounding
+/// of the bound.
 const SPHERE_ERROR: f64 = 408.0 * U;
-/// Of [`sphere`] in double-double, see there. A tenth of it is for the rounding of the bound.
+/// A bound on the relative error of [`sphere`] in double-double, which is derived there. A tenth of it is for the
+/// rounding of the bound.
 const DOUBLE_SPHERE_ERROR: f64 = 2048.0 * U * U;
 
-/// The determinant of three rows, a x b . c.
+/// Returns the determinant of three rows, a x b . c.
 ///
-/// It has six products of three, each below XYZ for entries below X, Y and Z in the three columns. On the way to the
-/// result a product takes 5 operations, 8 with the differences in its factors: with relative errors below u each, the
-/// error is below 6 XYZ ((1 + u)^8 - 1).
+/// It consists of six products of three factors, each below XYZ for entries below X, Y and Z in the three columns. A
+/// product takes 5 operations up to the result, and 8 with the differences in its factors. Each has a relative error
+/// below u, so the error is below 6 XYZ ((1 + u)^8 - 1).
 #[inline(always)]
 fn determinant<T: Number>([a, b, c]: [[T; 3]; 3]) -> T {
     dot(cross(a, b), c)
 }
 
-/// Above zero if the origin is inside the sphere of four points with determinant(b - a, c - a, d - a) > 0.
+/// Returns a number above zero if the origin is inside the sphere of four points, where determinant(b - a, c - a, d -
+/// a) is positive.
 ///
-/// It is the sum of 24 products of a squared length and three coordinates, each below L X Y Z for squared lengths below
-/// L. On the way to the result a product takes 11 operations (3 for the squared length, 2 for a difference of
-/// multiples, 2 for a cross product, which is its other factor, 1 + 2 for the product of the two, 1 for the sum), 16
-/// with the differences in its five factors. So the error is below 24 XYZL ((1 + u)^16 - 1) in f64. In double-double,
-/// with exact differences, operations have errors below 7 u^2 \[Joldes2017\], and it is below 24 XYZL ((1 + 7u^2)^11 -
-/// 1).
+/// It is a sum of 24 products of a squared length and three coordinates, each below L X Y Z for squared lengths below
+/// L. A product takes 11 operations up to the result: 3 for the squared length, 2 for a difference of multiples, 2 for
+/// the cross product that is its other factor, 1 + 2 for the product of the two, and 1 for the sum. The differences in
+/// its five factors make these 16. So the error is below 24 XYZL ((1 + u)^16 - 1) in f64. In double-double differences
+/// are exact and operations have relative errors below 7 u^2 \[Joldes2017\], so the error is below 24 XYZL ((1 +
+/// 7u^2)^11 - 1).
 #[inline(always)]
 fn sphere<T: Number>([a, b, c, d]: [[T; 3]; 4], [a2, b2, c2, d2]: [T; 4]) -> T {
     let combine = |s: T, p: [T; 3], t: T, q: [T; 3]| [s * p[0] - t * q[0], s * p[1] - t * q[1], s * p[2] - t * q[2]];
     dot(cross(a, b), combine(c2, d, d2, c)) + dot(cross(c, d), combine(a2, b, b2, a))
 }
 
+/// Returns the squared lengths of four rows.
 #[inline(always)]
 fn squares<T: Number>(rows: [[T; 3]; 4]) -> [T; 4] {
     rows.map(|r| dot(r, r))
 }
 
-/// The largest sizes in the columns, multiplied.
+/// Returns the product of the largest magnitudes of the three columns.
 #[inline(always)]
-fn columns<const N: usize>(rows: &[V3; N]) -> f64 {
+fn product_of_columns<const N: usize>(rows: &[V3; N]) -> f64 {
     let mut size = rows[0].map(f64::abs);
     for row in &rows[1..] {
         for k in 0..3 {
@@ -80,61 +85,65 @@ fn columns<const N: usize>(rows: &[V3; N]) -> f64 {
     size[0] * size[1] * size[2]
 }
 
-/// A number near another one.
+/// The computed value of a number, with a bound on its error.
 #[derive(Clone, Copy)]
 pub struct Estimate {
+    /// The computed value.
     pub value: f64,
-    /// Above the distance of the two.
+    /// A bound on the error of the value.
     bound: f64,
 }
 
 impl Estimate {
     #[inline(always)]
     fn new(value: f64, bound: f64) -> Self {
-        // Where the bound has underflowed, it is below that, by less than that.
+        // The sum covers a bound that has underflowed.
         Self { value, bound: bound + f64::MIN_POSITIVE }
     }
 
-    /// Whether the value has the sign of the other one, which is not 0.
+    /// Returns whether the value has the sign of the true number, which is then not 0.
     #[inline(always)]
     pub fn is_certain(self) -> bool {
         self.value.abs() > self.bound
     }
 
-    /// The sign of the other one.
+    /// Returns the sign of the true number, or `None` if the error bound leaves it open.
     #[inline(always)]
     pub fn sign(self) -> Option<Ordering> {
         self.is_certain().then_some(if self.value > 0.0 { Ordering::Greater } else { Ordering::Less })
     }
 }
 
-/// Of the determinant of the differences that these rows are rounded from.
+/// Estimates the determinant of three differences, of which `rows` are the rounded values.
 #[inline(always)]
 pub fn orientation_filter(rows: [V3; 3]) -> Estimate {
-    Estimate::new(determinant(rows), ORIENTATION_ERROR * columns(&rows))
+    Estimate::new(determinant(rows), ORIENTATION_ERROR * product_of_columns(&rows))
 }
 
-/// The sign of the determinant of a - origin, b - origin, c - origin, where the filter could not tell.
+/// Returns the sign of the determinant of a - origin, b - origin and c - origin, for cases that the filter cannot
+/// decide.
 #[cold]
 pub fn orientation_exact([a, b, c]: [V3; 3], origin: V3) -> (Ordering, PredicateStage) {
     if let Some(rows) = fixed_point::rows(&[a, b, c], origin) {
         return (fixed_point::orientation(rows), PredicateStage::Whole);
     }
-    // The sign that is documented there, for points below the plane.
-    let sign = orient3d(coord(a), coord(b), coord(c), coord(origin));
-    (super::sign(sign), PredicateStage::Adaptive)
+    // The crate robust documents this sign as that of points below the plane.
+    let below = orient3d(coord(a), coord(b), coord(c), coord(origin));
+    (sign(below), PredicateStage::Adaptive)
 }
 
-/// Of a number above 0 if e is inside the sphere through the other four, which are positively oriented.
+/// Estimates a number that is above 0 if e is inside the sphere through the other four points, which are positively
+/// oriented.
 #[inline(always)]
 pub fn sphere_filter([a, b, c, d]: [V3; 4], e: V3) -> Estimate {
     let rows = [sub(a, e), sub(b, e), sub(c, e), sub(d, e)];
     let lengths = squares(rows);
     let longest = larger(larger(lengths[0], lengths[1]), larger(lengths[2], lengths[3]));
-    Estimate::new(sphere(rows, lengths), SPHERE_ERROR * columns(&rows) * longest)
+    Estimate::new(sphere(rows, lengths), SPHERE_ERROR * product_of_columns(&rows) * longest)
 }
 
-/// Whether e is inside (`Greater`), on or outside (`Less`) that sphere, where the filter could not tell.
+/// Returns whether e is inside (`Greater`), on (`Equal`) or outside (`Less`) the sphere through four points that are
+/// positively oriented, for cases that the filter cannot decide.
 #[cold]
 pub fn sphere_exact(points: [V3; 4], e: V3) -> (Ordering, PredicateStage) {
     if let Some(rows) = fixed_point::rows(&points, e) {
@@ -146,22 +155,27 @@ pub fn sphere_exact(points: [V3; 4], e: V3) -> (Ordering, PredicateStage) {
     (sphere_adaptive(points, e), PredicateStage::Adaptive)
 }
 
-/// The same by the adaptive predicate.
+/// Computes the sign of [`sphere_exact`] by the adaptive predicate of the crate robust.
 pub(super) fn sphere_adaptive(points: [V3; 4], e: V3) -> Ordering {
     let [a, b, c, d] = points.map(coord);
-    // Positive inside for points that are oriented the other way, there.
-    super::sign(insphere(a, b, c, d, coord(e))).reverse()
+    // The crate robust orients points the other way, so its sign is reversed.
+    sign(insphere(a, b, c, d, coord(e))).reverse()
 }
 
-/// [`sphere`] in double-double.
+/// Computes the sign of [`sphere_exact`] in double-double, or returns `None` if the error bound leaves it open.
 pub(super) fn sphere_double(points: [V3; 4], e: V3) -> Option<Ordering> {
     let rows = points.map(|p| std::array::from_fn(|k| Double::difference(p[k], e[k])));
     let lengths = squares(rows);
     let longest = lengths.iter().fold(0.0, |m, l| larger(l.round(), m));
-    let bound = DOUBLE_SPHERE_ERROR * columns(&rows.map(|row| row.map(Double::round))) * longest;
+    let bound = DOUBLE_SPHERE_ERROR * product_of_columns(&rows.map(|row| row.map(Double::round))) * longest;
     Estimate::new(sphere(rows, lengths).round(), bound).sign()
 }
 
 fn coord([x, y, z]: V3) -> Coord3D<f64> {
     Coord3D { x, y, z }
+}
+
+/// Returns the sign of a number that is not NaN.
+pub(super) fn sign(x: f64) -> Ordering {
+    x.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
 }
