@@ -66,8 +66,8 @@ impl<T: Real> Aabb<T> {
         (0..3).all(|k| self.min[k] <= other.min[k] && other.max[k] <= self.max[k])
     }
 
-    /// Returns the intersection of two boxes, which may be empty. A NaN coordinate of either makes it empty or NaN on
-    /// that axis.
+    /// Returns the intersection of two boxes, which may be empty. A NaN coordinate of either makes it empty or NaN
+    /// on that axis.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
         let low = |a: T, b: T| if a >= b { a } else { b };

@@ -4,8 +4,8 @@ use crate::{Aabb, BruteForce, Closest, Primitive, PrimitiveId, PrimitiveSet, Rea
 use nalgebra::Point3;
 use std::ops::ControlFlow;
 
-/// Queries for the primitives of a scene that intersect a box. A backend writes one method,
-/// [`visit_box`](Self::visit_box).
+/// Queries for the primitives of a scene that intersect a box. A backend writes
+/// one method, [`visit_box`](Self::visit_box).
 ///
 /// # Contract
 ///

@@ -6,8 +6,8 @@ use crate::{
 };
 use nalgebra::Point3;
 
-/// An index without a structure, which evaluates every primitive. It is kept simple, so that its correctness is
-/// evident.
+/// An index without a structure, which evaluates every primitive. It is kept simple, so that its
+/// correctness is evident.
 ///
 /// # Complexity
 /// Building takes O(n), since it checks the set. A query takes O(n). It needs no memory besides the set.

@@ -7,8 +7,8 @@ const BITS_PER_AXIS: u32 = 21;
 
 /// One level of the curve. `LEVEL[state][octant]` has the position of the octant on the curve and the state in it.
 ///
-/// A state is the corner at which the curve enters a cube, times 3, plus the axis along which the exit lies from there
-/// \[Hamilton2006\].
+/// A state is the corner at which the curve enters a cube, times 3, plus the axis along which the exit lies
+/// from there \[Hamilton2006\].
 #[allow(clippy::cast_possible_truncation, reason = "small numbers")]
 const LEVEL: [[(u8, u8); 8]; 24] = {
     let mut table = [[(0, 0); 8]; 24];
@@ -103,8 +103,8 @@ pub fn bounds(points: impl IntoIterator<Item = V3>) -> [V3; 2] {
     [low, high]
 }
 
-/// Sorts the indices of points along the curve through their box. Equal points become neighbours, in the order of their
-/// indices.
+/// Sorts the indices of points along the curve through their box. Equal points become neighbours, in the order
+/// of their indices.
 pub fn along_the_curve(points: &[V3], indices: &mut [u32]) {
     let [low, high] = bounds(indices.iter().map(|&i| points[i as usize]));
     let side = sub(high, low).into_iter().fold(0.0, larger);

@@ -15,7 +15,7 @@ pub enum BuildError {
     /// A primitive refers to a position that does not exist.
     #[error("primitive {id} uses position {index}, but there are {len}")]
     IndexOutOfRange {
-        /// The primitive.
+        /// The id of that primitive.
         id: PrimitiveId,
         /// The index of the position, from 0.
         index: u32,

@@ -67,7 +67,7 @@ pub fn sign(x: &IBig) -> Ordering {
 /// A fraction with a positive denominator.
 #[derive(Clone, Debug)]
 pub struct Fraction {
-    /// The numerator.
+    /// The numerator, of either sign.
     pub numerator: IBig,
     /// The denominator, which is positive.
     pub denominator: IBig,

@@ -20,8 +20,8 @@ use nalgebra::Point3;
 ///   eta. The distance is infinite only if d, or d plus that error, exceeds the range of the scalar.
 /// - **N2 identity**: the true distance of the returned primitive exceeds d by at most the sum of the error bounds of
 ///   that primitive and the nearest one.
-/// - **N3 agreement**: every exact backend returns the same bits for distance and primitive. Of equal keys the lowest
-///   id wins.
+/// - **N3 agreement**: every exact backend returns the same bits for distance and primitive. Of equal keys the
+///   lowest id wins.
 /// - **N4 invariance**: the bits, apart from the signs of zeros, do not change under permutation of primitives (up to
 ///   ids) and of the vertices of a primitive. They do not change under scaling by powers of two either, while input and
 ///   results stay normal and are zero or at least 2^-200 of the largest coordinate. (This is observed; products of
@@ -30,8 +30,8 @@ use nalgebra::Point3;
 ///   4 u |q| + 8 u M of the primitive.
 /// - **N6 totality**: the answer is `None` for an empty set, if nothing lies within the inclusive radius, and for a
 ///   query that is not finite. No query panics. A degenerate primitive is the set that its vertices span.
-/// - **N7 approximation**: `lower_bound` <= d for all options. With epsilon, d^ <= (1 + epsilon) d up to the error of
-///   N1.
+/// - **N7 approximation**: `lower_bound` <= d for all options. With epsilon, d^ <= (1 + epsilon) d up to the
+///   error of N1.
 ///
 /// N8 is the contract of [`CertifiedQuery`](crate::CertifiedQuery): the primitive is certainly the nearest one, and its
 /// distance is rounded once.

@@ -73,8 +73,8 @@ pub use soup::{Element, Soup};
 pub use stats::{Inspect, ListStats, QueryCost, Stat};
 pub use stats_collector::StatsCollector;
 
-/// Internal items for the sibling crates of this project. It is not part of the public API and may change in any
-/// release.
+/// Internal items for the sibling crates of this project. It is not part of the public API and may change
+/// in any release.
 #[doc(hidden)]
 pub mod engine {
     /// Orders along a Hilbert curve.

@@ -1,8 +1,8 @@
 //! Queries for more than the closest point: the k nearest primitives, all within a radius, whether there is any, and
 //! the closest one among those that a caller accepts.
 //!
-//! One collector, [`Near`], serves all of them, so a backend writes one method and its search is compiled once. The same
-//! collector finds the primitives among which a [certified](crate::CertifiedQuery) answer is chosen.
+//! One collector, [`Near`], serves all of them, so a backend writes one method and its search is compiled once. The
+//! same collector finds the primitives among which a [certified](crate::CertifiedQuery) answer is chosen.
 
 use crate::query::answer::{answer, square_within};
 use crate::{Closest, Collector, Key, PrimitiveId, Projection, QueryOptions, Real};
@@ -32,9 +32,9 @@ use std::ops::ControlFlow;
 /// ```
 ///
 /// # Complexity
-/// Trees take expected O(log n + k log k) for k answers. [`closest_point_among`](Self::closest_point_among) takes as long
-/// as a query for all primitives that are nearer than the accepted one. Brute force takes O(n). The interception indexes
-/// use their trees, since their lists contain the nearest primitive alone.
+/// Trees take expected O(log n + k log k) for k answers. [`closest_point_among`](Self::closest_point_among) takes as
+/// long as a query for all primitives that are nearer than the accepted one. Brute force takes O(n). The interception
+/// indexes use their trees, since their lists contain the nearest primitive alone.
 pub trait NearQuery<T: Real> {
     /// Offers to `near` every primitive that could be part of the answer, each at most once. `query` is finite.
     fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>);
@@ -47,14 +47,14 @@ pub trait NearQuery<T: Real> {
         near.finish()
     }
 
-    /// Returns all primitives within the radius, nearest first. [`visit_within`](Self::visit_within) stores none of
-    /// them.
+    /// Returns all primitives within the radius, nearest first. [`visit_within`](Self::visit_within) stores
+    /// none of them.
     fn all_within(&self, query: &Point3<T>, radius: T) -> Vec<Closest<T>> {
         self.k_nearest(query, usize::MAX, radius)
     }
 
-    /// Calls `visit` for each primitive within the radius until it breaks, and returns whether it did. The order depends
-    /// on the backend.
+    /// Calls `visit` for each primitive within the radius until it breaks, and returns whether it did. The order
+    /// depends on the backend.
     fn visit_within(
         &self,
         query: &Point3<T>,
@@ -124,18 +124,18 @@ enum NearMode<'a> {
     Nearest(usize, BinaryHeap<NearCandidate>),
     /// Passes every primitive to a function.
     All(&'a mut dyn FnMut(PrimitiveId, &Projection) -> ControlFlow<()>),
-    /// Keeps all primitives that may be nearest once the errors of the kernel are allowed for. The true distance of some
-    /// primitive is at most `upper_bound`.
+    /// Keeps all primitives that may be nearest once the errors of the kernel are allowed for. The true distance of
+    /// some primitive is at most `upper_bound`.
     Certification { upper_bound: f64, found: Vec<NearCandidate> },
 }
 
-/// A limit below all squares: nothing else can be part of the answer.
+/// A limit below all squares: no other primitive can be part of the answer.
 const PRUNE_ALL: f64 = f64::NEG_INFINITY;
 
 /// A primitive and its nearest point, ordered by key and id.
 pub(crate) struct NearCandidate {
     key: Key,
-    /// The primitive.
+    /// The id of the primitive.
     pub(crate) id: PrimitiveId,
     /// Its nearest point as the kernel computed it.
     pub(crate) projection: Projection,

@@ -14,8 +14,8 @@ mod sealed {
 
 /// The scalar type of coordinates: `f32` or `f64`.
 ///
-/// The trait is sealed. The accuracy contract is proved for these two types, and the proof needs an exact conversion to
-/// f64.
+/// The trait is sealed. The accuracy contract is proved for these two types, and the proof needs an exact
+/// conversion to f64.
 pub trait Real: RealField + Copy + Default + sealed::Sealed {
     /// The number infinity.
     const INFINITY: Self;

@@ -26,8 +26,8 @@ impl Element {
     }
 }
 
-/// The location of a primitive: its kind in the two upper bits, and its index among those of its kind in the lower
-/// bits.
+/// The location of a primitive: its kind in the two upper bits, and its index among those of its kind in
+/// the lower bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Slot(u32);
 
@@ -59,16 +59,17 @@ impl Slot {
 /// further overhead, and a mixed soup needs four bytes more for each primitive. Every index of a position is in range,
 /// and every position that a primitive uses is finite. Degenerate primitives are ordinary members.
 ///
-/// Coordinates have any unit, the same on all axes, and primitives are straight, so longitudes and latitudes have to be
-/// projected first. Neighbouring f32 coordinates near 5,000,000 differ by half a unit; f64 resolves any location on
-/// earth.
+/// Coordinates have any unit, the same on all axes, and primitives are straight, so longitudes and latitudes have
+/// to be projected first. Neighbouring f32 coordinates near 5,000,000 differ by half a unit; f64 resolves any
+/// location on earth.
 ///
 /// ```
 /// use p2m_core::{Element, Soup, PrimitiveSet};
 /// use nalgebra::Point3;
 ///
 /// let positions = vec![Point3::new(0.0, 0.0, 0.0), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0)];
-/// let soup = Soup::new(positions, [Element::Triangle([0, 1, 2]), Element::Segment([0, 1]), Element::Point(2)]).unwrap();
+/// let elements = [Element::Triangle([0, 1, 2]), Element::Segment([0, 1]), Element::Point(2)];
+/// let soup = Soup::new(positions, elements).unwrap();
 /// assert_eq!(soup.len(), 3);
 /// assert_eq!(soup.segments(), &[[0, 1]]);
 /// ```
@@ -98,9 +99,9 @@ impl<T: Real> Soup<T> {
     /// Creates a soup of `elements` over `positions`, with ids in their order.
     ///
     /// # Errors
-    /// It returns a [`BuildError`] for the first primitive with an index out of range or a position that is not finite,
-    /// and for more than 2^30 primitives. Positions that no primitive uses are not part of the scene and are not
-    /// checked.
+    /// It returns a [`BuildError`] for the first primitive with an index out of range or a position that is not
+    /// finite, and for more than 2^30 primitives. Positions that no primitive uses are not part of the scene and
+    /// are not checked.
     pub fn new(positions: Vec<Point3<T>>, elements: impl IntoIterator<Item = Element>) -> Result<Self, BuildError> {
         let mut soup = Self { positions, ..Self::default() };
         for element in elements {

@@ -60,9 +60,9 @@ impl ListStats {
 /// The mean and the maximum of a count over some queries.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stat {
-    /// The mean, which is 0 without queries.
+    /// The mean over the queries, which is 0 without queries.
     pub mean: f64,
-    /// The maximum.
+    /// The maximum over the queries.
     pub most: usize,
 }
 

@@ -18,10 +18,10 @@
 //!
 //! The *size* of a vector is the magnitude of its largest component. For vectors of sizes a and d, a dot product is a
 //! sum of three products below a d. Each takes 3 operations up to the result, and 2 more for the differences in its
-//! factors. Operations have relative errors below u, so the error is below 3 a d ((1 + u)^5 - 1) < 15.1 u a d in f64. A
-//! side is a sum of twelve products of four components, below a d e f. Each takes 2 operations in either cross product,
-//! 3 in their dot product and 4 for the differences, so the error is below 12 a d e f ((1 + u)^11 - 1) < 132.1 u a d e
-//! f.
+//! factors. Operations have relative errors below u, so the error is below 3 a d ((1 + u)^5 - 1) < 15.1 u a d in f64.
+//! A side is a sum of twelve products of four components, below a d e f. Each takes 2 operations in either cross
+//! product, 3 in their dot product and 4 for the differences, so the error is below 12 a d e f ((1 + u)^11 - 1) <
+//! 132.1 u a d e f.
 //!
 //! In double-double, differences are exact and operations have relative errors below 7 u^2 \[Joldes2017\]. So the
 //! errors are below 3 a d ((1 + 7 u^2)^3 - 1) < 63.1 u^2 a d and 12 a d e f ((1 + 7 u^2)^7 - 1) < 588.1 u^2 a d e f.
@@ -40,7 +40,7 @@ use crate::kernel::double_double::Double;
 use crate::kernel::power_of_two;
 use crate::kernel::vector::{V3, larger};
 
-/// The sizes of vectors for which the error bounds cover underflow, and nothing overflows.
+/// The sizes of vectors for which the error bounds cover underflow, and no product overflows.
 pub(super) const PLAIN_SIZES: std::ops::RangeInclusive<f64> = power_of_two(-100)..=power_of_two(100);
 
 /// An arithmetic with bounds on its errors, in which signs may be certain.
@@ -161,7 +161,7 @@ fn is_proved_in_double_double(query: V3, vertices: &[V3], feature: Feature) -> b
 }
 
 #[inline(always)]
-#[allow(clippy::inline_always, reason = "compiled for two arithmetics, each in one place")]
+#[allow(clippy::inline_always, reason = "compiled for two arithmetics, each with one caller")]
 fn is_proved_in<T: BoundedArithmetic>(query: V3, vertices: &[V3], feature: Feature) -> bool {
     match feature {
         Feature::Vertex(i) => {
@@ -192,8 +192,8 @@ fn is_between<T: BoundedArithmetic>(query: &V3, a: &V3, b: &V3) -> bool {
 /// Returns whether the triangle certainly does not come nearer beyond an edge. It is `true` for a segment.
 #[inline]
 fn is_nearest_on_edge<T: BoundedArithmetic>(query: &V3, vertices: &[V3], [a, b]: [V3; 2]) -> bool {
-    // The reversed edge has a side of the opposite sign. A triangle with a repeated vertex is its edge, with a side of
-    // zero.
+    // The reversed edge has a side of the opposite sign. A triangle with a repeated vertex is its edge, with a
+    // side of zero.
     vertices.len() < 3
         || Normal::<T>::new(vertices).has_nonnegative_side(query, [b, a])
         || has_repeated_vertex(vertices)

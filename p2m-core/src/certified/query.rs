@@ -25,12 +25,12 @@ pub enum CertifyError {
 
 /// Queries whose answers are correct to the last bit (contract N8).
 ///
-/// Coordinates are taken as real numbers. The primitive is the nearest one, and of exactly equal distances the one with
-/// the lowest id. The distance is the true one, rounded once to the nearest f64, and once more for scenes in f32. So
-/// its error is less than one unit in the last place at any scale, even for queries so near the surface that the usual
-/// error of 8 u M exceeds the distance. The lower bound is at most the true distance, and at most one unit in the last
-/// place below the reported one. The other fields of the answer are those of [`ClosestPoint`](crate::ClosestPoint) for
-/// that primitive.
+/// Coordinates are taken as real numbers. The primitive is the nearest one, and of exactly equal distances the one
+/// with the lowest id. The distance is the true one, rounded once to the nearest f64, and once more for scenes in f32.
+/// So its error is less than one unit in the last place at any scale, even for queries so near the surface that the
+/// usual error of 8 u M exceeds the distance. The lower bound is at most the true distance, and at most one unit in
+/// the last place below the reported one. The other fields of the answer are those of
+/// [`ClosestPoint`](crate::ClosestPoint) for that primitive.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -53,8 +53,8 @@ pub trait CertifiedQuery<T: Real>: NearQuery<T> {
     /// Returns a primitive of the scene as a shape, or `None` for one of your own without vertices.
     fn shape(&self, id: PrimitiveId) -> Option<Shape<T>>;
 
-    /// Returns the certified closest point. Of the options only the largest distance is used, and it is compared
-    /// without rounding.
+    /// Returns the certified closest point. Of the options only the largest distance is used, and it is
+    /// compared without rounding.
     ///
     /// # Errors
     /// It returns [`CertifyError::NoVertices`] if a primitive that may be nearest has no vertices.

@@ -1,11 +1,11 @@
 //! Squared distances as fractions of big integers, and their square roots rounded once.
 //!
-//! All positions are relative to the query, and integers in units of a power of two that divides all coordinates of the
-//! query and the primitive. The nearest feature is found by the signs that
+//! All positions are relative to the query, and integers in units of a power of two that divides all coordinates of
+//! the query and the primitive. The nearest feature is found by the signs that
 //! [`feature_certificate`](super::feature_certificate) states, which are certain for integers. The nearest point is a
-//! vertex, in the interior of an edge that has a length, or in the interior of a face that has an area. The conditions
-//! are necessary as well as sufficient, and every point of a triangle without area is on an edge. So a feature is
-//! always found.
+//! vertex, in the interior of an edge that has a length, or in the interior of a face that has an area. The
+//! conditions are necessary as well as sufficient, and every point of a triangle without area is on an edge. So a
+//! feature is always found.
 
 use super::feature::exists;
 use super::rounded::RoundedDistance;
@@ -147,8 +147,8 @@ impl Primitive {
         }
     }
 
-    /// Returns the squared distance of the point, line or plane of a feature. An edge must have a length and a face an
-    /// area.
+    /// Returns the squared distance of the point, line or plane of a feature. An edge must have a length and a
+    /// face an area.
     fn square(&self, feature: Feature) -> Fraction {
         match feature {
             Feature::Vertex(i) => {

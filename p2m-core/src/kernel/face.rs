@@ -120,9 +120,9 @@ impl FacePlane {
         self.error_factor <= MAX_ERROR_FACTOR
     }
 
-    /// Returns the estimated squared length of the foot, which is infinite if the foot seems to be outside, and the
-    /// factor by which margins have to be wider than those of ordinary faces. Without an estimate the foot may be
-    /// anywhere.
+    /// Returns the estimated squared length of the foot, which is infinite if the foot seems to be outside, and
+    /// the factor by which margins have to be wider than those of ordinary faces. Without an estimate the foot
+    /// may be anywhere.
     #[inline(always)]
     pub(super) fn estimate(&self) -> (f64, f64) {
         if !self.can_estimate() {

@@ -59,8 +59,8 @@ impl Key {
             return Self::ZERO;
         }
         let size_exponent = super::vector::exponent(size);
-        // The square is in [1, 12), and has the bits that any other scale by a power of two without underflow would
-        // give.
+        // The square is in [1, 12), and has the bits that any other scale by a power of two without
+        // underflow would give.
         let square = norm_squared(offset.map(|x| scale_by_power(x, -size_exponent)));
         let shift = 2 * (size_exponent + exponent);
         let tier = match shift + super::vector::exponent(square) {
@@ -73,8 +73,8 @@ impl Key {
         if square == 0.0 { Self::ZERO } else { Self { square, tier } }
     }
 
-    /// Returns the length, which is the square root of the key, rounded to nearest. It is infinite beyond the range of
-    /// f64.
+    /// Returns the length, which is the square root of the key, rounded to nearest. It is infinite beyond the
+    /// range of f64.
     #[inline]
     #[must_use]
     pub fn distance(self) -> f64 {

@@ -12,8 +12,8 @@ pub const ERROR_CONSTANT: f64 = 8.0;
 
 /// The nearest point of one primitive.
 ///
-/// It consists of numbers and a small code, not of an enum with payloads, so that it stays in registers on its way to a
-/// collector.
+/// It consists of numbers and a small code, not of an enum with payloads, so that it stays in registers on its way
+/// to a collector.
 #[derive(Clone, Copy)]
 pub(crate) struct Nearest {
     /// The squared length of the offset.
@@ -101,8 +101,8 @@ impl Nearest {
         })
     }
 
-    /// Returns a bound on the error of the computed distance, apart from eta: `ERROR_CONSTANT` u M with M <= sqrt(3)
-    /// size.
+    /// Returns a bound on the error of the computed distance, apart from eta: `ERROR_CONSTANT` u M with M
+    /// <= sqrt(3) size.
     #[inline(always)]
     pub(crate) fn error(&self) -> f64 {
         /// An upper bound on sqrt(3) 2^-53, by a margin above the rounding of the product.

@@ -14,8 +14,8 @@ use super::vector::{
 };
 use crate::Feature;
 
-/// The length of an edge, 2^-100 of the distance to the query, below which it is replaced by its ends. The error is
-/// 2^-100 M.
+/// The length of an edge, 2^-100 of the distance to the query, below which it is replaced by its ends. The error
+/// is 2^-100 M.
 const MIN_EDGE_PER_DISTANCE: f64 = power_of_two(-100);
 
 /// The offsets of some vertices, scaled by a power of two.
@@ -48,9 +48,9 @@ impl<const N: usize> ScaledOffsets<N> {
 
     /// Returns a foot that was computed from `offsets` as a result.
     ///
-    /// Scaling down may have lost small components, so that the key could be below the bound of the box. Such a foot is
-    /// scaled back and clamped to the box of the unscaled offsets. Scaling up loses nothing, so such a foot remains
-    /// scaled.
+    /// Scaling down may have lost small components, so that the key could be below the bound of the box. Such a
+    /// foot is scaled back and clamped to the box of the unscaled offsets. Scaling up loses nothing, so such a
+    /// foot remains scaled.
     fn candidate<const M: usize>(&self, foot: &Foot<M>, (feature, weights): (Feature, V3), size: f64) -> Nearest {
         let (offset, exponent) = if self.exponent > 0 {
             let [low, high] = bounds(&self.raw);

@@ -89,8 +89,8 @@ pub(crate) fn point(query: V3, vertex: V3, prune: f64) -> Option<Nearest> {
     })
 }
 
-/// Returns a lower bound on the key, given the box of the offsets. The arithmetic is that of
-/// [`Aabb::lower_bound`](crate::Aabb::lower_bound).
+/// Returns a lower bound on the key, given the box of the offsets. The arithmetic is
+/// that of [`Aabb::lower_bound`](crate::Aabb::lower_bound).
 #[inline(always)]
 fn box_bound([low, high]: [V3; 2]) -> f64 {
     let mut gap = [0.0; 3];
@@ -149,8 +149,8 @@ pub(crate) fn triangle(query: V3, vertices: [V3; 3], prune: f64) -> Option<Neare
     triangle_features_outlined(query, &vertices, &offsets, bounds, prune)
 }
 
-/// Calls [`triangle_features`]. It is not inlined, because it is large and would take registers from the loops that
-/// call it.
+/// Calls [`triangle_features`]. It is not inlined, because it is large and would take registers from the loops
+/// that call it.
 #[inline(never)]
 fn triangle_features_outlined(
     query: V3,

@@ -83,7 +83,7 @@ mod tests {
             let squares = certain_vertices(query, &corners);
             for i in 0..SIDE_BY_SIDE {
                 let vertices = [0, 1, 2].map(|v: usize| [0, 1, 2].map(|k: usize| corners[v][k][i]));
-                let key = triangle(query, vertices, f64::INFINITY).expect("nothing is beyond infinity").key;
+                let key = triangle(query, vertices, f64::INFINITY).expect("no key exceeds infinity").key;
                 if squares[i] < f64::INFINITY {
                     assert_eq!(key.plain_square(), Some(squares[i]), "{query:?} {vertices:?}");
                     certain += 1;

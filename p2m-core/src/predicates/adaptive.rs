@@ -120,8 +120,8 @@ pub fn orientation_filter(rows: [V3; 3]) -> Estimate {
     Estimate::new(determinant(rows), ORIENTATION_ERROR * product_of_columns(&rows))
 }
 
-/// Returns the sign of the determinant of a - origin, b - origin and c - origin, for cases that the filter cannot
-/// decide.
+/// Returns the sign of the determinant of a - origin, b - origin and c - origin, for cases that the
+/// filter cannot decide.
 #[cold]
 pub fn orientation_exact([a, b, c]: [V3; 3], origin: V3) -> (Ordering, PredicateStage) {
     if let Some(rows) = fixed_point::rows(&[a, b, c], origin) {
@@ -132,8 +132,8 @@ pub fn orientation_exact([a, b, c]: [V3; 3], origin: V3) -> (Ordering, Predicate
     (sign(below), PredicateStage::Adaptive)
 }
 
-/// Estimates a number that is above 0 if e is inside the sphere through the other four points, which are positively
-/// oriented.
+/// Estimates a number that is above 0 if e is inside the sphere through the other four points, which
+/// are positively oriented.
 #[inline(always)]
 pub fn sphere_filter([a, b, c, d]: [V3; 4], e: V3) -> Estimate {
     let rows = [sub(a, e), sub(b, e), sub(c, e), sub(d, e)];

@@ -46,8 +46,8 @@ pub(super) fn orientation([a, b, c]: [Row; 3]) -> Ordering {
     sign(&sum)
 }
 
-/// Returns `Greater` if the origin is inside the sphere of four points, where orientation(b - a, c - a, d - a) is
-/// positive.
+/// Returns `Greater` if the origin is inside the sphere of four points, where orientation(b - a, c - a, d -
+/// a) is positive.
 pub(super) fn sphere(rows: [Row; 4]) -> Ordering {
     let [a, b, c, d] = rows;
     let xy = |p: Row, q: Row| minor(p, q, 0, 1);

@@ -2,8 +2,8 @@
 //!
 //! A predicate returns the side of a line or a plane on which a point lies, or whether a point is inside of a sphere.
 //! Such signs decide topology, so they must not depend on rounding. Stages of growing precision compute them where
-//! nothing can overflow or underflow; the last stage are the adaptive predicates of Shewchuk \[Shewchuk1997\] (crate
-//! robust). Elsewhere big integers decide (crate dashu-int), since every finite f64 is an integer times 2^-1074.
+//! nothing can overflow or underflow; the last stage consists of the adaptive predicates of Shewchuk \[Shewchuk1997\]
+//! (crate robust). Elsewhere big integers decide (crate dashu-int), since every finite f64 is an integer times 2^-1074.
 //!
 //! ```
 //! use p2m_core::predicates::orientation_2d;

@@ -5,8 +5,8 @@
 //!
 //! - its axes, on which the box of the primitive decides,
 //! - the normal of the triangle, where signs of [`orientation_3d`] at two corners decide, and
-//! - the cross product of an edge and an axis. In the projection along that axis, the line through the edge separates if
-//!   all corners of a rectangle are on one side; signs of [`orientation_2d`] at two corners decide.
+//! - the cross product of an edge and an axis. In the projection along that axis, the line through the edge separates
+//!   if all corners of a rectangle are on one side; signs of [`orientation_2d`] at two corners decide.
 //!
 //! So nothing is rounded. The box is first reduced to its intersection with the box of the primitive, which changes no
 //! answer but makes its corners finite.
@@ -59,8 +59,9 @@ fn project(axis: usize, p: [f64; 3]) -> [f64; 2] {
     [p[(axis + 1) % 3], p[(axis + 2) % 3]]
 }
 
-/// Returns whether the line through `p` and `q`, projected along `axis`, has the box strictly on one side and the primitive
-/// on the other. `inside` is the side of the third vertex; `Equal` means that there is none, so that either side will do.
+/// Returns whether the line through `p` and `q`, projected along `axis`, has the box strictly on one side and the
+/// primitive on the other. `inside` is the side of the third vertex; `Equal` means that there is none, so that either
+/// side will do.
 fn line_separates(axis: usize, p: [f64; 3], q: [f64; 3], inside: Ordering, corners: &[[f64; 3]; 2]) -> bool {
     let [p, q] = [p, q].map(|v| project(axis, v));
     let [low, high] = corners.map(|corner| project(axis, corner));

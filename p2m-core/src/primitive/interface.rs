@@ -7,8 +7,8 @@ use nalgebra::Point3;
 /// A set of points that has a nearest point to any query.
 ///
 /// [`Point`](crate::Point), [`Segment`](crate::Segment), [`Triangle`](crate::Triangle) and [`Shape`](crate::Shape) keep
-/// the whole contract of [`ClosestPoint`](crate::ClosestPoint). For a primitive of your own, every index of this project
-/// still finds the primitive of the smallest key, lowest id first, and agrees bitwise with
+/// the whole contract of [`ClosestPoint`](crate::ClosestPoint). For a primitive of your own, every index of this
+/// project still finds the primitive of the smallest key, lowest id first, and agrees bitwise with
 /// [`BruteForce`](crate::BruteForce) (N3, and N6 for totality), provided that
 ///
 /// - `project` is a pure function that returns for every finite query,
@@ -36,7 +36,8 @@ use nalgebra::Point3;
 ///     }
 /// }
 ///
-/// let scene = [Ball { centre: Point3::origin(), radius: 1.0 }, Ball { centre: Point3::new(5.0, 0.0, 0.0), radius: 2.0 }];
+/// let ball = |x, radius| Ball { centre: Point3::new(x, 0.0, 0.0), radius };
+/// let scene = [ball(0.0, 1.0), ball(5.0, 2.0)];
 /// let answer = BruteForce::new(&scene).unwrap().closest_point(&Point3::new(2.5, 0.0, 0.0)).unwrap();
 /// assert_eq!(answer.primitive.index(), 1);
 /// ```
@@ -60,8 +61,8 @@ pub trait Primitive<T: Real> {
     /// Returns the one to three vertices of a primitive that *is* the [`Point`](crate::Point),
     /// [`Segment`](crate::Segment) or [`Triangle`](crate::Triangle) of these.
     ///
-    /// Indexes then filter it by more than its box, and may evaluate that shape instead. The default returns none, which
-    /// is right for a primitive whose `project` differs from that of the shape in any bit.
+    /// Indexes then filter it by more than its box, and may evaluate that shape instead. The default returns none,
+    /// which is right for a primitive whose `project` differs from that of the shape in any bit.
     fn vertices(&self) -> &[Point3<T>] {
         &[]
     }

@@ -28,6 +28,8 @@ impl<T: Real> Primitive<T> for Point<T> {
         Aabb::of_points(&[self.position])
     }
 
+    /// Returns the point itself.
+    ///
     /// # Accuracy
     /// The distance has a relative error of at most 4 u, plus eta.
     #[inline(always)]

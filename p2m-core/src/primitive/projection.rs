@@ -11,7 +11,7 @@ use nalgebra::Point3;
 /// A point has `Vertex(0)`; a segment has `Vertex(0)`, `Vertex(1)` and `Edge(0)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Feature {
-    /// Vertex i.
+    /// The vertex i.
     Vertex(u8),
     /// The interior of edge i, which runs from vertex i to vertex i + 1 (cyclically).
     Edge(u8),

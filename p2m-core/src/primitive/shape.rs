@@ -12,11 +12,11 @@ use nalgebra::Point3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Shape<T: Real> {
-    /// A point.
+    /// A primitive that is a point.
     Point(Point<T>),
-    /// A segment.
+    /// A primitive that is a segment.
     Segment(Segment<T>),
-    /// A triangle.
+    /// A primitive that is a triangle.
     Triangle(Triangle<T>),
 }
 

@@ -129,8 +129,8 @@ impl Collector for BestF64 {
 
     #[inline(always)]
     fn prune_given_upper_bound(&self, square: f64) -> f64 {
-        // Epsilon does not shrink this bound: its primitive may be beyond the radius, or be skipped for a candidate that
-        // is a little farther, and only that candidate determines what else may be skipped.
+        // Epsilon does not shrink this bound: its primitive may be beyond the radius, or be skipped for a candidate
+        // that is a little farther, and only that candidate determines what else may be skipped.
         if square < self.prune { square } else { self.prune }
     }
 
@@ -166,8 +166,8 @@ impl Collector for BestF64 {
 
     #[inline(always)]
     fn record_skipped(&mut self, square: f64) {
-        // The bound of a box is at most 5 u too large, and wrong by some subnormals near zero. A bound above the range of
-        // f64 is replaced by the end of the range.
+        // The bound of a box is at most 5 u too large, and wrong by some subnormals near zero. A bound above the range
+        // of f64 is replaced by the end of the range.
         let square = if square < f64::MAX { square } else { f64::MAX };
         let bound = (square * ROUND_DOWN - 4.0 * f64::from_bits(1)).max(0.0).sqrt();
         if bound < self.certified {
@@ -192,13 +192,13 @@ impl Collector for BestF64 {
     #[inline(always)]
     fn offer(&mut self, id: PrimitiveId, projection: Projection) {
         let p = projection;
-        // Only a candidate within its error of the certified bound can lower that bound. Its square decides this without
-        // a square root in most cases.
+        // Only a candidate within its error of the certified bound can lower that bound. Its square decides this
+        // without a square root in most cases.
         let limit = self.certified + p.error;
         let is_beyond = p.key.plain_square().is_some_and(|square| square * ROUND_DOWN > limit * limit);
         if !is_beyond {
-            // A distance above the range of f64 is replaced by the end of the range. An error above the range leaves no
-            // lower bound.
+            // A distance above the range of f64 is replaced by the end of the range. An error above the range leaves
+            // no lower bound.
             let distance = if p.key.distance() < f64::MAX { p.key.distance() } else { f64::MAX };
             let bound = if p.error < f64::INFINITY { distance - p.error } else { f64::NEG_INFINITY };
             if bound < self.certified {

@@ -7,15 +7,15 @@ use crate::{PrimitiveId, Projection};
 /// [`Best`](crate::Best) keeps the single closest candidate. [`Near`](crate::Near) answers the other questions about
 /// near primitives by the same traversals.
 ///
-/// All squares are squared distances in f64 and in units of the scene. The methods that ask are called in inner loops,
-/// so implementations should be `#[inline]`.
+/// All squares are squared distances in f64 and in units of the scene. The methods that return limits are called in
+/// inner loops, so implementations should be `#[inline]`.
 pub trait Collector {
     /// Returns the square that a lower bound must not exceed: a search skips bounds strictly above it and keeps equal
     /// ones. It never rises during a search.
     fn prune_above(&self) -> f64;
 
-    /// Returns the limit of [`prune_above`](Self::prune_above) given that the key of some primitive is at most `square`,
-    /// although that primitive was not offered yet.
+    /// Returns the limit of [`prune_above`](Self::prune_above) given that the key of some primitive is at most
+    /// `square`, although that primitive was not offered yet.
     ///
     /// A collector that looks for the single nearest primitive may then prune more. The default ignores `square`.
     #[inline(always)]
@@ -51,8 +51,8 @@ pub trait Collector {
     /// Returns the limit of [`prune_above`](Self::prune_above) given an incumbent with a key of at most `square`: a
     /// primitive that the search will certainly offer, unless it offers one that is as near.
     ///
-    /// An approximate collector may prune more than by [`prune_given_upper_bound`](Self::prune_given_upper_bound), which
-    /// is the default.
+    /// An approximate collector may prune more than by [`prune_given_upper_bound`](Self::prune_given_upper_bound),
+    /// which is the default.
     #[inline(always)]
     fn prune_given_incumbent(&self, square: f64) -> f64 {
         self.prune_given_upper_bound(square)

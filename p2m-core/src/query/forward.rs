@@ -19,7 +19,8 @@ macro_rules! forward_methods {
     };
 }
 
-/// Implements the methods of [`Collector`](crate::Collector) by which a search asks, but not those by which it reports.
+/// Implements the methods of [`Collector`](crate::Collector) that return decisions, but not those by which
+/// a search reports.
 macro_rules! forward_collector_decisions {
     ($field:ident, $attributes:tt) => {
         forward_methods!($field, $attributes, {

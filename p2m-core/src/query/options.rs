@@ -22,9 +22,9 @@ pub struct QueryOptions<T: Real> {
     /// The largest relative error of the distance: reported <= (1 + epsilon) true, apart from rounding (contract N7).
     /// The default is 0, and a negative or NaN value counts as 0.
     pub epsilon: T,
-    /// The maximum number of nodes and packets to visit, besides those that it takes to find any answer at all. When it
-    /// is exhausted, the best candidate so far is the answer, and its `lower_bound` remains valid. The default is
-    /// unlimited.
+    /// The maximum number of nodes and packets to visit, besides those that it takes to find any answer at all.
+    /// When it is exhausted, the best candidate so far is the answer, and its `lower_bound` remains valid. The
+    /// default is unlimited.
     ///
     /// The interception indexes count the sites on the way to a cell and the packets of its list; with a limit of 0
     /// their answer comes from the cell alone. If there is a largest distance as well, `None` says that nothing was

@@ -37,9 +37,9 @@ pub trait RayCollector<'r> {
     fn visit_primitive(&mut self) {}
 }
 
-/// The hits that a method of [`RayQuery`](super::RayQuery) needs, and those that were found. A backend takes it as a
-/// [`RayCollector`]; your own code needs one to count the work of a search
-/// ([`RayStatsCollector`](super::RayStatsCollector)).
+/// The hits that a method of [`RayQuery`](super::RayQuery) needs, and those that were
+/// found. A backend takes it as a [`RayCollector`]; your own code needs one to count the
+/// work of a search ([`RayStatsCollector`](super::RayStatsCollector)).
 #[derive(Clone, Debug)]
 pub struct Hits<'r> {
     mode: HitMode,
@@ -53,12 +53,18 @@ pub struct Hits<'r> {
     pub count: usize,
 }
 
+/// The hits that a query needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum HitMode {
+    /// One hit, whichever is found first.
     Any,
+    /// The hit with the least parameter.
     First,
+    /// All hits.
     All,
+    /// The number of hits.
     Count,
+    /// The number of crossings of the surface.
     Crossings,
 }
 
@@ -134,8 +140,8 @@ impl<'r> Hits<'r> {
         self.all
     }
 
-    /// Keeps the hit with the least parameter, and of equal parameters the one with the lowest id. Parameters are computed
-    /// only where their bounds do not decide.
+    /// Keeps the hit with the least parameter, and of equal parameters the one with the lowest id. Parameters are
+    /// computed only where their bounds do not decide.
     fn offer_first(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) {
         let Some((id, first)) = &mut self.one else {
             self.one = Some((primitive, *crossing));

@@ -25,9 +25,9 @@ pub struct Crossing<'a> {
 }
 
 impl<'a> Crossing<'a> {
-    /// Returns the hit of a ray on a primitive, for a backend of your own. It is `None` for a miss, and if the parameter
-    /// is out of the range of the ray or certainly exceeds `limit`. `only_crossings` is that of
-    /// [`RayCollector`](super::RayCollector).
+    /// Returns the hit of a ray on a primitive, for a backend of your own. It is `None` for a miss, and
+    /// if the parameter is out of the range of the ray or certainly exceeds `limit`. `only_crossings` is
+    /// that of [`RayCollector`](super::RayCollector).
     #[must_use]
     pub fn of<T: Real>(primitive: &impl Primitive<T>, ray: &'a Ray, limit: f64, only_crossings: bool) -> Option<Self> {
         match primitive.vertices() {
@@ -49,8 +49,8 @@ impl<'a> Crossing<'a> {
         ray.contains(t).then_some(Self { ray, low: t, high: t, source: HitSource::Known(hit) })
     }
 
-    /// Returns the hit on a primitive of this project, given its vertices. `limit` and `only_crossings` are those of
-    /// [`of`](Self::of).
+    /// Returns the hit on a primitive of this project, given its vertices. `limit` and `only_crossings` are
+    /// those of [`of`](Self::of).
     #[inline(always)]
     pub fn of_vertices(ray: &'a Ray, vertices: &[V3], limit: f64, only_crossings: bool) -> Option<Self> {
         match vertices {
@@ -154,7 +154,8 @@ fn exact(ray: &Ray, vertices: &[V3]) -> Exact {
     Exact::new(&ray.origin, &ray.direction, ray.radius, vertices)
 }
 
-/// Returns 1 or -1 if the moment D . (A x B) is certainly above or below zero, and 0 otherwise. The offsets are rounded.
+/// Returns 1 or -1 if the moment D . (A x B) is certainly above or below zero, and 0 otherwise. The
+/// offsets are rounded.
 #[inline(always)]
 fn certain_sign(d: &V3, a: &V3, b: &V3) -> i32 {
     let (minors, sizes) = cross_with_sizes(a, b);
@@ -183,8 +184,8 @@ fn exact_side(ray: &Ray, vertices: &[V3; 3], known: [i32; 3], only_crossings: bo
     Some(all)
 }
 
-/// Returns bounds on the parameter of the plane of a triangle, which is not parallel to the line. `a` is the first vertex
-/// relative to the origin of the ray.
+/// Returns bounds on the parameter of the plane of a triangle, which is not parallel to the line. `a` is the first
+/// vertex relative to the origin of the ray.
 #[inline(always)]
 fn parameter_bounds(ray: &Ray, vertices: &[V3; 3], a: &V3) -> [f64; 2] {
     let [e, f] = [sub(vertices[1], vertices[0]), sub(vertices[2], vertices[0])];

@@ -1,8 +1,8 @@
 //! Intersections of rays and primitives in big integers, for cases that f64 cannot decide.
 //!
-//! All positions are relative to the origin of the ray. A, B and C are the vertices and D is the direction. Positions are
-//! multiples of one power of two, the direction is a multiple of another one, and parameters are multiples of their
-//! quotient.
+//! All positions are relative to the origin of the ray. A, B and C are the vertices and D is the direction.
+//! Positions are multiples of one power of two, the direction is a multiple of another one, and parameters are
+//! multiples of their quotient.
 
 use super::line::Ray;
 use crate::exact::{Fraction, Vector, common_exponent, cross, cross_component, difference, dot, integer, sign};
@@ -28,14 +28,14 @@ pub(super) struct LineHit {
     pub(super) weights: V3,
 }
 
-/// The part of a line that is nearest to a segment, or inside of a triangle in whose plane the line lies: one point, or an
-/// interval of parameters. Each end has its parameter and the weights of the vertices.
+/// The part of a line that is nearest to a segment, or inside of a triangle in whose plane the line lies: one point, or
+/// an interval of parameters. Each end has its parameter and the weights of the vertices.
 struct Span {
     ends: [(Fraction, V3); 2],
 }
 
-/// Returns the projection of `point` onto the line of a ray, and the coordinate of that projection along `axis` from the
-/// origin of the ray, in the sense of the direction, which is largest on that axis. Each is rounded once.
+/// Returns the projection of `point` onto the line of a ray, and the coordinate of that projection along `axis` from
+/// the origin of the ray, in the sense of the direction, which is largest on that axis. Each is rounded once.
 pub fn project_onto_ray(ray: &Ray, point: &V3, axis: usize) -> (V3, f64) {
     let unit = common_exponent(ray.origin.iter().chain(point));
     let direction_unit = common_exponent(&ray.direction);
@@ -69,17 +69,17 @@ impl Exact {
         dot(&self.direction, &cross(&self.vertices[i], &self.vertices[j]))
     }
 
-    /// Returns the side of an edge after the line is moved by an infinitely small amount along x, by an infinitely smaller
-    /// one along y and by a still smaller one along z. A move by w changes the moment by -w . ((V_j - V_i) x D). The
-    /// result is `Equal` only for an edge along the line.
+    /// Returns the side of an edge after the line is moved by an infinitely small amount along x, by an infinitely
+    /// smaller one along y and by a still smaller one along z. A move by w changes the moment by -w . ((V_j - V_i) x
+    /// D). The result is `Equal` only for an edge along the line.
     pub(super) fn perturbed_side(&self, i: usize, j: usize) -> Ordering {
         let edge: Vector = std::array::from_fn(|k| &self.vertices[j][k] - &self.vertices[i][k]);
         let change = |k| sign(&cross_component(&edge, &self.direction, k)).reverse();
         (0..3).map(change).fold(self.side(i, j), Ordering::then)
     }
 
-    /// Returns the parameter of the plane of a triangle that is not parallel to the line, and the weights of the vertices
-    /// there, all rounded to nearest.
+    /// Returns the parameter of the plane of a triangle that is not parallel to the line, and the weights of the
+    /// vertices there, all rounded to nearest.
     pub(super) fn face(&self) -> (f64, V3) {
         let moments = [self.moment(1, 2), self.moment(2, 0), self.moment(0, 1)];
         let height = dot(&self.vertices[0], &cross(&self.vertices[1], &self.vertices[2]));
@@ -143,13 +143,13 @@ impl Exact {
         let begin = integer(begin, finer);
         let lift = |t: &Fraction| (&t.numerator << (unit - finer).unsigned_abs() as usize, t.denominator.clone());
         let ((n1, d1), (n2, d2)) = (lift(first), lift(last));
-        // (begin - n1 / d1) / (n2 / d2 - n1 / d1)
+        // The position is (begin - n1 / d1) / (n2 / d2 - n1 / d1).
         let fraction = Fraction { numerator: (begin * &d1 - &n1) * &d2, denominator: n2 * d1 - n1 * d2 };
         fraction.round(0).clamp(0.0, 1.0)
     }
 
-    /// Returns the span in which the line is nearest to the segment from vertex i to vertex j, if that is within
-    /// `radius`.
+    /// Returns the span in which the line is nearest to the segment from vertex i to vertex j, if that
+    /// is within `radius`.
     ///
     /// A point of the segment is P = A + s E. Its squared distance from the line is |P|^2 - (P . D)^2 / D^2; with
     /// a = D . D, b = D . E, c = E . E it is least at s = ((A . D) b - a (A . E)) / (a c - b^2).
@@ -160,14 +160,14 @@ impl Exact {
         let along = dot(from, d);
         let determinant = &a * &c - &b * &b;
         let parallel = sign(&determinant) == Ordering::Equal;
-        // s = n / q, clamped to the segment.
+        // The position on the segment is s = n / q, clamped to its ends.
         let (n, q) = if parallel {
             (IBig::ZERO, IBig::ONE)
         } else {
             let n = &along * &b - &a * dot(from, &edge);
             (n.max(IBig::ZERO).min(determinant.clone()), determinant)
         };
-        // q P
+        // This is the point P of the segment, times q.
         let point: Vector = std::array::from_fn(|k| &from[k] * &q + &edge[k] * &n);
         let ahead = dot(&point, d);
         let limit = radius * &q;

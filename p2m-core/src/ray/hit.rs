@@ -47,9 +47,9 @@ impl Hit {
         }
     }
 
-    /// Returns the point of the primitive: the rounded sum of its vertices with the [weights](Self::barycentric), which
-    /// lies in its box. A vertex is returned verbatim. [`Ray::at`](crate::Ray::at) is the point of the ray, whose error
-    /// differs.
+    /// Returns the point of the primitive: the rounded sum of its vertices with the [weights](Self::barycentric),
+    /// which lies in its box. A vertex is returned verbatim. [`Ray::at`](crate::Ray::at) is the point of the ray,
+    /// whose error differs.
     #[must_use]
     pub fn point(&self) -> Point3<f64> {
         match &self.source {
@@ -88,8 +88,8 @@ pub(super) enum HitSource {
     Known(RayHit),
 }
 
-/// Returns the sum of some vertices with weights, clamped to the box of the vertices. A vertex of weight 1 is returned
-/// verbatim.
+/// Returns the sum of some vertices with weights, clamped to the box of the vertices. A vertex of weight 1
+/// is returned verbatim.
 pub(super) fn weighted_sum(vertices: &[V3], weights: &V3) -> Point3<f64> {
     if let Some(vertex) = weights.iter().position(|w| *w == 1.0) {
         return Point3::from(vertices[vertex]);

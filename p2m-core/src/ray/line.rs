@@ -31,8 +31,8 @@ pub enum RayError {
 /// The points origin + t direction for all parameters t of a range. A ray has the range from 0 to infinity, a line that
 /// from minus infinity to infinity, and other ranges give parts of a line.
 ///
-/// The direction has any length but zero. Parameters count in its lengths, so they are distances only for a direction of
-/// length 1. All numbers are kept in f64, in which the coordinates of an f32 scene are exact.
+/// The direction has any length but zero. Parameters count in its lengths, so they are distances only for a direction
+/// of length 1. All numbers are kept in f64, in which the coordinates of an f32 scene are exact.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
@@ -79,7 +79,8 @@ impl Ray {
         Ok(Self { origin, direction, min: 0.0, max: f64::INFINITY, radius: 0.0 })
     }
 
-    /// Creates the ray from a point through another one, which has the parameter 1 up to the rounding of their difference.
+    /// Creates the ray from a point through another one, which has the parameter 1 up to the rounding
+    /// of their difference.
     ///
     /// # Errors
     /// It returns [`RayError::ZeroDirection`] for equal points and [`RayError::NonFinite`] if a coordinate or the

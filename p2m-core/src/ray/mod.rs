@@ -1,8 +1,8 @@
 //! Ray casting: which primitives a ray hits, and at which parameters.
 //!
 //! A [`Ray`] is passed to an index by [`RayQuery`]. Whether it hits a primitive is decided without rounding, and the
-//! parameter of a hit is the exact one rounded to the nearest f64. So all backends return the same bits, and the first hit
-//! has the least parameter.
+//! parameter of a hit is the exact one rounded to the nearest f64. So all backends return the same bits, and the first
+//! hit has the least parameter.
 
 #![allow(clippy::float_cmp, reason = "nothing here has a tolerance")]
 

@@ -1,4 +1,5 @@
-//! The intersection of a line and the plane of a triangle, rounded to nearest where double-double arithmetic is certain.
+//! The intersection of a line and the plane of a triangle, rounded to nearest where double-double
+//! arithmetic is certain.
 
 use super::rounding::{PLAIN_MAGNITUDES, U};
 use crate::kernel::arithmetic::{cross, dot};
@@ -83,8 +84,8 @@ fn quotient_error(quotient: Double, error: f64, divisor: Double, divisor_error: 
     (least > 0.0).then_some(error)
 }
 
-/// Returns a number rounded to nearest, or `None` where its error leaves two roundings, for zero, and where rounding might
-/// underflow.
+/// Returns a number rounded to nearest, or `None` where its error leaves two roundings, for zero, and where
+/// rounding might underflow.
 fn rounded(x: Double, error: f64) -> Option<f64> {
     let [low, high] = [x.high + (x.low - error), x.high + (x.low + error)];
     (low == high && PLAIN_MAGNITUDES.contains(&low.abs())).then_some(low)

@@ -11,24 +11,24 @@ use std::ops::ControlFlow;
 ///
 /// # Contract
 ///
-/// - **Exact**: triangles, segments and points are closed sets, and whether the line of the ray intersects one is decided
-///   without rounding, for all finite scenes and rays. There is no tolerance, and no ray slips through between two
-///   triangles that share an edge or a vertex.
+/// - **Exact**: triangles, segments and points are closed sets, and whether the line of the ray intersects one is
+///   decided without rounding, for all finite scenes and rays. There is no tolerance, and no ray slips through between
+///   two triangles that share an edge or a vertex.
 /// - **Parameter**: the parameter of a hit is the exact one rounded to the nearest f64. A hit counts if the rounded
 ///   parameter lies in the closed range of the ray. So consecutive ranges ([t0, t1], [t1.next_up(), t2], ..) have each
 ///   hit of a line in one of them.
-/// - **Shared edges and vertices**: a hit there counts once for each primitive that it belongs to, with equal parameters.
-///   [`crossings`](Self::crossings) counts it as often as the surface is crossed.
+/// - **Shared edges and vertices**: a hit there counts once for each primitive that it belongs to, with equal
+///   parameters. [`crossings`](Self::crossings) counts it as often as the surface is crossed.
 /// - **In the plane of a triangle**: the ray runs along the triangle for an interval of parameters, and hits it at the
 ///   least one in its range. A triangle without area is the segment or the point that it spans.
-/// - **Segments and points** are hit exactly, or within the radius of the ray. With a radius the hit is at the parameter
-///   nearest to the primitive, which has to be in the range.
+/// - **Segments and points** are hit exactly, or within the radius of the ray. With a radius the hit is at the
+///   parameter nearest to the primitive, which has to be in the range.
 /// - **Order**: hits are ordered by parameter, and of equal parameters by id.
-/// - **Agreement**: all backends find the same hits with the same bits. Only [`any_intersection`](Self::any_intersection)
-///   may return different hits.
+/// - **Agreement**: all backends find the same hits with the same bits. Only
+///   [`any_intersection`](Self::any_intersection) may return different hits.
 ///
-/// A primitive of your own answers by [`Primitive::intersect_ray`](crate::Primitive::intersect_ray). It is not part of a
-/// surface that can be crossed.
+/// A primitive of your own answers by [`Primitive::intersect_ray`](crate::Primitive::intersect_ray). It is not part of
+/// a surface that can be crossed.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
@@ -70,8 +70,8 @@ pub trait RayQuery<T: Real> {
         hits.one.map(|(id, crossing)| crossing.hit(id))
     }
 
-    /// Returns the hit with the least parameter, and of equal parameters the one with the lowest id. Parameters are equal
-    /// if they round to the same f64; all that exceed the range of f64 are infinite.
+    /// Returns the hit with the least parameter, and of equal parameters the one with the lowest id. Parameters are
+    /// equal if they round to the same f64; all that exceed the range of f64 are infinite.
     fn first_intersection(&self, ray: &Ray) -> Option<Hit> {
         let mut hits = Hits::first();
         self.search_ray(ray, &mut hits);
@@ -94,11 +94,11 @@ pub trait RayQuery<T: Real> {
 
     /// Returns how often the ray crosses the surface that the triangles form.
     ///
-    /// The ray is thought to be moved by an infinitely small amount along x, a still smaller one along y and another one
-    /// along z, the same for all triangles. It then avoids all edges and vertices, and touches nothing. So the number is
-    /// even for a line and every closed surface, and odd for a ray that begins inside of one. A triangle counts if the
-    /// moved line crosses it and the parameter of its plane is in the range: a ray that begins on a triangle begins just
-    /// before it. Segments, points and triangles without area are not part of the surface.
+    /// The ray is thought to be moved by an infinitely small amount along x, a still smaller one along y and another
+    /// one along z, the same for all triangles. It then avoids all edges and vertices. So the
+    /// number is even for a line and every closed surface, and odd for a ray that begins inside of one. A triangle
+    /// counts if the moved line crosses it and the parameter of its plane is in the range: a ray that begins on a
+    /// triangle begins just before it. Segments, points and triangles without area are not part of the surface.
     ///
     /// # References
     /// The perturbation is the simulation of simplicity \[Edelsbrunner1990\].

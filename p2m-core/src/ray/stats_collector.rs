@@ -40,8 +40,8 @@ impl<C> RayStatsCollector<C> {
         Self { collector, nodes: 0, packets: 0, primitives: 0 }
     }
 
-    /// Returns the numbers of nodes, packets and primitives of some rays in total. Each ray is searched by `visit` with a
-    /// copy of `collector`.
+    /// Returns the numbers of nodes, packets and primitives of some rays in total. Each ray is searched by `visit` with
+    /// a copy of `collector`.
     pub fn of_rays<'r>(
         rays: impl IntoIterator<Item = &'r Ray>,
         collector: &C,

@@ -92,11 +92,11 @@ pub fn lane_of_key(key: u32) -> usize {
 
 /// An instruction set, given by its types of lanes.
 pub trait InstructionSet {
-    /// Eight f32.
+    /// The type of eight f32.
     type Eight: EightLanes;
-    /// Eight or sixteen f32, whichever the instruction set computes with faster.
+    /// The type of eight or sixteen f32, whichever the instruction set computes with faster.
     type Wide: Lanes;
-    /// Eight f64.
+    /// The type of eight f64.
     type Doubles: Doubles;
 }
 

@@ -4,7 +4,7 @@
 use super::lanes::{Doubles, EightLanes, InstructionSet, Lanes};
 use wide::{f32x8, f64x4};
 
-/// Eight f32.
+/// Eight f32 in a vector of the crate `wide`.
 #[derive(Clone, Copy)]
 pub struct Eight(f32x8);
 

@@ -34,8 +34,8 @@ impl SavedFile {
     /// Maps a file into memory: pages are read on first use, and processes that map the same file share them.
     ///
     /// The file must not be modified while the mapping, or an index that was loaded from it, is in use. Otherwise
-    /// answers may change, and truncation ends the program. To replace a file, write a new one and rename it, as `p2m
-    /// build` does.
+    /// answers may change, and truncation ends the program. To replace a file, write a new one and rename it, as
+    /// `p2m build` does.
     ///
     /// # Errors
     /// It returns the errors of [`read`](Self::read), and [`LoadError::Io`] if the file cannot be opened or mapped.

@@ -11,7 +11,17 @@
 //! | 8 | length of the file |
 //! | 8 | XXH3 checksum of the table |
 //! | 32 | unused, zero |
-//! | 64 each | table entry: name (32 bytes, padded with zeros), offset, number of elements, bytes of an element, XXH3 checksum of the section (8 each) |
+//! | 64 each | entries of the table |
+//!
+//! An entry of the table has
+//!
+//! | bytes | content |
+//! |---|---|
+//! | 32 | name, padded with zeros |
+//! | 8 | offset of the section in bytes |
+//! | 8 | number of elements |
+//! | 8 | bytes of an element |
+//! | 8 | XXH3 checksum of the section |
 //!
 //! All numbers are little-endian. Sections begin at multiples of 64 bytes, so an index uses its large arrays where they
 //! are in the file, and only small arrays are copied. [`SavedFile::open`] maps a file, so that processes share its

@@ -19,8 +19,8 @@ pub fn prefetch(at: *const u8) {
     let _ = at;
 }
 
-/// Requests all cache lines of `bytes` bytes that begin at an address. It has no other effect, and the address may be
-/// invalid.
+/// Requests all cache lines of `bytes` bytes that begin at an address. It has no other effect, and the address
+/// may be invalid.
 #[inline(always)]
 pub fn prefetch_lines<T>(at: *const T, bytes: usize) {
     for line in 0..bytes.div_ceil(64) {
@@ -102,8 +102,8 @@ impl Isa {
     }
 }
 
-/// Runs a kernel with portable instructions. It is not inlined, so each kernel is compiled once and not wherever it is
-/// run.
+/// Runs a kernel with portable instructions. It is not inlined, so each kernel is compiled once and not wherever
+/// it is run.
 #[inline(never)]
 fn run_portable<K: SimdKernel>(kernel: K) -> K::Output {
     kernel.run::<Portable>()
