@@ -56,14 +56,14 @@ impl Collector for Stopped {
     fn prune_above(&self) -> f64 {
         self.best.prune_above()
     }
-    fn prune_given(&self, square: f64) -> f64 {
-        self.best.prune_given(square)
+    fn prune_given_upper_bound(&self, square: f64) -> f64 {
+        self.best.prune_given_upper_bound(square)
     }
-    fn prune_above_for(&self, id: PrimitiveId) -> f64 {
-        self.best.prune_above_for(id)
+    fn prune_above_for_id(&self, id: PrimitiveId) -> f64 {
+        self.best.prune_above_for_id(id)
     }
-    fn is_nearest_only(&self) -> bool {
-        self.best.is_nearest_only()
+    fn is_single_nearest(&self) -> bool {
+        self.best.is_single_nearest()
     }
     fn offer(&mut self, id: PrimitiveId, projection: Projection) {
         self.step();

@@ -175,7 +175,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestLeaf<T> for TreeIndex<T, S, 
             return None;
         }
         let mut best = Best::new(&QueryOptions::default());
-        for &id in self.tree.nearest_leaf(&query.map(T::to_f64), |aside| best.forgo(aside)) {
+        for &id in self.tree.nearest_leaf(&query.map(T::to_f64), |aside| best.record_skipped(aside)) {
             if let Some(projection) = self.set.get(id).project_within(query, best.prune_above()) {
                 best.offer(id, projection);
             }

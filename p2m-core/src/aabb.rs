@@ -4,7 +4,7 @@ use crate::Real;
 use crate::real::to_f64_array;
 use nalgebra::Point3;
 
-/// A box with sides along the axes. Empty if a lower corner exceeds the upper one.
+/// A box with sides along the axes. It is empty if a coordinate of `min` exceeds that of `max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb<T: Real> {
     /// The corner with the smallest coordinates.
@@ -14,7 +14,7 @@ pub struct Aabb<T: Real> {
 }
 
 impl<T: Real> Aabb<T> {
-    /// The box that holds nothing.
+    /// Returns the empty box, which is the neutral element of [`union`](Self::union).
     #[must_use]
     pub fn empty() -> Self {
         Self {
@@ -23,18 +23,18 @@ impl<T: Real> Aabb<T> {
         }
     }
 
-    /// The smallest box around `points`; a NaN coordinate makes the box NaN on that axis.
+    /// Returns the smallest box around `points`. A NaN coordinate makes the box NaN on that axis.
     #[inline(always)]
     #[must_use]
     pub fn of_points(points: &[Point3<T>]) -> Self {
         points.iter().fold(Self::empty(), |b, p| b.union(&Self { min: *p, max: *p }))
     }
 
-    /// The smallest box around both; NaN wins.
+    /// Returns the smallest box around two boxes. A NaN coordinate of either makes the result NaN on that axis.
     #[inline(always)]
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
-        // Written so that NaN on either side is kept: a comparison with NaN is false.
+        // Comparisons with NaN are false, so the expressions return the operand that is NaN.
         let low = |a: T, b: T| if a <= b || a.partial_cmp(&a).is_none() { a } else { b };
         let high = |a: T, b: T| if a >= b || a.partial_cmp(&a).is_none() { a } else { b };
         Self {
@@ -47,26 +47,27 @@ impl<T: Real> Aabb<T> {
         }
     }
 
-    /// The same box in f64, exactly.
+    /// Returns the box in f64, exactly.
     #[inline]
     #[must_use]
     pub fn to_f64(&self) -> Aabb<f64> {
         Aabb { min: Point3::from(to_f64_array(&self.min)), max: Point3::from(to_f64_array(&self.max)) }
     }
 
-    /// Whether every corner coordinate is finite. The empty box is not.
+    /// Returns whether all coordinates are finite. Those of the [`empty`](Self::empty) box are not.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.min.iter().chain(self.max.iter()).all(|x| x.is_finite())
     }
 
-    /// Whether `other` lies in this box.
+    /// Returns whether `other` lies in this box.
     #[must_use]
     pub fn contains(&self, other: &Self) -> bool {
         (0..3).all(|k| self.min[k] <= other.min[k] && other.max[k] <= self.max[k])
     }
 
-    /// What both have in common; empty if that is nothing. NaN makes it empty or NaN on that axis.
+    /// Returns the intersection of two boxes, which may be empty. A NaN coordinate of either makes it empty or NaN
+    /// on that axis.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
         let low = |a: T, b: T| if a >= b { a } else { b };
@@ -77,19 +78,19 @@ impl<T: Real> Aabb<T> {
         }
     }
 
-    /// Whether there is no point in it; a box with a NaN coordinate has none.
+    /// Returns whether the box contains no point. A box with a NaN coordinate contains none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         !(0..3).all(|k| self.min[k] <= self.max[k])
     }
 
-    /// Whether both have a point in common, be it of their boundaries.
+    /// Returns whether two closed boxes have a point in common.
     #[must_use]
     pub fn meets(&self, other: &Self) -> bool {
         (0..3).all(|k| self.min[k] <= other.max[k] && other.min[k] <= self.max[k])
     }
 
-    /// The nearest point of the box.
+    /// Returns the point of the box that is nearest to `point`.
     #[must_use]
     pub fn clamp(&self, point: Point3<T>) -> Point3<T> {
         Point3::from(std::array::from_fn(|k| {
@@ -103,14 +104,14 @@ impl<T: Real> Aabb<T> {
         }))
     }
 
-    /// Lower bound of the square of the distance from `query` to anything in the box, in f64.
+    /// Returns a lower bound on the squared distance from `query` to all points of the box, in f64.
     ///
     /// # Accuracy
-    /// Never above the key of a primitive in the box, rounding included: both subtract coordinates and sum squares in
-    /// the same order, the kernel keeps each component of its offset within the box of the vertices minus the query,
-    /// and rounding is monotone. So pruning on it needs no slack: a box goes iff its bound exceeds
-    /// [`Collector::prune_above`](crate::Collector::prune_above), strictly. Against the true distance the bound is at
-    /// most 5 u (relative, on the square) too large.
+    /// The bound never exceeds the key of a primitive in the box, rounding included. Both subtract coordinates and sum
+    /// squares in the same order, the kernel keeps each component of its offset within the box of the vertices minus
+    /// the query, and rounding is monotone. So pruning needs no slack: a box is skipped if and only if its bound is
+    /// strictly above [`Collector::prune_above`](crate::Collector::prune_above). The bound exceeds the true squared
+    /// distance by at most 5 u of it.
     #[inline(always)]
     #[must_use]
     pub fn lower_bound(&self, query: &Point3<T>) -> f64 {

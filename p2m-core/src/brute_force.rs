@@ -1,4 +1,4 @@
-//! The oracle of everything else: every primitive, every time.
+//! Brute force: every query evaluates every primitive. All other indexes are tested against it.
 
 use crate::{
     Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Inspect, Near, NearQuery, Primitive,
@@ -6,20 +6,21 @@ use crate::{
 };
 use nalgebra::Point3;
 
-/// No index at all. Kept plain, so that it is right by inspection.
+/// An index without a structure, which evaluates every primitive. It is kept simple, so that its
+/// correctness is evident.
 ///
 /// # Complexity
-/// Build O(n) (a check), query O(n), no memory beyond the set.
+/// Building takes O(n), since it checks the set. A query takes O(n). It needs no memory besides the set.
 #[derive(Clone, Debug)]
 pub struct BruteForce<S> {
     set: S,
 }
 
 impl<S> BruteForce<S> {
-    /// Checks the set and keeps it.
+    /// Checks a set and keeps it.
     ///
     /// # Errors
-    /// [`BuildError`] for a coordinate that is not finite and for too many primitives.
+    /// It returns a [`BuildError`] for a coordinate that is not finite and for too many primitives.
     pub fn new<T: Real>(set: S) -> Result<Self, BuildError>
     where
         S: PrimitiveSet<T>,
@@ -28,7 +29,7 @@ impl<S> BruteForce<S> {
         Ok(Self { set })
     }
 
-    /// The set it was built over.
+    /// Returns the set that the index was built over.
     pub fn set(&self) -> &S {
         &self.set
     }
@@ -60,9 +61,9 @@ impl<T: Real, S: PrimitiveSet<T>> CertifiedQuery<T> for BruteForce<S> {
 }
 
 impl<T: Real, S: PrimitiveSet<T>> Inspect<T> for BruteForce<S> {
-    fn inspect(&self, query: &Point3<T>, counting: &mut StatsCollector<T>) {
+    fn inspect(&self, query: &Point3<T>, stats: &mut StatsCollector<T>) {
         for id in (0..self.set.len()).map(PrimitiveId::new) {
-            counting.offer(id, self.set.get(id).project(query));
+            stats.offer(id, self.set.get(id).project(query));
         }
     }
 

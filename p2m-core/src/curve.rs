@@ -1,48 +1,49 @@
-//! Orders along a Hilbert curve: points next to each other on the curve are near each other in space.
+//! Orders along a Hilbert curve: points that are neighbours on the curve are near each other in space.
 
 use crate::kernel::vector::{V3, larger, sub};
 
-/// Bits of a coordinate in a key: three times as many fit into 64.
-const BITS: u32 = 21;
+/// The number of bits of a coordinate in a key of 64 bits.
+const BITS_PER_AXIS: u32 = 21;
 
-/// One level of the curve: of a state and an octant, the place of the octant on the curve and the state in it.
+/// One level of the curve. `LEVEL[state][octant]` has the position of the octant on the curve and the state in it.
 ///
-/// A state is the corner at which the curve enters a cube, and the axis along which it goes on to the exit
-/// \[Hamilton2006\].
+/// A state is the corner at which the curve enters a cube, times 3, plus the axis along which the exit lies
+/// from there \[Hamilton2006\].
 #[allow(clippy::cast_possible_truncation, reason = "small numbers")]
 const LEVEL: [[(u8, u8); 8]; 24] = {
     let mut table = [[(0, 0); 8]; 24];
     let mut state = 0;
     while state < 24 {
         let (entry, axis) = ((state / 3) as u8, (state % 3) as u8);
-        let mut place = 0;
-        while place < 8 {
-            let gray = place ^ place >> 1;
+        let mut position = 0;
+        while position < 8 {
+            let gray = position ^ position >> 1;
             let octant = rotate(gray, axis + 1) ^ entry;
-            let (inner_entry, inner_axis) = if place == 0 {
+            let (inner_entry, inner_axis) = if position == 0 {
                 (0, 0)
             } else {
-                let even = (place - 1) & !1;
-                let turning = if place % 2 == 0 { place - 1 } else { place };
+                let even = (position - 1) & !1;
+                let turning = if position % 2 == 0 { position - 1 } else { position };
                 (even ^ even >> 1, turning.trailing_ones() as u8 % 3)
             };
             let next = (entry ^ rotate(inner_entry, axis + 1)) * 3 + (axis + inner_axis + 1) % 3;
-            table[state][octant as usize] = (place, next);
-            place += 1;
+            table[state][octant as usize] = (position, next);
+            position += 1;
         }
         state += 1;
     }
     table
 };
 
-/// Three bits, rotated to the left.
+/// Returns three bits, rotated to the left.
 const fn rotate(bits: u8, by: u8) -> u8 {
     let by = by % 3;
     (bits << by | bits >> (3 - by)) & 7
 }
 
-/// Two levels of the curve at once. The index is a state times 64 and two octants, the outer one in the higher bits; the
-/// entry is the state in the inner octant times 64 and its position on the curve. Unused entries make the length a power of two.
+/// Two levels of the curve at once. The index is a state times 64 plus two octants, the outer one in the higher bits.
+/// The entry is the state in the inner octant times 64 plus its position on the curve. Unused entries make the length a
+/// power of two.
 const TWO_LEVELS: [u16; 2048] = {
     let mut table = [0; 2048];
     let mut state = 0;
@@ -59,26 +60,26 @@ const TWO_LEVELS: [u16; 2048] = {
     table
 };
 
-/// The position on the curve of a cell of a cube that is cut into 2^bits cells along each side; `bits` is at most 21.
+/// Returns the position on the curve of a cell of a cube that has 2^bits cells along each side. `bits` is at most 21.
 #[must_use]
 #[inline]
 pub fn position([x, y, z]: [u32; 3], bits: u32) -> u64 {
     let octants = spread(x) | spread(y) << 1 | spread(z) << 2;
-    let (mut key, mut state, mut left) = (0, 0, 3 * bits);
+    let (mut key, mut state, mut bits_left) = (0, 0, 3 * bits);
     if bits % 2 == 1 {
-        left -= 3;
-        let (place, next) = LEVEL[0][(octants >> left & 7) as usize];
-        (key, state) = (u64::from(place), u64::from(next) << 6);
+        bits_left -= 3;
+        let (position, next) = LEVEL[0][(octants >> bits_left & 7) as usize];
+        (key, state) = (u64::from(position), u64::from(next) << 6);
     }
-    while left > 0 {
-        left -= 6;
-        let entry = u64::from(TWO_LEVELS[((state | octants >> left & 63) & 2047) as usize]);
+    while bits_left > 0 {
+        bits_left -= 6;
+        let entry = u64::from(TWO_LEVELS[((state | octants >> bits_left & 63) & 2047) as usize]);
         (key, state) = (key << 6 | entry & 63, entry & !63);
     }
     key
 }
 
-/// Puts two zeros between the lowest 21 bits of a number.
+/// Inserts two zeros between each two of the lowest 21 bits of a number.
 #[inline]
 fn spread(x: u32) -> u64 {
     let x = u64::from(x);
@@ -89,7 +90,8 @@ fn spread(x: u32) -> u64 {
     (x | x << 2) & 0x1249_2492_4924_9249
 }
 
-/// The smallest box around some points; inside out if there is none.
+/// Returns the lower and the upper corner of the smallest box around some points. Without points the lower one is
+/// infinity and the upper one minus infinity.
 pub fn bounds(points: impl IntoIterator<Item = V3>) -> [V3; 2] {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for p in points {
@@ -101,35 +103,35 @@ pub fn bounds(points: impl IntoIterator<Item = V3>) -> [V3; 2] {
     [low, high]
 }
 
-/// Sorts the numbers of points along the curve through their box; equal points become neighbours, in the order of their
-/// numbers.
-pub fn along_the_curve(points: &[V3], numbers: &mut [u32]) {
-    let [low, high] = bounds(numbers.iter().map(|&i| points[i as usize]));
+/// Sorts the indices of points along the curve through their box. Equal points become neighbours, in the order
+/// of their indices.
+pub fn along_the_curve(points: &[V3], indices: &mut [u32]) {
+    let [low, high] = bounds(indices.iter().map(|&i| points[i as usize]));
     let side = sub(high, low).into_iter().fold(0.0, larger);
-    if side == 0.0 || numbers.is_empty() {
+    if side == 0.0 || indices.is_empty() {
         return;
     }
-    let cells = f64::from(1u32 << BITS);
+    let cells = f64::from(1u32 << BITS_PER_AXIS);
     let scale = cells / side;
-    let mut keys: Vec<(u64, u32)> = numbers
+    let mut keys: Vec<(u64, u32)> = indices
         .iter()
         .map(|&i| {
             let p = sub(points[i as usize], low);
-            // Casts cut off, and never wrap.
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 2^BITS")]
-            let cell = p.map(|x| ((x * scale) as u32).min((1 << BITS) - 1));
-            (position(cell, BITS), i)
+            // The casts truncate and saturate.
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 2^BITS_PER_AXIS")]
+            let cell = p.map(|x| ((x * scale) as u32).min((1 << BITS_PER_AXIS) - 1));
+            (position(cell, BITS_PER_AXIS), i)
         })
         .collect();
     keys.sort_unstable();
-    for (number, (_, i)) in numbers.iter_mut().zip(&keys) {
-        *number = *i;
+    for (index, (_, i)) in indices.iter_mut().zip(&keys) {
+        *index = *i;
     }
-    // In a cell the same again: its box is smaller by 2^BITS.
+    // Points of the same cell are sorted recursively, along a curve through their own box.
     let mut start = 0;
     for run in keys.chunk_by(|a, b| a.0 == b.0) {
         if run.len() > 1 {
-            along_the_curve(points, &mut numbers[start..start + run.len()]);
+            along_the_curve(points, &mut indices[start..start + run.len()]);
         }
         start += run.len();
     }
@@ -152,8 +154,8 @@ mod tests {
         let one_by_one = |cell: [u32; 3], bits: u32| {
             (0..bits).rev().fold((0, 0), |(key, state), bit| {
                 let octant = cell.iter().enumerate().fold(0, |octant, (k, x)| octant | (x >> bit & 1) << k);
-                let (place, next) = LEVEL[usize::from(state)][octant as usize];
-                (key << 3 | u64::from(place), next)
+                let (position, next) = LEVEL[usize::from(state)][octant as usize];
+                (key << 3 | u64::from(position), next)
             })
         };
         for bits in 1..=21 {

@@ -1,6 +1,8 @@
+//! Errors of building an index or a scene.
+
 use crate::PrimitiveId;
 
-/// Why an index or a scene cannot be built. Queries never fail.
+/// An error of building an index or a scene. Queries never fail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BuildError {
@@ -10,28 +12,28 @@ pub enum BuildError {
         /// The first such primitive.
         id: PrimitiveId,
     },
-    /// A primitive names a position that does not exist.
+    /// A primitive refers to a position that does not exist.
     #[error("primitive {id} uses position {index}, but there are {len}")]
     IndexOutOfRange {
-        /// The primitive.
+        /// The id of that primitive.
         id: PrimitiveId,
-        /// The position it names, from 0.
+        /// The index of the position, from 0.
         index: u32,
-        /// How many positions there are.
+        /// The number of positions.
         len: usize,
     },
-    /// More primitives than ids, of which there are 2^30.
+    /// There are more primitives than the 2^30 that have ids.
     #[error("{len} primitives are more than the {} that an id can name", crate::PrimitiveId::MAX_COUNT)]
     TooMany {
-        /// How many there are, or were when counting stopped.
+        /// The number of primitives, or a lower bound on it where counting stopped.
         len: usize,
     },
-    /// An index is to be fitted to a set of another size.
+    /// An index should be refitted to a set of another size.
     #[error("{len} primitives, but the index was built over {expected}")]
     OtherLength {
-        /// How many there are.
+        /// The number of primitives of that set.
         len: usize,
-        /// How many there were.
+        /// The number of primitives that the index was built over.
         expected: usize,
     },
 }

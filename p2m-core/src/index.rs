@@ -1,38 +1,42 @@
-//! The traits that backends implement.
+//! The traits that backends implement: queries for the closest point, and building.
 
 use crate::{Best, Closest, PrimitiveSet, QueryOptions, Real};
 use nalgebra::Point3;
 
-/// Closest points of a scene. A backend writes one method, [`search`](Self::search).
+/// Queries for the closest point of a scene. A backend writes one method, [`search`](Self::search).
 ///
 /// # Contract
 ///
-/// In short: no query fails or panics, and every exact index gives the same distance and primitive. Distances are Euclidean, not
-/// signed, and in the unit of the coordinates; where the scene is in f64, in metres, and a kilometre wide, they are right to 1e-12
-/// metres (8 * 2^-53 * 1000 m) for queries in its box.
+/// In short, no query fails or panics, and every exact index gives the same distance and primitive. Distances are
+/// Euclidean, without sign, and in the unit of the coordinates. For a scene in f64, in metres, and a kilometre wide,
+/// they are exact to 1e-12 metres (8 * 2^-53 * 1000 m) for queries in its box.
 ///
-/// u is [`Real::UNIT_ROUNDOFF`], eta the smallest subnormal, d the true distance, d^ the computed one, M(t) the largest
-/// distance from the query to a vertex of primitive t, *key* the number by which candidates are compared
-/// ([`Key`](crate::Key)).
+/// Let u be [`Real::UNIT_ROUNDOFF`], eta the smallest subnormal, d the true distance, d^ the computed one, and M(t) the
+/// largest distance from the query to a vertex of primitive t. The *key* ([`Key`](crate::Key)) is the number by which
+/// candidates are compared.
 ///
-/// - **N1 distance**: for all finite input, |d^ - d| <= [`ERROR_CONSTANT`](crate::kernel::ERROR_CONSTANT) u M + eta
-///   (proved, see docs/proofs/accuracy.md; the largest observed is 3.3 u M), for points 4 u d + eta. Infinite only if d, or d
-///   plus that error, exceeds the scalar's range.
-/// - **N2 identity**: the true distance of the returned primitive exceeds d by at most the sum of both error bounds.
-/// - **N3 agreement**: every exact backend returns the same bits for distance and primitive. Ties go to the lowest id
-///   among equal keys.
-/// - **N4 invariance**: the same bits (but for the signs of zeros) under permutation of primitives (up to ids) and of a
-///   primitive's vertices, and under scaling by powers of two while input and results stay normal and are zero or
-///   at least 2^-200 of the largest coordinate (observed; products of smaller ones may underflow).
-/// - **N5 point**: a vertex is answered verbatim; any other point lies in the primitive's box and within 4 u |q| + 8 u
-///   M of the primitive.
-/// - **N6 totality**: `None` for an empty set, when nothing lies within the (inclusive) radius, and for a query that is
-///   not finite. No query panics. A degenerate primitive is the set it spans.
-/// - **N7 approximation**: `lower_bound` <= d always; with epsilon, d^ <= (1 + epsilon) d up to the error of N1.
+/// - **N1 distance**: for all finite input, |d^ - d| <= [`ERROR_CONSTANT`](crate::kernel::ERROR_CONSTANT) u M + eta.
+///   This is proved in docs/proofs/accuracy.md; the largest error observed is 3.3 u M. For points the bound is 4 u d +
+///   eta. The distance is infinite only if d, or d plus that error, exceeds the range of the scalar.
+/// - **N2 identity**: the true distance of the returned primitive exceeds d by at most the sum of the error bounds of
+///   that primitive and the nearest one.
+/// - **N3 agreement**: every exact backend returns the same bits for distance and primitive. Of equal keys the
+///   lowest id wins.
+/// - **N4 invariance**: the bits, apart from the signs of zeros, do not change under permutation of primitives (up to
+///   ids) and of the vertices of a primitive. They do not change under scaling by powers of two either, while input and
+///   results stay normal and are zero or at least 2^-200 of the largest coordinate. (This is observed; products of
+///   smaller ones may underflow.)
+/// - **N5 point**: a vertex is returned verbatim. Any other point lies in the box of the primitive, and within
+///   4 u |q| + 8 u M of the primitive.
+/// - **N6 totality**: the answer is `None` for an empty set, if nothing lies within the inclusive radius, and for a
+///   query that is not finite. No query panics. A degenerate primitive is the set that its vertices span.
+/// - **N7 approximation**: `lower_bound` <= d for all options. With epsilon, d^ <= (1 + epsilon) d up to the
+///   error of N1.
 ///
-/// [`CertifiedQuery`](crate::CertifiedQuery) has N8: the nearest primitive without doubt, and its distance rounded once.
+/// N8 is the contract of [`CertifiedQuery`](crate::CertifiedQuery): the primitive is certainly the nearest one, and its
+/// distance is rounded once.
 ///
-/// Usable as a generic bound and as `dyn ClosestPoint<T>`:
+/// The trait can be used as a generic bound and as `dyn ClosestPoint<T>`:
 ///
 /// ```
 /// use p2m_core::{BruteForce, ClosestPoint, Point, QueryOptions};
@@ -45,10 +49,10 @@ use nalgebra::Point3;
 /// assert!(index.closest_point_with(&Point3::origin(), &near).is_none());
 /// ```
 pub trait ClosestPoint<T: Real> {
-    /// Offers to `best` every primitive that could win. `query` is finite.
+    /// Offers to `best` every primitive that could be the answer. `query` is finite.
     fn search(&self, query: &Point3<T>, best: &mut Best<T>);
 
-    /// The closest point within what `options` ask.
+    /// Returns the closest point subject to `options`, or `None` if nothing is within the largest distance.
     fn closest_point_with(&self, query: &Point3<T>, options: &QueryOptions<T>) -> Option<Closest<T>> {
         if !query.iter().all(|x| x.is_finite()) {
             return None;
@@ -58,15 +62,17 @@ pub trait ClosestPoint<T: Real> {
         best.finish()
     }
 
-    /// The closest point.
+    /// Returns the closest point, or `None` for an empty set and for a query that is not finite.
     fn closest_point(&self, query: &Point3<T>) -> Option<Closest<T>> {
         self.closest_point_with(query, &QueryOptions::default())
     }
 
-    /// Answers `queries` one by one into `out`, in their order.
+    /// Answers `queries` into `out`, in their order and on the current thread.
+    ///
+    /// [`batch::closest_points_into`](crate::batch::closest_points_into) reorders queries and uses all threads.
     ///
     /// # Panics
-    /// If the slices differ in length.
+    /// It panics if the slices differ in length.
     fn closest_points_into(&self, queries: &[Point3<T>], options: &QueryOptions<T>, out: &mut [Option<Closest<T>>]) {
         assert_eq!(queries.len(), out.len(), "one answer for each query");
         for (query, answer) in queries.iter().zip(out) {
@@ -75,7 +81,7 @@ pub trait ClosestPoint<T: Real> {
     }
 }
 
-/// What an index that is borrowed answers.
+/// A borrowed index answers as the index itself.
 impl<T: Real, I: ClosestPoint<T> + ?Sized> ClosestPoint<T> for &I {
     fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
         (**self).search(query, best);
@@ -90,7 +96,7 @@ impl<T: Real, I: ClosestPoint<T> + ?Sized> ClosestPoint<T> for &I {
     }
 }
 
-/// How an index is built; apart from [`ClosestPoint`] so that the latter stays usable as `dyn`.
+/// Building an index. It is not part of [`ClosestPoint`], so that that trait can be used as `dyn`.
 ///
 /// ```
 /// use p2m_core::{BruteForce, BuildIndex, ClosestPoint, PrimitiveSet};
@@ -105,16 +111,16 @@ impl<T: Real, I: ClosestPoint<T> + ?Sized> ClosestPoint<T> for &I {
 /// assert_eq!(height::<_, BruteForce<_>>(&scene).unwrap(), Some(6.0));
 /// ```
 pub trait BuildIndex<T: Real, S: PrimitiveSet<T>>: ClosestPoint<T> + Sized {
-    /// What can be chosen.
+    /// The options of building.
     type Options: Default;
-    /// Why it can fail.
+    /// The error of building.
     type Error: std::error::Error;
 
-    /// Builds the index over `set`, which it keeps: hand over a reference to borrow the scene, or the scene itself to have
-    /// both in one value.
+    /// Builds the index over `set`, which it keeps. Pass a reference to borrow the scene, or the scene itself to have
+    /// both in one value. The set may be empty.
     ///
     /// # Errors
-    /// [`BuildError::NonFinite`](crate::BuildError::NonFinite) and [`BuildError::TooMany`](crate::BuildError::TooMany) (more than
-    /// 2^30 primitives) of the indexes of this project; one of your own may have others. An empty set is none.
+    /// The indexes of this project return [`BuildError::NonFinite`](crate::BuildError::NonFinite) for a coordinate that
+    /// is not finite, and [`BuildError::TooMany`](crate::BuildError::TooMany) for more than 2^30 primitives.
     fn build(set: S, options: &Self::Options) -> Result<Self, Self::Error>;
 }

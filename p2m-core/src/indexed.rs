@@ -1,12 +1,13 @@
-//! Primitives of one kind over shared positions, as a set of their own.
+//! The primitives of one kind of a soup, as a set.
 
 use crate::{Point, PrimitiveId, PrimitiveSet, Real, Segment, Soup, Triangle};
 use nalgebra::Point3;
 
-/// The primitives of one kind of a [`Soup`], which is borrowed: triangles for N = 3, segments for 2, points for 1.
+/// The primitives of one kind of a borrowed [`Soup`]: triangles for N = 3, segments for N = 2, points for N = 1.
 ///
-/// An index over it compiles to the kernel of that kind alone. Primitives are numbered in their order, which are the ids of
-/// the soup where that has no other kind; [`Soup::triangle_ids`] and its like tell them where it has.
+/// An index over it compiles to the kernel of that kind alone. Primitives are numbered in the order of the soup. If the
+/// soup has other kinds as well, [`Soup::triangle_ids`], [`Soup::segment_ids`] and [`Soup::point_ids`] map these
+/// numbers to ids of the soup.
 ///
 /// ```
 /// use p2m_core::{BruteForce, ClosestPoint, Element, Soup};
@@ -28,15 +29,17 @@ pub struct Indexed<'a, T: Real, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Indexed<'_, T, N> {
+    /// Returns the vertices of a primitive.
     #[inline(always)]
-    fn corners(&self, id: PrimitiveId) -> [Point3<T>; N] {
+    fn vertices(&self, id: PrimitiveId) -> [Point3<T>; N] {
         self.elements[id.index()].map(|i| self.positions[i as usize])
     }
 }
 
-/// A kind of primitives: how many corners, which type, and how it is made of them.
+/// Implements the set of primitives of one kind, given their number of vertices, their type, and an expression that
+/// makes a primitive of its vertices.
 macro_rules! set_of_kind {
-    ($n:literal, $primitive:ident, $corners:pat, $made:expr) => {
+    ($n:literal, $primitive:ident, $vertices:pat, $value:expr) => {
         impl<T: Real> PrimitiveSet<T> for Indexed<'_, T, $n> {
             type Primitive<'b>
                 = $primitive<T>
@@ -50,8 +53,8 @@ macro_rules! set_of_kind {
 
             #[inline(always)]
             fn get(&self, id: PrimitiveId) -> $primitive<T> {
-                let $corners = self.corners(id);
-                $made
+                let $vertices = self.vertices(id);
+                $value
             }
         }
     };
@@ -62,43 +65,43 @@ set_of_kind!(2, Segment, [a, b], Segment::new(a, b));
 set_of_kind!(3, Triangle, [a, b, c], Triangle::new(a, b, c));
 
 impl<T: Real> Soup<T> {
-    /// Its triangles, as a set of their own.
+    /// Returns the triangles of the soup as a set.
     #[must_use]
     pub fn triangle_set(&self) -> Indexed<'_, T, 3> {
         Indexed { positions: self.positions(), elements: self.triangles() }
     }
 
-    /// Its segments, as a set of their own.
+    /// Returns the segments of the soup as a set.
     #[must_use]
     pub fn segment_set(&self) -> Indexed<'_, T, 2> {
         Indexed { positions: self.positions(), elements: self.segments() }
     }
 
-    /// Its points, as a set of their own.
+    /// Returns the points of the soup as a set.
     #[must_use]
     pub fn point_set(&self) -> Indexed<'_, T, 1> {
         Indexed { positions: self.positions(), elements: self.points().as_chunks().0 }
     }
 
-    /// The ids of its triangles, in their order: the i-th one is that of number i in [`Soup::triangle_set`].
+    /// Returns the ids of the triangles in their order: the i-th one is that of triangle i of [`Soup::triangle_set`].
     pub fn triangle_ids(&self) -> impl Iterator<Item = PrimitiveId> + '_ {
-        self.ids_of(3)
+        self.ids_of_kind(3)
     }
 
-    /// The ids of its segments, in their order.
+    /// Returns the ids of the segments in their order: the i-th one is that of segment i of [`Soup::segment_set`].
     pub fn segment_ids(&self) -> impl Iterator<Item = PrimitiveId> + '_ {
-        self.ids_of(2)
+        self.ids_of_kind(2)
     }
 
-    /// The ids of its points, in their order.
+    /// Returns the ids of the points in their order: the i-th one is that of point i of [`Soup::point_set`].
     pub fn point_ids(&self) -> impl Iterator<Item = PrimitiveId> + '_ {
-        self.ids_of(1)
+        self.ids_of_kind(1)
     }
 
-    /// The ids of primitives with so many corners.
-    fn ids_of(&self, corners: usize) -> impl Iterator<Item = PrimitiveId> + '_ {
+    /// Returns the ids of the primitives with this number of vertices.
+    fn ids_of_kind(&self, vertex_count: usize) -> impl Iterator<Item = PrimitiveId> + '_ {
         let ids = (0..self.len()).map(PrimitiveId::new);
-        ids.filter(move |id| self.element(*id).indices().len() == corners)
+        ids.filter(move |id| self.element(*id).indices().len() == vertex_count)
     }
 }
 

@@ -1,9 +1,13 @@
-//! Closest points of scenes made of triangles, segments and points.
+//! The contract and the kernel of closest-point queries over triangles, segments and points.
 //!
-//! This crate holds what every p2m backend shares: the accuracy contract (stated on [`ClosestPoint`]),
-//! the kernel that keeps it ([`kernel`]), the primitives, the [`Soup`] that mixes them, the running best
-//! ([`Best`]) that decides radius, ties, epsilon and hint in one place, the plain [`BruteForce`] oracle and
-//! the [`hierarchy`] that trees are made of.
+//! This crate owns the parts that all p2m backends share:
+//!
+//! - the accuracy contract, stated on [`ClosestPoint`], and the [`kernel`] that keeps it;
+//! - the primitives, and the [`Soup`] that mixes them;
+//! - the collector [`Best`], which alone decides the radius, ties, epsilon and the hint of a query;
+//! - further queries: [`NearQuery`], [`BoxQuery`], [`RayQuery`] and [`CertifiedQuery`];
+//! - exact [`predicates`], [`batch`]es of queries, and [`storage`] of indexes in files;
+//! - [`BruteForce`], against which all indexes are tested.
 //!
 //! ```
 //! use p2m_core::{BruteForce, ClosestPoint, Feature, Triangle};
@@ -16,24 +20,30 @@
 //! assert_eq!(answer.feature, Feature::Face);
 //! ```
 
+//!
+//! # The module `engine`
+//!
+//! The hidden module `engine` re-exports the internal items that the sibling crates of this project need, such as lanes
+//! and double-double arithmetic. It is not part of the public API and may change in any release.
+
 #![deny(unsafe_code)]
 
 mod aabb;
-mod approximate;
+mod approx_impls;
 pub mod batch;
 mod box_query;
 mod brute_force;
 mod certified;
-mod counting;
 mod curve;
 mod error;
+mod exact;
 mod index;
 mod indexed;
-mod integers;
 pub mod kernel;
 mod near_query;
 pub mod predicates;
 mod primitive;
+#[macro_use]
 mod query;
 mod ray;
 mod real;
@@ -41,13 +51,13 @@ mod set;
 mod simd;
 mod soup;
 mod stats;
+mod stats_collector;
 pub mod storage;
 
 pub use aabb::Aabb;
 pub use box_query::{BoxQuery, ClosestLeaf};
 pub use brute_force::BruteForce;
 pub use certified::{CertifiedQuery, CertifyError, shape_of};
-pub use counting::StatsCollector;
 pub use error::BuildError;
 pub use index::{BuildIndex, ClosestPoint};
 pub use indexed::Indexed;
@@ -61,40 +71,53 @@ pub use set::{PrimitiveId, PrimitiveSet, check_set};
 pub use simd::Isa;
 pub use soup::{Element, Soup};
 pub use stats::{Inspect, ListStats, QueryCost, Stat};
+pub use stats_collector::StatsCollector;
 
-/// The inside of this crate, for its sibling crates: it may change at any time.
+/// Internal items for the sibling crates of this project. It is not part of the public API and may change
+/// in any release.
 #[doc(hidden)]
 pub mod engine {
+    /// Orders along a Hilbert curve.
     pub mod curve {
         pub use crate::curve::*;
     }
+    /// Double-double arithmetic.
     pub mod double {
-        pub use crate::kernel::double::*;
+        pub use crate::kernel::double_double::*;
     }
+    /// Exact arithmetic with big integers.
     pub mod integers {
-        pub use crate::integers::*;
+        pub use crate::exact::*;
     }
+    /// Products of vectors in any arithmetic.
     pub mod number {
-        pub use crate::kernel::number::*;
+        pub use crate::kernel::arithmetic::*;
     }
+    /// The collector that searches are compiled for.
     pub mod query {
         pub use crate::query::BestF64;
     }
+    /// Exact projection onto rays, and the margin of ray filters.
     pub mod ray {
-        pub use crate::ray::{TINY, foot};
+        pub use crate::ray::{UNDERFLOW_MARGIN as TINY, project_onto_ray as foot};
     }
+    /// Conversion of points to and from f64.
     pub mod real {
         pub use crate::real::{from_f64_array, to_f64_array};
     }
+    /// Lanes and instruction sets.
     pub mod simd {
         pub use crate::simd::*;
     }
+    /// Signs of determinants in stages of growing precision.
     pub mod staged {
-        pub use crate::predicates::staged::*;
+        pub use crate::predicates::adaptive::*;
     }
+    /// Vectors of three f64.
     pub mod vector {
         pub use crate::kernel::vector::*;
     }
+    /// Detection of triangles whose nearest point is certainly a vertex.
     pub mod vertices {
         pub use crate::kernel::vertices::*;
     }

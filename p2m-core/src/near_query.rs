@@ -1,23 +1,21 @@
-//! More than the one closest point: the k nearest primitives, all within a distance, whether there is any, and the
-//! closest one of those that a caller wants; and all that may be nearest but for rounding, from which a
-//! [certified](crate::CertifiedQuery) answer is chosen.
+//! Queries for more than the closest point: the k nearest primitives, all within a radius, whether there is any, and
+//! the closest one among those that a caller accepts.
 //!
-//! One collector, [`Near`], does all of that, so a backend writes one method and searches are compiled once for all of
-//! these questions.
+//! One collector, [`Near`], serves all of them, so a backend writes one method and its search is compiled once. The
+//! same collector finds the primitives among which a [certified](crate::CertifiedQuery) answer is chosen.
 
-use crate::query::{answer, square_within};
+use crate::query::answer::{answer, square_within};
 use crate::{Closest, Collector, Key, PrimitiveId, Projection, QueryOptions, Real};
 use nalgebra::Point3;
 use std::collections::BinaryHeap;
 use std::ops::ControlFlow;
 
-/// Questions about what is near, beyond the closest point. A backend writes one method,
-/// [`search_near`](Self::search_near).
+/// Queries for near primitives beyond the closest one. A backend writes one method, [`search_near`](Self::search_near).
 ///
-/// Each answer is what [`ClosestPoint`](crate::ClosestPoint) says of that primitive alone, bit for bit, but for
-/// [`Closest::lower_bound`], which bounds the distance of that primitive and not of the scene. Distances are compared
-/// before rounding, equal ones by ids, and the radius is inclusive, so every backend answers the same. Nothing is near a
-/// query that is not finite, nor within a radius that is negative or NaN.
+/// Each answer equals that of [`ClosestPoint`](crate::ClosestPoint) for its primitive alone, bit for bit, except that
+/// [`Closest::lower_bound`] bounds the distance of that primitive and not of the scene. Distances are compared before
+/// rounding, equal ones by ids, and the radius is inclusive, so all backends give the same answers. The result is empty
+/// for a query that is not finite and for a radius that is negative or NaN.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -34,27 +32,29 @@ use std::ops::ControlFlow;
 /// ```
 ///
 /// # Complexity
-/// Expected O(log n + k log k) for trees and k answers, and as much for the closest one among some after k that are not
-/// wanted; O(n) for brute force. The interception indexes ask their trees: lists know the nearest primitive alone.
+/// Trees take expected O(log n + k log k) for k answers. [`closest_point_among`](Self::closest_point_among) takes as
+/// long as a query for all primitives that are nearer than the accepted one. Brute force takes O(n). The interception
+/// indexes use their trees, since their lists contain the nearest primitive alone.
 pub trait NearQuery<T: Real> {
-    /// Offers to `near` every primitive that it could want, each once at most. `query` is finite.
+    /// Offers to `near` every primitive that could be part of the answer, each at most once. `query` is finite.
     fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>);
 
-    /// The nearest primitives, at most `k` and none beyond the radius (in units of the scene; infinity for no limit),
-    /// nearest first.
+    /// Returns the nearest primitives, at most `k` and none beyond the radius, nearest first. The radius is in units of
+    /// the scene and may be infinite.
     fn k_nearest(&self, query: &Point3<T>, k: usize, radius: T) -> Vec<Closest<T>> {
         let mut near = Near::nearest(k, radius);
-        ask(self, query, &mut near);
+        search_near_if_valid(self, query, &mut near);
         near.finish()
     }
 
-    /// All primitives within the radius, nearest first. [`visit_within`](Self::visit_within) needs no memory for them.
+    /// Returns all primitives within the radius, nearest first. [`visit_within`](Self::visit_within) stores
+    /// none of them.
     fn all_within(&self, query: &Point3<T>, radius: T) -> Vec<Closest<T>> {
         self.k_nearest(query, usize::MAX, radius)
     }
 
-    /// Calls `visit` for each primitive within the radius, in an order that depends on the backend, until it breaks; whether
-    /// it did.
+    /// Calls `visit` for each primitive within the radius until it breaks, and returns whether it did. The order
+    /// depends on the backend.
     fn visit_within(
         &self,
         query: &Point3<T>,
@@ -63,23 +63,25 @@ pub trait NearQuery<T: Real> {
     ) -> ControlFlow<()> {
         let mut flow = ControlFlow::Continue(());
         let mut take = |id, projection: &Projection| {
-            flow = visit(&of_one(id, projection));
+            flow = visit(&answer_alone(id, projection));
             flow
         };
-        ask(self, query, &mut Near::all(radius, &mut take));
+        search_near_if_valid(self, query, &mut Near::all(radius, &mut take));
         flow
     }
 
-    /// Whether any primitive is within the radius. Ends at the first one that is found.
+    /// Returns whether any primitive is within the radius. The search ends at the first one that it finds.
     fn is_any_within(&self, query: &Point3<T>, radius: T) -> bool {
         let mut end = |_: PrimitiveId, _: &Projection| ControlFlow::Break(());
         let mut near = Near::all(radius, &mut end);
-        ask(self, query, &mut near);
+        search_near_if_valid(self, query, &mut near);
         near.is_done()
     }
 
-    /// The closest point of the primitives whose ids `among` accepts. It is asked about those alone that are near, perhaps
-    /// more than once, and has to say the same each time. Of the options the largest distance alone matters.
+    /// Returns the closest point of the primitives whose ids `among` accepts.
+    ///
+    /// `among` is called only for primitives that are near, perhaps more than once for one of them, and has to be
+    /// consistent. Of the options only the largest distance is used.
     fn closest_point_among(
         &self,
         query: &Point3<T>,
@@ -87,74 +89,80 @@ pub trait NearQuery<T: Real> {
         among: &mut dyn FnMut(PrimitiveId) -> bool,
     ) -> Option<Closest<T>> {
         let mut near = Near { among: Some(among), ..Near::nearest(1, options.max_distance) };
-        ask(self, query, &mut near);
+        search_near_if_valid(self, query, &mut near);
         near.finish().pop()
     }
 }
 
-/// [`NearQuery::search_near`] for any query, if something is wanted at all.
-pub fn ask<T: Real>(index: &(impl NearQuery<T> + ?Sized), query: &Point3<T>, near: &mut Near<'_>) {
-    // Not for a radius of NaN either.
+/// Calls [`NearQuery::search_near`] unless the query or the radius makes the answer empty.
+pub(crate) fn search_near_if_valid<T: Real>(
+    index: &(impl NearQuery<T> + ?Sized),
+    query: &Point3<T>,
+    near: &mut Near<'_>,
+) {
+    // The comparison is false for a radius of NaN.
     if query.iter().all(|x| x.is_finite()) && !near.is_done() && near.radius >= 0.0 {
         index.search_near(query, near);
     }
 }
 
-/// What is wanted of the primitives near a query, and what was found: handed to a backend by the methods of
-/// [`NearQuery`], which take it apart. A backend searches with it as a [`Collector`], and may end when it
-/// [is done](Self::is_done).
+/// The collector of near primitives, which the methods of [`NearQuery`] hand to a backend.
+///
+/// A backend searches with it as a [`Collector`], and may end the search when it [is done](Self::is_done).
 pub struct Near<'a> {
-    /// The largest distance within the radius.
+    /// The largest f64 distance that is reported within the radius.
     radius: f64,
-    /// The square of the radius, rounded up; of the farthest one where there are as many as wanted; below zero at the
-    /// end.
+    /// The square that lower bounds must not exceed: at first that of the radius, rounded up; then that of the farthest
+    /// primitive of a full list; [`PRUNE_ALL`] at the end.
     prune: f64,
-    wanted: Wanted<'a>,
+    mode: NearMode<'a>,
     among: Option<&'a mut dyn FnMut(PrimitiveId) -> bool>,
 }
 
-enum Wanted<'a> {
-    /// As many as this, the farthest one on top.
-    Nearest(usize, BinaryHeap<Found>),
-    /// Every one.
+enum NearMode<'a> {
+    /// Keeps at most this number of nearest primitives, the farthest of them on top of the heap.
+    Nearest(usize, BinaryHeap<NearCandidate>),
+    /// Passes every primitive to a function.
     All(&'a mut dyn FnMut(PrimitiveId, &Projection) -> ControlFlow<()>),
-    /// Those that may be nearest: some primitive is truly at most `reach` far.
-    Contest { reach: f64, found: Vec<Found> },
+    /// Keeps all primitives that may be nearest once the errors of the kernel are allowed for. The true distance of
+    /// some primitive is at most `upper_bound`.
+    Certification { upper_bound: f64, found: Vec<NearCandidate> },
 }
 
-/// Nothing is of interest any more.
-const DONE: f64 = f64::NEG_INFINITY;
+/// A limit below all squares: no other primitive can be part of the answer.
+const PRUNE_ALL: f64 = f64::NEG_INFINITY;
 
 /// A primitive and its nearest point, ordered by key and id.
-pub struct Found {
+pub(crate) struct NearCandidate {
     key: Key,
-    pub id: PrimitiveId,
-    pub projection: Projection,
+    /// The id of the primitive.
+    pub(crate) id: PrimitiveId,
+    /// Its nearest point as the kernel computed it.
+    pub(crate) projection: Projection,
 }
 
-impl Found {
-    /// Its true distance is at least this, but for the rounding of this difference.
-    fn at_least(&self) -> f64 {
-        // A distance above the range is at least its end; an error above the range leaves nothing known.
-        self.key.distance().min(f64::MAX) - self.projection.error
+impl NearCandidate {
+    /// Returns a lower bound on the true distance, apart from the rounding of this difference.
+    fn lower_bound(&self) -> f64 {
+        lower_bound(&self.projection)
     }
 }
 
-impl PartialEq for Found {
+impl PartialEq for NearCandidate {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl Eq for Found {}
+impl Eq for NearCandidate {}
 
-impl PartialOrd for Found {
+impl PartialOrd for NearCandidate {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Found {
+impl Ord for NearCandidate {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         self.key.cmp(&other.key).then(self.id.cmp(&other.id))
     }
@@ -162,52 +170,59 @@ impl Ord for Found {
 
 impl<'a> Near<'a> {
     fn nearest<T: Real>(k: usize, radius: T) -> Self {
-        let mut near = Self::within(radius, Wanted::Nearest(k, BinaryHeap::new()));
-        near.prune = if k == 0 { DONE } else { near.prune };
+        let mut near = Self::within(radius, NearMode::Nearest(k, BinaryHeap::new()));
+        near.prune = if k == 0 { PRUNE_ALL } else { near.prune };
         near
     }
 
     fn all<T: Real>(radius: T, visit: &'a mut dyn FnMut(PrimitiveId, &Projection) -> ControlFlow<()>) -> Self {
-        Self::within(radius, Wanted::All(visit))
+        Self::within(radius, NearMode::All(visit))
     }
 
-    /// All that may be nearest, if the nearest is within the radius.
-    pub fn contest<T: Real>(radius: T) -> Self {
-        Self::within(radius, Wanted::Contest { reach: radius.to_f64_above(), found: Vec::new() })
+    /// Creates a collector of all primitives that may be nearest, if the nearest one is within the radius.
+    pub(crate) fn for_certification<T: Real>(radius: T) -> Self {
+        Self::within(radius, NearMode::Certification { upper_bound: radius.to_f64_above(), found: Vec::new() })
     }
 
-    /// What may be nearest.
-    pub fn contestants(self) -> Vec<Found> {
-        let Wanted::Contest { reach, mut found } = self.wanted else { return Vec::new() };
-        found.retain(|one| one.at_least() <= reach);
+    /// Returns the primitives that may be nearest, from a collector [for certification](Self::for_certification).
+    pub(crate) fn certification_candidates(self) -> Vec<NearCandidate> {
+        let NearMode::Certification { upper_bound, mut found } = self.mode else { return Vec::new() };
+        found.retain(|candidate| candidate.lower_bound() <= upper_bound);
         found
     }
 
-    fn within<T: Real>(radius: T, wanted: Wanted<'a>) -> Self {
-        // A distance counts as it will be reported, so somewhat beyond the radius; nothing is within NaN.
+    fn within<T: Real>(radius: T, mode: NearMode<'a>) -> Self {
+        // Distances are compared as they are reported, so some beyond the radius round into it. A NaN radius has none.
         let radius = radius.to_f64_above();
-        Self { radius, prune: square_within(radius), wanted, among: None }
+        Self { radius, prune: square_within(radius), mode, among: None }
     }
 
-    /// Whether no other primitive can be wanted.
+    /// Returns whether no other primitive can be part of the answer.
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.prune < 0.0
     }
 
-    /// The answers, nearest first.
+    /// Returns the answers, nearest first.
     fn finish<T: Real>(self) -> Vec<Closest<T>> {
-        match self.wanted {
-            Wanted::Nearest(_, found) => found.into_sorted_vec().iter().map(|f| of_one(f.id, &f.projection)).collect(),
-            Wanted::All(_) | Wanted::Contest { .. } => Vec::new(),
+        match self.mode {
+            NearMode::Nearest(_, found) => {
+                found.into_sorted_vec().iter().map(|one| answer_alone(one.id, &one.projection)).collect()
+            }
+            NearMode::All(_) | NearMode::Certification { .. } => Vec::new(),
         }
     }
 }
 
-/// The answer that a primitive is on its own.
-fn of_one<T: Real>(id: PrimitiveId, projection: &Projection) -> Closest<T> {
-    // A distance above the range is at least its end.
-    answer(id, projection, projection.key.distance().min(f64::MAX) - projection.error)
+/// Returns a lower bound on the true distance of a projection, apart from the rounding of this difference.
+fn lower_bound(projection: &Projection) -> f64 {
+    // A distance above the range of f64 is replaced by the end of the range. An infinite error gives minus infinity.
+    projection.key.distance().min(f64::MAX) - projection.error
+}
+
+/// Returns the answer for a primitive alone: its lower bound says nothing about the rest of the scene.
+fn answer_alone<T: Real>(id: PrimitiveId, projection: &Projection) -> Closest<T> {
+    answer(id, projection, lower_bound(projection))
 }
 
 impl Collector for Near<'_> {
@@ -215,43 +230,42 @@ impl Collector for Near<'_> {
         self.prune
     }
 
-    /// The same in a contest: some primitive is that near.
-    fn prune_given(&self, square: f64) -> f64 {
-        if self.is_nearest_only() && square < self.prune { square } else { self.prune }
+    fn prune_given_upper_bound(&self, square: f64) -> f64 {
+        if self.is_single_nearest() && square < self.prune { square } else { self.prune }
     }
 
-    fn is_nearest_only(&self) -> bool {
-        matches!(self.wanted, Wanted::Contest { .. })
+    fn is_single_nearest(&self) -> bool {
+        matches!(self.mode, NearMode::Certification { .. })
     }
 
-    fn wants_near_ties(&self) -> bool {
-        self.is_nearest_only()
+    fn keeps_near_ties(&self) -> bool {
+        self.is_single_nearest()
     }
 
     fn offer(&mut self, id: PrimitiveId, projection: Projection) {
         let key = projection.key;
-        if let Wanted::Contest { reach, found } = &mut self.wanted {
-            let one = Found { key, id, projection };
-            // Rounded up, with a smallest subnormal for the distance.
+        if let NearMode::Certification { upper_bound, found } = &mut self.mode {
+            let candidate = NearCandidate { key, id, projection };
+            // The sum is rounded up, with a smallest subnormal for the rounding of the distance.
             let at_most = (key.distance() + projection.error) * (1.0 + 4.0 * f64::EPSILON) + 2.0 * f64::from_bits(1);
-            if one.at_least() <= *reach {
-                found.push(one);
+            if candidate.lower_bound() <= *upper_bound {
+                found.push(candidate);
             }
-            // Not for NaN either.
-            if at_most < *reach {
-                *reach = at_most;
+            // The comparison is false where an error of NaN makes the sum NaN.
+            if at_most < *upper_bound {
+                *upper_bound = at_most;
                 self.prune = self.prune.min(square_within(at_most));
             }
             return;
         }
-        // Not what comes after the end, in a loop that does not look.
+        // A backend need not check whether the collector is done, so what comes after the end is ignored here.
         let is_near = !self.is_done() && key.distance() <= self.radius;
         if !is_near {
             return;
         }
-        match &mut self.wanted {
-            Wanted::Nearest(k, found) => {
-                let next = Found { key, id, projection };
+        match &mut self.mode {
+            NearMode::Nearest(k, found) => {
+                let next = NearCandidate { key, id, projection };
                 let is_full = found.len() >= *k;
                 if is_full && found.peek().is_some_and(|last| next >= *last) {
                     return;
@@ -269,12 +283,12 @@ impl Collector for Near<'_> {
                     self.prune = self.prune.min(last.key.square_above());
                 }
             }
-            Wanted::All(visit) => {
+            NearMode::All(visit) => {
                 if visit(id, &projection).is_break() {
-                    self.prune = DONE;
+                    self.prune = PRUNE_ALL;
                 }
             }
-            Wanted::Contest { .. } => {}
+            NearMode::Certification { .. } => {}
         }
     }
 }

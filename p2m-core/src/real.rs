@@ -1,8 +1,8 @@
 //! The two scalar types of scenes, f32 and f64.
 //!
-//! Every decision is taken in f64, whatever the scalar of the scene: f32 coordinates convert to f64 exactly,
-//! squares of their differences neither overflow nor underflow there, and the answer is rounded once, at the end.
-//! So there is one kernel, and a new scalar has only to say how it converts.
+//! All decisions are made in f64 for both of them. Coordinates in f32 convert to f64 exactly, squares of their
+//! differences neither overflow nor underflow there, and the answer is rounded once at the end. So there is one kernel,
+//! and a scalar is defined by its conversions.
 
 use nalgebra::{Point3, RealField};
 
@@ -12,24 +12,25 @@ mod sealed {
     impl Sealed for f64 {}
 }
 
-/// Scalar type of coordinates: `f32` or `f64`.
+/// The scalar type of coordinates: `f32` or `f64`.
 ///
-/// Sealed: the accuracy contract is proved for these two, and its proof needs exact conversion to f64.
+/// The trait is sealed. The accuracy contract is proved for these two types, and the proof needs an exact
+/// conversion to f64.
 pub trait Real: RealField + Copy + Default + sealed::Sealed {
-    /// Positive infinity.
+    /// The number infinity.
     const INFINITY: Self;
-    /// u, half the distance from 1 to the next larger number: 2^-24 for f32, 2^-53 for f64.
+    /// The unit roundoff u, half the distance from 1 to the next larger number: 2^-24 for f32, 2^-53 for f64.
     const UNIT_ROUNDOFF: f64;
-    /// eta, the smallest positive number: 2^-149 for f32, 2^-1074 for f64.
+    /// The smallest positive number eta: 2^-149 for f32, 2^-1074 for f64.
     const SMALLEST_SUBNORMAL: f64;
 
     /// Converts to f64, exactly.
     fn to_f64(self) -> f64;
     /// Rounds to the nearest number of this type, ties to even.
     fn of_f64(value: f64) -> Self;
-    /// The largest f64 that [`of_f64`](Self::of_f64) takes to this number. NaN stays NaN.
+    /// Returns the largest f64 that [`of_f64`](Self::of_f64) rounds to this number. NaN stays NaN.
     fn to_f64_above(self) -> f64;
-    /// The largest number of this type that is not above `value`. NaN stays NaN.
+    /// Returns the largest number of this type that is at most `value`. NaN stays NaN.
     fn of_f64_below(value: f64) -> Self;
 }
 
@@ -74,7 +75,7 @@ impl Real for f32 {
         if !self.is_finite() {
             return f64::from(self);
         }
-        // Behind the largest number comes 2^128, for rounding.
+        // Numbers round as if 2^128 came after the largest one.
         let next = if self < Self::MAX { f64::from(self.next_up()) } else { 2.0 * 2f64.powi(127) };
         let middle = (f64::from(self) + next) / 2.0;
         if Self::of_f64(middle) <= self { middle } else { middle.next_down() }
@@ -85,13 +86,13 @@ impl Real for f32 {
     }
 }
 
-/// The point as an array of f64, exactly.
+/// Converts a point to an array of f64, exactly.
 #[inline(always)]
 pub fn to_f64_array<T: Real>(point: &Point3<T>) -> [f64; 3] {
     [point.x.to_f64(), point.y.to_f64(), point.z.to_f64()]
 }
 
-/// Rounds an array of f64 to the nearest point.
+/// Rounds an array of f64 to the nearest coordinates of a scene.
 #[inline(always)]
 pub fn from_f64_array<T: Real>(point: [f64; 3]) -> Point3<T> {
     Point3::new(T::of_f64(point[0]), T::of_f64(point[1]), T::of_f64(point[2]))

@@ -1,20 +1,20 @@
-//! Sets of primitives, which indexes are built over.
+//! Sets of primitives, over which indexes are built.
 
 use crate::{Aabb, BuildError, Primitive, Real};
 
-/// Number of a primitive in its set, from 0, in the order in which the user gave them.
+/// The index of a primitive in its set, from 0, in the order in which the primitives were given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(transparent)]
 pub struct PrimitiveId(u32);
 
 impl PrimitiveId {
-    /// How many primitives a set can hold: 2^30, which leaves two bits to structures that pack a kind beside an id.
+    /// The maximum number of primitives of a set, 2^30. It leaves two bits to structures that pack a kind beside an id.
     pub const MAX_COUNT: usize = 1 << 30;
 
-    /// The id of the primitive at `index`.
+    /// Returns the id of the primitive at `index`.
     ///
     /// # Panics
-    /// If `index` is not below [`PrimitiveId::MAX_COUNT`].
+    /// It panics if `index` is not below [`PrimitiveId::MAX_COUNT`].
     #[inline]
     #[must_use]
     #[allow(clippy::cast_possible_truncation, reason = "checked on the line before")]
@@ -23,14 +23,14 @@ impl PrimitiveId {
         Self(index as u32)
     }
 
-    /// As it is kept.
+    /// Returns the index as a u32.
     #[inline(always)]
     #[doc(hidden)]
     pub fn number(self) -> u32 {
         self.0
     }
 
-    /// Its place in the set.
+    /// Returns the index of the primitive in its set.
     #[inline]
     #[must_use]
     pub fn index(self) -> usize {
@@ -44,35 +44,35 @@ impl std::fmt::Display for PrimitiveId {
     }
 }
 
-/// Primitives numbered 0, 1, 2, ..
+/// A set of primitives with the ids 0, 1, 2, ..
 ///
-/// An index is generic over the set, so a homogeneous one (a slice of [`Triangle`](crate::Triangle)s, say) compiles to
-/// the kernel of its primitive alone, while a [`Soup`](crate::Soup) hands out [`Shape`](crate::Shape)s at the price of
-/// one match.
+/// An index is generic over the set. So an index over a homogeneous set, such as a slice of
+/// [`Triangle`](crate::Triangle)s, compiles to the kernel of that primitive alone. A [`Soup`](crate::Soup) returns
+/// [`Shape`](crate::Shape)s at the cost of one `match`.
 pub trait PrimitiveSet<T: Real> {
-    /// What `get` hands out.
+    /// The type of primitives that [`get`](Self::get) returns.
     type Primitive<'a>: Primitive<T>
     where
         Self: 'a;
 
-    /// How many there are.
+    /// Returns the number of primitives.
     fn len(&self) -> usize;
 
-    /// The primitive of that number.
+    /// Returns the primitive of an id.
     ///
     /// # Panics
-    /// May panic if `id` is not below `len`.
+    /// It may panic if `id` is not below `len`.
     fn get(&self, id: PrimitiveId) -> Self::Primitive<'_>;
 
-    /// Whether there are none.
+    /// Returns whether the set is empty.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The box around all of them; the empty box if there are none.
+    /// Returns the smallest box around all primitives, which is the empty box for an empty set.
     ///
     /// # Complexity
-    /// O(n).
+    /// It takes O(n).
     fn aabb(&self) -> Aabb<T> {
         (0..self.len()).map(|i| self.get(PrimitiveId::new(i)).aabb()).fold(Aabb::empty(), |all, one| all.union(&one))
     }
@@ -142,10 +142,13 @@ impl<T: Real, S: PrimitiveSet<T> + ?Sized> PrimitiveSet<T> for &S {
     }
 }
 
-/// Checks what every index demands of its set: few enough primitives, finite coordinates.
+/// Checks the requirements of all indexes on their set: at most 2^30 primitives, and finite coordinates.
 ///
 /// # Errors
-/// [`BuildError::TooMany`] and [`BuildError::NonFinite`].
+/// It returns [`BuildError::TooMany`] or [`BuildError::NonFinite`].
+///
+/// # Complexity
+/// It takes O(n).
 pub fn check_set<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -> Result<(), BuildError> {
     if set.len() > PrimitiveId::MAX_COUNT {
         return Err(BuildError::TooMany { len: set.len() });

@@ -1,21 +1,21 @@
-//! Mixed scenes: points, segments and triangles over shared positions.
+//! Soups: sets of points, segments and triangles over shared positions.
 
 use crate::{BuildError, Point, PrimitiveId, PrimitiveSet, Real, Segment, Shape, Triangle};
 use nalgebra::Point3;
 
-/// One primitive of a [`Soup`], by the numbers of its positions.
+/// One primitive of a [`Soup`], given by the indices of its positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Element {
-    /// A point.
+    /// A point at a position.
     Point(u32),
-    /// A segment.
+    /// A segment between two positions.
     Segment([u32; 2]),
-    /// A triangle.
+    /// A triangle of three positions.
     Triangle([u32; 3]),
 }
 
 impl Element {
-    /// The numbers of its positions.
+    /// Returns the indices of the positions.
     #[must_use]
     pub fn indices(&self) -> &[u32] {
         match self {
@@ -26,43 +26,50 @@ impl Element {
     }
 }
 
-/// Where a primitive is stored: its kind in the two upper bits, its place among those of its kind below.
+/// The location of a primitive: its kind in the two upper bits, and its index among those of its kind in
+/// the lower bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Slot(u32);
 
-const PLACE_BITS: u32 = 30;
+/// The number of bits of the index in a [`Slot`].
+const SLOT_INDEX_BITS: u32 = 30;
+/// The kind of points in a [`Slot`].
 const POINT: u32 = 0;
+/// The kind of segments in a [`Slot`].
 const SEGMENT: u32 = 1;
+/// The kind of triangles in a [`Slot`].
 const TRIANGLE: u32 = 2;
 
 impl Slot {
-    #[allow(clippy::cast_possible_truncation, reason = "places are below PrimitiveId::MAX_COUNT = 2^30")]
-    fn new(kind: u32, place: usize) -> Self {
-        Self(kind << PLACE_BITS | place as u32)
+    #[allow(clippy::cast_possible_truncation, reason = "indices are below PrimitiveId::MAX_COUNT = 2^30")]
+    fn new(kind: u32, index: usize) -> Self {
+        Self(kind << SLOT_INDEX_BITS | index as u32)
     }
     fn kind(self) -> u32 {
-        self.0 >> PLACE_BITS
+        self.0 >> SLOT_INDEX_BITS
     }
-    fn place(self) -> usize {
-        (self.0 & ((1 << PLACE_BITS) - 1)) as usize
+    fn index(self) -> usize {
+        (self.0 & ((1 << SLOT_INDEX_BITS) - 1)) as usize
     }
 }
 
 /// A set of points, segments and triangles in any order, over shared positions.
 ///
-/// Ids are those of the order in which primitives were given. Stored by kind; a soup of one kind has no further
-/// overhead, a mixed one pays four bytes a primitive. Every index is in range and every position that a primitive
-/// uses is finite. Degenerate primitives are ordinary members.
+/// Primitives have ids in the order in which they were given. They are stored by kind: a soup of one kind has no
+/// further overhead, and a mixed soup needs four bytes more for each primitive. Every index of a position is in range,
+/// and every position that a primitive uses is finite. Degenerate primitives are ordinary members.
 ///
-/// Coordinates have any unit, the same on all axes, and primitives are straight: longitudes and latitudes have to be
-/// projected first. In f32 coordinates of 5,000,000 are half a unit apart; f64 has room for any place on earth.
+/// Coordinates have any unit, the same on all axes, and primitives are straight, so longitudes and latitudes have
+/// to be projected first. Neighbouring f32 coordinates near 5,000,000 differ by half a unit; f64 resolves any
+/// location on earth.
 ///
 /// ```
 /// use p2m_core::{Element, Soup, PrimitiveSet};
 /// use nalgebra::Point3;
 ///
 /// let positions = vec![Point3::new(0.0, 0.0, 0.0), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0)];
-/// let soup = Soup::new(positions, [Element::Triangle([0, 1, 2]), Element::Segment([0, 1]), Element::Point(2)]).unwrap();
+/// let elements = [Element::Triangle([0, 1, 2]), Element::Segment([0, 1]), Element::Point(2)];
+/// let soup = Soup::new(positions, elements).unwrap();
 /// assert_eq!(soup.len(), 3);
 /// assert_eq!(soup.segments(), &[[0, 1]]);
 /// ```
@@ -72,7 +79,7 @@ pub struct Soup<T: Real> {
     points: Vec<u32>,
     segments: Vec<[u32; 2]>,
     triangles: Vec<[u32; 3]>,
-    /// One slot per id; empty while the soup has one kind only.
+    /// The slot of each id. It is empty while the soup has one kind only.
     slots: Vec<Slot>,
 }
 
@@ -89,11 +96,12 @@ impl<T: Real> Default for Soup<T> {
 }
 
 impl<T: Real> Soup<T> {
-    /// A soup of `elements` over `positions`, numbered in their order.
+    /// Creates a soup of `elements` over `positions`, with ids in their order.
     ///
     /// # Errors
-    /// [`BuildError`] names the first primitive with an index out of range or a position that is not finite, or says
-    /// that there are too many. Positions that nothing uses are not part of the scene and may be anything.
+    /// It returns a [`BuildError`] for the first primitive with an index out of range or a position that is not
+    /// finite, and for more than 2^30 primitives. Positions that no primitive uses are not part of the scene and
+    /// are not checked.
     pub fn new(positions: Vec<Point3<T>>, elements: impl IntoIterator<Item = Element>) -> Result<Self, BuildError> {
         let mut soup = Self { positions, ..Self::default() };
         for element in elements {
@@ -102,10 +110,10 @@ impl<T: Real> Soup<T> {
         Ok(soup)
     }
 
-    /// A soup of triangles.
+    /// Creates a soup of triangles.
     ///
     /// # Errors
-    /// As [`Soup::new`].
+    /// It returns the errors of [`Soup::new`].
     pub fn from_triangles(positions: Vec<Point3<T>>, triangles: Vec<[u32; 3]>) -> Result<Self, BuildError> {
         if triangles.len() > PrimitiveId::MAX_COUNT {
             return Err(BuildError::TooMany { len: triangles.len() });
@@ -117,6 +125,7 @@ impl<T: Real> Soup<T> {
         Ok(soup)
     }
 
+    /// Checks the positions of a primitive.
     fn check(&self, id: PrimitiveId, indices: &[u32]) -> Result<(), BuildError> {
         for &index in indices {
             match self.positions.get(index as usize) {
@@ -128,10 +137,10 @@ impl<T: Real> Soup<T> {
         Ok(())
     }
 
-    /// Adds a primitive under the next id.
+    /// Adds a primitive and returns its id.
     ///
     /// # Errors
-    /// As [`Soup::new`]; the soup is then as it was.
+    /// It returns the errors of [`Soup::new`], and the soup is then unchanged.
     pub fn push(&mut self, element: Element) -> Result<PrimitiveId, BuildError> {
         let len = self.len();
         if len >= PrimitiveId::MAX_COUNT {
@@ -144,29 +153,29 @@ impl<T: Real> Soup<T> {
             Element::Segment(_) => Slot::new(SEGMENT, self.segments.len()),
             Element::Triangle(_) => Slot::new(TRIANGLE, self.triangles.len()),
         };
-        if self.slots.is_empty() && slot.place() != len {
-            // The second kind: write down what was implicit so far.
+        if self.slots.is_empty() && slot.index() != len {
+            // This is the first primitive of a second kind, so the slots of all others are stored from now on.
             let kind = self.only_kind();
             self.slots = (0..len).map(|i| Slot::new(kind, i)).collect();
         }
         if !self.slots.is_empty() {
-            push_by_half(&mut self.slots, slot);
+            push_growing_by_half(&mut self.slots, slot);
         }
         match element {
-            Element::Point(p) => push_by_half(&mut self.points, p),
-            Element::Segment(s) => push_by_half(&mut self.segments, s),
-            Element::Triangle(t) => push_by_half(&mut self.triangles, t),
+            Element::Point(p) => push_growing_by_half(&mut self.points, p),
+            Element::Segment(s) => push_growing_by_half(&mut self.segments, s),
+            Element::Triangle(t) => push_growing_by_half(&mut self.triangles, t),
         }
         Ok(id)
     }
 
-    /// Adds a position and returns its number, for [`Element`]s to come. It may be anything as long as none uses it.
+    /// Adds a position and returns its index, which later [`Element`]s can use. It is checked when one does.
     pub fn push_position(&mut self, position: Point3<T>) -> usize {
-        push_by_half(&mut self.positions, position);
+        push_growing_by_half(&mut self.positions, position);
         self.positions.len() - 1
     }
 
-    /// Gives back the memory that is held for more positions and primitives.
+    /// Frees the memory that is reserved for more positions and primitives.
     pub fn shrink_to_fit(&mut self) {
         self.positions.shrink_to_fit();
         self.points.shrink_to_fit();
@@ -175,7 +184,7 @@ impl<T: Real> Soup<T> {
         self.slots.shrink_to_fit();
     }
 
-    /// The kind of all primitives while `slots` is empty.
+    /// Returns the kind of all primitives while `slots` is empty.
     #[inline(always)]
     fn only_kind(&self) -> u32 {
         if !self.triangles.is_empty() {
@@ -192,46 +201,46 @@ impl<T: Real> Soup<T> {
         if self.slots.is_empty() { Slot::new(self.only_kind(), id.index()) } else { self.slots[id.index()] }
     }
 
-    /// The positions, used or not.
+    /// Returns all positions, whether a primitive uses them or not.
     #[must_use]
     pub fn positions(&self) -> &[Point3<T>] {
         &self.positions
     }
 
-    /// The points among the primitives, in the order of their ids.
+    /// Returns the points in the order of their ids, as indices of positions.
     #[must_use]
     pub fn points(&self) -> &[u32] {
         &self.points
     }
 
-    /// The segments, in the order of their ids.
+    /// Returns the segments in the order of their ids, as indices of positions.
     #[must_use]
     pub fn segments(&self) -> &[[u32; 2]] {
         &self.segments
     }
 
-    /// The triangles, in the order of their ids.
+    /// Returns the triangles in the order of their ids, as indices of positions.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// The primitive of that id, by the numbers of its positions.
+    /// Returns the primitive of an id, as indices of positions.
     ///
     /// # Panics
-    /// If there is no such primitive.
+    /// It panics if there is no such primitive.
     #[inline(always)]
     #[must_use]
     pub fn element(&self, id: PrimitiveId) -> Element {
         let slot = self.slot(id);
         match slot.kind() {
-            POINT => Element::Point(self.points[slot.place()]),
-            SEGMENT => Element::Segment(self.segments[slot.place()]),
-            _ => Element::Triangle(self.triangles[slot.place()]),
+            POINT => Element::Point(self.points[slot.index()]),
+            SEGMENT => Element::Segment(self.segments[slot.index()]),
+            _ => Element::Triangle(self.triangles[slot.index()]),
         }
     }
 
-    /// All primitives in the order of their ids.
+    /// Returns all primitives in the order of their ids, as indices of positions.
     pub fn elements(&self) -> impl Iterator<Item = Element> + '_ {
         (0..self.len()).map(|i| self.element(PrimitiveId::new(i)))
     }
@@ -242,8 +251,9 @@ impl<T: Real> Soup<T> {
     }
 }
 
-/// Grows by half instead of doubling, so that a soup that is filled one by one needs less memory at its peak.
-fn push_by_half<X>(list: &mut Vec<X>, item: X) {
+/// Appends to a list whose capacity grows by half instead of doubling, so that a soup that is filled one by one needs
+/// less memory at its peak.
+fn push_growing_by_half<X>(list: &mut Vec<X>, item: X) {
     if list.len() == list.capacity() {
         list.reserve_exact(list.len() / 2 + 4);
     }

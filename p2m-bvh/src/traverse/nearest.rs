@@ -61,8 +61,8 @@ impl<V: Volume, C: Collector> Search<'_, V, C> {
         let place = nalgebra::Point3::from(query);
         let mut stack = vec![(0.0, tree.root)];
         while let Some((bound, child)) = stack.pop() {
-            if collector.is_approximate() && collector.is_content(false) {
-                return collector.forgo(stack.iter().fold(bound, |least, waiting| least.min(waiting.0)));
+            if collector.is_approximate() && collector.may_stop(false) {
+                return collector.record_skipped(stack.iter().fold(bound, |least, waiting| least.min(waiting.0)));
             }
             if bound > collector.prune_above() || child == NodeRef::NONE {
                 continue;
@@ -151,7 +151,7 @@ fn offer<C: Collector>(
 ) {
     let id = packet.ids()[lane];
     // What is nearer by rounding alone is no reason to leave out another one.
-    let square = if collector.wants_near_ties() { f64::INFINITY } else { square };
+    let square = if collector.keeps_near_ties() { f64::INFINITY } else { square };
     if !packet.has_vertices() {
         evaluate(collector, id, square);
     } else {
@@ -240,13 +240,13 @@ impl<'a, C: Collector> SearchState<'a, C> {
     /// Whether the search may end.
     #[inline(always)]
     pub fn is_content(&self) -> bool {
-        self.approximate && self.collector.is_content(self.held.is_some())
+        self.approximate && self.collector.may_stop(self.held.is_some())
     }
 
     /// What has this bound, a square in the frame of the scene, and what is farther is not searched.
     #[inline(always)]
     pub fn forgo(&mut self, bound: f32) {
-        self.collector.forgo(self.frame.square_below(bound));
+        self.collector.record_skipped(self.frame.square_below(bound));
     }
 
     #[inline(always)]
@@ -285,10 +285,10 @@ impl<'a, C: Collector> SearchState<'a, C> {
         let bound = self.collector.prune_above().sqrt() * (1.0 + 4.0 * f64::EPSILON);
         self.keep = if self.reach < bound { self.reach } else { bound };
         let square = self.reach * self.reach * (1.0 + 4.0 * f64::EPSILON);
-        let mut prune = self.collector.prune_given(square);
+        let mut prune = self.collector.prune_given_upper_bound(square);
         if self.approximate {
             let held = self.held_distance();
-            let skip = self.collector.prune_held(held * held * (1.0 + 4.0 * f64::EPSILON));
+            let skip = self.collector.prune_given_incumbent(held * held * (1.0 + 4.0 * f64::EPSILON));
             if skip < prune {
                 prune = skip;
                 let bound = skip.sqrt() * (1.0 + 4.0 * f64::EPSILON);
@@ -320,7 +320,7 @@ impl<'a, C: Collector> SearchState<'a, C> {
         if found == 0 {
             return;
         }
-        if self.collector.is_nearest_only() && packet.has_vertices() {
+        if self.collector.is_single_nearest() && packet.has_vertices() {
             let reach = (smallest::<I::Wide>(&squares).sqrt() + local.deficit) * ROUND_UP;
             let here = f64::from(reach) * packet.unit();
             if here < self.reach {
@@ -341,7 +341,7 @@ impl<'a, C: Collector> SearchState<'a, C> {
             packet.prefetch_vertices(lane, &self.leaves.vertices);
             self.wait(candidate(self.low(packet, &local, squares[lane]), lane));
         }
-        if !self.collector.is_nearest_only() {
+        if !self.collector.is_single_nearest() {
             self.evaluate_waiting();
         }
     }
@@ -436,7 +436,7 @@ impl<'a, C: Collector> SearchState<'a, C> {
             }
         }
         self.waiting.swap(0, first);
-        if self.count > FEW && self.collector.is_nearest_only() && !self.collector.wants_near_ties() {
+        if self.count > FEW && self.collector.is_single_nearest() && !self.collector.keeps_near_ties() {
             self.drop_ties();
         }
         for i in 0..self.count {
@@ -447,7 +447,7 @@ impl<'a, C: Collector> SearchState<'a, C> {
                 // may.
                 let reach = self.reach * self.reach * (1.0 + 4.0 * f64::EPSILON);
                 let packet = &self.leaves.packets[packet as usize];
-                let prune = self.collector.prune_above_for(packet.ids()[lane as usize]);
+                let prune = self.collector.prune_above_for_id(packet.ids()[lane as usize]);
                 let square = if reach < prune { reach } else { prune };
                 offer(self.leaves, packet, lane as usize, self.query, square, self.collector, self.evaluate);
                 self.update();
@@ -466,10 +466,10 @@ impl<C: Collector> SearchState<'_, C> {
         let (packet, lane) = (&self.leaves.packets[packet as usize], lane as usize);
         // Whatever the collector skips for the sake of what it has: more was skipped for the sake of this one.
         offer(self.leaves, packet, lane, self.query, f64::INFINITY, self.collector, self.evaluate);
-        if self.collector.is_content(false) {
+        if self.collector.may_stop(false) {
             for candidate in &self.waiting[..self.count] {
                 let low = self.low_in_scene(candidate.low).max(0.0);
-                self.collector.forgo(low * low);
+                self.collector.record_skipped(low * low);
             }
             self.count = 0;
         }

@@ -1,15 +1,19 @@
-//! Every decision against exact rational arithmetic, whatever was claimed.
+//! Tests of every decision against exact rational arithmetic, for correct and for wrong claims.
 
 #![allow(clippy::float_cmp, reason = "what is proved is proved to the last bit")]
 
-use super::*;
-use crate::{Point, Primitive, Segment, Triangle};
+use super::candidate::Candidate;
+use super::decide::{DecidedBy, Decision, decide, is_within};
+use super::{feature_certificate, rational};
+use crate::kernel::vector::V3;
+use crate::{Feature, Point, Primitive, PrimitiveId, Segment, Triangle};
 use nalgebra::Point3;
 use p2m_testkit::families::{case, wild};
 use p2m_testkit::oracle::Distance;
 use p2m_testkit::{Cases, cases, rng, vector};
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
+use std::cmp::Ordering;
 
 type Shape = Vec<V3>;
 
@@ -23,7 +27,7 @@ const FEATURES: [Feature; 7] = [
     Feature::Face,
 ];
 
-/// What the kernel finds.
+/// Returns the feature that the kernel finds.
 fn claim(query: V3, vertices: &[V3]) -> Feature {
     let query = Point3::from(query);
     let projection = match *vertices {
@@ -39,10 +43,10 @@ fn length(x: f64, more: f64) -> Distance {
     Distance::new([-more, 0.0, 0.0], &[[x, 0.0, 0.0]])
 }
 
-/// Whether a distance is the true one, rounded to nearest.
+/// Returns whether a distance is the true one, rounded to nearest.
 fn is_rounded(query: V3, vertices: &[V3], x: f64) -> bool {
     let largest = vertices.iter().chain([&query]).flatten().fold(x, |m, x| m.max(x.abs()));
-    // Half of the last place is an f64 as well, then.
+    // The scale makes half a unit in the last place an f64.
     let scale = if largest < 2f64.powi(900) { 2f64.powi(120) } else { 1.0 };
     let up = |p: V3| p.map(|x| x * scale);
     let truth = Distance::new(up(query), &vertices.iter().map(|v| up(*v)).collect::<Vec<_>>());
@@ -52,7 +56,7 @@ fn is_rounded(query: V3, vertices: &[V3], x: f64) -> bool {
     let above = if x < f64::MAX { (x.next_up() - x) * (0.5 * scale) } else { 2f64.powi(970) };
     let below = (x - x.next_down()) * (0.5 * scale);
     if above == 0.0 {
-        // Subnormal beside the largest numbers.
+        // The distance is subnormal, and the largest coordinates cannot be scaled up.
         return truth.relative_error(x, 53, f64::from_bits(1)) <= 1.0;
     }
     let even = x.to_bits() & 1 == 0;
@@ -70,7 +74,8 @@ fn candidates<'a>(shapes: &'a [Shape], ids: &[usize], claims: &[Feature]) -> Vec
     shapes.iter().zip(ids).zip(claims).map(candidate).collect()
 }
 
-/// The decision between some primitives, with the kernel's claims and with wrong ones, which must not matter.
+/// Checks the decision between some primitives with the claims of the kernel and with wrong ones, and
+/// returns the former.
 fn check(query: V3, shapes: &[Shape], rng: &mut impl Rng) -> Decision {
     let mut ids: Vec<usize> = (0..shapes.len()).map(|i| 3 * i + 1).collect();
     ids.shuffle(rng);
@@ -109,7 +114,7 @@ fn check_radii(query: V3, vertices: &[V3], distance: f64) {
     assert!(!is_within(query, vertices, f64::NAN) && !is_within(query, vertices, -1.0));
 }
 
-/// Moved by some units in the last place.
+/// Returns a point whose coordinates are changed by some units in the last place.
 fn nudged(p: V3, rng: &mut impl Rng) -> V3 {
     p.map(|x| match rng.random_range(0..4) {
         0 => x.next_up(),
@@ -119,7 +124,7 @@ fn nudged(p: V3, rng: &mut impl Rng) -> V3 {
     .map(|x| x.clamp(-f64::MAX, f64::MAX))
 }
 
-/// A shape that has to do with another one: a part of it, the same in another order, a neighbour, a mirror image.
+/// Returns a shape that is related to another one: a part of it, a permutation, a neighbour, or a mirror image.
 fn relative(query: V3, shape: &Shape, rng: &mut impl Rng) -> Shape {
     let mut all = shape.clone();
     all.shuffle(rng);
@@ -149,7 +154,7 @@ fn check_relatives(name: &str, cases: Cases, mut draw: impl FnMut(&mut dyn Rng) 
         for _ in 0..rng.random_range(0..6) {
             shapes.push(relative(query, &shape, &mut rng));
         }
-        stages[check(query, &shapes, &mut rng).stage as usize] += 1;
+        stages[check(query, &shapes, &mut rng).decided_by as usize] += 1;
     }
     stages
 }
@@ -182,13 +187,14 @@ fn any_exponents_may_meet() {
         ];
         assert_eq!(check([0.0; 3], &shapes, &mut rng).distance, 3.0 * scale);
     }
-    // Longer than all f64.
+    // The distance exceeds the range of f64.
     let far = [vec![[f64::MAX; 3]], vec![[f64::MAX, f64::MAX, -f64::MAX], [f64::MAX; 3]]];
     let decision = check([-f64::MAX; 3], &far, &mut rng);
     assert_eq!((decision.distance, decision.lower, decision.winner), (f64::INFINITY, f64::MAX, 1));
 }
 
-/// Collinear, repeated, tiny beside the rest: small integers, of which some are moved by one unit in the last place.
+/// The shapes have small integers as coordinates, some changed by one unit in the last place. So they are often
+/// collinear, repeated, or very small.
 #[test]
 fn degenerate_primitives_are_what_their_vertices_span() {
     check_relatives("certified degenerate", cases(3000, 500), |rng| {
@@ -207,8 +213,8 @@ fn degenerate_primitives_are_what_their_vertices_span() {
     });
 }
 
-/// Six triangles about a vertex at the origin: a bumpy disc.
-fn fan(rng: &mut impl Rng) -> [Shape; 6] {
+/// Returns six triangles around a vertex at the origin, which form a bumpy disc.
+fn triangles_around_a_vertex(rng: &mut impl Rng) -> [Shape; 6] {
     let ring: [V3; 6] = std::array::from_fn(|i| {
         let (sin, cos) = (std::f64::consts::FRAC_PI_3 * i as f64).sin_cos();
         let bump = vector(rng);
@@ -224,21 +230,21 @@ fn meshes_hardly_ever_need_integers() {
     let mut exact = 0;
     for number in cases.clone() {
         let mut rng = rng("certified fans", number);
-        let shapes = fan(&mut rng);
-        let reach = [0.1, 1.0, 5.0, 1000.0][rng.random_range(0..4)];
-        let query: V3 = vector(&mut rng).map(|x| reach * x).into();
+        let shapes = triangles_around_a_vertex(&mut rng);
+        let scale = [0.1, 1.0, 5.0, 1000.0][rng.random_range(0..4)];
+        let query: V3 = vector(&mut rng).map(|x| scale * x).into();
         let decision = if number % 20 == 0 {
             check(query, &shapes, &mut rng)
         } else {
             let claims: Vec<Feature> = shapes.iter().map(|shape| claim(query, shape)).collect();
             decide(query, &candidates(&shapes, &[0, 1, 2, 3, 4, 5], &claims))
         };
-        exact += usize::from(decision.stage == Stage::Exact);
+        exact += usize::from(decision.decided_by == DecidedBy::Integers);
     }
     assert!(cases.have_fewer_than(20, exact), "{exact} of {}", cases.len());
 }
 
-/// A nearest feature that several primitives share is one thing: no integers, and the lowest id.
+/// A nearest feature that several primitives share is evaluated once, without integers, and the lowest id wins.
 #[test]
 fn what_is_shared_is_no_tie() {
     for number in cases(300, 60) {
@@ -246,24 +252,24 @@ fn what_is_shared_is_no_tie() {
         let [a, b, c, d]: [V3; 4] = std::array::from_fn(|_| vector(&mut rng).into());
         let above = |weights: [f64; 3], by: f64| -> V3 {
             let [e, f]: [V3; 2] = [b, c].map(|v| std::array::from_fn(|k| v[k] - a[k]));
-            let normal = crate::kernel::number::cross(e, f);
+            let normal = crate::kernel::arithmetic::cross(e, f);
             std::array::from_fn(|k| weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k] + by * normal[k])
         };
         let faces = [vec![a, b, c], vec![b, c, a], vec![c, b, a]];
-        assert_eq!(check(above([0.3, 0.3, 0.4], 0.7), &faces, &mut rng).stage, Stage::Fast);
+        assert_eq!(check(above([0.3, 0.3, 0.4], 0.7), &faces, &mut rng).decided_by, DecidedBy::Floats);
         let edges = [vec![a, b], vec![b, a], vec![a, b, a]];
-        assert_eq!(check(above([0.4, 0.6, 0.0], -0.7), &edges, &mut rng).stage, Stage::Fast);
+        assert_eq!(check(above([0.4, 0.6, 0.0], -0.7), &edges, &mut rng).decided_by, DecidedBy::Floats);
         let away: V3 = std::array::from_fn(|k| 9.0 * a[k] - 3.0 * (b[k] + c[k] + d[k]));
         let vertices = [vec![a, b, c], vec![d, a], vec![b, a, d], vec![a]];
         let holds = vertices.iter().all(|v| Distance::new(away, v).compare(&Distance::new(away, &[a])).is_eq());
-        assert!(check(away, &vertices, &mut rng).stage == Stage::Fast || !holds);
+        assert!(check(away, &vertices, &mut rng).decided_by == DecidedBy::Floats || !holds);
         assert_eq!(check(a, &vertices, &mut rng).distance, 0.0);
     }
     let square = |i: i32, j: i32| vec![[0.0; 3], [f64::from(i), 0.0, 0.0], [0.0, f64::from(j), 0.0]];
     let grid = [square(1, 1), square(1, -1), square(-1, -1), square(-1, 1)];
-    assert_eq!(check([0.0, 0.0, 0.1], &grid, &mut rng("certified shared", 0)).stage, Stage::Fast);
+    assert_eq!(check([0.0, 0.0, 0.1], &grid, &mut rng("certified shared", 0)).decided_by, DecidedBy::Floats);
     let minus = [vec![[-0.0, 1.0, -0.0]], vec![[0.0, 1.0, 0.0], [0.0, 2.0, -0.0]]];
-    assert_eq!(check([0.0, -0.5, 0.0], &minus, &mut rng("certified shared", 0)).stage, Stage::Fast);
+    assert_eq!(check([0.0, -0.5, 0.0], &minus, &mut rng("certified shared", 0)).decided_by, DecidedBy::Floats);
 }
 
 #[test]
@@ -278,7 +284,7 @@ fn ties_on_a_lattice_go_to_the_lowest_id() {
     }
 }
 
-/// Moved, turned by quarter turns, and mirrored: nothing that rounds.
+/// Returns a vector that is permuted and mirrored, which does not round.
 fn placed(shape: &[V3], [query, signs]: [V3; 2], axes: [usize; 3]) -> Shape {
     shape.iter().map(|v| std::array::from_fn(|k| query[k] + signs[k] * v[axes[k]])).collect()
 }
@@ -292,7 +298,7 @@ fn check_placed(shapes: &[Shape], most: i64, rng: &mut impl Rng) -> Decision {
     check(query, &shapes, rng)
 }
 
-/// (2 b - 1)^2 + (b - 2)^2 = (2 b - 2)^2 + b^2 + 1: squares of 2 to 104 bits that differ by one.
+/// The squares have 2 to 104 bits and differ by one, since (2 b - 1)^2 + (b - 2)^2 = (2 b - 2)^2 + b^2 + 1.
 #[test]
 fn points_whose_squares_differ_by_one_are_told_apart() {
     let (mut exact, mut one) = (0, 0);
@@ -307,12 +313,12 @@ fn points_whose_squares_differ_by_one_are_told_apart() {
             assert_eq!(decision.winner, 1);
             let root = |s: &Shape| decide([0.0; 3], &[candidate(s)]).distance;
             one += usize::from(bits >= 30 && root(&shapes[0]) == root(&shapes[1]));
-            exact += usize::from(decision.stage == Stage::Exact);
-            assert!(bits > 40 || decision.stage == Stage::Fast, "{bits}");
+            exact += usize::from(decision.decided_by == DecidedBy::Integers);
+            assert!(bits > 40 || decision.decided_by == DecidedBy::Floats, "{bits}");
         }
     }
     assert!(cases.have_more_than(20, exact), "{exact}");
-    // The distances themselves are one f64, unless they are on either side of where it ends.
+    // Both distances round to the same f64, unless a boundary of rounding lies between them.
     assert!(cases.have_more_than(410, one), "{one}");
 }
 
@@ -320,8 +326,8 @@ fn candidate(vertices: &[V3]) -> Candidate<'_> {
     Candidate { id: PrimitiveId::new(0), vertices, feature: Feature::Vertex(0) }
 }
 
-/// The face with the centroid h (1, 2, 2), and an edge through it, are at 3 h. Beside them a vertex with the square
-/// 9 h^2 + 1, and one with 9 h^2 exactly.
+/// The face with the centroid h (1, 2, 2), and an edge through it, have the distance 3 h. They are compared with a
+/// vertex of the square 9 h^2 + 1, and with one of the square 9 h^2.
 #[test]
 fn faces_edges_and_vertices_that_are_almost_equally_near_are_told_apart() {
     let mut stages = [0; 2];
@@ -330,8 +336,8 @@ fn faces_edges_and_vertices_that_are_almost_equally_near_are_told_apart() {
         for number in cases.clone() {
             let mut rng = rng("certified mixed kinds", 1000 * bits + number);
             let h = ((1i64 << bits) + rng.random_range(0..1i64 << bits)) as f64;
-            let reach = (1 + rng.random_range(0..1i64 << bits)) as f64;
-            let at = |d: V3| -> V3 { std::array::from_fn(|k| h * [1.0, 2.0, 2.0][k] + reach * d[k]) };
+            let far = (1 + rng.random_range(0..1i64 << bits)) as f64;
+            let at = |d: V3| -> V3 { std::array::from_fn(|k| h * [1.0, 2.0, 2.0][k] + far * d[k]) };
             let face = vec![at([2.0, -1.0, 0.0]), at([0.0, 1.0, -1.0]), at([-2.0, 0.0, 1.0])];
             let edge = vec![at([2.0, -1.0, 0.0]), at([-2.0, 1.0, 0.0])];
             let beside = vec![[3.0 * h, 1.0, 0.0]];
@@ -340,17 +346,18 @@ fn faces_edges_and_vertices_that_are_almost_equally_near_are_told_apart() {
             for shape in [&face, &edge] {
                 let decision = near(shape, &mut rng);
                 assert_eq!((decision.winner, decision.distance), (1, 3.0 * h));
-                stages[decision.stage as usize] += 1;
-                assert!(bits > 40 || decision.stage == Stage::Fast, "{bits} {number}");
+                stages[decision.decided_by as usize] += 1;
+                assert!(bits > 40 || decision.decided_by == DecidedBy::Floats, "{bits} {number}");
             }
             let tie = check_placed(&[face, edge, level, beside], 1 << bits, &mut rng);
-            assert_eq!((tie.stage, tie.distance), (Stage::Exact, 3.0 * h));
+            assert_eq!((tie.decided_by, tie.distance), (DecidedBy::Integers, 3.0 * h));
         }
     }
     assert!(cases.have_more_than(20, stages[1]), "{stages:?}");
 }
 
-/// Slanted edges and faces of integers, so that squares are fractions: c k / sqrt(1 + k^2) and the like, one step apart.
+/// Edges and faces are slanted and have integer coordinates, so their squares are fractions. Their distances, such as
+/// c k / sqrt(1 + k^2), differ by one step.
 #[test]
 fn fractions_that_almost_agree_are_told_apart() {
     for number in cases(4000, 500) {
@@ -365,7 +372,8 @@ fn fractions_that_almost_agree_are_told_apart() {
     }
 }
 
-/// Distances of about one rounding of the coordinates: without any digit for the kernel, and rounded to nearest here.
+/// The distances are about one rounding of the coordinates. The kernel has no correct digit there, but the decision is
+/// rounded to nearest.
 #[test]
 fn distances_within_rounding_are_as_accurate_as_others() {
     let mut small = 0;
@@ -388,18 +396,18 @@ fn distances_within_rounding_are_as_accurate_as_others() {
     assert!(cases.have_more_than(1000, small), "{small}");
 }
 
-/// Whether a claim is proved, which it may only be if the feature is as near as the primitive.
+/// Returns whether a claim is proved, and asserts that the feature is then as near as the primitive.
 fn proves(query: V3, vertices: &[V3], claim: Feature) -> bool {
-    let proved = claim::is_proved(query, vertices, claim);
+    let proved = feature_certificate::is_proved(query, vertices, claim);
     if proved {
-        let [by_claim, truth] = [true, false].map(|proved| exact::Square::new(query, vertices, claim, proved));
+        let [by_claim, truth] = [true, false].map(|proved| rational::Square::new(query, vertices, claim, proved));
         assert!(by_claim.cmp(&truth).is_eq(), "{query:?} {vertices:?} {claim:?}");
     }
     proved
 }
 
-/// Offsets and edges of 106 bits, of which dot products and sides cancel but for the last: with q and w perpendicular (or
-/// opposite), and a small beside them, (a - q) . (w - a) = a . (w + q - a), and (a - q) x (w - a) = a x (w - q).
+/// Offsets and edges have 106 bits, and dot products and sides cancel except for the last one. For perpendicular (or
+/// opposite) q and w, and a small a, (a - q) . (w - a) = a . (w + q - a) and (a - q) x (w - a) = a x (w - q).
 #[test]
 fn what_cancels_to_the_last_bit_of_double_double_is_proved_only_if_it_is_true() {
     let mut counts = [0; 2];
@@ -423,7 +431,7 @@ fn what_cancels_to_the_last_bit_of_double_double_is_proved_only_if_it_is_true() 
     assert!(counts.iter().all(|count| cases.have_more_than(1000, *count)), "{counts:?}");
 }
 
-/// Distances of 106 bits, half way between two f64 but for the last of them, or exactly.
+/// The distances have 106 bits and lie midway between two f64, exactly or except for the last bit.
 #[test]
 fn distances_almost_half_way_between_floats_are_rounded_rightly() {
     let mut stages = [0; 2];
@@ -441,13 +449,13 @@ fn distances_almost_half_way_between_floats_are_rounded_rightly() {
             vec![[x, -y, -z], [x, y, z]],
         ];
         for shape in shapes {
-            stages[check([q, 0.0, 0.0], &[shape], &mut rng).stage as usize] += 1;
+            stages[check([q, 0.0, 0.0], &[shape], &mut rng).decided_by as usize] += 1;
         }
     }
     assert!(stages.iter().all(|count| cases.have_more_than(1000, *count)), "{stages:?}");
 }
 
-/// Claims at zero weights and on the border of the range of the first stage.
+/// The claims have zero weights, or are on the border of the range of the first stage.
 #[test]
 fn the_border_of_the_fast_stage_is_no_border_of_the_truth() {
     check_relatives("certified border", cases(3000, 300), |mut rng| {
@@ -468,7 +476,7 @@ fn roots_of_small_integers_round_as_the_processor_does() {
     for n in 0..3000 {
         let shape = [[f64::from(n), f64::from(n % 7), f64::from(n % 3)]];
         let square = f64::from(n * n + (n % 7) * (n % 7) + (n % 3) * (n % 3));
-        let exact = exact::Square::new([0.0; 3], &shape, Feature::Face, false).distance();
+        let exact = rational::Square::new([0.0; 3], &shape, Feature::Face, false).distance();
         assert_eq!(exact.nearest, square.sqrt());
         assert_eq!(decide([0.0; 3], &[candidate(&shape)]).distance, square.sqrt());
     }

@@ -1,24 +1,26 @@
-//! The one number by which every comparison is decided.
+//! Keys: the numbers by which candidates are compared.
 
 use super::vector::{V3, largest, norm_squared, power_of_two, scale_by_power};
 use std::cmp::Ordering;
 
-/// Squares below 2^-800 and above 2^800 leave the plain tier.
-const TIER_BITS: i32 = 800;
-pub(super) const SQUARE_MIN: f64 = power_of_two(-TIER_BITS);
-const SQUARE_MAX: f64 = power_of_two(TIER_BITS);
-/// Keys of neighbouring tiers differ by this power of two.
-const TIER_SHIFT: i32 = 2 * TIER_BITS;
+/// The exponent of two of the bounds of plain squares: squares below 2^-800 or from 2^800 on are in other tiers.
+const PLAIN_SQUARE_BITS: i32 = 800;
+/// The least plain square.
+pub(super) const SQUARE_MIN: f64 = power_of_two(-PLAIN_SQUARE_BITS);
+/// The least square above the plain ones.
+const SQUARE_MAX: f64 = power_of_two(PLAIN_SQUARE_BITS);
+/// The exponent of two by which squares of neighbouring tiers are scaled.
+const TIER_SHIFT: i32 = 2 * PLAIN_SQUARE_BITS;
 
 /// The squared length of the offset from the query to the nearest point, with more range than an f64 has.
 ///
-/// It decides between primitives, in pruning and in ties: several squares share one square root, so a tie on
-/// distances is not a tie on keys. A key is a plain square while that lies in [2^-800, 2^800); tiny and huge
-/// lengths move to a tier of their own, where the square is kept times 2^1600 or 2^-1600. Which tier holds a value
-/// depends on the value alone, and its bits are those of the plain computation, so neither the route by which a key
-/// was found nor the scale of the scene shows in a comparison.
+/// Keys decide between primitives, in pruning and in ties. Several squares have the same square root, so equal
+/// distances may have different keys. A key is a plain square if that lies in [2^-800, 2^800). Smaller and larger
+/// lengths are in tiers of their own, whose squares are kept times 2^1600 or 2^-1600. The tier depends on the value
+/// alone, and the bits of the square are those of the plain computation. So comparisons depend neither on the formula
+/// by which a key was computed nor on the scale of the scene.
 ///
-/// Ordered by value; never NaN.
+/// Keys are ordered by value and never NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key {
     square: f64,
@@ -26,28 +28,29 @@ pub struct Key {
 }
 
 impl Key {
-    /// Length zero.
+    /// The key of length zero.
     pub const ZERO: Self = Self { square: 0.0, tier: 0 };
-    /// Longer than every length.
+    /// A key above those of all lengths.
     pub const INFINITY: Self = Self { square: f64::INFINITY, tier: 1 };
 
-    /// The key of an offset, in units of the scene. A NaN component gives [`Key::INFINITY`]: NaN loses.
+    /// Returns the key of an offset in units of the scene. An offset with a NaN component has the key
+    /// [`Key::INFINITY`], so that it never wins.
     #[inline]
     #[must_use]
-    pub fn of_offset(offset: [f64; 3]) -> Self {
+    pub fn from_offset(offset: [f64; 3]) -> Self {
         let square = norm_squared(offset);
-        Self::plain(square).unwrap_or_else(|| Self::of_scaled_offset(offset, 0))
+        Self::plain(square).unwrap_or_else(|| Self::from_scaled_offset(offset, 0))
     }
 
-    /// The key of a square that needs no other tier. `None` for zero as well: a square of zero may be an underflow.
+    /// Returns the key of a plain square, and `None` for any other one. That includes zero, which may be an underflow.
     #[inline(always)]
     pub(super) fn plain(square: f64) -> Option<Self> {
         (SQUARE_MIN..SQUARE_MAX).contains(&square).then_some(Self { square, tier: 0 })
     }
 
-    /// The key of `offset` * 2^`exponent`.
+    /// Returns the key of `offset` * 2^`exponent`.
     #[cold]
-    pub(super) fn of_scaled_offset(offset: V3, exponent: i32) -> Self {
+    pub(super) fn from_scaled_offset(offset: V3, exponent: i32) -> Self {
         if !offset.iter().all(|x| x.is_finite()) {
             return Self::INFINITY;
         }
@@ -55,30 +58,34 @@ impl Key {
         if size == 0.0 {
             return Self::ZERO;
         }
-        let own = super::vector::exponent(size);
-        // In [1, 12), with the rounding that any other power-of-two scale without underflow would give.
-        let square = norm_squared(offset.map(|x| scale_by_power(x, -own)));
-        let shift = 2 * (own + exponent);
+        let size_exponent = super::vector::exponent(size);
+        // The square is in [1, 12), and has the bits that any other scale by a power of two without
+        // underflow would give.
+        let square = norm_squared(offset.map(|x| scale_by_power(x, -size_exponent)));
+        let shift = 2 * (size_exponent + exponent);
         let tier = match shift + super::vector::exponent(square) {
-            s if s < -TIER_BITS => -1,
-            s if s >= TIER_BITS => 1,
+            s if s < -PLAIN_SQUARE_BITS => -1,
+            s if s >= PLAIN_SQUARE_BITS => 1,
             _ => 0,
         };
         let square = scale_by_power(square, shift - tier * TIER_SHIFT);
-        // What is too small for the lowest tier, far below the smallest subnormal, is zero: the one that there is.
+        // A square below the lowest tier, far below that of the smallest subnormal, becomes the key of zero.
         if square == 0.0 { Self::ZERO } else { Self { square, tier } }
     }
 
-    /// The length itself, rounded to nearest: the square root of the key. Infinite when it exceeds every f64.
+    /// Returns the length, which is the square root of the key, rounded to nearest. It is infinite beyond the
+    /// range of f64.
     #[inline]
     #[must_use]
     pub fn distance(self) -> f64 {
         let root = self.square.sqrt();
-        if self.tier == 0 { root } else { scale_by_power(root, self.tier * TIER_BITS) }
+        if self.tier == 0 { root } else { scale_by_power(root, self.tier * PLAIN_SQUARE_BITS) }
     }
 
-    /// A square that is not below the key, for pruning by bounds computed in plain f64: the key itself in the plain
-    /// range, 2^-800 below it (where squares of f64 lose their digits), infinity above it.
+    /// Returns a square that is not below the key, for pruning by bounds that are computed in plain f64.
+    ///
+    /// It is the key itself in the plain range, 2^-800 below the range (where squares of f64 lose their digits), and
+    /// infinity above it.
     #[inline]
     #[must_use]
     pub fn square_above(self) -> f64 {
@@ -89,12 +96,13 @@ impl Key {
         }
     }
 
-    /// The key itself, if it is a plain square.
+    /// Returns the square if it is plain.
     #[inline]
     pub(crate) fn plain_square(self) -> Option<f64> {
         (self.tier == 0).then_some(self.square)
     }
 
+    /// Compares keys of different tiers.
     #[cold]
     #[inline]
     fn compare_tiers(self, other: Self) -> Ordering {
@@ -119,7 +127,7 @@ impl PartialOrd for Key {
 impl Ord for Key {
     #[inline]
     fn cmp(&self, other: &Self) -> Ordering {
-        // Squares are never NaN, and -0.0 cannot arise from a sum of squares.
+        // Squares are never NaN, and a sum of squares is never -0.
         if self.tier == other.tier { self.square.total_cmp(&other.square) } else { self.compare_tiers(*other) }
     }
 }
@@ -129,7 +137,7 @@ mod tests {
     use super::*;
 
     fn key(x: f64) -> Key {
-        Key::of_offset([x, 0.0, 0.0])
+        Key::from_offset([x, 0.0, 0.0])
     }
 
     #[test]
@@ -144,10 +152,10 @@ mod tests {
                 assert_eq!(key(a).cmp(&key(b)), a.total_cmp(&b), "{a:e} {b:e} {i} {j}");
             }
         }
-        assert!(key(f64::MAX) < Key::of_offset([f64::MAX; 3]));
-        assert!(Key::of_offset([f64::MAX; 3]) < Key::INFINITY);
-        assert_eq!(Key::of_offset([f64::MAX; 3]).distance(), f64::INFINITY);
-        assert_eq!(Key::of_offset([f64::NAN, 1.0, 2.0]), Key::INFINITY);
+        assert!(key(f64::MAX) < Key::from_offset([f64::MAX; 3]));
+        assert!(Key::from_offset([f64::MAX; 3]) < Key::INFINITY);
+        assert_eq!(Key::from_offset([f64::MAX; 3]).distance(), f64::INFINITY);
+        assert_eq!(Key::from_offset([f64::NAN, 1.0, 2.0]), Key::INFINITY);
     }
 
     #[test]
@@ -155,9 +163,9 @@ mod tests {
         for o in [[0.3, -0.7, 0.1], [1e-9, 1.0, 3.0], [1.0 / 3.0; 3]] {
             for e in [-1000, -500, -402, -400, -398, -30, 0, 30, 398, 400, 402, 500, 1000] {
                 let scaled = o.map(|x| scale_by_power(x, e));
-                let at_one = Key::of_offset(o);
-                assert_eq!(Key::of_offset(scaled), Key::of_scaled_offset(o, e));
-                assert_eq!(Key::of_offset(scaled).distance(), scale_by_power(at_one.distance(), e));
+                let at_one = Key::from_offset(o);
+                assert_eq!(Key::from_offset(scaled), Key::from_scaled_offset(o, e));
+                assert_eq!(Key::from_offset(scaled).distance(), scale_by_power(at_one.distance(), e));
             }
         }
     }
@@ -165,7 +173,7 @@ mod tests {
     #[test]
     fn there_is_one_zero() {
         for exponent in [-1300, -1336, -1338, -1400, -3000] {
-            let (tiny, zero) = (Key::of_scaled_offset([1.0, 0.0, 0.0], exponent), Key::ZERO);
+            let (tiny, zero) = (Key::from_scaled_offset([1.0, 0.0, 0.0], exponent), Key::ZERO);
             assert_eq!(tiny == zero, exponent < -1337, "{exponent}: {tiny:?}");
             assert_eq!(tiny == zero, tiny.cmp(&zero) == Ordering::Equal);
         }
@@ -176,7 +184,7 @@ mod tests {
         for e in [-400, 400] {
             let at = power_of_two(e);
             for x in [at.next_down(), at, at.next_up()] {
-                assert_eq!(key(x), Key::of_scaled_offset([x, 0.0, 0.0], 0), "{x:e}");
+                assert_eq!(key(x), Key::from_scaled_offset([x, 0.0, 0.0], 0), "{x:e}");
             }
         }
     }

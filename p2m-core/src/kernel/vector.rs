@@ -1,62 +1,68 @@
-//! Three-vectors as arrays, with the order of operations spelled out: the contract fixes every rounding, so no
-//! expression of the kernel may depend on how a library sums.
+//! Vectors of three f64 as arrays, with a fixed order of operations.
+//!
+//! The contract fixes every rounding, so no expression of the kernel may depend on the order in which a library sums.
 
 #![allow(clippy::inline_always, reason = "the kernels are one expression; calls would hide it from the optimiser")]
 
+/// A vector of three f64.
 pub type V3 = [f64; 3];
 
+/// Returns a - b.
 #[inline(always)]
 pub fn sub(a: V3, b: V3) -> V3 {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// (a0 b0 + a1 b1) + a2 b2, in this order everywhere.
+/// Returns the dot product (a0 b0 + a1 b1) + a2 b2, summed in this order.
 #[inline(always)]
 pub fn dot(a: V3, b: V3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// Returns the squared length.
 #[inline(always)]
 pub fn norm_squared(a: V3) -> f64 {
     dot(a, a)
 }
 
+/// Returns a + b.
 #[inline(always)]
 pub fn add(a: V3, b: V3) -> V3 {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// s a + t b
+/// Returns s a + t b.
 #[inline(always)]
 pub fn combine(s: f64, a: V3, t: f64, b: V3) -> V3 {
     [s * a[0] + t * b[0], s * a[1] + t * b[1], s * a[2] + t * b[2]]
 }
 
-/// a + s b
+/// Returns a + s b.
 #[inline(always)]
 pub fn add_scaled(a: V3, s: f64, b: V3) -> V3 {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
 }
 
-/// Smaller and larger by comparison, which compile to one instruction each; the operands are never NaN.
+/// Returns the smaller number by a comparison, which compiles to one instruction. The operands must not be NaN.
 #[inline(always)]
 pub fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
+/// Returns the larger number by a comparison, which compiles to one instruction. The operands must not be NaN.
 #[inline(always)]
 pub fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// `x` moved into the box from `low` to `high`.
+/// Returns the point of the box from `low` to `high` that is nearest to `x`.
 #[inline(always)]
 pub fn clamp(x: V3, low: V3, high: V3) -> V3 {
     let x = [smaller(x[0], high[0]), smaller(x[1], high[1]), smaller(x[2], high[2])];
     [larger(x[0], low[0]), larger(x[1], low[1]), larger(x[2], low[2])]
 }
 
-/// The corners of the smallest box around some vectors.
+/// Returns the lower and the upper corner of the smallest box around some vectors.
 #[inline(always)]
 pub fn bounds<const N: usize>(vectors: &[V3; N]) -> [V3; 2] {
     let (mut low, mut high) = (vectors[0], vectors[0]);
@@ -69,7 +75,7 @@ pub fn bounds<const N: usize>(vectors: &[V3; N]) -> [V3; 2] {
     [low, high]
 }
 
-/// The largest magnitude of any component; components are never NaN.
+/// Returns the largest magnitude of all components, none of which may be NaN.
 #[inline(always)]
 pub fn largest(vectors: &[V3]) -> f64 {
     let mut largest = 0.0;
@@ -79,15 +85,15 @@ pub fn largest(vectors: &[V3]) -> f64 {
     largest
 }
 
-/// Lexicographic order of two vectors without NaN.
+/// Returns whether `a` comes before `b` in lexicographic order. Neither has a NaN component.
 pub fn lexicographically_less(a: V3, b: V3) -> bool {
     a < b
 }
 
-/// 2^e, exactly.
+/// Returns 2^e, exactly.
 ///
 /// # Panics
-/// Unless -1022 <= e <= 1023.
+/// It panics unless -1022 <= e <= 1023.
 #[must_use]
 #[inline(always)]
 pub const fn power_of_two(e: i32) -> f64 {
@@ -95,7 +101,7 @@ pub const fn power_of_two(e: i32) -> f64 {
     f64::from_bits(((1023 + e) as u64) << 52)
 }
 
-/// floor(log2 |x|) for finite x other than zero, subnormal ones included.
+/// Returns floor(log2 |x|) for a finite x other than zero, which may be subnormal.
 pub fn exponent(x: f64) -> i32 {
     let biased = |x: f64| ((x.to_bits() >> 52) & 0x7ff) as i32;
     match biased(x) {
@@ -104,19 +110,19 @@ pub fn exponent(x: f64) -> i32 {
     }
 }
 
-/// x 2^e, rounded once if the result is subnormal, for any e that occurs (|e| < 5000).
+/// Returns x 2^e for |e| < 5000, rounded once if the result is subnormal.
 pub fn scale_by_power(x: f64, e: i32) -> f64 {
     if x == 0.0 || !x.is_finite() {
         return x;
     }
-    // Bring x into [1, 2) exactly, then place it with at most one rounding.
-    let own = exponent(x);
-    let unit = if own >= -1000 {
-        x * power_of_two((-own).max(-1022)) * if own == 1023 { 0.5 } else { 1.0 }
+    // First x is scaled exactly into [1, 2), and then to its final exponent with at most one rounding.
+    let from = exponent(x);
+    let unit = if from >= -1000 {
+        x * power_of_two((-from).max(-1022)) * if from == 1023 { 0.5 } else { 1.0 }
     } else {
-        x * power_of_two(1000) * power_of_two(-own - 1000)
+        x * power_of_two(1000) * power_of_two(-from - 1000)
     };
-    let target = own.saturating_add(e);
+    let target = from.saturating_add(e);
     if target > 1023 {
         unit * f64::INFINITY
     } else if target >= -1022 {
@@ -150,7 +156,7 @@ mod tests {
         assert_eq!(scale_by_power(1.5, -1075), f64::from_bits(1));
         assert_eq!(scale_by_power(f64::MAX, -2100), 0.0);
         assert_eq!(scale_by_power(f64::from_bits(1), 2097), power_of_two(1023));
-        // Twice rounded, 1 + 2^-52 at the last place of a subnormal would move the tie.
+        // If this were rounded twice, the first rounding would make it a tie.
         let above_tie = 1.0 + f64::EPSILON;
         assert_eq!(scale_by_power(above_tie, -1075), f64::from_bits(1));
     }

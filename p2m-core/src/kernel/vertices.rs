@@ -1,16 +1,18 @@
-//! Triangles whose nearest point is certainly a vertex, eight at a time.
+//! Detection of triangles whose nearest point is certainly a vertex, eight at a time.
 //!
-//! Far from a mesh the triangles around a vertex tie; which of them has the lowest number is all that is left to know.
+//! For a query far from a mesh, all triangles around the nearest vertex have equal keys, and only the lowest id among
+//! them remains to be found.
 
-use super::scalar::{OUTWARD_MARGIN, PLAIN_MAX, PLAIN_MIN};
+use super::triangle::{MAX_PLAIN_SIZE, MIN_PLAIN_SIZE, OUTWARD_MARGIN};
 use super::vector::{V3, larger, smaller};
 
-/// Triangles side by side.
+/// The number of triangles that are computed at once.
 pub const SIDE_BY_SIDE: usize = 8;
 type Row = [f64; SIDE_BY_SIDE];
 
-/// The squares of the keys of triangles whose nearest point is certainly a vertex, bit for bit those of
-/// [`triangle`](super::scalar::triangle); infinity for the others. Coordinate k of corner v is in `corners[v][k]`.
+/// Returns the squares of the keys of triangles whose nearest point is certainly a vertex, with the bits of
+/// [`triangle`](super::triangle::triangle), and infinity for the others. `corners[v][k]` has coordinate k of vertex v
+/// of each triangle.
 #[inline(always)]
 #[allow(clippy::needless_range_loop, reason = "rows side by side")]
 pub fn certain_vertices(query: V3, corners: &[[Row; 3]; 3]) -> Row {
@@ -39,14 +41,14 @@ pub fn certain_vertices(query: V3, corners: &[[Row; 3]; 3]) -> Row {
                 let outward = x * (offsets[w][0][i] - x) + y * (offsets[w][1][i] - y) + z * (offsets[w][2][i] - z);
                 least = smaller(outward, least);
             }
-            let certain = least > OUTWARD_MARGIN * (size[i] * size[i]);
-            result[i] = if certain { squares[v][i] } else { result[i] };
+            let is_certain = least > OUTWARD_MARGIN * (size[i] * size[i]);
+            result[i] = if is_certain { squares[v][i] } else { result[i] };
         }
     }
     for i in 0..SIDE_BY_SIDE {
-        // Squares of plain sizes, at least 2^-38 of the size away, are plain keys.
-        let plain = size[i] >= PLAIN_MIN && size[i] <= PLAIN_MAX;
-        result[i] = if plain { result[i] } else { f64::INFINITY };
+        // The square is plain: the size is, and the distance is at least 2^-38 of it.
+        let is_plain = size[i] >= MIN_PLAIN_SIZE && size[i] <= MAX_PLAIN_SIZE;
+        result[i] = if is_plain { result[i] } else { f64::INFINITY };
     }
     result
 }
@@ -55,7 +57,7 @@ pub fn certain_vertices(query: V3, corners: &[[Row; 3]; 3]) -> Row {
 #[allow(clippy::needless_range_loop, reason = "rows side by side")]
 mod tests {
     use super::*;
-    use crate::kernel::scalar;
+    use crate::kernel::triangle::triangle;
     use rand::RngExt;
 
     #[test]
@@ -71,9 +73,9 @@ mod tests {
             for v in 0..3 {
                 for k in 0..3 {
                     for i in 0..SIDE_BY_SIDE {
-                        // Every fifth triangle has a vertex twice.
-                        let again = v == 2 && i == 4;
-                        corners[v][k][i] = if again { corners[0][k][i] } else { unit() * scale };
+                        // The fifth triangle has two equal vertices.
+                        let is_repeated = v == 2 && i == 4;
+                        corners[v][k][i] = if is_repeated { corners[0][k][i] } else { unit() * scale };
                     }
                 }
             }
@@ -81,7 +83,7 @@ mod tests {
             let squares = certain_vertices(query, &corners);
             for i in 0..SIDE_BY_SIDE {
                 let vertices = [0, 1, 2].map(|v: usize| [0, 1, 2].map(|k: usize| corners[v][k][i]));
-                let key = scalar::triangle(query, vertices, f64::INFINITY).expect("nothing is beyond infinity").key;
+                let key = triangle(query, vertices, f64::INFINITY).expect("no key exceeds infinity").key;
                 if squares[i] < f64::INFINITY {
                     assert_eq!(key.plain_square(), Some(squares[i]), "{query:?} {vertices:?}");
                     certain += 1;

@@ -1,58 +1,58 @@
-//! Every stage of the predicates against integers.
+//! Tests of every stage of the predicates against big integers.
 
-use super::staged::{self, PredicateStage, RANGE};
+use super::adaptive::{self, PredicateStage, RANGE};
 use super::*;
 use p2m_testkit::{Cases, cases, rng, vector};
 use rand::{Rng, RngExt};
 
 type Point = [f64; 3];
 
-fn integers_orientation([a, b, c, d]: [Point; 4]) -> Ordering {
+fn orientation_by_integers([a, b, c, d]: [Point; 4]) -> Ordering {
     let exponent = common_exponent([a, b, c, d].as_flattened());
     let [b, c, d] = [b, c, d].map(|p| difference(p, a, exponent));
-    integers::sign(&integers::dot(&integers::cross(&b, &c), &d))
+    exact::sign(&exact::dot(&exact::cross(&b, &c), &d))
 }
 
-/// Whether all stages that are sure of a sign say what the integers say; those that were, of filter, whole numbers,
-/// double, adaptive.
+/// Asserts that all stages that are certain of a sign agree with the integers. Returns which of the filter, fixed
+/// point, double-double and the adaptive predicate were certain.
 fn check_sphere(points: [Point; 4], e: Point) -> [bool; 4] {
-    let expected = integers_insphere(points, e);
+    let expected = insphere_by_integers(points, e);
     let [a, b, c, d] = points;
     assert_eq!(insphere(a, b, c, d, e), expected, "{points:?} {e:?}");
-    let filter = staged::sphere_filter(points, e).sign();
+    let filter = adaptive::sphere_filter(points, e).sign();
     assert!(filter.is_none_or(|sign| sign == expected), "{points:?} {e:?}");
-    let double = staged::sphere_double(points, e);
+    let double = adaptive::sphere_double(points, e);
     assert!(double.is_none_or(|sign| sign == expected), "{points:?} {e:?}");
-    let (sign, stage) = staged::sphere_exact(points, e);
+    let (sign, stage) = adaptive::sphere_exact(points, e);
     assert_eq!(sign, expected, "{stage:?} {points:?} {e:?}");
-    assert_eq!(staged::sphere_adaptive(points, e), expected, "{points:?} {e:?}");
+    assert_eq!(adaptive::sphere_adaptive(points, e), expected, "{points:?} {e:?}");
     [filter.is_some(), stage == PredicateStage::Whole, double.is_some(), true]
 }
 
 fn check_orientation(points: [Point; 4]) -> [bool; 2] {
-    let expected = integers_orientation(points);
+    let expected = orientation_by_integers(points);
     let [a, b, c, d] = points;
     assert_eq!(orientation_3d(a, b, c, d), expected, "{points:?}");
-    // Of a, b, c as seen from d: the other way round.
-    let filter = staged::orientation_filter([a, b, c].map(|p| std::array::from_fn(|k| p[k] - d[k]))).sign();
+    // The determinant of a, b and c relative to d has the opposite sign.
+    let filter = adaptive::orientation_filter([a, b, c].map(|p| std::array::from_fn(|k| p[k] - d[k]))).sign();
     assert!(filter.is_none_or(|sign| sign == expected.reverse()), "{points:?}");
-    let (sign, stage) = staged::orientation_exact([a, b, c], d);
+    let (sign, stage) = adaptive::orientation_exact([a, b, c], d);
     assert_eq!(sign, expected.reverse(), "{stage:?} {points:?}");
     [filter.is_some(), stage == PredicateStage::Whole]
 }
 
-/// Both predicates on many points; how often each stage was sure.
+/// Checks both predicates on many points, and returns how often each stage was certain.
 fn check_all(name: &str, cases: Cases, mut points: impl FnMut(&mut dyn Rng) -> [Point; 5]) -> [usize; 4] {
-    let mut sure = [0; 4];
+    let mut certain = [0; 4];
     for case in cases {
         let [a, b, c, d, e] = points(&mut rng(name, case));
-        for (count, sure) in sure.iter_mut().zip(check_sphere([a, b, c, d], e)) {
-            *count += usize::from(sure);
+        for (count, is_certain) in certain.iter_mut().zip(check_sphere([a, b, c, d], e)) {
+            *count += usize::from(is_certain);
         }
         check_orientation([a, b, c, d]);
         check_orientation([b, c, d, e]);
     }
-    sure
+    certain
 }
 
 fn random(mut rng: &mut dyn Rng) -> Point {
@@ -95,7 +95,7 @@ fn whole_numbers_are_decided_in_integers() {
         });
         assert_eq!(whole, cases.len());
     }
-    // The largest determinants that there are.
+    // These are the largest possible determinants.
     let most = 2f64.powi(61).next_down();
     let corner = |i: u32| [0, 1, 2].map(|k| if i >> k & 1 == 1 { most } else { -most });
     for i in 0..8u32.pow(4) {
@@ -111,7 +111,7 @@ fn points_rounded_onto_a_sphere_are_decided_in_double_double() {
     let [filter, _, double, _] =
         check_all("predicates sphere", cases.clone(), |rng| [0; 5].map(|_| rounded(random(rng), 1.0)));
     assert!(cases.have_fewer_than(1000, filter) && cases.have_more_than(19_900, double), "{filter} {double}");
-    // On a small part of it.
+    // The points are on a small part of the sphere.
     let [.., double, _] = check_all("predicates cap", cases.clone(), |rng| {
         let centre = rounded(random(rng), 1.0);
         [0; 5].map(|_| {
@@ -130,7 +130,7 @@ fn points_of_a_box_are_on_its_sphere() {
         [0; 5].map(|_| std::array::from_fn(|k| if rng.random_range(0..2) == 0 { low[k] } else { high[k] }))
     });
     assert!(cases.have_more_than(10_000, whole) && (cases.is_replay() || double < cases.len()), "{whole} {double}");
-    // One of them moved by one unit in the last place, or far along an axis.
+    // One coordinate is changed by one unit in the last place, or far.
     check_all("predicates near box", cases.clone(), |rng| {
         let [low, high] = [random(rng), random(rng)];
         let mut points: [Point; 5] =
@@ -141,7 +141,7 @@ fn points_of_a_box_are_on_its_sphere() {
     });
 }
 
-/// Rounded grids, circles and planes: determinants of zero, and of one bit.
+/// Rounded grids, lines and planes give determinants of zero and of one bit.
 #[test]
 fn nearly_degenerate_points_are_decided_rightly() {
     let spacing = [0.01, 0.1, 1.0 / 3.0];
@@ -162,14 +162,14 @@ fn nearly_degenerate_points_are_decided_rightly() {
             [x, 0.3 * x, 0.7 * x]
         })
     });
-    // Neighbouring floats.
+    // The coordinates are neighbouring floats.
     check_all("predicates last bits", cases.clone(), |rng| {
         let p = random(rng);
         [0; 5].map(|_| p.map(|x| f64::from_bits(x.to_bits() + rng.random_range(0..4u64))))
     });
 }
 
-/// On the border of the range of the stages, and of any exponents.
+/// The points are on the border of the range of the stages, or have any exponents.
 #[test]
 fn exponents_at_the_border_and_beyond_are_decided_rightly() {
     let least = *RANGE.start();
@@ -186,7 +186,7 @@ fn exponents_at_the_border_and_beyond_are_decided_rightly() {
         for case in cases(3000, 200) {
             let rng: &mut dyn Rng = &mut rng("predicates any", case);
             let [a, b, c, d, e] = [0; 5].map(|_| random(rng).map(|x| x * 2f64.powi(rng.random_range(low..high))));
-            let expected = integers_insphere([a, b, c, d], e);
+            let expected = insphere_by_integers([a, b, c, d], e);
             assert_eq!(insphere(a, b, c, d, e), expected);
             assert_eq!(insphere(b, c, a, d, e), expected);
             assert_eq!(insphere(a, b, d, c, e), expected.reverse());

@@ -1,4 +1,8 @@
-use super::{Primitive, Projection, UNBOUNDED, in_box};
+//! Points of a scene.
+
+use super::box_intersection;
+use super::interface::Primitive;
+use super::projection::Projection;
 use crate::real::to_f64_array;
 use crate::{Aabb, Real};
 use nalgebra::Point3;
@@ -6,12 +10,12 @@ use nalgebra::Point3;
 /// A point of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point<T: Real> {
-    /// Where it is.
+    /// The position of the point.
     pub position: Point3<T>,
 }
 
 impl<T: Real> Point<T> {
-    /// The point at `position`.
+    /// Creates the point at `position`.
     #[must_use]
     pub fn new(position: Point3<T>) -> Self {
         Self { position }
@@ -24,11 +28,13 @@ impl<T: Real> Primitive<T> for Point<T> {
         Aabb::of_points(&[self.position])
     }
 
+    /// Returns the point itself.
+    ///
     /// # Accuracy
-    /// The distance has a relative error of at most 4 u (+ eta).
+    /// The distance has a relative error of at most 4 u, plus eta.
     #[inline(always)]
     fn project(&self, query: &Point3<T>) -> Projection {
-        self.project_within(query, f64::INFINITY).expect(UNBOUNDED)
+        self.project_within(query, f64::INFINITY).expect("no key exceeds infinity")
     }
 
     #[inline(always)]
@@ -41,6 +47,6 @@ impl<T: Real> Primitive<T> for Point<T> {
     }
 
     fn meets_box(&self, bounds: &Aabb<T>) -> bool {
-        in_box::meets(std::array::from_ref(&self.position), bounds)
+        box_intersection::intersects_box(std::array::from_ref(&self.position), bounds)
     }
 }

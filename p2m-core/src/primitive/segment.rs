@@ -1,17 +1,21 @@
-use super::{Primitive, Projection, UNBOUNDED, in_box};
+//! Segments of a scene.
+
+use super::box_intersection;
+use super::interface::Primitive;
+use super::projection::Projection;
 use crate::real::to_f64_array;
 use crate::{Aabb, Real};
 use nalgebra::Point3;
 
-/// A line segment. Two equal vertices make it a point.
+/// A line segment. It is a point if its vertices are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment<T: Real> {
-    /// Its end points.
+    /// The two end points.
     pub vertices: [Point3<T>; 2],
 }
 
 impl<T: Real> Segment<T> {
-    /// The segment from `a` to `b`.
+    /// Creates the segment from `a` to `b`.
     #[must_use]
     pub fn new(a: Point3<T>, b: Point3<T>) -> Self {
         Self { vertices: [a, b] }
@@ -26,7 +30,7 @@ impl<T: Real> Primitive<T> for Segment<T> {
 
     #[inline(always)]
     fn project(&self, query: &Point3<T>) -> Projection {
-        self.project_within(query, f64::INFINITY).expect(UNBOUNDED)
+        self.project_within(query, f64::INFINITY).expect("no key exceeds infinity")
     }
 
     #[inline(always)]
@@ -39,6 +43,6 @@ impl<T: Real> Primitive<T> for Segment<T> {
     }
 
     fn meets_box(&self, bounds: &Aabb<T>) -> bool {
-        in_box::meets(&self.vertices, bounds)
+        box_intersection::intersects_box(&self.vertices, bounds)
     }
 }

@@ -1,4 +1,10 @@
-use super::{Point, Primitive, Projection, Segment, Triangle};
+//! The primitives of a mixed scene.
+
+use super::interface::Primitive;
+use super::point::Point;
+use super::projection::Projection;
+use super::segment::Segment;
+use super::triangle::Triangle;
 use crate::{Aabb, Real};
 use nalgebra::Point3;
 
@@ -6,16 +12,16 @@ use nalgebra::Point3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Shape<T: Real> {
-    /// A point.
+    /// A primitive that is a point.
     Point(Point<T>),
-    /// A segment.
+    /// A primitive that is a segment.
     Segment(Segment<T>),
-    /// A triangle.
+    /// A primitive that is a triangle.
     Triangle(Triangle<T>),
 }
 
 impl<T: Real> Shape<T> {
-    /// The vertices, one to three.
+    /// Returns the one to three vertices.
     #[must_use]
     pub fn vertices(&self) -> &[Point3<T>] {
         match self {

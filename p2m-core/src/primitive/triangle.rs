@@ -1,17 +1,21 @@
-use super::{Primitive, Projection, UNBOUNDED, in_box};
+//! Triangles of a scene.
+
+use super::box_intersection;
+use super::interface::Primitive;
+use super::projection::Projection;
 use crate::real::to_f64_array;
 use crate::{Aabb, Real};
 use nalgebra::Point3;
 
-/// A triangle with its inside. Three collinear vertices make it a segment, three equal ones a point.
+/// A triangle with its interior. It is a segment if its vertices are collinear, and a point if they are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle<T: Real> {
-    /// Its vertices. Their order numbers the features and does not change the distance or the nearest point.
+    /// The vertices. Their order numbers the features, and does not change the distance or the nearest point.
     pub vertices: [Point3<T>; 3],
 }
 
 impl<T: Real> Triangle<T> {
-    /// The triangle of `a`, `b` and `c`.
+    /// Creates the triangle of `a`, `b` and `c`.
     #[must_use]
     pub fn new(a: Point3<T>, b: Point3<T>, c: Point3<T>) -> Self {
         Self { vertices: [a, b, c] }
@@ -26,7 +30,7 @@ impl<T: Real> Primitive<T> for Triangle<T> {
 
     #[inline(always)]
     fn project(&self, query: &Point3<T>) -> Projection {
-        self.project_within(query, f64::INFINITY).expect(UNBOUNDED)
+        self.project_within(query, f64::INFINITY).expect("no key exceeds infinity")
     }
 
     #[inline(always)]
@@ -39,6 +43,6 @@ impl<T: Real> Primitive<T> for Triangle<T> {
     }
 
     fn meets_box(&self, bounds: &Aabb<T>) -> bool {
-        in_box::meets(&self.vertices, bounds)
+        box_intersection::intersects_box(&self.vertices, bounds)
     }
 }

@@ -1,42 +1,50 @@
-//! Rays and primitives in integers of any length: what decides where rounding could.
+//! Intersections of rays and primitives in big integers, for cases that f64 cannot decide.
 //!
-//! Everything is relative to the origin of the ray. A, B, C are the vertices, D is the direction; positions are
-//! multiples of one power of two, the direction of another, and parameters of their quotient.
+//! All positions are relative to the origin of the ray. A, B and C are the vertices and D is the direction.
+//! Positions are multiples of one power of two, the direction is a multiple of another one, and parameters are
+//! multiples of their quotient.
 
-use super::crossing::Found;
 use super::line::Ray;
-use crate::integers::{Fraction, Vector, common_exponent, cross, cross_component, difference, dot, integer, sign};
+use crate::exact::{Fraction, Vector, common_exponent, cross, cross_component, difference, dot, integer, sign};
 use crate::kernel::vector::V3;
 use dashu_int::IBig;
 use std::cmp::Ordering;
 
-/// A ray and some vertices.
+/// A ray and the vertices of a primitive.
 pub(super) struct Exact {
     vertices: Vec<Vector>,
     direction: Vector,
-    /// Of positions.
+    /// The exponent of two of positions.
     unit: i32,
-    /// Of the direction.
+    /// The exponent of two of the direction.
     direction_unit: i32,
     radius: IBig,
 }
 
-/// Where a line is nearest to a segment, or meets a triangle that it lies in the plane of: one point or a stretch.
+/// The point of a primitive at the parameter of a hit, as weights of its vertices.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LineHit {
+    pub(super) parameter: f64,
+    pub(super) weights: V3,
+}
+
+/// The part of a line that is nearest to a segment, or inside of a triangle in whose plane the line lies: one point, or
+/// an interval of parameters. Each end has its parameter and the weights of the vertices.
 struct Span {
     ends: [(Fraction, V3); 2],
 }
 
-/// The point of the line of a ray that is nearest to `point`, and how far from the origin of the ray it lies, measured
-/// along `axis`, on which the direction is largest: each rounded once.
-pub fn foot(ray: &Ray, point: &V3, axis: usize) -> (V3, f64) {
+/// Returns the projection of `point` onto the line of a ray, and the coordinate of that projection along `axis` from
+/// the origin of the ray, in the sense of the direction, which is largest on that axis. Each is rounded once.
+pub fn project_onto_ray(ray: &Ray, point: &V3, axis: usize) -> (V3, f64) {
     let unit = common_exponent(ray.origin.iter().chain(point));
     let direction_unit = common_exponent(&ray.direction);
     let d = ray.direction.map(|x| integer(x, direction_unit));
     let (square, along) = (dot(&d, &d), dot(&d, &difference(*point, ray.origin, unit)));
     let over = |numerator: IBig| Fraction { numerator, denominator: square.clone() }.round(unit);
-    let place = |k: usize| over(integer(ray.origin[k], unit) * &square + &along * &d[k]);
+    let coordinate = |k: usize| over(integer(ray.origin[k], unit) * &square + &along * &d[k]);
     let ahead = if ray.direction[axis] < 0.0 { -&d[axis] } else { d[axis].clone() };
-    ([place(0), place(1), place(2)], over(along * ahead))
+    ([coordinate(0), coordinate(1), coordinate(2)], over(along * ahead))
 }
 
 impl Exact {
@@ -52,7 +60,7 @@ impl Exact {
         }
     }
 
-    /// The sign of D . (V_i x V_j): on which side of the line the edge from i to j passes.
+    /// Returns the sign of D . (V_i x V_j), which is the side on which the line passes the edge from i to j.
     pub(super) fn side(&self, i: usize, j: usize) -> Ordering {
         sign(&self.moment(i, j))
     }
@@ -61,29 +69,29 @@ impl Exact {
         dot(&self.direction, &cross(&self.vertices[i], &self.vertices[j]))
     }
 
-    /// The same for the line that is moved by an infinitely small amount along x, by an infinitely smaller one along y
-    /// and by a still smaller one along z. Moved by w, the moment changes by -w . ((V_j - V_i) x D). `Equal` only for an
-    /// edge along the line.
+    /// Returns the side of an edge after the line is moved by an infinitely small amount along x, by an infinitely
+    /// smaller one along y and by a still smaller one along z. A move by w changes the moment by -w . ((V_j - V_i) x
+    /// D). The result is `Equal` only for an edge along the line.
     pub(super) fn perturbed_side(&self, i: usize, j: usize) -> Ordering {
         let edge: Vector = std::array::from_fn(|k| &self.vertices[j][k] - &self.vertices[i][k]);
         let change = |k| sign(&cross_component(&edge, &self.direction, k)).reverse();
         (0..3).map(change).fold(self.side(i, j), Ordering::then)
     }
 
-    /// The parameter of the plane of a triangle that the line is not parallel to, and the weights of its vertices there,
-    /// all rounded to nearest.
+    /// Returns the parameter of the plane of a triangle that is not parallel to the line, and the weights of the
+    /// vertices there, all rounded to nearest.
     pub(super) fn face(&self) -> (f64, V3) {
         let moments = [self.moment(1, 2), self.moment(2, 0), self.moment(0, 1)];
         let height = dot(&self.vertices[0], &cross(&self.vertices[1], &self.vertices[2]));
         let sum = &moments[0] + &moments[1] + &moments[2];
-        let (sum, turn) = if sign(&sum) == Ordering::Less { (-sum, -IBig::ONE) } else { (sum, IBig::ONE) };
-        let over = |x: IBig| Fraction { numerator: x * &turn, denominator: sum.clone() };
+        let (sum, orientation) = if sign(&sum) == Ordering::Less { (-sum, -IBig::ONE) } else { (sum, IBig::ONE) };
+        let over = |x: IBig| Fraction { numerator: x * &orientation, denominator: sum.clone() };
         let parameter = over(height).round(self.parameter_unit());
         (parameter, moments.map(|m| over(m).round(0)))
     }
 
-    /// A triangle that the line lies in the plane of, or one that is no more than a segment or a point.
-    pub(super) fn flat(&self, ray: &Ray) -> Option<Found> {
+    /// Returns the hit of a triangle in whose plane the line lies, or of a triangle without area.
+    pub(super) fn coplanar(&self, ray: &Ray) -> Option<LineHit> {
         let mut all: Option<Span> = None;
         for (i, j) in [(0, 1), (1, 2), (2, 0)] {
             let Some(Span { ends: [from, to] }) = self.span(i, j, &IBig::ZERO) else { continue };
@@ -100,8 +108,8 @@ impl Exact {
         self.in_range(ray, &all?)
     }
 
-    /// A segment, or a point as one of two equal vertices: where the ray is nearest to it, if that is within its radius.
-    pub(super) fn wire(&self, ray: &Ray) -> Option<Found> {
+    /// Returns the hit of a segment or a point: the parameter that is nearest to it, if that is within the radius.
+    pub(super) fn segment(&self, ray: &Ray) -> Option<LineHit> {
         self.in_range(ray, &self.span(0, self.vertices.len() - 1, &self.radius)?)
     }
 
@@ -109,38 +117,39 @@ impl Exact {
         self.unit - self.direction_unit
     }
 
-    /// The first parameter of a span that is in the range of the ray.
-    fn in_range(&self, ray: &Ray, span: &Span) -> Option<Found> {
+    /// Returns the first parameter of a span that is in the range of the ray.
+    fn in_range(&self, ray: &Ray, span: &Span) -> Option<LineHit> {
         let [(first, first_weights), (last, last_weights)] = &span.ends;
         let [t, end] = [first, last].map(|t| t.round(self.parameter_unit()));
         if t > ray.max || end < ray.min {
             return None;
         }
         if t >= ray.min {
-            return Some(Found { parameter: t, weights: *first_weights });
+            return Some(LineHit { parameter: t, weights: *first_weights });
         }
-        // The range begins inside.
-        let share = self.share(ray.min, first, last);
-        let weights = std::array::from_fn(|k| first_weights[k] * (1.0 - share) + last_weights[k] * share);
-        Some(Found { parameter: ray.min, weights })
+        // The range of the ray begins inside of the span.
+        let fraction = self.fraction_between(ray.min, first, last);
+        let weights = std::array::from_fn(|k| first_weights[k] * (1.0 - fraction) + last_weights[k] * fraction);
+        Some(LineHit { parameter: ray.min, weights })
     }
 
-    /// How far between two parameters the range begins, from 0 to 1.
-    fn share(&self, begin: f64, first: &Fraction, last: &Fraction) -> f64 {
+    /// Returns the position of `begin` between two parameters, from 0 to 1.
+    fn fraction_between(&self, begin: f64, first: &Fraction, last: &Fraction) -> f64 {
         if begin.is_infinite() {
             return 1.0;
         }
         let unit = self.parameter_unit();
-        let own = common_exponent([&begin]).min(unit);
-        let begin = integer(begin, own);
-        let lift = |t: &Fraction| (&t.numerator << (unit - own).unsigned_abs() as usize, t.denominator.clone());
+        let finer = common_exponent([&begin]).min(unit);
+        let begin = integer(begin, finer);
+        let lift = |t: &Fraction| (&t.numerator << (unit - finer).unsigned_abs() as usize, t.denominator.clone());
         let ((n1, d1), (n2, d2)) = (lift(first), lift(last));
-        // (begin - n1 / d1) / (n2 / d2 - n1 / d1)
-        let share = Fraction { numerator: (begin * &d1 - &n1) * &d2, denominator: n2 * d1 - n1 * d2 };
-        share.round(0).clamp(0.0, 1.0)
+        // The position is (begin - n1 / d1) / (n2 / d2 - n1 / d1).
+        let fraction = Fraction { numerator: (begin * &d1 - &n1) * &d2, denominator: n2 * d1 - n1 * d2 };
+        fraction.round(0).clamp(0.0, 1.0)
     }
 
-    /// Where the line is nearest to the segment from vertex i to vertex j, if that is within `radius`.
+    /// Returns the span in which the line is nearest to the segment from vertex i to vertex j, if that
+    /// is within `radius`.
     ///
     /// A point of the segment is P = A + s E. Its squared distance from the line is |P|^2 - (P . D)^2 / D^2; with
     /// a = D . D, b = D . E, c = E . E it is least at s = ((A . D) b - a (A . E)) / (a c - b^2).
@@ -149,16 +158,16 @@ impl Exact {
         let edge: Vector = std::array::from_fn(|k| &to[k] - &from[k]);
         let [a, b, c] = [dot(d, d), dot(d, &edge), dot(&edge, &edge)];
         let along = dot(from, d);
-        let steep = &a * &c - &b * &b;
-        let parallel = sign(&steep) == Ordering::Equal;
-        // s = n / q, clamped to the segment.
+        let determinant = &a * &c - &b * &b;
+        let parallel = sign(&determinant) == Ordering::Equal;
+        // The position on the segment is s = n / q, clamped to its ends.
         let (n, q) = if parallel {
             (IBig::ZERO, IBig::ONE)
         } else {
             let n = &along * &b - &a * dot(from, &edge);
-            (n.max(IBig::ZERO).min(steep.clone()), steep)
+            (n.max(IBig::ZERO).min(determinant.clone()), determinant)
         };
-        // q P
+        // This is the point P of the segment, times q.
         let point: Vector = std::array::from_fn(|k| &from[k] * &q + &edge[k] * &n);
         let ahead = dot(&point, d);
         let limit = radius * &q;

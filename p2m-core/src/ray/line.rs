@@ -1,21 +1,21 @@
-//! Rays: what is asked.
+//! Rays, lines and parts of lines.
 
 use crate::Real;
 use crate::kernel::vector::V3;
 use crate::real::to_f64_array;
 use nalgebra::{Point3, Vector3};
 
-/// Why a ray cannot be asked for.
+/// An error of making a ray.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RayError {
     /// A coordinate of the origin or of the direction is NaN or infinite.
     #[error("a coordinate of the ray is not finite")]
     NonFinite,
-    /// A direction without length has no line.
+    /// The direction is zero.
     #[error("the direction of the ray is zero")]
     ZeroDirection,
-    /// There is no parameter between these.
+    /// The lower end of the range exceeds the upper one, or one of them is NaN.
     #[error("no parameter lies between {min} and {max}")]
     EmptyRange {
         /// The lower end.
@@ -28,12 +28,11 @@ pub enum RayError {
     Radius(f64),
 }
 
-/// The points origin + t direction for all t of a range: a ray from 0 on, a line from minus infinity, a piece of one
-/// otherwise.
+/// The points origin + t direction for all parameters t of a range. A ray has the range from 0 to infinity, a line that
+/// from minus infinity to infinity, and other ranges give parts of a line.
 ///
-/// The direction has any length but zero; t counts in its lengths, so it is a distance for a direction of length 1 alone.
-/// Everything is kept in f64, in which the coordinates
-/// of an f32 scene are exact.
+/// The direction has any length but zero. Parameters count in its lengths, so they are distances only for a direction
+/// of length 1. All numbers are kept in f64, in which the coordinates of an f32 scene are exact.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
@@ -47,18 +46,28 @@ pub enum RayError {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
+    /// The point of parameter 0.
+    #[doc(hidden)]
     pub origin: V3,
+    /// The direction, which is not zero.
+    #[doc(hidden)]
     pub direction: V3,
+    /// The least parameter, inclusive.
+    #[doc(hidden)]
     pub min: f64,
+    /// The largest parameter, inclusive.
+    #[doc(hidden)]
     pub max: f64,
+    /// The distance within which segments and points are hit, in units of the scene.
+    #[doc(hidden)]
     pub radius: f64,
 }
 
 impl Ray {
-    /// The ray from a point into a direction.
+    /// Creates the ray from a point into a direction.
     ///
     /// # Errors
-    /// [`RayError::NonFinite`] and [`RayError::ZeroDirection`].
+    /// It returns [`RayError::NonFinite`] and [`RayError::ZeroDirection`].
     pub fn new<T: Real>(origin: &Point3<T>, direction: &Vector3<T>) -> Result<Self, RayError> {
         let (origin, direction) = (to_f64_array(origin), to_f64_array(&Point3::from(*direction)));
         if !origin.iter().chain(&direction).all(|x| x.is_finite()) {
@@ -70,27 +79,29 @@ impl Ray {
         Ok(Self { origin, direction, min: 0.0, max: f64::INFINITY, radius: 0.0 })
     }
 
-    /// The ray from a point through another one, which has the parameter 1 up to the rounding of their difference.
+    /// Creates the ray from a point through another one, which has the parameter 1 up to the rounding
+    /// of their difference.
     ///
     /// # Errors
-    /// [`RayError::ZeroDirection`] for equal points, [`RayError::NonFinite`], also where the difference overflows.
+    /// It returns [`RayError::ZeroDirection`] for equal points and [`RayError::NonFinite`] if a coordinate or the
+    /// difference is not finite.
     pub fn through<T: Real>(origin: &Point3<T>, target: &Point3<T>) -> Result<Self, RayError> {
         let [origin, target] = [to_f64_array(origin), to_f64_array(target)].map(Point3::from);
         Self::new(&origin, &(target - origin))
     }
 
-    /// Both ways, without ends.
+    /// Extends the ray to a line, whose parameters range from minus infinity to infinity.
     #[must_use]
     pub fn line(self) -> Self {
         Self { min: f64::NEG_INFINITY, max: f64::INFINITY, ..self }
     }
 
-    /// The parameters from `min` to `max`, both included; they may be infinite.
+    /// Sets the range of parameters from `min` to `max`, both included; they may be infinite.
     ///
     /// # Errors
-    /// [`RayError::EmptyRange`] if `min > max` or one is NaN.
+    /// It returns [`RayError::EmptyRange`] if `min > max` or one is NaN.
     pub fn with_range(self, min: f64, max: f64) -> Result<Self, RayError> {
-        // There is one zero, so that equal parameters have equal bits.
+        // The sums turn -0 into 0, so that equal parameters have equal bits.
         if min <= max {
             Ok(Self { min: min + 0.0, max: max + 0.0, ..self })
         } else {
@@ -98,45 +109,45 @@ impl Ray {
         }
     }
 
-    /// Segments and points are hit within this distance, in units of the scene. It does not matter to triangles.
+    /// Sets the distance within which segments and points are hit, in units of the scene. It does not affect triangles.
     ///
     /// # Errors
-    /// [`RayError::Radius`] if it is negative or not finite.
+    /// It returns [`RayError::Radius`] if the radius is negative or not finite.
     pub fn with_radius(self, radius: f64) -> Result<Self, RayError> {
         if radius >= 0.0 && radius.is_finite() { Ok(Self { radius, ..self }) } else { Err(RayError::Radius(radius)) }
     }
 
-    /// Where it begins.
+    /// Returns the point of parameter 0.
     #[must_use]
     pub fn origin(&self) -> Point3<f64> {
         Point3::from(self.origin)
     }
 
-    /// Where it goes.
+    /// Returns the direction.
     #[must_use]
     pub fn direction(&self) -> Vector3<f64> {
         Vector3::from(self.direction)
     }
 
-    /// The least and the largest parameter.
+    /// Returns the least and the largest parameter.
     #[must_use]
     pub fn range(&self) -> [f64; 2] {
         [self.min, self.max]
     }
 
-    /// How near it has to come to segments and points.
+    /// Returns the distance within which segments and points are hit.
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// The point of a parameter, rounded; NaN where that is infinite and the direction has a zero.
+    /// Returns the point of a parameter, rounded. It is NaN if the parameter is infinite and the direction has a zero.
     #[must_use]
     pub fn at(&self, parameter: f64) -> Point3<f64> {
         self.origin() + self.direction() * parameter
     }
 
-    /// Whether a parameter is in the range.
+    /// Returns whether a parameter is in the range.
     #[inline(always)]
     pub(super) fn contains(&self, parameter: f64) -> bool {
         self.min <= parameter && parameter <= self.max

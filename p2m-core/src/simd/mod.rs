@@ -1,127 +1,26 @@
-//! Lanes of f32, and the choice of an instruction set at run time.
+//! Lanes of f32 and f64, and the choice of an instruction set at run time.
 //!
-//! Algorithms are written once over [`Lanes`]. An [`SimdKernel`] that is handed to [`Isa::run`] is compiled once for
-//! each instruction set, inside of a function that enables it; everything on the way is inlined, so nothing checks the
-//! processor again. Only the folder `isa` has `unsafe`.
+//! Algorithms are written once over [`Lanes`]. A [`SimdKernel`] that is passed to [`Isa::run`] is compiled once for
+//! each instruction set, inside of a function that enables it. Everything that it calls is inlined, so the processor is
+//! not checked again. Only the folder `isa` has `unsafe` code.
 //!
-//! Results of lanes may differ between instruction sets in their last bits. So they are used in filters with a proven
-//! error band, never for an answer.
+//! Lanes may differ between instruction sets in the last bits of their results. So they are used in filters with a
+//! proven error bound, and never for an answer.
 
 mod isa;
+mod lanes;
 mod portable;
 
-pub use isa::Isa;
-pub use isa::{prefetch, prefetch_lines};
+pub use isa::{Isa, prefetch, prefetch_lines};
+pub use lanes::{Doubles, EightLanes, InstructionSet, Lanes, SimdKernel, lane_of_key, number_of_key};
 pub use portable::Portable;
-
-/// Several f32 that are computed with at once.
-///
-/// Addition, subtraction and multiplication round to nearest; [`mul_add`](Self::mul_add) rounds once or twice.
-pub trait Lanes: Copy {
-    /// How many.
-    const LEN: usize;
-    /// The same number in every lane.
-    fn splat(x: f32) -> Self;
-    /// The first [`LEN`](Self::LEN) numbers of a slice, which has that many.
-    fn load(from: &[f32]) -> Self;
-    /// The same of whole numbers.
-    fn load_u16(from: &[u16]) -> Self;
-    /// The same of smaller ones.
-    fn load_u8(from: &[u8]) -> Self;
-    /// Writes the lanes to the front of a slice.
-    fn store(self, to: &mut [f32]);
-    fn add(self, other: Self) -> Self;
-    fn sub(self, other: Self) -> Self;
-    fn mul(self, other: Self) -> Self;
-    /// self * factor + summand.
-    fn mul_add(self, factor: Self, summand: Self) -> Self;
-    /// a b - c d with a relative error of at most 2^-22, if each product is a whole number times a power of two that is
-    /// the same for both, below 2^48 of it.
-    fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self;
-    /// The smaller one, `other` if either is NaN.
-    fn min(self, other: Self) -> Self;
-    /// The larger one, `other` if either is NaN.
-    fn max(self, other: Self) -> Self;
-    /// 1 / self with a relative error of at most 2^-22 for normal results; anything for 0 and for what is not finite.
-    fn reciprocal(self) -> Self;
-    /// `yes` where self < limit, `no` elsewhere and where either is NaN.
-    fn if_below(self, limit: Self, yes: Self, no: Self) -> Self;
-    /// One bit for each lane, the first one lowest: whether self <= limit; not if either is NaN.
-    fn at_most(self, limit: Self) -> u32;
-    /// The smallest of all lanes, none of which is NaN.
-    fn smallest(self) -> f32;
-}
-
-/// Eight lanes, which can be sorted.
-pub trait EightLanes: Lanes {
-    /// The lanes that are at most `limit`, none of which is negative, as keys in descending order at the front of
-    /// `keys`; the other keys are 0. Returns how many there are.
-    ///
-    /// A key is made of the bits of the number with the lowest four replaced by 8 + lane, so keys are ordered as their
-    /// numbers are and [`number_of_key`] is at most 15 units in the last place too small.
-    fn sorted_keys(self, limit: f32, keys: &mut [u32; 8]) -> usize;
-}
-
-/// Eight f64 that are computed with at once, with roundings as of [`Lanes`].
-pub trait Doubles: Copy {
-    /// The same number in every lane.
-    fn splat(x: f64) -> Self;
-    /// The first eight numbers of a slice, which has that many.
-    fn load(from: &[f64]) -> Self;
-    /// Writes the lanes to the front of a slice.
-    fn store(self, to: &mut [f64]);
-    fn sub(self, other: Self) -> Self;
-    fn mul(self, other: Self) -> Self;
-    /// self * factor + summand.
-    fn mul_add(self, factor: Self, summand: Self) -> Self;
-    /// The smaller one, `other` if either is NaN.
-    fn min(self, other: Self) -> Self;
-    /// The larger one, `other` if either is NaN.
-    fn max(self, other: Self) -> Self;
-    fn sqrt(self) -> Self;
-    /// `yes` where self <= limit, `no` elsewhere and where either is NaN.
-    fn if_at_most(self, limit: Self, yes: Self, no: Self) -> Self;
-    /// One bit for each lane, the first one lowest: whether self <= limit; not if either is NaN.
-    fn at_most(self, limit: Self) -> u8;
-}
-
-/// A lower bound of the number that a key was made of.
-#[inline(always)]
-pub fn number_of_key(key: u32) -> f32 {
-    f32::from_bits(key & !15)
-}
-
-/// The lane of a key.
-#[inline(always)]
-pub fn lane_of_key(key: u32) -> usize {
-    (key & 7) as usize
-}
-
-/// An instruction set, as the two types of lanes that it computes with.
-pub trait InstructionSet {
-    /// Eight lanes.
-    type Eight: EightLanes;
-    /// As many lanes as are computed fastest: 8 or 16.
-    type Wide: Lanes;
-    /// Eight f64.
-    type Doubles: Doubles;
-}
-
-/// Something to compute with an instruction set. `run` and everything it calls has to be `#[inline(always)]`, or it is
-/// compiled without the instruction set.
-pub trait SimdKernel {
-    /// What comes of it.
-    type Output;
-    /// Computes it.
-    fn run<I: InstructionSet>(self) -> Self::Output;
-}
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use rand::RngExt;
 
-    /// What every method makes of the same numbers, eight at a time.
+    /// Applies every method of lanes to the same numbers.
     struct All<'a>(&'a [[f32; 16]; 4], &'a [u16; 16]);
 
     impl SimdKernel for All<'_> {
@@ -147,14 +46,14 @@ mod tests {
     }
 
     #[inline(always)]
-    fn chunks<L: Lanes>(x: &[[f32; 16]; 4], whole: &[u16; 16]) -> (Vec<[f32; 16]>, Vec<u32>) {
+    fn chunks<L: Lanes>(x: &[[f32; 16]; 4], integers16: &[u16; 16]) -> (Vec<[f32; 16]>, Vec<u32>) {
         let mut numbers = vec![[0.0; 16]; 13];
         let mut masks = vec![0; 1];
         let mut least = f32::INFINITY;
         let mut at = 0;
         while at < 16 {
             let [a, b, c, d] = [L::load(&x[0][at..]), L::load(&x[1][at..]), L::load(&x[2][at..]), L::load(&x[3][at..])];
-            let integers = L::load_u16(&whole[at..]);
+            let integers = L::load_u16(&integers16[at..]);
             let results = [
                 L::splat(x[0][3]),
                 integers,
@@ -186,7 +85,7 @@ mod tests {
         let mut next = || rng.random_range(-1.0f32..1.0);
         let mut x = [[0.0; 16]; 4];
         x.as_flattened_mut().fill_with(&mut next);
-        // Equal ones, zeros of both signs, large and small ones.
+        // The numbers include equal ones, zeros of both signs, and large and small ones.
         (x[1][2], x[0][5], x[1][5], x[0][7], x[0][9]) = (x[0][2], 0.0, -0.0, 1e30, -1e-30);
         (x, std::array::from_fn(|_| (next().abs() * 65535.0) as u16))
     }
@@ -194,16 +93,16 @@ mod tests {
     #[test]
     fn every_instruction_set_computes_what_the_portable_one_does() {
         for case in p2m_testkit::cases(2000, 1000) {
-            let (x, whole) = numbers(case);
-            let (expected, expected_masks) = Isa::PORTABLE.run(All(&x, &whole));
+            let (x, integers16) = numbers(case);
+            let (expected, expected_masks) = Isa::PORTABLE.run(All(&x, &integers16));
             for isa in Isa::available() {
-                let (found, masks) = isa.run(All(&x, &whole));
+                let (found, masks) = isa.run(All(&x, &integers16));
                 assert_eq!(masks, expected_masks, "{isa}");
                 for (method, (found, expected)) in found.iter().zip(&expected).enumerate() {
                     for lane in 0..16 {
                         let (f, e) = (f64::from(found[lane]), f64::from(expected[lane]));
                         let exact = match method % 14 {
-                            // Fused or not: the products are at most 1e30 in size.
+                            // The operation may be fused or not; the products are at most 1e30 in size.
                             8 => (f - e).abs() <= 2f64.powi(-23) * (f64::from(x[0][lane] * x[1][lane]).abs() + f.abs()),
                             9 => x[0][lane] == 0.0 || (f - e).abs() <= 2f64.powi(-21) * e.abs(),
                             10 => (f - e).abs() <= 2f64.powi(-22) * e.abs(),
@@ -216,7 +115,7 @@ mod tests {
         }
     }
 
-    /// What every method of eight f64 makes of the same numbers.
+    /// Applies every method of eight f64 to the same numbers.
     struct AllDoubles<'a>(&'a [[f64; 8]; 4]);
 
     impl SimdKernel for AllDoubles<'_> {
@@ -262,7 +161,7 @@ mod tests {
                 assert_eq!(mask, expected_mask, "{isa}");
                 assert_eq!(found[1..], expected[1..], "{isa}");
                 for i in 0..7 {
-                    // Fused or not.
+                    // The operation may be fused or not.
                     assert!((found[0][i] - expected[0][i]).abs() <= f64::EPSILON, "{isa}");
                 }
             }
@@ -272,11 +171,11 @@ mod tests {
     #[test]
     fn differences_of_products_are_right_where_they_cancel() {
         // (n)(n + 1) - (n - 2) n = 3 n, though both products have 32 bits.
-        let (x, whole) = numbers(7);
+        let (x, integers16) = numbers(7);
         for isa in Isa::available() {
-            let (found, _) = isa.run(All(&x, &whole));
+            let (found, _) = isa.run(All(&x, &integers16));
             for lane in 0..16 {
-                assert_eq!(found[10][lane], 3.0 * f32::from(whole[lane]), "{isa}");
+                assert_eq!(found[10][lane], 3.0 * f32::from(integers16[lane]), "{isa}");
             }
         }
     }

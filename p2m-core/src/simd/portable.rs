@@ -1,18 +1,18 @@
-//! Lanes of the crate `wide`: the vector instructions that every processor of the architecture has (SSE2, NEON), and
-//! arrays where there are none.
+//! Lanes of the crate `wide`, for processors of any kind: the vector instructions that every processor of an
+//! architecture has (SSE2, NEON), or arrays.
 
-use super::{Doubles, EightLanes, InstructionSet, Lanes};
+use super::lanes::{Doubles, EightLanes, InstructionSet, Lanes};
 use wide::{f32x8, f64x4};
 
-/// Eight lanes.
+/// Eight f32 in a vector of the crate `wide`.
 #[derive(Clone, Copy)]
 pub struct Eight(f32x8);
 
-/// Eight f64, the first four apart from the last four.
+/// Eight f64, as the first four and the last four.
 #[derive(Clone, Copy)]
 pub struct EightDoubles(f64x4, f64x4);
 
-/// The reference that other instruction sets are tested against, and the one that runs where there is no other.
+/// The instruction set of every processor. The others are tested against it.
 pub struct Portable;
 
 impl InstructionSet for Portable {
@@ -23,7 +23,7 @@ impl InstructionSet for Portable {
 
 impl Eight {
     #[inline(always)]
-    fn of<A: Copy + Into<f32>>(from: &[A]) -> Self {
+    fn convert<A: Copy + Into<f32>>(from: &[A]) -> Self {
         let from: &[A; 8] = from[..8].try_into().expect("eight numbers");
         let [a, b, c, d, e, f, g, h] = *from;
         Self(f32x8::new([a.into(), b.into(), c.into(), d.into(), e.into(), f.into(), g.into(), h.into()]))
@@ -45,15 +45,15 @@ impl Lanes for Eight {
     }
     #[inline(always)]
     fn load(from: &[f32]) -> Self {
-        Self::of(from)
+        Self::convert(from)
     }
     #[inline(always)]
     fn load_u16(from: &[u16]) -> Self {
-        Self::of(from)
+        Self::convert(from)
     }
     #[inline(always)]
     fn load_u8(from: &[u8]) -> Self {
-        Self::of(from)
+        Self::convert(from)
     }
     #[inline(always)]
     fn store(self, to: &mut [f32]) {
@@ -73,14 +73,14 @@ impl Lanes for Eight {
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, summand: Self) -> Self {
-        // It is rounded twice: a fused operation would be a call where the processor has none.
+        // The result is rounded twice: a fused operation would be a function call where the processor has none.
         Self(self.0 * factor.0 + summand.0)
     }
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounds to nearest, as promised")]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
         let ([a, e], [b, f], [c, g], [d, h]) = (a.widen(), b.widen(), c.widen(), d.widen());
-        // Products of two f32 are exact, and so is the difference under the condition of the trait.
+        // Products of two f32 are exact in f64, and so is their difference under the condition of the trait.
         let ([a, b, c, d], [e, f, g, h]) = ((a * b - c * d).to_array(), (e * f - g * h).to_array());
         Self(f32x8::new([a as f32, b as f32, c as f32, d as f32, e as f32, f as f32, g as f32, h as f32]))
     }
@@ -120,12 +120,12 @@ impl EightLanes for Eight {
         for (lane, x) in (0u32..).zip(self.0.to_array()) {
             if x <= limit {
                 let key = x.to_bits() & !15 | 8 | lane;
-                let mut place = count;
-                while place > 0 && keys[place - 1] < key {
-                    keys[place] = keys[place - 1];
-                    place -= 1;
+                let mut position = count;
+                while position > 0 && keys[position - 1] < key {
+                    keys[position] = keys[position - 1];
+                    position -= 1;
                 }
-                keys[place] = key;
+                keys[position] = key;
                 count += 1;
             }
         }

@@ -1,6 +1,7 @@
 //! Saved files in memory.
 
-use super::{LoadError, Reader};
+use super::error::LoadError;
+use super::reader::Reader;
 use bytemuck::Zeroable;
 use memmap2::Mmap;
 use std::fs::File;
@@ -8,40 +9,40 @@ use std::io::{ErrorKind, Read};
 use std::path::Path;
 use std::sync::Arc;
 
-/// A saved file whose head and table are right. Its sections are used once their sums were checked.
+/// A saved file whose header and table were checked. [`checked`](Self::checked) verifies its sections as well.
 #[derive(Clone)]
 pub struct SavedFile(Reader);
 
-/// A cache line, to begin where sections have to.
+/// A cache line: memory that is made of them has the alignment of sections.
 #[derive(Clone, Copy, Zeroable, bytemuck::Pod)]
 #[repr(C, align(64))]
-struct Line([u8; 64]);
+struct CacheLine([u8; 64]);
 
 /// Bytes that begin at a cache line.
-struct Lines {
-    lines: Vec<Line>,
+struct AlignedBytes {
+    lines: Vec<CacheLine>,
     len: usize,
 }
 
-impl AsRef<[u8]> for Lines {
+impl AsRef<[u8]> for AlignedBytes {
     fn as_ref(&self) -> &[u8] {
         &bytemuck::cast_slice(&self.lines)[..self.len]
     }
 }
 
 impl SavedFile {
-    /// Maps a file: it is read as it is used, and processes that map the same file share its memory.
+    /// Maps a file into memory: pages are read on first use, and processes that map the same file share them.
     ///
-    /// The file must not change while it, or an index that was loaded from it, is in use: answers would change as well,
-    /// and a part that is cut off ends the program. Where files are replaced, write a new one and rename it, as `p2m
-    /// build` does.
+    /// The file must not be modified while the mapping, or an index that was loaded from it, is in use. Otherwise
+    /// answers may change, and truncation ends the program. To replace a file, write a new one and rename it, as
+    /// `p2m build` does.
     ///
     /// # Errors
-    /// [`LoadError::Io`], and what [`read`](Self::read) says.
+    /// It returns the errors of [`read`](Self::read), and [`LoadError::Io`] if the file cannot be opened or mapped.
     #[allow(unsafe_code, reason = "a file may change while it is mapped; documented")]
     pub fn open(path: &Path) -> Result<Self, LoadError> {
         let file = File::open(path)?;
-        // SAFETY: the mapping is only read. That nobody changes the file meanwhile is left to whoever names it.
+        // SAFETY: the mapping is only read. The caller has to ensure that nobody modifies the file meanwhile.
         let map = unsafe { Mmap::map(&file)? };
         Ok(Self(Reader::new(Arc::new(map))?))
     }
@@ -49,14 +50,14 @@ impl SavedFile {
     /// Reads a file into memory.
     ///
     /// # Errors
-    /// [`LoadError::Io`], [`LoadError::Foreign`], [`LoadError::Version`], [`LoadError::Length`], and
-    /// [`LoadError::Damaged`] for the table.
+    /// It returns [`LoadError::Io`] if reading fails, [`LoadError::Foreign`], [`LoadError::Version`] or
+    /// [`LoadError::Length`] for a wrong header, and [`LoadError::Damaged`] for a wrong table.
     pub fn read(mut reader: impl Read) -> Result<Self, LoadError> {
         let mut lines = Vec::new();
         let mut len = 0;
         loop {
             if len == lines.len() * 64 {
-                lines.resize(lines.len() * 2 + 1024, Line::zeroed());
+                lines.resize(lines.len() * 2 + 1024, CacheLine::zeroed());
             }
             match reader.read(&mut bytemuck::cast_slice_mut(&mut lines)[len..]) {
                 Ok(0) => break,
@@ -65,25 +66,25 @@ impl SavedFile {
                 Err(error) => return Err(error.into()),
             }
         }
-        lines.truncate(len.div_ceil(size_of::<Line>()));
+        lines.truncate(len.div_ceil(size_of::<CacheLine>()));
         lines.shrink_to_fit();
-        Ok(Self(Reader::new(Arc::new(Lines { lines, len }))?))
+        Ok(Self(Reader::new(Arc::new(AlignedBytes { lines, len }))?))
     }
 
-    /// Its sections, after their sums were checked.
+    /// Verifies the checksums of all sections and returns the sections.
     ///
     /// # Errors
-    /// [`LoadError::Damaged`].
+    /// It returns [`LoadError::Damaged`] if a checksum is wrong.
     ///
     /// # Complexity
-    /// Reads the whole file, at some gigabytes a second.
+    /// It reads the whole file, at some gigabytes a second.
     pub fn checked(&self) -> Result<&Reader, LoadError> {
         self.0.check()?;
         Ok(&self.0)
     }
 
-    /// Its sections without a check of their sums, for a file that was checked before: what is damaged gives wrong
-    /// answers or panics.
+    /// Returns the sections without verifying their checksums, for a file that was checked before. Damaged sections
+    /// give wrong answers or panics.
     #[must_use]
     pub fn unchecked(&self) -> &Reader {
         &self.0

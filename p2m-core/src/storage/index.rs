@@ -1,34 +1,39 @@
-//! Which index a file has, and over which set.
+//! Saving and loading an index, with its kind and a fingerprint of the set that it was built over.
 
-use super::{LoadError, Reader, Writer};
+use super::error::LoadError;
+use super::reader::Reader;
+use super::writer::Writer;
 use crate::real::to_f64_array;
 use crate::{Primitive, PrimitiveId, PrimitiveSet, Real};
 use nalgebra::Point3;
 use std::hash::Hasher;
 use twox_hash::XxHash3_64;
 
-/// What can be saved: the structure of an index, without the set that it was built over.
+/// The structure of an index that can be saved, without the set that it was built over.
 pub trait Saved: Sized {
-    /// Which one it is: `aabb`, `kdop-14`, `octree` or `p2m`.
+    /// Returns the kind of the index: `aabb`, `kdop-14`, `octree` or `p2m`, for example.
     fn kind() -> String;
 
-    /// Adds its sections to a file.
+    /// Adds the sections of the index to a file.
     fn save<'a>(&'a self, writer: &mut Writer<'a>);
 
-    /// Takes it from the sections of a file; arrays stay where they are.
+    /// Makes the index of the sections of a file, without copying large arrays.
     ///
     /// # Errors
-    /// [`LoadError::Missing`] and [`LoadError::Inconsistent`].
+    /// It returns [`LoadError::Missing`] for a section that is missing, and [`LoadError::Inconsistent`] for sections
+    /// that contradict each other.
     fn load(reader: &Reader) -> Result<Self, LoadError>;
 }
 
+/// The section with the kind of the index, in UTF-8.
 const KIND: &str = "index/kind";
+/// The section with the number of primitives and the fingerprint of the set.
 const SET: &str = "index/set";
 
-/// Adds an index, and what tells whether another set is the same.
+/// Adds an index to a file, with a fingerprint of its set.
 ///
 /// # Panics
-/// If the file has an index already.
+/// It panics if the file has an index already.
 pub fn save<'a, T: Real, S: PrimitiveSet<T> + ?Sized, I: Saved>(index: &'a I, set: &S, writer: &mut Writer<'a>) {
     assert!(!writer.has(KIND), "a file has one index");
     writer.put_copy(KIND, I::kind().as_bytes());
@@ -36,11 +41,12 @@ pub fn save<'a, T: Real, S: PrimitiveSet<T> + ?Sized, I: Saved>(index: &'a I, se
     index.save(writer);
 }
 
-/// Takes an index that was built over an equal set. Primitives of your own are equal if their boxes are, and their
-/// closest points for the corners of the box of the set.
+/// Loads an index that was built over an equal set. Primitives of your own are taken to be equal if their boxes are,
+/// and their closest points to the corners of the box of the set.
 ///
 /// # Errors
-/// [`LoadError::OtherKind`], [`LoadError::OtherSet`], and what [`Saved::load`] says.
+/// It returns [`LoadError::OtherKind`] for an index of another kind, [`LoadError::OtherSet`] for an index over another
+/// set, and the errors of [`Saved::load`].
 pub fn load<T: Real, S: PrimitiveSet<T> + ?Sized, I: Saved>(set: &S, reader: &Reader) -> Result<I, LoadError> {
     let (found, expected) = (kind(reader)?, I::kind());
     if found != expected {
@@ -52,26 +58,26 @@ pub fn load<T: Real, S: PrimitiveSet<T> + ?Sized, I: Saved>(set: &S, reader: &Re
     I::load(reader)
 }
 
-/// Which index a file has, as [`Saved::kind`].
+/// Returns the kind of the index in a file, as [`Saved::kind`] gives it.
 ///
 /// # Errors
-/// [`LoadError::Missing`].
+/// It returns [`LoadError::Missing`] if the file has no index.
 pub fn kind(reader: &Reader) -> Result<String, LoadError> {
     Ok(String::from_utf8_lossy(&reader.copy::<u8>(KIND)?).into_owned())
 }
 
-/// XXH3 of all vertices; of primitives of your own that of their boxes, and of the points that are closest to the
-/// corners of a box around everything.
+/// Returns an XXH3 hash of the set: of the vertices of its primitives, and for primitives of your own of their boxes
+/// and their closest points to the corners of the box of the set.
 fn fingerprint<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -> u64 {
     let mut hasher = XxHash3_64::new();
-    let whole = set.aabb();
+    let bounds = set.aabb();
     let corners: [Point3<T>; 8] = std::array::from_fn(|i| {
-        Point3::from(std::array::from_fn(|k| if i >> k & 1 == 0 { whole.min[k] } else { whole.max[k] }))
+        Point3::from(std::array::from_fn(|k| if i >> k & 1 == 0 { bounds.min[k] } else { bounds.max[k] }))
     });
     for id in (0..set.len()).map(PrimitiveId::new) {
         let primitive = set.get(id);
         let vertices = primitive.vertices();
-        // At most three vertices, or the corners of a box, and how many there are.
+        // The numbers are those of at most three vertices, or of two corners of a box; the last one says which.
         let (mut numbers, mut count) = ([0.0; 10], 0);
         if vertices.is_empty() || vertices.len() > 3 {
             let bounds = primitive.aabb();

@@ -1,24 +1,34 @@
 //! Files of built indexes.
 //!
-//! A file is a head, a table of *sections* and the sections, each an array of plain numbers as it stands in memory:
+//! A file consists of a header, a table of sections, and the *sections*, each of which is an array of plain numbers as
+//! it is in memory:
 //!
-//! | bytes | what |
+//! | bytes | content |
 //! |---|---|
-//! | 8 | `89 P2M \r\n 1A \n`, hexadecimal but for the letters: a transfer as text breaks it |
-//! | 4 | the version of the format, [`VERSION`] |
-//! | 4 | how many sections there are |
-//! | 8 | the length of the file |
-//! | 8 | XXH3 of the table |
-//! | 32 | free, zero |
-//! | 64 each | the table: name (32 bytes, filled up with zeros), offset, number of elements, bytes of an element, XXH3 of the section (8 each) |
+//! | 8 | `89 P2M \r\n 1A \n`, hexadecimal except for the letters; a transfer as text damages it |
+//! | 4 | version of the format, [`VERSION`] |
+//! | 4 | number of sections |
+//! | 8 | length of the file |
+//! | 8 | XXH3 checksum of the table |
+//! | 32 | unused, zero |
+//! | 64 each | entries of the table |
 //!
-//! All numbers are little-endian. Sections begin at multiples of 64 bytes, so a file in memory is used where it is: an
-//! index has its arrays there, and nothing is copied or converted but what is small. [`SavedFile::open`] maps a file,
-//! which several processes then share; [`SavedFile::read`] copies it. [`SavedFile::checked`] looks at all sums.
+//! An entry of the table has
 //!
-//! Sums tell damage, not malice: whoever makes a file on purpose can make one that gives wrong answers, panics, or searches
-//! without end.
-//! Nothing that is read is undefined for any bytes, but for a mapped file that changes.
+//! | bytes | content |
+//! |---|---|
+//! | 32 | name, padded with zeros |
+//! | 8 | offset of the section in bytes |
+//! | 8 | number of elements |
+//! | 8 | bytes of an element |
+//! | 8 | XXH3 checksum of the section |
+//!
+//! All numbers are little-endian. Sections begin at multiples of 64 bytes, so an index uses its large arrays where they
+//! are in the file, and only small arrays are copied. [`SavedFile::open`] maps a file, so that processes share its
+//! memory; [`SavedFile::read`] copies it. [`SavedFile::checked`] verifies all checksums.
+//!
+//! Checksums detect damage, not malice: a file that was made on purpose can give wrong answers, panic, or search
+//! without end. Loading is memory-safe for all bytes, unless a mapped file is modified.
 //!
 //! ```
 //! use nalgebra::Point3;
@@ -26,7 +36,7 @@
 //! use p2m_core::storage::{SavedFile, Writer};
 //! use p2m_core::{BuildIndex, ClosestPoint, Point};
 //!
-//! // Of the type of an index that can be saved: AabbTree, KdopTree, OctreeIndex or P2mIndex.
+//! // The type is that of an index that can be saved: AabbTree, KdopTree, OctreeIndex or P2mIndex.
 //! type Index<'a> = AabbTree<f64, &'a [Point<f64>]>;
 //!
 //! let scene = [1.0, 5.0].map(|x| Point::new(Point3::new(x, 0.0, 0.0)));
@@ -36,7 +46,7 @@
 //! index.save(&mut writer);
 //! writer.write(&mut file)?;
 //!
-//! // Later, over the same scene: it is not in the file, unless `p2m_mixed::save_scene` put it there.
+//! // The index is loaded over the same scene, which is not in the file unless `p2m_mixed::save_scene` put it there.
 //! let file = SavedFile::read(&file[..])?; // or SavedFile::open, for a path
 //! let index = Index::load(&scene, file.checked()?)?;
 //! assert_eq!(index.closest_point(&Point3::new(4.0, 0.0, 0.0)).unwrap().distance, 1.0);
@@ -44,72 +54,17 @@
 //! ```
 
 mod array;
+mod error;
 mod file;
 mod index;
-mod sections;
+mod reader;
+mod section;
+mod writer;
 
 pub use array::Array;
+pub use error::LoadError;
 pub use file::SavedFile;
 pub use index::{Saved, kind, load, save};
-pub use sections::{Reader, Writer};
-
-/// The version of the format that is written, and the only one that is read.
-pub const VERSION: u32 = 1;
-
-/// Why a file is no saved index, or not the one that is wanted.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum LoadError {
-    /// It cannot be opened or read.
-    #[error("cannot be read")]
-    Io(#[from] std::io::Error),
-    /// It does not begin as such files do.
-    #[error("is not a saved index")]
-    Foreign,
-    /// It was written by another version of the format.
-    #[error("has version {found} of the format, but this program reads version {VERSION}")]
-    Version {
-        /// The version that it has.
-        found: u32,
-    },
-    /// It ends too early or too late.
-    #[error("has {found} bytes instead of {expected}")]
-    Length {
-        /// The bytes there are.
-        found: u64,
-        /// The bytes that there should be.
-        expected: u64,
-    },
-    /// The sum of a section is another one than when it was written.
-    #[error("is damaged: the sum of {section} is wrong")]
-    Damaged {
-        /// The section, or the table.
-        section: String,
-    },
-    /// A section is missing that the index needs, or its elements are of another size: it is an index of another kind.
-    #[error("has no section {section} of the expected kind")]
-    Missing {
-        /// The section.
-        section: String,
-    },
-    /// What it has does not fit together.
-    #[error("{section} does not fit the rest")]
-    Inconsistent {
-        /// The section.
-        section: String,
-    },
-    /// It has another index.
-    #[error("has an index of the kind {found}, not {expected}")]
-    OtherKind {
-        /// The kind it has.
-        found: String,
-        /// The kind that is wanted.
-        expected: String,
-    },
-    /// It was built over another set than the one that it is to be used with.
-    #[error("was built over other primitives")]
-    OtherSet,
-    /// The processor is not little-endian.
-    #[error("cannot be used on a processor that is not little-endian")]
-    BigEndian,
-}
+pub use reader::Reader;
+pub use section::VERSION;
+pub use writer::Writer;

@@ -333,7 +333,7 @@ impl LookUp for Octree {
         let tree = &self.tree;
         let (code, cells) = self.cell_of(&query);
         match tree.frame.local(&query) {
-            Some(local) if code != TREE && collector.is_nearest_only() => {
+            Some(local) if code != TREE && collector.is_single_nearest() => {
                 let place = Place { rounded: Rounded::of(local), local, cells };
                 tree.isa().run(Lookup { octree: self, code, query, place, collector, evaluate, finish });
             }

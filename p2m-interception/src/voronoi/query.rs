@@ -32,7 +32,7 @@ impl LookUp for Voronoi {
         finish: fn(&mut SearchState<'_, C>),
     ) {
         let tree = &self.tree;
-        if collector.is_nearest_only()
+        if collector.is_single_nearest()
             && let Some(place) = self.place(&query)
             && let Some(site) = self.locator.as_ref().and_then(|locator| locator.start(&place))
         {

@@ -1,14 +1,16 @@
-//! Instruction sets: which there are, which the processor has, how to enter them.
+//! Instruction sets: detection of those that the processor has, and execution of kernels with them.
 //!
-//! The only folder of this crate with `unsafe`.
+//! The `unsafe` code of this folder calls functions that are compiled for an instruction set, after the processor was
+//! found to have it.
 #![allow(unsafe_code, reason = "vector instructions are unsafe to call where they may not exist")]
 
 #[cfg(target_arch = "x86_64")]
 mod x86_64;
 
-use super::{Portable, SimdKernel};
+use super::lanes::SimdKernel;
+use super::portable::Portable;
 
-/// Asks for the cache line at an address before it is read; does nothing but that.
+/// Requests the cache line at an address before it is read. It has no other effect, and the address may be invalid.
 #[inline(always)]
 pub fn prefetch(at: *const u8) {
     #[cfg(target_arch = "x86_64")]
@@ -17,7 +19,8 @@ pub fn prefetch(at: *const u8) {
     let _ = at;
 }
 
-/// The same for all lines of some bytes from an address on.
+/// Requests all cache lines of `bytes` bytes that begin at an address. It has no other effect, and the address
+/// may be invalid.
 #[inline(always)]
 pub fn prefetch_lines<T>(at: *const T, bytes: usize) {
     for line in 0..bytes.div_ceil(64) {
@@ -25,7 +28,7 @@ pub fn prefetch_lines<T>(at: *const T, bytes: usize) {
     }
 }
 
-/// An instruction set that this processor has.
+/// An instruction set that this processor has. Answers do not depend on it.
 ///
 /// ```
 /// use p2m_core::Isa;
@@ -46,10 +49,10 @@ enum Kind {
 }
 
 impl Isa {
-    /// None in particular: what every processor of the architecture has.
+    /// The instructions that every processor of the architecture has.
     pub const PORTABLE: Self = Self(Kind::Portable);
 
-    /// All that this processor has, the fastest one last.
+    /// Returns all instruction sets that this processor has, the fastest one last.
     #[must_use]
     pub fn available() -> Vec<Self> {
         #[allow(unused_mut, reason = "on architectures without more")]
@@ -66,13 +69,13 @@ impl Isa {
         all
     }
 
-    /// The fastest one.
+    /// Returns the fastest instruction set that this processor has.
     #[must_use]
     pub fn best() -> Self {
         Self::available().last().copied().unwrap_or(Self::PORTABLE)
     }
 
-    /// `portable`, `avx2` or `avx512`.
+    /// Returns the name: `portable`, `avx2` or `avx512`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self.0 {
@@ -84,29 +87,30 @@ impl Isa {
         }
     }
 
-    /// Computes with it.
+    /// Runs a kernel with this instruction set.
     #[inline(always)]
-    pub fn run<O: SimdKernel>(self, operation: O) -> O::Output {
+    pub fn run<K: SimdKernel>(self, kernel: K) -> K::Output {
         match self.0 {
-            Kind::Portable => run_portable(operation),
-            // SAFETY: there is no way to such a value but `available`, which has asked the processor.
+            Kind::Portable => run_portable(kernel),
+            // SAFETY: such a value is made by `available` alone, which has checked the processor.
             #[cfg(target_arch = "x86_64")]
-            Kind::Avx2 => unsafe { x86_64::run_avx2(operation) },
-            // SAFETY: as above.
+            Kind::Avx2 => unsafe { x86_64::run_avx2(kernel) },
+            // SAFETY: such a value is made by `available` alone, which has checked the processor.
             #[cfg(target_arch = "x86_64")]
-            Kind::Avx512 => unsafe { x86_64::run_avx512(operation) },
+            Kind::Avx512 => unsafe { x86_64::run_avx512(kernel) },
         }
     }
 }
 
-/// In a function of its own as the others are: it is compiled once for each operation, not wherever one is run.
+/// Runs a kernel with portable instructions. It is not inlined, so each kernel is compiled once and not wherever
+/// it is run.
 #[inline(never)]
-fn run_portable<O: SimdKernel>(operation: O) -> O::Output {
-    operation.run::<Portable>()
+fn run_portable<K: SimdKernel>(kernel: K) -> K::Output {
+    kernel.run::<Portable>()
 }
 
 impl Default for Isa {
-    /// The fastest one.
+    /// Returns the fastest instruction set that this processor has.
     fn default() -> Self {
         Self::best()
     }

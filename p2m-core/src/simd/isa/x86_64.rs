@@ -1,11 +1,13 @@
 //! AVX2 with FMA, and AVX-512.
 //!
-//! The types are private to this folder and appear only as parameters of an [`SimdKernel`] that one of the two entries
-//! runs; so wherever their methods run, the processor has been asked. That is the reason of every block below.
+//! The types are private to this folder. Their methods are called only by a [`SimdKernel`] that one of the two
+//! functions `run_avx2` and `run_avx512` runs, whose callers have checked the processor. That makes every `unsafe`
+//! block below sound.
 
-use crate::simd::{Doubles, EightLanes, InstructionSet, Lanes, SimdKernel};
+use crate::simd::lanes::{Doubles, EightLanes, InstructionSet, Lanes, SimdKernel};
 use std::arch::x86_64::*;
 
+/// Returns whether the processor has the instructions of [`run_avx2`].
 pub(super) fn has_avx2() -> bool {
     is_x86_feature_detected!("avx2")
         && is_x86_feature_detected!("fma")
@@ -15,27 +17,32 @@ pub(super) fn has_avx2() -> bool {
         && is_x86_feature_detected!("popcnt")
 }
 
+/// Returns whether the processor has the instructions of [`run_avx512`].
 pub(super) fn has_avx512() -> bool {
     has_avx2() && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl")
 }
 
+/// Runs a kernel with AVX2.
+///
 /// # Safety
-/// The processor has AVX2, FMA and the scalar instructions that came before them.
+/// The processor must have AVX2, FMA, BMI1, BMI2, LZCNT and POPCNT.
 #[inline(never)]
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-pub(super) unsafe fn run_avx2<O: SimdKernel>(operation: O) -> O::Output {
-    operation.run::<Avx2>()
+pub(super) unsafe fn run_avx2<K: SimdKernel>(kernel: K) -> K::Output {
+    kernel.run::<Avx2>()
 }
 
+/// Runs a kernel with AVX-512.
+///
 /// # Safety
-/// The same, and AVX-512 F and VL.
+/// The processor must have AVX2, FMA, BMI1, BMI2, LZCNT, POPCNT, and AVX-512 F and VL.
 #[inline(never)]
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl")]
-pub(super) unsafe fn run_avx512<O: SimdKernel>(operation: O) -> O::Output {
-    operation.run::<Avx512>()
+pub(super) unsafe fn run_avx512<K: SimdKernel>(kernel: K) -> K::Output {
+    kernel.run::<Avx512>()
 }
 
-/// Every processor of this architecture can do this.
+/// Requests the cache line at an address, which every processor of this architecture can do.
 #[inline(always)]
 pub(super) fn prefetch(at: *const u8) {
     // SAFETY: a prefetch reads nothing, whatever the address.
@@ -58,7 +65,9 @@ pub(super) struct Pair(__m256d, __m256d);
 #[derive(Clone, Copy)]
 pub(super) struct EightDoubles(__m512d);
 
+/// AVX2 with FMA.
 pub(super) struct Avx2;
+/// AVX-512 F and VL.
 pub(super) struct Avx512;
 
 impl InstructionSet for Avx2 {
@@ -73,13 +82,13 @@ impl InstructionSet for Avx512 {
     type Doubles = EightDoubles;
 }
 
-/// A method of which the body is one expression of intrinsics.
+/// Defines methods whose body is one expression of intrinsics.
 macro_rules! intrinsics {
     ($($name:ident($($arg:ident: $type:ty),*) -> $result:ty { $body:expr })*) => {
         $(
             #[inline(always)]
             fn $name($($arg: $type),*) -> $result {
-                // SAFETY: see the head of the file.
+                // SAFETY: the processor has the instructions, see the head of the file.
                 unsafe { $body }
             }
         )*
@@ -92,25 +101,25 @@ impl Lanes for Eight {
     #[inline(always)]
     fn load(from: &[f32]) -> Self {
         let from: &[f32; 8] = from[..8].try_into().expect("eight numbers");
-        // SAFETY: as everywhere, and the array has 32 bytes to read.
+        // SAFETY: the processor has the instructions, see the head of the file; the array has 32 bytes to read.
         Self(unsafe { _mm256_loadu_ps(from.as_ptr()) })
     }
     #[inline(always)]
     fn load_u16(from: &[u16]) -> Self {
         let from: &[u16; 8] = from[..8].try_into().expect("eight numbers");
-        // SAFETY: as everywhere, and the array has 16 bytes to read.
+        // SAFETY: the processor has the instructions, see the head of the file; the array has 16 bytes to read.
         Self(unsafe { _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(_mm_loadu_si128(from.as_ptr().cast()))) })
     }
     #[inline(always)]
     fn load_u8(from: &[u8]) -> Self {
         let from: &[u8; 8] = from[..8].try_into().expect("eight numbers");
-        // SAFETY: as everywhere, and the array has 8 bytes to read.
+        // SAFETY: the processor has the instructions, see the head of the file; the array has 8 bytes to read.
         Self(unsafe { _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(from.as_ptr().cast()))) })
     }
     #[inline(always)]
     fn store(self, to: &mut [f32]) {
-        let to: &mut [f32; 8] = (&mut to[..8]).try_into().expect("room for eight numbers");
-        // SAFETY: as everywhere, and the array has 32 bytes to write.
+        let to: &mut [f32; 8] = (&mut to[..8]).try_into().expect("eight numbers");
+        // SAFETY: the processor has the instructions, see the head of the file; the array has 32 bytes to write.
         unsafe { _mm256_storeu_ps(to.as_mut_ptr(), self.0) }
     }
     intrinsics! {
@@ -122,13 +131,13 @@ impl Lanes for Eight {
         min(self: Self, other: Self) -> Self { Self(_mm256_min_ps(self.0, other.0)) }
         max(self: Self, other: Self) -> Self { Self(_mm256_max_ps(self.0, other.0)) }
         difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {{
-            // Kahan's way: the rounding error of the second product is added to the difference.
+            // Kahan's method adds the rounding error of the second product to the difference.
             let product = _mm256_mul_ps(c.0, d.0);
             let error = _mm256_fnmadd_ps(c.0, d.0, product);
             Self(_mm256_add_ps(_mm256_fmsub_ps(a.0, b.0, product), error))
         }}
         reciprocal(self: Self) -> Self {{
-            // An estimate to 2^-11, and one step of Newton's.
+            // The estimate has a relative error of 2^-11, which one Newton step squares.
             let estimate = _mm256_rcp_ps(self.0);
             let rest = _mm256_fnmadd_ps(self.0, estimate, _mm256_set1_ps(1.0));
             Self(_mm256_fmadd_ps(rest, estimate, estimate))
@@ -150,7 +159,7 @@ impl Lanes for Eight {
 impl EightLanes for Eight {
     #[inline(always)]
     fn sorted_keys(self, limit: f32, keys: &mut [u32; 8]) -> usize {
-        // SAFETY: see the head of the file; the array has 32 bytes to write.
+        // SAFETY: the processor has the instructions, see the head of the file; the array has 32 bytes to write.
         unsafe {
             let within = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, _mm256_set1_ps(limit)));
             let bits = _mm256_andnot_si256(_mm256_set1_epi32(15), _mm256_castps_si256(self.0));
@@ -171,13 +180,13 @@ impl EightLanes for Eight {
     }
 }
 
-/// The larger one of `x` and its partner, or the smaller one in the lanes of `SMALLER`.
+/// Returns the larger value of `x` and its partner in each lane, or the smaller one in the lanes of `SMALLER`.
 ///
 /// # Safety
-/// The processor has AVX2.
+/// The processor must have AVX2.
 #[inline(always)]
 unsafe fn exchange<const SMALLER: i32>(x: __m256i, partner: __m256i) -> __m256i {
-    // SAFETY: that of this function.
+    // SAFETY: the processor has AVX2, which the caller guarantees.
     unsafe { _mm256_blend_epi32::<SMALLER>(_mm256_max_epi32(x, partner), _mm256_min_epi32(x, partner)) }
 }
 
@@ -187,25 +196,25 @@ impl Lanes for Sixteen {
     #[inline(always)]
     fn load(from: &[f32]) -> Self {
         let from: &[f32; 16] = from[..16].try_into().expect("sixteen numbers");
-        // SAFETY: as everywhere, and the array has 64 bytes to read.
+        // SAFETY: the processor has the instructions, see the head of the file; the array has 64 bytes to read.
         Self(unsafe { _mm512_loadu_ps(from.as_ptr()) })
     }
     #[inline(always)]
     fn load_u16(from: &[u16]) -> Self {
         let from: &[u16; 16] = from[..16].try_into().expect("sixteen numbers");
-        // SAFETY: as everywhere, and the array has 32 bytes to read.
+        // SAFETY: the processor has the instructions, see the head of the file; the array has 32 bytes to read.
         Self(unsafe { _mm512_cvtepi32_ps(_mm512_cvtepu16_epi32(_mm256_loadu_si256(from.as_ptr().cast()))) })
     }
     #[inline(always)]
     fn load_u8(from: &[u8]) -> Self {
         let from: &[u8; 16] = from[..16].try_into().expect("sixteen numbers");
-        // SAFETY: as everywhere, and the array has 16 bytes to read.
+        // SAFETY: the processor has the instructions, see the head of the file; the array has 16 bytes to read.
         Self(unsafe { _mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128(from.as_ptr().cast()))) })
     }
     #[inline(always)]
     fn store(self, to: &mut [f32]) {
-        let to: &mut [f32; 16] = (&mut to[..16]).try_into().expect("room for sixteen numbers");
-        // SAFETY: as everywhere, and the array has 64 bytes to write.
+        let to: &mut [f32; 16] = (&mut to[..16]).try_into().expect("sixteen numbers");
+        // SAFETY: the processor has the instructions, see the head of the file; the array has 64 bytes to write.
         unsafe { _mm512_storeu_ps(to.as_mut_ptr(), self.0) }
     }
     intrinsics! {
@@ -222,7 +231,7 @@ impl Lanes for Sixteen {
             Self(_mm512_add_ps(_mm512_fmsub_ps(a.0, b.0, product), error))
         }}
         reciprocal(self: Self) -> Self {{
-            // An estimate to 2^-14, and one step of Newton's.
+            // The estimate has a relative error of 2^-14, which one Newton step squares.
             let estimate = _mm512_rcp14_ps(self.0);
             let rest = _mm512_fnmadd_ps(self.0, estimate, _mm512_set1_ps(1.0));
             Self(_mm512_fmadd_ps(rest, estimate, estimate))
@@ -239,13 +248,13 @@ impl Doubles for Pair {
     #[inline(always)]
     fn load(from: &[f64]) -> Self {
         let from: &[f64; 8] = from[..8].try_into().expect("eight numbers");
-        // SAFETY: as everywhere, and the array has twice 32 bytes to read.
+        // SAFETY: the processor has the instructions, see the head of the file; the array has twice 32 bytes to read.
         unsafe { Self(_mm256_loadu_pd(from.as_ptr()), _mm256_loadu_pd(from[4..].as_ptr())) }
     }
     #[inline(always)]
     fn store(self, to: &mut [f64]) {
-        let to: &mut [f64; 8] = (&mut to[..8]).try_into().expect("room for eight numbers");
-        // SAFETY: as everywhere, and the array has twice 32 bytes to write.
+        let to: &mut [f64; 8] = (&mut to[..8]).try_into().expect("eight numbers");
+        // SAFETY: the processor has the instructions, see the head of the file; the array has twice 32 bytes to write.
         unsafe {
             _mm256_storeu_pd(to.as_mut_ptr(), self.0);
             _mm256_storeu_pd(to[4..].as_mut_ptr(), self.1);
@@ -277,13 +286,13 @@ impl Doubles for EightDoubles {
     #[inline(always)]
     fn load(from: &[f64]) -> Self {
         let from: &[f64; 8] = from[..8].try_into().expect("eight numbers");
-        // SAFETY: as everywhere, and the array has 64 bytes to read.
+        // SAFETY: the processor has the instructions, see the head of the file; the array has 64 bytes to read.
         Self(unsafe { _mm512_loadu_pd(from.as_ptr()) })
     }
     #[inline(always)]
     fn store(self, to: &mut [f64]) {
-        let to: &mut [f64; 8] = (&mut to[..8]).try_into().expect("room for eight numbers");
-        // SAFETY: as everywhere, and the array has 64 bytes to write.
+        let to: &mut [f64; 8] = (&mut to[..8]).try_into().expect("eight numbers");
+        // SAFETY: the processor has the instructions, see the head of the file; the array has 64 bytes to write.
         unsafe { _mm512_storeu_pd(to.as_mut_ptr(), self.0) }
     }
     intrinsics! {

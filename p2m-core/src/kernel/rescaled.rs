@@ -1,40 +1,40 @@
-//! The lane for scales at which plain f64 arithmetic could over- or underflow.
+//! The kernel for scales at which plain f64 arithmetic could overflow or underflow.
 //!
-//! Every feature is computed on offsets scaled by its own power of two, by the functions of the plain lane and hence
-//! with the same bits. Slow, and rare: f32 scenes never come here, f64 scenes only beyond 2^-250..2^250, for repeated
-//! vertices, and for distances that are tiny beside the primitive.
+//! Every feature is computed on offsets that are scaled by a power of two of its own, by the functions of the plain
+//! kernel and hence with the same bits. It is slow but rarely used: never for f32 scenes, and for f64 scenes only
+//! beyond 2^-250..2^250, for repeated vertices, and for distances that are tiny relative to the primitive.
 
+use super::edge::{EDGES, EdgeLine, Foot, edge_precedes};
+use super::face::FacePlane;
 use super::key::Key;
-use super::line::{Foot, Line};
-use super::plane::{EDGES, Plane};
-use super::scalar::edge_precedes;
+use super::nearest::{Nearest, edge_feature, vertex_feature};
 use super::vector::{
     V3, bounds, clamp, exponent, larger, largest, lexicographically_less, norm_squared, power_of_two, scale_by_power,
     sub,
 };
-use super::{Nearest, of_edge, of_vertex};
 use crate::Feature;
 
-/// Edges shorter than 2^-100 of the distance to the query are their end points, with an error of 2^-100 M.
-const SPECK: f64 = power_of_two(-100);
+/// The length of an edge, 2^-100 of the distance to the query, below which it is replaced by its ends. The error
+/// is 2^-100 M.
+const MIN_EDGE_PER_DISTANCE: f64 = power_of_two(-100);
 
-/// The offsets of some vertices, scaled.
-struct Scaled<const N: usize> {
-    /// Divided by 2^`base`: 1, unless coordinates are at the edge of the range, where differences overflow.
+/// The offsets of some vertices, scaled by a power of two.
+struct ScaledOffsets<const N: usize> {
+    /// The offsets divided by 2^`base`. `base` is 0 unless differences of coordinates overflow.
     raw: [V3; N],
     base: i32,
-    /// `raw` divided by 2^`exponent`, which brings the largest component into [1, 2).
+    /// The offsets `raw` divided by 2^`exponent`, so that the largest component is in [1, 2).
     offsets: [V3; N],
     exponent: i32,
 }
 
-impl<const N: usize> Scaled<N> {
-    /// `None` if all offsets are zero.
+impl<const N: usize> ScaledOffsets<N> {
+    /// Scales the offsets of `vertices`, or returns `None` if all are zero.
     fn new(query: V3, vertices: [V3; N]) -> Option<Self> {
         let mut raw = vertices.map(|v| sub(v, query));
         let mut base = 0;
         if largest(&raw) == f64::INFINITY {
-            // What a component loses to underflow by this division is below 2^-2000 of the offset.
+            // A component loses less than 2^-2000 of the offset to underflow in this division.
             base = 3;
             raw = vertices.map(|v| sub(v.map(|x| x * 0.125), query.map(|x| x * 0.125)));
         }
@@ -46,11 +46,11 @@ impl<const N: usize> Scaled<N> {
         Some(Self { raw, base, offsets: raw.map(|v| v.map(|x| scale_by_power(x, -exponent))), exponent })
     }
 
-    /// A foot computed from `offsets`, as a candidate.
+    /// Returns a foot that was computed from `offsets` as a result.
     ///
-    /// Scaling down may have lost small components, and with them the promise that the key is not below the bound of
-    /// the box: such a foot is scaled back and moved into the box of the offsets as they were. (Scaling up loses
-    /// nothing, scaling back would.)
+    /// Scaling down may have lost small components, so that the key could be below the bound of the box. Such a
+    /// foot is scaled back and clamped to the box of the unscaled offsets. Scaling up loses nothing, so such a
+    /// foot remains scaled.
     fn candidate<const M: usize>(&self, foot: &Foot<M>, (feature, weights): (Feature, V3), size: f64) -> Nearest {
         let (offset, exponent) = if self.exponent > 0 {
             let [low, high] = bounds(&self.raw);
@@ -58,15 +58,16 @@ impl<const N: usize> Scaled<N> {
         } else {
             (foot.offset, self.base + self.exponent)
         };
-        Nearest { key: Key::of_scaled_offset(offset, exponent), offset, exponent, feature, weights, size }
+        Nearest { key: Key::from_scaled_offset(offset, exponent), offset, exponent, feature, weights, size }
     }
 }
 
-/// An upper bound of the largest component of the offsets, infinite if it exceeds f64.
+/// Returns an upper bound on the largest component of the offsets, which is infinite beyond the range of f64.
 fn size_of(query: V3, vertices: &[V3]) -> f64 {
     vertices.iter().fold(0.0, |m, v| larger(m, largest(&[sub(*v, query)])))
 }
 
+/// Returns the nearest point of a single point.
 #[cold]
 #[inline(never)]
 pub(super) fn point(query: V3, vertex: V3) -> Nearest {
@@ -74,36 +75,39 @@ pub(super) fn point(query: V3, vertex: V3) -> Nearest {
     vertex_candidate(query, 0, vertex, size)
 }
 
+/// Returns a vertex as a result.
 fn vertex_candidate(query: V3, index: usize, vertex: V3, size: f64) -> Nearest {
-    let (offset, exponent) = Scaled::new(query, [vertex]).map_or(([0.0; 3], 0), |s| (s.raw[0], s.base));
-    let key = Key::of_scaled_offset(offset, exponent);
-    let (feature, weights) = of_vertex(index);
+    let (offset, exponent) = ScaledOffsets::new(query, [vertex]).map_or(([0.0; 3], 0), |s| (s.raw[0], s.base));
+    let key = Key::from_scaled_offset(offset, exponent);
+    let (feature, weights) = vertex_feature(index);
     Nearest { key, offset, exponent, feature, weights, size }
 }
 
-/// The nearest vertex in the scaled lane.
+/// Returns the nearest vertex as a result.
 fn nearest_vertex_candidate(query: V3, vertices: &[V3], size: f64) -> Nearest {
     let mut best = vertex_candidate(query, 0, vertices[0], size);
-    let mut at = 0;
+    let mut best_index = 0;
     for (i, v) in vertices.iter().enumerate().skip(1) {
         let candidate = vertex_candidate(query, i, *v, size);
-        if candidate.key < best.key || (candidate.key == best.key && lexicographically_less(*v, vertices[at])) {
-            (best, at) = (candidate, i);
+        if candidate.key < best.key || (candidate.key == best.key && lexicographically_less(*v, vertices[best_index])) {
+            (best, best_index) = (candidate, i);
         }
     }
     best
 }
 
+/// Returns the foot on an edge as a result, if it is inside of the edge.
 fn edge_candidate(query: V3, index: usize, ends: [V3; 2], size: f64) -> Option<Nearest> {
-    let scaled = Scaled::new(query, ends)?;
+    let scaled = ScaledOffsets::new(query, ends)?;
     let ends = scaled.offsets;
-    if largest(&[sub(ends[1], ends[0])]) < SPECK {
+    if largest(&[sub(ends[1], ends[0])]) < MIN_EDGE_PER_DISTANCE {
         return None;
     }
-    let foot = Line::new(ends, ends.map(norm_squared)).foot(ends)?;
-    Some(scaled.candidate(&foot, of_edge(index, foot.weights), size))
+    let foot = EdgeLine::new(ends, ends.map(norm_squared)).foot(ends)?;
+    Some(scaled.candidate(&foot, edge_feature(index, foot.weights), size))
 }
 
+/// Returns the nearest point of a segment.
 #[cold]
 #[inline(never)]
 pub(super) fn segment(query: V3, vertices: [V3; 2]) -> Nearest {
@@ -115,19 +119,21 @@ pub(super) fn segment(query: V3, vertices: [V3; 2]) -> Nearest {
     }
 }
 
+/// Returns the foot on the face as a result, if it is inside of the face.
 fn face_candidate(query: V3, vertices: [V3; 3], size: f64) -> Option<Nearest> {
-    let scaled = Scaled::new(query, vertices)?;
+    let scaled = ScaledOffsets::new(query, vertices)?;
     let offsets = scaled.offsets;
     let edges = EDGES.map(|[i, j]| largest(&[sub(offsets[j], offsets[i])]));
-    if larger(larger(edges[0], edges[1]), edges[2]) < SPECK {
+    if larger(larger(edges[0], edges[1]), edges[2]) < MIN_EDGE_PER_DISTANCE {
         return None;
     }
     let squares = offsets.map(norm_squared);
-    let lines = EDGES.map(|[i, j]| Line::new([offsets[i], offsets[j]], [squares[i], squares[j]]));
-    let foot = Plane::new(offsets, &lines, largest(&offsets))?.foot(offsets, bounds(&offsets))?;
+    let lines = EDGES.map(|[i, j]| EdgeLine::new([offsets[i], offsets[j]], [squares[i], squares[j]]));
+    let foot = FacePlane::new(offsets, &lines, largest(&offsets))?.foot(offsets, bounds(&offsets))?;
     Some(scaled.candidate(&foot, (Feature::Face, foot.weights), size))
 }
 
+/// Returns the nearest point of a triangle.
 #[cold]
 #[inline(never)]
 pub(super) fn triangle(query: V3, vertices: [V3; 3]) -> Nearest {

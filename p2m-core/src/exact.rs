@@ -1,14 +1,16 @@
-//! Floats as integers of any length, where rounding may not decide.
+//! Exact arithmetic: floats as big integers in units of a common power of two, and fractions of these.
+//!
+//! It decides where the rounding of floats could change an answer.
 
 use crate::kernel::power_of_two;
 use dashu_int::ops::{BitTest, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 use std::cmp::Ordering;
 
-/// Three coordinates.
+/// A vector of three integers.
 pub type Vector = [IBig; 3];
 
-/// Of a finite f64 the mantissa, signed, and the exponent of its lowest bit.
+/// Returns the signed mantissa of a finite f64, and the exponent of its lowest bit.
 fn decompose(x: f64) -> (i64, i32) {
     let bits = x.to_bits();
     let fraction = (bits & ((1 << 52) - 1)).cast_signed();
@@ -20,7 +22,7 @@ fn decompose(x: f64) -> (i64, i32) {
     (if x.is_sign_negative() { -mantissa } else { mantissa }, exponent)
 }
 
-/// The largest e for which all these finite numbers are multiples of 2^e; 0 if all are zero.
+/// Returns the largest e for which all these finite numbers are multiples of 2^e, or 0 if all are zero.
 pub fn common_exponent<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> i32 {
     let lowest = |x: &f64| {
         let (mantissa, exponent) = decompose(*x);
@@ -29,51 +31,56 @@ pub fn common_exponent<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> i32 {
     numbers.into_iter().filter_map(lowest).min().unwrap_or(0)
 }
 
-/// x / 2^exponent, for a multiple of that.
+/// Returns x / 2^exponent. `x` has to be a multiple of 2^exponent.
 pub fn integer(x: f64, exponent: i32) -> IBig {
-    let (mantissa, own) = decompose(x);
-    let shift = (own - exponent).unsigned_abs() as usize;
-    if own >= exponent { IBig::from(mantissa) << shift } else { IBig::from(mantissa) >> shift }
+    let (mantissa, lowest_bit) = decompose(x);
+    let shift = (lowest_bit - exponent).unsigned_abs() as usize;
+    if lowest_bit >= exponent { IBig::from(mantissa) << shift } else { IBig::from(mantissa) >> shift }
 }
 
-/// The same of a difference of two multiples.
+/// Returns (p - a) / 2^exponent. All coordinates have to be multiples of 2^exponent.
 pub fn difference<const N: usize>(p: [f64; N], a: [f64; N], exponent: i32) -> [IBig; N] {
     std::array::from_fn(|k| integer(p[k], exponent) - integer(a[k], exponent))
 }
 
+/// Returns the dot product.
 pub fn dot(a: &Vector, b: &Vector) -> IBig {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-/// One component of the cross product.
+/// Returns component k of the cross product.
 pub fn cross_component(a: &Vector, b: &Vector, k: usize) -> IBig {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     &a[i] * &b[j] - &a[j] * &b[i]
 }
 
+/// Returns the cross product.
 pub fn cross(a: &Vector, b: &Vector) -> Vector {
     std::array::from_fn(|k| cross_component(a, b, k))
 }
 
-/// Whether it is above, at or below zero.
+/// Returns the sign: the comparison with zero.
 pub fn sign(x: &IBig) -> Ordering {
     x.cmp(&IBig::ZERO)
 }
 
-/// A fraction; the denominator is above zero.
+/// A fraction with a positive denominator.
 #[derive(Clone, Debug)]
 pub struct Fraction {
+    /// The numerator, of either sign.
     pub numerator: IBig,
+    /// The denominator, which is positive.
     pub denominator: IBig,
 }
 
 impl Fraction {
+    /// Compares two fractions.
     pub fn cmp(&self, other: &Self) -> Ordering {
         (&self.numerator * &other.denominator).cmp(&(&other.numerator * &self.denominator))
     }
 
-    /// The fraction times 2^exponent, rounded to the nearest f64, to the even one between two; infinite where that is
-    /// beyond all of them, and never -0.
+    /// Returns the fraction times 2^exponent, rounded to the nearest f64, ties to even. It is infinite beyond the range
+    /// of f64, and never -0.
     pub fn round(&self, exponent: i32) -> f64 {
         let negative = sign(&self.numerator) == Ordering::Less;
         let numerator = (&self.numerator).unsigned_abs();
@@ -82,8 +89,8 @@ impl Fraction {
             return 0.0;
         }
         let bits = |x: &UBig| i64::try_from(x.bit_len()).expect("far fewer");
-        // The quotient lies between 2^(top - 1) and 2^(top + 1). Its unit gets 2^-54 of that, two bits below the last
-        // one of f64, or more where that is subnormal.
+        // The quotient lies between 2^(top - 1) and 2^(top + 1). The unit of the integer quotient is 2^-55 of 2^top,
+        // two bits below the last bit of the result, or more if that is subnormal.
         let top = bits(&numerator) - bits(&denominator) + i64::from(exponent);
         let unit = (top - 55).max(-1076);
         let shift = i64::from(exponent) - unit;
@@ -92,17 +99,17 @@ impl Fraction {
             if shift >= 0 { (numerator << by, denominator) } else { (numerator, denominator << by) };
         let quotient = &numerator / &denominator;
         let exact = &quotient * &denominator == numerator;
-        // 56 bits at most, and one that says that there is more.
+        // The quotient has at most 56 bits. One more bit is set if the division is not exact.
         let quotient = u64::try_from(quotient).expect("56 bits") << 1 | u64::from(!exact);
         let x = round_bits(quotient, unit - 1);
         if negative && x != 0.0 { -x } else { x }
     }
 }
 
-/// mantissa 2^unit, rounded once; unit >= -1077.
+/// Returns mantissa 2^unit, rounded once to the nearest f64, ties to even. `unit` is at least -1077.
 pub fn round_bits(mantissa: u64, unit: i64) -> f64 {
     let length = i64::from(64 - mantissa.leading_zeros());
-    // Bits below the last one of the result.
+    // The number of bits below the last bit of the result.
     let extra = (length - 53).max(-1074 - unit).max(0);
     let half = if extra > 0 { 1u64 << (extra - 1) } else { 0 };
     let (kept, rest) = (mantissa >> extra, mantissa & ((1u64 << extra) - 1));
@@ -112,7 +119,7 @@ pub fn round_bits(mantissa: u64, unit: i64) -> f64 {
     if exponent > 1023 {
         return f64::INFINITY;
     }
-    // Exact, with 53 bits; then exact again, or infinite.
+    // The conversion of 53 bits is exact, and so is the scaling unless the result is infinite.
     #[allow(clippy::cast_precision_loss, reason = "53 bits")]
     let kept = kept as f64;
     #[allow(clippy::cast_possible_truncation, reason = "from -1074 to 1023")]
@@ -136,10 +143,10 @@ mod tests {
             for d in 1..200 {
                 let expected = n as f64 / d as f64 + 0.0;
                 assert_eq!(fraction(n, d).round(0).to_bits(), expected.to_bits(), "{n} / {d}");
-                // Exact, as the result has room.
+                // The result is exact, since it is far above the subnormals.
                 let scaled = expected * power_of_two(-1000);
                 assert_eq!(fraction(n, d).round(-1000), scaled);
-                // Rounded once, not twice.
+                // A subnormal result is rounded once, not twice.
                 let expected = integer_round(n, d);
                 assert_eq!(fraction(n, d).round(-1074), expected * f64::from_bits(1), "{n} / {d}");
             }
@@ -152,7 +159,7 @@ mod tests {
         assert_eq!(fraction(1, i64::MAX).round(-5000), 0.0);
     }
 
-    /// n / d rounded to an integer, to the even one between two.
+    /// Returns n / d rounded to an integer, ties to even.
     fn integer_round(n: i64, d: i64) -> f64 {
         let (floor, rest) = (n.div_euclid(d), n.rem_euclid(d));
         let up = rest * 2 > d || rest * 2 == d && floor & 1 == 1;

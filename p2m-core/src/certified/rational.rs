@@ -1,14 +1,16 @@
-//! Squared distances in integers of any length, and their roots, rounded once.
+//! Squared distances as fractions of big integers, and their square roots rounded once.
 //!
-//! Everything is relative to the query, and a multiple of a power of two that divides all coordinates of the query and
-//! the primitive. Which feature is nearest is told by the same signs as in [`claim`](super::claim), here of integers:
-//! nothing is uncertain. A point nearest to the query is a vertex, or inside of an edge that has a length, or inside of a
-//! face that has an area, and the conditions stated there are necessary as well; of a triangle without area every point
-//! is on an edge. So one of the features is always found.
+//! All positions are relative to the query, and integers in units of a power of two that divides all coordinates of
+//! the query and the primitive. The nearest feature is found by the signs that
+//! [`feature_certificate`](super::feature_certificate) states, which are certain for integers. The nearest point is a
+//! vertex, in the interior of an edge that has a length, or in the interior of a face that has an area. The
+//! conditions are necessary as well as sufficient, and every point of a triangle without area is on an edge. So a
+//! feature is always found.
 
-use super::{Rounded, exists};
+use super::feature::exists;
+use super::rounded::RoundedDistance;
 use crate::Feature;
-use crate::integers::{Fraction, Vector, common_exponent, cross, difference, dot, integer, round_bits, sign};
+use crate::exact::{Fraction, Vector, common_exponent, cross, difference, dot, integer, round_bits, sign};
 use crate::kernel::vector::V3;
 use dashu_int::ops::{BitTest, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
@@ -17,21 +19,22 @@ use std::cmp::Ordering;
 
 /// A squared distance.
 pub(super) struct Square {
-    /// In units of 4^unit.
+    /// The square in units of 4^unit.
     fraction: Fraction,
     unit: i32,
 }
 
 impl Square {
-    /// Of a primitive, given what probably holds its nearest point, or certainly.
-    pub(super) fn new(query: V3, vertices: &[V3], claim: Feature, proved: bool) -> Self {
+    /// Computes the squared distance of a primitive. `claim` is the feature that probably contains its nearest point,
+    /// or certainly if `is_proved`.
+    pub(super) fn new(query: V3, vertices: &[V3], claim: Feature, is_proved: bool) -> Self {
         let exact = Primitive::new(query, vertices);
-        let feature = if proved { claim } else { exact.nearest(claim) };
+        let feature = if is_proved { claim } else { exact.nearest(claim) };
         Self { fraction: exact.square(feature), unit: exact.unit }
     }
 
-    /// Of a length.
-    pub(super) fn of_length(x: f64) -> Self {
+    /// Computes the square of a length.
+    pub(super) fn from_length(x: f64) -> Self {
         let unit = common_exponent([&x]);
         let x = integer(x, unit);
         Self { fraction: Fraction { numerator: &x * &x, denominator: IBig::ONE }, unit }
@@ -50,14 +53,15 @@ impl Square {
         }
     }
 
-    pub(super) fn distance(&self) -> Rounded {
+    /// Returns the distance.
+    pub(super) fn distance(&self) -> RoundedDistance {
         let nearest = self.root();
-        // Beyond the largest f64 no other one is nearer below.
-        let is_above = nearest > 0.0 && (nearest == f64::INFINITY || self.cmp(&Self::of_length(nearest)).is_lt());
-        Rounded { nearest, lower: if is_above { nearest.next_down() } else { nearest } }
+        // The true distance is below an infinite result as well.
+        let is_above = nearest > 0.0 && (nearest == f64::INFINITY || self.cmp(&Self::from_length(nearest)).is_lt());
+        RoundedDistance { nearest, lower: if is_above { nearest.next_down() } else { nearest } }
     }
 
-    /// The square root, rounded to the nearest f64; infinite beyond all of them.
+    /// Returns the square root rounded to the nearest f64, which is infinite beyond the range of f64.
     fn root(&self) -> f64 {
         let numerator = (&self.fraction.numerator).unsigned_abs();
         let denominator = (&self.fraction.denominator).unsigned_abs();
@@ -65,8 +69,9 @@ impl Square {
             return 0.0;
         }
         let bits = |x: &UBig| i64::try_from(x.bit_len()).expect("far fewer");
-        // The fraction lies between 2^(top - 1) and 2^(top + 1), so the root between 2^(half - 1) and 2^(half + 1). Its
-        // unit gets 2^-56 of 2^half, at least two bits below the last one of f64, or more where that is subnormal.
+        // The fraction lies between 2^(top - 1) and 2^(top + 1), so the root lies between 2^(half - 1) and
+        // 2^(half + 1). The unit of the integer root is 2^-56 of 2^half, at least two bits below the last bit of the
+        // result, or more if that is subnormal.
         let top = bits(&numerator) - bits(&denominator) + 2 * i64::from(self.unit);
         let half = top.div_euclid(2);
         let unit = (half - 56).max(-1076);
@@ -78,17 +83,17 @@ impl Square {
         let quotient = &numerator / &denominator;
         let root = quotient.sqrt();
         let exact = &root * &root * &denominator == numerator;
-        // 58 bits at most, and one that says that there is more.
+        // The root has at most 58 bits. One more bit is set if the root is not exact.
         let root = u64::try_from(root).expect("58 bits") << 1 | u64::from(!exact);
         round_bits(root, unit - 1)
     }
 }
 
-/// A primitive in integers.
+/// A primitive in integers, relative to the query.
 struct Primitive {
-    /// From the query to the vertices.
+    /// The vectors from the query to the vertices.
     offsets: Vec<Vector>,
-    /// Of coordinates: they are multiples of 2^unit.
+    /// The exponent of two of which coordinates are multiples.
     unit: i32,
     normal: OnceCell<Vector>,
 }
@@ -108,7 +113,7 @@ impl Primitive {
         Self { offsets, unit, normal: OnceCell::new() }
     }
 
-    /// A feature that holds the nearest point: the claimed one if it does.
+    /// Returns a feature that contains the nearest point: the claimed one if it does.
     fn nearest(&self, claim: Feature) -> Feature {
         const ALL: [Feature; 7] = [
             Feature::Vertex(0),
@@ -119,11 +124,12 @@ impl Primitive {
             Feature::Edge(2),
             Feature::Face,
         ];
-        let holds = |feature: &Feature| exists(*feature, self.offsets.len()) && self.holds(*feature);
-        std::iter::once(claim).chain(ALL).find(holds).expect("every set of points has a nearest one")
+        let is_nearest = |feature: &Feature| exists(*feature, self.offsets.len()) && self.is_nearest(*feature);
+        std::iter::once(claim).chain(ALL).find(is_nearest).expect("every set of points has a nearest one")
     }
 
-    fn holds(&self, feature: Feature) -> bool {
+    /// Returns whether the interior of a feature contains the nearest point.
+    fn is_nearest(&self, feature: Feature) -> bool {
         match feature {
             Feature::Vertex(i) => {
                 let a = &self.offsets[usize::from(i)];
@@ -132,7 +138,7 @@ impl Primitive {
             Feature::Edge(i) => {
                 let [a, b] = self.ends(i);
                 let edge = minus(b, a);
-                // Inside of the edge, not at its ends: then it has a length.
+                // The strict signs exclude the ends, so the edge has a length.
                 is_negative(&dot(a, &edge))
                     && sign(&dot(b, &edge)).is_gt()
                     && (self.offsets.len() < 3 || self.side(i).is_le())
@@ -141,7 +147,8 @@ impl Primitive {
         }
     }
 
-    /// The squared distance of the line or plane of a feature that has a length or an area.
+    /// Returns the squared distance of the point, line or plane of a feature. An edge must have a length and a
+    /// face an area.
     fn square(&self, feature: Feature) -> Fraction {
         match feature {
             Feature::Vertex(i) => {
@@ -167,7 +174,7 @@ impl Primitive {
         [&self.offsets[i], &self.offsets[(i + 1) % self.offsets.len()]]
     }
 
-    /// Of a triangle.
+    /// Returns the normal of a triangle.
     fn normal(&self) -> &Vector {
         self.normal.get_or_init(|| {
             let [a, b, c] = [0, 1, 2].map(|i| &self.offsets[i]);
@@ -175,7 +182,7 @@ impl Primitive {
         })
     }
 
-    /// On which side of an edge the foot on the plane of the triangle is: `Greater` inside.
+    /// Returns the side of an edge on which the projection onto the plane of the triangle lies: `Greater` is inside.
     fn side(&self, i: u8) -> Ordering {
         let [a, b] = self.ends(i);
         sign(&dot(self.normal(), &cross(a, b)))

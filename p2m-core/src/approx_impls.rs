@@ -1,10 +1,10 @@
-//! The comparisons of the `approx` crate for public types: componentwise over their coordinates.
+//! The comparison traits of the crate `approx` for public types, componentwise over their coordinates.
 
 use crate::{Aabb, Closest, Point, Real, Segment, Triangle};
 use approx::{AbsDiffEq, RelativeEq, UlpsEq};
 
-/// Implements the three traits for a type from the fields that hold coordinates and a guard on the others.
-macro_rules! approximate {
+/// Implements the three traits for a type, given the fields with coordinates and a condition on the other fields.
+macro_rules! approx_traits {
     ($type:ident, |$a:ident, $b:ident| $same:expr, $($field:ident),+) => {
         impl<T: Real + AbsDiffEq<Epsilon = T>> AbsDiffEq for $type<T> {
             type Epsilon = T;
@@ -37,11 +37,11 @@ macro_rules! approximate {
     };
 }
 
-approximate!(Aabb, |_a, _b| true, min, max);
-approximate!(Point, |_a, _b| true, position);
-approximate!(Segment, |_a, _b| true, vertices);
-approximate!(Triangle, |_a, _b| true, vertices);
-approximate!(
+approx_traits!(Aabb, |_a, _b| true, min, max);
+approx_traits!(Point, |_a, _b| true, position);
+approx_traits!(Segment, |_a, _b| true, vertices);
+approx_traits!(Triangle, |_a, _b| true, vertices);
+approx_traits!(
     Closest,
     |a, b| a.primitive == b.primitive && a.feature == b.feature,
     point,

@@ -1,24 +1,28 @@
 //! Double-double arithmetic: a value as the unevaluated sum of two f64, with about 104 bits.
 //!
-//! Used where a sliver triangle needs its height to full relative accuracy. The error-free transformations are those
-//! of [Knuth1997] (sum) and [Dekker1971] (product), the compound operations follow [Joldes2017]. No fused
-//! multiply-add, so the bits are the same on every machine. Exact as long as nothing overflows (|x| < 2^990) and the
-//! error terms stay above the subnormals; the kernel scales its input to guarantee both.
+//! The kernel uses it where a sliver triangle needs its height to full relative accuracy, and predicates and certified
+//! queries where f64 cannot decide. The error-free transformations are those of \[Knuth1997\] (sum) and \[Dekker1971\]
+//! (product), and the compound operations follow \[Joldes2017\]. There is no fused multiply-add, so the bits are the
+//! same on every machine. The transformations are exact as long as nothing overflows (|x| < 2^990) and their error
+//! terms are no subnormals. The callers guarantee both by the range of their input.
 
 use super::power_of_two;
 use std::ops::{Add, Div, Mul, Sub};
 
-/// What sums of a few products of double-double numbers may be off, in parts of the sizes of what is summed: 2^-95, where
-/// less than 2^-98 can be shown.
+/// A bound on the error of a sum of a few products of double-double numbers, relative to the sizes of the products. It
+/// is 2^-95, where less than 2^-98 can be shown.
 pub const ROUNDING: f64 = power_of_two(-95);
 
+/// A double-double number: the sum of its two parts.
 #[derive(Clone, Copy)]
 pub struct Double {
+    /// The sum, rounded to f64.
     pub high: f64,
+    /// The rest of the sum.
     pub low: f64,
 }
 
-/// a + b without error.
+/// Returns a + b without error.
 #[inline(always)]
 fn two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
@@ -27,17 +31,18 @@ fn two_sum(a: f64, b: f64) -> Double {
     Double { high, low: (a - a_part) + (b - b_part) }
 }
 
-/// a + b without error if |a| >= |b| or a = 0.
+/// Returns a + b without error if |a| >= |b| or a = 0.
 #[inline(always)]
 fn fast_two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     Double { high, low: b - (high - a) }
 }
 
-/// a b without error.
+/// Returns a b without error.
 #[inline(always)]
 fn two_product(a: f64, b: f64) -> Double {
-    const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1: halves of at most 26 bits
+    // The factor 2^27 + 1 splits a number into two parts of at most 26 bits.
+    const SPLITTER: f64 = 134_217_729.0;
     let split = |x: f64| {
         let c = SPLITTER * x;
         let high = c - (c - x);
@@ -49,19 +54,19 @@ fn two_product(a: f64, b: f64) -> Double {
 }
 
 impl Double {
-    /// a - b without error.
+    /// Returns a - b without error.
     #[inline(always)]
     pub fn difference(a: f64, b: f64) -> Self {
         two_sum(a, -b)
     }
 
-    /// a b without error.
+    /// Returns a b without error.
     #[inline(always)]
     pub fn product(a: f64, b: f64) -> Self {
         two_product(a, b)
     }
 
-    /// The value rounded to f64.
+    /// Returns the number rounded to f64.
     pub fn round(self) -> f64 {
         self.high
     }
@@ -117,7 +122,8 @@ mod tests {
         let one = Double { high: 1.0, low: 0.0 };
         let sum = one + Double { high: tiny, low: 0.0 };
         assert_eq!((sum - one).round(), tiny);
-        let product = sum * sum; // 1 + 2 tiny + tiny^2
+        // The product is 1 + 2 tiny + tiny^2.
+        let product = sum * sum;
         assert_eq!((product - one).round(), 2.0 * tiny);
         assert_eq!(((sum / product) - one).round(), -tiny);
         assert_eq!(two_product(1.0 + f64::EPSILON, 1.0 + f64::EPSILON).low, f64::EPSILON * f64::EPSILON);

@@ -1,12 +1,13 @@
-//! A collector of hits that counts what a search does.
+//! A collector of hits that counts the work of a search.
 
-use super::collect::RayCollector;
+use super::collector::RayCollector;
 use super::crossing::Crossing;
 use super::line::Ray;
 use crate::PrimitiveId;
 use std::ops::ControlFlow;
 
-/// A collector with counters, such as [`Hits`](crate::Hits): [`StatsCollector`](crate::StatsCollector) for rays.
+/// A collector of hits, such as [`Hits`](crate::Hits), with counters of the work.
+/// [`StatsCollector`](crate::StatsCollector) does this for closest points.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
@@ -17,29 +18,30 @@ use std::ops::ControlFlow;
 /// let tree = AabbTree::build(&points, &Default::default()).unwrap();
 /// let rays = [Ray::new(&Point3::new(-1.0, 0.0, 0.0), &Vector3::x()).unwrap()];
 /// let [_nodes, _packets, primitives] =
-///     RayStatsCollector::of_rays(&rays, &Hits::all(), |ray, counting| tree.visit_ray(ray, counting));
+///     RayStatsCollector::of_rays(&rays, &Hits::all(), |ray, stats| tree.visit_ray(ray, stats));
 /// assert_eq!(primitives, 3);
 /// ```
 #[derive(Clone, Debug)]
 pub struct RayStatsCollector<C> {
-    /// What decides.
+    /// The collector that makes all decisions.
     pub collector: C,
-    /// Nodes visited.
+    /// The number of nodes that were visited.
     pub nodes: usize,
-    /// Packets filtered.
+    /// The number of packets that were filtered.
     pub packets: usize,
-    /// Primitives tested exactly.
+    /// The number of primitives that were tested exactly.
     pub primitives: usize,
 }
 
 impl<C> RayStatsCollector<C> {
-    /// Counts from zero around `collector`.
+    /// Creates counters at zero around `collector`.
     #[must_use]
     pub fn new(collector: C) -> Self {
         Self { collector, nodes: 0, packets: 0, primitives: 0 }
     }
 
-    /// Nodes, packets and primitives of some rays, in all: each is searched by `visit` with a copy of `collector`.
+    /// Returns the numbers of nodes, packets and primitives of some rays in total. Each ray is searched by `visit` with
+    /// a copy of `collector`.
     pub fn of_rays<'r>(
         rays: impl IntoIterator<Item = &'r Ray>,
         collector: &C,
@@ -50,27 +52,21 @@ impl<C> RayStatsCollector<C> {
     {
         let mut sums = [0; 3];
         for ray in rays {
-            let mut counting = Self::new(collector.clone());
-            visit(ray, &mut counting);
-            sums = [sums[0] + counting.nodes, sums[1] + counting.packets, sums[2] + counting.primitives];
+            let mut stats = Self::new(collector.clone());
+            visit(ray, &mut stats);
+            sums = [sums[0] + stats.nodes, sums[1] + stats.packets, sums[2] + stats.primitives];
         }
         sums
     }
 }
 
 impl<'r, C: RayCollector<'r>> RayCollector<'r> for RayStatsCollector<C> {
-    fn only_crossings(&self) -> bool {
-        self.collector.only_crossings()
-    }
-    fn limit(&self) -> f64 {
-        self.collector.limit()
-    }
-    fn wants(&self, primitive: PrimitiveId) -> bool {
-        self.collector.wants(primitive)
-    }
-    fn offer(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()> {
-        self.collector.offer(primitive, crossing)
-    }
+    forward_methods!(collector, [], {
+        fn only_crossings(self: &Self) -> bool;
+        fn limit(self: &Self) -> f64;
+        fn wants(self: &Self, primitive: PrimitiveId) -> bool;
+        fn offer(self: &mut Self, primitive: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()>;
+    });
     fn visit_node(&mut self) {
         self.nodes += 1;
         self.collector.visit_node();

@@ -1,0 +1,121 @@
+//! The interface of a primitive.
+
+use super::projection::Projection;
+use crate::{Aabb, Ray, RayHit, Real};
+use nalgebra::Point3;
+
+/// A set of points that has a nearest point to any query.
+///
+/// [`Point`](crate::Point), [`Segment`](crate::Segment), [`Triangle`](crate::Triangle) and [`Shape`](crate::Shape) keep
+/// the whole contract of [`ClosestPoint`](crate::ClosestPoint). For a primitive of your own, every index of this
+/// project still finds the primitive of the smallest key, lowest id first, and agrees bitwise with
+/// [`BruteForce`](crate::BruteForce) (N3, and N6 for totality), provided that
+///
+/// - `project` is a pure function that returns for every finite query,
+/// - its point lies in `aabb()`, and its key is made by [`Projection::new`].
+///
+/// N1, N2 and N5 (accuracy) then hold with your own `error` in place of 8 u M, and N4 (invariance) as far as your
+/// arithmetic has it. Use a tree for them: the lists of `P2mIndex` contain triangles, segments and points only.
+///
+/// ```
+/// use p2m_core::{Aabb, BruteForce, ClosestPoint, Feature, Primitive, Projection};
+/// use nalgebra::Point3;
+///
+/// struct Ball { centre: Point3<f64>, radius: f64 }
+///
+/// impl Primitive<f64> for Ball {
+///     fn aabb(&self) -> Aabb<f64> {
+///         let r = nalgebra::Vector3::repeat(self.radius);
+///         Aabb::of_points(&[self.centre - r, self.centre + r])
+///     }
+///     fn project(&self, query: &Point3<f64>) -> Projection {
+///         let v = query - self.centre;
+///         let point = if v.norm() <= self.radius { *query } else { self.centre + v * (self.radius / v.norm()) };
+///         let point = self.aabb().clamp(point);
+///         Projection::new(query, point, Feature::Face, [1.0, 0.0, 0.0], 1e-15 * (v.norm() + self.radius))
+///     }
+/// }
+///
+/// let ball = |x, radius| Ball { centre: Point3::new(x, 0.0, 0.0), radius };
+/// let scene = [ball(0.0, 1.0), ball(5.0, 2.0)];
+/// let answer = BruteForce::new(&scene).unwrap().closest_point(&Point3::new(2.5, 0.0, 0.0)).unwrap();
+/// assert_eq!(answer.primitive.index(), 1);
+/// ```
+pub trait Primitive<T: Real> {
+    /// Returns the smallest box that contains the primitive. It is not finite if a coordinate is not.
+    fn aabb(&self) -> Aabb<T>;
+
+    /// Returns the nearest point to a finite query.
+    fn project(&self, query: &Point3<T>) -> Projection;
+
+    /// Returns the nearest point, or `None` if its key certainly exceeds `square`.
+    ///
+    /// A search passes the square that it would prune above, so a primitive with a cheap bound can save the work. The
+    /// default calls [`project`](Self::project).
+    #[inline]
+    fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
+        let _ = square;
+        Some(self.project(query))
+    }
+
+    /// Returns the one to three vertices of a primitive that *is* the [`Point`](crate::Point),
+    /// [`Segment`](crate::Segment) or [`Triangle`](crate::Triangle) of these.
+    ///
+    /// Indexes then filter it by more than its box, and may evaluate that shape instead. The default returns none,
+    /// which is right for a primitive whose `project` differs from that of the shape in any bit.
+    fn vertices(&self) -> &[Point3<T>] {
+        &[]
+    }
+
+    /// Returns whether the primitive has a point in a closed box, for [`BoxQuery`](crate::BoxQuery).
+    ///
+    /// It is exact for the primitives of this project. The default tests the box of the primitive, which finds at least
+    /// all primitives that have a point in the box.
+    fn meets_box(&self, bounds: &Aabb<T>) -> bool {
+        !bounds.is_empty() && bounds.meets(&self.aabb())
+    }
+
+    /// Returns the hit of a ray on a primitive that has no [`vertices`](Self::vertices).
+    ///
+    /// It has to be a pure function. The point lies in `aabb()` and the parameter in the range of the ray. The default
+    /// returns `None`, so rays miss a primitive that does not override it. Primitives with vertices are hit as the
+    /// contract of [`RayQuery`](crate::RayQuery) says.
+    fn intersect_ray(&self, ray: &Ray) -> Option<RayHit> {
+        let _ = ray;
+        None
+    }
+
+    /// Returns whether all coordinates are finite.
+    fn is_finite(&self) -> bool {
+        self.aabb().is_finite()
+    }
+}
+
+impl<T: Real, P: Primitive<T>> Primitive<T> for &P {
+    #[inline(always)]
+    fn aabb(&self) -> Aabb<T> {
+        (*self).aabb()
+    }
+    #[inline(always)]
+    fn project(&self, query: &Point3<T>) -> Projection {
+        (*self).project(query)
+    }
+    #[inline(always)]
+    fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
+        (*self).project_within(query, square)
+    }
+    #[inline(always)]
+    fn vertices(&self) -> &[Point3<T>] {
+        (*self).vertices()
+    }
+    fn meets_box(&self, bounds: &Aabb<T>) -> bool {
+        (*self).meets_box(bounds)
+    }
+    fn intersect_ray(&self, ray: &Ray) -> Option<RayHit> {
+        (*self).intersect_ray(ray)
+    }
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        (*self).is_finite()
+    }
+}

@@ -1,0 +1,115 @@
+//! The nearest point of one primitive.
+
+use crate::Real;
+use crate::kernel::{Key, Nearest, triangle as plain_kernel};
+use crate::real::to_f64_array;
+use nalgebra::Point3;
+
+/// The feature of a primitive that contains its nearest point, numbered within that primitive: neighbours in a mesh
+/// number the same vertex or edge differently.
+///
+/// A point has `Vertex(0)`; a segment has `Vertex(0)`, `Vertex(1)` and `Edge(0)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Feature {
+    /// The vertex i.
+    Vertex(u8),
+    /// The interior of edge i, which runs from vertex i to vertex i + 1 (cyclically).
+    Edge(u8),
+    /// The interior of the face.
+    Face,
+}
+
+impl std::fmt::Display for Feature {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Vertex(i) => write!(f, "vertex{i}"),
+            Self::Edge(i) => write!(f, "edge{i}"),
+            Self::Face => f.write_str("face"),
+        }
+    }
+}
+
+/// The nearest point of one primitive, before it is rounded to the scalar of the scene.
+///
+/// All numbers are in f64 and in units of the scene, for both scalars.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projection {
+    /// The squared length of the offset from the query, by which primitives are compared.
+    pub key: Key,
+    /// The nearest point.
+    pub point: Point3<f64>,
+    /// The feature of the lowest dimension that contains the nearest point.
+    pub feature: Feature,
+    /// The weights of the vertices of the primitive. They are >= 0 and add up to 1 within 4 u; unused ones are 0.
+    pub barycentric: [f64; 3],
+    /// A bound on the error of [`Key::distance`], apart from one smallest subnormal.
+    pub error: f64,
+}
+
+impl Projection {
+    /// Creates the projection of a primitive of your own, from the query and its nearest point.
+    ///
+    /// The key is computed from `point - query`, componentwise, which makes it never less than the lower bound of any
+    /// box that contains `point`. `error` is your bound on the error of the distance, and certified lower bounds are as
+    /// good as it is.
+    ///
+    /// ```
+    /// use p2m_core::{Feature, Projection};
+    /// use nalgebra::Point3;
+    ///
+    /// let p = Projection::new(&Point3::new(0.0f64, 3.0, 4.0), Point3::origin(), Feature::Face, [1.0, 0.0, 0.0], 0.0);
+    /// assert_eq!(p.key.distance(), 5.0);
+    /// ```
+    #[must_use]
+    pub fn new<T: Real>(
+        query: &Point3<T>,
+        point: Point3<f64>,
+        feature: Feature,
+        barycentric: [f64; 3],
+        error: f64,
+    ) -> Self {
+        let q = to_f64_array(query);
+        let key = Key::from_offset(std::array::from_fn(|k| point[k] - q[k]));
+        Self { key, point, feature, barycentric, error }
+    }
+
+    /// Projects onto a triangle that is probably near: inlined, and without a test of its box. It returns `None` if the
+    /// key certainly exceeds `square`.
+    #[inline(always)]
+    #[doc(hidden)]
+    pub fn of_near_triangle(query: [f64; 3], vertices: &[[f64; 3]; 3], square: f64) -> Option<Self> {
+        Some(Self::from_nearest(&plain_kernel::near_triangle(query, *vertices, square)?, query, vertices))
+    }
+
+    /// Projects onto a triangle. It returns `None` if the key certainly exceeds `square`.
+    #[inline(always)]
+    #[doc(hidden)]
+    pub fn of_triangle(query: [f64; 3], vertices: &[[f64; 3]; 3], square: f64) -> Option<Self> {
+        Some(Self::from_nearest(&plain_kernel::triangle(query, *vertices, square)?, query, vertices))
+    }
+
+    /// Projects onto a segment. It returns `None` if the key certainly exceeds `square`.
+    #[inline(always)]
+    #[doc(hidden)]
+    pub fn of_segment(query: [f64; 3], vertices: &[[f64; 3]; 2], square: f64) -> Option<Self> {
+        Some(Self::from_nearest(&plain_kernel::segment(query, *vertices, square)?, query, vertices))
+    }
+
+    /// Projects onto a point. It returns `None` if the key certainly exceeds `square`.
+    #[inline(always)]
+    #[doc(hidden)]
+    pub fn of_point(query: [f64; 3], vertex: &[[f64; 3]; 1], square: f64) -> Option<Self> {
+        Some(Self::from_nearest(&plain_kernel::point(query, vertex[0], square)?, query, vertex))
+    }
+
+    #[inline(always)]
+    fn from_nearest<const N: usize>(nearest: &Nearest, query: [f64; 3], vertices: &[[f64; 3]; N]) -> Self {
+        Self {
+            key: nearest.key,
+            point: Point3::from(nearest.point(query, vertices)),
+            feature: nearest.feature,
+            barycentric: nearest.weights,
+            error: nearest.error(),
+        }
+    }
+}

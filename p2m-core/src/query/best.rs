@@ -1,0 +1,219 @@
+//! The collector of the single nearest primitive.
+
+use super::answer::{ROUND_DOWN, ROUND_UP, answer, square_within};
+use super::closest::Closest;
+use super::collector::Collector;
+use super::options::QueryOptions;
+use crate::{Key, Primitive, PrimitiveId, PrimitiveSet, Projection, Real};
+use nalgebra::Point3;
+use std::marker::PhantomData;
+
+/// The running minimum of a search. It alone decides the radius, ties, epsilon and the certified lower bound.
+#[derive(Clone, Debug)]
+pub struct Best<T: Real> {
+    hint: Option<PrimitiveId>,
+    minimum: BestF64,
+    scalar: PhantomData<T>,
+}
+
+/// The running minimum in f64 for both scalars of scenes, so that a search is compiled once.
+#[derive(Clone, Debug)]
+pub struct BestF64 {
+    /// The largest f64 distance that is reported within the radius.
+    radius: f64,
+    /// The factor (1 + epsilon)^-2, rounded down.
+    shrink: f64,
+    /// The square that lower bounds must not exceed: at first that of the radius, rounded up, and from the first answer
+    /// within the radius on the key times `shrink`.
+    prune: f64,
+    /// The candidate with the least key.
+    best: Option<(PrimitiveId, Projection)>,
+    /// The key of `best`, or infinity.
+    key: Key,
+    /// The smallest `distance - error` of all candidates, and the smallest bound of all that was skipped.
+    certified: f64,
+    /// Whether the options allow an answer other than the exact one.
+    approximate: bool,
+    /// The number of visits that are left.
+    visits_left: u32,
+}
+
+/// The factor of epsilon, 2^100, beyond which any answer suffices; squares of it stay in range.
+const MAX_ERROR_FACTOR: f64 = 1.267_650_600_228_229_4e30;
+
+impl<T: Real> Best<T> {
+    /// Creates a running minimum without a candidate.
+    #[must_use]
+    pub fn new(options: &QueryOptions<T>) -> Self {
+        let epsilon = options.epsilon.to_f64();
+        let factor = 1.0 + if epsilon > 0.0 { epsilon } else { 0.0 };
+        let factor = if factor > MAX_ERROR_FACTOR { MAX_ERROR_FACTOR } else { factor };
+        let shrink = if factor > 1.0 { ROUND_DOWN / (factor * factor) } else { 1.0 };
+        // Distances are compared as they are reported, so some beyond the radius round into it. A NaN radius has none.
+        let radius = options.max_distance.to_f64_above();
+        let prune = square_within(radius);
+        let minimum = BestF64 {
+            radius,
+            shrink,
+            prune,
+            best: None,
+            key: Key::INFINITY,
+            certified: f64::INFINITY,
+            approximate: options.is_approximate(),
+            visits_left: options.max_visits,
+        };
+        Self { hint: options.hint, minimum, scalar: PhantomData }
+    }
+
+    /// Offers the primitive of the hint, if the options name one that the set has.
+    pub fn offer_hint<S: PrimitiveSet<T> + ?Sized>(&mut self, set: &S, query: &Point3<T>) {
+        if let Some(id) = self.hint.filter(|id| id.index() < set.len()) {
+            self.offer(id, set.get(id).project(query));
+        }
+    }
+
+    /// Reports that a part of the scene will not be searched although it could contain the answer; `square` is a lower
+    /// bound as for [`Collector::prune_above`]. The certified lower bound of the answer takes it into account.
+    pub fn record_skipped(&mut self, square: f64) {
+        self.minimum.record_skipped(square);
+    }
+
+    /// Returns the nearest point so far, before rounding to the scalar of the scene.
+    pub fn nearest_point(&self) -> Option<[f64; 3]> {
+        self.minimum.best.as_ref().map(|(_, p)| p.point.coords.into())
+    }
+
+    /// Returns the collector that a search which is not generic over the scalar reports to.
+    #[inline(always)]
+    pub fn minimum(&mut self) -> &mut BestF64 {
+        &mut self.minimum
+    }
+
+    /// Returns the answer, or `None` if no candidate was within the radius.
+    #[must_use]
+    pub fn finish(self) -> Option<Closest<T>> {
+        let BestF64 { certified, shrink, best, .. } = self.minimum;
+        let (primitive, p) = best?;
+        if !self.minimum.is_within_radius(p.key) {
+            return None;
+        }
+        // Pruned parts are farther than the limit that they exceeded, whose square is exact to 5 u.
+        let exact = p.key.distance();
+        let pruned = exact * shrink.sqrt() * ROUND_DOWN;
+        Some(answer(primitive, &p, if certified < pruned { certified } else { pruned }))
+    }
+}
+
+impl<T: Real> Collector for Best<T> {
+    forward_collector_decisions!(minimum, [#[inline(always)]]);
+    forward_methods!(minimum, [#[inline(always)]], {
+        fn offer(self: &mut Self, id: PrimitiveId, projection: Projection);
+        fn visit_node(self: &mut Self);
+        fn visit_packet(self: &mut Self);
+    });
+}
+
+impl BestF64 {
+    /// Returns whether a distance is within the radius, as it will be reported.
+    #[inline]
+    fn is_within_radius(&self, key: Key) -> bool {
+        key.distance() <= self.radius
+    }
+}
+
+impl Collector for BestF64 {
+    #[inline(always)]
+    fn prune_above(&self) -> f64 {
+        self.prune
+    }
+
+    #[inline(always)]
+    fn prune_given_upper_bound(&self, square: f64) -> f64 {
+        // Epsilon does not shrink this bound: its primitive may be beyond the radius, or be skipped for a candidate
+        // that is a little farther, and only that candidate determines what else may be skipped.
+        if square < self.prune { square } else { self.prune }
+    }
+
+    #[inline(always)]
+    fn is_approximate(&self) -> bool {
+        self.approximate
+    }
+
+    #[inline(always)]
+    fn prune_given_incumbent(&self, square: f64) -> f64 {
+        // An incumbent beyond the radius is no answer, so epsilon does not apply to it.
+        let is_within = square * ROUND_UP < self.radius * self.radius;
+        let shrunk = if is_within { square * self.shrink } else { square };
+        if shrunk < self.prune { shrunk } else { self.prune }
+    }
+
+    #[inline(always)]
+    fn may_stop(&self, has_incumbent: bool) -> bool {
+        // A search without any candidate goes on, however many visits it took.
+        self.visits_left == 0 && (has_incumbent || self.best.is_some())
+    }
+
+    #[inline(always)]
+    fn visit_node(&mut self) {
+        // An exact search never reads the counter.
+        self.visits_left = self.visits_left.saturating_sub(1);
+    }
+
+    #[inline(always)]
+    fn visit_packet(&mut self) {
+        self.visits_left = self.visits_left.saturating_sub(1);
+    }
+
+    #[inline(always)]
+    fn record_skipped(&mut self, square: f64) {
+        // The bound of a box is at most 5 u too large, and wrong by some subnormals near zero. A bound above the range
+        // of f64 is replaced by the end of the range.
+        let square = if square < f64::MAX { square } else { f64::MAX };
+        let bound = (square * ROUND_DOWN - 4.0 * f64::from_bits(1)).max(0.0).sqrt();
+        if bound < self.certified {
+            self.certified = bound;
+        }
+    }
+
+    #[inline(always)]
+    fn prune_above_for_id(&self, id: PrimitiveId) -> f64 {
+        match &self.best {
+            // Of equal keys the lowest id wins, so a higher id has to be strictly nearer.
+            Some((best, p)) if *best < id && p.key.plain_square() == Some(self.prune) => self.prune.next_down(),
+            _ => self.prune,
+        }
+    }
+
+    #[inline(always)]
+    fn is_single_nearest(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, id: PrimitiveId, projection: Projection) {
+        let p = projection;
+        // Only a candidate within its error of the certified bound can lower that bound. Its square decides this
+        // without a square root in most cases.
+        let limit = self.certified + p.error;
+        let is_beyond = p.key.plain_square().is_some_and(|square| square * ROUND_DOWN > limit * limit);
+        if !is_beyond {
+            // A distance above the range of f64 is replaced by the end of the range. An error above the range leaves
+            // no lower bound.
+            let distance = if p.key.distance() < f64::MAX { p.key.distance() } else { f64::MAX };
+            let bound = if p.error < f64::INFINITY { distance - p.error } else { f64::NEG_INFINITY };
+            if bound < self.certified {
+                self.certified = bound;
+            }
+        }
+        let is_closer = p.key < self.key;
+        if is_closer || (p.key == self.key && self.best.is_some_and(|(best, _)| id < best)) {
+            self.best = Some((id, p));
+            self.key = p.key;
+            let square = p.key.square_above() * self.shrink;
+            // A candidate beyond the radius is no answer, so epsilon does not apply to it.
+            if square < self.prune && (self.shrink >= 1.0 || self.is_within_radius(p.key)) {
+                self.prune = square;
+            }
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! The answer to a query.
+
+use crate::{Feature, PrimitiveId, Real};
+use nalgebra::Point3;
+
+/// The answer to a query for the closest point. Lengths are in units of the scene.
+///
+/// The distance has no sign: a query inside of a closed mesh has its distance from the surface. A query is inside if a
+/// ray from it crosses the surface an odd number of times ([`RayQuery::crossings`](crate::RayQuery::crossings)); the
+/// crate p2m-field has signed distances.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Closest<T: Real> {
+    /// The closest point. It lies in the box of the primitive, and it is a vertex verbatim if a vertex is nearest. How
+    /// ill-conditioned it is depends on the scene.
+    pub point: Point3<T>,
+    /// The distance of the closest point, computed from the offset before that is rounded to `point`.
+    pub distance: T,
+    /// A certified lower bound on the true distance of the scene. For exact answers it is `distance` less
+    /// its error bound.
+    pub lower_bound: T,
+    /// The primitive that contains the closest point; of several with equal keys it is the one with the lowest id.
+    pub primitive: PrimitiveId,
+    /// The feature of that primitive that contains the closest point.
+    pub feature: Feature,
+    /// The weights of the vertices of that primitive in their order: three for a triangle, two for a segment, one for a
+    /// point. They are >= 0 and add up to 1 within 4 u; unused ones are 0. The weighted sum of the vertices is `point`
+    /// within 4 u |query| + 8 u M and 8 u of the largest coordinate of a vertex (observed, `p2m_testkit::contract`).
+    pub barycentric: [T; 3],
+}

@@ -1,0 +1,95 @@
+//! The interface between a search and the collector of its candidates.
+
+use crate::{PrimitiveId, Projection};
+
+/// A collector of candidates: it decides which lower bounds a search may prune, and takes the candidates.
+///
+/// [`Best`](crate::Best) keeps the single closest candidate. [`Near`](crate::Near) answers the other questions about
+/// near primitives by the same traversals.
+///
+/// All squares are squared distances in f64 and in units of the scene. The methods that return limits are called in
+/// inner loops, so implementations should be `#[inline]`.
+pub trait Collector {
+    /// Returns the square that a lower bound must not exceed: a search skips bounds strictly above it and keeps equal
+    /// ones. It never rises during a search.
+    fn prune_above(&self) -> f64;
+
+    /// Returns the limit of [`prune_above`](Self::prune_above) given that the key of some primitive is at most
+    /// `square`, although that primitive was not offered yet.
+    ///
+    /// A collector that looks for the single nearest primitive may then prune more. The default ignores `square`.
+    #[inline(always)]
+    fn prune_given_upper_bound(&self, square: f64) -> f64 {
+        let _ = square;
+        self.prune_above()
+    }
+
+    /// Returns the limit of [`prune_above`](Self::prune_above) for the primitive `id`.
+    ///
+    /// It is lower than the general limit if the collector would reject that primitive at equality because of its id.
+    /// The default returns the general limit.
+    #[inline(always)]
+    fn prune_above_for_id(&self, id: PrimitiveId) -> f64 {
+        let _ = id;
+        self.prune_above()
+    }
+
+    /// Returns whether a collector of the nearest primitive also needs all primitives that rounding cannot distinguish
+    /// from it. A search then evaluates and offers everything that its filters cannot exclude. The default is `false`.
+    #[inline(always)]
+    fn keeps_near_ties(&self) -> bool {
+        false
+    }
+
+    /// Returns whether the collector may accept less than the exact result. A search then asks
+    /// [`prune_given_incumbent`](Self::prune_given_incumbent) and [`may_stop`](Self::may_stop). The default is `false`.
+    #[inline(always)]
+    fn is_approximate(&self) -> bool {
+        false
+    }
+
+    /// Returns the limit of [`prune_above`](Self::prune_above) given an incumbent with a key of at most `square`: a
+    /// primitive that the search will certainly offer, unless it offers one that is as near.
+    ///
+    /// An approximate collector may prune more than by [`prune_given_upper_bound`](Self::prune_given_upper_bound),
+    /// which is the default.
+    #[inline(always)]
+    fn prune_given_incumbent(&self, square: f64) -> f64 {
+        self.prune_given_upper_bound(square)
+    }
+
+    /// Returns whether the search may stop before it has visited everything; `has_incumbent` says whether there is a
+    /// primitive that it will certainly offer. The search reports everything that it did not visit by
+    /// [`record_skipped`](Self::record_skipped). The default is `false`.
+    #[inline(always)]
+    fn may_stop(&self, has_incumbent: bool) -> bool {
+        let _ = has_incumbent;
+        false
+    }
+
+    /// Reports that a subtree was skipped although it could contain the answer. `square` is a lower bound, to 16 u, on
+    /// the squared distances of its primitives, and limits the certified `lower_bound`. The default ignores it.
+    #[inline(always)]
+    fn record_skipped(&mut self, square: f64) {
+        let _ = square;
+    }
+
+    /// Returns whether only the nearest primitive and ties with it count, so that a candidate that is farther than some
+    /// primitive need not be offered. The default is `false`.
+    #[inline(always)]
+    fn is_single_nearest(&self) -> bool {
+        false
+    }
+
+    /// Takes a candidate.
+    fn offer(&mut self, id: PrimitiveId, projection: Projection);
+
+    /// Reports a visit to a node of a tree, or to a site on the way to a Voronoi cell. Collectors that count visits or
+    /// limit them override it.
+    #[inline(always)]
+    fn visit_node(&mut self) {}
+
+    /// Reports that a packet of primitives is filtered. Collectors that count visits or limit them override it.
+    #[inline(always)]
+    fn visit_packet(&mut self) {}
+}

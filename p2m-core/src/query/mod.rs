@@ -1,0 +1,28 @@
+//! Queries for the closest point: their options, their answers, and the collectors between a search and an answer.
+//!
+//! A backend only traverses its structure. It reports candidates to a [`Collector`], which returns the lower bounds
+//! to prune, so the radius, ties, epsilon and the certified lower bound are decided in [`Best`] and nowhere else.
+//!
+//! # Approximation
+//!
+//! Two options give up exactness: a relative error (epsilon) and a limit on visits (`max_visits`). A search that
+//! honours them keeps an *incumbent*: the primitive with the least upper bound on its distance, which need not be
+//! evaluated yet. Incumbents are evaluated before the search ends, so the answer is never farther than the incumbent
+//! was. Subtrees whose lower bound exceeds the distance of the incumbent / (1 + epsilon) are skipped, and subtrees
+//! that are not visited at all are reported with the smallest of their bounds ([`Best::record_skipped`]). So the
+//! lower bound of the answer is certified whatever the options were, and a caller knows the error without another
+//! query (docs/proofs/accuracy.md, N7).
+
+#[macro_use]
+mod forward;
+
+pub(crate) mod answer;
+mod best;
+mod closest;
+mod collector;
+mod options;
+
+pub use best::{Best, BestF64};
+pub use closest::Closest;
+pub use collector::Collector;
+pub use options::QueryOptions;

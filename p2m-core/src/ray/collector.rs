@@ -1,0 +1,165 @@
+//! Collectors of hits: they decide which hits a search has to find, and keep them.
+
+use super::crossing::Crossing;
+use super::hit::Hit;
+use crate::PrimitiveId;
+use std::ops::ControlFlow;
+
+/// A collector of hits: it decides which hits a search has to find, and takes them.
+pub trait RayCollector<'r> {
+    /// Returns whether only crossings of the surface count (see [`RayQuery::crossings`](super::RayQuery::crossings)),
+    /// rather than every primitive that the ray hits. The default is `false`.
+    fn only_crossings(&self) -> bool {
+        false
+    }
+
+    /// Returns the parameter above which hits are not needed. The default is infinity.
+    fn limit(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Returns whether a hit of this primitive is needed. A primitive that is not needed is not tested exactly. The
+    /// default is `true`.
+    fn wants(&self, _primitive: PrimitiveId) -> bool {
+        true
+    }
+
+    /// Takes a hit, in any order, and breaks if no other hit is needed.
+    fn offer(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()>;
+
+    /// Reports a visit to a node: the bounds of its children are tested.
+    fn visit_node(&mut self) {}
+
+    /// Reports a visit to a packet: its primitives are filtered.
+    fn visit_packet(&mut self) {}
+
+    /// Reports that a primitive passed the filter and is tested exactly.
+    fn visit_primitive(&mut self) {}
+}
+
+/// The hits that a method of [`RayQuery`](super::RayQuery) needs, and those that were
+/// found. A backend takes it as a [`RayCollector`]; your own code needs one to count the
+/// work of a search ([`RayStatsCollector`](super::RayStatsCollector)).
+#[derive(Clone, Debug)]
+pub struct Hits<'r> {
+    mode: HitMode,
+    /// The first hit, or any hit, in the modes of one hit.
+    pub(super) one: Option<(PrimitiveId, Crossing<'r>)>,
+    /// All hits, in the mode of all hits.
+    #[doc(hidden)]
+    pub all: Vec<Hit>,
+    /// The number of hits, in the modes that count.
+    #[doc(hidden)]
+    pub count: usize,
+}
+
+/// The hits that a query needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum HitMode {
+    /// One hit, whichever is found first.
+    Any,
+    /// The hit with the least parameter.
+    First,
+    /// All hits.
+    All,
+    /// The number of hits.
+    Count,
+    /// The number of crossings of the surface.
+    Crossings,
+}
+
+impl Hits<'_> {
+    /// Creates a collector of one hit, whichever is found first.
+    #[must_use]
+    pub fn any() -> Self {
+        Self::new(HitMode::Any)
+    }
+
+    /// Creates a collector of the hit with the least parameter.
+    #[must_use]
+    pub fn first() -> Self {
+        Self::new(HitMode::First)
+    }
+
+    /// Creates a collector of all hits.
+    #[must_use]
+    pub fn all() -> Self {
+        Self::new(HitMode::All)
+    }
+
+    /// Creates a collector that counts hits.
+    #[must_use]
+    pub fn count() -> Self {
+        Self::new(HitMode::Count)
+    }
+
+    /// Creates a collector that counts how often the surface is crossed.
+    #[must_use]
+    pub fn crossings() -> Self {
+        Self::new(HitMode::Crossings)
+    }
+
+    fn new(mode: HitMode) -> Self {
+        Self { mode, one: None, all: Vec::new(), count: 0 }
+    }
+}
+
+impl<'r> RayCollector<'r> for Hits<'r> {
+    #[inline(always)]
+    fn only_crossings(&self) -> bool {
+        self.mode == HitMode::Crossings
+    }
+
+    #[inline(always)]
+    fn limit(&self) -> f64 {
+        match &self.one {
+            Some((_, first)) => first.bounds()[1],
+            None => f64::INFINITY,
+        }
+    }
+
+    #[inline]
+    fn offer(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()> {
+        match self.mode {
+            HitMode::Any => {
+                self.one = Some((primitive, *crossing));
+                return ControlFlow::Break(());
+            }
+            HitMode::First => self.offer_first(primitive, crossing),
+            HitMode::All => self.all.push(crossing.hit(primitive)),
+            HitMode::Count | HitMode::Crossings => self.count += 1,
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl<'r> Hits<'r> {
+    /// Returns all hits in the order of their parameters, and of equal parameters in the order of ids.
+    pub(super) fn sorted(mut self) -> Vec<Hit> {
+        self.all.sort_unstable_by(|a, b| a.parameter.total_cmp(&b.parameter).then(a.primitive.cmp(&b.primitive)));
+        self.all
+    }
+
+    /// Keeps the hit with the least parameter, and of equal parameters the one with the lowest id. Parameters are
+    /// computed only where their bounds do not decide.
+    fn offer_first(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) {
+        let Some((id, first)) = &mut self.one else {
+            self.one = Some((primitive, *crossing));
+            return;
+        };
+        let ([low, high], [first_low, first_high]) = (crossing.bounds(), first.bounds());
+        if low > first_high {
+            return;
+        }
+        if high < first_low {
+            (*id, *first) = (primitive, *crossing);
+            return;
+        }
+        let crossing = crossing.resolved();
+        *first = first.resolved();
+        let ([t, _], [first_t, _]) = (crossing.bounds(), first.bounds());
+        if t < first_t || t.total_cmp(&first_t).is_eq() && primitive < *id {
+            (*id, *first) = (primitive, crossing);
+        }
+    }
+}

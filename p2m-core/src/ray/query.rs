@@ -1,0 +1,122 @@
+//! Queries by rays.
+
+use super::collector::{Hits, RayCollector};
+use super::crossing::Crossing;
+use super::hit::Hit;
+use super::line::Ray;
+use crate::{BruteForce, PrimitiveId, PrimitiveSet, Real};
+use std::ops::ControlFlow;
+
+/// Intersections of a scene and a ray. A backend writes one method, [`search_ray`](Self::search_ray).
+///
+/// # Contract
+///
+/// - **Exact**: triangles, segments and points are closed sets, and whether the line of the ray intersects one is
+///   decided without rounding, for all finite scenes and rays. There is no tolerance, and no ray slips through between
+///   two triangles that share an edge or a vertex.
+/// - **Parameter**: the parameter of a hit is the exact one rounded to the nearest f64. A hit counts if the rounded
+///   parameter lies in the closed range of the ray. So consecutive ranges ([t0, t1], [t1.next_up(), t2], ..) have each
+///   hit of a line in one of them.
+/// - **Shared edges and vertices**: a hit there counts once for each primitive that it belongs to, with equal
+///   parameters. [`crossings`](Self::crossings) counts it as often as the surface is crossed.
+/// - **In the plane of a triangle**: the ray runs along the triangle for an interval of parameters, and hits it at the
+///   least one in its range. A triangle without area is the segment or the point that it spans.
+/// - **Segments and points** are hit exactly, or within the radius of the ray. With a radius the hit is at the
+///   parameter nearest to the primitive, which has to be in the range.
+/// - **Order**: hits are ordered by parameter, and of equal parameters by id.
+/// - **Agreement**: all backends find the same hits with the same bits. Only
+///   [`any_intersection`](Self::any_intersection) may return different hits.
+///
+/// A primitive of your own answers by [`Primitive::intersect_ray`](crate::Primitive::intersect_ray). It is not part of
+/// a surface that can be crossed.
+///
+/// ```
+/// use nalgebra::{Point3, Vector3};
+/// use p2m_core::{BruteForce, Ray, RayQuery, Triangle};
+///
+/// let square = [
+///     Triangle::new(Point3::new(0.0, 0.0, 0.0), Point3::new(2.0, 0.0, 0.0), Point3::new(2.0, 2.0, 0.0)),
+///     Triangle::new(Point3::new(0.0, 0.0, 0.0), Point3::new(2.0, 2.0, 0.0), Point3::new(0.0, 2.0, 0.0)),
+/// ];
+/// let index = BruteForce::new(&square).unwrap();
+/// // Through the diagonal, which both have.
+/// let ray = Ray::new(&Point3::new(1.0, 1.0, 3.0), &Vector3::new(0.0, 0.0, -1.0)).unwrap();
+/// let first = index.first_intersection(&ray).unwrap();
+/// assert_eq!((first.primitive.index(), first.parameter), (0, 3.0));
+/// assert_eq!(index.all_intersections(&ray).len(), 2);
+/// assert_eq!(index.crossings(&ray), 1);
+/// ```
+///
+/// # Complexity
+/// Brute force takes O(n). Trees take expected O(log n + k) for k hits that are needed.
+///
+/// # References
+/// The functions are those of the trees of CGAL (manual of its k-DOP tree, section Ray Intersection).
+pub trait RayQuery<T: Real> {
+    /// Offers to `hits` every hit that it could need.
+    fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>);
+
+    /// Returns whether the ray hits any primitive.
+    fn do_intersect(&self, ray: &Ray) -> bool {
+        let mut hits = Hits::any();
+        self.search_ray(ray, &mut hits);
+        hits.one.is_some()
+    }
+
+    /// Returns the hit that is found first, or `None` if there is no hit.
+    fn any_intersection(&self, ray: &Ray) -> Option<Hit> {
+        let mut hits = Hits::any();
+        self.search_ray(ray, &mut hits);
+        hits.one.map(|(id, crossing)| crossing.hit(id))
+    }
+
+    /// Returns the hit with the least parameter, and of equal parameters the one with the lowest id. Parameters are
+    /// equal if they round to the same f64; all that exceed the range of f64 are infinite.
+    fn first_intersection(&self, ray: &Ray) -> Option<Hit> {
+        let mut hits = Hits::first();
+        self.search_ray(ray, &mut hits);
+        hits.one.map(|(id, crossing)| crossing.hit(id))
+    }
+
+    /// Returns all hits, one for each primitive that is hit, ordered by parameter and of equal parameters by id.
+    fn all_intersections(&self, ray: &Ray) -> Vec<Hit> {
+        let mut hits = Hits::all();
+        self.search_ray(ray, &mut hits);
+        hits.sorted()
+    }
+
+    /// Returns the number of primitives that are hit.
+    fn count(&self, ray: &Ray) -> usize {
+        let mut hits = Hits::count();
+        self.search_ray(ray, &mut hits);
+        hits.count
+    }
+
+    /// Returns how often the ray crosses the surface that the triangles form.
+    ///
+    /// The ray is thought to be moved by an infinitely small amount along x, a still smaller one along y and another
+    /// one along z, the same for all triangles. It then avoids all edges and vertices. So the
+    /// number is even for a line and every closed surface, and odd for a ray that begins inside of one. A triangle
+    /// counts if the moved line crosses it and the parameter of its plane is in the range: a ray that begins on a
+    /// triangle begins just before it. Segments, points and triangles without area are not part of the surface.
+    ///
+    /// # References
+    /// The perturbation is the simulation of simplicity \[Edelsbrunner1990\].
+    fn crossings(&self, ray: &Ray) -> usize {
+        let mut hits = Hits::crossings();
+        self.search_ray(ray, &mut hits);
+        hits.count
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>> RayQuery<T> for BruteForce<S> {
+    fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>) {
+        let only_crossings = hits.only_crossings();
+        let _ = (0..self.set().len()).map(PrimitiveId::new).try_for_each(|id| {
+            match Crossing::of(&self.set().get(id), ray, hits.limit(), only_crossings) {
+                Some(crossing) => hits.offer(id, &crossing),
+                None => ControlFlow::Continue(()),
+            }
+        });
+    }
+}

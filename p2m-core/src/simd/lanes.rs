@@ -1,0 +1,112 @@
+//! Lanes of numbers, instruction sets, and the kernels that are compiled for them.
+
+/// Several f32 that are computed with at once.
+///
+/// Addition, subtraction and multiplication round to nearest; [`mul_add`](Self::mul_add) rounds once or twice.
+pub trait Lanes: Copy {
+    /// The number of lanes.
+    const LEN: usize;
+    /// Returns `x` in every lane.
+    fn splat(x: f32) -> Self;
+    /// Loads the first [`LEN`](Self::LEN) values of a slice, which must have that many.
+    fn load(from: &[f32]) -> Self;
+    /// Loads the first [`LEN`](Self::LEN) u16 values of a slice, converted to f32.
+    fn load_u16(from: &[u16]) -> Self;
+    /// Loads the first [`LEN`](Self::LEN) u8 values of a slice, converted to f32.
+    fn load_u8(from: &[u8]) -> Self;
+    /// Writes the lanes to the front of a slice.
+    fn store(self, to: &mut [f32]);
+    /// Returns self + other.
+    fn add(self, other: Self) -> Self;
+    /// Returns self - other.
+    fn sub(self, other: Self) -> Self;
+    /// Returns self * other.
+    fn mul(self, other: Self) -> Self;
+    /// Returns self * factor + summand.
+    fn mul_add(self, factor: Self, summand: Self) -> Self;
+    /// Returns a b - c d with a relative error of at most 2^-22, if both products are integers times the same power of
+    /// two, below 2^48 of it.
+    fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self;
+    /// Returns the smaller value, or `other` if either is NaN.
+    fn min(self, other: Self) -> Self;
+    /// Returns the larger value, or `other` if either is NaN.
+    fn max(self, other: Self) -> Self;
+    /// Returns 1 / self with a relative error of at most 2^-22 for normal results, and any value for 0 and for numbers
+    /// that are not finite.
+    fn reciprocal(self) -> Self;
+    /// Selects `yes` where self < limit, and `no` where it is not or either is NaN.
+    fn if_below(self, limit: Self, yes: Self, no: Self) -> Self;
+    /// Returns one bit for each lane, the first lane lowest: whether self <= limit. It is 0 if either is NaN.
+    fn at_most(self, limit: Self) -> u32;
+    /// Returns the smallest value of all lanes, none of which may be NaN.
+    fn smallest(self) -> f32;
+}
+
+/// Eight lanes, which can be sorted.
+pub trait EightLanes: Lanes {
+    /// Writes the lanes that are at most `limit` to the front of `keys`, as keys in descending order, sets the other
+    /// keys to 0, and returns the number of lanes written. No lane may be negative.
+    ///
+    /// A key consists of the bits of the value with the lowest four replaced by 8 + lane. So keys are ordered as their
+    /// values are, and [`number_of_key`] is at most 15 units in the last place too small.
+    fn sorted_keys(self, limit: f32, keys: &mut [u32; 8]) -> usize;
+}
+
+/// Eight f64 that are computed with at once, with roundings as of [`Lanes`].
+pub trait Doubles: Copy {
+    /// Returns `x` in every lane.
+    fn splat(x: f64) -> Self;
+    /// Loads the first eight values of a slice, which must have that many.
+    fn load(from: &[f64]) -> Self;
+    /// Writes the lanes to the front of a slice.
+    fn store(self, to: &mut [f64]);
+    /// Returns self - other.
+    fn sub(self, other: Self) -> Self;
+    /// Returns self * other.
+    fn mul(self, other: Self) -> Self;
+    /// Returns self * factor + summand.
+    fn mul_add(self, factor: Self, summand: Self) -> Self;
+    /// Returns the smaller value, or `other` if either is NaN.
+    fn min(self, other: Self) -> Self;
+    /// Returns the larger value, or `other` if either is NaN.
+    fn max(self, other: Self) -> Self;
+    /// Returns the square root, rounded to nearest.
+    fn sqrt(self) -> Self;
+    /// Selects `yes` where self <= limit, and `no` where it is not or either is NaN.
+    fn if_at_most(self, limit: Self, yes: Self, no: Self) -> Self;
+    /// Returns one bit for each lane, the first lane lowest: whether self <= limit. It is 0 if either is NaN.
+    fn at_most(self, limit: Self) -> u8;
+}
+
+/// Returns a lower bound on the value that a key was made of.
+#[inline(always)]
+pub fn number_of_key(key: u32) -> f32 {
+    f32::from_bits(key & !15)
+}
+
+/// Returns the lane that a key was made of.
+#[inline(always)]
+pub fn lane_of_key(key: u32) -> usize {
+    (key & 7) as usize
+}
+
+/// An instruction set, given by its types of lanes.
+pub trait InstructionSet {
+    /// The type of eight f32.
+    type Eight: EightLanes;
+    /// The type of eight or sixteen f32, whichever the instruction set computes with faster.
+    type Wide: Lanes;
+    /// The type of eight f64.
+    type Doubles: Doubles;
+}
+
+/// A computation that is compiled for each instruction set.
+///
+/// [`run`](Self::run) and everything that it calls must be `#[inline(always)]`: a function that is not inlined is
+/// compiled without the instruction set.
+pub trait SimdKernel {
+    /// The result of the computation.
+    type Output;
+    /// Runs the computation with the lanes of an instruction set.
+    fn run<I: InstructionSet>(self) -> Self::Output;
+}

@@ -1,0 +1,61 @@
+//! A collector that counts the work of a search.
+
+use crate::{Best, Collector, PrimitiveId, Projection, QueryOptions, Real};
+use nalgebra::Point3;
+
+/// [`Best`] with counters of the work. Counts are deterministic, so tests can compare them where times would vary.
+#[derive(Clone, Debug)]
+pub struct StatsCollector<T: Real> {
+    /// The collector that makes all decisions.
+    pub best: Best<T>,
+    /// The number of nodes that were visited.
+    pub nodes: usize,
+    /// The number of packets that were filtered.
+    pub packets: usize,
+    /// The number of primitives that were offered.
+    pub primitives: usize,
+}
+
+impl<T: Real> StatsCollector<T> {
+    /// Creates counters at zero around `best`.
+    #[must_use]
+    pub fn new(best: Best<T>) -> Self {
+        Self { best, nodes: 0, packets: 0, primitives: 0 }
+    }
+
+    /// Returns the numbers of nodes, packets and primitives of a query with default options, searched by `visit`.
+    pub fn of_query(query: &Point3<T>, visit: impl FnOnce(&Point3<T>, &mut Self)) -> [usize; 3] {
+        let mut stats = Self::new(Best::new(&QueryOptions::default()));
+        visit(query, &mut stats);
+        [stats.nodes, stats.packets, stats.primitives]
+    }
+
+    /// Returns the sums of [`of_query`](Self::of_query) over several queries.
+    pub fn of_queries<'a>(
+        queries: impl IntoIterator<Item = &'a Point3<T>>,
+        visit: impl Fn(&Point3<T>, &mut Self),
+    ) -> [usize; 3] {
+        let mut sums = [0; 3];
+        for query in queries {
+            let counts = Self::of_query(query, &visit);
+            sums = [0, 1, 2].map(|i| sums[i] + counts[i]);
+        }
+        sums
+    }
+}
+
+impl<T: Real> Collector for StatsCollector<T> {
+    forward_collector_decisions!(best, []);
+    fn offer(&mut self, id: PrimitiveId, projection: Projection) {
+        self.primitives += 1;
+        self.best.offer(id, projection);
+    }
+    fn visit_node(&mut self) {
+        self.nodes += 1;
+        self.best.visit_node();
+    }
+    fn visit_packet(&mut self) {
+        self.packets += 1;
+        self.best.visit_packet();
+    }
+}

@@ -1,0 +1,102 @@
+//! Reading sections from a file in memory.
+
+use super::array::{Array, FileBytes};
+use super::error::LoadError;
+use super::section::{Entry, Header, MAGIC, VERSION, checksum};
+use bytemuck::AnyBitPattern;
+
+/// The sections of a file in memory, by their names.
+#[derive(Clone)]
+pub struct Reader {
+    file: FileBytes,
+    table: Vec<Entry>,
+}
+
+impl Reader {
+    /// Checks the header and the table of a file.
+    pub(super) fn new(file: FileBytes) -> Result<Self, LoadError> {
+        if cfg!(target_endian = "big") {
+            return Err(LoadError::BigEndian);
+        }
+        let bytes = (*file).as_ref();
+        let found = bytes.len() as u64;
+        let header = bytes.get(..size_of::<Header>()).map(bytemuck::pod_read_unaligned::<Header>);
+        let start = &bytes[..bytes.len().min(MAGIC.len())];
+        let header = match header {
+            _ if start != MAGIC => return Err(LoadError::Foreign),
+            None => return Err(LoadError::Length { found, expected: size_of::<Header>() as u64 }),
+            Some(header) => header,
+        };
+        if header.version != VERSION {
+            return Err(LoadError::Version { found: header.version });
+        }
+        if header.length != found {
+            return Err(LoadError::Length { found, expected: header.length });
+        }
+        let damaged = || LoadError::Damaged { section: "the table of sections".to_owned() };
+        let table_bytes = usize::try_from(header.sections).ok().and_then(|n| n.checked_mul(size_of::<Entry>()));
+        let table = table_bytes.and_then(|n| bytes[size_of::<Header>()..].get(..n)).ok_or_else(damaged)?;
+        if checksum(table) != header.checksum {
+            return Err(damaged());
+        }
+        let table: Vec<Entry> = table.chunks_exact(size_of::<Entry>()).map(bytemuck::pod_read_unaligned).collect();
+        if table.iter().any(|entry| entry.range(found).is_none()) {
+            return Err(damaged());
+        }
+        Ok(Self { file, table })
+    }
+
+    /// Verifies the checksums of all sections, in the order of the file.
+    pub(super) fn check(&self) -> Result<(), LoadError> {
+        let bytes = (*self.file).as_ref();
+        let wrong = |entry: &&Entry| {
+            entry.range(bytes.len() as u64).is_none_or(|range| checksum(&bytes[range]) != entry.checksum)
+        };
+        match self.table.iter().find(wrong) {
+            Some(entry) => Err(LoadError::Damaged { section: entry.name() }),
+            None => Ok(()),
+        }
+    }
+
+    /// Returns the names and the numbers of bytes of all sections.
+    pub fn sections(&self) -> impl Iterator<Item = (String, u64)> + '_ {
+        self.table.iter().map(|entry| (entry.name(), entry.count * entry.size))
+    }
+
+    /// Returns whether there is a section of that name.
+    #[must_use]
+    pub fn has(&self, name: &str) -> bool {
+        self.table.iter().any(|entry| entry.name() == name)
+    }
+
+    /// Returns a section without copying it.
+    ///
+    /// # Errors
+    /// It returns [`LoadError::Missing`] if there is no such section, or its elements are no `T`.
+    pub fn array<T: AnyBitPattern>(&self, name: &str) -> Result<Array<T>, LoadError> {
+        let missing = || LoadError::Missing { section: name.to_owned() };
+        let entry = self.table.iter().find(|entry| entry.name() == name).ok_or_else(missing)?;
+        let range = entry.range((*self.file).as_ref().len() as u64).filter(|_| entry.size == size_of::<T>() as u64);
+        range.and_then(|range| Array::from_file(&self.file, range)).ok_or_else(missing)
+    }
+
+    /// Returns a copy of a section.
+    ///
+    /// # Errors
+    /// It returns [`LoadError::Missing`] if there is no such section, or its elements are no `T`.
+    pub fn copy<T: AnyBitPattern>(&self, name: &str) -> Result<Vec<T>, LoadError> {
+        Ok(self.array(name)?.to_vec())
+    }
+
+    /// Returns the element of a section that has one.
+    ///
+    /// # Errors
+    /// It returns [`LoadError::Missing`] if there is no such section, or its elements are no `T`, and
+    /// [`LoadError::Inconsistent`] if the number of elements is not 1.
+    pub fn one<T: AnyBitPattern>(&self, name: &str) -> Result<T, LoadError> {
+        match *self.array::<T>(name)? {
+            [one] => Ok(one),
+            _ => Err(LoadError::Inconsistent { section: name.to_owned() }),
+        }
+    }
+}
