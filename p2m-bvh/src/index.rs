@@ -60,7 +60,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         self.tree.memory()
     }
 
-    /// Fits the tree to a set in which the same primitives have moved, and replaces its own set by that one.
+    /// Fits the tree to a set in which the same primitives have moved, and replaces the set by that one.
     ///
     /// This takes a fraction of the time of a build. The tree keeps its shape, so searches get slower the farther
     /// neighbours have moved apart. Answers are those of a tree that is built anew. Of the options only the choice to

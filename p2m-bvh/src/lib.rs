@@ -1,9 +1,9 @@
 //! AABB tree with surface-area splits.
 //!
-//! [`AabbTree`] is a tree of nodes with eight boxes over packets of sixteen primitives ([`PacketTree`]). A search visits
-//! the nearest node first and uses the vector instructions of the processor that it runs on. Boxes and packets only
-//! bound distances, in f32 and with proof (docs/proofs/filter.md). The kernel of the contract evaluates the primitives
-//! that may be the answer, so answers are bitwise those of [`BruteForce`](p2m_core::BruteForce).
+//! [`AabbTree`] is a tree of nodes with eight boxes over packets of sixteen primitives ([`PacketTree`]). A search
+//! visits the nearest node first and uses the vector instructions of the processor that it runs on. Boxes and packets
+//! only bound distances, in f32 and with proof (docs/proofs/filter.md). The kernel of the contract evaluates the
+//! primitives that may be the answer, so answers are bitwise those of [`BruteForce`](p2m_core::BruteForce).
 //!
 //! ```
 //! use p2m_bvh::AabbTree;
@@ -20,9 +20,9 @@
 //! ```
 //!
 //! The modules build on each other in this order: `packet` has the leaves, `tree` the nodes and the tree itself,
-//! `traverse` the searches, and `build` splits primitives top-down by a [`SplitRule`] into a binary tree and merges its
-//! nodes. The k-DOP tree (crate p2m-kdop) and the interception indexes (crate p2m-interception) consist of the same
-//! parts.
+//! `traverse` the searches, and `build` splits primitives top-down by a [`SplitRule`] into a binary tree and
+//! merges its nodes. The k-DOP tree (crate p2m-kdop) and the interception indexes (crate p2m-interception) consist
+//! of the same parts.
 #![forbid(unsafe_code)]
 
 mod build;

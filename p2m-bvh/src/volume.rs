@@ -19,7 +19,7 @@ pub trait Volume: CompiledSearches {
     fn directions(shared: &Self::Shared) -> &Self::Directions;
 
     /// Whether the volume may have a point in common with a box. The result is never `false` if it has one.
-    fn may_meet_box(&self, directions: &Self::Directions, bounds: &Aabb<f64>) -> bool;
+    fn may_intersect_box(&self, directions: &Self::Directions, bounds: &Aabb<f64>) -> bool;
 }
 
 impl Volume for Aabb<f64> {
@@ -30,7 +30,7 @@ impl Volume for Aabb<f64> {
         &()
     }
 
-    fn may_meet_box(&self, (): &(), bounds: &Aabb<f64>) -> bool {
+    fn may_intersect_box(&self, (): &(), bounds: &Aabb<f64>) -> bool {
         self.meets(bounds)
     }
 }

@@ -4,10 +4,10 @@
 //! begins with three orthogonal directions along which most of the area of facets (by their normals) and most of the
 //! length of segments lie. A scene that was built along some axes has such a frame however it was turned afterwards.
 //!
-//! Then trees with 6 to 26 faces, along the axes and along the frame, answer trial queries, and the visited nodes and
-//! packets are counted. More slabs cost arithmetic in every node, so they have to save visits. The sizes of the volumes
-//! of leaves do not predict that: those of a thin wire shrink most, but few other primitives are near it
-//! (docs/kdop.md).
+//! Then trees with 6 to 26 faces, along the axes and along the frame, answer trial queries, and the visited
+//! nodes and packets are counted. More slabs cost arithmetic in every node, so they have to save visits. The
+//! sizes of the volumes of leaves do not predict that: those of a thin wire shrink most, but few other
+//! primitives are near it (docs/kdop.md).
 
 use crate::orientation::{candidate_frames, misalignment, sample_directions};
 use crate::trial::{FACES, frame_and_diagonals, query_times, to_shape, trial_queries};
@@ -50,13 +50,13 @@ pub struct DirectionChoice {
     pub k: usize,
     /// The frame that was found: three orthogonal unit vectors.
     pub frame: [Vector3<f64>; 3],
-    /// The mean misalignment of facets and segments with the axes: 0 if all of them lie along the axes, and 1 if none
-    /// does.
+    /// The mean misalignment of facets and segments with the axes: 0 if all of them lie along the axes, and 1
+    /// if none does.
     pub waste_of_axes: f64,
     /// The mean misalignment of facets and segments with the frame.
     pub waste_of_frame: f64,
-    /// The work of a trial query with 6, 14, 18 and 26 faces along the axes, relative to that with boxes along the
-    /// axes.
+    /// The work of a trial query with 6, 14, 18 and 26 faces along the axes, relative to that with boxes
+    /// along the axes.
     pub work_along_axes: [f64; 4],
     /// The work of a trial query with 6, 14, 18 and 26 faces along the frame, relative to that with boxes along the
     /// axes; `None` if the frame was not tried.
@@ -121,8 +121,8 @@ impl DirectionChoice {
         self.is_turned
     }
 
-    /// The chosen directions for trees of K faces: the frame or the axes, and then as many of its diagonals as K has room
-    /// for.
+    /// The chosen directions for trees of K faces: the frame or the axes, and then as many of its diagonals as K
+    /// has room for.
     ///
     /// # Errors
     /// Returns an error if K is below 6, odd, or above 26.

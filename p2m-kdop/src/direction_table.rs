@@ -90,8 +90,8 @@ mod tests {
                 assert!(bounds.contains(&around), "{bounds:?} for {around:?}");
             }
         }
-        // These directions are orthogonal within a little less than 2^-40. Those of the loop below have a determinant of a
-        // little more than 2^-20.
+        // These directions are orthogonal within a little less than 2^-40. Those of the loop below have a determinant
+        // of a little more than 2^-20.
         let c = 0.99 * 2f64.powi(-40) * 2f64.sqrt();
         let nearly = [Vector3::new(1.0, 0.0, c), Vector3::new(0.0, 1.0, 1.0), Vector3::new(0.0, -1.0, 1.0)];
         let nearly = Directions::<6>::new(&nearly).expect("three");

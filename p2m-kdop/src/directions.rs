@@ -60,8 +60,8 @@ pub enum DirectionsError {
     Flat,
 }
 
-/// The sine up to which two directions count as parallel, and the volume up to which three count as lying in a plane:
-/// 2^-20.
+/// The sine up to which two directions count as parallel, and the volume up to which three count as lying in
+/// a plane: 2^-20.
 const MAX_FLAT_VOLUME: f64 = 1.0 / (1u32 << 20) as f64;
 /// The cosine up to which directions count as orthogonal: 2^-40, which is far below the resolution of searches in f32.
 const MAX_ORTHOGONAL_COSINE: f64 = 1.0 / (1u64 << 40) as f64;
@@ -146,8 +146,8 @@ fn volume(u: &Vector3<f64>, v: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
     u.cross(v).dot(w).abs()
 }
 
-/// Returns the indices of the three directions that come first, and whether they are orthogonal; `None` if all lie in a
-/// plane.
+/// Returns the indices of the three directions that come first, and whether they are orthogonal; `None` if all lie
+/// in a plane.
 fn leading_triple(units: &[Vector3<f64>]) -> Option<([usize; 3], bool)> {
     let mut widest = (MAX_FLAT_VOLUME, None);
     for a in 0..units.len() {
@@ -238,9 +238,9 @@ mod tests {
     #[test]
     fn vectors_may_have_any_length_and_orthogonal_ones_come_first() {
         let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
-        let own = Directions::<10>::new(&[x + y, x * 1e300, y * 5e-324, x - y, z * -2.0]).expect("five");
-        assert_eq!([0, 2, 4].map(|i: usize| own.normals()[i]), [(x + y).normalize(), (x - y).normalize(), -z]);
-        assert!(own.starts_orthogonal() && own.normals()[6] == x && own.normals()[8] == y);
+        let directions = Directions::<10>::new(&[x + y, x * 1e300, y * 5e-324, x - y, z * -2.0]).expect("five");
+        assert_eq!([0, 2, 4].map(|i: usize| directions.normals()[i]), [(x + y).normalize(), (x - y).normalize(), -z]);
+        assert!(directions.starts_orthogonal() && directions.normals()[6] == x && directions.normals()[8] == y);
         let skew = Directions::<8>::new(&[x, x + y * 1e-3, x + y, x + z]).expect("four");
         assert!(!skew.starts_orthogonal());
         assert!(!Directions::<6>::new(&[x, y + x * 2f64.powi(-39), z]).expect("three").starts_orthogonal());

@@ -1,8 +1,8 @@
 //! k-DOPs: convex polytopes with K faces of given directions.
 //!
-//! A k-DOP is the set of points x with n_i . x <= h_i for K unit vectors n_i, which come in pairs of opposites, and
-//! *heights* h_i. It fits a scene more closely if it has more directions. A box is the k-DOP of the directions of the
-//! axes.
+//! A k-DOP is the set of points x with n_i . x <= h_i for K unit vectors n_i, which come in pairs of opposites,
+//! and *heights* h_i. It fits a scene more closely if it has more directions. A box is the k-DOP of the directions
+//! of the axes.
 //!
 //! # References
 //! \[Klosowski1998\] introduces the volumes. The sets of directions are those of the k-DOP tree in CGAL's manual.
@@ -41,7 +41,8 @@ impl<const K: usize> Kdop<K> {
         result
     }
 
-    /// The smallest k-DOP around a box, rounded outwards by at most 2^-49 of the distance of its corners from the origin.
+    /// The smallest k-DOP around a box, rounded outwards by at most 2^-49 of the distance of its corners
+    /// from the origin.
     #[must_use]
     pub fn of_box(directions: &Directions<K>, bounds: &Aabb<f64>) -> Self {
         if bounds.is_empty() {
@@ -60,15 +61,15 @@ impl<const K: usize> Kdop<K> {
     ///
     /// The result is never `false` for two k-DOPs with a point in common, but it may be `true` for two without one.
     #[must_use]
-    pub fn may_meet(&self, other: &Self) -> bool {
+    pub fn may_intersect(&self, other: &Self) -> bool {
         (0..K).all(|i| -other.heights[i ^ 1] <= self.heights[i])
     }
 
     /// Whether this k-DOP and a box overlap along every direction of the k-DOP. The directions of the box are not
     /// considered: compare the box with one around the k-DOP for that.
     #[must_use]
-    pub fn may_meet_box(&self, directions: &Directions<K>, bounds: &Aabb<f64>) -> bool {
-        !bounds.is_empty() && self.may_meet(&Self::of_box(directions, bounds))
+    pub fn may_intersect_box(&self, directions: &Directions<K>, bounds: &Aabb<f64>) -> bool {
+        !bounds.is_empty() && self.may_intersect(&Self::of_box(directions, bounds))
     }
 
     /// Whether another k-DOP of the same directions lies in this one.
@@ -161,14 +162,14 @@ mod tests {
         for (i, normal) in normals.iter().enumerate() {
             let below = Kdop::of_points(&directions, &[Point3::from(*normal), Point3::from(normal * 2.0)]);
             let above = Kdop::of_points(&directions, &[Point3::from(normal * 3.0)]);
-            assert!(!below.may_meet(&above) && !above.may_meet(&below), "apart along {normal}");
+            assert!(!below.may_intersect(&above) && !above.may_intersect(&below), "apart along {normal}");
             // These two volumes are separated along this normal alone.
-            let mut beside = below;
-            beside.heights = beside.heights.map(|h| h + 10.0);
-            beside.heights[i ^ 1] = -below.heights[i];
-            assert!(beside.may_meet(&below) && below.may_meet(&beside), "touching along {normal}");
-            beside.heights[i ^ 1] = (-below.heights[i]).next_down();
-            assert!(!beside.may_meet(&below) && !below.may_meet(&beside), "apart along {normal}");
+            let mut other = below;
+            other.heights = other.heights.map(|h| h + 10.0);
+            other.heights[i ^ 1] = -below.heights[i];
+            assert!(other.may_intersect(&below) && below.may_intersect(&other), "touching along {normal}");
+            other.heights[i ^ 1] = (-below.heights[i]).next_down();
+            assert!(!other.may_intersect(&below) && !below.may_intersect(&other), "apart along {normal}");
         }
     }
 
@@ -181,9 +182,9 @@ mod tests {
             let kdop = Kdop::of_points(&directions, &[point]);
             assert!(kdop.heights.iter().all(|h| *h > f64::NEG_INFINITY), "{kdop:?}");
             assert!(!kdop.is_empty() && kdop.contains_point(&directions, &point), "{kdop:?}");
-            assert!(kdop.may_meet(&kdop) && kdop.may_meet_box(&directions, &Aabb { min: point, max: point }));
+            assert!(kdop.may_intersect(&kdop) && kdop.may_intersect_box(&directions, &Aabb { min: point, max: point }));
             let all = Aabb { min: Point3::new(-m, -m, -m), max: Point3::new(m, m, m) };
-            assert!(kdop.may_meet_box(&directions, &all) && Kdop::of_box(&directions, &all).contains(&kdop));
+            assert!(kdop.may_intersect_box(&directions, &all) && Kdop::of_box(&directions, &all).contains(&kdop));
         }
     }
 
@@ -204,11 +205,13 @@ mod tests {
         let kdop = Kdop::of_points(&directions, &points);
         assert!(points.iter().all(|p| kdop.contains_point(&directions, p)) && !kdop.is_empty());
         assert!(!kdop.contains_point(&directions, &Point3::new(0.9, 0.9, 0.9)));
-        assert!(!kdop.may_meet(&Kdop::of_points(&directions, &[Point3::new(0.9, 0.9, 0.9)])));
-        assert!(kdop.may_meet(&Kdop::of_points(&directions, &[Point3::new(0.25, 0.5, 0.25)])));
-        assert!(!kdop.may_meet(&Kdop::empty()) && Kdop::<26>::empty().is_empty());
+        assert!(!kdop.may_intersect(&Kdop::of_points(&directions, &[Point3::new(0.9, 0.9, 0.9)])));
+        assert!(kdop.may_intersect(&Kdop::of_points(&directions, &[Point3::new(0.25, 0.5, 0.25)])));
+        assert!(!kdop.may_intersect(&Kdop::empty()) && Kdop::<26>::empty().is_empty());
         let corner = |x: f64| Aabb { min: Point3::new(x, x, x), max: Point3::new(9.0, f64::INFINITY, 9.0) };
-        assert!(kdop.may_meet_box(&directions, &corner(0.3)) && !kdop.may_meet_box(&directions, &corner(0.4)));
+        assert!(
+            kdop.may_intersect_box(&directions, &corner(0.3)) && !kdop.may_intersect_box(&directions, &corner(0.4))
+        );
         assert!(kdop.contains(&Kdop::of_points(&directions, &points[..2])));
         assert!(kdop.union(&Kdop::empty()) == kdop);
     }

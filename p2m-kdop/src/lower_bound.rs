@@ -11,8 +11,8 @@ use p2m_core::engine::simd::Lanes;
 
 /// The part of an increment that is added to a bound, 1 - 2^-15, which allows for the rounding of its factor.
 const INCREMENT_FACTOR: f32 = 1.0 - 1.0 / 32768.0;
-/// The least squared sine of the angle between two half-spaces. If the angle is smaller, the bound is computed with this
-/// one and gains less than it could.
+/// The least squared sine of the angle between two half-spaces. If the angle is smaller, the bound is computed with
+/// this one and gains less than it could.
 const MIN_SINE_SQUARED: f32 = 1.0 / 16.0;
 /// Squares below this one, 2^-100, are treated as equal to it.
 const MIN_SQUARE: f32 = 1.0 / (1u128 << 100) as f32;
@@ -53,7 +53,8 @@ pub(crate) fn squared_lower_bounds<L: Lanes, const K: usize>(
         let more = zero.if_below(excess, more, zero);
         let both = more.mul(more).mul_add(scaled.mul(rest.reciprocal()), square);
         let excess = excess.max(zero);
-        // If the nearest point of the half-space behind the face lies in the other half-space, its distance is the bound.
+        // If the nearest point of the half-space behind the face lies in the other half-space, its distance
+        // is the bound.
         let bound = excess.mul(part).if_below(square, both, excess.mul(excess));
         best = bound.max(best);
         j += 1;

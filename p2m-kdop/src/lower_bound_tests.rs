@@ -67,8 +67,8 @@ fn distance<const K: usize>(kdop: &Kdop<K>, normals: &[Vector3<f64>; K], q: &Vec
 /// Compares bounds of random k-DOPs with distances on every instruction set. The k-DOPs are those of triangles of
 /// many sizes and shapes, and the query points are near and far, and across faces and edges.
 ///
-/// Returns the number of comparisons, and how often the bound of the k-DOP and that of the box were within 1 % of the
-/// distance.
+/// Returns the number of comparisons, and how often the bound of the k-DOP and that of the box were within 1 %
+/// of the distance.
 fn compare<const K: usize>(directions: &Directions<K>, nodes: &Cases, name: &str) -> [usize; 3] {
     let table = DirectionTable::new(directions);
     let normals = directions.normals();
@@ -92,8 +92,8 @@ fn compare<const K: usize>(directions: &Directions<K>, nodes: &Cases, name: &str
                 Point3::from(centre + (v - flat * (v.dot(&flat) * [0.0, 0.9, 1.0][rng.random_range(0..3)])) * size)
             });
             boxes[slot] = Aabb::of_points(&corners);
-            let own = Member::of(&Triangle { vertices: corners });
-            node.set_bounds(slot, &KdopNode::enclose(&table, &frame, &[own], &boxes[slot]));
+            let member = Member::from_primitive(&Triangle { vertices: corners });
+            node.set_bounds(slot, &KdopNode::enclose(&table, &frame, &[member], &boxes[slot]));
             exact[slot] = Kdop::of_points(directions, &corners);
         }
         for _ in 0..8 {
@@ -140,23 +140,23 @@ fn bounds_never_exceed_the_distance_and_are_mostly_close_to_it() {
     let turned = Directions::<8>::new(&turned).expect("four");
     let skew = Directions::<8>::new(&skew).expect("four");
     assert!(turned.starts_orthogonal() && !skew.starts_orthogonal());
-    let (most, some, few) = (cases(6_000, 150), cases(4_000, 80), cases(600, 60));
+    let (many, several, few) = (cases(6_000, 150), cases(4_000, 80), cases(600, 60));
     let all = [
-        ("6", compare(&Directions::<6>::default(), &most, "slabs of 6")),
-        ("14", compare(&Directions::<14>::default(), &most, "slabs of 14")),
-        ("18", compare(&Directions::<18>::default(), &some, "slabs of 18")),
+        ("6", compare(&Directions::<6>::default(), &many, "slabs of 6")),
+        ("14", compare(&Directions::<14>::default(), &many, "slabs of 14")),
+        ("18", compare(&Directions::<18>::default(), &several, "slabs of 18")),
         ("26", compare(&Directions::<26>::default(), &few, "slabs of 26")),
-        ("turned", compare(&turned, &most, "turned slabs")),
-        ("skew", compare(&skew, &some, "skew slabs")),
+        ("turned", compare(&turned, &many, "turned slabs")),
+        ("skew", compare(&skew, &several, "skew slabs")),
     ];
     for (name, [compared, close, box_close]) in all {
         println!("{name}: {compared} bounds, {close} within 1 % of the distance, {box_close} of boxes");
     }
     // Each node has seven bounds, which are computed for eight query points on each instruction set.
-    let nodes = 3 * most.len() + 2 * some.len() + few.len();
+    let nodes = 3 * many.len() + 2 * several.len() + few.len();
     assert_eq!(all.iter().map(|(_, counts)| counts[0]).sum::<usize>(), nodes * 7 * 8 * Isa::available().len());
     for (name, [compared, close, box_close]) in &all[1..5] {
-        assert!(most.is_replay() || close * 10 > compared * 8 && close > box_close, "{name}");
+        assert!(many.is_replay() || close * 10 > compared * 8 && close > box_close, "{name}");
     }
 }
 

@@ -28,8 +28,8 @@ pub(crate) struct MovedHeights<const K: usize, const L: usize> {
 
 /// The number of combinations that are kept for a direction. The narrowest are kept, because others are rarely better.
 const MAX_COMBINATIONS: usize = 4;
-/// The least volume that three normals span if they are combined: 2^-21. The first three of any directions span at least
-/// twice as much.
+/// The least volume that three normals span if they are combined: 2^-21. The first three of any directions span at
+/// least twice as much.
 const MIN_VOLUME: f64 = 1.0 / (1u32 << 21) as f64;
 /// A bound on the relative error of movements and products: 2^-46.
 const ROUNDING: f64 = 1.0 / (1u64 << 46) as f64;
@@ -37,17 +37,17 @@ const ROUNDING: f64 = 1.0 / (1u64 << 46) as f64;
 impl<const K: usize, const L: usize> MovedHeights<K, L> {
     /// Computes the combinations for k-DOPs of directions `from`, moved by `motion`, along directions `to`.
     ///
-    /// Let A be the linear map of the motion's quaternion and t its translation. Let m be a direction, d = A^T m, and x a
-    /// point of a k-DOP whose heights h_i have magnitudes of at most s. Then m . (A x + t) = d . x + m . t. For weights
-    /// w_i >= 0 and r = d - sum w_i n_i, d . x is at most sum w_i h_i + |r| |x|. Here |x| is at most s times the norm of
-    /// the vector that the inverse of the first three normals, with absolute values, makes of (1, 1, 1). Any weights are
-    /// therefore valid if the computed |r| is added.
+    /// Let A be the linear map of the motion's quaternion and t its translation. Let m be a direction, d = A^T m, and x
+    /// a point of a k-DOP whose heights h_i have magnitudes of at most s. Then m . (A x + t) = d . x + m . t. For
+    /// weights w_i >= 0 and r = d - sum w_i n_i, d . x is at most sum w_i h_i + |r| |x|. Here |x| is at most s times
+    /// the norm of the vector that the inverse of the first three normals, with absolute values, makes of (1, 1, 1).
+    /// Any weights are therefore valid if the computed |r| is added.
     ///
     /// Let u = 2^-53. The error of d is at most 25 u, that of r at most 4 u (1 + sum w_i) more, that of sum w_i h_i at
     /// most 4 u s sum w_i, and that of m . t at most 3 u |t|. The computed position of a point after the motion or its
-    /// inverse errs by at most 57 u (|x| + |t|). All of these together and the sums are less than 2^-46 = 128 u of
-    /// (1 + sum w_i) |x| and of |t|. If the square of the quaternion is 1 + e, the computed inverse of the motion errs by
-    /// at most 5 e.
+    /// inverse errs by at most 57 u (|x| + |t|). All of these together and the sums are less than 2^-46 = 128 u of (1 +
+    /// sum w_i) |x| and of |t|. If the square of the quaternion is 1 + e, the computed inverse of the motion errs by at
+    /// most 5 e.
     pub(crate) fn new(from: &Directions<K>, motion: &Isometry3<f64>, to: &Directions<L>) -> Self {
         let normals = from.normals();
         let first = Matrix3::from_rows(&[0, 2, 4].map(|i: usize| normals[i].transpose()));
@@ -56,7 +56,7 @@ impl<const K: usize, const L: usize> MovedHeights<K, L> {
         let rounding = ROUNDING + 5.0 * (motion.rotation.quaternion().norm_squared() - 1.0).abs();
         let combinations = to.normals().iter().map(|normal| {
             let direction = motion.rotation.inverse() * normal;
-            let mut found = Vec::new();
+            let mut candidates = Vec::new();
             for a in 0..K {
                 for b in a + 1..K {
                     for c in b + 1..K {
@@ -66,21 +66,21 @@ impl<const K: usize, const L: usize> MovedHeights<K, L> {
                         }
                         let Some(inverse) = columns.try_inverse() else { continue };
                         let weights: Vector3<f64> = inverse * direction;
-                        // A weight that may be negative by rounding alone becomes 0, and the rest is computed with it.
+                        // A weight that may be negative by rounding alone becomes 0, and the remainder is computed with it.
                         if weights.min() >= -1e-12 {
                             let weights = weights.map(|x| x.max(0.0));
-                            let rest = (direction - columns * weights).norm();
-                            let error = (rest + rounding * (1.0 + weights.sum())) * point_ratio;
+                            let remainder = (direction - columns * weights).norm();
+                            let error = (remainder + rounding * (1.0 + weights.sum())) * point_ratio;
                             let terms = [(a, weights.x), (b, weights.y), (c, weights.z)];
-                            found.push((weights.sum(), Combination { terms, error }));
+                            candidates.push((weights.sum(), Combination { terms, error }));
                         }
                     }
                 }
             }
-            // The sum of the weights is 1 for a normal itself, and grows with the angles between the normals and the
-            // direction.
-            found.sort_by(|x, y| x.0.total_cmp(&y.0));
-            found.into_iter().take(MAX_COMBINATIONS).map(|(_, combination)| combination).collect()
+            // The sum of the weights is 1 for a normal itself, and grows with the angles between the normals
+            // and the direction.
+            candidates.sort_by(|x, y| x.0.total_cmp(&y.0));
+            candidates.into_iter().take(MAX_COMBINATIONS).map(|(_, combination)| combination).collect()
         });
         let translation = &motion.translation.vector;
         Self {
@@ -130,9 +130,9 @@ mod tests {
             let moved: Vec<_> = points.iter().map(|p| motion * p).collect();
             let exact = Kdop::of_points(&to, &moved);
             assert!(around.contains(&exact), "{around:?} {exact:?}");
-            let own = Kdop::of_points(&from, &points);
-            let same = MovedHeights::new(&from, &Isometry3::identity(), &from).around(&own);
-            assert!(same.heights.iter().zip(&own.heights).all(|(a, b)| a >= b && a - b < 1e-12), "{same:?} {own:?}");
+            let kdop = Kdop::of_points(&from, &points);
+            let same = MovedHeights::new(&from, &Isometry3::identity(), &from).around(&kdop);
+            assert!(same.heights.iter().zip(&kdop.heights).all(|(a, b)| a >= b && a - b < 1e-12), "{same:?} {kdop:?}");
         }
     }
 }

@@ -149,21 +149,21 @@ impl<const K: usize> WideNode for KdopNode<K> {
         let centre = Vector3::from(frame.centre);
         let height = |i: usize| {
             let normal = &table.directions.normals()[i];
-            let own = f64::from(bounds[i]) * frame.unit;
-            let size = own.abs() + normal.component_mul(&centre).abs().sum();
+            let local = f64::from(bounds[i]) * frame.unit;
+            let size = local.abs() + normal.component_mul(&centre).abs().sum();
             // The sum errs by at most 5 u of this size. If the size overflows, the height is unknown.
-            if size.is_finite() { own + normal.dot(&centre) + size * power_of_two(-50) } else { f64::INFINITY }
+            if size.is_finite() { local + normal.dot(&centre) + size * power_of_two(-50) } else { f64::INFINITY }
         };
         Kdop { heights: std::array::from_fn(height) }
     }
 
-    fn may_meet(bounds: &[f32; K], table: &DirectionTable<K>, frame: &Frame, other: &Aabb<f64>) -> bool {
+    fn may_intersect_box(bounds: &[f32; K], table: &DirectionTable<K>, frame: &Frame, other: &Aabb<f64>) -> bool {
         let to_frame = |p: &Point3<f64>| Point3::from(frame.place(&[p.x, p.y, p.z]));
         // The conversion to the frame errs by u of each coordinate, which the rounding of heights covers. It does not
         // for faces along the axes, but there the points of the scene were rounded exactly as this box is, and rounding
         // keeps their order.
-        let own = Kdop { heights: bounds.map(f64::from) };
-        own.may_meet_box(&table.directions, &Aabb { min: to_frame(&other.min), max: to_frame(&other.max) })
+        let kdop = Kdop { heights: bounds.map(f64::from) };
+        kdop.may_intersect_box(&table.directions, &Aabb { min: to_frame(&other.min), max: to_frame(&other.max) })
     }
 }
 
@@ -181,10 +181,10 @@ mod tests {
 
     /// Returns the frame around some points, and their heights in it.
     fn enclosed<const K: usize>(table: &DirectionTable<K>, points: &[Point3<f64>]) -> (Frame, [f32; K]) {
-        let own: Vec<_> = points.iter().map(|p| Member::of(&p2m_core::Point::new(*p))).collect();
+        let members: Vec<_> = points.iter().map(|p| Member::from_primitive(&p2m_core::Point::new(*p))).collect();
         let bounds = Aabb::of_points(points);
         let frame = Frame::around(&bounds);
-        (frame, KdopNode::enclose(table, &frame, &own, &bounds))
+        (frame, KdopNode::enclose(table, &frame, &members, &bounds))
     }
 
     #[test]
@@ -224,7 +224,7 @@ mod tests {
                     let size = (points[0] - points[1]).amax();
                     let other = p + Vector3::from_fn(|k, _| if corner >> k & 1 == 0 { -size } else { size });
                     let around = Aabb::of_points(&[*p, other]);
-                    assert!(KdopNode::may_meet(&heights, &table, &frame, &around), "{p} {around:?}");
+                    assert!(KdopNode::may_intersect_box(&heights, &table, &frame, &around), "{p} {around:?}");
                 }
             }
         }
@@ -239,10 +239,10 @@ mod tests {
             let (frame, heights) = enclosed(&table, &points);
             let volume = KdopNode::scene_volume(&heights, &table, &frame);
             assert!(volume.heights.iter().all(|h| *h > f64::NEG_INFINITY), "{volume:?}");
-            assert!(volume.may_meet(&volume) && !volume.is_empty());
+            assert!(volume.may_intersect(&volume) && !volume.is_empty());
             for p in &points {
                 assert!(volume.contains_point(&table.directions, p));
-                assert!(KdopNode::may_meet(&heights, &table, &frame, &Aabb { min: *p, max: *p }));
+                assert!(KdopNode::may_intersect_box(&heights, &table, &frame, &Aabb { min: *p, max: *p }));
             }
         }
     }

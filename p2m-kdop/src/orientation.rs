@@ -15,12 +15,12 @@ const ALIGNED_SINE: f64 = 0.174;
 /// A unit vector with its weight in the scene.
 pub(crate) type WeightedDirection = (Vector3<f64>, f64);
 
-/// Returns the normals of facets, and the directions of segments and long facets, with weights that add up to 1. A large
-/// scene is sampled, always in the same way.
+/// Returns the normals of facets, and the directions of segments and long facets, with weights that add up to 1. A
+/// large scene is sampled, always in the same way.
 pub(crate) fn sample_directions<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -> Vec<WeightedDirection> {
     let len = set.len();
     let count = len.min(MAX_SAMPLED_PRIMITIVES);
-    let mut found = Vec::with_capacity(count);
+    let mut directions = Vec::with_capacity(count);
     let boxes = (0..count).map(|i| set.get(PrimitiveId::new(i * len / count)).aabb().to_f64());
     // Coordinates are divided by half of the size of the scene, so that no product overflows.
     let bounds = boxes.fold(Aabb::empty(), |a, b| a.union(&b));
@@ -29,8 +29,8 @@ pub(crate) fn sample_directions<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -
         let primitive = set.get(PrimitiveId::new(i * len / count));
         let corners: Vec<Vector3<f64>> =
             primitive.vertices().iter().map(|p| p.coords.map(|x| x.to_f64() / scale)).collect();
-        // A segment counts as a facet of the square of its length, because nothing relates areas to lengths. A long facet
-        // counts as a segment as well, with a weight that grows with the ratio of its length to its height.
+        // A segment counts as a facet of the square of its length, because nothing relates areas to lengths. A long
+        // facet counts as a segment as well, with a weight that grows with the ratio of its length to its height.
         let weighted = match corners[..] {
             [a, b] => [(b - a) * (b - a).norm(), Vector3::zeros()],
             [a, b, c] => {
@@ -45,23 +45,23 @@ pub(crate) fn sample_directions<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -
         for vector in weighted {
             let weight = vector.norm();
             if weight > 0.0 && weight.is_finite() {
-                found.push((vector / weight, weight));
+                directions.push((vector / weight, weight));
             }
         }
     }
-    let total: f64 = found.iter().map(|(_, weight)| weight).sum();
-    found.iter_mut().for_each(|(_, weight)| *weight /= total);
-    found
+    let total: f64 = directions.iter().map(|(_, weight)| weight).sum();
+    directions.iter_mut().for_each(|(_, weight)| *weight /= total);
+    directions
 }
 
 /// The mean misalignment of directions with a frame. It is 0 for a direction along an axis, and 1 for one whose angle
 /// to all axes has a sine of at least [`ALIGNED_SINE`].
 pub(crate) fn misalignment(directions: &[WeightedDirection], frame: &[Vector3<f64>; 3]) -> f64 {
-    let of_one = |n: &Vector3<f64>| {
+    let misalignment_of = |n: &Vector3<f64>| {
         let cosine = frame.iter().map(|axis| axis.dot(n).abs()).fold(0.0, f64::max);
         ((1.0 - cosine * cosine).max(0.0) / (ALIGNED_SINE * ALIGNED_SINE)).min(1.0)
     };
-    directions.iter().map(|(n, weight)| of_one(n) * weight).sum()
+    directions.iter().map(|(n, weight)| misalignment_of(n) * weight).sum()
 }
 
 /// Returns the frames that two of the heaviest directions of a scene span, if these are nearly orthogonal.

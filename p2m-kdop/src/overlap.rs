@@ -1,8 +1,8 @@
 //! The overlap of two trees: the pairs of leaves that may intersect.
 //!
-//! Two k-DOPs of the same directions do not intersect if they lie apart along one of these. If one tree is moved, its
-//! k-DOPs have other directions, and their heights along those of the other tree are bounded from above
-//! ([`MovedHeights`]).
+//! Two k-DOPs of the same directions do not intersect if they lie apart along one of these. If one tree is
+//! moved, its k-DOPs have other directions, and their heights along those of the other tree are bounded
+//! from above ([`MovedHeights`]).
 
 use crate::moved_heights::MovedHeights;
 use crate::{Kdop, KdopTree};
@@ -55,8 +55,8 @@ impl<'a, const K: usize, const L: usize> Overlap<'a, K, L> {
         Self { trees: (first.tree(), second.tree()), heights }
     }
 
-    fn may_meet(&self, a: &Kdop<K>, b: &Kdop<L>) -> bool {
-        a.may_meet(&self.heights.0.around(b)) && b.may_meet(&self.heights.1.around(a))
+    fn may_intersect(&self, a: &Kdop<K>, b: &Kdop<L>) -> bool {
+        a.may_intersect(&self.heights.0.around(b)) && b.may_intersect(&self.heights.1.around(a))
     }
 
     /// Visits the primitives of all pairs of leaves that may intersect, until `visit` breaks.
@@ -68,7 +68,7 @@ impl<'a, const K: usize, const L: usize> Overlap<'a, K, L> {
         let (Some(a), Some(b)) = (first.root(), second.root()) else { return ControlFlow::Continue(()) };
         let mut pending: Vec<(TreeNode<Kdop<K>>, TreeNode<Kdop<L>>)> = vec![(a, b)];
         while let Some((a, b)) = pending.pop() {
-            if !self.may_meet(&a.volume, &b.volume) {
+            if !self.may_intersect(&a.volume, &b.volume) {
                 continue;
             }
             match (first.primitives(&a), second.primitives(&b)) {
@@ -113,9 +113,9 @@ mod tests {
         pairs
     }
 
-    fn grid(columns: usize, rows: usize, place: impl Fn(f64, f64) -> [f64; 3]) -> Vec<Point<f64>> {
-        let at = |i: usize| place((i % columns) as f64, (i / columns) as f64);
-        (0..columns * rows).map(|i| Point::new(at(i).into())).collect()
+    fn grid(columns: usize, rows: usize, position: impl Fn(f64, f64) -> [f64; 3]) -> Vec<Point<f64>> {
+        let point = |i: usize| position((i % columns) as f64, (i / columns) as f64);
+        (0..columns * rows).map(|i| Point::new(point(i).into())).collect()
     }
 
     /// A flat scene far from the origin of its file is turned onto a point. Heights then cancel against the movement.
@@ -145,8 +145,8 @@ mod tests {
         }
     }
 
-    /// A scene is turned without a translation, so that sums of heights cancel. Some quaternions do not have unit length
-    /// any more.
+    /// A scene is turned without a translation, so that sums of heights cancel. Some quaternions do not have unit
+    /// length any more.
     #[test]
     fn turned_scenes_overlap_after_their_motion() {
         for case in cases(600, 96) {
@@ -231,7 +231,8 @@ mod tests {
         assert!(some * 10 < all, "{some} of {all}");
     }
 
-    /// A scene is moved so that a vertex of it lies on one of the other scene. The pair of their leaves has to be visited.
+    /// A scene is moved so that a vertex of it lies on one of the other scene. The pair of their leaves has
+    /// to be visited.
     #[test]
     fn no_pair_that_touches_is_lost() {
         for case in cases(120, 48) {

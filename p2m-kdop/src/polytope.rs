@@ -4,7 +4,8 @@ use crate::{Directions, Kdop};
 use nalgebra::{Point3, Vector3};
 use std::io::{self, Write};
 
-/// The largest magnitude of the heights of a k-DOP that has a polytope: 2^1000, so that sums of products do not overflow.
+/// The largest magnitude of the heights of a k-DOP that has a polytope: 2^1000, so that sums of products
+/// do not overflow.
 const MAX_HEIGHT: f64 = f64::from_bits((1000 + 1023) << 52);
 
 /// A convex polytope, given by its corners and faces.

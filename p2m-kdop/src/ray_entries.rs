@@ -45,8 +45,8 @@ fn compare<N: WideNode>(shared: &N::Shared, name: &str, cases: &Cases) -> [usize
         let frame = Frame::around(&bounds);
         let mut node = N::new([NodeRef::packet(0); WIDTH]);
         for (slot, triangle) in triangles.iter().enumerate() {
-            let own = Member::of(triangle);
-            node.set_bounds(slot, &N::enclose(shared, &frame, &[own], &own.bounds));
+            let member = Member::from_primitive(triangle);
+            node.set_bounds(slot, &N::enclose(shared, &frame, &[member], &member.bounds));
         }
         for _ in 0..8 {
             let vertices = triangles[rng.random_range(0..WIDTH - 1)].vertices;

@@ -6,8 +6,8 @@ use p2m_core::{Aabb, Primitive, Real, Segment, Shape, StatsCollector, Triangle};
 
 /// The numbers of faces that are tried.
 pub(crate) const FACES: [usize; 4] = [6, 14, 18, 26];
-/// The time of a query apart from the nodes and packets that it visits, in nanoseconds. These costs were observed on one
-/// processor, and only their ratios have an effect.
+/// The time of a query apart from the nodes and packets that it visits, in nanoseconds. These costs were observed on
+/// one processor, and only their ratios have an effect.
 const NS_PER_QUERY: f64 = 100.0;
 /// The time to visit a node with 6, 14, 18 and 26 faces, in nanoseconds.
 const NS_PER_NODE: [f64; 4] = [30.0, 50.0, 50.0, 74.0];

@@ -25,8 +25,8 @@ impl<const K: usize> Volume for Kdop<K> {
         &table.directions
     }
 
-    fn may_meet_box(&self, directions: &Directions<K>, bounds: &Aabb<f64>) -> bool {
-        Kdop::may_meet_box(self, directions, bounds)
+    fn may_intersect_box(&self, directions: &Directions<K>, bounds: &Aabb<f64>) -> bool {
+        Kdop::may_intersect_box(self, directions, bounds)
     }
 }
 

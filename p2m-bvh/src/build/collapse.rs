@@ -1,10 +1,10 @@
 //! Collapsing a binary tree into a tree of eight children per node.
 //!
 //! Dynamic programming over the cost of visits decides which nodes of the binary tree become nodes of eight. The
-//! cheapest forest of at most i trees below a binary node is either a single tree, whose root is a node of eight, or
-//! consists of the cheapest forests of j and i - j trees below its two children. \[Ylitie2017\] does this for rays; the
-//! difference is that leaves stay as they are here. A greedy choice from the root would leave the lowest nodes half
-//! empty.
+//! cheapest forest of at most i trees below a binary node is either a single tree, whose root is a node of eight,
+//! or consists of the cheapest forests of j and i - j trees below its two children. \[Ylitie2017\] does this for
+//! rays; the difference is that leaves stay as they are here. A greedy choice from the root would leave the lowest
+//! nodes half empty.
 
 use crate::build::split::SplitNode;
 use crate::tree::node_ref::{NodeRef, WIDTH};
@@ -81,8 +81,8 @@ impl PacketBinaryTree {
         binary
     }
 
-    /// Returns the root, the children of all nodes, and the number of nodes on the longest path. Parents come before
-    /// children.
+    /// Returns the root, the children of all nodes, and the number of nodes on the longest path. Parents
+    /// come before children.
     pub(crate) fn collapse(&self) -> (NodeRef, Vec<[NodeRef; WIDTH]>, usize) {
         let Some(root) = self.nodes.first() else { return (NodeRef::NONE, Vec::new(), 0) };
         if let Content::Packet(packet) = root.content {
@@ -96,8 +96,8 @@ impl PacketBinaryTree {
         while let Some((number, at, depth)) = pending.pop() {
             longest = longest.max(depth);
             let mut slot = 0;
-            // Binary nodes with the number of slots that their forest may fill, and whether the node has to be replaced by
-            // its children, which is so for the node itself.
+            // Binary nodes with the number of slots that their forest may fill, and whether the node has to be replaced
+            // by its children, which is so for the node itself.
             let mut subtrees = vec![(at, WIDTH, true)];
             while let Some((at, slots, is_opened)) = subtrees.pop() {
                 let forest = forests[at][slots - 1];
@@ -121,8 +121,8 @@ impl PacketBinaryTree {
         (NodeRef::node(0), nodes, longest)
     }
 
-    /// The cheapest forests of at most 1, 2, .. trees below each node. `left` of the forest of one tree is the number of
-    /// children of its root that are below the first child.
+    /// The cheapest forests of at most 1, 2, .. trees below each node. `left` of the forest of one tree is the number
+    /// of children of its root that are below the first child.
     fn forests(&self) -> Vec<[Forest; WIDTH]> {
         let scene_area = half_area(&self.nodes[0].bounds);
         let mut forests = vec![[Forest::default(); WIDTH]; self.nodes.len()];
@@ -133,24 +133,24 @@ impl PacketBinaryTree {
                 let all = (1..slots).map(|left| Forest { cost: split(left), left });
                 all.min_by(|x, y| x.cost.total_cmp(&y.cost)).expect("two slots or more")
             };
-            let mut own = [Forest::default(); WIDTH];
+            let mut chosen = [Forest::default(); WIDTH];
             let below = best(WIDTH);
             let area = half_area(&node.bounds) / scene_area;
             let visit = NODE_COST + if area.is_nan() { 1.0 } else { area };
-            own[0] = Forest { cost: visit + below.cost, left: below.left };
-            let single = Forest { cost: own[0].cost, left: 0 };
+            chosen[0] = Forest { cost: visit + below.cost, left: below.left };
+            let single = Forest { cost: chosen[0].cost, left: 0 };
             for slots in 2..=WIDTH {
                 let split = best(slots);
-                own[slots - 1] = if split.cost < single.cost { split } else { single };
+                chosen[slots - 1] = if split.cost < single.cost { split } else { single };
             }
-            forests[at] = own;
+            forests[at] = chosen;
         }
         forests
     }
 }
 
-/// The cost of a node in addition to its share of the area of the scene, so that few nodes are made where all areas are
-/// equal.
+/// The cost of a node in addition to its share of the area of the scene, so that few nodes are made where all
+/// areas are equal.
 const NODE_COST: f64 = 1e-3;
 
 /// Half of the surface area of a box, which is infinite if it overflows.

@@ -22,8 +22,8 @@ pub enum SplitRule {
 pub struct SplitOptions {
     /// The largest number of primitives in a leaf. Smaller nodes are split as well if that makes queries cheaper.
     pub max_leaf: usize,
-    /// The number of primitives that are tested at once. The cost of a leaf is that of as many blocks of this size as
-    /// it needs.
+    /// The number of primitives that are tested at once. The cost of a leaf is that of as many blocks of this size
+    /// as it needs.
     pub block: usize,
     /// The cost of visiting an inner node, in units of the cost of testing a primitive.
     pub node_cost: f64,

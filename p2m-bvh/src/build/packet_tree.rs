@@ -29,7 +29,7 @@ impl<V: Volume> PacketTree<V> {
             (primitive.aabb(), Kind::of(&primitive))
         };
         let (boxes, kinds): (Vec<Aabb<T>>, Vec<Kind>) = (0..set.len()).map(box_and_kind).unzip();
-        Self::build_from_boxes(&boxes, &kinds, &|id| Member::of(&set.get(id)), options)
+        Self::build_from_boxes(&boxes, &kinds, &|id| Member::from_primitive(&set.get(id)), options)
     }
 
     /// Builds the tree from the boxes and kinds of all primitives. The function does not depend on the type of the
@@ -49,8 +49,8 @@ impl<V: Volume> PacketTree<V> {
         for (at, node) in binary.nodes.iter().enumerate() {
             let leaf = node.range();
             let ids = &mut binary.order[leaf.clone()];
-            // Primitives of a kind are sorted by id, because neighbours in the user's order tend to be neighbours in
-            // memory.
+            // Primitives of a kind are sorted by id, because neighbours in the user's order tend to be
+            // neighbours in memory.
             ids.sort_unstable_by_key(|id| (kinds[id.index()], *id));
             let first = ranges.len();
             for run in ids.chunk_by(|a, b| kinds[a.index()] == kinds[b.index()]) {
@@ -105,13 +105,14 @@ impl<V: Volume> PacketTree<V> {
                 if child == NodeRef::NONE {
                     continue;
                 }
-                let own = if child.is_packet() { packet_bounds[child.number()] } else { node_bounds[child.number()] };
-                all = V::Node::union(&all, &own);
-                node.set_bounds(slot, &own);
+                let bounds =
+                    if child.is_packet() { packet_bounds[child.number()] } else { node_bounds[child.number()] };
+                all = V::Node::union(&all, &bounds);
+                node.set_bounds(slot, &bounds);
             }
             node_bounds[number] = all;
         }
-        self.root_bounds = packet_bounds.iter().fold(V::Node::EMPTY, |all, own| V::Node::union(&all, own));
+        self.root_bounds = packet_bounds.iter().fold(V::Node::EMPTY, |all, bounds| V::Node::union(&all, bounds));
     }
 
     /// Fits the tree to a set in which the same primitives have moved. Their boxes have to be finite.
@@ -126,7 +127,7 @@ impl<V: Volume> PacketTree<V> {
     /// O(n).
     pub fn refit<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(&mut self, set: &S, options: &V::Options) {
         assert_eq!(set.len(), self.len, "as many primitives as before");
-        self.refit_to(&|id| Member::of(&set.get(id)), options.splits().parallel);
+        self.refit_to(&|id| Member::from_primitive(&set.get(id)), options.splits().parallel);
     }
 
     /// Fits the tree to moved primitives. The function does not depend on the type of the set, so it is compiled once.

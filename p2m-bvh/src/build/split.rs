@@ -54,8 +54,8 @@ pub(crate) fn split<T: Real>(boxes: &[Aabb<T>], options: &SplitOptions) -> (Vec<
 #[cfg(feature = "rayon")]
 const MIN_PRIMITIVES_TO_FORK: usize = 1 << 12;
 
-/// The tree over some primitives, which have the indices from `first` on. Its nodes are numbered from its root, which
-/// is 0.
+/// The tree over some primitives, which have the indices from `first` on. Its nodes are numbered from its root,
+/// which is 0.
 fn subtree(
     primitives: &mut [BuildPrimitive],
     first: usize,
@@ -113,8 +113,8 @@ fn to_u32(n: usize) -> u32 {
     u32::try_from(n).expect("fewer than 2^30 primitives give fewer than 2^31 nodes")
 }
 
-/// Sorts the primitives of a node into two sides and returns how many are on the left, or `None` if the node is to be a
-/// leaf.
+/// Sorts the primitives of a node into two sides and returns how many are on the left, or `None` if the node is to
+/// be a leaf.
 fn divide(primitives: &mut [BuildPrimitive], depth: usize, options: &SplitOptions) -> Option<usize> {
     if primitives.len() <= 1 {
         return None;
@@ -150,8 +150,8 @@ fn divide(primitives: &mut [BuildPrimitive], depth: usize, options: &SplitOption
     }
 }
 
-/// Moves the primitives for which `is_left` holds to the front and returns their number. The order of the result is
-/// deterministic.
+/// Moves the primitives for which `is_left` holds to the front and returns their number. The order of the
+/// result is deterministic.
 fn partition(primitives: &mut [BuildPrimitive], is_left: impl Fn(&BuildPrimitive) -> bool) -> usize {
     let mut split = 0;
     for i in 0..primitives.len() {

@@ -252,7 +252,7 @@ mod tests {
     }
 
     fn members(primitives: &[impl Primitive<f64>]) -> Vec<Member> {
-        primitives.iter().map(Member::of).collect()
+        primitives.iter().map(Member::from_primitive).collect()
     }
 
     fn scaled(shape: &Shape<f64>, factor: f64) -> Shape<f64> {

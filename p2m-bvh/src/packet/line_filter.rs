@@ -21,7 +21,7 @@ struct PacketLine {
     is_descending: bool,
     /// A bound on the error of a projected coordinate.
     margin: f32,
-    /// The same bound with the radius of the ray included, for segments, points and boxes.
+    /// A bound on the error of a projected coordinate plus the radius of the ray, for segments, points and boxes.
     wire_margin: f32,
     /// The least third coordinate of the searched piece of the line, seen from the base.
     low: f32,
@@ -39,8 +39,8 @@ const MAX_POSITION_ERROR: f64 = 1024.0;
 impl Packet {
     /// A mask with one bit for each lane that a line may hit.
     ///
-    /// Only hits between the lengths `from` and `to` count, which are measured from the origin of the line in units of
-    /// the scene.
+    /// Only hits between the lengths `from` and `to` count, which are measured from the origin of the line in units
+    /// of the scene.
     #[inline(always)]
     pub fn lanes_hit_by<I: InstructionSet>(&self, line: &RayLine, from: f64, to: f64) -> u32 {
         match self.position_of(line, from, to) {
@@ -175,8 +175,8 @@ fn triangle_lanes<L: Lanes>(line: &PacketLine, a: &[L; 3], b: &[L; 3], c: &[L; 3
         & in_searched_piece(line, least, largest)
 }
 
-/// Two masks: the lanes that have the origin to the left of an edge or on it, and those that have it to the right or
-/// on it.
+/// Two masks: the lanes that have the origin to the left of an edge or on it, and those that have it to the right
+/// or on it.
 #[inline(always)]
 fn sides<L: Lanes>(line: &PacketLine, a: &[L; 3], b: &[L; 3]) -> (u32, u32) {
     let area = doubled_area(a, b);
@@ -275,8 +275,8 @@ mod tests {
         let centre = vector(rng) * 2f64.powi(rng.random_range(-20..40));
         let size = centre.norm() * 2f64.powi(-rng.random_range(0..30));
         let positions = (0..48).map(|i| {
-            let own = size * 2f64.powi(-(i / 3 % 8));
-            Point3::from(centre + vector(rng) * size * f64::from(i % 2) + vector(rng) * own)
+            let spread = size * 2f64.powi(-(i / 3 % 8));
+            Point3::from(centre + vector(rng) * size * f64::from(i % 2) + vector(rng) * spread)
         });
         let elements = (0..16u32).map(|i| match kind {
             Kind::Point => Element::Point(3 * i),
@@ -297,10 +297,11 @@ mod tests {
             let ids: Vec<_> = (0..16).map(PrimitiveId::new).collect();
             let bounds = PrimitiveSet::aabb(&soup);
             let packet = if kind == Kind::Box {
-                let all: Vec<_> = ids.iter().map(|id| Member::of(&WithoutVertices(soup.get(*id)))).collect();
+                let all: Vec<_> =
+                    ids.iter().map(|id| Member::from_primitive(&WithoutVertices(soup.get(*id)))).collect();
                 Packet::new(&ids, &all, kind, &bounds, 0.0).0
             } else {
-                let all: Vec<_> = ids.iter().map(|id| Member::of(&soup.get(*id))).collect();
+                let all: Vec<_> = ids.iter().map(|id| Member::from_primitive(&soup.get(*id))).collect();
                 Packet::new(&ids, &all, kind, &bounds, 0.0).0
             };
             let size = (bounds.max - bounds.min).norm();
@@ -312,8 +313,8 @@ mod tests {
                 weights[0] += 0.01;
                 let sum: f64 = weights[..vertices.len()].iter().sum();
                 let target: Vector3<f64> = vertices.iter().zip(weights).map(|(v, w)| v.coords * (w / sum)).sum();
-                let beside = [0.0, 0.0, 1e-9, 1e-4, 1.0][rng.random_range(0..5)];
-                let target = target + vector(&mut rng) * (size * beside);
+                let offset = [0.0, 0.0, 1e-9, 1e-4, 1.0][rng.random_range(0..5)];
+                let target = target + vector(&mut rng) * (size * offset);
                 let mut direction = vector(&mut rng);
                 if rng.random_bool(0.3) {
                     direction[rng.random_range(0..3)] = 0.0;

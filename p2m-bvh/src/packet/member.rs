@@ -42,7 +42,7 @@ pub struct Member {
 
 impl Member {
     /// Converts a primitive to f64.
-    pub fn of<T: Real>(primitive: &impl Primitive<T>) -> Self {
+    pub fn from_primitive<T: Real>(primitive: &impl Primitive<T>) -> Self {
         let kind = Kind::of(primitive);
         let mut vertices = [[0.0; 3]; 3];
         if kind != Kind::Box {

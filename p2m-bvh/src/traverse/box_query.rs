@@ -12,16 +12,16 @@ use std::ops::ControlFlow;
 impl<V: VolumeNodes> PacketTree<V> {
     /// Visits the primitives that intersect a box, in the order of the leaves, until `visit` breaks.
     ///
-    /// `meets` returns whether a primitive intersects the box. It is called only for primitives for which the boxes of
-    /// nodes do not decide that.
+    /// `intersects` returns whether a primitive intersects the box. It is called only for primitives for which the
+    /// boxes of nodes do not decide that.
     ///
     /// # Complexity
-    /// O(log n + k) nodes expected for k primitives in a compact box, O(n) at worst. There is no allocation and no
-    /// recursion.
+    /// O(log n + k) nodes expected for k primitives in a compact box, O(n) at worst. There is no allocation
+    /// and no recursion.
     pub fn visit_box(
         &self,
         bounds: &Aabb<f64>,
-        meets: impl Fn(PrimitiveId) -> bool,
+        intersects: impl Fn(PrimitiveId) -> bool,
         visit: &mut dyn FnMut(PrimitiveId) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         if bounds.is_empty() {
@@ -35,15 +35,18 @@ impl<V: VolumeNodes> PacketTree<V> {
             let (child, is_inside) = stack[len];
             if child.is_packet() {
                 let ids = self.leaves.packets[child.number()].ids();
-                ids.iter().filter(|id| is_inside || meets(**id)).copied().try_for_each(&mut *visit)?;
+                ids.iter().filter(|id| is_inside || intersects(**id)).copied().try_for_each(&mut *visit)?;
                 continue;
             }
             let node = &self.nodes[child.number()];
             for slot in node.used_slots() {
-                let own = node.bounds(slot);
-                let own_box = V::Node::scene_box(&own, &self.shared, &self.frame);
-                let is_inside = is_inside || bounds.contains(&own_box);
-                if is_inside || (bounds.meets(&own_box) && V::Node::may_meet(&own, &self.shared, &self.frame, bounds)) {
+                let child_bounds = node.bounds(slot);
+                let child_box = V::Node::scene_box(&child_bounds, &self.shared, &self.frame);
+                let is_inside = is_inside || bounds.contains(&child_box);
+                if is_inside
+                    || (bounds.meets(&child_box)
+                        && V::Node::may_intersect_box(&child_bounds, &self.shared, &self.frame, bounds))
+                {
                     stack[len] = (node.children()[slot], is_inside);
                     len += 1;
                 }
@@ -52,9 +55,9 @@ impl<V: VolumeNodes> PacketTree<V> {
         ControlFlow::Continue(())
     }
 
-    /// Descends from the root to a leaf, each time to the child with the least lower bound, and returns the primitives
-    /// of that leaf. `skipped` is called with the squared lower bounds of all other children. An empty set gives an
-    /// empty slice.
+    /// Descends from the root to a leaf, each time to the child with the least lower bound, and returns the
+    /// primitives of that leaf. `skipped` is called with the squared lower bounds of all other children. An empty set
+    /// gives an empty slice.
     ///
     /// # Complexity
     /// O(depth).
@@ -89,7 +92,7 @@ impl<V: Volume> PacketTree<V> {
     ) -> ControlFlow<()> {
         let mut pending: Vec<_> = self.root().into_iter().collect();
         while let Some(node) = pending.pop() {
-            if bounds.is_empty() || !node.volume.may_meet_box(self.directions(), bounds) {
+            if bounds.is_empty() || !node.volume.may_intersect_box(self.directions(), bounds) {
                 continue;
             }
             match self.primitives(&node) {

@@ -47,10 +47,10 @@ impl<C: Collector> SearchState<'_, C> {
         let count = self.pending_len.min(SIDE_BY_SIDE);
         for (i, candidate) in self.pending[..count].iter().enumerate() {
             let packet = &self.leaves.packets[candidate.packet as usize];
-            if let Some(own) = packet.triangle_corners(candidate.lane as usize, &self.leaves.vertices) {
+            if let Some(vertices) = packet.triangle_corners(candidate.lane as usize, &self.leaves.vertices) {
                 for v in 0..3 {
                     for k in 0..3 {
-                        corners[v][k][i] = own[v][k];
+                        corners[v][k][i] = vertices[v][k];
                     }
                 }
             }
@@ -112,8 +112,8 @@ impl<C: Collector> SearchState<'_, C> {
     fn evaluate_incumbent(&mut self) {
         let Some((Candidate { packet, lane, .. }, _)) = self.incumbent.take() else { return };
         let (packet, lane) = (&self.leaves.packets[packet as usize], lane as usize);
-        // The square is not limited by what the collector has already, because candidates were skipped for the sake of
-        // this one.
+        // The square is not limited by what the collector has already, because candidates were skipped for the sake
+        // of this one.
         offer(self.leaves, packet, lane, self.query, f64::INFINITY, self.collector, self.evaluate);
         if self.collector.is_content(false) {
             for candidate in &self.pending[..self.pending_len] {

@@ -114,8 +114,8 @@ impl<V: VolumeNodes, C: Collector> Search<'_, V, C> {
     }
 }
 
-/// Calls [`offer`] without inlining it, so that it is compiled once for all volumes. The slow search has no need for
-/// inlining.
+/// Calls [`offer`] without inlining it, so that it is compiled once for all volumes. The slow search has no
+/// need for inlining.
 #[inline(never)]
 fn offer_outlined<C: Collector>(
     leaves: &Leaves,

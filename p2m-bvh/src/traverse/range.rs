@@ -148,8 +148,9 @@ mod tests {
                     assert!(tree.ball(centre.coords.into(), radius, usize::MAX, &mut found, &mut tests));
                     let mut ids = vec![false; set.len()];
                     for Selection { packet, lanes } in &found {
-                        let own = tree.leaves.packets[*packet as usize].ids();
-                        own.iter()
+                        let packet_ids = tree.leaves.packets[*packet as usize].ids();
+                        packet_ids
+                            .iter()
                             .enumerate()
                             .filter(|(l, _)| lanes >> l & 1 == 1)
                             .for_each(|(_, id)| ids[id.index()] = true);

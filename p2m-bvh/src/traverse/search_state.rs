@@ -42,20 +42,20 @@ pub struct SearchState<'a, C> {
     node_limit: f32,
     /// Whether the collector may accept a primitive that is not the nearest one.
     pub(super) is_approximate: bool,
-    /// The candidate that will be evaluated first, and an upper bound on its distance. Only approximate searches have
-    /// one.
+    /// The candidate that will be evaluated first, and an upper bound on its distance. Only approximate
+    /// searches have one.
     pub(super) incumbent: Option<(Candidate, f64)>,
     pub(super) pending: [Candidate; MAX_PENDING],
     pub(super) pending_len: usize,
 }
 
 impl<'a, C: Collector> SearchState<'a, C> {
-    /// The state at the begin of a search in which some primitive is known to be within the distance `reach`.
+    /// The state at the beginning of a search in which some primitive is known to be within the distance `upper_bound`.
     #[inline(always)]
     pub fn new<V: VolumeNodes>(
         tree: &'a PacketTree<V>,
         query: [f64; 3],
-        reach: f64,
+        upper_bound: f64,
         collector: &'a mut C,
         evaluate: EvaluateFn<'a, C>,
         finish: fn(&mut SearchState<'_, C>),
@@ -69,7 +69,7 @@ impl<'a, C: Collector> SearchState<'a, C> {
             collector,
             evaluate,
             finish,
-            upper_bound: reach,
+            upper_bound,
             candidate_limit: 0.0,
             node_limit: 0.0,
             is_approximate,
@@ -100,8 +100,8 @@ impl<'a, C: Collector> SearchState<'a, C> {
         self.is_approximate && self.collector.is_content(self.incumbent.is_some())
     }
 
-    /// Reports to the collector that everything with at least this bound, a square in the frame of the tree, is
-    /// skipped.
+    /// Reports to the collector that everything with at least this bound, a square in the frame of the
+    /// tree, is skipped.
     #[inline(always)]
     pub fn forgo(&mut self, bound: f32) {
         self.collector.forgo(self.frame.square_below(bound));
@@ -120,8 +120,8 @@ impl<'a, C: Collector> SearchState<'a, C> {
             && let Some((packet, lane)) = primitive
         {
             // The infinite lower bound keeps this primitive from becoming pending once a nearer one replaces it. The
-            // search reaches it anyway where it can be the answer, and of two copies the wrong one could be dropped as
-            // a tie.
+            // search reaches it anyway where it can be the answer, and of two copies the wrong one could be dropped
+            // as a tie.
             let candidate = Candidate { lower_bound: f32::INFINITY, packet: packet as u32, lane: lane as u32 };
             self.replace_incumbent(candidate, distance);
         }

@@ -35,13 +35,13 @@ pub fn misses_scene(ray: &Ray, radius: f64, frame: &Frame, half_extent: &[f64; 3
     // All conditions are combined into one branch, because several branches would be mispredicted.
     let away = |k: usize| (towards[k] > half[k]) & (d[k] <= 0.0) | (towards[k] < -half[k]) & (d[k] >= 0.0);
     let goes_away = (ray.min >= 0.0) & (away(0) | away(1) | away(2));
-    let beside = |i: usize, j: usize| {
+    let is_beside = |i: usize, j: usize| {
         let offset = (towards[i] * d[j] - towards[j] * d[i]).abs();
         let least = half[i] * d[j].abs() + half[j] * d[i].abs();
         // An offset that overflowed excludes nothing.
         (offset > least + TINY) & (offset <= f64::MAX)
     };
-    goes_away | beside(0, 1) | beside(1, 2) | beside(2, 0)
+    goes_away | is_beside(0, 1) | is_beside(1, 2) | is_beside(2, 0)
 }
 
 /// Half of the extent of a scene along each axis, enlarged for the rounding of its centre and of [`misses_scene`].

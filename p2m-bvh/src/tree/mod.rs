@@ -102,8 +102,8 @@ impl<V: VolumeNodes> PacketTree<V> {
         } else {
             node.wrapping_add(child.number()).cast()
         };
-        // A packet has seven cache lines, and few nodes have more. The lines behind a smaller node mostly belong to its
-        // sibling.
+        // A packet has seven cache lines, and few nodes have more. The lines behind a smaller node mostly belong
+        // to its sibling.
         prefetch_lines(address, size_of::<Packet>().max(size_of::<V::Node>()));
     }
 
@@ -143,10 +143,10 @@ impl Leaves {
         reason = "ids leave two bits, and a primitive has three vertices at most"
     )]
     pub(crate) fn new(packed: Vec<(Packet, Vec<[f64; 3]>)>) -> Self {
-        let mut vertices = Vec::with_capacity(packed.iter().map(|(_, own)| own.len()).sum());
-        let append = |(mut packet, own): (Packet, Vec<[f64; 3]>)| {
+        let mut vertices = Vec::with_capacity(packed.iter().map(|(_, packet_vertices)| packet_vertices.len()).sum());
+        let append = |(mut packet, packet_vertices): (Packet, Vec<[f64; 3]>)| {
             packet.vertex_offset = vertices.len() as u32;
-            vertices.extend(own);
+            vertices.extend(packet_vertices);
             packet
         };
         let packets: Vec<Packet> = packed.into_iter().map(append).collect();

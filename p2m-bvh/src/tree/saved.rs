@@ -66,7 +66,7 @@ impl<V: VolumeNodes> Saved for PacketTree<V> {
         let rows = rows.chunks_exact(V::Node::ROWS);
         let mut nodes: Vec<V::Node> = rows
             .zip(children.chunks_exact(WIDTH))
-            .map(|(rows, own)| V::Node::from_rows(rows, std::array::from_fn(|i| NodeRef(own[i]))))
+            .map(|(rows, references)| V::Node::from_rows(rows, std::array::from_fn(|i| NodeRef(references[i]))))
             .collect();
         let root_bounds = nodes.pop().ok_or_else(|| inconsistent("tree/bounds"))?.bounds(0);
         if (nodes.len() + 1) * WIDTH != children.len() {

@@ -65,9 +65,9 @@ pub trait WideNode: Copy + Debug + Send + Sync {
     /// The volume in coordinates of the scene around bounds in the frame, rounded outwards.
     fn scene_volume(bounds: &Self::Bounds, shared: &Self::Shared, frame: &Frame) -> Self::Volume;
 
-    /// Whether a child may have a point in common with a box that intersects the box of the child. The default is that
-    /// it may.
-    fn may_meet(bounds: &Self::Bounds, shared: &Self::Shared, frame: &Frame, other: &Aabb<f64>) -> bool {
+    /// Whether a child may have a point in common with a box that intersects the box of the child. The default is
+    /// that it may.
+    fn may_intersect_box(bounds: &Self::Bounds, shared: &Self::Shared, frame: &Frame, other: &Aabb<f64>) -> bool {
         let _ = (bounds, shared, frame, other);
         true
     }
