@@ -66,7 +66,7 @@ impl<const K: usize, const L: usize> MovedHeights<K, L> {
                         }
                         let Some(inverse) = columns.try_inverse() else { continue };
                         let weights: Vector3<f64> = inverse * direction;
-                        // A weight that may be negative by rounding alone becomes 0, and the remainder is computed with it.
+                        // A weight that may be negative by rounding alone becomes 0, and the remainder allows for it.
                         if weights.min() >= -1e-12 {
                             let weights = weights.map(|x| x.max(0.0));
                             let remainder = (direction - columns * weights).norm();
@@ -99,15 +99,15 @@ impl<const K: usize, const L: usize> MovedHeights<K, L> {
                 c.terms.iter().map(|(i, weight)| weight * moved.heights[*i]).sum::<f64>() + c.error * size
             };
             let least =
-                self.combinations[i].iter().map(|c| infinite_if_overflown(height_by(c))).fold(f64::INFINITY, f64::min);
-            infinite_if_overflown(least + self.shift[i] + self.shift_error)
+                self.combinations[i].iter().map(|c| infinite_if_overflowed(height_by(c))).fold(f64::INFINITY, f64::min);
+            infinite_if_overflowed(least + self.shift[i] + self.shift_error)
         };
         Kdop { heights: std::array::from_fn(height) }
     }
 }
 
 /// Replaces a height that is NaN or infinite, because terms of it overflowed, by infinity.
-fn infinite_if_overflown(height: f64) -> f64 {
+fn infinite_if_overflowed(height: f64) -> f64 {
     if height.is_finite() { height } else { f64::INFINITY }
 }
 
