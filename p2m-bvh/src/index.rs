@@ -1,3 +1,5 @@
+//! A tree together with its set, which is the index that users build and query.
+
 use crate::{PacketTree, Volume};
 use nalgebra::Point3;
 use p2m_core::storage::{self, LoadError, Reader, Writer};
@@ -9,13 +11,18 @@ use p2m_core::{
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
-/// A [`PacketTree`] with the set that it was built over: an AABB tree or a k-DOP tree, by its volume.
+/// A [`PacketTree`] with the set that it was built over.
+///
+/// The bounding volume `V` makes it an AABB tree or a k-DOP tree.
 ///
 /// # Complexity
-/// Build O(n log n) expected, query O(log n) expected, O(n) at worst: equally distant primitives, queries more than
-/// 2^40 sizes away, scenes smaller than 1e-96 or larger than 1e90. Memory besides the set, for any scalar: 448 bytes a
-/// packet, 24 for each exact vertex of a packet, and the nodes: 256 bytes for boxes, 32 K + 32 for k-DOPs, rounded up
-/// to cache lines. About 65 bytes a triangle with boxes (observed).
+/// The build takes O(n log n) expected time and a query O(log n). A query takes O(n) at worst, which happens if many
+/// primitives are equally distant, if the query point is more than 2^40 scene sizes away, and in scenes smaller than
+/// 1e-96 or larger than 1e90.
+///
+/// Besides the set the tree takes, for any scalar, 448 bytes for each packet, 24 bytes for each exact vertex of a
+/// packet, and 256 bytes for each node of boxes or 32 K + 32 bytes for each node of k-DOPs, rounded up to cache lines.
+/// With boxes that is about 65 bytes for each triangle (observed).
 #[derive(Clone, Debug)]
 pub struct TreeIndex<T: Real, S, V: Volume> {
     set: S,
@@ -24,10 +31,11 @@ pub struct TreeIndex<T: Real, S, V: Volume> {
 }
 
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
-    /// Builds the tree: as [`BuildIndex::build`], but also for volumes without usual options, such as k-DOPs of any K.
+    /// Builds the tree. Unlike [`BuildIndex::build`] this works as well for volumes without default options, such as
+    /// k-DOPs of any K.
     ///
     /// # Errors
-    /// For a coordinate that is not finite, and for more primitives than ids.
+    /// Returns an error for a coordinate that is not finite, and for more primitives than ids.
     pub fn build_with(set: S, options: &V::Options) -> Result<Self, BuildError>
     where
         S: Sync,
@@ -37,28 +45,30 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         Ok(Self { set, scalar: PhantomData, tree })
     }
 
-    /// The set it was built over.
+    /// The set that the tree was built over.
     pub fn set(&self) -> &S {
         &self.set
     }
 
-    /// The tree.
+    /// The tree without its set.
     pub fn tree(&self) -> &PacketTree<V> {
         &self.tree
     }
 
-    /// Heap memory that the tree owns besides its set, in bytes.
+    /// The heap memory of the tree without its set, in bytes.
     pub fn memory(&self) -> usize {
         self.tree.memory()
     }
 
-    /// Fits the tree to a set of as many primitives as its own, which it then keeps: the same primitives, moved. That
-    /// takes a fraction of the time of building. The tree keeps its shape, so searches get slower the further apart
-    /// neighbours have moved; answers are those of a tree that is built anew. Of the options only whether all
-    /// threads are used matters: directions and splits stay those that it was built with.
+    /// Fits the tree to a set in which the same primitives have moved, and replaces the set by that one.
+    ///
+    /// This takes a fraction of the time of a build. The tree keeps its shape, so searches get slower the farther
+    /// neighbours have moved apart. Answers are those of a tree that is built anew. Of the options only the choice to
+    /// use all threads has an effect: the tree keeps its directions and splits.
     ///
     /// # Errors
-    /// [`BuildError::OtherLength`] and [`BuildError::NonFinite`]; the tree is then as it was.
+    /// Returns [`BuildError::OtherLength`] for a set with another number of primitives, and [`BuildError::NonFinite`]
+    /// for a coordinate that is not finite. The tree then stays as it was.
     ///
     /// # Complexity
     /// O(n).
@@ -78,45 +88,46 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// Adds the tree to a file, without the set.
     ///
     /// # Panics
-    /// If the file has an index already.
+    /// Panics if the file has an index already.
     pub fn save<'a>(&'a self, writer: &mut Writer<'a>) {
         storage::save(&self.tree, &self.set, writer);
     }
 
-    /// The tree of a file over a set like the one that it was built over, as if it had been built.
+    /// Loads the tree of a file over a set with the same primitives as the one that it was built over.
     ///
     /// # Errors
-    /// [`LoadError`].
+    /// Returns a [`LoadError`] if the file has no such tree, or if it does not fit the set.
     ///
     /// # Complexity
-    /// O(n) to look at the set and copy the nodes; packets and vertices stay in the file.
+    /// O(n) to compare the set and copy the nodes; packets and vertices stay in the file.
     pub fn load(set: S, reader: &Reader) -> Result<Self, LoadError> {
         let tree = storage::load(&set, reader)?;
         Ok(Self { set, scalar: PhantomData, tree })
     }
 
-    /// The same tree, searched with another instruction set. Answers do not depend on it.
+    /// Returns the tree with another instruction set for its searches. Answers do not depend on it.
     #[must_use]
     pub fn with_isa(self, isa: Isa) -> Self {
         Self { tree: self.tree.with_isa(isa), ..self }
     }
 
-    /// Offers to any collector every primitive that it could want; [`ClosestPoint::search`] with [`Best`].
-    /// `query` is finite.
+    /// Offers to a collector every primitive that it could want. `query` has to be finite.
+    ///
+    /// [`ClosestPoint::search`] does this for the collector [`Best`].
     #[inline]
     pub fn visit<C: Collector>(&self, query: &Point3<T>, collector: &mut C) {
         self.tree.search(&self.set, query, collector);
     }
 
-    /// Offers to any collector every hit that it could want; [`RayQuery::search_ray`] with [`Hits`].
+    /// Offers to a collector every hit of a ray that it could want.
+    ///
+    /// [`RayQuery::search_ray`] does this for the collector [`Hits`].
     #[inline]
     pub fn visit_ray<'r, C: RayCollector<'r>>(&self, ray: &'r Ray, collector: &mut C) {
         self.tree.search_ray(&self.set, ray, collector);
     }
-}
 
-impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
-    /// The directions of the faces of its volumes: those of a k-DOP tree, and `()` for an AABB tree.
+    /// The directions of the faces of all bounding volumes of a k-DOP tree; `()` for an AABB tree.
     pub fn directions(&self) -> &V::Directions {
         self.tree.directions()
     }
@@ -175,7 +186,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestLeaf<T> for TreeIndex<T, S, 
             return None;
         }
         let mut best = Best::new(&QueryOptions::default());
-        for &id in self.tree.nearest_leaf(&query.map(T::to_f64), |aside| best.record_skipped(aside)) {
+        for &id in self.tree.nearest_leaf(&query.map(T::to_f64), |skipped| best.record_skipped(skipped)) {
             if let Some(projection) = self.set.get(id).project_within(query, best.prune_above()) {
                 best.offer(id, projection);
             }

@@ -1,9 +1,9 @@
 //! AABB tree with surface-area splits.
 //!
-//! Nodes of eight boxes over packets of sixteen primitives ([`PacketTree`]), searched
-//! nearest first with the vector instructions that the processor turns out to have. Boxes and packets only bound
-//! distances, in f32 and with proof (docs/proofs/filter.md); what may be the answer is evaluated by the kernel of the
-//! contract, so answers are bitwise those of [`BruteForce`](p2m_core::BruteForce).
+//! [`AabbTree`] is a tree of nodes with eight boxes over packets of sixteen primitives ([`PacketTree`]). A search
+//! visits the nearest node first and uses the vector instructions of the processor that it runs on. Boxes and packets
+//! only bound distances, in f32 and with proof (docs/proofs/filter.md). The kernel of the contract evaluates the
+//! primitives that may be the answer, so answers are bitwise those of [`BruteForce`](p2m_core::BruteForce).
 //!
 //! ```
 //! use p2m_bvh::AabbTree;
@@ -19,9 +19,10 @@
 //! assert_eq!((answer.primitive.index(), answer.distance), (1, 1.0));
 //! ```
 //!
-//! Primitives are split top-down into a binary tree by a [`SplitRule`] (`build`), which is then collapsed into wide nodes
-//! over packets (`tree`, `packet`). The traversals are in `traverse`. The tree of k-DOPs (crate p2m-kdop) and the
-//! interception indexes (crate p2m-interception) are made of the same parts.
+//! The modules build on each other in this order: `packet` has the leaves, `tree` the nodes and the tree itself,
+//! `traverse` the searches, and `build` splits primitives top-down by a [`SplitRule`] into a binary tree and
+//! merges its nodes. The k-DOP tree (crate p2m-kdop) and the interception indexes (crate p2m-interception) consist
+//! of the same parts.
 #![forbid(unsafe_code)]
 
 mod build;
@@ -29,42 +30,73 @@ mod index;
 mod packet;
 mod traverse;
 mod tree;
+mod volume;
 
 pub use build::{SplitOptions, SplitRule};
 pub use index::TreeIndex;
-pub use tree::{PacketTree, TreeNode, Volume};
+pub use tree::PacketTree;
+pub use tree::view::TreeNode;
+pub use volume::Volume;
 
 use p2m_core::Aabb;
 
-/// Options of an [`AabbTree`]: those of splits, there are no others.
+/// The options of an [`AabbTree`], which are those of its splits.
 pub type AabbOptions = SplitOptions;
 
-/// An AABB tree over a set of primitives, which it keeps.
+/// An AABB tree over a set of primitives, which it owns.
+///
+/// The type is an alias of [`TreeIndex`], whose methods are:
+///
+/// - [`build_with`](TreeIndex::build_with) builds a tree, as [`BuildIndex::build`](p2m_core::BuildIndex::build) does;
+/// - [`refit`](TreeIndex::refit) fits the tree to moved primitives;
+/// - [`save`](TreeIndex::save) and [`load`](TreeIndex::load) write the tree to a file and read it;
+/// - [`set`](TreeIndex::set), [`tree`](TreeIndex::tree), [`memory`](TreeIndex::memory) and
+///   [`directions`](TreeIndex::directions) return its parts and its size;
+/// - [`visit`](TreeIndex::visit) and [`visit_ray`](TreeIndex::visit_ray) search with a collector of your own;
+/// - [`with_isa`](TreeIndex::with_isa) selects an instruction set.
+///
+/// Queries are methods of the traits that it implements: [`ClosestPoint`](p2m_core::ClosestPoint),
+/// [`NearQuery`](p2m_core::NearQuery), [`BoxQuery`](p2m_core::BoxQuery), [`RayQuery`](p2m_core::RayQuery),
+/// [`ClosestLeaf`](p2m_core::ClosestLeaf) and [`CertifiedQuery`](p2m_core::CertifiedQuery).
 pub type AabbTree<T, S> = TreeIndex<T, S, Aabb<f64>>;
 
-/// The inside of this crate, for its sibling crates: it may change at any time.
+/// The internals of this crate that its sibling crates use. They may change at any time.
 #[doc(hidden)]
 pub mod engine {
-    pub use crate::tree::{Leaves, evaluation};
+    pub use crate::traverse::primitive_fn::evaluation;
+
+    /// The search for the nearest primitives.
     pub mod nearest {
-        pub use crate::traverse::nearest::*;
+        pub use crate::traverse::evaluate::{finish, finish_nearest};
+        pub use crate::traverse::nearest::Search;
+        pub use crate::traverse::primitive_fn::EvaluateFn;
+        pub use crate::traverse::search_state::SearchState;
     }
+    /// Nodes and their frame.
     pub mod node {
-        pub use crate::tree::aabb_node::*;
+        pub use crate::tree::aabb_node::BoxNode;
+        pub use crate::tree::frame::Frame;
+        pub use crate::tree::node_ref::{NodeRef, WIDTH};
     }
+    /// Packets and their filters.
     pub mod packet {
         pub use crate::packet::*;
     }
+    /// The range search.
     pub mod range {
-        pub use crate::traverse::range::*;
+        pub use crate::traverse::range::Selection;
     }
+    /// Rays in the frame of a tree.
     pub mod ray {
-        pub use crate::traverse::ray::*;
+        pub use crate::traverse::primitive_fn::IntersectFn;
+        pub use crate::tree::frame_line::{FrameLine, half_extent, misses_scene};
+        pub use crate::tree::ray_slab::{RayInterval, SlabRay};
     }
-    pub mod ray_slab {
-        pub use crate::traverse::ray_slab::*;
-    }
+    /// The interface of bounding volumes.
     pub mod volume {
-        pub use crate::tree::volume::*;
+        pub use crate::build::TreeOptions;
+        pub use crate::traverse::compiled::CompiledSearches;
+        pub use crate::tree::rounded::Rounded;
+        pub use crate::tree::wide_node::{VolumeNodes, WideNode};
     }
 }

@@ -1,27 +1,29 @@
-//! Directions from the scene: model only what a scene requires.
+//! The choice of the directions that a scene needs.
 //!
-//! A slab is thin around a facet that it is parallel to, and around a segment that runs along it. So three orthogonal
-//! directions are sought first along which most of the area of facets (by their normals) and most of the length of
-//! segments lie: a scene that was built along some axes has such a frame wherever it was turned to. Then trees of more
-//! and more directions, along the axes and along the frame, answer some queries, and nodes and packets that they visit
-//! are counted: more slabs cost arithmetic in every node, so they have to save visits. How large the volumes of leaves
-//! are does not tell that: those of a thin wire shrink most, but nothing else is in their way (docs/kdop.md).
+//! A slab is thin around a facet that is parallel to it, and around a segment that runs along it. The choice therefore
+//! begins with three orthogonal directions along which most of the area of facets (by their normals) and most of the
+//! length of segments lie. A scene that was built along some axes has such a frame however it was turned afterwards.
+//!
+//! Then trees with 6 to 26 faces, along the axes and along the frame, answer trial queries, and the visited
+//! nodes and packets are counted. More slabs cost arithmetic in every node, so they have to save visits. The
+//! sizes of the volumes of leaves do not predict that: those of a thin wire shrink most, but few other
+//! primitives are near it (docs/kdop.md).
 
-use crate::{Directions, DirectionsError, KdopOptions, KdopTree};
-use nalgebra::{Point3, Vector3};
-use p2m_core::{
-    Aabb, BuildError, Primitive, PrimitiveId, PrimitiveSet, Real, Segment, Shape, StatsCollector, Triangle, check_set,
-};
+use crate::orientation::{candidate_frames, misalignment, sample_directions};
+use crate::trial::{FACES, frame_and_diagonals, query_times, to_shape, trial_queries};
+use crate::{Directions, DirectionsError};
+use nalgebra::Vector3;
+use p2m_core::{BuildError, PrimitiveId, PrimitiveSet, Real, Shape, check_set};
 use std::fmt;
 
-/// Directions chosen for a scene, and why. Prints as a sentence.
+/// The directions that were chosen for a scene, with the reasons. `Display` prints them as a sentence.
 ///
 /// ```
 /// use p2m_core::{BuildIndex, ClosestPoint, Triangle};
 /// use p2m_kdop::{DirectionChoice, KdopOptions, KdopTree};
 /// use nalgebra::{Point3, Rotation3, Vector3};
 ///
-/// // Long boards side by side, turned.
+/// // The scene has long boards side by side, which are turned.
 /// let turn = Rotation3::new(Vector3::z() * 0.7);
 /// let at = |x: i32, y: i32, z: i32| turn * Point3::new(f64::from(x * 200), f64::from(y), f64::from(z * 9));
 /// let boards: Vec<_> = (0..2000)
@@ -44,196 +46,106 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct DirectionChoice {
-    /// How many faces, which is directions with both signs counted: 6, 14, 18 or 26.
+    /// The number of faces, which is twice that of directions: 6, 14, 18 or 26.
     pub k: usize,
-    /// The three that were found, orthogonal and of unit length.
+    /// The frame that was found: three orthogonal unit vectors.
     pub frame: [Vector3<f64>; 3],
-    /// How far facets and segments are on average from lying along the axes, 0 for all of them do and 1 for none.
+    /// The mean misalignment of facets and segments with the axes: 0 if all of them lie along the axes, and 1
+    /// if none does.
     pub waste_of_axes: f64,
-    /// The same for the frame.
+    /// The mean misalignment of facets and segments with the frame.
     pub waste_of_frame: f64,
-    /// The work of a trial query with 6, 14, 18 and 26 faces, in parts of that with boxes along the axes: along the
-    /// axes,
+    /// The work of a trial query with 6, 14, 18 and 26 faces along the axes, relative to that with boxes
+    /// along the axes.
     pub work_along_axes: [f64; 4],
-    /// and along the frame, if that was tried.
+    /// The work of a trial query with 6, 14, 18 and 26 faces along the frame, relative to that with boxes along the
+    /// axes; `None` if the frame was not tried.
     pub work_along_frame: Option<[f64; 4]>,
-    turned: bool,
+    is_turned: bool,
 }
 
-/// The numbers of faces to choose from.
-const FACES: [usize; 4] = [6, 14, 18, 26];
-/// Nanoseconds that a query of a k-DOP tree takes whatever it visits (observed on one processor; of these costs only the ratios matter).
-const NANOSECONDS_A_QUERY: f64 = 100.0;
-/// Nanoseconds that a query takes to visit a node of a tree with 6, 14, 18 and 26 faces.
-const NANOSECONDS_A_NODE: [f64; 4] = [30.0, 50.0, 50.0, 74.0];
-/// Nanoseconds that a query takes to test a packet of such a tree; the octree has a figure of its own, on which its cells depend.
-const NANOSECONDS_A_PACKET: f64 = 45.0;
-/// What has to be saved before more faces or another frame are used: so that chance does not decide.
-const WORTH: f64 = 0.97;
-/// Queries that are tried.
-const TRIALS: usize = 256;
-
-/// Primitives that are looked at, at most.
-const SAMPLE: usize = 40_000;
-/// Sides of the cells on the faces of a cube that directions are counted in.
-const CELLS: usize = 32;
-/// How many of the heaviest cells may give an axis of a frame.
-const PEAKS: usize = 24;
-/// The sine from which a facet counts as not along an axis at all: that of 10 degrees.
-const ALIGNED: f64 = 0.174;
-/// A frame is used if it wastes less than this part of what the axes do.
-const GAIN: f64 = 0.75;
+/// The relative work below which more faces or another frame are used, so that chance does not decide.
+const MAX_WORK_RATIO: f64 = 0.97;
+/// The frame is tried if its misalignment is below this part of that of the axes.
+const MAX_MISALIGNMENT_RATIO: f64 = 0.75;
 
 impl DirectionChoice {
-    /// Looks at a scene, or at a sample of a large one: always the same one.
+    /// Chooses directions for a scene. A large scene is sampled, always in the same way.
     ///
     /// # Errors
-    /// Those of building a tree: a coordinate that is not finite, or more primitives than ids.
+    /// Returns the errors of building a tree: for a coordinate that is not finite, and for more primitives than ids.
     ///
     /// # Complexity
-    /// O(n log n): four or eight trees are built.
+    /// O(n log n), because four or eight trees are built.
     pub fn from_scene<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S) -> Result<Self, BuildError> {
         check_set(set)?;
-        let directions = sample(set);
+        let directions = sample_directions(set);
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
-        let waste_of_axes = waste(&directions, &axes);
+        let waste_of_axes = misalignment(&directions, &axes);
         let mut best = (axes, waste_of_axes);
-        let peaks = peaks(&directions);
-        for (i, u) in peaks.iter().enumerate() {
-            for v in &peaks[i + 1..] {
-                // Nearly orthogonal, and made so.
-                if u.dot(v).abs() < ALIGNED {
-                    let v = (v - u * u.dot(v)).normalize();
-                    let frame = [*u, v, u.cross(&v)];
-                    let waste = waste(&directions, &frame);
-                    if waste < best.1 {
-                        best = (frame, waste);
-                    }
-                }
+        for frame in candidate_frames(&directions) {
+            let waste = misalignment(&directions, &frame);
+            if waste < best.1 {
+                best = (frame, waste);
             }
         }
-        let shapes: Vec<Shape<f64>> = (0..set.len()).map(|i| shape(&set.get(PrimitiveId::new(i)))).collect();
-        let queries = queries(&shapes);
-        let of_axes = work(&shapes, &queries, &axes);
-        let of_frame = (best.1 < waste_of_axes * GAIN).then(|| work(&shapes, &queries, &best.0));
-        let parts = |work: [f64; 4]| work.map(|w| w / of_axes[0]);
+        let shapes: Vec<Shape<f64>> = (0..set.len()).map(|i| to_shape(&set.get(PrimitiveId::new(i)))).collect();
+        let queries = trial_queries(&shapes);
+        let axes_times = query_times(&shapes, &queries, &axes);
+        let frame_times =
+            (best.1 < waste_of_axes * MAX_MISALIGNMENT_RATIO).then(|| query_times(&shapes, &queries, &best.0));
+        let relative = |times: [f64; 4]| times.map(|time| time / axes_times[0]);
         let mut choice = Self {
             k: 6,
             frame: best.0,
             waste_of_axes,
             waste_of_frame: best.1,
-            work_along_axes: parts(of_axes),
-            work_along_frame: of_frame.map(parts),
-            turned: false,
+            work_along_axes: relative(axes_times),
+            work_along_frame: frame_times.map(relative),
+            is_turned: false,
         };
         let mut least = 1.0;
-        for (turned, work) in [(false, Some(choice.work_along_axes)), (true, choice.work_along_frame)] {
+        for (is_turned, work) in [(false, Some(choice.work_along_axes)), (true, choice.work_along_frame)] {
             for (k, work) in FACES.into_iter().zip(work.into_iter().flatten()) {
-                if work < least * WORTH {
-                    (least, choice.k, choice.turned) = (work, k, turned);
+                if work < least * MAX_WORK_RATIO {
+                    (least, choice.k, choice.is_turned) = (work, k, is_turned);
                 }
             }
         }
         Ok(choice)
     }
 
-    /// Whether the frame is to be used rather than the axes.
+    /// Whether the chosen directions are along the frame rather than along the axes.
     #[must_use]
     pub fn is_turned(&self) -> bool {
-        self.turned
+        self.is_turned
     }
 
-    /// The directions as a type of K: the frame or the axes, then as many diagonals of it as there is room for.
+    /// The chosen directions for trees of K faces: the frame or the axes, and then as many of its diagonals as K
+    /// has room for.
     ///
     /// # Errors
-    /// For K below 6, odd, or above 26.
+    /// Returns an error if K is below 6, odd, or above 26.
     pub fn directions<const K: usize>(&self) -> Result<Directions<K>, DirectionsError> {
-        along(&if self.turned { self.frame } else { [Vector3::x(), Vector3::y(), Vector3::z()] })
+        frame_and_diagonals(&if self.is_turned { self.frame } else { [Vector3::x(), Vector3::y(), Vector3::z()] })
     }
 
-    /// The frame that was found, and its diagonals, whether or not it was chosen.
+    /// The frame that was found and its diagonals, whether or not it was chosen.
     ///
     /// # Errors
-    /// As [`directions`](Self::directions).
+    /// Returns an error if K is below 6, odd, or above 26.
     pub fn frame_directions<const K: usize>(&self) -> Result<Directions<K>, DirectionsError> {
-        along(&self.frame)
+        frame_and_diagonals(&self.frame)
     }
-}
-
-/// The axes of a frame and its diagonals: the usual sets, if the frame is that of the axes.
-fn along<const K: usize>(frame: &[Vector3<f64>; 3]) -> Result<Directions<K>, DirectionsError> {
-    let [x, y, z] = *frame;
-    let of_cube = [x + y + z, y + z - x, z - x - y, x - y + z];
-    let of_faces = [x + y, x + z, y + z, x - y, x - z, y - z];
-    let diagonals = if K == 18 { [&of_faces[..], &of_cube].concat() } else { [&of_cube[..], &of_faces].concat() };
-    let all = [&frame[..], &diagonals].concat();
-    Directions::new(&all[..(K / 2).min(all.len())])
-}
-
-/// A primitive as what its vertices span, or as a diagonal of its box.
-fn shape<T: Real>(primitive: &impl Primitive<T>) -> Shape<f64> {
-    let wide = |p: &Point3<T>| p.map(|x| x.to_f64());
-    match primitive.vertices() {
-        [a] => p2m_core::Point::new(wide(a)).into(),
-        [a, b] => Segment::new(wide(a), wide(b)).into(),
-        [a, b, c] => Triangle::new(wide(a), wide(b), wide(c)).into(),
-        _ => {
-            let bounds = primitive.aabb();
-            Segment::new(wide(&bounds.min), wide(&bounds.max)).into()
-        }
-    }
-}
-
-/// Points spread evenly in the box of the scene, and as many near its primitives.
-fn queries(shapes: &[Shape<f64>]) -> Vec<Point3<f64>> {
-    let bounds = shapes.iter().map(Primitive::aabb).fold(Aabb::empty(), |a, b| a.union(&b));
-    if shapes.is_empty() {
-        return Vec::new();
-    }
-    let place = |i: usize| {
-        // Multiples of powers of the root of x^4 = x + 1, which fill a cube evenly.
-        let fraction = |step: f64| (0.5 + step * i as f64).fract();
-        [0.819_172_513_396_164_4, 0.671_043_606_703_789_3, 0.549_700_477_901_970_3].map(fraction)
-    };
-    let inside = |i: usize| {
-        Point3::from([0, 1, 2].map(|k: usize| {
-            let t = place(i)[k];
-            bounds.min[k] * (1.0 - t) + bounds.max[k] * t
-        }))
-    };
-    let near = |i: usize| {
-        let around = shapes[i * shapes.len() / TRIALS].aabb();
-        let towards = inside(i);
-        Point3::from([0, 1, 2].map(|k: usize| around.min[k] * 0.98 + towards[k] * 0.02))
-    };
-    (0..TRIALS).map(|i| if i % 2 == 0 { inside(i) } else { near(i) }).collect()
-}
-
-/// The expected work of a query for 6, 14, 18 and 26 directions along a frame.
-fn work(shapes: &[Shape<f64>], queries: &[Point3<f64>], frame: &[Vector3<f64>; 3]) -> [f64; 4] {
-    [
-        trial::<6>(shapes, queries, frame, NANOSECONDS_A_NODE[0]),
-        trial::<14>(shapes, queries, frame, NANOSECONDS_A_NODE[1]),
-        trial::<18>(shapes, queries, frame, NANOSECONDS_A_NODE[2]),
-        trial::<26>(shapes, queries, frame, NANOSECONDS_A_NODE[3]),
-    ]
-}
-
-fn trial<const K: usize>(shapes: &[Shape<f64>], queries: &[Point3<f64>], frame: &[Vector3<f64>; 3], node: f64) -> f64 {
-    let options = KdopOptions::new(along::<K>(frame).expect("as many directions"));
-    let tree = KdopTree::<f64, _, K>::build_with(shapes, &options).expect("a scene that has been checked");
-    let finite = queries.iter().filter(|q| q.iter().all(|x| x.is_finite()));
-    let [nodes, packets, _] = StatsCollector::of_queries(finite, |query, counting| tree.visit(query, counting));
-    NANOSECONDS_A_QUERY + (node * nodes as f64 + NANOSECONDS_A_PACKET * packets as f64) / queries.len().max(1) as f64
 }
 
 impl fmt::Display for DirectionChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let percent = |part: f64| 100.0 * part;
-        let place = FACES.iter().position(|k| *k == self.k).unwrap_or(0);
-        let work = self.work_along_frame.filter(|_| self.turned).unwrap_or(self.work_along_axes);
+        let index = FACES.iter().position(|k| *k == self.k).unwrap_or(0);
+        let work = self.work_along_frame.filter(|_| self.is_turned).unwrap_or(self.work_along_axes);
         write!(f, "{} directions along ", self.k)?;
-        if self.turned {
+        if self.is_turned {
             write!(f, "a frame of the scene's own (")?;
             for (i, axis) in self.frame.iter().enumerate() {
                 let [x, y, z] = [axis.x, axis.y, axis.z].map(|c| c + 0.0);
@@ -244,8 +156,8 @@ impl fmt::Display for DirectionChoice {
         } else {
             write!(f, "the axes")?;
         }
-        if self.turned || self.k > 6 {
-            write!(f, "; trial queries take {:.0} % of their work with boxes along the axes", percent(work[place]))?;
+        if self.is_turned || self.k > 6 {
+            write!(f, "; trial queries take {:.0} % of their work with boxes along the axes", percent(work[index]))?;
         } else {
             write!(
                 f,
@@ -257,96 +169,26 @@ impl fmt::Display for DirectionChoice {
     }
 }
 
-/// Normals of facets and directions of segments and long facets with their weights, which add up to 1.
-fn sample<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -> Vec<(Vector3<f64>, f64)> {
-    let len = set.len();
-    let count = len.min(SAMPLE);
-    let mut found = Vec::with_capacity(count);
-    let boxes = (0..count).map(|i| set.get(PrimitiveId::new(i * len / count)).aabb().to_f64());
-    // Half of the scale of the scene, so that no product overflows.
-    let bounds = boxes.fold(Aabb::empty(), |a, b| a.union(&b));
-    let scale = (bounds.max.coords * 0.5 - bounds.min.coords * 0.5).max();
-    for i in 0..count {
-        let primitive = set.get(PrimitiveId::new(i * len / count));
-        let corners: Vec<Vector3<f64>> =
-            primitive.vertices().iter().map(|p| p.coords.map(|x| x.to_f64() / scale)).collect();
-        // A segment counts as a facet as long and as thick as its own length: there is nothing to compare areas and
-        // lengths by. A long facet counts as a segment besides, the more the longer it is for its height.
-        let weighted = match corners[..] {
-            [a, b] => [(b - a) * (b - a).norm(), Vector3::zeros()],
-            [a, b, c] => {
-                let normal = (b - a).cross(&(c - a));
-                let longest = [b - a, c - b, a - c].into_iter().max_by(|x, y| x.norm().total_cmp(&y.norm()));
-                let edge = longest.unwrap_or_default();
-                let slender = (1.0 - normal.norm() / edge.norm_squared()).max(0.0).powi(4);
-                [normal, edge.normalize() * (normal.norm() * slender)]
-            }
-            _ => continue,
-        };
-        for vector in weighted {
-            let weight = vector.norm();
-            if weight > 0.0 && weight.is_finite() {
-                found.push((vector / weight, weight));
-            }
-        }
-    }
-    let total: f64 = found.iter().map(|(_, weight)| weight).sum();
-    found.iter_mut().for_each(|(_, weight)| *weight /= total);
-    found
-}
-
-/// What of the scene is not along a frame: 0 for directions on an axis, 1 for those [`ALIGNED`] or more away.
-fn waste(directions: &[(Vector3<f64>, f64)], frame: &[Vector3<f64>; 3]) -> f64 {
-    let of = |n: &Vector3<f64>| {
-        let cosine = frame.iter().map(|axis| axis.dot(n).abs()).fold(0.0, f64::max);
-        ((1.0 - cosine * cosine).max(0.0) / (ALIGNED * ALIGNED)).min(1.0)
-    };
-    directions.iter().map(|(n, weight)| of(n) * weight).sum()
-}
-
-/// Mean directions of the cells with the most weight, the heaviest first.
-fn peaks(directions: &[(Vector3<f64>, f64)]) -> Vec<Vector3<f64>> {
-    let mut cells = vec![(Vector3::zeros(), 0.0); 3 * CELLS * CELLS];
-    for (n, weight) in directions {
-        // Where the line in this direction goes through a cube.
-        let axis = n.iamax();
-        let n = n * n[axis].signum();
-        let cell = |k: usize| {
-            let x = (n[(axis + k) % 3] / n[axis] * 0.5 + 0.5) * CELLS as f64;
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to CELLS")]
-            let x = x.round() as usize;
-            x.min(CELLS - 1)
-        };
-        let (sum, total) = &mut cells[(axis * CELLS + cell(1)) * CELLS + cell(2)];
-        *sum += n * *weight;
-        *total += weight;
-    }
-    cells.retain(|(_, total)| *total > 0.0);
-    cells.sort_by(|a, b| b.1.total_cmp(&a.1));
-    cells.truncate(PEAKS);
-    cells.into_iter().map(|(sum, _)| sum.normalize()).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Rotation3;
-    use p2m_core::Soup;
+    use nalgebra::{Point3, Rotation3};
+    use p2m_core::{Segment, Soup, Triangle};
     use p2m_testkit::scenes;
 
-    /// The faces of boxes, turned.
+    /// Returns facets of boxes, which are turned.
     fn boxes(turn: &Rotation3<f64>) -> Vec<Triangle<f64>> {
         (0..300)
             .map(|i| {
                 let axis = i % 3;
-                let place = |u: f64, v: f64| {
+                let at = |u: f64, v: f64| {
                     let mut p = Point3::new(0.0, 0.0, 0.0);
                     p[axis] = f64::from(i as i32 / 3);
                     p[(axis + 1) % 3] = u;
                     p[(axis + 2) % 3] = v;
                     turn * p
                 };
-                Triangle::new(place(0.0, 0.0), place(1.0, 0.0), place(0.2, 1.0))
+                Triangle::new(at(0.0, 0.0), at(1.0, 0.0), at(0.2, 1.0))
             })
             .collect()
     }
@@ -372,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn choices_say_why() {
+    fn a_choice_prints_its_reasons() {
         let turn = Rotation3::new(Vector3::z() * 0.7);
         let at = |x: i32, y: i32, z: i32| turn * Point3::new(f64::from(x * 200), f64::from(y), f64::from(z * 9));
         let boards: Vec<_> = (0..1000)
@@ -394,9 +236,9 @@ mod tests {
         assert!(!none.is_turned() && none.to_string().contains("along the axes"), "{none}");
     }
 
-    /// Faces are chosen by what nodes cost, by queries near and far, and only where that saves something.
+    /// More faces are chosen only where they save more visits, near and far, than their nodes cost.
     #[test]
-    fn as_many_faces_as_the_scene_is_worth() {
+    fn more_faces_are_chosen_where_they_save_work() {
         let chosen = |soup: &Soup<f64>| {
             let choice = DirectionChoice::from_scene(soup).expect("finite");
             println!("{choice}: {:.3?}", choice.work_along_axes);

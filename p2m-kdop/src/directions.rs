@@ -1,18 +1,18 @@
-//! Directions of k-DOPs.
+//! The directions of the faces of k-DOPs, and the default sets of them.
 
 use nalgebra::Vector3;
 
 /// The K unit normals of k-DOPs, K counting both signs: normal 2 j + 1 is the opposite of normal 2 j.
 ///
-/// Three of them come first that are orthogonal to each other, if there are such, for these make the bounds of searches
-/// tightest; else three that are as far from one plane as any. The others keep their order.
+/// If three of the directions are orthogonal to each other, these come first, because they make the bounds of searches
+/// tightest. Otherwise the three that span the largest volume come first. The others keep their order.
 ///
 /// ```
 /// use p2m_kdop::Directions;
 /// use nalgebra::Vector3;
 ///
-/// let usual = Directions::<14>::default(); // the axes, then the diagonals of a cube
-/// assert_eq!(usual.normals()[1], -Vector3::x());
+/// let default = Directions::<14>::default(); // the axes, then the diagonals of a cube
+/// assert_eq!(default.normals()[1], -Vector3::x());
 /// let own = Directions::<8>::new(&[Vector3::new(1.0, 2.0, 0.0), Vector3::x(), Vector3::y(), Vector3::z()]).unwrap();
 /// assert_eq!(own.normals()[0], Vector3::x());
 /// assert!(Directions::<8>::new(&[Vector3::x(); 4]).is_err());
@@ -20,56 +20,57 @@ use nalgebra::Vector3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Directions<const K: usize> {
     normals: [Vector3<f64>; K],
-    orthogonal: bool,
+    is_orthogonal: bool,
 }
 
-/// Why there are no k-DOPs of some directions.
+/// The reason why some directions have no k-DOPs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DirectionsError {
-    /// K is odd or less than 6: so few faces do not bound anything.
+    /// K is odd, or it is less than 6, so that k-DOPs would be unbounded.
     #[error("k-DOPs have an even number of faces, at least 6, not {k}")]
     Faces {
-        /// The K of the type.
+        /// The number K of the type.
         k: usize,
     },
-    /// Opposites are not given: there are K / 2 directions.
+    /// The number of directions is not K / 2. Opposites must not be given.
     #[error("{found} directions, but there are {expected}, without their opposites")]
     Count {
-        /// Half of K.
+        /// The expected number, K / 2.
         expected: usize,
-        /// How many were given.
+        /// The number of directions that were given.
         found: usize,
     },
-    /// A direction has a coordinate that is not finite, or no length.
+    /// A direction has a coordinate that is not finite, or its length is 0.
     #[error("direction {index} is not finite or zero")]
     NotADirection {
-        /// Its place.
+        /// The index of the direction.
         index: usize,
     },
-    /// Two directions are the same or opposite, or less than 1e-6 apart.
+    /// The sine of the angle between two directions is less than 1e-6, so they are the same or opposite.
     #[error("directions {first} and {second} are parallel")]
     Parallel {
-        /// The place of one,
+        /// The lower index of the two directions.
         first: usize,
-        /// and that of the other.
+        /// The higher index of the two directions.
         second: usize,
     },
-    /// All directions lie in a plane, or within 1e-6 of one: their k-DOPs are not bounded across it.
+    /// All directions lie in a plane, or within 1e-6 of one, so their k-DOPs are unbounded across it.
     #[error("all directions lie in a plane")]
     Flat,
 }
 
-/// The sine below which two directions count as parallel, and the volume below which three count as flat: 2^-20.
-const FLAT: f64 = 1.0 / (1u32 << 20) as f64;
-/// The cosine up to which directions count as orthogonal, far below what searches in f32 can tell: 2^-40.
-const ORTHOGONAL: f64 = 1.0 / (1u64 << 40) as f64;
+/// The sine up to which two directions count as parallel, and the volume up to which three count as lying in
+/// a plane: 2^-20.
+const MAX_FLAT_VOLUME: f64 = 1.0 / (1u32 << 20) as f64;
+/// The cosine up to which directions count as orthogonal: 2^-40, which is far below the resolution of searches in f32.
+const MAX_ORTHOGONAL_COSINE: f64 = 1.0 / (1u64 << 40) as f64;
 
 impl<const K: usize> Directions<K> {
-    /// Those of K / 2 vectors of any length, and their opposites.
+    /// Makes directions from K / 2 vectors of any length and their opposites.
     ///
     /// # Errors
-    /// [`DirectionsError`], for what bounds nothing.
+    /// Returns a [`DirectionsError`] if k-DOPs of these directions would be unbounded.
     pub fn new(directions: &[Vector3<f64>]) -> Result<Self, DirectionsError> {
         if K < 6 || !K.is_multiple_of(2) {
             return Err(DirectionsError::Faces { k: K });
@@ -81,34 +82,38 @@ impl<const K: usize> Directions<K> {
         for (index, direction) in directions.iter().enumerate() {
             units.push(unit(direction).ok_or(DirectionsError::NotADirection { index })?);
             for first in 0..index {
-                if units[first].cross(&units[index]).norm() <= FLAT {
+                if units[first].cross(&units[index]).norm() <= MAX_FLAT_VOLUME {
                     return Err(DirectionsError::Parallel { first, second: index });
                 }
             }
         }
-        let (triple, orthogonal) = leading(&units).ok_or(DirectionsError::Flat)?;
+        let (triple, is_orthogonal) = leading_triple(&units).ok_or(DirectionsError::Flat)?;
         let others = (0..units.len()).filter(|i| !triple.contains(i));
         let order: Vec<usize> = triple.into_iter().chain(others).collect();
         let normals = std::array::from_fn(|i| {
             let normal = units[order[i / 2]];
-            // Zeros of one sign.
+            // Adding 0 turns -0 into 0, so that equal directions have equal bits.
             if i % 2 == 0 { normal } else { -normal }.map(|x| x + 0.0)
         });
-        Ok(Self { normals, orthogonal })
+        Ok(Self { normals, is_orthogonal })
     }
 
-    /// Those of a file, in their order; `None` if these are no such directions.
-    pub(crate) fn of_normals(normals: &[Vector3<f64>], orthogonal: bool) -> Option<Self> {
+    /// Makes directions from the normals of a file and keeps their order; `None` if they are not valid.
+    pub(crate) fn from_normals(normals: &[Vector3<f64>], is_orthogonal: bool) -> Option<Self> {
         let normals: [Vector3<f64>; K] = normals.try_into().ok()?;
-        // Three roundings of a square, and those of the square root and the quotient.
+        // The tolerance covers the three roundings of a square and those of the square root and the quotient.
         let is_unit = |n: &Vector3<f64>| (n.norm_squared() - 1.0).abs() <= 16.0 * f64::EPSILON;
         let fits = normals.chunks_exact(2).all(|pair| is_unit(&pair[0]) && pair[1] == -pair[0]);
         let [u, v, w] = [normals[0], normals[2], normals[4]];
-        let first = if orthogonal { cosine(&u, &v, &w) <= ORTHOGONAL } else { volume(&u, &v, &w) > FLAT };
-        (fits && first).then_some(Self { normals, orthogonal })
+        let is_first_valid = if is_orthogonal {
+            cosine(&u, &v, &w) <= MAX_ORTHOGONAL_COSINE
+        } else {
+            volume(&u, &v, &w) > MAX_FLAT_VOLUME
+        };
+        (fits && is_first_valid).then_some(Self { normals, is_orthogonal })
     }
 
-    /// The unit normals.
+    /// The K unit normals.
     #[must_use]
     pub fn normals(&self) -> &[Vector3<f64>; K] {
         &self.normals
@@ -117,13 +122,13 @@ impl<const K: usize> Directions<K> {
     /// Whether the first three directions are orthogonal to each other.
     #[must_use]
     pub fn starts_orthogonal(&self) -> bool {
-        self.orthogonal
+        self.is_orthogonal
     }
 }
 
-/// The vector at length 1; `None` if it has no direction.
+/// Scales a vector to length 1; `None` if it is zero or not finite.
 fn unit(v: &Vector3<f64>) -> Option<Vector3<f64>> {
-    // The largest component does not tell of NaN in another one.
+    // The largest component need not be NaN if another one is, so all components are tested.
     let largest = v.amax();
     (largest > 0.0 && v.iter().all(|x| x.is_finite())).then(|| {
         let scaled = v / largest;
@@ -131,24 +136,25 @@ fn unit(v: &Vector3<f64>) -> Option<Vector3<f64>> {
     })
 }
 
-/// The largest cosine between three unit vectors, by magnitude.
+/// The largest magnitude of a cosine between two of three unit vectors.
 fn cosine(u: &Vector3<f64>, v: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
     u.dot(v).abs().max(v.dot(w).abs()).max(w.dot(u).abs())
 }
 
-/// The volume of the box that they span.
+/// The volume of the parallelepiped that three vectors span.
 fn volume(u: &Vector3<f64>, v: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
     u.cross(v).dot(w).abs()
 }
 
-/// Which three come first, and whether they are orthogonal; `None` if all lie in a plane.
-fn leading(units: &[Vector3<f64>]) -> Option<([usize; 3], bool)> {
-    let mut widest = (FLAT, None);
+/// Returns the indices of the three directions that come first, and whether they are orthogonal; `None` if all lie
+/// in a plane.
+fn leading_triple(units: &[Vector3<f64>]) -> Option<([usize; 3], bool)> {
+    let mut widest = (MAX_FLAT_VOLUME, None);
     for a in 0..units.len() {
         for b in a + 1..units.len() {
             for c in b + 1..units.len() {
                 let [u, v, w] = [a, b, c].map(|i| units[i]);
-                if cosine(&u, &v, &w) <= ORTHOGONAL {
+                if cosine(&u, &v, &w) <= MAX_ORTHOGONAL_COSINE {
                     return Some(([a, b, c], true));
                 }
                 let volume = volume(&u, &v, &w);
@@ -166,7 +172,7 @@ const BODY_DIAGONALS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [-1.0,
 const FACE_DIAGONALS: [[f64; 3]; 6] =
     [[1.0, 1.0, 0.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [1.0, -1.0, 0.0], [1.0, 0.0, -1.0], [0.0, 1.0, -1.0]];
 
-macro_rules! usual {
+macro_rules! default_directions {
     ($($(#[$about:meta])* $k:literal: $($set:expr),+;)*) => {
         $(impl Default for Directions<$k> {
             $(#[$about])*
@@ -178,14 +184,14 @@ macro_rules! usual {
     };
 }
 
-usual! {
-    /// The axes.
+default_directions! {
+    /// Returns the axes.
     6: AXES;
-    /// The axes and the diagonals of a cube.
+    /// Returns the axes and the diagonals of a cube.
     14: AXES, BODY_DIAGONALS;
-    /// The axes and the diagonals of the faces of a cube.
+    /// Returns the axes and the diagonals of the faces of a cube.
     18: AXES, FACE_DIAGONALS;
-    /// All of these.
+    /// Returns the axes, the diagonals of a cube and those of its faces.
     26: AXES, BODY_DIAGONALS, FACE_DIAGONALS;
 }
 
@@ -194,7 +200,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_usual_sets_are_unit_vectors_and_their_opposites() {
+    fn default_sets_are_unit_vectors_and_their_opposites() {
         fn check<const K: usize>(directions: &Directions<K>) {
             assert!(directions.starts_orthogonal());
             for pair in directions.normals().chunks(2) {
@@ -209,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn what_bounds_nothing_is_refused() {
+    fn directions_of_unbounded_kdops_are_errors() {
         let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
         assert_eq!(Directions::<5>::new(&[x, y]), Err(DirectionsError::Faces { k: 5 }));
         assert_eq!(Directions::<4>::new(&[x, y]), Err(DirectionsError::Faces { k: 4 }));
@@ -224,17 +230,17 @@ mod tests {
         {
             let mut given = [x + y, y + z, z];
             given[index][component] = bad;
-            let refused = Err(DirectionsError::NotADirection { index });
-            assert_eq!(Directions::<6>::new(&given), refused, "{bad} in component {component}");
+            let expected = Err(DirectionsError::NotADirection { index });
+            assert_eq!(Directions::<6>::new(&given), expected, "{bad} in component {component}");
         }
     }
 
     #[test]
-    fn any_length_will_do_and_orthogonal_ones_come_first() {
+    fn vectors_may_have_any_length_and_orthogonal_ones_come_first() {
         let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
-        let own = Directions::<10>::new(&[x + y, x * 1e300, y * 5e-324, x - y, z * -2.0]).expect("five");
-        assert_eq!([0, 2, 4].map(|i: usize| own.normals()[i]), [(x + y).normalize(), (x - y).normalize(), -z]);
-        assert!(own.starts_orthogonal() && own.normals()[6] == x && own.normals()[8] == y);
+        let directions = Directions::<10>::new(&[x + y, x * 1e300, y * 5e-324, x - y, z * -2.0]).expect("five");
+        assert_eq!([0, 2, 4].map(|i: usize| directions.normals()[i]), [(x + y).normalize(), (x - y).normalize(), -z]);
+        assert!(directions.starts_orthogonal() && directions.normals()[6] == x && directions.normals()[8] == y);
         let skew = Directions::<8>::new(&[x, x + y * 1e-3, x + y, x + z]).expect("four");
         assert!(!skew.starts_orthogonal());
         assert!(!Directions::<6>::new(&[x, y + x * 2f64.powi(-39), z]).expect("three").starts_orthogonal());

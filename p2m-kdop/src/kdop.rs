@@ -1,46 +1,48 @@
 //! k-DOPs: convex polytopes with K faces of given directions.
 //!
-//! A k-DOP is the set of points x with n_i . x <= h_i for K unit vectors n_i, which come in pairs of opposites, and
-//! *heights* h_i. It fits a scene the closer the more directions there are; a box is the k-DOP of the six axes.
+//! A k-DOP is the set of points x with n_i . x <= h_i for K unit vectors n_i, which come in pairs of opposites,
+//! and *heights* h_i. It fits a scene more closely if it has more directions. A box is the k-DOP of the directions
+//! of the axes.
 //!
 //! # References
-//! \[Klosowski1998\]; the k-DOP tree of CGAL's manual, of which the sets of directions are.
+//! \[Klosowski1998\] introduces the volumes. The sets of directions are those of the k-DOP tree in CGAL's manual.
 
 use crate::Directions;
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Aabb, Real};
 
-/// A k-DOP by its heights: `heights[i]` is the largest n_i . x, for the normals of some [`Directions`].
+/// A k-DOP, given by its heights along the normals of some [`Directions`].
 ///
-/// What is computed of points is rounded outwards, so a k-DOP contains what it was made of. Where products leave the
-/// range of f64 a height cannot be told, and is infinite.
+/// Heights of points are rounded outwards, so a k-DOP contains the points that it was made of. A height is infinite if
+/// its computation overflows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kdop<const K: usize> {
-    /// One for each normal.
+    /// The heights: `heights[i]` is the largest n_i . x of all points x.
     pub heights: [f64; K],
 }
 
 impl<const K: usize> Kdop<K> {
-    /// The k-DOP that holds nothing.
+    /// The k-DOP without points.
     #[must_use]
     pub fn empty() -> Self {
         Self { heights: [f64::NEG_INFINITY; K] }
     }
 
-    /// The smallest k-DOP around some points, rounded outwards by 2^-49 of their distance from the origin at most.
+    /// The smallest k-DOP around some points, rounded outwards by at most 2^-49 of their distance from the origin.
     #[must_use]
     pub fn of_points<T: Real>(directions: &Directions<K>, points: &[Point3<T>]) -> Self {
         let mut result = Self::empty();
         for point in points {
             let x = Vector3::from(p2m_core::engine::real::to_f64_array(point));
             for (height, normal) in result.heights.iter_mut().zip(directions.normals()) {
-                *height = height.max(above(normal, &x));
+                *height = height.max(product_above(normal, &x));
             }
         }
         result
     }
 
-    /// The smallest k-DOP around a box, rounded likewise.
+    /// The smallest k-DOP around a box, rounded outwards by at most 2^-49 of the distance of its corners
+    /// from the origin.
     #[must_use]
     pub fn of_box(directions: &Directions<K>, bounds: &Aabb<f64>) -> Self {
         if bounds.is_empty() {
@@ -49,80 +51,81 @@ impl<const K: usize> Kdop<K> {
         Self { heights: std::array::from_fn(|i| box_height(&directions.normals()[i], bounds)) }
     }
 
-    /// The smallest k-DOP of the same directions around both.
+    /// The smallest k-DOP around this one and another one of the same directions.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         Self { heights: std::array::from_fn(|i| self.heights[i].max(other.heights[i])) }
     }
 
-    /// Whether no pair of faces, of either, has all of one k-DOP before it and all of the other one behind it: never
-    /// false for two k-DOPs (of the same directions) with a point in common, but it may be true for two that have
-    /// none.
+    /// Whether this k-DOP and another one of the same directions overlap along every direction.
+    ///
+    /// The result is never `false` for two k-DOPs with a point in common, but it may be `true` for two without one.
     #[must_use]
-    pub fn may_meet(&self, other: &Self) -> bool {
+    pub fn may_intersect(&self, other: &Self) -> bool {
         (0..K).all(|i| -other.heights[i ^ 1] <= self.heights[i])
     }
 
-    /// The same for a box, whose own faces are asked by whoever has a box of the k-DOP.
+    /// Whether this k-DOP and a box overlap along every direction of the k-DOP. The directions of the box are not
+    /// considered: compare the box with one around the k-DOP for that.
     #[must_use]
-    pub fn may_meet_box(&self, directions: &Directions<K>, bounds: &Aabb<f64>) -> bool {
-        !bounds.is_empty() && self.may_meet(&Self::of_box(directions, bounds))
+    pub fn may_intersect_box(&self, directions: &Directions<K>, bounds: &Aabb<f64>) -> bool {
+        !bounds.is_empty() && self.may_intersect(&Self::of_box(directions, bounds))
     }
 
-    /// Whether other lies in this k-DOP of the same directions.
+    /// Whether another k-DOP of the same directions lies in this one.
     #[must_use]
     pub fn contains(&self, other: &Self) -> bool {
         (0..K).all(|i| other.heights[i] <= self.heights[i])
     }
 
-    /// Whether a point lies in it, apart from roundings inwards.
+    /// Whether a point lies in the k-DOP. Products are rounded down, so a point slightly outside may count as inside.
     #[must_use]
     pub fn contains_point(&self, directions: &Directions<K>, point: &Point3<f64>) -> bool {
         directions
             .normals()
             .iter()
             .zip(&self.heights)
-            .all(|(normal, height)| -above(&-normal, &point.coords) <= *height)
+            .all(|(normal, height)| -product_above(&-normal, &point.coords) <= *height)
     }
 
-    /// Whether some slab has its faces in the wrong order, so that there is no point in it.
+    /// Whether some slab has its faces in the wrong order, so that the k-DOP has no points.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         !(0..K).step_by(2).all(|i| -self.heights[i + 1] <= self.heights[i])
     }
 }
 
-/// Whether a factor leaves a number as it is, but for its sign.
+/// Whether a factor changes at most the sign of a number.
 #[allow(clippy::float_cmp, reason = "exactly 1 is meant")]
 pub(crate) fn is_one(x: f64) -> bool {
     x.abs() == 1.0
 }
 
-/// normal . x rounded up, exactly where the normal is one of the axes.
-fn above(normal: &Vector3<f64>, x: &Vector3<f64>) -> f64 {
-    // Terms without a factor are left out: infinite coordinates are allowed there.
+/// Returns normal . x, rounded up. The result is exact if the normal is along an axis.
+fn product_above(normal: &Vector3<f64>, x: &Vector3<f64>) -> f64 {
+    // Terms with a factor of 0 are left out, because their coordinates may be infinite.
     let mut sum = 0.0;
     let mut size = 0.0;
-    let mut rounded = false;
+    let mut is_rounded = false;
     for (n, x) in normal.iter().zip(x) {
         if *n != 0.0 {
             sum += n * x;
             size += (n * x).abs();
-            rounded |= !is_one(*n);
+            is_rounded |= !is_one(*n);
         }
     }
-    // Three products and their sum err by 3 u of their size and what underflows. Nothing is known of sums that
-    // overflow.
-    match rounded {
+    // Three products and their sum err by at most 3 u of their magnitudes, apart from underflow. If the magnitudes
+    // overflow, so may any part of the sum.
+    match is_rounded {
         false => sum,
         true if size.is_finite() => sum + size * (4.0 * f64::EPSILON) + f64::MIN_POSITIVE,
         true => f64::INFINITY,
     }
 }
 
-/// The height of a box, rounded up.
+/// The height of a box along a normal, rounded up.
 fn box_height(normal: &Vector3<f64>, bounds: &Aabb<f64>) -> f64 {
-    above(normal, &Vector3::from_fn(|k, _| if normal[k] > 0.0 { bounds.max[k] } else { bounds.min[k] }))
+    product_above(normal, &Vector3::from_fn(|k, _| if normal[k] > 0.0 { bounds.max[k] } else { bounds.min[k] }))
 }
 
 #[cfg(test)]
@@ -139,7 +142,7 @@ mod tests {
             let scale = [1.0, 1e-310, 1e300, 1e8][round % 4];
             let mut x = Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0));
             if round % 3 > 0 {
-                // Products with a normal cancel.
+                // The terms of the product with a normal cancel.
                 let n = directions.normals()[rng.random_range(6..26)];
                 x = n.cross(&x);
             }
@@ -153,20 +156,20 @@ mod tests {
     }
 
     #[test]
-    fn what_touches_meets_and_what_lies_apart_in_either_order_does_not() {
+    fn volumes_that_touch_may_meet_and_separate_ones_do_not_in_either_order() {
         let directions = Directions::<14>::default();
         let normals = directions.normals();
         for (i, normal) in normals.iter().enumerate() {
             let below = Kdop::of_points(&directions, &[Point3::from(*normal), Point3::from(normal * 2.0)]);
             let above = Kdop::of_points(&directions, &[Point3::from(normal * 3.0)]);
-            assert!(!below.may_meet(&above) && !above.may_meet(&below), "apart along {normal}");
-            // Only along this one.
-            let mut beside = below;
-            beside.heights = beside.heights.map(|h| h + 10.0);
-            beside.heights[i ^ 1] = -below.heights[i];
-            assert!(beside.may_meet(&below) && below.may_meet(&beside), "touching along {normal}");
-            beside.heights[i ^ 1] = (-below.heights[i]).next_down();
-            assert!(!beside.may_meet(&below) && !below.may_meet(&beside), "apart along {normal}");
+            assert!(!below.may_intersect(&above) && !above.may_intersect(&below), "apart along {normal}");
+            // These two volumes are separated along this normal alone.
+            let mut other = below;
+            other.heights = other.heights.map(|h| h + 10.0);
+            other.heights[i ^ 1] = -below.heights[i];
+            assert!(other.may_intersect(&below) && below.may_intersect(&other), "touching along {normal}");
+            other.heights[i ^ 1] = (-below.heights[i]).next_down();
+            assert!(!other.may_intersect(&below) && !below.may_intersect(&other), "apart along {normal}");
         }
     }
 
@@ -179,9 +182,9 @@ mod tests {
             let kdop = Kdop::of_points(&directions, &[point]);
             assert!(kdop.heights.iter().all(|h| *h > f64::NEG_INFINITY), "{kdop:?}");
             assert!(!kdop.is_empty() && kdop.contains_point(&directions, &point), "{kdop:?}");
-            assert!(kdop.may_meet(&kdop) && kdop.may_meet_box(&directions, &Aabb { min: point, max: point }));
+            assert!(kdop.may_intersect(&kdop) && kdop.may_intersect_box(&directions, &Aabb { min: point, max: point }));
             let all = Aabb { min: Point3::new(-m, -m, -m), max: Point3::new(m, m, m) };
-            assert!(kdop.may_meet_box(&directions, &all) && Kdop::of_box(&directions, &all).contains(&kdop));
+            assert!(kdop.may_intersect_box(&directions, &all) && Kdop::of_box(&directions, &all).contains(&kdop));
         }
     }
 
@@ -196,17 +199,19 @@ mod tests {
     }
 
     #[test]
-    fn kdops_contain_their_points_and_corners_are_cut() {
+    fn kdops_contain_their_points_and_cut_off_corners() {
         let directions = Directions::<26>::default();
         let points = [Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0), Point3::new(0.0, 0.0, 1.0)];
         let kdop = Kdop::of_points(&directions, &points);
         assert!(points.iter().all(|p| kdop.contains_point(&directions, p)) && !kdop.is_empty());
         assert!(!kdop.contains_point(&directions, &Point3::new(0.9, 0.9, 0.9)));
-        assert!(!kdop.may_meet(&Kdop::of_points(&directions, &[Point3::new(0.9, 0.9, 0.9)])));
-        assert!(kdop.may_meet(&Kdop::of_points(&directions, &[Point3::new(0.25, 0.5, 0.25)])));
-        assert!(!kdop.may_meet(&Kdop::empty()) && Kdop::<26>::empty().is_empty());
+        assert!(!kdop.may_intersect(&Kdop::of_points(&directions, &[Point3::new(0.9, 0.9, 0.9)])));
+        assert!(kdop.may_intersect(&Kdop::of_points(&directions, &[Point3::new(0.25, 0.5, 0.25)])));
+        assert!(!kdop.may_intersect(&Kdop::empty()) && Kdop::<26>::empty().is_empty());
         let corner = |x: f64| Aabb { min: Point3::new(x, x, x), max: Point3::new(9.0, f64::INFINITY, 9.0) };
-        assert!(kdop.may_meet_box(&directions, &corner(0.3)) && !kdop.may_meet_box(&directions, &corner(0.4)));
+        assert!(
+            kdop.may_intersect_box(&directions, &corner(0.3)) && !kdop.may_intersect_box(&directions, &corner(0.4))
+        );
         assert!(kdop.contains(&Kdop::of_points(&directions, &points[..2])));
         assert!(kdop.union(&Kdop::empty()) == kdop);
     }

@@ -1,12 +1,13 @@
 //! k-DOP tree: bounding volumes of K slab directions.
 //!
-//! The tree of boxes of p2m-bvh (nodes of eight over packets of sixteen primitives, over the same splits) with
-//! [k-DOPs](Kdop) in the place of boxes: they fit closer what does not lie along the axes, so fewer nodes and packets
-//! are visited, at the price of more arithmetic and memory for each. docs/kdop.md has what that brings on which scenes.
+//! The tree is that of p2m-bvh (nodes with eight children over packets of sixteen primitives, with the same splits),
+//! but its bounding volumes are [k-DOPs](Kdop) instead of boxes. They fit primitives more closely that do not lie along
+//! the axes, so a query visits fewer nodes and packets. In return each node takes more arithmetic and memory.
+//! docs/kdop.md compares the two on several scenes.
 //!
-//! K is fixed at compile time and counts both signs: `KdopTree<f64, _, 14>` has seven slabs. [`Directions`] are the
-//! usual ones for K = 6, 14, 18 and 26, or your own. Answers are those of [`BruteForce`](p2m_core::BruteForce), bit for
-//! bit, whatever they are.
+//! K is fixed at compile time and counts both signs of a direction, so `KdopTree<f64, _, 14>` has seven slabs.
+//! [`Directions`] has default sets for K = 6, 14, 18 and 26, and can be made from your own vectors. With any directions
+//! answers are bitwise those of [`BruteForce`](p2m_core::BruteForce).
 //!
 //! ```
 //! use p2m_core::{BuildIndex, ClosestPoint, Segment};
@@ -21,27 +22,33 @@
 //! let answer = tree.closest_point(&Point3::new(1.0, 3.5, 0.0)).unwrap();
 //! assert_eq!(answer.primitive.index(), 1);
 //!
-//! // Slabs along and across the wires.
+//! // These slabs lie along and across the wires.
 //! let own = Directions::new(&[Vector3::new(1.0, 1.0, 0.0), Vector3::new(1.0, -1.0, 0.0), Vector3::z()]).unwrap();
 //! let tree = KdopTree::<f64, _, 6>::build_with(&wires, &KdopOptions::new(own)).unwrap();
 //! assert_eq!(tree.closest_point(&Point3::new(1.0, 3.5, 0.0)), Some(answer));
 //! ```
 //!
 //! # References
-//! \[Klosowski1998\]; the manual of the k-DOP tree that was made for CGAL, whose features and figures these are
-//! measured against.
+//! \[Klosowski1998\] describes the trees. The features and figures of this crate are compared with the manual of the
+//! k-DOP tree that was made for CGAL.
 #![forbid(unsafe_code)]
 
 mod direction_choice;
+mod direction_table;
 mod directions;
-mod heights;
 mod kdop;
+mod lower_bound;
+#[cfg(test)]
+mod lower_bound_tests;
+mod moved_heights;
 mod node;
 mod options;
+mod orientation;
 mod overlap;
 mod polytope;
 #[cfg(test)]
 mod ray_entries;
+mod trial;
 mod volume;
 
 pub use direction_choice::DirectionChoice;
@@ -52,11 +59,27 @@ pub use overlap::Overlap;
 pub use p2m_bvh::{SplitOptions, SplitRule, TreeNode};
 pub use polytope::{Polytope, write_polytopes_ply};
 
-/// A k-DOP tree over a set of primitives, which it keeps.
+/// A k-DOP tree over a set of primitives, which it owns.
+///
+/// The type is an alias of [`TreeIndex`](p2m_bvh::TreeIndex), whose methods are:
+///
+/// - [`build_with`](p2m_bvh::TreeIndex::build_with) builds a tree for any K, and
+///   [`BuildIndex::build`](p2m_core::BuildIndex::build) one with the default directions of K = 6, 14, 18 or 26;
+/// - [`refit`](p2m_bvh::TreeIndex::refit) fits the tree to moved primitives;
+/// - [`save`](p2m_bvh::TreeIndex::save) and [`load`](p2m_bvh::TreeIndex::load) write the tree to a file and read it;
+/// - [`set`](p2m_bvh::TreeIndex::set), [`tree`](p2m_bvh::TreeIndex::tree), [`memory`](p2m_bvh::TreeIndex::memory) and
+///   [`directions`](p2m_bvh::TreeIndex::directions) return its parts and its size;
+/// - [`visit`](p2m_bvh::TreeIndex::visit) and [`visit_ray`](p2m_bvh::TreeIndex::visit_ray) search with a collector of
+///   your own;
+/// - [`with_isa`](p2m_bvh::TreeIndex::with_isa) selects an instruction set.
+///
+/// Queries are methods of the traits that it implements: [`ClosestPoint`](p2m_core::ClosestPoint),
+/// [`NearQuery`](p2m_core::NearQuery), [`BoxQuery`](p2m_core::BoxQuery), [`RayQuery`](p2m_core::RayQuery),
+/// [`ClosestLeaf`](p2m_core::ClosestLeaf) and [`CertifiedQuery`](p2m_core::CertifiedQuery).
 pub type KdopTree<T, S, const K: usize> = p2m_bvh::TreeIndex<T, S, Kdop<K>>;
 
-/// The inside of this crate: it may change at any time.
+/// The internals of this crate that its sibling crates use. They may change at any time.
 #[doc(hidden)]
 pub mod engine {
-    pub use crate::volume::USUAL;
+    pub use crate::volume::COMPILED_SEARCHES;
 }

@@ -1,23 +1,25 @@
+//! The options of a k-DOP tree.
+
 use crate::Directions;
 use p2m_bvh::SplitOptions;
 
-/// How a k-DOP tree is built: directions, and splits as for a tree of boxes.
+/// The options of building a k-DOP tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct KdopOptions<const K: usize> {
-    /// The normals of its k-DOPs.
+    /// The directions of the faces of its k-DOPs.
     pub directions: Directions<K>,
-    /// How primitives are split.
+    /// The options of splits, which are those of an AABB tree.
     pub splits: SplitOptions,
 }
 
 impl<const K: usize> KdopOptions<K> {
-    /// With these directions and the usual splits.
+    /// Makes options with these directions and the default splits.
     #[must_use]
     pub fn new(directions: Directions<K>) -> Self {
         Self { directions, splits: SplitOptions::default() }
     }
-    /// With other splits.
+    /// Sets the options of splits.
     #[must_use]
     pub fn with_splits(self, splits: SplitOptions) -> Self {
         Self { splits, ..self }
@@ -28,7 +30,7 @@ impl<const K: usize> Default for KdopOptions<K>
 where
     Directions<K>: Default,
 {
-    /// For K = 6, 14, 18 and 26.
+    /// Returns the options with the default directions, which exist for K = 6, 14, 18 and 26.
     fn default() -> Self {
         Self::new(Directions::default())
     }

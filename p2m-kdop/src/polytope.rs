@@ -1,37 +1,40 @@
-//! The corners, edges and faces of a k-DOP.
+//! The corners, edges and faces of a k-DOP, for pictures and measurements.
 
 use crate::{Directions, Kdop};
 use nalgebra::{Point3, Vector3};
 use std::io::{self, Write};
 
-/// The largest height of a k-DOP with a polytope: there is room for sums of products. 2^1000.
-const LARGEST: f64 = f64::from_bits((1000 + 1023) << 52);
+/// The largest magnitude of the heights of a k-DOP that has a polytope: 2^1000, so that sums of products
+/// do not overflow.
+const MAX_HEIGHT: f64 = f64::from_bits((1000 + 1023) << 52);
 
-/// A convex polytope: corners, and for each face the corners around it, counterclockwise as seen from outside.
+/// A convex polytope, given by its corners and faces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Polytope {
-    /// The corners.
+    /// The positions of the corners.
     pub corners: Vec<Point3<f64>>,
-    /// Places of corners.
+    /// The indices of the corners around each face, counterclockwise as seen from outside.
     pub faces: Vec<Vec<usize>>,
 }
 
 impl Polytope {
-    /// The polytope of a k-DOP. Faces are moved outwards by 1e-9 of half the longest side of a box around the first
-    /// three slabs, which gives a thickness to what has none; corners closer together may be one. An empty k-DOP
-    /// has no corners and no faces, nor has one of which a height is not finite or beyond 2^1000.
+    /// Computes the polytope of a k-DOP.
     ///
-    /// A cube around the k-DOP is cut by one face after the other, so the result is closed whatever is rounded.
+    /// Faces are moved outwards by 1e-9 of half the longest side of a box around the first three slabs, so that flat
+    /// k-DOPs get a thickness. Corners that are closer together than that may be merged. The result has no corners and
+    /// no faces if the k-DOP is empty, or if a height is not finite or exceeds 2^1000 in magnitude.
+    ///
+    /// A cube around the k-DOP is cut by one face after the other, so the polytope is closed in spite of rounding.
     ///
     /// # Complexity
     /// O(K^2).
     #[must_use]
     pub fn new<const K: usize>(kdop: &Kdop<K>, directions: &Directions<K>) -> Self {
-        // Not for NaN either.
-        if kdop.is_empty() || !kdop.heights.iter().all(|h| h.abs() <= LARGEST) {
+        // The comparison is false for NaN, so a height that is NaN gives the empty polytope.
+        if kdop.is_empty() || !kdop.heights.iter().all(|h| h.abs() <= MAX_HEIGHT) {
             return Self::default();
         }
-        let (centre, half) = middle(kdop, directions.normals());
+        let (centre, half) = centre_and_half_cube(kdop, directions.normals());
         let mut polytope = Self::cube(half * 2.0);
         let thickness = half * 1e-9;
         for (normal, height) in directions.normals().iter().zip(&kdop.heights) {
@@ -43,23 +46,23 @@ impl Polytope {
         polytope
     }
 
-    /// The cube from -h to h.
+    /// The cube from -h to h along each axis.
     fn cube(h: f64) -> Self {
         let corner = |i: usize| Point3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { -h } else { h }));
         let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
         Self { corners: (0..8).map(corner).collect(), faces: faces.map(Vec::from).to_vec() }
     }
 
-    /// Takes away what is above a plane. Corners within `tolerance` of it are on it.
+    /// Removes the part above a plane. Corners within `tolerance` of the plane count as lying on it.
     fn cut(&mut self, normal: &Vector3<f64>, height: f64, tolerance: f64) {
         let above: Vec<f64> = self.corners.iter().map(|p| normal.dot(&p.coords) - height).collect();
         if above.iter().all(|d| *d <= tolerance) {
             return;
         }
-        // Each edge that goes through the plane gets one new corner, for both of its faces.
+        // Each edge that intersects the plane gets one new corner, which both of its faces share.
         let mut crossings: Vec<([usize; 2], usize)> = Vec::new();
         let mut corners = std::mem::take(&mut self.corners);
-        let mut rims = Vec::new();
+        let mut rim_edges = Vec::new();
         let mut faces = Vec::new();
         for face in &self.faces {
             let mut kept = Vec::with_capacity(face.len() + 1);
@@ -90,7 +93,7 @@ impl Polytope {
                 if on != inside {
                     kept.push(on);
                 }
-                // Going around the face, it leaves what is kept once and comes back once.
+                // A path around the face leaves the kept part once and returns to it once.
                 ends[usize::from(inside == b)] = Some(on);
             }
             if kept.len() >= 3 {
@@ -99,15 +102,15 @@ impl Polytope {
             if let [Some(leaves), Some(returns)] = ends
                 && leaves != returns
             {
-                rims.push([returns, leaves]);
+                rim_edges.push([returns, leaves]);
             }
         }
-        // The new face runs along the rims, against the faces beside it.
-        if let Some(&[first, mut at]) = rims.first() {
+        // The new face runs along the cut edges, in the opposite direction to the faces beside it.
+        if let Some(&[first, mut at]) = rim_edges.first() {
             let mut around = vec![first];
-            while at != first && around.len() <= rims.len() {
+            while at != first && around.len() <= rim_edges.len() {
                 around.push(at);
-                let Some([_, next]) = rims.iter().find(|[from, _]| *from == at) else { break };
+                let Some([_, next]) = rim_edges.iter().find(|[from, _]| *from == at) else { break };
                 at = *next;
             }
             if around.len() >= 3 {
@@ -119,21 +122,21 @@ impl Polytope {
         self.compact();
     }
 
-    /// Leaves out corners without a face.
+    /// Removes corners without a face.
     fn compact(&mut self) {
-        let mut places = vec![usize::MAX; self.corners.len()];
+        let mut new_indices = vec![usize::MAX; self.corners.len()];
         let mut kept = Vec::new();
         for corner in self.faces.iter_mut().flatten() {
-            if places[*corner] == usize::MAX {
-                places[*corner] = kept.len();
+            if new_indices[*corner] == usize::MAX {
+                new_indices[*corner] = kept.len();
                 kept.push(self.corners[*corner]);
             }
-            *corner = places[*corner];
+            *corner = new_indices[*corner];
         }
         self.corners = kept;
     }
 
-    /// Its edges, each once.
+    /// Iterates over the edges, each of which occurs once.
     pub fn edges(&self) -> impl Iterator<Item = [Point3<f64>; 2]> + '_ {
         let around = |face: &'_ Vec<usize>| {
             let face = face.clone();
@@ -143,7 +146,7 @@ impl Polytope {
         once.map(|edge| edge.map(|i| self.corners[i]))
     }
 
-    /// The area of its faces.
+    /// The total area of the faces.
     #[must_use]
     pub fn area(&self) -> f64 {
         let of = |face: &Vec<usize>| {
@@ -153,7 +156,7 @@ impl Polytope {
         self.faces.iter().map(of).sum()
     }
 
-    /// Its volume.
+    /// The volume of the polytope.
     #[must_use]
     pub fn volume(&self) -> f64 {
         let Some(origin) = self.corners.first() else { return 0.0 };
@@ -166,8 +169,8 @@ impl Polytope {
     }
 }
 
-/// The middle of the box of the first three slabs, and half of a cube around it that holds the k-DOP.
-fn middle<const K: usize>(kdop: &Kdop<K>, normals: &[Vector3<f64>; K]) -> (Vector3<f64>, f64) {
+/// The centre of the box of the first three slabs, and half of the edge of a cube around it that contains the k-DOP.
+fn centre_and_half_cube<const K: usize>(kdop: &Kdop<K>, normals: &[Vector3<f64>; K]) -> (Vector3<f64>, f64) {
     let rows = nalgebra::Matrix3::from_rows(&[0, 2, 4].map(|i: usize| normals[i].transpose()));
     let inverse = rows.try_inverse().expect("directions do not lie in a plane");
     let heights = &kdop.heights;
@@ -175,15 +178,17 @@ fn middle<const K: usize>(kdop: &Kdop<K>, normals: &[Vector3<f64>; K]) -> (Vecto
     let extent = Vector3::from_fn(|j, _| heights[2 * j] * 0.5 + heights[2 * j + 1] * 0.5);
     let centre = inverse * mean;
     let half = (inverse.abs() * extent.abs()).max();
-    // A point still has a size: that of what rounding takes from its place.
+    // A single point gets the size of the rounding error of its position.
     (centre, if half > centre.amax() * 1e-12 { half } else { centre.amax() * 1e-12 + f64::MIN_POSITIVE * 1e9 })
 }
 
-/// Writes polytopes as a PLY file of polygons, one after the other; the number beside each is a property of its faces
-/// (its level in a tree, say), by which viewers can colour them.
+/// Writes polytopes as a PLY file of polygons, one polytope after the other.
+///
+/// The number beside each polytope, such as its level in a tree, becomes the property `property` of its faces, by which
+/// viewers can colour them.
 ///
 /// # Errors
-/// Those of the writer.
+/// Returns the errors of the writer.
 pub fn write_polytopes_ply(out: &mut impl Write, polytopes: &[(Polytope, usize)], property: &str) -> io::Result<()> {
     let corners: usize = polytopes.iter().map(|(p, _)| p.corners.len()).sum();
     let faces: usize = polytopes.iter().map(|(p, _)| p.faces.len()).sum();
@@ -216,7 +221,7 @@ mod tests {
     use p2m_core::Aabb;
     use rand::RngExt;
 
-    /// Euler's formula, edges with two faces each, corners on the right sides, outward faces.
+    /// Checks Euler's formula, that each edge has two faces, and that corners lie within all heights and attain them.
     fn check<const K: usize>(points: &[Point3<f64>], directions: &Directions<K>) -> Polytope {
         let kdop = Kdop::of_points(directions, points);
         let p = Polytope::new(&kdop, directions);
@@ -230,7 +235,7 @@ mod tests {
             }
         }
         for (n, h) in directions.normals().iter().zip(&kdop.heights) {
-            // Heights are attained: they are those of points.
+            // Heights are those of points, so corners attain them.
             let reached = p.corners.iter().map(|c| n.dot(&c.coords)).fold(f64::NEG_INFINITY, f64::max);
             assert!(reached >= h - 1e-7 * size, "{reached} of {h}");
         }
@@ -260,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn flat_and_empty_ones_do_no_harm() {
+    fn flat_and_empty_polytopes_are_valid() {
         let p = Point3::new(3.0, 4.0, 5.0);
         check(&[p], &Directions::<14>::default());
         check(&[p, Point3::new(3.0, 9.0, 5.0)], &Directions::<26>::default());
@@ -276,11 +281,11 @@ mod tests {
     }
 
     #[test]
-    fn thickness_is_small_against_the_polytope_whatever_the_directions() {
+    fn thickness_is_small_against_the_polytope_for_any_directions() {
         for round in p2m_testkit::cases(300, 150) {
             let mut rng = p2m_testkit::rng("flat polytopes", round);
             let mut vector = || Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0));
-            // Nearly in a plane, or nearly parallel.
+            // The directions lie nearly in a plane, or are nearly parallel.
             let mut directions = [(); 7].map(|()| vector());
             let first = directions[0].normalize();
             for direction in &mut directions[1..4] {
@@ -304,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn files_have_all_of_them() {
+    fn files_have_all_polytopes() {
         let directions = Directions::<6>::default();
         let unit = Kdop::of_points(&directions, &[Point3::origin(), Point3::new(1.0, 1.0, 1.0)]);
         let one = Polytope::new(&unit, &directions);

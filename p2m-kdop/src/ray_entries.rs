@@ -1,15 +1,15 @@
-//! Tests: what a ray enters among the children of a node of boxes or of k-DOPs.
+//! Tests of the children that a ray enters, for nodes of boxes and of k-DOPs.
 
 use crate::Directions;
-use crate::heights::Slabs;
-use crate::node::SlabNode;
+use crate::direction_table::DirectionTable;
+use crate::node::KdopNode;
 use nalgebra::{Point3, Vector3};
 use p2m_bvh::engine::node::{BoxNode, Frame, NodeRef, WIDTH};
 use p2m_bvh::engine::packet::Member;
-use p2m_bvh::engine::ray::{FrameLine, half_box, misses};
+use p2m_bvh::engine::ray::{FrameLine, half_extent, misses_scene};
 use p2m_bvh::engine::volume::WideNode;
 use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
-use p2m_core::{Crossing, Isa, Primitive, PrimitiveSet, Ray, Triangle};
+use p2m_core::{Crossing, Isa, PrimitiveSet, Ray, Triangle};
 use p2m_testkit::{Cases, cases, vector};
 use rand::RngExt;
 
@@ -25,15 +25,15 @@ impl<N: WideNode> SimdKernel for Entries<'_, N> {
     }
 }
 
-/// Rays to points of some random triangles: how many were hit, all of whose places were entered, and how many other
-/// places were.
-fn compare<N: WideNode>(shape: &N::Shape, name: &str, cases: &Cases) -> [usize; 2] {
+/// Casts rays at points of random triangles and checks that the slots of all triangles that they hit are entered.
+/// Returns the number of hits, and the number of other slots that were entered.
+fn compare<N: WideNode>(shared: &N::Shared, name: &str, cases: &Cases) -> [usize; 2] {
     let mut counts = [0; 2];
     for case in cases.clone() {
         let mut rng = p2m_testkit::rng(name, case);
-        let place = vector(&mut rng) * 2f64.powi(rng.random_range(-20..20));
-        let scale = place.norm() * 2f64.powi(-rng.random_range(0..20));
-        let at = |v: Vector3<f64>| Point3::from(place + v * scale);
+        let origin = vector(&mut rng) * 2f64.powi(rng.random_range(-20..20));
+        let scale = origin.norm() * 2f64.powi(-rng.random_range(0..20));
+        let at = |v: Vector3<f64>| Point3::from(origin + v * scale);
         let triangles: Vec<_> = (0..WIDTH - 1)
             .map(|_| {
                 let (centre, size) = (vector(&mut rng), 2f64.powi(-rng.random_range(0..20)));
@@ -44,9 +44,9 @@ fn compare<N: WideNode>(shape: &N::Shape, name: &str, cases: &Cases) -> [usize; 
         let bounds = triangles[..].aabb();
         let frame = Frame::around(&bounds);
         let mut node = N::new([NodeRef::packet(0); WIDTH]);
-        for (place, triangle) in triangles.iter().enumerate() {
-            let own = Member::of(triangle);
-            node.put(place, &N::enclose(shape, &frame, &[own], &own.bounds));
+        for (slot, triangle) in triangles.iter().enumerate() {
+            let member = Member::from_primitive(triangle);
+            node.set_bounds(slot, &N::enclose(shared, &frame, &[member], &member.bounds));
         }
         for _ in 0..8 {
             let vertices = triangles[rng.random_range(0..WIDTH - 1)].vertices;
@@ -66,22 +66,22 @@ fn compare<N: WideNode>(shape: &N::Shape, name: &str, cases: &Cases) -> [usize; 
                 Crossing::of(triangle, &ray, f64::INFINITY, false).map(|crossing| crossing.parameter())
             };
             let hits: Vec<Option<f64>> = triangles.iter().map(parameter).collect();
-            let line = FrameLine::line(&frame, &ray, 0.0);
-            let half = half_box(&frame, &bounds);
-            let piece = FrameLine::new(&frame, &half, &line, line.from(ray.min)).expect("plain");
-            if misses(&ray, 0.0, &frame, &half) || piece.is_none() {
+            let line = FrameLine::line_of(&frame, &ray, 0.0);
+            let half = half_extent(&frame, &bounds);
+            let piece = FrameLine::new(&frame, &half, &line, line.length_below(ray.min)).expect("plain");
+            if misses_scene(&ray, 0.0, &frame, &half) || piece.is_none() {
                 assert!(hits.iter().all(Option::is_none), "{name} {case}: {ray:?}");
                 continue;
             }
             let piece = piece.expect("checked");
-            let local = N::ray(shape, &piece);
+            let local = N::ray(shared, &piece);
             for isa in Isa::available() {
                 let entries = isa.run(Entries(&node, &local));
-                assert!(entries[WIDTH - 1] > f32::MAX, "an empty place");
+                assert!(entries[WIDTH - 1] > f32::MAX, "an empty slot");
                 for (hit, entry) in hits.iter().zip(entries) {
                     match hit {
                         Some(t) => {
-                            let limit = piece.limit(line.to(*t));
+                            let limit = piece.limit(line.length_above(*t));
                             assert!(entry >= 0.0 && entry <= limit, "{isa} {name} {case}: {entry:e} {limit:e}");
                             counts[0] += 1;
                         }
@@ -95,16 +95,20 @@ fn compare<N: WideNode>(shape: &N::Shape, name: &str, cases: &Cases) -> [usize; 
 }
 
 #[test]
-fn children_that_are_met_are_entered() {
+fn children_with_a_hit_are_entered() {
     let (name, cases) = ("rays and nodes", cases(2_000, 500));
-    let of_boxes = compare::<BoxNode>(&(), name, &cases);
-    let of_six = compare::<SlabNode<6>>(&Slabs::new(&Directions::default()), name, &cases);
-    let of_more = compare::<SlabNode<26>>(&Slabs::new(&Directions::default()), name, &cases);
-    println!("hit, and entered besides: boxes {of_boxes:?}, 6-DOPs {of_six:?}, 26-DOPs {of_more:?}");
-    assert!(cases.have_more_than(20_000, of_boxes[0]) && of_boxes[0] == of_six[0] && of_six[0] == of_more[0]);
+    let box_counts = compare::<BoxNode>(&(), name, &cases);
+    let six_counts = compare::<KdopNode<6>>(&DirectionTable::new(&Directions::default()), name, &cases);
+    let more_counts = compare::<KdopNode<26>>(&DirectionTable::new(&Directions::default()), name, &cases);
+    println!("hits, and other slots entered: boxes {box_counts:?}, 6-DOPs {six_counts:?}, 26-DOPs {more_counts:?}");
+    assert!(
+        cases.have_more_than(20_000, box_counts[0])
+            && box_counts[0] == six_counts[0]
+            && six_counts[0] == more_counts[0]
+    );
     if cases.is_replay() {
         return;
     }
-    assert!(of_more[1] * 3 < of_boxes[1] * 2 && of_boxes[1] < of_boxes[0], "{of_boxes:?} {of_more:?}");
-    assert!(of_six[1].abs_diff(of_boxes[1]) * 100 < of_boxes[1], "{of_boxes:?} {of_six:?}");
+    assert!(more_counts[1] * 3 < box_counts[1] * 2 && box_counts[1] < box_counts[0], "{box_counts:?} {more_counts:?}");
+    assert!(six_counts[1].abs_diff(box_counts[1]) * 100 < box_counts[1], "{box_counts:?} {six_counts:?}");
 }

@@ -1,16 +1,16 @@
-//! k-DOPs as the volumes of a tree.
+//! k-DOPs as the bounding volumes of a tree.
 //!
-//! Searches of trees with the usual numbers of faces, those of CGAL's package, are compiled once, in this crate: the
-//! compiler reuses the code of a generic function that is never inlined and that an upstream crate has already
-//! instantiated ([`USUAL`]).
+//! A generic function is compiled in each crate that calls it, unless a crate upstream has compiled it for the same
+//! parameters and it is never inlined. The searches of trees with 6, 14, 18 and 26 faces are such functions:
+//! [`COMPILED_SEARCHES`] names them, so this crate compiles them and its users need not.
 
-use crate::heights::Slabs;
-use crate::node::SlabNode;
+use crate::direction_table::DirectionTable;
+use crate::node::KdopNode;
 use crate::{Directions, Kdop, KdopOptions};
 use nalgebra::Vector3;
 use p2m_bvh::engine::nearest::{EvaluateFn, finish, finish_nearest};
-use p2m_bvh::engine::ray::Intersect;
-use p2m_bvh::engine::volume::{Nodes, TreeOptions};
+use p2m_bvh::engine::ray::IntersectFn;
+use p2m_bvh::engine::volume::{CompiledSearches, TreeOptions, VolumeNodes};
 use p2m_bvh::{PacketTree, SplitOptions, Volume};
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::vector::V3;
@@ -21,38 +21,43 @@ impl<const K: usize> Volume for Kdop<K> {
     type Options = KdopOptions<K>;
     type Directions = Directions<K>;
 
-    fn directions(shape: &Slabs<K>) -> &Directions<K> {
-        &shape.directions
+    fn directions(table: &DirectionTable<K>) -> &Directions<K> {
+        &table.directions
     }
 
-    fn may_meet_box(&self, directions: &Directions<K>, bounds: &Aabb<f64>) -> bool {
-        Kdop::may_meet_box(self, directions, bounds)
+    fn may_intersect_box(&self, directions: &Directions<K>, bounds: &Aabb<f64>) -> bool {
+        Kdop::may_intersect_box(self, directions, bounds)
     }
 }
 
-const DIRECTIONS: &str = "tree/directions";
-const ORTHOGONAL: &str = "tree/orthogonal";
+/// The section of a file that has the normals, as three numbers each.
+const DIRECTIONS_SECTION: &str = "tree/directions";
+/// The section of a file that has 1 if the first three directions are orthogonal, and 0 otherwise.
+const ORTHOGONAL_SECTION: &str = "tree/orthogonal";
 
-impl<const K: usize> Nodes for Kdop<K> {
-    type Shape = Slabs<K>;
-    type Node = SlabNode<K>;
+impl<const K: usize> VolumeNodes for Kdop<K> {
+    type Shared = DirectionTable<K>;
+    type Node = KdopNode<K>;
 
     fn name() -> String {
         format!("kdop-{K}")
     }
-    fn save_shape(shape: &Slabs<K>, writer: &mut Writer<'_>) {
-        let normals = shape.directions.normals().map(<[f64; 3]>::from);
-        writer.put_copy(DIRECTIONS, normals.as_flattened());
-        writer.put_copy(ORTHOGONAL, &[u8::from(shape.directions.starts_orthogonal())]);
+    fn save_shared(table: &DirectionTable<K>, writer: &mut Writer<'_>) {
+        let normals = table.directions.normals().map(<[f64; 3]>::from);
+        writer.put_copy(DIRECTIONS_SECTION, normals.as_flattened());
+        writer.put_copy(ORTHOGONAL_SECTION, &[u8::from(table.directions.starts_orthogonal())]);
     }
-    fn load_shape(reader: &Reader) -> Result<Slabs<K>, LoadError> {
-        let numbers = reader.array::<f64>(DIRECTIONS)?;
+    fn load_shared(reader: &Reader) -> Result<DirectionTable<K>, LoadError> {
+        let numbers = reader.array::<f64>(DIRECTIONS_SECTION)?;
         let normals: Vec<Vector3<f64>> = numbers.chunks_exact(3).map(Vector3::from_column_slice).collect();
-        let directions = Directions::of_normals(&normals, reader.one::<u8>(ORTHOGONAL)? != 0);
-        let directions = directions.ok_or_else(|| LoadError::Inconsistent { section: DIRECTIONS.to_owned() })?;
-        Ok(Slabs::new(&directions))
+        let directions = Directions::from_normals(&normals, reader.one::<u8>(ORTHOGONAL_SECTION)? != 0);
+        let directions =
+            directions.ok_or_else(|| LoadError::Inconsistent { section: DIRECTIONS_SECTION.to_owned() })?;
+        Ok(DirectionTable::new(&directions))
     }
+}
 
+impl<const K: usize> CompiledSearches for Kdop<K> {
     #[inline(never)]
     fn nearest(tree: &PacketTree<Self>, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
         tree.run(query, minimum, evaluate, finish_nearest);
@@ -64,32 +69,38 @@ impl<const K: usize> Nodes for Kdop<K> {
     }
 
     #[inline(never)]
-    fn rays<'r>(tree: &PacketTree<Self>, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: Intersect<'_, 'r>) {
+    fn rays<'r>(
+        tree: &PacketTree<Self>,
+        ray: &'r Ray,
+        radius: f64,
+        hits: &mut Hits<'r>,
+        intersect: IntersectFn<'_, 'r>,
+    ) {
         tree.run_ray(ray, radius, hits, intersect);
     }
 }
 
-/// The searches of a tree of k-DOPs, which this crate has to have code for if they are named.
+/// The three searches of a tree of k-DOPs with K faces.
 type Searches<const K: usize> = (
     fn(&PacketTree<Kdop<K>>, V3, &mut BestF64, EvaluateFn<'_, BestF64>),
     for<'n> fn(&PacketTree<Kdop<K>>, V3, &mut Near<'n>, EvaluateFn<'_, Near<'n>>),
-    for<'r> fn(&PacketTree<Kdop<K>>, &'r Ray, f64, &mut Hits<'r>, Intersect<'_, 'r>),
+    for<'r> fn(&PacketTree<Kdop<K>>, &'r Ray, f64, &mut Hits<'r>, IntersectFn<'_, 'r>),
 );
 
 const fn searches<const K: usize>() -> Searches<K> {
     (Kdop::<K>::nearest, Kdop::<K>::near, Kdop::<K>::rays)
 }
 
-/// The searches for the usual numbers of faces.
+/// The searches that this crate compiles: those for 6, 14, 18 and 26 faces, which have default directions.
 #[doc(hidden)]
-pub static USUAL: (Searches<6>, Searches<14>, Searches<18>, Searches<26>) =
+pub static COMPILED_SEARCHES: (Searches<6>, Searches<14>, Searches<18>, Searches<26>) =
     (searches(), searches(), searches(), searches());
 
-impl<const K: usize> TreeOptions<Slabs<K>> for KdopOptions<K> {
+impl<const K: usize> TreeOptions<DirectionTable<K>> for KdopOptions<K> {
     fn splits(&self) -> &SplitOptions {
         &self.splits
     }
-    fn shape(&self) -> Slabs<K> {
-        Slabs::new(&self.directions)
+    fn shared(&self) -> DirectionTable<K> {
+        DirectionTable::new(&self.directions)
     }
 }

@@ -1,59 +1,67 @@
-//! Box queries and the way down to one leaf.
+//! Box queries, and the descent to a single leaf.
 
-use crate::traverse::STACK;
+use crate::traverse::STACK_LEN;
 use crate::tree::PacketTree;
-use crate::tree::aabb_node::NodeRef;
-use crate::tree::volume::{Volume, WideNode};
+use crate::tree::node_ref::NodeRef;
+use crate::tree::wide_node::{VolumeNodes, WideNode};
+use crate::volume::Volume;
 use nalgebra::Point3;
 use p2m_core::{Aabb, PrimitiveId};
 use std::ops::ControlFlow;
 
-impl<V: Volume> PacketTree<V> {
-    /// QueryCost the primitives that meet a box, in the order of the leaves, until `visit` breaks. `meets` tells whether a
-    /// primitive does, which is asked only where the box of a node or packet does not tell.
+impl<V: VolumeNodes> PacketTree<V> {
+    /// Visits the primitives that intersect a box, in the order of the leaves, until `visit` breaks.
+    ///
+    /// `intersects` returns whether a primitive intersects the box. It is called only for primitives for which the
+    /// boxes of nodes do not decide that.
     ///
     /// # Complexity
-    /// O(log n + k) nodes expected for k primitives in a compact box, O(n) at worst. No allocation, no recursion.
+    /// O(log n + k) nodes expected for k primitives in a compact box, O(n) at worst. There is no allocation
+    /// and no recursion.
     pub fn visit_box(
         &self,
         bounds: &Aabb<f64>,
-        meets: impl Fn(PrimitiveId) -> bool,
+        intersects: impl Fn(PrimitiveId) -> bool,
         visit: &mut dyn FnMut(PrimitiveId) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         if bounds.is_empty() {
             return ControlFlow::Continue(());
         }
-        // Children, and whether they are known from above to lie in the box.
-        let mut stack = [(self.root, false); STACK];
-        let mut waiting = usize::from(self.root != NodeRef::NONE);
-        while waiting > 0 {
-            waiting -= 1;
-            let (child, inside) = stack[waiting];
+        // Each entry is a child, and whether the box is known to contain it.
+        let mut stack = [(self.root, false); STACK_LEN];
+        let mut len = usize::from(self.root != NodeRef::NONE);
+        while len > 0 {
+            len -= 1;
+            let (child, is_inside) = stack[len];
             if child.is_packet() {
                 let ids = self.leaves.packets[child.number()].ids();
-                ids.iter().filter(|id| inside || meets(**id)).copied().try_for_each(&mut *visit)?;
+                ids.iter().filter(|id| is_inside || intersects(**id)).copied().try_for_each(&mut *visit)?;
                 continue;
             }
             let node = &self.nodes[child.number()];
-            for place in node.used() {
-                let enclosed = node.at(place);
-                let own = V::Node::disclose(&enclosed, &self.shape, &self.frame);
-                let inside = inside || bounds.contains(&own);
-                if inside || (bounds.meets(&own) && V::Node::may_meet(&enclosed, &self.shape, &self.frame, bounds)) {
-                    stack[waiting] = (node.children()[place], inside);
-                    waiting += 1;
+            for slot in node.used_slots() {
+                let child_bounds = node.bounds(slot);
+                let child_box = V::Node::scene_box(&child_bounds, &self.shared, &self.frame);
+                let is_inside = is_inside || bounds.contains(&child_box);
+                if is_inside
+                    || (bounds.meets(&child_box)
+                        && V::Node::may_intersect_box(&child_bounds, &self.shared, &self.frame, bounds))
+                {
+                    stack[len] = (node.children()[slot], is_inside);
+                    len += 1;
                 }
             }
         }
         ControlFlow::Continue(())
     }
 
-    /// Goes down from the root to a leaf, to the child with the least lower bound each time, and returns the primitives
-    /// of that leaf; `aside` is told the bounds of all other children. Nothing for an empty set.
+    /// Descends from the root to a leaf, each time to the child with the least lower bound, and returns the
+    /// primitives of that leaf. `skipped` is called with the squared lower bounds of all other children. An empty set
+    /// gives an empty slice.
     ///
     /// # Complexity
     /// O(depth).
-    pub fn nearest_leaf(&self, query: &Point3<f64>, mut aside: impl FnMut(f64)) -> &[PrimitiveId] {
+    pub fn nearest_leaf(&self, query: &Point3<f64>, mut skipped: impl FnMut(f64)) -> &[PrimitiveId] {
         let mut at = self.root;
         while at != NodeRef::NONE && !at.is_packet() {
             let mut nearest = (f64::INFINITY, NodeRef::NONE);
@@ -65,11 +73,33 @@ impl<V: Volume> PacketTree<V> {
                     (bound, child)
                 };
                 if farther.1 != NodeRef::NONE {
-                    aside(farther.0);
+                    skipped(farther.0);
                 }
             }
             at = nearest.1;
         }
         if at == NodeRef::NONE { &[] } else { self.leaves.packets[at.number()].ids() }
+    }
+}
+
+impl<V: Volume> PacketTree<V> {
+    /// Visits the leaves whose volumes may intersect a box, until `visit` breaks. Use
+    /// [`BoxQuery`](p2m_core::BoxQuery) to get exactly the primitives that intersect the box.
+    pub fn visit_leaves_in_box(
+        &self,
+        bounds: &Aabb<f64>,
+        mut visit: impl FnMut(&[PrimitiveId]) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let mut pending: Vec<_> = self.root().into_iter().collect();
+        while let Some(node) = pending.pop() {
+            if bounds.is_empty() || !node.volume.may_intersect_box(self.directions(), bounds) {
+                continue;
+            }
+            match self.primitives(&node) {
+                Some(ids) => visit(ids)?,
+                None => pending.extend(self.children(&node)),
+            }
+        }
+        ControlFlow::Continue(())
     }
 }

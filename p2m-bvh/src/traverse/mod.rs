@@ -1,87 +1,96 @@
-//! The way through the nodes, the nearest child first.
+//! Traversals of a tree, which visit the nearest child first.
 
 pub(crate) mod box_query;
+pub(crate) mod compiled;
+pub(crate) mod evaluate;
 pub(crate) mod nearest;
+pub(crate) mod primitive_fn;
 pub(crate) mod range;
 pub(crate) mod ray;
-pub(crate) mod ray_slab;
+pub(crate) mod search_state;
 
-use crate::tree::aabb_node::{NodeRef, WIDTH};
-use crate::tree::volume::{Volume, WideNode};
-use crate::tree::{MAX_WIDE_DEPTH, PacketTree};
+use crate::tree::node_ref::{NodeRef, WIDTH};
+use crate::tree::wide_node::{VolumeNodes, WideNode};
+use crate::tree::{MAX_DEPTH, PacketTree};
 use p2m_core::engine::simd::{EightLanes, InstructionSet, Lanes, lane_of_key, number_of_key};
 use std::ops::ControlFlow;
 
-/// Entries of the stack: seven waiting siblings on each level at most, and room for one node to be written whole.
-pub(crate) const STACK: usize = (WIDTH - 1) * MAX_WIDE_DEPTH + WIDTH;
-/// Most trees are not deep, and a long stack takes a moment to clear.
-const SHORT_STACK: usize = 96;
-const SHORT_DEPTH: usize = (SHORT_STACK - WIDTH) / (WIDTH - 1);
+/// The capacity of a stack: at most `WIDTH - 1` pending siblings per level, and `WIDTH` further entries because
+/// `sorted_keys` always writes those of a full node.
+pub(crate) const STACK_LEN: usize = (WIDTH - 1) * MAX_DEPTH + WIDTH;
+/// The capacity of a shorter stack, which suffices for most trees and takes less time to clear.
+const SHORT_STACK_LEN: usize = 96;
+/// The largest depth of a tree for which the shorter stack suffices.
+const SHORT_STACK_DEPTH: usize = (SHORT_STACK_LEN - WIDTH) / (WIDTH - 1);
 
-/// What goes through the nodes.
-pub(crate) trait Walk<V: Volume> {
-    /// Numbers by which the children of a node are taken in turn, none of them negative.
+/// The part of a traversal that depends on the kind of search.
+pub(crate) trait Visitor<V: VolumeNodes> {
+    /// Bounds on the children of a node, by which these are sorted. None of them is negative.
     fn bounds<L: Lanes>(&self, node: &V::Node) -> L;
-    /// Children above this number are left out.
+    /// The largest bound with which a child is visited.
     fn limit(&self) -> f32;
-    /// A node is visited.
+    /// Called for each node that is visited.
     fn visit_node(&mut self);
-    /// A packet is visited; breaks to end the search.
+    /// Called for each packet that is visited; breaks to end the search.
     fn visit_packet<I: InstructionSet>(&mut self, number: usize) -> ControlFlow<()>;
-    /// Whether the search ends although there is more to visit: that is then [given up](Self::forgo). Not by default.
+    /// Whether the search may stop before everything within the limit was visited. By default it may not.
     #[inline(always)]
-    fn is_content(&self) -> bool {
+    fn may_stop(&self) -> bool {
         false
     }
-    /// What has this number and those above it are not visited.
+    /// Called when the traversal stops early; `bound` is a lower bound on everything that was not visited.
     #[inline(always)]
-    fn forgo(&mut self, bound: f32) {
+    fn record_skipped(&mut self, bound: f32) {
         let _ = bound;
     }
 }
 
-/// Goes through a tree.
+/// Traverses a tree.
 #[inline(always)]
-pub(crate) fn walk<I: InstructionSet, V: Volume, W: Walk<V>>(tree: &PacketTree<V>, walk: &mut W) {
-    if tree.depth <= SHORT_DEPTH {
-        walk_with::<I, V, W, SHORT_STACK>(tree, walk);
+pub(crate) fn traverse<I: InstructionSet, V: VolumeNodes, W: Visitor<V>>(tree: &PacketTree<V>, visitor: &mut W) {
+    if tree.depth <= SHORT_STACK_DEPTH {
+        traverse_with_stack::<I, V, W, SHORT_STACK_LEN>(tree, visitor);
     } else {
-        walk_with::<I, V, W, STACK>(tree, walk);
+        traverse_with_stack::<I, V, W, STACK_LEN>(tree, visitor);
     }
 }
 
 #[inline(always)]
-fn walk_with<I: InstructionSet, V: Volume, W: Walk<V>, const STACK: usize>(tree: &PacketTree<V>, walk: &mut W) {
-    // Keys of children in descending order, and whose children they are.
-    let mut keys = [0u32; STACK];
-    let mut parents = [0u32; STACK];
+fn traverse_with_stack<I: InstructionSet, V: VolumeNodes, W: Visitor<V>, const LEN: usize>(
+    tree: &PacketTree<V>,
+    visitor: &mut W,
+) {
+    // The pending children of a node are in descending order of their keys. Each entry has the key of a child, which
+    // combines its bound and its slot, and the node of which it is a child.
+    let mut keys = [0u32; LEN];
+    let mut parents = [0u32; LEN];
     let mut top = 0;
     let mut at = tree.root;
     if at == NodeRef::NONE {
         return;
     }
-    // Of the child that is visited.
+    // The bound of the node or packet that is visited.
     let mut bound = 0.0;
     loop {
-        if walk.is_content() {
-            let waiting = keys[..top].iter().map(|key| number_of_key(*key));
-            return walk.forgo(waiting.fold(bound, f32::min));
+        if visitor.may_stop() {
+            let pending = keys[..top].iter().map(|key| number_of_key(*key));
+            return visitor.record_skipped(pending.fold(bound, f32::min));
         }
         if at.is_packet() {
-            if walk.visit_packet::<I>(at.number()).is_break() {
+            if visitor.visit_packet::<I>(at.number()).is_break() {
                 return;
             }
         } else {
-            walk.visit_node();
+            visitor.visit_node();
             let node = &tree.nodes[at.number()];
-            let bounds: I::Eight = walk.bounds(node);
-            let room: &mut [u32; WIDTH] = (&mut keys[top..top + WIDTH]).try_into().expect("eight keys");
-            let count = bounds.sorted_keys(walk.limit(), room);
+            let bounds: I::Eight = visitor.bounds(node);
+            let entries: &mut [u32; WIDTH] = (&mut keys[top..top + WIDTH]).try_into().expect("eight keys");
+            let count = bounds.sorted_keys(visitor.limit(), entries);
             parents[top..top + WIDTH].fill(at.0);
-            // The nearest one and the next, whatever they are: a branch would be mispredicted. The keys behind the
-            // last are 0, which is the first child.
-            tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(1).min(STACK - 1)])]);
-            tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(2).min(STACK - 1)])]);
+            // The two nearest children are prefetched without a test of their number, because that branch would be
+            // mispredicted. The keys behind the last one are 0, which stands for the first child.
+            tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(1).min(LEN - 1)])]);
+            tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(2).min(LEN - 1)])]);
             if count > 0 {
                 top += count - 1;
                 bound = number_of_key(keys[top]);
@@ -96,7 +105,7 @@ fn walk_with<I: InstructionSet, V: Volume, W: Walk<V>, const STACK: usize>(tree:
             top -= 1;
             let key = keys[top];
             bound = number_of_key(key);
-            if bound <= walk.limit() {
+            if bound <= visitor.limit() {
                 at = tree.nodes[NodeRef(parents[top]).number()].children()[lane_of_key(key)];
                 break;
             }

@@ -1,23 +1,27 @@
-//! What may meet a ball: the lanes of all packets, by their filters.
+//! Range search: all primitives that may intersect a ball, by the filters of their packets.
 
 use crate::packet::{LANES, ROUND_UP, at_most};
-use crate::traverse::{Walk, walk};
+use crate::traverse::{Visitor, traverse};
 use crate::tree::PacketTree;
-use crate::tree::volume::{Volume, WideNode};
+use crate::tree::wide_node::{VolumeNodes, WideNode};
 use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
 use std::ops::ControlFlow;
 
 /// Some lanes of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Selection {
+    /// The number of the packet.
     pub packet: u32,
+    /// A mask with one bit for each selected lane.
     pub lanes: u16,
 }
 
-impl<V: Volume> PacketTree<V> {
-    /// Adds the lanes that may be at most `radius` away from a point to `found`, none that is nearer being left out:
-    /// those of at most `most` packets. `false` if there are more, or if f32 cannot place the point. `tests` grows by
-    /// the packets that were tested.
+impl<V: VolumeNodes> PacketTree<V> {
+    /// Appends to `found` the lanes whose primitives may be at most `radius` away from a point. No nearer primitive is
+    /// left out, unless it is in more than `most` packets.
+    ///
+    /// Returns `false` if there are more packets than that, or if f32 cannot represent the point with enough accuracy.
+    /// `tests` grows by the number of packets that were tested.
     pub fn ball(
         &self,
         centre: [f64; 3],
@@ -26,41 +30,54 @@ impl<V: Volume> PacketTree<V> {
         found: &mut Vec<Selection>,
         tests: &mut usize,
     ) -> bool {
-        let Some(local) = V::Node::query(&self.shape, &self.frame, &centre) else { return false };
+        let Some(local) = V::Node::query(&self.shared, &self.frame, &centre) else { return false };
         let limit = self.frame.square_above(radius * radius * (1.0 + 4.0 * f64::EPSILON));
-        self.isa.run(Ball { tree: self, local, centre, radius, limit, most, full: false, found, tests })
+        let search = BallSearch {
+            tree: self,
+            local,
+            centre,
+            radius,
+            limit,
+            remaining_packets: most,
+            is_incomplete: false,
+            found,
+            tests,
+        };
+        self.isa.run(search)
     }
 }
 
-struct Ball<'a, V: Volume> {
+/// A range search as a kernel that is compiled for each instruction set.
+struct BallSearch<'a, V: VolumeNodes> {
     tree: &'a PacketTree<V>,
     local: <V::Node as WideNode>::Query,
     centre: [f64; 3],
     radius: f64,
+    /// The square of the radius in the frame of the tree, rounded up.
     limit: f32,
-    /// So many packets more may be found.
-    most: usize,
-    /// There are more.
-    full: bool,
+    /// The number of packets that may still be found.
+    remaining_packets: usize,
+    /// Whether the search stopped because there are more packets.
+    is_incomplete: bool,
     found: &'a mut Vec<Selection>,
-    /// Packets that were tested.
+    /// The number of packets that were tested.
     tests: &'a mut usize,
 }
 
-impl<V: Volume> SimdKernel for Ball<'_, V> {
+impl<V: VolumeNodes> SimdKernel for BallSearch<'_, V> {
     type Output = bool;
 
     #[inline(always)]
     fn run<I: InstructionSet>(mut self) -> bool {
-        walk::<I, V, _>(self.tree, &mut self);
-        !self.full
+        traverse::<I, V, _>(self.tree, &mut self);
+        !self.is_incomplete
     }
 }
 
-impl<V: Volume> Walk<V> for Ball<'_, V> {
+impl<V: VolumeNodes> Visitor<V> for BallSearch<'_, V> {
     #[inline(always)]
     fn bounds<L: Lanes>(&self, node: &V::Node) -> L {
-        node.lower_bounds(&self.tree.shape, &self.local)
+        node.lower_bounds(&self.tree.shared, &self.local)
     }
     #[inline(always)]
     fn limit(&self) -> f32 {
@@ -83,11 +100,11 @@ impl<V: Volume> Walk<V> for Ball<'_, V> {
             }
         };
         if lanes != 0 {
-            let Some(rest) = self.most.checked_sub(1) else {
-                self.full = true;
+            let Some(remaining) = self.remaining_packets.checked_sub(1) else {
+                self.is_incomplete = true;
                 return ControlFlow::Break(());
             };
-            self.most = rest;
+            self.remaining_packets = remaining;
             self.found.push(Selection { packet: number as u32, lanes: lanes as u16 });
         }
         ControlFlow::Continue(())
@@ -103,10 +120,10 @@ mod tests {
     use p2m_testkit::vector;
     use rand::RngExt;
 
-    /// All that is within the radius is found, and little else; where there is more than asked for, that is said.
+    /// Balls find everything within their radius and little else, and a search with too few packets returns `false`.
     #[test]
-    fn balls_find_what_they_meet() {
-        let (mut met, mut others) = (0, 0);
+    fn balls_find_the_primitives_that_they_intersect() {
+        let (mut expected_total, mut others) = (0, 0);
         let cases = p2m_testkit::cases(60, 15);
         for round in cases.clone() {
             let mut rng = p2m_testkit::rng("balls", round);
@@ -131,14 +148,15 @@ mod tests {
                     assert!(tree.ball(centre.coords.into(), radius, usize::MAX, &mut found, &mut tests));
                     let mut ids = vec![false; set.len()];
                     for Selection { packet, lanes } in &found {
-                        let own = tree.leaves.packets[*packet as usize].ids();
-                        own.iter()
+                        let packet_ids = tree.leaves.packets[*packet as usize].ids();
+                        packet_ids
+                            .iter()
                             .enumerate()
                             .filter(|(l, _)| lanes >> l & 1 == 1)
                             .for_each(|(_, id)| ids[id.index()] = true);
                     }
                     assert!(distances.iter().zip(&ids).all(|(d, found)| *found || *d > radius), "{isa} {round}");
-                    met += expected;
+                    expected_total += expected;
                     others += ids.iter().filter(|found| **found).count() - expected;
                     let packets = found.len();
                     assert!(tests >= packets, "{tests}");
@@ -150,6 +168,9 @@ mod tests {
             }
         }
         let least = 35_000 * Isa::available().len();
-        assert!(cases.have_more_than(least, met) && (cases.is_replay() || others * 50 < met), "{met} {others}");
+        assert!(
+            cases.have_more_than(least, expected_total) && (cases.is_replay() || others * 50 < expected_total),
+            "{expected_total} {others}"
+        );
     }
 }

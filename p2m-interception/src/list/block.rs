@@ -278,8 +278,8 @@ pub(crate) fn search<I: InstructionSet, C: Collector>(
 ) {
     let rest = &rest[..usize::from(first.more)];
     for (number, block) in std::iter::once(first).chain(rest).enumerate() {
-        if filter.is_content() {
-            forgo::<I, C>(std::iter::once(first).chain(rest).skip(number), place, filter);
+        if filter.may_stop() {
+            record_skipped::<I, C>(std::iter::once(first).chain(rest).skip(number), place, filter);
             return;
         }
         let bounds: I::Eight = block.lower_bounds(place);
@@ -292,8 +292,8 @@ pub(crate) fn search<I: InstructionSet, C: Collector>(
             let key = keys[left];
             let lane = lane_of_key(key);
             if lane < usize::from(block.len) && number_of_key(key) <= filter.limit() {
-                if filter.is_content() {
-                    filter.forgo(number_of_key(key));
+                if filter.may_stop() {
+                    filter.record_skipped(number_of_key(key));
                     break;
                 }
                 filter.packet::<I>(block.packets[lane] as usize, u32::from(block.lanes[lane]));
@@ -305,7 +305,7 @@ pub(crate) fn search<I: InstructionSet, C: Collector>(
 /// Gives up some blocks of a list.
 #[cold]
 #[inline(always)]
-fn forgo<'b, I: InstructionSet, C: Collector>(
+fn record_skipped<'b, I: InstructionSet, C: Collector>(
     blocks: impl Iterator<Item = &'b Block>,
     place: &Place,
     filter: &mut SearchState<'_, C>,
@@ -313,7 +313,7 @@ fn forgo<'b, I: InstructionSet, C: Collector>(
     let mut bounds = [0.0; WIDTH];
     for block in blocks {
         block.lower_bounds::<I::Eight>(place).store(&mut bounds);
-        filter.forgo(bounds[..usize::from(block.len)].iter().copied().fold(f32::INFINITY, f32::min));
+        filter.record_skipped(bounds[..usize::from(block.len)].iter().copied().fold(f32::INFINITY, f32::min));
     }
 }
 

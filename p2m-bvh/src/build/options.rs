@@ -1,0 +1,76 @@
+//! Options of splits.
+
+/// The rule by which a node is split in two.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SplitRule {
+    /// The surface-area heuristic with 16 bins along each axis \[Wald2007\]. It minimises n_left A_left + n_right
+    /// A_right, where n is a number of primitives and A a surface area, which is the expected cost of a random line.
+    #[default]
+    Sah,
+    /// The surface-area heuristic along the longest side of the node alone, as in \[Cavarga2021\]. The cost is sampled
+    /// coarsely first and then twice more finely around the best position. Unlike in the article, a primitive goes to
+    /// one side only, by its centre.
+    AdaptiveSah,
+    /// Each side gets half of the primitives, along the axis on which their centres spread most.
+    Median,
+}
+
+/// Options of splitting a set. Most programs need only `rule` and `parallel`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SplitOptions {
+    /// The largest number of primitives in a leaf. Smaller nodes are split as well if that makes queries cheaper.
+    pub max_leaf: usize,
+    /// The number of primitives that are tested at once. The cost of a leaf is that of as many blocks of this size
+    /// as it needs.
+    pub block: usize,
+    /// The cost of visiting an inner node, in units of the cost of testing a primitive.
+    pub node_cost: f64,
+    /// The rule by which nodes are split.
+    pub rule: SplitRule,
+    /// Whether the build uses all threads of the current pool, which needs the feature `rayon`. The tree is the same
+    /// for any number of threads.
+    pub parallel: bool,
+}
+
+impl Default for SplitOptions {
+    /// The options for leaves that are packets of sixteen.
+    fn default() -> Self {
+        Self { max_leaf: 16, block: 16, node_cost: 16.0, rule: SplitRule::Sah, parallel: true }
+    }
+}
+
+impl SplitOptions {
+    /// The options for trees that are built more often than they are queried: nodes are split at the median. The time
+    /// that this saves and costs is in docs/splits.md.
+    #[must_use]
+    pub fn fast() -> Self {
+        Self::default().with_rule(SplitRule::Median)
+    }
+    /// Sets the rule by which nodes are split.
+    #[must_use]
+    pub fn with_rule(self, rule: SplitRule) -> Self {
+        Self { rule, ..self }
+    }
+    /// Sets whether the build uses all threads.
+    #[must_use]
+    pub fn with_parallel(self, parallel: bool) -> Self {
+        Self { parallel, ..self }
+    }
+}
+
+/// Options of a tree whose volumes share some data.
+pub trait TreeOptions<Shared> {
+    /// The options of its splits.
+    fn splits(&self) -> &SplitOptions;
+    /// The data that all volumes of the tree share.
+    fn shared(&self) -> Shared;
+}
+
+impl TreeOptions<()> for SplitOptions {
+    fn splits(&self) -> &SplitOptions {
+        self
+    }
+    fn shared(&self) {}
+}

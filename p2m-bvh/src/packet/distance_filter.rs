@@ -1,0 +1,309 @@
+//! The distance filter of a packet: bounds from both sides on the distances of a query point to sixteen primitives.
+//!
+//! # The band
+//!
+//! Lengths are in units of the frame, a power of two for which the box of the packet is less than 2^16 - 1 wide. Let q
+//! be the query point in that frame, X = 2^16 + max |q_k| (so that no component of a difference between q and a vertex
+//! exceeds X), and u = 2^-24. Then for every point, segment and triangle
+//!
+//! > d - 1 - 32 u X <= sqrt(square) <= d + 1 + 88 u X,
+//!
+//! where d is either its true distance or the distance that the kernel of the contract computes. The proof is in
+//! docs/proofs/filter.md. For other primitives, which are filtered by their boxes, the right inequality holds.
+//!
+//! Two properties make the band independent of the shape of a triangle. Edges and normals are made of differences of
+//! whole numbers, which are exact, so the normal of a sliver is as good as any. A face counts only where the projection
+//! of the query point is inside by more than the test can err, so the filter always finds the distance of some point
+//! of the triangle.
+
+use super::layout::{LANES, Packet};
+use super::member::Kind;
+use super::squared_distance::{V3, edge, is_beyond_plane, triangle};
+use p2m_core::engine::simd::{InstructionSet, Lanes};
+use p2m_core::engine::vector::power_of_two;
+
+/// If the query point is more units of the frame away than this, the filter lets every primitive pass.
+const MAX_QUERY_UNITS: f64 = power_of_two(40);
+/// The unit roundoff u of f32.
+const U: f32 = f32::EPSILON / 2.0;
+/// A factor for bounds that are computed in f32 with a few roundings of their own.
+pub const ROUND_UP: f32 = 1.0 + 16.0 * f32::EPSILON;
+
+/// A query point in the frame of a packet, with the width of the band.
+#[derive(Clone, Copy, Debug)]
+pub struct Local {
+    query: [f32; 3],
+    /// The distances that the filter finds are too large by at most this many units.
+    pub excess: f32,
+    /// The distances that the filter finds are too small by at most this many units.
+    pub deficit: f32,
+    /// The square of the margin by which the projection onto a face has to be inside.
+    margin_squared: f32,
+}
+
+impl Packet {
+    /// The query point in the frame of the packet; `None` if the frame is not usable, or the point is too far away.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "rounding is part of the band")]
+    pub fn local(&self, query: &[f64; 3]) -> Option<Local> {
+        let q: [f64; 3] = std::array::from_fn(|k| (query[k] - self.origin[k]) * self.per_unit);
+        let largest = q[0].abs().max(q[1].abs()).max(q[2].abs());
+        // The negated comparison is true as well if `largest` is NaN, which infinite differences give.
+        if !(self.unit > 0.0 && largest <= MAX_QUERY_UNITS) {
+            return None;
+        }
+        let ux = U * (largest as f32 + 65536.0) * ROUND_UP;
+        Some(Local {
+            query: q.map(|x| x as f32),
+            excess: (1.0 + 88.0 * ux) * ROUND_UP,
+            deficit: (1.0 + 32.0 * ux) * ROUND_UP,
+            margin_squared: (32.0 * ux) * (32.0 * ux),
+        })
+    }
+
+    /// Computes the squared distances, in the frame, to the primitives or boxes in all lanes. Squares that certainly
+    /// exceed that of `limit`, a distance in the frame, may be infinite instead.
+    #[inline(always)]
+    pub fn squares<I: InstructionSet>(&self, local: &Local, limit: f32, squares: &mut [f32; LANES]) {
+        let q = V3::splat(local.query);
+        let towards = self.towards(&local.query);
+        let mut at = 0;
+        while at < LANES {
+            let result = match self.kind() {
+                Kind::Triangle => {
+                    let vertices = [self.vertex(0, at), self.vertex(1, at), self.vertex(2, at)];
+                    let offsets = [vertices[0].sub(&q), vertices[1].sub(&q), vertices[2].sub(&q)];
+                    if is_beyond_plane::<I::Wide>(&offsets, towards, limit) {
+                        I::Wide::splat(f32::INFINITY)
+                    } else {
+                        triangle::<I::Wide>(offsets, vertices, local.margin_squared)
+                    }
+                }
+                Kind::Segment => {
+                    let (a, b) = (self.vertex(0, at), self.vertex(1, at));
+                    edge(&a.sub(&q), &b.sub(&a)).0
+                }
+                Kind::Point => self.vertex(0, at).sub(&q).square(),
+                Kind::Box => {
+                    let (below, above) = (self.vertex(0, at).sub(&q), q.sub(&self.vertex(1, at)));
+                    below.max(&above).max(&V3::splat([0.0; 3])).square()
+                }
+            };
+            result.store(&mut squares[at..]);
+            at += I::Wide::LEN;
+        }
+    }
+
+    /// The vector from the query point to one of the vertices, both in the frame.
+    #[inline(always)]
+    fn towards(&self, [x, y, z]: &[f32; 3]) -> [f32; 3] {
+        const SAMPLE_LANE: usize = LANES / 2;
+        [
+            f32::from(self.rows[0][SAMPLE_LANE]) - x,
+            f32::from(self.rows[1][SAMPLE_LANE]) - y,
+            f32::from(self.rows[2][SAMPLE_LANE]) - z,
+        ]
+    }
+
+    /// Vertex v of the lanes from `at` on.
+    #[inline(always)]
+    fn vertex<L: Lanes>(&self, v: usize, at: usize) -> V3<L> {
+        let [x, y, z] = [&self.rows[3 * v], &self.rows[3 * v + 1], &self.rows[3 * v + 2]];
+        V3 { x: L::load_u16(&x[at..]), y: L::load_u16(&y[at..]), z: L::load_u16(&z[at..]) }
+    }
+}
+
+/// A mask with one bit for each square that is at most `limit`.
+#[inline(always)]
+pub fn at_most<L: Lanes>(squares: &[f32; LANES], limit: f32) -> u32 {
+    let mut mask = 0;
+    let mut at = 0;
+    while at < LANES {
+        mask |= L::load(&squares[at..]).at_most(L::splat(limit)) << at;
+        at += L::LEN;
+    }
+    mask
+}
+
+/// The smallest of sixteen squares.
+#[inline(always)]
+pub fn smallest<L: Lanes>(squares: &[f32; LANES]) -> f32 {
+    let mut all = L::load(&squares[..]);
+    let mut at = L::LEN;
+    while at < LANES {
+        all = all.min(L::load(&squares[at..]));
+        at += L::LEN;
+    }
+    all.smallest()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::layout::frame_unit;
+    use super::super::member::Member;
+    use super::*;
+    use nalgebra::Point3;
+    use p2m_core::engine::simd::{Isa, SimdKernel};
+    use p2m_core::{Aabb, Primitive, PrimitiveId, PrimitiveSet, Shape};
+    use rand::{Rng, RngExt};
+
+    struct Squares<'a>(&'a Packet, &'a Local, f32);
+
+    impl SimdKernel for Squares<'_> {
+        type Output = [f32; LANES];
+        #[inline(always)]
+        fn run<I: InstructionSet>(self) -> [f32; LANES] {
+            let mut squares = [0.0; LANES];
+            self.0.squares::<I>(self.1, self.2, &mut squares);
+            squares
+        }
+    }
+
+    fn point(rng: &mut impl Rng) -> [f64; 3] {
+        [(); 3].map(|()| rng.random())
+    }
+
+    fn along(a: [f64; 3], b: [f64; 3], t: f64) -> [f64; 3] {
+        [0, 1, 2].map(|k: usize| a[k] + t * (b[k] - a[k]))
+    }
+
+    /// Returns a primitive of a random shape: a third are large in the packet, and slivers of every sine, collinear and
+    /// repeated vertices are common.
+    fn shape(rng: &mut impl Rng, kind: Kind) -> Shape<f64> {
+        let size = 2f64.powi(-(rng.random_range(0..18)));
+        let corner = point(rng);
+        let [a, b, mut c] = [(); 3].map(|()| along(corner, point(rng), size));
+        match rng.random_range(0..6) {
+            0 => c = along(a, b, rng.random::<f64>()),
+            1 => c = along(along(a, b, 2.0 * rng.random::<f64>() - 0.5), c, 2f64.powi(-(rng.random_range(0..40)))),
+            2 => c = a,
+            _ => {}
+        }
+        let [a, b, c] = [a, b, c].map(Point3::from);
+        match kind {
+            Kind::Point => p2m_core::Point::new(a).into(),
+            Kind::Segment => p2m_core::Segment::new(a, if rng.random_range(0..8) == 0 { a } else { b }).into(),
+            _ => p2m_core::Triangle::new(a, b, c).into(),
+        }
+    }
+
+    /// Returns a query point near, on, between or far from the primitives of a packet.
+    fn query<R: Rng>(rng: &mut R, shapes: &[Shape<f64>]) -> Point3<f64> {
+        let on = |rng: &mut R| {
+            let s = &shapes[rng.random_range(0..shapes.len())];
+            let v: Vec<[f64; 3]> = s.vertices().iter().map(|v| v.coords.into()).collect();
+            along(along(v[0], v[v.len() / 2], rng.random::<f64>()), v[v.len() - 1], rng.random::<f64>())
+        };
+        let target = on(rng);
+        let away = 2f64.powi(rng.random_range(-40..30));
+        let direction = point(rng).map(|x| 2.0 * x - 1.0);
+        match rng.random_range(0..3) {
+            0 => Point3::from(target),
+            1 => Point3::from(along(target, on(rng), rng.random::<f64>())),
+            _ => Point3::from([0, 1, 2].map(|k: usize| target[k] + away * direction[k])),
+        }
+    }
+
+    #[test]
+    fn squares_are_within_the_band_on_every_instruction_set() {
+        let mut worst = [0.0f64; 2];
+        let mut skipped = 0;
+        let cases = p2m_testkit::cases(6000, 1000);
+        for case in cases.clone() {
+            let (round, mut rng) = (case as usize, p2m_testkit::rng("band", case));
+            let kind = [Kind::Triangle, Kind::Triangle, Kind::Segment, Kind::Point][round % 4];
+            let len = rng.random_range(1..=16);
+            let scale = 2f64.powi([0, 0, 40, -300, 250][round % 5]);
+            let shapes: Vec<Shape<f64>> = (0..len).map(|_| shape(&mut rng, kind)).collect();
+            let queries: Vec<_> = (0..8).map(|_| query(&mut rng, &shapes) * scale).collect();
+            let shapes: Vec<Shape<f64>> = shapes.iter().map(|s| scaled(s, scale)).collect();
+            let ids: Vec<PrimitiveId> = (0..len).map(PrimitiveId::new).collect();
+            let (packet, _) = Packet::new(&ids, &members(&shapes), kind, &shapes.aabb(), scale * 2f64.powi(-36));
+            assert_eq!((packet.ids(), packet.lanes().count_ones() as usize), (ids.as_slice(), len));
+            for q in queries {
+                let Some(local) = packet.local(&q.coords.into()) else {
+                    let far = (q - Point3::from(packet.origin)).amax() > MAX_QUERY_UNITS * packet.unit();
+                    assert!(far, "{q} {packet:?}: near queries are in the frame");
+                    continue;
+                };
+                for isa in Isa::available() {
+                    let squares = isa.run(Squares(&packet, &local, f32::INFINITY));
+                    let limit = squares[rng.random_range(0..LANES)].sqrt() * rng.random::<f32>() * 2.0;
+                    let limited = isa.run(Squares(&packet, &local, limit));
+                    for (lane, shape) in shapes.iter().enumerate() {
+                        let distance = shape.project(&q).key.distance() / packet.unit();
+                        let error = f64::from(squares[lane]).sqrt() - distance;
+                        let (excess, deficit) = (f64::from(local.excess), f64::from(local.deficit));
+                        assert!(error <= excess && error >= -deficit, "{isa}: {error} of {distance}, {shape:?} {q}");
+                        worst = [worst[0].max(error / excess), worst[1].max(-error / deficit)];
+                        if limited[lane] != squares[lane] {
+                            assert_eq!(limited[lane], f32::INFINITY);
+                            assert!(distance + excess > f64::from(limit), "{isa}: {distance} is within {limit}");
+                            skipped += 1;
+                        }
+                    }
+                }
+            }
+        }
+        println!("largest part of the band: {worst:?}");
+        assert!(cases.have_more_than(10_000, skipped), "{skipped}");
+        // Quantisation alone moves a vertex by up to half a unit along each axis, so a good part of the band is used.
+        assert!(cases.is_replay() || worst[0] > 0.5 && worst[1] > 0.5, "{worst:?}");
+    }
+
+    fn members(primitives: &[impl Primitive<f64>]) -> Vec<Member> {
+        primitives.iter().map(Member::from_primitive).collect()
+    }
+
+    fn scaled(shape: &Shape<f64>, factor: f64) -> Shape<f64> {
+        let v: Vec<Point3<f64>> = shape.vertices().iter().map(|p| p * factor).collect();
+        match *v.as_slice() {
+            [a] => p2m_core::Point::new(a).into(),
+            [a, b] => p2m_core::Segment::new(a, b).into(),
+            [a, b, c] => p2m_core::Triangle::new(a, b, c).into(),
+            _ => unreachable!("one to three vertices"),
+        }
+    }
+
+    #[test]
+    fn a_query_very_close_to_a_vertex_does_not_exclude_its_packet() {
+        // The offset of the vertex in the middle lane is so short that its square underflows.
+        let at = |x: f64, y: f64| {
+            let [a, b, c] = [[x, y, y], [x + 900.0, y, y], [x + 900.0, y + 1.0, y]].map(Point3::from);
+            Shape::from(p2m_core::Triangle::new(a, b, c))
+        };
+        let shapes: Vec<Shape<f64>> = (0..LANES)
+            .map(|lane| if lane == LANES / 2 { at(0.0, 1000.0) } else { at(30_000.0 + lane as f64, 0.0) })
+            .collect();
+        let ids: Vec<PrimitiveId> = (0..LANES).map(PrimitiveId::new).collect();
+        let bounds = shapes.aabb().union(&Aabb::of_points(&[Point3::origin(), Point3::from([40_000.0; 3])]));
+        let (packet, _) = Packet::new(&ids, &members(&shapes), Kind::Triangle, &bounds, 0.0);
+        for tiny in [1e-10, 1e-22, 1e-24, 1e-30, 1e-40, 0.0] {
+            let local = packet.local(&[-tiny, 1000.0, 1000.0]).expect("near");
+            for isa in Isa::available() {
+                let squares = isa.run(Squares(&packet, &local, f32::MAX));
+                assert!(squares.iter().all(|s| s.is_finite()), "{isa}, {tiny:e}: {squares:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn frames_contain_their_packet_and_waste_at_most_one_bit() {
+        for size in [1.0, 65534.0, 65535.0, 0.1, 1e-100, 1e90] {
+            let unit = frame_unit(size);
+            assert!(size / unit <= 65534.0 && size / unit > 32766.0, "{size}");
+            assert_eq!(unit.log2().fract(), 0.0);
+        }
+        assert_eq!((frame_unit(0.0), frame_unit(f64::INFINITY)), (0.0, f64::INFINITY));
+    }
+
+    #[test]
+    fn packets_of_extreme_size_let_everything_pass() {
+        let ids = [PrimitiveId::new(0)];
+        for size in [1e-200, 1e200, f64::MAX] {
+            let set = [p2m_core::Segment::new(Point3::from([-size; 3]), Point3::from([size; 3]))];
+            let (packet, _) = Packet::new(&ids, &members(&set), Kind::Segment, &set.aabb(), 0.0);
+            assert!(packet.local(&[0.0; 3]).is_none(), "{size}");
+        }
+    }
+}

@@ -1,0 +1,270 @@
+//! The memory layout of a packet: quantised vertices, ids, and references to the exact vertices.
+
+use super::member::{Kind, Member};
+use nalgebra::Point3;
+use p2m_core::engine::real::to_f64_array;
+use p2m_core::engine::simd::prefetch;
+use p2m_core::engine::vector::{V3, power_of_two};
+use p2m_core::{Aabb, Collector, PrimitiveId, Projection};
+
+/// The number of lanes of a packet, which is the largest number of its primitives.
+pub const LANES: usize = 16;
+
+/// Up to sixteen primitives in a frame of their own.
+///
+/// Unused lanes repeat the first primitive, so computations need no mask.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C, align(64))]
+pub struct Packet {
+    /// Coordinate k of vertex v is in row 3 v + k. A box is stored as two vertices, its lower and its upper corner.
+    pub(super) rows: [[u16; LANES]; 9],
+    ids: [PrimitiveId; LANES],
+    /// `corners[v][lane]` is the index of vertex v of that lane among the exact vertices of the packet.
+    corners: [[u8; LANES]; 3],
+    /// The index of the first exact vertex of the packet among the exact vertices of the tree.
+    pub(crate) vertex_offset: u32,
+    len: u8,
+    /// The [`Kind`] as a number.
+    kind: u8,
+    unused: [u8; 2],
+    /// The origin of the frame, in coordinates of the scene.
+    pub(super) origin: [f64; 3],
+    /// The unit of the frame, a power of two; 0 if no frame of f64 has room for the box of the packet.
+    pub(super) unit: f64,
+    /// The inverse of the unit; 0 if the unit is 0.
+    pub(super) per_unit: f64,
+}
+
+const _: () = assert!(size_of::<Packet>() == 448);
+
+/// The largest coordinate in the frame of a packet.
+pub(super) const GRID_MAX: f64 = 65535.0;
+/// The units that frames may have: with others, squares of lengths would leave the plain range of keys.
+const USABLE_UNITS: std::ops::RangeInclusive<f64> = power_of_two(-360)..=power_of_two(300);
+
+impl Packet {
+    /// The kind of all primitives of the packet.
+    #[inline(always)]
+    pub(super) fn kind(&self) -> Kind {
+        match self.kind {
+            0 => Kind::Point,
+            1 => Kind::Segment,
+            2 => Kind::Triangle,
+            _ => Kind::Box,
+        }
+    }
+
+    /// Packs at most sixteen primitives with these ids and returns the packet with its exact vertices, each once.
+    ///
+    /// The primitives are all of `kind`, or of any kinds if `kind` is [`Kind::Box`]. `bounds` is the box around all of
+    /// them. The unit of the frame is at least `finest`, because a finer one would bring nothing.
+    ///
+    /// # Panics
+    /// Panics if there are more than sixteen ids, or none.
+    pub fn new(
+        ids: &[PrimitiveId],
+        primitives: &[Member],
+        kind: Kind,
+        bounds: &Aabb<f64>,
+        finest: f64,
+    ) -> (Self, Vec<V3>) {
+        let [min, max] = [to_f64_array(&bounds.min), to_f64_array(&bounds.max)];
+        let size = (0..3).map(|k| max[k] - min[k]).fold(0.0, f64::max);
+        let unit = frame_unit(size).max(finest);
+        let unit = if USABLE_UNITS.contains(&unit) { unit } else { 0.0 };
+        let mut packet = Self {
+            rows: [[0; LANES]; 9],
+            origin: min,
+            unit,
+            per_unit: if unit > 0.0 { unit.recip() } else { 0.0 },
+            ids: [ids[0]; LANES],
+            corners: [[0; LANES]; 3],
+            vertex_offset: 0,
+            len: u8::try_from(ids.len()).expect("at most sixteen"),
+            kind: kind as u8,
+            unused: [0; 2],
+        };
+        let mut exact = Vec::new();
+        for lane in 0..LANES {
+            let index = if lane < ids.len() { lane } else { 0 };
+            let primitive = &primitives[index];
+            packet.ids[lane] = ids[index];
+            if kind == Kind::Box {
+                packet.quantize(lane, 0, to_f64_array(&primitive.bounds.min), f64::floor);
+                packet.quantize(lane, 1, to_f64_array(&primitive.bounds.max), f64::ceil);
+            } else {
+                for (v, vertex) in primitive.vertices().iter().enumerate() {
+                    packet.quantize(lane, v, *vertex, f64::round);
+                    packet.corners[v][lane] = find_or_push(&mut exact, *vertex);
+                }
+            }
+        }
+        (packet, exact)
+    }
+
+    /// Stores a vertex in the rows, rounded to the grid of the frame by `round`.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the range of u16")]
+    fn quantize(&mut self, lane: usize, vertex: usize, position: V3, round: impl Fn(f64) -> f64) {
+        for (k, x) in position.into_iter().enumerate() {
+            let x = round((x - self.origin[k]) * self.per_unit);
+            self.rows[3 * vertex + k][lane] = x.clamp(0.0, GRID_MAX) as u16;
+        }
+    }
+
+    /// Evaluates the primitive in a lane and offers it to a collector, unless its key certainly exceeds `square`.
+    ///
+    /// `vertices` are all the exact vertices of the tree. The method does nothing for a box, because only the set can
+    /// evaluate such a primitive.
+    #[inline(always)]
+    pub fn offer<C: Collector>(&self, lane: usize, vertices: &[V3], query: V3, square: f64, collector: &mut C) {
+        let id = self.ids[lane];
+        let [a, b, c] = self.corners(lane).map(|index| &vertices[index]);
+        // Each kind has a call of its own, so that the projection stays in registers and is not copied.
+        match self.kind() {
+            Kind::Triangle => {
+                if let Some(projection) = Projection::of_near_triangle(query, &[*a, *b, *c], square) {
+                    collector.offer(id, projection);
+                }
+            }
+            Kind::Segment => {
+                if let Some(projection) = Projection::of_segment(query, &[*a, *b], square) {
+                    collector.offer(id, projection);
+                }
+            }
+            Kind::Point => {
+                if let Some(projection) = Projection::of_point(query, &[*a], square) {
+                    collector.offer(id, projection);
+                }
+            }
+            Kind::Box => {}
+        }
+    }
+
+    /// The indices of the vertices of a lane among the exact vertices of the tree. Corners that the primitive does not
+    /// have are the first vertex of the packet.
+    #[inline(always)]
+    fn corners(&self, lane: usize) -> [usize; 3] {
+        let [a, b, c] = &self.corners;
+        [a[lane], b[lane], c[lane]].map(|index| self.vertex_offset as usize + usize::from(index))
+    }
+
+    /// The corners of the triangle in a lane; `None` if the packet has no triangles.
+    #[inline(always)]
+    pub fn triangle_corners<'a>(&self, lane: usize, vertices: &'a [V3]) -> Option<[&'a V3; 3]> {
+        if self.kind() != Kind::Triangle {
+            return None;
+        }
+        Some(self.corners(lane).map(|index| &vertices[index]))
+    }
+
+    /// The indices of the vertices of a lane among the exact vertices of the tree, and the number of those in use.
+    #[inline]
+    pub fn vertices_of(&self, lane: usize) -> ([usize; 3], usize) {
+        let count = match self.kind() {
+            Kind::Box => 0,
+            Kind::Point => 1,
+            Kind::Segment => 2,
+            Kind::Triangle => 3,
+        };
+        (self.corners(lane), count)
+    }
+
+    /// A box around the primitives in some lanes, of which `lanes` has one bit each.
+    pub fn bounds_of(&self, lanes: u16) -> Aabb<f64> {
+        let count = if self.kind() == Kind::Box { 2 } else { self.vertices_of(0).1 };
+        let (mut low, mut high) = ([u16::MAX; 3], [0; 3]);
+        let mut rest = lanes;
+        while rest != 0 {
+            let lane = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            for v in 0..count {
+                for k in 0..3 {
+                    let x = self.rows[3 * v + k][lane];
+                    (low[k], high[k]) = (low[k].min(x), high[k].max(x));
+                }
+            }
+        }
+        // Vertices were rounded by at most half a unit.
+        let scene = |k: usize, x: u16, margin: f64| self.origin[k] + (f64::from(x) + margin) * self.unit;
+        Aabb {
+            min: Point3::from(std::array::from_fn(|k| scene(k, low[k], -0.75))),
+            max: Point3::from(std::array::from_fn(|k| scene(k, high[k], 0.75))),
+        }
+    }
+
+    /// Prefetches the vertices that [`offer`](Self::offer) reads for a lane.
+    #[inline(always)]
+    pub fn prefetch_vertices(&self, lane: usize, vertices: &[V3]) {
+        for index in self.corners(lane) {
+            prefetch(vertices.as_ptr().wrapping_add(index).cast());
+        }
+    }
+
+    /// The ids of the primitives, lane by lane.
+    #[inline(always)]
+    pub fn ids(&self) -> &[PrimitiveId] {
+        &self.ids[..usize::from(self.len)]
+    }
+
+    /// A mask with one bit for each lane in use.
+    #[inline(always)]
+    pub fn lanes(&self) -> u32 {
+        (1 << self.len) - 1
+    }
+
+    /// Whether the vertices span the primitives. If so, the filter bounds distances from above as well; if not, the
+    /// packet has only boxes around the primitives.
+    #[inline(always)]
+    pub fn has_vertices(&self) -> bool {
+        self.kind() != Kind::Box
+    }
+
+    /// Whether the primitives are triangles.
+    pub(crate) fn has_triangles(&self) -> bool {
+        self.kind() == Kind::Triangle
+    }
+
+    /// The unit of the frame of the packet, in units of the scene.
+    #[inline(always)]
+    pub fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    /// The inverse of the unit of the frame.
+    #[inline(always)]
+    pub fn per_unit(&self) -> f64 {
+        self.per_unit
+    }
+}
+
+/// Returns the index of a vertex in a list of at most 48, and appends the vertex if it is not there yet. Two vertices
+/// are the same if they have the same bits.
+#[allow(clippy::cast_possible_truncation, reason = "at most 48")]
+fn find_or_push(list: &mut Vec<V3>, vertex: V3) -> u8 {
+    let bits = vertex.map(f64::to_bits);
+    let index = list.iter().position(|v| v.map(f64::to_bits) == bits).unwrap_or(list.len());
+    if index == list.len() {
+        list.push(vertex);
+    }
+    index as u8
+}
+
+/// The smallest power of two of which `size` is at most 65534 times as large; 0 for a size of 0.
+pub fn frame_unit(size: f64) -> f64 {
+    if size <= 0.0 {
+        return 0.0;
+    }
+    if !size.is_finite() {
+        return f64::INFINITY;
+    }
+    let mut e = p2m_core::engine::vector::exponent(size) - 16;
+    while size * scale(-e) > GRID_MAX - 1.0 {
+        e += 1;
+    }
+    scale(e)
+}
+
+/// 2^e, which is 0 or infinite where f64 does not have it.
+fn scale(e: i32) -> f64 {
+    2f64.powi(e)
+}

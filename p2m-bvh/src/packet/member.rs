@@ -1,0 +1,67 @@
+//! Primitives as a build sees them: in f64, and independent of the type of their set.
+
+use p2m_core::engine::real::to_f64_array;
+use p2m_core::engine::vector::V3;
+use p2m_core::{Aabb, Primitive, PrimitiveId, Real};
+
+/// The kind of the primitives of a packet, by the number of vertices that span them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Kind {
+    /// One vertex spans each primitive.
+    Point,
+    /// Two vertices span each primitive.
+    Segment,
+    /// Three vertices span each primitive.
+    Triangle,
+    /// The primitives have no vertices, or more than three: the packet stores their boxes.
+    Box,
+}
+
+impl Kind {
+    /// The kind of a primitive.
+    pub fn of<T: Real>(primitive: &impl Primitive<T>) -> Self {
+        match primitive.vertices().len() {
+            1 => Self::Point,
+            2 => Self::Segment,
+            3 => Self::Triangle,
+            _ => Self::Box,
+        }
+    }
+}
+
+/// A primitive in f64, so that the code that builds packets and nodes does not depend on the set.
+#[derive(Clone, Copy, Debug)]
+pub struct Member {
+    /// The kind of the primitive.
+    pub kind: Kind,
+    /// The box around the primitive.
+    pub bounds: Aabb<f64>,
+    vertices: [V3; 3],
+}
+
+impl Member {
+    /// Converts a primitive to f64.
+    pub fn from_primitive<T: Real>(primitive: &impl Primitive<T>) -> Self {
+        let kind = Kind::of(primitive);
+        let mut vertices = [[0.0; 3]; 3];
+        if kind != Kind::Box {
+            vertices.iter_mut().zip(primitive.vertices()).for_each(|(to, vertex)| *to = to_f64_array(vertex));
+        }
+        Self { kind, bounds: primitive.aabb().to_f64(), vertices }
+    }
+
+    /// The vertices that span the primitive; the slice is empty for [`Kind::Box`].
+    pub fn vertices(&self) -> &[V3] {
+        let count = match self.kind {
+            Kind::Point => 1,
+            Kind::Segment => 2,
+            Kind::Triangle => 3,
+            Kind::Box => 0,
+        };
+        &self.vertices[..count]
+    }
+}
+
+/// A function that returns the member with an id.
+pub type Members<'a> = &'a (dyn Fn(PrimitiveId) -> Member + Sync);

@@ -1,0 +1,71 @@
+//! Searches that are compiled once for each bounding volume.
+
+use crate::traverse::evaluate::{finish, finish_nearest};
+use crate::traverse::primitive_fn::{EvaluateFn, IntersectFn, evaluation, intersection};
+use crate::tree::PacketTree;
+use crate::tree::wide_node::VolumeNodes;
+use nalgebra::Point3;
+use p2m_core::engine::query::BestF64;
+use p2m_core::engine::real::to_f64_array;
+use p2m_core::engine::vector::V3;
+use p2m_core::{Aabb, Best, Hits, Near, PrimitiveSet, Ray, RayCollector, Real};
+
+/// The searches of a tree with the collectors of the library.
+///
+/// They do not depend on the set and the scalar. Being functions of their own they are compiled once for each volume,
+/// in the crate that defines it, and not in every crate that calls them.
+pub trait CompiledSearches: VolumeNodes {
+    /// Searches for the nearest primitive.
+    fn nearest(tree: &PacketTree<Self>, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>);
+
+    /// Searches for the primitives near a point.
+    fn near<'n>(tree: &PacketTree<Self>, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>);
+
+    /// Searches for the hits of a ray.
+    fn rays<'r>(
+        tree: &PacketTree<Self>,
+        ray: &'r Ray,
+        radius: f64,
+        hits: &mut Hits<'r>,
+        intersect: IntersectFn<'_, 'r>,
+    );
+}
+
+impl CompiledSearches for Aabb<f64> {
+    fn nearest(tree: &PacketTree, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
+        tree.run(query, minimum, evaluate, finish_nearest);
+    }
+
+    fn near<'n>(tree: &PacketTree, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
+        tree.run(query, near, evaluate, finish);
+    }
+
+    fn rays<'r>(tree: &PacketTree, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: IntersectFn<'_, 'r>) {
+        tree.run_ray(ray, radius, hits, intersect);
+    }
+}
+
+impl<V: CompiledSearches> PacketTree<V> {
+    /// Offers to `best` the primitives of `set` that may be the nearest.
+    #[inline]
+    #[doc(hidden)]
+    pub fn search_nearest<T: Real, S: PrimitiveSet<T> + ?Sized>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
+        V::nearest(self, to_f64_array(query), best.minimum(), &evaluation(set, query));
+    }
+
+    /// Offers to `near` the primitives of `set` that it could want.
+    #[inline]
+    #[doc(hidden)]
+    pub fn search_near<T: Real, S: PrimitiveSet<T> + ?Sized>(&self, set: &S, query: &Point3<T>, near: &mut Near<'_>) {
+        V::near(self, to_f64_array(query), near, &evaluation(set, query));
+    }
+
+    /// Offers to `hits` the hits of a ray with `set` that it could want.
+    #[inline]
+    #[doc(hidden)]
+    pub fn search_hits<'r, T: Real, S: PrimitiveSet<T> + ?Sized>(&self, set: &S, ray: &'r Ray, hits: &mut Hits<'r>) {
+        let only_crossings = hits.only_crossings();
+        let Some(radius) = self.search_radius(ray, only_crossings) else { return };
+        V::rays(self, ray, radius, hits, &intersection(set, ray, only_crossings));
+    }
+}

@@ -1,0 +1,44 @@
+//! The bounding volumes that a tree may have.
+
+use crate::build::{SplitOptions, TreeOptions};
+use crate::traverse::compiled::CompiledSearches;
+use crate::tree::PacketTree;
+use p2m_core::Aabb;
+
+/// The bounding volume of the nodes of a [`PacketTree`]: [`Aabb<f64>`] or a k-DOP of the crate p2m-kdop.
+///
+/// The trait is sealed, because searches rest on proofs about the rounding of the nodes. Everything else about a tree
+/// is the same for all volumes.
+pub trait Volume: CompiledSearches {
+    /// The options with which a tree is built.
+    type Options: TreeOptions<Self::Shared>;
+    /// The directions of the faces of all volumes of a tree. For boxes, which need none, the type is `()`.
+    type Directions;
+
+    /// The directions of the faces, from the data that all volumes of a tree share.
+    fn directions(shared: &Self::Shared) -> &Self::Directions;
+
+    /// Whether the volume may have a point in common with a box. The result is never `false` if it has one.
+    fn may_intersect_box(&self, directions: &Self::Directions, bounds: &Aabb<f64>) -> bool;
+}
+
+impl Volume for Aabb<f64> {
+    type Options = SplitOptions;
+    type Directions = ();
+
+    fn directions((): &()) -> &() {
+        &()
+    }
+
+    fn may_intersect_box(&self, (): &(), bounds: &Aabb<f64>) -> bool {
+        self.meets(bounds)
+    }
+}
+
+impl<V: Volume> PacketTree<V> {
+    /// The directions of the faces of the volumes, as [`Volume::Directions`] describes them.
+    #[must_use]
+    pub fn directions(&self) -> &V::Directions {
+        V::directions(&self.shared)
+    }
+}
