@@ -1,4 +1,7 @@
-use crate::{Octree, Partition, Progress, SIDE_BY_SIDE, Voronoi};
+use crate::octree::Octree;
+use crate::partition::{Partition, SIDE_BY_SIDE};
+use crate::progress::Progress;
+use crate::voronoi::Voronoi;
 use nalgebra::Point3;
 use p2m_core::storage::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{

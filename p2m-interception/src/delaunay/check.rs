@@ -1,7 +1,7 @@
 //! Whether tetrahedra are a Delaunay triangulation, by exact predicates.
 
-use super::insert::FACES;
-use super::{BOUNDING, Delaunay};
+use crate::delaunay::tetrahedron::{BOUNDING, FACES};
+use crate::delaunay::triangulation::Delaunay;
 use p2m_core::predicates::{insphere, orientation_3d};
 use std::cmp::Ordering;
 

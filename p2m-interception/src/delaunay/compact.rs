@@ -1,13 +1,12 @@
 //! The order of finished tetrahedra.
 
-use super::Delaunay;
-use super::insert::Tetrahedron;
+use crate::delaunay::tetrahedron::{NO_NEIGHBOUR, Tetrahedron};
 
 /// Leaves out the places of removed tetrahedra and sorts the others by the last of their vertices, so that what is near
 /// on the curve is near in memory. Vertices and neighbours.
 pub(crate) fn compact(tetrahedra: Vec<Tetrahedron>, sites: usize) -> (Vec<[u32; 4]>, Vec<[u32; 4]>) {
     let last_vertex = |t: &Tetrahedron| t.vertices.into_iter().fold(0, u32::max) as usize;
-    let alive = |t: &Tetrahedron| t.vertices[0] != Delaunay::NONE;
+    let alive = |t: &Tetrahedron| t.vertices[0] != NO_NEIGHBOUR;
     // How many there are of each vertex, then where the next of them goes.
     let mut next = vec![0u32; sites];
     for t in tetrahedra.iter().filter(|t| alive(t)) {
@@ -17,7 +16,7 @@ pub(crate) fn compact(tetrahedra: Vec<Tetrahedron>, sites: usize) -> (Vec<[u32; 
     for n in &mut next {
         (*n, total) = (total, total + *n);
     }
-    let mut places = vec![Delaunay::NONE; tetrahedra.len()];
+    let mut places = vec![NO_NEIGHBOUR; tetrahedra.len()];
     let mut vertices = vec![[0; 4]; total as usize];
     for (place, t) in places.iter_mut().zip(&tetrahedra).filter(|(_, t)| alive(t)) {
         let next = &mut next[last_vertex(t)];
@@ -25,9 +24,9 @@ pub(crate) fn compact(tetrahedra: Vec<Tetrahedron>, sites: usize) -> (Vec<[u32; 
         vertices[*next as usize] = t.vertices;
         *next += 1;
     }
-    let mut neighbours = vec![[Delaunay::NONE; 4]; total as usize];
+    let mut neighbours = vec![[NO_NEIGHBOUR; 4]; total as usize];
     for (place, t) in places.iter().zip(&tetrahedra).filter(|(_, t)| alive(t)) {
-        neighbours[*place as usize] = t.neighbours.map(|n| places.get(n as usize).copied().unwrap_or(Delaunay::NONE));
+        neighbours[*place as usize] = t.neighbours.map(|n| places.get(n as usize).copied().unwrap_or(NO_NEIGHBOUR));
     }
     (vertices, neighbours)
 }

@@ -21,52 +21,33 @@
 
 #![allow(clippy::inline_always, reason = "or it is compiled without the instruction set")]
 
-use super::{Delaunay, Work};
+use crate::delaunay::tetrahedron::{FACES, INSIDE, NO_NEIGHBOUR, OUTSIDE, Tetrahedron, Work, position};
 use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel, prefetch};
 use p2m_core::engine::staged::{PredicateStage, orientation_exact, orientation_filter, sphere_exact, sphere_filter};
 use p2m_core::engine::vector::{V3, sub};
 use std::cmp::Ordering;
 
-/// The face opposite to each vertex, so that orientation_3d of it and the vertex is `Greater`.
-pub(crate) const FACES: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
-
 /// Vertices of the faces around a cavity that have places in the table of edges: those of 124 faces.
-const PLACES: usize = 64;
+pub(crate) const PLACES: usize = 64;
 
 /// For each tetrahedron that there may be at a time so many may be made.
 const MADE: u64 = 8;
 
-/// In the first vertex of a tetrahedron: in the cavity,
-const INSIDE: u32 = 1 << 31;
-/// or tested, and not in it. Numbers of sites are below.
-const OUTSIDE: u32 = 1 << 30;
-
-/// Half a cache line.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(32))]
-pub(crate) struct Tetrahedron {
-    /// In place of a removed one the first is [`Delaunay::NONE`]. While a cavity is found, the first has [`INSIDE`] or
-    /// [`OUTSIDE`] besides, once that is known.
-    pub(crate) vertices: [u32; 4],
-    /// Across the face opposite to each vertex.
-    pub(crate) neighbours: [u32; 4],
-}
-
 /// A site with what is known of it in the current insertion: half a cache line as well, never on two.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
-struct Site {
-    point: V3,
+pub(crate) struct Site {
+    pub(crate) point: V3,
     /// For which site it was a vertex of the faces around the cavity last,
-    round: u32,
+    pub(crate) round: u32,
     /// and the how manieth of those.
-    place: u32,
+    pub(crate) place: u32,
 }
 
 /// A triangulation that grows.
 pub(crate) struct Insertion {
-    sites: Vec<Site>,
-    tetrahedra: Vec<Tetrahedron>,
+    pub(crate) sites: Vec<Site>,
+    pub(crate) tetrahedra: Vec<Tetrahedron>,
     free: Vec<u32>,
     /// So many may there be,
     most: usize,
@@ -76,25 +57,12 @@ pub(crate) struct Insertion {
     last: u32,
     cavity: Vec<u32>,
     /// Faces around the cavity: a tetrahedron inside, and the vertex that its face is opposite to.
-    boundary: Vec<(u32, u32)>,
-    created: Vec<u32>,
+    pub(crate) boundary: Vec<(u32, u32)>,
+    pub(crate) created: Vec<u32>,
     /// Of an edge of a face around the cavity, from the place of one vertex to that of another: which of the created
     /// tetrahedra has it. What is left of earlier insertions is not read.
-    edges: Box<[u8; PLACES * PLACES]>,
+    pub(crate) edges: Box<[u8; PLACES * PLACES]>,
     pub(crate) work: Work,
-}
-
-/// What `number` is the index of; it occurs.
-#[inline(always)]
-fn position(of: &[u32; 4], number: u32) -> usize {
-    // Without branches: which it is cannot be predicted.
-    usize::from(of[1] == number) + 2 * usize::from(of[2] == number) + 3 * usize::from(of[3] == number)
-}
-
-/// The edge between two places, in the table.
-#[inline(always)]
-fn edge(from: u8, to: u8) -> usize {
-    usize::from(from) % PLACES * PLACES + usize::from(to) % PLACES
 }
 
 /// Insertion of sites, with all instructions that there are. Only compilers use them: lanes are no more precise than
@@ -129,16 +97,13 @@ impl Insertion {
         tetrahedra.extend((0..4u32).map(|i| {
             let [a, b] = [ring[i as usize], ring[(i as usize + 1) % 4]];
             // Opposite to a lies the next one, opposite to b the one before.
-            Tetrahedron {
-                vertices: [0, 1, a, b],
-                neighbours: [Delaunay::NONE, Delaunay::NONE, (i + 1) % 4, (i + 3) % 4],
-            }
+            Tetrahedron { vertices: [0, 1, a, b], neighbours: [NO_NEIGHBOUR, NO_NEIGHBOUR, (i + 1) % 4, (i + 3) % 4] }
         }));
         Self {
             sites: sites.iter().map(|&point| Site { point, round: 0, place: 0 }).collect(),
             tetrahedra,
             free: Vec::new(),
-            most: most.min(Delaunay::NONE as usize),
+            most: most.min(NO_NEIGHBOUR as usize),
             most_made: (most as u64).saturating_mul(MADE),
             last: 0,
             cavity: Vec::new(),
@@ -167,7 +132,7 @@ impl Insertion {
             self.link_by_turning();
         }
         for &t in &self.cavity {
-            self.tetrahedra[t as usize].vertices[0] = Delaunay::NONE;
+            self.tetrahedra[t as usize].vertices[0] = NO_NEIGHBOUR;
         }
         self.free.extend_from_slice(&self.cavity);
         self.last = self.created[0];
@@ -196,7 +161,7 @@ impl Insertion {
     /// A tetrahedron that contains p, maybe on a face.
     #[inline(always)]
     fn locate(&mut self, p: V3) -> u32 {
-        let (mut at, mut from) = (self.last, Delaunay::NONE);
+        let (mut at, mut from) = (self.last, NO_NEIGHBOUR);
         'walk: loop {
             self.work.steps += 1;
             let Tetrahedron { vertices, neighbours } = self.tetrahedra[at as usize];
@@ -215,7 +180,7 @@ impl Insertion {
                 };
                 // Of the corners as seen from p: the other way round.
                 if is_beyond {
-                    assert_ne!(next, Delaunay::NONE, "inside the bounding sites");
+                    assert_ne!(next, NO_NEIGHBOUR, "inside the bounding sites");
                     (from, at) = (at, next);
                     continue 'walk;
                 }
@@ -320,7 +285,7 @@ impl Insertion {
         for &(t, face) in &self.boundary {
             let face = face as usize;
             let old = self.tetrahedra[t as usize];
-            let mut new = Tetrahedron { vertices: old.vertices, neighbours: [Delaunay::NONE; 4] };
+            let mut new = Tetrahedron { vertices: old.vertices, neighbours: [NO_NEIGHBOUR; 4] };
             new.vertices[0] &= !INSIDE;
             new.vertices[face] = site;
             new.neighbours[face] = old.neighbours[face];
@@ -339,69 +304,5 @@ impl Insertion {
             self.created.push(number);
         }
         self.work.created += self.created.len() as u64;
-    }
-
-    /// Makes neighbours of the new tetrahedra that share an edge of faces around the cavity. Every such edge belongs to
-    /// two faces, which turn around it in opposite directions; whether there are places for all.
-    #[inline(always)]
-    #[must_use]
-    #[allow(clippy::cast_possible_truncation, reason = "at most 124 faces and 64 vertices")]
-    fn link(&mut self, site: u32) -> bool {
-        if self.created.len() > 2 * PLACES - 4 {
-            return false;
-        }
-        let mut count = 0;
-        // Of each created tetrahedron, the places of the vertices of its face.
-        let mut places = [[0u8; 3]; 2 * PLACES - 4];
-        for (i, (places, (&(_, face), &number))) in
-            places.iter_mut().zip(self.boundary.iter().zip(&self.created)).enumerate()
-        {
-            let vertices = self.tetrahedra[number as usize].vertices;
-            for (place, k) in places.iter_mut().zip(FACES[face as usize]) {
-                let vertex = &mut self.sites[vertices[k] as usize];
-                // Without branches.
-                let new = vertex.round != site;
-                vertex.place = if new { count } else { vertex.place };
-                vertex.round = site;
-                count += u32::from(new);
-                *place = vertex.place as u8;
-            }
-            for k in 0..3 {
-                self.edges[edge(places[k], places[(k + 1) % 3])] = i as u8;
-            }
-        }
-        for (places, (&(_, face), &number)) in places.iter().zip(self.boundary.iter().zip(&self.created)) {
-            for k in 0..3 {
-                let other = self.edges[edge(places[(k + 1) % 3], places[k])];
-                self.tetrahedra[number as usize].neighbours[FACES[face as usize][(k + 2) % 3]] =
-                    self.created[usize::from(other)];
-            }
-        }
-        true
-    }
-
-    /// The same for any number of faces, by turning around the edges through the old tetrahedra.
-    fn link_by_turning(&mut self) {
-        for (&(t, face), &number) in self.boundary.iter().zip(&self.created) {
-            for side in (0..4).filter(|&side| side != face as usize) {
-                if self.tetrahedra[number as usize].neighbours[side] != Delaunay::NONE {
-                    continue;
-                }
-                // The edge and the vertex `pivot` make the face that is crossed, opposite to vertex `exit`.
-                let (mut at, mut exit, mut pivot) = (t, side, face as usize);
-                let other = loop {
-                    let old = &self.tetrahedra[at as usize];
-                    let next = old.neighbours[exit];
-                    let vertex = old.vertices[pivot] & !INSIDE;
-                    let old = &self.tetrahedra[next as usize];
-                    if old.vertices[0] & INSIDE == 0 {
-                        break next;
-                    }
-                    (exit, pivot, at) = (position(&old.vertices, vertex), position(&old.neighbours, at), next);
-                };
-                self.tetrahedra[number as usize].neighbours[side] = other;
-                self.tetrahedra[other as usize].neighbours[pivot] = number;
-            }
-        }
     }
 }

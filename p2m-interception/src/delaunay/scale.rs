@@ -2,7 +2,7 @@
 
 #![allow(clippy::float_cmp, reason = "points are the same site if they are equal")]
 
-use super::BOUNDING;
+use crate::delaunay::tetrahedron::BOUNDING;
 use p2m_core::engine::curve::{along_the_curve, bounds};
 use p2m_core::engine::staged::RANGE;
 use p2m_core::engine::vector::power_of_two;

@@ -9,12 +9,18 @@
 //! Distances from corners to primitives are bounded by the filters of packets and by boxes, so the test keeps too much
 //! rather than too little.
 
-use crate::octree::cell::Corner;
 use nalgebra::Point3;
 use p2m_bvh::engine::packet::{self, LANES, Packet, at_most, smallest};
 use p2m_core::Aabb;
 use p2m_core::engine::simd::{InstructionSet, SimdKernel};
 use p2m_core::engine::vector::{V3, norm_squared, sub};
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Corner {
+    pub(crate) x: V3,
+    /// The dominator that comes from here; infinite where the scene has none.
+    pub(crate) y: V3,
+}
 
 /// Eight corners with all their distances to dominators.
 pub(crate) struct Dominators {

@@ -3,3 +3,5 @@
 
 pub(crate) mod block;
 pub(crate) mod corner_test;
+
+pub(crate) mod search;

@@ -1,21 +1,9 @@
 //! Cubes, their corners and the lattice of their children's corners.
 
+use crate::list::corner_test::Corner;
 use p2m_core::Aabb;
 use p2m_core::engine::vector::V3;
 
-/// The most halvings of the cube of the domain: a coordinate in the finest cells is a whole number of 32 bits, and
-/// corners are exact.
-pub(crate) const DEEPEST: u8 = 30;
-
-/// A corner of a cell, with a point of the scene near it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Corner {
-    pub(crate) x: V3,
-    /// The dominator that comes from here; infinite where the scene has none.
-    pub(crate) y: V3,
-}
-
-/// A cube with its corners; corner c lies above on axis k if bit k of c is set.
 #[derive(Clone, Copy)]
 pub(crate) struct Cube {
     pub(crate) low: V3,

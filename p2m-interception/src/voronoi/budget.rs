@@ -53,3 +53,18 @@ pub(crate) fn most_tetrahedra(vertices: usize) -> usize {
     // Four corners of each are counted in 32 bits.
     vertices.max(FEW).saturating_mul(EACH).min(u32::MAX as usize / 4)
 }
+
+/// How many sites there may be, and what a list may have.
+#[derive(Clone, Copy)]
+pub(crate) struct Limits<'a> {
+    /// By how much a dominator has to be nearer.
+    pub(crate) slack: f64,
+    /// Packets of a list.
+    pub(crate) most: usize,
+    /// Points that may be added.
+    pub(crate) added: usize,
+    /// Whether all threads are used.
+    pub(crate) parallel: bool,
+    /// What building may take.
+    pub(crate) allowance: &'a Allowance,
+}

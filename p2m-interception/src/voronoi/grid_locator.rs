@@ -9,7 +9,7 @@ use p2m_core::storage::{Array, LoadError, Reader, Writer};
 
 /// Sites by a grid of cells.
 #[derive(Clone, Debug)]
-pub(crate) struct Grid {
+struct Grid {
     low: V3,
     /// Cells in a unit of length.
     per_length: f64,
@@ -167,7 +167,9 @@ impl Hints {
             numbers.for_each(|(number, _)| cells[number] += 1);
         });
         near.cells = cells;
-        [&mut near, &mut far].into_iter().for_each(|grid| sites.fill(grid));
+        [&mut near, &mut far]
+            .into_iter()
+            .for_each(|grid| sites.isa.run(Fill { grid, fans: sites.fans, first: sites.first() }));
         Self { near, far }
     }
 
@@ -193,10 +195,10 @@ impl Hints {
 
 /// Fills a grid, whose cells hold how many sites are in them, there and back along each axis, so that every walk is
 /// short.
-pub(crate) struct Fill<'a> {
-    pub(crate) grid: &'a mut Grid,
-    pub(crate) fans: &'a Fans,
-    pub(crate) first: usize,
+struct Fill<'a> {
+    grid: &'a mut Grid,
+    fans: &'a Fans,
+    first: usize,
 }
 
 impl SimdKernel for Fill<'_> {

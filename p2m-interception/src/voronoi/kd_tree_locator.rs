@@ -1,6 +1,6 @@
 //! The paper's locator: a KD-tree of the sites.
 
-use crate::{Locator, LocatorSites};
+use crate::voronoi::locator::{Locator, LocatorSites};
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use std::sync::Arc;
 

@@ -1,7 +1,6 @@
 //! Where the walk to the cell of a query begins.
 
 use crate::delaunay::BOUNDING;
-use crate::voronoi::grid_locator::{Fill, Grid, Hints};
 use crate::voronoi::neighbours::Fans;
 use p2m_core::engine::simd::Isa;
 use p2m_core::engine::vector::V3;
@@ -24,46 +23,6 @@ pub trait Locator: Debug + Send + Sync {
 /// Makes the locator of an index from its sites: a function such as `KdTreeLocator::build`.
 pub type BuildLocator = fn(&LocatorSites<'_>) -> Arc<dyn Locator>;
 
-/// The locator of an index. Calls of the grid are direct, since it is the default.
-#[derive(Clone, Debug)]
-pub(crate) enum AnyLocator {
-    Grid(Hints),
-    Other(Arc<dyn Locator>),
-}
-
-impl AnyLocator {
-    #[inline(always)]
-    pub(crate) fn start(&self, place: &V3) -> Option<usize> {
-        match self {
-            Self::Grid(grid) => grid.start(place),
-            Self::Other(locator) => locator.start(place),
-        }
-    }
-
-    pub(crate) fn memory(&self) -> usize {
-        match self {
-            Self::Grid(grid) => grid.memory(),
-            Self::Other(locator) => locator.memory(),
-        }
-    }
-
-    /// Prefetches the memory that [`start`](Self::start) reads first.
-    #[inline(always)]
-    pub(crate) fn prefetch(&self, place: &V3) {
-        if let Self::Grid(grid) = self {
-            grid.prefetch(place);
-        }
-    }
-
-    /// Prefetches the memory that [`start`](Self::start) reads second.
-    #[inline(always)]
-    pub(crate) fn prefetch_more(&self, place: &V3) {
-        if let Self::Grid(grid) = self {
-            grid.prefetch_more(place);
-        }
-    }
-}
-
 /// Sites by their numbers, in the units that places are given in.
 #[derive(Clone, Copy)]
 pub struct LocatorSites<'a> {
@@ -85,10 +44,5 @@ impl LocatorSites<'_> {
     /// The places of the sites from the first one on.
     pub fn places(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
         self.fans.sites[BOUNDING..].iter().map(|site| site.place)
-    }
-
-    /// Sites to begin at in each cell of a grid.
-    pub(crate) fn fill(&self, grid: &mut Grid) {
-        self.isa.run(Fill { grid, fans: self.fans, first: BOUNDING });
     }
 }

@@ -6,48 +6,54 @@
 //! serves four lists: no flooding, no cutting of cells. Six far sites close the cells of the hull.
 
 pub(crate) mod adjacency;
+pub(crate) mod any_locator;
 pub(crate) mod budget;
+pub(crate) mod cell;
 pub(crate) mod cell_polytope;
 pub(crate) mod cells;
 pub(crate) mod circumsphere;
 pub(crate) mod compare_distances;
+pub(crate) mod corner_values;
+pub(crate) mod corners;
+pub(crate) mod crowded;
 pub(crate) mod feature_relevance;
 pub(crate) mod grid_locator;
 #[cfg(feature = "kiddo")]
 pub(crate) mod kd_tree_locator;
 pub(crate) mod list_filter;
 pub(crate) mod locator;
+pub(crate) mod neighbour_block;
 pub(crate) mod neighbours;
 pub(crate) mod query;
 #[cfg(feature = "rstar")]
 pub(crate) mod region_tree;
+pub(crate) mod saved;
+pub(crate) mod site;
 pub(crate) mod sites;
 
 pub use list_filter::{BuildListFilter, ListFilter, Region};
 pub use locator::{BuildLocator, Locator, LocatorSites};
 
-use crate::list::block::{self, Block};
+use crate::list::block::Block;
+use crate::list::search;
 use crate::options::{P2mOptions, P2mReport};
 use crate::partition::Partition;
 use crate::progress::{BuildStage, Progress, Teller};
-use crate::voronoi::budget::Allowance;
-use crate::voronoi::cells::{Cells, Lists};
+use crate::voronoi::any_locator::AnyLocator;
+use crate::voronoi::budget::{Allowance, Limits};
+use crate::voronoi::cell::Cells;
+use crate::voronoi::cells::Lists;
 use crate::voronoi::grid_locator::Hints;
 use crate::voronoi::list_filter::Filters;
-use crate::voronoi::locator::AnyLocator;
 use crate::voronoi::neighbours::Fans;
-use crate::voronoi::sites::{BOUNDING_DISTANCE, Limits, Sites};
+use crate::voronoi::sites::{BOUNDING_DISTANCE, Sites};
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
-use p2m_core::storage::{Array, LoadError, Reader, Saved, Writer};
+use p2m_core::storage::Array;
 use p2m_core::{Aabb, Isa, PrimitiveId, PrimitiveSet, Real};
 
-/// The list of a cell that the tree answers; else the number of its first block.
-pub(crate) const TREE: u32 = u32::MAX;
-/// The same for the cell of an auxiliary site, whose owner is the number of an anchor.
-pub(crate) const AUXILIARY: u32 = u32::MAX - 1;
 /// As many packets as a list can have.
 const LONGEST: usize = 2048;
 /// Where one of so many cells would be left to the tree, it answers everything.
@@ -72,7 +78,7 @@ pub struct Voronoi {
     pub(crate) filters: Filters,
     /// Of auxiliary sites points of the scene that are near.
     pub(crate) anchors: Array<V3>,
-    report: P2mReport,
+    pub(crate) report: P2mReport,
 }
 
 impl Voronoi {
@@ -155,7 +161,7 @@ impl Voronoi {
 
 impl Voronoi {
     /// The sites and the boxes that a locator is made from.
-    fn locator_sites(&self) -> LocatorSites<'_> {
+    pub(crate) fn locator_sites(&self) -> LocatorSites<'_> {
         let scaled = |p: V3| p.map(|x| x * self.per_unit);
         let own = padded(&vertex_bounds(&self.tree)).map(scaled);
         LocatorSites { fans: &self.fans, isa: self.tree.isa(), own, domain: [self.low, self.high].map(scaled) }
@@ -225,7 +231,7 @@ impl Partition for Voronoi {
 
     fn list(&self, point: &Point3<f64>) -> Option<Vec<PrimitiveId>> {
         let site = self.site_of(point).filter(|site| self.fans.sites[*site].has_list())?;
-        Some(block::primitives(&self.tree, self.blocks_of(site)))
+        Some(search::primitives(&self.tree, self.blocks_of(site)))
     }
 
     fn list_lengths(&self) -> Vec<usize> {
@@ -235,66 +241,5 @@ impl Partition for Voronoi {
 
     fn with_isa(self, isa: Isa) -> Self {
         Self { tree: self.tree.with_isa(isa), ..self }
-    }
-}
-
-/// What is no array.
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-struct Head {
-    per_unit: f64,
-    unit: f64,
-    slack: f64,
-    low: V3,
-    high: V3,
-    /// A [`P2mReport`].
-    report: [u64; 11],
-    /// Whether there are cells at all.
-    has_cells: u64,
-}
-
-impl Saved for Voronoi {
-    fn kind() -> String {
-        "p2m".to_owned()
-    }
-
-    fn save<'a>(&'a self, writer: &mut Writer<'a>) {
-        let has_cells = u64::from(self.locator.is_some());
-        let Self { per_unit, unit, slack, low, high, .. } = *self;
-        let head = Head { per_unit, unit, slack, low, high, report: self.report.into(), has_cells };
-        writer.put_copy("voronoi", &[head]);
-        writer.put("voronoi/lists", &self.blocks);
-        writer.put("voronoi/anchors", &self.anchors);
-        self.fans.save(writer);
-        match &self.locator {
-            Some(AnyLocator::Grid(grid)) => grid.save(writer),
-            Some(AnyLocator::Other(_)) => Hints::new(&self.locator_sites()).save_copy(writer),
-            None => {}
-        }
-        self.tree.save(writer);
-    }
-
-    fn load(reader: &Reader) -> Result<Self, LoadError> {
-        let Head { per_unit, unit, slack, low, high, report, has_cells } = reader.one("voronoi")?;
-        let locator = if has_cells == 0 { None } else { Some(AnyLocator::Grid(Hints::load(reader)?)) };
-        let fans = Fans::load(reader)?;
-        let blocks: Array<Block> = reader.array("voronoi/lists")?;
-        if blocks.len() < fans.sites.len() {
-            return Err(LoadError::Inconsistent { section: "voronoi/lists".to_owned() });
-        }
-        Ok(Self {
-            tree: PacketTree::load(reader)?,
-            per_unit,
-            unit,
-            slack,
-            low,
-            high,
-            fans,
-            locator,
-            blocks,
-            filters: Filters::default(),
-            anchors: reader.array("voronoi/anchors")?,
-            report: report.into(),
-        })
     }
 }

@@ -5,11 +5,13 @@
 //! the list, packets and vertices. Side by side every query takes a step and asks for what it reads next before the
 //! others take theirs.
 
-use crate::list::block::{self, Block, Place};
+use crate::list::block::{Block, Place};
+use crate::list::search;
 use crate::partition::{LookUp, SIDE_BY_SIDE};
+use crate::voronoi::Voronoi;
 use crate::voronoi::list_filter::{Filters, ListFilter};
-use crate::voronoi::neighbours::{Fans, Found, Site};
-use crate::voronoi::{AUXILIARY, Voronoi};
+use crate::voronoi::neighbours::{Fans, Found};
+use crate::voronoi::site::{AUXILIARY, Site};
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::nearest::{EvaluateFn, Search, SearchState, finish, finish_nearest};
@@ -182,7 +184,7 @@ impl<C: Collector> SimdKernel for InCell<'_, C> {
         }
         filter.hold(held, reach);
         let (first, rest) = (&index.blocks[found.site], &index.blocks[site.list as usize..]);
-        block::search::<I, C>(tree, first, rest, &in_frame(tree, &query), &mut filter);
+        search::search::<I, C>(tree, first, rest, &in_frame(tree, &query), &mut filter);
         filter.evaluate_waiting();
     }
 }
@@ -312,7 +314,7 @@ impl Voronoi {
         if let Some((packet, lane)) = Self::certain(found, site, place) {
             tree.leaves.packets[packet].prefetch_vertices(lane, &tree.leaves.vertices);
         } else if site.has_list() {
-            block::prefetch::<I>(tree, &self.blocks[found.site], &in_frame(tree, query));
+            search::prefetch::<I>(tree, &self.blocks[found.site], &in_frame(tree, query));
         }
     }
 }

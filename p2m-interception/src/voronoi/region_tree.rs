@@ -1,6 +1,6 @@
 //! The paper's filter of long lists: an R-tree of boxes around regions.
 
-use crate::{ListFilter, Region};
+use crate::voronoi::list_filter::{ListFilter, Region};
 use rstar::{AABB, RTree, RTreeObject};
 use std::sync::Arc;
 

@@ -1,0 +1,70 @@
+//! An octree in a file.
+
+use crate::octree::Octree;
+use crate::options::OctreeReport;
+use p2m_bvh::PacketTree;
+use p2m_core::engine::vector::V3;
+use p2m_core::storage::{LoadError, Reader, Saved, Writer};
+
+/// What is no array.
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Head {
+    low: V3,
+    per_length: f64,
+    resolution: f64,
+    work: u64,
+    lists: u64,
+    singles: u64,
+    trees: u64,
+    entries: u64,
+    depth: u64,
+    bytes: u64,
+    tree_bytes: u64,
+    root: u32,
+    unused: u32,
+}
+
+impl Saved for Octree {
+    fn kind() -> String {
+        "octree".to_owned()
+    }
+
+    fn save<'a>(&'a self, writer: &mut Writer<'a>) {
+        let OctreeReport { lists, singles, trees, entries, depth, bytes, tree_bytes, work, resolution } = self.report;
+        let [lists, singles, trees, entries, depth, bytes, tree_bytes] =
+            [lists, singles, trees, entries, depth, bytes, tree_bytes].map(|n| n as u64);
+        let Self { low, per_length, root, .. } = *self;
+        let head = Head {
+            low,
+            per_length,
+            resolution,
+            work,
+            lists,
+            singles,
+            trees,
+            entries,
+            depth,
+            bytes,
+            tree_bytes,
+            root,
+            unused: 0,
+        };
+        writer.put_copy("octree", &[head]);
+        writer.put("octree/codes", &self.rows);
+        writer.put("octree/lists", &self.blocks);
+        self.tree.save(writer);
+    }
+
+    #[allow(clippy::cast_possible_truncation, reason = "numbers to report")]
+    fn load(reader: &Reader) -> Result<Self, LoadError> {
+        let head: Head = reader.one("octree")?;
+        let Head { lists, singles, trees, entries, depth, bytes, tree_bytes, .. } = head;
+        let [lists, singles, trees, entries, depth, bytes, tree_bytes] =
+            [lists, singles, trees, entries, depth, bytes, tree_bytes].map(|n| n as usize);
+        let Head { low, per_length, resolution, work, root, .. } = head;
+        let report = OctreeReport { lists, singles, trees, entries, depth, bytes, tree_bytes, work, resolution };
+        let (rows, blocks) = (reader.array("octree/codes")?, reader.array("octree/lists")?);
+        Ok(Self { tree: PacketTree::load(reader)?, low, per_length, root, rows, blocks, report })
+    }
+}

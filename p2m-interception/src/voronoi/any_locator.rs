@@ -1,0 +1,46 @@
+//! The locator of an index.
+
+use crate::voronoi::grid_locator::Hints;
+use crate::voronoi::locator::Locator;
+use p2m_core::engine::vector::V3;
+use std::sync::Arc;
+
+/// The locator of an index. Calls of the grid are direct, since it is the default.
+#[derive(Clone, Debug)]
+pub(crate) enum AnyLocator {
+    Grid(Hints),
+    Other(Arc<dyn Locator>),
+}
+
+impl AnyLocator {
+    #[inline(always)]
+    pub(crate) fn start(&self, place: &V3) -> Option<usize> {
+        match self {
+            Self::Grid(grid) => grid.start(place),
+            Self::Other(locator) => locator.start(place),
+        }
+    }
+
+    pub(crate) fn memory(&self) -> usize {
+        match self {
+            Self::Grid(grid) => grid.memory(),
+            Self::Other(locator) => locator.memory(),
+        }
+    }
+
+    /// Prefetches the memory that [`start`](Self::start) reads first.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, place: &V3) {
+        if let Self::Grid(grid) = self {
+            grid.prefetch(place);
+        }
+    }
+
+    /// Prefetches the memory that [`start`](Self::start) reads second.
+    #[inline(always)]
+    pub(crate) fn prefetch_more(&self, place: &V3) {
+        if let Self::Grid(grid) = self {
+            grid.prefetch_more(place);
+        }
+    }
+}
