@@ -82,11 +82,11 @@ impl OctreeOptions {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct OctreeReport {
-    /// Cells with a list.
+    /// CellContext with a list.
     pub lists: usize,
-    /// Cells of which one primitive is the nearest throughout.
+    /// CellContext of which one primitive is the nearest throughout.
     pub singles: usize,
-    /// Cells that the tree answers: outside of the domain, or where a list would not be short.
+    /// CellContext that the tree answers: outside of the domain, or where a list would not be short.
     pub trees: usize,
     /// Packets in all lists.
     pub entries: usize,
@@ -138,7 +138,7 @@ impl PartialEq for FnPointer<BuildListFilter> {
 pub struct P2mOptions {
     /// How the packets of the tree are made, and whether all threads are used.
     pub splits: SplitOptions,
-    /// Lists of more packets are left to the tree: 96 by default. More than 2048 count as 2048.
+    /// VoronoiLists of more packets are left to the tree: 96 by default. More than 2048 count as 2048.
     pub max_list_packets: usize,
     /// At most so many sites are added for each vertex of a packet (one that several packets have counts several times),
     /// where many primitives are about as near as the nearest vertex: on long edges and wide faces, and in the middle
@@ -220,7 +220,7 @@ impl P2mOptions {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct P2mReport {
-    /// Cells with a list.
+    /// CellContext with a list.
     pub lists: usize,
     /// Those of them that have a filter.
     pub filtered: usize,

@@ -15,7 +15,7 @@ use p2m_core::{Best, Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
 ///
 /// Sealed: searches rest on proofs about the cells.
 #[allow(private_bounds, reason = "that is what seals it")]
-pub trait Partition: LookUp + Sized {
+pub trait Partition: CellQuery + Sized {
     /// How it is built.
     type Options: Default;
     /// What it is made of.
@@ -32,17 +32,17 @@ pub trait Partition: LookUp + Sized {
     /// Offers to `collector` every primitive of the set that it could want. `query` is finite.
     #[inline]
     fn search<T: Real, S: PrimitiveSet<T>, C: Collector>(&self, set: &S, query: &Point3<T>, collector: &mut C) {
-        self.look_up(to_f64_array(query), collector, &evaluation(set, query), finish);
+        self.query_with(to_f64_array(query), collector, &evaluation(set, query), finish);
     }
 
     /// The same for the nearest primitive.
     fn search_nearest<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
-        self.nearest(to_f64_array(query), best.minimum(), &evaluation(set, query));
+        self.query_nearest(to_f64_array(query), best.minimum(), &evaluation(set, query));
     }
 
     /// The same for what is near.
     fn search_near<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, near: &mut Near<'_>) {
-        self.near(to_f64_array(query), near, &evaluation(set, query));
+        self.query_near(to_f64_array(query), near, &evaluation(set, query));
     }
 
     /// The same for several queries, which may be answered side by side.
@@ -54,7 +54,7 @@ pub trait Partition: LookUp + Sized {
     ) {
         let evaluations = queries.each_ref().map(|query| evaluation(set, query));
         let evaluates = evaluations.each_ref().map(|evaluate| evaluate as EvaluateFn<'_, BestF64>);
-        self.nearest_of_several(&queries.each_ref().map(to_f64_array), best.each_mut().map(Best::minimum), evaluates);
+        self.query_several(&queries.each_ref().map(to_f64_array), best.each_mut().map(Best::minimum), evaluates);
     }
 
     /// The primitives of the list of the cell that a point is in, in ascending order: what a search in the cell may
@@ -87,10 +87,10 @@ pub trait Partition: LookUp + Sized {
 pub const SIDE_BY_SIDE: usize = 16;
 
 /// The way of a query to its cell and through its list.
-pub(crate) trait LookUp {
+pub(crate) trait CellQuery {
     /// Offers to a collector every primitive that it could want: from the list of the cell to one of nearest primitives, from the
     /// tree to others.
-    fn look_up<C: Collector>(
+    fn query_with<C: Collector>(
         &self,
         query: V3,
         collector: &mut C,
@@ -99,20 +99,20 @@ pub(crate) trait LookUp {
     );
 
     /// The same for the nearest one, in a function of its own: what is not generic is compiled once, in this crate.
-    fn nearest(&self, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>);
+    fn query_nearest(&self, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>);
 
     /// The same for what is near,
-    fn near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>);
+    fn query_near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>);
 
     /// and for the nearest ones of several queries.
-    fn nearest_of_several(
+    fn query_several(
         &self,
         queries: &[V3; SIDE_BY_SIDE],
         minimums: [&mut BestF64; SIDE_BY_SIDE],
         evaluates: [EvaluateFn<'_, BestF64>; SIDE_BY_SIDE],
     ) {
         for ((query, minimum), evaluate) in queries.iter().zip(minimums).zip(evaluates) {
-            self.nearest(*query, minimum, evaluate);
+            self.query_nearest(*query, minimum, evaluate);
         }
     }
 }

@@ -15,7 +15,7 @@ pub enum BuildStage {
     /// The packets that meet their circumscribed balls
     Balls,
     /// The lists of the cells
-    Lists,
+    VoronoiLists,
     /// What locates a query
     Locator,
     /// The cells of an octree with their lists
@@ -30,7 +30,7 @@ impl BuildStage {
             Self::Tree => "tree",
             Self::Delaunay => "delaunay",
             Self::Balls => "balls",
-            Self::Lists => "lists",
+            Self::VoronoiLists => "lists",
             Self::Locator => "locator",
             Self::Octree => "octree",
         }
@@ -47,12 +47,12 @@ pub struct Progress {
 }
 
 /// Tells somebody, from one thread.
-pub(crate) struct Teller<'a> {
+pub(crate) struct ProgressReporter<'a> {
     tell: &'a (dyn Fn(Progress) + Sync),
     at: Cell<Progress>,
 }
 
-impl<'a> Teller<'a> {
+impl<'a> ProgressReporter<'a> {
     /// The first stage begins.
     pub(crate) fn new(tell: &'a (dyn Fn(Progress) + Sync), stage: BuildStage) -> Self {
         let at = Progress { stage, part: 0.0 };
@@ -61,13 +61,13 @@ impl<'a> Teller<'a> {
     }
 
     /// Another stage begins.
-    pub(crate) fn begin(&self, stage: BuildStage) {
+    pub(crate) fn begin_stage(&self, stage: BuildStage) {
         self.at.set(Progress { stage, ..self.at.get() });
         (self.tell)(self.at.get());
     }
 
     /// The stage has come so far in its share of the whole, in percent.
-    pub(crate) fn reach(&self, [from, to]: [f64; 2], done: usize, all: usize) {
+    pub(crate) fn advance(&self, [from, to]: [f64; 2], done: usize, all: usize) {
         let part = (from + (to - from) * done as f64 / all as f64).floor() / 100.0;
         if part > self.at.get().part {
             self.at.set(Progress { part, ..self.at.get() });
@@ -94,11 +94,11 @@ impl<'a> Teller<'a> {
 pub struct StageTimes<C> {
     /// The time since some moment.
     clock: C,
-    seen: Mutex<Seen>,
+    recorded: Mutex<RecordedTimes>,
 }
 
 #[derive(Default)]
-struct Seen {
+struct RecordedTimes {
     times: Vec<(BuildStage, Duration)>,
     /// The stage that is being done, and when it began.
     current: Option<(BuildStage, Duration)>,
@@ -107,7 +107,7 @@ struct Seen {
 impl<C: Fn() -> Duration> StageTimes<C> {
     /// With a clock that tells the time since some moment, the same one each time.
     pub fn new(clock: C) -> Self {
-        Self { clock, seen: Mutex::default() }
+        Self { clock, recorded: Mutex::default() }
     }
 
     /// Ends one stage and begins another, if that is what is told. The clock is asked only then.
@@ -115,11 +115,11 @@ impl<C: Fn() -> Duration> StageTimes<C> {
     /// # Panics
     /// If the clock panicked.
     pub fn tell(&self, progress: Progress) {
-        let mut seen = self.seen.lock().expect("a clock that did not panic");
-        if seen.current.is_none_or(|(stage, _)| stage != progress.stage) {
+        let mut recorded = self.recorded.lock().expect("a clock that did not panic");
+        if recorded.current.is_none_or(|(stage, _)| stage != progress.stage) {
             let now = (self.clock)();
-            seen.end(now);
-            seen.current = Some((progress.stage, now));
+            recorded.end(now);
+            recorded.current = Some((progress.stage, now));
         }
     }
 
@@ -129,13 +129,13 @@ impl<C: Fn() -> Duration> StageTimes<C> {
     /// # Panics
     /// If the clock panicked.
     pub fn finish(self) -> Vec<(BuildStage, Duration)> {
-        let mut seen = self.seen.into_inner().expect("a clock that did not panic");
-        seen.end((self.clock)());
-        seen.times
+        let mut recorded = self.recorded.into_inner().expect("a clock that did not panic");
+        recorded.end((self.clock)());
+        recorded.times
     }
 }
 
-impl Seen {
+impl RecordedTimes {
     fn end(&mut self, now: Duration) {
         let Some((stage, began)) = self.current.take() else { return };
         let time = now.saturating_sub(began);
@@ -160,13 +160,13 @@ mod tests {
             now.set(time);
             times.tell(Progress { stage, part: 0.0 });
         }
-        for (time, stage) in [(9, BuildStage::Delaunay), (11, BuildStage::Lists)] {
+        for (time, stage) in [(9, BuildStage::Delaunay), (11, BuildStage::VoronoiLists)] {
             now.set(time);
             times.tell(Progress { stage, part: 0.5 });
         }
         now.set(20);
         let expected =
-            [(BuildStage::Tree, 2), (BuildStage::Delaunay, 3), (BuildStage::Balls, 5), (BuildStage::Lists, 9)];
+            [(BuildStage::Tree, 2), (BuildStage::Delaunay, 3), (BuildStage::Balls, 5), (BuildStage::VoronoiLists, 9)];
         assert_eq!(times.finish(), expected.map(|(stage, time)| (stage, Duration::from_secs(time))));
         assert!(StageTimes::new(|| Duration::ZERO).finish().is_empty());
     }

@@ -41,7 +41,7 @@ pub enum Invalid {
     },
     /// The outer faces are not the eight of the octahedron.
     #[error("the outer faces are not those of the bounding sites")]
-    Hull,
+    CellPolytope,
     /// A site that is no vertex.
     #[error("site {site} is not a vertex of any tetrahedron")]
     Unused {
@@ -55,7 +55,7 @@ impl Delaunay {
     /// neighbours share faces, no vertex of a neighbour is inside a sphere, the outer faces are those of the
     /// octahedron, and every site is a vertex.
     ///
-    /// That is enough. The number of tetrahedra over a point off all faces does not change across inner faces, which
+    /// That is enough. The number of tetrahedra over a point off all faces does not change opposite_triangles inner faces, which
     /// have one on either side, so it is the same everywhere in the octahedron: one, as it is one next to an outer
     /// face, of which there are not two. So they fill it without overlap, and numbers of faces, edges and vertices obey
     /// Euler's formula. And where every face is locally Delaunay, all spheres are empty \[Delaunay1934\].
@@ -84,9 +84,9 @@ impl Delaunay {
             for (k, next) in self.neighbours[i].into_iter().enumerate() {
                 let face = FACES[k].map(|v| vertices[v]);
                 if next == Self::NONE {
-                    let octant = octant(face).ok_or(Invalid::Hull)?;
+                    let octant = octant(face).ok_or(Invalid::CellPolytope)?;
                     if std::mem::replace(&mut outer[octant], true) {
-                        return Err(Invalid::Hull);
+                        return Err(Invalid::CellPolytope);
                     }
                     continue;
                 }
@@ -97,7 +97,7 @@ impl Delaunay {
             }
         }
         if outer.contains(&false) {
-            return Err(Invalid::Hull);
+            return Err(Invalid::CellPolytope);
         }
         used.iter().position(|used| !used).map_or(Ok(()), |site| Err(Invalid::Unused { site }))
     }

@@ -2,7 +2,7 @@
 
 use crate::delaunay::tetrahedron::{NO_NEIGHBOUR, Tetrahedron};
 
-/// Leaves out the places of removed tetrahedra and sorts the others by the last of their vertices, so that what is near
+/// Leaves out the positions of removed tetrahedra and sorts the others by the last of their vertices, so that what is near
 /// on the curve is near in memory. Vertices and neighbours.
 pub(crate) fn compact(tetrahedra: Vec<Tetrahedron>, sites: usize) -> (Vec<[u32; 4]>, Vec<[u32; 4]>) {
     let last_vertex = |t: &Tetrahedron| t.vertices.into_iter().fold(0, u32::max) as usize;
@@ -16,17 +16,18 @@ pub(crate) fn compact(tetrahedra: Vec<Tetrahedron>, sites: usize) -> (Vec<[u32; 
     for n in &mut next {
         (*n, total) = (total, total + *n);
     }
-    let mut places = vec![NO_NEIGHBOUR; tetrahedra.len()];
+    let mut positions = vec![NO_NEIGHBOUR; tetrahedra.len()];
     let mut vertices = vec![[0; 4]; total as usize];
-    for (place, t) in places.iter_mut().zip(&tetrahedra).filter(|(_, t)| alive(t)) {
+    for (new_number, t) in positions.iter_mut().zip(&tetrahedra).filter(|(_, t)| alive(t)) {
         let next = &mut next[last_vertex(t)];
-        *place = *next;
+        *new_number = *next;
         vertices[*next as usize] = t.vertices;
         *next += 1;
     }
     let mut neighbours = vec![[NO_NEIGHBOUR; 4]; total as usize];
-    for (place, t) in places.iter().zip(&tetrahedra).filter(|(_, t)| alive(t)) {
-        neighbours[*place as usize] = t.neighbours.map(|n| places.get(n as usize).copied().unwrap_or(NO_NEIGHBOUR));
+    for (new_number, t) in positions.iter().zip(&tetrahedra).filter(|(_, t)| alive(t)) {
+        neighbours[*new_number as usize] =
+            t.neighbours.map(|n| positions.get(n as usize).copied().unwrap_or(NO_NEIGHBOUR));
     }
     (vertices, neighbours)
 }

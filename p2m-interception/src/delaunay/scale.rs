@@ -1,4 +1,4 @@
-//! From points to sites: scaled, sorted, each once, with the six around them.
+//! From points to sites: scaled, sorted, each once, with the six bounding_sites them.
 
 #![allow(clippy::float_cmp, reason = "points are the same site if they are equal")]
 
@@ -25,7 +25,7 @@ pub(crate) fn sites(points: &[V3], reach: f64) -> Sites {
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
     along_the_curve(&scaled, &mut order);
     let mut sites = Vec::with_capacity(BOUNDING + points.len());
-    sites.extend(around(&scaled, reach));
+    sites.extend(bounding_sites(&scaled, reach));
     let mut site_of = vec![0; points.len()];
     for i in order {
         let p = scaled[i as usize];
@@ -45,7 +45,7 @@ fn scale(x: f64, unit: i32) -> f64 {
     if scaled.abs() < *RANGE.start() { 0.0 } else { scaled }
 }
 
-/// The six sites around points of size below 2: c - D and c + D on each axis. c and D are multiples of a power of two,
+/// The six sites bounding_sites points of size below 2: c - D and c + D on each axis. c and D are multiples of a power of two,
 /// so that the six are exact and equally far from c, and tests that involve them often need few bits.
 ///
 /// All points are strictly inside: |p - c|_1 <= 3h + 2 steps < D, with two steps for the rounding of c and of h, which
@@ -54,7 +54,7 @@ fn scale(x: f64, unit: i32) -> f64 {
 /// The condition D (D - 2M) > 3h^2 + 6Mh for queries within M of the centre (docs of [`super::Delaunay::new`]) survives
 /// the rounding: with c off by half a step on each axis, and D larger by three, the left grows by 5D - 6M steps at
 /// least, the right by 6h + 3M, which is less as the condition has D > M + sqrt(M^2 + 6Mh + 3h^2).
-fn around(points: &[V3], reach: f64) -> [V3; BOUNDING] {
+fn bounding_sites(points: &[V3], reach: f64) -> [V3; BOUNDING] {
     let [low, high] = if points.is_empty() { [[0.0; 3]; 2] } else { bounds(points.iter().copied()) };
     let half: V3 = std::array::from_fn(|k| 0.5 * high[k] - 0.5 * low[k]);
     let half = match half.into_iter().fold(0.0, larger) {
@@ -62,7 +62,7 @@ fn around(points: &[V3], reach: f64) -> [V3; BOUNDING] {
         half => half,
     };
     let distance = reach * half;
-    // Coordinates are below 2^e; the sites around are below 2^(e + 1), and multiples of 2^(e - 50).
+    // Coordinates are below 2^e; the sites bounding_sites are below 2^(e + 1), and multiples of 2^(e - 50).
     let e = exponent(larger(distance, 1.0)) + 1;
     let step = power_of_two((exponent(distance) - 9).max(e - 50));
     let distance = ((distance / step).ceil() + 3.0) * step;

@@ -212,7 +212,7 @@ fn the_reach_is_that_asked_for() {
             2 => uniform(random, 8).into_iter().map(|p| p.map(|x| 1.0 + 1e-15 * x)).collect(),
             _ => grid(2, 1.0),
         };
-        for reach in [Delaunay::LEAST_REACH, 4.28, REACH, 1000.0, Delaunay::LARGEST_REACH] {
+        for reach in [Delaunay::MIN_REACH, 4.28, REACH, 1000.0, Delaunay::MAX_REACH] {
             let delaunay = Delaunay::new(&points, reach).unwrap();
             assert_eq!(delaunay.check(), Ok(()));
             let [low, high] = p2m_core::engine::curve::bounds(delaunay.sites()[BOUNDING..].iter().copied());
@@ -256,7 +256,7 @@ fn the_check_finds_what_is_broken() {
     assert!(neighbour(broken(&|d| d.neighbours[inner].swap(0, 1))));
     assert!(neighbour(broken(&|d| d.neighbours[inner][2] = u32::MAX - 1)));
     assert!(neighbour(broken(&|d| d.neighbours[inner][2] = inner as u32)));
-    assert_eq!(broken(&|d| d.neighbours[inner][2] = Delaunay::NONE), Invalid::Hull);
+    assert_eq!(broken(&|d| d.neighbours[inner][2] = Delaunay::NONE), Invalid::CellPolytope);
     assert!(neighbour(broken(&|d| d.neighbours[outer][vertex] = inner as u32)));
     assert_eq!(broken(&|d| d.tetrahedra[inner].swap(0, 1)), Invalid::Orientation { tetrahedron: inner });
     assert_eq!(broken(&|d| d.tetrahedra[inner][0] = u32::MAX), Invalid::Orientation { tetrahedron: inner });
@@ -264,7 +264,10 @@ fn the_check_finds_what_is_broken() {
     let unused = good.sites().len();
     assert_eq!(broken(&|d| d.sites.push([0.0; 3])), Invalid::Unused { site: unused });
     // Without the tetrahedra, the octahedron has no faces.
-    assert_eq!(broken(&|d| [&mut d.tetrahedra, &mut d.neighbours].into_iter().for_each(Vec::clear)), Invalid::Hull);
+    assert_eq!(
+        broken(&|d| [&mut d.tetrahedra, &mut d.neighbours].into_iter().for_each(Vec::clear)),
+        Invalid::CellPolytope
+    );
     // A site moved a little, into a sphere, where it is near one.
     let moved = |site: usize| {
         let mut delaunay = good.clone();

@@ -36,16 +36,16 @@ pub struct Work {
 pub(crate) const FACES: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
 
 /// In the first vertex of a tetrahedron: in the cavity,
-pub(crate) const INSIDE: u32 = 1 << 31;
+pub(crate) const IN_CAVITY: u32 = 1 << 31;
 /// or tested, and not in it. Numbers of sites are below.
-pub(crate) const OUTSIDE: u32 = 1 << 30;
+pub(crate) const NOT_IN_CAVITY: u32 = 1 << 30;
 
 /// Half a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct Tetrahedron {
-    /// In place of a removed one the first is [`NO_NEIGHBOUR`]. While a cavity is found, the first has [`INSIDE`] or
-    /// [`OUTSIDE`] besides, once that is known.
+    /// In place of a removed one the first is [`NO_NEIGHBOUR`]. While a cavity is found, the first has [`IN_CAVITY`] or
+    /// [`NOT_IN_CAVITY`] besides, once that is known.
     pub(crate) vertices: [u32; 4],
     /// Across the face opposite to each vertex.
     pub(crate) neighbours: [u32; 4],
@@ -53,7 +53,7 @@ pub(crate) struct Tetrahedron {
 
 /// What `number` is the index of; it occurs.
 #[inline(always)]
-pub(crate) fn position(of: &[u32; 4], number: u32) -> usize {
+pub(crate) fn index_in(of: &[u32; 4], number: u32) -> usize {
     // Without branches: which it is cannot be predicted.
     usize::from(of[1] == number) + 2 * usize::from(of[2] == number) + 3 * usize::from(of[3] == number)
 }

@@ -21,7 +21,7 @@ pub enum DelaunayError {
         len: usize,
     },
     /// The bounding sites are too near or too far.
-    #[error("a reach of {reach} is not from {} to {}", Delaunay::LEAST_REACH, Delaunay::LARGEST_REACH)]
+    #[error("a reach of {reach} is not from {} to {}", Delaunay::MIN_REACH, Delaunay::MAX_REACH)]
     Reach {
         /// The reach that was asked for.
         reach: f64,
@@ -43,19 +43,19 @@ impl Delaunay {
     /// In place of a neighbour: the face is one of the octahedron.
     pub const NONE: u32 = NO_NEIGHBOUR;
     /// The nearest that bounding sites may be: the octahedron contains the box of the points.
-    pub const LEAST_REACH: f64 = 3.0;
+    pub const MIN_REACH: f64 = 3.0;
     /// The farthest.
-    pub const LARGEST_REACH: f64 = 1_048_576.0;
-    /// The most points.
+    pub const MAX_REACH: f64 = 1_048_576.0;
+    /// The max_tetrahedra points.
     pub const MAX_POINTS: usize = (1 << 30) - BOUNDING;
 
     /// Triangulates any finite points; equal ones become one site (0.0 == -0.0). No points have the four tetrahedra of
     /// the octahedron.
     ///
     /// `reach` is the distance of the bounding sites from the centre of the points' box, in halves of its largest side;
-    /// a box without size counts as one with a side of twice [`unit`](Self::unit). It is rounded up by at most 1 %, or,
+    /// a box without size counts as one with a side of twice [`unit`](Self::unit). It is rounded up by at max_tetrahedra 1 %, or,
     /// for boxes that are small beside their coordinates, to some 2^-46 of those. From
-    /// [`LEAST_REACH`](Self::LEAST_REACH) on, all points are strictly inside the octahedron and their Voronoi cells are
+    /// [`MIN_REACH`](Self::MIN_REACH) on, all points are strictly inside the octahedron and their Voronoi cells are
     /// bounded. No bounding site is the nearest site for queries in the box scaled by s about its centre if the reach R
     /// obeys R (R - 2 s) > 3 + 6 s: 22.78 for s = 10, 4.28 for s = 1.05.
     ///
@@ -70,15 +70,15 @@ impl Delaunay {
         Self::within(points, reach, Self::NONE as usize)
     }
 
-    /// The same with at most `most` tetrahedra at a time and eight times as many in all, most of which go again: points in
+    /// The same with at max_tetrahedra `max_tetrahedra` tetrahedra at a time and eight times as many in all, max_tetrahedra of which go again: points in
     /// space have seven each, and 30 are made for each (observed); points on two skew lines have a quarter of the square of
     /// their number.
     ///
     /// # Errors
     /// As [`new`](Self::new), and [`DelaunayError::TooMany`] for more than that, as soon as it is known.
-    pub fn within(points: &[[f64; 3]], reach: f64, most: usize) -> Result<Self, DelaunayError> {
+    pub fn within(points: &[[f64; 3]], reach: f64, max_tetrahedra: usize) -> Result<Self, DelaunayError> {
         let too_many = DelaunayError::TooMany { len: points.len() };
-        if !(Self::LEAST_REACH..=Self::LARGEST_REACH).contains(&reach) {
+        if !(Self::MIN_REACH..=Self::MAX_REACH).contains(&reach) {
             return Err(DelaunayError::Reach { reach });
         }
         if let Some(index) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
@@ -88,7 +88,7 @@ impl Delaunay {
             return Err(too_many);
         }
         let scale::Sites { sites, unit, site_of } = scale::sites(points, reach);
-        let mut insertion = Insertion::new(&sites, most);
+        let mut insertion = Insertion::new(&sites, max_tetrahedra);
         if !insertion.insert_all(order::rounds(BOUNDING..sites.len())) {
             return Err(too_many);
         }
@@ -127,7 +127,7 @@ impl Delaunay {
         &self.tetrahedra
     }
 
-    /// Of each tetrahedron, the ones across the faces opposite to its vertices, or [`NONE`](Self::NONE).
+    /// Of each tetrahedron, the ones opposite_triangles the faces opposite to its vertices, or [`NONE`](Self::NONE).
     #[must_use]
     pub fn neighbours(&self) -> &[[u32; 4]] {
         &self.neighbours

@@ -1,6 +1,6 @@
 //! Interception lists: blocks of up to eight packets, with bounds on their distances and the lanes that matter.
 //!
-//! A block bounds the distances to its packets from below in one of two ways, whichever rules out more of them in its
+//! A block bounds the distances to its packets from below in one of two ways, whichever rules out following of them in its
 //! cell:
 //!
 //! - by *boxes*, as a node of a tree does: best where the cell is as near as it is large;
@@ -16,10 +16,10 @@ use p2m_core::engine::simd::Lanes;
 use p2m_core::engine::vector::V3;
 
 /// Blocks refer to cells of at most this level: a coordinate in cells of this level is a whole number of 32 bits.
-pub(crate) const DEEPEST: u8 = 30;
+pub(crate) const MAX_LEVEL: u8 = 30;
 
 /// Packets of a block.
-pub(crate) const WIDTH: usize = 8;
+pub(crate) const BLOCK_WIDTH: usize = 8;
 
 /// A packet of a list: which lanes can be the answer, a box around these, and f at the corners of the cell.
 #[derive(Clone, Copy, Debug)]
@@ -32,23 +32,23 @@ pub(crate) struct Entry {
 
 /// How a block bounds distances.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Bounds {
+pub(crate) enum BoundKind {
     Boxes,
-    /// By corners of a cell of this level, with a reference point y that [`reference`] has rounded.
-    Corners {
+    /// By corners of a cell of this level, with a round_reference point y that [`round_reference`] has rounded.
+    CellCorners {
         level: u8,
         y: V3,
     },
 }
 
 /// The level of blocks that have boxes.
-const BOXES: u8 = u8::MAX;
+const LEVEL_OF_BOXES: u8 = u8::MAX;
 /// Reference points are multiples of this: 16 bits reach to 4, where the frame of a scene ends.
-const REFERENCE: f64 = 1.0 / 8192.0;
+const REFERENCE_UNIT: f64 = 1.0 / 8192.0;
 
 /// The nearest point that a block can have as y.
-pub(crate) fn reference(y: V3) -> V3 {
-    y.map(|x| (x / REFERENCE).round().clamp(-32768.0, 32767.0) * REFERENCE)
+pub(crate) fn round_reference(y: V3) -> V3 {
+    y.map(|x| (x / REFERENCE_UNIT).round().clamp(-32768.0, 32767.0) * REFERENCE_UNIT)
 }
 
 /// Eight packets in two cache lines.
@@ -57,20 +57,20 @@ pub(crate) fn reference(y: V3) -> V3 {
 pub(crate) struct Block {
     /// For corners: row i has f at corner i. For boxes: low and high corners, row by row, and the origin in the last
     /// two rows.
-    bounds: [[u8; WIDTH]; 8],
-    pub(crate) packets: [u32; WIDTH],
-    pub(crate) lanes: [u16; WIDTH],
+    bounds: [[u8; BLOCK_WIDTH]; 8],
+    pub(crate) packets: [u32; BLOCK_WIDTH],
+    pub(crate) lanes: [u16; BLOCK_WIDTH],
     y: [i16; 3],
     /// What a byte of bounds is: a power of two.
     exponent: i8,
-    /// Of the cell; [`BOXES`] for boxes.
+    /// Of the cell; [`LEVEL_OF_BOXES`] for boxes.
     level: u8,
     /// What f is where its byte is 0.
     base: f32,
     /// Entries in use.
     pub(crate) len: u8,
     /// How many blocks of the same list follow.
-    pub(crate) more: u8,
+    pub(crate) following: u8,
     unused: [u8; 2],
 }
 
@@ -78,7 +78,7 @@ const _: () = assert!(size_of::<Block>() == 128);
 
 /// A query, as blocks need it.
 #[derive(Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct BlockQuery {
     pub(crate) rounded: Rounded,
     /// In the frame.
     pub(crate) local: V3,
@@ -88,17 +88,17 @@ pub(crate) struct Place {
 
 impl Block {
     /// The blocks of a list, of at most 256 times 8 entries.
-    pub(crate) fn of_list(entries: &[Entry], bounds: Bounds) -> Vec<Self> {
+    pub(crate) fn from_list(entries: &[Entry], bounds: BoundKind) -> Vec<Self> {
         let mut blocks: Vec<Self> = entries
-            .chunks(WIDTH)
+            .chunks(BLOCK_WIDTH)
             .map(|entries| match bounds {
-                Bounds::Boxes => Self::of_boxes(entries),
-                Bounds::Corners { level, y } => Self::of_corners(entries, level, y),
+                BoundKind::Boxes => Self::from_boxes(entries),
+                BoundKind::CellCorners { level, y } => Self::from_corners(entries, level, y),
             })
             .collect();
-        let count = blocks.len();
+        let primitive_count = blocks.len();
         for (i, block) in blocks.iter_mut().enumerate() {
-            block.more = u8::try_from(count - 1 - i).expect("few blocks");
+            block.following = u8::try_from(primitive_count - 1 - i).expect("few blocks");
         }
         blocks
     }
@@ -106,15 +106,15 @@ impl Block {
     #[allow(clippy::cast_possible_truncation, reason = "at most eight")]
     fn new(entries: &[Entry], level: u8) -> Self {
         let mut block = Self {
-            bounds: [[0; WIDTH]; 8],
-            packets: [entries[0].packet; WIDTH],
-            lanes: [0; WIDTH],
+            bounds: [[0; BLOCK_WIDTH]; 8],
+            packets: [entries[0].packet; BLOCK_WIDTH],
+            lanes: [0; BLOCK_WIDTH],
             y: [0; 3],
             exponent: 0,
             level,
             base: 0.0,
             len: entries.len() as u8,
-            more: 0,
+            following: 0,
             unused: [0; 2],
         };
         for (i, entry) in entries.iter().enumerate() {
@@ -124,7 +124,7 @@ impl Block {
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounded outwards within the range")]
-    fn of_boxes(entries: &[Entry]) -> Self {
+    fn from_boxes(entries: &[Entry]) -> Self {
         let mut low = [f64::INFINITY; 3];
         let mut high = [f64::NEG_INFINITY; 3];
         for entry in entries {
@@ -142,12 +142,13 @@ impl Block {
         }
         let unit = 2f64.powi(exponent);
         let origin = low.map(|x| (x / unit).floor() * unit);
-        let mut block = Self::new(entries, BOXES);
+        let mut block = Self::new(entries, LEVEL_OF_BOXES);
         block.exponent = exponent as i8;
         for (k, x) in origin.into_iter().enumerate() {
             block.bounds.as_flattened_mut()[48 + 4 * k..][..4].copy_from_slice(&(x as f32).to_le_bytes());
         }
-        (block.bounds[0], block.bounds[1], block.bounds[2]) = ([255; WIDTH], [255; WIDTH], [255; WIDTH]);
+        (block.bounds[0], block.bounds[1], block.bounds[2]) =
+            ([255; BLOCK_WIDTH], [255; BLOCK_WIDTH], [255; BLOCK_WIDTH]);
         for (i, entry) in entries.iter().enumerate() {
             for (k, origin) in origin.iter().enumerate() {
                 block.bounds[k][i] = ((f64::from(entry.bounds[0][k]) - origin) / unit).floor() as u8;
@@ -158,7 +159,7 @@ impl Block {
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounded down within the range")]
-    fn of_corners(entries: &[Entry], level: u8, y: V3) -> Self {
+    fn from_corners(entries: &[Entry], level: u8, y: V3) -> Self {
         let all = || entries.iter().flat_map(|entry| entry.f);
         let least = all().fold(f64::INFINITY, f64::min);
         let most = all().fold(f64::NEG_INFINITY, f64::max);
@@ -175,9 +176,9 @@ impl Block {
         let mut block = Self::new(entries, level);
         block.exponent = exponent as i8;
         block.base = base;
-        assert_eq!(y.map(f64::to_bits), reference(y).map(f64::to_bits), "a point that blocks can have");
-        block.y = y.map(|x| (x / REFERENCE) as i16);
-        block.bounds = [[255; WIDTH]; 8];
+        assert_eq!(y.map(f64::to_bits), round_reference(y).map(f64::to_bits), "a point that blocks can have");
+        block.y = y.map(|x| (x / REFERENCE_UNIT) as i16);
+        block.bounds = [[255; BLOCK_WIDTH]; 8];
         for (i, entry) in entries.iter().enumerate() {
             for (row, f) in block.bounds.iter_mut().zip(entry.f) {
                 row[i] = ((f - least) / unit).floor().clamp(0.0, 255.0) as u8;
@@ -190,9 +191,9 @@ impl Block {
     /// anything.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounding is allowed for")]
-    pub(crate) fn lower_bounds<L: Lanes>(&self, place: &Place) -> L {
+    pub(crate) fn lower_bounds<L: Lanes>(&self, place: &BlockQuery) -> L {
         let unit = f32::from_bits(((i32::from(self.exponent) + 127) as u32) << 23);
-        if self.level == BOXES {
+        if self.level == LEVEL_OF_BOXES {
             let bytes = self.bounds.as_flattened();
             let mut sum = L::splat(0.0);
             for k in 0..3 {
@@ -203,8 +204,8 @@ impl Block {
             }
             return sum;
         }
-        let way = [0, 1, 2].map(|k: usize| place.local[k] - f64::from(self.y[k]) * REFERENCE);
-        let square = (way[0] * way[0] + way[1] * way[1] + way[2] * way[2]) as f32;
+        let offset = [0, 1, 2].map(|k: usize| place.local[k] - f64::from(self.y[k]) * REFERENCE_UNIT);
+        let square = (offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]) as f32;
         let [x, y, z] = place.weights(self.level);
         let (z0, z1) = ((1.0 - z) * unit, z * unit);
         let (w00, w10, w01, w11) = ((1.0 - y) * z0, y * z0, (1.0 - y) * z1, y * z1);
@@ -222,17 +223,17 @@ impl Block {
 
 impl Block {
     /// How many primitives it has.
-    pub(crate) fn count(&self) -> usize {
+    pub(crate) fn primitive_count(&self) -> usize {
         self.lanes[..usize::from(self.len)].iter().map(|lanes| lanes.count_ones() as usize).sum()
     }
 }
 
-impl Place {
+impl BlockQuery {
     /// Where the query is in its cell of a level, from 0 to 1 on each axis.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "fewer than 2^30 cells")]
     fn weights(&self, level: u8) -> [f32; 3] {
-        let shift = DEEPEST - level;
+        let shift = MAX_LEVEL - level;
         let per_side = f64::from_bits((1023 - u64::from(shift)) << 52);
         let part = |x: f64| {
             let x = x * per_side;
@@ -248,13 +249,13 @@ mod tests {
     use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel};
     use rand::{Rng, RngExt};
 
-    struct Bound<'a>(&'a Block, &'a Place);
+    struct Bound<'a>(&'a Block, &'a BlockQuery);
 
     impl SimdKernel for Bound<'_> {
-        type Output = [f32; WIDTH];
+        type Output = [f32; BLOCK_WIDTH];
         #[inline(always)]
-        fn run<I: InstructionSet>(self) -> [f32; WIDTH] {
-            let mut bounds = [0.0; WIDTH];
+        fn run<I: InstructionSet>(self) -> [f32; BLOCK_WIDTH] {
+            let mut bounds = [0.0; BLOCK_WIDTH];
             self.0.lower_bounds::<I::Eight>(self.1).store(&mut bounds);
             bounds
         }
@@ -269,7 +270,7 @@ mod tests {
     }
 
     /// Sets of points in the frame, near and far from cells of all sizes, bounded in both ways: no bound exceeds the
-    /// distance by more than searches allow for, and that of a single point by the corners is the distance, but for
+    /// distance by following than searches allow for, and that of a single point by the corners is the distance, but for
     /// the bytes.
     #[test]
     fn bounds_never_exceed_the_distance_and_corners_tell_that_of_a_point() {
@@ -284,16 +285,16 @@ mod tests {
             let low = number.map(|n| -8.0 + f64::from(n) * side);
             let corner =
                 |i: usize| -> V3 { std::array::from_fn(|k| low[k] + if i >> k & 1 == 1 { side } else { 0.0 }) };
-            let count = rng.random_range(1..=WIDTH);
+            let primitive_count = rng.random_range(1..=BLOCK_WIDTH);
             let centre = point(&mut rng, &[0.0; 3], 1.0);
             let spread = 2f64.powi(rng.random_range(-12..0));
-            let sets: Vec<Vec<V3>> = (0..count)
+            let sets: Vec<Vec<V3>> = (0..primitive_count)
                 .map(|_| {
                     let around = point(&mut rng, &centre, spread);
                     (0..rng.random_range(1..=3)).map(|_| point(&mut rng, &around, spread * 0.3)).collect()
                 })
                 .collect();
-            let y = reference(sets[0][0]);
+            let y = round_reference(sets[0][0]);
             let least = |q: &V3, set: &[V3]| set.iter().map(|p| square(q, p)).fold(f64::INFINITY, f64::min);
             let entries: Vec<Entry> = sets
                 .iter()
@@ -307,9 +308,9 @@ mod tests {
                     Entry { packet, lanes: 1, bounds: [low, high], f }
                 })
                 .collect();
-            for bounds in [Bounds::Boxes, Bounds::Corners { level, y }] {
-                let blocks = Block::of_list(&entries, bounds);
-                assert_eq!((blocks.len(), blocks[0].len, blocks[0].more), (1, count as u8, 0));
+            for bounds in [BoundKind::Boxes, BoundKind::CellCorners { level, y }] {
+                let blocks = Block::from_list(&entries, bounds);
+                assert_eq!((blocks.len(), blocks[0].len, blocks[0].following), (1, primitive_count as u8, 0));
                 for _ in 0..4 {
                     let part = [0; 3].map(|_| match rng.random_range(0..6) {
                         0 => 0.0,
@@ -317,15 +318,15 @@ mod tests {
                         _ => rng.random::<f64>(),
                     });
                     let q: V3 = std::array::from_fn(|k| low[k] + part[k] * side);
-                    let cells = q.map(|x| (x + 8.0) / 16.0 * f64::from(1u32 << DEEPEST));
-                    let place = Place { rounded: Rounded::of(q), local: q, cells };
+                    let cells = q.map(|x| (x + 8.0) / 16.0 * f64::from(1u32 << MAX_LEVEL));
+                    let place = BlockQuery { rounded: Rounded::of(q), local: q, cells };
                     for isa in Isa::available() {
                         let found = isa.run(Bound(&blocks[0], &place));
                         for (set, found) in sets.iter().zip(found) {
                             let (exact, found) = (least(&q, set), f64::from(found));
                             let allowed = exact * (1.0 + 2f64.powi(-20)) + 2f64.powi(-120);
                             assert!(found <= allowed, "{isa}, round {round}: {found} for {exact}, {bounds:?} {q:?}");
-                            if bounds != Bounds::Boxes && set.len() == 1 {
+                            if bounds != BoundKind::Boxes && set.len() == 1 {
                                 compared += 1;
                                 // Two bytes, or what f32 loses of the square.
                                 let byte = 2f64.powi(i32::from(blocks[0].exponent));
@@ -346,8 +347,8 @@ mod tests {
     fn lists_of_several_blocks_know_how_many_follow() {
         let entry = |packet| Entry { packet, lanes: 3, bounds: [[0.0; 3], [0.1; 3]], f: [0.5; 8] };
         let entries: Vec<Entry> = (0..19).map(entry).collect();
-        let blocks = Block::of_list(&entries, Bounds::Boxes);
-        assert_eq!(blocks.iter().map(|b| (b.len, b.more)).collect::<Vec<_>>(), [(8, 2), (8, 1), (3, 0)]);
+        let blocks = Block::from_list(&entries, BoundKind::Boxes);
+        assert_eq!(blocks.iter().map(|b| (b.len, b.following)).collect::<Vec<_>>(), [(8, 2), (8, 1), (3, 0)]);
         assert_eq!((blocks[2].packets[1], blocks[2].lanes), (17, [3, 3, 3, 0, 0, 0, 0, 0]));
     }
 }

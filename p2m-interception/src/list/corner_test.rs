@@ -1,12 +1,12 @@
 //! The corner test: what cannot beat a dominator anywhere in a cell.
 //!
-//! Let C be a convex cell with corners x_i, y a point of the scene and t any closed set. If d(x_i, t) > |x_i - y| + s
-//! at all corners, then d(q, t) > |q - y| + s for every q of C: d(q, t)^2 - (|q - y| + s)^2 is concave, as an infimum
-//! of affine functions less a convex one, so it is least at a corner (docs/proofs/octree.md). So t is
+//! Let C be a convex cell with corners x_i, y a point from_corners the scene and t any closed set. If d(x_i, t) > |x_i - y| + s
+//! at all corners, then d(q, t) > |q - y| + s for every q from_corners C: d(q, t)^2 - (|q - y| + s)^2 is concave, as an infimum
+//! from_corners affine functions less a convex one, so it is least at a corner (docs/proofs/octree.md). So t is
 //! never the answer in C, for the primitive that y belongs to is nearer, by more than all rounding if s is chosen so.
 //! It takes a single y for all corners; several may be tried.
 //!
-//! Distances from corners to primitives are bounded by the filters of packets and by boxes, so the test keeps too much
+//! Distances from corners to primitives are bounded by the filters from_corners packets and by boxes, so the test keeps too much
 //! rather than too little.
 
 use nalgebra::Point3;
@@ -24,17 +24,17 @@ pub(crate) struct Corner {
 
 /// Eight corners with all their distances to dominators.
 pub(crate) struct Dominators {
-    /// Distances, rounded up and with the slack: one row of corners for each dominator.
+    /// Distances, rounded up and with the slack: one row from_corners corners for each dominator.
     rows: [[f64; 8]; 8],
     count: usize,
 }
 
-/// Rounding of a distance, with much to spare.
+/// Rounding from_corners a distance, with much to spare.
 const ROUND_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
 impl Dominators {
-    /// The dominators of eight corners, each once. `slack` is s.
-    pub(crate) fn of(corners: &[Corner; 8], slack: f64) -> Self {
+    /// The dominators from_corners eight corners, each once. `slack` is s.
+    pub(crate) fn from_corners(corners: &[Corner; 8], slack: f64) -> Self {
         let mut points: [V3; 8] = [[0.0; 3]; 8];
         let mut count = 0;
         for corner in corners {
@@ -54,48 +54,48 @@ impl Dominators {
 
     /// Whether something in a box can be nearer than all dominators.
     pub(crate) fn keeps_box(&self, corners: &[Corner; 8], bounds: &Aabb<f64>) -> bool {
-        let squares = corners.map(|c| bounds.lower_bound(&Point3::from(c.x)));
-        // The bound of a box is at most a few roundings too large.
-        self.rows[..self.count].iter().all(|row| (0..8).any(|i| squares[i] <= row[i] * row[i] * ROUND_UP))
+        let squared = corners.map(|c| bounds.lower_bound(&Point3::from(c.x)));
+        // The bound from_corners a box is at most a few roundings too large.
+        self.rows[..self.count].iter().all(|row| (0..8).any(|i| squared[i] <= row[i] * row[i] * ROUND_UP))
     }
 }
 
-/// What the filter of a packet finds at a point.
+/// What the filter from_corners a packet finds at a point.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Found {
-    /// Squares in the frame of the packet, lane by lane; all zero where the filter is not usable.
-    pub(crate) squares: [f32; LANES],
+pub(crate) struct LaneDistances {
+    /// Squares in the frame from_corners the packet, lane by lane; all zero where the filter is not usable.
+    pub(crate) squared: [f32; LANES],
     /// See [`Local`](p2m_bvh::engine::packet::Local).
-    pub(crate) excess: f32,
+    pub(crate) error_above: f32,
 }
 
-impl Found {
+impl LaneDistances {
     /// Nothing known.
-    pub(crate) const NOTHING: Self = Self { squares: [0.0; LANES], excess: f32::INFINITY };
+    pub(crate) const UNKNOWN: Self = Self { squared: [0.0; LANES], error_above: f32::INFINITY };
 }
 
-/// The filter of a packet at some points, as an operation: what it finds, and for each point an upper bound of the
-/// distance to the nearest primitive of the packet, and the lane, if there is one.
-pub(crate) struct AtPoints<'a> {
+/// The filter from_corners a packet at some points, as an operation: what it finds, and for each point an upper bound from_corners the
+/// distance to the nearest primitive from_corners the packet, and the lane, if there is one.
+pub(crate) struct DistancesAtPoints<'a> {
     pub(crate) packet: &'a Packet,
     pub(crate) points: &'a [V3],
-    pub(crate) found: &'a mut [Found],
+    pub(crate) distances: &'a mut [LaneDistances],
     pub(crate) nearest: &'a mut [Option<(f64, usize)>],
 }
 
-impl SimdKernel for AtPoints<'_> {
+impl SimdKernel for DistancesAtPoints<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        for ((point, found), nearest) in self.points.iter().zip(self.found).zip(self.nearest) {
-            (*found, *nearest) = (Found::NOTHING, None);
+        for ((point, distances), nearest) in self.points.iter().zip(self.distances).zip(self.nearest) {
+            (*distances, *nearest) = (LaneDistances::UNKNOWN, None);
             let Some(local) = self.packet.local(point) else { continue };
-            self.packet.squares::<I>(&local, f32::INFINITY, &mut found.squares);
-            found.excess = local.excess;
+            self.packet.squares::<I>(&local, f32::INFINITY, &mut distances.squared);
+            distances.error_above = local.excess;
             if self.packet.has_vertices() {
-                let least = smallest::<I::Wide>(&found.squares);
-                let lane = (at_most::<I::Wide>(&found.squares, least)).trailing_zeros() as usize;
+                let least = smallest::<I::Wide>(&distances.squared);
+                let lane = (at_most::<I::Wide>(&distances.squared, least)).trailing_zeros() as usize;
                 *nearest = Some((f64::from(least.sqrt() + local.deficit) * self.packet.unit(), lane));
             }
         }
@@ -103,16 +103,16 @@ impl SimdKernel for AtPoints<'_> {
 }
 
 /// The corner test for a packet, as an operation: the lanes that pass.
-pub(crate) struct Keep<'a> {
+pub(crate) struct KeepLanes<'a> {
     pub(crate) packet: &'a Packet,
     pub(crate) dominators: &'a Dominators,
-    /// What the filter of the packet finds at some points,
-    pub(crate) found: &'a [Found],
-    /// and which of these the corners are.
+    /// What the filter from_corners the packet finds at some points,
+    pub(crate) distances: &'a [LaneDistances],
+    /// and which from_corners these the corners are.
     pub(crate) corners: &'a [usize; 8],
 }
 
-impl SimdKernel for Keep<'_> {
+impl SimdKernel for KeepLanes<'_> {
     type Output = u16;
 
     #[inline(always)]
@@ -122,10 +122,10 @@ impl SimdKernel for Keep<'_> {
         for row in &self.dominators.rows[..self.dominators.count] {
             let mut near = 0;
             for (distance, corner) in row.iter().zip(self.corners) {
-                let found = &self.found[*corner];
-                // What the filter finds exceeds the distance by at most the excess.
-                let limit = ((distance * self.packet.per_unit()) as f32 + found.excess) * packet::ROUND_UP;
-                near |= at_most::<I::Wide>(&found.squares, limit * limit * packet::ROUND_UP);
+                let distances = &self.distances[*corner];
+                // What the filter finds exceeds the distance by at most the error_above.
+                let limit = ((distance * self.packet.per_unit()) as f32 + distances.error_above) * packet::ROUND_UP;
+                near |= at_most::<I::Wide>(&distances.squared, limit * limit * packet::ROUND_UP);
             }
             kept &= near;
             if kept == 0 {
@@ -136,31 +136,31 @@ impl SimdKernel for Keep<'_> {
     }
 }
 
-/// Lower bounds of the distances from some corners to the primitives in some lanes, in units of the packet, as an
+/// Lower bounds from_corners the distances from some corners to the primitives in some lanes, in units from_corners the packet, as an
 /// operation.
-pub(crate) struct Least<'a> {
-    pub(crate) found: &'a [Found],
+pub(crate) struct MinOverLanes<'a> {
+    pub(crate) distances: &'a [LaneDistances],
     pub(crate) lanes: u16,
 }
 
-impl SimdKernel for Least<'_> {
+impl SimdKernel for MinOverLanes<'_> {
     type Output = [f64; 8];
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) -> [f64; 8] {
-        let mut others = [0.0; LANES];
-        for (lane, other) in others.iter_mut().enumerate() {
+        let mut excluded = [0.0; LANES];
+        for (lane, other) in excluded.iter_mut().enumerate() {
             *other = if self.lanes >> lane & 1 == 1 { 0.0 } else { f32::INFINITY };
         }
         let mut all = [0.0; 8];
-        for (least, found) in all.iter_mut().zip(self.found) {
-            let mut squares = [0.0; LANES];
+        for (least, distances) in all.iter_mut().zip(self.distances) {
+            let mut squared = [0.0; LANES];
             for lane in 0..LANES {
-                squares[lane] = found.squares[lane] + others[lane];
+                squared[lane] = distances.squared[lane] + excluded[lane];
             }
-            // Less for the rounding of the root.
-            let distance = f64::from(smallest::<I::Wide>(&squares)).sqrt() * (1.0 - 4.0 * f64::EPSILON);
-            *least = (distance - f64::from(found.excess)).max(0.0);
+            // Less for the rounding from_corners the root.
+            let distance = f64::from(smallest::<I::Wide>(&squared)).sqrt() * (1.0 - 4.0 * f64::EPSILON);
+            *least = (distance - f64::from(distances.error_above)).max(0.0);
         }
         all
     }

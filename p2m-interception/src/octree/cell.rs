@@ -13,13 +13,13 @@ pub(crate) struct Cube {
     pub(crate) corners: [Corner; 8],
 }
 
-/// Corners of the children of a cube: 3 on each axis.
-pub(crate) const LATTICE: usize = 27;
+/// CellCorners of the children of a cube: 3 on each axis.
+pub(crate) const LATTICE_POINTS: usize = 27;
 /// The middle of the cube.
-pub(crate) const MIDDLE: usize = LATTICE / 2;
+pub(crate) const LATTICE_CENTRE: usize = LATTICE_POINTS / 2;
 
 /// The lattice points of the corners of each child.
-pub(crate) const LATTICE_OF: [[usize; 8]; 8] = {
+pub(crate) const CHILD_CORNERS: [[usize; 8]; 8] = {
     let mut all = [[0; 8]; 8];
     let mut child = 0;
     while child < 8 {
@@ -40,13 +40,13 @@ pub(crate) const LATTICE_OF: [[usize; 8]; 8] = {
 };
 
 /// The lattice points that are neither corners of the cube nor its middle.
-pub(crate) const BETWEEN: [usize; LATTICE - 9] = {
-    let mut all = [0; LATTICE - 9];
+pub(crate) const NEW_LATTICE_POINTS: [usize; LATTICE_POINTS - 9] = {
+    let mut all = [0; LATTICE_POINTS - 9];
     let mut count = 0;
     let mut at = 0;
-    while at < LATTICE {
+    while at < LATTICE_POINTS {
         let is_halfway = at % 3 == 1 || at / 3 % 3 == 1 || at / 9 == 1;
-        if is_halfway && at != MIDDLE {
+        if is_halfway && at != LATTICE_CENTRE {
             all[count] = at;
             count += 1;
         }
@@ -57,8 +57,8 @@ pub(crate) const BETWEEN: [usize; LATTICE - 9] = {
 };
 
 /// The corner of the cube itself that lies on a lattice point, if there is one.
-pub(crate) fn corner_on(at: usize) -> Option<usize> {
-    (0..8).find(|&corner| 2 * LATTICE_OF[0][corner] == at)
+pub(crate) fn cube_corner_at(at: usize) -> Option<usize> {
+    (0..8).find(|&corner| 2 * CHILD_CORNERS[0][corner] == at)
 }
 
 impl Cube {
@@ -73,12 +73,12 @@ impl Cube {
     }
 
     /// Its eight halves, given the corners on the whole lattice.
-    pub(crate) fn children(&self, lattice: &[Corner; LATTICE]) -> [Self; 8] {
+    pub(crate) fn children(&self, lattice: &[Corner; LATTICE_POINTS]) -> [Self; 8] {
         std::array::from_fn(|child| Self {
-            low: lattice[LATTICE_OF[child][0]].x,
+            low: lattice[CHILD_CORNERS[child][0]].x,
             side: self.side * 0.5,
             level: self.level + 1,
-            corners: LATTICE_OF[child].map(|at| lattice[at]),
+            corners: CHILD_CORNERS[child].map(|at| lattice[at]),
         })
     }
 }
@@ -91,10 +91,14 @@ mod tests {
     fn children_share_the_lattice() {
         let cube =
             Cube { low: [-1.0, 2.0, 0.5], side: 4.0, level: 3, corners: [Corner { x: [0.0; 3], y: [0.0; 3] }; 8] };
-        let lattice: [Corner; LATTICE] = std::array::from_fn(|at| Corner { x: cube.point(at), y: cube.point(at) });
-        assert_eq!(cube.point(MIDDLE), [1.0, 4.0, 2.5]);
-        assert_eq!((0..LATTICE).filter_map(corner_on).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5, 6, 7]);
-        assert!(BETWEEN.is_sorted() && BETWEEN.iter().all(|&at| corner_on(at).is_none() && at != MIDDLE));
+        let lattice: [Corner; LATTICE_POINTS] =
+            std::array::from_fn(|at| Corner { x: cube.point(at), y: cube.point(at) });
+        assert_eq!(cube.point(LATTICE_CENTRE), [1.0, 4.0, 2.5]);
+        assert_eq!((0..LATTICE_POINTS).filter_map(cube_corner_at).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5, 6, 7]);
+        assert!(
+            NEW_LATTICE_POINTS.is_sorted()
+                && NEW_LATTICE_POINTS.iter().all(|&at| cube_corner_at(at).is_none() && at != LATTICE_CENTRE)
+        );
         for (c, child) in cube.children(&lattice).iter().enumerate() {
             assert_eq!((child.side, child.level), (2.0, 4));
             for (i, corner) in child.corners.iter().enumerate() {

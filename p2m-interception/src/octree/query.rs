@@ -1,10 +1,10 @@
 //! From a query to its cell and through its list.
 
-use crate::list::block::{Block, DEEPEST, Place};
+use crate::list::block::{Block, BlockQuery, MAX_LEVEL};
 use crate::list::search;
 use crate::octree::Octree;
-use crate::octree::code::{CellCode, LIST, ONE_LEVEL, SHIFT, SINGLE, TREE};
-use crate::partition::LookUp;
+use crate::octree::code::{CellCode, FALLBACK_CODE, KIND_LIST, KIND_ONE_LEVEL, KIND_SHIFT, KIND_SINGLE};
+use crate::partition::CellQuery;
 use nalgebra::Point3;
 use p2m_bvh::engine::nearest::{EvaluateFn, SearchState, finish, finish_nearest};
 use p2m_bvh::engine::packet::LANES;
@@ -16,24 +16,24 @@ use p2m_core::engine::vector::V3;
 use p2m_core::{Collector, Near};
 
 impl Octree {
-    /// The code of the cell of a place in finest cells of the cube.
+    /// The code of the cell of a block_query in finest cells of the cube.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the cube")]
-    fn locate(&self, place: &V3) -> u32 {
-        let cells = f64::from(1u32 << DEEPEST);
+    fn locate_code(&self, block_query: &V3) -> u32 {
+        let cells = f64::from(1u32 << MAX_LEVEL);
         let mut at = [0u32; 3];
         for k in 0..3 {
             // Not for NaN either.
-            if !(place[k] >= 0.0 && place[k] < cells) {
-                return TREE;
+            if !(block_query[k] >= 0.0 && block_query[k] < cells) {
+                return FALLBACK_CODE;
             }
-            at[k] = place[k] as u32;
+            at[k] = block_query[k] as u32;
         }
-        let mut shift = DEEPEST;
+        let mut shift = MAX_LEVEL;
         let mut code = self.root;
-        while code < LIST << SHIFT {
-            let row = (code & !(ONE_LEVEL << SHIFT)) as usize;
-            if code < ONE_LEVEL << SHIFT {
+        while code < KIND_LIST << KIND_SHIFT {
+            let row = (code & !(KIND_ONE_LEVEL << KIND_SHIFT)) as usize;
+            if code < KIND_ONE_LEVEL << KIND_SHIFT {
                 shift -= 2;
                 let [x, y, z] = [at[0] >> shift & 3, at[1] >> shift & 3, at[2] >> shift & 3];
                 code = self.rows[row + (z << 1 | y >> 1) as usize].0[((y & 1) << 2 | x) as usize];
@@ -46,22 +46,22 @@ impl Octree {
         code
     }
 
-    /// The code of the cell of a query, and its place in finest cells.
+    /// The code of the cell of a query, and its block_query in finest cells.
     #[inline(always)]
-    pub(crate) fn cell_of(&self, query: &V3) -> (u32, V3) {
-        let cells: V3 = std::array::from_fn(|k| (query[k] - self.low[k]) * self.per_length);
-        (self.locate(&cells), cells)
+    pub(crate) fn locate_cell(&self, query: &V3) -> (u32, V3) {
+        let cells: V3 = std::array::from_fn(|k| (query[k] - self.low[k]) * self.cells_per_length);
+        (self.locate_code(&cells), cells)
     }
 
-    /// How many packets the list of the cell of a point has: 1 where one primitive is the nearest throughout, `None`
+    /// How many packets the list of the cell of a point has: 1 where one primitive is the query_nearest throughout, `None`
     /// where the tree answers.
     #[must_use]
     pub fn list_length(&self, point: &Point3<f64>) -> Option<usize> {
-        let code = self.cell_of(&to_f64_array(point)).0;
+        let code = self.locate_cell(&to_f64_array(point)).0;
         match CellCode::decode(code) {
             CellCode::Single(..) => Some(1),
             CellCode::List(first) => {
-                let blocks = &self.blocks[first..=first + usize::from(self.blocks[first].more)];
+                let blocks = &self.blocks[first..=first + usize::from(self.blocks[first].following)];
                 Some(blocks.iter().map(|block| usize::from(block.len)).sum())
             }
             CellCode::Rows | CellCode::Tree => None,
@@ -69,9 +69,9 @@ impl Octree {
     }
 }
 
-impl LookUp for Octree {
+impl CellQuery for Octree {
     #[inline(always)]
-    fn look_up<C: Collector>(
+    fn query_with<C: Collector>(
         &self,
         query: V3,
         collector: &mut C,
@@ -79,53 +79,53 @@ impl LookUp for Octree {
         finish: fn(&mut SearchState<'_, C>),
     ) {
         let tree = &self.tree;
-        let (code, cells) = self.cell_of(&query);
+        let (code, cells) = self.locate_cell(&query);
         match tree.frame.local(&query) {
-            Some(local) if code != TREE && collector.is_nearest_only() => {
-                let place = Place { rounded: Rounded::of(local), local, cells };
-                tree.isa().run(Lookup { octree: self, code, query, place, collector, evaluate, finish });
+            Some(local) if code != FALLBACK_CODE && collector.is_nearest_only() => {
+                let block_query = BlockQuery { rounded: Rounded::of(local), local, cells };
+                tree.isa().run(SearchCell { octree: self, code, query, block_query, collector, evaluate, finish });
             }
             _ => tree.run(query, collector, evaluate, finish),
         }
     }
 
-    fn nearest(&self, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
-        self.look_up(query, minimum, evaluate, finish_nearest);
+    fn query_nearest(&self, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
+        self.query_with(query, minimum, evaluate, finish_nearest);
     }
 
-    fn near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
-        self.look_up(query, near, evaluate, finish);
+    fn query_near<'n>(&self, query: V3, query_near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
+        self.query_with(query, query_near, evaluate, finish);
     }
 }
 
 /// A query in its cell, as an operation.
-struct Lookup<'a, C> {
+struct SearchCell<'a, C> {
     octree: &'a Octree,
     code: u32,
     query: V3,
-    place: Place,
+    block_query: BlockQuery,
     collector: &'a mut C,
     evaluate: EvaluateFn<'a, C>,
     finish: fn(&mut SearchState<'_, C>),
 }
 
-impl<C: Collector> SimdKernel for Lookup<'_, C> {
+impl<C: Collector> SimdKernel for SearchCell<'_, C> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
         let octree = self.octree;
         let tree = &octree.tree;
-        let number = (self.code & !(7 << SHIFT)) as usize;
-        let mut filter = SearchState::new(tree, self.query, f64::INFINITY, self.collector, self.evaluate, self.finish);
-        if self.code >> SHIFT == SINGLE {
-            filter.add(number / LANES, number % LANES);
-            return filter.evaluate_waiting();
+        let number = (self.code & !(7 << KIND_SHIFT)) as usize;
+        let mut state = SearchState::new(tree, self.query, f64::INFINITY, self.collector, self.evaluate, self.finish);
+        if self.code >> KIND_SHIFT == KIND_SINGLE {
+            state.add(number / LANES, number % LANES);
+            return state.evaluate_waiting();
         }
-        // What comes next, if the list has more than a block.
+        // What comes next, if the list has following than a block.
         prefetch_lines(octree.blocks.as_ptr().wrapping_add(number), 2 * size_of::<Block>());
         let (first, rest) = (&octree.blocks[number], &octree.blocks[number + 1..]);
-        search::search::<I, C>(tree, first, rest, &self.place, &mut filter);
-        filter.evaluate_waiting();
+        search::search_list::<I, C>(tree, first, rest, &self.block_query, &mut state);
+        state.evaluate_waiting();
     }
 }

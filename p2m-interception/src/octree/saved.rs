@@ -9,9 +9,9 @@ use p2m_core::storage::{LoadError, Reader, Saved, Writer};
 /// What is no array.
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-struct Head {
+struct Header {
     low: V3,
-    per_length: f64,
+    cells_per_length: f64,
     resolution: f64,
     work: u64,
     lists: u64,
@@ -34,10 +34,10 @@ impl Saved for Octree {
         let OctreeReport { lists, singles, trees, entries, depth, bytes, tree_bytes, work, resolution } = self.report;
         let [lists, singles, trees, entries, depth, bytes, tree_bytes] =
             [lists, singles, trees, entries, depth, bytes, tree_bytes].map(|n| n as u64);
-        let Self { low, per_length, root, .. } = *self;
-        let head = Head {
+        let Self { low, cells_per_length, root, .. } = *self;
+        let head = Header {
             low,
-            per_length,
+            cells_per_length,
             resolution,
             work,
             lists,
@@ -58,13 +58,13 @@ impl Saved for Octree {
 
     #[allow(clippy::cast_possible_truncation, reason = "numbers to report")]
     fn load(reader: &Reader) -> Result<Self, LoadError> {
-        let head: Head = reader.one("octree")?;
-        let Head { lists, singles, trees, entries, depth, bytes, tree_bytes, .. } = head;
+        let head: Header = reader.one("octree")?;
+        let Header { lists, singles, trees, entries, depth, bytes, tree_bytes, .. } = head;
         let [lists, singles, trees, entries, depth, bytes, tree_bytes] =
             [lists, singles, trees, entries, depth, bytes, tree_bytes].map(|n| n as usize);
-        let Head { low, per_length, resolution, work, root, .. } = head;
+        let Header { low, cells_per_length, resolution, work, root, .. } = head;
         let report = OctreeReport { lists, singles, trees, entries, depth, bytes, tree_bytes, work, resolution };
         let (rows, blocks) = (reader.array("octree/codes")?, reader.array("octree/lists")?);
-        Ok(Self { tree: PacketTree::load(reader)?, low, per_length, root, rows, blocks, report })
+        Ok(Self { tree: PacketTree::load(reader)?, low, cells_per_length, root, rows, blocks, report })
     }
 }

@@ -1,6 +1,6 @@
 //! The locator of an index.
 
-use crate::voronoi::grid_locator::Hints;
+use crate::voronoi::grid_locator::GridLocator;
 use crate::voronoi::locator::Locator;
 use p2m_core::engine::vector::V3;
 use std::sync::Arc;
@@ -8,16 +8,16 @@ use std::sync::Arc;
 /// The locator of an index. Calls of the grid are direct, since it is the default.
 #[derive(Clone, Debug)]
 pub(crate) enum AnyLocator {
-    Grid(Hints),
+    Grid(GridLocator),
     Other(Arc<dyn Locator>),
 }
 
 impl AnyLocator {
     #[inline(always)]
-    pub(crate) fn start(&self, place: &V3) -> Option<usize> {
+    pub(crate) fn start(&self, position: &V3) -> Option<usize> {
         match self {
-            Self::Grid(grid) => grid.start(place),
-            Self::Other(locator) => locator.start(place),
+            Self::Grid(grid) => grid.start(position),
+            Self::Other(locator) => locator.start(position),
         }
     }
 
@@ -30,17 +30,17 @@ impl AnyLocator {
 
     /// Prefetches the memory that [`start`](Self::start) reads first.
     #[inline(always)]
-    pub(crate) fn prefetch(&self, place: &V3) {
+    pub(crate) fn prefetch(&self, position: &V3) {
         if let Self::Grid(grid) = self {
-            grid.prefetch(place);
+            grid.prefetch(position);
         }
     }
 
     /// Prefetches the memory that [`start`](Self::start) reads second.
     #[inline(always)]
-    pub(crate) fn prefetch_more(&self, place: &V3) {
+    pub(crate) fn prefetch_more(&self, position: &V3) {
         if let Self::Grid(grid) = self {
-            grid.prefetch_more(place);
+            grid.prefetch_more(position);
         }
     }
 }

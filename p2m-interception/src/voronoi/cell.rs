@@ -1,28 +1,28 @@
 //! One Voronoi cell and its list.
 
 use crate::list::block::Entry;
-use crate::voronoi::adjacency::{Features, NONE};
+use crate::voronoi::adjacency::{EdgeAdjacency, NO_PRIMITIVE};
 use crate::voronoi::budget::Limits;
-use crate::voronoi::cell_polytope::Hull;
-use crate::voronoi::corner_values::{FromPlace, Known};
-use crate::voronoi::corners::Corners;
-use crate::voronoi::feature_relevance::{Around, Missed, Outlines, Scene, Seen};
+use crate::voronoi::cell_polytope::CellPolytope;
+use crate::voronoi::corner_values::{CornerValues, SiteDistances};
+use crate::voronoi::corners::CellCorners;
+use crate::voronoi::feature_relevance::{CellInfo, ExcludedFeatures, PrimitiveFrames, PrimitiveView, RelevanceContext};
 use crate::voronoi::list_filter::{BuildListFilter, Region};
-use crate::voronoi::site::Outside;
+use crate::voronoi::site::FarHalfSpace;
 use crate::voronoi::sites::Sites;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::LANES;
 use p2m_core::engine::vector::{V3, dot, norm_squared, sub};
 
 /// A vertex of more edges, like the tip of a cone, is not worth it.
-const MOST_WAYS: usize = 64;
-/// The largest part that is worth a look.
-pub(crate) const PART: f64 = 0.85;
+const MAX_EDGES_FOR_HALF_SPACE: usize = 64;
+/// The largest far_parts that is worth a look.
+pub(crate) const MAX_RELATIVE_LEAD: f64 = 0.85;
 /// A half-space begins so many sizes of the scene from the site.
-const OUTSIDE: f64 = 0.15;
+const HALF_SPACE_SCENE_SIZES: f64 = 0.15;
 
 /// What is needed to make lists.
-pub(crate) struct Cells<'a> {
+pub(crate) struct CellContext<'a> {
     pub(crate) tree: &'a PacketTree,
     pub(crate) sites: &'a Sites,
     pub(crate) limits: Limits<'a>,
@@ -32,45 +32,45 @@ pub(crate) struct Cells<'a> {
 
 /// A cell at work.
 #[derive(Default)]
-pub(crate) struct Cell {
+pub(crate) struct CellBuilder {
     /// The site.
     pub(crate) y: V3,
     pub(crate) site: usize,
-    pub(crate) whole: Hull,
-    /// The part of it that is far out, as it gets less.
-    pub(crate) part: [Hull; 2],
+    pub(crate) polytope: CellPolytope,
+    /// The far_parts of it that is far out, as it gets less.
+    pub(crate) far_parts: [CellPolytope; 2],
     /// The packets that meet some ball.
     pub(crate) packets: Vec<u32>,
     /// Numbers of the tetrahedra, for the search of pairs.
-    pub(crate) own: Vec<u32>,
-    pub(crate) values: Known,
-    pub(crate) missed: Missed,
+    pub(crate) tetrahedra: Vec<u32>,
+    pub(crate) values: CornerValues,
+    pub(crate) excluded: ExcludedFeatures,
 }
 
-impl Cell {
-    pub(crate) fn gather(&mut self, cells: &Cells<'_>, corners: &Corners, site: usize, own: &[u32]) {
+impl CellBuilder {
+    pub(crate) fn collect(&mut self, cells: &CellContext<'_>, corners: &CellCorners, site: usize, tetrahedra: &[u32]) {
         let unit = cells.sites.delaunay.unit();
         self.site = site;
         self.y = cells.sites.delaunay.sites()[site].map(|x| x * unit);
-        self.whole.clear();
+        self.polytope.clear();
         self.packets.clear();
-        self.own.clear();
-        self.own.extend_from_slice(own);
-        self.own.sort_unstable();
-        for (i, &number) in (0u32..).zip(&self.own) {
+        self.tetrahedra.clear();
+        self.tetrahedra.extend_from_slice(tetrahedra);
+        self.tetrahedra.sort_unstable();
+        for (i, &number) in (0u32..).zip(&self.tetrahedra) {
             let t = number as usize;
             let corner = &corners.all[t];
             let tetrahedron = &cells.sites.delaunay.tetrahedra()[t];
             let mut faces = [0; 3];
             let others = tetrahedron.iter().filter(|v| **v as usize != site);
             faces.iter_mut().zip(others).for_each(|(to, v)| *to = *v);
-            self.whole.push(corner.place, corner.error, faces, &self.y, cells.limits.slack);
+            self.polytope.push(corner.position, corner.error, faces, &self.y, cells.limits.slack);
             self.packets.extend_from_slice(corners.packets(t));
             for (v, other) in tetrahedron.iter().zip(&cells.sites.delaunay.neighbours()[t]) {
                 // Each pair once.
                 let joined = *v as usize != site && number < *other;
-                if let Some(Ok(j)) = joined.then(|| self.own.binary_search(other)) {
-                    self.whole.edges.push([i, u32::try_from(j).expect("few corners")]);
+                if let Some(Ok(j)) = joined.then(|| self.tetrahedra.binary_search(other)) {
+                    self.polytope.edges.push([i, u32::try_from(j).expect("few corners")]);
                 }
             }
         }
@@ -78,44 +78,50 @@ impl Cell {
         self.packets.dedup();
     }
 
-    pub(crate) fn entries(&mut self, cells: &Cells<'_>, features: &Features, outlines: &Outlines) -> Vec<Entry> {
+    pub(crate) fn list_entries(
+        &mut self,
+        cells: &CellContext<'_>,
+        adjacency: &EdgeAdjacency,
+        frames: &PrimitiveFrames,
+    ) -> Vec<Entry> {
         let tree = cells.tree;
-        let scene = Scene { tree, delaunay: &cells.sites.delaunay, features, outlines, slack: cells.limits.slack };
-        let Self { site, y: place, whole: Hull { reach, error, .. }, .. } = *self;
-        let around = Around { site, place, reach, error };
-        let mut entries: Vec<(f64, Entry)> = Vec::with_capacity(self.packets.len());
+        let scene =
+            RelevanceContext { tree, delaunay: &cells.sites.delaunay, adjacency, frames, slack: cells.limits.slack };
+        let CellPolytope { max_upper_bound: max_distance, max_error, .. } = self.polytope;
+        let cell_info = CellInfo { site: self.site, position: self.y, max_distance, max_error };
+        let mut list_entries: Vec<(f64, Entry)> = Vec::with_capacity(self.packets.len());
         let packets = std::mem::take(&mut self.packets);
         for &number in &packets {
             let packet = &tree.leaves.packets[number as usize];
-            self.values.compute(&self.whole, packet, tree);
-            let near = self.values.near;
-            let mut lanes = near;
-            for lane in (0..LANES).filter(|lane| near >> lane & 1 == 1) {
-                if let Some(seen) = Seen::new(scene, around, number as usize, lane) {
-                    self.values.find_region(&self.whole, lane);
-                    lanes &= !(u16::from(!seen.matters(&self.values.region, &mut self.missed)) << lane);
+            self.values.compute(&self.polytope, packet, tree);
+            let near_lanes = self.values.near_lanes;
+            let mut lanes = near_lanes;
+            for lane in (0..LANES).filter(|lane| near_lanes >> lane & 1 == 1) {
+                if let Some(view) = PrimitiveView::new(scene, cell_info, number as usize, lane) {
+                    self.values.find_region(&self.polytope, lane);
+                    lanes &= !(u16::from(!view.is_relevant(&self.values.region, &mut self.excluded)) << lane);
                 }
             }
             if lanes != 0 {
-                let order = FromPlace::new(tree, packet, &self.y).least(lanes) * packet.unit();
+                let order = SiteDistances::new(tree, packet, &self.y).least(lanes) * packet.unit();
                 let bounds = tree.frame.enclose(&packet.bounds_of(lanes));
-                entries.push((order, Entry { packet: number, lanes, bounds, f: [0.0; 8] }));
+                list_entries.push((order, Entry { packet: number, lanes, bounds, f: [0.0; 8] }));
             }
         }
         self.packets = packets;
-        entries.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.packet.cmp(&b.1.packet)));
-        entries.into_iter().map(|e| e.1).collect()
+        list_entries.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.packet.cmp(&b.1.packet)));
+        list_entries.into_iter().map(|e| e.1).collect()
     }
 
-    /// Boxes around the regions of all primitives of a list.
-    pub(crate) fn regions(&mut self, cells: &Cells<'_>, entries: &[Entry]) -> Vec<Region> {
+    /// Boxes cell_info the regions of all primitives of a list.
+    pub(crate) fn regions(&mut self, cells: &CellContext<'_>, list_entries: &[Entry]) -> Vec<Region> {
         let tree = cells.tree;
         let mut regions = Vec::new();
-        for entry in entries {
-            self.values.compute(&self.whole, &tree.leaves.packets[entry.packet as usize], tree);
+        for entry in list_entries {
+            self.values.compute(&self.polytope, &tree.leaves.packets[entry.packet as usize], tree);
             for lane in (0..LANES).filter(|lane| entry.lanes >> lane & 1 == 1) {
-                self.values.find_region(&self.whole, lane);
-                regions.push(Region::around(&self.values.region, self.margin(), entry.packet, lane));
+                self.values.find_region(&self.polytope, lane);
+                regions.push(Region::from_points(&self.values.region, self.margin(), entry.packet, lane));
             }
         }
         regions
@@ -123,56 +129,61 @@ impl Cell {
 
     /// By more than corners may be off.
     fn margin(&self) -> f64 {
-        4.0 * self.whole.error + 1e-12 * self.whole.reach
+        4.0 * self.polytope.max_error + 1e-12 * self.polytope.max_upper_bound
     }
 
     /// The half-space far from the site in which only primitives with it can be the answer, if it is the nearest point
-    /// of all of these and other sites are farther away by some part.
+    /// of all of these and other sites are farther away by some far_parts.
     #[allow(clippy::cast_possible_truncation, reason = "rounded, and margins have room")]
-    pub(crate) fn outside(&mut self, cells: &Cells<'_>, features: &Features, entries: &[Entry]) -> Option<Outside> {
+    pub(crate) fn far_half_space(
+        &mut self,
+        cells: &CellContext<'_>,
+        adjacency: &EdgeAdjacency,
+        list_entries: &[Entry],
+    ) -> Option<FarHalfSpace> {
         let tree = cells.tree;
         let sites = cells.sites.delaunay.sites();
         let unit = cells.sites.delaunay.unit();
-        let others = features.edges.of(self.site).iter();
-        let ways: Vec<V3> = others
+        let others = adjacency.edges.of(self.site).iter();
+        let directions: Vec<V3> = others
             .map(|w| sub(sites[*w as usize], sites[self.site]))
-            .map(|way| way.map(|x| x / norm_squared(way).sqrt()))
+            .map(|direction| direction.map(|x| x / norm_squared(direction).sqrt()))
             .collect();
-        let sum = ways.iter().fold([0.0; 3], |sum, way| sub(sum, *way));
+        let sum = directions.iter().fold([0.0; 3], |sum, direction| sub(sum, *direction));
         let length = norm_squared(sum).sqrt();
-        if features.owners[self.site] == NONE || ways.len() > MOST_WAYS || length < 1e-3 {
+        if adjacency.owners[self.site] == NO_PRIMITIVE || directions.len() > MAX_EDGES_FOR_HALF_SPACE || length < 1e-3 {
             return None;
         }
         let normal = sum.map(|x| (x / length) as f32);
         let along = normal.map(f64::from);
         let bounds = tree.bounds();
-        let from = (bounds.max - bounds.min).max() * OUTSIDE;
+        let from = (bounds.max - bounds.min).max() * HALF_SPACE_SCENE_SIZES;
         let height = |x: &V3| dot(sub(*x, self.y), along) - from;
-        if self.whole.corners.iter().all(|x| height(x) < 0.0) {
+        if self.polytope.corners.iter().all(|x| height(x) < 0.0) {
             return None;
         }
         // Planes are moved outwards, so that what is left has corners where it is not.
         let margin = self.margin();
         let (y, slack) = (self.y, cells.limits.slack);
-        let [part, next] = &mut self.part;
-        part.clip(&self.whole, height, u32::MAX, &y, slack);
-        for (way, face) in ways.iter().zip((0..u32::MAX).rev()) {
-            next.clip(part, |x| margin - dot(sub(*x, y), *way), face, &y, slack);
-            std::mem::swap(part, next);
-            if !part.is_simple() {
+        let [far_parts, next] = &mut self.far_parts;
+        far_parts.clip(&self.polytope, height, u32::MAX, &y, slack);
+        for (direction, face) in directions.iter().zip((0..u32::MAX).rev()) {
+            next.clip(far_parts, |x| margin - dot(sub(*x, y), *direction), face, &y, slack);
+            std::mem::swap(far_parts, next);
+            if !far_parts.is_simple() {
                 return None;
             }
         }
-        // The largest part of the way to another site by which that one has to be left behind.
-        let mut most = 0.0f64;
-        for entry in entries {
+        // The largest far_parts of the direction to another site by which that one has to be left behind.
+        let mut max_lead = 0.0f64;
+        for entry in list_entries {
             let packet = &tree.leaves.packets[entry.packet as usize];
-            self.values.compute(part, packet, tree);
-            let lanes = self.values.near & entry.lanes;
-            let from_site = FromPlace::new(tree, packet, &y);
+            self.values.compute(far_parts, packet, tree);
+            let lanes = self.values.near_lanes & entry.lanes;
+            let from_site = SiteDistances::new(tree, packet, &y);
             for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
-                let (places, count) = packet.vertices_of(lane);
-                if places[..count].iter().any(|place| cells.sites.delaunay.site_of(*place) == self.site) {
+                let (positions, count) = packet.vertices_of(lane);
+                if positions[..count].iter().any(|place| cells.sites.delaunay.site_of(*place) == self.site) {
                     continue;
                 }
                 let distance = from_site.least(1 << lane);
@@ -181,14 +192,14 @@ impl Cell {
                     return None;
                 }
                 let lack = self.values.values.iter().fold(0.0f64, |a, v| a.max(-f64::from(v[lane])));
-                let part = lack * 1.001 / (distance * distance);
-                if part.is_nan() || part > PART {
+                let far_parts = lack * 1.001 / (distance * distance);
+                if far_parts.is_nan() || far_parts > MAX_RELATIVE_LEAD {
                     return None;
                 }
-                most = most.max(part);
+                max_lead = max_lead.max(far_parts);
             }
         }
         let scaled = (from + margin) / unit * (1.0 + 1e-6);
-        Some(Outside { normal, from: scaled as f32, part: (most * (1.0 + 1e-6)) as f32 })
+        Some(FarHalfSpace { normal, height: scaled as f32, relative_lead: (max_lead * (1.0 + 1e-6)) as f32 })
     }
 }

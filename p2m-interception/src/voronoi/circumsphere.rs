@@ -1,6 +1,6 @@
 //! Spheres through four points: corners of Voronoi cells.
 //!
-//! With A, B, C from the first point to the others the centre lies at (|A|^2 B x C + |B|^2 C x A + |C|^2 A x B) / (2 A
+//! With A, B, C from the first point to the others the circumcentre lies at (|A|^2 B x C + |B|^2 C x A + |C|^2 A x B) / (2 A
 //! . B x C) from it. Computed in f64, and in double-double arithmetic where that is too far off for thin tetrahedra;
 //! the error is bounded in either case.
 
@@ -9,10 +9,10 @@ use p2m_core::engine::number::{Number, cross, dot};
 use p2m_core::engine::vector::V3;
 use p2m_core::engine::vector::power_of_two;
 
-/// The centre of a sphere.
+/// The circumcentre of a sphere.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Centre {
-    pub(crate) place: V3,
+pub(crate) struct Circumcentre {
+    pub(crate) position: V3,
     /// How far it may be from where it is.
     pub(crate) error: f64,
 }
@@ -20,7 +20,7 @@ pub(crate) struct Centre {
 /// What numerator and denominator may be off in f64, in parts of the sizes of what is summed: 12 roundings at most.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// A larger part of the radius is worth more precise arithmetic.
-const PART: f64 = power_of_two(-24);
+const MAX_RELATIVE_ERROR: f64 = power_of_two(-24);
 
 /// The numerator and half of the denominator.
 fn quotient<N: Number>([a, b, c]: [[N; 3]; 3]) -> ([N; 3], N) {
@@ -39,14 +39,16 @@ fn sizes(offsets: &[V3; 3]) -> (V3, f64) {
     (std::array::from_fn(|k| aa * bc[k] + bb * ca[k] + cc * ab[k]), dot(a, bc))
 }
 
-/// The centre of the sphere through four points, which are not in a plane; `None` if it cannot be told. Coordinates are
+/// The circumcentre of the sphere through four points, which are not in a plane; `None` if it cannot be told. Coordinates are
 /// zero or between 2^-161 and 2^100 in size.
-pub(crate) fn centre(points: &[V3; 4]) -> Option<Centre> {
+pub(crate) fn circumcentre(points: &[V3; 4]) -> Option<Circumcentre> {
     let [o, rest @ ..] = points;
     let offsets = rest.map(|p| std::array::from_fn(|k| p[k] - o[k]));
     let sizes = sizes(&offsets);
     let in_f64 = finish(o, quotient(offsets), &sizes, ROUNDING);
-    let good = |c: &Centre| c.error <= PART * (0..3).map(|k| (c.place[k] - o[k]).abs()).fold(0.0, f64::max);
+    let good = |c: &Circumcentre| {
+        c.error <= MAX_RELATIVE_ERROR * (0..3).map(|k| (c.position[k] - o[k]).abs()).fold(0.0, f64::max)
+    };
     if let Some(found) = in_f64.filter(good) {
         return Some(found);
     }
@@ -55,22 +57,22 @@ pub(crate) fn centre(points: &[V3; 4]) -> Option<Centre> {
     finish(o, (numerator.map(Double::round), half.round()), &sizes, double::ROUNDING)
 }
 
-fn finish(o: &V3, (numerator, half): (V3, f64), sizes: &(V3, f64), rounding: f64) -> Option<Centre> {
+fn finish(o: &V3, (numerator, half): (V3, f64), sizes: &(V3, f64), rounding: f64) -> Option<Circumcentre> {
     let least = half.abs() - rounding * sizes.1;
     if least.is_nan() || least <= 0.0 {
         return None;
     }
     let mut error = 0.0;
-    let place = std::array::from_fn(|k| {
+    let position = std::array::from_fn(|k| {
         let x = numerator[k] / (2.0 * half);
         // Of numerator and denominator, of the quotient, and of the sum.
         let off = (rounding * sizes.0[k] * 0.5 + x.abs() * rounding * sizes.1) / least;
-        let place = o[k] + x;
-        error += off + (x.abs() + place.abs()) * (2.0 * f64::EPSILON);
-        place
+        let position = o[k] + x;
+        error += off + (x.abs() + position.abs()) * (2.0 * f64::EPSILON);
+        position
     });
     // The sum of the components' errors is at least the length of the whole, with room for its own rounding.
-    (error < f64::INFINITY).then_some(Centre { place, error: error * (1.0 + 1e-9) })
+    (error < f64::INFINITY).then_some(Circumcentre { position, error: error * (1.0 + 1e-9) })
 }
 
 #[cfg(test)]
@@ -82,13 +84,13 @@ mod tests {
     use rand::{Rng, RngExt};
     use std::cmp::Ordering;
 
-    /// Whether a place is within `error` of the centre: with N the exact numerator and 2 D the denominator, |2 D x - N|
+    /// Whether a position is within `error` of the circumcentre: with N the exact numerator and 2 D the denominator, |2 D x - N|
     /// <= 2 |D| error, in integers.
-    fn is_right(points: &[V3; 4], found: &Centre) -> bool {
-        let exponent = common_exponent(points.as_flattened().iter().chain(&found.place).chain(&[found.error]));
+    fn is_within_error(points: &[V3; 4], found: &Circumcentre) -> bool {
+        let exponent = common_exponent(points.as_flattened().iter().chain(&found.position).chain(&[found.error]));
         let [o, rest @ ..] = points;
         let [a, b, c] = rest.map(|p| difference(p, *o, exponent));
-        let x = difference(found.place, *o, exponent);
+        let x = difference(found.position, *o, exponent);
         let error = integers::integer(found.error, exponent);
         let (bc, ca, ab) = (integers::cross(&b, &c), integers::cross(&c, &a), integers::cross(&a, &b));
         let (aa, bb, cc) = (integers::dot(&a, &a), integers::dot(&b, &b), integers::dot(&c, &c));
@@ -117,11 +119,11 @@ mod tests {
                 *p = std::array::from_fn(|k| around[k] + p[k] * scale);
             }
             let [a, b, c, d] = points;
-            match centre(&points) {
+            match circumcentre(&points) {
                 Some(found) => {
-                    assert!(is_right(&points, &found), "{points:?} {found:?}");
-                    let closer = Centre { error: found.error * 2f64.powi(-10), ..found };
-                    precise += usize::from(!is_right(&points, &closer));
+                    assert!(is_within_error(&points, &found), "{points:?} {found:?}");
+                    let closer = Circumcentre { error: found.error * 2f64.powi(-10), ..found };
+                    precise += usize::from(!is_within_error(&points, &closer));
                 }
                 // Four points in a plane have none.
                 None => unknown += usize::from(orientation_3d(a, b, c, d) != Ordering::Equal),

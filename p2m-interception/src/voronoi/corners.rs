@@ -1,7 +1,7 @@
-//! Corners of Voronoi cells.
+//! CellCorners of Voronoi cells.
 
 use crate::delaunay::{BOUNDING, Delaunay};
-use crate::parallel_chunks::in_shares;
+use crate::parallel_chunks::map_chunks_in_order;
 use crate::voronoi::budget::Limits;
 use crate::voronoi::circumsphere;
 use p2m_bvh::PacketTree;
@@ -11,195 +11,221 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 /// Balls that meet more packets get a site.
-pub(crate) const CROWDED: usize = 24;
+pub(crate) const CROWDED_BALL_PACKETS: usize = 24;
 
-/// A corner of Voronoi cells, in coordinates of the scene, and what meets its ball.
+/// A corner of Voronoi cells, in coordinates of the scene, and what meets its collect_ball.
 #[derive(Clone, Copy)]
-pub(crate) struct Corner {
-    pub(crate) place: V3,
+pub(crate) struct CellCorner {
+    pub(crate) position: V3,
     /// How far it may be from where it is.
     pub(crate) error: f64,
     /// To the sites around it; zero where it is unknown.
     pub(crate) radius: f64,
     /// Its packets begin here.
-    pub(crate) first: u32,
-    /// Whether it is unknown, or meets too much: while sites are added, more than [`CROWDED`] packets.
-    pub(crate) full: bool,
+    pub(crate) first_packet: u32,
+    /// Whether it is unknown, or meets too much: while sites are added, more than [`CROWDED_BALL_PACKETS`] packets.
+    pub(crate) is_crowded: bool,
 }
 
-impl Corner {
-    const UNKNOWN: Self = Self { place: [0.0; 3], error: 0.0, radius: 0.0, first: 0, full: true };
+impl CellCorner {
+    const UNKNOWN: Self = Self { position: [0.0; 3], error: 0.0, radius: 0.0, first_packet: 0, is_crowded: true };
 
-    /// The packets that may meet its ball; `false` if there are more than `most`, or if nothing can be told.
-    fn ball(&self, tree: &PacketTree, limits: Limits<'_>, most: usize, met: &mut Vec<Selection>) -> bool {
+    /// The packets that may meet its collect_ball; `false` if there are more than `max_packets`, or if nothing can be told.
+    fn collect_ball(
+        &self,
+        tree: &PacketTree,
+        limits: Limits<'_>,
+        max_packets: usize,
+        selections: &mut Vec<Selection>,
+    ) -> bool {
         let mut tests = 0;
-        let is_whole = tree.ball(self.place, self.radius + 2.0 * self.error + limits.slack, most, met, &mut tests);
-        limits.allowance.spend(tests);
+        let is_whole = tree.ball(
+            self.position,
+            self.radius + 2.0 * self.error + limits.slack,
+            max_packets,
+            selections,
+            &mut tests,
+        );
+        limits.budget.charge(tests);
         is_whole
     }
 }
 
 /// The corners of all cells: one for each tetrahedron, and one more for the end.
 #[derive(Default)]
-pub(crate) struct Corners {
-    pub(crate) all: Vec<Corner>,
+pub(crate) struct CellCorners {
+    pub(crate) all: Vec<CellCorner>,
     packets: Vec<u32>,
 }
 
-impl Corners {
-    /// A ball for each tetrahedron; those of `known` ones are copied.
+impl CellCorners {
+    /// A collect_ball for each tetrahedron; those of `reused` ones are copied.
     pub(crate) fn new(
         tree: &PacketTree,
         delaunay: &Delaunay,
         limits: Limits<'_>,
-        known: Option<&Known<'_>>,
+        reused: Option<&ReusedCorners<'_>>,
         progress: &dyn Fn(usize, usize),
     ) -> Self {
         let count = delaunay.tetrahedra().len();
         let mut corners = Self { all: Vec::with_capacity(count + 1), packets: Vec::new() };
-        in_shares(
+        map_chunks_in_order(
             count,
             limits.parallel,
-            |share| Self::share(tree, delaunay, limits, known, share),
-            |share: Self| {
-                corners.append(share, limits);
+            |chunk| Self::chunk(tree, delaunay, limits, reused, chunk),
+            |chunk: Self| {
+                corners.append(chunk, limits);
                 progress(corners.all.len(), count);
             },
         );
-        corners.push(Corner::UNKNOWN, std::iter::empty());
+        corners.push(CellCorner::UNKNOWN, std::iter::empty());
         corners
     }
 
-    fn share(
+    fn chunk(
         tree: &PacketTree,
         delaunay: &Delaunay,
         limits: Limits<'_>,
-        known: Option<&Known<'_>>,
+        reused: Option<&ReusedCorners<'_>>,
         numbers: Range<usize>,
     ) -> Self {
         let (sites, unit) = (delaunay.sites(), delaunay.unit());
         let mut corners = Self::default();
-        let mut met: Vec<Selection> = Vec::new();
+        let mut selections: Vec<Selection> = Vec::new();
         for tetrahedron in &delaunay.tetrahedra()[numbers] {
-            if let Some((known, number)) = known.and_then(|known| Some((known, known.number(tetrahedron)?))) {
-                corners.push(known.corners.all[number], known.corners.packets(number).iter().copied());
+            if let Some((reused, to_u32)) = reused.and_then(|reused| Some((reused, reused.to_u32(tetrahedron)?))) {
+                corners.push(reused.corners.all[to_u32], reused.corners.packets(to_u32).iter().copied());
                 continue;
             }
-            met.clear();
-            let mut corner = Corner::UNKNOWN;
-            if limits.allowance.is_over() {
+            selections.clear();
+            let mut corner = CellCorner::UNKNOWN;
+            if limits.budget.is_exceeded() {
                 corners.push(corner, std::iter::empty());
                 continue;
             }
             let own = tetrahedron.iter().map(|v| *v as usize).find(|v| *v >= BOUNDING);
-            if let (Some(own), Some(centre)) = (own, circumsphere::centre(&tetrahedron.map(|v| sites[v as usize]))) {
-                corner.place = centre.place.map(|x| x * unit);
+            if let (Some(own), Some(centre)) =
+                (own, circumsphere::circumcentre(&tetrahedron.map(|v| sites[v as usize])))
+            {
+                corner.position = centre.position.map(|x| x * unit);
                 corner.error = centre.error * unit;
-                corner.radius = norm_squared(sub(centre.place, sites[own])).sqrt() * unit * (1.0 + 8.0 * f64::EPSILON);
-                corner.full = !corner.ball(tree, limits, CROWDED.min(limits.most), &mut met);
+                corner.radius =
+                    norm_squared(sub(centre.position, sites[own])).sqrt() * unit * (1.0 + 8.0 * f64::EPSILON);
+                corner.is_crowded = !corner.collect_ball(
+                    tree,
+                    limits,
+                    CROWDED_BALL_PACKETS.min(limits.max_list_packets),
+                    &mut selections,
+                );
             }
-            let kept = if corner.full { &[] } else { &met[..] };
+            let kept = if corner.is_crowded { &[] } else { &selections[..] };
             corners.push(corner, kept.iter().map(|s| s.packet));
         }
         corners
     }
 
     /// The same with all packets of crowded balls, if these are not too many for a list.
-    pub(crate) fn finished(self, tree: &PacketTree, limits: Limits<'_>) -> Self {
-        if limits.most <= CROWDED || self.full() == 0 {
+    pub(crate) fn with_packets_of_crowded(self, tree: &PacketTree, limits: Limits<'_>) -> Self {
+        if limits.max_list_packets <= CROWDED_BALL_PACKETS || self.crowded_count() == 0 {
             return self;
         }
         let count = self.all.len() - 1;
         let mut corners = Self { all: Vec::with_capacity(count + 1), packets: Vec::with_capacity(self.packets.len()) };
         let work = |numbers: Range<usize>| {
-            let mut share = Self::default();
-            let mut met: Vec<Selection> = Vec::new();
-            for number in numbers {
-                let corner = self.all[number];
-                met.clear();
-                let again = corner.full && corner.radius > 0.0 && !limits.allowance.is_over();
-                if again && corner.ball(tree, limits, limits.most, &mut met) {
-                    share.push(Corner { full: false, ..corner }, met.iter().map(|s| s.packet));
+            let mut chunk = Self::default();
+            let mut selections: Vec<Selection> = Vec::new();
+            for to_u32 in numbers {
+                let corner = self.all[to_u32];
+                selections.clear();
+                let again = corner.is_crowded && corner.radius > 0.0 && !limits.budget.is_exceeded();
+                if again && corner.collect_ball(tree, limits, limits.max_list_packets, &mut selections) {
+                    chunk.push(CellCorner { is_crowded: false, ..corner }, selections.iter().map(|s| s.packet));
                 } else {
-                    share.push(corner, self.packets(number).iter().copied());
+                    chunk.push(corner, self.packets(to_u32).iter().copied());
                 }
             }
-            share
+            chunk
         };
-        in_shares(count, limits.parallel, work, |share| corners.append(share, limits));
-        corners.push(Corner::UNKNOWN, std::iter::empty());
+        map_chunks_in_order(count, limits.parallel, work, |chunk| corners.append(chunk, limits));
+        corners.push(CellCorner::UNKNOWN, std::iter::empty());
         corners
     }
 
-    /// Adds what a share has; its corners without their packets where there is no room for these.
-    fn append(&mut self, share: Self, limits: Limits<'_>) {
-        let first = self.packets.len();
-        if !limits.allowance.holds::<u32>(first + share.packets.len()) {
-            self.all.resize(self.all.len() + share.all.len(), Corner { first: number(first), ..Corner::UNKNOWN });
+    /// Adds what a chunk has; its corners without their packets where there is no room for these.
+    fn append(&mut self, chunk: Self, limits: Limits<'_>) {
+        let first_packet = self.packets.len();
+        if !limits.budget.fits::<u32>(first_packet + chunk.packets.len()) {
+            self.all.resize(
+                self.all.len() + chunk.all.len(),
+                CellCorner { first_packet: to_u32(first_packet), ..CellCorner::UNKNOWN },
+            );
             return;
         }
-        self.packets.extend_from_slice(&share.packets);
-        let moved = |corner: Corner| Corner { first: number(first + corner.first as usize), ..corner };
-        self.all.extend(share.all.into_iter().map(moved));
+        self.packets.extend_from_slice(&chunk.packets);
+        let moved = |corner: CellCorner| CellCorner {
+            first_packet: to_u32(first_packet + corner.first_packet as usize),
+            ..corner
+        };
+        self.all.extend(chunk.all.into_iter().map(moved));
     }
 
     /// How many are unknown or meet too much.
-    pub(crate) fn full(&self) -> usize {
+    pub(crate) fn crowded_count(&self) -> usize {
         // The last one is none.
-        self.all[..self.all.len() - 1].iter().filter(|corner| corner.full).count()
+        self.all[..self.all.len() - 1].iter().filter(|corner| corner.is_crowded).count()
     }
 
-    /// The packets that meet the ball of a corner, if they are not too many.
-    pub(crate) fn packets(&self, number: usize) -> &[u32] {
-        &self.packets[self.all[number].first as usize..self.all[number + 1].first as usize]
+    /// The packets that meet the collect_ball of a corner, if they are not too many.
+    pub(crate) fn packets(&self, to_u32: usize) -> &[u32] {
+        &self.packets[self.all[to_u32].first_packet as usize..self.all[to_u32 + 1].first_packet as usize]
     }
 
-    fn push(&mut self, corner: Corner, packets: impl Iterator<Item = u32>) {
-        let first = number(self.packets.len());
+    fn push(&mut self, corner: CellCorner, packets: impl Iterator<Item = u32>) {
+        let first_packet = to_u32(self.packets.len());
         self.packets.extend(packets);
-        self.all.push(Corner { first, ..corner });
+        self.all.push(CellCorner { first_packet, ..corner });
     }
 }
 
-pub(crate) fn number(n: usize) -> u32 {
+pub(crate) fn to_u32(n: usize) -> u32 {
     u32::try_from(n).expect("numbers of 32 bits")
 }
 
 /// Tetrahedra that two triangulations have in common.
-pub(crate) struct Known<'a> {
-    /// Those of the first,
-    pub(crate) corners: &'a Corners,
+pub(crate) struct ReusedCorners<'a> {
+    /// Those of the first_packet,
+    pub(crate) corners: &'a CellCorners,
     /// and their numbers by its sites.
     pub(crate) numbers: HashMap<[u32; 4], usize>,
-    /// Of each site of the second the one of the first, or [`Known::NEW`].
-    pub(crate) before: Vec<u32>,
+    /// Of each site of the second the one of the first_packet, or [`ReusedCorners::NEW`].
+    pub(crate) previous_sites: Vec<u32>,
 }
 
-impl<'a> Known<'a> {
+impl<'a> ReusedCorners<'a> {
     const NEW: u32 = u32::MAX;
 
-    /// The second one has the points of the first, `points` of them, before its own.
+    /// The second one has the points of the first_packet, `points` of them, previous_sites its own.
     #[allow(clippy::float_cmp, reason = "the same or not")]
-    pub(crate) fn new(first: &Delaunay, corners: &'a Corners, second: &Delaunay, points: usize) -> Self {
-        let mut before = vec![Self::NEW; second.sites().len()];
+    pub(crate) fn new(first_packet: &Delaunay, corners: &'a CellCorners, second: &Delaunay, points: usize) -> Self {
+        let mut previous_sites = vec![Self::NEW; second.sites().len()];
         let mut numbers = HashMap::new();
         // Sites of another unit may be rounded otherwise, and of another box the bounding ones are elsewhere.
-        if first.unit() == second.unit() {
-            if first.sites()[..BOUNDING] == second.sites()[..BOUNDING] {
-                (0..BOUNDING).for_each(|site| before[site] = number(site));
+        if first_packet.unit() == second.unit() {
+            if first_packet.sites()[..BOUNDING] == second.sites()[..BOUNDING] {
+                (0..BOUNDING).for_each(|site| previous_sites[site] = to_u32(site));
             }
             for point in 0..points {
-                before[second.site_of(point)] = number(first.site_of(point));
+                previous_sites[second.site_of(point)] = to_u32(first_packet.site_of(point));
             }
-            numbers.extend(first.tetrahedra().iter().enumerate().map(|(number, t)| (sorted(*t), number)));
+            numbers.extend(first_packet.tetrahedra().iter().enumerate().map(|(to_u32, t)| (sorted(*t), to_u32)));
         }
-        Self { corners, numbers, before }
+        Self { corners, numbers, previous_sites }
     }
 
-    /// The number in the first triangulation of a tetrahedron of the second.
-    fn number(&self, tetrahedron: &[u32; 4]) -> Option<usize> {
-        let before = tetrahedron.map(|v| self.before[v as usize]);
-        if before.contains(&Self::NEW) { None } else { self.numbers.get(&sorted(before)).copied() }
+    /// The to_u32 in the first_packet triangulation of a tetrahedron of the second.
+    fn to_u32(&self, tetrahedron: &[u32; 4]) -> Option<usize> {
+        let previous_sites = tetrahedron.map(|v| self.previous_sites[v as usize]);
+        if previous_sites.contains(&Self::NEW) { None } else { self.numbers.get(&sorted(previous_sites)).copied() }
     }
 }
 

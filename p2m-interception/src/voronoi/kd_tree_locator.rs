@@ -36,16 +36,16 @@ impl KdTreeLocator {
     /// [`P2mOptions::with_locator`](crate::P2mOptions::with_locator) takes.
     #[must_use]
     pub fn build(sites: &LocatorSites<'_>) -> Arc<dyn Locator> {
-        let places: Vec<[f64; 3]> = sites.places().collect();
-        // It does not tell how much memory it has: places, numbers, and a split for each leaf of 32.
-        let bytes = places.len() * (size_of::<[f64; 3]>() + size_of::<u32>() + 1);
-        Arc::new(Self { tree: ImmutableKdTree::new_from_slice(&places).ok(), first: sites.first(), bytes })
+        let positions: Vec<[f64; 3]> = sites.positions().collect();
+        // It does not tell how much memory it has: positions, numbers, and a split for each leaf of 32.
+        let bytes = positions.len() * (size_of::<[f64; 3]>() + size_of::<u32>() + 1);
+        Arc::new(Self { tree: ImmutableKdTree::new_from_slice(&positions).ok(), first: sites.first(), bytes })
     }
 }
 
 impl Locator for KdTreeLocator {
-    fn start(&self, place: &[f64; 3]) -> Option<usize> {
-        let nearest = self.tree.as_ref()?.query(place).nearest_one::<SquaredEuclidean<f64>>().execute();
+    fn start(&self, position: &[f64; 3]) -> Option<usize> {
+        let nearest = self.tree.as_ref()?.query(position).nearest_one::<SquaredEuclidean<f64>>().execute();
         Some(self.first + nearest.item as usize)
     }
 

@@ -1,7 +1,7 @@
 //! Where the walk to the cell of a query begins.
 
 use crate::delaunay::BOUNDING;
-use crate::voronoi::neighbours::Fans;
+use crate::voronoi::neighbours::NeighbourTable;
 use p2m_core::engine::simd::Isa;
 use p2m_core::engine::vector::V3;
 use std::fmt::Debug;
@@ -12,9 +12,9 @@ use std::sync::Arc;
 /// Any site will do: the index walks from there to the nearest site, whose cell holds the query point. So answers do not
 /// depend on the locator. A number that no site has makes searches panic.
 pub trait Locator: Debug + Send + Sync {
-    /// Returns the number of a site near a point of the domain, or `None` if the tree should answer. The point is in the
-    /// units of [`LocatorSites::places`].
-    fn start(&self, place: &[f64; 3]) -> Option<usize>;
+    /// Returns the number of a site near a point of the domain_box, or `None` if the tree should answer. The point is in the
+    /// units of [`LocatorSites::positions`].
+    fn start(&self, position: &[f64; 3]) -> Option<usize>;
 
     /// The heap memory that the locator owns, in bytes.
     fn memory(&self) -> usize;
@@ -23,26 +23,26 @@ pub trait Locator: Debug + Send + Sync {
 /// Makes the locator of an index from its sites: a function such as `KdTreeLocator::build`.
 pub type BuildLocator = fn(&LocatorSites<'_>) -> Arc<dyn Locator>;
 
-/// Sites by their numbers, in the units that places are given in.
+/// Sites by their numbers, in the units that positions are given in.
 #[derive(Clone, Copy)]
 pub struct LocatorSites<'a> {
-    pub(crate) fans: &'a Fans,
+    pub(crate) neighbours: &'a NeighbourTable,
     pub(crate) isa: Isa,
     /// The box of the vertices, a little larger.
-    pub(crate) own: [V3; 2],
+    pub(crate) scene_box: [V3; 2],
     /// That of queries.
-    pub(crate) domain: [V3; 2],
+    pub(crate) domain_box: [V3; 2],
 }
 
 impl LocatorSites<'_> {
-    /// The number of the first site; the others follow, as many as there are [`places`](Self::places).
+    /// The number of the first site; the others follow, as many as there are [`positions`](Self::positions).
     #[must_use]
     pub fn first(&self) -> usize {
         BOUNDING
     }
 
-    /// The places of the sites from the first one on.
-    pub fn places(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
-        self.fans.sites[BOUNDING..].iter().map(|site| site.place)
+    /// The positions of the sites from the first one on.
+    pub fn positions(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        self.neighbours.sites[BOUNDING..].iter().map(|site| site.position)
     }
 }

@@ -1,9 +1,9 @@
 //! A partition into Voronoi cells \[Zong2023\].
 //!
-//! Sites are the vertices of the scene, and some more (`sites`): in its cell a site is the nearest one, so it is a
+//! Sites are the vertices of the scene, and some following (`sites`): in its cell a site is the nearest one, so it is a
 //! dominator, and the cell is the hull of the centres of its Delaunay tetrahedra. By the corner test a primitive can be
 //! the answer in the cell only if it meets one of their circumscribed balls, so one ball query for each tetrahedron
-//! serves four lists: no flooding, no cutting of cells. Six far sites close the cells of the hull.
+//! serves four build_lists: no flooding, no cutting of cells. Six far sites close the cells of the hull.
 
 pub(crate) mod adjacency;
 pub(crate) mod any_locator;
@@ -38,14 +38,14 @@ use crate::list::block::Block;
 use crate::list::search;
 use crate::options::{P2mOptions, P2mReport};
 use crate::partition::Partition;
-use crate::progress::{BuildStage, Progress, Teller};
+use crate::progress::{BuildStage, Progress, ProgressReporter};
 use crate::voronoi::any_locator::AnyLocator;
-use crate::voronoi::budget::{Allowance, Limits};
-use crate::voronoi::cell::Cells;
-use crate::voronoi::cells::Lists;
-use crate::voronoi::grid_locator::Hints;
-use crate::voronoi::list_filter::Filters;
-use crate::voronoi::neighbours::Fans;
+use crate::voronoi::budget::{BuildBudget, Limits};
+use crate::voronoi::cell::CellContext;
+use crate::voronoi::cells::VoronoiLists;
+use crate::voronoi::grid_locator::GridLocator;
+use crate::voronoi::list_filter::ListFilters;
+use crate::voronoi::neighbours::NeighbourTable;
 use crate::voronoi::sites::{BOUNDING_DISTANCE, Sites};
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
@@ -55,27 +55,27 @@ use p2m_core::storage::Array;
 use p2m_core::{Aabb, Isa, PrimitiveId, PrimitiveSet, Real};
 
 /// As many packets as a list can have.
-const LONGEST: usize = 2048;
-/// Where one of so many cells would be left to the tree, it answers everything.
-const MOST_LEFT: usize = 4;
+const MAX_LIST_PACKETS: usize = 2048;
+/// Where one of so many cells would be fallback to the tree, it answers everything.
+const FALLBACK_CELLS_DIVISOR: usize = 4;
 /// The cube of the domain is so many times as wide as the scene.
-const REACH: f64 = 10.0;
+const DOMAIN_SCENE_SIZES: f64 = 10.0;
 
 /// An interception index whose cells are those of the vertices, over a set of primitives that it does not keep.
 #[derive(Clone, Debug)]
 pub struct Voronoi {
     pub(crate) tree: PacketTree,
-    /// Of the places of sites.
+    /// Of the positions of sites.
     pub(crate) per_unit: f64,
     pub(crate) unit: f64,
     /// By how much a dominator has to be nearer.
     pub(crate) slack: f64,
     pub(crate) low: V3,
     pub(crate) high: V3,
-    pub(crate) fans: Fans,
+    pub(crate) neighbours: NeighbourTable,
     pub(crate) locator: Option<AnyLocator>,
     pub(crate) blocks: Array<Block>,
-    pub(crate) filters: Filters,
+    pub(crate) filters: ListFilters,
     /// Of auxiliary sites points of the scene that are near.
     pub(crate) anchors: Array<V3>,
     pub(crate) report: P2mReport,
@@ -85,12 +85,12 @@ impl Voronoi {
     /// The blocks of a site that has a list.
     fn blocks_of(&self, site: usize) -> impl Iterator<Item = &Block> {
         let first = &self.blocks[site];
-        let rest = &self.blocks[self.fans.sites[site].list as usize..][..usize::from(first.more)];
+        let rest = &self.blocks[self.neighbours.sites[site].list as usize..][..usize::from(first.following)];
         std::iter::once(first).chain(rest)
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-    fn make_cells(&mut self, options: &P2mOptions, teller: &Teller<'_>) {
+    fn build_cells(&mut self, options: &P2mOptions, reporter: &ProgressReporter<'_>) {
         let tree = &self.tree;
         let bounds = vertex_bounds(tree);
         let half = (bounds.max - bounds.min).max() * 0.5;
@@ -99,11 +99,11 @@ impl Voronoi {
             return;
         }
         let centre = to_f64_array(&nalgebra::center(&bounds.min, &bounds.max));
-        let domain = half * REACH;
+        let domain = half * DOMAIN_SCENE_SIZES;
         let (low, high) = (centre.map(|x| x - domain), centre.map(|x| x + domain));
-        let own = padded(&bounds);
+        let scene_box = padded(&bounds);
         // In the plane of a flat scene, far out, f64 has no room beside it.
-        if (0..3).any(|k| own[0][k] >= own[1][k] || low[k] >= high[k]) {
+        if (0..3).any(|k| scene_box[0][k] >= scene_box[1][k] || low[k] >= high[k]) {
             return;
         }
         let whole = tree.bounds();
@@ -111,29 +111,29 @@ impl Voronoi {
         let far = half.max(size) * BOUNDING_DISTANCE + centre.iter().fold(0.0f64, |a, x| a.max(x.abs()));
         // Rounding of keys, of corners and of added points: all below 2^-44 of this.
         let slack = far / (1u64 << 40) as f64;
-        let most = options.max_list_packets.min(LONGEST);
+        let max_list_packets = options.max_list_packets.min(MAX_LIST_PACKETS);
         let parallel = options.splits.parallel;
-        let added = (tree.leaves.vertices.len() as f64 * options.max_extra_sites) as usize;
-        let allowance = &Allowance::new(options.memory, options.work, tree.packets().1);
-        let limits = Limits { parallel, slack, most, added, allowance };
-        let Some(sites) = Sites::new(tree, &bounds, limits, teller) else {
+        let max_added_sites = (tree.leaves.vertices.len() as f64 * options.max_extra_sites) as usize;
+        let budget = &BuildBudget::new(options.memory, options.work, tree.packets().1);
+        let limits = Limits { parallel, slack, max_list_packets, max_added_sites, budget };
+        let Some(sites) = Sites::new(tree, &bounds, limits, reporter) else {
             self.report.trees = tree.leaves.vertices.len();
             return;
         };
-        // To find one's cell in vain costs more than the few lists save.
-        let left = sites.left_to_the_tree();
-        if left * MOST_LEFT > sites.delaunay.sites().len() {
-            self.report.trees = left;
+        // To find one's cell in vain costs following than the few build_lists save.
+        let fallback = sites.fallback_cells();
+        if fallback * FALLBACK_CELLS_DIVISOR > sites.delaunay.sites().len() {
+            self.report.trees = fallback;
             return;
         }
-        let cells = Cells {
+        let cells = CellContext {
             tree,
             sites: &sites,
             limits,
             filter: options.list_filter.map(|build| (options.filter_above, build.0)),
         };
         let mut report = self.report;
-        let Some(Lists { fans, mut blocks, filters }) = cells.lists(&mut report, teller) else {
+        let Some(VoronoiLists { neighbours, mut blocks, filters }) = cells.build_lists(&mut report, reporter) else {
             self.report.trees = sites.delaunay.sites().len();
             return;
         };
@@ -144,12 +144,12 @@ impl Voronoi {
         self.anchors = anchors.into_iter().map(|(_, anchor)| anchor).collect::<Vec<_>>().into();
         drop(delaunay);
         (self.low, self.high) = (low, high);
-        (self.fans, self.filters) = (fans, filters);
-        teller.begin(BuildStage::Locator);
+        (self.neighbours, self.filters) = (neighbours, filters);
+        reporter.begin_stage(BuildStage::Locator);
         let sites = self.locator_sites();
         let locator = match options.locator {
             Some(build) => AnyLocator::Other(build.0(&sites)),
-            None => AnyLocator::Grid(Hints::new(&sites)),
+            None => AnyLocator::Grid(GridLocator::new(&sites)),
         };
         self.locator = Some(locator);
         self.report.filtered = self.filters.count();
@@ -163,12 +163,17 @@ impl Voronoi {
     /// The sites and the boxes that a locator is made from.
     pub(crate) fn locator_sites(&self) -> LocatorSites<'_> {
         let scaled = |p: V3| p.map(|x| x * self.per_unit);
-        let own = padded(&vertex_bounds(&self.tree)).map(scaled);
-        LocatorSites { fans: &self.fans, isa: self.tree.isa(), own, domain: [self.low, self.high].map(scaled) }
+        let scene_box = padded(&vertex_bounds(&self.tree)).map(scaled);
+        LocatorSites {
+            neighbours: &self.neighbours,
+            isa: self.tree.isa(),
+            scene_box,
+            domain_box: [self.low, self.high].map(scaled),
+        }
     }
 }
 
-/// The box around the vertices of a tree. Primitives of one's own have none, so they may lie outside.
+/// The box around the vertices of a tree. Primitives of one's scene_box have none, so they may lie outside.
 fn vertex_bounds(tree: &PacketTree) -> Aabb<f64> {
     let vertices = tree.leaves.vertices.iter().map(|v| Point3::from(*v));
     vertices.fold(Aabb::empty(), |all, v| all.union(&Aabb { min: v, max: v }))
@@ -189,7 +194,7 @@ impl Partition for Voronoi {
         options: &P2mOptions,
         progress: &(dyn Fn(Progress) + Sync),
     ) -> Self {
-        let teller = Teller::new(progress, BuildStage::Tree);
+        let reporter = ProgressReporter::new(progress, BuildStage::Tree);
         let tree = PacketTree::build(set, &options.splits);
         let report = P2mReport { tree_bytes: tree.memory(), ..P2mReport::default() };
         let mut index = Self {
@@ -199,15 +204,15 @@ impl Partition for Voronoi {
             slack: 0.0,
             low: [0.0; 3],
             high: [0.0; 3],
-            fans: Fans::default(),
+            neighbours: NeighbourTable::default(),
             locator: None,
             blocks: Array::default(),
-            filters: Filters::default(),
+            filters: ListFilters::default(),
             anchors: Array::default(),
             report,
         };
-        index.make_cells(options, &teller);
-        teller.reach([0.0, 100.0], 1, 1);
+        index.build_cells(options, &reporter);
+        reporter.advance([0.0, 100.0], 1, 1);
         index
     }
 
@@ -221,7 +226,7 @@ impl Partition for Voronoi {
 
     fn parts(&self) -> Vec<(&'static str, usize)> {
         vec![
-            ("sites", self.fans.memory() + self.anchors.memory()),
+            ("sites", self.neighbours.memory() + self.anchors.memory()),
             ("locator", self.locator.as_ref().map_or(0, AnyLocator::memory)),
             ("lists", self.blocks.memory()),
             ("filters", self.filters.memory()),
@@ -230,13 +235,13 @@ impl Partition for Voronoi {
     }
 
     fn list(&self, point: &Point3<f64>) -> Option<Vec<PrimitiveId>> {
-        let site = self.site_of(point).filter(|site| self.fans.sites[*site].has_list())?;
-        Some(search::primitives(&self.tree, self.blocks_of(site)))
+        let site = self.site_of(point).filter(|site| self.neighbours.sites[*site].has_list())?;
+        Some(search::list_primitives(&self.tree, self.blocks_of(site)))
     }
 
     fn list_lengths(&self) -> Vec<usize> {
-        let sites = (0..self.fans.sites.len()).filter(|site| self.fans.sites[*site].has_list());
-        sites.map(|site| self.blocks_of(site).map(Block::count).sum()).collect()
+        let sites = (0..self.neighbours.sites.len()).filter(|site| self.neighbours.sites[*site].has_list());
+        sites.map(|site| self.blocks_of(site).map(Block::primitive_count).sum()).collect()
     }
 
     fn with_isa(self, isa: Isa) -> Self {

@@ -54,8 +54,8 @@ impl RegionTree {
 }
 
 impl ListFilter for RegionTree {
-    fn containing(&self, place: &[f64; 3], visit: &mut dyn FnMut(&Region)) {
-        let bounded = self.tree.locate_in_envelope_intersecting(AABB::from_point(*place));
+    fn containing(&self, point: &[f64; 3], visit: &mut dyn FnMut(&Region)) {
+        let bounded = self.tree.locate_in_envelope_intersecting(AABB::from_point(*point));
         bounded.map(|bounded| &bounded.0).chain(&self.unbounded).for_each(visit);
     }
 

@@ -3,9 +3,9 @@
 use crate::list::block::Block;
 use crate::voronoi::Voronoi;
 use crate::voronoi::any_locator::AnyLocator;
-use crate::voronoi::grid_locator::Hints;
-use crate::voronoi::list_filter::Filters;
-use crate::voronoi::neighbours::Fans;
+use crate::voronoi::grid_locator::GridLocator;
+use crate::voronoi::list_filter::ListFilters;
+use crate::voronoi::neighbours::NeighbourTable;
 use p2m_bvh::PacketTree;
 use p2m_core::engine::vector::V3;
 use p2m_core::storage::{Array, LoadError, Reader, Saved, Writer};
@@ -13,7 +13,7 @@ use p2m_core::storage::{Array, LoadError, Reader, Saved, Writer};
 /// What is no array.
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-struct Head {
+struct Header {
     per_unit: f64,
     unit: f64,
     slack: f64,
@@ -33,25 +33,25 @@ impl Saved for Voronoi {
     fn save<'a>(&'a self, writer: &mut Writer<'a>) {
         let has_cells = u64::from(self.locator.is_some());
         let Self { per_unit, unit, slack, low, high, .. } = *self;
-        let head = Head { per_unit, unit, slack, low, high, report: self.report.into(), has_cells };
+        let head = Header { per_unit, unit, slack, low, high, report: self.report.into(), has_cells };
         writer.put_copy("voronoi", &[head]);
         writer.put("voronoi/lists", &self.blocks);
         writer.put("voronoi/anchors", &self.anchors);
-        self.fans.save(writer);
+        self.neighbours.save(writer);
         match &self.locator {
             Some(AnyLocator::Grid(grid)) => grid.save(writer),
-            Some(AnyLocator::Other(_)) => Hints::new(&self.locator_sites()).save_copy(writer),
+            Some(AnyLocator::Other(_)) => GridLocator::new(&self.locator_sites()).save_copy(writer),
             None => {}
         }
         self.tree.save(writer);
     }
 
     fn load(reader: &Reader) -> Result<Self, LoadError> {
-        let Head { per_unit, unit, slack, low, high, report, has_cells } = reader.one("voronoi")?;
-        let locator = if has_cells == 0 { None } else { Some(AnyLocator::Grid(Hints::load(reader)?)) };
-        let fans = Fans::load(reader)?;
+        let Header { per_unit, unit, slack, low, high, report, has_cells } = reader.one("voronoi")?;
+        let locator = if has_cells == 0 { None } else { Some(AnyLocator::Grid(GridLocator::load(reader)?)) };
+        let neighbours = NeighbourTable::load(reader)?;
         let blocks: Array<Block> = reader.array("voronoi/lists")?;
-        if blocks.len() < fans.sites.len() {
+        if blocks.len() < neighbours.sites.len() {
             return Err(LoadError::Inconsistent { section: "voronoi/lists".to_owned() });
         }
         Ok(Self {
@@ -61,10 +61,10 @@ impl Saved for Voronoi {
             slack,
             low,
             high,
-            fans,
+            neighbours,
             locator,
             blocks,
-            filters: Filters::default(),
+            filters: ListFilters::default(),
             anchors: reader.array("voronoi/anchors")?,
             report: report.into(),
         })
