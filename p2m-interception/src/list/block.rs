@@ -1,109 +1,126 @@
-//! Interception lists: blocks of up to eight packets, with bounds on their distances and the lanes that matter.
+//! The blocks of an interception list: up to eight packets each, with lower bounds on their distances and with the
+//! lanes that can hold the answer.
 //!
-//! A block bounds the distances to its packets from below in one of two ways, whichever rules out following of them in its
-//! cell:
+//! A block bounds the distances to its packets from below in one of two ways. The build chooses the way that excludes
+//! more packets in the cell:
 //!
-//! - by *boxes*, as a node of a tree does: best where the cell is as near as it is large;
-//! - by *corners*: f(q) = d(q, t)^2 - |q - y|^2 is concave for any closed set t and any point y, since it is an infimum
-//!   of affine functions. So with x_i the corners of the cell and l_i the weights of q among them (trilinear ones,
-//!   say), f(q) >= sum l_i f(x_i): eight numbers for each packet bound its distance everywhere in the cell. Where the
-//!   nearest point of t is the same vertex throughout, f is affine and the bound is the distance itself.
+//! - *Boxes* bound as a node of a tree does. They are better where the distance to the cell is about its size.
+//! - *Corners* use f(q) = d(q, t)^2 - |q - y|^2, which is concave for any closed set t and any point y, since it is an
+//!   infimum of affine functions. Let x_i be the corners of the cell and l_i the trilinear weights of q among them.
+//!   Then f(q) >= sum l_i f(x_i), so eight numbers for each packet bound its distance everywhere in the cell. Where
+//!   the nearest point of t is the same vertex everywhere in the cell, f is affine and the bound is the distance
+//!   itself.
 //!
-//! Numbers are kept as bytes, rounded outwards. All lengths are in the frame of the scene.
+//! The numbers are stored as bytes that are rounded outwards. All lengths are in the frame of the scene.
+//! docs/proofs/octree.md has the proofs.
 
 use p2m_bvh::engine::volume::Rounded;
 use p2m_core::engine::simd::Lanes;
 use p2m_core::engine::vector::V3;
 
-/// Blocks refer to cells of at most this level: a coordinate in cells of this level is a whole number of 32 bits.
+/// The highest level of a cell. A coordinate in units of the cells of this level is a whole number of at most 32 bits,
+/// so corners of cells are exact.
 pub(crate) const MAX_LEVEL: u8 = 30;
 
-/// Packets of a block.
+/// The number of packets in a block.
 pub(crate) const BLOCK_WIDTH: usize = 8;
 
-/// A packet of a list: which lanes can be the answer, a box around these, and f at the corners of the cell.
+/// A packet of a list, as the build hands it to a block.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
+    /// The number of the packet in the tree.
     pub(crate) packet: u32,
+    /// The lanes that can hold the answer in the cell, as bits.
     pub(crate) lanes: u16,
+    /// The low and the high corner of a box around these lanes, in the frame of the scene.
     pub(crate) bounds: [[f32; 3]; 2],
+    /// The function f of these lanes at the corners of the cell.
     pub(crate) f: [f64; 8],
 }
 
-/// How a block bounds distances.
+/// The way in which a block bounds distances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum BoundKind {
+    /// The block has a box for each packet.
     Boxes,
-    /// By corners of a cell of this level, with a round_reference point y that [`round_reference`] has rounded.
-    CellCorners {
+    /// The block has the values of f at the corners of the cell.
+    Corners {
+        /// The level of the cell.
         level: u8,
+        /// The reference point of f. It has to be rounded by [`round_reference`].
         y: V3,
     },
 }
 
-/// The level of blocks that have boxes.
+/// The level of a block that has boxes.
 const LEVEL_OF_BOXES: u8 = u8::MAX;
-/// Reference points are multiples of this: 16 bits reach to 4, where the frame of a scene ends.
+/// The unit of reference points. With 16 bits they reach to 4, where the frame of a scene ends.
 const REFERENCE_UNIT: f64 = 1.0 / 8192.0;
 
-/// The nearest point that a block can have as y.
+/// Rounds a point to the nearest one that a block can have as its reference point y.
 pub(crate) fn round_reference(y: V3) -> V3 {
     y.map(|x| (x / REFERENCE_UNIT).round().clamp(-32768.0, 32767.0) * REFERENCE_UNIT)
 }
 
-/// Eight packets in two cache lines.
+/// Eight packets of a list in two cache lines.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(64))]
 pub(crate) struct Block {
-    /// For corners: row i has f at corner i. For boxes: low and high corners, row by row, and the origin in the last
-    /// two rows.
+    /// The bounds of the packets. Row i of a block with corners has f at corner i. A block with boxes has the low
+    /// corners in the first three rows, the high corners in the next three, and the origin of both in the last two.
     bounds: [[u8; BLOCK_WIDTH]; 8],
+    /// The numbers of the packets in the tree.
     pub(crate) packets: [u32; BLOCK_WIDTH],
+    /// The lanes of each packet that can hold the answer, as bits.
     pub(crate) lanes: [u16; BLOCK_WIDTH],
+    /// The reference point of f, in [`REFERENCE_UNIT`].
     y: [i16; 3],
-    /// What a byte of bounds is: a power of two.
+    /// The exponent of the power of two that is the unit of the bytes in `bounds`.
     exponent: i8,
-    /// Of the cell; [`LEVEL_OF_BOXES`] for boxes.
+    /// The level of the cell, or [`LEVEL_OF_BOXES`] if the block has boxes.
     level: u8,
-    /// What f is where its byte is 0.
+    /// The value of f that the byte 0 stands for: f = `base` + byte * 2^`exponent`.
     base: f32,
-    /// Entries in use.
+    /// The number of entries in use.
     pub(crate) len: u8,
-    /// How many blocks of the same list follow.
+    /// The number of blocks of the same list that follow this one.
     pub(crate) following: u8,
     unused: [u8; 2],
 }
 
 const _: () = assert!(size_of::<Block>() == 128);
 
-/// A query, as blocks need it.
+/// A query point in the forms that blocks need.
 #[derive(Clone, Copy)]
 pub(crate) struct BlockQuery {
+    /// The point in the frame of the scene, rounded to f32 with a bound on the error.
     pub(crate) rounded: Rounded,
-    /// In the frame.
+    /// The point in the frame of the scene.
     pub(crate) local: V3,
-    /// In finest cells of the cube.
+    /// The point in units of the cells of [`MAX_LEVEL`], from the low corner of the domain. Blocks with boxes do not
+    /// use it.
     pub(crate) cells: V3,
 }
 
 impl Block {
-    /// The blocks of a list, of at most 256 times 8 entries.
+    /// Stores a list of at most 256 * 8 entries, which is not empty, in blocks.
     pub(crate) fn from_list(entries: &[Entry], bounds: BoundKind) -> Vec<Self> {
         let mut blocks: Vec<Self> = entries
             .chunks(BLOCK_WIDTH)
             .map(|entries| match bounds {
                 BoundKind::Boxes => Self::from_boxes(entries),
-                BoundKind::CellCorners { level, y } => Self::from_corners(entries, level, y),
+                BoundKind::Corners { level, y } => Self::from_corners(entries, level, y),
             })
             .collect();
-        let primitive_count = blocks.len();
+        let count = blocks.len();
         for (i, block) in blocks.iter_mut().enumerate() {
-            block.following = u8::try_from(primitive_count - 1 - i).expect("few blocks");
+            block.following = u8::try_from(count - 1 - i).expect("few blocks");
         }
         blocks
     }
 
     #[allow(clippy::cast_possible_truncation, reason = "at most eight")]
+    /// Makes a block of up to eight entries without bounds. Unused entries repeat the first packet without lanes.
     fn new(entries: &[Entry], level: u8) -> Self {
         let mut block = Self {
             bounds: [[0; BLOCK_WIDTH]; 8],
@@ -124,6 +141,7 @@ impl Block {
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounded outwards within the range")]
+    /// Stores the boxes of up to eight entries.
     fn from_boxes(entries: &[Entry]) -> Self {
         let mut low = [f64::INFINITY; 3];
         let mut high = [f64::NEG_INFINITY; 3];
@@ -133,11 +151,12 @@ impl Block {
                 high[k] = high[k].max(f64::from(entry.bounds[1][k]));
             }
         }
-        // The boxes span at most 254 units, and origins are less than 2^23 units away from zero.
+        // The boxes span at most 254 units, and the origin is less than 2^23 units away from zero, so it is exact in
+        // f32.
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
-        let place = low.iter().chain(&high).fold(0.0f64, |a, x| a.max(x.abs()));
+        let largest = low.iter().chain(&high).fold(0.0f64, |a, x| a.max(x.abs()));
         let mut exponent = -100;
-        while size > 254.0 * 2f64.powi(exponent) || place > 8_388_000.0 * 2f64.powi(exponent) {
+        while size > 254.0 * 2f64.powi(exponent) || largest > 8_388_000.0 * 2f64.powi(exponent) {
             exponent += 1;
         }
         let unit = 2f64.powi(exponent);
@@ -159,18 +178,20 @@ impl Block {
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounded down within the range")]
+    /// Stores the values of f at the corners for up to eight entries.
     fn from_corners(entries: &[Entry], level: u8, y: V3) -> Self {
         let all = || entries.iter().flat_map(|entry| entry.f);
         let least = all().fold(f64::INFINITY, f64::min);
         let most = all().fold(f64::NEG_INFINITY, f64::max);
-        // What is farther than y may be cut: a minimum of concave functions is concave.
+        // Values above -least may be cut: a minimum of concave functions is concave, and such packets are farther than
+        // y.
         let top = if least < 0.0 { most.min(-least) } else { most };
         let mut exponent = -100;
         while top - least > 254.0 * 2f64.powi(exponent) && exponent < 100 {
             exponent += 1;
         }
         let unit = 2f64.powi(exponent);
-        // Less for the rounding of the sum at a query.
+        // The base is lowered by the rounding of the sum in `lower_bounds`.
         let base = least - unit / 256.0 - least.abs() * 2f64.powi(-20);
         let base = (base as f32).next_down();
         let mut block = Self::new(entries, level);
@@ -187,11 +208,11 @@ impl Block {
         block
     }
 
-    /// Squares of lower bounds of the distances to the packets, as those of a node. Those of empty entries are
-    /// anything.
+    /// Returns the squares of lower bounds of the distances to the packets, as a node of the tree does. The values of
+    /// unused entries mean nothing.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounding is allowed for")]
-    pub(crate) fn lower_bounds<L: Lanes>(&self, place: &BlockQuery) -> L {
+    pub(crate) fn lower_bounds<L: Lanes>(&self, query: &BlockQuery) -> L {
         let unit = f32::from_bits(((i32::from(self.exponent) + 127) as u32) << 23);
         if self.level == LEVEL_OF_BOXES {
             let bytes = self.bounds.as_flattened();
@@ -200,13 +221,13 @@ impl Block {
                 let origin = L::splat(f32::from_le_bytes(bytes[48 + 4 * k..][..4].try_into().expect("four bytes")));
                 let low = L::load_u8(&self.bounds[k]).mul_add(L::splat(unit), origin);
                 let high = L::load_u8(&self.bounds[3 + k]).mul_add(L::splat(unit), origin);
-                sum = place.rounded.squared_gap(k, low, high, sum);
+                sum = query.rounded.squared_gap(k, low, high, sum);
             }
             return sum;
         }
-        let offset = [0, 1, 2].map(|k: usize| place.local[k] - f64::from(self.y[k]) * REFERENCE_UNIT);
+        let offset = [0, 1, 2].map(|k: usize| query.local[k] - f64::from(self.y[k]) * REFERENCE_UNIT);
         let square = (offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]) as f32;
-        let [x, y, z] = place.weights(self.level);
+        let [x, y, z] = query.weights(self.level);
         let (z0, z1) = ((1.0 - z) * unit, z * unit);
         let (w00, w10, w01, w11) = ((1.0 - y) * z0, y * z0, (1.0 - y) * z1, y * z1);
         let weights =
@@ -222,14 +243,14 @@ impl Block {
 }
 
 impl Block {
-    /// How many primitives it has.
+    /// Returns the number of primitives in the block.
     pub(crate) fn primitive_count(&self) -> usize {
         self.lanes[..usize::from(self.len)].iter().map(|lanes| lanes.count_ones() as usize).sum()
     }
 }
 
 impl BlockQuery {
-    /// Where the query is in its cell of a level, from 0 to 1 on each axis.
+    /// Returns the position of the query point in its cell of a level, from 0 to 1 on each axis.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "fewer than 2^30 cells")]
     fn weights(&self, level: u8) -> [f32; 3] {
@@ -308,7 +329,7 @@ mod tests {
                     Entry { packet, lanes: 1, bounds: [low, high], f }
                 })
                 .collect();
-            for bounds in [BoundKind::Boxes, BoundKind::CellCorners { level, y }] {
+            for bounds in [BoundKind::Boxes, BoundKind::Corners { level, y }] {
                 let blocks = Block::from_list(&entries, bounds);
                 assert_eq!((blocks.len(), blocks[0].len, blocks[0].following), (1, primitive_count as u8, 0));
                 for _ in 0..4 {
@@ -319,9 +340,9 @@ mod tests {
                     });
                     let q: V3 = std::array::from_fn(|k| low[k] + part[k] * side);
                     let cells = q.map(|x| (x + 8.0) / 16.0 * f64::from(1u32 << MAX_LEVEL));
-                    let place = BlockQuery { rounded: Rounded::of(q), local: q, cells };
+                    let query = BlockQuery { rounded: Rounded::of(q), local: q, cells };
                     for isa in Isa::available() {
-                        let found = isa.run(Bound(&blocks[0], &place));
+                        let found = isa.run(Bound(&blocks[0], &query));
                         for (set, found) in sets.iter().zip(found) {
                             let (exact, found) = (least(&q, set), f64::from(found));
                             let allowed = exact * (1.0 + 2f64.powi(-20)) + 2f64.powi(-120);

@@ -1,4 +1,4 @@
-//! The search_list of an interception list.
+//! The search of an interception list, and the primitives in one.
 
 use crate::list::block::{BLOCK_WIDTH, Block, BlockQuery};
 use p2m_bvh::PacketTree;
@@ -6,7 +6,7 @@ use p2m_bvh::engine::nearest::SearchState;
 use p2m_core::engine::simd::{EightLanes, InstructionSet, Lanes, lane_of_key, number_of_key};
 use p2m_core::{Collector, PrimitiveId};
 
-/// The list_primitives of a list, in ascending order.
+/// Returns the primitives of a list in ascending order.
 pub(crate) fn list_primitives<'a>(tree: &PacketTree, list: impl Iterator<Item = &'a Block>) -> Vec<PrimitiveId> {
     let mut ids = Vec::new();
     for block in list {
@@ -19,14 +19,14 @@ pub(crate) fn list_primitives<'a>(tree: &PacketTree, list: impl Iterator<Item = 
     ids
 }
 
-/// Packets of a block that are fetched before they are asked.
+/// The number of packets of a block that are prefetched before their filters run.
 const PREFETCHED_PACKETS: usize = 2;
 
 impl Block {
-    /// Asks for the nearest packets, given what was sorted.
+    /// Prefetches the nearest packets of the block, given the sorted lower bounds.
     #[inline(always)]
     fn prefetch_packets(&self, tree: &PacketTree, keys: &[u32; BLOCK_WIDTH], count: usize) {
-        // Whatever there is: a branch would be mispredicted.
+        // The loop prefetches even if fewer packets are left, because a branch would be mispredicted.
         for back in 1..=PREFETCHED_PACKETS {
             let packet = self.packets[lane_of_key(keys[count.wrapping_sub(back) & 7])] as usize;
             tree.leaves.prefetch(packet);
@@ -35,7 +35,7 @@ impl Block {
     }
 }
 
-/// Asks for the packets of a list that a search_list would look at first.
+/// Prefetches the packets that a search of a list visits first.
 #[inline(always)]
 pub(crate) fn prefetch_packets<I: InstructionSet>(tree: &PacketTree, first: &Block, query: &BlockQuery) {
     let bounds: I::Eight = first.lower_bounds(query);
@@ -44,8 +44,8 @@ pub(crate) fn prefetch_packets<I: InstructionSet>(tree: &PacketTree, first: &Blo
     first.prefetch_packets(tree, &keys, count);
 }
 
-/// Looks at the packets of a list that can be the answer, the nearest ones of each block first. The list has its first
-/// block, and as many of the rest as that bound_query.
+/// Searches a list: the packets that can hold the answer are given to `state`, the nearest ones of each block first.
+/// `rest` begins with the blocks that follow `first` in the list and may be longer.
 #[inline(always)]
 pub(crate) fn search_list<I: InstructionSet, C: Collector>(
     tree: &PacketTree,
@@ -80,7 +80,7 @@ pub(crate) fn search_list<I: InstructionSet, C: Collector>(
     }
 }
 
-/// Gives up some blocks of a list.
+/// Reports the lower bound of each block to the collector, for blocks that a search skips because it stops early.
 #[cold]
 #[inline(always)]
 fn record_skipped_blocks<'b, I: InstructionSet, C: Collector>(

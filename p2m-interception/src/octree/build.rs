@@ -1,18 +1,21 @@
-//! From a cube and the tree to refine_root with their lists.
+//! The refinement of a cube into cells with interception lists.
 //!
-//! A cell starts with what its parent could not rule out. While these are many, they are nodes of the tree, which are
-//! opened and tested by their passing_boxes (*refine_coarse*). Once they are few packets, the filters of packets are computed at the
-//! corners (*refine_fine*): 19 new lattice points for the eight children of a cell, whose nearest points give the new
+//! A cell starts with the candidates that its parent could not exclude. As long as there are many, they are nodes of
+//! the tree, which are opened and tested by their boxes (a *coarse* cell). Once few packets are left, the filters of
+//! these packets are computed at the corners (a *fine* cell). A fine cell that is split needs the filters at 19 new
+//! lattice points for its eight children. The nearest points of the scene to these lattice points become new
 //! dominators.
 //!
-//! # What is refine_children
+//! # Which cells are split
 //!
-//! A refine_children costs memory and saves time where queries are. The fraction of queries that a cell gets (its *query_mass*) is taken
-//! to be a mixture: uniform_boxes in the has_all_bounds domain, uniform_boxes in smaller passing_boxes around the scene, and on the surface. What a build_list
-//! costs is how many of its packets the bounds of its blocks let pass in the centre of the cell, and its blocks. A cell
-//! is refine_children if query_mass times cost is worth it. Whether a budget is exceeded does not depend on the order in which refine_root
-//! are made, so a refinement that exceeds one is given up at once and another one made that asks for more worth: the
-//! result is the same on any number of threads.
+//! A split costs memory and saves time where queries are. The share of the queries that a cell gets is its *mass*. It
+//! is estimated from a mixture of queries that are uniform in the domain, uniform in smaller boxes around the scene,
+//! and on the surface. The cost of a list is the number of its packets that the bounds of its blocks let pass at the
+//! centre of the cell, plus its blocks. A cell is split if its mass times its cost exceeds a threshold.
+//!
+//! Whether a budget is exceeded does not depend on the order in which cells are made. A refinement that exceeds one is
+//! stopped at once, and another one with a higher threshold follows. So the result is the same on any number of
+//! threads.
 
 use crate::list::block::{BLOCK_WIDTH, MAX_LEVEL};
 use crate::list::corner_test::{Corner, DistancesAtPoints, Dominators, KeepLanes, LaneDistances};
@@ -26,37 +29,38 @@ use p2m_core::engine::vector::{V3, norm_squared, sub};
 use p2m_core::{Aabb, Isa};
 use std::sync::atomic::Ordering;
 
-/// Fine refine_root have at most this many packets.
+/// The number of packets up to which a cell is fine.
 const MAX_FINE_PACKETS: usize = 256;
-/// Fine refine_root with fewer packets are left to one thread.
+/// A fine cell with fewer packets refines its children on one thread.
 const MIN_PARALLEL_PACKETS: usize = 48;
-/// Searches of more packets and primitives are work of their own.
+/// A search of the tree that takes more tests is charged to the work. Shorter ones are included in the charge of a
+/// split.
 const CHARGE_SEARCH_ABOVE_TESTS: usize = 512;
-/// Nanoseconds that a query gains by a build_list in the place of a probe_tree of the tree.
+/// The time that a query saves if a list replaces a search of the tree, in nanoseconds.
 const NS_SAVED_BY_LIST: f64 = 300.0;
-/// Part of its cost that a cell loses by a refine_children.
+/// The part of its cost that a cell is assumed to save by a split.
 const COST_SAVED_BY_SPLIT: f64 = 0.5;
-/// What codes take of each refine_children at most: eight rows for a node of two levels, which stands for five is_worth_splitting at least.
+/// The memory of the codes of a split at most. Eight rows with two levels stand for at least five splits.
 const CODE_BYTES_PER_SPLIT: u64 = (8 * size_of::<Row>()).div_ceil(5) as u64;
-/// Nanoseconds that a refine_children has to save each query in a cell that has as many queries as there are for a packet.
+/// The time that a split has to save each query, in nanoseconds, in a cell that has the mass of one packet.
 const MIN_NS_SAVED_BY_SPLIT: f64 = 100.0;
 
 impl Refinement<'_> {
-    /// A probe_tree of the tree. A usual one is part of what is_worth_splitting count; where most of the scene is about as near, it takes as
-    /// long as the scene is large.
+    /// Searches the tree. The work of an ordinary search is included in what a split is charged. Where most of the
+    /// scene is about equally near, a search takes time in proportion to the size of the scene, and is charged here.
     pub(crate) fn probe_tree(&self, x: V3) -> TreeProbe {
-        let searched = (self.search)(x);
-        let tests = searched.packets + searched.primitives;
+        let probe = (self.search)(x);
+        let tests = probe.packets + probe.primitives;
         self.counters.charge_tests(if tests > CHARGE_SEARCH_ABOVE_TESTS { tests } else { 0 });
-        searched
+        probe
     }
 
-    /// The nearest point of the scene.
+    /// Returns the point of the scene that is nearest to `x`.
     pub(crate) fn nearest(&self, x: V3) -> V3 {
         self.probe_tree(x).nearest
     }
 
-    /// The refine_root of the cube.
+    /// Refines the cube of the domain.
     pub(crate) fn refine_root(&self, low: V3, side: f64) -> RefinedCell {
         let at = |c: usize| -> V3 { std::array::from_fn(|k| low[k] + if c >> k & 1 == 1 { side } else { 0.0 }) };
         let corners = std::array::from_fn(|c| Corner { x: at(c), y: self.nearest(at(c)) });
@@ -64,13 +68,13 @@ impl Refinement<'_> {
         self.refine_coarse(&Cube { low, side, level: 0, corners }, vec![root], 1.0)
     }
 
-    /// Whether a cell may have queries.
+    /// Returns whether a cell may contain queries of the domain.
     fn may_have_queries(&self, cube: &Cube) -> bool {
         match self.domain {
             Domain::Everywhere => true,
             Domain::Box(bounds) => bounds.meets(&cube.bounds()),
             Domain::Band(width) => {
-                // From everywhere in the cell the scene is at least as far as from a corner, less the way there.
+                // From any point of the cell the scene is at least as far as from a corner, minus the diagonal.
                 let diagonal = cube.side * 1.733;
                 let least = |corner: &Corner| norm_squared(sub(corner.x, corner.y)).sqrt() - diagonal;
                 cube.corners.iter().all(|corner| least(corner) <= width)
@@ -78,32 +82,34 @@ impl Refinement<'_> {
         }
     }
 
-    /// The fraction of queries in a cell, of which these passing_boxes are near; each stands for as many packets.
+    /// Estimates the mass of a cell: its share of the queries. `near` has boxes that may be in the cell, each with the
+    /// number of packets that it stands for.
     fn query_mass<'a>(&self, cube: &Cube, near: impl Iterator<Item = (&'a Aabb<f64>, f64)>) -> f64 {
         let own = cube.bounds();
-        let mut query_mass = 0.0;
-        for (has_all_bounds, density) in self.uniform_boxes {
-            let part = (0..3).map(|k| own.max[k].min(has_all_bounds.max[k]) - own.min[k].max(has_all_bounds.min[k]));
-            query_mass += part.map(|x| x.max(0.0)).product::<f64>() * density;
+        let mut mass = 0.0;
+        for (bounds, density) in self.uniform_boxes {
+            let part = (0..3).map(|k| own.max[k].min(bounds.max[k]) - own.min[k].max(bounds.min[k]));
+            mass += part.map(|x| x.max(0.0)).product::<f64>() * density;
         }
         for (bounds, packets) in near {
             if bounds.meets(&own) {
                 let size = (bounds.max - bounds.min).max();
-                // Of something larger than the cell a part lies in it.
+                // If a box is larger than the cell, only a part of its surface lies in the cell.
                 let part = if size > cube.side { (cube.side / size).powi(2) } else { 1.0 };
-                query_mass += self.inv_packet_count * packets * part;
+                mass += self.inv_packet_count * packets * part;
             }
         }
-        query_mass
+        mass
     }
 
-    /// Whether a refine_children pays.
-    fn is_worth_splitting(&self, cube: &Cube, query_mass: f64, cost: f64) -> bool {
-        let worth =
-            query_mass * cost * COST_SAVED_BY_SPLIT * self.resolution >= MIN_NS_SAVED_BY_SPLIT * self.inv_packet_count;
-        worth && cube.level < MAX_LEVEL && !self.counters.is_exceeded()
+    /// Returns whether a split is is_worth its memory.
+    fn is_worth_splitting(&self, cube: &Cube, mass: f64, cost: f64) -> bool {
+        let is_worth =
+            mass * cost * COST_SAVED_BY_SPLIT * self.resolution >= MIN_NS_SAVED_BY_SPLIT * self.inv_packet_count;
+        is_worth && cube.level < MAX_LEVEL && !self.counters.is_exceeded()
     }
 
+    /// Counts a finished cell, which covers a part of the domain, and its memory.
     fn finish_cell(&self, cell: RefinedCell, fraction: f64) -> RefinedCell {
         self.counters.add_finished(fraction);
         if let RefinedCell::Blocks(blocks) = &cell {
@@ -112,13 +118,14 @@ impl Refinement<'_> {
         cell
     }
 
+    /// Refines a cell whose candidates may be nodes of the tree.
     fn refine_coarse(&self, cube: &Cube, mut candidates: Vec<CoarseCandidate>, fraction: f64) -> RefinedCell {
         if cube.level > 0 && !self.may_have_queries(cube) {
             return self.finish_cell(RefinedCell::Tree, fraction);
         }
         let dominators = Dominators::from_corners(&cube.corners, self.slack);
         candidates.retain(|c| dominators.keeps_box(&cube.corners, &c.bounds));
-        // Opened until they are packets or too many.
+        // Candidates are opened until all are packets, or until there are too many.
         let mut open = 1;
         while open > 0 && candidates.len() <= MAX_FINE_PACKETS {
             open = 0;
@@ -137,17 +144,17 @@ impl Refinement<'_> {
         }
         if open == 0 && candidates.len() <= MAX_FINE_PACKETS {
             self.counters.charge_tests(8 * candidates.len());
-            let items: Vec<PacketCandidate> =
+            let packets: Vec<PacketCandidate> =
                 candidates.iter().filter_map(|c| self.packet_candidate(cube, &dominators, c)).collect();
-            return self.refine_fine(cube, items, fraction);
+            return self.refine_fine(cube, packets, fraction);
         }
-        // What is not a packet has eight of them at least.
+        // A node has at least eight packets.
         let near = |c: &CoarseCandidate| if c.child.is_packet() { 1.0 } else { 8.0 };
-        let query_mass = self.query_mass(cube, candidates.iter().map(|c| (&c.bounds, near(c))));
-        if !self.is_worth_splitting(cube, query_mass, NS_SAVED_BY_LIST) {
+        let mass = self.query_mass(cube, candidates.iter().map(|c| (&c.bounds, near(c))));
+        if !self.is_worth_splitting(cube, mass, NS_SAVED_BY_LIST) {
             return self.finish_cell(RefinedCell::Tree, fraction);
         }
-        // Searches of the tree for 19 corners, each of some packets.
+        // The children need 19 searches of the tree, each of which tests some packets.
         self.counters.charge_tests(19 * 8);
         let lattice: [Corner; LATTICE_POINTS] = std::array::from_fn(|at| match cube_corner_at(at) {
             Some(corner) => cube.corners[corner],
@@ -158,7 +165,7 @@ impl Refinement<'_> {
         })
     }
 
-    /// The refine_root of the children, on all threads if asked to and they are large.
+    /// Refines the children of a cell, on all threads if the options allow it and the cell is `large`.
     fn refine_children<P: Send>(
         &self,
         children: [(Cube, P); 8],
@@ -170,16 +177,15 @@ impl Refinement<'_> {
         if self.parallel && large {
             use rayon::prelude::*;
             let children = Vec::from(children).into_par_iter();
-            let refine_root: Vec<RefinedCell> = children.map(|(cube, own)| cell(&cube, own)).collect();
-            let refine_root: [RefinedCell; 8] =
-                refine_root.try_into().unwrap_or_else(|_| unreachable!("eight children"));
-            return RefinedCell::Split(Box::new(refine_root));
+            let cells: Vec<RefinedCell> = children.map(|(cube, own)| cell(&cube, own)).collect();
+            let cells: [RefinedCell; 8] = cells.try_into().unwrap_or_else(|_| unreachable!("eight children"));
+            return RefinedCell::Split(Box::new(cells));
         }
         let _ = (large, self.parallel);
         RefinedCell::Split(Box::new(children.map(|(cube, own)| cell(&cube, own))))
     }
 
-    /// The packet of a candidate at the corners of a cell; `None` if no lane passes the corner test.
+    /// Applies the corner test to a packet. The result is `None` if no lane passes.
     fn packet_candidate(
         &self,
         cube: &Cube,
@@ -198,29 +204,31 @@ impl Refinement<'_> {
         (lanes != 0).then_some(PacketCandidate { packet, lanes, bounds: candidate.bounds, distances })
     }
 
+    /// Returns the instruction set of the tree.
     pub(crate) fn isa(&self) -> Isa {
         self.tree.isa()
     }
 
-    fn refine_fine(&self, cube: &Cube, items: Vec<PacketCandidate>, fraction: f64) -> RefinedCell {
+    /// Refines a cell whose candidates are packets.
+    fn refine_fine(&self, cube: &Cube, candidates: Vec<PacketCandidate>, fraction: f64) -> RefinedCell {
         if cube.level > 0 && !self.may_have_queries(cube) {
             return self.finish_cell(RefinedCell::Tree, fraction);
         }
-        let centre = self.centre(cube, &items);
-        let query_mass = self.query_mass(cube, items.iter().map(|packet_candidate| (&packet_candidate.bounds, 1.0)));
+        let centre = self.sample_centre(cube, &candidates);
+        let mass = self.query_mass(cube, candidates.iter().map(|candidate| (&candidate.bounds, 1.0)));
         let tests = centre.passing_boxes.min(centre.passing_corners) as f64;
-        let blocks = items.len() as f64 / BLOCK_WIDTH as f64;
+        let blocks = candidates.len() as f64 / BLOCK_WIDTH as f64;
         let cost = NS_PER_PACKET * (tests - 1.0) + NS_PER_BLOCK * (blocks - 1.0).max(0.0);
-        if !self.is_worth_splitting(cube, query_mass, cost) {
-            return self.finish_cell(self.build_list(cube, &items, &centre), fraction);
+        if !self.is_worth_splitting(cube, mass, cost) {
+            return self.finish_cell(self.build_list(cube, &candidates, &centre), fraction);
         }
-        self.counters.charge_tests(NEW_LATTICE_POINTS.len() * items.len());
-        // All filters at all lattice points; those at the corners and in the centre are known.
+        self.counters.charge_tests(NEW_LATTICE_POINTS.len() * candidates.len());
+        // The filters at the corners and at the centre are known already.
         let points = NEW_LATTICE_POINTS.map(|at| cube.point(at));
-        let mut all: Vec<[LaneDistances; LATTICE_POINTS]> = Vec::with_capacity(items.len());
+        let mut all: Vec<[LaneDistances; LATTICE_POINTS]> = Vec::with_capacity(candidates.len());
         let mut nearest = [NearestSample::NONE; LATTICE_POINTS];
-        for (packet_candidate, at_centre) in items.iter().zip(&centre.distances) {
-            let packet = &self.tree.leaves.packets[packet_candidate.packet as usize];
+        for (candidate, at_centre) in candidates.iter().zip(&centre.distances) {
+            let packet = &self.tree.leaves.packets[candidate.packet as usize];
             let mut new_distances = [LaneDistances::UNKNOWN; NEW_LATTICE_POINTS.len()];
             let mut new_nearest = [None; NEW_LATTICE_POINTS.len()];
             self.isa().run(DistancesAtPoints {
@@ -231,12 +239,12 @@ impl Refinement<'_> {
             });
             let mut distances = [LaneDistances::UNKNOWN; LATTICE_POINTS];
             for corner in 0..8 {
-                distances[2 * CHILD_CORNERS[0][corner]] = packet_candidate.distances[corner];
+                distances[2 * CHILD_CORNERS[0][corner]] = candidate.distances[corner];
             }
             distances[LATTICE_CENTRE] = *at_centre;
             for ((at, own), near) in NEW_LATTICE_POINTS.into_iter().zip(new_distances).zip(new_nearest) {
                 distances[at] = own;
-                nearest[at].add(near, packet_candidate.packet);
+                nearest[at].add(near, candidate.packet);
             }
             all.push(distances);
         }
@@ -253,23 +261,19 @@ impl Refinement<'_> {
             let corners = &CHILD_CORNERS[number];
             number += 1;
             let dominators = Dominators::from_corners(&child.corners, self.slack);
-            let mut own = Vec::with_capacity(items.len());
-            for (packet_candidate, distances) in items.iter().zip(&all) {
-                let packet = &self.tree.leaves.packets[packet_candidate.packet as usize];
-                let lanes = packet_candidate.lanes
-                    & self.isa().run(KeepLanes { packet, dominators: &dominators, distances, corners });
+            let mut own = Vec::with_capacity(candidates.len());
+            for (candidate, distances) in candidates.iter().zip(&all) {
+                let packet = &self.tree.leaves.packets[candidate.packet as usize];
+                let lanes =
+                    candidate.lanes & self.isa().run(KeepLanes { packet, dominators: &dominators, distances, corners });
                 if lanes != 0 {
-                    own.push(PacketCandidate {
-                        lanes,
-                        distances: corners.map(|at| distances[at]),
-                        ..*packet_candidate
-                    });
+                    own.push(PacketCandidate { lanes, distances: corners.map(|at| distances[at]), ..*candidate });
                 }
             }
             (child, own)
         });
         drop(all);
-        self.refine_children(children, items.len() >= MIN_PARALLEL_PACKETS, |child, own| {
+        self.refine_children(children, candidates.len() >= MIN_PARALLEL_PACKETS, |child, own| {
             self.refine_fine(child, own, fraction * 0.125)
         })
     }

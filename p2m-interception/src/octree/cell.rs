@@ -1,24 +1,28 @@
-//! Cubes, their corners and the lattice of their children's corners.
+//! The cubes of an octree, and the lattice of the corners of their children.
 
 use crate::list::corner_test::Corner;
 use p2m_core::Aabb;
 use p2m_core::engine::vector::V3;
 
+/// A cube with its corners. Corner c lies on the upper side along axis k if bit k of c is set.
 #[derive(Clone, Copy)]
 pub(crate) struct Cube {
+    /// The corner with the least coordinates.
     pub(crate) low: V3,
+    /// The length of an edge.
     pub(crate) side: f64,
-    /// Halvings from the cube of the whole domain.
+    /// The number of halvings from the cube of the domain.
     pub(crate) level: u8,
+    /// The corners with their dominators.
     pub(crate) corners: [Corner; 8],
 }
 
-/// CellCorners of the children of a cube: 3 on each axis.
+/// The number of corners that the children of a cube have together: 3 on each axis.
 pub(crate) const LATTICE_POINTS: usize = 27;
-/// The middle of the cube.
+/// The lattice point in the centre of the cube.
 pub(crate) const LATTICE_CENTRE: usize = LATTICE_POINTS / 2;
 
-/// The lattice points of the corners of each child.
+/// For each child of a cube the lattice points at its corners.
 pub(crate) const CHILD_CORNERS: [[usize; 8]; 8] = {
     let mut all = [[0; 8]; 8];
     let mut child = 0;
@@ -39,7 +43,7 @@ pub(crate) const CHILD_CORNERS: [[usize; 8]; 8] = {
     all
 };
 
-/// The lattice points that are neither corners of the cube nor its middle.
+/// The lattice points that are neither corners of the cube nor its centre.
 pub(crate) const NEW_LATTICE_POINTS: [usize; LATTICE_POINTS - 9] = {
     let mut all = [0; LATTICE_POINTS - 9];
     let mut count = 0;
@@ -56,23 +60,24 @@ pub(crate) const NEW_LATTICE_POINTS: [usize; LATTICE_POINTS - 9] = {
     all
 };
 
-/// The corner of the cube itself that lies on a lattice point, if there is one.
+/// Returns the corner of the cube at a lattice point, if there is one.
 pub(crate) fn cube_corner_at(at: usize) -> Option<usize> {
     (0..8).find(|&corner| 2 * CHILD_CORNERS[0][corner] == at)
 }
 
 impl Cube {
-    /// A point of the lattice: exact, since cubes are dyadic.
+    /// Returns a lattice point. It is exact, since the coordinates of cubes are dyadic.
     pub(crate) fn point(&self, at: usize) -> V3 {
         let steps = [at % 3, at / 3 % 3, at / 9];
         std::array::from_fn(|k| self.low[k] + self.side * 0.5 * steps[k] as f64)
     }
 
+    /// Returns the cube as a box.
     pub(crate) fn bounds(&self) -> Aabb<f64> {
         Aabb { min: self.low.into(), max: self.low.map(|x| x + self.side).into() }
     }
 
-    /// Its eight halves, given the corners on the whole lattice.
+    /// Returns the eight children, given the corners on the whole lattice.
     pub(crate) fn children(&self, lattice: &[Corner; LATTICE_POINTS]) -> [Self; 8] {
         std::array::from_fn(|child| Self {
             low: lattice[CHILD_CORNERS[child][0]].x,

@@ -1,4 +1,4 @@
-//! The list of a cell.
+//! The list of a finished cell, and the sample at its centre that decides whether the cell is finished.
 
 use crate::list::block::{BLOCK_WIDTH, Block, BoundKind, Entry, round_reference};
 use crate::list::corner_test::{DistancesAtPoints, LaneDistances, MinOverLanes};
@@ -10,14 +10,14 @@ use crate::octree::refinement::{
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 use p2m_core::{Best, QueryOptions};
 
-/// No list is longer, in packets.
+/// A cell with a longer list is left to the tree.
 const MAX_LIST_PACKETS: usize = 256;
-/// VoronoiLists longer than this are held against the tree.
+/// Longer lists are compared with a search of the tree at the centre of the cell.
 const COMPARE_WITH_TREE_ABOVE_PACKETS: usize = 24;
 
 impl Refinement<'_> {
-    /// The nearest point to `x`: of the primitive that seems nearest, or of the scene where filters do not tell of the
-    /// `has_all_bounds`.
+    /// Returns the point of the sampled primitive that is nearest to `x`. If the filters do not bound all packets, it
+    /// searches the tree for the nearest point of the scene instead.
     pub(crate) fn nearest_of_sample(&self, near: &NearestSample, has_all_bounds: bool, x: V3) -> V3 {
         if !has_all_bounds || near.distance == f64::INFINITY {
             return self.nearest(x);
@@ -28,78 +28,78 @@ impl Refinement<'_> {
         best.finish().map_or([f64::INFINITY; 3], |closest| closest.point.coords.into())
     }
 
-    /// What the filters find in the centre of a cell.
-    pub(crate) fn centre(&self, cube: &Cube, items: &[PacketCandidate]) -> CellCentre {
+    /// Runs the filters of all packets at the centre of a cell.
+    pub(crate) fn sample_centre(&self, cube: &Cube, candidates: &[PacketCandidate]) -> CellCentre {
         let x = cube.point(LATTICE_CENTRE);
         let mut centre = CellCentre {
-            distances: Vec::with_capacity(items.len()),
+            distances: Vec::with_capacity(candidates.len()),
             has_all_bounds: true,
             y: x,
             passing_boxes: 0,
             passing_corners: 0,
         };
         let mut nearest = NearestSample::NONE;
-        self.counters.charge_tests(items.len());
-        for item in items {
+        self.counters.charge_tests(candidates.len());
+        for candidate in candidates {
             let mut distances = [LaneDistances::UNKNOWN];
             let mut near = [None];
-            let packet = &self.tree.leaves.packets[item.packet as usize];
+            let packet = &self.tree.leaves.packets[candidate.packet as usize];
             centre.has_all_bounds &= packet.has_vertices();
             self.isa().run(DistancesAtPoints { packet, points: &[x], distances: &mut distances, nearest: &mut near });
             centre.distances.push(distances[0]);
-            nearest.add(near[0], item.packet);
+            nearest.add(near[0], candidate.packet);
         }
         centre.y = self.nearest_of_sample(&nearest, centre.has_all_bounds, x);
-        // How many packets either kind of bounds lets pass there.
+        // The next lines count the packets that each kind of bounds lets pass at the centre.
         let squares = cube.corners.map(|corner| norm_squared(sub(corner.x, centre.y)));
-        let own = norm_squared(sub(x, centre.y));
-        let f = items.iter().map(|item| {
-            let unit = self.tree.leaves.packets[item.packet as usize].unit();
-            let least = self.isa().run(MinOverLanes { distances: &item.distances, lanes: item.lanes });
+        let y_squared = norm_squared(sub(x, centre.y));
+        let f = candidates.iter().map(|candidate| {
+            let unit = self.tree.leaves.packets[candidate.packet as usize].unit();
+            let least = self.isa().run(MinOverLanes { distances: &candidate.distances, lanes: candidate.lanes });
             std::array::from_fn(|i| (least[i] * unit) * (least[i] * unit) - squares[i])
         });
         let f: Vec<[f64; 8]> = f.collect();
         let top = f.as_flattened().iter().fold(0.0f64, |a, x| a.max(-x));
-        let bound = |f: &[f64; 8]| own + f.iter().map(|f| f.min(top)).sum::<f64>() / 8.0 - top / 128.0;
-        centre.passing_corners = f.iter().filter(|f| bound(f) <= own).count();
-        // Boxes are the exception, and only near the scene.
-        centre.passing_boxes = if centre.passing_corners > 2 && own < 4.0 * cube.side * cube.side {
-            let bound = |item: &PacketCandidate| item.bounds.lower_bound(&nalgebra::Point3::from(x));
-            items.iter().filter(|item| bound(item) <= own).count()
+        let bound = |f: &[f64; 8]| y_squared + f.iter().map(|f| f.min(top)).sum::<f64>() / 8.0 - top / 128.0;
+        centre.passing_corners = f.iter().filter(|f| bound(f) <= y_squared).count();
+        // Boxes are considered only near the scene, and only if corners let several packets pass.
+        centre.passing_boxes = if centre.passing_corners > 2 && y_squared < 4.0 * cube.side * cube.side {
+            let bound = |candidate: &PacketCandidate| candidate.bounds.lower_bound(&nalgebra::Point3::from(x));
+            candidates.iter().filter(|candidate| bound(candidate) <= y_squared).count()
         } else {
             usize::MAX
         };
         centre
     }
 
-    /// A list as it is kept.
-    pub(crate) fn build_list(&self, cube: &Cube, items: &[PacketCandidate], centre: &CellCentre) -> RefinedCell {
+    /// Builds the list of a cell as it is stored, or a cell without a list if the tree is better.
+    pub(crate) fn build_list(&self, cube: &Cube, candidates: &[PacketCandidate], centre: &CellCentre) -> RefinedCell {
         let frame = &self.tree.frame;
         let y = round_reference(frame.place(&centre.y));
         let squares = cube.corners.map(|corner| norm_squared(sub(frame.place(&corner.x), y)));
-        // Rounding in f64, of positions in the frame and of these squares, and of the cell that a query is taken to lie
-        // in: where f is below zero, so that its value matters, it changes by twice the way to y for each step
-        // at most.
+        // The margin covers the rounding in f64 of these squares and of positions in the frame, and the error of the
+        // cell in which a query is located. Values of f matter only below zero, where f changes by at most twice the
+        // distance to y for each unit of displacement.
         let largest = squares.iter().fold(1.0, |a: f64, x| a.max(*x));
         let margin = largest * 2f64.powi(-46) + 4.0 * self.slack * frame.per_unit * largest.sqrt();
-        let mut entries: Vec<(f64, Entry)> = Vec::with_capacity(items.len());
+        let mut entries: Vec<(f64, Entry)> = Vec::with_capacity(candidates.len());
         let mut single = None;
         let mut count = 0;
-        for (item, distances) in items.iter().zip(&centre.distances) {
-            let packet = &self.tree.leaves.packets[item.packet as usize];
-            let lanes = self.lanes_without_ties(cube, item);
+        for (candidate, distances) in candidates.iter().zip(&centre.distances) {
+            let packet = &self.tree.leaves.packets[candidate.packet as usize];
+            let lanes = self.lanes_without_ties(cube, candidate);
             if lanes == 0 {
                 continue;
             }
             count += lanes.count_ones();
-            single = Some((item.packet, lanes.trailing_zeros()));
+            single = Some((candidate.packet, lanes.trailing_zeros()));
             let bounds = frame.enclose(&packet.bounds_of(lanes));
             let length = packet.unit() * frame.per_unit;
-            let least = self.isa().run(MinOverLanes { distances: &item.distances, lanes });
+            let least = self.isa().run(MinOverLanes { distances: &candidate.distances, lanes });
             let f = std::array::from_fn(|i| (least[i] * length) * (least[i] * length) - squares[i] - margin);
-            // Nearer packets in earlier blocks.
+            // Packets that are nearer to the centre come into earlier blocks.
             let order = self.isa().run(MinOverLanes { distances: std::slice::from_ref(distances), lanes })[0] * length;
-            entries.push((order, Entry { packet: item.packet, lanes, bounds, f }));
+            entries.push((order, Entry { packet: candidate.packet, lanes, bounds, f }));
         }
         match (count, single) {
             (1, Some((packet, lane))) => RefinedCell::Single(packet, u8::try_from(lane).expect("sixteen lanes")),
@@ -115,14 +115,14 @@ impl Refinement<'_> {
                 let bounds = if centre.passing_boxes < centre.passing_corners {
                     BoundKind::Boxes
                 } else {
-                    BoundKind::CellCorners { level: cube.level, y }
+                    BoundKind::Corners { level: cube.level, y }
                 };
                 RefinedCell::Blocks(Block::from_list(&entries, bounds))
             }
         }
     }
 
-    /// Whether the tree takes less in the centre of a cell than its list, if that is long.
+    /// Returns whether a search of the tree takes less time at the centre of the cell than a long list would.
     fn is_tree_faster(&self, cube: &Cube, len: usize, centre: &CellCentre) -> bool {
         if len <= COMPARE_WITH_TREE_ABOVE_PACKETS {
             return false;
@@ -133,18 +133,18 @@ impl Refinement<'_> {
         list > NS_PER_PACKET * packets as f64 + NS_PER_NODE * nodes as f64
     }
 
-    /// The lanes of an item without those that can only tie with a lower primitive: where a vertex is the nearest point
-    /// of a primitive in the has_all_bounds cell, certainly enough for the kernel to give exactly the distance to it, the
-    /// lowest primitive with that vertex is at least as near.
-    fn lanes_without_ties(&self, cube: &Cube, item: &PacketCandidate) -> u16 {
-        /// The kernel is content with 2^-38.
+    /// Returns the lanes of a candidate without those that can only tie with a primitive of a lower id. Such a lane
+    /// has one vertex as its nearest point everywhere in the cell, with a margin that makes the kernel return exactly
+    /// the distance to this vertex, and a primitive with a lower id has the same vertex.
+    fn lanes_without_ties(&self, cube: &Cube, candidate: &PacketCandidate) -> u16 {
+        /// The relative margin by which a vertex has to be the nearest point. The kernel needs 2^-38.
         const MARGIN: f64 = 1.0 / (1u64 << 36) as f64;
-        let packet = &self.tree.leaves.packets[item.packet as usize];
-        // And in what rounding may add to it: a query may lie beside its cell.
+        let packet = &self.tree.leaves.packets[candidate.packet as usize];
+        // The slack is added because rounding may put a query beside its cell.
         let half = cube.side * 0.5 + self.slack;
         let centre = cube.low.map(|x| x + cube.side * 0.5);
-        let mut kept = item.lanes;
-        for lane in (0..packet.ids().len()).filter(|lane| item.lanes >> lane & 1 == 1) {
+        let mut kept = candidate.lanes;
+        for lane in (0..packet.ids().len()).filter(|lane| candidate.lanes >> lane & 1 == 1) {
             let (corners, count) = packet.vertices_of(lane);
             let corners = &corners[..count];
             let vertex = |v: usize| self.tree.leaves.vertices[corners[v]];
@@ -158,7 +158,7 @@ impl Refinement<'_> {
                     let edge: V3 = std::array::from_fn(|k| other[k] - own[k]);
                     let to: V3 = std::array::from_fn(|k| centre[k] - own[k]);
                     let size = (0..3).map(|k| to[k].abs() + half + edge[k].abs()).fold(0.0, f64::max);
-                    // The largest value of (q - own) . edge in the cell.
+                    // This is the largest value of (q - own) . edge in the cell.
                     let most: f64 = (0..3).map(|k| to[k] * edge[k] + half * edge[k].abs()).sum();
                     most < -MARGIN * size * size
                 })

@@ -1,4 +1,4 @@
-//! The cube from_tree the domain.
+//! The domain of an octree: the cube bounds it, and where queries are expected.
 
 use crate::options::{Domain, OctreeOptions};
 use p2m_bvh::PacketTree;
@@ -6,29 +6,34 @@ use p2m_core::Aabb;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
 
-/// [`Domain::Everywhere`] in sizes from_tree the scene.
+/// The side of [`Domain::Everywhere`], in sizes of the scene.
 const EVERYWHERE_SCENE_SIZES: f64 = 10.0;
-/// Where queries are taken to be, evenly in boxes from_tree so many sizes from_tree the scene: more from_tree them the nearer it is.
+/// The boxes in which queries are expected, uniformly in each: the side in sizes of the scene, and the weight. The
+/// boxes are nested, so queries are denser near the scene.
 const QUERY_BOXES: [(f64, f64); 4] = [(EVERYWHERE_SCENE_SIZES, 1.0), (4.0, 0.3), (2.0, 0.3), (1.05, 1.0)];
 
-/// The cube from_tree the domain, and what follows from it.
+/// The cube of a domain with what the refinement derives from it.
 pub(crate) struct DomainCube {
+    /// The low corner of the cube.
     pub(crate) low: V3,
+    /// The side of the cube, a power of two.
     pub(crate) side: f64,
+    /// The slack of the corner test: a dominator has to be nearer by this much.
     pub(crate) slack: f64,
-    /// Boxes with queries evenly in them, and how many for each unit from_tree volume.
+    /// The boxes in which queries are uniform, each with the number of queries in a unit of volume.
     pub(crate) uniform_boxes: Vec<(Aabb<f64>, f64)>,
 }
 
 impl DomainCube {
-    /// `None` for a scene without extent, one that f32 cannot tell apart and a domain without extent: the tree answers.
+    /// Chooses the cube. The result is `None`, and the tree answers everything, if the scene or the domain has no
+    /// extent, or if coordinates in f32 cannot resolve the scene.
     #[allow(clippy::cast_possible_truncation, reason = "an exponent")]
     pub(crate) fn from_tree(tree: &PacketTree, options: &OctreeOptions) -> Option<Self> {
         let bounds = tree.bounds();
         let extent = bounds.max - bounds.min;
         let size = extent.max();
         let centre = bounds.min + extent * 0.5;
-        // A flat scene has a flat box, but queries beside it are in the domain, too.
+        // The box of a flat scene is flat, but the domain has to contain queries beside the scene as well.
         let extent = extent.map(|x| x.max(size * 0.05));
         let domain = match options.domain {
             Domain::Everywhere => Aabb {
@@ -41,25 +46,25 @@ impl DomainCube {
             }
         };
         let span = domain.max - domain.min;
-        let reach = span.max();
-        let sound = span.iter().all(|x| *x > 0.0 && x.is_finite()) && domain.min.iter().all(|x| x.is_finite());
-        let usable = size > 0.0 && size.is_finite() && tree.frame.is_plain() && sound;
-        // VoronoiLists have positions in the frame from_tree the scene in f32, and cells have to be from_tree some use.
-        if !usable || reach > size * 2f64.powi(20) || reach < size * 2f64.powi(-20) {
+        let longest = span.max();
+        let is_bounded = span.iter().all(|x| *x > 0.0 && x.is_finite()) && domain.min.iter().all(|x| x.is_finite());
+        let is_usable = size > 0.0 && size.is_finite() && tree.frame.is_plain() && is_bounded;
+        // The frame of the scene has to resolve cells in f32, and cells have to be small enough to be of use.
+        if !is_usable || longest > size * 2f64.powi(20) || longest < size * 2f64.powi(-20) {
             return None;
         }
-        // Dyadic: a power from_tree two as side, and the corner a multiple from_tree a small weight from_tree it, so that all corners are
-        // exact.
-        let side = 2f64.powi((reach * 1.0001).log2().ceil() as i32);
+        // The side is a power of two and the corner is a multiple of a small part of it, so that all corners of cells
+        // are exact.
+        let side = 2f64.powi((longest * 1.0001).log2().ceil() as i32);
         let grain = side / 4096.0;
-        let middle = domain.min + span * 0.5;
-        let low: V3 = std::array::from_fn(|k| ((middle[k] - side * 0.5) / grain).floor() * grain);
-        let ends = [to_f64_array(&bounds.min), to_f64_array(&bounds.max)];
-        let scale = side * 4.0 + low.iter().chain(ends.as_flattened()).fold(0.0f64, |a, x| a.max(x.abs()));
+        let domain_centre = domain.min + span * 0.5;
+        let low: V3 = std::array::from_fn(|k| ((domain_centre[k] - side * 0.5) / grain).floor() * grain);
+        let scene_corners = [to_f64_array(&bounds.min), to_f64_array(&bounds.max)];
+        let scale = side * 4.0 + low.iter().chain(scene_corners.as_flattened()).fold(0.0f64, |a, x| a.max(x.abs()));
         let uniform_box = |scale: f64, weight: f64| {
             let half = extent * (scale * 0.5);
-            let around = Aabb { min: centre - half, max: centre + half };
-            (around, weight / (half * 2.0).product())
+            let bounds = Aabb { min: centre - half, max: centre + half };
+            (bounds, weight / (half * 2.0).product())
         };
         let uniform_boxes = match options.domain {
             Domain::Everywhere => QUERY_BOXES.map(|(scale, weight)| uniform_box(scale, weight)).to_vec(),
@@ -68,7 +73,7 @@ impl DomainCube {
         Some(Self {
             low,
             side,
-            // Rounding from_tree keys, from_tree dominators and from_tree locating a query: all below 2^-46 from_tree this.
+            // The rounding of keys, of dominators and of locating a query is below 2^-46 of `scale`.
             slack: scale / (1u64 << 42) as f64,
             uniform_boxes,
         })

@@ -1,4 +1,8 @@
-//! A partition into cubes.
+//! The partition of the domain into cubes: an octree whose leaves have interception lists.
+//!
+//! A query locates its leaf by the bits of its coordinates ([`query`]). The build ([`build`]) starts from the tree
+//! over the packets, refines a cube ([`domain`]) and encodes the result ([`code`]). docs/proofs/octree.md has the
+//! proofs.
 
 pub(crate) mod budget;
 pub(crate) mod build;
@@ -28,40 +32,54 @@ use p2m_core::{Best, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Real, StatsCo
 use std::collections::HashMap;
 use std::sync::atomic::AtomicU64;
 
-/// Resolutions from which on nothing changes any following.
+/// The resolution above which cells do not become finer any more.
 const MAX_RESOLUTION: f64 = 1e9;
+/// The resolution below which the build gives up, because cells would not become coarser any more.
 const MIN_RESOLUTION: f64 = 1e-9;
-/// Budgets are for at least so many primitives.
+/// The budgets of a scene with fewer primitives are those of a scene with this many.
 const MIN_PRIMITIVES_FOR_BUDGETS: usize = 10_000;
-/// As many times the work of a refinement is counters in vain at budgets, for one that is within the budgets.
+/// The build gives up and uses the tree alone once refinements that exceeded a budget have spent this many work
+/// budgets.
 const MAX_WASTED_WORK: u64 = 5;
 
-/// An interception index whose refine_root are cubes, over a set of primitives that it does not keep.
+/// An interception index whose cells are cubes, over a set of primitives that it does not store.
+///
+/// Searches ask the set only to evaluate primitives of unknown kinds. [`OctreeIndex`](crate::OctreeIndex) combines an
+/// octree with its set.
 #[derive(Clone, Debug)]
 pub struct Octree {
+    /// The tree over the packets. It answers outside of the domain and in cells without a list.
     tree: PacketTree,
+    /// The low corner of the cube of the domain.
     low: V3,
-    /// Finest refine_root in a unit of length.
+    /// The number of cells of [`MAX_LEVEL`] in a unit of length.
     cells_per_length: f64,
+    /// The code of the cube of the domain.
     root: u32,
+    /// The codes of the cubes below it.
     rows: Array<Row>,
+    /// The blocks of all lists.
     blocks: Array<Block>,
+    /// The statistics of the build.
     report: OctreeReport,
 }
 
 impl Octree {
+    /// Refines the cube of the domain. If a budget is exceeded, coarser resolutions are tried in turn, and finally the
+    /// octree stays empty.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates; NaN is no budget")]
     fn refine_within_budgets<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
         &mut self,
         set: &S,
         options: &OctreeOptions,
-        shape: &DomainCube,
+        cube: &DomainCube,
         progress: &(dyn Fn(Progress) + Sync),
     ) {
         let tree = &self.tree;
         let lowest_owners = lowest_owners(tree);
         let search = |x: V3| {
-            // Nearest to a rounded place: any point of the scene will do.
+            // The query is rounded to the scalar of the set, which is harmless: any point of the scene can be a
+            // dominator.
             let mut counting = StatsCollector::<T>::new(Best::new(&QueryOptions::default()));
             tree.search(set, &from_f64_array(x), &mut counting);
             let StatsCollector { best, nodes, packets, primitives } = counting;
@@ -69,13 +87,13 @@ impl Octree {
         };
         let count = tree.packets().1.max(MIN_PRIMITIVES_FOR_BUDGETS) as f64;
         let budgets = [options.memory, options.work].map(|budget| (budget * count) as u64);
-        // NaN is no resolution either.
+        // The comparison is false if the resolution is NaN.
         let mut resolution = if options.resolution > 0.0 { options.resolution.min(MAX_RESOLUTION) } else { 0.0 };
         let mut percent = 0;
         let mut wasted_work = 0;
-        let (refine_root, counters) = loop {
+        let (cells, counters) = loop {
             if resolution < MIN_RESOLUTION || wasted_work > budgets[1].saturating_mul(MAX_WASTED_WORK) {
-                // Not uniform_boxes the coarsest refine_root are within the budgets, or it takes too long to find those that are.
+                // Even the coarsest cells exceed the budgets, or it takes too long to find a resolution that does not.
                 return;
             }
             let counters = BudgetCounters {
@@ -91,16 +109,16 @@ impl Octree {
                 lowest_owners: &lowest_owners,
                 search: &search,
                 domain: options.domain,
-                slack: shape.slack,
-                uniform_boxes: &shape.uniform_boxes,
+                slack: cube.slack,
+                uniform_boxes: &cube.uniform_boxes,
                 inv_packet_count: 1.0 / tree.packets().0 as f64,
                 resolution,
                 parallel: options.splits.parallel,
                 counters,
             };
-            let refine_root = refinement.refine_root(shape.low, shape.side);
+            let cells = refinement.refine_root(cube.low, cube.side);
             if !refinement.counters.is_exceeded() {
-                break (refine_root, refinement.counters);
+                break (cells, refinement.counters);
             }
             percent = refinement.counters.percent.into_inner();
             wasted_work += refinement.counters.work.into_inner();
@@ -108,10 +126,10 @@ impl Octree {
         };
         self.report.work = counters.work.into_inner();
         self.report.resolution = resolution;
-        self.low = shape.low;
-        self.cells_per_length = 2f64.powi(i32::from(MAX_LEVEL)) / shape.side;
+        self.low = cube.low;
+        self.cells_per_length = 2f64.powi(i32::from(MAX_LEVEL)) / cube.side;
         let mut codes = CodeWriter { rows: Vec::new(), blocks: Vec::new(), report: &mut self.report };
-        self.root = codes.encode(refine_root, 0);
+        self.root = codes.encode(cells, 0);
         codes.rows.shrink_to_fit();
         codes.blocks.shrink_to_fit();
         (self.rows, self.blocks) = (codes.rows.into(), codes.blocks.into());
@@ -141,8 +159,8 @@ impl Partition for Octree {
             blocks: Array::default(),
             report: OctreeReport { tree_bytes, ..OctreeReport::default() },
         };
-        if let Some(shape) = DomainCube::from_tree(&octree.tree, options) {
-            octree.refine_within_budgets(set, options, &shape, progress);
+        if let Some(cube) = DomainCube::from_tree(&octree.tree, options) {
+            octree.refine_within_budgets(set, options, &cube, progress);
         }
         progress(Progress { stage: BuildStage::Octree, part: 1.0 });
         octree
@@ -174,7 +192,7 @@ impl Partition for Octree {
 
     fn list_lengths(&self) -> Vec<usize> {
         let mut lengths = vec![1; self.report.singles];
-        // One list after the other.
+        // The lists lie one after the other in the array.
         let mut rest = &self.blocks[..];
         while let Some(first) = rest.first() {
             let (own, others) = rest.split_at(usize::from(first.following) + 1);
@@ -189,14 +207,15 @@ impl Partition for Octree {
     }
 }
 
-/// The next lower of the powers of 0.3, so that who asks for following does not get less.
+/// Returns the next lower power of 0.3. As these powers do not depend on the first resolution, a request for a finer
+/// octree never yields a coarser one.
 #[allow(clippy::cast_possible_truncation, reason = "some dozens")]
 fn next_coarser_resolution(resolution: f64) -> f64 {
     let steps = (resolution.ln() / 0.3f64.ln() + 1e-6).floor() as i32 + 1;
     0.3f64.powi(steps)
 }
 
-/// For each vertex of a tree the lowest primitive that has it, bit for bit.
+/// Returns for each vertex of a tree the primitive with the lowest id that has this vertex, bit for bit.
 fn lowest_owners(tree: &PacketTree) -> Vec<PrimitiveId> {
     let leaves = &tree.leaves;
     let mut lowest_owners: HashMap<[u64; 3], PrimitiveId> = HashMap::with_capacity(leaves.vertices.len());

@@ -1,4 +1,4 @@
-//! From a query to its cell and through its list.
+//! The search of an octree: a query descends to its leaf and searches the list of the leaf.
 
 use crate::list::block::{Block, BlockQuery, MAX_LEVEL};
 use crate::list::search;
@@ -16,18 +16,18 @@ use p2m_core::engine::vector::V3;
 use p2m_core::{Collector, Near};
 
 impl Octree {
-    /// The code of the cell of a block_query in finest cells of the cube.
+    /// Returns the code of the leaf at a position, which is given in units of the cells of [`MAX_LEVEL`].
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the cube")]
-    fn locate_code(&self, block_query: &V3) -> u32 {
+    fn locate_code(&self, position: &V3) -> u32 {
         let cells = f64::from(1u32 << MAX_LEVEL);
         let mut at = [0u32; 3];
         for k in 0..3 {
-            // Not for NaN either.
-            if !(block_query[k] >= 0.0 && block_query[k] < cells) {
+            // The comparison is false if a coordinate is NaN, so the tree answers.
+            if !(position[k] >= 0.0 && position[k] < cells) {
                 return FALLBACK_CODE;
             }
-            at[k] = block_query[k] as u32;
+            at[k] = position[k] as u32;
         }
         let mut shift = MAX_LEVEL;
         let mut code = self.root;
@@ -46,15 +46,15 @@ impl Octree {
         code
     }
 
-    /// The code of the cell of a query, and its block_query in finest cells.
+    /// Returns the code of the leaf that contains a query point, and the point in units of the cells of [`MAX_LEVEL`].
     #[inline(always)]
     pub(crate) fn locate_cell(&self, query: &V3) -> (u32, V3) {
         let cells: V3 = std::array::from_fn(|k| (query[k] - self.low[k]) * self.cells_per_length);
         (self.locate_code(&cells), cells)
     }
 
-    /// How many packets the list of the cell of a point has: 1 where one primitive is the query_nearest throughout, `None`
-    /// where the tree answers.
+    /// Returns the number of packets in the list of the cell that contains a point. It is 1 if one primitive is the
+    /// nearest everywhere in the cell, and `None` if the tree answers.
     #[must_use]
     pub fn list_length(&self, point: &Point3<f64>) -> Option<usize> {
         let code = self.locate_cell(&to_f64_array(point)).0;
@@ -93,12 +93,12 @@ impl CellQuery for Octree {
         self.query_with(query, minimum, evaluate, finish_nearest);
     }
 
-    fn query_near<'n>(&self, query: V3, query_near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
-        self.query_with(query, query_near, evaluate, finish);
+    fn query_near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
+        self.query_with(query, near, evaluate, finish);
     }
 }
 
-/// A query in its cell, as an operation.
+/// A SIMD kernel that searches the leaf of a query.
 struct SearchCell<'a, C> {
     octree: &'a Octree,
     code: u32,
@@ -122,7 +122,7 @@ impl<C: Collector> SimdKernel for SearchCell<'_, C> {
             state.add(number / LANES, number % LANES);
             return state.evaluate_waiting();
         }
-        // What comes next, if the list has following than a block.
+        // The second block is prefetched as well, because the list may have more than one.
         prefetch_lines(octree.blocks.as_ptr().wrapping_add(number), 2 * size_of::<Block>());
         let (first, rest) = (&octree.blocks[number], &octree.blocks[number + 1..]);
         search::search_list::<I, C>(tree, first, rest, &self.block_query, &mut state);

@@ -1,4 +1,4 @@
-//! An octree in a file.
+//! Saving an octree and loading it.
 
 use crate::octree::Octree;
 use crate::options::OctreeReport;
@@ -6,7 +6,7 @@ use p2m_bvh::PacketTree;
 use p2m_core::engine::vector::V3;
 use p2m_core::storage::{LoadError, Reader, Saved, Writer};
 
-/// What is no array.
+/// The fields of an octree that are not arrays. The layout is that of the section `octree` of the file.
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Header {
@@ -35,7 +35,7 @@ impl Saved for Octree {
         let [lists, singles, trees, entries, depth, bytes, tree_bytes] =
             [lists, singles, trees, entries, depth, bytes, tree_bytes].map(|n| n as u64);
         let Self { low, cells_per_length, root, .. } = *self;
-        let head = Header {
+        let header = Header {
             low,
             cells_per_length,
             resolution,
@@ -50,7 +50,7 @@ impl Saved for Octree {
             root,
             unused: 0,
         };
-        writer.put_copy("octree", &[head]);
+        writer.put_copy("octree", &[header]);
         writer.put("octree/codes", &self.rows);
         writer.put("octree/lists", &self.blocks);
         self.tree.save(writer);
@@ -58,11 +58,11 @@ impl Saved for Octree {
 
     #[allow(clippy::cast_possible_truncation, reason = "numbers to report")]
     fn load(reader: &Reader) -> Result<Self, LoadError> {
-        let head: Header = reader.one("octree")?;
-        let Header { lists, singles, trees, entries, depth, bytes, tree_bytes, .. } = head;
+        let header: Header = reader.one("octree")?;
+        let Header { lists, singles, trees, entries, depth, bytes, tree_bytes, .. } = header;
         let [lists, singles, trees, entries, depth, bytes, tree_bytes] =
             [lists, singles, trees, entries, depth, bytes, tree_bytes].map(|n| n as usize);
-        let Header { low, cells_per_length, resolution, work, root, .. } = head;
+        let Header { low, cells_per_length, resolution, work, root, .. } = header;
         let report = OctreeReport { lists, singles, trees, entries, depth, bytes, tree_bytes, work, resolution };
         let (rows, blocks) = (reader.array("octree/codes")?, reader.array("octree/lists")?);
         Ok(Self { tree: PacketTree::load(reader)?, low, cells_per_length, root, rows, blocks, report })
