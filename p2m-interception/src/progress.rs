@@ -15,7 +15,7 @@ pub enum BuildStage {
     /// The packets that meet their circumscribed balls
     Balls,
     /// The lists of the cells
-    VoronoiLists,
+    Lists,
     /// What locates a query
     Locator,
     /// The cells of an octree with their lists
@@ -30,7 +30,7 @@ impl BuildStage {
             Self::Tree => "tree",
             Self::Delaunay => "delaunay",
             Self::Balls => "balls",
-            Self::VoronoiLists => "lists",
+            Self::Lists => "lists",
             Self::Locator => "locator",
             Self::Octree => "octree",
         }
@@ -160,13 +160,13 @@ mod tests {
             now.set(time);
             times.tell(Progress { stage, part: 0.0 });
         }
-        for (time, stage) in [(9, BuildStage::Delaunay), (11, BuildStage::VoronoiLists)] {
+        for (time, stage) in [(9, BuildStage::Delaunay), (11, BuildStage::Lists)] {
             now.set(time);
             times.tell(Progress { stage, part: 0.5 });
         }
         now.set(20);
         let expected =
-            [(BuildStage::Tree, 2), (BuildStage::Delaunay, 3), (BuildStage::Balls, 5), (BuildStage::VoronoiLists, 9)];
+            [(BuildStage::Tree, 2), (BuildStage::Delaunay, 3), (BuildStage::Balls, 5), (BuildStage::Lists, 9)];
         assert_eq!(times.finish(), expected.map(|(stage, time)| (stage, Duration::from_secs(time))));
         assert!(StageTimes::new(|| Duration::ZERO).finish().is_empty());
     }

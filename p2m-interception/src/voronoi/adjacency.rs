@@ -1,4 +1,4 @@
-//! Vertices and edges of the primitives, and which of them have any.
+//! The adjacency of primitives: which vertices and edges they share, and with whom.
 
 use crate::delaunay::Delaunay;
 use p2m_bvh::PacketTree;
@@ -6,91 +6,95 @@ use p2m_bvh::engine::packet::LANES;
 use p2m_core::PrimitiveId;
 use std::collections::HashMap;
 
-/// Of a lane the vertices and edges that a primitive of a lower id has as well, as bits: vertex i, and 3 + i for the
-/// edge from vertex i to the next.
+/// The vertices and edges of a lane that a primitive with a lower id has as well, as bits: bit i for vertex i, and bit
+/// 3 + i for the edge from vertex i to the next one.
 pub(crate) type OwnedByLowerId = u8;
 
-/// Vertices and edges of the primitives.
+/// The vertices and edges of all primitives.
 pub(crate) struct EdgeAdjacency {
-    /// For for_each_lane packet and lane.
+    /// For each packet and lane the features that a primitive with a lower id has as well.
     pub(crate) owned_by_lower_id: Vec<[OwnedByLowerId; LANES]>,
-    /// Of for_each_lane site the lowest primitive that has it, as packet and lane.
+    /// For each site the primitive with the lowest id that has it, as its packet times [`LANES`] plus its lane, or
+    /// [`NO_PRIMITIVE`].
     pub(crate) owners: Vec<u32>,
-    /// Of for_each_lane site the sites at the other ends of edges.
+    /// For each site the sites at the other ends of edges.
     pub(crate) edges: IncidenceLists,
-    /// For for_each_lane packet and lane, of the edge from for_each_lane vertex to the next another triangle that has it, as packet and
-    /// lane, or [`NO_PRIMITIVE`].
+    /// For each packet and lane, and for the edge from each vertex to the next one, another triangle with this edge,
+    /// as its packet times [`LANES`] plus its lane, or [`NO_PRIMITIVE`].
     pub(crate) opposite_triangles: Vec<[[u32; 3]; LANES]>,
-    /// Whether sites are exactly where their vertices are.
+    /// Whether all sites are exactly at their vertices.
     pub(crate) is_exact: bool,
 }
 
-/// What primitives have an edge.
+/// The primitives that have an edge.
 struct EdgeTriangles {
+    /// The lowest id of all primitives with the edge.
     lowest: PrimitiveId,
-    /// The first two triangles, as packets and lanes.
+    /// The first two triangles, as packet times [`LANES`] plus lane, or [`NO_PRIMITIVE`].
     triangles: [u32; 2],
 }
 
-/// No primitive.
+/// Marks that there is no primitive.
 pub(crate) const NO_PRIMITIVE: u32 = u32::MAX;
 
-/// Takes a packet, a lane of it, the primitive and its sites.
+/// A function that takes a packet, a lane of it, the id of the primitive and its sites.
 type VisitLane<'a> = &'a mut dyn FnMut(usize, usize, PrimitiveId, &[usize]);
 
 impl EdgeAdjacency {
-    /// Those of the packets of a tree.
+    /// Collects the vertices and edges of the packets of a tree.
     #[allow(clippy::cast_possible_truncation, clippy::float_cmp, reason = "numbers of 32 bits; the same or not")]
-    pub(crate) fn of(tree: &PacketTree, delaunay: &Delaunay) -> Self {
+    pub(crate) fn from_tree(tree: &PacketTree, delaunay: &Delaunay) -> Self {
         let leaves = &tree.leaves;
         let count = delaunay.sites().len();
         let position = |site: usize| delaunay.sites()[site].map(|x| x * delaunay.unit());
-        // The lowest primitive of for_each_lane vertex, its packet and lane.
+        // For each site the primitive with the lowest id, and its packet and lane.
         let mut owners = vec![(PrimitiveId::new(0), NO_PRIMITIVE); count];
         let mut edge_owners: HashMap<(u32, u32), EdgeTriangles> = HashMap::with_capacity(leaves.vertices.len());
         let for_each_lane = |visit: VisitLane<'_>| {
             for (number, packet) in leaves.packets.iter().enumerate().filter(|(_, p)| p.has_vertices()) {
                 for (lane, id) in packet.ids().iter().enumerate() {
                     let (positions, count) = packet.vertices_of(lane);
-                    let own = positions.map(|position| delaunay.site_of(position));
-                    visit(number, lane, *id, &own[..count]);
+                    let sites = positions.map(|position| delaunay.site_of(position));
+                    visit(number, lane, *id, &sites[..count]);
                 }
             }
         };
-        for_each_lane(&mut |number, lane, id, own| {
-            for &site in own {
+        for_each_lane(&mut |number, lane, id, sites| {
+            for &site in sites {
                 if owners[site].1 == NO_PRIMITIVE || id < owners[site].0 {
                     owners[site] = (id, (number * LANES + lane) as u32);
                 }
             }
-            for edge in edges(own) {
+            for edge in edges_of(sites) {
                 let edge =
                     edge_owners.entry(edge).or_insert(EdgeTriangles { lowest: id, triangles: [NO_PRIMITIVE; 2] });
                 edge.lowest = edge.lowest.min(id);
-                if let Some(free) = edge.triangles.iter_mut().find(|t| **t == NO_PRIMITIVE).filter(|_| own.len() == 3) {
+                if let Some(free) = edge.triangles.iter_mut().find(|t| **t == NO_PRIMITIVE).filter(|_| sites.len() == 3)
+                {
                     *free = (number * LANES + lane) as u32;
                 }
             }
         });
         let mut owned_by_lower_id = vec![[0; LANES]; leaves.packets.len()];
         let mut opposite_triangles = vec![[[NO_PRIMITIVE; 3]; LANES]; leaves.packets.len()];
-        for_each_lane(&mut |number, lane, id, own| {
+        for_each_lane(&mut |number, lane, id, sites| {
             let bits = &mut owned_by_lower_id[number][lane];
-            for (i, &site) in own.iter().enumerate() {
+            for (i, &site) in sites.iter().enumerate() {
                 *bits |= u8::from(owners[site].0 < id) << i;
             }
-            for (i, edge) in edges(own).enumerate() {
+            for (i, edge) in edges_of(sites).enumerate() {
                 let edge = &edge_owners[&edge];
                 *bits |= u8::from(edge.lowest < id) << (3 + i);
                 let other = edge.triangles.iter().find(|t| **t != (number * LANES + lane) as u32);
                 opposite_triangles[number][lane][i] = other.copied().unwrap_or(NO_PRIMITIVE);
             }
         });
-        let mut proper: Vec<(u32, u32)> = edge_owners.into_keys().filter(|(a, b)| a != b).collect();
-        proper.sort_unstable();
-        let edges = IncidenceLists::new(count, proper.iter().flat_map(|&(a, b)| [(a, b), (b, a)]));
-        let mut owners: Vec<u32> = owners.into_iter().map(|(_, position)| position).collect();
-        // Vertices that one site stands for, but for what is below the least coordinate of sites, are not the same.
+        let mut proper_edges: Vec<(u32, u32)> = edge_owners.into_keys().filter(|(a, b)| a != b).collect();
+        proper_edges.sort_unstable();
+        let edges = IncidenceLists::new(count, proper_edges.iter().flat_map(|&(a, b)| [(a, b), (b, a)]));
+        let mut owners: Vec<u32> = owners.into_iter().map(|(_, primitive)| primitive).collect();
+        // Vertices that one site represents may differ where coordinates are too small for sites. Then nothing is
+        // known to be shared.
         let is_exact = (0..leaves.vertices.len()).all(|v| position(delaunay.site_of(v)) == leaves.vertices[v]);
         if !is_exact {
             owned_by_lower_id.fill([0; LANES]);
@@ -101,9 +105,9 @@ impl EdgeAdjacency {
     }
 }
 
-/// The edges of a primitive, by its sites, the lower one first.
+/// Returns the edges of a primitive with some sites, the lower site of each edge first.
 #[allow(clippy::cast_possible_truncation, reason = "numbers of 32 bits")]
-fn edges(sites: &[usize]) -> impl Iterator<Item = (u32, u32)> + '_ {
+fn edges_of(sites: &[usize]) -> impl Iterator<Item = (u32, u32)> + '_ {
     let count = if sites.len() == 3 { 3 } else { sites.len() - 1 };
     (0..count).map(|i| {
         let (a, b) = (sites[i], sites[(i + 1) % sites.len()]);
@@ -111,14 +115,16 @@ fn edges(sites: &[usize]) -> impl Iterator<Item = (u32, u32)> + '_ {
     })
 }
 
-/// Numbers that belong to for_each_lane site.
+/// Lists of numbers, one for each site, in compressed form.
 pub(crate) struct IncidenceLists {
+    /// The index of the first number of each site, and the end.
     firsts: Vec<u32>,
+    /// The numbers of all sites, one site after the other.
     numbers: Vec<u32>,
 }
 
 impl IncidenceLists {
-    /// Of pairs of a site and a number.
+    /// Collects the lists from pairs of a site and a number.
     pub(crate) fn new(sites: usize, pairs: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
         let mut firsts = vec![0u32; sites + 1];
         for (site, _) in pairs.clone() {
@@ -136,7 +142,8 @@ impl IncidenceLists {
         Self { firsts, numbers }
     }
 
-    pub(crate) fn of(&self, site: usize) -> &[u32] {
+    /// Returns the numbers of a site.
+    pub(crate) fn get(&self, site: usize) -> &[u32] {
         &self.numbers[self.firsts[site] as usize..self.firsts[site + 1] as usize]
     }
 }

@@ -1,18 +1,21 @@
-//! The locator of an index.
+//! The locator of an index: the default one or another one.
 
 use crate::voronoi::grid_locator::GridLocator;
 use crate::voronoi::locator::Locator;
 use p2m_core::engine::vector::V3;
 use std::sync::Arc;
 
-/// The locator of an index. Calls of the grid are direct, since it is the default.
+/// The locator of an index. The grid has a variant of its own, so that calls of the default locator are direct.
 #[derive(Clone, Debug)]
 pub(crate) enum AnyLocator {
+    /// The default locator.
     Grid(GridLocator),
+    /// A locator that was chosen in the options.
     Other(Arc<dyn Locator>),
 }
 
 impl AnyLocator {
+    /// Returns a site near a point of the domain, as [`Locator::start`].
     #[inline(always)]
     pub(crate) fn start(&self, position: &V3) -> Option<usize> {
         match self {
@@ -21,6 +24,7 @@ impl AnyLocator {
         }
     }
 
+    /// Returns the heap memory in bytes.
     pub(crate) fn memory(&self) -> usize {
         match self {
             Self::Grid(grid) => grid.memory(),

@@ -1,30 +1,34 @@
-//! What building cells of vertices may take: past it the tree answers alone.
+//! The memory and work budget of a build of Voronoi cells. If it is exceeded, the index falls back to its tree.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Allowances are for at least so many primitives.
+/// The budget of a scene with fewer primitives is that of a scene with this many.
 const MIN_PRIMITIVES_FOR_BUDGET: usize = 1000;
 
-/// Room and work that are left. Whether it is used up does not depend on the order of what is charged, and what was made is of
-/// no use then: so the index is the same on any number of threads.
+/// The budget of a build. Whether it is exceeded does not depend on the order in which threads work, and nothing that
+/// was made is used then. So the index is the same on any number of threads.
 pub(crate) struct BuildBudget {
+    /// The largest size of one structure.
     bytes: usize,
+    /// The largest number of tests.
     work: u64,
+    /// The tests so far.
     charged: AtomicU64,
+    /// Whether a limit was exceeded.
     is_exceeded: AtomicBool,
 }
 
 impl BuildBudget {
-    /// So many bytes and packets tested for each of some primitives.
+    /// Makes a budget of bytes and of tests for each of some primitives.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates; NaN is nothing")]
     pub(crate) fn new(bytes: f64, work: f64, primitives: usize) -> Self {
         let count = primitives.max(MIN_PRIMITIVES_FOR_BUDGET) as f64;
-        // Blocks and packets have numbers of 32 bits.
+        // The numbers of blocks and packets have 32 bits.
         let bytes = ((bytes * count) as usize).min(size_of::<u32>() * u32::MAX as usize);
         Self { bytes, work: (work * count) as u64, charged: AtomicU64::new(0), is_exceeded: AtomicBool::new(false) }
     }
 
-    /// Packets were tested at so many positions, or primitives evaluated.
+    /// Charges tests of a packet at a point, or evaluations of a primitive.
     pub(crate) fn charge(&self, tests: usize) {
         let charged = self.charged.fetch_add(tests as u64, Ordering::Relaxed) + tests as u64;
         if charged > self.work {
@@ -32,7 +36,7 @@ impl BuildBudget {
         }
     }
 
-    /// A structure comes to have so many elements of a type; whether there is room.
+    /// Returns whether a structure may grow to some number of elements, and records it if it may not.
     pub(crate) fn fits<T>(&self, count: usize) -> bool {
         let fits = count.saturating_mul(size_of::<T>()) <= self.bytes;
         if !fits {
@@ -41,30 +45,31 @@ impl BuildBudget {
         fits
     }
 
-    /// Whether it is used up.
+    /// Returns whether the budget is exceeded.
     pub(crate) fn is_exceeded(&self) -> bool {
         self.is_exceeded.load(Ordering::Relaxed)
     }
 }
 
-/// How many tetrahedra vertices may have: sites have seven, and rarely more than nine (observed).
+/// Returns the number of tetrahedra that some vertices may have. Sites usually have seven tetrahedra, and rarely more
+/// than nine (observed).
 pub(crate) fn max_tetrahedra(vertices: usize) -> usize {
     const TETRAHEDRA_PER_VERTEX: usize = 16;
-    // Four corners of each are counted in 32 bits.
+    // The corners of all tetrahedra are counted in 32 bits.
     vertices.max(MIN_PRIMITIVES_FOR_BUDGET).saturating_mul(TETRAHEDRA_PER_VERTEX).min(u32::MAX as usize / 4)
 }
 
-/// How many sites there may be, and what a list may have.
+/// The limits of a build, which all of its stages share.
 #[derive(Clone, Copy)]
 pub(crate) struct Limits<'a> {
-    /// By how much a dominator has to be nearer.
+    /// The slack of the corner test: a dominator has to be nearer by this much.
     pub(crate) slack: f64,
-    /// Packets of a list.
+    /// The largest number of packets in a list.
     pub(crate) max_list_packets: usize,
-    /// Points that may be max_added_sites.
+    /// The largest number of added sites.
     pub(crate) max_added_sites: usize,
     /// Whether all threads are used.
     pub(crate) parallel: bool,
-    /// What building may take.
+    /// The memory and work budget.
     pub(crate) budget: &'a BuildBudget,
 }

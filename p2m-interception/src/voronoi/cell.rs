@@ -1,4 +1,5 @@
-//! One Voronoi cell and its list.
+//! One Voronoi cell: from its corners to the entries of its list, the regions of the primitives in it, and its far
+//! half-space.
 
 use crate::list::block::Entry;
 use crate::voronoi::adjacency::{EdgeAdjacency, NO_PRIMITIVE};
@@ -14,41 +15,50 @@ use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::LANES;
 use p2m_core::engine::vector::{V3, dot, norm_squared, sub};
 
-/// A vertex of more edges, like the tip of a cone, is not worth it.
+/// A site with more edges, such as the tip of a cone, gets no far half-space.
 const MAX_EDGES_FOR_HALF_SPACE: usize = 64;
-/// The largest far_parts that is worth a look.
+/// A far half-space that needs a larger relative lead over other sites is of no use.
 pub(crate) const MAX_RELATIVE_LEAD: f64 = 0.85;
-/// A half-space begins so many sizes of the scene from the site.
+/// The distance of a far half-space from its site, in sizes of the scene.
 const HALF_SPACE_SCENE_SIZES: f64 = 0.15;
 
-/// What is needed to make lists.
+/// The data that all cells of a build share.
 pub(crate) struct CellContext<'a> {
+    /// The tree over the packets.
     pub(crate) tree: &'a PacketTree,
+    /// The sites with the corners of their cells.
     pub(crate) sites: &'a Sites,
+    /// The limits of the build.
     pub(crate) limits: Limits<'a>,
-    /// Makes a filter for each list of more primitives than the number, if there are filters.
+    /// The function that builds filters, if there are any, and the number of primitives above which a list gets one.
     pub(crate) filter: Option<(usize, BuildListFilter)>,
 }
 
-/// A cell at work.
+/// The cell that is being built. Its vectors are reused for the next cell.
 #[derive(Default)]
 pub(crate) struct CellBuilder {
-    /// The site.
+    /// The position of the site.
     pub(crate) y: V3,
+    /// The number of the site.
     pub(crate) site: usize,
+    /// The cell.
     pub(crate) polytope: CellPolytope,
-    /// The far_parts of it that is far out, as it gets less.
+    /// The part of the cell in the far half-space, and the polytope that it is clipped into.
     pub(crate) far_parts: [CellPolytope; 2],
-    /// The packets that meet some ball.
+    /// The numbers of the packets that intersect the ball of a corner.
     pub(crate) packets: Vec<u32>,
-    /// Numbers of the tetrahedra, for the search of pairs.
+    /// The numbers of the tetrahedra at the site, sorted. Tetrahedron i has corner i of the cell.
     pub(crate) tetrahedra: Vec<u32>,
+    /// The values of the corner test at the corners of a polytope.
     pub(crate) values: CornerValues,
+    /// The test of features, with its memory.
     pub(crate) excluded: ExcludedFeatures,
 }
 
 impl CellBuilder {
-    pub(crate) fn collect(&mut self, cells: &CellContext<'_>, corners: &CellCorners, site: usize, tetrahedra: &[u32]) {
+    /// Begins the cell of a site: collects its corners, its edges and the packets that intersect a ball of its
+    /// corners.
+    pub(crate) fn begin(&mut self, cells: &CellContext<'_>, corners: &CellCorners, site: usize, tetrahedra: &[u32]) {
         let unit = cells.sites.delaunay.unit();
         self.site = site;
         self.y = cells.sites.delaunay.sites()[site].map(|x| x * unit);
@@ -67,9 +77,9 @@ impl CellBuilder {
             self.polytope.push(corner.position, corner.error, faces, &self.y, cells.limits.slack);
             self.packets.extend_from_slice(corners.packets(t));
             for (v, other) in tetrahedron.iter().zip(&cells.sites.delaunay.neighbours()[t]) {
-                // Each pair once.
-                let joined = *v as usize != site && number < *other;
-                if let Some(Ok(j)) = joined.then(|| self.tetrahedra.binary_search(other)) {
+                // Each pair of tetrahedra is is_joined once.
+                let is_joined = *v as usize != site && number < *other;
+                if let Some(Ok(j)) = is_joined.then(|| self.tetrahedra.binary_search(other)) {
                     self.polytope.edges.push([i, u32::try_from(j).expect("few corners")]);
                 }
             }
@@ -78,6 +88,7 @@ impl CellBuilder {
         self.packets.dedup();
     }
 
+    /// Returns the entries of the list, the nearest packets first.
     pub(crate) fn list_entries(
         &mut self,
         cells: &CellContext<'_>,
@@ -85,11 +96,11 @@ impl CellBuilder {
         frames: &PrimitiveFrames,
     ) -> Vec<Entry> {
         let tree = cells.tree;
-        let scene =
+        let context =
             RelevanceContext { tree, delaunay: &cells.sites.delaunay, adjacency, frames, slack: cells.limits.slack };
         let CellPolytope { max_upper_bound: max_distance, max_error, .. } = self.polytope;
         let cell_info = CellInfo { site: self.site, position: self.y, max_distance, max_error };
-        let mut list_entries: Vec<(f64, Entry)> = Vec::with_capacity(self.packets.len());
+        let mut entries: Vec<(f64, Entry)> = Vec::with_capacity(self.packets.len());
         let packets = std::mem::take(&mut self.packets);
         for &number in &packets {
             let packet = &tree.leaves.packets[number as usize];
@@ -97,7 +108,7 @@ impl CellBuilder {
             let near_lanes = self.values.near_lanes;
             let mut lanes = near_lanes;
             for lane in (0..LANES).filter(|lane| near_lanes >> lane & 1 == 1) {
-                if let Some(view) = PrimitiveView::new(scene, cell_info, number as usize, lane) {
+                if let Some(view) = PrimitiveView::new(context, cell_info, number as usize, lane) {
                     self.values.find_region(&self.polytope, lane);
                     lanes &= !(u16::from(!view.is_relevant(&self.values.region, &mut self.excluded)) << lane);
                 }
@@ -105,19 +116,19 @@ impl CellBuilder {
             if lanes != 0 {
                 let order = SiteDistances::new(tree, packet, &self.y).least(lanes) * packet.unit();
                 let bounds = tree.frame.enclose(&packet.bounds_of(lanes));
-                list_entries.push((order, Entry { packet: number, lanes, bounds, f: [0.0; 8] }));
+                entries.push((order, Entry { packet: number, lanes, bounds, f: [0.0; 8] }));
             }
         }
         self.packets = packets;
-        list_entries.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.packet.cmp(&b.1.packet)));
-        list_entries.into_iter().map(|e| e.1).collect()
+        entries.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.packet.cmp(&b.1.packet)));
+        entries.into_iter().map(|e| e.1).collect()
     }
 
-    /// Boxes cell_info the regions of all primitives of a list.
-    pub(crate) fn regions(&mut self, cells: &CellContext<'_>, list_entries: &[Entry]) -> Vec<Region> {
+    /// Returns a box around the region of each primitive in a list.
+    pub(crate) fn regions(&mut self, cells: &CellContext<'_>, entries: &[Entry]) -> Vec<Region> {
         let tree = cells.tree;
         let mut regions = Vec::new();
-        for entry in list_entries {
+        for entry in entries {
             self.values.compute(&self.polytope, &tree.leaves.packets[entry.packet as usize], tree);
             for lane in (0..LANES).filter(|lane| entry.lanes >> lane & 1 == 1) {
                 self.values.find_region(&self.polytope, lane);
@@ -127,24 +138,23 @@ impl CellBuilder {
         regions
     }
 
-    /// By more than corners may be off.
+    /// Returns a length that exceeds the errors of the corners.
     fn margin(&self) -> f64 {
         4.0 * self.polytope.max_error + 1e-12 * self.polytope.max_upper_bound
     }
 
-    /// The half-space far from the site in which only primitives with it can be the answer, if it is the nearest point
-    /// of all of these and other sites are farther away by some far_parts.
+    /// Computes the far half-space of the site. It is `None` if there is none that is of use.
     #[allow(clippy::cast_possible_truncation, reason = "rounded, and margins have room")]
     pub(crate) fn far_half_space(
         &mut self,
         cells: &CellContext<'_>,
         adjacency: &EdgeAdjacency,
-        list_entries: &[Entry],
+        entries: &[Entry],
     ) -> Option<FarHalfSpace> {
         let tree = cells.tree;
         let sites = cells.sites.delaunay.sites();
         let unit = cells.sites.delaunay.unit();
-        let others = adjacency.edges.of(self.site).iter();
+        let others = adjacency.edges.get(self.site).iter();
         let directions: Vec<V3> = others
             .map(|w| sub(sites[*w as usize], sites[self.site]))
             .map(|direction| direction.map(|x| x / norm_squared(direction).sqrt()))
@@ -157,49 +167,50 @@ impl CellBuilder {
         let normal = sum.map(|x| (x / length) as f32);
         let along = normal.map(f64::from);
         let bounds = tree.bounds();
-        let from = (bounds.max - bounds.min).max() * HALF_SPACE_SCENE_SIZES;
-        let height = |x: &V3| dot(sub(*x, self.y), along) - from;
+        let start = (bounds.max - bounds.min).max() * HALF_SPACE_SCENE_SIZES;
+        let height = |x: &V3| dot(sub(*x, self.y), along) - start;
         if self.polytope.corners.iter().all(|x| height(x) < 0.0) {
             return None;
         }
-        // Planes are moved outwards, so that what is left has corners where it is not.
+        // The planes are moved outwards, so that rounding does not remove corners of the part that is left.
         let margin = self.margin();
         let (y, slack) = (self.y, cells.limits.slack);
-        let [far_parts, next] = &mut self.far_parts;
-        far_parts.clip(&self.polytope, height, u32::MAX, &y, slack);
+        let [part, clipped] = &mut self.far_parts;
+        part.clip(&self.polytope, height, u32::MAX, &y, slack);
         for (direction, face) in directions.iter().zip((0..u32::MAX).rev()) {
-            next.clip(far_parts, |x| margin - dot(sub(*x, y), *direction), face, &y, slack);
-            std::mem::swap(far_parts, next);
-            if !far_parts.is_simple() {
+            clipped.clip(part, |x| margin - dot(sub(*x, y), *direction), face, &y, slack);
+            std::mem::swap(part, clipped);
+            if !part.is_simple() {
                 return None;
             }
         }
-        // The largest far_parts of the direction to another site by which that one has to be left behind.
+        // The largest part of half the squared distance to another site by which a query has to be nearer to this
+        // site.
         let mut max_lead = 0.0f64;
-        for entry in list_entries {
+        for entry in entries {
             let packet = &tree.leaves.packets[entry.packet as usize];
-            self.values.compute(far_parts, packet, tree);
+            self.values.compute(part, packet, tree);
             let lanes = self.values.near_lanes & entry.lanes;
             let from_site = SiteDistances::new(tree, packet, &y);
             for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
                 let (positions, count) = packet.vertices_of(lane);
-                if positions[..count].iter().any(|place| cells.sites.delaunay.site_of(*place) == self.site) {
+                if positions[..count].iter().any(|position| cells.sites.delaunay.site_of(*position) == self.site) {
                     continue;
                 }
                 let distance = from_site.least(1 << lane);
-                // So the slack does not matter to the function at the site.
+                // The distance has to be so large that the slack is negligible in the function at the site.
                 if distance * packet.unit() < 64.0 * slack {
                     return None;
                 }
                 let lack = self.values.values.iter().fold(0.0f64, |a, v| a.max(-f64::from(v[lane])));
-                let far_parts = lack * 1.001 / (distance * distance);
-                if far_parts.is_nan() || far_parts > MAX_RELATIVE_LEAD {
+                let lead = lack * 1.001 / (distance * distance);
+                if lead.is_nan() || lead > MAX_RELATIVE_LEAD {
                     return None;
                 }
-                max_lead = max_lead.max(far_parts);
+                max_lead = max_lead.max(lead);
             }
         }
-        let scaled = (from + margin) / unit * (1.0 + 1e-6);
-        Some(FarHalfSpace { normal, height: scaled as f32, relative_lead: (max_lead * (1.0 + 1e-6)) as f32 })
+        let height_in_units = (start + margin) / unit * (1.0 + 1e-6);
+        Some(FarHalfSpace { normal, height: height_in_units as f32, relative_lead: (max_lead * (1.0 + 1e-6)) as f32 })
     }
 }

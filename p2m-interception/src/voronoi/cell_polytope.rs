@@ -1,25 +1,28 @@
-//! Convex polytopes by their corners: a Voronoi cell, and parts of it.
+//! Convex polytopes, represented by their corners and edges: a Voronoi cell, and its parts.
 
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 
-/// A convex polytope with the distances of its corners from a site.
+/// A convex polytope around a site or beside it.
 #[derive(Default)]
 pub(crate) struct CellPolytope {
+    /// The positions of the corners.
     pub(crate) corners: Vec<V3>,
-    /// Of each corner the distance to the site with its error and the slack,
+    /// For each corner its distance from the site, increased by its error and by the slack.
     pub(crate) upper_bounds: Vec<f64>,
-    /// and what its place may be off.
+    /// For each corner an upper bound of the error of its position.
     pub(crate) errors: Vec<f64>,
-    /// The faces that meet in each corner, by numbers of their own.
+    /// For each corner the numbers of three faces that meet there.
     faces: Vec<[u32; 3]>,
-    /// Pairs of corners that are joined by an edge.
+    /// The pairs of corners that an edge joins.
     pub(crate) edges: Vec<[u32; 2]>,
-    /// The largest of the upper_bounds and errors.
+    /// The largest of `upper_bounds`.
     pub(crate) max_upper_bound: f64,
+    /// The largest of `errors`.
     pub(crate) max_error: f64,
 }
 
 impl CellPolytope {
+    /// Removes all corners, faces and edges.
     pub(crate) fn clear(&mut self) {
         self.corners.clear();
         self.upper_bounds.clear();
@@ -32,23 +35,23 @@ impl CellPolytope {
     /// Adds a corner.
     pub(crate) fn push(&mut self, corner: V3, error: f64, faces: [u32; 3], site: &V3, slack: f64) {
         let distance = norm_squared(sub(corner, *site)).sqrt() * (1.0 + 8.0 * f64::EPSILON);
-        let max_upper_bound = distance + error + slack;
+        let upper_bound = distance + error + slack;
         self.corners.push(corner);
         self.faces.push(faces);
-        self.upper_bounds.push(max_upper_bound);
+        self.upper_bounds.push(upper_bound);
         self.errors.push(error);
-        (self.max_upper_bound, self.max_error) = (self.max_upper_bound.max(max_upper_bound), self.max_error.max(error));
+        (self.max_upper_bound, self.max_error) = (self.max_upper_bound.max(upper_bound), self.max_error.max(error));
     }
 
-    /// Whether it has about as many edges as a polytope with three of them at each corner. Planes that are nearly the same as others, as
-    /// those of cells in a plane are, may cut a face more than twice by rounding; what is left then has an edge between any two of the cuts, and each
-    /// further plane many times as many.
+    /// Returns whether the number of edges is plausible, which is about that of a polytope with three edges at each
+    /// corner. Where planes are nearly equal, as those of coplanar cells are, rounding may cut a face more than twice.
+    /// Then any two of the cuts are joined by an edge, and each further plane multiplies their number.
     pub(crate) fn is_simple(&self) -> bool {
         self.edges.len() <= 2 * self.corners.len() + 16
     }
 
-    /// Makes it the part of another one where `height` is at least zero, which is linear: the new face gets the number
-    /// `face`.
+    /// Replaces the polytope by the part of another one where `height`, which is linear, is at least zero. The new
+    /// face gets the number `face`.
     pub(crate) fn clip(&mut self, source: &Self, height: impl Fn(&V3) -> f64, face: u32, site: &V3, slack: f64) {
         self.clear();
         let heights: Vec<f64> = source.corners.iter().map(height).collect();
@@ -71,7 +74,7 @@ impl CellPolytope {
             let t = heights[a] / (heights[a] - heights[b]);
             let (from, to) = (source.corners[a], source.corners[b]);
             let corner = std::array::from_fn(|k| from[k] + t * (to[k] - from[k]));
-            // Of the ends and of the sum; a direction along the edge does not matter.
+            // The error is that of the ends and of the sum. A displacement along the edge is harmless.
             let error = source.errors[a].max(source.errors[b]) + source.max_upper_bound * 4.0 * f64::EPSILON;
             let mut faces = [face; 3];
             let common = source.faces[a].iter().filter(|f| source.faces[b].contains(f));
@@ -79,12 +82,12 @@ impl CellPolytope {
             self.edges.push([numbers[a], number(self)]);
             self.push(corner, error, faces, site, slack);
         }
-        // The new face has an edge with each face that it cuts.
-        let all: Vec<(u32, u32)> = (first..number(self))
+        // The new face shares an edge with each face that it cuts.
+        let ends_on_faces: Vec<(u32, u32)> = (first..number(self))
             .flat_map(|i| self.faces[i as usize].into_iter().filter(|f| *f != face).map(move |f| (f, i)))
             .collect();
-        for (n, (f, i)) in all.iter().enumerate() {
-            let others = all[..n].iter().filter(|(g, _)| g == f);
+        for (n, (f, i)) in ends_on_faces.iter().enumerate() {
+            let others = ends_on_faces[..n].iter().filter(|(g, _)| g == f);
             self.edges.extend(others.map(|(_, j)| [*i, *j]));
         }
     }

@@ -1,12 +1,15 @@
-//! VoronoiLists of Voronoi cells.
+//! The lists of all Voronoi cells.
 //!
-//! The corner test bound_query which primitives can beat the site v somewhere in its cell; with its function's values at the
-//! corners more can be said. Along an edge of the cell, where a primitive t may beat v at one end and not at the other,
-//! the function d(q, t)^2 - (|q - v| + s)^2 is concave and lies above its chord, so t cannot beat v beyond the zero of
-//! the chord. The corners and these zeros span all positions where t may be the answer (the *region* of t, docs/proofs/p2m.md).
+//! The corner test excludes a primitive t that cannot beat the site v anywhere in its cell. The values of its function
+//! F(q) = d(q, t)^2 - (|q - v| + s)^2 at the corners restrict the places where t can beat v. Take an edge of the cell
+//! with F <= 0 at one end and F > 0 at the other. F is concave, so it lies above its chord, and t cannot beat v beyond
+//! the zero of the chord. Therefore t can be the answer only in the convex hull of the corners where F <= 0 and of
+//! these zeros, which is the *region* of t (docs/proofs/p2m.md).
 //!
-//! A feature of t matters only if it can be nearest in the region. If all that matter belong to a primitive of a lower
-//! id as well, t is never the answer: the other one is as near, by the same bits, and the lower id wins.
+//! A feature of t is *relevant* only if it can be nearest somewhere in the region
+//! ([`feature_relevance`](crate::voronoi::feature_relevance)). If all relevant features of t belong to a primitive
+//! with a lower id as well, t is never the answer. The other primitive is as near, by the same bits, and the lower id
+//! wins.
 
 use crate::delaunay::BOUNDING;
 use crate::list::block::{Block, BoundKind, Entry};
@@ -22,56 +25,58 @@ use crate::voronoi::site::{AUXILIARY_SITE, FALLBACK, FarHalfSpace};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The sites with their neighbours, the blocks of their build_lists, the first one of each at its own number, and the filters
-/// of long ones.
+/// The sites with their lists.
 pub(crate) struct VoronoiLists {
+    /// The sites, their neighbours, and where their lists are.
     pub(crate) neighbours: NeighbourTable,
+    /// The blocks of the lists. The first block of a list has the number of its site.
     pub(crate) blocks: Vec<Block>,
+    /// The filters of long lists.
     pub(crate) filters: ListFilters,
 }
 
 impl CellContext<'_> {
-    /// The build_lists of all sites; `None` where these take too much. `reporter` is told how many are done.
+    /// Builds the lists of all sites. It returns `None` if that exceeds the budget.
     pub(crate) fn build_lists(&self, report: &mut P2mReport, reporter: &ProgressReporter<'_>) -> Option<VoronoiLists> {
-        reporter.begin_stage(BuildStage::VoronoiLists);
+        reporter.begin_stage(BuildStage::Lists);
         let sites = self.sites.delaunay.sites();
         let tetrahedra = self.sites.delaunay.tetrahedra();
         let incident_tetrahedra = IncidenceLists::new(
             sites.len(),
             (0..).zip(tetrahedra).flat_map(|(number, tetrahedron)| tetrahedron.iter().map(move |v| (*v, number))),
         );
-        let adjacency = EdgeAdjacency::of(self.tree, &self.sites.delaunay);
+        let adjacency = EdgeAdjacency::from_tree(self.tree, &self.sites.delaunay);
         let slack = self.limits.slack / self.sites.delaunay.unit();
         let mut neighbours = NeighbourTable::new(sites, BOUNDING, slack, |site, all, edges| {
-            let neighbours = incident_tetrahedra.of(site).iter().flat_map(|t| tetrahedra[*t as usize]);
+            let neighbours = incident_tetrahedra.get(site).iter().flat_map(|t| tetrahedra[*t as usize]);
             all.extend(neighbours.filter(|v| *v as usize >= BOUNDING && *v as usize != site));
-            edges.extend_from_slice(adjacency.edges.of(site));
+            edges.extend_from_slice(adjacency.edges.get(site));
         });
         let empty_list =
             Block::from_list(&[Entry { packet: 0, lanes: 0, bounds: [[0.0; 3]; 2], f: [0.0; 8] }], BoundKind::Boxes);
         let mut blocks = vec![empty_list[0]; sites.len()];
         let mut filters = if self.filter.is_some() { ListFilters::new(sites.len()) } else { ListFilters::default() };
-        let mut records = neighbours.sites.edit(std::mem::take);
+        let mut filled_sites = neighbours.sites.edit(std::mem::take);
         report.added = self.sites.added;
-        let frames = PrimitiveFrames::of(self.tree);
-        let work = |chunk| self.chunk(chunk, &incident_tetrahedra, &adjacency, &frames);
+        let frames = PrimitiveFrames::from_tree(self.tree);
+        let work = |chunk| self.build_chunk(chunk, &incident_tetrahedra, &adjacency, &frames);
         let budget = self.limits.budget;
         map_chunks_in_order(sites.len(), self.limits.parallel, work, |chunk: ChunkResult| {
             if !budget.fits::<Block>(blocks.len() + chunk.blocks.len()) {
                 return;
             }
             for result in chunk.cells {
-                let to = &mut records[result.site];
-                (to.owner, to.list) = (adjacency.owners[result.site], FALLBACK);
+                let record = &mut filled_sites[result.site];
+                (record.owner, record.list) = (adjacency.owners[result.site], FALLBACK);
                 match result.list {
                     CellList::Tree => report.trees += usize::from(result.site >= BOUNDING),
                     CellList::Auxiliary(anchor) => {
-                        (to.owner, to.list) = (anchor, AUXILIARY_SITE);
+                        (record.owner, record.list) = (anchor, AUXILIARY_SITE);
                         report.auxiliary += 1;
                     }
                     CellList::Blocks(own) => {
-                        to.list = u32::try_from(blocks.len()).expect("numbers of 32 bits");
-                        to.far_half_space = result.far_half_space.unwrap_or(to.far_half_space);
+                        record.list = u32::try_from(blocks.len()).expect("numbers of 32 bits");
+                        record.far_half_space = result.far_half_space.unwrap_or(record.far_half_space);
                         blocks[result.site] = chunk.blocks[own.start];
                         blocks.extend_from_slice(&chunk.blocks[own.start + 1..own.end]);
                         if let Some(filter) = result.filter {
@@ -82,17 +87,17 @@ impl CellContext<'_> {
                 }
                 reporter.advance([30.0, 100.0], result.site, sites.len());
             }
-            report.entries += chunk.list_entries;
+            report.entries += chunk.entries;
             report.candidates += chunk.candidates;
             report.most_candidates = report.most_candidates.max(chunk.most_candidates);
             report.primitives += chunk.primitives;
         });
-        neighbours.sites = records.into();
+        neighbours.sites = filled_sites.into();
         (!budget.is_exceeded()).then_some(VoronoiLists { neighbours, blocks, filters })
     }
 
-    /// The build_lists of some sites.
-    fn chunk(
+    /// Builds the lists of some sites.
+    fn build_chunk(
         &self,
         sites: Range<usize>,
         incident_tetrahedra: &IncidenceLists,
@@ -103,7 +108,7 @@ impl CellContext<'_> {
         let mut chunk = ChunkResult {
             cells: Vec::new(),
             blocks: Vec::new(),
-            list_entries: 0,
+            entries: 0,
             primitives: 0,
             candidates: 0,
             most_candidates: 0,
@@ -113,27 +118,27 @@ impl CellContext<'_> {
             if self.limits.budget.is_exceeded() {
                 break;
             }
-            let own = incident_tetrahedra.of(site);
+            let own = incident_tetrahedra.get(site);
             let mut result = CellResult { site, list: CellList::Tree, far_half_space: None, filter: None };
             if let Some(anchor) = self.sites.anchor_of(site) {
                 result.list = CellList::Auxiliary(u32::try_from(anchor).expect("numbers of 32 bits"));
             } else if site >= BOUNDING && !own.iter().any(|t| corners.all[*t as usize].is_crowded) {
-                cell.collect(self, corners, site, own);
+                cell.begin(self, corners, site, own);
                 chunk.candidates += cell.packets.len();
                 chunk.most_candidates = chunk.most_candidates.max(cell.packets.len());
                 let is_short = cell.packets.len() <= self.limits.max_list_packets;
-                let list_entries = if is_short { cell.list_entries(self, adjacency, frames) } else { Vec::new() };
-                if !list_entries.is_empty() {
-                    let primitives: usize = list_entries.iter().map(|entry| entry.lanes.count_ones() as usize).sum();
+                let entries = if is_short { cell.list_entries(self, adjacency, frames) } else { Vec::new() };
+                if !entries.is_empty() {
+                    let primitives: usize = entries.iter().map(|entry| entry.lanes.count_ones() as usize).sum();
                     chunk.primitives += primitives;
                     result.filter = self
                         .filter
                         .filter(|(above, _)| primitives > *above)
-                        .map(|(_, build)| build(cell.regions(self, &list_entries)));
-                    result.far_half_space = cell.far_half_space(self, adjacency, &list_entries);
+                        .map(|(_, build)| build(cell.regions(self, &entries)));
+                    result.far_half_space = cell.far_half_space(self, adjacency, &entries);
                     let first = chunk.blocks.len();
-                    chunk.blocks.extend(Block::from_list(&list_entries, BoundKind::Boxes));
-                    chunk.list_entries += list_entries.len();
+                    chunk.blocks.extend(Block::from_list(&entries, BoundKind::Boxes));
+                    chunk.entries += entries.len();
                     result.list = CellList::Blocks(first..chunk.blocks.len());
                 }
             }
@@ -144,29 +149,40 @@ impl CellContext<'_> {
     }
 }
 
-/// The build_lists of some sites.
+/// The lists of a chunk of sites, with their part of the report.
 struct ChunkResult {
+    /// The cells in the order of their sites.
     cells: Vec<CellResult>,
+    /// The blocks of all lists.
     blocks: Vec<Block>,
-    list_entries: usize,
+    /// The number of packets in the lists.
+    entries: usize,
+    /// The number of primitives in the lists.
     primitives: usize,
+    /// The number of packets that were examined for the lists.
     candidates: usize,
+    /// The largest number of packets that were examined for one list.
     most_candidates: usize,
 }
 
-/// What is known of a cell.
+/// The result of one cell.
 struct CellResult {
+    /// The number of the site.
     site: usize,
+    /// Where the list is.
     list: CellList,
+    /// The far half-space of the site, if it has one.
     far_half_space: Option<FarHalfSpace>,
+    /// The filter of the list, if it has one.
     filter: Option<Arc<dyn ListFilter>>,
 }
 
+/// How the queries in a cell are answered.
 enum CellList {
-    /// The tree answers,
+    /// The tree answers.
     Tree,
-    /// from the bound of an anchor,
+    /// The tree answers from the bound of the anchor with this number.
     Auxiliary(u32),
-    /// or blocks of the chunk do.
+    /// A list answers. The field is the range of its blocks in the chunk.
     Blocks(Range<usize>),
 }

@@ -1,4 +1,5 @@
-//! CellCorners of Voronoi cells.
+//! The corners of all Voronoi cells: the circumcentres of Delaunay tetrahedra, with the packets that intersect their
+//! balls.
 
 use crate::delaunay::{BOUNDING, Delaunay};
 use crate::parallel_chunks::map_chunks_in_order;
@@ -10,27 +11,31 @@ use p2m_core::engine::vector::{V3, norm_squared, sub};
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Balls that meet more packets get a site.
+/// A ball that intersects more packets than this is crowded.
 pub(crate) const CROWDED_BALL_PACKETS: usize = 24;
 
-/// A corner of Voronoi cells, in coordinates of the scene, and what meets its collect_ball.
+/// A corner of Voronoi cells, in coordinates of the scene.
 #[derive(Clone, Copy)]
 pub(crate) struct CellCorner {
+    /// The position of the corner.
     pub(crate) position: V3,
-    /// How far it may be from where it is.
+    /// An upper bound of the error of the position.
     pub(crate) error: f64,
-    /// To the sites around it; zero where it is unknown.
+    /// The distance to the four sites around it, or zero if the corner is unknown.
     pub(crate) radius: f64,
-    /// Its packets begin here.
+    /// The index of the first of its packets in [`CellCorners::packets`].
     pub(crate) first_packet: u32,
-    /// Whether it is unknown, or meets too much: while sites are added, more than [`CROWDED_BALL_PACKETS`] packets.
+    /// Whether the corner has no packets: it is unknown, or its ball intersects too many. The limit is
+    /// [`CROWDED_BALL_PACKETS`] as long as sites are added, and that of a list afterwards.
     pub(crate) is_crowded: bool,
 }
 
 impl CellCorner {
+    /// A corner that could not be computed.
     const UNKNOWN: Self = Self { position: [0.0; 3], error: 0.0, radius: 0.0, first_packet: 0, is_crowded: true };
 
-    /// The packets that may meet its collect_ball; `false` if there are more than `max_packets`, or if nothing can be told.
+    /// Collects the packets that may intersect the ball of the corner. The result is `false` if there are more than
+    /// `max_packets`, or if the ball cannot be decided.
     fn collect_ball(
         &self,
         tree: &PacketTree,
@@ -39,7 +44,7 @@ impl CellCorner {
         selections: &mut Vec<Selection>,
     ) -> bool {
         let mut tests = 0;
-        let is_whole = tree.ball(
+        let is_complete = tree.ball(
             self.position,
             self.radius + 2.0 * self.error + limits.slack,
             max_packets,
@@ -47,19 +52,22 @@ impl CellCorner {
             &mut tests,
         );
         limits.budget.charge(tests);
-        is_whole
+        is_complete
     }
 }
 
-/// The corners of all cells: one for each tetrahedron, and one more for the end.
+/// The corners of all cells: one for each tetrahedron, and one more that marks the end.
 #[derive(Default)]
 pub(crate) struct CellCorners {
+    /// The corners.
     pub(crate) all: Vec<CellCorner>,
+    /// The packets of all balls, one ball after the other.
     packets: Vec<u32>,
 }
 
 impl CellCorners {
-    /// A collect_ball for each tetrahedron; those of `reused` ones are copied.
+    /// Computes the corners of all tetrahedra. Those that an earlier triangulation had as well are copied from
+    /// `reused`.
     pub(crate) fn new(
         tree: &PacketTree,
         delaunay: &Delaunay,
@@ -72,7 +80,7 @@ impl CellCorners {
         map_chunks_in_order(
             count,
             limits.parallel,
-            |chunk| Self::chunk(tree, delaunay, limits, reused, chunk),
+            |chunk| Self::compute_chunk(tree, delaunay, limits, reused, chunk),
             |chunk: Self| {
                 corners.append(chunk, limits);
                 progress(corners.all.len(), count);
@@ -82,7 +90,8 @@ impl CellCorners {
         corners
     }
 
-    fn chunk(
+    /// Computes the corners of some tetrahedra.
+    fn compute_chunk(
         tree: &PacketTree,
         delaunay: &Delaunay,
         limits: Limits<'_>,
@@ -93,8 +102,8 @@ impl CellCorners {
         let mut corners = Self::default();
         let mut selections: Vec<Selection> = Vec::new();
         for tetrahedron in &delaunay.tetrahedra()[numbers] {
-            if let Some((reused, to_u32)) = reused.and_then(|reused| Some((reused, reused.to_u32(tetrahedron)?))) {
-                corners.push(reused.corners.all[to_u32], reused.corners.packets(to_u32).iter().copied());
+            if let Some((reused, number)) = reused.and_then(|reused| Some((reused, reused.find(tetrahedron)?))) {
+                corners.push(reused.corners.all[number], reused.corners.packets(number).iter().copied());
                 continue;
             }
             selections.clear();
@@ -103,14 +112,14 @@ impl CellCorners {
                 corners.push(corner, std::iter::empty());
                 continue;
             }
-            let own = tetrahedron.iter().map(|v| *v as usize).find(|v| *v >= BOUNDING);
-            if let (Some(own), Some(centre)) =
-                (own, circumsphere::circumcentre(&tetrahedron.map(|v| sites[v as usize])))
+            let own_site = tetrahedron.iter().map(|v| *v as usize).find(|v| *v >= BOUNDING);
+            if let (Some(site), Some(centre)) =
+                (own_site, circumsphere::circumcentre(&tetrahedron.map(|v| sites[v as usize])))
             {
                 corner.position = centre.position.map(|x| x * unit);
                 corner.error = centre.error * unit;
                 corner.radius =
-                    norm_squared(sub(centre.position, sites[own])).sqrt() * unit * (1.0 + 8.0 * f64::EPSILON);
+                    norm_squared(sub(centre.position, sites[site])).sqrt() * unit * (1.0 + 8.0 * f64::EPSILON);
                 corner.is_crowded = !corner.collect_ball(
                     tree,
                     limits,
@@ -124,9 +133,9 @@ impl CellCorners {
         corners
     }
 
-    /// The same with all packets of crowded balls, if these are not too many for a list.
+    /// Returns the corners with the packets of crowded balls as well, unless they are too many for a list.
     pub(crate) fn with_packets_of_crowded(self, tree: &PacketTree, limits: Limits<'_>) -> Self {
-        if limits.max_list_packets <= CROWDED_BALL_PACKETS || self.crowded_count() == 0 {
+        if limits.max_list_packets <= CROWDED_BALL_PACKETS || self.count_crowded() == 0 {
             return self;
         }
         let count = self.all.len() - 1;
@@ -134,14 +143,14 @@ impl CellCorners {
         let work = |numbers: Range<usize>| {
             let mut chunk = Self::default();
             let mut selections: Vec<Selection> = Vec::new();
-            for to_u32 in numbers {
-                let corner = self.all[to_u32];
+            for number in numbers {
+                let corner = self.all[number];
                 selections.clear();
-                let again = corner.is_crowded && corner.radius > 0.0 && !limits.budget.is_exceeded();
-                if again && corner.collect_ball(tree, limits, limits.max_list_packets, &mut selections) {
+                let is_retried = corner.is_crowded && corner.radius > 0.0 && !limits.budget.is_exceeded();
+                if is_retried && corner.collect_ball(tree, limits, limits.max_list_packets, &mut selections) {
                     chunk.push(CellCorner { is_crowded: false, ..corner }, selections.iter().map(|s| s.packet));
                 } else {
-                    chunk.push(corner, self.packets(to_u32).iter().copied());
+                    chunk.push(corner, self.packets(number).iter().copied());
                 }
             }
             chunk
@@ -151,7 +160,7 @@ impl CellCorners {
         corners
     }
 
-    /// Adds what a chunk has; its corners without their packets where there is no room for these.
+    /// Appends the corners of a chunk. They are unknown if the budget has no memory for their packets.
     fn append(&mut self, chunk: Self, limits: Limits<'_>) {
         let first_packet = self.packets.len();
         if !limits.budget.fits::<u32>(first_packet + chunk.packets.len()) {
@@ -169,17 +178,18 @@ impl CellCorners {
         self.all.extend(chunk.all.into_iter().map(moved));
     }
 
-    /// How many are unknown or meet too much.
-    pub(crate) fn crowded_count(&self) -> usize {
-        // The last one is none.
+    /// Returns the number of corners that are crowded or unknown.
+    pub(crate) fn count_crowded(&self) -> usize {
+        // The last corner only marks the end.
         self.all[..self.all.len() - 1].iter().filter(|corner| corner.is_crowded).count()
     }
 
-    /// The packets that meet the collect_ball of a corner, if they are not too many.
-    pub(crate) fn packets(&self, to_u32: usize) -> &[u32] {
-        &self.packets[self.all[to_u32].first_packet as usize..self.all[to_u32 + 1].first_packet as usize]
+    /// Returns the packets that intersect the ball of a corner. A crowded corner has none.
+    pub(crate) fn packets(&self, number: usize) -> &[u32] {
+        &self.packets[self.all[number].first_packet as usize..self.all[number + 1].first_packet as usize]
     }
 
+    /// Appends a corner with its packets.
     fn push(&mut self, corner: CellCorner, packets: impl Iterator<Item = u32>) {
         let first_packet = to_u32(self.packets.len());
         self.packets.extend(packets);
@@ -187,43 +197,45 @@ impl CellCorners {
     }
 }
 
+/// Converts a number to 32 bits, of which there are enough: budgets see to that.
 pub(crate) fn to_u32(n: usize) -> u32 {
     u32::try_from(n).expect("numbers of 32 bits")
 }
 
-/// Tetrahedra that two triangulations have in common.
+/// The corners of an earlier triangulation, found by the sites of another triangulation.
 pub(crate) struct ReusedCorners<'a> {
-    /// Those of the first_packet,
+    /// The corners of the earlier triangulation.
     pub(crate) corners: &'a CellCorners,
-    /// and their numbers by its sites.
+    /// The numbers of its tetrahedra, by their sorted sites.
     pub(crate) numbers: HashMap<[u32; 4], usize>,
-    /// Of each site of the second the one of the first_packet, or [`ReusedCorners::NEW`].
+    /// For each site of the new triangulation the same site of the earlier one, or [`ReusedCorners::NEW`].
     pub(crate) previous_sites: Vec<u32>,
 }
 
 impl<'a> ReusedCorners<'a> {
+    /// Marks a site that the earlier triangulation does not have.
     const NEW: u32 = u32::MAX;
 
-    /// The second one has the points of the first_packet, `points` of them, previous_sites its own.
+    /// Compares two triangulations. The points of the earlier one are the first `points` points of the new one.
     #[allow(clippy::float_cmp, reason = "the same or not")]
-    pub(crate) fn new(first_packet: &Delaunay, corners: &'a CellCorners, second: &Delaunay, points: usize) -> Self {
-        let mut previous_sites = vec![Self::NEW; second.sites().len()];
+    pub(crate) fn new(earlier: &Delaunay, corners: &'a CellCorners, later: &Delaunay, points: usize) -> Self {
+        let mut previous_sites = vec![Self::NEW; later.sites().len()];
         let mut numbers = HashMap::new();
-        // Sites of another unit may be rounded otherwise, and of another box the bounding ones are elsewhere.
-        if first_packet.unit() == second.unit() {
-            if first_packet.sites()[..BOUNDING] == second.sites()[..BOUNDING] {
+        // Sites in another unit may be rounded differently, and the bounding sites of another box are elsewhere.
+        if earlier.unit() == later.unit() {
+            if earlier.sites()[..BOUNDING] == later.sites()[..BOUNDING] {
                 (0..BOUNDING).for_each(|site| previous_sites[site] = to_u32(site));
             }
             for point in 0..points {
-                previous_sites[second.site_of(point)] = to_u32(first_packet.site_of(point));
+                previous_sites[later.site_of(point)] = to_u32(earlier.site_of(point));
             }
-            numbers.extend(first_packet.tetrahedra().iter().enumerate().map(|(to_u32, t)| (sorted(*t), to_u32)));
+            numbers.extend(earlier.tetrahedra().iter().enumerate().map(|(number, t)| (sorted(*t), number)));
         }
         Self { corners, numbers, previous_sites }
     }
 
-    /// The to_u32 in the first_packet triangulation of a tetrahedron of the second.
-    fn to_u32(&self, tetrahedron: &[u32; 4]) -> Option<usize> {
+    /// Returns the number that a tetrahedron has in the earlier triangulation, if it was there.
+    fn find(&self, tetrahedron: &[u32; 4]) -> Option<usize> {
         let previous_sites = tetrahedron.map(|v| self.previous_sites[v as usize]);
         if previous_sites.contains(&Self::NEW) { None } else { self.numbers.get(&sorted(previous_sites)).copied() }
     }

@@ -1,4 +1,4 @@
-//! Points that are choose_sites to crowded balls.
+//! The choice of sites that are added because of crowded balls.
 
 use crate::voronoi::budget::Limits;
 use crate::voronoi::corners::{CellCorner, CellCorners};
@@ -9,41 +9,47 @@ use p2m_core::engine::vector::{V3, exponent, scale_by_power};
 use p2m_core::{Aabb, Best, QueryOptions};
 use std::collections::{HashMap, HashSet};
 
-/// Centres of so many balls beside each other are worth an auxiliary site.
+/// The centre of a ball becomes an auxiliary site only if this many crowded balls form a cluster.
 const MIN_BALLS_FOR_AUXILIARY_SITE: usize = 3;
-/// Points of the scene that are nearer to a centre than this part of the radius are choose_sites.
+/// A point of the scene is added if it is nearer to the centre than this part of the radius.
 const DEEP_RADIUS_PART: f64 = 0.9;
-/// Packets of a ball that are looked at for such points.
+/// The largest number of packets of a ball in which such points are looked for.
 const MAX_EXAMINED_PACKETS: usize = 64;
-/// AddedSite points lie in the box of the vertices, widened by this part of its widest side.
+/// Added points lie in the box of the vertices, enlarged on all sides by this part of its longest side.
 const BOX_PADDING_PART: f64 = 0.5;
-/// Centres that are nearer to each other than about this part of the radius are one cluster.
+/// The size of a cluster: centres are in one cluster if their distance is below about this part of the radius.
 const CLUSTER_RADIUS_PART: f64 = 0.25;
-/// Those that are not known so well are left alone.
+/// A corner is ignored if its error is more than this part of its radius.
 const MAX_ERROR_RADIUS_PART: f64 = 1e-3;
-/// AddedSite points are apart by about this part of their distance to the centre of a ball, or of this part of its radius.
+/// The spacing of added points, as a part of their distance from the centre of the ball.
 const SPACING_DISTANCE_PART: f64 = 0.5;
+/// The smallest distance that the spacing is computed from, as a part of the radius.
 const MIN_SPACING_RADIUS_PART: f64 = 0.1;
 
-/// A point that is choose_sites.
+/// A point that becomes a site.
 pub(crate) struct AddedSite {
+    /// The position of the site.
     pub(crate) position: V3,
-    /// For an auxiliary one a point of the scene.
+    /// A point of the scene near an auxiliary site. It is `None` if the point is on the scene itself.
     pub(crate) anchor: Option<V3>,
 }
 
-/// Balls that meet too much.
+/// The crowded balls of a triangulation.
 pub(crate) struct CrowdedClusters<'a> {
+    /// The tree over the packets.
     pub(crate) tree: &'a PacketTree,
+    /// The corners of all cells.
     pub(crate) corners: &'a CellCorners,
+    /// The box of the vertices.
     pub(crate) bounds: &'a Aabb<f64>,
+    /// The limits of the build.
     pub(crate) limits: Limits<'a>,
 }
 
-/// A grid_cell of a grid: the exponent of its side, and its position.
+/// A cell of a grid: the exponent of its side, and its coordinates.
 type GridCell = (i32, [i64; 3]);
 
-/// The grid_cell that has a position, of about `size`.
+/// Returns the grid cell that contains a position. Its side is about `size`.
 #[allow(clippy::cast_possible_truncation, reason = "rounded down; a cube that is too far away is another one")]
 fn grid_cell(position: &V3, size: f64) -> GridCell {
     let exponent = exponent(size);
@@ -51,9 +57,9 @@ fn grid_cell(position: &V3, size: f64) -> GridCell {
 }
 
 impl CrowdedClusters<'_> {
-    /// Points for them, at most `budget`.
+    /// Chooses points for the crowded balls, at most `budget` of them.
     pub(crate) fn choose_sites(&self, budget: usize) -> Vec<AddedSite> {
-        // Where their centres are, each time the first one and how many there are.
+        // Each cluster is stored as its first corner and the number of its corners.
         let mut clusters: HashMap<GridCell, (usize, usize)> = HashMap::new();
         for (number, corner) in self.corners.all.iter().enumerate() {
             if corner.is_crowded
@@ -69,43 +75,44 @@ impl CrowdedClusters<'_> {
         }
         let mut clusters: Vec<(usize, usize)> = clusters.into_values().collect();
         clusters.sort_unstable();
-        let mut taken: HashSet<GridCell> = HashSet::new();
-        let mut choose_sites = Vec::new();
+        let mut occupied_cells: HashSet<GridCell> = HashSet::new();
+        let mut added = Vec::new();
         for (number, count) in clusters {
-            if choose_sites.len() >= budget || self.limits.budget.is_exceeded() {
+            if added.len() >= budget || self.limits.budget.is_exceeded() {
                 break;
             }
             let corner = &self.corners.all[number];
             let nearest_points = self.nearest_points(corner);
-            let deep = nearest_points.partition_point(|(distance, _)| *distance < corner.radius * DEEP_RADIUS_PART);
+            let deep_count =
+                nearest_points.partition_point(|(distance, _)| *distance < corner.radius * DEEP_RADIUS_PART);
             if let Some((_, anchor)) =
-                nearest_points.first().filter(|_| deep == 0 && count >= MIN_BALLS_FOR_AUXILIARY_SITE)
+                nearest_points.first().filter(|_| deep_count == 0 && count >= MIN_BALLS_FOR_AUXILIARY_SITE)
             {
-                choose_sites.push(AddedSite { position: corner.position, anchor: Some(*anchor) });
+                added.push(AddedSite { position: corner.position, anchor: Some(*anchor) });
             }
-            for &(distance, position) in &nearest_points[..deep] {
-                if choose_sites.len() < budget
-                    && taken.insert(grid_cell(
+            for &(distance, position) in &nearest_points[..deep_count] {
+                if added.len() < budget
+                    && occupied_cells.insert(grid_cell(
                         &position,
                         distance.max(corner.radius * MIN_SPACING_RADIUS_PART) * SPACING_DISTANCE_PART,
                     ))
                 {
-                    choose_sites.push(AddedSite { position, anchor: None });
+                    added.push(AddedSite { position, anchor: None });
                 }
             }
         }
-        choose_sites
+        added
     }
 
-    /// Whether a position is in the box of the vertices, or a little beside it.
+    /// Returns whether a position is in the enlarged box of the vertices.
     fn is_near_scene(&self, position: &V3) -> bool {
         let Aabb { min, max } = self.bounds;
         let pad = (max - min).max() * BOX_PADDING_PART;
         (0..3).all(|k| position[k] >= min[k] - pad && position[k] <= max[k] + pad)
     }
 
-    /// The points of primitives that are nearest to a corner, with their distances, the nearest one first: of some that
-    /// meet its ball.
+    /// Returns for some primitives that intersect the ball of a corner the point nearest to the corner, with its
+    /// distance, the nearest first.
     fn nearest_points(&self, corner: &CellCorner) -> Vec<(f64, V3)> {
         let leaves = &self.tree.leaves;
         let (mut selections, mut tests) = (Vec::new(), 0);

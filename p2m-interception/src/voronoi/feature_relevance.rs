@@ -1,11 +1,17 @@
-//! Which adjacency of a primitive matter in a region: faces, edges and vertices that can be the nearest point of all.
+//! Feature relevance: it excludes the vertices, edges and faces of a primitive that cannot hold the nearest point of
+//! the scene anywhere in a region.
 //!
-//! A feature can be that only on one side of some planes. A point that is nearest to the inside of a face lies over it.
-//! One that is nearest to an edge lies between its ends, and over no triangle that has the edge: that triangle would be
-//! nearer. One that is nearest to a vertex lies behind it edge_directions every edge that begins there, and is as near to it as
-//! to the site of the cell. So a feature is *excluded* if all of the region is on the wrong side of a plane, or if the
-//! heights above two planes have a sum below zero: then each point is on the wrong side of one of the two. docs/proofs/p2m.md
-//! has the margins.
+//! Each kind of feature requires the query to lie on one side of some planes:
+//!
+//! - If the nearest point is inside of a face, the query is over the face, hence inside of each of its sides.
+//! - If it is inside of an edge, the query is between the ends of the edge, and over no triangle with this edge,
+//!   because such a triangle would be nearer.
+//! - If it is a vertex, the query is behind the vertex along every edge that begins there, and in the cell of another
+//!   site it is as near to the vertex as to that site.
+//!
+//! A feature is *excluded* if the whole region is on the wrong side of one plane. It is also excluded if the heights
+//! above two planes have a negative sum in the whole region, because then each point is on the wrong side of one of
+//! the two. docs/proofs/p2m.md has the margins.
 
 use crate::delaunay::Delaunay;
 use crate::voronoi::adjacency::{EdgeAdjacency, NO_PRIMITIVE, OwnedByLowerId};
@@ -14,29 +20,30 @@ use p2m_bvh::engine::packet::LANES;
 use p2m_core::engine::number::cross;
 use p2m_core::engine::vector::{V3, dot, largest, norm_squared, sub};
 
-/// Part of the largest length by which a feature has to be excluded.
+/// The margin by which a feature has to be excluded, as a part of the largest length.
 const RELATIVE_MARGIN: f64 = 1.0 / (1u64 << 22) as f64;
-/// Edges of a vertex that are looked at.
+/// The largest number of edges of a vertex that are examined.
 const MAX_EDGES_OF_VERTEX: usize = 32;
 
-/// Directions of a primitive: those that each test needs.
+/// The directions and proportions of a primitive that the tests need.
 #[derive(Clone, Copy, Default)]
 struct PrimitiveFrame {
-    /// From each vertex to the next.
+    /// The directions from each vertex to the next one.
     edge_directions: [V3; 3],
-    /// From each side into the triangle.
+    /// The directions from each side into the triangle.
     inward_normals: [V3; 3],
-    /// The least height of a triangle, or the length of a segment, and what part that is of the longest edge; no point
-    /// is slim.
+    /// The least height of a triangle or the length of a segment. It is infinite for a point, which cannot be thin.
     height: f64,
+    /// The height as a part of the longest edge. It is 1 for segments and points.
     sine: f64,
 }
 
-/// Those of all lanes of all packets.
+/// The frames of all lanes of all packets.
 pub(crate) struct PrimitiveFrames(Vec<PrimitiveFrame>);
 
 impl PrimitiveFrames {
-    pub(crate) fn of(tree: &PacketTree) -> Self {
+    /// Computes the frames of all primitives of a tree.
+    pub(crate) fn from_tree(tree: &PacketTree) -> Self {
         let mut all = vec![PrimitiveFrame::default(); tree.leaves.packets.len() * LANES];
         for (packet, own) in tree.leaves.packets.iter().zip(all.chunks_exact_mut(LANES)) {
             for (lane, to) in own.iter_mut().enumerate().take(packet.ids().len()) {
@@ -46,19 +53,21 @@ impl PrimitiveFrames {
                     .iter_mut()
                     .zip(&positions[..count])
                     .for_each(|(to, position)| *to = tree.leaves.vertices[*position]);
-                *to = PrimitiveFrame::of(&vertices[..count]);
+                *to = PrimitiveFrame::from_vertices(&vertices[..count]);
             }
         }
         Self(all)
     }
 
+    /// Returns the frame of a primitive.
     fn get(&self, packet: usize, lane: usize) -> &PrimitiveFrame {
         &self.0[packet * LANES + lane]
     }
 }
 
 impl PrimitiveFrame {
-    fn of(vertices: &[V3]) -> Self {
+    /// Computes the frame of a primitive with one to three vertices.
+    fn from_vertices(vertices: &[V3]) -> Self {
         let mut frame = Self { height: f64::INFINITY, sine: 1.0, ..Self::default() };
         if vertices.len() < 2 {
             return frame;
@@ -78,62 +87,81 @@ impl PrimitiveFrame {
     }
 }
 
-/// Where primitives come from.
+/// The data that all tests of a build share.
 #[derive(Clone, Copy)]
 pub(crate) struct RelevanceContext<'a> {
+    /// The tree over the packets.
     pub(crate) tree: &'a PacketTree,
+    /// The Delaunay tetrahedra of the sites.
     pub(crate) delaunay: &'a Delaunay,
+    /// The vertices and edges of the primitives.
     pub(crate) adjacency: &'a EdgeAdjacency,
+    /// The directions of the primitives.
     pub(crate) frames: &'a PrimitiveFrames,
-    /// By how much a dominator has to be nearer.
+    /// The slack of the corner test: a dominator has to be nearer by this much.
     pub(crate) slack: f64,
 }
 
-/// A cell.
+/// The cell whose list is being built.
 #[derive(Clone, Copy)]
 pub(crate) struct CellInfo {
+    /// The number of the site.
     pub(crate) site: usize,
+    /// The position of the site.
     pub(crate) position: V3,
-    /// The largest distance of a corner from it,
+    /// An upper bound of the distance from the site to a corner.
     pub(crate) max_distance: f64,
-    /// and what a corner may be off.
+    /// An upper bound of the error of a corner.
     pub(crate) max_error: f64,
 }
 
-/// A primitive of one to three vertices, as a cell sees it.
+/// A primitive of one to three vertices, as seen from a cell.
 pub(crate) struct PrimitiveView<'a> {
+    /// The data that all tests share.
     scene: RelevanceContext<'a>,
+    /// The cell.
     cell: CellInfo,
+    /// The vertices of the primitive.
     vertices: [V3; 3],
+    /// The number of vertices.
     count: usize,
+    /// The sites of the vertices.
     sites: [usize; 3],
+    /// For each edge another triangle with this edge, or [`NO_PRIMITIVE`].
     opposite_triangles: [u32; 3],
+    /// The features that a primitive with a lower id has as well.
     owned_by_lower_id: OwnedByLowerId,
     /// The largest distance of a vertex from the site of the cell.
     max_vertex_distance: f64,
+    /// The margin of planes through the vertices.
     margin: f64,
+    /// The directions of the primitive.
     frame: &'a PrimitiveFrame,
 }
 
-/// A plane by a point and a direction of length 1: what is lower than minus `margin` is on the wrong side.
+/// A plane through a point with a normal of length 1. A query on its right side has a height of at least minus
+/// `margin`.
 #[derive(Clone, Copy)]
 struct Plane {
+    /// A point of the plane.
     point: V3,
+    /// The normal of the plane, which points to the right side.
     direction: V3,
+    /// The margin.
     margin: f64,
 }
 
 impl<'a> PrimitiveView<'a> {
-    /// The one in a lane of a packet; `None` where nothing can be said.
+    /// Prepares the test of the primitive in a lane of a packet. The result is `None` if nothing can be excluded.
     pub(crate) fn new(scene: RelevanceContext<'a>, cell: CellInfo, packet: usize, lane: usize) -> Option<Self> {
         let (vertices, sites, count) = scene.vertices(packet, lane);
         let max_vertex_distance =
             vertices[..count].iter().map(|v| largest(&[sub(*v, cell.position)])).fold(0.0, f64::max);
-        // Rounding of the kernel near the borders of adjacency, and of what is computed here.
+        // The margin covers the rounding of the kernel near the borders of features, and that of the tests.
         let margin = RELATIVE_MARGIN * (cell.max_distance + max_vertex_distance);
         let frame = scene.frames.get(packet, lane);
         let height = frame.height;
-        // Not for NaN either. One of your own has no vertices.
+        // Primitives of unknown kinds have no vertices. The height is NaN if a product overflows.
         if count == 0 || cell.max_error >= margin * 0.25 || height.is_nan() || height < margin {
             return None;
         }
@@ -153,27 +181,28 @@ impl<'a> PrimitiveView<'a> {
         })
     }
 
-    /// Whether a feature is_relevant in the hull of a region that belongs to no primitive of a lower id.
+    /// Returns whether some feature may be relevant in the convex hull of a region and belongs to no primitive with a
+    /// lower id.
     pub(crate) fn is_relevant(&self, region: &[V3], excluded: &mut ExcludedFeatures) -> bool {
-        excluded.set_region(region);
+        excluded.begin_region(region);
         let edge_count = if self.count == 3 { 3 } else { self.count - 1 };
         if self.count == 3 {
-            excluded.begin();
-            (0..3).for_each(|i| excluded.add(region, self.side(i)));
+            excluded.begin_feature();
+            (0..3).for_each(|i| excluded.add(region, self.side_plane(i)));
             if !excluded.is_excluded(region) {
                 return true;
             }
         }
         for i in (0..edge_count).filter(|i| self.owned_by_lower_id >> (3 + i) & 1 == 0) {
-            excluded.begin();
-            self.edge(i, &mut |plane| excluded.add(region, plane));
+            excluded.begin_feature();
+            self.add_edge_planes(i, &mut |plane| excluded.add(region, plane));
             if !excluded.is_excluded(region) {
                 return true;
             }
         }
         for i in (0..self.count).filter(|i| self.owned_by_lower_id >> i & 1 == 0) {
-            excluded.begin();
-            self.vertex(i, &mut |plane| excluded.add(region, plane));
+            excluded.begin_feature();
+            self.add_vertex_planes(i, &mut |plane| excluded.add(region, plane));
             if !excluded.is_excluded(region) {
                 return true;
             }
@@ -181,8 +210,9 @@ impl<'a> PrimitiveView<'a> {
         false
     }
 
-    /// Of the side of a triangle from vertex i to the next, into the triangle.
-    fn side(&self, i: usize) -> Plane {
+    /// Returns the plane through a side of the triangle, from vertex i to the next one. Its right side is that of the
+    /// triangle.
+    fn side_plane(&self, i: usize) -> Plane {
         Plane {
             point: self.vertices[i],
             direction: self.frame.inward_normals[i],
@@ -190,7 +220,8 @@ impl<'a> PrimitiveView<'a> {
         }
     }
 
-    fn edge(&self, i: usize, add: &mut dyn FnMut(Plane)) {
+    /// Adds the planes of the edge from vertex i to the next one.
+    fn add_edge_planes(&self, i: usize, add: &mut dyn FnMut(Plane)) {
         let (p, q) = (self.vertices[i], self.vertices[(i + 1) % self.count]);
         let d = self.frame.edge_directions[i];
         let margin = self.margin;
@@ -199,52 +230,54 @@ impl<'a> PrimitiveView<'a> {
         if self.count < 3 {
             return;
         }
-        let turned = |plane: Plane| Plane { direction: plane.direction.map(|x| -x), ..plane };
-        add(turned(self.side(i)));
-        let opposite_triangles = self.opposite_triangles[i] as usize;
+        let flipped = |plane: Plane| Plane { direction: plane.direction.map(|x| -x), ..plane };
+        add(flipped(self.side_plane(i)));
+        let opposite = self.opposite_triangles[i] as usize;
         if self.opposite_triangles[i] == NO_PRIMITIVE {
             return;
         }
-        let (others, sites, _) = self.scene.vertices(opposite_triangles / LANES, opposite_triangles % LANES);
-        let frame = self.scene.frames.get(opposite_triangles / LANES, opposite_triangles % LANES);
+        let (others, sites, _) = self.scene.vertices(opposite / LANES, opposite % LANES);
+        let frame = self.scene.frames.get(opposite / LANES, opposite % LANES);
         let margin = self.margin_with(&others);
-        // Where two vertices of the other one are the same, its height is zero.
+        // The height of the other triangle is zero if two of its vertices are equal, so `common_side` is its only side with
+        // these ends.
         let ends = [self.sites[i], self.sites[(i + 1) % 3]];
-        let same = (0..3).find(|j| ends.contains(&sites[*j]) && ends.contains(&sites[(j + 1) % 3]));
-        if let Some(j) = same.filter(|_| frame.height >= margin) {
-            add(turned(Plane { point: others[j], direction: frame.inward_normals[j], margin: margin / frame.sine }));
+        let common_side = (0..3).find(|j| ends.contains(&sites[*j]) && ends.contains(&sites[(j + 1) % 3]));
+        if let Some(j) = common_side.filter(|_| frame.height >= margin) {
+            add(flipped(Plane { point: others[j], direction: frame.inward_normals[j], margin: margin / frame.sine }));
         }
     }
 
-    fn vertex(&self, i: usize, add: &mut dyn FnMut(Plane)) {
+    /// Adds the planes of vertex i.
+    fn add_vertex_planes(&self, i: usize, add: &mut dyn FnMut(Plane)) {
         let point = self.vertices[i];
         let Self { cell, scene, .. } = self;
-        let mut edge_directions = |other: V3| {
+        let mut add_edge_to = |other: V3| {
             let offset = sub(other, point);
             let margin = self.margin_with(&[other]);
             if norm_squared(offset) > margin * margin {
                 add(Plane { point, direction: normalized(offset).map(|x| -x), margin });
             }
         };
-        (0..self.count).filter(|j| *j != i).for_each(|j| edge_directions(self.vertices[j]));
+        (0..self.count).filter(|j| *j != i).for_each(|j| add_edge_to(self.vertices[j]));
         if scene.adjacency.is_exact {
-            let others = scene.adjacency.edges.of(self.sites[i]).iter().take(MAX_EDGES_OF_VERTEX);
-            let own = |w: &&u32| !self.sites[..self.count].contains(&(**w as usize));
-            others.filter(own).for_each(|w| edge_directions(scene.position(*w as usize)));
+            let others = scene.adjacency.edges.get(self.sites[i]).iter().take(MAX_EDGES_OF_VERTEX);
+            let is_other_site = |w: &&u32| !self.sites[..self.count].contains(&(**w as usize));
+            others.filter(is_other_site).for_each(|w| add_edge_to(scene.position(*w as usize)));
             if self.sites[i] != cell.site {
-                // In the cell the vertex is not nearer than the site.
+                // In the cell, the vertex is not nearer than the site.
                 let offset = sub(point, cell.position);
                 let length = norm_squared(offset).sqrt();
                 let lead = 2.0 * self.margin * self.margin
                     + 8.0 * (cell.max_distance + self.max_vertex_distance) * scene.slack;
                 let margin = 2.0 * cell.max_error + lead / (2.0 * length);
-                let mean = std::array::from_fn(|k| cell.position[k] + 0.5 * offset[k]);
-                add(Plane { point: mean, direction: normalized(offset), margin });
+                let midpoint = std::array::from_fn(|k| cell.position[k] + 0.5 * offset[k]);
+                add(Plane { point: midpoint, direction: normalized(offset), margin });
             }
         }
     }
 
-    /// The margin edge_directions edges of a primitive that has other vertices, too.
+    /// Returns the margin of planes that depend on further vertices as well.
     fn margin_with(&self, others: &[V3]) -> f64 {
         let sizes = others.iter().map(|v| largest(&[sub(*v, self.cell.position)]));
         RELATIVE_MARGIN * (self.cell.max_distance + sizes.fold(self.max_vertex_distance, f64::max))
@@ -252,7 +285,7 @@ impl<'a> PrimitiveView<'a> {
 }
 
 impl RelevanceContext<'_> {
-    /// The vertices of the primitive in a lane of a packet, their sites, and how many there are.
+    /// Returns the vertices of the primitive in a lane of a packet, their sites, and how many there are.
     fn vertices(&self, packet: usize, lane: usize) -> ([V3; 3], [usize; 3], usize) {
         let leaves = &self.tree.leaves;
         let (positions, count) = leaves.packets[packet].vertices_of(lane);
@@ -263,64 +296,71 @@ impl RelevanceContext<'_> {
         (vertices, sites, count)
     }
 
+    /// Returns the position of a site in coordinates of the scene.
     fn position(&self, site: usize) -> V3 {
         self.delaunay.sites()[site].map(|x| x * self.delaunay.unit())
     }
 }
 
-/// The planes of a feature, and the heights of a region above them.
+/// The test of one feature: its planes, and the heights of a region above them. Its vectors are reused.
 #[derive(Default)]
 pub(crate) struct ExcludedFeatures {
     /// The mean of the points that span the region.
     mean: V3,
+    /// The planes so far.
     planes: Vec<PlaneHeights>,
-    /// Of planes that the mean is on the wrong side of, and of others when they are asked for.
+    /// The heights of the points above some planes: those whose right side does not contain the mean, and others on
+    /// demand.
     heights: Vec<f64>,
-    /// Whether one plane is enough.
+    /// Whether one plane has excluded the feature already.
     is_decided: bool,
 }
 
-/// A plane with the height of the mean above it.
+/// A plane, with the heights of a region above it.
 struct PlaneHeights {
+    /// The plane.
     plane: Plane,
+    /// The height of the mean of the region.
     mean: f64,
-    /// Where the heights of the points begin, if these are known.
+    /// The index of the first height of the points, if the heights have been computed.
     first: Option<usize>,
 }
 
 impl Plane {
+    /// Returns the height of a point above the plane, increased by the margin. It is negative on the wrong side.
     fn height(&self, x: &V3) -> f64 {
         dot(sub(*x, self.point), self.direction) + self.margin
     }
 }
 
 impl ExcludedFeatures {
-    /// For another region.
-    fn set_region(&mut self, region: &[V3]) {
+    /// Begins another region.
+    fn begin_region(&mut self, region: &[V3]) {
         let sum = region.iter().fold([0.0; 3], |sum, h| [sum[0] + h[0], sum[1] + h[1], sum[2] + h[2]]);
         self.mean = sum.map(|x| x / region.len() as f64);
     }
 
-    /// For another feature.
-    fn begin(&mut self) {
+    /// Begins another feature.
+    fn begin_feature(&mut self) {
         self.planes.clear();
         self.heights.clear();
         self.is_decided = false;
     }
 
+    /// Adds a plane of the feature.
     fn add(&mut self, region: &[V3], plane: Plane) {
         if self.is_decided {
             return;
         }
         let mean = plane.height(&self.mean);
         self.planes.push(PlaneHeights { plane, mean, first: None });
-        // All points are lower than zero only if their mean is.
+        // All points can have a negative height only if their mean has.
         if mean < 0.0 {
             self.is_decided = self.heights_above(self.planes.len() - 1, region).iter().all(|x| *x < 0.0);
         }
     }
 
-    /// The heights of the points above a plane.
+    /// Returns the heights of the points above a plane.
     fn heights_above(&mut self, number: usize, region: &[V3]) -> &[f64] {
         let PlaneHeights { plane, first, .. } = &mut self.planes[number];
         let first = *first.get_or_insert_with(|| {
@@ -331,6 +371,7 @@ impl ExcludedFeatures {
         &self.heights[first..first + region.len()]
     }
 
+    /// Returns whether the planes exclude the feature.
     fn is_excluded(&mut self, region: &[V3]) -> bool {
         if self.is_decided || region.is_empty() {
             return true;
@@ -351,7 +392,7 @@ impl ExcludedFeatures {
     }
 }
 
-/// The direction of a length, zero for none; products with it are lengths.
+/// Returns the direction of a vector, or zero if the vector is zero.
 fn normalized(d: V3) -> V3 {
     let length = norm_squared(d).sqrt();
     if length > 0.0 { d.map(|x| x / length) } else { [0.0; 3] }

@@ -1,4 +1,4 @@
-//! Where the walk to the cell of a query begins.
+//! The interface of locators: they find the site at which the walk to the cell of a query begins.
 
 use crate::delaunay::BOUNDING;
 use crate::voronoi::neighbours::NeighbourTable;
@@ -9,39 +9,40 @@ use std::sync::Arc;
 
 /// Finds a site near a query point.
 ///
-/// Any site will do: the index walks from there to the nearest site, whose cell holds the query point. So answers do not
-/// depend on the locator. A number that no site has makes searches panic.
+/// Any site will do: the index walks from there to the nearest site, whose cell contains the query point. So answers
+/// do not depend on the locator. If the number is not that of a site, searches panic.
 pub trait Locator: Debug + Send + Sync {
-    /// Returns the number of a site near a point of the domain_box, or `None` if the tree should answer. The point is in the
-    /// units of [`LocatorSites::positions`].
+    /// Returns the number of a site near a point of the domain, or `None` if the tree should answer. The point is in
+    /// the units of [`LocatorSites::positions`].
     fn start(&self, position: &[f64; 3]) -> Option<usize>;
 
-    /// The heap memory that the locator owns, in bytes.
+    /// Returns the heap memory that the locator owns, in bytes.
     fn memory(&self) -> usize;
 }
 
 /// Makes the locator of an index from its sites: a function such as `KdTreeLocator::build`.
 pub type BuildLocator = fn(&LocatorSites<'_>) -> Arc<dyn Locator>;
 
-/// Sites by their numbers, in the units that positions are given in.
+/// The sites of an index, from which its locator is built. Their unit is that of the points that [`Locator::start`]
+/// takes.
 #[derive(Clone, Copy)]
 pub struct LocatorSites<'a> {
     pub(crate) neighbours: &'a NeighbourTable,
     pub(crate) isa: Isa,
-    /// The box of the vertices, a little larger.
+    /// The box of the vertices of the scene, a little larger.
     pub(crate) scene_box: [V3; 2],
-    /// That of queries.
+    /// The box in which queries are located.
     pub(crate) domain_box: [V3; 2],
 }
 
 impl LocatorSites<'_> {
-    /// The number of the first site; the others follow, as many as there are [`positions`](Self::positions).
+    /// Returns the number of the first site. The others follow, as many as there are [`positions`](Self::positions).
     #[must_use]
     pub fn first(&self) -> usize {
         BOUNDING
     }
 
-    /// The positions of the sites from the first one on.
+    /// Returns the positions of the sites from the first one on.
     pub fn positions(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
         self.neighbours.sites[BOUNDING..].iter().map(|site| site.position)
     }

@@ -1,9 +1,14 @@
-//! A partition into Voronoi cells \[Zong2023\].
+//! The partition of space into Voronoi cells \[Zong2023\].
 //!
-//! Sites are the vertices of the scene, and some following (`sites`): in its cell a site is the nearest one, so it is a
-//! dominator, and the cell is the hull of the centres of its Delaunay tetrahedra. By the corner test a primitive can be
-//! the answer in the cell only if it meets one of their circumscribed balls, so one ball query for each tetrahedron
-//! serves four build_lists: no flooding, no cutting of cells. Six far sites close the cells of the hull.
+//! The sites are the vertices of the scene and some added points ([`sites`]). In its cell a site is nearer than all
+//! other sites, so it is a dominator there. A cell is the convex hull of the circumcentres of its Delaunay tetrahedra.
+//! By the corner test, a primitive can be the answer in the cell only if it intersects one of the circumscribed balls.
+//! So one ball query for each tetrahedron serves the lists of four cells, and neither flooding nor clipping of cells
+//! is needed. Six far sites bound the outer cells.
+//!
+//! The modules from sites to lists are [`corners`], [`crowded`], [`cell`] and [`cells`]. A query is located by a
+//! [`locator`], walks over the [`neighbours`] of sites, and searches a list ([`query`]). docs/proofs/p2m.md has the
+//! proofs.
 
 pub(crate) mod adjacency;
 pub(crate) mod any_locator;
@@ -54,62 +59,77 @@ use p2m_core::engine::vector::V3;
 use p2m_core::storage::Array;
 use p2m_core::{Aabb, Isa, PrimitiveId, PrimitiveSet, Real};
 
-/// As many packets as a list can have.
+/// The largest number of packets that a list can have.
 const MAX_LIST_PACKETS: usize = 2048;
-/// Where one of so many cells would be fallback to the tree, it answers everything.
+/// The tree answers everything, and no cells are stored, if more than one of this many cells would be left to the
+/// tree.
 const FALLBACK_CELLS_DIVISOR: usize = 4;
-/// The cube of the domain is so many times as wide as the scene.
+/// The width of the cube of the domain, in widths of the scene.
 const DOMAIN_SCENE_SIZES: f64 = 10.0;
 
-/// An interception index whose cells are those of the vertices, over a set of primitives that it does not keep.
+/// An interception index whose cells are the Voronoi cells of the vertices, over a set of primitives that it does not
+/// store.
+///
+/// [`P2mIndex`](crate::P2mIndex) combines it with its set.
 #[derive(Clone, Debug)]
 pub struct Voronoi {
+    /// The tree over the packets. It answers outside of the domain and in cells without a list.
     pub(crate) tree: PacketTree,
-    /// Of the positions of sites.
+    /// The reciprocal of `unit`.
     pub(crate) per_unit: f64,
+    /// The unit in which the positions of sites are stored, a power of two.
     pub(crate) unit: f64,
-    /// By how much a dominator has to be nearer.
+    /// The slack of the corner test: a dominator has to be nearer by this much.
     pub(crate) slack: f64,
+    /// The low corner of the domain.
     pub(crate) low: V3,
+    /// The high corner of the domain.
     pub(crate) high: V3,
+    /// The sites and their neighbours.
     pub(crate) neighbours: NeighbourTable,
+    /// The locator. It is `None` if there are no cells.
     pub(crate) locator: Option<AnyLocator>,
+    /// The blocks of the lists. The first block of a list has the number of its site.
     pub(crate) blocks: Array<Block>,
+    /// The filters of long lists.
     pub(crate) filters: ListFilters,
-    /// Of auxiliary sites points of the scene that are near.
+    /// For each auxiliary site a point of the scene near it.
     pub(crate) anchors: Array<V3>,
+    /// The statistics of the build.
     pub(crate) report: P2mReport,
 }
 
 impl Voronoi {
-    /// The blocks of a site that has a list.
+    /// Returns the blocks of a site that has a list.
     fn blocks_of(&self, site: usize) -> impl Iterator<Item = &Block> {
         let first = &self.blocks[site];
         let rest = &self.blocks[self.neighbours.sites[site].list as usize..][..usize::from(first.following)];
         std::iter::once(first).chain(rest)
     }
 
+    /// Builds the cells, unless the scene or a budget does not allow it.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
     fn build_cells(&mut self, options: &P2mOptions, reporter: &ProgressReporter<'_>) {
         let tree = &self.tree;
         let bounds = vertex_bounds(tree);
-        let half = (bounds.max - bounds.min).max() * 0.5;
-        // No extent, or one that f32 cannot tell apart; not for NaN either, which comes of no vertices.
-        if !tree.frame.is_plain() || half.is_nan() || half <= 0.0 {
+        let half_width = (bounds.max - bounds.min).max() * 0.5;
+        // The tree answers a scene without extent, or one that f32 cannot resolve. `half_width` is NaN if there are no
+        // vertices.
+        if !tree.frame.is_plain() || half_width.is_nan() || half_width <= 0.0 {
             return;
         }
         let centre = to_f64_array(&nalgebra::center(&bounds.min, &bounds.max));
-        let domain = half * DOMAIN_SCENE_SIZES;
+        let domain = half_width * DOMAIN_SCENE_SIZES;
         let (low, high) = (centre.map(|x| x - domain), centre.map(|x| x + domain));
         let scene_box = padded(&bounds);
-        // In the plane of a flat scene, far out, f64 has no room beside it.
+        // A flat scene may be so far from the origin that f64 has no numbers on both sides of its plane.
         if (0..3).any(|k| scene_box[0][k] >= scene_box[1][k] || low[k] >= high[k]) {
             return;
         }
-        let whole = tree.bounds();
-        let size = (whole.max - whole.min).max();
-        let far = half.max(size) * BOUNDING_DISTANCE + centre.iter().fold(0.0f64, |a, x| a.max(x.abs()));
-        // Rounding of keys, of corners and of added points: all below 2^-44 of this.
+        let tree_bounds = tree.bounds();
+        let size = (tree_bounds.max - tree_bounds.min).max();
+        let far = half_width.max(size) * BOUNDING_DISTANCE + centre.iter().fold(0.0f64, |a, x| a.max(x.abs()));
+        // The rounding of keys, of corners and of added points is below 2^-44 of `far`.
         let slack = far / (1u64 << 40) as f64;
         let max_list_packets = options.max_list_packets.min(MAX_LIST_PACKETS);
         let parallel = options.splits.parallel;
@@ -120,10 +140,10 @@ impl Voronoi {
             self.report.trees = tree.leaves.vertices.len();
             return;
         };
-        // To find one's cell in vain costs following than the few build_lists save.
-        let fallback = sites.fallback_cells();
-        if fallback * FALLBACK_CELLS_DIVISOR > sites.delaunay.sites().len() {
-            self.report.trees = fallback;
+        // A query that finds its cell without a list costs more than a few lists save.
+        let fallback_count = sites.count_fallback_cells();
+        if fallback_count * FALLBACK_CELLS_DIVISOR > sites.delaunay.sites().len() {
+            self.report.trees = fallback_count;
             return;
         }
         let cells = CellContext {
@@ -160,7 +180,7 @@ impl Voronoi {
 }
 
 impl Voronoi {
-    /// The sites and the boxes that a locator is made from.
+    /// Returns the sites and the boxes from which a locator is built.
     pub(crate) fn locator_sites(&self) -> LocatorSites<'_> {
         let scaled = |p: V3| p.map(|x| x * self.per_unit);
         let scene_box = padded(&vertex_bounds(&self.tree)).map(scaled);
@@ -173,13 +193,14 @@ impl Voronoi {
     }
 }
 
-/// The box around the vertices of a tree. Primitives of one's scene_box have none, so they may lie outside.
+/// Returns the box around the vertices of a tree. Primitives of unknown kinds have no vertices, so they may lie
+/// outside.
 fn vertex_bounds(tree: &PacketTree) -> Aabb<f64> {
     let vertices = tree.leaves.vertices.iter().map(|v| Point3::from(*v));
     vertices.fold(Aabb::empty(), |all, v| all.union(&Aabb { min: v, max: v }))
 }
 
-/// A box, larger on all sides by an eighth of its longest side.
+/// Returns the corners of a box that is enlarged on all sides by an eighth of its longest side.
 fn padded(bounds: &Aabb<f64>) -> [V3; 2] {
     let pad = (bounds.max - bounds.min).max() * 0.125;
     [to_f64_array(&bounds.min).map(|x| x - pad), to_f64_array(&bounds.max).map(|x| x + pad)]

@@ -1,9 +1,10 @@
-//! From a site to the nearest one: the walk over Delaunay table.
+//! The table of Delaunay neighbours, and the walk from any site to the nearest one.
 //!
-//! If a site v is not the nearest one to q, some Delaunay neighbour w of it is nearer: (q - v) . (w - v) > |w - v|^2 /
-//! 2 (docs/proofs/p2m.md). The ways w - v lie side by side as whole numbers of 16 bits, eight to a cache line. Where their
-//! products do not tell, f64 does, and integers at last; so a walk ends at a site that certainly has q in its closed
-//! cell, and never runs in a circle, for each step is one to a nearer site.
+//! If a site v is not the nearest site to q, then some Delaunay neighbour w of v is nearer than v, which means (q - v)
+//! . (w - v) > |w - v|^2 / 2 (docs/proofs/p2m.md). The offsets w - v are stored side by side as 16-bit integers, eight
+//! to a cache line. The test in f32 bounds its error. Where it cannot decide, the comparison is made in f64 and
+//! finally in integers. So a walk ends at a site whose closed cell certainly contains q, and never visits a site
+//! twice, since each step leads to a nearer site.
 
 use crate::voronoi::compare_distances;
 use crate::voronoi::neighbour_block::{
@@ -15,38 +16,42 @@ use p2m_core::engine::vector::{V3, norm_squared, sub};
 use p2m_core::storage::{Array, LoadError, Reader, Writer};
 use std::cmp::Ordering;
 
-/// Blocks of each site that are found by its number.
+/// The number of blocks of each site that are found by its number alone, without reading the site.
 const INLINE_BLOCKS: usize = 2;
 
-/// The sites, with their table.
+/// The sites with their neighbours.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NeighbourTable {
+    /// The sites.
     pub(crate) sites: Array<Site>,
+    /// The blocks of offsets: the inline blocks of all sites, then the further blocks.
     blocks: Array<NeighbourBlock>,
-    /// The table of each block.
+    /// The numbers of the neighbours in each block.
     site_numbers: Array<[u32; NEIGHBOURS_PER_BLOCK]>,
-    /// By how much first_further_block than the nearest site others have to be farther away, for their primitives not to tie: three
-    /// times the slack, in the units of sites.
+    /// Three times the slack of the corner test, in the units of sites. If all other sites are farther than the
+    /// nearest one by this much, their primitives cannot tie with it.
     slack: f32,
 }
 
-/// Where a walk ends.
+/// The end of a walk.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LaneDistances {
+pub(crate) struct LocatedSite {
+    /// The nearest site.
     pub(crate) site: usize,
-    /// Whether the site is certainly the nearest point of all primitives that have it as a vertex, and no other site
-    /// nearly as half_next_distance.
+    /// Whether the site is certainly the nearest point on all primitives that have it as a vertex, with the lead over
+    /// the other sites that its far half-space needs.
     pub(crate) is_certainly_nearest: bool,
 }
 
 impl NeighbourTable {
-    /// The blocks of all sites: `others` gives the table of each, and those along edges of primitives.
+    /// Builds the table. `list_neighbours` appends the Delaunay neighbours of a site to its first list, and the sites at the
+    /// other ends of edges of primitives to its second. Sites below `first` have no neighbours.
     #[allow(clippy::cast_possible_truncation, reason = "rounded down")]
     pub(crate) fn new(
         positions: &[V3],
         first: usize,
         slack: f64,
-        mut others: impl FnMut(usize, &mut Vec<u32>, &mut Vec<u32>),
+        mut list_neighbours: impl FnMut(usize, &mut Vec<u32>, &mut Vec<u32>),
     ) -> Self {
         let mut blocks = vec![NeighbourBlock::EMPTY; INLINE_BLOCKS * positions.len()];
         let mut site_numbers = vec![[0; NEIGHBOURS_PER_BLOCK]; INLINE_BLOCKS * positions.len()];
@@ -65,7 +70,7 @@ impl NeighbourTable {
             if number >= first {
                 all.clear();
                 edges.clear();
-                others(number, &mut all, &mut edges);
+                list_neighbours(number, &mut all, &mut edges);
                 edges.sort_unstable();
                 all.extend_from_slice(&edges);
                 all.sort_unstable();
@@ -80,15 +85,14 @@ impl NeighbourTable {
                 all.extend(sorted.iter().map(|s| s.1));
                 site.block_count = u32::try_from(all.len().div_ceil(NEIGHBOURS_PER_BLOCK)).expect("few neighbours");
                 for (i, chunk) in all.chunks(NEIGHBOURS_PER_BLOCK).enumerate() {
-                    let block_of_neighbours =
-                        NeighbourBlock::new(positions, number, chunk, |v| edges.binary_search(&v).is_ok());
-                    let own = std::array::from_fn(|lane| chunk[lane.min(chunk.len() - 1)]);
+                    let block = NeighbourBlock::new(positions, number, chunk, |v| edges.binary_search(&v).is_ok());
+                    let numbers = std::array::from_fn(|lane| chunk[lane.min(chunk.len() - 1)]);
                     if i < INLINE_BLOCKS {
                         (blocks[INLINE_BLOCKS * number + i], site_numbers[INLINE_BLOCKS * number + i]) =
-                            (block_of_neighbours, own);
+                            (block, numbers);
                     } else {
-                        blocks.push(block_of_neighbours);
-                        site_numbers.push(own);
+                        blocks.push(block);
+                        site_numbers.push(numbers);
                     }
                 }
             }
@@ -104,27 +108,27 @@ impl NeighbourTable {
         }
     }
 
-    /// From a site to the nearest one to `query`; `on_site` is told of every site on the offset before it is looked at.
+    /// Walks from a site to the site nearest to `query`. `on_site` is called with each site before it is read.
     #[inline(always)]
     pub(crate) fn walk<I: InstructionSet>(
         &self,
         from: usize,
         query: &V3,
         mut on_site: impl FnMut(usize),
-    ) -> LaneDistances {
+    ) -> LocatedSite {
         let mut at = from;
         loop {
             self.prefetch(at);
             on_site(at);
             let (next, is_certainly_nearest) = self.step::<I>(at, query);
             if next == at {
-                return LaneDistances { site: at, is_certainly_nearest };
+                return LocatedSite { site: at, is_certainly_nearest };
             }
             at = next;
         }
     }
 
-    /// Asks for what a step reads.
+    /// Prefetches the memory that a step from a site reads.
     #[inline(always)]
     pub(crate) fn prefetch(&self, at: usize) {
         prefetch_lines(self.sites.as_ptr().wrapping_add(at), size_of::<Site>());
@@ -134,17 +138,18 @@ impl NeighbourTable {
         );
     }
 
-    /// A nearer site than this one, the nearest of its table as far as f32 tells; or the same if there is none,
-    /// and what [`LaneDistances::is_certainly_nearest`] bound_query.
+    /// Takes one step. It returns a nearer site, which is the nearest neighbour as far as f32 can decide, or the same
+    /// site if it is the nearest. The second value is that of [`LocatedSite::is_certainly_nearest`], for a walk that
+    /// ends here.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounding is allowed for")]
     pub(crate) fn step<I: InstructionSet>(&self, at: usize, query: &V3) -> (usize, bool) {
         let site = &self.sites[at];
-        let d = sub(*query, site.position);
-        let offset = [d[0] as f32, d[1] as f32, d[2] as f32];
+        let exact_offset = sub(*query, site.position);
+        let offset = [exact_offset[0] as f32, exact_offset[1] as f32, exact_offset[2] as f32];
         let square = offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2];
         let size = (offset[0].abs() + offset[1].abs() + offset[2].abs()) * (1.0 + 4.0 * f32::EPSILON);
-        let d = QueryOffset {
+        let query_offset = QueryOffset {
             offset,
             size,
             square,
@@ -155,31 +160,33 @@ impl NeighbourTable {
         let block_count = site.block_count as usize;
         let mut i = 0;
         while i < block_count.min(INLINE_BLOCKS) {
-            next.consider_block::<I>(self, INLINE_BLOCKS * at + i, query, &d);
+            next.consider_block::<I>(self, INLINE_BLOCKS * at + i, query, &query_offset);
             i += 1;
         }
         if block_count > INLINE_BLOCKS {
-            // Nearer than half the offset to a neighbour that one is farther.
+            // A query nearer to the site than half the distance to a neighbour is farther from this neighbour.
             if square < site.half_next_distance * site.half_next_distance * (1.0 - 1e-5) {
                 next.ties = 1;
             } else {
                 for block in
                     site.first_further_block as usize..site.first_further_block as usize + block_count - INLINE_BLOCKS
                 {
-                    next.consider_block::<I>(self, block, query, &d);
+                    next.consider_block::<I>(self, block, query, &query_offset);
                 }
             }
         }
         (next.best, next.ties == 0)
     }
 
-    /// Whether one site is nearer than another.
+    /// Returns whether one site is nearer to the query than another one, exactly. It is rare, so it is kept out of the
+    /// loop.
     #[cold]
     #[inline(never)]
     fn is_nearer(&self, query: &V3, site: usize, than: usize) -> bool {
         compare_distances::compare(query, &self.sites[site].position, &self.sites[than].position) == Ordering::Less
     }
 
+    /// Adds the table to a file.
     pub(crate) fn save<'a>(&'a self, writer: &mut Writer<'a>) {
         writer.put("voronoi/sites", &self.sites);
         writer.put("voronoi/neighbours", &self.blocks);
@@ -187,47 +194,55 @@ impl NeighbourTable {
         writer.put_copy("voronoi/neighbours/slack", &[self.slack]);
     }
 
+    /// Loads the table from a file.
     pub(crate) fn load(reader: &Reader) -> Result<Self, LoadError> {
-        let neighbours = Self {
+        let table = Self {
             sites: reader.array("voronoi/sites")?,
             blocks: reader.array("voronoi/neighbours")?,
             site_numbers: reader.array("voronoi/neighbours/names")?,
             slack: reader.one("voronoi/neighbours/slack")?,
         };
-        let fits = neighbours.site_numbers.len() == neighbours.blocks.len()
-            && neighbours.blocks.len() >= INLINE_BLOCKS * neighbours.sites.len();
-        if fits { Ok(neighbours) } else { Err(LoadError::Inconsistent { section: "voronoi/neighbours".to_owned() }) }
+        let is_consistent =
+            table.site_numbers.len() == table.blocks.len() && table.blocks.len() >= INLINE_BLOCKS * table.sites.len();
+        if is_consistent {
+            Ok(table)
+        } else {
+            Err(LoadError::Inconsistent { section: "voronoi/neighbours".to_owned() })
+        }
     }
 
-    /// Heap memory, in bytes.
+    /// Returns the heap memory in bytes.
     pub(crate) fn memory(&self) -> usize {
         self.sites.memory() + self.blocks.memory() + self.site_numbers.memory()
     }
 }
 
-/// The offset on from a site.
+/// One step of a walk.
 struct WalkStep {
+    /// The site from which the step begins.
     at: usize,
+    /// The nearest site so far.
     best: usize,
-    /// The gain of the best one, if f32 can tell.
+    /// The gain of `best` over `at`, as far as f32 can decide.
     best_gain: f32,
-    /// Not zero if something else may be as half_next_distance as the site.
+    /// The bits of neighbours and edges that prevent [`LocatedSite::is_certainly_nearest`]. It is 0 if there are none.
     ties: u32,
 }
 
 impl WalkStep {
+    /// Tests the neighbours of a block.
     #[inline(always)]
     fn consider_block<I: InstructionSet>(
         &mut self,
-        neighbours: &NeighbourTable,
+        table: &NeighbourTable,
         block: usize,
         query: &V3,
-        d: &QueryOffset,
+        query_offset: &QueryOffset,
     ) {
         let NeighbourBounds { gains, margins, ties, edges }: NeighbourBounds<I::Eight> =
-            neighbours.blocks[block].bound_query(d);
+            table.blocks[block].bound_query(query_offset);
         self.ties |= ties | edges;
-        // Neighbours that are not certainly farther.
+        // The open neighbours are those that are not certainly farther.
         let mut open = I::Eight::splat(0.0).sub(margins).at_most(gains);
         if open == 0 {
             return;
@@ -238,10 +253,10 @@ impl WalkStep {
         while open != 0 {
             let lane = open.trailing_zeros() as usize;
             open &= open - 1;
-            let (other, certain) = (neighbours.site_numbers[block][lane] as usize, all[lane] > off[lane]);
+            let (other, certain) = (table.site_numbers[block][lane] as usize, all[lane] > off[lane]);
             if all[lane] > self.best_gain && certain {
                 (self.best, self.best_gain) = (other, all[lane]);
-            } else if self.best == self.at && !certain && neighbours.is_nearer(query, other, self.at) {
+            } else if self.best == self.at && !certain && table.is_nearer(query, other, self.at) {
                 self.best = other;
             }
         }
@@ -259,9 +274,9 @@ mod tests {
     struct LocateSite<'a>(&'a NeighbourTable, usize, &'a V3);
 
     impl SimdKernel for LocateSite<'_> {
-        type Output = LaneDistances;
+        type Output = LocatedSite;
         #[inline(always)]
-        fn run<I: InstructionSet>(self) -> LaneDistances {
+        fn run<I: InstructionSet>(self) -> LocatedSite {
             self.0.walk::<I>(self.1, self.2, |_| ())
         }
     }

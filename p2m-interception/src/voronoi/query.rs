@@ -1,16 +1,15 @@
-//! From a query to its cell and through its filter; several side by side, so that some go on while others wait for
-//! memory.
+//! The search of a P2M index: a query is located in its cell and searches the list of the cell.
 //!
-//! A query reads, one after the other, a hint, the site with its neighbours for each step get the walk, the blocks get
-//! the filter, packets and vertices. Side by side every query takes a step and asks for what it reads next before the
-//! others take theirs.
+//! A query reads, one after the other, a cell of the locator, a site and its neighbours for each step of the walk, the
+//! blocks of the list, packets, and vertices. In a batch, each query takes one step and prefetches the memory of its
+//! next step before the other queries take theirs. So most of the latency of memory is hidden.
 
 use crate::list::block::{Block, BlockQuery};
 use crate::list::search;
 use crate::partition::{CellQuery, SIDE_BY_SIDE};
 use crate::voronoi::Voronoi;
 use crate::voronoi::list_filter::{ListFilter, ListFilters};
-use crate::voronoi::neighbours::{LaneDistances, NeighbourTable};
+use crate::voronoi::neighbours::{LocatedSite, NeighbourTable};
 use crate::voronoi::site::{AUXILIARY_SITE, Site};
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
@@ -35,10 +34,10 @@ impl CellQuery for Voronoi {
     ) {
         let tree = &self.tree;
         if collector.is_nearest_only()
-            && let Some(position) = self.position(&query)
+            && let Some(position) = self.to_site_units(&query)
             && let Some(site) = self.locator.as_ref().and_then(|locator| locator.start(&position))
         {
-            let located = LaneDistances { site, is_certainly_nearest: false };
+            let located = LocatedSite { site, is_certainly_nearest: false };
             return tree.isa().run(LocateAndSearch {
                 index: self,
                 located,
@@ -56,8 +55,8 @@ impl CellQuery for Voronoi {
         self.query_with(query, minimum, evaluate, finish_nearest);
     }
 
-    fn query_near<'n>(&self, query: V3, query_near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
-        self.query_with(query, query_near, evaluate, finish);
+    fn query_near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
+        self.query_with(query, near, evaluate, finish);
     }
 
     fn query_several(
@@ -71,29 +70,30 @@ impl CellQuery for Voronoi {
 }
 
 impl Voronoi {
-    /// The number get the site in whose cell a position is, the first step get every query: `None` far_half_space get the domain.
+    /// Returns the number of the site whose cell contains a query point, which is the first step of every query. It is
+    /// `None` outside of the domain, and if the tree answers everything.
     #[must_use]
     pub fn site_of(&self, query: &Point3<f64>) -> Option<usize> {
-        let position = self.position(&to_f64_array(query))?;
+        let position = self.to_site_units(&to_f64_array(query))?;
         let start = self.locator.as_ref()?.start(&position)?;
         Some(self.tree.isa().run(LocateSite { neighbours: &self.neighbours, start, position }))
     }
 
-    /// A query in the units get sites, if it is in the domain.
+    /// Converts a query point to the units of sites. It is `None` outside of the domain.
     #[inline(always)]
-    fn position(&self, query: &V3) -> Option<V3> {
-        // Not for NaN either.
-        let inside = (0..3).all(|k| query[k] >= self.low[k] && query[k] <= self.high[k]);
-        inside.then(|| query.map(|x| flush_tiny(x * self.per_unit)))
+    fn to_site_units(&self, query: &V3) -> Option<V3> {
+        // The comparison is false if a coordinate is NaN.
+        let is_inside = (0..3).all(|k| query[k] >= self.low[k] && query[k] <= self.high[k]);
+        is_inside.then(|| query.map(|x| flush_tiny(x * self.per_unit)))
     }
 
-    /// Asks for a block get a filter: the first one has the number get its site.
+    /// Prefetches a block of a list. The first block of a list has the number of its site.
     #[inline(always)]
     fn prefetch_block(&self, number: usize) {
         prefetch_lines(self.blocks.as_ptr().wrapping_add(number), size_of::<Block>());
     }
 
-    /// The bound on the answer that a site gives.
+    /// Returns an upper bound of the answer, which is the distance to the site or to the anchor of an auxiliary site.
     #[inline(always)]
     fn upper_bound(&self, site: &Site, query: &V3, position: &V3) -> f64 {
         let length = |offset: V3| norm_squared(offset).sqrt() * (1.0 + 8.0 * f64::EPSILON);
@@ -104,22 +104,24 @@ impl Voronoi {
         }
     }
 
-    /// The primitive that is certainly the answer for a query from whose site the offset is known, as packet and lane.
+    /// Returns the packet and the lane of the primitive that is certainly the answer, if the query is in the far
+    /// half-space of its site.
     #[inline(always)]
-    fn known_answer(located: &LaneDistances, site: &Site, position: &V3) -> Option<(usize, usize)> {
+    fn known_answer(located: &LocatedSite, site: &Site, position: &V3) -> Option<(usize, usize)> {
         let owner = site.owner as usize;
-        let known_answer = located.is_certainly_nearest && site.far_half_space.contains(&sub(*position, site.position));
-        known_answer.then_some((owner / LANES, owner % LANES))
+        let is_known = located.is_certainly_nearest && site.far_half_space.contains(&sub(*position, site.position));
+        is_known.then_some((owner / LANES, owner % LANES))
     }
 }
 
-/// A coordinate get a query in the units get sites, or 0 below what the predicates can tell, as for sites.
+/// Returns a coordinate in the units of sites, or 0 if it is too small for the exact predicates. Sites are treated in
+/// the same way.
 #[inline(always)]
 fn flush_tiny(x: f64) -> f64 {
     if x.abs() < *RANGE.start() { 0.0 } else { x }
 }
 
-/// The offset to a cell alone, as an operation.
+/// A SIMD kernel that walks to the site nearest to a query.
 struct LocateSite<'a> {
     neighbours: &'a NeighbourTable,
     start: usize,
@@ -135,10 +137,10 @@ impl SimdKernel for LocateSite<'_> {
     }
 }
 
-/// A query on its offset to its cell from the site that was located first, as an operation.
+/// A SIMD kernel that walks from a first site to the cell of a query and searches its list.
 struct LocateAndSearch<'a, C> {
     index: &'a Voronoi,
-    located: LaneDistances,
+    located: LocatedSite,
     query: V3,
     position: V3,
     collector: &'a mut C,
@@ -160,7 +162,8 @@ impl<C: Collector> SimdKernel for LocateAndSearch<'_, C> {
     }
 }
 
-/// A query in its cell, as an operation get its own: it is compiled once, for single queries and for several.
+/// A SIMD kernel that searches the cell of a query. It is separate from the walk, so that it is compiled only once for
+/// single queries and for batches.
 struct SearchCell<'a, C>(LocateAndSearch<'a, C>);
 
 impl<C: Collector> SimdKernel for SearchCell<'_, C> {
@@ -183,7 +186,7 @@ impl<C: Collector> SimdKernel for SearchCell<'_, C> {
             let search = Search { tree, query, reach: upper_bound, held, collector, evaluate, finish };
             return search_filtered(SearchFilteredList { filter, search });
         }
-        // What comes next, if the filter has more than a block.
+        // The second block is prefetched as well, because the list may have more than one.
         index.prefetch_block(site.list as usize);
         let mut state = SearchState::new(tree, query, upper_bound, collector, evaluate, finish);
         if let Some((packet, lane)) = known_answer {
@@ -197,14 +200,14 @@ impl<C: Collector> SimdKernel for SearchCell<'_, C> {
     }
 }
 
-/// A query in the filter get its cell, get which a state chooses the primitives.
+/// A SIMD kernel that searches those primitives of a list that its filter chooses.
 struct SearchFilteredList<'a, C> {
     filter: &'a dyn ListFilter,
     search: Search<'a, Aabb<f64>, C>,
 }
 
-/// Searches a filter that has a state. This is a function get its own because few indexes have filters, and its code in the
-/// search get the others would cost registers.
+/// Searches a list that has a filter. It is not inlined, because few indexes have filters and its code would cost the
+/// search of the others registers.
 #[cold]
 #[inline(never)]
 fn search_filtered<C: Collector>(query: SearchFilteredList<'_, C>) {
@@ -227,13 +230,14 @@ impl<C: Collector> SimdKernel for SearchFilteredList<'_, C> {
     }
 }
 
+/// Converts a query to the form that blocks with boxes need.
 #[inline(always)]
 fn block_query(tree: &PacketTree, query: &V3) -> BlockQuery {
     let local = tree.frame.place(query);
     BlockQuery { rounded: Rounded::of(local), local, cells: [0.0; 3] }
 }
 
-/// SearchSeveral queries side by side, as an operation.
+/// A SIMD kernel that answers several queries side by side.
 struct SearchSeveral<'a> {
     index: &'a Voronoi,
     queries: &'a [V3; SIDE_BY_SIDE],
@@ -250,16 +254,16 @@ impl SimdKernel for SearchSeveral<'_> {
         let mut positions = [None; SIDE_BY_SIDE];
         if let Some(locator) = &index.locator {
             for (to, query) in positions.iter_mut().zip(queries) {
-                *to = index.position(query);
+                *to = index.to_site_units(query);
                 to.iter().for_each(|position| locator.prefetch(position));
             }
             positions.iter().flatten().for_each(|position| locator.prefetch_more(position));
         }
-        let mut locations: [Option<LaneDistances>; SIDE_BY_SIDE] = [None; SIDE_BY_SIDE];
+        let mut locations: [Option<LocatedSite>; SIDE_BY_SIDE] = [None; SIDE_BY_SIDE];
         let mut walking = 0u32;
         for (i, (to, position)) in locations.iter_mut().zip(&positions).enumerate() {
             let start = position.as_ref().and_then(|position| index.locator.as_ref()?.start(position));
-            *to = start.map(|site| LaneDistances { site, is_certainly_nearest: false });
+            *to = start.map(|site| LocatedSite { site, is_certainly_nearest: false });
             if let Some(site) = start {
                 index.neighbours.prefetch(site);
                 walking |= 1 << i;
@@ -311,9 +315,9 @@ impl SimdKernel for SearchSeveral<'_> {
 }
 
 impl Voronoi {
-    /// Asks for what a query reads first in its cell.
+    /// Prefetches what a query reads first in its cell.
     #[inline(always)]
-    fn prefetch_answer(&self, located: &LaneDistances, position: &V3) {
+    fn prefetch_answer(&self, located: &LocatedSite, position: &V3) {
         let site = &self.neighbours.sites[located.site];
         if let Some((packet, _)) = Self::known_answer(located, site, position) {
             self.tree.leaves.prefetch(packet);
@@ -323,9 +327,9 @@ impl Voronoi {
         }
     }
 
-    /// Asks for the packets and vertices that come after that.
+    /// Prefetches the packets and vertices that a query reads after that.
     #[inline(always)]
-    fn prefetch_packets<I: InstructionSet>(&self, located: &LaneDistances, query: &V3, position: &V3) {
+    fn prefetch_packets<I: InstructionSet>(&self, located: &LocatedSite, query: &V3, position: &V3) {
         let (tree, site) = (&self.tree, &self.neighbours.sites[located.site]);
         if let Some((packet, lane)) = Self::known_answer(located, site, position) {
             tree.leaves.packets[packet].prefetch_vertices(lane, &tree.leaves.vertices);

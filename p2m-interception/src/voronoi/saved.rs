@@ -1,4 +1,4 @@
-//! A P2M index in a file.
+//! Saving a P2M index and loading it.
 
 use crate::list::block::Block;
 use crate::voronoi::Voronoi;
@@ -10,7 +10,7 @@ use p2m_bvh::PacketTree;
 use p2m_core::engine::vector::V3;
 use p2m_core::storage::{Array, LoadError, Reader, Saved, Writer};
 
-/// What is no array.
+/// The fields of a P2M index that are not arrays. The layout is that of the section `voronoi` of the file.
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Header {
@@ -19,9 +19,9 @@ struct Header {
     slack: f64,
     low: V3,
     high: V3,
-    /// A [`P2mReport`].
+    /// The numbers of a [`P2mReport`](crate::P2mReport).
     report: [u64; 11],
-    /// Whether there are cells at all.
+    /// Whether the index has cells: 0 or 1.
     has_cells: u64,
 }
 
@@ -33,8 +33,8 @@ impl Saved for Voronoi {
     fn save<'a>(&'a self, writer: &mut Writer<'a>) {
         let has_cells = u64::from(self.locator.is_some());
         let Self { per_unit, unit, slack, low, high, .. } = *self;
-        let head = Header { per_unit, unit, slack, low, high, report: self.report.into(), has_cells };
-        writer.put_copy("voronoi", &[head]);
+        let header = Header { per_unit, unit, slack, low, high, report: self.report.into(), has_cells };
+        writer.put_copy("voronoi", &[header]);
         writer.put("voronoi/lists", &self.blocks);
         writer.put("voronoi/anchors", &self.anchors);
         self.neighbours.save(writer);
