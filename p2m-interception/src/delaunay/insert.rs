@@ -1,23 +1,24 @@
-//! Insertion of points one by one \[Bowyer1981\], \[Watson1981\].
+//! The insertion of points one by one \[Bowyer1981\], \[Watson1981\].
 //!
-//! A new point p removes the tetrahedra whose circumsphere has it strictly inside, the cavity, and is joined to the
-//! faces around it. No point is moved, not even symbolically, for
-//! - the tetrahedra that contain p, be it on a face or an edge, are in the cavity: but for its vertices a tetrahedron is
-//!   inside its sphere;
-//! - the cavity is connected. Let the power of p be the squared distance to the centre of a sphere less the squared
-//!   radius. On the way from a point of a tetrahedron straight to p the power of p in the spheres of the tetrahedra met
-//!   does not grow: they are Delaunay, so behind the plane of a common face the ball of the next one contains that of
-//!   the walk_start. So if the first is in the cavity, all are;
-//! - the new tetrahedra have a volume above zero and do not overlap. Let t and t' be the tetrahedra on the two sides of
-//!   a face around the cavity, t inside. Spheres of both have the same circle in the plane of the face, so the powers
-//!   of p in both are equal if p is in that plane, and if p is on the side of t' that in t' is the lower one. But
-//!   that in t is below zero and that in t' is not. So p is strictly on the side of t. For the outer faces it is as
-//!   well, as all points are strictly inside the hull of the bounding sites.
+//! A new point p removes the tetrahedra whose circumsphere contains it strictly inside, which form the *cavity*, and
+//! is joined to the faces around the cavity. No point is perturbed, not even symbolically, for these reasons:
 //!
-//! Walks end for the same reason: to keep out a point p that is on a sphere is to raise it by less than anything in the
-//! paraboloid over space, but by more than all the points before. So the tetrahedra are those of a regular
-//! triangulation in general index_in, in which no cycle of tetrahedra lies each in front of the next as seen from a
-//! point \[Edelsbrunner1990b\].
+//! - The tetrahedra that contain p, even on a face or an edge, are in the cavity. Apart from its vertices a
+//!   tetrahedron is inside of its sphere.
+//! - The cavity is connected. Let the power of p be the squared distance to the centre of a sphere minus the squared
+//!   radius. Go straight from a point of a tetrahedron to p. The power of p in the spheres of the tetrahedra on the
+//!   way does not grow, because they are Delaunay: behind the plane of a common face the ball of the next one contains
+//!   that of the last. So if the first tetrahedron is in the cavity, all of them are.
+//! - The new tetrahedra have a positive volume and do not overlap. Let t and t' be the tetrahedra on the two sides of
+//!   a face around the cavity, with t inside. Both spheres have the same circle in the plane of the face. So the two
+//!   powers of p are equal if p is in that plane, and the power in t' is the lower one if p is on the side of t'. But
+//!   the power in t is negative and that in t' is not. So p is strictly on the side of t. This holds for the outer
+//!   faces as well, since all points are strictly inside the octahedron of the bounding sites.
+//!
+//! The walk to the tetrahedron that contains a point ends for a related reason. A point p on a sphere is treated as
+//! outside. This amounts to raising p in the paraboloid over space, by less than anything else but by more than all
+//! points before. So the tetrahedra are those of a regular triangulation in general position, and in such a
+//! triangulation no cycle of tetrahedra lies each in front of the next as seen from a point \[Edelsbrunner1990b\].
 
 #![allow(clippy::inline_always, reason = "or it is compiled without the instruction set")]
 
@@ -27,46 +28,54 @@ use p2m_core::engine::staged::{PredicateStage, orientation_exact, orientation_fi
 use p2m_core::engine::vector::{V3, sub};
 use std::cmp::Ordering;
 
-/// Vertices of the faces around a cavity that have positions in the table of edge_owners: those of 124 faces.
+/// The number of vertices around a cavity that the table of edges has room for. They are the vertices of 124 faces.
 pub(crate) const MAX_LINKED_VERTICES: usize = 64;
 
-/// For each tetrahedron that there may be at a time so many may be made.
+/// The number of tetrahedra that may be created for each one that may exist at a time.
 const CREATED_PER_TETRAHEDRON: u64 = 8;
 
-/// A site with what is known of it in the current insertion: half a cache line as well, never on two.
+/// A site, and its part in the current insertion. Half a cache line holds it, so it never lies on two.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct InsertedSite {
+    /// The position of the site.
     pub(crate) point: V3,
-    /// For which site it was a vertex of the faces around the cavity walk_start,
+    /// The insertion in which this site last was a vertex of the cavity's boundary, as the number of the inserted
+    /// site.
     pub(crate) last_insertion: u32,
-    /// and the how manieth of those.
+    /// The index of this site among the vertices of that boundary.
     pub(crate) boundary_index: u32,
 }
 
-/// A triangulation that grows.
+/// A triangulation that grows by insertion.
 pub(crate) struct Insertion {
+    /// The sites, in the order of their numbers.
     pub(crate) sites: Vec<InsertedSite>,
+    /// The tetrahedra, removed ones included.
     pub(crate) tetrahedra: Vec<Tetrahedron>,
+    /// The numbers of removed tetrahedra, which are used again.
     free_slots: Vec<u32>,
-    /// So many may there be,
+    /// The largest number of tetrahedra at a time.
     max_tetrahedra: usize,
-    /// and so many be made.
+    /// The largest number of tetrahedra that may be created.
     max_created: u64,
-    /// Where the next walk begins.
+    /// The tetrahedron from which the next walk begins.
     walk_start: u32,
+    /// The tetrahedra in the current cavity.
     cavity: Vec<u32>,
-    /// Faces around the cavity: a tetrahedron inside, and the vertex that its face is opposite to.
+    /// The faces around the cavity: the tetrahedron inside, and the index of its vertex opposite to the face.
     pub(crate) boundary: Vec<(u32, u32)>,
+    /// The new tetrahedra, one for each face of the boundary.
     pub(crate) created: Vec<u32>,
-    /// Of an edge of a face around the cavity, from the boundary_index of one vertex to that of another: which of the created
-    /// tetrahedra has it. What is left of earlier insertions is not read.
+    /// For each edge of a face around the cavity the index of the created tetrahedron that has it. The row is the
+    /// boundary index of the first end, the column that of the second. Entries of earlier insertions are never read.
     pub(crate) edge_owners: Box<[u8; MAX_LINKED_VERTICES * MAX_LINKED_VERTICES]>,
+    /// The work so far.
     pub(crate) work: Work,
 }
 
-/// Insertion of sites, with all instructions that there are. Only compilers use them: lanes are no more precise than
-/// one number at a time, and nothing is contracted, so the tetrahedra are the same on every processor.
+/// A SIMD kernel that inserts sites. It uses the instruction set only through the compiler. Lanes are as precise as
+/// single numbers, and no operation is contracted, so the tetrahedra are the same on every processor.
 struct InsertAll<'a, S> {
     insertion: &'a mut Insertion,
     sites: S,
@@ -88,15 +97,16 @@ impl<S: Iterator<Item = usize>> SimdKernel for InsertAll<'_, S> {
 }
 
 impl Insertion {
-    /// The tetrahedra of the six bounding sites, around the diagonal from 0 to 1. They are at the same distance from
-    /// their centre, exactly, so any diagonal is Delaunay.
+    /// Makes the tetrahedra of the six bounding sites around the diagonal from 0 to 1. The six are exactly equally far
+    /// from their centre, so any diagonal is Delaunay.
     pub(crate) fn new(sites: &[V3], max_tetrahedra: usize) -> Self {
         let ring = [2, 4, 3, 5];
-        // Points in space have seven times as many; on a surface there are some more, with the removed ones.
+        // Points in space have seven times as many tetrahedra. Points on a surface have some more, removed ones
+        // included.
         let mut tetrahedra = Vec::with_capacity((15 * sites.len() / 2).min(max_tetrahedra.saturating_add(4)));
         tetrahedra.extend((0..4u32).map(|i| {
             let [a, b] = [ring[i as usize], ring[(i as usize + 1) % 4]];
-            // Opposite to a lies the next one, opposite to b the one before.
+            // The next tetrahedron lies opposite to a, and the one before lies opposite to b.
             Tetrahedron { vertices: [0, 1, a, b], neighbours: [NO_NEIGHBOUR, NO_NEIGHBOUR, (i + 1) % 4, (i + 3) % 4] }
         }));
         Self {
@@ -114,7 +124,7 @@ impl Insertion {
         }
     }
 
-    /// Inserts a site other than all before; whether its tetrahedra are not too many.
+    /// Inserts a site that differs from all before. It returns `false` if there are too many tetrahedra.
     #[must_use]
     #[inline(always)]
     fn insert(&mut self, site: u32) -> bool {
@@ -140,18 +150,18 @@ impl Insertion {
         true
     }
 
-    /// Inserts sites other than all before, each once; whether their tetrahedra are not too many.
+    /// Inserts sites that differ from all before, each once. It returns `false` if there are too many tetrahedra.
     #[must_use]
     pub(crate) fn insert_all(&mut self, sites: impl Iterator<Item = usize>) -> bool {
         Isa::best().run(InsertAll { insertion: self, sites })
     }
 
-    /// What has become of it, with the positions of removed ones.
+    /// Returns all tetrahedra, removed ones included.
     pub(crate) fn into_tetrahedra(self) -> Vec<Tetrahedron> {
         self.tetrahedra
     }
 
-    /// The vertices of a tetrahedron.
+    /// Returns the positions of the vertices of a tetrahedron.
     #[inline(always)]
     fn vertices_of(&self, [a, b, c, d]: [u32; 4]) -> [V3; 4] {
         let at = |v: u32| &self.sites[v as usize].point;
@@ -159,16 +169,15 @@ impl Insertion {
         [[a[0], a[1], a[2]], [b[0], b[1], b[2]], [c[0], c[1], c[2]], [d[0], d[1], d[2]]]
     }
 
-    /// A tetrahedron that contains p, maybe on a face.
+    /// Walks to a tetrahedron that contains p, possibly on a face.
     #[inline(always)]
     fn locate(&mut self, p: V3) -> u32 {
         let (mut at, mut from) = (self.walk_start, NO_NEIGHBOUR);
         'walk: loop {
             self.work.steps += 1;
             let Tetrahedron { vertices, neighbours } = self.tetrahedra[at as usize];
-            let vertices_of = self.vertices_of(vertices);
-            let offsets =
-                [sub(vertices_of[0], p), sub(vertices_of[1], p), sub(vertices_of[2], p), sub(vertices_of[3], p)];
+            let corners = self.vertices_of(vertices);
+            let offsets = [sub(corners[0], p), sub(corners[1], p), sub(corners[2], p), sub(corners[3], p)];
             for ([i, j, k], next) in FACES.into_iter().zip(neighbours) {
                 if next == from {
                     continue;
@@ -178,9 +187,9 @@ impl Insertion {
                 let is_beyond = if estimate.is_certain() {
                     estimate.value > 0.0
                 } else {
-                    self.orientation([vertices_of[i], vertices_of[j], vertices_of[k]], p) == Ordering::Greater
+                    self.decide_orientation([corners[i], corners[j], corners[k]], p) == Ordering::Greater
                 };
-                // Of the vertices_of as seen from p: the other way last_insertion.
+                // The orientation of the vertices as seen from p has the opposite sign of that of the face.
                 if is_beyond {
                     assert_ne!(next, NO_NEIGHBOUR, "inside the bounding sites");
                     (from, at) = (at, next);
@@ -191,8 +200,9 @@ impl Insertion {
         }
     }
 
+    /// Decides an orientation that the filter could not decide.
     #[cold]
-    fn orientation(&mut self, face: [V3; 3], p: V3) -> Ordering {
+    fn decide_orientation(&mut self, face: [V3; 3], p: V3) -> Ordering {
         let (sign, stage) = orientation_exact(face, p);
         match stage {
             PredicateStage::Whole => self.work.whole_orientations += 1,
@@ -201,18 +211,19 @@ impl Insertion {
         sign
     }
 
-    /// Whether p is strictly inside the sphere of four vertices.
+    /// Returns whether p is strictly inside the sphere of four vertices.
     #[inline(always)]
     fn is_in_conflict(&mut self, vertices: [u32; 4], p: V3) -> bool {
         self.work.spheres += 1;
-        let vertices_of = self.vertices_of(vertices);
-        let estimate = sphere_filter(vertices_of, p);
-        if estimate.is_certain() { estimate.value > 0.0 } else { self.sphere(vertices_of, p) == Ordering::Greater }
+        let corners = self.vertices_of(vertices);
+        let estimate = sphere_filter(corners, p);
+        if estimate.is_certain() { estimate.value > 0.0 } else { self.decide_sphere(corners, p) == Ordering::Greater }
     }
 
+    /// Decides a sphere test that the filter could not decide.
     #[cold]
-    fn sphere(&mut self, vertices_of: [V3; 4], p: V3) -> Ordering {
-        let (sign, stage) = sphere_exact(vertices_of, p);
+    fn decide_sphere(&mut self, corners: [V3; 4], p: V3) -> Ordering {
+        let (sign, stage) = sphere_exact(corners, p);
         match stage {
             PredicateStage::Whole => self.work.whole_spheres += 1,
             PredicateStage::Double => self.work.double_spheres += 1,
@@ -221,10 +232,10 @@ impl Insertion {
         sign
     }
 
-    /// Collects the tetrahedra in conflict with p, from one of them, and the faces around them.
+    /// Collects the tetrahedra in conflict with p, starting from one of them, and the faces around them.
     ///
-    /// Which are in conflict cannot be predicted, and takes long to compute. So nothing branches on it: a tetrahedron
-    /// and its face are written to the end of both lists, and one of the two becomes longer.
+    /// The outcome of a conflict test cannot be predicted and takes long to compute, so nothing branches on it. A
+    /// tetrahedron and its face are written to the ends of both lists, and one of the two lists becomes longer.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "one of four faces")]
     fn find_cavity(&mut self, start: u32, p: V3) {
@@ -260,7 +271,7 @@ impl Insertion {
         self.boundary.truncate(boundary);
     }
 
-    /// Asks for the neighbours of a tetrahedron before they are read.
+    /// Prefetches the neighbours of a tetrahedron.
     #[inline(always)]
     fn prefetch_neighbours(&self, tetrahedron: u32) {
         for next in self.tetrahedra[tetrahedron as usize].neighbours {
@@ -268,7 +279,7 @@ impl Insertion {
         }
     }
 
-    /// Makes the lists long enough for four more than so many.
+    /// Makes the lists long enough for four entries more than these numbers.
     #[inline(always)]
     fn reserve_lists(&mut self, cavity: usize, boundary: usize) {
         if self.cavity.len() < cavity + 4 {
@@ -279,8 +290,8 @@ impl Insertion {
         }
     }
 
-    /// Makes the new tetrahedra: of those in the cavity that have a face around it, with the site in boundary_index of the
-    /// vertex behind the face. In the old ones they become the neighbours there.
+    /// Creates the new tetrahedra. Each has a face of the boundary, and the site in place of the vertex opposite to
+    /// it. It becomes the neighbour of both old tetrahedra at the face.
     #[inline(always)]
     fn create_tetrahedra(&mut self, site: u32) {
         self.created.clear();

@@ -1,16 +1,18 @@
-//! Neighbours of new tetrahedra.
+//! The links between the is_new tetrahedra of an insertion.
 
 use crate::delaunay::insert::{Insertion, MAX_LINKED_VERTICES};
 use crate::delaunay::tetrahedron::{FACES, IN_CAVITY, NO_NEIGHBOUR, index_in};
 
-/// The edge_index between two positions, in the table.
+/// Returns the index of an edge in the table, given the boundary indices of its ends.
 #[inline(always)]
 fn edge_index(from: u8, to: u8) -> usize {
     usize::from(from) % MAX_LINKED_VERTICES * MAX_LINKED_VERTICES + usize::from(to) % MAX_LINKED_VERTICES
 }
 
 impl Insertion {
-    /// two faces, which turn around it in opposite directions; whether there are positions for all.
+    /// Links the is_new tetrahedra that share an edge of faces around the cavity. Every such edge belongs to two faces,
+    /// which run along it in opposite directions. The result is `false`, and nothing is linked, if the faces have more
+    /// vertices than the table.
     #[inline(always)]
     #[must_use]
     #[allow(clippy::cast_possible_truncation, reason = "at most 124 faces and 64 vertices")]
@@ -19,28 +21,30 @@ impl Insertion {
             return false;
         }
         let mut count = 0;
-        // Of each created tetrahedron, the positions of the vertices of its face.
-        let mut positions = [[0u8; 3]; 2 * MAX_LINKED_VERTICES - 4];
-        for (i, (positions, (&(_, face), &number))) in
-            positions.iter_mut().zip(self.boundary.iter().zip(&self.created)).enumerate()
+        // For each created tetrahedron the boundary indices of the vertices of its face.
+        let mut boundary_indices = [[0u8; 3]; 2 * MAX_LINKED_VERTICES - 4];
+        for (i, (boundary_indices, (&(_, face), &number))) in
+            boundary_indices.iter_mut().zip(self.boundary.iter().zip(&self.created)).enumerate()
         {
             let vertices = self.tetrahedra[number as usize].vertices;
-            for (boundary_index, k) in positions.iter_mut().zip(FACES[face as usize]) {
+            for (boundary_index, k) in boundary_indices.iter_mut().zip(FACES[face as usize]) {
                 let vertex = &mut self.sites[vertices[k] as usize];
-                // Without branches.
-                let new = vertex.last_insertion != site;
-                vertex.boundary_index = if new { count } else { vertex.boundary_index };
+                // The branch-free form is faster, because is_new vertices cannot be predicted.
+                let is_new = vertex.last_insertion != site;
+                vertex.boundary_index = if is_new { count } else { vertex.boundary_index };
                 vertex.last_insertion = site;
-                count += u32::from(new);
+                count += u32::from(is_new);
                 *boundary_index = vertex.boundary_index as u8;
             }
             for k in 0..3 {
-                self.edge_owners[edge_index(positions[k], positions[(k + 1) % 3])] = i as u8;
+                self.edge_owners[edge_index(boundary_indices[k], boundary_indices[(k + 1) % 3])] = i as u8;
             }
         }
-        for (positions, (&(_, face), &number)) in positions.iter().zip(self.boundary.iter().zip(&self.created)) {
+        for (boundary_indices, (&(_, face), &number)) in
+            boundary_indices.iter().zip(self.boundary.iter().zip(&self.created))
+        {
             for k in 0..3 {
-                let other = self.edge_owners[edge_index(positions[(k + 1) % 3], positions[k])];
+                let other = self.edge_owners[edge_index(boundary_indices[(k + 1) % 3], boundary_indices[k])];
                 self.tetrahedra[number as usize].neighbours[FACES[face as usize][(k + 2) % 3]] =
                     self.created[usize::from(other)];
             }
@@ -48,14 +52,15 @@ impl Insertion {
         true
     }
 
-    /// The same for any number of faces, by turning around the edge_owners through the old tetrahedra.
+    /// Links the is_new tetrahedra for any number of faces, by turning around each edge through the old tetrahedra.
     pub(crate) fn link_by_turning(&mut self) {
         for (&(t, face), &number) in self.boundary.iter().zip(&self.created) {
             for side in (0..4).filter(|&side| side != face as usize) {
                 if self.tetrahedra[number as usize].neighbours[side] != NO_NEIGHBOUR {
                     continue;
                 }
-                // The edge_index and the vertex `pivot` make the face that is crossed, opposite to vertex `exit`.
+                // The edge and the vertex `pivot` span the face that is crossed next, which is opposite to vertex
+                // `exit`.
                 let (mut at, mut exit, mut pivot) = (t, side, face as usize);
                 let other = loop {
                     let old = &self.tetrahedra[at as usize];

@@ -1,11 +1,12 @@
 //! Delaunay tetrahedra of points, exact for all finite input.
 //!
-//! The points are enclosed by an octahedron of six sites, far enough away that the Voronoi cells of the points are
-//! bounded and, for queries in a box, that none of the six is the nearest site. Signs are decided by exact predicates
-//! in stages ([`p2m_core::predicates`]), and nothing is perturbed: points may be cospherical, coplanar, collinear or
-//! equal.
+//! The points are enclosed by an octahedron of six bounding sites. These are so far away that the Voronoi cells of the
+//! points are bounded, and that none of the six is the nearest site of queries in a box of known size. Exact
+//! predicates decide all signs in stages ([`p2m_core::predicates`]). No point is perturbed: points may be cospherical,
+//! coplanar, collinear or equal.
 //!
-//! Points are sorted along a Hilbert curve and inserted in rounds (`order`), one by one (`insert`).
+//! Points are scaled and sorted along a Hilbert curve (`scale`), ordered in rounds (`order`) and inserted one by one
+//! (`insert`, `link`). Finally the tetrahedra are sorted (`compact`). `check` verifies a triangulation.
 //!
 //! ```
 //! use p2m_interception::delaunay::{BOUNDING, Delaunay};

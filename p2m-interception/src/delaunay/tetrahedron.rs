@@ -1,59 +1,61 @@
-//! Tetrahedra of a triangulation that grows, and numbers that all of its parts use.
+//! The tetrahedra of a triangulation that grows, and the numbers that all parts of the construction use.
 
-/// The number of a neighbour that does not exist: the face is one of the octahedron.
+/// The number of a neighbour that does not exist, because the face is one of the octahedron.
 pub(crate) const NO_NEIGHBOUR: u32 = u32::MAX;
 
-/// How many bounding sites there are.
+/// The number of bounding sites.
 pub const BOUNDING: usize = 6;
 
-/// What was done to build a triangulation. Numbers of predicates include those that needed more than the filter in f64.
+/// The work of building a triangulation. The counts of predicates include those that the filter in f64 decided.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Work {
-    /// Tetrahedra met on the way to the one around a new point.
+    /// Tetrahedra that were visited to locate new points.
     pub steps: u64,
-    /// Tetrahedra made, most of which went again.
+    /// Tetrahedra that were created, most of which were removed again.
     pub created: u64,
-    /// Points whose cavity had so many faces that edges were not linked through the table.
+    /// Points whose cavity had so many faces that the table of edges could not link the new tetrahedra.
     pub large_cavities: u64,
-    /// Orientations asked for.
+    /// Orientation tests of a point and a face.
     pub orientations: u64,
-    /// Those decided in whole numbers.
+    /// Orientation tests that integers decided.
     pub whole_orientations: u64,
-    /// Those left to adaptive arithmetic.
+    /// Orientation tests that adaptive arithmetic decided.
     pub adaptive_orientations: u64,
-    /// Points tested against spheres.
+    /// Tests of a point against a sphere.
     pub spheres: u64,
-    /// Those decided in whole numbers.
+    /// Sphere tests that integers decided.
     pub whole_spheres: u64,
-    /// Those decided in double-double.
+    /// Sphere tests that double-double arithmetic decided.
     pub double_spheres: u64,
-    /// Those left to adaptive arithmetic.
+    /// Sphere tests that adaptive arithmetic decided.
     pub adaptive_spheres: u64,
 }
 
-/// The face opposite to each vertex, so that orientation_3d of it and the vertex is `Greater`.
+/// The vertices of the face opposite to each vertex, in an order in which `orientation_3d` of the face and the vertex
+/// is `Greater`.
 pub(crate) const FACES: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
 
-/// In the first vertex of a tetrahedron: in the cavity,
+/// The flag, in the first vertex of a tetrahedron, of a tetrahedron in the current cavity. Numbers of sites are below
+/// both flags.
 pub(crate) const IN_CAVITY: u32 = 1 << 31;
-/// or tested, and not in it. Numbers of sites are below.
+/// The flag, in the first vertex of a tetrahedron, of a tetrahedron that was tested and is not in the current cavity.
 pub(crate) const NOT_IN_CAVITY: u32 = 1 << 30;
 
-/// Half a cache line.
+/// A tetrahedron in half a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct Tetrahedron {
-    /// In place of a removed one the first is [`NO_NEIGHBOUR`]. While a cavity is found, the first has [`IN_CAVITY`] or
-    /// [`NOT_IN_CAVITY`] besides, once that is known.
+    /// The sites at the vertices. The first one of a removed tetrahedron is [`NO_NEIGHBOUR`]. While a cavity is found,
+    /// the first one has the flag [`IN_CAVITY`] or [`NOT_IN_CAVITY`] once the tetrahedron has been tested.
     pub(crate) vertices: [u32; 4],
-    /// Across the face opposite to each vertex.
+    /// The neighbours across the faces opposite to the vertices.
     pub(crate) neighbours: [u32; 4],
 }
 
-/// What `number` is the index of; it occurs.
+/// Returns the index of a number that occurs in `of`.
 #[inline(always)]
 pub(crate) fn index_in(of: &[u32; 4], number: u32) -> usize {
-    // Without branches: which it is cannot be predicted.
+    // The index cannot be predicted, so it is computed without branches.
     usize::from(of[1] == number) + 2 * usize::from(of[2] == number) + 3 * usize::from(of[3] == number)
 }
