@@ -3,9 +3,9 @@
 //! # Theory
 //!
 //! A *partition* divides the domain of queries into convex cells. Each cell has *dominators*: points y of the scene, so
-//! that |q - y| is an upper bound of the answer for every q in the cell. The *interception list* of the cell holds every
-//! primitive that can beat all dominators somewhere in the cell. A query *locates* its cell and searches the list,
-//! without backtracking \[Zong2023\].
+//! that |q - y| is an upper bound of the answer for every q in the cell. The *interception list* of the cell holds
+//! every primitive that can beat all dominators somewhere in the cell. A query *locates* its cell and searches the
+//! list, without backtracking \[Zong2023\].
 //!
 //! The *corner test* decides which primitives are in a list. It compares distances at the corners of a cell only, and
 //! holds for any convex cell (docs/proofs/octree.md). How cells are made and located is the task of the [`Partition`]:
@@ -15,8 +15,8 @@
 //!   (docs/proofs/p2m.md). A [`Locator`] returns a site near the query, and a walk over Delaunay neighbours ends at the
 //!   nearest site. A [`ListFilter`] may shorten the search of long lists. The [`delaunay`] tetrahedra are exact.
 //!
-//! Lists are stored in blocks: up to eight packets, the lanes of each packet that can be the answer, and lower bounds on
-//! the distances to the packets.
+//! Lists are stored in blocks: up to eight packets, the lanes of each packet that can be the answer, and lower bounds
+//! on the distances to the packets.
 //!
 //! A tree over the same packets answers outside of the domain, in cells whose lists would be too long, and for queries
 //! that want more than the nearest primitive, such as [`NearQuery`](p2m_core::NearQuery). An interception index takes

@@ -1,4 +1,4 @@
-//! The links between the is_new tetrahedra of an insertion.
+//! The links between the new tetrahedra of an insertion.
 
 use crate::delaunay::insert::{Insertion, MAX_LINKED_VERTICES};
 use crate::delaunay::tetrahedron::{FACES, IN_CAVITY, NO_NEIGHBOUR, index_in};
@@ -10,7 +10,7 @@ fn edge_index(from: u8, to: u8) -> usize {
 }
 
 impl Insertion {
-    /// Links the is_new tetrahedra that share an edge of faces around the cavity. Every such edge belongs to two faces,
+    /// Links the new tetrahedra that share an edge of faces around the cavity. Every such edge belongs to two faces,
     /// which run along it in opposite directions. The result is `false`, and nothing is linked, if the faces have more
     /// vertices than the table.
     #[inline(always)]
@@ -29,7 +29,7 @@ impl Insertion {
             let vertices = self.tetrahedra[number as usize].vertices;
             for (boundary_index, k) in boundary_indices.iter_mut().zip(FACES[face as usize]) {
                 let vertex = &mut self.sites[vertices[k] as usize];
-                // The branch-free form is faster, because is_new vertices cannot be predicted.
+                // The branch-free form is faster, because new vertices cannot be predicted.
                 let is_new = vertex.last_insertion != site;
                 vertex.boundary_index = if is_new { count } else { vertex.boundary_index };
                 vertex.last_insertion = site;
@@ -52,7 +52,7 @@ impl Insertion {
         true
     }
 
-    /// Links the is_new tetrahedra for any number of faces, by turning around each edge through the old tetrahedra.
+    /// Links the new tetrahedra for any number of faces, by turning around each edge through the old tetrahedra.
     pub(crate) fn link_by_turning(&mut self) {
         for (&(t, face), &number) in self.boundary.iter().zip(&self.created) {
             for side in (0..4).filter(|&side| side != face as usize) {

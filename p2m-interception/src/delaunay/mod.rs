@@ -27,12 +27,12 @@ mod insert;
 mod link;
 mod order;
 mod scale;
-#[cfg(test)]
-mod tests;
 mod tetrahedron;
 mod triangulation;
 
 pub use check::Invalid;
-
 pub use tetrahedron::{BOUNDING, Work};
 pub use triangulation::{Delaunay, DelaunayError};
+
+#[cfg(test)]
+mod tests;

@@ -53,11 +53,11 @@ fn scale(x: f64, unit: i32) -> f64 {
 /// power of two, so that the six sites are exact and equally far from c, and tests with them often need few bits.
 ///
 /// All points are strictly inside the octahedron: |p - c|_1 <= 3h + 2 steps < D, with two steps for the rounding of c
-/// and of h, which is half_extent the longest side. Also |p - c|_2 < D, so the first point is inside the spheres of all
+/// and of h, which is half the longest side. Also |p - c|_2 < D, so the first point is inside the spheres of all
 /// tetrahedra of the six.
 ///
 /// The condition D (D - 2M) > 3h^2 + 6Mh for queries within M of the centre (see [`super::Delaunay::new`]) survives
-/// the rounding. With c off by half_extent a step on each axis and D larger by three steps, the left side grows by at least
+/// the rounding. With c off by half a step on each axis and D larger by three steps, the left side grows by at least
 /// 5D - 6M steps and the right side by 6h + 3M. The latter is less, as the condition implies D > M + sqrt(M^2 + 6Mh +
 /// 3h^2).
 fn bounding_sites(points: &[V3], reach: f64) -> [V3; BOUNDING] {

@@ -290,11 +290,11 @@ mod tests {
         around.map(|x| x + rng.random_range(-size..size))
     }
 
-    /// Sets of points in the frame, near and far from cells of all sizes, bounded in both ways: no bound exceeds the
-    /// distance by following than searches allow for, and that of a single point by the corners is the distance, but for
-    /// the bytes.
+    /// Sets of points in the frame, near and far from cells of all sizes, are bounded in both ways. No bound exceeds
+    /// the distance by more than searches allow for. For a single point the corners bound the distance up to the
+    /// precision of the bytes.
     #[test]
-    fn bounds_never_exceed_the_distance_and_corners_tell_that_of_a_point() {
+    fn bounds_never_exceed_the_distance_and_corners_bound_that_of_a_point_tightly() {
         let (mut compared, mut close) = (0, 0);
         let cases = p2m_testkit::cases(3000, 1000);
         for round in cases.clone() {
@@ -306,10 +306,10 @@ mod tests {
             let low = number.map(|n| -8.0 + f64::from(n) * side);
             let corner =
                 |i: usize| -> V3 { std::array::from_fn(|k| low[k] + if i >> k & 1 == 1 { side } else { 0.0 }) };
-            let primitive_count = rng.random_range(1..=BLOCK_WIDTH);
+            let count = rng.random_range(1..=BLOCK_WIDTH);
             let centre = point(&mut rng, &[0.0; 3], 1.0);
             let spread = 2f64.powi(rng.random_range(-12..0));
-            let sets: Vec<Vec<V3>> = (0..primitive_count)
+            let sets: Vec<Vec<V3>> = (0..count)
                 .map(|_| {
                     let around = point(&mut rng, &centre, spread);
                     (0..rng.random_range(1..=3)).map(|_| point(&mut rng, &around, spread * 0.3)).collect()
@@ -331,7 +331,7 @@ mod tests {
                 .collect();
             for bounds in [BoundKind::Boxes, BoundKind::Corners { level, y }] {
                 let blocks = Block::from_list(&entries, bounds);
-                assert_eq!((blocks.len(), blocks[0].len, blocks[0].following), (1, primitive_count as u8, 0));
+                assert_eq!((blocks.len(), blocks[0].len, blocks[0].following), (1, count as u8, 0));
                 for _ in 0..4 {
                     let part = [0; 3].map(|_| match rng.random_range(0..6) {
                         0 => 0.0,
@@ -349,7 +349,7 @@ mod tests {
                             assert!(found <= allowed, "{isa}, round {round}: {found} for {exact}, {bounds:?} {q:?}");
                             if bounds != BoundKind::Boxes && set.len() == 1 {
                                 compared += 1;
-                                // Two bytes, or what f32 loses of the square.
+                                // The bound may lose two bytes, and the rounding of the square in f32.
                                 let byte = 2f64.powi(i32::from(blocks[0].exponent));
                                 let lost = 2.0 * byte + 2f64.powi(-20) * (square(&q, &y) + byte * 256.0);
                                 let cut = entries.iter().flat_map(|e| e.f).fold(0.0f64, |a, f| a.max(-f));

@@ -82,7 +82,7 @@ impl LaneDistances {
 
 /// A SIMD kernel that runs the filter of a packet at some points.
 pub(crate) struct DistancesAtPoints<'a> {
-    /// The packet.
+    /// The packet whose lanes are tested.
     pub(crate) packet: &'a Packet,
     /// The points, in coordinates of the scene.
     pub(crate) points: &'a [V3],
@@ -114,7 +114,7 @@ impl SimdKernel for DistancesAtPoints<'_> {
 
 /// A SIMD kernel that applies the corner test to a packet and returns the lanes that pass.
 pub(crate) struct KeepLanes<'a> {
-    /// The packet.
+    /// The packet whose lanes are tested.
     pub(crate) packet: &'a Packet,
     /// The dominators of the cell.
     pub(crate) dominators: &'a Dominators,

@@ -102,7 +102,7 @@ impl Refinement<'_> {
         mass
     }
 
-    /// Returns whether a split is is_worth its memory.
+    /// Returns whether a split is worth its memory.
     fn is_worth_splitting(&self, cube: &Cube, mass: f64, cost: f64) -> bool {
         let is_worth =
             mass * cost * COST_SAVED_BY_SPLIT * self.resolution >= MIN_NS_SAVED_BY_SPLIT * self.inv_packet_count;

@@ -1,4 +1,4 @@
-//! The domain of an octree: the cube bounds it, and where queries are expected.
+//! The domain of an octree: the cube around it, and where queries are expected.
 
 use crate::options::{Domain, OctreeOptions};
 use p2m_bvh::PacketTree;

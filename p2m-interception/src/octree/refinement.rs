@@ -61,7 +61,7 @@ pub(crate) struct Refinement<'a> {
     pub(crate) resolution: f64,
     /// Whether large cells are refined on all threads.
     pub(crate) parallel: bool,
-    /// The budgets.
+    /// The budgets, and what has been spent of them.
     pub(crate) counters: BudgetCounters<'a>,
 }
 

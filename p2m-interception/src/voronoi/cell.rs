@@ -41,7 +41,7 @@ pub(crate) struct CellBuilder {
     pub(crate) y: V3,
     /// The number of the site.
     pub(crate) site: usize,
-    /// The cell.
+    /// The corners and edges of the cell.
     pub(crate) polytope: CellPolytope,
     /// The part of the cell in the far half-space, and the polytope that it is clipped into.
     pub(crate) far_parts: [CellPolytope; 2],
@@ -77,7 +77,7 @@ impl CellBuilder {
             self.polytope.push(corner.position, corner.error, faces, &self.y, cells.limits.slack);
             self.packets.extend_from_slice(corners.packets(t));
             for (v, other) in tetrahedron.iter().zip(&cells.sites.delaunay.neighbours()[t]) {
-                // Each pair of tetrahedra is is_joined once.
+                // Each pair of tetrahedra is joined once.
                 let is_joined = *v as usize != site && number < *other;
                 if let Some(Ok(j)) = is_joined.then(|| self.tetrahedra.binary_search(other)) {
                     self.polytope.edges.push([i, u32::try_from(j).expect("few corners")]);

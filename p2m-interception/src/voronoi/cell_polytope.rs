@@ -104,7 +104,7 @@ mod tests {
         let mut polytope = CellPolytope::default();
         for i in 0..8u32 {
             let bits = [0, 1, 2].map(|k| i >> k & 1);
-            // Two faces to an axis.
+            // Each axis has two faces.
             let faces = std::array::from_fn(|k| 2 * k as u32 + bits[k]);
             polytope.push(bits.map(f64::from), 0.0, faces, &[0.5; 3], 0.0);
             polytope.edges.extend((0..3).filter(|k| i >> k & 1 == 0).map(|k| [i, i | 1 << k]));
@@ -112,8 +112,8 @@ mod tests {
         polytope
     }
 
-    /// A cube that is cut again and again: each time what is left is a polytope by Euler's formula, whose corners are
-    /// above all planes and on the faces that they say, and of which no point is lost.
+    /// A cube is cut again and again. Each time the rest is a polytope by Euler's formula, its corners are above all
+    /// planes and on the faces that they name, and no point of it is lost.
     #[test]
     fn what_is_cut_off_is_what_lies_below() {
         let mut cuts = 0;
@@ -143,23 +143,24 @@ mod tests {
                     }
                 }
             }
-            // In a direction the farthest of random points that are above all planes is not beyond all corners.
+            // A random point above all planes is in no direction beyond all corners.
             for _ in 0..200 {
                 let point: V3 = std::array::from_fn(|_| rng.random());
                 if planes.iter().all(|(normal, offset)| dot(point, *normal) > *offset) {
                     let direction: V3 = p2m_testkit::vector(&mut rng).into();
-                    let most = polytope.corners.iter().map(|c| dot(*c, direction)).fold(f64::NEG_INFINITY, f64::max);
-                    assert!(dot(point, direction) <= most + 1e-12, "case {case}");
+                    let farthest =
+                        polytope.corners.iter().map(|c| dot(*c, direction)).fold(f64::NEG_INFINITY, f64::max);
+                    assert!(dot(point, direction) <= farthest + 1e-12, "case {case}");
                 }
             }
         }
         assert!(cases.have_more_than(1000, cuts), "{cuts}");
     }
 
-    /// Planes that are the same but for rounding, as those of cells in a plane are.
+    /// The planes differ only by rounding, as those of coplanar cells do.
     #[test]
-    fn what_rounding_has_made_of_a_polytope_is_told_before_it_grows() {
-        let mut told = 0;
+    fn polytopes_that_rounding_has_spoiled_are_detected_before_they_grow() {
+        let mut detected = 0;
         let cases = p2m_testkit::cases(300, 150);
         for case in cases.clone() {
             let mut rng = p2m_testkit::rng("hulls of rounding", case);
@@ -178,12 +179,12 @@ mod tests {
                 next.clip(&polytope, |x| dot(sub(*x, [0.5; 3]), normal) + 1e-16 * offset[0], face, &[0.5; 3], 0.0);
                 polytope = next;
                 if !polytope.is_simple() {
-                    told += 1;
+                    detected += 1;
                     break;
                 }
                 assert!(polytope.corners.len() < 1000, "{} corners", polytope.corners.len());
             }
         }
-        assert!(cases.have_more_than(10, told), "{told}");
+        assert!(cases.have_more_than(10, detected), "{detected}");
     }
 }

@@ -87,8 +87,8 @@ mod tests {
     use rand::{Rng, RngExt};
     use std::cmp::Ordering;
 
-    /// Whether a position is within `error` of the circumcentre: with N the exact numerator and 2 D the denominator, |2 D x - N|
-    /// <= 2 |D| error, in integers.
+    /// Returns whether a position is within `error` of the exact circumcentre. With N the exact numerator and 2 D the
+    /// denominator, this means |2 D x - N| <= 2 |D| error, which integers decide.
     fn is_within_error(points: &[V3; 4], found: &Circumcentre) -> bool {
         let exponent = common_exponent(points.as_flattened().iter().chain(&found.position).chain(&[found.error]));
         let [o, rest @ ..] = points;
@@ -125,10 +125,10 @@ mod tests {
             match circumcentre(&points) {
                 Some(found) => {
                     assert!(is_within_error(&points, &found), "{points:?} {found:?}");
-                    let closer = Circumcentre { error: found.error * 2f64.powi(-10), ..found };
-                    precise += usize::from(!is_within_error(&points, &closer));
+                    let tighter = Circumcentre { error: found.error * 2f64.powi(-10), ..found };
+                    precise += usize::from(!is_within_error(&points, &tighter));
                 }
-                // Four points in a plane have none.
+                // Only four points in a plane have no circumcentre.
                 None => unknown += usize::from(orientation_3d(a, b, c, d) != Ordering::Equal),
             }
         }

@@ -47,7 +47,7 @@ mod tests {
     use dashu_int::IBig;
     use rand::RngExt;
 
-    /// Queries on the plane between two points, next to it by some bits, and anywhere.
+    /// The queries are on the plane between two points, next to it by some bits, and anywhere.
     #[test]
     fn the_sign_is_that_of_the_integers() {
         let mut ties = 0;

@@ -59,7 +59,7 @@ impl CellCorner {
 /// The corners of all cells: one for each tetrahedron, and one more that marks the end.
 #[derive(Default)]
 pub(crate) struct CellCorners {
-    /// The corners.
+    /// The corners, in the order of their tetrahedra.
     pub(crate) all: Vec<CellCorner>,
     /// The packets of all balls, one ball after the other.
     packets: Vec<u32>,

@@ -119,7 +119,7 @@ pub(crate) struct CellInfo {
 pub(crate) struct PrimitiveView<'a> {
     /// The data that all tests share.
     scene: RelevanceContext<'a>,
-    /// The cell.
+    /// The cell whose list is being built.
     cell: CellInfo,
     /// The vertices of the primitive.
     vertices: [V3; 3],
@@ -147,7 +147,7 @@ struct Plane {
     point: V3,
     /// The normal of the plane, which points to the right side.
     direction: V3,
-    /// The margin.
+    /// The height below the plane up to which points count as above.
     margin: f64,
 }
 
@@ -239,7 +239,8 @@ impl<'a> PrimitiveView<'a> {
         let (others, sites, _) = self.scene.vertices(opposite / LANES, opposite % LANES);
         let frame = self.scene.frames.get(opposite / LANES, opposite % LANES);
         let margin = self.margin_with(&others);
-        // The height of the other triangle is zero if two of its vertices are equal, so `common_side` is its only side with
+        // The height of the other triangle is zero if two of its vertices are equal, so `common_side` is its only
+        // side with
         // these ends.
         let ends = [self.sites[i], self.sites[(i + 1) % 3]];
         let common_side = (0..3).find(|j| ends.contains(&sites[*j]) && ends.contains(&sites[(j + 1) % 3]));
@@ -318,7 +319,7 @@ pub(crate) struct ExcludedFeatures {
 
 /// A plane, with the heights of a region above it.
 struct PlaneHeights {
-    /// The plane.
+    /// The plane, with its margin.
     plane: Plane,
     /// The height of the mean of the region.
     mean: f64,

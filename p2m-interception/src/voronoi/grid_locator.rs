@@ -1,6 +1,7 @@
 //! The default locator: a grid whose cells store the site nearest to their centre.
 //!
-//! One grid lies around the scene. Its cells with has_several_sites sites are divided into 64 finer cells. A coarser grid covers
+//! One grid lies around the scene. Its cells with several sites are divided into 64 finer cells. A coarser grid
+//! covers
 //! the whole domain.
 
 use crate::voronoi::locator::LocatorSites;
@@ -109,7 +110,7 @@ impl Grid {
     }
 }
 
-/// Returns the index of the finer cell coordinates a point, which is given in units of cells.
+/// Returns the index of the finer cell at a point, which is given in units of cells.
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, and few cells")]
 fn fine_cell_at(coordinates: &V3) -> usize {

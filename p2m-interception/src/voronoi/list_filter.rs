@@ -63,7 +63,7 @@ pub type BuildListFilter = fn(Vec<Region>) -> Arc<dyn ListFilter>;
 pub(crate) struct ListFilters {
     /// For each site the index of its filter, or [`NO_FILTER`]. It is empty if there are no filters.
     numbers: Vec<u32>,
-    /// The filters.
+    /// The filters, by their indices.
     all: Vec<Arc<dyn ListFilter>>,
 }
 

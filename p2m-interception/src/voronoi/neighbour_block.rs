@@ -39,7 +39,7 @@ const MIN_UNIT: f64 = power_of_two(-99);
 /// The offset of a query point from a site, with what the test needs of it.
 #[derive(Clone, Copy)]
 pub(crate) struct QueryOffset {
-    /// The offset.
+    /// The offset from the site to the query.
     pub(crate) offset: [f32; 3],
     /// The sum of the absolute values of the components, rounded up.
     pub(crate) size: f32,

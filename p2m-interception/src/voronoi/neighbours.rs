@@ -22,7 +22,7 @@ const INLINE_BLOCKS: usize = 2;
 /// The sites with their neighbours.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NeighbourTable {
-    /// The sites.
+    /// The sites, by their numbers.
     pub(crate) sites: Array<Site>,
     /// The blocks of offsets: the inline blocks of all sites, then the further blocks.
     blocks: Array<NeighbourBlock>,
@@ -44,7 +44,8 @@ pub(crate) struct LocatedSite {
 }
 
 impl NeighbourTable {
-    /// Builds the table. `list_neighbours` appends the Delaunay neighbours of a site to its first list, and the sites at the
+    /// Builds the table. `list_neighbours` appends the Delaunay neighbours of a site to its first list, and the sites
+    /// at the
     /// other ends of edges of primitives to its second. Sites below `first` have no neighbours.
     #[allow(clippy::cast_possible_truncation, reason = "rounded down")]
     pub(crate) fn new(
@@ -281,27 +282,28 @@ mod tests {
         }
     }
 
-    fn neighbours(points: &[V3]) -> NeighbourTable {
+    fn neighbour_table(points: &[V3]) -> NeighbourTable {
         let delaunay = Delaunay::new(points, 250.0).expect("finite");
-        let mut table = vec![BTreeSet::new(); delaunay.sites().len()];
+        let mut neighbours = vec![BTreeSet::new(); delaunay.sites().len()];
         for tetrahedron in delaunay.tetrahedra() {
             for v in tetrahedron {
-                table[*v as usize].extend(tetrahedron.iter().filter(|w| *w != v && **w as usize >= BOUNDING));
+                neighbours[*v as usize].extend(tetrahedron.iter().filter(|w| *w != v && **w as usize >= BOUNDING));
             }
         }
-        NeighbourTable::new(delaunay.sites(), BOUNDING, 1e-12, |site, all, _| all.extend(&table[site]))
+        NeighbourTable::new(delaunay.sites(), BOUNDING, 1e-12, |site, all, _| all.extend(&neighbours[site]))
     }
 
-    /// Random positions, clusters of all sizes and lattices; queries anywhere, on sites and in the middle of two.
+    /// The sites are random positions, clusters of all sizes and lattices. The queries are anywhere, on sites and in
+    /// the middle between two.
     #[test]
     fn walks_end_at_the_nearest_site_wherever_they_begin() {
         let (mut ties, mut close) = (0, 0);
         let cases = p2m_testkit::cases(60, 30);
         for case in cases.clone() {
             let (round, mut rng) = (case as usize, p2m_testkit::rng("walks", case));
-            let block_count = [1, 2, 5, 30, 200][round % 5];
+            let count = [1, 2, 5, 30, 200][round % 5];
             let spread = rng.random_range(0..30);
-            let points: Vec<V3> = (0..block_count)
+            let points: Vec<V3> = (0..count)
                 .map(|_| match round % 3 {
                     0 => std::array::from_fn(|_| rng.random_range(-1.0..1.0)),
                     1 => std::array::from_fn(|_| f64::from(rng.random_range(-3..=3)) / 4.0),
@@ -311,8 +313,8 @@ mod tests {
                     }
                 })
                 .collect();
-            let neighbours = neighbours(&points);
-            let sites = &neighbours.sites;
+            let table = neighbour_table(&points);
+            let sites = &table.sites;
             for _ in 0..200 {
                 let mut some = || rng.random_range(BOUNDING..sites.len());
                 let (a, b, from) = (some(), some(), some());
@@ -324,12 +326,12 @@ mod tests {
                     _ => std::array::from_fn(|_| rng.random_range(-5.0..5.0)),
                 };
                 for isa in Isa::available() {
-                    let found = isa.run(LocateSite(&neighbours, from, &query));
+                    let found = isa.run(LocateSite(&table, from, &query));
                     for (other, site) in sites.iter().enumerate().skip(BOUNDING) {
                         let compared = compare_distances::compare(&query, &sites[found.site].position, &site.position);
                         assert_ne!(compared, Ordering::Greater, "{isa}, round {round}: {query:?} {other}");
                         ties += usize::from(other != found.site && compared == Ordering::Equal);
-                        // No other site is nearly as half_next_distance, then.
+                        // Then no other site is as near.
                         let gap = norm_squared(sub(query, site.position))
                             - norm_squared(sub(query, sites[found.site].position));
                         assert!(other == found.site || !found.is_certainly_nearest || gap > 0.0);
