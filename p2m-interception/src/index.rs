@@ -146,8 +146,8 @@ impl<T: Real, S: PrimitiveSet<T>, P: Saved> InterceptionIndex<T, S, P> {
         storage::save(&self.partition, &self.set, writer);
     }
 
-    /// Loads the cells of a file over a set that equals the one they were built over. The index answers as if it had
-    /// been built.
+    /// Loads the cells of a file over a set that equals the one they were built over. The index answers as if it
+    /// had been built.
     ///
     /// # Errors
     ///

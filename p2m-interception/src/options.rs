@@ -5,8 +5,8 @@ use crate::voronoi::locator::BuildLocator;
 use p2m_bvh::SplitOptions;
 use p2m_core::Aabb;
 
-/// The part of space where queries are expected. Cells are made only there, and the tree answers elsewhere with the
-/// same results.
+/// The part of space where queries are expected. Cells are made only there, and the tree answers elsewhere with
+/// the same results.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Domain {
     /// Queries are expected everywhere. Cells reach to ten times the size of the scene's box.
@@ -20,9 +20,9 @@ pub enum Domain {
 
 /// The options of an octree.
 ///
-/// The budgets limit the index itself, not the memory while it is built. If a budget would be exceeded, the resolution
-/// is lowered to the next power of 0.3 until the octree fits. If none fits, there are no cells and the tree answers
-/// everything.
+/// The budgets limit the index itself, not the memory while it is built. If a budget would be exceeded, the
+/// resolution is lowered to the next power of 0.3 until the octree fits. If none fits, there are no cells and the
+/// tree answers everything.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct OctreeOptions {
@@ -144,8 +144,8 @@ impl PartialEq for FnPointer<BuildListFilter> {
 pub struct P2mOptions {
     /// The splits of the tree, which define the packets, and whether all threads are used.
     pub splits: SplitOptions,
-    /// The largest number of packets in a list. It is 96 by default, and 2048 at most. The tree answers in cells with
-    /// more packets.
+    /// The largest number of packets in a list. It is 96 by default, and 2048 at most. The tree answers in cells
+    /// with more packets.
     pub max_list_packets: usize,
     /// The largest number of added sites for each vertex of a packet, where a vertex of several packets counts several
     /// times. It is 0.5 by default. Sites are added where many primitives are about as near as the nearest vertex: on

@@ -86,8 +86,8 @@ pub trait Partition: CellQuery + Sized {
 /// The number of queries that are answered side by side.
 pub const SIDE_BY_SIDE: usize = 16;
 
-/// The search of a query's cell. Its methods are not generic over the set, so that most of them are compiled once, in
-/// this crate.
+/// The search of a query's cell. Its methods are not generic over the set, so that most of them are compiled once,
+/// in this crate.
 pub(crate) trait CellQuery {
     /// Offers to a collector every primitive that it may need. A collector of the nearest primitive gets them from the
     /// list of the cell, other collectors get them from the tree.

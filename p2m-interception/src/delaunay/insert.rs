@@ -40,8 +40,8 @@ const CREATED_PER_TETRAHEDRON: u64 = 8;
 pub(crate) struct InsertedSite {
     /// The position of the site.
     pub(crate) point: V3,
-    /// The insertion in which this site last was a vertex of the cavity's boundary, as the number of the inserted
-    /// site.
+    /// The insertion in which this site last was a vertex of the cavity's boundary, as the number of
+    /// the inserted site.
     pub(crate) last_insertion: u32,
     /// The index of this site among the vertices of that boundary.
     pub(crate) boundary_index: u32,

@@ -36,8 +36,8 @@ pub struct Work {
 /// is `Greater`.
 pub(crate) const FACES: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
 
-/// The flag, in the first vertex of a tetrahedron, of a tetrahedron in the current cavity. Numbers of sites are below
-/// both flags.
+/// The flag, in the first vertex of a tetrahedron, of a tetrahedron in the current cavity. Numbers of sites are
+/// below both flags.
 pub(crate) const IN_CAVITY: u32 = 1 << 31;
 /// The flag, in the first vertex of a tetrahedron, of a tetrahedron that was tested and is not in the current cavity.
 pub(crate) const NOT_IN_CAVITY: u32 = 1 << 30;

@@ -61,8 +61,8 @@ impl Delaunay {
     ///
     /// # Errors
     ///
-    /// It fails if a coordinate is not finite, if the reach is out of range, or if there are too many points or
-    /// tetrahedra.
+    /// It fails if a coordinate is not finite, if the reach is out of range, or if there are too many
+    /// points or tetrahedra.
     ///
     /// # Complexity
     ///
@@ -110,8 +110,8 @@ impl Delaunay {
     }
 
     /// Returns the unit of the sites, a power of two that may be subnormal. A site times the unit is exactly the
-    /// point, except for coordinates below 2^-161 units, which are 0 in the site. Coordinates of points are below 2
-    /// units.
+    /// point, except for coordinates below 2^-161 units, which are 0 in the site. Coordinates of points are
+    /// below 2 units.
     #[must_use]
     pub fn unit(&self) -> f64 {
         self.unit

@@ -18,7 +18,7 @@ use p2m_bvh::engine::volume::Rounded;
 use p2m_core::engine::simd::Lanes;
 use p2m_core::engine::vector::V3;
 
-/// The highest level of a cell. A coordinate in units of the cells of this level is a whole number of at most 32 bits,
+/// The highest level of a cell. A coordinate in units of the cells of this level is an integer of at most 32 bits,
 /// so corners of cells are exact.
 pub(crate) const MAX_LEVEL: u8 = 30;
 
@@ -97,8 +97,8 @@ pub(crate) struct BlockQuery {
     pub(crate) rounded: Rounded,
     /// The point in the frame of the scene.
     pub(crate) local: V3,
-    /// The point in units of the cells of [`MAX_LEVEL`], from the low corner of the domain. Blocks with boxes do not
-    /// use it.
+    /// The point in units of the cells of [`MAX_LEVEL`], from the low corner of the domain. Blocks with boxes do
+    /// not use it.
     pub(crate) cells: V3,
 }
 
@@ -181,18 +181,18 @@ impl Block {
     /// Stores the values of f at the corners for up to eight entries.
     fn from_corners(entries: &[Entry], level: u8, y: V3) -> Self {
         let all = || entries.iter().flat_map(|entry| entry.f);
-        let least = all().fold(f64::INFINITY, f64::min);
-        let most = all().fold(f64::NEG_INFINITY, f64::max);
-        // Values above -least may be cut: a minimum of concave functions is concave, and such packets are farther than
+        let min_f = all().fold(f64::INFINITY, f64::min);
+        let max_f = all().fold(f64::NEG_INFINITY, f64::max);
+        // Values above -min_f may be cut: a minimum of concave functions is concave, and such packets are farther than
         // y.
-        let top = if least < 0.0 { most.min(-least) } else { most };
+        let top = if min_f < 0.0 { max_f.min(-min_f) } else { max_f };
         let mut exponent = -100;
-        while top - least > 254.0 * 2f64.powi(exponent) && exponent < 100 {
+        while top - min_f > 254.0 * 2f64.powi(exponent) && exponent < 100 {
             exponent += 1;
         }
         let unit = 2f64.powi(exponent);
         // The base is lowered by the rounding of the sum in `lower_bounds`.
-        let base = least - unit / 256.0 - least.abs() * 2f64.powi(-20);
+        let base = min_f - unit / 256.0 - min_f.abs() * 2f64.powi(-20);
         let base = (base as f32).next_down();
         let mut block = Self::new(entries, level);
         block.exponent = exponent as i8;
@@ -202,7 +202,7 @@ impl Block {
         block.bounds = [[255; BLOCK_WIDTH]; 8];
         for (i, entry) in entries.iter().enumerate() {
             for (row, f) in block.bounds.iter_mut().zip(entry.f) {
-                row[i] = ((f - least) / unit).floor().clamp(0.0, 255.0) as u8;
+                row[i] = ((f - min_f) / unit).floor().clamp(0.0, 255.0) as u8;
             }
         }
         block

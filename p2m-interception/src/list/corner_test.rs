@@ -37,7 +37,7 @@ pub(crate) struct Dominators {
 const DISTANCE_ROUND_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
 impl Dominators {
-    /// Collects the dominators of eight corners, each once. `slack` is the s of the corner test.
+    /// Collects the dominators at eight corners, each once. `slack` is the s of the corner test.
     pub(crate) fn from_corners(corners: &[Corner; 8], slack: f64) -> Self {
         let mut points: [V3; 8] = [[0.0; 3]; 8];
         let mut count = 0;
@@ -67,8 +67,8 @@ impl Dominators {
 /// The distances from one point to the lanes of a packet, as the filter of the packet finds them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LaneDistances {
-    /// The squared distances in the unit of the packet, lane by lane. All are zero if the filter cannot be used at the
-    /// point.
+    /// The squared distances in the unit of the packet, lane by lane. All are zero if the filter cannot be used
+    /// at the point.
     pub(crate) squared: [f32; LANES],
     /// The amount by which the filter may exceed the true distance, in the unit of the packet
     /// ([`Local`](p2m_bvh::engine::packet::Local)).
@@ -116,7 +116,7 @@ impl SimdKernel for DistancesAtPoints<'_> {
 pub(crate) struct KeepLanes<'a> {
     /// The packet whose lanes are tested.
     pub(crate) packet: &'a Packet,
-    /// The dominators of the cell.
+    /// The dominators at the corners of the cell.
     pub(crate) dominators: &'a Dominators,
     /// The distances from some points to the packet.
     pub(crate) distances: &'a [LaneDistances],

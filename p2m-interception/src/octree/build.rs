@@ -33,8 +33,8 @@ use std::sync::atomic::Ordering;
 const MAX_FINE_PACKETS: usize = 256;
 /// A fine cell with fewer packets refines its children on one thread.
 const MIN_PARALLEL_PACKETS: usize = 48;
-/// A search of the tree that takes more tests is charged to the work. Shorter ones are included in the charge of a
-/// split.
+/// A search of the tree that takes more tests is charged to the work. Shorter ones are included in the charge
+/// of a split.
 const CHARGE_SEARCH_ABOVE_TESTS: usize = 512;
 /// The time that a query saves if a list replaces a search of the tree, in nanoseconds.
 const NS_SAVED_BY_LIST: f64 = 300.0;
@@ -85,14 +85,14 @@ impl Refinement<'_> {
     /// Estimates the mass of a cell: its share of the queries. `near` has boxes that may be in the cell, each with the
     /// number of packets that it stands for.
     fn query_mass<'a>(&self, cube: &Cube, near: impl Iterator<Item = (&'a Aabb<f64>, f64)>) -> f64 {
-        let own = cube.bounds();
+        let cell_bounds = cube.bounds();
         let mut mass = 0.0;
         for (bounds, density) in self.uniform_boxes {
-            let part = (0..3).map(|k| own.max[k].min(bounds.max[k]) - own.min[k].max(bounds.min[k]));
+            let part = (0..3).map(|k| cell_bounds.max[k].min(bounds.max[k]) - cell_bounds.min[k].max(bounds.min[k]));
             mass += part.map(|x| x.max(0.0)).product::<f64>() * density;
         }
         for (bounds, packets) in near {
-            if bounds.meets(&own) {
+            if bounds.meets(&cell_bounds) {
                 let size = (bounds.max - bounds.min).max();
                 // If a box is larger than the cell, only a part of its surface lies in the cell.
                 let part = if size > cube.side { (cube.side / size).powi(2) } else { 1.0 };
@@ -177,12 +177,12 @@ impl Refinement<'_> {
         if self.parallel && large {
             use rayon::prelude::*;
             let children = Vec::from(children).into_par_iter();
-            let cells: Vec<RefinedCell> = children.map(|(cube, own)| cell(&cube, own)).collect();
+            let cells: Vec<RefinedCell> = children.map(|(cube, inherited)| cell(&cube, inherited)).collect();
             let cells: [RefinedCell; 8] = cells.try_into().unwrap_or_else(|_| unreachable!("eight children"));
             return RefinedCell::Split(Box::new(cells));
         }
         let _ = (large, self.parallel);
-        RefinedCell::Split(Box::new(children.map(|(cube, own)| cell(&cube, own))))
+        RefinedCell::Split(Box::new(children.map(|(cube, inherited)| cell(&cube, inherited))))
     }
 
     /// Applies the corner test to a packet. The result is `None` if no lane passes.
@@ -242,8 +242,8 @@ impl Refinement<'_> {
                 distances[2 * CHILD_CORNERS[0][corner]] = candidate.distances[corner];
             }
             distances[LATTICE_CENTRE] = *at_centre;
-            for ((at, own), near) in NEW_LATTICE_POINTS.into_iter().zip(new_distances).zip(new_nearest) {
-                distances[at] = own;
+            for ((at, new), near) in NEW_LATTICE_POINTS.into_iter().zip(new_distances).zip(new_nearest) {
+                distances[at] = new;
                 nearest[at].add(near, candidate.packet);
             }
             all.push(distances);
@@ -261,20 +261,20 @@ impl Refinement<'_> {
             let corners = &CHILD_CORNERS[number];
             number += 1;
             let dominators = Dominators::from_corners(&child.corners, self.slack);
-            let mut own = Vec::with_capacity(candidates.len());
+            let mut inherited = Vec::with_capacity(candidates.len());
             for (candidate, distances) in candidates.iter().zip(&all) {
                 let packet = &self.tree.leaves.packets[candidate.packet as usize];
                 let lanes =
                     candidate.lanes & self.isa().run(KeepLanes { packet, dominators: &dominators, distances, corners });
                 if lanes != 0 {
-                    own.push(PacketCandidate { lanes, distances: corners.map(|at| distances[at]), ..*candidate });
+                    inherited.push(PacketCandidate { lanes, distances: corners.map(|at| distances[at]), ..*candidate });
                 }
             }
-            (child, own)
+            (child, inherited)
         });
         drop(all);
-        self.refine_children(children, candidates.len() >= MIN_PARALLEL_PACKETS, |child, own| {
-            self.refine_fine(child, own, fraction * 0.125)
+        self.refine_children(children, candidates.len() >= MIN_PARALLEL_PACKETS, |child, inherited| {
+            self.refine_fine(child, inherited, fraction * 0.125)
         })
     }
 }

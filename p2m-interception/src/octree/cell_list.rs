@@ -152,15 +152,15 @@ impl Refinement<'_> {
                 if self.lowest_owners[corners[v]] >= packet.ids()[lane] {
                     return false;
                 }
-                let own = vertex(v);
+                let nearest = vertex(v);
                 (0..corners.len()).filter(|&w| w != v).all(|w| {
                     let other = vertex(w);
-                    let edge: V3 = std::array::from_fn(|k| other[k] - own[k]);
-                    let to: V3 = std::array::from_fn(|k| centre[k] - own[k]);
+                    let edge: V3 = std::array::from_fn(|k| other[k] - nearest[k]);
+                    let to: V3 = std::array::from_fn(|k| centre[k] - nearest[k]);
                     let size = (0..3).map(|k| to[k].abs() + half + edge[k].abs()).fold(0.0, f64::max);
-                    // This is the largest value of (q - own) . edge in the cell.
-                    let most: f64 = (0..3).map(|k| to[k] * edge[k] + half * edge[k].abs()).sum();
-                    most < -MARGIN * size * size
+                    // This is the largest value of (q - nearest) . edge in the cell.
+                    let largest: f64 = (0..3).map(|k| to[k] * edge[k] + half * edge[k].abs()).sum();
+                    largest < -MARGIN * size * size
                 })
             });
             if ties {

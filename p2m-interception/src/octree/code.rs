@@ -9,15 +9,15 @@ use p2m_bvh::engine::packet::LANES;
 
 /// The number of bits of the number in a code. The kind is above them.
 pub(crate) const KIND_SHIFT: u32 = 29;
-/// The kind of a cube that is split twice. The number is that of the first of eight rows, which have the codes of 64
-/// cubes.
+/// The kind of a cube that is split twice. The number is that of the first of eight rows, which have the codes
+/// of 64 cubes.
 pub(crate) const KIND_TWO_LEVELS: u32 = 0;
 /// The kind of a cube that is split once. The number is that of the row with the codes of its eight children.
 pub(crate) const KIND_ONE_LEVEL: u32 = 1;
 /// The kind of a leaf with a list. The number is that of the first block of the list.
 pub(crate) const KIND_LIST: u32 = 2;
-/// The kind of a leaf in which one primitive is the nearest everywhere. The number is its packet times [`LANES`], plus
-/// its lane.
+/// The kind of a leaf in which one primitive is the nearest everywhere. The number is its packet times [`LANES`],
+/// plus its lane.
 pub(crate) const KIND_SINGLE: u32 = 3;
 /// The code of a leaf that the tree answers.
 pub(crate) const FALLBACK_CODE: u32 = 4 << KIND_SHIFT;
@@ -63,8 +63,8 @@ impl CellCode {
 }
 
 impl CodeWriter<'_> {
-    /// Stores a cell of a level and returns its code. A cell whose number does not fit into a code is left to the
-    /// tree.
+    /// Stores a cell of a level and returns its code. A cell whose number does not fit into a code is left
+    /// to the tree.
     pub(crate) fn encode(&mut self, cell: RefinedCell, level: usize) -> u32 {
         let pack = |kind: u32, n: usize| {
             u32::try_from(n).ok().filter(|n| n >> KIND_SHIFT == 0).map_or(FALLBACK_CODE, |n| kind << KIND_SHIFT | n)

@@ -38,8 +38,8 @@ const MAX_RESOLUTION: f64 = 1e9;
 const MIN_RESOLUTION: f64 = 1e-9;
 /// The budgets of a scene with fewer primitives are those of a scene with this many.
 const MIN_PRIMITIVES_FOR_BUDGETS: usize = 10_000;
-/// The build gives up and uses the tree alone once refinements that exceeded a budget have spent this many work
-/// budgets.
+/// The build gives up and uses the tree alone once refinements that exceeded a budget have spent this
+/// many work budgets.
 const MAX_WASTED_WORK: u64 = 5;
 
 /// An interception index whose cells are cubes, over a set of primitives that it does not store.
@@ -195,8 +195,8 @@ impl Partition for Octree {
         // The lists lie one after the other in the array.
         let mut rest = &self.blocks[..];
         while let Some(first) = rest.first() {
-            let (own, others) = rest.split_at(usize::from(first.following) + 1);
-            lengths.push(own.iter().map(Block::primitive_count).sum());
+            let (list, others) = rest.split_at(usize::from(first.following) + 1);
+            lengths.push(list.iter().map(Block::primitive_count).sum());
             rest = others;
         }
         lengths

@@ -116,8 +116,8 @@ impl NearestSample {
 pub(crate) struct CellCentre {
     /// The distances from the centre to each packet of the cell.
     pub(crate) distances: Vec<LaneDistances>,
-    /// Whether the filters bound the distances to all packets. Packets of unknown primitives have no vertices and no
-    /// such bounds.
+    /// Whether the filters bound the distances to all packets. Packets of unknown primitives have no vertices and
+    /// no such bounds.
     pub(crate) has_all_bounds: bool,
     /// The nearest point of the scene, which is a dominator.
     pub(crate) y: V3,

@@ -56,8 +56,8 @@ pub(crate) struct CellBuilder {
 }
 
 impl CellBuilder {
-    /// Begins the cell of a site: collects its corners, its edges and the packets that intersect a ball of its
-    /// corners.
+    /// Begins the cell of a site: collects its corners, its edges and the packets that intersect a ball
+    /// of its corners.
     pub(crate) fn begin(&mut self, cells: &CellContext<'_>, corners: &CellCorners, site: usize, tetrahedra: &[u32]) {
         let unit = cells.sites.delaunay.unit();
         self.site = site;

@@ -74,11 +74,11 @@ impl CellContext<'_> {
                         (record.owner, record.list) = (anchor, AUXILIARY_SITE);
                         report.auxiliary += 1;
                     }
-                    CellList::Blocks(own) => {
+                    CellList::Blocks(range) => {
                         record.list = u32::try_from(blocks.len()).expect("numbers of 32 bits");
                         record.far_half_space = result.far_half_space.unwrap_or(record.far_half_space);
-                        blocks[result.site] = chunk.blocks[own.start];
-                        blocks.extend_from_slice(&chunk.blocks[own.start + 1..own.end]);
+                        blocks[result.site] = chunk.blocks[range.start];
+                        blocks.extend_from_slice(&chunk.blocks[range.start + 1..range.end]);
                         if let Some(filter) = result.filter {
                             filters.add(result.site, filter);
                         }
@@ -118,12 +118,12 @@ impl CellContext<'_> {
             if self.limits.budget.is_exceeded() {
                 break;
             }
-            let own = incident_tetrahedra.get(site);
+            let tetrahedra = incident_tetrahedra.get(site);
             let mut result = CellResult { site, list: CellList::Tree, far_half_space: None, filter: None };
             if let Some(anchor) = self.sites.anchor_of(site) {
                 result.list = CellList::Auxiliary(u32::try_from(anchor).expect("numbers of 32 bits"));
-            } else if site >= BOUNDING && !own.iter().any(|t| corners.all[*t as usize].is_crowded) {
-                cell.begin(self, corners, site, own);
+            } else if site >= BOUNDING && !tetrahedra.iter().any(|t| corners.all[*t as usize].is_crowded) {
+                cell.begin(self, corners, site, tetrahedra);
                 chunk.candidates += cell.packets.len();
                 chunk.most_candidates = chunk.most_candidates.max(cell.packets.len());
                 let is_short = cell.packets.len() <= self.limits.max_list_packets;

@@ -9,8 +9,8 @@ use p2m_core::engine::simd::{InstructionSet, SimdKernel};
 use p2m_core::engine::vector::V3;
 use p2m_core::{Best, QueryOptions};
 
-/// The distance, in units of a packet, from which the filter of the packet is too imprecise. Primitives are evaluated
-/// exactly instead.
+/// The distance, in units of a packet, from which the filter of the packet is too imprecise. Primitives are
+/// evaluated exactly instead.
 const FILTER_RANGE_UNITS: f64 = (1u64 << 19) as f64;
 
 /// The values of one packet at the corners of one polytope. Its vectors are reused.

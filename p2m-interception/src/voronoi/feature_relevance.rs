@@ -45,8 +45,8 @@ impl PrimitiveFrames {
     /// Computes the frames of all primitives of a tree.
     pub(crate) fn from_tree(tree: &PacketTree) -> Self {
         let mut all = vec![PrimitiveFrame::default(); tree.leaves.packets.len() * LANES];
-        for (packet, own) in tree.leaves.packets.iter().zip(all.chunks_exact_mut(LANES)) {
-            for (lane, to) in own.iter_mut().enumerate().take(packet.ids().len()) {
+        for (packet, packet_frames) in tree.leaves.packets.iter().zip(all.chunks_exact_mut(LANES)) {
+            for (lane, to) in packet_frames.iter_mut().enumerate().take(packet.ids().len()) {
                 let (positions, count) = packet.vertices_of(lane);
                 let mut vertices = [[0.0; 3]; 3];
                 vertices
@@ -181,8 +181,8 @@ impl<'a> PrimitiveView<'a> {
         })
     }
 
-    /// Returns whether some feature may be relevant in the convex hull of a region and belongs to no primitive with a
-    /// lower id.
+    /// Returns whether some feature may be relevant in the convex hull of a region and belongs to no primitive with
+    /// a lower id.
     pub(crate) fn is_relevant(&self, region: &[V3], excluded: &mut ExcludedFeatures) -> bool {
         excluded.begin_region(region);
         let edge_count = if self.count == 3 { 3 } else { self.count - 1 };
@@ -210,8 +210,8 @@ impl<'a> PrimitiveView<'a> {
         false
     }
 
-    /// Returns the plane through a side of the triangle, from vertex i to the next one. Its right side is that of the
-    /// triangle.
+    /// Returns the plane through a side of the triangle, from vertex i to the next one. Its right side is that
+    /// of the triangle.
     fn side_plane(&self, i: usize) -> Plane {
         Plane {
             point: self.vertices[i],
@@ -310,8 +310,8 @@ pub(crate) struct ExcludedFeatures {
     mean: V3,
     /// The planes so far.
     planes: Vec<PlaneHeights>,
-    /// The heights of the points above some planes: those whose right side does not contain the mean, and others on
-    /// demand.
+    /// The heights of the points above some planes: those whose right side does not contain the mean, and
+    /// others on demand.
     heights: Vec<f64>,
     /// Whether one plane has excluded the feature already.
     is_decided: bool,

@@ -44,9 +44,9 @@ impl Region {
 
 /// Chooses among the primitives of a long list.
 ///
-/// The choice has at least those primitives in whose boxes the query point is. Choosing more only takes time, so
-/// answers do not depend on the filter. A list without a filter is searched in the order of the lower bounds on its
-/// packets.
+/// The choice has at least those primitives in whose boxes the query point is. Choosing more only takes time,
+/// so answers do not depend on the filter. A list without a filter is searched in the order of the lower
+/// bounds on its packets.
 pub trait ListFilter: Debug + Send + Sync {
     /// Calls `visit` for each primitive in whose box a point is, once each, in any order.
     fn containing(&self, point: &[f64; 3], visit: &mut dyn FnMut(&Region));

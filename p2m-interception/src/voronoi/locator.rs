@@ -23,8 +23,8 @@ pub trait Locator: Debug + Send + Sync {
 /// Makes the locator of an index from its sites: a function such as `KdTreeLocator::build`.
 pub type BuildLocator = fn(&LocatorSites<'_>) -> Arc<dyn Locator>;
 
-/// The sites of an index, from which its locator is built. Their unit is that of the points that [`Locator::start`]
-/// takes.
+/// The sites of an index, from which its locator is built. Their unit is that of the points
+/// that [`Locator::start`] takes.
 #[derive(Clone, Copy)]
 pub struct LocatorSites<'a> {
     pub(crate) neighbours: &'a NeighbourTable,

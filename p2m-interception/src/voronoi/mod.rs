@@ -61,14 +61,14 @@ use p2m_core::{Aabb, Isa, PrimitiveId, PrimitiveSet, Real};
 
 /// The largest number of packets that a list can have.
 const MAX_LIST_PACKETS: usize = 2048;
-/// The tree answers everything, and no cells are stored, if more than one of this many cells would be left to the
-/// tree.
+/// The tree answers everything, and no cells are stored, if more than one of this many cells would be left
+/// to the tree.
 const FALLBACK_CELLS_DIVISOR: usize = 4;
 /// The width of the cube of the domain, in widths of the scene.
 const DOMAIN_SCENE_SIZES: f64 = 10.0;
 
-/// An interception index whose cells are the Voronoi cells of the vertices, over a set of primitives that it does not
-/// store.
+/// An interception index whose cells are the Voronoi cells of the vertices, over a set of primitives that it
+/// does not store.
 ///
 /// [`P2mIndex`](crate::P2mIndex) combines it with its set.
 #[derive(Clone, Debug)]
@@ -193,8 +193,8 @@ impl Voronoi {
     }
 }
 
-/// Returns the box around the vertices of a tree. Primitives of unknown kinds have no vertices, so they may lie
-/// outside.
+/// Returns the box around the vertices of a tree. Primitives of unknown kinds have no vertices, so they
+/// may lie outside.
 fn vertex_bounds(tree: &PacketTree) -> Aabb<f64> {
     let vertices = tree.leaves.vertices.iter().map(|v| Point3::from(*v));
     vertices.fold(Aabb::empty(), |all, v| all.union(&Aabb { min: v, max: v }))

@@ -139,9 +139,9 @@ impl NeighbourTable {
         );
     }
 
-    /// Takes one step. It returns a nearer site, which is the nearest neighbour as far as f32 can decide, or the same
-    /// site if it is the nearest. The second value is that of [`LocatedSite::is_certainly_nearest`], for a walk that
-    /// ends here.
+    /// Takes one step. It returns a nearer site, which is the nearest neighbour as far as f32 can decide, or the
+    /// same site if it is the nearest. The second value is that of [`LocatedSite::is_certainly_nearest`], for a walk
+    /// that ends here.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounding is allowed for")]
     pub(crate) fn step<I: InstructionSet>(&self, at: usize, query: &V3) -> (usize, bool) {
@@ -179,8 +179,8 @@ impl NeighbourTable {
         (next.best, next.ties == 0)
     }
 
-    /// Returns whether one site is nearer to the query than another one, exactly. It is rare, so it is kept out of the
-    /// loop.
+    /// Returns whether one site is nearer to the query than another one, exactly. It is rare, so it is kept out
+    /// of the loop.
     #[cold]
     #[inline(never)]
     fn is_nearer(&self, query: &V3, site: usize, than: usize) -> bool {

@@ -47,9 +47,9 @@ impl Site {
     }
 }
 
-/// A half-space far from a site in which only primitives at the site can be the answer. This holds for queries whose
-/// nearest point on all these primitives is the site, and that are nearer to the site than to all other sites by a
-/// margin.
+/// A half-space far from a site in which only primitives at the site can be the answer. This holds for queries
+/// whose nearest point on all these primitives is the site, and that are nearer to the site than to all other
+/// sites by a margin.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(crate) struct FarHalfSpace {
