@@ -1,7 +1,7 @@
 //! The index: a partition together with the set that it was built over.
 
 use crate::octree::Octree;
-use crate::partition::{Partition, SIDE_BY_SIDE};
+use crate::partition::{Partition, QUERIES_SIDE_BY_SIDE};
 use crate::progress::Progress;
 use crate::voronoi::Voronoi;
 use nalgebra::Point3;
@@ -188,17 +188,18 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> ClosestPoint<T> for Interception
 
     fn closest_points_into(&self, queries: &[Point3<T>], options: &QueryOptions<T>, out: &mut [Option<Closest<T>>]) {
         assert_eq!(queries.len(), out.len(), "one answer for each query");
-        for (queries, out) in queries.chunks(SIDE_BY_SIDE).zip(out.chunks_mut(SIDE_BY_SIDE)) {
-            let full_group: Option<&[Point3<T>; SIDE_BY_SIDE]> = queries.try_into().ok();
-            let are_finite =
-                |queries: &[Point3<T>; SIDE_BY_SIDE]| queries.iter().flat_map(|q| q.iter()).all(|x| x.is_finite());
+        for (queries, out) in queries.chunks(QUERIES_SIDE_BY_SIDE).zip(out.chunks_mut(QUERIES_SIDE_BY_SIDE)) {
+            let full_group: Option<&[Point3<T>; QUERIES_SIDE_BY_SIDE]> = queries.try_into().ok();
+            let are_finite = |queries: &[Point3<T>; QUERIES_SIDE_BY_SIDE]| {
+                queries.iter().flat_map(|q| q.iter()).all(|x| x.is_finite())
+            };
             if let Some(queries) = full_group.filter(|queries| are_finite(queries)) {
                 let mut best = queries.each_ref().map(|query| {
                     let mut best = Best::new(options);
                     best.offer_hint(&self.set, query);
                     best
                 });
-                self.partition.search_nearest_of_several(&self.set, queries, &mut best);
+                self.partition.search_several(&self.set, queries, &mut best);
                 out.iter_mut().zip(best).for_each(|(to, best)| *to = best.finish());
             } else {
                 queries.iter().zip(out).for_each(|(query, to)| *to = self.closest_point_with(query, options));

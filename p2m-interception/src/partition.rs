@@ -46,11 +46,11 @@ pub trait Partition: CellQuery + Sized {
     }
 
     /// Answers several nearest-primitive queries, possibly side by side. All queries have to be finite.
-    fn search_nearest_of_several<T: Real, S: PrimitiveSet<T>>(
+    fn search_several<T: Real, S: PrimitiveSet<T>>(
         &self,
         set: &S,
-        queries: &[Point3<T>; SIDE_BY_SIDE],
-        best: &mut [Best<T>; SIDE_BY_SIDE],
+        queries: &[Point3<T>; QUERIES_SIDE_BY_SIDE],
+        best: &mut [Best<T>; QUERIES_SIDE_BY_SIDE],
     ) {
         let evaluations = queries.each_ref().map(|query| evaluation(set, query));
         let evaluates = evaluations.each_ref().map(|evaluate| evaluate as EvaluateFn<'_, BestF64>);
@@ -84,7 +84,7 @@ pub trait Partition: CellQuery + Sized {
 }
 
 /// The number of queries that are answered side by side.
-pub const SIDE_BY_SIDE: usize = 16;
+pub const QUERIES_SIDE_BY_SIDE: usize = 16;
 
 /// The search of a query's cell. Its methods are not generic over the set, so that most of them are compiled once,
 /// in this crate.
@@ -108,9 +108,9 @@ pub(crate) trait CellQuery {
     /// Offers the primitives that may be the nearest to each of several queries.
     fn query_several(
         &self,
-        queries: &[V3; SIDE_BY_SIDE],
-        minimums: [&mut BestF64; SIDE_BY_SIDE],
-        evaluates: [EvaluateFn<'_, BestF64>; SIDE_BY_SIDE],
+        queries: &[V3; QUERIES_SIDE_BY_SIDE],
+        minimums: [&mut BestF64; QUERIES_SIDE_BY_SIDE],
+        evaluates: [EvaluateFn<'_, BestF64>; QUERIES_SIDE_BY_SIDE],
     ) {
         for ((query, minimum), evaluate) in queries.iter().zip(minimums).zip(evaluates) {
             self.query_nearest(*query, minimum, evaluate);

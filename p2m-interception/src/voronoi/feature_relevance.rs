@@ -15,77 +15,16 @@
 
 use crate::delaunay::Delaunay;
 use crate::voronoi::adjacency::{EdgeAdjacency, NO_PRIMITIVE, OwnedByLowerId};
+use crate::voronoi::excluded_features::{ExcludedFeatures, Plane};
+use crate::voronoi::primitive_frame::{PrimitiveFrame, PrimitiveFrames, normalized};
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::LANES;
-use p2m_core::engine::number::cross;
-use p2m_core::engine::vector::{V3, dot, largest, norm_squared, sub};
+use p2m_core::engine::vector::{V3, largest, norm_squared, sub};
 
 /// The margin by which a feature has to be excluded, as a part of the largest length.
 const RELATIVE_MARGIN: f64 = 1.0 / (1u64 << 22) as f64;
 /// The largest number of edges of a vertex that are examined.
 const MAX_EDGES_OF_VERTEX: usize = 32;
-
-/// The directions and proportions of a primitive that the tests need.
-#[derive(Clone, Copy, Default)]
-struct PrimitiveFrame {
-    /// The directions from each vertex to the next one.
-    edge_directions: [V3; 3],
-    /// The directions from each side into the triangle.
-    inward_normals: [V3; 3],
-    /// The least height of a triangle or the length of a segment. It is infinite for a point, which cannot be thin.
-    height: f64,
-    /// The height as a part of the longest edge. It is 1 for segments and points.
-    sine: f64,
-}
-
-/// The frames of all lanes of all packets.
-pub(crate) struct PrimitiveFrames(Vec<PrimitiveFrame>);
-
-impl PrimitiveFrames {
-    /// Computes the frames of all primitives of a tree.
-    pub(crate) fn from_tree(tree: &PacketTree) -> Self {
-        let mut all = vec![PrimitiveFrame::default(); tree.leaves.packets.len() * LANES];
-        for (packet, packet_frames) in tree.leaves.packets.iter().zip(all.chunks_exact_mut(LANES)) {
-            for (lane, to) in packet_frames.iter_mut().enumerate().take(packet.ids().len()) {
-                let (positions, count) = packet.vertices_of(lane);
-                let mut vertices = [[0.0; 3]; 3];
-                vertices
-                    .iter_mut()
-                    .zip(&positions[..count])
-                    .for_each(|(to, position)| *to = tree.leaves.vertices[*position]);
-                *to = PrimitiveFrame::from_vertices(&vertices[..count]);
-            }
-        }
-        Self(all)
-    }
-
-    /// Returns the frame of a primitive.
-    fn get(&self, packet: usize, lane: usize) -> &PrimitiveFrame {
-        &self.0[packet * LANES + lane]
-    }
-}
-
-impl PrimitiveFrame {
-    /// Computes the frame of a primitive with one to three vertices.
-    fn from_vertices(vertices: &[V3]) -> Self {
-        let mut frame = Self { height: f64::INFINITY, sine: 1.0, ..Self::default() };
-        if vertices.len() < 2 {
-            return frame;
-        }
-        let offset = |i: usize| sub(vertices[(i + 1) % vertices.len()], vertices[i]);
-        (0..vertices.len()).for_each(|i| frame.edge_directions[i] = normalized(offset(i)));
-        let length = |i: usize| norm_squared(offset(i)).sqrt();
-        if vertices.len() == 2 {
-            frame.height = length(0);
-            return frame;
-        }
-        let normal = cross(offset(0), sub(vertices[2], vertices[0]));
-        frame.height = norm_squared(normal).sqrt() / length(0).max(length(1)).max(length(2));
-        frame.sine = frame.height / length(0).max(length(1)).max(length(2));
-        (0..3).for_each(|i| frame.inward_normals[i] = cross(normalized(normal), frame.edge_directions[i]));
-        frame
-    }
-}
 
 /// The data that all tests of a build share.
 #[derive(Clone, Copy)]
@@ -137,18 +76,6 @@ pub(crate) struct PrimitiveView<'a> {
     margin: f64,
     /// The directions of the primitive.
     frame: &'a PrimitiveFrame,
-}
-
-/// A plane through a point with a normal of length 1. A query on its right side has a height of at least minus
-/// `margin`.
-#[derive(Clone, Copy)]
-struct Plane {
-    /// A point of the plane.
-    point: V3,
-    /// The normal of the plane, which points to the right side.
-    direction: V3,
-    /// The height below the plane up to which points count as above.
-    margin: f64,
 }
 
 impl<'a> PrimitiveView<'a> {
@@ -301,100 +228,4 @@ impl RelevanceContext<'_> {
     fn position(&self, site: usize) -> V3 {
         self.delaunay.sites()[site].map(|x| x * self.delaunay.unit())
     }
-}
-
-/// The test of one feature: its planes, and the heights of a region above them. Its vectors are reused.
-#[derive(Default)]
-pub(crate) struct ExcludedFeatures {
-    /// The mean of the points that span the region.
-    mean: V3,
-    /// The planes so far.
-    planes: Vec<PlaneHeights>,
-    /// The heights of the points above some planes: those whose right side does not contain the mean, and
-    /// others on demand.
-    heights: Vec<f64>,
-    /// Whether one plane has excluded the feature already.
-    is_decided: bool,
-}
-
-/// A plane, with the heights of a region above it.
-struct PlaneHeights {
-    /// The plane, with its margin.
-    plane: Plane,
-    /// The height of the mean of the region.
-    mean: f64,
-    /// The index of the first height of the points, if the heights have been computed.
-    first: Option<usize>,
-}
-
-impl Plane {
-    /// Returns the height of a point above the plane, increased by the margin. It is negative on the wrong side.
-    fn height(&self, x: &V3) -> f64 {
-        dot(sub(*x, self.point), self.direction) + self.margin
-    }
-}
-
-impl ExcludedFeatures {
-    /// Begins another region.
-    fn begin_region(&mut self, region: &[V3]) {
-        let sum = region.iter().fold([0.0; 3], |sum, h| [sum[0] + h[0], sum[1] + h[1], sum[2] + h[2]]);
-        self.mean = sum.map(|x| x / region.len() as f64);
-    }
-
-    /// Begins another feature.
-    fn begin_feature(&mut self) {
-        self.planes.clear();
-        self.heights.clear();
-        self.is_decided = false;
-    }
-
-    /// Adds a plane of the feature.
-    fn add(&mut self, region: &[V3], plane: Plane) {
-        if self.is_decided {
-            return;
-        }
-        let mean = plane.height(&self.mean);
-        self.planes.push(PlaneHeights { plane, mean, first: None });
-        // All points can have a negative height only if their mean has.
-        if mean < 0.0 {
-            self.is_decided = self.heights_above(self.planes.len() - 1, region).iter().all(|x| *x < 0.0);
-        }
-    }
-
-    /// Returns the heights of the points above a plane.
-    fn heights_above(&mut self, number: usize, region: &[V3]) -> &[f64] {
-        let PlaneHeights { plane, first, .. } = &mut self.planes[number];
-        let first = *first.get_or_insert_with(|| {
-            let first = self.heights.len();
-            self.heights.extend(region.iter().map(|h| plane.height(h)));
-            first
-        });
-        &self.heights[first..first + region.len()]
-    }
-
-    /// Returns whether the planes exclude the feature.
-    fn is_excluded(&mut self, region: &[V3]) -> bool {
-        if self.is_decided || region.is_empty() {
-            return true;
-        }
-        for i in 0..self.planes.len() {
-            for j in 0..i {
-                if self.planes[i].mean + self.planes[j].mean < 0.0 {
-                    self.heights_above(i, region);
-                    self.heights_above(j, region);
-                    let [a, b] = [i, j].map(|n| &self.heights[self.planes[n].first.unwrap_or(0)..][..region.len()]);
-                    if a.iter().zip(b).all(|(x, y)| x + y < 0.0) {
-                        return true;
-                    }
-                }
-            }
-        }
-        false
-    }
-}
-
-/// Returns the direction of a vector, or zero if the vector is zero.
-fn normalized(d: V3) -> V3 {
-    let length = norm_squared(d).sqrt();
-    if length > 0.0 { d.map(|x| x / length) } else { [0.0; 3] }
 }

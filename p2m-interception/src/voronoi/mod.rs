@@ -21,6 +21,7 @@ pub(crate) mod compare_distances;
 pub(crate) mod corner_values;
 pub(crate) mod corners;
 pub(crate) mod crowded;
+pub(crate) mod excluded_features;
 pub(crate) mod feature_relevance;
 pub(crate) mod grid_locator;
 #[cfg(feature = "kiddo")]
@@ -29,6 +30,7 @@ pub(crate) mod list_filter;
 pub(crate) mod locator;
 pub(crate) mod neighbour_block;
 pub(crate) mod neighbours;
+pub(crate) mod primitive_frame;
 pub(crate) mod query;
 #[cfg(feature = "rstar")]
 pub(crate) mod region_tree;

@@ -6,7 +6,7 @@
 
 use crate::list::block::{Block, BlockQuery};
 use crate::list::search;
-use crate::partition::{CellQuery, SIDE_BY_SIDE};
+use crate::partition::{CellQuery, QUERIES_SIDE_BY_SIDE};
 use crate::voronoi::Voronoi;
 use crate::voronoi::list_filter::{ListFilter, ListFilters};
 use crate::voronoi::neighbours::{LocatedSite, NeighbourTable};
@@ -61,9 +61,9 @@ impl CellQuery for Voronoi {
 
     fn query_several(
         &self,
-        queries: &[V3; SIDE_BY_SIDE],
-        minimums: [&mut BestF64; SIDE_BY_SIDE],
-        evaluates: [EvaluateFn<'_, BestF64>; SIDE_BY_SIDE],
+        queries: &[V3; QUERIES_SIDE_BY_SIDE],
+        minimums: [&mut BestF64; QUERIES_SIDE_BY_SIDE],
+        evaluates: [EvaluateFn<'_, BestF64>; QUERIES_SIDE_BY_SIDE],
     ) {
         self.tree.isa().run(SearchSeveral { index: self, queries, minimums, evaluates });
     }
@@ -240,9 +240,9 @@ fn block_query(tree: &PacketTree, query: &V3) -> BlockQuery {
 /// A SIMD kernel that answers several queries side by side.
 struct SearchSeveral<'a> {
     index: &'a Voronoi,
-    queries: &'a [V3; SIDE_BY_SIDE],
-    minimums: [&'a mut BestF64; SIDE_BY_SIDE],
-    evaluates: [EvaluateFn<'a, BestF64>; SIDE_BY_SIDE],
+    queries: &'a [V3; QUERIES_SIDE_BY_SIDE],
+    minimums: [&'a mut BestF64; QUERIES_SIDE_BY_SIDE],
+    evaluates: [EvaluateFn<'a, BestF64>; QUERIES_SIDE_BY_SIDE],
 }
 
 impl SimdKernel for SearchSeveral<'_> {
@@ -251,7 +251,7 @@ impl SimdKernel for SearchSeveral<'_> {
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
         let Self { index, queries, minimums, evaluates } = self;
-        let mut positions = [None; SIDE_BY_SIDE];
+        let mut positions = [None; QUERIES_SIDE_BY_SIDE];
         if let Some(locator) = &index.locator {
             for (to, query) in positions.iter_mut().zip(queries) {
                 *to = index.to_site_units(query);
@@ -259,7 +259,7 @@ impl SimdKernel for SearchSeveral<'_> {
             }
             positions.iter().flatten().for_each(|position| locator.prefetch_more(position));
         }
-        let mut locations: [Option<LocatedSite>; SIDE_BY_SIDE] = [None; SIDE_BY_SIDE];
+        let mut locations: [Option<LocatedSite>; QUERIES_SIDE_BY_SIDE] = [None; QUERIES_SIDE_BY_SIDE];
         let mut walking = 0u32;
         for (i, (to, position)) in locations.iter_mut().zip(&positions).enumerate() {
             let start = position.as_ref().and_then(|position| index.locator.as_ref()?.start(position));
