@@ -1,4 +1,9 @@
-use crate::{Octree, Partition, Progress, SIDE_BY_SIDE, Voronoi};
+//! The index: a partition together with the set that it was built over.
+
+use crate::octree::Octree;
+use crate::partition::{Partition, QUERIES_SIDE_BY_SIDE};
+use crate::progress::Progress;
+use crate::voronoi::Voronoi;
 use nalgebra::Point3;
 use p2m_core::storage::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{
@@ -7,42 +12,83 @@ use p2m_core::{
 };
 use std::marker::PhantomData;
 
-/// An interception index with cubes as cells.
+/// An interception index whose cells are cubes.
 ///
-/// Queries outside of the refined box ([`OctreeOptions::domain`](crate::OctreeOptions::domain)) and
-/// collectors of more than the nearest primitive are answered by the AABB tree over the same packets.
+/// The AABB tree over the same packets answers queries outside of the domain
+/// ([`OctreeOptions::domain`](crate::OctreeOptions::domain)) and collectors of more than the nearest primitive.
+///
+/// # Methods
+///
+/// The alias has the methods of [`InterceptionIndex`] and the traits of queries:
+///
+/// - [`build`](BuildIndex::build) and [`build_with_progress`](InterceptionIndex::build_with_progress) build it with
+///   [`OctreeOptions`](crate::OctreeOptions).
+/// - [`closest_point`](ClosestPoint::closest_point),
+///   [`closest_point_with`](ClosestPoint::closest_point_with) and
+///   [`closest_points_into`](ClosestPoint::closest_points_into) return the nearest primitive;
+///   [`NearQuery`] and [`CertifiedQuery`] have the other queries.
+/// - [`save`](InterceptionIndex::save) and [`load`](InterceptionIndex::load) write it to a file and read it.
+/// - [`set`](InterceptionIndex::set) and [`partition`](InterceptionIndex::partition) return its parts,
+///   [`report`](InterceptionIndex::report) its statistics ([`OctreeReport`](crate::OctreeReport)), and
+///   [`memory`](InterceptionIndex::memory) its size.
+/// - [`visit`](InterceptionIndex::visit) searches with any [`Collector`], and
+///   [`with_isa`](InterceptionIndex::with_isa) selects the instruction set.
 ///
 /// # Complexity
-/// A query takes O(log n) steps to its cell, and then what the list has: a few packets, however many primitives there
-/// are, where the cell could be made small enough.
+/// A query takes O(log n) steps to its cell and then searches the list of the cell. The list has a few packets,
+/// independently of n, wherever cells could be made small enough.
 pub type OctreeIndex<T, S> = InterceptionIndex<T, S, Octree>;
 
-/// An interception index with the Voronoi cells of the scene's vertices as cells.
+/// An interception index whose cells are the Voronoi cells of the scene's vertices.
 ///
-/// Queries farther from the scene than five of its sizes and collectors of more than the nearest primitive are answered
-/// by the AABB tree over the same packets.
+/// The AABB tree over the same packets answers queries that are farther from the scene than five of its sizes, and
+/// collectors of more than the nearest primitive.
+///
+/// # Methods
+///
+/// The alias has the methods of [`InterceptionIndex`] and the traits of queries:
+///
+/// - [`build`](BuildIndex::build) and [`build_with_progress`](InterceptionIndex::build_with_progress) build it with
+///   [`P2mOptions`](crate::P2mOptions).
+/// - [`closest_point`](ClosestPoint::closest_point),
+///   [`closest_point_with`](ClosestPoint::closest_point_with) and
+///   [`closest_points_into`](ClosestPoint::closest_points_into) return the nearest primitive;
+///   [`NearQuery`] and [`CertifiedQuery`] have the other queries.
+/// - [`save`](InterceptionIndex::save) and [`load`](InterceptionIndex::load) write it to a file and read it.
+/// - [`set`](InterceptionIndex::set) and [`partition`](InterceptionIndex::partition) return its parts,
+///   [`report`](InterceptionIndex::report) its statistics ([`P2mReport`](crate::P2mReport)), and
+///   [`memory`](InterceptionIndex::memory) its size.
+/// - [`visit`](InterceptionIndex::visit) searches with any [`Collector`], and
+///   [`with_isa`](InterceptionIndex::with_isa) selects the instruction set.
 ///
 /// # Complexity
-/// A query takes a few steps to its cell, from a hint by a grid, and then what the list has.
+/// A query begins at a site that a grid returns, takes a few steps to its cell and then searches the list of the cell.
 ///
 /// # References
 /// \[Zong2023\]
 pub type P2mIndex<T, S> = InterceptionIndex<T, S, Voronoi>;
 
-/// An interception index over a set of primitives, which it keeps.
+/// An interception index over a set of primitives, which it stores.
+///
+/// [`OctreeIndex`] and [`P2mIndex`] are the aliases for the two partitions.
 #[derive(Clone, Debug)]
 pub struct InterceptionIndex<T: Real, S, P> {
+    /// The set of primitives.
     set: S,
+    /// The scalar of the set.
     scalar: PhantomData<T>,
+    /// The cells with their lists, and the tree.
     partition: P,
 }
 
 impl<T: Real, S: PrimitiveSet<T>, P: Partition> InterceptionIndex<T, S, P> {
-    /// Builds the index as [`BuildIndex::build`], and tells `progress` of each stage that begins, from this thread, and
-    /// of each percent, from any thread ([`StageTimes`](crate::StageTimes) sums their times).
+    /// Builds the index as [`BuildIndex::build`] and reports the progress. `progress` is called for each stage that
+    /// begins, from the calling thread, and for each percent, from any thread. [`StageTimes`](crate::StageTimes) sums
+    /// the times of the stages.
     ///
     /// # Errors
-    /// For a coordinate that is not finite, and for more primitives than ids.
+    ///
+    /// It fails if a coordinate is not finite, and if there are more primitives than ids.
     pub fn build_with_progress(
         set: S,
         options: &P::Options,
@@ -56,34 +102,34 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> InterceptionIndex<T, S, P> {
         Ok(Self { set, scalar: PhantomData, partition })
     }
 
-    /// The set it was built over.
+    /// Returns the set that the index was built over.
     pub fn set(&self) -> &S {
         &self.set
     }
 
-    /// The cells, without the set.
+    /// Returns the cells with their lists, without the set.
     pub fn partition(&self) -> &P {
         &self.partition
     }
 
-    /// What it is made of.
+    /// Returns the statistics of the cells.
     pub fn report(&self) -> P::Report {
         self.partition.report()
     }
 
-    /// Heap memory that the index owns besides its set, in bytes.
+    /// Returns the heap memory that the index owns besides its set, in bytes.
     pub fn memory(&self) -> usize {
         self.partition.memory()
     }
 
-    /// The same index, searched with another instruction set. Answers do not depend on it.
+    /// Selects the instruction set of searches. Answers do not depend on it.
     #[must_use]
     pub fn with_isa(self, isa: Isa) -> Self {
         Self { partition: self.partition.with_isa(isa), ..self }
     }
 
-    /// Offers to any collector every primitive that it could want; [`ClosestPoint::search`] with [`Best`].
-    /// `query` is finite.
+    /// Offers to any collector every primitive that it may need. [`ClosestPoint::search`] does this with a [`Best`].
+    /// `query` has to be finite.
     #[inline]
     pub fn visit<C: Collector>(&self, query: &Point3<T>, collector: &mut C) {
         self.partition.search(&self.set, query, collector);
@@ -94,18 +140,22 @@ impl<T: Real, S: PrimitiveSet<T>, P: Saved> InterceptionIndex<T, S, P> {
     /// Adds the cells to a file, without the set.
     ///
     /// # Panics
-    /// If the file has an index already.
+    ///
+    /// It panics if the file has an index already.
     pub fn save<'a>(&'a self, writer: &mut Writer<'a>) {
         storage::save(&self.partition, &self.set, writer);
     }
 
-    /// The cells of a file over a set like the one that they were built over, as if they had been built.
+    /// Loads the cells of a file over a set that equals the one they were built over. The index answers as if it
+    /// had been built.
     ///
     /// # Errors
-    /// [`LoadError`].
+    ///
+    /// It returns a [`LoadError`] if the file is damaged, has another kind of index, or belongs to another set.
     ///
     /// # Complexity
-    /// O(n) to look at the set and copy the nodes of the tree; the rest stays in the file.
+    ///
+    /// It takes O(n) to compare the set and to copy the nodes of the tree. The large arrays stay in the file.
     pub fn load(set: S, reader: &Reader) -> Result<Self, LoadError> {
         let partition = storage::load(&set, reader)?;
         Ok(Self { set, scalar: PhantomData, partition })
@@ -138,17 +188,18 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> ClosestPoint<T> for Interception
 
     fn closest_points_into(&self, queries: &[Point3<T>], options: &QueryOptions<T>, out: &mut [Option<Closest<T>>]) {
         assert_eq!(queries.len(), out.len(), "one answer for each query");
-        for (queries, out) in queries.chunks(SIDE_BY_SIDE).zip(out.chunks_mut(SIDE_BY_SIDE)) {
-            let several: Option<&[Point3<T>; SIDE_BY_SIDE]> = queries.try_into().ok();
-            let finite =
-                |queries: &[Point3<T>; SIDE_BY_SIDE]| queries.iter().flat_map(|q| q.iter()).all(|x| x.is_finite());
-            if let Some(queries) = several.filter(|queries| finite(queries)) {
+        for (queries, out) in queries.chunks(QUERIES_SIDE_BY_SIDE).zip(out.chunks_mut(QUERIES_SIDE_BY_SIDE)) {
+            let full_group: Option<&[Point3<T>; QUERIES_SIDE_BY_SIDE]> = queries.try_into().ok();
+            let are_finite = |queries: &[Point3<T>; QUERIES_SIDE_BY_SIDE]| {
+                queries.iter().flat_map(|q| q.iter()).all(|x| x.is_finite())
+            };
+            if let Some(queries) = full_group.filter(|queries| are_finite(queries)) {
                 let mut best = queries.each_ref().map(|query| {
                     let mut best = Best::new(options);
                     best.offer_hint(&self.set, query);
                     best
                 });
-                self.partition.search_nearest_of_several(&self.set, queries, &mut best);
+                self.partition.search_several(&self.set, queries, &mut best);
                 out.iter_mut().zip(best).for_each(|(to, best)| *to = best.finish());
             } else {
                 queries.iter().zip(out).for_each(|(query, to)| *to = self.closest_point_with(query, options));

@@ -1,9 +1,28 @@
-//! Interception indexes: what can be nearest anywhere in a cell is found once and kept.
+//! Interception indexes: everything that can be nearest somewhere in a cell is found once and stored.
 //!
-//! A query locates its cell and tests a short list: it neither searches nor turns back . Where
-//! lists would be long, outside of the domain of cells, and for [`NearQuery`](p2m_core::NearQuery) a tree over the same
-//! primitives answers. That takes longer to build and more memory than a tree. Answers are bitwise those of
-//! [`BruteForce`](p2m_core::BruteForce).
+//! # Theory
+//!
+//! A *partition* divides the domain of queries into convex cells. Each cell has *dominators*: points y of the scene, so
+//! that |q - y| is an upper bound of the answer for every q in the cell. The *interception list* of the cell holds
+//! every primitive that can beat all dominators somewhere in the cell. A query *locates* its cell and searches the
+//! list, without backtracking \[Zong2023\].
+//!
+//! The *corner test* decides which primitives are in a list. It compares distances at the corners of a cell only, and
+//! holds for any convex cell (docs/proofs/octree.md). How cells are made and located is the task of the [`Partition`]:
+//!
+//! - The [`Octree`] has cubes as cells. It is refined where a split saves the most time for its memory.
+//! - The partition [`Voronoi`] has the Voronoi cells of the scene's vertices and of some added points
+//!   (docs/proofs/p2m.md). A [`Locator`] returns a site near the query, and a walk over Delaunay neighbours ends at the
+//!   nearest site. A [`ListFilter`] may shorten the search of long lists. The [`delaunay`] tetrahedra are exact.
+//!
+//! Lists are stored in blocks: up to eight packets, the lanes of each packet that can be the answer, and lower bounds
+//! on the distances to the packets.
+//!
+//! A tree over the same packets answers outside of the domain, in cells whose lists would be too long, and for queries
+//! that want more than the nearest primitive, such as [`NearQuery`](p2m_core::NearQuery). An interception index takes
+//! longer to build and more memory than this tree. Answers are bitwise those of [`BruteForce`](p2m_core::BruteForce).
+//!
+//! # Example
 //!
 //! ```
 //! use p2m_interception::OctreeIndex;
@@ -33,7 +52,7 @@ mod voronoi;
 pub use index::{InterceptionIndex, OctreeIndex, P2mIndex};
 pub use octree::Octree;
 pub use options::{Domain, OctreeOptions, OctreeReport, P2mOptions, P2mReport};
-pub use partition::{Partition, SIDE_BY_SIDE};
+pub use partition::{Partition, QUERIES_SIDE_BY_SIDE};
 pub use progress::{BuildStage, Progress, StageTimes};
 #[cfg(feature = "kiddo")]
 pub use voronoi::kd_tree_locator::KdTreeLocator;

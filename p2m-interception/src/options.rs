@@ -1,40 +1,43 @@
-//! What can be chosen about an octree, and what it became.
+//! The options of the indexes, and the statistics of what was built.
 
 use crate::voronoi::list_filter::BuildListFilter;
 use crate::voronoi::locator::BuildLocator;
 use p2m_bvh::SplitOptions;
 use p2m_core::Aabb;
 
-/// Where queries are to be expected: model only what a scene and its queries require. Elsewhere the tree answers, just
-/// as right.
+/// The part of space where queries are expected. Cells are made only there, and the tree answers elsewhere with
+/// the same results.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Domain {
-    /// Everywhere: cells reach to ten times the size of the scene's box.
+    /// Queries are expected everywhere. Cells reach to ten times the size of the scene's box.
     #[default]
     Everywhere,
-    /// In a box.
+    /// Queries are expected in a box.
     Box(Aabb<f64>),
-    /// At most this far from the scene.
+    /// Queries are expected within this distance of the scene.
     Band(f64),
 }
 
-/// How an octree is built. Budgets are upper limits of the index, not of what building it takes: where one would be
-/// exceeded, cells are made coarser everywhere, with the next power of 0.3 for a resolution that fits; or none are
-/// made.
+/// The options of an octree.
+///
+/// The budgets limit the index itself, not the memory while it is built. If a budget would be exceeded, the
+/// resolution is lowered to the next power of 0.3 until the octree fits. If none fits, there are no cells and the
+/// tree answers everything.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct OctreeOptions {
-    /// How the packets of the tree are made, and whether all threads are used.
+    /// The splits of the tree, which define the packets, and whether all threads are used.
     pub splits: SplitOptions,
-    /// Where queries are expected.
+    /// The part of space where queries are expected.
     pub domain: Domain,
-    /// How fine cells are: larger is finer, 1 takes about one and a half times the memory of 0.3, which is the default. Without
-    /// a positive number there are no cells, and the tree answers everything.
+    /// The fineness of cells. Larger is finer: 1 takes about one and a half times the memory of 0.3, the default. If
+    /// it is not positive, there are no cells and the tree answers everything.
     pub resolution: f64,
-    /// What cells may take, in bytes for each primitive of the scene (for at least 10,000 primitives). 190 by default.
+    /// The memory budget of cells and lists, in bytes for each primitive of the scene. It is 190 by default. A scene
+    /// with fewer than 10,000 primitives has the budget of 10,000.
     pub memory: f64,
-    /// How many times packets may be tested while building, at one point each, for each primitive (for at least
-    /// 10,000). 200 by default.
+    /// The work budget, in tests of a packet at a point for each primitive. It is 200 by default. A scene with fewer
+    /// than 10,000 primitives has the budget of 10,000.
     pub work: f64,
 }
 
@@ -51,54 +54,54 @@ impl Default for OctreeOptions {
 }
 
 impl OctreeOptions {
-    /// With queries in a part of space.
+    /// Sets the part of space where queries are expected.
     #[must_use]
     pub fn with_domain(self, domain: Domain) -> Self {
         Self { domain, ..self }
     }
-    /// With finer or coarser cells.
+    /// Sets the fineness of cells.
     #[must_use]
     pub fn with_resolution(self, resolution: f64) -> Self {
         Self { resolution, ..self }
     }
-    /// With another memory budget.
+    /// Sets the memory budget.
     #[must_use]
     pub fn with_memory(self, memory: f64) -> Self {
         Self { memory, ..self }
     }
-    /// With another build budget.
+    /// Sets the work budget.
     #[must_use]
     pub fn with_work(self, work: f64) -> Self {
         Self { work, ..self }
     }
-    /// With other splits.
+    /// Sets the splits of the tree.
     #[must_use]
     pub fn with_splits(self, splits: SplitOptions) -> Self {
         Self { splits, ..self }
     }
 }
 
-/// What an octree is made of.
+/// The statistics of an octree.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct OctreeReport {
-    /// Cells with a list.
+    /// The number of cells with a list.
     pub lists: usize,
-    /// Cells of which one primitive is the nearest throughout.
+    /// The number of cells in which one primitive is the nearest everywhere.
     pub singles: usize,
-    /// Cells that the tree answers: outside of the domain, or where a list would not be short.
+    /// The number of cells that the tree answers, outside of the domain or because a list would be long.
     pub trees: usize,
-    /// Packets in all lists.
+    /// The number of packets in all lists.
     pub entries: usize,
-    /// The length of the longest way to a cell, in halvings of the domain.
+    /// The number of halvings of the domain on the longest path to a cell.
     pub depth: usize,
-    /// Bytes of cells and lists.
+    /// The memory of cells and lists in bytes.
     pub bytes: usize,
-    /// Bytes of the tree over the packets.
+    /// The memory of the tree over the packets in bytes.
     pub tree_bytes: usize,
-    /// How many times a packet was tested at a point.
+    /// The number of tests of a packet at a point while building.
     pub work: u64,
-    /// The resolution: less than was asked for where that would have exceeded a budget.
+    /// The resolution, which is less than requested if that would have exceeded a budget.
     pub resolution: f64,
 }
 
@@ -115,7 +118,8 @@ impl std::fmt::Display for OctreeReport {
     }
 }
 
-/// A function to build a part with. Two are equal if they have the same address, so equal functions may differ.
+/// A function that builds a part of an index. Two are equal if they have the same address, so equal functions may
+/// compare as different.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FnPointer<F>(pub(crate) F);
 
@@ -131,30 +135,33 @@ impl PartialEq for FnPointer<BuildListFilter> {
     }
 }
 
-/// How a P2M index is built. Budgets are upper limits: where one would be exceeded, or there are more than sixteen Delaunay
-/// tetrahedra for each vertex of a packet, there are no cells, and the tree answers everything.
+/// The options of a P2M index.
+///
+/// The index has no cells, and the tree answers everything, if a budget would be exceeded or if there are more than
+/// sixteen Delaunay tetrahedra for each vertex of a packet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct P2mOptions {
-    /// How the packets of the tree are made, and whether all threads are used.
+    /// The splits of the tree, which define the packets, and whether all threads are used.
     pub splits: SplitOptions,
-    /// Lists of more packets are left to the tree: 96 by default. More than 2048 count as 2048.
+    /// The largest number of packets in a list. It is 96 by default, and 2048 at most. The tree answers in cells
+    /// with more packets.
     pub max_list_packets: usize,
-    /// At most so many sites are added for each vertex of a packet (one that several packets have counts several times),
-    /// where many primitives are about as near as the nearest vertex: on long edges and wide faces, and in the middle
-    /// of round shapes. 0.5 by default.
+    /// The largest number of added sites for each vertex of a packet, where a vertex of several packets counts several
+    /// times. It is 0.5 by default. Sites are added where many primitives are about as near as the nearest vertex: on
+    /// long edges, on wide faces, and in the middle of round shapes.
     pub max_extra_sites: f64,
-    /// Makes the locator, by which a query finds a site near its own. By default it is a grid.
+    /// The function that makes the locator, which finds a site near a query. `None` stands for a grid, the default.
     pub(crate) locator: Option<FnPointer<BuildLocator>>,
-    /// Makes the filter of each long list. By default there are none.
+    /// The function that makes the filter of each long list. There are no filters by default.
     pub(crate) list_filter: Option<FnPointer<BuildListFilter>>,
-    /// If there are filters, a list of more primitives than this has one. 64 by default.
+    /// The number of primitives above which a list gets a filter, if there are filters. It is 64 by default.
     pub filter_above: usize,
-    /// What the lists, and while building the packets around all corners of cells, may take each, in bytes for each primitive
-    /// (for at least 1000): 3072 by default. Where that is exceeded, the tree answers alone.
+    /// The memory budget of the lists, in bytes for each primitive, and also that of the packets around all corners
+    /// while building. It is 3072 by default. A scene with fewer than 1000 primitives has the budget of 1000.
     pub memory: f64,
-    /// How many times packets may be tested while building, at one point each, for each primitive (for at least 1000).
-    /// 20,000 by default. Where that is exceeded, the tree answers alone.
+    /// The work budget, in tests of a packet at a point for each primitive. It is 20,000 by default. A scene with
+    /// fewer than 1000 primitives has the budget of 1000.
     pub work: f64,
 }
 
@@ -174,77 +181,78 @@ impl Default for P2mOptions {
 }
 
 impl P2mOptions {
-    /// With other splits.
+    /// Sets the splits of the tree.
     #[must_use]
     pub fn with_splits(self, splits: SplitOptions) -> Self {
         Self { splits, ..self }
     }
-    /// With lists of more or fewer packets.
+    /// Sets the largest number of packets in a list.
     #[must_use]
     pub fn with_max_list_packets(self, max_list_packets: usize) -> Self {
         Self { max_list_packets, ..self }
     }
-    /// With more or fewer sites.
+    /// Sets the largest number of added sites for each vertex of a packet.
     #[must_use]
     pub fn with_max_extra_sites(self, max_extra_sites: f64) -> Self {
         Self { max_extra_sites, ..self }
     }
-    /// With another locator than a grid. Answers do not depend on it. A saved index has a grid instead.
+    /// Sets the function that makes the locator. Answers do not depend on it. A saved index has a grid instead.
     #[must_use]
     pub fn with_locator(self, build: BuildLocator) -> Self {
         Self { locator: Some(FnPointer(build)), ..self }
     }
-    /// With filters of long lists. Answers do not depend on them. A saved index has none.
+    /// Sets the function that makes filters of long lists. Answers do not depend on it. A saved index has no filters.
     #[must_use]
     pub fn with_list_filter(self, build: BuildListFilter) -> Self {
         Self { list_filter: Some(FnPointer(build)), ..self }
     }
-    /// With filters for longer or shorter lists.
+    /// Sets the number of primitives above which a list gets a filter.
     #[must_use]
     pub fn with_filter_above(self, filter_above: usize) -> Self {
         Self { filter_above, ..self }
     }
-    /// With another memory budget.
+    /// Sets the memory budget.
     #[must_use]
     pub fn with_memory(self, memory: f64) -> Self {
         Self { memory, ..self }
     }
-    /// With another build budget.
+    /// Sets the work budget.
     #[must_use]
     pub fn with_work(self, work: f64) -> Self {
         Self { work, ..self }
     }
 }
 
-/// What a P2M index is made of.
+/// The statistics of a P2M index.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct P2mReport {
-    /// Cells with a list.
+    /// The number of cells with a list.
     pub lists: usize,
-    /// Those of them that have a filter.
+    /// The number of lists that have a filter.
     pub filtered: usize,
-    /// Points of the scene that were added to its vertices as sites.
+    /// The number of points of the scene that were added to its vertices as sites.
     pub added: usize,
-    /// Sites beside the scene, in whose cells the tree answers.
+    /// The number of auxiliary sites, which are beside the scene and in whose cells the tree answers.
     pub auxiliary: usize,
-    /// Other cells that the tree answers: where these are a quarter of all, it answers everything, and nothing is kept.
+    /// The number of other cells that the tree answers. If they are more than a quarter of all cells, the tree answers
+    /// everything and no cells are stored.
     pub trees: usize,
-    /// Packets that were looked at for lists: those that meet a ball at a corner of the cell.
+    /// The number of packets that were examined for lists: those that intersect a ball at a corner of the cell.
     pub candidates: usize,
-    /// The most for one cell.
+    /// The largest number of packets that were examined for one list.
     pub most_candidates: usize,
-    /// Packets in all lists.
+    /// The number of packets in all lists.
     pub entries: usize,
-    /// Primitives in all lists.
+    /// The number of primitives in all lists.
     pub primitives: usize,
-    /// Bytes of cells and lists.
+    /// The memory of cells and lists in bytes.
     pub bytes: usize,
-    /// Bytes of the tree over the packets.
+    /// The memory of the tree over the packets in bytes.
     pub tree_bytes: usize,
 }
 
-/// The report as numbers of a file.
+/// Converts the report to the numbers that a file stores.
 impl From<P2mReport> for [u64; 11] {
     fn from(report: P2mReport) -> Self {
         let P2mReport {

@@ -1,29 +1,31 @@
-//! Work in shares, on all threads, the results in order.
+//! Parallel work in chunks, whose results are consumed in order.
 
 use std::ops::Range;
 
-/// Numbers of a share.
-const SHARE: usize = 1024;
-/// Shares that are made before they are taken: what they have is in memory twice.
-const GROUP: usize = 32;
+/// The number of indices in a chunk.
+const CHUNK_LEN: usize = 1024;
+/// The number of chunks whose results exist before they are consumed. Their memory is needed twice.
+const CHUNKS_PER_GROUP: usize = 32;
 
-/// Gives to `take` what `work` makes of shares of 0..count, in their order; on all threads if `parallel`.
-pub(crate) fn in_shares<R: Send>(
+/// Splits 0..count into chunks, and passes the result of `work` on each chunk to `take`, in the order of the chunks.
+/// If `parallel`, the chunks of a group are worked on by all threads.
+pub(crate) fn map_chunks_in_order<R: Send>(
     count: usize,
     parallel: bool,
     work: impl Fn(Range<usize>) -> R + Sync,
     mut take: impl FnMut(R),
 ) {
-    let all: Vec<Range<usize>> = (0..count).step_by(SHARE).map(|first| first..count.min(first + SHARE)).collect();
+    let chunks: Vec<Range<usize>> =
+        (0..count).step_by(CHUNK_LEN).map(|first| first..count.min(first + CHUNK_LEN)).collect();
     #[cfg(feature = "rayon")]
     if parallel {
         use rayon::prelude::*;
-        for group in all.chunks(GROUP) {
-            let made: Vec<R> = group.par_iter().cloned().map(&work).collect();
-            made.into_iter().for_each(&mut take);
+        for group in chunks.chunks(CHUNKS_PER_GROUP) {
+            let results: Vec<R> = group.par_iter().cloned().map(&work).collect();
+            results.into_iter().for_each(&mut take);
         }
         return;
     }
-    let _ = (parallel, GROUP);
-    all.into_iter().for_each(|share| take(work(share)));
+    let _ = (parallel, CHUNKS_PER_GROUP);
+    chunks.into_iter().for_each(|chunk| take(work(chunk)));
 }

@@ -1,4 +1,4 @@
-//! What every partition of space into cells with lists offers.
+//! The interface of a partition of space into cells with interception lists.
 
 use crate::progress::Progress;
 use nalgebra::Point3;
@@ -10,87 +10,88 @@ use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
 use p2m_core::{Best, Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
 
-/// A partition with its lists, over a set of primitives that it does not keep: every method that needs the set is given
-/// the same one.
+/// A partition with its lists, over a set of primitives that it does not store. Every method that takes a set has to
+/// be given the set that the partition was built over.
 ///
-/// Sealed: searches rest on proofs about the cells.
+/// The trait is sealed, because searches rely on proofs about the cells.
 #[allow(private_bounds, reason = "that is what seals it")]
-pub trait Partition: LookUp + Sized {
-    /// How it is built.
+pub trait Partition: CellQuery + Sized {
+    /// The options of a build.
     type Options: Default;
-    /// What it is made of.
+    /// The statistics of a partition.
     type Report;
 
-    /// Builds it over a set whose boxes are finite. `progress` is told of each stage that begins, from this thread, and
-    /// of each percent, from any thread.
+    /// Builds the partition over a set whose bounding boxes are finite. `progress` is called for each stage that
+    /// begins, from the calling thread, and for each percent, from any thread.
     fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
         set: &S,
         options: &Self::Options,
         progress: &(dyn Fn(Progress) + Sync),
     ) -> Self;
 
-    /// Offers to `collector` every primitive of the set that it could want. `query` is finite.
+    /// Offers to `collector` every primitive of the set that it may need. `query` has to be finite.
     #[inline]
     fn search<T: Real, S: PrimitiveSet<T>, C: Collector>(&self, set: &S, query: &Point3<T>, collector: &mut C) {
-        self.look_up(to_f64_array(query), collector, &evaluation(set, query), finish);
+        self.query_with(to_f64_array(query), collector, &evaluation(set, query), finish);
     }
 
-    /// The same for the nearest primitive.
+    /// Offers to `best` every primitive that may be the nearest. `query` has to be finite.
     fn search_nearest<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
-        self.nearest(to_f64_array(query), best.minimum(), &evaluation(set, query));
+        self.query_nearest(to_f64_array(query), best.minimum(), &evaluation(set, query));
     }
 
-    /// The same for what is near.
+    /// Offers to `near` every primitive that it may need. `query` has to be finite.
     fn search_near<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>, near: &mut Near<'_>) {
-        self.near(to_f64_array(query), near, &evaluation(set, query));
+        self.query_near(to_f64_array(query), near, &evaluation(set, query));
     }
 
-    /// The same for several queries, which may be answered side by side.
-    fn search_nearest_of_several<T: Real, S: PrimitiveSet<T>>(
+    /// Answers several nearest-primitive queries, possibly side by side. All queries have to be finite.
+    fn search_several<T: Real, S: PrimitiveSet<T>>(
         &self,
         set: &S,
-        queries: &[Point3<T>; SIDE_BY_SIDE],
-        best: &mut [Best<T>; SIDE_BY_SIDE],
+        queries: &[Point3<T>; QUERIES_SIDE_BY_SIDE],
+        best: &mut [Best<T>; QUERIES_SIDE_BY_SIDE],
     ) {
         let evaluations = queries.each_ref().map(|query| evaluation(set, query));
         let evaluates = evaluations.each_ref().map(|evaluate| evaluate as EvaluateFn<'_, BestF64>);
-        self.nearest_of_several(&queries.each_ref().map(to_f64_array), best.each_mut().map(Best::minimum), evaluates);
+        self.query_several(&queries.each_ref().map(to_f64_array), best.each_mut().map(Best::minimum), evaluates);
     }
 
-    /// The primitives of the list of the cell that a point is in, in ascending order: what a search in the cell may
-    /// come to look at. `None` where the tree answers.
+    /// Returns the primitives in the list of the cell that contains a point, in ascending order. A search in the cell
+    /// evaluates only these. The result is `None` if the tree answers.
     fn list(&self, point: &Point3<f64>) -> Option<Vec<PrimitiveId>>;
 
-    /// How many primitives each list has.
+    /// Returns the number of primitives in each list.
     fn list_lengths(&self) -> Vec<usize>;
 
-    /// The tree over the packets, which answers what cells do not.
+    /// Returns the tree over the packets. It answers wherever the cells do not.
     fn tree(&self) -> &PacketTree;
 
-    /// What it is made of.
+    /// Returns the statistics of the partition.
     fn report(&self) -> Self::Report;
 
-    /// Heap memory it owns, by parts, in bytes.
+    /// Returns the heap memory of each part of the partition, in bytes.
     fn parts(&self) -> Vec<(&'static str, usize)>;
 
-    /// All of it.
+    /// Returns the heap memory of the partition in bytes.
     fn memory(&self) -> usize {
         self.parts().iter().map(|part| part.1).sum()
     }
 
-    /// Searches with another instruction set. Answers do not depend on it.
+    /// Selects the instruction set of searches. Answers do not depend on it.
     #[must_use]
     fn with_isa(self, isa: Isa) -> Self;
 }
 
-/// How many queries are answered side by side.
-pub const SIDE_BY_SIDE: usize = 16;
+/// The number of queries that are answered side by side.
+pub const QUERIES_SIDE_BY_SIDE: usize = 16;
 
-/// The way of a query to its cell and through its list.
-pub(crate) trait LookUp {
-    /// Offers to a collector every primitive that it could want: from the list of the cell to one of nearest primitives, from the
-    /// tree to others.
-    fn look_up<C: Collector>(
+/// The search of a query's cell. Its methods are not generic over the set, so that most of them are compiled once,
+/// in this crate.
+pub(crate) trait CellQuery {
+    /// Offers to a collector every primitive that it may need. A collector of the nearest primitive gets them from the
+    /// list of the cell, other collectors get them from the tree.
+    fn query_with<C: Collector>(
         &self,
         query: V3,
         collector: &mut C,
@@ -98,21 +99,21 @@ pub(crate) trait LookUp {
         finish: fn(&mut SearchState<'_, C>),
     );
 
-    /// The same for the nearest one, in a function of its own: what is not generic is compiled once, in this crate.
-    fn nearest(&self, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>);
+    /// Offers the primitives that may be the nearest.
+    fn query_nearest(&self, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>);
 
-    /// The same for what is near,
-    fn near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>);
+    /// Offers the primitives that a [`Near`] may need.
+    fn query_near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>);
 
-    /// and for the nearest ones of several queries.
-    fn nearest_of_several(
+    /// Offers the primitives that may be the nearest to each of several queries.
+    fn query_several(
         &self,
-        queries: &[V3; SIDE_BY_SIDE],
-        minimums: [&mut BestF64; SIDE_BY_SIDE],
-        evaluates: [EvaluateFn<'_, BestF64>; SIDE_BY_SIDE],
+        queries: &[V3; QUERIES_SIDE_BY_SIDE],
+        minimums: [&mut BestF64; QUERIES_SIDE_BY_SIDE],
+        evaluates: [EvaluateFn<'_, BestF64>; QUERIES_SIDE_BY_SIDE],
     ) {
         for ((query, minimum), evaluate) in queries.iter().zip(minimums).zip(evaluates) {
-            self.nearest(*query, minimum, evaluate);
+            self.query_nearest(*query, minimum, evaluate);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What building tells of itself.
+//! The progress of a build: the stages, a reporter, and a collector of their times.
 
 use std::cell::Cell;
 use std::sync::Mutex;
@@ -8,22 +8,22 @@ use std::time::Duration;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum BuildStage {
-    /// The tree over the packets
+    /// The tree over the packets is built.
     Tree,
-    /// The Delaunay tetrahedra of the sites
+    /// The sites are triangulated into Delaunay tetrahedra.
     Delaunay,
-    /// The packets that meet their circumscribed balls
+    /// The packets that intersect the circumscribed balls of the tetrahedra are collected.
     Balls,
-    /// The lists of the cells
+    /// The lists of the cells are built.
     Lists,
-    /// What locates a query
+    /// The locator is built.
     Locator,
-    /// The cells of an octree with their lists
+    /// The cells of an octree are built with their lists.
     Octree,
 }
 
 impl BuildStage {
-    /// A word for it.
+    /// Returns the name of the stage, in lower case.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -37,46 +37,49 @@ impl BuildStage {
     }
 }
 
-/// How far building is.
+/// The progress of a build.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// What is being done.
+    /// The current stage.
     pub stage: BuildStage,
-    /// The part of all stages that is done, from 0 to 1: an estimate that never falls.
+    /// The finished part of all stages, from 0 to 1. It is an estimate that never decreases.
     pub part: f64,
 }
 
-/// Tells somebody, from one thread.
-pub(crate) struct Teller<'a> {
-    tell: &'a (dyn Fn(Progress) + Sync),
-    at: Cell<Progress>,
+/// Reports the progress of a build from the building thread.
+pub(crate) struct ProgressReporter<'a> {
+    /// The function that receives the progress.
+    report: &'a (dyn Fn(Progress) + Sync),
+    /// The progress that was reported last.
+    last: Cell<Progress>,
 }
 
-impl<'a> Teller<'a> {
-    /// The first stage begins.
-    pub(crate) fn new(tell: &'a (dyn Fn(Progress) + Sync), stage: BuildStage) -> Self {
-        let at = Progress { stage, part: 0.0 };
-        tell(at);
-        Self { tell, at: Cell::new(at) }
+impl<'a> ProgressReporter<'a> {
+    /// Begins the first stage.
+    pub(crate) fn new(report: &'a (dyn Fn(Progress) + Sync), stage: BuildStage) -> Self {
+        let last = Progress { stage, part: 0.0 };
+        report(last);
+        Self { report, last: Cell::new(last) }
     }
 
-    /// Another stage begins.
-    pub(crate) fn begin(&self, stage: BuildStage) {
-        self.at.set(Progress { stage, ..self.at.get() });
-        (self.tell)(self.at.get());
+    /// Begins another stage.
+    pub(crate) fn begin_stage(&self, stage: BuildStage) {
+        self.last.set(Progress { stage, ..self.last.get() });
+        (self.report)(self.last.get());
     }
 
-    /// The stage has come so far in its share of the whole, in percent.
-    pub(crate) fn reach(&self, [from, to]: [f64; 2], done: usize, all: usize) {
+    /// Reports that `done` of `all` steps are finished. The steps cover the given range of the whole build, in
+    /// percent. Only whole percents that exceed the last report are reported.
+    pub(crate) fn advance(&self, [from, to]: [f64; 2], done: usize, all: usize) {
         let part = (from + (to - from) * done as f64 / all as f64).floor() / 100.0;
-        if part > self.at.get().part {
-            self.at.set(Progress { part, ..self.at.get() });
-            (self.tell)(self.at.get());
+        if part > self.last.get().part {
+            self.last.set(Progress { part, ..self.last.get() });
+            (self.report)(self.last.get());
         }
     }
 }
 
-/// Sums the times of the stages of a build: give [`tell`](Self::tell) what is told of progress.
+/// Sums the times of the stages of a build. Its method [`tell`](Self::tell) takes each report of progress.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -92,50 +95,56 @@ impl<'a> Teller<'a> {
 /// # drop(cells);
 /// ```
 pub struct StageTimes<C> {
-    /// The time since some moment.
+    /// The clock returns the time since a fixed moment.
     clock: C,
-    seen: Mutex<Seen>,
+    /// The times so far.
+    recorded: Mutex<RecordedTimes>,
 }
 
+/// The times that have been recorded.
 #[derive(Default)]
-struct Seen {
+struct RecordedTimes {
+    /// The time of each finished stage.
     times: Vec<(BuildStage, Duration)>,
-    /// The stage that is being done, and when it began.
+    /// The current stage, and when it began.
     current: Option<(BuildStage, Duration)>,
 }
 
 impl<C: Fn() -> Duration> StageTimes<C> {
-    /// With a clock that tells the time since some moment, the same one each time.
+    /// Makes an empty sum. `clock` has to return the time since a fixed moment.
     pub fn new(clock: C) -> Self {
-        Self { clock, seen: Mutex::default() }
+        Self { clock, recorded: Mutex::default() }
     }
 
-    /// Ends one stage and begins another, if that is what is told. The clock is asked only then.
+    /// Ends the current stage and begins another one if `progress` says so. The clock is read only then.
     ///
     /// # Panics
-    /// If the clock panicked.
+    ///
+    /// It panics if the clock panicked before.
     pub fn tell(&self, progress: Progress) {
-        let mut seen = self.seen.lock().expect("a clock that did not panic");
-        if seen.current.is_none_or(|(stage, _)| stage != progress.stage) {
+        let mut recorded = self.recorded.lock().expect("a clock that did not panic");
+        if recorded.current.is_none_or(|(stage, _)| stage != progress.stage) {
             let now = (self.clock)();
-            seen.end(now);
-            seen.current = Some((progress.stage, now));
+            recorded.end(now);
+            recorded.current = Some((progress.stage, now));
         }
     }
 
-    /// The time of each stage, in the order in which they began for the first time; of one that came several times the
-    /// sum.
+    /// Returns the time of each stage, in the order in which the stages began for the first time. A stage that began
+    /// several times has the sum of its times.
     ///
     /// # Panics
-    /// If the clock panicked.
+    ///
+    /// It panics if the clock panicked before.
     pub fn finish(self) -> Vec<(BuildStage, Duration)> {
-        let mut seen = self.seen.into_inner().expect("a clock that did not panic");
-        seen.end((self.clock)());
-        seen.times
+        let mut recorded = self.recorded.into_inner().expect("a clock that did not panic");
+        recorded.end((self.clock)());
+        recorded.times
     }
 }
 
-impl Seen {
+impl RecordedTimes {
+    /// Ends the current stage at a time.
     fn end(&mut self, now: Duration) {
         let Some((stage, began)) = self.current.take() else { return };
         let time = now.saturating_sub(began);

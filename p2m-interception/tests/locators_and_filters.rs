@@ -34,7 +34,7 @@ fn no_site(_: &LocatorSites<'_>) -> Arc<dyn Locator> {
     Arc::new(Constant(None))
 }
 
-/// A filter that looks at all regions one by one, and chooses all of them if it `takes_all`.
+/// A filter that tests all regions one by one. If it `takes_all`, it chooses all of them.
 #[derive(Debug)]
 struct OneByOne {
     regions: Vec<Region>,
@@ -42,8 +42,8 @@ struct OneByOne {
 }
 
 impl ListFilter for OneByOne {
-    fn containing(&self, place: &[f64; 3], visit: &mut dyn FnMut(&Region)) {
-        self.regions.iter().filter(|region| self.takes_all || region.contains(place)).for_each(visit);
+    fn containing(&self, point: &[f64; 3], visit: &mut dyn FnMut(&Region)) {
+        self.regions.iter().filter(|region| self.takes_all || region.contains(point)).for_each(visit);
     }
     fn memory(&self) -> usize {
         0
@@ -58,7 +58,7 @@ fn all_regions(regions: Vec<Region>) -> Arc<dyn ListFilter> {
     Arc::new(OneByOne { regions, takes_all: true })
 }
 
-/// An index with filters of lists of more than so many primitives.
+/// Builds an index with filters of lists that have more primitives than `above`.
 fn filtered(soup: &Soup<f64>, filter: BuildListFilter, above: usize) -> Index<'_> {
     let options = P2mOptions::default().with_list_filter(filter).with_filter_above(above);
     Index::build(soup, &options).expect("valid")
@@ -66,7 +66,7 @@ fn filtered(soup: &Soup<f64>, filter: BuildListFilter, above: usize) -> Index<'_
 
 type Answers = Vec<Option<(u64, usize)>>;
 
-/// One query at a time, and side by side.
+/// Returns the answers to queries one at a time, and side by side.
 fn answers(index: &impl ClosestPoint<f64>, queries: &[Point3<f64>]) -> [Answers; 2] {
     let key = |c: p2m_core::Closest<f64>| (c.distance.to_bits(), c.primitive.index());
     let mut several = vec![None; queries.len()];
@@ -77,7 +77,7 @@ fn answers(index: &impl ClosestPoint<f64>, queries: &[Point3<f64>]) -> [Answers;
     ]
 }
 
-/// Packets that queries look at, in all.
+/// Returns the number of packets that all queries visit.
 fn packets(index: &Index<'_>, queries: &[Point3<f64>]) -> usize {
     StatsCollector::of_queries(queries, |query, counting| index.visit(query, counting))[1]
 }
@@ -102,7 +102,7 @@ fn every_filter_leaves_the_answer() {
             "case {case}: {kinds:?} {layout:?}, long ones"
         );
         assert_eq!(answers(&everything, &queries), expected, "case {case}: {kinds:?} {layout:?}, all");
-        // What lies on the border of a box is in it for both.
+        // Both filters treat the border of a box as part of the box.
         assert_eq!(packets(&trees, &queries), packets(&chosen, &queries), "case {case}: {kinds:?} {layout:?}");
         with_filter += trees.report().filtered;
         all += packets(&everything, &queries);
@@ -136,7 +136,7 @@ fn every_locator_leads_to_the_answer() {
 }
 
 #[test]
-fn a_saved_index_has_a_grid_in_the_place_of_another_locator() {
+fn a_saved_index_has_a_grid_instead_of_another_locator() {
     let soup = scenes::skewed_gear(400);
     let queries: Vec<_> = soup.positions().iter().map(|p| p + vector(&mut rng("saved locators", 0)) * 0.1).collect();
     let saved = |options: &P2mOptions| {
@@ -153,6 +153,6 @@ fn a_saved_index_has_a_grid_in_the_place_of_another_locator() {
     let built = Index::build(&soup, &options).expect("valid");
     assert!(built.report().lists > 100, "{}", built.report());
     assert_eq!(answers(&loaded, &queries), answers(&built, &queries));
-    // The same packets are looked at, so the lists and the sites that queries end at are the same.
+    // Queries visit the same packets, so the lists and the sites at which queries end are the same.
     assert_eq!(packets(&loaded, &queries), packets(&built, &queries));
 }

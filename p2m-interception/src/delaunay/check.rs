@@ -1,70 +1,73 @@
-//! Whether tetrahedra are a Delaunay triangulation, by exact predicates.
+//! The check of a triangulation by exact predicates.
 
-use super::insert::FACES;
-use super::{BOUNDING, Delaunay};
+use crate::delaunay::tetrahedron::{BOUNDING, FACES};
+use crate::delaunay::triangulation::Delaunay;
 use p2m_core::predicates::{insphere, orientation_3d};
 use std::cmp::Ordering;
 
-/// What is wrong with a triangulation.
+/// The first fault of a triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Invalid {
-    /// The lists of tetrahedra and of neighbours differ in length.
+    /// The lists of tetrahedra and of neighbours have different lengths.
     #[error("{tetrahedra} tetrahedra, but the neighbours of {neighbours}")]
     Length {
-        /// The length of one.
+        /// The number of tetrahedra.
         tetrahedra: usize,
-        /// And of the other.
+        /// The number of entries in the list of neighbours.
         neighbours: usize,
     },
-    /// A vertex that is no site, or no positive volume.
+    /// A vertex is not a site, or the volume is not positive.
     #[error("tetrahedron {tetrahedron} is not positively oriented")]
     Orientation {
-        /// The tetrahedron.
+        /// The number of the tetrahedron.
         tetrahedron: usize,
     },
-    /// A neighbour that does not exist, has not the same face, or another neighbour there.
+    /// A neighbour does not exist, does not have the same face, or has another neighbour there.
     #[error("tetrahedron {tetrahedron} and its neighbour opposite to vertex {vertex} do not share a face")]
     Neighbour {
-        /// The tetrahedron.
+        /// The number of the tetrahedron.
         tetrahedron: usize,
-        /// From 0 to 3.
+        /// The index of the vertex, from 0 to 3.
         vertex: usize,
     },
-    /// The vertex of a neighbour is inside the circumsphere.
+    /// A vertex of a neighbour is inside of the circumsphere.
     #[error("the neighbour of tetrahedron {tetrahedron} opposite to vertex {vertex} reaches into its sphere")]
     Sphere {
-        /// The tetrahedron.
+        /// The number of the tetrahedron.
         tetrahedron: usize,
-        /// From 0 to 3.
+        /// The index of the vertex, from 0 to 3.
         vertex: usize,
     },
-    /// The outer faces are not the eight of the octahedron.
+    /// The outer faces are not the eight faces of the octahedron.
     #[error("the outer faces are not those of the bounding sites")]
-    Hull,
-    /// A site that is no vertex.
+    CellPolytope,
+    /// A site is not a vertex of any tetrahedron.
     #[error("site {site} is not a vertex of any tetrahedron")]
     Unused {
-        /// The site.
+        /// The number of the site.
         site: usize,
     },
 }
 
 impl Delaunay {
-    /// Whether this is the Delaunay triangulation of the sites, exactly: all tetrahedra are positively oriented,
-    /// neighbours share faces, no vertex of a neighbour is inside a sphere, the outer faces are those of the
-    /// octahedron, and every site is a vertex.
+    /// Checks exactly whether this is the Delaunay triangulation of the sites. All tetrahedra have to be positively
+    /// oriented, neighbours have to share faces, no vertex of a neighbour may be inside of a sphere, the outer faces
+    /// have to be those of the octahedron, and every site has to be a vertex.
     ///
-    /// That is enough. The number of tetrahedra over a point off all faces does not change across inner faces, which
-    /// have one on either side, so it is the same everywhere in the octahedron: one, as it is one next to an outer
-    /// face, of which there are not two. So they fill it without overlap, and numbers of faces, edges and vertices obey
-    /// Euler's formula. And where every face is locally Delaunay, all spheres are empty \[Delaunay1934\].
+    /// These conditions suffice. Consider the number of tetrahedra over a point that is on no face. It does not change
+    /// across inner faces, which have one tetrahedron on either side, so it is the same everywhere in the octahedron.
+    /// It is one next to an outer face, as no outer face occurs twice. So the tetrahedra fill the octahedron without
+    /// overlap, and the numbers of faces, edges and vertices satisfy Euler's formula. Where every face is locally
+    /// Delaunay, all spheres are empty \[Delaunay1934\].
     ///
     /// # Errors
-    /// The first thing that is wrong.
+    ///
+    /// It returns the first fault that it finds.
     ///
     /// # Complexity
-    /// Linear, about as long as to build it.
+    ///
+    /// The time is linear, and about that of building the triangulation.
     pub fn check(&self) -> Result<(), Invalid> {
         if self.tetrahedra.len() != self.neighbours.len() {
             let (tetrahedra, neighbours) = (self.tetrahedra.len(), self.neighbours.len());
@@ -84,9 +87,9 @@ impl Delaunay {
             for (k, next) in self.neighbours[i].into_iter().enumerate() {
                 let face = FACES[k].map(|v| vertices[v]);
                 if next == Self::NONE {
-                    let octant = octant(face).ok_or(Invalid::Hull)?;
+                    let octant = octant(face).ok_or(Invalid::CellPolytope)?;
                     if std::mem::replace(&mut outer[octant], true) {
-                        return Err(Invalid::Hull);
+                        return Err(Invalid::CellPolytope);
                     }
                     continue;
                 }
@@ -97,12 +100,13 @@ impl Delaunay {
             }
         }
         if outer.contains(&false) {
-            return Err(Invalid::Hull);
+            return Err(Invalid::CellPolytope);
         }
         used.iter().position(|used| !used).map_or(Ok(()), |site| Err(Invalid::Unused { site }))
     }
 
-    /// The vertex of the neighbour `next` of `i` that is not on the face, if it has the other three and `i` opposite.
+    /// Returns the vertex of the neighbour `next` of `i` that is not on the face. It is `None` if `next` does not have
+    /// the whole face, or does not have `i` opposite to that vertex.
     fn apex(&self, i: usize, face: [u32; 3], next: u32) -> Option<u32> {
         let vertices = self.tetrahedra.get(next as usize)?;
         let mut others = (0..4).filter(|&k| !face.contains(&vertices[k]));
@@ -112,7 +116,8 @@ impl Delaunay {
     }
 }
 
-/// Which face of the octahedron it is, if it has a site of each axis: bit k is set for the second one of axis k.
+/// Returns which face of the octahedron has these vertices. Bit k is set for the upper site of axis k. It is `None` if
+/// the face does not have a bounding site of each axis.
 fn octant(face: [u32; 3]) -> Option<usize> {
     let mut axes = [None; 3];
     for v in face {

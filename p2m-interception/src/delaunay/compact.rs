@@ -1,33 +1,33 @@
-//! The order of finished tetrahedra.
+//! The final order of the tetrahedra.
 
-use super::Delaunay;
-use super::insert::Tetrahedron;
+use crate::delaunay::tetrahedron::{NO_NEIGHBOUR, Tetrahedron};
 
-/// Leaves out the places of removed tetrahedra and sorts the others by the last of their vertices, so that what is near
-/// on the curve is near in memory. Vertices and neighbours.
+/// Removes the gaps of removed tetrahedra and sorts the others by the last of their vertices, so that tetrahedra near
+/// each other on the curve are near in memory. It returns their vertices and neighbours.
 pub(crate) fn compact(tetrahedra: Vec<Tetrahedron>, sites: usize) -> (Vec<[u32; 4]>, Vec<[u32; 4]>) {
     let last_vertex = |t: &Tetrahedron| t.vertices.into_iter().fold(0, u32::max) as usize;
-    let alive = |t: &Tetrahedron| t.vertices[0] != Delaunay::NONE;
-    // How many there are of each vertex, then where the next of them goes.
+    let is_alive = |t: &Tetrahedron| t.vertices[0] != NO_NEIGHBOUR;
+    // The vector first counts the tetrahedra of each last vertex, then has the number of the next one.
     let mut next = vec![0u32; sites];
-    for t in tetrahedra.iter().filter(|t| alive(t)) {
+    for t in tetrahedra.iter().filter(|t| is_alive(t)) {
         next[last_vertex(t)] += 1;
     }
     let mut total = 0;
     for n in &mut next {
         (*n, total) = (total, total + *n);
     }
-    let mut places = vec![Delaunay::NONE; tetrahedra.len()];
+    let mut new_numbers = vec![NO_NEIGHBOUR; tetrahedra.len()];
     let mut vertices = vec![[0; 4]; total as usize];
-    for (place, t) in places.iter_mut().zip(&tetrahedra).filter(|(_, t)| alive(t)) {
+    for (new_number, t) in new_numbers.iter_mut().zip(&tetrahedra).filter(|(_, t)| is_alive(t)) {
         let next = &mut next[last_vertex(t)];
-        *place = *next;
+        *new_number = *next;
         vertices[*next as usize] = t.vertices;
         *next += 1;
     }
-    let mut neighbours = vec![[Delaunay::NONE; 4]; total as usize];
-    for (place, t) in places.iter().zip(&tetrahedra).filter(|(_, t)| alive(t)) {
-        neighbours[*place as usize] = t.neighbours.map(|n| places.get(n as usize).copied().unwrap_or(Delaunay::NONE));
+    let mut neighbours = vec![[NO_NEIGHBOUR; 4]; total as usize];
+    for (new_number, t) in new_numbers.iter().zip(&tetrahedra).filter(|(_, t)| is_alive(t)) {
+        neighbours[*new_number as usize] =
+            t.neighbours.map(|n| new_numbers.get(n as usize).copied().unwrap_or(NO_NEIGHBOUR));
     }
     (vertices, neighbours)
 }

@@ -1,110 +1,87 @@
-//! Insertion of points one by one \[Bowyer1981\], \[Watson1981\].
+//! The insertion of points one by one \[Bowyer1981\], \[Watson1981\].
 //!
-//! A new point p removes the tetrahedra whose circumsphere has it strictly inside, the cavity, and is joined to the
-//! faces around it. No point is moved, not even symbolically, for
-//! - the tetrahedra that contain p, be it on a face or an edge, are in the cavity: but for its vertices a tetrahedron is
-//!   inside its sphere;
-//! - the cavity is connected. Let the power of p be the squared distance to the centre of a sphere less the squared
-//!   radius. On the way from a point of a tetrahedron straight to p the power of p in the spheres of the tetrahedra met
-//!   does not grow: they are Delaunay, so behind the plane of a common face the ball of the next one contains that of
-//!   the last. So if the first is in the cavity, all are;
-//! - the new tetrahedra have a volume above zero and do not overlap. Let t and t' be the tetrahedra on the two sides of
-//!   a face around the cavity, t inside. Spheres of both have the same circle in the plane of the face, so the powers
-//!   of p in both are equal if p is in that plane, and if p is on the side of t' that in t' is the lower one. But
-//!   that in t is below zero and that in t' is not. So p is strictly on the side of t. For the outer faces it is as
-//!   well, as all points are strictly inside the hull of the bounding sites.
+//! A new point p removes the tetrahedra whose circumsphere contains it strictly inside, which form the *cavity*, and
+//! is joined to the faces around the cavity. No point is perturbed, not even symbolically, for these reasons:
 //!
-//! Walks end for the same reason: to keep out a point p that is on a sphere is to raise it by less than anything in the
-//! paraboloid over space, but by more than all the points before. So the tetrahedra are those of a regular
-//! triangulation in general position, in which no cycle of tetrahedra lies each in front of the next as seen from a
-//! point \[Edelsbrunner1990b\].
+//! - The tetrahedra that contain p, even on a face or an edge, are in the cavity. Apart from its vertices a
+//!   tetrahedron is inside of its sphere.
+//! - The cavity is connected. Let the power of p be the squared distance to the centre of a sphere minus the squared
+//!   radius. Go straight from a point of a tetrahedron to p. The power of p in the spheres of the tetrahedra on the
+//!   way does not grow, because they are Delaunay: behind the plane of a common face the ball of the next one contains
+//!   that of the last. So if the first tetrahedron is in the cavity, all of them are.
+//! - The new tetrahedra have a positive volume and do not overlap. Let t and t' be the tetrahedra on the two sides of
+//!   a face around the cavity, with t inside. Both spheres have the same circle in the plane of the face. So the two
+//!   powers of p are equal if p is in that plane, and the power in t' is the lower one if p is on the side of t'. But
+//!   the power in t is negative and that in t' is not. So p is strictly on the side of t. This holds for the outer
+//!   faces as well, since all points are strictly inside the octahedron of the bounding sites.
+//!
+//! The walk to the tetrahedron that contains a point ends for a related reason. A point p on a sphere is treated as
+//! outside. This amounts to raising p in the paraboloid over space, by less than anything else but by more than all
+//! points before. So the tetrahedra are those of a regular triangulation in general position, and in such a
+//! triangulation no cycle of tetrahedra lies each in front of the next as seen from a point \[Edelsbrunner1990b\].
 
 #![allow(clippy::inline_always, reason = "or it is compiled without the instruction set")]
 
-use super::{Delaunay, Work};
+use crate::delaunay::tetrahedron::{FACES, IN_CAVITY, NO_NEIGHBOUR, NOT_IN_CAVITY, Tetrahedron, Work, index_in};
 use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel, prefetch};
 use p2m_core::engine::staged::{PredicateStage, orientation_exact, orientation_filter, sphere_exact, sphere_filter};
 use p2m_core::engine::vector::{V3, sub};
 use std::cmp::Ordering;
 
-/// The face opposite to each vertex, so that orientation_3d of it and the vertex is `Greater`.
-pub(crate) const FACES: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
+/// The number of vertices around a cavity that the table of edges has room for. They are the vertices of 124 faces.
+pub(crate) const MAX_LINKED_VERTICES: usize = 64;
 
-/// Vertices of the faces around a cavity that have places in the table of edges: those of 124 faces.
-const PLACES: usize = 64;
+/// The number of tetrahedra that may be created for each one that may exist at a time.
+const CREATED_PER_TETRAHEDRON: u64 = 8;
 
-/// For each tetrahedron that there may be at a time so many may be made.
-const MADE: u64 = 8;
-
-/// In the first vertex of a tetrahedron: in the cavity,
-const INSIDE: u32 = 1 << 31;
-/// or tested, and not in it. Numbers of sites are below.
-const OUTSIDE: u32 = 1 << 30;
-
-/// Half a cache line.
+/// A site, and its part in the current insertion. Half a cache line holds it, so it never lies on two.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
-pub(crate) struct Tetrahedron {
-    /// In place of a removed one the first is [`Delaunay::NONE`]. While a cavity is found, the first has [`INSIDE`] or
-    /// [`OUTSIDE`] besides, once that is known.
-    pub(crate) vertices: [u32; 4],
-    /// Across the face opposite to each vertex.
-    pub(crate) neighbours: [u32; 4],
+pub(crate) struct InsertedSite {
+    /// The position of the site.
+    pub(crate) point: V3,
+    /// The insertion in which this site last was a vertex of the cavity's boundary, as the number of
+    /// the inserted site.
+    pub(crate) last_insertion: u32,
+    /// The index of this site among the vertices of that boundary.
+    pub(crate) boundary_index: u32,
 }
 
-/// A site with what is known of it in the current insertion: half a cache line as well, never on two.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(32))]
-struct Site {
-    point: V3,
-    /// For which site it was a vertex of the faces around the cavity last,
-    round: u32,
-    /// and the how manieth of those.
-    place: u32,
-}
-
-/// A triangulation that grows.
+/// A triangulation that grows by insertion.
 pub(crate) struct Insertion {
-    sites: Vec<Site>,
-    tetrahedra: Vec<Tetrahedron>,
-    free: Vec<u32>,
-    /// So many may there be,
-    most: usize,
-    /// and so many be made.
-    most_made: u64,
-    /// Where the next walk begins.
-    last: u32,
+    /// The sites, in the order of their numbers.
+    pub(crate) sites: Vec<InsertedSite>,
+    /// The tetrahedra, removed ones included.
+    pub(crate) tetrahedra: Vec<Tetrahedron>,
+    /// The numbers of removed tetrahedra, which are used again.
+    free_slots: Vec<u32>,
+    /// The largest number of tetrahedra at a time.
+    max_tetrahedra: usize,
+    /// The largest number of tetrahedra that may be created.
+    max_created: u64,
+    /// The tetrahedron from which the next walk begins.
+    walk_start: u32,
+    /// The tetrahedra in the current cavity.
     cavity: Vec<u32>,
-    /// Faces around the cavity: a tetrahedron inside, and the vertex that its face is opposite to.
-    boundary: Vec<(u32, u32)>,
-    created: Vec<u32>,
-    /// Of an edge of a face around the cavity, from the place of one vertex to that of another: which of the created
-    /// tetrahedra has it. What is left of earlier insertions is not read.
-    edges: Box<[u8; PLACES * PLACES]>,
+    /// The faces around the cavity: the tetrahedron inside, and the index of its vertex opposite to the face.
+    pub(crate) boundary: Vec<(u32, u32)>,
+    /// The new tetrahedra, one for each face of the boundary.
+    pub(crate) created: Vec<u32>,
+    /// For each edge of a face around the cavity the index of the created tetrahedron that has it. The row is the
+    /// boundary index of the first end, the column that of the second. Entries of earlier insertions are never read.
+    pub(crate) edge_owners: Box<[u8; MAX_LINKED_VERTICES * MAX_LINKED_VERTICES]>,
+    /// The work so far.
     pub(crate) work: Work,
 }
 
-/// What `number` is the index of; it occurs.
-#[inline(always)]
-fn position(of: &[u32; 4], number: u32) -> usize {
-    // Without branches: which it is cannot be predicted.
-    usize::from(of[1] == number) + 2 * usize::from(of[2] == number) + 3 * usize::from(of[3] == number)
-}
-
-/// The edge between two places, in the table.
-#[inline(always)]
-fn edge(from: u8, to: u8) -> usize {
-    usize::from(from) % PLACES * PLACES + usize::from(to) % PLACES
-}
-
-/// Insertion of sites, with all instructions that there are. Only compilers use them: lanes are no more precise than
-/// one number at a time, and nothing is contracted, so the tetrahedra are the same on every processor.
-struct All<'a, S> {
+/// A SIMD kernel that inserts sites. It uses the instruction set only through the compiler. Lanes are as precise as
+/// single numbers, and no operation is contracted, so the tetrahedra are the same on every processor.
+struct InsertAll<'a, S> {
     insertion: &'a mut Insertion,
     sites: S,
 }
 
-impl<S: Iterator<Item = usize>> SimdKernel for All<'_, S> {
+impl<S: Iterator<Item = usize>> SimdKernel for InsertAll<'_, S> {
     type Output = bool;
 
     #[inline(always)]
@@ -120,87 +97,86 @@ impl<S: Iterator<Item = usize>> SimdKernel for All<'_, S> {
 }
 
 impl Insertion {
-    /// The tetrahedra of the six bounding sites, around the diagonal from 0 to 1. They are at the same distance from
-    /// their centre, exactly, so any diagonal is Delaunay.
-    pub(crate) fn new(sites: &[V3], most: usize) -> Self {
+    /// Makes the tetrahedra of the six bounding sites around the diagonal from 0 to 1. The six are exactly equally far
+    /// from their centre, so any diagonal is Delaunay.
+    pub(crate) fn new(sites: &[V3], max_tetrahedra: usize) -> Self {
         let ring = [2, 4, 3, 5];
-        // Points in space have seven times as many; on a surface there are some more, with the removed ones.
-        let mut tetrahedra = Vec::with_capacity((15 * sites.len() / 2).min(most.saturating_add(4)));
+        // Points in space have seven times as many tetrahedra. Points on a surface have some more, removed ones
+        // included.
+        let mut tetrahedra = Vec::with_capacity((15 * sites.len() / 2).min(max_tetrahedra.saturating_add(4)));
         tetrahedra.extend((0..4u32).map(|i| {
             let [a, b] = [ring[i as usize], ring[(i as usize + 1) % 4]];
-            // Opposite to a lies the next one, opposite to b the one before.
-            Tetrahedron {
-                vertices: [0, 1, a, b],
-                neighbours: [Delaunay::NONE, Delaunay::NONE, (i + 1) % 4, (i + 3) % 4],
-            }
+            // The next tetrahedron lies opposite to a, and the one before lies opposite to b.
+            Tetrahedron { vertices: [0, 1, a, b], neighbours: [NO_NEIGHBOUR, NO_NEIGHBOUR, (i + 1) % 4, (i + 3) % 4] }
         }));
         Self {
-            sites: sites.iter().map(|&point| Site { point, round: 0, place: 0 }).collect(),
+            sites: sites.iter().map(|&point| InsertedSite { point, last_insertion: 0, boundary_index: 0 }).collect(),
             tetrahedra,
-            free: Vec::new(),
-            most: most.min(Delaunay::NONE as usize),
-            most_made: (most as u64).saturating_mul(MADE),
-            last: 0,
+            free_slots: Vec::new(),
+            max_tetrahedra: max_tetrahedra.min(NO_NEIGHBOUR as usize),
+            max_created: (max_tetrahedra as u64).saturating_mul(CREATED_PER_TETRAHEDRON),
+            walk_start: 0,
             cavity: Vec::new(),
             boundary: Vec::new(),
             created: Vec::new(),
-            edges: Box::new([0; PLACES * PLACES]),
+            edge_owners: Box::new([0; MAX_LINKED_VERTICES * MAX_LINKED_VERTICES]),
             work: Work::default(),
         }
     }
 
-    /// Inserts a site other than all before; whether its tetrahedra are not too many.
+    /// Inserts a site that differs from all before. It returns `false` if there are too many tetrahedra.
     #[must_use]
     #[inline(always)]
     fn insert(&mut self, site: u32) -> bool {
         let p = self.sites[site as usize].point;
         let start = self.locate(p);
         self.find_cavity(start, p);
-        let more = self.boundary.len().saturating_sub(self.free.len());
-        if self.tetrahedra.len() + more >= self.most || self.work.created + self.boundary.len() as u64 > self.most_made
+        let more = self.boundary.len().saturating_sub(self.free_slots.len());
+        if self.tetrahedra.len() + more >= self.max_tetrahedra
+            || self.work.created + self.boundary.len() as u64 > self.max_created
         {
             return false;
         }
-        self.fill(site);
+        self.create_tetrahedra(site);
         if !self.link(site) {
             self.work.large_cavities += 1;
             self.link_by_turning();
         }
         for &t in &self.cavity {
-            self.tetrahedra[t as usize].vertices[0] = Delaunay::NONE;
+            self.tetrahedra[t as usize].vertices[0] = NO_NEIGHBOUR;
         }
-        self.free.extend_from_slice(&self.cavity);
-        self.last = self.created[0];
+        self.free_slots.extend_from_slice(&self.cavity);
+        self.walk_start = self.created[0];
         true
     }
 
-    /// Inserts sites other than all before, each once; whether their tetrahedra are not too many.
+    /// Inserts sites that differ from all before, each once. It returns `false` if there are too many tetrahedra.
     #[must_use]
     pub(crate) fn insert_all(&mut self, sites: impl Iterator<Item = usize>) -> bool {
-        Isa::best().run(All { insertion: self, sites })
+        Isa::best().run(InsertAll { insertion: self, sites })
     }
 
-    /// What has become of it, with the places of removed ones.
+    /// Returns all tetrahedra, removed ones included.
     pub(crate) fn into_tetrahedra(self) -> Vec<Tetrahedron> {
         self.tetrahedra
     }
 
-    /// The vertices of a tetrahedron.
+    /// Returns the positions of the vertices of a tetrahedron.
     #[inline(always)]
-    fn corners(&self, [a, b, c, d]: [u32; 4]) -> [V3; 4] {
+    fn vertices_of(&self, [a, b, c, d]: [u32; 4]) -> [V3; 4] {
         let at = |v: u32| &self.sites[v as usize].point;
         let (a, b, c, d) = (at(a), at(b), at(c), at(d));
         [[a[0], a[1], a[2]], [b[0], b[1], b[2]], [c[0], c[1], c[2]], [d[0], d[1], d[2]]]
     }
 
-    /// A tetrahedron that contains p, maybe on a face.
+    /// Walks to a tetrahedron that contains p, possibly on a face.
     #[inline(always)]
     fn locate(&mut self, p: V3) -> u32 {
-        let (mut at, mut from) = (self.last, Delaunay::NONE);
+        let (mut at, mut from) = (self.walk_start, NO_NEIGHBOUR);
         'walk: loop {
             self.work.steps += 1;
             let Tetrahedron { vertices, neighbours } = self.tetrahedra[at as usize];
-            let corners = self.corners(vertices);
+            let corners = self.vertices_of(vertices);
             let offsets = [sub(corners[0], p), sub(corners[1], p), sub(corners[2], p), sub(corners[3], p)];
             for ([i, j, k], next) in FACES.into_iter().zip(neighbours) {
                 if next == from {
@@ -211,11 +187,11 @@ impl Insertion {
                 let is_beyond = if estimate.is_certain() {
                     estimate.value > 0.0
                 } else {
-                    self.orientation([corners[i], corners[j], corners[k]], p) == Ordering::Greater
+                    self.decide_orientation([corners[i], corners[j], corners[k]], p) == Ordering::Greater
                 };
-                // Of the corners as seen from p: the other way round.
+                // The orientation of the vertices as seen from p has the opposite sign of that of the face.
                 if is_beyond {
-                    assert_ne!(next, Delaunay::NONE, "inside the bounding sites");
+                    assert_ne!(next, NO_NEIGHBOUR, "inside the bounding sites");
                     (from, at) = (at, next);
                     continue 'walk;
                 }
@@ -224,8 +200,9 @@ impl Insertion {
         }
     }
 
+    /// Decides an orientation that the filter could not decide.
     #[cold]
-    fn orientation(&mut self, face: [V3; 3], p: V3) -> Ordering {
+    fn decide_orientation(&mut self, face: [V3; 3], p: V3) -> Ordering {
         let (sign, stage) = orientation_exact(face, p);
         match stage {
             PredicateStage::Whole => self.work.whole_orientations += 1,
@@ -234,17 +211,18 @@ impl Insertion {
         sign
     }
 
-    /// Whether p is strictly inside the sphere of four vertices.
+    /// Returns whether p is strictly inside the sphere of four vertices.
     #[inline(always)]
-    fn conflicts(&mut self, vertices: [u32; 4], p: V3) -> bool {
+    fn is_in_conflict(&mut self, vertices: [u32; 4], p: V3) -> bool {
         self.work.spheres += 1;
-        let corners = self.corners(vertices);
+        let corners = self.vertices_of(vertices);
         let estimate = sphere_filter(corners, p);
-        if estimate.is_certain() { estimate.value > 0.0 } else { self.sphere(corners, p) == Ordering::Greater }
+        if estimate.is_certain() { estimate.value > 0.0 } else { self.decide_sphere(corners, p) == Ordering::Greater }
     }
 
+    /// Decides a sphere test that the filter could not decide.
     #[cold]
-    fn sphere(&mut self, corners: [V3; 4], p: V3) -> Ordering {
+    fn decide_sphere(&mut self, corners: [V3; 4], p: V3) -> Ordering {
         let (sign, stage) = sphere_exact(corners, p);
         match stage {
             PredicateStage::Whole => self.work.whole_spheres += 1,
@@ -254,33 +232,33 @@ impl Insertion {
         sign
     }
 
-    /// Collects the tetrahedra in conflict with p, from one of them, and the faces around them.
+    /// Collects the tetrahedra in conflict with p, starting from one of them, and the faces around them.
     ///
-    /// Which are in conflict cannot be predicted, and takes long to compute. So nothing branches on it: a tetrahedron
-    /// and its face are written to the end of both lists, and one of the two becomes longer.
+    /// The outcome of a conflict test cannot be predicted and takes long to compute, so nothing branches on it. A
+    /// tetrahedron and its face are written to the ends of both lists, and one of the two lists becomes longer.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "one of four faces")]
     fn find_cavity(&mut self, start: u32, p: V3) {
-        self.tetrahedra[start as usize].vertices[0] |= INSIDE;
-        self.room_for(0, 0);
+        self.tetrahedra[start as usize].vertices[0] |= IN_CAVITY;
+        self.reserve_lists(0, 0);
         self.cavity[0] = start;
         let (mut done, mut cavity, mut boundary) = (0, 1, 0);
         while done < cavity {
             let t = self.cavity[done];
             done += 1;
-            self.room_for(cavity, boundary);
+            self.reserve_lists(cavity, boundary);
             if done < cavity {
                 self.prefetch_neighbours(self.cavity[done]);
             }
             for (face, next) in self.tetrahedra[t as usize].neighbours.into_iter().enumerate() {
                 let mut conflict = false;
                 if let Some(&Tetrahedron { vertices, .. }) = self.tetrahedra.get(next as usize) {
-                    if vertices[0] & INSIDE != 0 {
+                    if vertices[0] & IN_CAVITY != 0 {
                         continue;
                     }
-                    if vertices[0] & OUTSIDE == 0 {
-                        conflict = self.conflicts(vertices, p);
-                        self.tetrahedra[next as usize].vertices[0] |= if conflict { INSIDE } else { OUTSIDE };
+                    if vertices[0] & NOT_IN_CAVITY == 0 {
+                        conflict = self.is_in_conflict(vertices, p);
+                        self.tetrahedra[next as usize].vertices[0] |= if conflict { IN_CAVITY } else { NOT_IN_CAVITY };
                     }
                 }
                 self.cavity[cavity] = next;
@@ -293,7 +271,7 @@ impl Insertion {
         self.boundary.truncate(boundary);
     }
 
-    /// Asks for the neighbours of a tetrahedron before they are read.
+    /// Prefetches the neighbours of a tetrahedron.
     #[inline(always)]
     fn prefetch_neighbours(&self, tetrahedron: u32) {
         for next in self.tetrahedra[tetrahedron as usize].neighbours {
@@ -301,9 +279,9 @@ impl Insertion {
         }
     }
 
-    /// Makes the lists long enough for four more than so many.
+    /// Makes the lists long enough for four entries more than these numbers.
     #[inline(always)]
-    fn room_for(&mut self, cavity: usize, boundary: usize) {
+    fn reserve_lists(&mut self, cavity: usize, boundary: usize) {
         if self.cavity.len() < cavity + 4 {
             self.cavity.resize(2 * cavity + 64, 0);
         }
@@ -312,96 +290,32 @@ impl Insertion {
         }
     }
 
-    /// Makes the new tetrahedra: of those in the cavity that have a face around it, with the site in place of the
-    /// vertex behind the face. In the old ones they become the neighbours there.
+    /// Creates the new tetrahedra. Each has a face of the boundary, and the site in place of the vertex opposite to
+    /// it. It becomes the neighbour of both old tetrahedra at the face.
     #[inline(always)]
-    fn fill(&mut self, site: u32) {
+    fn create_tetrahedra(&mut self, site: u32) {
         self.created.clear();
         for &(t, face) in &self.boundary {
             let face = face as usize;
             let old = self.tetrahedra[t as usize];
-            let mut new = Tetrahedron { vertices: old.vertices, neighbours: [Delaunay::NONE; 4] };
-            new.vertices[0] &= !INSIDE;
+            let mut new = Tetrahedron { vertices: old.vertices, neighbours: [NO_NEIGHBOUR; 4] };
+            new.vertices[0] &= !IN_CAVITY;
             new.vertices[face] = site;
             new.neighbours[face] = old.neighbours[face];
             #[allow(clippy::cast_possible_truncation, reason = "checked")]
-            let number = self.free.pop().unwrap_or_else(|| {
+            let number = self.free_slots.pop().unwrap_or_else(|| {
                 self.tetrahedra.push(new);
                 self.tetrahedra.len() as u32 - 1
             });
             self.tetrahedra[number as usize] = new;
             if let Some(beyond) = self.tetrahedra.get_mut(old.neighbours[face] as usize) {
-                beyond.vertices[0] &= !OUTSIDE;
-                let back = position(&beyond.neighbours, t);
+                beyond.vertices[0] &= !NOT_IN_CAVITY;
+                let back = index_in(&beyond.neighbours, t);
                 beyond.neighbours[back] = number;
             }
             self.tetrahedra[t as usize].neighbours[face] = number;
             self.created.push(number);
         }
         self.work.created += self.created.len() as u64;
-    }
-
-    /// Makes neighbours of the new tetrahedra that share an edge of faces around the cavity. Every such edge belongs to
-    /// two faces, which turn around it in opposite directions; whether there are places for all.
-    #[inline(always)]
-    #[must_use]
-    #[allow(clippy::cast_possible_truncation, reason = "at most 124 faces and 64 vertices")]
-    fn link(&mut self, site: u32) -> bool {
-        if self.created.len() > 2 * PLACES - 4 {
-            return false;
-        }
-        let mut count = 0;
-        // Of each created tetrahedron, the places of the vertices of its face.
-        let mut places = [[0u8; 3]; 2 * PLACES - 4];
-        for (i, (places, (&(_, face), &number))) in
-            places.iter_mut().zip(self.boundary.iter().zip(&self.created)).enumerate()
-        {
-            let vertices = self.tetrahedra[number as usize].vertices;
-            for (place, k) in places.iter_mut().zip(FACES[face as usize]) {
-                let vertex = &mut self.sites[vertices[k] as usize];
-                // Without branches.
-                let new = vertex.round != site;
-                vertex.place = if new { count } else { vertex.place };
-                vertex.round = site;
-                count += u32::from(new);
-                *place = vertex.place as u8;
-            }
-            for k in 0..3 {
-                self.edges[edge(places[k], places[(k + 1) % 3])] = i as u8;
-            }
-        }
-        for (places, (&(_, face), &number)) in places.iter().zip(self.boundary.iter().zip(&self.created)) {
-            for k in 0..3 {
-                let other = self.edges[edge(places[(k + 1) % 3], places[k])];
-                self.tetrahedra[number as usize].neighbours[FACES[face as usize][(k + 2) % 3]] =
-                    self.created[usize::from(other)];
-            }
-        }
-        true
-    }
-
-    /// The same for any number of faces, by turning around the edges through the old tetrahedra.
-    fn link_by_turning(&mut self) {
-        for (&(t, face), &number) in self.boundary.iter().zip(&self.created) {
-            for side in (0..4).filter(|&side| side != face as usize) {
-                if self.tetrahedra[number as usize].neighbours[side] != Delaunay::NONE {
-                    continue;
-                }
-                // The edge and the vertex `pivot` make the face that is crossed, opposite to vertex `exit`.
-                let (mut at, mut exit, mut pivot) = (t, side, face as usize);
-                let other = loop {
-                    let old = &self.tetrahedra[at as usize];
-                    let next = old.neighbours[exit];
-                    let vertex = old.vertices[pivot] & !INSIDE;
-                    let old = &self.tetrahedra[next as usize];
-                    if old.vertices[0] & INSIDE == 0 {
-                        break next;
-                    }
-                    (exit, pivot, at) = (position(&old.vertices, vertex), position(&old.neighbours, at), next);
-                };
-                self.tetrahedra[number as usize].neighbours[side] = other;
-                self.tetrahedra[other as usize].neighbours[pivot] = number;
-            }
-        }
     }
 }

@@ -1,4 +1,4 @@
-//! Triangulations of all kinds of points, and what the check finds in broken ones.
+//! Tests of triangulations of all kinds of points, and of the check on broken ones.
 
 use super::*;
 use dashu_int::IBig;
@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 const REACH: f64 = 22.78;
 
-/// The triangulation, after the check and the promises about sites.
+/// Triangulates, checks the result, and asserts what the documentation says about sites.
 fn valid(points: &[[f64; 3]]) -> Delaunay {
     let delaunay = Delaunay::new(points, REACH).unwrap();
     assert_eq!(delaunay.check(), Ok(()), "{points:?}");
@@ -27,7 +27,8 @@ fn valid(points: &[[f64; 3]]) -> Delaunay {
     delaunay
 }
 
-/// The same, by the definition: no site in any sphere, and volumes that add up to that of the octahedron; in any order.
+/// Triangulates, and compares the result with the definition: no site is in any sphere, and the volumes add up to that
+/// of the octahedron. The order of the tetrahedra is free.
 fn valid_by_definition(points: &[[f64; 3]]) {
     let delaunay = valid(points);
     let sites = delaunay.sites();
@@ -55,7 +56,7 @@ fn valid_by_definition(points: &[[f64; 3]]) {
         edges.extend([[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]]);
         vertices.extend(t);
     }
-    // The octahedron consists of four around an axis.
+    // The octahedron consists of four tetrahedra around an axis.
     let octahedron = [[0, 1, 2, 4], [0, 1, 4, 3], [0, 1, 3, 5], [0, 1, 5, 2]].map(|t| volume(t.map(|v| sites[v])));
     assert_eq!(sum, octahedron.iter().sum::<IBig>(), "{points:?}");
     assert_eq!(faces.values().filter(|&&n| n == 1).count(), 8);
@@ -65,11 +66,11 @@ fn valid_by_definition(points: &[[f64; 3]]) {
     assert_eq!(count(vertices.len()) - count(edges.len()) + count(faces.len()) - tetrahedra, 1, "{points:?}");
 }
 
-/// Points with small whole coordinates.
+/// Returns points with small integer coordinates.
 fn small_integers(random: &mut impl Rng) -> Vec<[f64; 3]> {
     let count = random.random_range(1..40);
     let most = [1, 2, 3, 5, 9][random.random_range(0..5)];
-    // Now and then flat or straight.
+    // Some of the sets are flat or straight.
     let range = [0; 3].map(|_| if random.random_range(0..5) == 0 { 0 } else { most });
     (0..count).map(|_| range.map(|most| f64::from(random.random_range(-most..=most)))).collect()
 }
@@ -141,14 +142,14 @@ fn spheres_and_circles_do() {
     valid_by_definition(&on_a_sphere(random, 80));
     let circle: Vec<_> = (0..500).map(f64::from).map(|i| [(i * 0.01).cos(), (i * 0.01).sin(), 0.5]).collect();
     valid(&circle);
-    // Whole points of a sphere around the origin.
+    // The points have integer coordinates and lie on a sphere around the origin.
     let all = grid(41, 1.0).into_iter().map(|p| p.map(|x| x - 20.0));
     let whole: Vec<_> = all.filter(|p| p.iter().map(|x| x * x).sum::<f64>() == 194.0).collect();
     assert!(whole.len() > 100);
     valid_by_definition(&whole);
 }
 
-/// Points of a circle and of its axis: each is joined to all of the other kind.
+/// The points lie on a circle and on its axis, and each is joined to all points of the other kind.
 #[test]
 fn points_with_many_tetrahedra_do() {
     let circle = (0..400).map(f64::from).map(|i| [(i * 0.37).cos(), (i * 0.37).sin(), 0.0]);
@@ -212,7 +213,7 @@ fn the_reach_is_that_asked_for() {
             2 => uniform(random, 8).into_iter().map(|p| p.map(|x| 1.0 + 1e-15 * x)).collect(),
             _ => grid(2, 1.0),
         };
-        for reach in [Delaunay::LEAST_REACH, 4.28, REACH, 1000.0, Delaunay::LARGEST_REACH] {
+        for reach in [Delaunay::MIN_REACH, 4.28, REACH, 1000.0, Delaunay::MAX_REACH] {
             let delaunay = Delaunay::new(&points, reach).unwrap();
             assert_eq!(delaunay.check(), Ok(()));
             let [low, high] = p2m_core::engine::curve::bounds(delaunay.sites()[BOUNDING..].iter().copied());
@@ -256,16 +257,19 @@ fn the_check_finds_what_is_broken() {
     assert!(neighbour(broken(&|d| d.neighbours[inner].swap(0, 1))));
     assert!(neighbour(broken(&|d| d.neighbours[inner][2] = u32::MAX - 1)));
     assert!(neighbour(broken(&|d| d.neighbours[inner][2] = inner as u32)));
-    assert_eq!(broken(&|d| d.neighbours[inner][2] = Delaunay::NONE), Invalid::Hull);
+    assert_eq!(broken(&|d| d.neighbours[inner][2] = Delaunay::NONE), Invalid::CellPolytope);
     assert!(neighbour(broken(&|d| d.neighbours[outer][vertex] = inner as u32)));
     assert_eq!(broken(&|d| d.tetrahedra[inner].swap(0, 1)), Invalid::Orientation { tetrahedron: inner });
     assert_eq!(broken(&|d| d.tetrahedra[inner][0] = u32::MAX), Invalid::Orientation { tetrahedron: inner });
     assert!(matches!(broken(&|d| d.neighbours.truncate(3)), Invalid::Length { .. }));
     let unused = good.sites().len();
     assert_eq!(broken(&|d| d.sites.push([0.0; 3])), Invalid::Unused { site: unused });
-    // Without the tetrahedra, the octahedron has no faces.
-    assert_eq!(broken(&|d| [&mut d.tetrahedra, &mut d.neighbours].into_iter().for_each(Vec::clear)), Invalid::Hull);
-    // A site moved a little, into a sphere, where it is near one.
+    // The octahedron has no faces without the tetrahedra.
+    assert_eq!(
+        broken(&|d| [&mut d.tetrahedra, &mut d.neighbours].into_iter().for_each(Vec::clear)),
+        Invalid::CellPolytope
+    );
+    // A site is moved a little, which puts it into a sphere if one is near.
     let moved = |site: usize| {
         let mut delaunay = good.clone();
         delaunay.sites[site][0] += 1e-3;
@@ -299,7 +303,8 @@ fn the_check_finds_a_flip() {
         bad.tetrahedra[next as usize] = three[1];
         bad.tetrahedra.push(three[2]);
         bad.neighbours = adjacent(&bad.tetrahedra);
-        // That found the adjacency of the good one, and the bad one is wrong in nothing else.
+        // `adjacent` is right, since it finds the adjacency of the good triangulation. So the flip is the only fault
+        // of the bad one.
         assert!(matches!(bad.check(), Err(Invalid::Sphere { .. })));
         flips += 1;
     }
@@ -309,7 +314,7 @@ fn the_check_finds_a_flip() {
     assert_eq!(same.neighbours, good.neighbours);
 }
 
-/// Neighbours by their faces.
+/// Returns the neighbours of tetrahedra, found by their faces.
 fn adjacent(tetrahedra: &[[u32; 4]]) -> Vec<[u32; 4]> {
     let mut neighbours = vec![[Delaunay::NONE; 4]; tetrahedra.len()];
     let mut seen: BTreeMap<[u32; 3], (usize, usize)> = BTreeMap::new();

@@ -1,121 +1,137 @@
-//! Interception lists: blocks of up to eight packets, with bounds on their distances and the lanes that matter.
+//! The blocks of an interception list: up to eight packets each, with lower bounds on their distances and with the
+//! lanes that can hold the answer.
 //!
-//! A block bounds the distances to its packets from below in one of two ways, whichever rules out more of them in its
-//! cell:
+//! A block bounds the distances to its packets from below in one of two ways. The build chooses the way that excludes
+//! more packets in the cell:
 //!
-//! - by *boxes*, as a node of a tree does: best where the cell is as near as it is large;
-//! - by *corners*: f(q) = d(q, t)^2 - |q - y|^2 is concave for any closed set t and any point y, since it is an infimum
-//!   of affine functions. So with x_i the corners of the cell and l_i the weights of q among them (trilinear ones,
-//!   say), f(q) >= sum l_i f(x_i): eight numbers for each packet bound its distance everywhere in the cell. Where the
-//!   nearest point of t is the same vertex throughout, f is affine and the bound is the distance itself.
+//! - *Boxes* bound as a node of a tree does. They are better where the distance to the cell is about its size.
+//! - *Corners* use f(q) = d(q, t)^2 - |q - y|^2, which is concave for any closed set t and any point y, since it is an
+//!   infimum of affine functions. Let x_i be the corners of the cell and l_i the trilinear weights of q among them.
+//!   Then f(q) >= sum l_i f(x_i), so eight numbers for each packet bound its distance everywhere in the cell. Where
+//!   the nearest point of t is the same vertex everywhere in the cell, f is affine and the bound is the distance
+//!   itself.
 //!
-//! Numbers are kept as bytes, rounded outwards. All lengths are in the frame of the scene.
+//! The numbers are stored as bytes that are rounded outwards. All lengths are in the frame of the scene.
+//! docs/proofs/octree.md has the proofs.
 
-use crate::octree::cell::DEEPEST;
-use p2m_bvh::PacketTree;
-use p2m_bvh::engine::nearest::SearchState;
 use p2m_bvh::engine::volume::Rounded;
-use p2m_core::engine::simd::{EightLanes, InstructionSet, Lanes, lane_of_key, number_of_key};
+use p2m_core::engine::simd::Lanes;
 use p2m_core::engine::vector::V3;
-use p2m_core::{Collector, PrimitiveId};
 
-/// Packets of a block.
-pub(crate) const WIDTH: usize = 8;
+/// The highest level of a cell. A coordinate in units of the cells of this level is an integer of at most 32 bits,
+/// so corners of cells are exact.
+pub(crate) const MAX_LEVEL: u8 = 30;
 
-/// A packet of a list: which lanes can be the answer, a box around these, and f at the corners of the cell.
+/// The number of packets in a block.
+pub(crate) const BLOCK_WIDTH: usize = 8;
+
+/// A packet of a list, as the build hands it to a block.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
+    /// The number of the packet in the tree.
     pub(crate) packet: u32,
+    /// The lanes that can hold the answer in the cell, as bits.
     pub(crate) lanes: u16,
+    /// The low and the high corner of a box around these lanes, in the frame of the scene.
     pub(crate) bounds: [[f32; 3]; 2],
+    /// The function f of these lanes at the corners of the cell.
     pub(crate) f: [f64; 8],
 }
 
-/// How a block bounds distances.
+/// The way in which a block bounds distances.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Bounds {
+pub(crate) enum BoundKind {
+    /// The block has a box for each packet.
     Boxes,
-    /// By corners of a cell of this level, with a reference point y that [`reference`] has rounded.
+    /// The block has the values of f at the corners of the cell.
     Corners {
+        /// The level of the cell.
         level: u8,
+        /// The reference point of f. It has to be rounded by [`round_reference`].
         y: V3,
     },
 }
 
-/// The level of blocks that have boxes.
-const BOXES: u8 = u8::MAX;
-/// Reference points are multiples of this: 16 bits reach to 4, where the frame of a scene ends.
-const REFERENCE: f64 = 1.0 / 8192.0;
+/// The level of a block that has boxes.
+const LEVEL_OF_BOXES: u8 = u8::MAX;
+/// The unit of reference points. With 16 bits they reach to 4, where the frame of a scene ends.
+const REFERENCE_UNIT: f64 = 1.0 / 8192.0;
 
-/// The nearest point that a block can have as y.
-pub(crate) fn reference(y: V3) -> V3 {
-    y.map(|x| (x / REFERENCE).round().clamp(-32768.0, 32767.0) * REFERENCE)
+/// Rounds a point to the nearest one that a block can have as its reference point y.
+pub(crate) fn round_reference(y: V3) -> V3 {
+    y.map(|x| (x / REFERENCE_UNIT).round().clamp(-32768.0, 32767.0) * REFERENCE_UNIT)
 }
 
-/// Eight packets in two cache lines.
+/// Eight packets of a list in two cache lines.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(64))]
 pub(crate) struct Block {
-    /// For corners: row i has f at corner i. For boxes: low and high corners, row by row, and the origin in the last
-    /// two rows.
-    bounds: [[u8; WIDTH]; 8],
-    pub(crate) packets: [u32; WIDTH],
-    pub(crate) lanes: [u16; WIDTH],
+    /// The bounds of the packets. Row i of a block with corners has f at corner i. A block with boxes has the low
+    /// corners in the first three rows, the high corners in the next three, and the origin of both in the last two.
+    bounds: [[u8; BLOCK_WIDTH]; 8],
+    /// The numbers of the packets in the tree.
+    pub(crate) packets: [u32; BLOCK_WIDTH],
+    /// The lanes of each packet that can hold the answer, as bits.
+    pub(crate) lanes: [u16; BLOCK_WIDTH],
+    /// The reference point of f, in [`REFERENCE_UNIT`].
     y: [i16; 3],
-    /// What a byte of bounds is: a power of two.
+    /// The exponent of the power of two that is the unit of the bytes in `bounds`.
     exponent: i8,
-    /// Of the cell; [`BOXES`] for boxes.
+    /// The level of the cell, or [`LEVEL_OF_BOXES`] if the block has boxes.
     level: u8,
-    /// What f is where its byte is 0.
+    /// The value of f that the byte 0 stands for: f = `base` + byte * 2^`exponent`.
     base: f32,
-    /// Entries in use.
+    /// The number of entries in use.
     pub(crate) len: u8,
-    /// How many blocks of the same list follow.
-    pub(crate) more: u8,
+    /// The number of blocks of the same list that follow this one.
+    pub(crate) following: u8,
     unused: [u8; 2],
 }
 
 const _: () = assert!(size_of::<Block>() == 128);
 
-/// A query, as blocks need it.
+/// A query point in the forms that blocks need.
 #[derive(Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct BlockQuery {
+    /// The point in the frame of the scene, rounded to f32 with a bound on the error.
     pub(crate) rounded: Rounded,
-    /// In the frame.
+    /// The point in the frame of the scene.
     pub(crate) local: V3,
-    /// In finest cells of the cube.
+    /// The point in units of the cells of [`MAX_LEVEL`], from the low corner of the domain. Blocks with boxes do
+    /// not use it.
     pub(crate) cells: V3,
 }
 
 impl Block {
-    /// The blocks of a list, of at most 256 times 8 entries.
-    pub(crate) fn of_list(entries: &[Entry], bounds: Bounds) -> Vec<Self> {
+    /// Stores a list of at most 256 * 8 entries, which is not empty, in blocks.
+    pub(crate) fn from_list(entries: &[Entry], bounds: BoundKind) -> Vec<Self> {
         let mut blocks: Vec<Self> = entries
-            .chunks(WIDTH)
+            .chunks(BLOCK_WIDTH)
             .map(|entries| match bounds {
-                Bounds::Boxes => Self::of_boxes(entries),
-                Bounds::Corners { level, y } => Self::of_corners(entries, level, y),
+                BoundKind::Boxes => Self::from_boxes(entries),
+                BoundKind::Corners { level, y } => Self::from_corners(entries, level, y),
             })
             .collect();
         let count = blocks.len();
         for (i, block) in blocks.iter_mut().enumerate() {
-            block.more = u8::try_from(count - 1 - i).expect("few blocks");
+            block.following = u8::try_from(count - 1 - i).expect("few blocks");
         }
         blocks
     }
 
     #[allow(clippy::cast_possible_truncation, reason = "at most eight")]
+    /// Makes a block of up to eight entries without bounds. Unused entries repeat the first packet without lanes.
     fn new(entries: &[Entry], level: u8) -> Self {
         let mut block = Self {
-            bounds: [[0; WIDTH]; 8],
-            packets: [entries[0].packet; WIDTH],
-            lanes: [0; WIDTH],
+            bounds: [[0; BLOCK_WIDTH]; 8],
+            packets: [entries[0].packet; BLOCK_WIDTH],
+            lanes: [0; BLOCK_WIDTH],
             y: [0; 3],
             exponent: 0,
             level,
             base: 0.0,
             len: entries.len() as u8,
-            more: 0,
+            following: 0,
             unused: [0; 2],
         };
         for (i, entry) in entries.iter().enumerate() {
@@ -125,7 +141,8 @@ impl Block {
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounded outwards within the range")]
-    fn of_boxes(entries: &[Entry]) -> Self {
+    /// Stores the boxes of up to eight entries.
+    fn from_boxes(entries: &[Entry]) -> Self {
         let mut low = [f64::INFINITY; 3];
         let mut high = [f64::NEG_INFINITY; 3];
         for entry in entries {
@@ -134,21 +151,23 @@ impl Block {
                 high[k] = high[k].max(f64::from(entry.bounds[1][k]));
             }
         }
-        // The boxes span at most 254 units, and origins are less than 2^23 units away from zero.
+        // The boxes span at most 254 units, and the origin is less than 2^23 units away from zero, so it is exact in
+        // f32.
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
-        let place = low.iter().chain(&high).fold(0.0f64, |a, x| a.max(x.abs()));
+        let largest = low.iter().chain(&high).fold(0.0f64, |a, x| a.max(x.abs()));
         let mut exponent = -100;
-        while size > 254.0 * 2f64.powi(exponent) || place > 8_388_000.0 * 2f64.powi(exponent) {
+        while size > 254.0 * 2f64.powi(exponent) || largest > 8_388_000.0 * 2f64.powi(exponent) {
             exponent += 1;
         }
         let unit = 2f64.powi(exponent);
         let origin = low.map(|x| (x / unit).floor() * unit);
-        let mut block = Self::new(entries, BOXES);
+        let mut block = Self::new(entries, LEVEL_OF_BOXES);
         block.exponent = exponent as i8;
         for (k, x) in origin.into_iter().enumerate() {
             block.bounds.as_flattened_mut()[48 + 4 * k..][..4].copy_from_slice(&(x as f32).to_le_bytes());
         }
-        (block.bounds[0], block.bounds[1], block.bounds[2]) = ([255; WIDTH], [255; WIDTH], [255; WIDTH]);
+        (block.bounds[0], block.bounds[1], block.bounds[2]) =
+            ([255; BLOCK_WIDTH], [255; BLOCK_WIDTH], [255; BLOCK_WIDTH]);
         for (i, entry) in entries.iter().enumerate() {
             for (k, origin) in origin.iter().enumerate() {
                 block.bounds[k][i] = ((f64::from(entry.bounds[0][k]) - origin) / unit).floor() as u8;
@@ -159,54 +178,56 @@ impl Block {
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounded down within the range")]
-    fn of_corners(entries: &[Entry], level: u8, y: V3) -> Self {
+    /// Stores the values of f at the corners for up to eight entries.
+    fn from_corners(entries: &[Entry], level: u8, y: V3) -> Self {
         let all = || entries.iter().flat_map(|entry| entry.f);
-        let least = all().fold(f64::INFINITY, f64::min);
-        let most = all().fold(f64::NEG_INFINITY, f64::max);
-        // What is farther than y may be cut: a minimum of concave functions is concave.
-        let top = if least < 0.0 { most.min(-least) } else { most };
+        let min_f = all().fold(f64::INFINITY, f64::min);
+        let max_f = all().fold(f64::NEG_INFINITY, f64::max);
+        // Values above -min_f may be cut: a minimum of concave functions is concave, and such packets are farther than
+        // y.
+        let top = if min_f < 0.0 { max_f.min(-min_f) } else { max_f };
         let mut exponent = -100;
-        while top - least > 254.0 * 2f64.powi(exponent) && exponent < 100 {
+        while top - min_f > 254.0 * 2f64.powi(exponent) && exponent < 100 {
             exponent += 1;
         }
         let unit = 2f64.powi(exponent);
-        // Less for the rounding of the sum at a query.
-        let base = least - unit / 256.0 - least.abs() * 2f64.powi(-20);
+        // The base is lowered by the rounding of the sum in `lower_bounds`.
+        let base = min_f - unit / 256.0 - min_f.abs() * 2f64.powi(-20);
         let base = (base as f32).next_down();
         let mut block = Self::new(entries, level);
         block.exponent = exponent as i8;
         block.base = base;
-        assert_eq!(y.map(f64::to_bits), reference(y).map(f64::to_bits), "a point that blocks can have");
-        block.y = y.map(|x| (x / REFERENCE) as i16);
-        block.bounds = [[255; WIDTH]; 8];
+        assert_eq!(y.map(f64::to_bits), round_reference(y).map(f64::to_bits), "a point that blocks can have");
+        block.y = y.map(|x| (x / REFERENCE_UNIT) as i16);
+        block.bounds = [[255; BLOCK_WIDTH]; 8];
         for (i, entry) in entries.iter().enumerate() {
             for (row, f) in block.bounds.iter_mut().zip(entry.f) {
-                row[i] = ((f - least) / unit).floor().clamp(0.0, 255.0) as u8;
+                row[i] = ((f - min_f) / unit).floor().clamp(0.0, 255.0) as u8;
             }
         }
         block
     }
 
-    /// Squares of lower bounds of the distances to the packets, as those of a node. Those of empty entries are
-    /// anything.
+    /// Returns the squares of lower bounds of the distances to the packets, as a node of the tree does. The values of
+    /// unused entries mean nothing.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounding is allowed for")]
-    pub(crate) fn lower_bounds<L: Lanes>(&self, place: &Place) -> L {
+    pub(crate) fn lower_bounds<L: Lanes>(&self, query: &BlockQuery) -> L {
         let unit = f32::from_bits(((i32::from(self.exponent) + 127) as u32) << 23);
-        if self.level == BOXES {
+        if self.level == LEVEL_OF_BOXES {
             let bytes = self.bounds.as_flattened();
             let mut sum = L::splat(0.0);
             for k in 0..3 {
                 let origin = L::splat(f32::from_le_bytes(bytes[48 + 4 * k..][..4].try_into().expect("four bytes")));
                 let low = L::load_u8(&self.bounds[k]).mul_add(L::splat(unit), origin);
                 let high = L::load_u8(&self.bounds[3 + k]).mul_add(L::splat(unit), origin);
-                sum = place.rounded.squared_gap(k, low, high, sum);
+                sum = query.rounded.squared_gap(k, low, high, sum);
             }
             return sum;
         }
-        let way = [0, 1, 2].map(|k: usize| place.local[k] - f64::from(self.y[k]) * REFERENCE);
-        let square = (way[0] * way[0] + way[1] * way[1] + way[2] * way[2]) as f32;
-        let [x, y, z] = place.weights(self.level);
+        let offset = [0, 1, 2].map(|k: usize| query.local[k] - f64::from(self.y[k]) * REFERENCE_UNIT);
+        let square = (offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]) as f32;
+        let [x, y, z] = query.weights(self.level);
         let (z0, z1) = ((1.0 - z) * unit, z * unit);
         let (w00, w10, w01, w11) = ((1.0 - y) * z0, y * z0, (1.0 - y) * z1, y * z1);
         let weights =
@@ -221,108 +242,19 @@ impl Block {
     }
 }
 
-/// The primitives of a list, in ascending order.
-pub(crate) fn primitives<'a>(tree: &PacketTree, list: impl Iterator<Item = &'a Block>) -> Vec<PrimitiveId> {
-    let mut ids = Vec::new();
-    for block in list {
-        for (packet, lanes) in block.packets.iter().zip(block.lanes).take(usize::from(block.len)) {
-            let all = tree.leaves.packets[*packet as usize].ids().iter().enumerate();
-            ids.extend(all.filter(|(lane, _)| lanes >> lane & 1 == 1).map(|(_, id)| *id));
-        }
-    }
-    ids.sort_unstable();
-    ids
-}
-
 impl Block {
-    /// How many primitives it has.
-    pub(crate) fn count(&self) -> usize {
+    /// Returns the number of primitives in the block.
+    pub(crate) fn primitive_count(&self) -> usize {
         self.lanes[..usize::from(self.len)].iter().map(|lanes| lanes.count_ones() as usize).sum()
     }
 }
 
-/// Packets of a block that are fetched before they are asked.
-const PREFETCHED: usize = 2;
-
-impl Block {
-    /// Asks for the nearest packets, given what was sorted.
-    #[inline(always)]
-    fn prefetch(&self, tree: &PacketTree, keys: &[u32; WIDTH], count: usize) {
-        // Whatever there is: a branch would be mispredicted.
-        for back in 1..=PREFETCHED {
-            let packet = self.packets[lane_of_key(keys[count.wrapping_sub(back) & 7])] as usize;
-            tree.leaves.prefetch(packet);
-            tree.leaves.prefetch_vertices(packet);
-        }
-    }
-}
-
-/// Asks for the packets of a list that a search would look at first.
-#[inline(always)]
-pub(crate) fn prefetch<I: InstructionSet>(tree: &PacketTree, first: &Block, place: &Place) {
-    let bounds: I::Eight = first.lower_bounds(place);
-    let mut keys = [0u32; WIDTH];
-    let count = bounds.sorted_keys(f32::INFINITY, &mut keys);
-    first.prefetch(tree, &keys, count);
-}
-
-/// Looks at the packets of a list that can be the answer, the nearest ones of each block first. The list has its first
-/// block, and as many of the rest as that says.
-#[inline(always)]
-pub(crate) fn search<I: InstructionSet, C: Collector>(
-    tree: &PacketTree,
-    first: &Block,
-    rest: &[Block],
-    place: &Place,
-    filter: &mut SearchState<'_, C>,
-) {
-    let rest = &rest[..usize::from(first.more)];
-    for (number, block) in std::iter::once(first).chain(rest).enumerate() {
-        if filter.may_stop() {
-            record_skipped::<I, C>(std::iter::once(first).chain(rest).skip(number), place, filter);
-            return;
-        }
-        let bounds: I::Eight = block.lower_bounds(place);
-        let mut keys = [0u32; WIDTH];
-        let count = bounds.sorted_keys(filter.limit(), &mut keys);
-        block.prefetch(tree, &keys, count);
-        let mut left = count;
-        while left > 0 {
-            left -= 1;
-            let key = keys[left];
-            let lane = lane_of_key(key);
-            if lane < usize::from(block.len) && number_of_key(key) <= filter.limit() {
-                if filter.may_stop() {
-                    filter.record_skipped(number_of_key(key));
-                    break;
-                }
-                filter.packet::<I>(block.packets[lane] as usize, u32::from(block.lanes[lane]));
-            }
-        }
-    }
-}
-
-/// Gives up some blocks of a list.
-#[cold]
-#[inline(always)]
-fn record_skipped<'b, I: InstructionSet, C: Collector>(
-    blocks: impl Iterator<Item = &'b Block>,
-    place: &Place,
-    filter: &mut SearchState<'_, C>,
-) {
-    let mut bounds = [0.0; WIDTH];
-    for block in blocks {
-        block.lower_bounds::<I::Eight>(place).store(&mut bounds);
-        filter.record_skipped(bounds[..usize::from(block.len)].iter().copied().fold(f32::INFINITY, f32::min));
-    }
-}
-
-impl Place {
-    /// Where the query is in its cell of a level, from 0 to 1 on each axis.
+impl BlockQuery {
+    /// Returns the position of the query point in its cell of a level, from 0 to 1 on each axis.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "fewer than 2^30 cells")]
     fn weights(&self, level: u8) -> [f32; 3] {
-        let shift = DEEPEST - level;
+        let shift = MAX_LEVEL - level;
         let per_side = f64::from_bits((1023 - u64::from(shift)) << 52);
         let part = |x: f64| {
             let x = x * per_side;
@@ -338,13 +270,13 @@ mod tests {
     use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel};
     use rand::{Rng, RngExt};
 
-    struct Bound<'a>(&'a Block, &'a Place);
+    struct Bound<'a>(&'a Block, &'a BlockQuery);
 
     impl SimdKernel for Bound<'_> {
-        type Output = [f32; WIDTH];
+        type Output = [f32; BLOCK_WIDTH];
         #[inline(always)]
-        fn run<I: InstructionSet>(self) -> [f32; WIDTH] {
-            let mut bounds = [0.0; WIDTH];
+        fn run<I: InstructionSet>(self) -> [f32; BLOCK_WIDTH] {
+            let mut bounds = [0.0; BLOCK_WIDTH];
             self.0.lower_bounds::<I::Eight>(self.1).store(&mut bounds);
             bounds
         }
@@ -358,11 +290,11 @@ mod tests {
         around.map(|x| x + rng.random_range(-size..size))
     }
 
-    /// Sets of points in the frame, near and far from cells of all sizes, bounded in both ways: no bound exceeds the
-    /// distance by more than searches allow for, and that of a single point by the corners is the distance, but for
-    /// the bytes.
+    /// Sets of points in the frame, near and far from cells of all sizes, are bounded in both ways. No bound exceeds
+    /// the distance by more than searches allow for. For a single point the corners bound the distance up to the
+    /// precision of the bytes.
     #[test]
-    fn bounds_never_exceed_the_distance_and_corners_tell_that_of_a_point() {
+    fn bounds_never_exceed_the_distance_and_corners_bound_that_of_a_point_tightly() {
         let (mut compared, mut close) = (0, 0);
         let cases = p2m_testkit::cases(3000, 1000);
         for round in cases.clone() {
@@ -374,7 +306,7 @@ mod tests {
             let low = number.map(|n| -8.0 + f64::from(n) * side);
             let corner =
                 |i: usize| -> V3 { std::array::from_fn(|k| low[k] + if i >> k & 1 == 1 { side } else { 0.0 }) };
-            let count = rng.random_range(1..=WIDTH);
+            let count = rng.random_range(1..=BLOCK_WIDTH);
             let centre = point(&mut rng, &[0.0; 3], 1.0);
             let spread = 2f64.powi(rng.random_range(-12..0));
             let sets: Vec<Vec<V3>> = (0..count)
@@ -383,7 +315,7 @@ mod tests {
                     (0..rng.random_range(1..=3)).map(|_| point(&mut rng, &around, spread * 0.3)).collect()
                 })
                 .collect();
-            let y = reference(sets[0][0]);
+            let y = round_reference(sets[0][0]);
             let least = |q: &V3, set: &[V3]| set.iter().map(|p| square(q, p)).fold(f64::INFINITY, f64::min);
             let entries: Vec<Entry> = sets
                 .iter()
@@ -397,9 +329,9 @@ mod tests {
                     Entry { packet, lanes: 1, bounds: [low, high], f }
                 })
                 .collect();
-            for bounds in [Bounds::Boxes, Bounds::Corners { level, y }] {
-                let blocks = Block::of_list(&entries, bounds);
-                assert_eq!((blocks.len(), blocks[0].len, blocks[0].more), (1, count as u8, 0));
+            for bounds in [BoundKind::Boxes, BoundKind::Corners { level, y }] {
+                let blocks = Block::from_list(&entries, bounds);
+                assert_eq!((blocks.len(), blocks[0].len, blocks[0].following), (1, count as u8, 0));
                 for _ in 0..4 {
                     let part = [0; 3].map(|_| match rng.random_range(0..6) {
                         0 => 0.0,
@@ -407,17 +339,17 @@ mod tests {
                         _ => rng.random::<f64>(),
                     });
                     let q: V3 = std::array::from_fn(|k| low[k] + part[k] * side);
-                    let cells = q.map(|x| (x + 8.0) / 16.0 * f64::from(1u32 << DEEPEST));
-                    let place = Place { rounded: Rounded::of(q), local: q, cells };
+                    let cells = q.map(|x| (x + 8.0) / 16.0 * f64::from(1u32 << MAX_LEVEL));
+                    let query = BlockQuery { rounded: Rounded::of(q), local: q, cells };
                     for isa in Isa::available() {
-                        let found = isa.run(Bound(&blocks[0], &place));
+                        let found = isa.run(Bound(&blocks[0], &query));
                         for (set, found) in sets.iter().zip(found) {
                             let (exact, found) = (least(&q, set), f64::from(found));
                             let allowed = exact * (1.0 + 2f64.powi(-20)) + 2f64.powi(-120);
                             assert!(found <= allowed, "{isa}, round {round}: {found} for {exact}, {bounds:?} {q:?}");
-                            if bounds != Bounds::Boxes && set.len() == 1 {
+                            if bounds != BoundKind::Boxes && set.len() == 1 {
                                 compared += 1;
-                                // Two bytes, or what f32 loses of the square.
+                                // The bound may lose two bytes, and the rounding of the square in f32.
                                 let byte = 2f64.powi(i32::from(blocks[0].exponent));
                                 let lost = 2.0 * byte + 2f64.powi(-20) * (square(&q, &y) + byte * 256.0);
                                 let cut = entries.iter().flat_map(|e| e.f).fold(0.0f64, |a, f| a.max(-f));
@@ -436,8 +368,8 @@ mod tests {
     fn lists_of_several_blocks_know_how_many_follow() {
         let entry = |packet| Entry { packet, lanes: 3, bounds: [[0.0; 3], [0.1; 3]], f: [0.5; 8] };
         let entries: Vec<Entry> = (0..19).map(entry).collect();
-        let blocks = Block::of_list(&entries, Bounds::Boxes);
-        assert_eq!(blocks.iter().map(|b| (b.len, b.more)).collect::<Vec<_>>(), [(8, 2), (8, 1), (3, 0)]);
+        let blocks = Block::from_list(&entries, BoundKind::Boxes);
+        assert_eq!(blocks.iter().map(|b| (b.len, b.following)).collect::<Vec<_>>(), [(8, 2), (8, 1), (3, 0)]);
         assert_eq!((blocks[2].packets[1], blocks[2].lanes), (17, [3, 3, 3, 0, 0, 0, 0, 0]));
     }
 }

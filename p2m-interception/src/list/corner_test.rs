@@ -1,34 +1,44 @@
-//! The corner test: what cannot beat a dominator anywhere in a cell.
+//! The corner test: it excludes primitives that cannot beat a dominator anywhere in a convex cell.
 //!
-//! Let C be a convex cell with corners x_i, y a point of the scene and t any closed set. If d(x_i, t) > |x_i - y| + s
-//! at all corners, then d(q, t) > |q - y| + s for every q of C: d(q, t)^2 - (|q - y| + s)^2 is concave, as an infimum
-//! of affine functions less a convex one, so it is least at a corner (docs/proofs/octree.md). So t is
-//! never the answer in C, for the primitive that y belongs to is nearer, by more than all rounding if s is chosen so.
-//! It takes a single y for all corners; several may be tried.
+//! Let C be a convex cell with corners x_i, y a point of the scene (a *dominator*), t a closed set and s >= 0. If
+//! d(x_i, t) > |x_i - y| + s at all corners, then d(q, t) > |q - y| + s for every q in C. The reason is that d(q, t)^2
+//! - (|q - y| + s)^2 is concave, as an infimum of affine functions minus a convex function, so its minimum over C is
+//! at a corner (docs/proofs/octree.md). Therefore t is never the answer in C: the primitive that y belongs to is
+//! nearer, by more than all rounding if s is large enough. The same y has to serve at all corners, but several
+//! dominators may be tried in turn.
 //!
-//! Distances from corners to primitives are bounded by the filters of packets and by boxes, so the test keeps too much
-//! rather than too little.
+//! The filters of packets and boxes bound the distances from corners to primitives, so the test keeps too many
+//! primitives rather than too few.
 
-use crate::octree::cell::Corner;
 use nalgebra::Point3;
 use p2m_bvh::engine::packet::{self, LANES, Packet, at_most, smallest};
 use p2m_core::Aabb;
 use p2m_core::engine::simd::{InstructionSet, SimdKernel};
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 
-/// Eight corners with all their distances to dominators.
+/// A corner of a cell with a dominator.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Corner {
+    /// The position of the corner.
+    pub(crate) x: V3,
+    /// The point of the scene that is nearest to the corner, or nearly so. It is infinite if the scene has no points.
+    pub(crate) y: V3,
+}
+
+/// The eight corners of a cell with their distances to all dominators.
 pub(crate) struct Dominators {
-    /// Distances, rounded up and with the slack: one row of corners for each dominator.
+    /// The distances, rounded up and increased by the slack s: one row of eight corners for each dominator.
     rows: [[f64; 8]; 8],
+    /// The number of dominators, which is the number of rows in use.
     count: usize,
 }
 
-/// Rounding of a distance, with much to spare.
-const ROUND_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
+/// A factor that exceeds the rounding of a distance in f64 by far.
+const DISTANCE_ROUND_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
 impl Dominators {
-    /// The dominators of eight corners, each once. `slack` is s.
-    pub(crate) fn of(corners: &[Corner; 8], slack: f64) -> Self {
+    /// Collects the dominators at eight corners, each once. `slack` is the s of the corner test.
+    pub(crate) fn from_corners(corners: &[Corner; 8], slack: f64) -> Self {
         let mut points: [V3; 8] = [[0.0; 3]; 8];
         let mut count = 0;
         for corner in corners {
@@ -40,73 +50,81 @@ impl Dominators {
         let mut rows = [[f64::INFINITY; 8]; 8];
         for (row, y) in rows.iter_mut().zip(&points[..count]) {
             for (to, corner) in row.iter_mut().zip(corners) {
-                *to = norm_squared(sub(corner.x, *y)).sqrt() * ROUND_UP + slack;
+                *to = norm_squared(sub(corner.x, *y)).sqrt() * DISTANCE_ROUND_UP + slack;
             }
         }
         Self { rows, count }
     }
 
-    /// Whether something in a box can be nearer than all dominators.
+    /// Returns whether anything in a box can be nearer than all dominators somewhere in the cell.
     pub(crate) fn keeps_box(&self, corners: &[Corner; 8], bounds: &Aabb<f64>) -> bool {
-        let squares = corners.map(|c| bounds.lower_bound(&Point3::from(c.x)));
-        // The bound of a box is at most a few roundings too large.
-        self.rows[..self.count].iter().all(|row| (0..8).any(|i| squares[i] <= row[i] * row[i] * ROUND_UP))
+        let squared = corners.map(|c| bounds.lower_bound(&Point3::from(c.x)));
+        // The lower bound of a box is too large by a few roundings at most.
+        self.rows[..self.count].iter().all(|row| (0..8).any(|i| squared[i] <= row[i] * row[i] * DISTANCE_ROUND_UP))
     }
 }
 
-/// What the filter of a packet finds at a point.
+/// The distances from one point to the lanes of a packet, as the filter of the packet finds them.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Found {
-    /// Squares in the frame of the packet, lane by lane; all zero where the filter is not usable.
-    pub(crate) squares: [f32; LANES],
-    /// See [`Local`](p2m_bvh::engine::packet::Local).
-    pub(crate) excess: f32,
+pub(crate) struct LaneDistances {
+    /// The squared distances in the unit of the packet, lane by lane. All are zero if the filter cannot be used
+    /// at the point.
+    pub(crate) squared: [f32; LANES],
+    /// The amount by which the filter may exceed the true distance, in the unit of the packet
+    /// ([`Local`](p2m_bvh::engine::packet::Local)).
+    pub(crate) error_above: f32,
 }
 
-impl Found {
-    /// Nothing known.
-    pub(crate) const NOTHING: Self = Self { squares: [0.0; LANES], excess: f32::INFINITY };
+impl LaneDistances {
+    /// The distances from a point at which the filter cannot be used.
+    pub(crate) const UNKNOWN: Self = Self { squared: [0.0; LANES], error_above: f32::INFINITY };
 }
 
-/// The filter of a packet at some points, as an operation: what it finds, and for each point an upper bound of the
-/// distance to the nearest primitive of the packet, and the lane, if there is one.
-pub(crate) struct AtPoints<'a> {
+/// A SIMD kernel that runs the filter of a packet at some points.
+pub(crate) struct DistancesAtPoints<'a> {
+    /// The packet whose lanes are tested.
     pub(crate) packet: &'a Packet,
+    /// The points, in coordinates of the scene.
     pub(crate) points: &'a [V3],
-    pub(crate) found: &'a mut [Found],
+    /// Receives the distances from each point.
+    pub(crate) distances: &'a mut [LaneDistances],
+    /// Receives an upper bound of the distance from each point to the nearest lane, with that lane. It is `None` if
+    /// the filter cannot be used.
     pub(crate) nearest: &'a mut [Option<(f64, usize)>],
 }
 
-impl SimdKernel for AtPoints<'_> {
+impl SimdKernel for DistancesAtPoints<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        for ((point, found), nearest) in self.points.iter().zip(self.found).zip(self.nearest) {
-            (*found, *nearest) = (Found::NOTHING, None);
+        for ((point, distances), nearest) in self.points.iter().zip(self.distances).zip(self.nearest) {
+            (*distances, *nearest) = (LaneDistances::UNKNOWN, None);
             let Some(local) = self.packet.local(point) else { continue };
-            self.packet.squares::<I>(&local, f32::INFINITY, &mut found.squares);
-            found.excess = local.excess;
+            self.packet.squares::<I>(&local, f32::INFINITY, &mut distances.squared);
+            distances.error_above = local.excess;
             if self.packet.has_vertices() {
-                let least = smallest::<I::Wide>(&found.squares);
-                let lane = (at_most::<I::Wide>(&found.squares, least)).trailing_zeros() as usize;
+                let least = smallest::<I::Wide>(&distances.squared);
+                let lane = (at_most::<I::Wide>(&distances.squared, least)).trailing_zeros() as usize;
                 *nearest = Some((f64::from(least.sqrt() + local.deficit) * self.packet.unit(), lane));
             }
         }
     }
 }
 
-/// The corner test for a packet, as an operation: the lanes that pass.
-pub(crate) struct Keep<'a> {
+/// A SIMD kernel that applies the corner test to a packet and returns the lanes that pass.
+pub(crate) struct KeepLanes<'a> {
+    /// The packet whose lanes are tested.
     pub(crate) packet: &'a Packet,
+    /// The dominators at the corners of the cell.
     pub(crate) dominators: &'a Dominators,
-    /// What the filter of the packet finds at some points,
-    pub(crate) found: &'a [Found],
-    /// and which of these the corners are.
+    /// The distances from some points to the packet.
+    pub(crate) distances: &'a [LaneDistances],
+    /// The indices of the eight corners among these points.
     pub(crate) corners: &'a [usize; 8],
 }
 
-impl SimdKernel for Keep<'_> {
+impl SimdKernel for KeepLanes<'_> {
     type Output = u16;
 
     #[inline(always)]
@@ -116,10 +134,10 @@ impl SimdKernel for Keep<'_> {
         for row in &self.dominators.rows[..self.dominators.count] {
             let mut near = 0;
             for (distance, corner) in row.iter().zip(self.corners) {
-                let found = &self.found[*corner];
-                // What the filter finds exceeds the distance by at most the excess.
-                let limit = ((distance * self.packet.per_unit()) as f32 + found.excess) * packet::ROUND_UP;
-                near |= at_most::<I::Wide>(&found.squares, limit * limit * packet::ROUND_UP);
+                let distances = &self.distances[*corner];
+                // The filter exceeds the distance by `error_above` at most.
+                let limit = ((distance * self.packet.per_unit()) as f32 + distances.error_above) * packet::ROUND_UP;
+                near |= at_most::<I::Wide>(&distances.squared, limit * limit * packet::ROUND_UP);
             }
             kept &= near;
             if kept == 0 {
@@ -130,31 +148,33 @@ impl SimdKernel for Keep<'_> {
     }
 }
 
-/// Lower bounds of the distances from some corners to the primitives in some lanes, in units of the packet, as an
-/// operation.
-pub(crate) struct Least<'a> {
-    pub(crate) found: &'a [Found],
+/// A SIMD kernel that returns, for up to eight points, a lower bound of the distance to the nearest primitive in some
+/// lanes of a packet, in the unit of the packet.
+pub(crate) struct MinOverLanes<'a> {
+    /// The distances from the points to the packet.
+    pub(crate) distances: &'a [LaneDistances],
+    /// The lanes to consider, as bits.
     pub(crate) lanes: u16,
 }
 
-impl SimdKernel for Least<'_> {
+impl SimdKernel for MinOverLanes<'_> {
     type Output = [f64; 8];
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) -> [f64; 8] {
-        let mut others = [0.0; LANES];
-        for (lane, other) in others.iter_mut().enumerate() {
+        let mut exclusion = [0.0; LANES];
+        for (lane, other) in exclusion.iter_mut().enumerate() {
             *other = if self.lanes >> lane & 1 == 1 { 0.0 } else { f32::INFINITY };
         }
         let mut all = [0.0; 8];
-        for (least, found) in all.iter_mut().zip(self.found) {
-            let mut squares = [0.0; LANES];
+        for (least, distances) in all.iter_mut().zip(self.distances) {
+            let mut squared = [0.0; LANES];
             for lane in 0..LANES {
-                squares[lane] = found.squares[lane] + others[lane];
+                squared[lane] = distances.squared[lane] + exclusion[lane];
             }
-            // Less for the rounding of the root.
-            let distance = f64::from(smallest::<I::Wide>(&squares)).sqrt() * (1.0 - 4.0 * f64::EPSILON);
-            *least = (distance - f64::from(found.excess)).max(0.0);
+            // The factor lowers the bound by the rounding of the root.
+            let distance = f64::from(smallest::<I::Wide>(&squared)).sqrt() * (1.0 - 4.0 * f64::EPSILON);
+            *least = (distance - f64::from(distances.error_above)).max(0.0);
         }
         all
     }

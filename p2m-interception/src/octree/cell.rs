@@ -1,37 +1,29 @@
-//! Cubes, their corners and the lattice of their children's corners.
+//! The cubes of an octree, and the lattice of the corners of their children.
 
+use crate::list::corner_test::Corner;
 use p2m_core::Aabb;
 use p2m_core::engine::vector::V3;
 
-/// The most halvings of the cube of the domain: a coordinate in the finest cells is a whole number of 32 bits, and
-/// corners are exact.
-pub(crate) const DEEPEST: u8 = 30;
-
-/// A corner of a cell, with a point of the scene near it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Corner {
-    pub(crate) x: V3,
-    /// The dominator that comes from here; infinite where the scene has none.
-    pub(crate) y: V3,
-}
-
-/// A cube with its corners; corner c lies above on axis k if bit k of c is set.
+/// A cube with its corners. Corner c lies on the upper side along axis k if bit k of c is set.
 #[derive(Clone, Copy)]
 pub(crate) struct Cube {
+    /// The corner with the least coordinates.
     pub(crate) low: V3,
+    /// The length of an edge.
     pub(crate) side: f64,
-    /// Halvings from the cube of the whole domain.
+    /// The number of halvings from the cube of the domain.
     pub(crate) level: u8,
+    /// The corners with their dominators.
     pub(crate) corners: [Corner; 8],
 }
 
-/// Corners of the children of a cube: 3 on each axis.
-pub(crate) const LATTICE: usize = 27;
-/// The middle of the cube.
-pub(crate) const MIDDLE: usize = LATTICE / 2;
+/// The number of corners that the children of a cube have together: 3 on each axis.
+pub(crate) const LATTICE_POINTS: usize = 27;
+/// The lattice point in the centre of the cube.
+pub(crate) const LATTICE_CENTRE: usize = LATTICE_POINTS / 2;
 
-/// The lattice points of the corners of each child.
-pub(crate) const LATTICE_OF: [[usize; 8]; 8] = {
+/// For each child of a cube the lattice points at its corners.
+pub(crate) const CHILD_CORNERS: [[usize; 8]; 8] = {
     let mut all = [[0; 8]; 8];
     let mut child = 0;
     while child < 8 {
@@ -51,14 +43,14 @@ pub(crate) const LATTICE_OF: [[usize; 8]; 8] = {
     all
 };
 
-/// The lattice points that are neither corners of the cube nor its middle.
-pub(crate) const BETWEEN: [usize; LATTICE - 9] = {
-    let mut all = [0; LATTICE - 9];
+/// The lattice points that are neither corners of the cube nor its centre.
+pub(crate) const NEW_LATTICE_POINTS: [usize; LATTICE_POINTS - 9] = {
+    let mut all = [0; LATTICE_POINTS - 9];
     let mut count = 0;
     let mut at = 0;
-    while at < LATTICE {
+    while at < LATTICE_POINTS {
         let is_halfway = at % 3 == 1 || at / 3 % 3 == 1 || at / 9 == 1;
-        if is_halfway && at != MIDDLE {
+        if is_halfway && at != LATTICE_CENTRE {
             all[count] = at;
             count += 1;
         }
@@ -68,29 +60,30 @@ pub(crate) const BETWEEN: [usize; LATTICE - 9] = {
     all
 };
 
-/// The corner of the cube itself that lies on a lattice point, if there is one.
-pub(crate) fn corner_on(at: usize) -> Option<usize> {
-    (0..8).find(|&corner| 2 * LATTICE_OF[0][corner] == at)
+/// Returns the corner of the cube at a lattice point, if there is one.
+pub(crate) fn cube_corner_at(at: usize) -> Option<usize> {
+    (0..8).find(|&corner| 2 * CHILD_CORNERS[0][corner] == at)
 }
 
 impl Cube {
-    /// A point of the lattice: exact, since cubes are dyadic.
+    /// Returns a lattice point. It is exact, since the coordinates of cubes are dyadic.
     pub(crate) fn point(&self, at: usize) -> V3 {
         let steps = [at % 3, at / 3 % 3, at / 9];
         std::array::from_fn(|k| self.low[k] + self.side * 0.5 * steps[k] as f64)
     }
 
+    /// Returns the cube as a box.
     pub(crate) fn bounds(&self) -> Aabb<f64> {
         Aabb { min: self.low.into(), max: self.low.map(|x| x + self.side).into() }
     }
 
-    /// Its eight halves, given the corners on the whole lattice.
-    pub(crate) fn children(&self, lattice: &[Corner; LATTICE]) -> [Self; 8] {
+    /// Returns the eight children, given the corners on the whole lattice.
+    pub(crate) fn children(&self, lattice: &[Corner; LATTICE_POINTS]) -> [Self; 8] {
         std::array::from_fn(|child| Self {
-            low: lattice[LATTICE_OF[child][0]].x,
+            low: lattice[CHILD_CORNERS[child][0]].x,
             side: self.side * 0.5,
             level: self.level + 1,
-            corners: LATTICE_OF[child].map(|at| lattice[at]),
+            corners: CHILD_CORNERS[child].map(|at| lattice[at]),
         })
     }
 }
@@ -103,10 +96,14 @@ mod tests {
     fn children_share_the_lattice() {
         let cube =
             Cube { low: [-1.0, 2.0, 0.5], side: 4.0, level: 3, corners: [Corner { x: [0.0; 3], y: [0.0; 3] }; 8] };
-        let lattice: [Corner; LATTICE] = std::array::from_fn(|at| Corner { x: cube.point(at), y: cube.point(at) });
-        assert_eq!(cube.point(MIDDLE), [1.0, 4.0, 2.5]);
-        assert_eq!((0..LATTICE).filter_map(corner_on).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5, 6, 7]);
-        assert!(BETWEEN.is_sorted() && BETWEEN.iter().all(|&at| corner_on(at).is_none() && at != MIDDLE));
+        let lattice: [Corner; LATTICE_POINTS] =
+            std::array::from_fn(|at| Corner { x: cube.point(at), y: cube.point(at) });
+        assert_eq!(cube.point(LATTICE_CENTRE), [1.0, 4.0, 2.5]);
+        assert_eq!((0..LATTICE_POINTS).filter_map(cube_corner_at).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5, 6, 7]);
+        assert!(
+            NEW_LATTICE_POINTS.is_sorted()
+                && NEW_LATTICE_POINTS.iter().all(|&at| cube_corner_at(at).is_none() && at != LATTICE_CENTRE)
+        );
         for (c, child) in cube.children(&lattice).iter().enumerate() {
             assert_eq!((child.side, child.level), (2.0, 4));
             for (i, corner) in child.corners.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Vertices and edges of the primitives, and which of them have any.
+//! The adjacency of primitives: which vertices and edges they share, and with whom.
 
 use crate::delaunay::Delaunay;
 use p2m_bvh::PacketTree;
@@ -6,103 +6,108 @@ use p2m_bvh::engine::packet::LANES;
 use p2m_core::PrimitiveId;
 use std::collections::HashMap;
 
-/// Of a lane the vertices and edges that a primitive of a lower id has as well, as bits: vertex i, and 3 + i for the
-/// edge from vertex i to the next.
-pub(crate) type Shared = u8;
+/// The vertices and edges of a lane that a primitive with a lower id has as well, as bits: bit i for vertex i, and bit
+/// 3 + i for the edge from vertex i to the next one.
+pub(crate) type OwnedByLowerId = u8;
 
-/// Vertices and edges of the primitives.
-pub(crate) struct Features {
-    /// For each packet and lane.
-    pub(crate) shared: Vec<[Shared; LANES]>,
-    /// Of each site the lowest primitive that has it, as packet and lane.
+/// The vertices and edges of all primitives.
+pub(crate) struct EdgeAdjacency {
+    /// For each packet and lane the features that a primitive with a lower id has as well.
+    pub(crate) owned_by_lower_id: Vec<[OwnedByLowerId; LANES]>,
+    /// For each site the primitive with the lowest id that has it, as its packet times [`LANES`] plus its lane, or
+    /// [`NO_PRIMITIVE`].
     pub(crate) owners: Vec<u32>,
-    /// Of each site the sites at the other ends of edges.
-    pub(crate) edges: Incidences,
-    /// For each packet and lane, of the edge from each vertex to the next another triangle that has it, as packet and
-    /// lane, or [`NONE`].
-    pub(crate) across: Vec<[[u32; 3]; LANES]>,
-    /// Whether sites are exactly where their vertices are.
-    pub(crate) exact: bool,
+    /// For each site the sites at the other ends of edges.
+    pub(crate) edges: IncidenceLists,
+    /// For each packet and lane, and for the edge from each vertex to the next one, another triangle with this edge,
+    /// as its packet times [`LANES`] plus its lane, or [`NO_PRIMITIVE`].
+    pub(crate) opposite_triangles: Vec<[[u32; 3]; LANES]>,
+    /// Whether all sites are exactly at their vertices.
+    pub(crate) is_exact: bool,
 }
 
-/// What primitives have an edge.
-struct Edge {
+/// The primitives that have an edge.
+struct EdgeTriangles {
+    /// The lowest id of all primitives with the edge.
     lowest: PrimitiveId,
-    /// The first two triangles, as packets and lanes.
+    /// The first two triangles, as packet times [`LANES`] plus lane, or [`NO_PRIMITIVE`].
     triangles: [u32; 2],
 }
 
-/// No primitive.
-pub(crate) const NONE: u32 = u32::MAX;
+/// Marks that there is no primitive.
+pub(crate) const NO_PRIMITIVE: u32 = u32::MAX;
 
-/// Takes a packet, a lane of it, the primitive and its sites.
-type Visit<'a> = &'a mut dyn FnMut(usize, usize, PrimitiveId, &[usize]);
+/// A function that takes a packet, a lane of it, the id of the primitive and its sites.
+type VisitLane<'a> = &'a mut dyn FnMut(usize, usize, PrimitiveId, &[usize]);
 
-impl Features {
-    /// Those of the packets of a tree.
+impl EdgeAdjacency {
+    /// Collects the vertices and edges of the packets of a tree.
     #[allow(clippy::cast_possible_truncation, clippy::float_cmp, reason = "numbers of 32 bits; the same or not")]
-    pub(crate) fn of(tree: &PacketTree, delaunay: &Delaunay) -> Self {
+    pub(crate) fn from_tree(tree: &PacketTree, delaunay: &Delaunay) -> Self {
         let leaves = &tree.leaves;
         let count = delaunay.sites().len();
-        let place = |site: usize| delaunay.sites()[site].map(|x| x * delaunay.unit());
-        // The lowest primitive of each vertex, its packet and lane.
-        let mut owners = vec![(PrimitiveId::new(0), NONE); count];
-        let mut edge_owners: HashMap<(u32, u32), Edge> = HashMap::with_capacity(leaves.vertices.len());
-        let each = |visit: Visit<'_>| {
+        let position = |site: usize| delaunay.sites()[site].map(|x| x * delaunay.unit());
+        // For each site the primitive with the lowest id, and its packet and lane.
+        let mut owners = vec![(PrimitiveId::new(0), NO_PRIMITIVE); count];
+        let mut edge_owners: HashMap<(u32, u32), EdgeTriangles> = HashMap::with_capacity(leaves.vertices.len());
+        let for_each_lane = |visit: VisitLane<'_>| {
             for (number, packet) in leaves.packets.iter().enumerate().filter(|(_, p)| p.has_vertices()) {
                 for (lane, id) in packet.ids().iter().enumerate() {
-                    let (places, count) = packet.vertices_of(lane);
-                    let own = places.map(|place| delaunay.site_of(place));
-                    visit(number, lane, *id, &own[..count]);
+                    let (positions, count) = packet.vertices_of(lane);
+                    let sites = positions.map(|position| delaunay.site_of(position));
+                    visit(number, lane, *id, &sites[..count]);
                 }
             }
         };
-        each(&mut |number, lane, id, own| {
-            for &site in own {
-                if owners[site].1 == NONE || id < owners[site].0 {
+        for_each_lane(&mut |number, lane, id, sites| {
+            for &site in sites {
+                if owners[site].1 == NO_PRIMITIVE || id < owners[site].0 {
                     owners[site] = (id, (number * LANES + lane) as u32);
                 }
             }
-            for edge in edges(own) {
-                let edge = edge_owners.entry(edge).or_insert(Edge { lowest: id, triangles: [NONE; 2] });
+            for edge in edges_of(sites) {
+                let edge =
+                    edge_owners.entry(edge).or_insert(EdgeTriangles { lowest: id, triangles: [NO_PRIMITIVE; 2] });
                 edge.lowest = edge.lowest.min(id);
-                if let Some(free) = edge.triangles.iter_mut().find(|t| **t == NONE).filter(|_| own.len() == 3) {
+                if let Some(free) = edge.triangles.iter_mut().find(|t| **t == NO_PRIMITIVE).filter(|_| sites.len() == 3)
+                {
                     *free = (number * LANES + lane) as u32;
                 }
             }
         });
-        let mut shared = vec![[0; LANES]; leaves.packets.len()];
-        let mut across = vec![[[NONE; 3]; LANES]; leaves.packets.len()];
-        each(&mut |number, lane, id, own| {
-            let bits = &mut shared[number][lane];
-            for (i, &site) in own.iter().enumerate() {
+        let mut owned_by_lower_id = vec![[0; LANES]; leaves.packets.len()];
+        let mut opposite_triangles = vec![[[NO_PRIMITIVE; 3]; LANES]; leaves.packets.len()];
+        for_each_lane(&mut |number, lane, id, sites| {
+            let bits = &mut owned_by_lower_id[number][lane];
+            for (i, &site) in sites.iter().enumerate() {
                 *bits |= u8::from(owners[site].0 < id) << i;
             }
-            for (i, edge) in edges(own).enumerate() {
+            for (i, edge) in edges_of(sites).enumerate() {
                 let edge = &edge_owners[&edge];
                 *bits |= u8::from(edge.lowest < id) << (3 + i);
                 let other = edge.triangles.iter().find(|t| **t != (number * LANES + lane) as u32);
-                across[number][lane][i] = other.copied().unwrap_or(NONE);
+                opposite_triangles[number][lane][i] = other.copied().unwrap_or(NO_PRIMITIVE);
             }
         });
-        let mut proper: Vec<(u32, u32)> = edge_owners.into_keys().filter(|(a, b)| a != b).collect();
-        proper.sort_unstable();
-        let edges = Incidences::new(count, proper.iter().flat_map(|&(a, b)| [(a, b), (b, a)]));
-        let mut owners: Vec<u32> = owners.into_iter().map(|(_, place)| place).collect();
-        // Vertices that one site stands for, but for what is below the least coordinate of sites, are not the same.
-        let exact = (0..leaves.vertices.len()).all(|v| place(delaunay.site_of(v)) == leaves.vertices[v]);
-        if !exact {
-            shared.fill([0; LANES]);
-            owners.fill(NONE);
-            across.fill([[NONE; 3]; LANES]);
+        let mut proper_edges: Vec<(u32, u32)> = edge_owners.into_keys().filter(|(a, b)| a != b).collect();
+        proper_edges.sort_unstable();
+        let edges = IncidenceLists::new(count, proper_edges.iter().flat_map(|&(a, b)| [(a, b), (b, a)]));
+        let mut owners: Vec<u32> = owners.into_iter().map(|(_, primitive)| primitive).collect();
+        // Vertices that one site represents may differ where coordinates are too small for sites. Then nothing is
+        // known to be shared.
+        let is_exact = (0..leaves.vertices.len()).all(|v| position(delaunay.site_of(v)) == leaves.vertices[v]);
+        if !is_exact {
+            owned_by_lower_id.fill([0; LANES]);
+            owners.fill(NO_PRIMITIVE);
+            opposite_triangles.fill([[NO_PRIMITIVE; 3]; LANES]);
         }
-        Self { shared, owners, edges, across, exact }
+        Self { owned_by_lower_id, owners, edges, opposite_triangles, is_exact }
     }
 }
 
-/// The edges of a primitive, by its sites, the lower one first.
+/// Returns the edges of a primitive with some sites, the lower site of each edge first.
 #[allow(clippy::cast_possible_truncation, reason = "numbers of 32 bits")]
-fn edges(sites: &[usize]) -> impl Iterator<Item = (u32, u32)> + '_ {
+fn edges_of(sites: &[usize]) -> impl Iterator<Item = (u32, u32)> + '_ {
     let count = if sites.len() == 3 { 3 } else { sites.len() - 1 };
     (0..count).map(|i| {
         let (a, b) = (sites[i], sites[(i + 1) % sites.len()]);
@@ -110,14 +115,16 @@ fn edges(sites: &[usize]) -> impl Iterator<Item = (u32, u32)> + '_ {
     })
 }
 
-/// Numbers that belong to each site.
-pub(crate) struct Incidences {
+/// Lists of numbers, one for each site, in compressed form.
+pub(crate) struct IncidenceLists {
+    /// The index of the first number of each site, and the end.
     firsts: Vec<u32>,
+    /// The numbers of all sites, one site after the other.
     numbers: Vec<u32>,
 }
 
-impl Incidences {
-    /// Of pairs of a site and a number.
+impl IncidenceLists {
+    /// Collects the lists from pairs of a site and a number.
     pub(crate) fn new(sites: usize, pairs: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
         let mut firsts = vec![0u32; sites + 1];
         for (site, _) in pairs.clone() {
@@ -135,7 +142,8 @@ impl Incidences {
         Self { firsts, numbers }
     }
 
-    pub(crate) fn of(&self, site: usize) -> &[u32] {
+    /// Returns the numbers of a site.
+    pub(crate) fn get(&self, site: usize) -> &[u32] {
         &self.numbers[self.firsts[site] as usize..self.firsts[site + 1] as usize]
     }
 }

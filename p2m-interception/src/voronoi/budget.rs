@@ -1,55 +1,75 @@
-//! What building cells of vertices may take: past it the tree answers alone.
+//! The memory and work budget of a build of Voronoi cells. If it is exceeded, the index falls back to its tree.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Allowances are for at least so many primitives.
-const FEW: usize = 1000;
+/// The budget of a scene with fewer primitives is that of a scene with this many.
+const MIN_PRIMITIVES_FOR_BUDGET: usize = 1000;
 
-/// Room and work that are left. Whether it is used up does not depend on the order of what is done, and what was made is of
-/// no use then: so the index is the same on any number of threads.
-pub(crate) struct Allowance {
+/// The budget of a build. Whether it is exceeded does not depend on the order in which threads work, and nothing that
+/// was made is used then. So the index is the same on any number of threads.
+pub(crate) struct BuildBudget {
+    /// The largest size of one structure.
     bytes: usize,
+    /// The largest number of tests.
     work: u64,
-    done: AtomicU64,
-    is_over: AtomicBool,
+    /// The tests so far.
+    charged: AtomicU64,
+    /// Whether a limit was exceeded.
+    is_exceeded: AtomicBool,
 }
 
-impl Allowance {
-    /// So many bytes and packets tested for each of some primitives.
+impl BuildBudget {
+    /// Makes a budget of bytes and of tests for each of some primitives.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates; NaN is nothing")]
     pub(crate) fn new(bytes: f64, work: f64, primitives: usize) -> Self {
-        let count = primitives.max(FEW) as f64;
-        // Blocks and packets have numbers of 32 bits.
+        let count = primitives.max(MIN_PRIMITIVES_FOR_BUDGET) as f64;
+        // The numbers of blocks and packets have 32 bits.
         let bytes = ((bytes * count) as usize).min(size_of::<u32>() * u32::MAX as usize);
-        Self { bytes, work: (work * count) as u64, done: AtomicU64::new(0), is_over: AtomicBool::new(false) }
+        Self { bytes, work: (work * count) as u64, charged: AtomicU64::new(0), is_exceeded: AtomicBool::new(false) }
     }
 
-    /// Packets were tested at so many places, or primitives evaluated.
-    pub(crate) fn spend(&self, tests: usize) {
-        let done = self.done.fetch_add(tests as u64, Ordering::Relaxed) + tests as u64;
-        if done > self.work {
-            self.is_over.store(true, Ordering::Relaxed);
+    /// Charges tests of a packet at a point, or evaluations of a primitive.
+    pub(crate) fn charge(&self, tests: usize) {
+        let charged = self.charged.fetch_add(tests as u64, Ordering::Relaxed) + tests as u64;
+        if charged > self.work {
+            self.is_exceeded.store(true, Ordering::Relaxed);
         }
     }
 
-    /// A structure comes to have so many elements of a type; whether there is room.
-    pub(crate) fn holds<T>(&self, count: usize) -> bool {
+    /// Returns whether a structure may grow to some number of elements, and records it if it may not.
+    pub(crate) fn fits<T>(&self, count: usize) -> bool {
         let fits = count.saturating_mul(size_of::<T>()) <= self.bytes;
         if !fits {
-            self.is_over.store(true, Ordering::Relaxed);
+            self.is_exceeded.store(true, Ordering::Relaxed);
         }
         fits
     }
 
-    /// Whether it is used up.
-    pub(crate) fn is_over(&self) -> bool {
-        self.is_over.load(Ordering::Relaxed)
+    /// Returns whether the budget is exceeded.
+    pub(crate) fn is_exceeded(&self) -> bool {
+        self.is_exceeded.load(Ordering::Relaxed)
     }
 }
 
-/// How many tetrahedra vertices may have: sites have seven, and rarely more than nine (observed).
-pub(crate) fn most_tetrahedra(vertices: usize) -> usize {
-    const EACH: usize = 16;
-    // Four corners of each are counted in 32 bits.
-    vertices.max(FEW).saturating_mul(EACH).min(u32::MAX as usize / 4)
+/// Returns the number of tetrahedra that some vertices may have. Sites usually have seven tetrahedra, and rarely more
+/// than nine (observed).
+pub(crate) fn max_tetrahedra(vertices: usize) -> usize {
+    const TETRAHEDRA_PER_VERTEX: usize = 16;
+    // The corners of all tetrahedra are counted in 32 bits.
+    vertices.max(MIN_PRIMITIVES_FOR_BUDGET).saturating_mul(TETRAHEDRA_PER_VERTEX).min(u32::MAX as usize / 4)
+}
+
+/// The limits of a build, which all of its stages share.
+#[derive(Clone, Copy)]
+pub(crate) struct Limits<'a> {
+    /// The slack of the corner test: a dominator has to be nearer by this much.
+    pub(crate) slack: f64,
+    /// The largest number of packets in a list.
+    pub(crate) max_list_packets: usize,
+    /// The largest number of added sites.
+    pub(crate) max_added_sites: usize,
+    /// Whether all threads are used.
+    pub(crate) parallel: bool,
+    /// The memory and work budget.
+    pub(crate) budget: &'a BuildBudget,
 }

@@ -1,65 +1,68 @@
-//! Convex polytopes by their corners: a Voronoi cell, and parts of it.
+//! Convex polytopes, represented by their corners and edges: a Voronoi cell, and its parts.
 
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 
-/// A convex polytope with the distances of its corners from a site.
+/// A convex polytope around a site or beside it.
 #[derive(Default)]
-pub(crate) struct Hull {
+pub(crate) struct CellPolytope {
+    /// The positions of the corners.
     pub(crate) corners: Vec<V3>,
-    /// Of each corner the distance to the site with its error and the slack,
-    pub(crate) reaches: Vec<f64>,
-    /// and what its place may be off.
+    /// For each corner its distance from the site, increased by its error and by the slack.
+    pub(crate) upper_bounds: Vec<f64>,
+    /// For each corner an upper bound of the error of its position.
     pub(crate) errors: Vec<f64>,
-    /// The faces that meet in each corner, by numbers of their own.
+    /// For each corner the numbers of three faces that meet there.
     faces: Vec<[u32; 3]>,
-    /// Pairs of corners that are joined by an edge.
+    /// The pairs of corners that an edge joins.
     pub(crate) edges: Vec<[u32; 2]>,
-    /// The largest of the reaches and errors.
-    pub(crate) reach: f64,
-    pub(crate) error: f64,
+    /// The largest of `upper_bounds`.
+    pub(crate) max_upper_bound: f64,
+    /// The largest of `errors`.
+    pub(crate) max_error: f64,
 }
 
-impl Hull {
+impl CellPolytope {
+    /// Removes all corners, faces and edges.
     pub(crate) fn clear(&mut self) {
         self.corners.clear();
-        self.reaches.clear();
+        self.upper_bounds.clear();
         self.errors.clear();
         self.faces.clear();
         self.edges.clear();
-        (self.reach, self.error) = (0.0, 0.0);
+        (self.max_upper_bound, self.max_error) = (0.0, 0.0);
     }
 
     /// Adds a corner.
     pub(crate) fn push(&mut self, corner: V3, error: f64, faces: [u32; 3], site: &V3, slack: f64) {
         let distance = norm_squared(sub(corner, *site)).sqrt() * (1.0 + 8.0 * f64::EPSILON);
-        let reach = distance + error + slack;
+        let upper_bound = distance + error + slack;
         self.corners.push(corner);
         self.faces.push(faces);
-        self.reaches.push(reach);
+        self.upper_bounds.push(upper_bound);
         self.errors.push(error);
-        (self.reach, self.error) = (self.reach.max(reach), self.error.max(error));
+        (self.max_upper_bound, self.max_error) = (self.max_upper_bound.max(upper_bound), self.max_error.max(error));
     }
 
-    /// Whether it has about as many edges as a polytope with three of them at each corner. Planes that are nearly the same as others, as
-    /// those of cells in a plane are, may cut a face more than twice by rounding; what is left then has an edge between any two of the cuts, and each
-    /// further plane many times as many.
+    /// Returns whether the number of edges is plausible, which is about that of a polytope with three edges at each
+    /// corner. Where planes are nearly equal, as those of coplanar cells are, rounding may cut a face more than twice.
+    /// Then any two of the cuts are joined by an edge, and each further plane multiplies their number.
     pub(crate) fn is_simple(&self) -> bool {
         self.edges.len() <= 2 * self.corners.len() + 16
     }
 
-    /// Makes it the part of another one where `height` is at least zero, which is linear: the new face gets the number
-    /// `face`.
-    pub(crate) fn clip(&mut self, whole: &Self, height: impl Fn(&V3) -> f64, face: u32, site: &V3, slack: f64) {
+    /// Replaces the polytope by the part of another one where `height`, which is linear, is at least zero. The new
+    /// face gets the number `face`.
+    pub(crate) fn clip(&mut self, source: &Self, height: impl Fn(&V3) -> f64, face: u32, site: &V3, slack: f64) {
         self.clear();
-        let heights: Vec<f64> = whole.corners.iter().map(height).collect();
+        let heights: Vec<f64> = source.corners.iter().map(height).collect();
         let mut numbers = vec![u32::MAX; heights.len()];
-        let number = |hull: &Self| u32::try_from(hull.corners.len()).expect("few corners");
-        for (i, corner) in whole.corners.iter().enumerate().filter(|(i, _)| heights[*i] >= 0.0) {
+        let number = |polytope: &Self| u32::try_from(polytope.corners.len()).expect("few corners");
+        for (i, corner) in source.corners.iter().enumerate().filter(|(i, _)| heights[*i] >= 0.0) {
             numbers[i] = number(self);
-            self.push(*corner, whole.errors[i], whole.faces[i], site, slack);
+            self.push(*corner, source.errors[i], source.faces[i], site, slack);
         }
         let first = number(self);
-        for [a, b] in whole.edges.iter().map(|e| e.map(|i| i as usize)) {
+        for [a, b] in source.edges.iter().map(|e| e.map(|i| i as usize)) {
             let (a, b) = if heights[a] >= 0.0 { (a, b) } else { (b, a) };
             if heights[a] < 0.0 {
                 continue;
@@ -69,22 +72,22 @@ impl Hull {
                 continue;
             }
             let t = heights[a] / (heights[a] - heights[b]);
-            let (from, to) = (whole.corners[a], whole.corners[b]);
+            let (from, to) = (source.corners[a], source.corners[b]);
             let corner = std::array::from_fn(|k| from[k] + t * (to[k] - from[k]));
-            // Of the ends and of the sum; a way along the edge does not matter.
-            let error = whole.errors[a].max(whole.errors[b]) + whole.reach * 4.0 * f64::EPSILON;
+            // The error is that of the ends and of the sum. A displacement along the edge is harmless.
+            let error = source.errors[a].max(source.errors[b]) + source.max_upper_bound * 4.0 * f64::EPSILON;
             let mut faces = [face; 3];
-            let common = whole.faces[a].iter().filter(|f| whole.faces[b].contains(f));
+            let common = source.faces[a].iter().filter(|f| source.faces[b].contains(f));
             faces.iter_mut().zip(common.take(2)).for_each(|(to, f)| *to = *f);
             self.edges.push([numbers[a], number(self)]);
             self.push(corner, error, faces, site, slack);
         }
-        // The new face has an edge with each face that it cuts.
-        let all: Vec<(u32, u32)> = (first..number(self))
+        // The new face shares an edge with each face that it cuts.
+        let ends_on_faces: Vec<(u32, u32)> = (first..number(self))
             .flat_map(|i| self.faces[i as usize].into_iter().filter(|f| *f != face).map(move |f| (f, i)))
             .collect();
-        for (n, (f, i)) in all.iter().enumerate() {
-            let others = all[..n].iter().filter(|(g, _)| g == f);
+        for (n, (f, i)) in ends_on_faces.iter().enumerate() {
+            let others = ends_on_faces[..n].iter().filter(|(g, _)| g == f);
             self.edges.extend(others.map(|(_, j)| [*i, *j]));
         }
     }
@@ -97,90 +100,91 @@ mod tests {
     use rand::RngExt;
     use std::collections::BTreeSet;
 
-    fn cube() -> Hull {
-        let mut hull = Hull::default();
+    fn cube() -> CellPolytope {
+        let mut polytope = CellPolytope::default();
         for i in 0..8u32 {
             let bits = [0, 1, 2].map(|k| i >> k & 1);
-            // Two faces to an axis.
+            // Each axis has two faces.
             let faces = std::array::from_fn(|k| 2 * k as u32 + bits[k]);
-            hull.push(bits.map(f64::from), 0.0, faces, &[0.5; 3], 0.0);
-            hull.edges.extend((0..3).filter(|k| i >> k & 1 == 0).map(|k| [i, i | 1 << k]));
+            polytope.push(bits.map(f64::from), 0.0, faces, &[0.5; 3], 0.0);
+            polytope.edges.extend((0..3).filter(|k| i >> k & 1 == 0).map(|k| [i, i | 1 << k]));
         }
-        hull
+        polytope
     }
 
-    /// A cube that is cut again and again: each time what is left is a polytope by Euler's formula, whose corners are
-    /// above all planes and on the faces that they say, and of which no point is lost.
+    /// A cube is cut again and again. Each time the rest is a polytope by Euler's formula, its corners are above all
+    /// planes and on the faces that they name, and no point of it is lost.
     #[test]
     fn what_is_cut_off_is_what_lies_below() {
         let mut cuts = 0;
         let cases = p2m_testkit::cases(300, 150);
         for case in cases.clone() {
             let mut rng = p2m_testkit::rng("hulls", case);
-            let (mut hull, mut planes) = (cube(), Vec::<(V3, f64)>::new());
+            let (mut polytope, mut planes) = (cube(), Vec::<(V3, f64)>::new());
             for face in 6..14 {
                 let normal: V3 = p2m_testkit::vector(&mut rng).into();
                 let inside: V3 = std::array::from_fn(|_| rng.random_range(0.2..0.8));
                 let offset = dot(inside, normal);
                 planes.push((normal, offset));
-                let mut next = Hull::default();
-                next.clip(&hull, |x| dot(*x, normal) - offset, face, &[0.5; 3], 0.0);
-                hull = next;
-                let faces: BTreeSet<u32> = hull.faces.iter().flatten().copied().collect();
-                if hull.corners.is_empty() {
+                let mut next = CellPolytope::default();
+                next.clip(&polytope, |x| dot(*x, normal) - offset, face, &[0.5; 3], 0.0);
+                polytope = next;
+                let faces: BTreeSet<u32> = polytope.faces.iter().flatten().copied().collect();
+                if polytope.corners.is_empty() {
                     break;
                 }
-                assert_eq!(hull.corners.len() + faces.len(), hull.edges.len() + 2, "case {case}, face {face}");
-                assert!(hull.is_simple());
+                assert_eq!(polytope.corners.len() + faces.len(), polytope.edges.len() + 2, "case {case}, face {face}");
+                assert!(polytope.is_simple());
                 cuts += 1;
-                for (corner, faces) in hull.corners.iter().zip(&hull.faces) {
+                for (corner, faces) in polytope.corners.iter().zip(&polytope.faces) {
                     for (number, (normal, offset)) in (6..).zip(&planes) {
                         let height = dot(*corner, *normal) - offset;
                         assert!(height > -1e-12 && (!faces.contains(&number) || height < 1e-12), "{height}");
                     }
                 }
             }
-            // In a direction the farthest of random points that are above all planes is not beyond all corners.
+            // A random point above all planes is in no direction beyond all corners.
             for _ in 0..200 {
                 let point: V3 = std::array::from_fn(|_| rng.random());
                 if planes.iter().all(|(normal, offset)| dot(point, *normal) > *offset) {
-                    let way: V3 = p2m_testkit::vector(&mut rng).into();
-                    let most = hull.corners.iter().map(|c| dot(*c, way)).fold(f64::NEG_INFINITY, f64::max);
-                    assert!(dot(point, way) <= most + 1e-12, "case {case}");
+                    let direction: V3 = p2m_testkit::vector(&mut rng).into();
+                    let farthest =
+                        polytope.corners.iter().map(|c| dot(*c, direction)).fold(f64::NEG_INFINITY, f64::max);
+                    assert!(dot(point, direction) <= farthest + 1e-12, "case {case}");
                 }
             }
         }
         assert!(cases.have_more_than(1000, cuts), "{cuts}");
     }
 
-    /// Planes that are the same but for rounding, as those of cells in a plane are.
+    /// The planes differ only by rounding, as those of coplanar cells do.
     #[test]
-    fn what_rounding_has_made_of_a_polytope_is_told_before_it_grows() {
-        let mut told = 0;
+    fn polytopes_that_rounding_has_spoiled_are_detected_before_they_grow() {
+        let mut detected = 0;
         let cases = p2m_testkit::cases(300, 150);
         for case in cases.clone() {
             let mut rng = p2m_testkit::rng("hulls of rounding", case);
-            let mut hull = cube();
+            let mut polytope = cube();
             for face in 6..14 {
                 let normal: V3 = p2m_testkit::vector(&mut rng).into();
-                let mut next = Hull::default();
-                next.clip(&hull, |x| dot(sub(*x, [0.5; 3]), normal) + 0.2, face, &[0.5; 3], 0.0);
-                hull = next;
+                let mut next = CellPolytope::default();
+                next.clip(&polytope, |x| dot(sub(*x, [0.5; 3]), normal) + 0.2, face, &[0.5; 3], 0.0);
+                polytope = next;
             }
             let normal: V3 = p2m_testkit::vector(&mut rng).into();
             for face in 14..80 {
                 let [tilt, offset]: [V3; 2] = [(); 2].map(|()| p2m_testkit::vector(&mut rng).into());
                 let normal: V3 = std::array::from_fn(|k| normal[k] + 2e-16 * tilt[k]);
-                let mut next = Hull::default();
-                next.clip(&hull, |x| dot(sub(*x, [0.5; 3]), normal) + 1e-16 * offset[0], face, &[0.5; 3], 0.0);
-                hull = next;
-                if !hull.is_simple() {
-                    told += 1;
+                let mut next = CellPolytope::default();
+                next.clip(&polytope, |x| dot(sub(*x, [0.5; 3]), normal) + 1e-16 * offset[0], face, &[0.5; 3], 0.0);
+                polytope = next;
+                if !polytope.is_simple() {
+                    detected += 1;
                     break;
                 }
-                assert!(hull.corners.len() < 1000, "{} corners", hull.corners.len());
+                assert!(polytope.corners.len() < 1000, "{} corners", polytope.corners.len());
             }
         }
-        assert!(cases.have_more_than(10, told), "{told}");
+        assert!(cases.have_more_than(10, detected), "{detected}");
     }
 }

@@ -1,35 +1,37 @@
-//! Spheres through four points: corners of Voronoi cells.
+//! The spheres through four points, whose centres are the corners of Voronoi cells.
 //!
-//! With A, B, C from the first point to the others the centre lies at (|A|^2 B x C + |B|^2 C x A + |C|^2 A x B) / (2 A
-//! . B x C) from it. Computed in f64, and in double-double arithmetic where that is too far off for thin tetrahedra;
-//! the error is bounded in either case.
+//! Let A, B, C be the offsets from the first point to the others. The circumcentre lies at (|A|^2 B x C + |B|^2 C x A
+//! + |C|^2 A x B) / (2 A . B x C) from the first point. It is computed in f64, and in double-double arithmetic if the
+//! error is too large because the tetrahedron is thin. The error is bounded in either case.
 
 use p2m_core::engine::double::{self, Double};
 use p2m_core::engine::number::{Number, cross, dot};
 use p2m_core::engine::vector::V3;
 use p2m_core::engine::vector::power_of_two;
 
-/// The centre of a sphere.
+/// The circumcentre of a tetrahedron.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Centre {
-    pub(crate) place: V3,
-    /// How far it may be from where it is.
+pub(crate) struct Circumcentre {
+    /// The computed position.
+    pub(crate) position: V3,
+    /// An upper bound of the distance from the computed position to the exact one.
     pub(crate) error: f64,
 }
 
-/// What numerator and denominator may be off in f64, in parts of the sizes of what is summed: 12 roundings at most.
+/// The error bound of the numerator and of the denominator in f64, relative to the sums of their absolute terms. It
+/// covers 12 roundings.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
-/// A larger part of the radius is worth more precise arithmetic.
-const PART: f64 = power_of_two(-24);
+/// The centre is computed in double-double arithmetic if its error in f64 is more than this part of the radius.
+const MAX_RELATIVE_ERROR: f64 = power_of_two(-24);
 
-/// The numerator and half of the denominator.
+/// Returns the numerator, and half of the denominator.
 fn quotient<N: Number>([a, b, c]: [[N; 3]; 3]) -> ([N; 3], N) {
     let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
     let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
     (std::array::from_fn(|k| aa * bc[k] + bb * ca[k] + cc * ab[k]), dot(a, bc))
 }
 
-/// The sizes of what is summed in them.
+/// Returns the sums of the absolute terms of the numerator and of half of the denominator.
 fn sizes(offsets: &[V3; 3]) -> (V3, f64) {
     let [a, b, c] = offsets.map(|v| v.map(f64::abs));
     let cross =
@@ -39,15 +41,17 @@ fn sizes(offsets: &[V3; 3]) -> (V3, f64) {
     (std::array::from_fn(|k| aa * bc[k] + bb * ca[k] + cc * ab[k]), dot(a, bc))
 }
 
-/// The centre of the sphere through four points, which are not in a plane; `None` if it cannot be told. Coordinates are
+/// Returns the circumcentre of four points, or `None` if they are in a plane or too nearly so. Coordinates have to be
 /// zero or between 2^-161 and 2^100 in size.
-pub(crate) fn centre(points: &[V3; 4]) -> Option<Centre> {
+pub(crate) fn circumcentre(points: &[V3; 4]) -> Option<Circumcentre> {
     let [o, rest @ ..] = points;
     let offsets = rest.map(|p| std::array::from_fn(|k| p[k] - o[k]));
     let sizes = sizes(&offsets);
     let in_f64 = finish(o, quotient(offsets), &sizes, ROUNDING);
-    let good = |c: &Centre| c.error <= PART * (0..3).map(|k| (c.place[k] - o[k]).abs()).fold(0.0, f64::max);
-    if let Some(found) = in_f64.filter(good) {
+    let is_precise = |c: &Circumcentre| {
+        c.error <= MAX_RELATIVE_ERROR * (0..3).map(|k| (c.position[k] - o[k]).abs()).fold(0.0, f64::max)
+    };
+    if let Some(found) = in_f64.filter(is_precise) {
         return Some(found);
     }
     let offsets = rest.map(|p| std::array::from_fn(|k| Double::difference(p[k], o[k])));
@@ -55,22 +59,23 @@ pub(crate) fn centre(points: &[V3; 4]) -> Option<Centre> {
     finish(o, (numerator.map(Double::round), half.round()), &sizes, double::ROUNDING)
 }
 
-fn finish(o: &V3, (numerator, half): (V3, f64), sizes: &(V3, f64), rounding: f64) -> Option<Centre> {
-    let least = half.abs() - rounding * sizes.1;
-    if least.is_nan() || least <= 0.0 {
+/// Divides, and bounds the error. The result is `None` if the denominator may be 0.
+fn finish(o: &V3, (numerator, half): (V3, f64), sizes: &(V3, f64), rounding: f64) -> Option<Circumcentre> {
+    let min_half = half.abs() - rounding * sizes.1;
+    if min_half.is_nan() || min_half <= 0.0 {
         return None;
     }
     let mut error = 0.0;
-    let place = std::array::from_fn(|k| {
+    let position = std::array::from_fn(|k| {
         let x = numerator[k] / (2.0 * half);
-        // Of numerator and denominator, of the quotient, and of the sum.
-        let off = (rounding * sizes.0[k] * 0.5 + x.abs() * rounding * sizes.1) / least;
-        let place = o[k] + x;
-        error += off + (x.abs() + place.abs()) * (2.0 * f64::EPSILON);
-        place
+        // These are the errors of numerator and denominator, of the quotient, and of the sum.
+        let component_error = (rounding * sizes.0[k] * 0.5 + x.abs() * rounding * sizes.1) / min_half;
+        let position = o[k] + x;
+        error += component_error + (x.abs() + position.abs()) * (2.0 * f64::EPSILON);
+        position
     });
-    // The sum of the components' errors is at least the length of the whole, with room for its own rounding.
-    (error < f64::INFINITY).then_some(Centre { place, error: error * (1.0 + 1e-9) })
+    // The sum of the errors of the components is at least the length of the error. The factor covers its own rounding.
+    (error < f64::INFINITY).then_some(Circumcentre { position, error: error * (1.0 + 1e-9) })
 }
 
 #[cfg(test)]
@@ -82,13 +87,13 @@ mod tests {
     use rand::{Rng, RngExt};
     use std::cmp::Ordering;
 
-    /// Whether a place is within `error` of the centre: with N the exact numerator and 2 D the denominator, |2 D x - N|
-    /// <= 2 |D| error, in integers.
-    fn is_right(points: &[V3; 4], found: &Centre) -> bool {
-        let exponent = common_exponent(points.as_flattened().iter().chain(&found.place).chain(&[found.error]));
+    /// Returns whether a position is within `error` of the exact circumcentre. With N the exact numerator and 2 D the
+    /// denominator, this means |2 D x - N| <= 2 |D| error, which integers decide.
+    fn is_within_error(points: &[V3; 4], found: &Circumcentre) -> bool {
+        let exponent = common_exponent(points.as_flattened().iter().chain(&found.position).chain(&[found.error]));
         let [o, rest @ ..] = points;
         let [a, b, c] = rest.map(|p| difference(p, *o, exponent));
-        let x = difference(found.place, *o, exponent);
+        let x = difference(found.position, *o, exponent);
         let error = integers::integer(found.error, exponent);
         let (bc, ca, ab) = (integers::cross(&b, &c), integers::cross(&c, &a), integers::cross(&a, &b));
         let (aa, bb, cc) = (integers::dot(&a, &a), integers::dot(&b, &b), integers::dot(&c, &c));
@@ -117,13 +122,13 @@ mod tests {
                 *p = std::array::from_fn(|k| around[k] + p[k] * scale);
             }
             let [a, b, c, d] = points;
-            match centre(&points) {
+            match circumcentre(&points) {
                 Some(found) => {
-                    assert!(is_right(&points, &found), "{points:?} {found:?}");
-                    let closer = Centre { error: found.error * 2f64.powi(-10), ..found };
-                    precise += usize::from(!is_right(&points, &closer));
+                    assert!(is_within_error(&points, &found), "{points:?} {found:?}");
+                    let tighter = Circumcentre { error: found.error * 2f64.powi(-10), ..found };
+                    precise += usize::from(!is_within_error(&points, &tighter));
                 }
-                // Four points in a plane have none.
+                // Only four points in a plane have no circumcentre.
                 None => unknown += usize::from(orientation_3d(a, b, c, d) != Ordering::Equal),
             }
         }

@@ -1,7 +1,8 @@
-//! Which of two points is nearer to a query, without rounding.
+//! The exact comparison of the distances from a query point to two other points.
 //!
-//! |q - v|^2 - |q - w|^2 = (w - v) . (2 q - v - w). Its sign is told by f64 if that exceeds its error, else by
-//! double-double numbers, of which the differences are exact, else by integers.
+//! The sign is that of |q - v|^2 - |q - w|^2 = (w - v) . (2 q - v - w). It is computed in f64. If the result does not
+//! exceed its error bound, it is computed in double-double arithmetic, where the differences are exact, and finally in
+//! integers.
 
 use p2m_core::engine::double::{self, Double};
 use p2m_core::engine::integers::{self, common_exponent, integer};
@@ -9,34 +10,35 @@ use p2m_core::engine::number::dot;
 use p2m_core::engine::vector::V3;
 use std::cmp::Ordering;
 
-/// What the sum of three products may be off in f64, in parts of their sizes: seven roundings.
+/// The error bound of a sum of three products in f64, relative to the sum of their absolute values. It
+/// covers seven roundings.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// How the distance from `q` to `v` compares with that to `w`. All coordinates are zero or between 2^-161 and 2^100 in
-/// size, so that no product matters that underflows.
+/// Compares the distance from `q` to `v` with the distance from `q` to `w`. All coordinates have to be zero or between
+/// 2^-161 and 2^100 in size, so that products that underflow are negligible.
 pub(crate) fn compare(q: &V3, v: &V3, w: &V3) -> Ordering {
-    let way: V3 = std::array::from_fn(|k| w[k] - v[k]);
+    let offset: V3 = std::array::from_fn(|k| w[k] - v[k]);
     let sum: V3 = std::array::from_fn(|k| (q[k] - v[k]) + (q[k] - w[k]));
     let (mut s, mut size) = (0.0, 0.0);
     for k in 0..3 {
-        s += way[k] * sum[k];
-        // The sum may cancel.
-        size += way[k].abs() * ((q[k] - v[k]).abs() + (q[k] - w[k]).abs());
+        s += offset[k] * sum[k];
+        // The two terms of the sum may cancel, so the bound uses their sizes.
+        size += offset[k].abs() * ((q[k] - v[k]).abs() + (q[k] - w[k]).abs());
     }
     if s.abs() > ROUNDING * size {
         return s.total_cmp(&0.0);
     }
-    let way: [Double; 3] = std::array::from_fn(|k| Double::difference(w[k], v[k]));
+    let offset: [Double; 3] = std::array::from_fn(|k| Double::difference(w[k], v[k]));
     let sum: [Double; 3] = std::array::from_fn(|k| Double::difference(q[k], v[k]) + Double::difference(q[k], w[k]));
-    let s = dot(way, sum).round();
+    let s = dot(offset, sum).round();
     if s.abs() > double::ROUNDING * size {
         return s.total_cmp(&0.0);
     }
     let exponent = common_exponent([*q, *v, *w].as_flattened());
     let [q, v, w] = [q, v, w].map(|p| p.map(|x| integer(x, exponent)));
-    let way = std::array::from_fn(|k| &w[k] - &v[k]);
+    let offset = std::array::from_fn(|k| &w[k] - &v[k]);
     let sum = std::array::from_fn(|k| &q[k] + &q[k] - &v[k] - &w[k]);
-    integers::sign(&integers::dot(&way, &sum))
+    integers::sign(&integers::dot(&offset, &sum))
 }
 
 #[cfg(test)]
@@ -45,7 +47,7 @@ mod tests {
     use dashu_int::IBig;
     use rand::RngExt;
 
-    /// Queries on the plane between two points, next to it by some bits, and anywhere.
+    /// The queries are on the plane between two points, next to it by some bits, and anywhere.
     #[test]
     fn the_sign_is_that_of_the_integers() {
         let mut ties = 0;

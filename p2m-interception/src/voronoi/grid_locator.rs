@@ -1,93 +1,106 @@
-//! Where a walk begins: for each cell of a grid the site that is nearest to its middle. One grid lies around the scene;
-//! its cells with several sites are cut into 64. A coarser one lies over the whole domain.
+//! The default locator: a grid whose cells store the site nearest to their centre.
+//!
+//! One grid lies around the scene. Its cells with several sites are divided into 64 finer cells. A coarser grid
+//! covers
+//! the whole domain.
 
 use crate::voronoi::locator::LocatorSites;
-use crate::voronoi::neighbours::Fans;
+use crate::voronoi::neighbours::NeighbourTable;
 use p2m_core::engine::simd::{InstructionSet, SimdKernel, prefetch};
 use p2m_core::engine::vector::V3;
 use p2m_core::storage::{Array, LoadError, Reader, Writer};
 
-/// Sites by a grid of cells.
+/// A grid of cells, each with a site.
 #[derive(Clone, Debug)]
-pub(crate) struct Grid {
+struct Grid {
+    /// The low corner of the grid.
     low: V3,
-    /// Cells in a unit of length.
-    per_length: f64,
+    /// The number of cells in a unit of length.
+    cells_per_length: f64,
+    /// The numbers of cells along the axes.
     counts: [usize; 3],
-    /// A site; or, with [`CUT`], the number of a finer grid.
+    /// The site of each cell, x first. With [`REFINED_FLAG`] it is the number of a divided cell instead.
     cells: Array<u32>,
-    fine: Array<[u32; FINE * FINE * FINE]>,
+    /// The sites of the finer cells of each divided cell, x first.
+    fine: Array<[u32; FINE_CELLS_PER_SIDE * FINE_CELLS_PER_SIDE * FINE_CELLS_PER_SIDE]>,
 }
 
-/// The default locator of an index: a fine grid around the scene and a coarse one over the whole domain.
+/// The locator of an index by default.
 #[derive(Clone, Debug)]
-pub(crate) struct Hints {
+pub(crate) struct GridLocator {
+    /// The grid around the scene.
     near: Grid,
+    /// The grid over the whole domain.
     far: Grid,
 }
 
-const CUT: u32 = 1 << 31;
-/// Cells along a side of a cell that is cut.
-const FINE: usize = 4;
-/// Cells of the grid around the scene for each site, and of the other one along a side.
-const CELLS: f64 = 2.0;
-const SIDE: f64 = 24.0;
+/// The flag of a cell that is divided into finer cells.
+const REFINED_FLAG: u32 = 1 << 31;
+/// The number of finer cells along an edge of a divided cell.
+const FINE_CELLS_PER_SIDE: usize = 4;
+/// The number of cells for each site in the grid around the scene.
+const CELLS_PER_SITE: f64 = 2.0;
+/// The number of cells along an edge of the grid over the domain, if there are enough sites.
+const FAR_CELLS_PER_SIDE: f64 = 24.0;
 
 impl Grid {
-    /// Over a box, of about `count` cubes.
+    /// Makes a grid of about `count` cubes over a box, without sites.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "few cells")]
     fn new(low: V3, high: V3, count: f64) -> Self {
         let extent: V3 = std::array::from_fn(|k| high[k] - low[k]);
         let side = (extent.iter().product::<f64>() / count).cbrt();
         let counts = extent.map(|x| ((x / side).ceil() as usize).max(1));
-        let per_length = side.recip();
-        Self { low, per_length, counts, cells: vec![0; counts.iter().product()].into(), fine: Array::default() }
+        let cells_per_length = side.recip();
+        Self { low, cells_per_length, counts, cells: vec![0; counts.iter().product()].into(), fine: Array::default() }
     }
 
-    /// The number of the cell of a place, and the place in cells.
+    /// Returns the number of the cell that contains a point, and the point in units of cells.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, and few cells")]
-    fn cell(&self, place: &V3) -> Option<(usize, V3)> {
+    fn cell_at(&self, point: &V3) -> Option<(usize, V3)> {
         let mut number = 0;
-        let mut at = [0.0; 3];
+        let mut coordinates = [0.0; 3];
         for k in (0..3).rev() {
-            let x = (place[k] - self.low[k]) * self.per_length;
-            // Not for NaN either.
+            let x = (point[k] - self.low[k]) * self.cells_per_length;
+            // The comparison is false if a coordinate is NaN.
             if !(x >= 0.0 && x < self.counts[k] as f64) {
                 return None;
             }
-            at[k] = x;
+            coordinates[k] = x;
             number = number * self.counts[k] + x as usize;
         }
-        Some((number, at))
+        Some((number, coordinates))
     }
 
-    /// The site for a place in the grid.
+    /// Returns the site of the cell that contains a point.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, and few cells")]
-    fn site(&self, place: &V3) -> Option<usize> {
-        let (number, at) = self.cell(place)?;
+    fn site_at(&self, point: &V3) -> Option<usize> {
+        let (number, coordinates) = self.cell_at(point)?;
         let cell = self.cells[number];
-        if cell & CUT == 0 {
+        if cell & REFINED_FLAG == 0 {
             return Some(cell as usize);
         }
-        Some(self.fine[(cell & !CUT) as usize][within(&at)] as usize)
+        Some(self.fine[(cell & !REFINED_FLAG) as usize][fine_cell_at(&coordinates)] as usize)
     }
 
-    /// Asks for the cell of a place, if the grid has it.
+    /// Prefetches the cell that contains a point. The result is `false` if the point is outside of the grid.
     #[inline(always)]
-    fn prefetch(&self, place: &V3) -> bool {
-        let number = self.cell(place).map(|(number, _)| number);
+    fn prefetch(&self, point: &V3) -> bool {
+        let number = self.cell_at(point).map(|(number, _)| number);
         number.map(|number| prefetch(self.cells.as_ptr().wrapping_add(number).cast())).is_some()
     }
 
-    /// Asks for its finer cell, if there is one; `false` if the grid does not have the place.
+    /// Prefetches the finer cell that contains a point, if its cell is divided. The result is `false` if the point is
+    /// outside of the grid.
     #[inline(always)]
-    fn prefetch_fine(&self, place: &V3) -> bool {
-        let Some((number, at)) = self.cell(place) else { return false };
+    fn prefetch_fine(&self, point: &V3) -> bool {
+        let Some((number, coordinates)) = self.cell_at(point) else { return false };
         let cell = self.cells[number];
-        if cell & CUT != 0 {
-            prefetch(self.fine[(cell & !CUT) as usize].as_ptr().wrapping_add(within(&at)).cast());
+        if cell & REFINED_FLAG != 0 {
+            prefetch(
+                self.fine[(cell & !REFINED_FLAG) as usize].as_ptr().wrapping_add(fine_cell_at(&coordinates)).cast(),
+            );
         }
         true
     }
@@ -97,15 +110,16 @@ impl Grid {
     }
 }
 
-/// The number of the finer cell of a place that is given in cells.
+/// Returns the index of the finer cell at a point, which is given in units of cells.
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, and few cells")]
-fn within(at: &V3) -> usize {
-    let [x, y, z] = at.map(|x| (x * FINE as f64) as usize & (FINE - 1));
-    (z * FINE + y) * FINE + x
+fn fine_cell_at(coordinates: &V3) -> usize {
+    let [x, y, z] = coordinates.map(|x| (x * FINE_CELLS_PER_SIDE as f64) as usize & (FINE_CELLS_PER_SIDE - 1));
+    (z * FINE_CELLS_PER_SIDE + y) * FINE_CELLS_PER_SIDE + x
 }
 
 impl Grid {
+    /// Adds the grid to a file.
     fn save<'a>(&'a self, name: &str, writer: &mut Writer<'a>) {
         writer.put(&format!("{name}/cells"), &self.cells);
         writer.put(&format!("{name}/finer"), &self.fine);
@@ -119,26 +133,30 @@ impl Grid {
         self.save_shape(name, writer);
     }
 
+    /// Adds the fields that are not arrays.
     fn save_shape(&self, name: &str, writer: &mut Writer<'_>) {
-        writer.put_copy(&format!("{name}/place"), &[[self.low[0], self.low[1], self.low[2], self.per_length]]);
+        writer.put_copy(&format!("{name}/place"), &[[self.low[0], self.low[1], self.low[2], self.cells_per_length]]);
         writer.put_copy(&format!("{name}/counts"), &[self.counts.map(|n| n as u64)]);
     }
 
+    /// Loads a grid from a file.
     fn load(name: &str, reader: &Reader) -> Result<Self, LoadError> {
-        let [x, y, z, per_length] = reader.one(&format!("{name}/place"))?;
+        let [x, y, z, cells_per_length] = reader.one(&format!("{name}/place"))?;
         let counts = reader.one::<[u64; 3]>(&format!("{name}/counts"))?;
         let cells: Array<u32> = reader.array(&format!("{name}/cells"))?;
-        let fits = counts.iter().try_fold(1u64, |product, n| product.checked_mul(*n)) == Some(cells.len() as u64);
-        if !fits {
+        let is_consistent =
+            counts.iter().try_fold(1u64, |product, n| product.checked_mul(*n)) == Some(cells.len() as u64);
+        if !is_consistent {
             return Err(LoadError::Inconsistent { section: name.to_owned() });
         }
         #[allow(clippy::cast_possible_truncation, reason = "there are as many cells in memory")]
         let counts = counts.map(|n| n as usize);
-        Ok(Self { low: [x, y, z], per_length, counts, cells, fine: reader.array(&format!("{name}/finer"))? })
+        Ok(Self { low: [x, y, z], cells_per_length, counts, cells, fine: reader.array(&format!("{name}/finer"))? })
     }
 }
 
-impl Hints {
+impl GridLocator {
+    /// Adds the locator to a file.
     pub(crate) fn save<'a>(&'a self, writer: &mut Writer<'a>) {
         self.near.save("hints/near", writer);
         self.far.save("hints/far", writer);
@@ -150,89 +168,106 @@ impl Hints {
         self.far.save_copy("hints/far", writer);
     }
 
+    /// Loads a locator from a file.
     pub(crate) fn load(reader: &Reader) -> Result<Self, LoadError> {
         Ok(Self { near: Grid::load("hints/near", reader)?, far: Grid::load("hints/far", reader)? })
     }
 }
 
-impl Hints {
-    /// Makes both grids for some sites.
+impl GridLocator {
+    /// Builds both grids.
     pub(crate) fn new(sites: &LocatorSites<'_>) -> Self {
-        let count = sites.places().count() as f64;
-        let [mut near, mut far] = [(sites.own, CELLS * count), (sites.domain, SIDE.powi(3).min(CELLS * count))]
-            .map(|([low, high], count)| Grid::new(low, high, count));
+        let count = sites.positions().count() as f64;
+        let [mut near, mut far] = [
+            (sites.scene_box, CELLS_PER_SITE * count),
+            (sites.domain_box, FAR_CELLS_PER_SIDE.powi(3).min(CELLS_PER_SITE * count)),
+        ]
+        .map(|([low, high], count)| Grid::new(low, high, count));
         let mut cells = std::mem::take(&mut near.cells);
         cells.edit(|cells| {
-            let numbers = sites.places().filter_map(|place| near.cell(&place));
+            let numbers = sites.positions().filter_map(|point| near.cell_at(&point));
             numbers.for_each(|(number, _)| cells[number] += 1);
         });
         near.cells = cells;
-        [&mut near, &mut far].into_iter().for_each(|grid| sites.fill(grid));
+        [&mut near, &mut far]
+            .into_iter()
+            .for_each(|grid| sites.isa.run(FillGrid { grid, neighbours: sites.neighbours, first: sites.first() }));
         Self { near, far }
     }
 
     #[inline(always)]
-    pub(crate) fn start(&self, place: &V3) -> Option<usize> {
-        self.near.site(place).or_else(|| self.far.site(place))
+    /// Returns the site of the cell that contains a point, or `None` outside of both grids.
+    pub(crate) fn start(&self, point: &V3) -> Option<usize> {
+        self.near.site_at(point).or_else(|| self.far.site_at(point))
     }
 
+    /// Returns the heap memory in bytes.
     pub(crate) fn memory(&self) -> usize {
         self.near.memory() + self.far.memory()
     }
 
     #[inline(always)]
-    pub(crate) fn prefetch(&self, place: &V3) {
-        let _ = self.near.prefetch(place) || self.far.prefetch(place);
+    /// Prefetches the memory that [`start`](Self::start) reads first.
+    pub(crate) fn prefetch(&self, point: &V3) {
+        let _ = self.near.prefetch(point) || self.far.prefetch(point);
     }
 
     #[inline(always)]
-    pub(crate) fn prefetch_more(&self, place: &V3) {
-        let _ = self.near.prefetch_fine(place) || self.far.prefetch_fine(place);
+    /// Prefetches the memory that [`start`](Self::start) reads second.
+    pub(crate) fn prefetch_more(&self, point: &V3) {
+        let _ = self.near.prefetch_fine(point) || self.far.prefetch_fine(point);
     }
 }
 
-/// Fills a grid, whose cells hold how many sites are in them, there and back along each axis, so that every walk is
-/// short.
-pub(crate) struct Fill<'a> {
-    pub(crate) grid: &'a mut Grid,
-    pub(crate) fans: &'a Fans,
-    pub(crate) first: usize,
+/// A SIMD kernel that finds the site of each cell. At first a cell has the number of sites in it. The cells are
+/// visited back and forth along the axes, so that every walk from the last cell is short.
+struct FillGrid<'a> {
+    grid: &'a mut Grid,
+    neighbours: &'a NeighbourTable,
+    first: usize,
 }
 
-impl SimdKernel for Fill<'_> {
+impl SimdKernel for FillGrid<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        let Self { grid, fans, first } = self;
+        let Self { grid, neighbours, first } = self;
         let [nx, ny, nz] = grid.counts;
         let mut cells = grid.cells.to_vec();
         let mut all_fine = Vec::new();
-        let number = |n: usize| u32::try_from(n).expect("numbers of 32 bits");
+        let to_u32 = |n: usize| u32::try_from(n).expect("numbers of 32 bits");
         let mut site = first;
         for z in 0..nz {
             for j in 0..ny {
                 let y = if z % 2 == 1 { ny - 1 - j } else { j };
                 for i in 0..nx {
                     let x = if (z * ny + j) % 2 == 1 { nx - 1 - i } else { i };
-                    let at = [x as f64, y as f64, z as f64];
+                    let coordinates = [x as f64, y as f64, z as f64];
                     let cell = (z * ny + y) * nx + x;
-                    let nearest = |from: usize, off: V3| {
-                        let place = std::array::from_fn(|k| grid.low[k] + (at[k] + off[k]) / grid.per_length);
-                        fans.walk::<I>(from, &place, |_| ()).site
+                    let nearest = |from: usize, fraction: V3| {
+                        let point = std::array::from_fn(|k| {
+                            grid.low[k] + (coordinates[k] + fraction[k]) / grid.cells_per_length
+                        });
+                        neighbours.walk::<I>(from, &point, |_| ()).site
                     };
-                    let several = cells[cell] > 1;
+                    let has_several_sites = cells[cell] > 1;
                     site = nearest(site, [0.5; 3]);
-                    cells[cell] = number(site);
-                    if several {
-                        let mut fine = [0; FINE * FINE * FINE];
-                        let mut own = site;
+                    cells[cell] = to_u32(site);
+                    if has_several_sites {
+                        let mut fine = [0; FINE_CELLS_PER_SIDE * FINE_CELLS_PER_SIDE * FINE_CELLS_PER_SIDE];
+                        let mut fine_site = site;
                         for (n, to) in fine.iter_mut().enumerate() {
-                            let off = [n % FINE, n / FINE % FINE, n / FINE / FINE];
-                            own = nearest(own, off.map(|x| (x as f64 + 0.5) / FINE as f64));
-                            *to = number(own);
+                            let fraction = [
+                                n % FINE_CELLS_PER_SIDE,
+                                n / FINE_CELLS_PER_SIDE % FINE_CELLS_PER_SIDE,
+                                n / FINE_CELLS_PER_SIDE / FINE_CELLS_PER_SIDE,
+                            ];
+                            fine_site =
+                                nearest(fine_site, fraction.map(|x| (x as f64 + 0.5) / FINE_CELLS_PER_SIDE as f64));
+                            *to = to_u32(fine_site);
                         }
-                        cells[cell] = number(all_fine.len()) | CUT;
+                        cells[cell] = to_u32(all_fine.len()) | REFINED_FLAG;
                         all_fine.push(fine);
                     }
                 }

@@ -1,13 +1,14 @@
-//! The paper's locator: a KD-tree of the sites.
+//! The locator of the paper: a k-d tree of the sites.
 
-use crate::{Locator, LocatorSites};
+use crate::voronoi::locator::{Locator, LocatorSites};
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use std::sync::Arc;
 
-/// The sites in a KD-tree of the crate `kiddo` \[Zong2023\].
+/// A locator that keeps the sites in a k-d tree of the crate `kiddo` \[Zong2023\].
 ///
-/// Its answer is the nearest site but for rounding, so that the walk has hardly anything to do. Queries far from the
-/// scene make it look at many leaves: their distances to all sites differ by little (docs/p2m.md has figures).
+/// It returns the nearest site up to rounding, so that the walk has hardly anything left to do. Queries far from the
+/// scene are slow, because their distances to all sites differ by little and many leaves are visited (docs/p2m.md has
+/// figures).
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -25,8 +26,10 @@ use std::sync::Arc;
 /// ```
 #[derive(Debug)]
 pub struct KdTreeLocator {
-    /// `None` if there cannot be one.
+    /// The tree. It is `None` if `kiddo` cannot build one.
+    /// The number of the first site.
     tree: Option<ImmutableKdTree<f64, 3>>,
+    /// The memory of the tree in bytes.
     first: usize,
     bytes: usize,
 }
@@ -36,16 +39,16 @@ impl KdTreeLocator {
     /// [`P2mOptions::with_locator`](crate::P2mOptions::with_locator) takes.
     #[must_use]
     pub fn build(sites: &LocatorSites<'_>) -> Arc<dyn Locator> {
-        let places: Vec<[f64; 3]> = sites.places().collect();
-        // It does not tell how much memory it has: places, numbers, and a split for each leaf of 32.
-        let bytes = places.len() * (size_of::<[f64; 3]>() + size_of::<u32>() + 1);
-        Arc::new(Self { tree: ImmutableKdTree::new_from_slice(&places).ok(), first: sites.first(), bytes })
+        let positions: Vec<[f64; 3]> = sites.positions().collect();
+        // `kiddo` does not report its memory, so it is estimated: positions, numbers, and a split for each leaf of 32.
+        let bytes = positions.len() * (size_of::<[f64; 3]>() + size_of::<u32>() + 1);
+        Arc::new(Self { tree: ImmutableKdTree::new_from_slice(&positions).ok(), first: sites.first(), bytes })
     }
 }
 
 impl Locator for KdTreeLocator {
-    fn start(&self, place: &[f64; 3]) -> Option<usize> {
-        let nearest = self.tree.as_ref()?.query(place).nearest_one::<SquaredEuclidean<f64>>().execute();
+    fn start(&self, position: &[f64; 3]) -> Option<usize> {
+        let nearest = self.tree.as_ref()?.query(position).nearest_one::<SquaredEuclidean<f64>>().execute();
         Some(self.first + nearest.item as usize)
     }
 

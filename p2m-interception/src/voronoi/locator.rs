@@ -1,8 +1,7 @@
-//! Where the walk to the cell of a query begins.
+//! The interface of locators: they find the site at which the walk to the cell of a query begins.
 
 use crate::delaunay::BOUNDING;
-use crate::voronoi::grid_locator::{Fill, Grid, Hints};
-use crate::voronoi::neighbours::Fans;
+use crate::voronoi::neighbours::NeighbourTable;
 use p2m_core::engine::simd::Isa;
 use p2m_core::engine::vector::V3;
 use std::fmt::Debug;
@@ -10,85 +9,41 @@ use std::sync::Arc;
 
 /// Finds a site near a query point.
 ///
-/// Any site will do: the index walks from there to the nearest site, whose cell holds the query point. So answers do not
-/// depend on the locator. A number that no site has makes searches panic.
+/// Any site will do: the index walks from there to the nearest site, whose cell contains the query point. So answers
+/// do not depend on the locator. If the number is not that of a site, searches panic.
 pub trait Locator: Debug + Send + Sync {
-    /// Returns the number of a site near a point of the domain, or `None` if the tree should answer. The point is in the
-    /// units of [`LocatorSites::places`].
-    fn start(&self, place: &[f64; 3]) -> Option<usize>;
+    /// Returns the number of a site near a point of the domain, or `None` if the tree should answer. The point is in
+    /// the units of [`LocatorSites::positions`].
+    fn start(&self, position: &[f64; 3]) -> Option<usize>;
 
-    /// The heap memory that the locator owns, in bytes.
+    /// Returns the heap memory that the locator owns, in bytes.
     fn memory(&self) -> usize;
 }
 
 /// Makes the locator of an index from its sites: a function such as `KdTreeLocator::build`.
 pub type BuildLocator = fn(&LocatorSites<'_>) -> Arc<dyn Locator>;
 
-/// The locator of an index. Calls of the grid are direct, since it is the default.
-#[derive(Clone, Debug)]
-pub(crate) enum AnyLocator {
-    Grid(Hints),
-    Other(Arc<dyn Locator>),
-}
-
-impl AnyLocator {
-    #[inline(always)]
-    pub(crate) fn start(&self, place: &V3) -> Option<usize> {
-        match self {
-            Self::Grid(grid) => grid.start(place),
-            Self::Other(locator) => locator.start(place),
-        }
-    }
-
-    pub(crate) fn memory(&self) -> usize {
-        match self {
-            Self::Grid(grid) => grid.memory(),
-            Self::Other(locator) => locator.memory(),
-        }
-    }
-
-    /// Prefetches the memory that [`start`](Self::start) reads first.
-    #[inline(always)]
-    pub(crate) fn prefetch(&self, place: &V3) {
-        if let Self::Grid(grid) = self {
-            grid.prefetch(place);
-        }
-    }
-
-    /// Prefetches the memory that [`start`](Self::start) reads second.
-    #[inline(always)]
-    pub(crate) fn prefetch_more(&self, place: &V3) {
-        if let Self::Grid(grid) = self {
-            grid.prefetch_more(place);
-        }
-    }
-}
-
-/// Sites by their numbers, in the units that places are given in.
+/// The sites of an index, from which its locator is built. Their unit is that of the points
+/// that [`Locator::start`] takes.
 #[derive(Clone, Copy)]
 pub struct LocatorSites<'a> {
-    pub(crate) fans: &'a Fans,
+    pub(crate) neighbours: &'a NeighbourTable,
     pub(crate) isa: Isa,
-    /// The box of the vertices, a little larger.
-    pub(crate) own: [V3; 2],
-    /// That of queries.
-    pub(crate) domain: [V3; 2],
+    /// The box of the vertices of the scene, a little larger.
+    pub(crate) scene_box: [V3; 2],
+    /// The box in which queries are located.
+    pub(crate) domain_box: [V3; 2],
 }
 
 impl LocatorSites<'_> {
-    /// The number of the first site; the others follow, as many as there are [`places`](Self::places).
+    /// Returns the number of the first site. The others follow, as many as there are [`positions`](Self::positions).
     #[must_use]
     pub fn first(&self) -> usize {
         BOUNDING
     }
 
-    /// The places of the sites from the first one on.
-    pub fn places(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
-        self.fans.sites[BOUNDING..].iter().map(|site| site.place)
-    }
-
-    /// Sites to begin at in each cell of a grid.
-    pub(crate) fn fill(&self, grid: &mut Grid) {
-        self.isa.run(Fill { grid, fans: self.fans, first: BOUNDING });
+    /// Returns the positions of the sites from the first one on.
+    pub fn positions(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        self.neighbours.sites[BOUNDING..].iter().map(|site| site.position)
     }
 }

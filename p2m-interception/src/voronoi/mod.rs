@@ -1,133 +1,161 @@
-//! A partition into Voronoi cells \[Zong2023\].
+//! The partition of space into Voronoi cells \[Zong2023\].
 //!
-//! Sites are the vertices of the scene, and some more (`sites`): in its cell a site is the nearest one, so it is a
-//! dominator, and the cell is the hull of the centres of its Delaunay tetrahedra. By the corner test a primitive can be
-//! the answer in the cell only if it meets one of their circumscribed balls, so one ball query for each tetrahedron
-//! serves four lists: no flooding, no cutting of cells. Six far sites close the cells of the hull.
+//! The sites are the vertices of the scene and some added points ([`sites`]). In its cell a site is nearer than all
+//! other sites, so it is a dominator there. A cell is the convex hull of the circumcentres of its Delaunay tetrahedra.
+//! By the corner test, a primitive can be the answer in the cell only if it intersects one of the circumscribed balls.
+//! So one ball query for each tetrahedron serves the lists of four cells, and neither flooding nor clipping of cells
+//! is needed. Six far sites bound the outer cells.
+//!
+//! The modules from sites to lists are [`corners`], [`crowded`], [`cell`] and [`cells`]. A query is located by a
+//! [`locator`], walks over the [`neighbours`] of sites, and searches a list ([`query`]). docs/proofs/p2m.md has the
+//! proofs.
 
 pub(crate) mod adjacency;
+pub(crate) mod any_locator;
 pub(crate) mod budget;
+pub(crate) mod cell;
 pub(crate) mod cell_polytope;
 pub(crate) mod cells;
 pub(crate) mod circumsphere;
 pub(crate) mod compare_distances;
+pub(crate) mod corner_values;
+pub(crate) mod corners;
+pub(crate) mod crowded;
+pub(crate) mod excluded_features;
 pub(crate) mod feature_relevance;
 pub(crate) mod grid_locator;
 #[cfg(feature = "kiddo")]
 pub(crate) mod kd_tree_locator;
 pub(crate) mod list_filter;
 pub(crate) mod locator;
+pub(crate) mod neighbour_block;
 pub(crate) mod neighbours;
+pub(crate) mod primitive_frame;
 pub(crate) mod query;
 #[cfg(feature = "rstar")]
 pub(crate) mod region_tree;
+pub(crate) mod saved;
+pub(crate) mod site;
 pub(crate) mod sites;
 
 pub use list_filter::{BuildListFilter, ListFilter, Region};
 pub use locator::{BuildLocator, Locator, LocatorSites};
 
-use crate::list::block::{self, Block};
+use crate::list::block::Block;
+use crate::list::search;
 use crate::options::{P2mOptions, P2mReport};
 use crate::partition::Partition;
-use crate::progress::{BuildStage, Progress, Teller};
-use crate::voronoi::budget::Allowance;
-use crate::voronoi::cells::{Cells, Lists};
-use crate::voronoi::grid_locator::Hints;
-use crate::voronoi::list_filter::Filters;
-use crate::voronoi::locator::AnyLocator;
-use crate::voronoi::neighbours::Fans;
-use crate::voronoi::sites::{BOUNDING_DISTANCE, Limits, Sites};
+use crate::progress::{BuildStage, Progress, ProgressReporter};
+use crate::voronoi::any_locator::AnyLocator;
+use crate::voronoi::budget::{BuildBudget, Limits};
+use crate::voronoi::cell::CellContext;
+use crate::voronoi::cells::VoronoiLists;
+use crate::voronoi::grid_locator::GridLocator;
+use crate::voronoi::list_filter::ListFilters;
+use crate::voronoi::neighbours::NeighbourTable;
+use crate::voronoi::sites::{BOUNDING_DISTANCE, Sites};
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
-use p2m_core::storage::{Array, LoadError, Reader, Saved, Writer};
+use p2m_core::storage::Array;
 use p2m_core::{Aabb, Isa, PrimitiveId, PrimitiveSet, Real};
 
-/// The list of a cell that the tree answers; else the number of its first block.
-pub(crate) const TREE: u32 = u32::MAX;
-/// The same for the cell of an auxiliary site, whose owner is the number of an anchor.
-pub(crate) const AUXILIARY: u32 = u32::MAX - 1;
-/// As many packets as a list can have.
-const LONGEST: usize = 2048;
-/// Where one of so many cells would be left to the tree, it answers everything.
-const MOST_LEFT: usize = 4;
-/// The cube of the domain is so many times as wide as the scene.
-const REACH: f64 = 10.0;
+/// The largest number of packets that a list can have.
+const MAX_LIST_PACKETS: usize = 2048;
+/// The tree answers everything, and no cells are stored, if more than one of this many cells would be left
+/// to the tree.
+const FALLBACK_CELLS_DIVISOR: usize = 4;
+/// The width of the cube of the domain, in widths of the scene.
+const DOMAIN_SCENE_SIZES: f64 = 10.0;
 
-/// An interception index whose cells are those of the vertices, over a set of primitives that it does not keep.
+/// An interception index whose cells are the Voronoi cells of the vertices, over a set of primitives that it
+/// does not store.
+///
+/// [`P2mIndex`](crate::P2mIndex) combines it with its set.
 #[derive(Clone, Debug)]
 pub struct Voronoi {
+    /// The tree over the packets. It answers outside of the domain and in cells without a list.
     pub(crate) tree: PacketTree,
-    /// Of the places of sites.
+    /// The reciprocal of `unit`.
     pub(crate) per_unit: f64,
+    /// The unit in which the positions of sites are stored, a power of two.
     pub(crate) unit: f64,
-    /// By how much a dominator has to be nearer.
+    /// The slack of the corner test: a dominator has to be nearer by this much.
     pub(crate) slack: f64,
+    /// The low corner of the domain.
     pub(crate) low: V3,
+    /// The high corner of the domain.
     pub(crate) high: V3,
-    pub(crate) fans: Fans,
+    /// The sites and their neighbours.
+    pub(crate) neighbours: NeighbourTable,
+    /// The locator. It is `None` if there are no cells.
     pub(crate) locator: Option<AnyLocator>,
+    /// The blocks of the lists. The first block of a list has the number of its site.
     pub(crate) blocks: Array<Block>,
-    pub(crate) filters: Filters,
-    /// Of auxiliary sites points of the scene that are near.
+    /// The filters of long lists.
+    pub(crate) filters: ListFilters,
+    /// For each auxiliary site a point of the scene near it.
     pub(crate) anchors: Array<V3>,
-    report: P2mReport,
+    /// The statistics of the build.
+    pub(crate) report: P2mReport,
 }
 
 impl Voronoi {
-    /// The blocks of a site that has a list.
+    /// Returns the blocks of a site that has a list.
     fn blocks_of(&self, site: usize) -> impl Iterator<Item = &Block> {
         let first = &self.blocks[site];
-        let rest = &self.blocks[self.fans.sites[site].list as usize..][..usize::from(first.more)];
+        let rest = &self.blocks[self.neighbours.sites[site].list as usize..][..usize::from(first.following)];
         std::iter::once(first).chain(rest)
     }
 
+    /// Builds the cells, unless the scene or a budget does not allow it.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-    fn make_cells(&mut self, options: &P2mOptions, teller: &Teller<'_>) {
+    fn build_cells(&mut self, options: &P2mOptions, reporter: &ProgressReporter<'_>) {
         let tree = &self.tree;
         let bounds = vertex_bounds(tree);
-        let half = (bounds.max - bounds.min).max() * 0.5;
-        // No extent, or one that f32 cannot tell apart; not for NaN either, which comes of no vertices.
-        if !tree.frame.is_plain() || half.is_nan() || half <= 0.0 {
+        let half_width = (bounds.max - bounds.min).max() * 0.5;
+        // The tree answers a scene without extent, or one that f32 cannot resolve. `half_width` is NaN if there are no
+        // vertices.
+        if !tree.frame.is_plain() || half_width.is_nan() || half_width <= 0.0 {
             return;
         }
         let centre = to_f64_array(&nalgebra::center(&bounds.min, &bounds.max));
-        let domain = half * REACH;
+        let domain = half_width * DOMAIN_SCENE_SIZES;
         let (low, high) = (centre.map(|x| x - domain), centre.map(|x| x + domain));
-        let own = padded(&bounds);
-        // In the plane of a flat scene, far out, f64 has no room beside it.
-        if (0..3).any(|k| own[0][k] >= own[1][k] || low[k] >= high[k]) {
+        let scene_box = padded(&bounds);
+        // A flat scene may be so far from the origin that f64 has no numbers on both sides of its plane.
+        if (0..3).any(|k| scene_box[0][k] >= scene_box[1][k] || low[k] >= high[k]) {
             return;
         }
-        let whole = tree.bounds();
-        let size = (whole.max - whole.min).max();
-        let far = half.max(size) * BOUNDING_DISTANCE + centre.iter().fold(0.0f64, |a, x| a.max(x.abs()));
-        // Rounding of keys, of corners and of added points: all below 2^-44 of this.
+        let tree_bounds = tree.bounds();
+        let size = (tree_bounds.max - tree_bounds.min).max();
+        let far = half_width.max(size) * BOUNDING_DISTANCE + centre.iter().fold(0.0f64, |a, x| a.max(x.abs()));
+        // The rounding of keys, of corners and of added points is below 2^-44 of `far`.
         let slack = far / (1u64 << 40) as f64;
-        let most = options.max_list_packets.min(LONGEST);
+        let max_list_packets = options.max_list_packets.min(MAX_LIST_PACKETS);
         let parallel = options.splits.parallel;
-        let added = (tree.leaves.vertices.len() as f64 * options.max_extra_sites) as usize;
-        let allowance = &Allowance::new(options.memory, options.work, tree.packets().1);
-        let limits = Limits { parallel, slack, most, added, allowance };
-        let Some(sites) = Sites::new(tree, &bounds, limits, teller) else {
+        let max_added_sites = (tree.leaves.vertices.len() as f64 * options.max_extra_sites) as usize;
+        let budget = &BuildBudget::new(options.memory, options.work, tree.packets().1);
+        let limits = Limits { parallel, slack, max_list_packets, max_added_sites, budget };
+        let Some(sites) = Sites::new(tree, &bounds, limits, reporter) else {
             self.report.trees = tree.leaves.vertices.len();
             return;
         };
-        // To find one's cell in vain costs more than the few lists save.
-        let left = sites.left_to_the_tree();
-        if left * MOST_LEFT > sites.delaunay.sites().len() {
-            self.report.trees = left;
+        // A query that finds its cell without a list costs more than a few lists save.
+        let fallback_count = sites.count_fallback_cells();
+        if fallback_count * FALLBACK_CELLS_DIVISOR > sites.delaunay.sites().len() {
+            self.report.trees = fallback_count;
             return;
         }
-        let cells = Cells {
+        let cells = CellContext {
             tree,
             sites: &sites,
             limits,
             filter: options.list_filter.map(|build| (options.filter_above, build.0)),
         };
         let mut report = self.report;
-        let Some(Lists { fans, mut blocks, filters }) = cells.lists(&mut report, teller) else {
+        let Some(VoronoiLists { neighbours, mut blocks, filters }) = cells.build_lists(&mut report, reporter) else {
             self.report.trees = sites.delaunay.sites().len();
             return;
         };
@@ -138,12 +166,12 @@ impl Voronoi {
         self.anchors = anchors.into_iter().map(|(_, anchor)| anchor).collect::<Vec<_>>().into();
         drop(delaunay);
         (self.low, self.high) = (low, high);
-        (self.fans, self.filters) = (fans, filters);
-        teller.begin(BuildStage::Locator);
+        (self.neighbours, self.filters) = (neighbours, filters);
+        reporter.begin_stage(BuildStage::Locator);
         let sites = self.locator_sites();
         let locator = match options.locator {
             Some(build) => AnyLocator::Other(build.0(&sites)),
-            None => AnyLocator::Grid(Hints::new(&sites)),
+            None => AnyLocator::Grid(GridLocator::new(&sites)),
         };
         self.locator = Some(locator);
         self.report.filtered = self.filters.count();
@@ -154,21 +182,27 @@ impl Voronoi {
 }
 
 impl Voronoi {
-    /// The sites and the boxes that a locator is made from.
-    fn locator_sites(&self) -> LocatorSites<'_> {
+    /// Returns the sites and the boxes from which a locator is built.
+    pub(crate) fn locator_sites(&self) -> LocatorSites<'_> {
         let scaled = |p: V3| p.map(|x| x * self.per_unit);
-        let own = padded(&vertex_bounds(&self.tree)).map(scaled);
-        LocatorSites { fans: &self.fans, isa: self.tree.isa(), own, domain: [self.low, self.high].map(scaled) }
+        let scene_box = padded(&vertex_bounds(&self.tree)).map(scaled);
+        LocatorSites {
+            neighbours: &self.neighbours,
+            isa: self.tree.isa(),
+            scene_box,
+            domain_box: [self.low, self.high].map(scaled),
+        }
     }
 }
 
-/// The box around the vertices of a tree. Primitives of one's own have none, so they may lie outside.
+/// Returns the box around the vertices of a tree. Primitives of unknown kinds have no vertices, so they
+/// may lie outside.
 fn vertex_bounds(tree: &PacketTree) -> Aabb<f64> {
     let vertices = tree.leaves.vertices.iter().map(|v| Point3::from(*v));
     vertices.fold(Aabb::empty(), |all, v| all.union(&Aabb { min: v, max: v }))
 }
 
-/// A box, larger on all sides by an eighth of its longest side.
+/// Returns the corners of a box that is enlarged on all sides by an eighth of its longest side.
 fn padded(bounds: &Aabb<f64>) -> [V3; 2] {
     let pad = (bounds.max - bounds.min).max() * 0.125;
     [to_f64_array(&bounds.min).map(|x| x - pad), to_f64_array(&bounds.max).map(|x| x + pad)]
@@ -183,7 +217,7 @@ impl Partition for Voronoi {
         options: &P2mOptions,
         progress: &(dyn Fn(Progress) + Sync),
     ) -> Self {
-        let teller = Teller::new(progress, BuildStage::Tree);
+        let reporter = ProgressReporter::new(progress, BuildStage::Tree);
         let tree = PacketTree::build(set, &options.splits);
         let report = P2mReport { tree_bytes: tree.memory(), ..P2mReport::default() };
         let mut index = Self {
@@ -193,15 +227,15 @@ impl Partition for Voronoi {
             slack: 0.0,
             low: [0.0; 3],
             high: [0.0; 3],
-            fans: Fans::default(),
+            neighbours: NeighbourTable::default(),
             locator: None,
             blocks: Array::default(),
-            filters: Filters::default(),
+            filters: ListFilters::default(),
             anchors: Array::default(),
             report,
         };
-        index.make_cells(options, &teller);
-        teller.reach([0.0, 100.0], 1, 1);
+        index.build_cells(options, &reporter);
+        reporter.advance([0.0, 100.0], 1, 1);
         index
     }
 
@@ -215,7 +249,7 @@ impl Partition for Voronoi {
 
     fn parts(&self) -> Vec<(&'static str, usize)> {
         vec![
-            ("sites", self.fans.memory() + self.anchors.memory()),
+            ("sites", self.neighbours.memory() + self.anchors.memory()),
             ("locator", self.locator.as_ref().map_or(0, AnyLocator::memory)),
             ("lists", self.blocks.memory()),
             ("filters", self.filters.memory()),
@@ -224,77 +258,16 @@ impl Partition for Voronoi {
     }
 
     fn list(&self, point: &Point3<f64>) -> Option<Vec<PrimitiveId>> {
-        let site = self.site_of(point).filter(|site| self.fans.sites[*site].has_list())?;
-        Some(block::primitives(&self.tree, self.blocks_of(site)))
+        let site = self.site_of(point).filter(|site| self.neighbours.sites[*site].has_list())?;
+        Some(search::list_primitives(&self.tree, self.blocks_of(site)))
     }
 
     fn list_lengths(&self) -> Vec<usize> {
-        let sites = (0..self.fans.sites.len()).filter(|site| self.fans.sites[*site].has_list());
-        sites.map(|site| self.blocks_of(site).map(Block::count).sum()).collect()
+        let sites = (0..self.neighbours.sites.len()).filter(|site| self.neighbours.sites[*site].has_list());
+        sites.map(|site| self.blocks_of(site).map(Block::primitive_count).sum()).collect()
     }
 
     fn with_isa(self, isa: Isa) -> Self {
         Self { tree: self.tree.with_isa(isa), ..self }
-    }
-}
-
-/// What is no array.
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-struct Head {
-    per_unit: f64,
-    unit: f64,
-    slack: f64,
-    low: V3,
-    high: V3,
-    /// A [`P2mReport`].
-    report: [u64; 11],
-    /// Whether there are cells at all.
-    has_cells: u64,
-}
-
-impl Saved for Voronoi {
-    fn kind() -> String {
-        "p2m".to_owned()
-    }
-
-    fn save<'a>(&'a self, writer: &mut Writer<'a>) {
-        let has_cells = u64::from(self.locator.is_some());
-        let Self { per_unit, unit, slack, low, high, .. } = *self;
-        let head = Head { per_unit, unit, slack, low, high, report: self.report.into(), has_cells };
-        writer.put_copy("voronoi", &[head]);
-        writer.put("voronoi/lists", &self.blocks);
-        writer.put("voronoi/anchors", &self.anchors);
-        self.fans.save(writer);
-        match &self.locator {
-            Some(AnyLocator::Grid(grid)) => grid.save(writer),
-            Some(AnyLocator::Other(_)) => Hints::new(&self.locator_sites()).save_copy(writer),
-            None => {}
-        }
-        self.tree.save(writer);
-    }
-
-    fn load(reader: &Reader) -> Result<Self, LoadError> {
-        let Head { per_unit, unit, slack, low, high, report, has_cells } = reader.one("voronoi")?;
-        let locator = if has_cells == 0 { None } else { Some(AnyLocator::Grid(Hints::load(reader)?)) };
-        let fans = Fans::load(reader)?;
-        let blocks: Array<Block> = reader.array("voronoi/lists")?;
-        if blocks.len() < fans.sites.len() {
-            return Err(LoadError::Inconsistent { section: "voronoi/lists".to_owned() });
-        }
-        Ok(Self {
-            tree: PacketTree::load(reader)?,
-            per_unit,
-            unit,
-            slack,
-            low,
-            high,
-            fans,
-            locator,
-            blocks,
-            filters: Filters::default(),
-            anchors: reader.array("voronoi/anchors")?,
-            report: report.into(),
-        })
     }
 }

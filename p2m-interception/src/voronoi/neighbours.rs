@@ -1,378 +1,263 @@
-//! From a site to the nearest one: the walk over Delaunay neighbours.
+//! The table of Delaunay neighbours, and the walk from any site to the nearest one.
 //!
-//! If a site v is not the nearest one to q, some Delaunay neighbour w of it is nearer: (q - v) . (w - v) > |w - v|^2 /
-//! 2 (docs/proofs/p2m.md). The ways w - v lie side by side as whole numbers of 16 bits, eight to a cache line. Where their
-//! products do not tell, f64 does, and integers at last; so a walk ends at a site that certainly has q in its closed
-//! cell, and never runs in a circle, for each step is one to a nearer site.
+//! If a site v is not the nearest site to q, then some Delaunay neighbour w of v is nearer than v, which means (q - v)
+//! . (w - v) > |w - v|^2 / 2 (docs/proofs/p2m.md). The offsets w - v are stored side by side as 16-bit integers, eight
+//! to a cache line. The test in f32 bounds its error. Where it cannot decide, the comparison is made in f64 and
+//! finally in integers. So a walk ends at a site whose closed cell certainly contains q, and never visits a site
+//! twice, since each step leads to a nearer site.
 
-use crate::voronoi::adjacency::NONE;
 use crate::voronoi::compare_distances;
-use crate::voronoi::{AUXILIARY, TREE};
-use p2m_bvh::engine::packet::LANES;
-use p2m_bvh::engine::packet::frame_unit;
+use crate::voronoi::neighbour_block::{
+    NEIGHBOURS_PER_BLOCK, NeighbourBlock, NeighbourBounds, QueryOffset, UNDERFLOW_MARGIN,
+};
+use crate::voronoi::site::{FarHalfSpace, Site};
 use p2m_core::engine::simd::{InstructionSet, Lanes, prefetch_lines};
-use p2m_core::engine::vector::power_of_two;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 use p2m_core::storage::{Array, LoadError, Reader, Writer};
 use std::cmp::Ordering;
 
-/// Neighbours of a block.
-const WIDTH: usize = 8;
+/// The number of blocks of each site that are found by its number alone, without reading the site.
+const INLINE_BLOCKS: usize = 2;
 
-/// Eight ways to other sites: one cache line.
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C, align(64))]
-struct Fan {
-    /// In units, from [`ZERO`] on.
-    ways: [[u16; WIDTH]; 3],
-    /// A power of two.
-    unit: f32,
-    /// One bit for each way along an edge of a primitive.
-    edges: u32,
-    unused: [u32; 2],
-}
-
-const _: () = assert!(size_of::<Fan>() == 64);
-
-/// What is no way at all.
-const ZERO: u16 = 1 << 15;
-/// What products in f32 may be off, in parts of the sizes of what is summed: five roundings, and some room.
-const ROUNDING: f32 = 4.0 * f32::EPSILON;
-/// The part of the squares of two lengths by which an angle between them has to be wider than a right one, for the
-/// kernel not to compute anything but the distance to the vertex.
-const CERTAIN: f32 = 1.0 / (1u64 << 28) as f32;
-/// What products lack by underflow, with plenty of room.
-const TINY: f32 = 1e-30;
-
-/// What is shorter does not matter beside what underflows.
-const LEAST_UNIT: f64 = power_of_two(-99);
-
-/// A query as seen from a site.
-#[derive(Clone, Copy)]
-struct Offset {
-    way: [f32; 3],
-    /// The sum of the sizes of the components, rounded up.
-    size: f32,
-    square: f32,
-    /// Gains that are not below minus this much are not certain,
-    tie: f32,
-    /// nor those above this part of half the square of the way to the neighbour, below zero.
-    part: f32,
-}
-
-/// What a block says about a query.
-struct Said<L> {
-    /// By how much each neighbour is nearer than the site, as half a difference of squares.
-    gains: L,
-    /// What that may be off.
-    margins: L,
-    /// One bit for each neighbour that may tie with the site by what it is a vertex of.
-    ties: u32,
-    /// One bit for each way along an edge of which the site is not certainly the nearest point.
-    edges: u32,
-}
-
-impl Fan {
-    const EMPTY: Self = Self { ways: [[ZERO; WIDTH]; 3], unit: 0.0, edges: 0, unused: [0; 2] };
-
-    /// The ways from a site to others, the last one repeated where there are fewer. `is_edge` tells which of them are
-    /// along an edge of a primitive.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounding is allowed for")]
-    fn new(places: &[V3], site: usize, others: &[u32], is_edge: impl Fn(u32) -> bool) -> Self {
-        let ways: [V3; WIDTH] =
-            std::array::from_fn(|lane| sub(places[others[lane.min(others.len() - 1)] as usize], places[site]));
-        let largest = ways.as_flattened().iter().fold(0.0f64, |a, x| a.max(x.abs()));
-        // To both sides of zero.
-        let unit = frame_unit(2.0 * largest).max(LEAST_UNIT);
-        let mut fan = Self { unit: unit as f32, ..Self::EMPTY };
-        for (lane, way) in ways.into_iter().enumerate() {
-            for (row, x) in fan.ways.iter_mut().zip(way) {
-                row[lane] = ((x / unit).round() + f64::from(ZERO)) as u16;
-            }
-            fan.edges |= u32::from(others.get(lane).is_some_and(|other| is_edge(*other))) << lane;
-        }
-        fan
-    }
-
-    #[inline(always)]
-    fn says<L: Lanes>(&self, d: &Offset) -> Said<L> {
-        let (zero, bias, unit) = (L::splat(0.0), L::splat(f32::from(ZERO)), L::splat(self.unit));
-        let x = L::load_u16(&self.ways[0]).sub(bias).mul(unit);
-        let y = L::load_u16(&self.ways[1]).sub(bias).mul(unit);
-        let z = L::load_u16(&self.ways[2]).sub(bias).mul(unit);
-        let [dx, dy, dz] = [L::splat(d.way[0]), L::splat(d.way[1]), L::splat(d.way[2])];
-        let half = z.mul_add(z, y.mul_add(y, x.mul(x))).mul(L::splat(0.5));
-        let [px, py, pz] = [x.mul(dx), y.mul(dy), z.mul(dz)];
-        let sizes = px.max(zero.sub(px)).add(py.max(zero.sub(py))).add(pz.max(zero.sub(pz)));
-        let product = px.add(py).add(pz);
-        // Each component is off by half a unit: the product by that much of the query's size, half of the square by
-        // that much of the way's. The square of an error is at most 3/8 of a squared unit; what is certainly gained is
-        // a whole one on some axis.
-        let lengths = x.max(zero.sub(x)).add(y.max(zero.sub(y))).add(z.max(zero.sub(z)));
-        let whole = lengths.add(L::splat(d.size)).mul(L::splat(self.unit * 0.51));
-        let margins = sizes.add(half).mul_add(L::splat(ROUNDING), whole.add(L::splat(d.tie)));
-        let gains = product.sub(half);
-        let ties = zero.at_most(half.mul_add(L::splat(d.part), gains.add(margins)));
-        // The kernel gives exactly the distance to a vertex that is nearest by this.
-        let certain = half.mul_add(L::splat(CERTAIN), L::splat(d.square * CERTAIN));
-        let edges = zero.at_most(product.add(margins).add(certain)) & self.edges;
-        Said { gains, margins, ties, edges }
-    }
-}
-
-/// Blocks of each site that are found by its number.
-const FIXED: usize = 2;
-
-/// A site with where its neighbours and its list are: one cache line.
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C, align(64))]
-pub(crate) struct Site {
-    /// In units in which all sites are about 1.
-    pub(crate) place: V3,
-    /// Half the way to the nearest neighbour in further blocks, rounded down.
-    near: f32,
-    /// The first further block of neighbours, and how many there are.
-    more: u32,
-    count: u32,
-    pub(crate) outside: Outside,
-    /// The lowest primitive with the vertex, as packet and lane; the anchor of an auxiliary site.
-    pub(crate) owner: u32,
-    /// What its list is.
-    pub(crate) list: u32,
-}
-
-const _: () = assert!(size_of::<Site>() == 64);
-
-impl Site {
-    /// Whether its cell has a list, and is not left to the tree.
-    #[inline(always)]
-    pub(crate) fn has_list(&self) -> bool {
-        self.list != TREE && self.list != AUXILIARY
-    }
-
-    /// A primitive that has the site as a vertex, as packet and lane.
-    #[inline(always)]
-    pub(crate) fn holder(&self) -> Option<(usize, usize)> {
-        let owner = self.owner as usize;
-        (self.list != AUXILIARY && self.owner != NONE).then_some((owner / LANES, owner % LANES))
-    }
-}
-
-/// A half-space far from a site in which only primitives with it can be the answer, if it is the nearest point of all
-/// of these and no other site is nearly as near.
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub(crate) struct Outside {
-    pub(crate) normal: [f32; 3],
-    /// In the units of sites; infinite if there is none.
-    pub(crate) from: f32,
-    /// Other sites have to be left behind by this part of half the square of the way to them.
-    pub(crate) part: f32,
-}
-
-impl Outside {
-    const NONE: Self = Self { normal: [0.0; 3], from: f32::INFINITY, part: 0.0 };
-
-    /// Whether a query is in it that is `way` from the site.
-    #[inline(always)]
-    pub(crate) fn contains(&self, way: &V3) -> bool {
-        let [x, y, z] = self.normal.map(f64::from);
-        x * way[0] + y * way[1] + z * way[2] > f64::from(self.from)
-    }
-}
-
-/// The sites, with their neighbours.
+/// The sites with their neighbours.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Fans {
+pub(crate) struct NeighbourTable {
+    /// The sites, by their numbers.
     pub(crate) sites: Array<Site>,
-    blocks: Array<Fan>,
-    /// The neighbours of each block.
-    names: Array<[u32; WIDTH]>,
-    /// By how much more than the nearest site others have to be farther away, for their primitives not to tie: three
-    /// times the slack, in the units of sites.
+    /// The blocks of offsets: the inline blocks of all sites, then the further blocks.
+    blocks: Array<NeighbourBlock>,
+    /// The numbers of the neighbours in each block.
+    site_numbers: Array<[u32; NEIGHBOURS_PER_BLOCK]>,
+    /// Three times the slack of the corner test, in the units of sites. If all other sites are farther than the
+    /// nearest one by this much, their primitives cannot tie with it.
     slack: f32,
 }
 
-/// Where a walk ends.
+/// The end of a walk.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Found {
+pub(crate) struct LocatedSite {
+    /// The nearest site.
     pub(crate) site: usize,
-    /// Whether the site is certainly the nearest point of all primitives that have it as a vertex, and no other site
-    /// nearly as near.
-    pub(crate) is_nearest: bool,
+    /// Whether the site is certainly the nearest point on all primitives that have it as a vertex, with the lead over
+    /// the other sites that its far half-space needs.
+    pub(crate) is_certainly_nearest: bool,
 }
 
-impl Fans {
-    /// The blocks of all sites: `others` gives the neighbours of each, and those along edges of primitives.
+impl NeighbourTable {
+    /// Builds the table. `list_neighbours` appends the Delaunay neighbours of a site to its first list, and the sites
+    /// at the
+    /// other ends of edges of primitives to its second. Sites below `first` have no neighbours.
     #[allow(clippy::cast_possible_truncation, reason = "rounded down")]
     pub(crate) fn new(
-        places: &[V3],
+        positions: &[V3],
         first: usize,
         slack: f64,
-        mut others: impl FnMut(usize, &mut Vec<u32>, &mut Vec<u32>),
+        mut list_neighbours: impl FnMut(usize, &mut Vec<u32>, &mut Vec<u32>),
     ) -> Self {
-        let mut blocks = vec![Fan::EMPTY; FIXED * places.len()];
-        let mut names = vec![[0; WIDTH]; FIXED * places.len()];
-        let mut sites = Vec::with_capacity(places.len());
+        let mut blocks = vec![NeighbourBlock::EMPTY; INLINE_BLOCKS * positions.len()];
+        let mut site_numbers = vec![[0; NEIGHBOURS_PER_BLOCK]; INLINE_BLOCKS * positions.len()];
+        let mut sites = Vec::with_capacity(positions.len());
         let (mut all, mut edges, mut sorted) = (Vec::new(), Vec::new(), Vec::new());
-        for (number, place) in places.iter().enumerate() {
+        for (number, position) in positions.iter().enumerate() {
             let mut site = Site {
-                place: *place,
-                near: 0.0,
-                more: u32::try_from(blocks.len()).expect("numbers of 32 bits"),
-                count: 0,
-                outside: Outside::NONE,
+                position: *position,
+                half_next_distance: 0.0,
+                first_further_block: u32::try_from(blocks.len()).expect("numbers of 32 bits"),
+                block_count: 0,
+                far_half_space: FarHalfSpace::NONE,
                 owner: 0,
                 list: 0,
             };
             if number >= first {
                 all.clear();
                 edges.clear();
-                others(number, &mut all, &mut edges);
+                list_neighbours(number, &mut all, &mut edges);
                 edges.sort_unstable();
                 all.extend_from_slice(&edges);
                 all.sort_unstable();
                 all.dedup();
                 sorted.clear();
-                sorted.extend(all.iter().map(|v| (norm_squared(sub(places[*v as usize], *place)), *v)));
+                sorted.extend(all.iter().map(|v| (norm_squared(sub(positions[*v as usize], *position)), *v)));
                 sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-                let further = sorted.get(FIXED * WIDTH).map_or(0.0, |(square, _)| square.sqrt() * 0.5);
-                site.near = (further * (1.0 - 1e-6)) as f32;
+                let further =
+                    sorted.get(INLINE_BLOCKS * NEIGHBOURS_PER_BLOCK).map_or(0.0, |(square, _)| square.sqrt() * 0.5);
+                site.half_next_distance = (further * (1.0 - 1e-6)) as f32;
                 all.clear();
                 all.extend(sorted.iter().map(|s| s.1));
-                site.count = u32::try_from(all.len().div_ceil(WIDTH)).expect("few neighbours");
-                for (i, chunk) in all.chunks(WIDTH).enumerate() {
-                    let fan = Fan::new(places, number, chunk, |v| edges.binary_search(&v).is_ok());
-                    let own = std::array::from_fn(|lane| chunk[lane.min(chunk.len() - 1)]);
-                    if i < FIXED {
-                        (blocks[FIXED * number + i], names[FIXED * number + i]) = (fan, own);
+                site.block_count = u32::try_from(all.len().div_ceil(NEIGHBOURS_PER_BLOCK)).expect("few neighbours");
+                for (i, chunk) in all.chunks(NEIGHBOURS_PER_BLOCK).enumerate() {
+                    let block = NeighbourBlock::new(positions, number, chunk, |v| edges.binary_search(&v).is_ok());
+                    let numbers = std::array::from_fn(|lane| chunk[lane.min(chunk.len() - 1)]);
+                    if i < INLINE_BLOCKS {
+                        (blocks[INLINE_BLOCKS * number + i], site_numbers[INLINE_BLOCKS * number + i]) =
+                            (block, numbers);
                     } else {
-                        blocks.push(fan);
-                        names.push(own);
+                        blocks.push(block);
+                        site_numbers.push(numbers);
                     }
                 }
             }
             sites.push(site);
         }
         blocks.shrink_to_fit();
-        names.shrink_to_fit();
-        Self { sites: sites.into(), blocks: blocks.into(), names: names.into(), slack: (slack * 3.0) as f32 }
+        site_numbers.shrink_to_fit();
+        Self {
+            sites: sites.into(),
+            blocks: blocks.into(),
+            site_numbers: site_numbers.into(),
+            slack: (slack * 3.0) as f32,
+        }
     }
 
-    /// From a site to the nearest one to `query`; `ahead` is told of every site on the way before it is looked at.
+    /// Walks from a site to the site nearest to `query`. `on_site` is called with each site before it is read.
     #[inline(always)]
-    pub(crate) fn walk<I: InstructionSet>(&self, from: usize, query: &V3, mut ahead: impl FnMut(usize)) -> Found {
+    pub(crate) fn walk<I: InstructionSet>(
+        &self,
+        from: usize,
+        query: &V3,
+        mut on_site: impl FnMut(usize),
+    ) -> LocatedSite {
         let mut at = from;
         loop {
             self.prefetch(at);
-            ahead(at);
-            let (next, is_nearest) = self.step::<I>(at, query);
+            on_site(at);
+            let (next, is_certainly_nearest) = self.step::<I>(at, query);
             if next == at {
-                return Found { site: at, is_nearest };
+                return LocatedSite { site: at, is_certainly_nearest };
             }
             at = next;
         }
     }
 
-    /// Asks for what a step reads.
+    /// Prefetches the memory that a step from a site reads.
     #[inline(always)]
     pub(crate) fn prefetch(&self, at: usize) {
         prefetch_lines(self.sites.as_ptr().wrapping_add(at), size_of::<Site>());
-        prefetch_lines(self.blocks.as_ptr().wrapping_add(FIXED * at), FIXED * size_of::<Fan>());
+        prefetch_lines(
+            self.blocks.as_ptr().wrapping_add(INLINE_BLOCKS * at),
+            INLINE_BLOCKS * size_of::<NeighbourBlock>(),
+        );
     }
 
-    /// A nearer site than this one, the nearest of its neighbours as far as f32 tells; or the same if there is none,
-    /// and what [`Found::is_nearest`] says.
+    /// Takes one step. It returns a nearer site, which is the nearest neighbour as far as f32 can decide, or the
+    /// same site if it is the nearest. The second value is that of [`LocatedSite::is_certainly_nearest`], for a walk
+    /// that ends here.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounding is allowed for")]
     pub(crate) fn step<I: InstructionSet>(&self, at: usize, query: &V3) -> (usize, bool) {
         let site = &self.sites[at];
-        let d = sub(*query, site.place);
-        let way = [d[0] as f32, d[1] as f32, d[2] as f32];
-        let square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
-        let size = (way[0].abs() + way[1].abs() + way[2].abs()) * (1.0 + 4.0 * f32::EPSILON);
-        let d = Offset { way, size, square, tie: size * self.slack + TINY, part: site.outside.part };
-        let mut next = Next { at, best: at, most: 0.0, ties: 0 };
-        let count = site.count as usize;
+        let exact_offset = sub(*query, site.position);
+        let offset = [exact_offset[0] as f32, exact_offset[1] as f32, exact_offset[2] as f32];
+        let square = offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2];
+        let size = (offset[0].abs() + offset[1].abs() + offset[2].abs()) * (1.0 + 4.0 * f32::EPSILON);
+        let query_offset = QueryOffset {
+            offset,
+            size,
+            square,
+            tie: size * self.slack + UNDERFLOW_MARGIN,
+            relative_lead: site.far_half_space.relative_lead,
+        };
+        let mut next = WalkStep { at, best: at, best_gain: 0.0, ties: 0 };
+        let block_count = site.block_count as usize;
         let mut i = 0;
-        while i < count.min(FIXED) {
-            next.look::<I>(self, FIXED * at + i, query, &d);
+        while i < block_count.min(INLINE_BLOCKS) {
+            next.consider_block::<I>(self, INLINE_BLOCKS * at + i, query, &query_offset);
             i += 1;
         }
-        if count > FIXED {
-            // Nearer than half the way to a neighbour that one is farther.
-            if square < site.near * site.near * (1.0 - 1e-5) {
+        if block_count > INLINE_BLOCKS {
+            // A query nearer to the site than half the distance to a neighbour is farther from this neighbour.
+            if square < site.half_next_distance * site.half_next_distance * (1.0 - 1e-5) {
                 next.ties = 1;
             } else {
-                for block in site.more as usize..site.more as usize + count - FIXED {
-                    next.look::<I>(self, block, query, &d);
+                for block in
+                    site.first_further_block as usize..site.first_further_block as usize + block_count - INLINE_BLOCKS
+                {
+                    next.consider_block::<I>(self, block, query, &query_offset);
                 }
             }
         }
         (next.best, next.ties == 0)
     }
 
-    /// Whether one site is nearer than another.
+    /// Returns whether one site is nearer to the query than another one, exactly. It is rare, so it is kept out
+    /// of the loop.
     #[cold]
     #[inline(never)]
     fn is_nearer(&self, query: &V3, site: usize, than: usize) -> bool {
-        compare_distances::compare(query, &self.sites[site].place, &self.sites[than].place) == Ordering::Less
+        compare_distances::compare(query, &self.sites[site].position, &self.sites[than].position) == Ordering::Less
     }
 
+    /// Adds the table to a file.
     pub(crate) fn save<'a>(&'a self, writer: &mut Writer<'a>) {
         writer.put("voronoi/sites", &self.sites);
         writer.put("voronoi/neighbours", &self.blocks);
-        writer.put("voronoi/neighbours/names", &self.names);
+        writer.put("voronoi/neighbours/names", &self.site_numbers);
         writer.put_copy("voronoi/neighbours/slack", &[self.slack]);
     }
 
+    /// Loads the table from a file.
     pub(crate) fn load(reader: &Reader) -> Result<Self, LoadError> {
-        let fans = Self {
+        let table = Self {
             sites: reader.array("voronoi/sites")?,
             blocks: reader.array("voronoi/neighbours")?,
-            names: reader.array("voronoi/neighbours/names")?,
+            site_numbers: reader.array("voronoi/neighbours/names")?,
             slack: reader.one("voronoi/neighbours/slack")?,
         };
-        let fits = fans.names.len() == fans.blocks.len() && fans.blocks.len() >= FIXED * fans.sites.len();
-        if fits { Ok(fans) } else { Err(LoadError::Inconsistent { section: "voronoi/neighbours".to_owned() }) }
+        let is_consistent =
+            table.site_numbers.len() == table.blocks.len() && table.blocks.len() >= INLINE_BLOCKS * table.sites.len();
+        if is_consistent {
+            Ok(table)
+        } else {
+            Err(LoadError::Inconsistent { section: "voronoi/neighbours".to_owned() })
+        }
     }
 
-    /// Heap memory, in bytes.
+    /// Returns the heap memory in bytes.
     pub(crate) fn memory(&self) -> usize {
-        self.sites.memory() + self.blocks.memory() + self.names.memory()
+        self.sites.memory() + self.blocks.memory() + self.site_numbers.memory()
     }
 }
 
-/// The way on from a site.
-struct Next {
+/// One step of a walk.
+struct WalkStep {
+    /// The site from which the step begins.
     at: usize,
+    /// The nearest site so far.
     best: usize,
-    /// The gain of the best one, if f32 can tell.
-    most: f32,
-    /// Not zero if something else may be as near as the site.
+    /// The gain of `best` over `at`, as far as f32 can decide.
+    best_gain: f32,
+    /// The bits of neighbours and edges that prevent [`LocatedSite::is_certainly_nearest`]. It is 0 if there are none.
     ties: u32,
 }
 
-impl Next {
+impl WalkStep {
+    /// Tests the neighbours of a block.
     #[inline(always)]
-    fn look<I: InstructionSet>(&mut self, fans: &Fans, block: usize, query: &V3, d: &Offset) {
-        let Said { gains, margins, ties, edges }: Said<I::Eight> = fans.blocks[block].says(d);
+    fn consider_block<I: InstructionSet>(
+        &mut self,
+        table: &NeighbourTable,
+        block: usize,
+        query: &V3,
+        query_offset: &QueryOffset,
+    ) {
+        let NeighbourBounds { gains, margins, ties, edges }: NeighbourBounds<I::Eight> =
+            table.blocks[block].bound_query(query_offset);
         self.ties |= ties | edges;
-        // Neighbours that are not certainly farther.
+        // The open neighbours are those that are not certainly farther.
         let mut open = I::Eight::splat(0.0).sub(margins).at_most(gains);
         if open == 0 {
             return;
         }
-        let (mut all, mut off) = ([0.0; WIDTH], [0.0; WIDTH]);
+        let (mut all, mut off) = ([0.0; NEIGHBOURS_PER_BLOCK], [0.0; NEIGHBOURS_PER_BLOCK]);
         gains.store(&mut all);
         margins.store(&mut off);
         while open != 0 {
             let lane = open.trailing_zeros() as usize;
             open &= open - 1;
-            let (other, certain) = (fans.names[block][lane] as usize, all[lane] > off[lane]);
-            if all[lane] > self.most && certain {
-                (self.best, self.most) = (other, all[lane]);
-            } else if self.best == self.at && !certain && fans.is_nearer(query, other, self.at) {
+            let (other, certain) = (table.site_numbers[block][lane] as usize, all[lane] > off[lane]);
+            if all[lane] > self.best_gain && certain {
+                (self.best, self.best_gain) = (other, all[lane]);
+            } else if self.best == self.at && !certain && table.is_nearer(query, other, self.at) {
                 self.best = other;
             }
         }
@@ -387,17 +272,17 @@ mod tests {
     use rand::RngExt;
     use std::collections::BTreeSet;
 
-    struct Walk<'a>(&'a Fans, usize, &'a V3);
+    struct LocateSite<'a>(&'a NeighbourTable, usize, &'a V3);
 
-    impl SimdKernel for Walk<'_> {
-        type Output = Found;
+    impl SimdKernel for LocateSite<'_> {
+        type Output = LocatedSite;
         #[inline(always)]
-        fn run<I: InstructionSet>(self) -> Found {
+        fn run<I: InstructionSet>(self) -> LocatedSite {
             self.0.walk::<I>(self.1, self.2, |_| ())
         }
     }
 
-    fn fans(points: &[V3]) -> Fans {
+    fn neighbour_table(points: &[V3]) -> NeighbourTable {
         let delaunay = Delaunay::new(points, 250.0).expect("finite");
         let mut neighbours = vec![BTreeSet::new(); delaunay.sites().len()];
         for tetrahedron in delaunay.tetrahedra() {
@@ -405,10 +290,11 @@ mod tests {
                 neighbours[*v as usize].extend(tetrahedron.iter().filter(|w| *w != v && **w as usize >= BOUNDING));
             }
         }
-        Fans::new(delaunay.sites(), BOUNDING, 1e-12, |site, all, _| all.extend(&neighbours[site]))
+        NeighbourTable::new(delaunay.sites(), BOUNDING, 1e-12, |site, all, _| all.extend(&neighbours[site]))
     }
 
-    /// Random places, clusters of all sizes and lattices; queries anywhere, on sites and in the middle of two.
+    /// The sites are random positions, clusters of all sizes and lattices. The queries are anywhere, on sites and in
+    /// the middle between two.
     #[test]
     fn walks_end_at_the_nearest_site_wherever_they_begin() {
         let (mut ties, mut close) = (0, 0);
@@ -427,12 +313,12 @@ mod tests {
                     }
                 })
                 .collect();
-            let fans = fans(&points);
-            let sites = &fans.sites;
+            let table = neighbour_table(&points);
+            let sites = &table.sites;
             for _ in 0..200 {
                 let mut some = || rng.random_range(BOUNDING..sites.len());
                 let (a, b, from) = (some(), some(), some());
-                let (p, q) = (sites[a].place, sites[b].place);
+                let (p, q) = (sites[a].position, sites[b].position);
                 let query: V3 = match rng.random_range(0..4) {
                     0 => p,
                     1 => std::array::from_fn(|k| (p[k] + q[k]) * 0.5),
@@ -440,17 +326,17 @@ mod tests {
                     _ => std::array::from_fn(|_| rng.random_range(-5.0..5.0)),
                 };
                 for isa in Isa::available() {
-                    let found = isa.run(Walk(&fans, from, &query));
+                    let found = isa.run(LocateSite(&table, from, &query));
                     for (other, site) in sites.iter().enumerate().skip(BOUNDING) {
-                        let compared = compare_distances::compare(&query, &sites[found.site].place, &site.place);
+                        let compared = compare_distances::compare(&query, &sites[found.site].position, &site.position);
                         assert_ne!(compared, Ordering::Greater, "{isa}, round {round}: {query:?} {other}");
                         ties += usize::from(other != found.site && compared == Ordering::Equal);
-                        // No other site is nearly as near, then.
-                        let gap =
-                            norm_squared(sub(query, site.place)) - norm_squared(sub(query, sites[found.site].place));
-                        assert!(other == found.site || !found.is_nearest || gap > 0.0);
+                        // Then no other site is as near.
+                        let gap = norm_squared(sub(query, site.position))
+                            - norm_squared(sub(query, sites[found.site].position));
+                        assert!(other == found.site || !found.is_certainly_nearest || gap > 0.0);
                     }
-                    close += usize::from(found.is_nearest);
+                    close += usize::from(found.is_certainly_nearest);
                 }
             }
         }

@@ -1,15 +1,16 @@
-//! From a query to its cell and through its list; several side by side, so that some go on while others wait for
-//! memory.
+//! The search of a P2M index: a query is located in its cell and searches the list of the cell.
 //!
-//! A query reads, one after the other, a hint, the site with its neighbours for each step of the walk, the blocks of
-//! the list, packets and vertices. Side by side every query takes a step and asks for what it reads next before the
-//! others take theirs.
+//! A query reads, one after the other, a cell of the locator, a site and its neighbours for each step of the walk, the
+//! blocks of the list, packets, and vertices. In a batch, each query takes one step and prefetches the memory of its
+//! next step before the other queries take theirs. So most of the latency of memory is hidden.
 
-use crate::list::block::{self, Block, Place};
-use crate::partition::{LookUp, SIDE_BY_SIDE};
-use crate::voronoi::list_filter::{Filters, ListFilter};
-use crate::voronoi::neighbours::{Fans, Found, Site};
-use crate::voronoi::{AUXILIARY, Voronoi};
+use crate::list::block::{Block, BlockQuery};
+use crate::list::search;
+use crate::partition::{CellQuery, QUERIES_SIDE_BY_SIDE};
+use crate::voronoi::Voronoi;
+use crate::voronoi::list_filter::{ListFilter, ListFilters};
+use crate::voronoi::neighbours::{LocatedSite, NeighbourTable};
+use crate::voronoi::site::{AUXILIARY_SITE, Site};
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::nearest::{EvaluateFn, Search, SearchState, finish, finish_nearest};
@@ -22,9 +23,9 @@ use p2m_core::engine::staged::RANGE;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 use p2m_core::{Aabb, Collector, Near};
 
-impl LookUp for Voronoi {
+impl CellQuery for Voronoi {
     #[inline(always)]
-    fn look_up<C: Collector>(
+    fn query_with<C: Collector>(
         &self,
         query: V3,
         collector: &mut C,
@@ -33,225 +34,238 @@ impl LookUp for Voronoi {
     ) {
         let tree = &self.tree;
         if collector.is_single_nearest()
-            && let Some(place) = self.place(&query)
-            && let Some(site) = self.locator.as_ref().and_then(|locator| locator.start(&place))
+            && let Some(position) = self.to_site_units(&query)
+            && let Some(site) = self.locator.as_ref().and_then(|locator| locator.start(&position))
         {
-            let found = Found { site, is_nearest: false };
-            return tree.isa().run(Answer { index: self, found, query, place, collector, evaluate, finish });
+            let located = LocatedSite { site, is_certainly_nearest: false };
+            return tree.isa().run(LocateAndSearch {
+                index: self,
+                located,
+                query,
+                position,
+                collector,
+                evaluate,
+                finish,
+            });
         }
         tree.run(query, collector, evaluate, finish);
     }
 
-    fn nearest(&self, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
-        self.look_up(query, minimum, evaluate, finish_nearest);
+    fn query_nearest(&self, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
+        self.query_with(query, minimum, evaluate, finish_nearest);
     }
 
-    fn near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
-        self.look_up(query, near, evaluate, finish);
+    fn query_near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
+        self.query_with(query, near, evaluate, finish);
     }
 
-    fn nearest_of_several(
+    fn query_several(
         &self,
-        queries: &[V3; SIDE_BY_SIDE],
-        minimums: [&mut BestF64; SIDE_BY_SIDE],
-        evaluates: [EvaluateFn<'_, BestF64>; SIDE_BY_SIDE],
+        queries: &[V3; QUERIES_SIDE_BY_SIDE],
+        minimums: [&mut BestF64; QUERIES_SIDE_BY_SIDE],
+        evaluates: [EvaluateFn<'_, BestF64>; QUERIES_SIDE_BY_SIDE],
     ) {
-        self.tree.isa().run(Several { index: self, queries, minimums, evaluates });
+        self.tree.isa().run(SearchSeveral { index: self, queries, minimums, evaluates });
     }
 }
 
 impl Voronoi {
-    /// The number of the site in whose cell a place is, the first step of every query: `None` outside of the domain.
+    /// Returns the number of the site whose cell contains a query point, which is the first step of every query. It is
+    /// `None` outside of the domain, and if the tree answers everything.
     #[must_use]
     pub fn site_of(&self, query: &Point3<f64>) -> Option<usize> {
-        let place = self.place(&to_f64_array(query))?;
-        let start = self.locator.as_ref()?.start(&place)?;
-        Some(self.tree.isa().run(Walk { fans: &self.fans, start, place }))
+        let position = self.to_site_units(&to_f64_array(query))?;
+        let start = self.locator.as_ref()?.start(&position)?;
+        Some(self.tree.isa().run(LocateSite { neighbours: &self.neighbours, start, position }))
     }
 
-    /// A query in the units of sites, if it is in the domain.
+    /// Converts a query point to the units of sites. It is `None` outside of the domain.
     #[inline(always)]
-    fn place(&self, query: &V3) -> Option<V3> {
-        // Not for NaN either.
-        let inside = (0..3).all(|k| query[k] >= self.low[k] && query[k] <= self.high[k]);
-        inside.then(|| query.map(|x| snapped(x * self.per_unit)))
+    fn to_site_units(&self, query: &V3) -> Option<V3> {
+        // The comparison is false if a coordinate is NaN.
+        let is_inside = (0..3).all(|k| query[k] >= self.low[k] && query[k] <= self.high[k]);
+        is_inside.then(|| query.map(|x| flush_tiny(x * self.per_unit)))
     }
 
-    /// Asks for a block of a list: the first one has the number of its site.
+    /// Prefetches a block of a list. The first block of a list has the number of its site.
     #[inline(always)]
     fn prefetch_block(&self, number: usize) {
         prefetch_lines(self.blocks.as_ptr().wrapping_add(number), size_of::<Block>());
     }
 
-    /// The bound on the answer that a site gives.
+    /// Returns an upper bound of the answer, which is the distance to the site or to the anchor of an auxiliary site.
     #[inline(always)]
-    fn reach(&self, site: &Site, query: &V3, place: &V3) -> f64 {
-        let length = |way: V3| norm_squared(way).sqrt() * (1.0 + 8.0 * f64::EPSILON);
-        if site.list == AUXILIARY {
+    fn upper_bound(&self, site: &Site, query: &V3, position: &V3) -> f64 {
+        let length = |offset: V3| norm_squared(offset).sqrt() * (1.0 + 8.0 * f64::EPSILON);
+        if site.list == AUXILIARY_SITE {
             length(sub(*query, self.anchors[site.owner as usize])) + self.slack
         } else {
-            length(sub(*place, site.place)) * self.unit + self.slack
+            length(sub(*position, site.position)) * self.unit + self.slack
         }
     }
 
-    /// The primitive that is certainly the answer for a query from whose site the way is known, as packet and lane.
+    /// Returns the packet and the lane of the primitive that is certainly the answer, if the query is in the far
+    /// half-space of its site.
     #[inline(always)]
-    fn certain(found: &Found, site: &Site, place: &V3) -> Option<(usize, usize)> {
+    fn known_answer(located: &LocatedSite, site: &Site, position: &V3) -> Option<(usize, usize)> {
         let owner = site.owner as usize;
-        let certain = found.is_nearest && site.outside.contains(&sub(*place, site.place));
-        certain.then_some((owner / LANES, owner % LANES))
+        let is_known = located.is_certainly_nearest && site.far_half_space.contains(&sub(*position, site.position));
+        is_known.then_some((owner / LANES, owner % LANES))
     }
 }
 
-/// A coordinate of a query in the units of sites, or 0 below what the predicates can tell, as for sites.
+/// Returns a coordinate in the units of sites, or 0 if it is too small for the exact predicates. Sites are treated in
+/// the same way.
 #[inline(always)]
-fn snapped(x: f64) -> f64 {
+fn flush_tiny(x: f64) -> f64 {
     if x.abs() < *RANGE.start() { 0.0 } else { x }
 }
 
-/// The way to a cell alone, as an operation.
-struct Walk<'a> {
-    fans: &'a Fans,
+/// A SIMD kernel that walks to the site nearest to a query.
+struct LocateSite<'a> {
+    neighbours: &'a NeighbourTable,
     start: usize,
-    place: V3,
+    position: V3,
 }
 
-impl SimdKernel for Walk<'_> {
+impl SimdKernel for LocateSite<'_> {
     type Output = usize;
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) -> usize {
-        self.fans.walk::<I>(self.start, &self.place, |_| ()).site
+        self.neighbours.walk::<I>(self.start, &self.position, |_| ()).site
     }
 }
 
-/// A query on its way to its cell from the site that was found first, as an operation.
-struct Answer<'a, C> {
+/// A SIMD kernel that walks from a first site to the cell of a query and searches its list.
+struct LocateAndSearch<'a, C> {
     index: &'a Voronoi,
-    found: Found,
+    located: LocatedSite,
     query: V3,
-    place: V3,
+    position: V3,
     collector: &'a mut C,
     evaluate: EvaluateFn<'a, C>,
     finish: fn(&mut SearchState<'_, C>),
 }
 
-impl<C: Collector> SimdKernel for Answer<'_, C> {
+impl<C: Collector> SimdKernel for LocateAndSearch<'_, C> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        let Self { index, found, place, .. } = self;
-        let found = index.fans.walk::<I>(found.site, &place, |at| {
+        let Self { index, located, position, .. } = self;
+        let located = index.neighbours.walk::<I>(located.site, &position, |at| {
             self.collector.visit_node();
             index.prefetch_block(at);
         });
-        index.tree.isa().run(InCell(Answer { found, ..self }));
+        index.tree.isa().run(SearchCell(LocateAndSearch { located, ..self }));
     }
 }
 
-/// A query in its cell, as an operation of its own: it is compiled once, for single queries and for several.
-struct InCell<'a, C>(Answer<'a, C>);
+/// A SIMD kernel that searches the cell of a query. It is separate from the walk, so that it is compiled only once for
+/// single queries and for batches.
+struct SearchCell<'a, C>(LocateAndSearch<'a, C>);
 
-impl<C: Collector> SimdKernel for InCell<'_, C> {
+impl<C: Collector> SimdKernel for SearchCell<'_, C> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        let Answer { index, found, query, place, collector, evaluate, finish } = self.0;
+        let LocateAndSearch { index, located, query, position, collector, evaluate, finish } = self.0;
         let tree = &index.tree;
-        let site = &index.fans.sites[found.site];
-        let reach = index.reach(site, &query, &place);
-        let held = site.holder();
+        let site = &index.neighbours.sites[located.site];
+        let upper_bound = index.upper_bound(site, &query, &position);
+        let held = site.known_primitive();
         if !site.has_list() {
-            return tree.isa().run(Search { tree, query, reach, held, collector, evaluate, finish });
+            return tree.isa().run(Search { tree, query, reach: upper_bound, held, collector, evaluate, finish });
         }
-        let certain = Voronoi::certain(&found, site, &place);
-        if certain.is_none()
-            && let Some(list) = index.filters.of(found.site)
+        let known_answer = Voronoi::known_answer(&located, site, &position);
+        if known_answer.is_none()
+            && let Some(filter) = index.filters.get(located.site)
         {
-            let search = Search { tree, query, reach, held, collector, evaluate, finish };
-            return search_filtered(InFilteredList { list, search });
+            let search = Search { tree, query, reach: upper_bound, held, collector, evaluate, finish };
+            return search_filtered(SearchFilteredList { filter, search });
         }
-        // What comes next, if the list has more than a block.
+        // The second block is prefetched as well, because the list may have more than one.
         index.prefetch_block(site.list as usize);
-        let mut filter = SearchState::new(tree, query, reach, collector, evaluate, finish);
-        if let Some((packet, lane)) = certain {
-            filter.add(packet, lane);
-            return filter.evaluate_waiting();
+        let mut state = SearchState::new(tree, query, upper_bound, collector, evaluate, finish);
+        if let Some((packet, lane)) = known_answer {
+            state.add(packet, lane);
+            return state.evaluate_waiting();
         }
-        filter.hold(held, reach);
-        let (first, rest) = (&index.blocks[found.site], &index.blocks[site.list as usize..]);
-        block::search::<I, C>(tree, first, rest, &in_frame(tree, &query), &mut filter);
-        filter.evaluate_waiting();
+        state.hold(held, upper_bound);
+        let (first, rest) = (&index.blocks[located.site], &index.blocks[site.list as usize..]);
+        search::search_list::<I, C>(tree, first, rest, &block_query(tree, &query), &mut state);
+        state.evaluate_waiting();
     }
 }
 
-/// A query in the list of its cell, of which a filter chooses the primitives.
-struct InFilteredList<'a, C> {
-    list: &'a dyn ListFilter,
+/// A SIMD kernel that searches those primitives of a list that its filter chooses.
+struct SearchFilteredList<'a, C> {
+    filter: &'a dyn ListFilter,
     search: Search<'a, Aabb<f64>, C>,
 }
 
-/// Searches a list that has a filter. This is a function of its own because few indexes have filters, and its code in the
-/// search of the others would cost registers.
+/// Searches a list that has a filter. It is not inlined, because few indexes have filters and its code would cost the
+/// search of the others registers.
 #[cold]
 #[inline(never)]
-fn search_filtered<C: Collector>(query: InFilteredList<'_, C>) {
+fn search_filtered<C: Collector>(query: SearchFilteredList<'_, C>) {
     query.search.tree.isa().run(query);
 }
 
-impl<C: Collector> SimdKernel for InFilteredList<'_, C> {
+impl<C: Collector> SimdKernel for SearchFilteredList<'_, C> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        let Self { list, search } = self;
-        let Search { tree, query, reach, held, collector, evaluate, finish } = search;
-        let mut filter = SearchState::new(tree, query, reach, collector, evaluate, finish);
-        filter.hold(held, reach);
-        for (packet, lanes) in Filters::packets(list, &query) {
-            filter.packet::<I>(packet as usize, u32::from(lanes));
+        let Self { filter, search } = self;
+        let Search { tree, query, reach: upper_bound, held, collector, evaluate, finish } = search;
+        let mut state = SearchState::new(tree, query, upper_bound, collector, evaluate, finish);
+        state.hold(held, upper_bound);
+        for (packet, lanes) in ListFilters::packets(filter, &query) {
+            state.packet::<I>(packet as usize, u32::from(lanes));
         }
-        filter.evaluate_waiting();
+        state.evaluate_waiting();
     }
 }
 
+/// Converts a query to the form that blocks with boxes need.
 #[inline(always)]
-fn in_frame(tree: &PacketTree, query: &V3) -> Place {
+fn block_query(tree: &PacketTree, query: &V3) -> BlockQuery {
     let local = tree.frame.place(query);
-    Place { rounded: Rounded::of(local), local, cells: [0.0; 3] }
+    BlockQuery { rounded: Rounded::of(local), local, cells: [0.0; 3] }
 }
 
-/// Several queries side by side, as an operation.
-struct Several<'a> {
+/// A SIMD kernel that answers several queries side by side.
+struct SearchSeveral<'a> {
     index: &'a Voronoi,
-    queries: &'a [V3; SIDE_BY_SIDE],
-    minimums: [&'a mut BestF64; SIDE_BY_SIDE],
-    evaluates: [EvaluateFn<'a, BestF64>; SIDE_BY_SIDE],
+    queries: &'a [V3; QUERIES_SIDE_BY_SIDE],
+    minimums: [&'a mut BestF64; QUERIES_SIDE_BY_SIDE],
+    evaluates: [EvaluateFn<'a, BestF64>; QUERIES_SIDE_BY_SIDE],
 }
 
-impl SimdKernel for Several<'_> {
+impl SimdKernel for SearchSeveral<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
         let Self { index, queries, minimums, evaluates } = self;
-        let mut places = [None; SIDE_BY_SIDE];
+        let mut positions = [None; QUERIES_SIDE_BY_SIDE];
         if let Some(locator) = &index.locator {
-            for (to, query) in places.iter_mut().zip(queries) {
-                *to = index.place(query);
-                to.iter().for_each(|place| locator.prefetch(place));
+            for (to, query) in positions.iter_mut().zip(queries) {
+                *to = index.to_site_units(query);
+                to.iter().for_each(|position| locator.prefetch(position));
             }
-            places.iter().flatten().for_each(|place| locator.prefetch_more(place));
+            positions.iter().flatten().for_each(|position| locator.prefetch_more(position));
         }
-        let mut ways: [Option<Found>; SIDE_BY_SIDE] = [None; SIDE_BY_SIDE];
+        let mut locations: [Option<LocatedSite>; QUERIES_SIDE_BY_SIDE] = [None; QUERIES_SIDE_BY_SIDE];
         let mut walking = 0u32;
-        for (i, (to, place)) in ways.iter_mut().zip(&places).enumerate() {
-            let start = place.as_ref().and_then(|place| index.locator.as_ref()?.start(place));
-            *to = start.map(|site| Found { site, is_nearest: false });
+        for (i, (to, position)) in locations.iter_mut().zip(&positions).enumerate() {
+            let start = position.as_ref().and_then(|position| index.locator.as_ref()?.start(position));
+            *to = start.map(|site| LocatedSite { site, is_certainly_nearest: false });
             if let Some(site) = start {
-                index.fans.prefetch(site);
+                index.neighbours.prefetch(site);
                 walking |= 1 << i;
             }
         }
@@ -260,31 +274,39 @@ impl SimdKernel for Several<'_> {
             while rest != 0 {
                 let i = rest.trailing_zeros() as usize;
                 rest &= rest - 1;
-                if let (Some(found), Some(place)) = (&mut ways[i], &places[i]) {
-                    let (next, is_nearest) = index.fans.step::<I>(found.site, place);
-                    if next == found.site {
-                        found.is_nearest = is_nearest;
+                if let (Some(located), Some(position)) = (&mut locations[i], &positions[i]) {
+                    let (next, is_certainly_nearest) = index.neighbours.step::<I>(located.site, position);
+                    if next == located.site {
+                        located.is_certainly_nearest = is_certainly_nearest;
                         walking &= !(1 << i);
-                        index.prefetch_answer(found, place);
+                        index.prefetch_answer(located, position);
                     } else {
-                        found.site = next;
-                        index.fans.prefetch(next);
+                        located.site = next;
+                        index.neighbours.prefetch(next);
                     }
                 }
             }
         }
-        for ((found, place), query) in ways.iter().zip(&places).zip(queries) {
-            if let (Some(found), Some(place)) = (found, place) {
-                index.prefetch_packets::<I>(found, query, place);
+        for ((located, position), query) in locations.iter().zip(&positions).zip(queries) {
+            if let (Some(located), Some(position)) = (located, position) {
+                index.prefetch_packets::<I>(located, query, position);
             }
         }
         let finish = finish_nearest;
         let (tree, isa) = (&index.tree, index.tree.isa());
         for (i, (minimum, evaluate)) in minimums.into_iter().zip(evaluates).enumerate() {
             let (query, collector) = (queries[i], minimum);
-            match (ways[i], places[i]) {
-                (Some(found), Some(place)) => {
-                    isa.run(InCell(Answer { index, found, query, place, collector, evaluate, finish }));
+            match (locations[i], positions[i]) {
+                (Some(located), Some(position)) => {
+                    isa.run(SearchCell(LocateAndSearch {
+                        index,
+                        located,
+                        query,
+                        position,
+                        collector,
+                        evaluate,
+                        finish,
+                    }));
                 }
                 _ => isa.run(Search { tree, query, reach: f64::INFINITY, held: None, collector, evaluate, finish }),
             }
@@ -293,26 +315,26 @@ impl SimdKernel for Several<'_> {
 }
 
 impl Voronoi {
-    /// Asks for what a query reads first in its cell.
+    /// Prefetches what a query reads first in its cell.
     #[inline(always)]
-    fn prefetch_answer(&self, found: &Found, place: &V3) {
-        let site = &self.fans.sites[found.site];
-        if let Some((packet, _)) = Self::certain(found, site, place) {
+    fn prefetch_answer(&self, located: &LocatedSite, position: &V3) {
+        let site = &self.neighbours.sites[located.site];
+        if let Some((packet, _)) = Self::known_answer(located, site, position) {
             self.tree.leaves.prefetch(packet);
         } else if site.has_list() {
-            self.prefetch_block(found.site);
+            self.prefetch_block(located.site);
             self.prefetch_block(site.list as usize);
         }
     }
 
-    /// Asks for the packets and vertices that come after that.
+    /// Prefetches the packets and vertices that a query reads after that.
     #[inline(always)]
-    fn prefetch_packets<I: InstructionSet>(&self, found: &Found, query: &V3, place: &V3) {
-        let (tree, site) = (&self.tree, &self.fans.sites[found.site]);
-        if let Some((packet, lane)) = Self::certain(found, site, place) {
+    fn prefetch_packets<I: InstructionSet>(&self, located: &LocatedSite, query: &V3, position: &V3) {
+        let (tree, site) = (&self.tree, &self.neighbours.sites[located.site]);
+        if let Some((packet, lane)) = Self::known_answer(located, site, position) {
             tree.leaves.packets[packet].prefetch_vertices(lane, &tree.leaves.vertices);
         } else if site.has_list() {
-            block::prefetch::<I>(tree, &self.blocks[found.site], &in_frame(tree, query));
+            search::prefetch_packets::<I>(tree, &self.blocks[located.site], &block_query(tree, query));
         }
     }
 }

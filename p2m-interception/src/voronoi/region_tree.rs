@@ -1,12 +1,12 @@
-//! The paper's filter of long lists: an R-tree of boxes around regions.
+//! The filter of the paper for long lists: an R-tree of boxes around regions.
 
-use crate::{ListFilter, Region};
+use crate::voronoi::list_filter::{ListFilter, Region};
 use rstar::{AABB, RTree, RTreeObject};
 use std::sync::Arc;
 
-/// The boxes of a list in an R-tree of the crate `rstar` \[Zong2023\].
+/// A filter that keeps the boxes of a list in an R-tree of the crate `rstar` \[Zong2023\].
 ///
-/// Whether it is faster than lists in order depends on the scene (docs/p2m.md has figures).
+/// Whether it is faster than a list in order depends on the scene (docs/p2m.md has figures).
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -25,12 +25,13 @@ use std::sync::Arc;
 /// ```
 #[derive(Clone, Debug)]
 pub struct RegionTree {
+    /// The regions with a bounded box.
     tree: RTree<Bounded>,
-    /// Those without an end, which a tree cannot have.
+    /// The regions with an unbounded box, which an R-tree cannot store.
     unbounded: Vec<Region>,
 }
 
-/// A region that has a box.
+/// A region with a bounded box.
 #[derive(Clone, Debug)]
 struct Bounded(Region);
 
@@ -54,12 +55,12 @@ impl RegionTree {
 }
 
 impl ListFilter for RegionTree {
-    fn containing(&self, place: &[f64; 3], visit: &mut dyn FnMut(&Region)) {
-        let bounded = self.tree.locate_in_envelope_intersecting(AABB::from_point(*place));
+    fn containing(&self, point: &[f64; 3], visit: &mut dyn FnMut(&Region)) {
+        let bounded = self.tree.locate_in_envelope_intersecting(AABB::from_point(*point));
         bounded.map(|bounded| &bounded.0).chain(&self.unbounded).for_each(visit);
     }
 
-    /// It does not tell: leaves, and half as many nodes with boxes again.
+    /// Returns an estimate, since `rstar` does not report its memory: the leaves, and half as many nodes with boxes.
     fn memory(&self) -> usize {
         self.tree.size() * size_of::<Region>() * 3 / 2 + self.unbounded.capacity() * size_of::<Region>()
     }

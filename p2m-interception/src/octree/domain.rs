@@ -1,0 +1,81 @@
+//! The domain of an octree: the cube around it, and where queries are expected.
+
+use crate::options::{Domain, OctreeOptions};
+use p2m_bvh::PacketTree;
+use p2m_core::Aabb;
+use p2m_core::engine::real::to_f64_array;
+use p2m_core::engine::vector::V3;
+
+/// The side of [`Domain::Everywhere`], in sizes of the scene.
+const EVERYWHERE_SCENE_SIZES: f64 = 10.0;
+/// The boxes in which queries are expected, uniformly in each: the side in sizes of the scene, and the weight. The
+/// boxes are nested, so queries are denser near the scene.
+const QUERY_BOXES: [(f64, f64); 4] = [(EVERYWHERE_SCENE_SIZES, 1.0), (4.0, 0.3), (2.0, 0.3), (1.05, 1.0)];
+
+/// The cube of a domain with what the refinement derives from it.
+pub(crate) struct DomainCube {
+    /// The low corner of the cube.
+    pub(crate) low: V3,
+    /// The side of the cube, a power of two.
+    pub(crate) side: f64,
+    /// The slack of the corner test: a dominator has to be nearer by this much.
+    pub(crate) slack: f64,
+    /// The boxes in which queries are uniform, each with the number of queries in a unit of volume.
+    pub(crate) uniform_boxes: Vec<(Aabb<f64>, f64)>,
+}
+
+impl DomainCube {
+    /// Chooses the cube. The result is `None`, and the tree answers everything, if the scene or the domain has no
+    /// extent, or if coordinates in f32 cannot resolve the scene.
+    #[allow(clippy::cast_possible_truncation, reason = "an exponent")]
+    pub(crate) fn from_tree(tree: &PacketTree, options: &OctreeOptions) -> Option<Self> {
+        let bounds = tree.bounds();
+        let extent = bounds.max - bounds.min;
+        let size = extent.max();
+        let centre = bounds.min + extent * 0.5;
+        // The box of a flat scene is flat, but the domain has to contain queries beside the scene as well.
+        let extent = extent.map(|x| x.max(size * 0.05));
+        let domain = match options.domain {
+            Domain::Everywhere => Aabb {
+                min: centre - extent * (EVERYWHERE_SCENE_SIZES * 0.5),
+                max: centre + extent * (EVERYWHERE_SCENE_SIZES * 0.5),
+            },
+            Domain::Box(bounds) => bounds,
+            Domain::Band(width) => {
+                Aabb { min: centre - extent.map(|x| x * 0.5 + width), max: centre + extent.map(|x| x * 0.5 + width) }
+            }
+        };
+        let span = domain.max - domain.min;
+        let longest = span.max();
+        let is_bounded = span.iter().all(|x| *x > 0.0 && x.is_finite()) && domain.min.iter().all(|x| x.is_finite());
+        let is_usable = size > 0.0 && size.is_finite() && tree.frame.is_plain() && is_bounded;
+        // The frame of the scene has to resolve cells in f32, and cells have to be small enough to be of use.
+        if !is_usable || longest > size * 2f64.powi(20) || longest < size * 2f64.powi(-20) {
+            return None;
+        }
+        // The side is a power of two and the corner is a multiple of a small part of it, so that all corners of cells
+        // are exact.
+        let side = 2f64.powi((longest * 1.0001).log2().ceil() as i32);
+        let grain = side / 4096.0;
+        let domain_centre = domain.min + span * 0.5;
+        let low: V3 = std::array::from_fn(|k| ((domain_centre[k] - side * 0.5) / grain).floor() * grain);
+        let scene_corners = [to_f64_array(&bounds.min), to_f64_array(&bounds.max)];
+        let scale = side * 4.0 + low.iter().chain(scene_corners.as_flattened()).fold(0.0f64, |a, x| a.max(x.abs()));
+        let uniform_box = |scale: f64, weight: f64| {
+            let half = extent * (scale * 0.5);
+            let bounds = Aabb { min: centre - half, max: centre + half };
+            (bounds, weight / (half * 2.0).product())
+        };
+        let uniform_boxes = match options.domain {
+            Domain::Everywhere => QUERY_BOXES.map(|(scale, weight)| uniform_box(scale, weight)).to_vec(),
+            Domain::Box(_) | Domain::Band(_) => vec![(domain, 1.0 / span.product())],
+        };
+        Some(Self {
+            low,
+            side,
+            // The rounding of keys, of dominators and of locating a query is below 2^-46 of `scale`.
+            slack: scale / (1u64 << 42) as f64,
+            uniform_boxes,
+        })
+    }
+}

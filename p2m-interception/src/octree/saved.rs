@@ -1,0 +1,70 @@
+//! Saving an octree and loading it.
+
+use crate::octree::Octree;
+use crate::options::OctreeReport;
+use p2m_bvh::PacketTree;
+use p2m_core::engine::vector::V3;
+use p2m_core::storage::{LoadError, Reader, Saved, Writer};
+
+/// The fields of an octree that are not arrays. The layout is that of the section `octree` of the file.
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Header {
+    low: V3,
+    cells_per_length: f64,
+    resolution: f64,
+    work: u64,
+    lists: u64,
+    singles: u64,
+    trees: u64,
+    entries: u64,
+    depth: u64,
+    bytes: u64,
+    tree_bytes: u64,
+    root: u32,
+    unused: u32,
+}
+
+impl Saved for Octree {
+    fn kind() -> String {
+        "octree".to_owned()
+    }
+
+    fn save<'a>(&'a self, writer: &mut Writer<'a>) {
+        let OctreeReport { lists, singles, trees, entries, depth, bytes, tree_bytes, work, resolution } = self.report;
+        let [lists, singles, trees, entries, depth, bytes, tree_bytes] =
+            [lists, singles, trees, entries, depth, bytes, tree_bytes].map(|n| n as u64);
+        let Self { low, cells_per_length, root, .. } = *self;
+        let header = Header {
+            low,
+            cells_per_length,
+            resolution,
+            work,
+            lists,
+            singles,
+            trees,
+            entries,
+            depth,
+            bytes,
+            tree_bytes,
+            root,
+            unused: 0,
+        };
+        writer.put_copy("octree", &[header]);
+        writer.put("octree/codes", &self.rows);
+        writer.put("octree/lists", &self.blocks);
+        self.tree.save(writer);
+    }
+
+    #[allow(clippy::cast_possible_truncation, reason = "numbers to report")]
+    fn load(reader: &Reader) -> Result<Self, LoadError> {
+        let header: Header = reader.one("octree")?;
+        let Header { lists, singles, trees, entries, depth, bytes, tree_bytes, .. } = header;
+        let [lists, singles, trees, entries, depth, bytes, tree_bytes] =
+            [lists, singles, trees, entries, depth, bytes, tree_bytes].map(|n| n as usize);
+        let Header { low, cells_per_length, resolution, work, root, .. } = header;
+        let report = OctreeReport { lists, singles, trees, entries, depth, bytes, tree_bytes, work, resolution };
+        let (rows, blocks) = (reader.array("octree/codes")?, reader.array("octree/lists")?);
+        Ok(Self { tree: PacketTree::load(reader)?, low, cells_per_length, root, rows, blocks, report })
+    }
+}

@@ -1,0 +1,247 @@
+//! The corners of all Voronoi cells: the circumcentres of Delaunay tetrahedra, with the packets that intersect their
+//! balls.
+
+use crate::delaunay::{BOUNDING, Delaunay};
+use crate::parallel_chunks::map_chunks_in_order;
+use crate::voronoi::budget::Limits;
+use crate::voronoi::circumsphere;
+use p2m_bvh::PacketTree;
+use p2m_bvh::engine::range::Selection;
+use p2m_core::engine::vector::{V3, norm_squared, sub};
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// A ball that intersects more packets than this is crowded.
+pub(crate) const CROWDED_BALL_PACKETS: usize = 24;
+
+/// A corner of Voronoi cells, in coordinates of the scene.
+#[derive(Clone, Copy)]
+pub(crate) struct CellCorner {
+    /// The position of the corner.
+    pub(crate) position: V3,
+    /// An upper bound of the error of the position.
+    pub(crate) error: f64,
+    /// The distance to the four sites around it, or zero if the corner is unknown.
+    pub(crate) radius: f64,
+    /// The index of the first of its packets in [`CellCorners::packets`].
+    pub(crate) first_packet: u32,
+    /// Whether the corner has no packets: it is unknown, or its ball intersects too many. The limit is
+    /// [`CROWDED_BALL_PACKETS`] as long as sites are added, and that of a list afterwards.
+    pub(crate) is_crowded: bool,
+}
+
+impl CellCorner {
+    /// A corner that could not be computed.
+    const UNKNOWN: Self = Self { position: [0.0; 3], error: 0.0, radius: 0.0, first_packet: 0, is_crowded: true };
+
+    /// Collects the packets that may intersect the ball of the corner. The result is `false` if there are more than
+    /// `max_packets`, or if the ball cannot be decided.
+    fn collect_ball(
+        &self,
+        tree: &PacketTree,
+        limits: Limits<'_>,
+        max_packets: usize,
+        selections: &mut Vec<Selection>,
+    ) -> bool {
+        let mut tests = 0;
+        let is_complete = tree.ball(
+            self.position,
+            self.radius + 2.0 * self.error + limits.slack,
+            max_packets,
+            selections,
+            &mut tests,
+        );
+        limits.budget.charge(tests);
+        is_complete
+    }
+}
+
+/// The corners of all cells: one for each tetrahedron, and one more that marks the end.
+#[derive(Default)]
+pub(crate) struct CellCorners {
+    /// The corners, in the order of their tetrahedra.
+    pub(crate) all: Vec<CellCorner>,
+    /// The packets of all balls, one ball after the other.
+    packets: Vec<u32>,
+}
+
+impl CellCorners {
+    /// Computes the corners of all tetrahedra. Those that an earlier triangulation had as well are copied from
+    /// `reused`.
+    pub(crate) fn new(
+        tree: &PacketTree,
+        delaunay: &Delaunay,
+        limits: Limits<'_>,
+        reused: Option<&ReusedCorners<'_>>,
+        progress: &dyn Fn(usize, usize),
+    ) -> Self {
+        let count = delaunay.tetrahedra().len();
+        let mut corners = Self { all: Vec::with_capacity(count + 1), packets: Vec::new() };
+        map_chunks_in_order(
+            count,
+            limits.parallel,
+            |chunk| Self::compute_chunk(tree, delaunay, limits, reused, chunk),
+            |chunk: Self| {
+                corners.append(chunk, limits);
+                progress(corners.all.len(), count);
+            },
+        );
+        corners.push(CellCorner::UNKNOWN, std::iter::empty());
+        corners
+    }
+
+    /// Computes the corners of some tetrahedra.
+    fn compute_chunk(
+        tree: &PacketTree,
+        delaunay: &Delaunay,
+        limits: Limits<'_>,
+        reused: Option<&ReusedCorners<'_>>,
+        numbers: Range<usize>,
+    ) -> Self {
+        let (sites, unit) = (delaunay.sites(), delaunay.unit());
+        let mut corners = Self::default();
+        let mut selections: Vec<Selection> = Vec::new();
+        for tetrahedron in &delaunay.tetrahedra()[numbers] {
+            if let Some((reused, number)) = reused.and_then(|reused| Some((reused, reused.find(tetrahedron)?))) {
+                corners.push(reused.corners.all[number], reused.corners.packets(number).iter().copied());
+                continue;
+            }
+            selections.clear();
+            let mut corner = CellCorner::UNKNOWN;
+            if limits.budget.is_exceeded() {
+                corners.push(corner, std::iter::empty());
+                continue;
+            }
+            let own_site = tetrahedron.iter().map(|v| *v as usize).find(|v| *v >= BOUNDING);
+            if let (Some(site), Some(centre)) =
+                (own_site, circumsphere::circumcentre(&tetrahedron.map(|v| sites[v as usize])))
+            {
+                corner.position = centre.position.map(|x| x * unit);
+                corner.error = centre.error * unit;
+                corner.radius =
+                    norm_squared(sub(centre.position, sites[site])).sqrt() * unit * (1.0 + 8.0 * f64::EPSILON);
+                corner.is_crowded = !corner.collect_ball(
+                    tree,
+                    limits,
+                    CROWDED_BALL_PACKETS.min(limits.max_list_packets),
+                    &mut selections,
+                );
+            }
+            let kept = if corner.is_crowded { &[] } else { &selections[..] };
+            corners.push(corner, kept.iter().map(|s| s.packet));
+        }
+        corners
+    }
+
+    /// Returns the corners with the packets of crowded balls as well, unless they are too many for a list.
+    pub(crate) fn with_packets_of_crowded(self, tree: &PacketTree, limits: Limits<'_>) -> Self {
+        if limits.max_list_packets <= CROWDED_BALL_PACKETS || self.count_crowded() == 0 {
+            return self;
+        }
+        let count = self.all.len() - 1;
+        let mut corners = Self { all: Vec::with_capacity(count + 1), packets: Vec::with_capacity(self.packets.len()) };
+        let work = |numbers: Range<usize>| {
+            let mut chunk = Self::default();
+            let mut selections: Vec<Selection> = Vec::new();
+            for number in numbers {
+                let corner = self.all[number];
+                selections.clear();
+                let is_retried = corner.is_crowded && corner.radius > 0.0 && !limits.budget.is_exceeded();
+                if is_retried && corner.collect_ball(tree, limits, limits.max_list_packets, &mut selections) {
+                    chunk.push(CellCorner { is_crowded: false, ..corner }, selections.iter().map(|s| s.packet));
+                } else {
+                    chunk.push(corner, self.packets(number).iter().copied());
+                }
+            }
+            chunk
+        };
+        map_chunks_in_order(count, limits.parallel, work, |chunk| corners.append(chunk, limits));
+        corners.push(CellCorner::UNKNOWN, std::iter::empty());
+        corners
+    }
+
+    /// Appends the corners of a chunk. They are unknown if the budget has no memory for their packets.
+    fn append(&mut self, chunk: Self, limits: Limits<'_>) {
+        let first_packet = self.packets.len();
+        if !limits.budget.fits::<u32>(first_packet + chunk.packets.len()) {
+            self.all.resize(
+                self.all.len() + chunk.all.len(),
+                CellCorner { first_packet: to_u32(first_packet), ..CellCorner::UNKNOWN },
+            );
+            return;
+        }
+        self.packets.extend_from_slice(&chunk.packets);
+        let moved = |corner: CellCorner| CellCorner {
+            first_packet: to_u32(first_packet + corner.first_packet as usize),
+            ..corner
+        };
+        self.all.extend(chunk.all.into_iter().map(moved));
+    }
+
+    /// Returns the number of corners that are crowded or unknown.
+    pub(crate) fn count_crowded(&self) -> usize {
+        // The last corner only marks the end.
+        self.all[..self.all.len() - 1].iter().filter(|corner| corner.is_crowded).count()
+    }
+
+    /// Returns the packets that intersect the ball of a corner. A crowded corner has none.
+    pub(crate) fn packets(&self, number: usize) -> &[u32] {
+        &self.packets[self.all[number].first_packet as usize..self.all[number + 1].first_packet as usize]
+    }
+
+    /// Appends a corner with its packets.
+    fn push(&mut self, corner: CellCorner, packets: impl Iterator<Item = u32>) {
+        let first_packet = to_u32(self.packets.len());
+        self.packets.extend(packets);
+        self.all.push(CellCorner { first_packet, ..corner });
+    }
+}
+
+/// Converts a number to 32 bits, of which there are enough: budgets see to that.
+pub(crate) fn to_u32(n: usize) -> u32 {
+    u32::try_from(n).expect("numbers of 32 bits")
+}
+
+/// The corners of an earlier triangulation, found by the sites of another triangulation.
+pub(crate) struct ReusedCorners<'a> {
+    /// The corners of the earlier triangulation.
+    pub(crate) corners: &'a CellCorners,
+    /// The numbers of its tetrahedra, by their sorted sites.
+    pub(crate) numbers: HashMap<[u32; 4], usize>,
+    /// For each site of the new triangulation the same site of the earlier one, or [`ReusedCorners::NEW`].
+    pub(crate) previous_sites: Vec<u32>,
+}
+
+impl<'a> ReusedCorners<'a> {
+    /// Marks a site that the earlier triangulation does not have.
+    const NEW: u32 = u32::MAX;
+
+    /// Compares two triangulations. The points of the earlier one are the first `points` points of the new one.
+    #[allow(clippy::float_cmp, reason = "the same or not")]
+    pub(crate) fn new(earlier: &Delaunay, corners: &'a CellCorners, later: &Delaunay, points: usize) -> Self {
+        let mut previous_sites = vec![Self::NEW; later.sites().len()];
+        let mut numbers = HashMap::new();
+        // Sites in another unit may be rounded differently, and the bounding sites of another box are elsewhere.
+        if earlier.unit() == later.unit() {
+            if earlier.sites()[..BOUNDING] == later.sites()[..BOUNDING] {
+                (0..BOUNDING).for_each(|site| previous_sites[site] = to_u32(site));
+            }
+            for point in 0..points {
+                previous_sites[later.site_of(point)] = to_u32(earlier.site_of(point));
+            }
+            numbers.extend(earlier.tetrahedra().iter().enumerate().map(|(number, t)| (sorted(*t), number)));
+        }
+        Self { corners, numbers, previous_sites }
+    }
+
+    /// Returns the number that a tetrahedron has in the earlier triangulation, if it was there.
+    fn find(&self, tetrahedron: &[u32; 4]) -> Option<usize> {
+        let previous_sites = tetrahedron.map(|v| self.previous_sites[v as usize]);
+        if previous_sites.contains(&Self::NEW) { None } else { self.numbers.get(&sorted(previous_sites)).copied() }
+    }
+}
+
+fn sorted(mut sites: [u32; 4]) -> [u32; 4] {
+    sites.sort_unstable();
+    sites
+}
