@@ -11,7 +11,7 @@ pub const SIDE_BY_SIDE: usize = 8;
 type Row = [f64; SIDE_BY_SIDE];
 
 /// Returns the squares of the keys of triangles whose nearest point is certainly a vertex, with the bits of
-/// [`triangle`](super::triangle::triangle), and infinity for the others. `corners[v][k]` has coordinate k of vertex v
+/// `kernel::triangle::triangle`, and infinity for the others. `corners[v][k]` has coordinate k of vertex v
 /// of each triangle.
 #[inline(always)]
 #[allow(clippy::needless_range_loop, reason = "rows side by side")]

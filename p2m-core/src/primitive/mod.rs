@@ -1,6 +1,7 @@
 //! The primitives of a scene, and the interface of primitives of your own.
 
 mod box_intersection;
+mod feature;
 mod interface;
 mod point;
 mod projection;
@@ -8,9 +9,10 @@ mod segment;
 mod shape;
 mod triangle;
 
+pub use feature::Feature;
 pub use interface::Primitive;
 pub use point::Point;
-pub use projection::{Feature, Projection};
+pub use projection::Projection;
 pub use segment::Segment;
 pub use shape::Shape;
 pub use triangle::Triangle;

@@ -1,33 +1,10 @@
 //! The nearest point of one primitive.
 
+use super::feature::Feature;
 use crate::Real;
 use crate::kernel::{Key, Nearest, triangle as plain_kernel};
 use crate::real::to_f64_array;
 use nalgebra::Point3;
-
-/// The feature of a primitive that contains its nearest point, numbered within that primitive: neighbours in a mesh
-/// number the same vertex or edge differently.
-///
-/// A point has `Vertex(0)`; a segment has `Vertex(0)`, `Vertex(1)` and `Edge(0)`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Feature {
-    /// The vertex i.
-    Vertex(u8),
-    /// The interior of edge i, which runs from vertex i to vertex i + 1 (cyclically).
-    Edge(u8),
-    /// The interior of the face.
-    Face,
-}
-
-impl std::fmt::Display for Feature {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Vertex(i) => write!(f, "vertex{i}"),
-            Self::Edge(i) => write!(f, "edge{i}"),
-            Self::Face => f.write_str("face"),
-        }
-    }
-}
 
 /// The nearest point of one primitive, before it is rounded to the scalar of the scene.
 ///

@@ -60,7 +60,7 @@ enum HitMode {
     Any,
     /// The hit with the least parameter.
     First,
-    /// All hits.
+    /// All hits, in the order in which they are found.
     All,
     /// The number of hits.
     Count,

@@ -1,0 +1,25 @@
+//! The features of a primitive: vertices, edges and the face.
+
+/// The feature of a primitive that contains its nearest point, numbered within that primitive: neighbours in a mesh
+/// number the same vertex or edge differently.
+///
+/// A point has `Vertex(0)`; a segment has `Vertex(0)`, `Vertex(1)` and `Edge(0)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Feature {
+    /// The vertex i.
+    Vertex(u8),
+    /// The interior of edge i, which runs from vertex i to vertex i + 1 (cyclically).
+    Edge(u8),
+    /// The interior of the face.
+    Face,
+}
+
+impl std::fmt::Display for Feature {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Vertex(i) => write!(f, "vertex{i}"),
+            Self::Edge(i) => write!(f, "edge{i}"),
+            Self::Face => f.write_str("face"),
+        }
+    }
+}
