@@ -34,7 +34,7 @@ fn the_least_total_is_recommended_and_break_even_is_where_totals_meet() {
             }
         }
         assert_eq!(report["backend"] == "brute", queries == "1", "{report}");
-        assert_eq!(report["patch"].as_u64().unwrap() > 0, count > 1e6, "{report}");
+        assert_eq!(report["sample_primitives"].as_u64().unwrap() > 0, count > 1e6, "{report}");
     }
 }
 
@@ -44,7 +44,7 @@ fn memory_and_time_are_limits() {
     assert_eq!(report["backend"], "brute");
     assert!(report["estimates"][1]["reason"].as_str().unwrap().contains("more than there may be"), "{report}");
     let report = json(&["advise", SCENE, "--queries", "100000000", "--box", "--time", "0", "--json"]);
-    assert_eq!(report["patch"], 0);
+    assert_eq!(report["sample_primitives"], 0);
     let text = table(&["advise", SCENE, "--queries", "100000000", "--box"]);
     assert!(text.starts_with("backend  ") && text.contains("the least time for building and all queries"), "{text}");
 }

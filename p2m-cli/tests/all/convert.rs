@@ -71,17 +71,17 @@ lost     which corners are shared: each triangle has its own
     assert_eq!(
         lost(&stl),
         json!([
-            { "what": "names", "count": 2 },
-            { "what": "unused_positions", "count": 1 },
-            { "what": "precision", "count": 2, "largest": rounding.abs() },
-            { "what": "shared_positions" },
+            { "kind": "names", "count": 2 },
+            { "kind": "unused_positions", "count": 1 },
+            { "kind": "precision", "count": 2, "largest": rounding.abs() },
+            { "kind": "shared_positions" },
         ])
     );
-    assert_eq!(lost(&path(&folder, "s.ply")), json!([{ "what": "names", "count": 2 }]));
+    assert_eq!(lost(&path(&folder, "s.ply")), json!([{ "kind": "names", "count": 2 }]));
     assert_eq!(lost(&path(&folder, "t.obj")), json!([]));
     // What was skipped is told whatever the changes.
     let report = json(&["convert", &scene, &stl, "--json", "--subdivide", "1", "--gap", "0.5"]);
-    assert_eq!(report["skipped"], json!([{ "what": "vn", "count": 1 }]));
+    assert_eq!(report["skipped"], json!([{ "kind": "vn", "count": 1 }]));
     // Nothing to lose.
     let plain = write(&folder, "plain.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     assert_eq!(json(&["convert", &plain, &stl, "--json"])["out"]["lost"], json!([]));
@@ -94,7 +94,7 @@ lost     which corners are shared: each triangle has its own
     );
     assert_eq!(
         json(&["convert", &alone, &path(&folder, "alone.off"), "--json"])["out"]["lost"],
-        json!([{ "what": "unused_positions", "count": 1 }])
+        json!([{ "kind": "unused_positions", "count": 1 }])
     );
 }
 
@@ -105,10 +105,10 @@ fn polygons_that_are_cut_are_told() {
     let (scene, out) = (write(&folder, "s.obj", text), path(&folder, "s.ply"));
     let report = json(&["convert", &scene, &out, "--json"]);
     assert_eq!(report["in"]["primitives"], json!({ "triangles": 8, "segments": 2, "points": 0 }));
-    assert_eq!(report["out"]["lost"], json!([{ "what": "polygons", "count": 3 }]));
+    assert_eq!(report["out"]["lost"], json!([{ "kind": "polygons", "count": 3 }]));
     // However they are changed on the way.
     let report = json(&["convert", &scene, &out, "--subdivide", "1", "--json"]);
-    assert_eq!(report["out"]["lost"], json!([{ "what": "polygons", "count": 3 }]));
+    assert_eq!(report["out"]["lost"], json!([{ "kind": "polygons", "count": 3 }]));
     let message = text_of_error(&["convert", &scene, &out]);
     assert!(
         message.ends_with("\nlost     polygons: 3 are written as the triangles that they are cut into\n"),
@@ -130,7 +130,7 @@ fn the_report_says_what_was_done() {
     let report = json(&["convert", &scene, &out, "--subdivide", "1", "--translate", "1", "-2", "0.5", "--json"]);
     let expected = json!({
         "p2m": "convert",
-        "version": 1,
+        "version": 2,
         "in": { "file": scene, "format": "obj", "primitives": { "triangles": 1, "segments": 1, "points": 1 } },
         "changes": [{ "change": "subdivide", "by": 1 }, { "change": "translate", "by": [1.0, -2.0, 0.5] }],
         "out": {

@@ -46,7 +46,7 @@ fn the_json_report_has_the_same_figures() {
     let counts = |triangles: u32, segments: u32, points: u32| json!({ "triangles": triangles, "segments": segments, "points": points });
     let expected = json!({
         "p2m": "info",
-        "version": 1,
+        "version": 2,
         "file": scene,
         "format": "obj",
         "index": null,
@@ -73,7 +73,7 @@ fn the_json_report_has_the_same_figures() {
             "f32_step": f64::from(f32::EPSILON) * 8.0,
             "f64_step": f64::EPSILON * 8.0,
         },
-        "skipped": [{ "what": "mtllib", "count": 1 }],
+        "skipped": [{ "kind": "mtllib", "count": 1 }],
     });
     let mut found = report.clone();
     let notes = found.as_object_mut().unwrap().shift_remove("notes").unwrap();

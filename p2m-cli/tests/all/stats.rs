@@ -24,7 +24,7 @@ fn every_backend_says_what_it_is_made_of() {
         for place in ["in_box", "on_scene"] {
             let [nodes, packets, primitives] =
                 ["nodes", "packets", "primitives"].map(|n| number(&format!("/{place}/{n}/mean")));
-            let most = number(&format!("/{place}/primitives/most"));
+            let most = number(&format!("/{place}/primitives/max"));
             assert!(most >= primitives && most <= 4080.0, "{report}");
             assert!(primitives >= 1.0, "{report}");
             match backend {
@@ -35,7 +35,7 @@ fn every_backend_says_what_it_is_made_of() {
             }
         }
         if has_lists {
-            let lengths = ["median", "percent_90", "percent_99", "most"].map(|n| number(&format!("/lists/{n}")));
+            let lengths = ["median", "percentile_90", "percentile_99", "max"].map(|n| number(&format!("/lists/{n}")));
             assert!(lengths.is_sorted() && lengths[0] >= 1.0, "{report}");
             assert!(number("/lists/mean") <= lengths[3] && number("/lists/count") > 100.0, "{report}");
             assert!(number("/in_box/list") >= 1.0 && number("/in_box/without_list") < 0.5, "{report}");

@@ -28,7 +28,7 @@ fn long_work_shows_a_bar_on_a_terminal_only() {
     let Some(shown) = on_terminal(LONG, &[]) else { return };
     // It moves on.
     let words: BTreeSet<_> = shown.split_whitespace().filter(|word| word.ends_with("/100,000,000")).collect();
-    assert!(shown.contains("asking") && words.len() > 3, "{shown:?}");
+    assert!(shown.contains("answering") && words.len() > 3, "{shown:?}");
     let shown = on_terminal(&format!("{LONG} 2>/dev/null"), &[]).unwrap();
     assert_eq!(shown, "");
     // No bar, but the prompt of the shell goes to a line of its own after an interruption.
@@ -40,7 +40,7 @@ fn long_work_shows_a_bar_on_a_terminal_only() {
 fn short_work_shows_no_bar() {
     let Some(shown) = on_terminal("\"$P2M\" query \"$SCENE\" --random 10 --out /dev/null", &[]) else { return };
     assert!(shown.starts_with("scene    "), "{shown:?}");
-    assert!(!shown.contains('\u{1b}') && !shown.contains("asking"), "{shown:?}");
+    assert!(!shown.contains('\u{1b}') && !shown.contains("answering"), "{shown:?}");
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn colours_are_for_terminals_that_want_them() {
     assert!(shown.contains("error: ") && !shown.contains('\u{1b}'), "{shown:?}");
     // The bar has no colours at all: of the codes only those that move the cursor and clear the line.
     let shown = on_terminal(LONG, &[("NO_COLOR", "1")]).unwrap();
-    assert!(shown.contains("asking") && !shown.contains("\u{1b}[3"), "{shown:?}");
+    assert!(shown.contains("answering") && !shown.contains("\u{1b}[3"), "{shown:?}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Everything that was measured as one page that needs nothing else: no other file, no network, no script.
+//! All results as one HTML page, which needs no other file, no network and no script.
 
 mod html;
 mod plots;
@@ -14,42 +14,42 @@ use crate::text::error;
 use html::Html;
 use plots::{Colours, Unit};
 
-/// A quantity of each backend that depends on another one, as a plot and a table.
+/// A quantity of each backend as a function of another quantity. It becomes a plot and a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
-    /// Its head.
+    /// The heading.
     pub title: String,
-    /// What was done.
+    /// A sentence about the measurement.
     pub about: String,
-    /// The names of what is given and of what was measured.
+    /// The names of the given and of the measured quantity.
     pub axes: [&'static str; 2],
-    /// Backends, and their points.
+    /// The names of backends, and their points.
     pub lines: Vec<(String, Vec<(f64, f64)>)>,
 }
 
-/// What a page is made of.
+/// The content of a page.
 #[derive(Clone, Copy, Debug)]
 pub struct Page<'a> {
-    /// By what it was measured.
+    /// The origin of the figures.
     pub provenance: &'a Provenance,
-    /// How, in sentences: rounds, queries, seed, how long it took.
+    /// Sentences about the amount of work: rounds, queries, seed and duration.
     pub effort: &'a str,
-    /// What answers were compared with, in sentences.
+    /// Sentences about the truth that answers were compared with.
     pub truth: &'a str,
-    /// What reading the clock takes, in nanoseconds.
+    /// The time to read the clock, in nanoseconds.
     pub clock: f64,
-    /// What was measured.
+    /// The results.
     pub scenes: &'a [SceneFigures],
-    /// What was measured besides.
+    /// The results that depend on another quantity.
     pub sweeps: &'a [Sweep],
-    /// What the names of backends stand for: names and sentences.
+    /// The names of backends, and phrases that describe them.
     pub backends: &'a [(&'a str, &'a str)],
 }
 
 const STYLE: &str = include_str!("style.css");
 
 impl Page<'_> {
-    /// The page as HTML.
+    /// Returns the page as HTML.
     ///
     /// # Errors
     /// [`PlotError::Draw`]
@@ -75,7 +75,7 @@ impl Page<'_> {
         Ok(html.finish())
     }
 
-    /// The plots that stand well alone, with names for their files: speed over the largest relative error.
+    /// Returns the plots of speed over the largest relative error and those of sweeps, with names for their files.
     ///
     /// # Errors
     /// [`PlotError::Draw`]
@@ -96,7 +96,7 @@ impl Page<'_> {
         Ok(plots)
     }
 
-    /// Every backend has its colour, in the order of its first appearance.
+    /// Assigns colours to backends, in the order of their first appearance.
     fn colours(&self) -> Colours {
         let mut names: Vec<String> = Vec::new();
         let curves = self.scenes.iter().flat_map(|scene| scene.sets.iter().flat_map(|set| &set.curves));
@@ -125,7 +125,7 @@ impl Page<'_> {
         });
     }
 
-    /// Ways to the scenes.
+    /// Writes links to the scenes.
     fn write_contents(&self, html: &mut Html) {
         html.within("nav", "", |html| {
             html.words("The scenes in detail: ");
@@ -251,7 +251,7 @@ fn sweep_plot(sweep: &Sweep, colours: &Colours) -> Plot {
         y: sweep.axes[1],
         series: series.collect(),
         size: plots::SIZE,
-        legend: plots::LEGEND,
+        legend: plots::LEGEND_WIDTH,
         ..Plot::default()
     }
 }
@@ -271,7 +271,7 @@ fn sweep_table(sweep: &Sweep) -> (Vec<String>, Vec<Vec<String>>) {
     (head.collect(), rows.collect())
 }
 
-/// About three digits.
+/// Formats a number with about three digits.
 fn figure(value: f64) -> String {
     match value {
         x if x >= 100.0 => format!("{x:.0}"),
@@ -281,12 +281,12 @@ fn figure(value: f64) -> String {
     }
 }
 
-/// A name without an extension.
+/// Returns a name without its extension.
 fn stem(name: &str) -> &str {
     name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }
 
-/// A name that every file system takes.
+/// Returns a name that every file system accepts.
 fn file_name(text: &str) -> String {
     let kept = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c.to_ascii_lowercase() } else { '-' };
     format!("{}.svg", text.chars().map(kept).collect::<String>())
