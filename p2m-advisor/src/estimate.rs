@@ -7,7 +7,7 @@ use crate::registry::{BackendEntry, SearchStructure};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Estimate {
-    /// The backend.
+    /// The backend that is estimated.
     pub backend: &'static BackendEntry,
     /// The time to build the index, in seconds.
     pub build_seconds: f64,

@@ -74,7 +74,7 @@ impl<P: Partition + Saved + Send + Sync> Index for InterceptionIndex<f64, &Soup<
 
 /// An index that was built or loaded, with the details that reports have about it.
 pub struct BuiltIndex<'a> {
-    /// The index.
+    /// The index itself.
     pub index: Box<dyn Index + 'a>,
     /// The details of its backend.
     pub details: IndexDetails,

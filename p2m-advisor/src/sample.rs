@@ -1,8 +1,8 @@
 //! Samples of a scene: parts of it that are cheap to index, and queries for them.
 //!
 //! A *neighbourhood sample* keeps primitives together, so that queries near the surface cost as much as in the whole
-//! scene. A *subsample* takes primitives from everywhere, so that most of the scene stays about as far from a query as
-//! it was.
+//! scene. A *subsample* takes primitives from everywhere, so that most of the scene stays about as far from a query
+//! as it was.
 
 use crate::workload::QueryRegion;
 use nalgebra::{Point3, Vector3};
@@ -138,8 +138,8 @@ pub(crate) fn sample_queries(
         .collect()
 }
 
-/// Returns whether queries from the region are near the surface. Of points, most have to be near the centre of some
-/// primitive.
+/// Returns whether queries from the region are near the surface. Of points, most have to be near the centre
+/// of some primitive.
 pub(crate) fn is_near_surface(soup: &Soup<f64>, region: QueryRegion<'_>) -> bool {
     match region {
         QueryRegion::NearSurface => true,

@@ -4,7 +4,7 @@ use crate::input::{SceneArgs, point_format, read_points, read_scene};
 use crate::json;
 use crate::output::Output;
 use crate::streams::Streams;
-use crate::usage::{not_negative, one_of, positive, whole};
+use crate::usage::{not_negative, one_of, positive, whole_number};
 use anyhow::Context;
 use clap::ArgGroup;
 use p2m_advisor::{Advice, Estimate, QueryRegion, Workload, recommend};
@@ -40,7 +40,7 @@ pub(crate) struct Args {
     scene: SceneArgs,
 
     /// The number of queries
-    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole_number, allow_negative_numbers = true)]
     queries: u64,
 
     /// Queries are near the surface, about a hundredth of the diagonal away

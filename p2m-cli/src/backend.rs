@@ -108,7 +108,7 @@ impl<'a> SceneSource<'a> {
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part is from 0 to 1")]
             let report = |progress: p2m_interception::Progress| {
                 times.tell(progress);
-                bar.reach((progress.part * 100.0) as u64);
+                bar.advance_to((progress.part * 100.0) as u64);
             };
             backend.build(self.soup, &settings.with_progress(&report))?
         } else {

@@ -48,7 +48,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 
-    /// How many levels to draw, from the root on; deeper ones than the tree has are left out
+    /// The number of levels to draw, from the root on; levels that the tree does not have are left out
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u8).range(0..=64))]
     levels: u8,
 

@@ -49,7 +49,7 @@ fn help() -> String {
         "\
 OBJ, PLY and OFF files hold the whole geometry: the same positions bit by bit, the same primitives in the same order. Polygons are cut into \
 triangles. STL \
-files hold triangles alone, in single precision and without shared vertices. What a conversion loses is told on the standard \
+files hold triangles alone, in single precision and without shared vertices. The losses of a conversion are reported on the standard \
 error; what a format cannot hold at all is an error.
 
 {}
@@ -124,7 +124,7 @@ impl<'a> Target<'a> {
             None if is_standard(path) => {
                 let names = Format::NAMES.join("|");
                 return Err(usage(format!(
-                    "the standard output has no extension that tells its format: add --to {names}"
+                    "the standard output has no extension that names its format: add --to {names}"
                 )));
             }
             None => Format::from_path(path).map_err(|e| or_option(&e, "--to"))?,

@@ -1,6 +1,7 @@
 //! `p2m field`: distances from a scene on a grid or an octree.
 
 use crate::backend::{SceneSource, saved_or_default};
+use crate::field_summary::{ComputedField, FieldSummary};
 use crate::index_args::IndexArgs;
 use crate::input::{is_standard, or_option, read_scene_and_index};
 use crate::json;
@@ -23,26 +24,25 @@ use p2m_field::{
     FieldOptions, Grid, RefineOptions, distances, distances_by_lists, refined, signed_distances,
     signed_distances_by_lists, slice, write_cells, write_field,
 };
-use serde_json::{Value, json};
-use std::fmt::Write as _;
+use serde_json::json;
 use std::io::Write;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 fn help() -> String {
     format!(
         "\
 The grid covers the scaled box of the scene: N points along its longest side, ends included, and as many along the others at \
 the same spacing. Values are rounded to f32. Unless a backend is named, distances come from lists of what can be nearest in blocks of the grid if \
-it has as many points as the scene has primitives, which is faster and has the same values; signs ask an AABB tree.
+it has as many points as the scene has primitives, which is faster and has the same values; an AABB tree decides signs.
 
 NPY files are arrays of NumPy, field[i, j, k] with x, y and z; VTI files are images of VTK, with origin and spacing; RAW files have the \
 values alone, little-endian, x fastest. With --refine the file is NPY: an array of cells with the fields origin, size and values (at \
 the corners: x runs fastest, z slowest).
 
-With --signed distances are negative inside. A closed surface is told by its normals, and by rays where these are in doubt; others \
-(with holes, or facing here and there) by winding numbers, where inside is from where more than a half of all directions meet a back. \
-NaN stands where there is no telling.
+With --signed distances are negative inside. Inside of a closed surface is decided by its normals, and by rays where these are ambiguous. For other \
+surfaces (with holes, or with inconsistent orientation) it is decided by winding numbers: a point is inside if more than half of all directions hit \
+a back. The distance is NaN where the sign is undefined.
 
 {}
 
@@ -73,16 +73,16 @@ pub(crate) struct Args {
     #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum)]
     signed: Option<SignRule>,
 
-    /// Compute distances up to this alone, in the unit of the scene; the field has this value beyond
+    /// Compute distances up to this value only, in the unit of the scene; farther points have this value
     #[arg(long, value_name = "W", value_parser = not_negative, allow_negative_numbers = true, conflicts_with = "refine")]
     band: Option<f64>,
 
-    /// An octree instead of a grid, cut where the surface is while the interpolated distance is off by more than this, in the
-    /// middle of a cell, of its faces or its edges
+    /// An octree instead of a grid, cut where the surface is while the interpolated distance is off by more than this,
+    /// in the middle of a cell, of its faces or its edges
     #[arg(long, value_name = "ERROR", value_parser = positive, allow_negative_numbers = true, conflicts_with_all = ["resolution", "slice", "out_format", "threads"])]
     refine: Option<f64>,
 
-    /// Cut cells at most so often
+    /// The largest number of times that a cell is cut
     #[arg(long, value_name = "D", default_value_t = 8, value_parser = clap::value_parser!(u32).range(0..=16), requires = "refine", allow_negative_numbers = true)]
     depth: u32,
 
@@ -297,12 +297,6 @@ fn candidate_lists<'a>(streams: &Streams, soup: &'a Soup<f64>, grid: &Grid) -> O
     CandidateLists::new(soup).filter(|_| is_in_range)
 }
 
-/// The content of the file.
-enum ComputedField {
-    Grid(Vec<f32>),
-    Cells(Vec<p2m_field::Cell>),
-}
-
 /// An index with or without signs.
 enum FieldIndex<'a> {
     Unsigned(&'a dyn Index),
@@ -347,69 +341,5 @@ impl FieldIndex<'_> {
             Self::Signed(signed, _) => signed.closest_point(point).and_then(|answer| answer.distance()),
         };
         distance.unwrap_or(f64::NAN)
-    }
-}
-
-/// The summary of a field.
-struct FieldSummary<'a> {
-    grid: &'a Grid,
-    field: &'a ComputedField,
-    /// The rule that decides signs, if there are signs.
-    signs: Option<&'static str>,
-    threads: usize,
-    field_time: Duration,
-}
-
-impl FieldSummary<'_> {
-    /// Returns the least and the largest value, and the numbers of negative and of undefined values.
-    fn values(&self) -> (f64, f64, usize, usize) {
-        let all: Box<dyn Iterator<Item = f64>> = match self.field {
-            ComputedField::Grid(values) => Box::new(values.iter().map(|x| f64::from(*x))),
-            ComputedField::Cells(cells) => Box::new(cells.iter().flat_map(|cell| cell.values)),
-        };
-        all.fold((f64::INFINITY, f64::NEG_INFINITY, 0, 0), |(min, max, inside, undefined), x| {
-            (min.min(x), max.max(x), inside + usize::from(x < 0.0), undefined + usize::from(x.is_nan()))
-        })
-    }
-
-    fn json(&self) -> Value {
-        let (min, max, inside, undefined) = self.values();
-        let origin: [f64; 3] = self.grid.origin().into();
-        let (grid, cells) = match self.field {
-            ComputedField::Grid(_) => {
-                let counts = self.grid.counts();
-                (json!({ "counts": counts, "origin": origin, "spacing": self.grid.spacing() }), Value::Null)
-            }
-            ComputedField::Cells(cells) => (Value::Null, json!(cells.len())),
-        };
-        json!({
-            "grid": grid,
-            "cells": cells,
-            "signs": self.signs,
-            "values": { "min": json::number(min), "max": json::number(max), "inside": inside, "undefined": undefined },
-            "threads": self.threads,
-        })
-    }
-
-    #[allow(clippy::cast_precision_loss, reason = "numbers for people to read")]
-    fn write(&self, text: &mut String) -> std::fmt::Result {
-        let (min, max, inside, undefined) = self.values();
-        let threads = if self.threads == 1 { "1 thread".to_owned() } else { format!("{} threads", self.threads) };
-        match self.field {
-            ComputedField::Grid(values) => {
-                let [x, y, z] = self.grid.counts();
-                let each = self.field_time.as_nanos() as f64 / values.len() as f64;
-                writeln!(text, "field    {x} x {y} x {z} points, {} apart", self.grid.spacing())?;
-                writeln!(text, "filled   in {:.3?} on {threads}: {each:.0} ns per point", self.field_time)?;
-            }
-            ComputedField::Cells(cells) => {
-                writeln!(text, "field    {} cells, cut in {:.3?}", cells.len(), self.field_time)?
-            }
-        }
-        write!(text, "distance min {min}, max {max}")?;
-        if let Some(rule) = self.signs {
-            write!(text, "; {inside} values inside, {undefined} undefined, by the rule {rule}")?;
-        }
-        writeln!(text)
     }
 }

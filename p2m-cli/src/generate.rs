@@ -6,7 +6,7 @@ use crate::json;
 use crate::modify::{self, Modifiers};
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
-use crate::usage::{finite, one_of, whole};
+use crate::usage::{finite, one_of, whole_number};
 use clap::{Args as ClapArgs, Subcommand, value_parser};
 use p2m_mixed::generate::{
     CableBundle, Cone, Cylinder, IcoSphere, Kind, KnotAndCables, MixedSizes, SkewedGear, Sphere, TorusKnot,
@@ -214,7 +214,7 @@ enum Command {
         #[arg(long, value_name = "D", default_value_t = MixedSizes::default().decades, value_parser = finite, allow_negative_numbers = true)]
         decades: f64,
         /// Another seed makes another scene
-        #[arg(long, value_name = "K", default_value_t = MixedSizes::default().seed, value_parser = whole, allow_negative_numbers = true)]
+        #[arg(long, value_name = "K", default_value_t = MixedSizes::default().seed, value_parser = whole_number, allow_negative_numbers = true)]
         seed: u64,
         #[command(flatten)]
         destination: Destination,

@@ -1,4 +1,4 @@
-//! `p2m info`: what a scene is made of.
+//! `p2m info`: reports the content of a scene.
 
 use crate::input::{SceneArgs, read_scene_and_index};
 use crate::json;
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use std::fmt::{self, Write as _};
 use std::io::Write as _;
 
-/// Say what a scene is made of, and what to expect of it
+/// Report the content of a scene, and properties that may cause problems
 #[derive(clap::Args)]
 #[command(after_help = help())]
 pub(crate) struct Args {
@@ -227,8 +227,8 @@ fn positions(s: &Statistics) -> String {
     text
 }
 
-/// Formats a coordinate to a thousandth of the size of the scene or better, so that corners of distant scenes differ. There
-/// are no separators of thousands, because commas separate coordinates.
+/// Formats a coordinate to a thousandth of the size of the scene or better, so that corners of distant scenes differ.
+/// There are no separators of thousands, because commas separate coordinates.
 fn coordinate(x: f64, s: &Statistics) -> String {
     // Adding zero turns -0 into 0.
     let (x, size, largest) = (x + 0.0, s.sizes.diagonal, s.location.largest_coordinate);

@@ -71,7 +71,7 @@ pub(crate) fn point_format(path: &Path, given: Option<PointFormat>, option: &str
 
 /// The error that the standard input has no format.
 fn unnamed(option: &str, names: &[&str]) -> anyhow::Error {
-    usage(format!("the standard input has no extension that tells its format: add {option} {}", names.join("|")))
+    usage(format!("the standard input has no extension that names its format: add {option} {}", names.join("|")))
 }
 
 /// The error of an unknown extension, with the option that names the format.
@@ -107,12 +107,12 @@ pub(crate) fn read_scene(streams: &Streams, path: &Path, format: Format) -> anyh
     Ok(read_scene_and_index(streams, path, format)?.0)
 }
 
-/// Reads points.
+/// Reads the points of a file.
 pub(crate) fn read_points(streams: &Streams, path: &Path, format: PointFormat) -> anyhow::Result<Vec<Point3<f64>>> {
     Ok(p2m_mixed::read_points_from(open(streams, path)?, format, &name(path))?)
 }
 
-/// Reads rays.
+/// Reads the rays of a file.
 pub(crate) fn read_rays(streams: &Streams, path: &Path, format: PointFormat) -> anyhow::Result<Vec<Ray>> {
     Ok(p2m_mixed::read_rays_from(open(streams, path)?, format, &name(path))?)
 }

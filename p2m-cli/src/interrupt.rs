@@ -1,4 +1,5 @@
-//! Signals such as Ctrl-C. They remove unfinished files and end the program with 128 plus their number as its exit code.
+//! Signals such as Ctrl-C. They remove unfinished files and end the program with 128 plus their number as
+//! its exit code.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -6,8 +7,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// The files that do not have their final name yet.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Locks the list of unfinished files. The lock is held while a file is created or renamed, so that a signal finds every
-/// unfinished file on the list.
+/// Locks the list of unfinished files. The lock is held while a file is created or renamed, so that a signal finds
+/// every unfinished file on the list.
 pub(crate) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -29,8 +30,8 @@ impl Drop for Listed {
     }
 }
 
-/// Listens for SIGINT, SIGTERM, SIGHUP and SIGQUIT, which then remove unfinished files and end the process, with 128 plus
-/// the number of the signal as its exit code.
+/// Listens for SIGINT, SIGTERM, SIGHUP and SIGQUIT, which then remove unfinished files and end the process, with 128
+/// plus the number of the signal as its exit code.
 ///
 /// A signal that the process was started to ignore stays ignored. On systems without these signals nothing happens.
 ///

@@ -1,8 +1,8 @@
 //! Reports for programs.
 //!
-//! Each report is one object on the standard output. Its key `"p2m"` names its kind, and `"version"` its version. Within
-//! a version keys are added, never removed, renamed or given another meaning. Values that do not exist or are not finite
-//! are null.
+//! Each report is one object on the standard output. Its key `"p2m"` names its kind, and `"version"` its version.
+//! Within a version keys are added, never removed, renamed or given another meaning. Values that do not exist or are
+//! not finite are null.
 
 use crate::streams::Streams;
 use anyhow::Context;

@@ -1,6 +1,6 @@
 //! The program `p2m` as a function, so that tests and other programs can run it within themselves.
 //!
-//! `p2m` reads a scene, asks for closest points or hits of rays, and writes a table; `p2m --help` lists all commands.
+//! `p2m` reads a scene, computes closest points or hits of rays, and writes a table; `p2m --help` lists all commands.
 
 #![forbid(unsafe_code)]
 
@@ -11,6 +11,7 @@ mod boxes;
 mod build;
 mod convert;
 mod field;
+mod field_summary;
 mod generate;
 mod index_args;
 mod info;

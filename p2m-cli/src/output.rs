@@ -13,9 +13,9 @@ use tempfile::TempPath;
 
 /// A buffered destination.
 ///
-/// If it is dropped before [`finish`](Self::finish), or the program is interrupted, the file stays as it was before. A
-/// process that ends without a chance to clean up (by SIGKILL, or a limit of the system) leaves a file `.p2m-*` in the
-/// same folder.
+/// If it is dropped before [`finish`](Self::finish), or the program is interrupted, the file stays as it was before.
+/// A process that ends without a chance to clean up (by SIGKILL, or a limit of the system) leaves a file `.p2m-*` in
+/// the same folder.
 pub(crate) struct Output<'a> {
     sink: Sink<'a>,
     name: String,
@@ -65,8 +65,8 @@ impl<'a> Output<'a> {
         Ok(())
     }
 
-    /// Opens `path`, or the standard output if there is none or it is `-`. A link is followed, and a link to nothing is
-    /// refused.
+    /// Opens `path`, or the standard output if there is none or it is `-`. A link is followed, and a link to
+    /// nothing is refused.
     pub(crate) fn open(streams: &'a Streams, path: Option<&Path>) -> anyhow::Result<Self> {
         let Some(path) = path.filter(|p| !is_standard(p)) else {
             let sink = Sink::Stdout(BufWriter::with_capacity(BUFFER_BYTES, streams.stdout()));

@@ -63,7 +63,7 @@ impl Progress {
     }
 
     /// Sets the amount of work that is done. It never decreases.
-    pub(crate) fn reach(&self, count: u64) {
+    pub(crate) fn advance_to(&self, count: u64) {
         self.done.fetch_max(count, Ordering::Relaxed);
     }
 

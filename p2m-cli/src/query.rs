@@ -10,7 +10,7 @@ use crate::query_args::{QueryArgs, QueryStream, answer_all};
 use crate::sampling::{Queries, Region};
 use crate::streams::Streams;
 use crate::summary::{AnswerSummary, IndexSummary, RunSummary};
-use crate::usage::{not_negative, one_of, positive, whole};
+use crate::usage::{not_negative, one_of, positive, whole_number};
 use anyhow::Context;
 use clap::ArgGroup;
 use nalgebra::Point3;
@@ -42,9 +42,9 @@ by distance. Where there is no answer, numbers are NaN and -1.
 No distance is smaller than the true one but for rounding. With --epsilon or --max-visits it may be larger, by what the line `error` of the summary says at most: every answer has a lower bound that is certain (lower_bound in NPY).
 
 Points from a CSV file are taken from its columns qx, qy, qz, or else x, y, z (also like 'X [m]'), or else Points:0, \
-Points:1, Points:2, or else from the first three columns; so the table itself can be asked about again. XYZ and TXT \
+Points:1, Points:2, or else from the first three columns; so the table itself is a file of the same queries. XYZ and TXT \
 files have three or more columns separated by blanks. NPY files are arrays of three columns. Of PLY files the vertices are \
-asked about.
+read.
 
 {}
 
@@ -70,7 +70,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// Ask about the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
+    /// Query the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
 
@@ -78,30 +78,30 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, conflicts_with_all = ["grid", "random"])]
     points_format: Option<PointFormat>,
 
-    /// Ask about a grid of N x N x N points that fills the scaled box of the scene, ends included; z runs fastest
+    /// Query a grid of N x N x N points that fills the scaled box of the scene, ends included; z runs fastest
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 21), allow_negative_numbers = true)]
     grid: Option<u64>,
 
-    /// Ask about N uniformly distributed points in the scaled box of the scene
-    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
+    /// Query N uniformly distributed points in the scaled box of the scene
+    #[arg(long, value_name = "N", value_parser = whole_number, allow_negative_numbers = true)]
     random: Option<u64>,
 
     /// Scale the box of the scene about its centre by this factor before filling it.
     ///
-    /// Along an axis on which the scene is flat, the box is widened to each side by as much as the factor adds to its
-    /// longest side.
+    /// Along an axis on which the scene is flat, the box is widened to each side by as much as the factor adds to
+    /// its longest side.
     #[arg(long, value_name = "S", default_value_t = 1.05, value_parser = positive, allow_negative_numbers = true, conflicts_with = "points")]
     box_scale: f64,
 
     /// Seed of the random points
-    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole, allow_negative_numbers = true, conflicts_with_all = ["points", "grid"])]
+    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole_number, allow_negative_numbers = true, conflicts_with_all = ["points", "grid"])]
     seed: u64,
 
     /// Give no answers farther than this, in the unit of the scene; at exactly this distance there is one
     #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true)]
     max_distance: Option<f64>,
 
-    /// How to search [default: aabb, or as a saved index does]
+    /// The index to search [default: aabb, or as a saved index does]
     #[arg(long, value_parser = backend_choices())]
     backend: Option<BackendChoice>,
 

@@ -43,7 +43,8 @@ pub(crate) struct QueryArgs {
 }
 
 impl QueryArgs {
-    /// Refuses impossible combinations of arguments before any work. `file` has the queries, which messages call `what`.
+    /// Refuses impossible combinations of arguments before any work. `file` has the queries, which messages call
+    /// `what`.
     pub(crate) fn check(&self, scene: &SceneArgs, file: Option<&Path>, what: &str) -> anyhow::Result<()> {
         if self.json && is_standard(&self.out) {
             return Err(usage(
@@ -90,11 +91,11 @@ pub(crate) fn pool(threads: Option<u16>) -> anyhow::Result<ThreadPool> {
     pool.map_err(|e| anyhow!("cannot start threads: {e}"))
 }
 
-/// The number of queries that are answered before their answers are written. It keeps all threads busy and fits into
-/// memory.
+/// The number of queries that are answered before their answers are written. It keeps all threads busy and
+/// fits into memory.
 const QUERIES_PER_CHUNK: usize = 1 << 14;
-/// The number of queries that one thread takes at a time. It is small because a brute-force query of a large scene takes
-/// milliseconds.
+/// The number of queries that one thread takes at a time. It is small because a brute-force query of a large
+/// scene takes milliseconds.
 const QUERIES_PER_TASK: usize = 32;
 
 /// A stream of points or rays to query with.
@@ -106,8 +107,8 @@ pub(crate) struct QueryStream<I> {
     pub(crate) iter: I,
 }
 
-/// Answers queries chunk by chunk on all threads, and passes each query with its answer to `take`, in order. Returns the
-/// time that the answers took.
+/// Answers queries chunk by chunk on all threads, and passes each query with its answer to `take`, in order. Returns
+/// the time that the answers took.
 pub(crate) fn answer_all<Q: Sync, A: Clone + Default + Send>(
     streams: &Streams,
     pool: &ThreadPool,

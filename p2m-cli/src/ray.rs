@@ -10,7 +10,7 @@ use crate::ray_summary::RaySummary;
 use crate::sampling::{Region, random_rays};
 use crate::streams::Streams;
 use crate::summary::{IndexSummary, RunSummary};
-use crate::usage::{finite_not_negative, number, one_of, positive, usage, whole};
+use crate::usage::{finite_not_negative, number, one_of, positive, usage, whole_number};
 use anyhow::Context;
 use clap::{ArgGroup, ValueEnum};
 use nalgebra::{Point3, Vector3};
@@ -47,9 +47,9 @@ point, barycentric, primitive and side (0 front, 1 back, 2 along); as PLY a clou
 normals. Where there is no hit, numbers are NaN and -1.
 
 Rays from a CSV file are taken from its columns ox, oy, oz, dx, dy, dz, or else x, y, z, dx, dy, dz, or else x, y, z, nx, ny, \
-nz, or else Points:0 to Points:2 and Normals:0 to Normals:2, or else from the first six columns; so the table itself can be \
-asked about again. XYZ and TXT files have six or more columns separated by blanks. NPY files are arrays of six columns. Of \
-PLY files the vertices are asked about, along their normals nx, ny, nz. Numbers that are not finite, and directions that \
+nz, or else Points:0 to Points:2 and Normals:0 to Normals:2, or else from the first six columns; so the table itself is a \
+file of the same rays. XYZ and TXT files have six or more columns separated by blanks. NPY files are arrays of six columns. Of \
+PLY files the vertices are the origins, and their normals nx, ny, nz the directions. Numbers that are not finite, and directions that \
 are zero, are errors.
 
 {}
@@ -75,7 +75,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// Ask about the rays of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
+    /// Cast the rays of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
     #[arg(long, value_name = "FILE")]
     rays: Option<PathBuf>,
 
@@ -83,23 +83,23 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, conflicts_with = "random")]
     rays_format: Option<PointFormat>,
 
-    /// Ask about N rays from uniformly distributed points in the scaled box of the scene into uniformly distributed
+    /// Cast N rays from uniformly distributed points in the scaled box of the scene into uniformly distributed
     /// directions of length 1
-    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole_number, allow_negative_numbers = true)]
     random: Option<u64>,
 
     /// Scale the box of the scene about its centre by this factor before filling it.
     ///
-    /// Along an axis on which the scene is flat, the box is widened to each side by as much as the factor adds to its
-    /// longest side.
+    /// Along an axis on which the scene is flat, the box is widened to each side by as much as the factor adds to
+    /// its longest side.
     #[arg(long, value_name = "S", default_value_t = 1.05, value_parser = positive, allow_negative_numbers = true, conflicts_with = "rays")]
     box_scale: f64,
 
     /// Seed of the random rays
-    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole, allow_negative_numbers = true, conflicts_with = "rays")]
+    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole_number, allow_negative_numbers = true, conflicts_with = "rays")]
     seed: u64,
 
-    /// What to find
+    /// The answer for each ray
     #[arg(long, value_enum, default_value_t = Mode::First)]
     mode: Mode,
 
@@ -119,7 +119,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "R", default_value_t = 0.0, value_parser = finite_not_negative, allow_negative_numbers = true)]
     radius: f64,
 
-    /// How to search; interception indexes (octree, p2m) answer no rays [default: aabb, or as a saved index does]
+    /// The index to search; interception indexes (octree, p2m) answer no rays [default: aabb, or as a saved index does]
     #[arg(long, value_parser = backends(|backend| backend.casts_rays))]
     backend: Option<Backend>,
 
@@ -140,7 +140,7 @@ enum Mode {
     All,
     /// The number of hits
     Count,
-    /// How often the surface of the triangles is crossed: once, too, where it is met on an edge or a vertex
+    /// The number of crossings of the surface of the triangles; one on an edge or a vertex counts once
     Crossings,
 }
 

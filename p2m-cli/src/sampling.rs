@@ -15,12 +15,12 @@ pub(crate) struct Region {
 }
 
 impl Region {
-    /// Returns the box of the primitives of `soup`, scaled about its centre. For an empty scene it is the unit cube around
-    /// the origin.
+    /// Returns the box of the primitives of `soup`, scaled about its centre. For an empty scene it is the unit cube
+    /// around the origin.
     ///
-    /// An axis without extent would put every query into the plane of the scene. The box is widened along it, to each side
-    /// by as much as the scale adds to the longest axis, or for a single point by as much as it would add to an axis of
-    /// length 1.
+    /// An axis without extent would put every query into the plane of the scene. The box is widened along it, to each
+    /// side by as much as the scale adds to the longest axis, or for a single point by as much as it would add to an
+    /// axis of length 1.
     pub(crate) fn around(soup: &Soup<f64>, scale: f64) -> Self {
         let bounds = soup.aabb();
         let (min, max): ([f64; 3], [f64; 3]) =
@@ -29,7 +29,7 @@ impl Region {
         let half: [f64; 3] = std::array::from_fn(|k| max[k] / 2.0 - min[k] / 2.0);
         let longest = half.iter().fold(0.0f64, |a, &b| a.max(b));
         let reference = if longest > 0.0 { longest } else { 0.5 };
-        let centre: [f64; 3] = std::array::from_fn(|k| middle(min[k], max[k]));
+        let centre: [f64; 3] = std::array::from_fn(|k| midpoint(min[k], max[k]));
         let side = |k: usize, sign: f64| {
             let half_side = if half[k] > 0.0 { half[k] * scale } else { reference * (scale - 1.0).max(0.0) };
             (centre[k] + sign * half_side).clamp(f64::MIN, f64::MAX)
@@ -45,7 +45,7 @@ impl Region {
 
 /// A sequence of query points, which are computed as they are needed.
 pub(crate) enum Queries {
-    /// Given points.
+    /// The given points, in order.
     List(std::vec::IntoIter<Point3<f64>>),
     /// The points of a grid, from index `next` on.
     Grid { region: Region, side: u64, next: u64 },
@@ -115,8 +115,8 @@ pub(crate) fn random_rays(region: Region, count: u64, seed: u64) -> impl Iterato
         .map(move |origin| Ray::new(&origin, &direction(&mut rng)).expect("finite, and of length 1"))
 }
 
-/// Returns a random unit vector, computed from a point of the unit disk \[Marsaglia1972\]. That needs no functions whose
-/// results differ between platforms.
+/// Returns a random unit vector, computed from a point of the unit disk \[Marsaglia1972\]. That needs no functions
+/// whose results differ between platforms.
 fn direction(rng: &mut ChaCha8Rng) -> Vector3<f64> {
     loop {
         let [u, v] = std::array::from_fn(|_| 2.0 * unit(rng) - 1.0);
@@ -134,7 +134,7 @@ fn unit(rng: &mut ChaCha8Rng) -> f64 {
 }
 
 /// The number halfway between two others, rounded once unless it is subnormal or the sum would overflow.
-fn middle(a: f64, b: f64) -> f64 {
+fn midpoint(a: f64, b: f64) -> f64 {
     let sum = a + b;
     if sum.is_finite() { sum / 2.0 } else { a / 2.0 + b / 2.0 }
 }
@@ -158,7 +158,7 @@ mod tests {
         Soup::new(positions, (0..count).map(Element::Point)).unwrap()
     }
 
-    /// As many as announced.
+    /// Checks the number of points, and returns them.
     fn all(queries: Queries) -> Vec<Point3<f64>> {
         let count = queries.len();
         let all: Vec<_> = queries.collect();

@@ -10,7 +10,7 @@ use crate::progress::{Progress, Unit};
 use crate::sampling::{Queries, Region};
 use crate::streams::Streams;
 use crate::summary::IndexSummary;
-use crate::usage::{positive, whole};
+use crate::usage::{positive, whole_number};
 use anyhow::{Context, bail};
 use nalgebra::{Point3, Vector3};
 use p2m_advisor::{BuiltIndex, Index};
@@ -34,7 +34,7 @@ of the cells, is that of the list at a random point. Queries of trees visit node
 primitives, and evaluate some of these exactly.
 
 The picture of --out has each primitive in a colour of its own, from blue over green to red (in a PLY file with the number \
-as the property 'value'): the length of the list at its middle, or (for trees) how many packets a query there filters. Colours go by the \
+as the property 'value'): the length of the list at its centroid, or (for trees) how many packets a query there filters. Colours go by the \
 logarithm, from the least number to the largest.
 
 {}
@@ -55,7 +55,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     index_args: IndexArgs,
 
-    /// How many random points of the box, and how many middles of primitives, to ask about
+    /// The number of random points of the box, and the number of centroids of primitives, to query
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=100_000_000), default_value_t = 10_000, allow_negative_numbers = true)]
     queries: u64,
 
@@ -64,7 +64,7 @@ pub(crate) struct Args {
     box_scale: f64,
 
     /// Seed of the random points
-    #[arg(long, value_name = "SEED", default_value_t = 0, value_parser = whole, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SEED", default_value_t = 0, value_parser = whole_number, allow_negative_numbers = true)]
     seed: u64,
 
     /// Colour the scene: a name that ends in .ply or .png
@@ -75,7 +75,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 800, value_parser = clap::value_parser!(u32).range(1..=8192), allow_negative_numbers = true)]
     width: u32,
 
-    /// From where a PNG picture is seen: the way from the middle of the scene, as x,y,z; y is up
+    /// From where a PNG picture is seen: the direction from the centre of the scene, as x,y,z; y is up
     #[arg(long, value_name = "X,Y,Z", default_value = "0.45,0.4,1", value_parser = direction, allow_hyphen_values = true)]
     eye: Vector3<f64>,
 
@@ -162,8 +162,8 @@ fn direction(text: &str) -> Result<Vector3<f64>, String> {
 }
 
 impl Args {
-    /// Draws the scene in colours: the first hit of the ray through each pixel, darker where the surface is oblique to the
-    /// view.
+    /// Draws the scene in colours: the first hit of the ray through each pixel, darker where the surface is oblique
+    /// to the view.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 255")]
     fn draw(&self, soup: &Soup<f64>, values: &[f64], output: &mut Output<'_>) -> anyhow::Result<()> {
         let camera = Camera::before(soup, &self.eye, self.width).filter(|_| !soup.is_empty());
@@ -206,8 +206,8 @@ fn centroid_sample(soup: &Soup<f64>, count: u64) -> Vec<Point3<f64>> {
     centroids(soup).step_by(soup.len().div_ceil(count.max(1)).max(1)).take(count).collect()
 }
 
-/// Returns the number by which a primitive is coloured: the length of the list at its centroid, or for trees the number of
-/// packets that a query there filters.
+/// Returns the number by which a primitive is coloured: the length of the list at its centroid, or for trees the number
+/// of packets that a query there filters.
 fn query_cost(index: &dyn Index, centroid: &Point3<f64>) -> f64 {
     let packets = || StatsCollector::of_query(centroid, |query, collector| index.inspect(query, collector))[1];
     index.list_length(centroid).unwrap_or_else(packets) as f64

@@ -136,7 +136,7 @@ impl RunSummary<'_> {
 
     #[allow(clippy::cast_precision_loss, reason = "counts for people to read")]
     fn write(&self, text: &mut String, many: &str, one: &str, count: u64) -> fmt::Result {
-        let note = (count == 0).then(|| format!("there are no {many}: nothing is asked"));
+        let note = (count == 0).then(|| format!("there are no {many}: nothing is computed"));
         self.index.write(text, note)?;
         let threads = if self.threads == 1 { "thread" } else { "threads" };
         write!(text, "{many:9}{count} in {:.3?} on {} {threads}", self.query_time, self.threads)?;

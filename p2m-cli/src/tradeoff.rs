@@ -6,7 +6,7 @@ use crate::output::Output;
 use crate::progress::{Progress, Unit};
 use crate::sampling::{Queries as QueryPoints, Region};
 use crate::streams::Streams;
-use crate::usage::{one_of, positive, whole};
+use crate::usage::{one_of, positive, whole_number};
 use anyhow::{Context, bail};
 use clap::ArgGroup;
 use nalgebra::Point3;
@@ -45,7 +45,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// Ask about the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
+    /// Query the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
 
@@ -53,11 +53,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, requires = "points")]
     points_format: Option<PointFormat>,
 
-    /// Ask about a grid of N x N x N points that fills the scaled box of the scene
+    /// Query a grid of N x N x N points that fills the scaled box of the scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=512), allow_negative_numbers = true)]
     grid: Option<u64>,
 
-    /// Ask about N uniformly distributed points in the scaled box of the scene
+    /// Query N uniformly distributed points in the scaled box of the scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000), allow_negative_numbers = true)]
     random: Option<u64>,
 
@@ -66,7 +66,7 @@ pub(crate) struct Args {
     box_scale: f64,
 
     /// Seed of the random points
-    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole, allow_negative_numbers = true, conflicts_with_all = ["points", "grid"])]
+    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole_number, allow_negative_numbers = true, conflicts_with_all = ["points", "grid"])]
     seed: u64,
 
     /// Backends to compare
@@ -77,7 +77,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1000), allow_negative_numbers = true)]
     rounds: usize,
 
-    /// The most seconds that a round of one setting takes: slow ones are asked about fewer places
+    /// The most seconds that a round of one setting takes: slow ones get fewer queries
     #[arg(long, value_name = "S", default_value_t = 0.1, value_parser = positive, allow_negative_numbers = true)]
     round_seconds: f64,
 
@@ -135,7 +135,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
     let scene = read_scene(streams, &args.scene.path, args.scene.format()?)?;
     if scene.soup.is_empty() {
-        bail!("{}: there is nothing in it to ask about", args.scene.name());
+        bail!("{}: there is nothing in it", args.scene.name());
     }
     let (queries, description) = args.queries(streams, &scene)?;
     // The files are opened before the work, which would be lost if a name were wrong.
@@ -173,8 +173,8 @@ fn save(mut output: Output<'_>, text: &str) -> anyhow::Result<()> {
 }
 
 impl Args {
-    /// Returns the queries and a sentence that describes them. Points that are not finite are left out, because they have
-    /// no answers that could be compared.
+    /// Returns the queries and a sentence that describes them. Points that are not finite are left out, because they
+    /// have no answers that could be compared.
     fn queries(&self, streams: &Streams, scene: &Scene) -> anyhow::Result<(Vec<Point3<f64>>, String)> {
         let region = Region::around(&scene.soup, self.box_scale);
         let (queries, description) = match (&self.points, self.grid) {
@@ -196,7 +196,7 @@ impl Args {
         };
         let queries: Vec<_> = queries.into_iter().filter(|p: &Point3<f64>| p.iter().all(|x| x.is_finite())).collect();
         if queries.is_empty() {
-            bail!("no finite point to ask about");
+            bail!("there is no finite point");
         }
         Ok((queries, description))
     }
@@ -237,7 +237,7 @@ impl Args {
         let progress = Progress::start(streams, "measuring", Some(100), Unit::Percent);
         let effort = Effort { rounds: self.rounds, seconds: self.round_seconds };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 100")]
-        let show_progress = |part: f64| progress.reach((part * 100.0) as u64);
+        let show_progress = |part: f64| progress.advance_to((part * 100.0) as u64);
         let curves = measure(&entrants, &Queries::new(queries), &truths, &effort, &show_progress);
         drop(progress);
         let contents = format!(

@@ -31,7 +31,7 @@ where
 }
 
 /// Parses a whole number.
-pub(crate) fn whole(text: &str) -> Result<u64, String> {
+pub(crate) fn whole_number(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| format!("not a whole number from 0 to {}", u64::MAX))
 }
 

@@ -1,5 +1,5 @@
-//! The interface of measured backends. One dynamic call answers many queries, so that a query itself costs no dynamic call
-//! but those of the backend.
+//! The interface of measured backends. One dynamic call answers many queries, so that a query itself costs no dynamic
+//! call but those of the backend.
 
 use crate::queries::{QuerySlice, Scalar};
 use nalgebra::Point3;

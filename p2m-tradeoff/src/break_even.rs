@@ -43,8 +43,8 @@ pub fn break_even(first: JobCost, other: JobCost) -> Option<f64> {
     (first.query_seconds > other.query_seconds).then_some(queries.max(0.0))
 }
 
-/// Returns which costs are least for which numbers of queries: an index into `costs` and the number of queries from which
-/// on it is the least one, in increasing order. The first entry begins at 0.
+/// Returns which costs are least for which numbers of queries: an index into `costs` and the number of queries from
+/// which on it is the least one, in increasing order. The first entry begins at 0.
 #[must_use]
 pub fn cheapest(costs: &[JobCost]) -> Vec<(usize, f64)> {
     let mut turns = Vec::new();

@@ -14,8 +14,8 @@ pub struct Change {
     pub ratio: f64,
     /// The smallest and the largest ratio of a round of the second to one of the first.
     pub range: [f64; 2],
-    /// Whether both have the same number of queries. They are then the same queries, and only then errors are compared. A
-    /// slow backend gets as many queries as fit into its time.
+    /// Whether both have the same number of queries. They are then the same queries, and only then errors are compared.
+    /// A slow backend gets as many queries as fit into its time.
     pub same_queries: bool,
     /// The errors that differ: their name, and their values in the first and in the second record.
     pub errors: Vec<(&'static str, String, String)>,

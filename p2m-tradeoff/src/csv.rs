@@ -9,8 +9,8 @@ pub fn csv_line(fields: &[String]) -> String {
     fields.iter().map(quoted).collect::<Vec<_>>().join(",")
 }
 
-/// Parses a comma-separated text into records of unquoted fields. Returns `None` if a quote does not end, or ends within a
-/// field.
+/// Parses a comma-separated text into records of unquoted fields. Returns `None` if a quote does not end, or ends
+/// within a field.
 #[must_use]
 pub fn csv_records(text: &str) -> Option<Vec<Vec<String>>> {
     let mut records = Vec::new();

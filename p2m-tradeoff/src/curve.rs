@@ -1,5 +1,5 @@
-//! The results of a measurement: for each scene and each set of queries a curve for each backend, which has a point for
-//! each setting.
+//! The results of a measurement: for each scene and each set of queries a curve for each backend, which has a point
+//! for each setting.
 
 use crate::errors::Errors;
 use crate::quantiles::{Spread, percentile};
@@ -17,7 +17,7 @@ pub struct Build {
 /// Percentiles of the wall time of single queries, in nanoseconds. The time to read the clock is included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Latency {
-    /// The median.
+    /// The median time.
     pub p50: u64,
     /// The 90th percentile.
     pub p90: u64,
@@ -25,7 +25,7 @@ pub struct Latency {
     pub p99: u64,
     /// The 99.9th percentile.
     pub p999: u64,
-    /// The maximum.
+    /// The longest time.
     pub max: u64,
 }
 

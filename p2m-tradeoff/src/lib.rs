@@ -1,9 +1,9 @@
 //! Measures speed against accuracy of backends, and reports it.
 //!
-//! A backend answers faster if it may be less accurate. [`settings`] lists the settings of accuracy. [`measure`] runs all
-//! backends with all settings in turns, and compares their answers with the truth. A [`Curve`] has the results of one
-//! backend, and a [`Point`] those of one of its settings. The results become a page ([`page`]), a table ([`text`]) or a
-//! record ([`record`]), and two records become a comparison ([`compare`]).
+//! A backend answers faster if it may be less accurate. [`settings`] lists the settings of accuracy. [`measure`] runs
+//! all backends with all settings in turns, and compares their answers with the truth. A [`Curve`] has the results of
+//! one backend, and a [`Point`] those of one of its settings. The results become a page ([`page`]), a table ([`text`])
+//! or a record ([`record`]), and two records become a comparison ([`compare`]).
 //!
 //! ```
 //! use nalgebra::Point3;

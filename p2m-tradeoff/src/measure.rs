@@ -36,8 +36,8 @@ pub struct Effort {
     pub seconds: f64,
 }
 
-/// Measures all entrants with `queries`, and compares their answers with `truths`. Calls `progress` with the fraction of
-/// the work that is done, from 0 to 1.
+/// Measures all entrants with `queries`, and compares their answers with `truths`. Calls `progress` with the fraction
+/// of the work that is done, from 0 to 1.
 ///
 /// # Panics
 /// If there is not one truth for each query, or if a backend panics.
@@ -155,8 +155,8 @@ fn calibrate(subject: &dyn Subject, queries: &Queries) -> f64 {
     }
 }
 
-/// Returns the number of queries of this duration that fit into the time. It is rounded down to a power of two, which is
-/// mostly the same from run to run.
+/// Returns the number of queries of this duration that fit into the time. It is rounded down to a power of two, which
+/// is mostly the same from run to run.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is not negative")]
 fn affordable_queries(nanoseconds: f64, seconds: f64) -> usize {
     let count = (seconds * 1e9 / nanoseconds.max(1.0)) as usize;

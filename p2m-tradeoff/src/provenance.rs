@@ -56,8 +56,8 @@ macro_rules! detected {
 }
 
 impl Provenance {
-    /// Collects the origin of figures of this program. A program that runs from a checkout passes its path; any other is
-    /// identified by its version.
+    /// Collects the origin of figures of this program. A program that runs from a checkout passes its path; any other
+    /// is identified by its version.
     #[must_use]
     pub fn collect(label: Option<&str>, checkout: Option<&Path>) -> Self {
         let native = cfg!(target_feature = "avx2");

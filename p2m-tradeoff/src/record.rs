@@ -40,8 +40,8 @@ const COLUMNS: [&str; 30] = [
     "program",
 ];
 
-/// Returns a record of all results as text, which begins with the names of the columns. `seed` is the seed of the queries,
-/// and `clock` the time to read the clock, in nanoseconds.
+/// Returns a record of all results as text, which begins with the names of the columns. `seed` is the seed of the
+/// queries, and `clock` the time to read the clock, in nanoseconds.
 #[must_use]
 pub fn record(provenance: &Provenance, scenes: &[SceneFigures], seed: u64, clock: f64) -> String {
     let head: Vec<String> = Provenance::COLUMNS.iter().chain(&COLUMNS).map(|c| (*c).to_owned()).collect();

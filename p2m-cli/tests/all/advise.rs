@@ -1,10 +1,10 @@
-//! `p2m advise`, and `--backend auto`.
+//! Tests of `p2m advise` and `--backend auto`.
 
 use crate::common::*;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// The estimates of a report.
+/// Returns name, build, query and total of each estimate of a report.
 fn estimates(report: &Value) -> Vec<(String, f64, f64, f64)> {
     let number = |e: &Value, key: &str| e[key].as_f64().unwrap();
     let all = report["estimates"].as_array().unwrap().iter();

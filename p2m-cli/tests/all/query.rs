@@ -1,4 +1,4 @@
-//! `p2m query`: tables, other forms of answers, summaries.
+//! Tests of `p2m query`: tables, other formats and summaries.
 
 use crate::common::*;
 use std::fs;
@@ -106,7 +106,7 @@ fn directions_of_the_scene_are_explained() {
     assert_eq!(output.code, 2);
 }
 
-/// What stands behind `start` in a line of the summary.
+/// Returns the text after `start` in a line of the summary.
 fn after<'a>(summary: &'a str, start: &str) -> &'a str {
     summary.lines().find_map(|line| line.strip_prefix(start)).unwrap_or_else(|| panic!("{start}: {summary}"))
 }
@@ -141,7 +141,7 @@ fn given_points_are_answered_in_their_order() {
     assert_eq!(answers, table(&["query", &scene, "--points", &points]));
     assert!(answers.starts_with(&expected), "{answers}");
     assert!(answers.lines().last().unwrap().ends_with(",1,vertex0"), "{answers}");
-    // The table itself asks the same questions again.
+    // The table itself is a file of the same queries.
     let again = write(&folder, "q.csv", &answers);
     assert_eq!(table(&["query", &scene, "--points", &again]), answers);
 }
@@ -222,9 +222,9 @@ fn answers_come_in_every_format() {
     for format in ["npy", "ply", "csv", "NPY"] {
         let out = path(&folder, &format!("answers.{format}"));
         assert_eq!(table(&["query", SCENE, "--random", "50", "--max-distance", "0.5", "--out", &out]), "");
-        // The file asks the same questions again.
+        // The file of answers is a file of the same queries.
         assert_eq!(table(&["query", SCENE, "--points", &out, "--max-distance", "0.5"]), expected, "{format}");
-        // By option, whatever the name, and on the standard output.
+        // The option names the format, for any file name and for the standard output.
         let unnamed = path(&folder, "answers");
         let arguments = ["query", SCENE, "--random", "50", "--max-distance", "0.5", "--out-format", format];
         table(&[&arguments[..], &["--out", &unnamed]].concat());
@@ -286,7 +286,7 @@ fn the_json_summary_agrees_with_the_table() {
     let mut rest = report.clone();
     rest.as_object_mut().unwrap().shift_remove("seconds");
     let error = rest.as_object_mut().unwrap().shift_remove("error").unwrap();
-    // 8 u M with M up to twice the size of the scene; no lower bound is above a distance.
+    // The error is at most 8 u M with M up to twice the size of the scene, and no lower bound is above its distance.
     assert!(error["min"].as_f64().unwrap() >= 0.0 && error["max"].as_f64().unwrap() < 1e-14, "{error}");
     let expected = serde_json::json!({
         "p2m": "query",
@@ -334,7 +334,7 @@ fn json_has_no_numbers_that_are_none() {
     assert_eq!(report["source"], serde_json::json!({ "grid": 2, "box_scale": 1.05 }));
 }
 
-/// Distances of 300 random queries, and what the report says of their errors.
+/// Returns the distances of 300 random queries, and the report.
 fn distances(out: &str, options: &[&str]) -> (Vec<f64>, serde_json::Value) {
     let report = json(&[&["query", SCENE, "--random", "300", "--out", out, "--json"], options].concat());
     let table = fs::read_to_string(out).unwrap();

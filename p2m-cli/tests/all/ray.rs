@@ -1,4 +1,4 @@
-//! `p2m ray`: tables, modes, other forms of answers, summaries.
+//! Tests of `p2m ray`: tables, modes, other formats and summaries.
 
 use crate::common::*;
 use std::fs;
@@ -6,11 +6,11 @@ use tempfile::TempDir;
 
 const HITS: &str = "ray,ox,oy,oz,dx,dy,dz,parameter,x,y,z,primitive,side,w0,w1,w2";
 
-/// A unit square in two triangles at z = 0, one at z = -1 that faces down, a segment and a point above.
+/// A scene of a unit square in two triangles at z = 0, one at z = -1 that faces down, a segment and a point above.
 const SQUARES: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 -1\nv 0 2 -1\nv 2 1 -1\nv 0 .5 1\nv 1 .5 1\nv .5 .5 2\n\
     f 1 2 3\nf 1 3 4\nf 5 6 7\nl 8 9\np 10\n";
 
-/// The records of a table, without its header.
+/// Returns the records of a table without its header.
 fn rows(table: &str) -> Vec<Vec<&str>> {
     table.lines().skip(1).map(|line| line.split(',').collect()).collect()
 }
@@ -87,7 +87,7 @@ fn given_rays_are_answered_in_their_order() {
             start[0], start[1], start[2]
         )
     );
-    // The point, the segment, both triangles on their diagonal, and the one below.
+    // The ray hits the point, the segment, both triangles on their diagonal, and the triangle below.
     let all = ask(&["--mode", "all"]);
     let [primitives, sides] = [11, 12].map(|column| rows(&all).iter().map(|row| row[column]).collect::<Vec<_>>());
     assert_eq!(primitives, ["4", "3", "0", "1", "2", "0", "2"]);
@@ -114,7 +114,7 @@ fn answers_come_in_every_format_and_ask_again() {
             let out = path(&folder, &format!("{mode}.{format}"));
             assert_eq!(table(&[&ask[..], &["--random", "50", "--out", &out]].concat()), "");
             if mode != "all" {
-                // The file asks the same questions again.
+                // The file of answers is a file of the same rays.
                 assert_eq!(table(&[&ask[..], &["--rays", &out]].concat()), expected, "{mode} {format}");
             }
             let arguments = [&ask[..], &["--random", "50", "--out-format", format]].concat();

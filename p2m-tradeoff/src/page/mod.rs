@@ -17,7 +17,7 @@ use plots::{Colours, Unit};
 /// A quantity of each backend as a function of another quantity. It becomes a plot and a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
-    /// The heading.
+    /// The heading of its section.
     pub title: String,
     /// A sentence about the measurement.
     pub about: String,
@@ -38,7 +38,7 @@ pub struct Page<'a> {
     pub truth: &'a str,
     /// The time to read the clock, in nanoseconds.
     pub clock: f64,
-    /// The results.
+    /// The results for each scene.
     pub scenes: &'a [SceneFigures],
     /// The results that depend on another quantity.
     pub sweeps: &'a [Sweep],

@@ -11,13 +11,13 @@ pub(super) const SIZE: (u32, u32) = (640, 400);
 /// The width of the legend, in pixels.
 pub(super) const LEGEND_WIDTH: u32 = 110;
 
-/// Curves that are slower than the fastest one by more than this factor are not drawn, because they would compress the
-/// others.
+/// Curves that are slower than the fastest one by more than this factor are not drawn, because they would
+/// compress the others.
 const MAX_DRAWN_TIME_FACTOR: f64 = 30.0;
 
 /// Returns the curves that are drawn, and the names of the others.
 pub(super) fn drawn(set: &SetFigures) -> (Vec<&Curve>, Vec<&str>) {
-    let nanoseconds = |curve: &Curve| curve.usual().map_or(f64::INFINITY, |usual| usual.nanoseconds.median);
+    let nanoseconds = |curve: &Curve| curve.usual().map_or(f64::INFINITY, |default| default.nanoseconds.median);
     let least = set.curves.iter().map(nanoseconds).fold(f64::INFINITY, f64::min);
     let (near, far): (Vec<_>, Vec<_>) =
         set.curves.iter().partition(|curve| nanoseconds(curve) <= MAX_DRAWN_TIME_FACTOR * least);

@@ -23,8 +23,8 @@ const NEEDS: [Need; 3] = [
 /// The numbers of queries of jobs, and their names.
 const JOBS: [(f64, &str); 3] = [(1e4, "10,000 queries, built"), (1e6, "a million, built"), (1e8, "100 million, built")];
 
-/// Returns whether no error is larger than the contract allows: once for the primitive of the answer and once for the
-/// nearest one.
+/// Returns whether no error is larger than the contract allows: once for the primitive of the answer and once for
+/// the nearest one.
 fn is_exact(point: &Point) -> bool {
     point.errors.unanswered == 0 && point.errors.scaled.max <= 2.0 * ERROR_CONSTANT
 }
@@ -60,8 +60,8 @@ fn row(scene: &SceneFigures, set: &SetFigures) -> Vec<String> {
     row
 }
 
-/// Returns the fastest point that is accurate enough. Of points that are slower by no more than noise, it is the one with
-/// the most accurate setting.
+/// Returns the fastest point that is accurate enough. Of points that are slower by no more than noise, it is the one
+/// with the most accurate setting.
 fn fastest(curves: &[Curve], is_met: fn(&Point) -> bool) -> String {
     let all =
         || curves.iter().flat_map(|curve| (0..).zip(&curve.points).map(move |(rank, point)| (curve, rank, point)));

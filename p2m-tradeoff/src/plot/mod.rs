@@ -49,10 +49,10 @@ pub struct Plot {
     pub y: &'static str,
     /// Whether the x and the y axis are logarithmic.
     pub logarithmic: [bool; 2],
-    /// The label of zeros on a logarithmic x axis, where they lie on a line of their own at its lower end. Without a label
-    /// they are left out.
+    /// The label of zeros on a logarithmic x axis, where they lie on a line of their own at its lower end. Without a
+    /// label they are left out.
     pub zero: Option<&'static str>,
-    /// The series.
+    /// The series that are drawn.
     pub series: Vec<Series>,
     /// The width and height in pixels.
     pub size: (u32, u32),
@@ -161,8 +161,8 @@ impl Plot {
         if least > most {
             return None;
         }
-        // The axis begins at a power of ten, because plotters has no ticks in an incomplete decade at the lower end. Beyond
-        // the line of zeros it has half a decade more.
+        // The axis begins at a power of ten, because plotters has no ticks in an incomplete decade at the lower end.
+        // Beyond the line of zeros it has half a decade more.
         let below = if axis == 0 && self.floor().is_some() { 0.5 } else { 0.999 };
         let decade = || below * 10f64.powf(least.log10().floor());
         Some(if self.logarithmic[axis] {
@@ -262,7 +262,8 @@ impl Plot {
     /// Returns the label of a tick of the x axis.
     fn x_label(&self, value: f64) -> String {
         match (self.zero, self.floor()) {
-            // Ticks are powers of ten up to rounding errors, so the tick of zeros is the only one below twice its position.
+            // Ticks are powers of ten up to rounding errors, so the tick of zeros is the only one below
+            // twice its position.
             (Some(name), Some(floor)) if value < 2.0 * floor => name.to_owned(),
             _ => self.tick(0, value),
         }
