@@ -36,7 +36,9 @@ pub(crate) fn add_rows(scene: &Scene, table: &mut Table) -> Result<[f64; 2]> {
         costs.push(cost(backend, soup, &sets, count)?);
     }
     let (mut worst, mut most) = (1.0f64, 0.0f64);
-    for (k, (region, name)) in [(QueryRegion::NearSurface, "near"), (QueryRegion::SceneBox, "box")].into_iter().enumerate() {
+    for (k, (region, name)) in
+        [(QueryRegion::NearSurface, "near"), (QueryRegion::SceneBox, "box")].into_iter().enumerate()
+    {
         for queries in JOBS {
             let start = ThreadTime::now();
             let advice = recommend(soup, &Workload::new(queries, region))?;

@@ -30,7 +30,8 @@ impl JobCost {
 /// ```
 /// use p2m_tradeoff::{JobCost, break_even};
 ///
-/// let (tree, cells) = (JobCost { build_seconds: 1.0, query_seconds: 3e-6 }, JobCost { build_seconds: 11.0, query_seconds: 1e-6 });
+/// let tree = JobCost { build_seconds: 1.0, query_seconds: 3e-6 };
+/// let cells = JobCost { build_seconds: 11.0, query_seconds: 1e-6 };
 /// assert_eq!(break_even(tree, cells).map(f64::round), Some(5e6));
 /// ```
 #[must_use]

@@ -31,18 +31,15 @@ pub struct Setting {
 }
 
 /// The setting of a call without options, which the other settings are compared with.
-pub const DEFAULT: Setting = Setting {
-    name: "default",
-    about: "f64, no options: the closest point, its distance wrong by roundings alone",
-    ask: Ask::Exact,
-};
+pub const DEFAULT: Setting =
+    Setting { name: "default", about: "f64, no options: the closest point, up to rounding errors", ask: Ask::Exact };
 
 /// All settings, the default one first.
 pub const SETTINGS: &[Setting] = &[
     DEFAULT,
     Setting {
         name: "certified",
-        about: "`certified_closest_point`: the nearest primitive without doubt, its distance within half a unit in the last place",
+        about: "`certified_closest_point`: the certified nearest primitive, with its distance within half a unit in the last place",
         ask: Ask::Certified,
     },
     within("epsilon 0.001", 0.001, "`QueryOptions::with_epsilon(0.001)`: at most 0.1 % farther than the closest point"),
@@ -51,7 +48,7 @@ pub const SETTINGS: &[Setting] = &[
     within("epsilon 1", 1.0, "`QueryOptions::with_epsilon(1.0)`: at most twice as far"),
     Setting {
         name: "budget 0",
-        about: "`QueryOptions::with_max_visits(0)`: the first thing found; of `octree` and `p2m` what the cell itself tells",
+        about: "`QueryOptions::with_max_visits(0)`: the first primitive that is found; for `octree` and `p2m` the one that the cell itself has",
         ask: Ask::Budget(0),
     },
     Setting {

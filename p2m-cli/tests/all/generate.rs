@@ -87,8 +87,8 @@ fn options_reach_the_scene() {
 fn scenes_go_to_files_in_their_format() {
     let folder = TempDir::new().unwrap();
     let out = path(&folder, "ball.stl");
-    // Two coordinates of each of 12 corners and of each of 24 midpoints of edges are not representable in f32. The other
-    // 6 midpoints are on the axes.
+    // Two coordinates of each of 12 corners and of each of 24 midpoints of edges are not representable in f32. The
+    // other 6 midpoints are on the axes.
     let output = p2m(&["generate", "ico-sphere", "--frequency", "2", "--out", &out]);
     assert_eq!(
         text(&output.stderr),

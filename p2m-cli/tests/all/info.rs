@@ -4,8 +4,8 @@ use crate::common::*;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-/// A scene with a corner of a cube, a pole, and common defects: duplicates, unused positions and names with control
-/// characters.
+/// A scene with a corner of a cube, a pole, and common defects: duplicates, unused positions and names
+/// with control characters.
 const COURT: &str = "mtllib x.mtl\nv 0 0 0\nv 3 0 0\nv 0 4 0\nv 0 0 12\nv nan 0 0\no wall\nf 1 3 2\nf 1 2 4\no pole\u{7}\nl 1 4\n\
     o wall\nf 1 4 3\nf 1 3 4\nf 1 2 2\no\np 1\n";
 

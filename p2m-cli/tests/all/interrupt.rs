@@ -36,8 +36,8 @@ fn send(signal: &str, child: &Child) {
     assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
 }
 
-/// Returns whether the tests were started with this signal ignored, in the background of a script (SIGINT) or by `nohup`
-/// (SIGHUP, number 1). The program then has to ignore it as well.
+/// Returns whether the tests were started with this signal ignored, in the background of a script (SIGINT) or by
+/// `nohup` (SIGHUP, number 1). The program then has to ignore it as well.
 fn is_ignored_here(number: u32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

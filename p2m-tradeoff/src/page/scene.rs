@@ -13,10 +13,10 @@ pub(super) fn write(html: &mut Html, scene: &SceneFigures, colours: &Colours) ->
     html.paragraph(&scene.about);
     html.text("h3", "Building");
     html.paragraph(
-        "Seconds on one thread, and heap bytes for each primitive besides those of the scene itself. A setting has a line where it has an \
-         index of its own.",
+        "The table has the seconds on one thread, and the heap bytes for each primitive besides the scene. A setting has a \
+         line if it has an index of its own.",
     );
-    html.table(&["backend", "setting", "seconds", "bytes a primitive"], 2, &build_rows(scene));
+    html.table(&["backend", "setting", "seconds", "bytes per primitive"], 2, &build_rows(scene));
     for note in &scene.notes {
         html.paragraph(note);
     }
@@ -62,16 +62,19 @@ fn write_set(html: &mut Html, set: &SetFigures, colours: &Colours) -> Result<(),
             pareto(set, colours, Unit::Relative, |worst| worst.p999),
             "Speed and the relative error that one query in a thousand exceeds.",
         ),
-        (pareto(set, colours, Unit::Scaled, |worst| worst.max), "The same for the largest error in units of u M."),
+        (pareto(set, colours, Unit::Scaled, |worst| worst.max), "Speed and the largest error in units of u M."),
         (
             pareto(set, colours, Unit::Scaled, |worst| worst.p999),
-            "The error in units of u M that one query in a thousand exceeds.",
+            "Speed and the error in units of u M that one query in a thousand exceeds.",
         ),
         (
             latencies(set, colours),
-            "How long single queries take, by the default settings: the further to the right, the rarer.",
+            "The times of single queries with the default settings: the further to the right, the rarer.",
         ),
-        (totals(set, colours), "Building and asking together: the lowest line is the cheapest for so many queries."),
+        (
+            totals(set, colours),
+            "The total time of building and querying: the lowest line is the cheapest for a number of queries.",
+        ),
     ];
     let drawn = plots.into_iter().filter_map(|(plot, caption)| match plot.svg() {
         // Without a query away from the scene there is no relative error.
@@ -81,17 +84,17 @@ fn write_set(html: &mut Html, set: &SetFigures, colours: &Colours) -> Result<(),
     let drawn = drawn.collect::<Result<Vec<_>, PlotError>>()?;
     let far = super::plots::drawn(set).1;
     if !far.is_empty() {
-        html.paragraph(&format!("Not drawn, for it takes too long: {}.", far.join(", ")));
+        html.paragraph(&format!("These backends are too slow to be drawn: {}.", far.join(", ")));
     }
     html.within("div", "class=\"figures\"", |html| {
         drawn.iter().for_each(|(svg, caption)| html.figure(svg, caption));
     });
-    html.text("h4", "What each setting buys");
-    html.paragraph(&format!("{} queries, but for those of whom another number is said.", max_queries(set)));
+    html.text("h4", "The speed and the errors of each setting");
+    html.paragraph(&format!("Rows have {} queries unless the remarks state another number.", max_queries(set)));
     html.table(&SETTING_HEAD, 2, &setting_rows(set));
-    html.text("h4", "How long single queries take, in ns");
+    html.text("h4", "The time of single queries, in ns");
     html.table(&["backend", "setting", "50 %", "90 %", "99 %", "99.9 %", "all"], 2, &latency_rows(set));
-    html.text("h4", "From how many queries on a longer build pays");
+    html.text("h4", "The number of queries from which on a longer build pays");
     write_break_even(html, set);
     Ok(())
 }
@@ -182,7 +185,7 @@ fn write_break_even(html: &mut Html, set: &SetFigures) {
         0.0 => costs[i].0.to_owned(),
         _ => format!("{} from {} queries on", costs[i].0, count(from)),
     });
-    html.paragraph(&format!("Cheapest of all, building included: {}.", turns.collect::<Vec<_>>().join(", then ")));
+    html.paragraph(&format!("The cheapest backend, with its build: {}.", turns.collect::<Vec<_>>().join(", then ")));
     let head: Vec<&str> = std::iter::once("instead of").chain(costs.iter().map(|(name, _)| *name)).collect();
     let cell = |i: usize, j: usize| match break_even(only[i], only[j]) {
         _ if i == j => String::new(),
