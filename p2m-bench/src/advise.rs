@@ -1,21 +1,19 @@
 //! `p2m-bench advise`: what is recommended, against what would have been best.
 
-use crate::backends::{aabb_options, octree_options, p2m_options};
 use crate::measure::Spread;
 use crate::scene::Scene;
 use anyhow::Result;
 use cpu_time::ThreadTime;
 use nalgebra::Point3;
-use p2m_advisor::{Choice, Place, Workload, recommend};
-use p2m_bvh::AabbTree;
-use p2m_core::{BruteForce, BuildIndex, ClosestPoint, QueryOptions};
-use p2m_interception::{OctreeIndex, P2mIndex};
-use p2m_kdop::{KdopOptions, KdopTree};
+use p2m_advisor::{BACKENDS, BackendEntry, BuildSettings, QueryRegion, SearchStructure, Workload, recommend};
+use p2m_core::{QueryOptions, Soup};
 use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 
 /// Queries that are timed.
 pub(crate) const QUERIES: usize = 20_000;
+/// Queries that are timed with exhaustive searches.
+const EXHAUSTIVE_QUERIES: usize = 20;
 /// How often.
 const ROUNDS: usize = 3;
 /// Jobs.
@@ -23,7 +21,7 @@ const JOBS: [u64; 2] = [100_000, 10_000_000];
 
 /// Seconds to build, and a query near the surface and in the box.
 struct Cost {
-    choice: Choice,
+    backend: &'static BackendEntry,
     build: f64,
     query: [f64; 2],
 }
@@ -33,40 +31,34 @@ pub(crate) fn add_rows(scene: &Scene, table: &mut Table) -> Result<[f64; 2]> {
     let soup = &scene.double;
     let sets = [QuerySet::Near, QuerySet::Box1].map(|set| set.generate(soup, QUERIES, 1));
     let mut costs = Vec::new();
-    for choice in Choice::ALL {
-        costs.push(match choice {
-            Choice::Brute => cost(choice, || Ok(BruteForce::build(soup, &())?), &sets, 20)?,
-            Choice::Aabb => cost(choice, || Ok(AabbTree::build(soup, &aabb_options())?), &sets, QUERIES)?,
-            Choice::Kdop => {
-                let options = KdopOptions::default().with_splits(aabb_options());
-                cost(choice, || Ok(KdopTree::<f64, _, 14>::build(soup, &options)?), &sets, QUERIES)?
-            }
-            Choice::Octree => cost(choice, || Ok(OctreeIndex::build(soup, &octree_options(1.0))?), &sets, QUERIES)?,
-            Choice::P2m => cost(choice, || Ok(P2mIndex::build(soup, &p2m_options())?), &sets, QUERIES)?,
-        });
+    for backend in BACKENDS {
+        let count = if backend.structure == SearchStructure::Exhaustive { EXHAUSTIVE_QUERIES } else { QUERIES };
+        costs.push(cost(backend, soup, &sets, count)?);
     }
     let (mut worst, mut most) = (1.0f64, 0.0f64);
-    for (k, (place, name)) in [(Place::Near, "near"), (Place::Box, "box")].into_iter().enumerate() {
+    for (k, (region, name)) in
+        [(QueryRegion::NearSurface, "near"), (QueryRegion::SceneBox, "box")].into_iter().enumerate()
+    {
         for queries in JOBS {
             let start = ThreadTime::now();
-            let advice = recommend(soup, &Workload::new(queries, place))?;
+            let advice = recommend(soup, &Workload::new(queries, region))?;
             let seconds = start.elapsed().as_secs_f64();
             #[allow(clippy::cast_precision_loss, reason = "a number of queries")]
             let total = |cost: &Cost| cost.build + queries as f64 * cost.query[k];
             let best = costs.iter().map(total).fold(f64::INFINITY, f64::min);
-            let chosen = costs.iter().find(|cost| cost.choice == advice.choice()).map_or(f64::NAN, total);
+            let chosen = costs.iter().find(|cost| cost.backend == advice.backend()).map_or(f64::NAN, total);
             let share = seconds / chosen;
             (worst, most) = (worst.max(chosen / best), most.max(share));
-            let all: Vec<String> = costs.iter().map(|c| format!("{} {:.2}", c.choice, total(c) / best)).collect();
+            let all: Vec<String> = costs.iter().map(|c| format!("{} {:.2}", c.backend, total(c) / best)).collect();
             table.push(vec![
                 scene.name.clone(),
                 name.to_owned(),
                 format!("{queries:.0e}", queries = queries as f64),
-                advice.choice().name().to_owned(),
+                advice.backend().name.to_owned(),
                 format!("{:.2}", chosen / best),
                 format!("{:.2}", best),
                 format!("{:.1} %", 100.0 * share),
-                advice.patch.to_string(),
+                advice.sample_primitives.to_string(),
                 all.join(", "),
             ]);
         }
@@ -87,14 +79,9 @@ pub(crate) const HEAD: [&str; 9] = [
     "each, times the best",
 ];
 
-fn cost<I: ClosestPoint<f64>>(
-    choice: Choice,
-    build: impl FnOnce() -> Result<I>,
-    sets: &[Vec<Point3<f64>>; 2],
-    count: usize,
-) -> Result<Cost> {
+fn cost(backend: &'static BackendEntry, soup: &Soup<f64>, sets: &[Vec<Point3<f64>>; 2], count: usize) -> Result<Cost> {
     let start = ThreadTime::now();
-    let index = build()?;
+    let index = backend.build(soup, &BuildSettings::default().with_parallel(false))?.index;
     let build = start.elapsed().as_secs_f64();
     let query = sets.each_ref().map(|places| {
         let places = &places[..count];
@@ -108,5 +95,5 @@ fn cost<I: ClosestPoint<f64>>(
             .collect();
         Spread::of(&times).map_or(f64::NAN, |spread| spread.median)
     });
-    Ok(Cost { choice, build, query })
+    Ok(Cost { backend, build, query })
 }

@@ -1,4 +1,4 @@
-//! How exact answers are to be: the options that trade accuracy for speed, and the one that does the opposite.
+//! The arguments about the accuracy of answers: two that trade accuracy for speed, and one that certifies answers.
 
 use crate::usage::finite_not_negative;
 use nalgebra::Point3;
@@ -12,29 +12,30 @@ pub(crate) struct Accuracy {
     #[arg(long, value_name = "E", value_parser = finite_not_negative, allow_negative_numbers = true, conflicts_with = "certified")]
     epsilon: Option<f64>,
 
-    /// Answer with the best that so many visits of nodes and packets find, and those that it takes to find anything.
+    /// Answer with the best that N visits of nodes and packets find; more are made only until anything is found.
     ///
-    /// With 0 the interception indexes (octree, p2m) answer with what the cell itself tells.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32), allow_negative_numbers = true, conflicts_with = "certified")]
-    budget: Option<u32>,
+    /// With 0 the interception indexes (octree, p2m) answer from the cell of the query alone.
+    #[arg(long, alias = "budget", value_name = "N", value_parser = clap::value_parser!(u32), allow_negative_numbers = true, conflicts_with = "certified")]
+    max_visits: Option<u32>,
 
-    /// Prove every answer: the nearest primitive of the real numbers that coordinates are, and the distance rounded once
+    /// Prove every answer: the nearest primitive of the real numbers that coordinates are, and the distance rounded
+    /// once
     #[arg(long)]
     certified: bool,
 }
 
 impl Accuracy {
-    /// The options of queries, and those of this kind.
+    /// Returns the options of queries, with these limits of accuracy and this largest distance.
     pub(crate) fn options(&self, max_distance: Option<f64>) -> QueryOptions<f64> {
-        let usual = QueryOptions::default();
-        usual
-            .with_max_distance(max_distance.unwrap_or(usual.max_distance))
-            .with_epsilon(self.epsilon.unwrap_or(usual.epsilon))
-            .with_max_visits(self.budget.unwrap_or(usual.max_visits))
+        let defaults = QueryOptions::default();
+        defaults
+            .with_max_distance(max_distance.unwrap_or(defaults.max_distance))
+            .with_epsilon(self.epsilon.unwrap_or(defaults.epsilon))
+            .with_max_visits(self.max_visits.unwrap_or(defaults.max_visits))
     }
 
-    /// Answers as it is wanted.
-    pub(crate) fn ask<I: ClosestPoint<f64> + CertifiedQuery<f64> + ?Sized>(
+    /// Answers queries, certified or not.
+    pub(crate) fn answer<I: ClosestPoint<f64> + CertifiedQuery<f64> + ?Sized>(
         &self,
         index: &I,
         queries: &[Point3<f64>],
@@ -50,11 +51,11 @@ impl Accuracy {
         }
     }
 
-    /// For the report.
+    /// Returns the part of a report about accuracy.
     pub(crate) fn json(&self) -> Value {
         json!({
             "epsilon": self.epsilon,
-            "budget": self.budget,
+            "max_visits": self.max_visits,
             "certified": self.certified,
         })
     }

@@ -1,16 +1,16 @@
-//! `p2m boxes`: a picture of the boxes of the AABB tree, or the polytopes of the k-DOP tree, level by level.
+//! `p2m boxes`: draws the boxes of the AABB tree, or the polytopes of the k-DOP tree, level by level.
 
-use crate::faces::{Faces, WithTree};
 use crate::input::{SceneArgs, read_scene};
 use crate::json;
+use crate::kdop_directions::KdopFaces;
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use nalgebra::Point3;
-use p2m_bvh::AabbTree;
-use p2m_bvh::{PacketTree, TreeNode, Volume};
+use p2m_advisor::KdopVisitor;
+use p2m_bvh::{AabbTree, PacketTree, SplitOptions, TreeNode, Volume};
 use p2m_core::{BuildIndex, Soup};
 use p2m_kdop::{KdopTree, Polytope};
 use p2m_mixed::picture::{Panel, View, box_edges, write_picture_ply, write_svg};
@@ -48,13 +48,13 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 
-    /// How many levels to draw, from the root on; deeper ones than the tree has are left out
+    /// The number of levels to draw, from the root on; levels that the tree does not have are left out
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u8).range(0..=64))]
     levels: u8,
 
     /// Draw the polytopes of the k-DOP tree with as many faces
     #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
-    k: Option<Faces>,
+    k: Option<KdopFaces>,
 
     /// From where an SVG picture is seen
     #[arg(long, value_enum, default_value_t = ViewName::Isometric)]
@@ -78,8 +78,8 @@ enum Up {
 }
 
 impl Up {
-    /// Turns what has this axis up so that it has z up.
-    fn turn<'a>(self, points: impl Iterator<Item = &'a mut Point3<f64>>) {
+    /// Rotates points with this axis up so that z is up.
+    fn rotate_to_z_up<'a>(self, points: impl Iterator<Item = &'a mut Point3<f64>>) {
         if self == Self::Y {
             points.for_each(|p| *p = Point3::new(p.x, -p.z, p.y));
         }
@@ -109,6 +109,7 @@ impl From<ViewName> for View {
     }
 }
 
+/// The largest number of vertices that a picture shows.
 const MAX_DOTS: usize = 4000;
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
@@ -126,18 +127,20 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         None => AabbTree::build(&scene.soup, &Default::default())
             .map(|tree| panels(tree.tree(), levels, ["box", "boxes"], |bounds| box_edges(bounds).collect()))
             .map(|panels| (panels, None)),
-        Some(faces) => faces.build(&scene.soup, Polytopes { levels }).map(|(panels, used)| (panels, Some(used))),
+        Some(KdopFaces(directions)) => directions
+            .build(&scene.soup, SplitOptions::default(), PolytopePanels { levels })
+            .map(|(panels, directions)| (panels, Some(directions))),
     };
-    let (drawn, faces) = drawn.with_context(|| args.scene.name())?;
-    let choice = faces.as_ref().and_then(|faces| faces.choice.as_ref());
+    let (drawn, directions) = drawn.with_context(|| args.scene.name())?;
+    let reason = directions.as_ref().and_then(|directions| directions.reason.as_ref());
     drop(progress);
-    let (drawn, mut panels): (Vec<Drawn>, Vec<Panel>) = drawn.into_iter().unzip();
+    let (drawn, mut panels): (Vec<DrawnLevel>, Vec<Panel>) = drawn.into_iter().unzip();
     let mut output = Output::open(streams, Some(&args.out))?;
     let written = if is_ply {
         write_picture_ply(&panels, &mut output)
     } else {
         let mut dots = dots(&scene.soup);
-        args.up.turn(panels.iter_mut().flat_map(|panel| &mut panel.lines).flatten().chain(&mut dots));
+        args.up.rotate_to_z_up(panels.iter_mut().flat_map(|panel| &mut panel.lines).flatten().chain(&mut dots));
         write_svg(&panels, &dots, args.view.into(), &mut output)
     };
     written.with_context(|| output.cannot_write())?;
@@ -149,69 +152,70 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             "version": json::VERSION,
             "scene": { "file": args.scene.name(), "format": format.name() },
             "out": { "file": args.out.display().to_string() },
-            "faces": faces.as_ref().map(|faces| faces.k),
-            "choice": choice,
+            "faces": directions.as_ref().map(|directions| directions.faces),
+            "directions_reason": reason,
             "panels": panels,
         });
         return json::print(streams, &report);
     }
-    // The picture is complete; whether anybody reads this is not our concern.
+    // The picture is complete, so an error of writing the titles is ignored.
     let _ = panels.iter().try_for_each(|panel| writeln!(streams.stderr(), "{}", panel.title));
-    if let Some(choice) = choice {
-        let _ = writeln!(streams.stderr(), "k-DOPs: {choice}");
+    if let Some(reason) = reason {
+        let _ = writeln!(streams.stderr(), "k-DOPs: {reason}");
     }
     Ok(())
 }
 
-/// What a panel shows.
-struct Drawn {
-    /// `None` for the leaves.
+/// The content of a panel.
+struct DrawnLevel {
+    /// The level, or `None` for the leaves.
     level: Option<usize>,
+    /// The number of boxes or polytopes.
     boxes: usize,
 }
 
-/// Panels of a k-DOP tree.
-struct Polytopes {
+/// Draws the panels of a k-DOP tree.
+struct PolytopePanels {
     levels: usize,
 }
 
-impl WithTree<'_> for Polytopes {
-    type Output = Vec<(Drawn, Panel)>;
-    fn with<const K: usize>(self, tree: KdopTree<f64, &Soup<f64>, K>) -> Self::Output {
+impl KdopVisitor<'_> for PolytopePanels {
+    type Output = Vec<(DrawnLevel, Panel)>;
+    fn visit<const K: usize>(self, tree: KdopTree<f64, &Soup<f64>, K>) -> Self::Output {
         let edges = |kdop: &_| Polytope::new(kdop, tree.directions()).edges().collect();
         panels(tree.tree(), self.levels, ["polytope", "polytopes"], edges)
     }
 }
 
-/// One panel for each of the first levels, and one for the leaves.
+/// Returns a panel for each of the first levels, and one for the leaves.
 fn panels<V: Volume>(
     tree: &PacketTree<V>,
     levels: usize,
     [one, many]: [&str; 2],
     edges: impl Fn(&V) -> Vec<[Point3<f64>; 2]>,
-) -> Vec<(Drawn, Panel)> {
-    let parts: Vec<_> = tree.parts().collect();
-    let deepest = parts.iter().map(|part| part.depth).max();
+) -> Vec<(DrawnLevel, Panel)> {
+    let nodes: Vec<_> = tree.parts().collect();
+    let deepest = nodes.iter().map(|node| node.depth).max();
     let panel = |level: Option<usize>, show: &dyn Fn(&TreeNode<V>) -> bool| {
-        let shown: Vec<_> = parts.iter().filter(|part| show(part)).collect();
+        let shown: Vec<_> = nodes.iter().filter(|node| show(node)).collect();
         let title = level.map_or("leaves".to_owned(), |level| format!("level {level}"));
         let noun = if shown.len() == 1 { one } else { many };
         let panel = Panel {
             title: format!("{title}: {} {noun}", Count(shown.len() as u64)),
-            lines: shown.iter().flat_map(|part| edges(&part.volume)).collect(),
+            lines: shown.iter().flat_map(|node| edges(&node.volume)).collect(),
         };
-        (Drawn { level, boxes: shown.len() }, panel)
+        (DrawnLevel { level, boxes: shown.len() }, panel)
     };
-    let is_leaf = |part: &TreeNode<V>| tree.primitives(part).is_some();
+    let is_leaf = |node: &TreeNode<V>| tree.primitives(node).is_some();
     let drawn = deepest.map_or(0, |deepest| levels.min(deepest + 1));
     let mut panels: Vec<_> = (0..drawn)
-        .map(|level| panel(Some(level), &|part| part.depth == level || (part.depth < level && is_leaf(part))))
+        .map(|level| panel(Some(level), &|node| node.depth == level || (node.depth < level && is_leaf(node))))
         .collect();
     panels.push(panel(None, &is_leaf));
     panels
 }
 
-/// Evenly chosen vertices of the primitives.
+/// Returns vertices of the primitives, evenly spaced in the order of the scene.
 fn dots(soup: &Soup<f64>) -> Vec<Point3<f64>> {
     let used: Vec<u32> = soup.elements().flat_map(|e| e.indices().to_vec()).collect();
     let step = used.len().div_ceil(MAX_DOTS).max(1);

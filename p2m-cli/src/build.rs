@@ -1,12 +1,12 @@
-//! `p2m build`: an index in a file, for other commands to use.
+//! `p2m build`: saves an index in a file that other commands use.
 
-use crate::backend::{About, Built, Source};
-use crate::indexing::{Indexing, MANY};
+use crate::backend::{PreparedIndex, SceneSource};
+use crate::index_args::{DEFAULT_QUERY_COUNT, IndexArgs};
 use crate::input::read_scene;
 use crate::json;
 use crate::output::Output;
 use crate::streams::Streams;
-use crate::summary::Indexed;
+use crate::summary::IndexSummary;
 use crate::usage::usage;
 use anyhow::Context;
 use p2m_core::storage::Writer;
@@ -41,7 +41,7 @@ Examples:
 #[command(after_help = help())]
 pub(crate) struct Args {
     #[command(flatten)]
-    indexing: Indexing,
+    index_args: IndexArgs,
 
     /// Where to write the file, usually a name that ends in .p2m
     #[arg(long, value_name = "FILE")]
@@ -53,10 +53,10 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
-    let scene_args = &args.indexing.scene;
-    args.indexing.check()?;
-    if args.indexing.is_brute() {
-        return Err(usage("--backend brute has no index to save"));
+    let scene_args = &args.index_args.scene;
+    args.index_args.check()?;
+    if let Some(backend) = args.index_args.named().filter(|backend| !backend.is_saveable()) {
+        return Err(usage(format!("--backend {backend} has no index to save")));
     }
     if args.json && crate::input::is_standard(&args.out) {
         return Err(usage("--json reports on the standard output, so the index has to go to a file"));
@@ -66,47 +66,44 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = scene_args.format()?;
     let start = Instant::now();
     let scene = read_scene(streams, &scene_args.path, format)?;
-    let read = start.elapsed();
-    // Before any work, so that it is not lost to a wrong name.
+    let read_time = start.elapsed();
+    // The file is opened before the work, which would be lost if its name were wrong.
     let mut output = Output::open(streams, Some(&args.out))?;
 
     let start = Instant::now();
-    let (backend, faces) = args.indexing.choice(None, &scene.soup, MANY)?;
-    let source = Source { soup: &scene.soup, faces, saved: None };
-    let Built { index, about, loaded, .. } = backend.build(streams, source).with_context(|| scene_args.name())?;
-    let build = start.elapsed();
+    let (backend, kdop_directions) = args.index_args.choice(None, &scene.soup, DEFAULT_QUERY_COUNT)?;
+    let source = SceneSource { soup: &scene.soup, kdop_directions, saved: None };
+    let PreparedIndex { built, is_loaded, .. } = source.prepare(streams, backend).with_context(|| scene_args.name())?;
+    let build_time = start.elapsed();
 
     let start = Instant::now();
     output = output.with_progress(streams);
     let mut writer = Writer::default();
     save_scene(&scene, &mut writer);
-    index.save(&mut writer);
-    if let About::Faces(used) = &about {
-        used.save(&mut writer);
-    }
+    built.save(&mut writer);
     writer.write(&mut output).with_context(|| output.cannot_write())?;
     let bytes = output.bytes();
     output.finish()?;
-    let written = start.elapsed();
+    let write_time = start.elapsed();
 
-    let (scene_name, backend) = (scene_args.name(), backend.name());
-    let indexed = Indexed { scene_name, scene: &scene, format, backend, about, loaded, read, build };
+    let (scene_name, backend, details) = (scene_args.name(), backend.name, built.details.clone());
+    let index = IndexSummary { scene_name, scene: &scene, format, backend, details, is_loaded, read_time, build_time };
     let out = args.out.display();
     if args.json {
         let end = json!({
-            "cells": indexed.cells(),
+            "cells": index.cells(),
             "seconds": {
-                "read": read.as_secs_f64(),
-                "build": build.as_secs_f64(),
-                "write": written.as_secs_f64(),
+                "read": read_time.as_secs_f64(),
+                "build": build_time.as_secs_f64(),
+                "write": write_time.as_secs_f64(),
             },
             "out": { "file": out.to_string(), "bytes": bytes },
         });
-        return json::print(streams, &json::joined([indexed.json("build"), end]));
+        return json::print(streams, &json::joined([index.json("build"), end]));
     }
     let mut text = String::new();
-    // Nothing fails in writing to memory; the file is complete, and whether anybody reads this is not our concern.
-    let _ = indexed.write(&mut text, None);
-    let _ = writeln!(streams.stderr(), "{text}written  {out}, {bytes} bytes in {written:.3?}");
+    // Writing to a string does not fail. The file is complete, so an error of writing the summary is ignored.
+    let _ = index.write(&mut text, None);
+    let _ = writeln!(streams.stderr(), "{text}written  {out}, {bytes} bytes in {write_time:.3?}");
     Ok(())
 }

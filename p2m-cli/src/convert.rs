@@ -1,4 +1,4 @@
-//! `p2m convert`: scenes from one format to another, changed on the way.
+//! `p2m convert`: converts scenes from one format to another, with changes on request.
 
 use crate::info::counted;
 use crate::input::{self, is_standard, or_option, read_scene_and_index, scene_format};
@@ -28,11 +28,11 @@ pub(crate) struct Args {
     #[arg(value_name = "OUT")]
     to_file: PathBuf,
 
-    /// The format of IN, if the extension of its name does not tell
+    /// The format of IN, if its extension does not name it
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     from: Option<Format>,
 
-    /// The format of OUT, if the extension of its name does not tell
+    /// The format of OUT, if its extension does not name it
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     to: Option<Format>,
 
@@ -49,7 +49,7 @@ fn help() -> String {
         "\
 OBJ, PLY and OFF files hold the whole geometry: the same positions bit by bit, the same primitives in the same order. Polygons are cut into \
 triangles. STL \
-files hold triangles alone, in single precision and without shared vertices. What a conversion loses is told on the standard \
+files hold triangles alone, in single precision and without shared vertices. The losses of a conversion are reported on the standard \
 error; what a format cannot hold at all is an error.
 
 {}
@@ -73,11 +73,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let (read, saved) = read_scene_and_index(streams, &args.from_file, from)?;
     let has_index = saved.is_some_and(|reader| p2m_core::storage::kind(&reader).is_ok());
     let before = Counts::of(&read.soup);
-    let polygons = polygons(&read);
+    let polygons = count_cut_polygons(&read);
     let scene = args.modifiers.apply(streams, read)?;
     let mut written = target.write(streams, &scene)?;
     if target.format != Format::P2m {
-        written.lose_polygons(polygons);
+        written.add_cut_polygons(polygons);
     }
     if has_index {
         written.losses.push(Loss::Index);
@@ -99,19 +99,20 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         text += &format!("skipped  {}\n", list.join(", "));
     }
     text += &written.text();
-    // The file is complete; whether anybody reads this is not our concern.
+    // The file is complete, so an error of writing the summary is ignored.
     let _ = write!(streams.stderr(), "{text}");
     Ok(())
 }
 
-/// Where a scene goes.
+/// The file that a scene is written to.
 pub(crate) struct Target<'a> {
     path: &'a Path,
     format: Format,
 }
 
 impl<'a> Target<'a> {
-    /// The format is the given one, or that of the extension; on the standard output `default`, if there is one.
+    /// Determines the format: the given one, or else that of the extension. On the standard output it is `default`, if
+    /// there is one.
     pub(crate) fn new(
         streams: &Streams,
         path: &'a Path,
@@ -123,7 +124,7 @@ impl<'a> Target<'a> {
             None if is_standard(path) => {
                 let names = Format::NAMES.join("|");
                 return Err(usage(format!(
-                    "the standard output has no extension that tells its format: add --to {names}"
+                    "the standard output has no extension that names its format: add --to {names}"
                 )));
             }
             None => Format::from_path(path).map_err(|e| or_option(&e, "--to"))?,
@@ -134,7 +135,7 @@ impl<'a> Target<'a> {
         Ok(Self { path, format })
     }
 
-    /// A report and a scene do not both fit on the standard output.
+    /// Refuses to write both a report and a scene to the standard output.
     pub(crate) fn check_report(&self, is_json: bool) -> anyhow::Result<()> {
         if is_json && is_standard(self.path) {
             return Err(usage("--json reports on the standard output, so the scene has to go to a file"));
@@ -142,14 +143,15 @@ impl<'a> Target<'a> {
         Ok(())
     }
 
-    pub(crate) fn write(&self, streams: &Streams, scene: &Scene) -> anyhow::Result<Written> {
+    /// Writes the scene.
+    pub(crate) fn write(&self, streams: &Streams, scene: &Scene) -> anyhow::Result<WrittenScene> {
         let mut output = Output::open(streams, Some(self.path))?.with_progress(streams);
         match write_scene(scene, self.format, &mut output) {
             Ok(()) => {}
             Err(e @ WriteError::NotATriangle { .. }) => {
                 return Err(anyhow!("{}: {e}: choose obj, ply or off", output.cannot_write()));
             }
-            // The error of the system itself: whoever reads a pipe may have gone, which is no error.
+            // The caller needs the error of the system itself: a closed pipe is no error.
             Err(WriteError::Io(e)) => return Err(e).with_context(|| output.cannot_write()),
             Err(e) => return Err(e).with_context(|| output.cannot_write()),
         }
@@ -157,7 +159,7 @@ impl<'a> Target<'a> {
         output.finish()?;
         let file = if is_standard(self.path) { "standard output".to_owned() } else { self.path.display().to_string() };
         let positions = scene.soup.positions().len() as u64;
-        Ok(Written {
+        Ok(WrittenScene {
             file,
             format: self.format,
             bytes,
@@ -168,8 +170,8 @@ impl<'a> Target<'a> {
     }
 }
 
-/// What was written.
-pub(crate) struct Written {
+/// A scene that was written to a file.
+pub(crate) struct WrittenScene {
     file: String,
     format: Format,
     bytes: u64,
@@ -178,7 +180,8 @@ pub(crate) struct Written {
     losses: Vec<Loss>,
 }
 
-impl Written {
+impl WrittenScene {
+    /// Returns the part of a report about the file.
     pub(crate) fn json(&self) -> Value {
         json!({
             "file": self.file,
@@ -190,12 +193,14 @@ impl Written {
         })
     }
 
-    fn lose_polygons(&mut self, count: u64) {
+    /// Adds that polygons were cut into triangles.
+    fn add_cut_polygons(&mut self, count: u64) {
         if count > 0 {
             self.losses.insert(0, Loss::Polygons(count));
         }
     }
 
+    /// Returns lines about the file for people.
     pub(crate) fn text(&self) -> String {
         let mut text = format!(
             "out      {} ({}): {}, {} bytes\n",
@@ -211,31 +216,33 @@ impl Written {
     }
 }
 
-/// Something that the file that was written does not hold.
+/// A property of the scene that its file does not have.
 enum Loss {
+    /// The number of polygons that were cut into triangles.
     Polygons(u64),
+    /// The number of names.
     Names(u64),
-    Rounding {
-        count: u64,
-        largest: f64,
-    },
+    /// The number of coordinates that were rounded to f32, and the largest change.
+    Rounding { count: u64, largest: f64 },
+    /// The number of positions that no primitive uses.
     Unused(u64),
+    /// The vertices that triangles share.
     Sharing,
-    /// That of a saved file.
+    /// The index of a saved file.
     Index,
 }
 
 impl Loss {
     fn json(&self) -> Value {
         match *self {
-            Self::Polygons(count) => json!({ "what": "polygons", "count": count }),
-            Self::Names(count) => json!({ "what": "names", "count": count }),
+            Self::Polygons(count) => json!({ "kind": "polygons", "count": count }),
+            Self::Names(count) => json!({ "kind": "names", "count": count }),
             Self::Rounding { count, largest } => {
-                json!({ "what": "precision", "count": count, "largest": json::number(largest) })
+                json!({ "kind": "precision", "count": count, "largest": json::number(largest) })
             }
-            Self::Unused(count) => json!({ "what": "unused_positions", "count": count }),
-            Self::Sharing => json!({ "what": "shared_positions" }),
-            Self::Index => json!({ "what": "index" }),
+            Self::Unused(count) => json!({ "kind": "unused_positions", "count": count }),
+            Self::Sharing => json!({ "kind": "shared_positions" }),
+            Self::Index => json!({ "kind": "index" }),
         }
     }
 
@@ -255,6 +262,7 @@ impl Loss {
     }
 }
 
+/// Lists the properties of a scene that a file of this format does not have.
 fn losses(scene: &Scene, format: Format) -> Vec<Loss> {
     let mut losses = Vec::new();
     if format == Format::P2m {
@@ -263,7 +271,7 @@ fn losses(scene: &Scene, format: Format) -> Vec<Loss> {
     if format != Format::Obj && !scene.objects.is_empty() {
         losses.push(Loss::Names(scene.objects.len() as u64));
     }
-    let unused = unused(scene);
+    let unused = count_unused_positions(scene);
     let is_lost = format == Format::Stl || (format != Format::Ply && scene.soup.is_empty());
     if unused > 0 && is_lost {
         losses.push(Loss::Unused(unused));
@@ -280,14 +288,15 @@ fn losses(scene: &Scene, format: Format) -> Vec<Loss> {
     losses
 }
 
-/// Polygons of the file that are cut into triangles: runs of triangles from the same source.
-fn polygons(scene: &Scene) -> u64 {
+/// Counts the polygons of the file that were cut into triangles. They are runs of triangles from the same source.
+fn count_cut_polygons(scene: &Scene) -> u64 {
     let triangles = scene.soup.elements().zip(&scene.sources).filter(|(e, _)| matches!(e, Element::Triangle(_)));
     let sources: Vec<u32> = triangles.map(|(_, &source)| source).collect();
     sources.chunk_by(|a, b| a == b).filter(|run| run.len() > 1).count() as u64
 }
 
-fn unused(scene: &Scene) -> u64 {
+/// Counts the positions that no primitive uses.
+fn count_unused_positions(scene: &Scene) -> u64 {
     let mut used = vec![false; scene.soup.positions().len()];
     for element in scene.soup.elements() {
         for &i in element.indices() {

@@ -1,20 +1,22 @@
-//! `p2m field`: distances on a grid.
+//! `p2m field`: distances from a scene on a grid or an octree.
 
-use crate::asking::pool;
-use crate::backend::{About, Backend, Closest, Search, Source};
-use crate::indexing::Indexing;
+use crate::backend::{SceneSource, saved_or_default};
+use crate::field_summary::{ComputedField, FieldSummary};
+use crate::index_args::IndexArgs;
 use crate::input::{is_standard, or_option, read_scene_and_index};
 use crate::json;
 use crate::output::Output;
 use crate::picture::write_png;
 use crate::progress::{Progress, Unit};
+use crate::query_args::pool;
 use crate::streams::Streams;
-use crate::summary::Indexed;
+use crate::summary::IndexSummary;
 use crate::usage::{not_negative, one_of, positive, usage};
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
 use nalgebra::Point3;
-use p2m_core::{Aabb, ClosestPoint, PrimitiveSet, Soup};
+use p2m_advisor::{Index, IndexDetails, SearchStructure};
+use p2m_core::{Aabb, PrimitiveSet, Soup};
 use p2m_field::FieldFormat;
 use p2m_field::grid_candidates::{CandidateLists, LARGEST};
 use p2m_field::sign::{SignError, SignedDistance};
@@ -22,26 +24,25 @@ use p2m_field::{
     FieldOptions, Grid, RefineOptions, distances, distances_by_lists, refined, signed_distances,
     signed_distances_by_lists, slice, write_cells, write_field,
 };
-use serde_json::{Value, json};
-use std::fmt::Write as _;
+use serde_json::json;
 use std::io::Write;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 fn help() -> String {
     format!(
         "\
 The grid covers the scaled box of the scene: N points along its longest side, ends included, and as many along the others at \
 the same spacing. Values are rounded to f32. Unless a backend is named, distances come from lists of what can be nearest in blocks of the grid if \
-it has as many points as the scene has primitives, which is faster and has the same values; signs ask an AABB tree.
+it has as many points as the scene has primitives, which is faster and has the same values; an AABB tree decides signs.
 
 NPY files are arrays of NumPy, field[i, j, k] with x, y and z; VTI files are images of VTK, with origin and spacing; RAW files have the \
 values alone, little-endian, x fastest. With --refine the file is NPY: an array of cells with the fields origin, size and values (at \
 the corners: x runs fastest, z slowest).
 
-With --signed distances are negative inside. A closed surface is told by its normals, and by rays where these are in doubt; others \
-(with holes, or facing here and there) by winding numbers, where inside is from where more than a half of all directions meet a back. \
-NaN stands where there is no telling.
+With --signed distances are negative inside. Inside of a closed surface is decided by its normals, and by rays where these are ambiguous. For other \
+surfaces (with holes, or with inconsistent orientation) it is decided by winding numbers: a point is inside if more than half of all directions hit \
+a back. The distance is NaN where the sign is undefined.
 
 {}
 
@@ -58,7 +59,7 @@ Examples:
 #[command(after_help = help())]
 pub(crate) struct Args {
     #[command(flatten)]
-    indexing: Indexing,
+    index_args: IndexArgs,
 
     /// Points along the longest side of the grid
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..=1 << 12), allow_negative_numbers = true)]
@@ -70,18 +71,18 @@ pub(crate) struct Args {
 
     /// Negative distances inside; needs a scene of triangles [possible values of RULE: auto, closed, winding]
     #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum)]
-    signed: Option<Signs>,
+    signed: Option<SignRule>,
 
-    /// Compute distances up to this alone, in the unit of the scene; the field has this value beyond
+    /// Compute distances up to this value only, in the unit of the scene; farther points have this value
     #[arg(long, value_name = "W", value_parser = not_negative, allow_negative_numbers = true, conflicts_with = "refine")]
     band: Option<f64>,
 
-    /// An octree instead of a grid, cut where the surface is while the interpolated distance is off by more than this, in the
-    /// middle of a cell, of its faces or its edges
+    /// An octree instead of a grid, cut where the surface is while the interpolated distance is off by more than this,
+    /// in the middle of a cell, of its faces or its edges
     #[arg(long, value_name = "ERROR", value_parser = positive, allow_negative_numbers = true, conflicts_with_all = ["resolution", "slice", "out_format", "threads"])]
     refine: Option<f64>,
 
-    /// Cut cells at most so often
+    /// The largest number of times that a cell is cut
     #[arg(long, value_name = "D", default_value_t = 8, value_parser = clap::value_parser!(u32).range(0..=16), requires = "refine", allow_negative_numbers = true)]
     depth: u32,
 
@@ -89,7 +90,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 
-    /// The format of the field, if the extension of its file does not tell
+    /// The format of the field, if the extension of its file does not name it
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<FieldFormat>(FieldFormat::NAMES), ignore_case = true)]
     out_format: Option<FieldFormat>,
 
@@ -106,9 +107,9 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// How inside is told.
+/// A rule that decides which points are inside.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Signs {
+enum SignRule {
     /// As a closed surface if it is one, otherwise by winding numbers
     Auto,
     /// As a closed surface, or not at all
@@ -117,11 +118,11 @@ enum Signs {
     Winding,
 }
 
-/// Winding numbers are computed to this.
-const ACCURACY: f64 = 0.01;
+/// The largest error of winding numbers.
+const WINDING_NUMBER_ERROR: f64 = 0.01;
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
-    let scene_args = &args.indexing.scene;
+    let scene_args = &args.index_args.scene;
     if args.json && is_standard(&args.out) {
         return Err(usage("--json reports on the standard output, so the field has to go to a file"));
     }
@@ -137,61 +138,64 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = scene_args.format()?;
     let start = Instant::now();
     let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format)?;
-    let read = start.elapsed();
+    let read_time = start.elapsed();
     let soup = &scene.soup;
     let grid =
         Grid::around(&soup.aabb(), args.resolution as usize, args.box_scale).with_context(|| scene_args.name())?;
-    // Before any work, so that it is not lost to a wrong name.
+    // The files are opened before the work, which would be lost if a name were wrong.
     let mut output = Output::open(streams, Some(&args.out))?;
     let picture = args.slice.as_ref().map(|path| Output::open(streams, Some(path))).transpose()?;
 
     let pool = pool(args.threads)?;
     let start = Instant::now();
-    let lists = if args.indexing.is_open() && args.refine.is_none() { lists(streams, soup, &grid) } else { None };
-    let mut backend = LISTS;
-    let (mut about, mut loaded) = (About::Nothing, false);
-    let mut hints = true;
-    let mut built = None;
+    let has_lists = args.index_args.is_unspecified() && args.refine.is_none();
+    let lists = if has_lists { candidate_lists(streams, soup, &grid) } else { None };
+    let mut backend_name = LISTS_NAME;
+    let (mut details, mut is_loaded) = (IndexDetails::None, false);
+    let mut uses_hints = true;
+    let mut index = None;
     if lists.is_none() || args.signed.is_some() {
-        let (search, faces) = match lists {
-            // For signs.
-            Some(_) => (Backend::of_saved(saved.as_ref()).unwrap_or(Backend::Search(Search::Aabb)), None),
-            None => args.indexing.choice(saved.as_ref(), soup, grid.len() as u64)?,
+        let (backend, kdop_directions) = match lists {
+            // With lists the index decides signs alone.
+            Some(_) => (saved_or_default(saved.as_ref()), None),
+            None => args.index_args.choice(saved.as_ref(), soup, grid.len() as u64)?,
         };
-        let source = Source { soup, faces, saved: saved.as_ref() };
-        let index = search.build(streams, source).with_context(|| scene_args.name())?;
+        let source = SceneSource { soup, kdop_directions, saved: saved.as_ref() };
+        let prepared = source.prepare(streams, backend).with_context(|| scene_args.name())?;
         if lists.is_none() {
-            backend = search.name();
+            backend_name = backend.name;
         }
         // Trees gain from hints, cells from several queries at a time.
-        hints = matches!(search, Backend::Search(Search::Aabb | Search::Kdop));
-        (about, loaded) = (index.about, index.loaded);
-        built = Some(index.index);
+        uses_hints = backend.structure == SearchStructure::Tree;
+        (details, is_loaded) = (prepared.built.details, prepared.is_loaded);
+        index = Some(prepared.built.index);
     }
-    let index = match (&built, args.signed) {
-        (Some(index), Some(signs)) => Some(signs.of(streams, &**index, soup).with_context(|| scene_args.name())?),
-        (Some(index), None) => Some(Index::Unsigned(&**index)),
+    let index = match (&index, args.signed) {
+        (Some(index), Some(rule)) => {
+            Some(rule.signed_index(streams, &**index, soup).with_context(|| scene_args.name())?)
+        }
+        (Some(index), None) => Some(FieldIndex::Unsigned(&**index)),
         (None, _) => None,
     };
-    let source = Distances { lists, index, hints };
-    let build = start.elapsed();
+    let source = DistanceSource { lists, index, uses_hints };
+    let build_time = start.elapsed();
 
     let start = Instant::now();
     let progress = match args.refine {
         Some(_) => Progress::start(streams, "cutting cells", None, Unit::None),
         None => Progress::start(streams, "filling the grid", Some(grid.len() as u64), Unit::Items("points")),
     };
-    let made = pool.install(|| args.make(&source, &grid, &progress))?;
+    let field = pool.install(|| args.compute(&source, &grid, &progress))?;
     drop(progress);
-    let filled = start.elapsed();
-    match &made {
-        Made::Cells(cells) => write_cells(cells, &mut output),
-        Made::Field(values) => write_field(&grid, values, out_format, &mut output),
+    let field_time = start.elapsed();
+    match &field {
+        ComputedField::Cells(cells) => write_cells(cells, &mut output),
+        ComputedField::Grid(values) => write_field(&grid, values, out_format, &mut output),
     }
     .with_context(|| output.cannot_write())?;
     let bytes = output.bytes();
     output.finish()?;
-    if let (Some(mut picture), Made::Field(values)) = (picture, &made) {
+    if let (Some(mut picture), ComputedField::Grid(values)) = (picture, &field) {
         let (size, pixels) = slice(&grid, values, 2, grid.counts()[2] / 2);
         let size = size.map(u32::try_from);
         let [Ok(width), Ok(height)] = size else { return Err(anyhow!("the slice is too large for a picture")) };
@@ -199,35 +203,36 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         picture.finish()?;
     }
 
-    let scene_name = scene_args.name();
-    let indexed = Indexed { scene_name, scene: &scene, format, backend, about, loaded, read, build };
-    let report = Report {
+    let (scene_name, backend) = (scene_args.name(), backend_name);
+    let index = IndexSummary { scene_name, scene: &scene, format, backend, details, is_loaded, read_time, build_time };
+    let report = FieldSummary {
         grid: &grid,
-        made: &made,
-        signs: source.index.as_ref().and_then(Index::rule),
+        field: &field,
+        signs: source.index.as_ref().and_then(FieldIndex::rule),
         threads: if args.refine.is_some() { 1 } else { pool.current_num_threads() },
-        filled,
+        field_time,
     };
     if args.json {
         let end = json!({
             "seconds": {
-                "read": read.as_secs_f64(),
-                "build": build.as_secs_f64(),
-                "field": filled.as_secs_f64(),
+                "read": read_time.as_secs_f64(),
+                "build": build_time.as_secs_f64(),
+                "field": field_time.as_secs_f64(),
             },
             "out": { "file": args.out.display().to_string(), "format": out_format.name(), "bytes": bytes },
         });
-        return json::print(streams, &json::joined([indexed.json("field"), report.json(), end]));
+        return json::print(streams, &json::joined([index.json("field"), report.json(), end]));
     }
     let mut text = String::new();
-    // Nothing fails in writing to memory; the file is complete, and whether anybody reads this is not our concern.
-    let _ = indexed.write(&mut text, None);
+    // Writing to a string does not fail. The file is complete, so an error of writing the summary is ignored.
+    let _ = index.write(&mut text, None);
     let _ = report.write(&mut text);
     let _ = writeln!(streams.stderr(), "{text}written  {}, {bytes} bytes", args.out.display());
     Ok(())
 }
 
 impl Args {
+    /// Returns the format of the field: the given one, or else that of the extension.
     fn format(&self) -> anyhow::Result<FieldFormat> {
         match self.out_format {
             Some(format) => Ok(format),
@@ -241,82 +246,87 @@ impl Args {
         }
     }
 
-    fn make(&self, source: &Distances<'_>, grid: &Grid, progress: &Progress) -> anyhow::Result<Made> {
+    /// Computes the distances.
+    fn compute(&self, source: &DistanceSource<'_>, grid: &Grid, progress: &Progress) -> anyhow::Result<ComputedField> {
         if let Some(error) = self.refine {
             let counts = grid.counts();
             let bounds = Aabb { min: grid.origin(), max: grid.point(counts.map(|n| n - 1)) };
-            let distance = |place: &Point3<f64>| source.index.as_ref().map_or(f64::NAN, |index| index.distance(place));
+            let distance = |point: &Point3<f64>| source.index.as_ref().map_or(f64::NAN, |index| index.distance(point));
             let cells = refined(&bounds, &distance, &RefineOptions::new(error).with_depth(self.depth));
-            return Ok(Made::Cells(cells));
+            return Ok(ComputedField::Cells(cells));
         }
-        let mut options = FieldOptions::default().with_hints(source.hints);
+        let mut options = FieldOptions::default().with_hints(source.uses_hints);
         if let Some(band) = self.band {
             options = options.with_band(band);
         }
         let count = |points: usize| progress.add(points as u64);
         let values = match (&source.lists, &source.index) {
-            (Some(lists), Some(Index::Signed(signed, _))) => {
+            (Some(lists), Some(FieldIndex::Signed(signed, _))) => {
                 signed_distances_by_lists(lists, signed, grid, &options, &count)?
             }
             (Some(lists), _) => distances_by_lists(lists, grid, &options, &count)?,
-            (None, Some(Index::Signed(signed, _))) => signed_distances(signed, grid, &options, &count)?,
-            (None, Some(Index::Unsigned(index))) => distances(*index, grid, &options, &count)?,
-            (None, None) => return Err(anyhow!("there is nothing that tells distances")),
+            (None, Some(FieldIndex::Signed(signed, _))) => signed_distances(signed, grid, &options, &count)?,
+            (None, Some(FieldIndex::Unsigned(index))) => distances(*index, grid, &options, &count)?,
+            (None, None) => return Err(anyhow!("there are neither lists nor an index")),
         };
-        Ok(Made::Field(values))
+        Ok(ComputedField::Grid(values))
     }
 }
 
-/// What tells distances: lists or an index, and an index beside lists for signs.
-struct Distances<'a> {
+/// The source of distances: lists or an index. An index beside lists decides signs.
+struct DistanceSource<'a> {
     lists: Option<CandidateLists<'a, Soup<f64>>>,
-    index: Option<Index<'a>>,
-    hints: bool,
+    index: Option<FieldIndex<'a>>,
+    /// Whether each query passes its answer as a hint to the next one.
+    uses_hints: bool,
 }
 
-/// How reports call lists.
-const LISTS: &str = "lists";
+/// The name of lists in reports, in place of that of a backend.
+const LISTS_NAME: &str = "lists";
 
-/// Lists, if the grid is fine enough for them to pay, coordinates are in their range, and there is memory.
-fn lists<'a>(streams: &Streams, soup: &'a Soup<f64>, grid: &Grid) -> Option<CandidateLists<'a, Soup<f64>>> {
+/// Returns lists of candidates, unless the grid is too coarse for them to pay, coordinates are out of their range, or
+/// memory is short.
+fn candidate_lists<'a>(streams: &Streams, soup: &'a Soup<f64>, grid: &Grid) -> Option<CandidateLists<'a, Soup<f64>>> {
     let last = grid.point(grid.counts().map(|n| n - 1));
     if grid.len() < soup.len() {
         return None;
     }
-    let is_in_range = |place: &Point3<f64>| place.iter().all(|x| x.abs() <= LARGEST);
+    let is_in_range = |point: &Point3<f64>| point.iter().all(|x| x.abs() <= LARGEST);
     let is_in_range = is_in_range(&grid.origin()) && is_in_range(&last);
     let _progress = Progress::start(streams, "sorting primitives", None, Unit::None);
     CandidateLists::new(soup).filter(|_| is_in_range)
 }
 
-/// What the file gets.
-enum Made {
-    Field(Vec<f32>),
-    Cells(Vec<p2m_field::Cell>),
+/// An index with or without signs.
+enum FieldIndex<'a> {
+    Unsigned(&'a dyn Index),
+    /// The signs, and the name of the rule that decides them.
+    Signed(SignedDistance<'a, &'a dyn Index>, &'static str),
 }
 
-/// An index, with signs or without.
-enum Index<'a> {
-    Unsigned(&'a dyn Closest),
-    Signed(SignedDistance<'a, &'a dyn Closest>, &'static str),
-}
-
-impl Signs {
-    fn of<'a>(self, streams: &Streams, index: &'a dyn Closest, soup: &'a Soup<f64>) -> Result<Index<'a>, SignError> {
+impl SignRule {
+    /// Prepares signs for the index.
+    fn signed_index<'a>(
+        self,
+        streams: &Streams,
+        index: &'a dyn Index,
+        soup: &'a Soup<f64>,
+    ) -> Result<FieldIndex<'a>, SignError> {
         let _progress = Progress::start(streams, "looking for inside and outside", None, Unit::None);
         if self != Self::Winding {
             match SignedDistance::new(index, soup) {
-                Ok(signed) => return Ok(Index::Signed(signed, "closed")),
+                Ok(signed) => return Ok(FieldIndex::Signed(signed, "closed")),
                 Err(SignError::Open { .. } | SignError::NotOriented { .. }) if self == Self::Auto => {}
                 Err(error) => return Err(error),
             }
         }
-        Ok(Index::Signed(SignedDistance::with_winding_numbers(index, soup, ACCURACY)?, "winding"))
+        let signed = SignedDistance::with_winding_numbers(index, soup, WINDING_NUMBER_ERROR)?;
+        Ok(FieldIndex::Signed(signed, "winding"))
     }
 }
 
-impl Index<'_> {
-    /// How inside is told.
+impl FieldIndex<'_> {
+    /// The name of the rule that decides signs.
     fn rule(&self) -> Option<&'static str> {
         match self {
             Self::Unsigned(_) => None,
@@ -324,71 +334,12 @@ impl Index<'_> {
         }
     }
 
-    fn distance(&self, place: &Point3<f64>) -> f64 {
+    /// The distance of a point, signed if there are signs; NaN if it is undefined.
+    fn distance(&self, point: &Point3<f64>) -> f64 {
         let distance = match self {
-            Self::Unsigned(index) => index.closest_point(place).map(|answer| answer.distance),
-            Self::Signed(signed, _) => signed.closest_point(place).and_then(|answer| answer.distance()),
+            Self::Unsigned(index) => index.closest_point(point).map(|answer| answer.distance),
+            Self::Signed(signed, _) => signed.closest_point(point).and_then(|answer| answer.distance()),
         };
         distance.unwrap_or(f64::NAN)
-    }
-}
-
-struct Report<'a> {
-    grid: &'a Grid,
-    made: &'a Made,
-    signs: Option<&'static str>,
-    threads: usize,
-    filled: Duration,
-}
-
-impl Report<'_> {
-    /// The least and the largest value, and how many are below zero.
-    fn values(&self) -> (f64, f64, usize, usize) {
-        let all: Box<dyn Iterator<Item = f64>> = match self.made {
-            Made::Field(values) => Box::new(values.iter().map(|x| f64::from(*x))),
-            Made::Cells(cells) => Box::new(cells.iter().flat_map(|cell| cell.values)),
-        };
-        all.fold((f64::INFINITY, f64::NEG_INFINITY, 0, 0), |(min, max, inside, undefined), x| {
-            (min.min(x), max.max(x), inside + usize::from(x < 0.0), undefined + usize::from(x.is_nan()))
-        })
-    }
-
-    fn json(&self) -> Value {
-        let (min, max, inside, undefined) = self.values();
-        let origin: [f64; 3] = self.grid.origin().into();
-        let (grid, cells) = match self.made {
-            Made::Field(_) => {
-                let counts = self.grid.counts();
-                (json!({ "counts": counts, "origin": origin, "spacing": self.grid.spacing() }), Value::Null)
-            }
-            Made::Cells(cells) => (Value::Null, json!(cells.len())),
-        };
-        json!({
-            "grid": grid,
-            "cells": cells,
-            "signs": self.signs,
-            "values": { "min": json::number(min), "max": json::number(max), "inside": inside, "undefined": undefined },
-            "threads": self.threads,
-        })
-    }
-
-    #[allow(clippy::cast_precision_loss, reason = "numbers for people to read")]
-    fn write(&self, text: &mut String) -> std::fmt::Result {
-        let (min, max, inside, undefined) = self.values();
-        let threads = if self.threads == 1 { "1 thread".to_owned() } else { format!("{} threads", self.threads) };
-        match self.made {
-            Made::Field(values) => {
-                let [x, y, z] = self.grid.counts();
-                let each = self.filled.as_nanos() as f64 / values.len() as f64;
-                writeln!(text, "field    {x} x {y} x {z} points, {} apart", self.grid.spacing())?;
-                writeln!(text, "filled   in {:.3?} on {threads}: {each:.0} ns per point", self.filled)?;
-            }
-            Made::Cells(cells) => writeln!(text, "field    {} cells, cut in {:.3?}", cells.len(), self.filled)?,
-        }
-        write!(text, "distance min {min}, max {max}")?;
-        if let Some(rule) = self.signs {
-            write!(text, "; {inside} values inside, {undefined} undefined, by the rule {rule}")?;
-        }
-        writeln!(text)
     }
 }

@@ -1,4 +1,4 @@
-//! `p2m generate`: scenes made from nothing.
+//! `p2m generate`: generates scenes.
 
 use crate::convert::Target;
 use crate::input::is_standard;
@@ -6,7 +6,7 @@ use crate::json;
 use crate::modify::{self, Modifiers};
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
-use crate::usage::{finite, one_of, whole};
+use crate::usage::{finite, one_of, whole_number};
 use clap::{Args as ClapArgs, Subcommand, value_parser};
 use p2m_mixed::generate::{
     CableBundle, Cone, Cylinder, IcoSphere, Kind, KnotAndCables, MixedSizes, SkewedGear, Sphere, TorusKnot,
@@ -41,20 +41,20 @@ Examples:
 }
 
 impl Args {
-    /// The kind of scene, as on the command line.
+    /// The name of the kind of scene on the command line.
     pub(crate) fn name(&self) -> &'static str {
         self.kind.parts().0.name()
     }
 }
 
-/// Where the scene goes, and how it is changed before.
+/// The file that the scene is written to, and the changes before that.
 #[derive(ClapArgs)]
 struct Destination {
     /// Where to write the scene; `-` is the standard output. The file appears under this name when it is complete
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
 
-    /// The format, if the extension of the name does not tell; OBJ on the standard output
+    /// The format, if the extension does not name it; OBJ on the standard output
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     to: Option<Format>,
 
@@ -214,7 +214,7 @@ enum Command {
         #[arg(long, value_name = "D", default_value_t = MixedSizes::default().decades, value_parser = finite, allow_negative_numbers = true)]
         decades: f64,
         /// Another seed makes another scene
-        #[arg(long, value_name = "K", default_value_t = MixedSizes::default().seed, value_parser = whole, allow_negative_numbers = true)]
+        #[arg(long, value_name = "K", default_value_t = MixedSizes::default().seed, value_parser = whole_number, allow_negative_numbers = true)]
         seed: u64,
         #[command(flatten)]
         destination: Destination,
@@ -222,7 +222,7 @@ enum Command {
 }
 
 impl Command {
-    /// The kind with its options, these as a report names them, and what to do with the scene.
+    /// Returns the kind of scene with its options, these options as a report names them, and the target of the scene.
     fn parts(&self) -> (Kind, Value, &Destination) {
         match *self {
             Self::KnotAndCables { rings, sides, cables, cable_segments, ref destination } => {
@@ -312,7 +312,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         return json::print(streams, &report);
     }
     if !is_standard(&destination.out) {
-        // The file is complete; whether anybody reads this is not our concern.
+        // The file is complete, so an error of writing the summary is ignored.
         let _ = write!(streams.stderr(), "made     {}\n{}", kind.description(), written.text());
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! `p2m info`: what a scene is made of.
+//! `p2m info`: reports the content of a scene.
 
 use crate::input::{SceneArgs, read_scene_and_index};
 use crate::json;
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use std::fmt::{self, Write as _};
 use std::io::Write as _;
 
-/// Say what a scene is made of, and what to expect of it
+/// Report the content of a scene, and properties that may cause problems
 #[derive(clap::Args)]
 #[command(after_help = help())]
 pub(crate) struct Args {
@@ -55,7 +55,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         return json::print(streams, &report(&name, format, index, &scene, &objects, &statistics));
     }
     let mut output = Output::open(streams, None)?;
-    write!(output, "{}", Report { name, format, index, scene: &scene, objects: &objects, statistics: &statistics })
+    write!(output, "{}", TextReport { name, format, index, scene: &scene, objects: &objects, statistics: &statistics })
         .with_context(|| output.cannot_write())?;
     output.finish()
 }
@@ -117,36 +117,37 @@ fn report(
     })
 }
 
-/// The report for people.
-struct Report<'a> {
+/// The report as text for people.
+struct TextReport<'a> {
     name: String,
     format: Format,
-    /// That of a saved file.
+    /// The kind of the index in a saved file.
     index: Option<String>,
     scene: &'a Scene,
     objects: &'a [ObjectCounts],
     statistics: &'a Statistics,
 }
 
-/// Objects that are listed one by one.
-const LISTED: usize = 20;
-const LABEL: usize = 12;
+/// The largest number of objects that are listed one by one.
+const MAX_LISTED_OBJECTS: usize = 20;
+/// The width of the labels of lines, in columns.
+const LABEL_WIDTH: usize = 12;
 
-impl fmt::Display for Report<'_> {
+impl fmt::Display for TextReport<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let s = self.statistics;
-        let mut line = |label: &str, text: &str| writeln!(f, "{label:LABEL$}{text}");
+        let mut line = |label: &str, text: &str| writeln!(f, "{label:LABEL_WIDTH$}{text}");
         line("scene", &format!("{} ({})", self.name, self.format))?;
         if let Some(index) = &self.index {
             line("index", index)?;
         }
         line("primitives", &counted(&s.primitives))?;
-        for (i, object) in self.objects.iter().enumerate().take(LISTED) {
+        for (i, object) in self.objects.iter().enumerate().take(MAX_LISTED_OBJECTS) {
             let name = object.name.as_deref().map_or_else(|| "(without a name)".to_owned(), printable);
             line(if i == 0 { "objects" } else { "" }, &format!("{name}: {}", counted(&object.primitives)))?;
         }
-        if self.objects.len() > LISTED {
-            line("", &format!("and {} more", Count((self.objects.len() - LISTED) as u64)))?;
+        if self.objects.len() > MAX_LISTED_OBJECTS {
+            line("", &format!("and {} more", Count((self.objects.len() - MAX_LISTED_OBJECTS) as u64)))?;
         }
         line("positions", &positions(s))?;
         if let Some(b) = &s.bounds {
@@ -185,7 +186,7 @@ impl fmt::Display for Report<'_> {
     }
 }
 
-/// Control characters escaped: names are those of whoever made the file.
+/// Escapes control characters of a name, which a file may have.
 pub(crate) fn printable(name: &str) -> String {
     name.chars().fold(String::new(), |mut text, c| {
         if c.is_control() {
@@ -202,7 +203,7 @@ fn capital(text: &str) -> String {
     rest.next().into_iter().flat_map(char::to_uppercase).chain(rest).collect()
 }
 
-/// The kinds that are there, like `3,600 triangles, 480 segments`.
+/// Returns the numbers of primitives in words, such as `3,600 triangles, 480 segments`.
 pub(crate) fn counted(counts: &Counts) -> String {
     let kinds = [(counts.triangles, "triangle"), (counts.segments, "segment"), (counts.points, "point")].map(
         |(count, name)| {
@@ -226,8 +227,8 @@ fn positions(s: &Statistics) -> String {
     text
 }
 
-/// To a thousandth of the size of the scene or better, so that corners of distant scenes differ; without thousands
-/// apart, since commas stand between coordinates.
+/// Formats a coordinate to a thousandth of the size of the scene or better, so that corners of distant scenes differ.
+/// There are no separators of thousands, because commas separate coordinates.
 fn coordinate(x: f64, s: &Statistics) -> String {
     // Adding zero turns -0 into 0.
     let (x, size, largest) = (x + 0.0, s.sizes.diagonal, s.location.largest_coordinate);

@@ -1,4 +1,4 @@
-//! Files to read, among them the standard input under the name `-`.
+//! Reads input files. The name `-` stands for the standard input.
 
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
@@ -12,7 +12,8 @@ use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-const BUFFER: usize = 1 << 16;
+/// The size of buffers for reading, in bytes.
+const BUFFER_BYTES: usize = 1 << 16;
 /// The name of the standard input and the standard output.
 pub(crate) const STANDARD: &str = "-";
 
@@ -23,18 +24,18 @@ pub(crate) struct SceneArgs {
     #[arg(value_name = "SCENE")]
     pub(crate) path: PathBuf,
 
-    /// The format of the scene, if the extension of its name does not tell
+    /// The format of the scene, if its extension does not name it
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     format: Option<Format>,
 }
 
 impl SceneArgs {
-    /// What to call it in messages.
+    /// Returns the name of the scene in messages.
     pub(crate) fn name(&self) -> String {
         name(&self.path)
     }
 
-    /// Its format.
+    /// Returns the format of the scene.
     pub(crate) fn format(&self) -> anyhow::Result<Format> {
         scene_format(&self.path, self.format, "--format")
     }
@@ -45,12 +46,12 @@ pub(crate) fn is_standard(path: &Path) -> bool {
     path == Path::new(STANDARD)
 }
 
-/// What to call an input in messages.
+/// Returns the name of an input in messages.
 pub(crate) fn name(path: &Path) -> String {
     if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
 }
 
-/// The format of a scene: the given one, or else that of the extension.
+/// Returns the format of a scene: the given one, or else that of the extension.
 pub(crate) fn scene_format(path: &Path, given: Option<Format>, option: &str) -> anyhow::Result<Format> {
     match given {
         Some(format) => Ok(format),
@@ -59,7 +60,7 @@ pub(crate) fn scene_format(path: &Path, given: Option<Format>, option: &str) -> 
     }
 }
 
-/// The format of points or rays, likewise.
+/// Returns the format of points or rays: the given one, or else that of the extension.
 pub(crate) fn point_format(path: &Path, given: Option<PointFormat>, option: &str) -> anyhow::Result<PointFormat> {
     match given {
         Some(format) => Ok(format),
@@ -68,15 +69,17 @@ pub(crate) fn point_format(path: &Path, given: Option<PointFormat>, option: &str
     }
 }
 
+/// The error that the standard input has no format.
 fn unnamed(option: &str, names: &[&str]) -> anyhow::Error {
-    usage(format!("the standard input has no extension that tells its format: add {option} {}", names.join("|")))
+    usage(format!("the standard input has no extension that names its format: add {option} {}", names.join("|")))
 }
 
+/// The error of an unknown extension, with the option that names the format.
 pub(crate) fn or_option(error: &ReadError, option: &str) -> anyhow::Error {
     anyhow!("{error}, or name the format with {option}")
 }
 
-/// A scene, and what a saved index has besides it.
+/// Reads a scene. Of a saved index it returns the reader of the index as well.
 pub(crate) fn read_scene_and_index(
     streams: &Streams,
     path: &Path,
@@ -85,7 +88,7 @@ pub(crate) fn read_scene_and_index(
     if format != Format::P2m {
         return Ok((p2m_mixed::read_scene_from(open(streams, path)?, format, &name(path))?, None));
     }
-    // What is no file cannot be mapped.
+    // Pipes and devices cannot be mapped.
     let is_file = fs::metadata(path).is_ok_and(|metadata| metadata.is_file()) && !is_standard(path);
     let mut stream = if is_file { None } else { Some(open(streams, path)?) };
     let progress = is_file.then(|| Progress::start(streams, &format!("checking {}", name(path)), None, Unit::None));
@@ -104,23 +107,23 @@ pub(crate) fn read_scene(streams: &Streams, path: &Path, format: Format) -> anyh
     Ok(read_scene_and_index(streams, path, format)?.0)
 }
 
-/// Reads points.
+/// Reads the points of a file.
 pub(crate) fn read_points(streams: &Streams, path: &Path, format: PointFormat) -> anyhow::Result<Vec<Point3<f64>>> {
     Ok(p2m_mixed::read_points_from(open(streams, path)?, format, &name(path))?)
 }
 
-/// Reads rays.
+/// Reads the rays of a file.
 pub(crate) fn read_rays(streams: &Streams, path: &Path, format: PointFormat) -> anyhow::Result<Vec<Ray>> {
     Ok(p2m_mixed::read_rays_from(open(streams, path)?, format, &name(path))?)
 }
 
-/// Opens a file, and shows how far it is read.
-fn open<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<Counted<'a>> {
+/// Opens a file and shows the progress of reading.
+fn open<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<ProgressReader<'a>> {
     let name = name(path);
     let what = format!("reading {name}");
     if is_standard(path) {
-        let reader = Box::new(BufReader::with_capacity(BUFFER, streams.stdin()));
-        return Ok(Counted { reader, progress: Progress::start(streams, &what, None, Unit::Bytes) });
+        let reader = Box::new(BufReader::with_capacity(BUFFER_BYTES, streams.stdin()));
+        return Ok(ProgressReader { reader, progress: Progress::start(streams, &what, None, Unit::Bytes) });
     }
     let cannot_read = || format!("{name}: cannot be read");
     let file = File::open(path).with_context(cannot_read)?;
@@ -131,17 +134,17 @@ fn open<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<Counted<'a>> {
     }
     // A pipe has no length.
     let total = metadata.is_file().then_some(metadata.len());
-    let reader = Box::new(BufReader::with_capacity(BUFFER, file));
-    Ok(Counted { reader, progress: Progress::start(streams, &what, total, Unit::Bytes) })
+    let reader = Box::new(BufReader::with_capacity(BUFFER_BYTES, file));
+    Ok(ProgressReader { reader, progress: Progress::start(streams, &what, total, Unit::Bytes) })
 }
 
-/// Counts what is read.
-struct Counted<'a> {
+/// A reader that shows its progress.
+struct ProgressReader<'a> {
     reader: Box<dyn BufRead + 'a>,
     progress: Progress,
 }
 
-impl Read for Counted<'_> {
+impl Read for ProgressReader<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.reader.read(buffer)?;
         self.progress.add(count as u64);
@@ -149,7 +152,7 @@ impl Read for Counted<'_> {
     }
 }
 
-impl BufRead for Counted<'_> {
+impl BufRead for ProgressReader<'_> {
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
         self.reader.fill_buf()
     }

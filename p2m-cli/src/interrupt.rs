@@ -1,13 +1,14 @@
-//! Ctrl-C and its like: unfinished files are removed, and the exit code is 128 plus the number of the signal.
+//! Signals such as Ctrl-C. They remove unfinished files and end the program with 128 plus their number as
+//! its exit code.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Files that do not have their final name yet.
+/// The files that do not have their final name yet.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// The list of unfinished files. It is held while one is made or renamed, so that a signal finds it either on the list
-/// or not there at all.
+/// Locks the list of unfinished files. The lock is held while a file is created or renamed, so that a signal finds
+/// every unfinished file on the list.
 pub(crate) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -29,8 +30,8 @@ impl Drop for Listed {
     }
 }
 
-/// Listens for SIGINT, SIGTERM, SIGHUP and SIGQUIT, which then remove unfinished files and end the process, with 128 plus
-/// the number of the signal as its exit code.
+/// Listens for SIGINT, SIGTERM, SIGHUP and SIGQUIT, which then remove unfinished files and end the process, with 128
+/// plus the number of the signal as its exit code.
 ///
 /// A signal that the process was started to ignore stays ignored. On systems without these signals nothing happens.
 ///
@@ -51,13 +52,13 @@ fn wait_for_signals() -> std::io::Result<()> {
     let mut signals = signal_hook::iterator::Signals::new(signals)?;
     std::thread::Builder::new().spawn(move || {
         if let Some(signal) = signals.forever().next() {
-            // Kept until the end: nobody starts or finishes a file any more.
+            // The lock is kept until the end, so that no file is created or finished any more.
             let files = unfinished();
             for file in files.iter() {
-                // It may be finished by now; and if it cannot be removed, there is nothing left to try.
+                // A file that is finished by now, or that cannot be removed, stays.
                 let _ = std::fs::remove_file(file);
             }
-            // The prompt of the shell goes below the bar, if there is one. If nobody reads it, nobody minds.
+            // The prompt of the shell appears below a progress bar.
             if std::io::stderr().is_terminal() {
                 let _ = writeln!(std::io::stderr());
             }
@@ -67,9 +68,11 @@ fn wait_for_signals() -> std::io::Result<()> {
     Ok(())
 }
 
-/// Whether this process was started with that signal ignored, in which case it has to stay so: SIGHUP under `nohup`,
-/// SIGINT in the background of a script. Known on Linux only. Elsewhere SIGHUP counts as ignored: better a terminal
-/// that closes ends the program the hard way than that `nohup` has no effect.
+/// Returns whether this process was started with the signal ignored, as SIGHUP is under `nohup` and SIGINT in the
+/// background of a script. Such a signal has to stay ignored.
+///
+/// This is known on Linux only. Elsewhere SIGHUP counts as ignored, because `nohup` has to work; a terminal that closes
+/// then ends the program without removing its files.
 #[cfg(unix)]
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

@@ -1,22 +1,23 @@
 //! Reports for programs.
 //!
-//! Each is one object on the standard output, with `"p2m"` naming its kind and `"version"` its version. Within a
-//! version keys are added, never removed, renamed or given another meaning. Numbers are numbers; what is not finite, or
-//! does not exist, is null.
+//! Each report is one object on the standard output. Its key `"p2m"` names its kind, and `"version"` its version.
+//! Within a version keys are added, never removed, renamed or given another meaning. Values that do not exist or are
+//! not finite are null.
 
 use crate::streams::Streams;
 use anyhow::Context;
 use p2m_mixed::statistics::Counts;
 use p2m_mixed::{Scene, Skipped};
+use p2m_tradeoff::RunningStats;
 use serde_json::{Value, json};
 use std::io::{self, Write};
 
 /// The version of all reports.
-pub(crate) const VERSION: u32 = 1;
+pub(crate) const VERSION: u32 = 2;
 
-/// What `--json` says about itself, for the help of each command.
+/// The paragraph about `--json` in the help of each command.
 pub(crate) const STABILITY: &str = "\
-Reports of --json are one object. Its key \"p2m\" names the kind of the report and \"version\" its version, now 1: within a \
+Reports of --json are one object. Its key \"p2m\" names the kind of the report and \"version\" its version, now 2: within a \
 version keys are added, but not removed, renamed or given another meaning. Lengths are in the unit of the scene, times in \
 seconds; what does not exist is null, and so is what is infinite, like the end of a range without one.";
 
@@ -31,7 +32,7 @@ pub(crate) fn print(streams: &Streams, report: &Value) -> anyhow::Result<()> {
     write().context("the standard output: cannot be written")
 }
 
-/// One object of several.
+/// Merges several objects into one.
 pub(crate) fn joined<const N: usize>(parts: [Value; N]) -> Value {
     let mut all = serde_json::Map::new();
     for part in parts {
@@ -42,17 +43,27 @@ pub(crate) fn joined<const N: usize>(parts: [Value; N]) -> Value {
     Value::Object(all)
 }
 
-/// A number, or null if it is not finite.
+/// Converts a number to JSON; to null if it is not finite.
 pub(crate) fn number(x: f64) -> Value {
-    // That is what serde_json does; stated here because reports rely on it.
+    // serde_json writes null as well. The condition stands here because reports rely on it.
     if x.is_finite() { json!(x) } else { Value::Null }
 }
 
+/// Converts the numbers of primitives of each kind.
 pub(crate) fn counts(counts: &Counts) -> Value {
     json!({ "triangles": counts.triangles, "segments": counts.segments, "points": counts.points })
 }
 
+/// Converts least, greatest and mean number; to null if there are no numbers.
+pub(crate) fn stats(stats: &RunningStats) -> Value {
+    if stats.count() == 0 {
+        return Value::Null;
+    }
+    json!({ "min": number(stats.min()), "max": number(stats.max()), "mean": number(stats.mean()) })
+}
+
+/// Lists the records of a file that were skipped.
 pub(crate) fn skipped(scene: &Scene) -> Value {
-    let one = |s: &Skipped| json!({ "what": s.what, "count": s.count });
+    let one = |s: &Skipped| json!({ "kind": s.what, "count": s.count });
     scene.skipped.iter().map(one).collect()
 }

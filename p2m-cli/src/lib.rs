@@ -1,31 +1,32 @@
 //! The program `p2m` as a function, so that tests and other programs can run it within themselves.
 //!
-//! `p2m` reads a scene, asks for closest points or hits of rays, and writes a table; `p2m --help` lists all commands.
+//! `p2m` reads a scene, computes closest points or hits of rays, and writes a table; `p2m --help` lists all commands.
 
 #![forbid(unsafe_code)]
 
 mod accuracy;
 mod advise;
-mod asking;
 mod backend;
 mod boxes;
 mod build;
 mod convert;
-mod faces;
 mod field;
-mod findings;
+mod field_summary;
 mod generate;
-mod indexing;
+mod index_args;
 mod info;
 mod input;
 mod interrupt;
 mod json;
+mod kdop_directions;
 mod modify;
 mod output;
 mod picture;
 mod progress;
 mod query;
+mod query_args;
 mod ray;
+mod ray_summary;
 mod sampling;
 mod shell;
 mod stats;
@@ -80,7 +81,7 @@ enum Command {
 }
 
 impl Command {
-    /// The words that lead to it.
+    /// The words of the command line that select this command.
     fn path(&self) -> String {
         match self {
             Self::Query(_) => "p2m query".to_owned(),
@@ -126,17 +127,17 @@ pub fn run(streams: &Streams, arguments: impl IntoIterator<Item = OsString>) -> 
     let command = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli.command,
         Err(error) => {
-            // If the message cannot be written there is nobody to tell.
+            // An error of writing the message cannot be reported anywhere.
             let _ = streams.show(&error);
             return if error.use_stderr() { 2 } else { 0 };
         }
     };
     match command.run(streams) {
         Ok(()) => 0,
-        // Whoever reads our output has seen enough, like `head`.
+        // A reader that closes the pipe early, such as `head`, is no error.
         Err(error) if is_closed_pipe(&error) => 0,
         Err(error) => {
-            // If the message cannot be written there is nobody to tell.
+            // An error of writing the message cannot be reported anywhere.
             let _ = writeln!(streams.stderr(), "error: {error:#}");
             if error.is::<usage::Usage>() {
                 let _ = writeln!(streams.stderr(), "\nFor more information, try '{} --help'.", command.path());
@@ -155,15 +156,15 @@ fn is_closed_pipe(error: &anyhow::Error) -> bool {
 mod tests {
     use super::*;
 
-    /// Every command of the tree with the words that lead to it.
-    fn walk(command: &clap::Command, path: &str, visit: &mut impl FnMut(&clap::Command, &str)) {
+    /// Visits every command of the tree with the words that select it.
+    fn visit_commands(command: &clap::Command, path: &str, visit: &mut impl FnMut(&clap::Command, &str)) {
         visit(command, path);
         for sub in command.get_subcommands() {
-            walk(sub, &format!("{path} {}", sub.get_name()), visit);
+            visit_commands(sub, &format!("{path} {}", sub.get_name()), visit);
         }
     }
 
-    /// The lines of examples in the help of a command.
+    /// Returns the lines of examples in the help of a command.
     fn examples(command: &clap::Command) -> Vec<String> {
         let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
         let examples = help.lines().filter(|line| line.starts_with("  p2m "));
@@ -178,7 +179,7 @@ mod tests {
     #[test]
     fn every_command_has_an_example_of_itself() {
         let mut count = 0;
-        walk(&Cli::command(), "p2m", &mut |command, path| {
+        visit_commands(&Cli::command(), "p2m", &mut |command, path| {
             let examples = examples(command);
             assert!(examples.iter().any(|e| e.contains(path)), "{path}: {examples:?}");
             count += 1;
@@ -186,10 +187,10 @@ mod tests {
         assert!(count > 15, "{count}");
     }
 
-    /// Examples run as they stand: each program of a pipe is parsed.
+    /// Each `p2m` of a pipe in an example has to be parsed without an error.
     #[test]
     fn every_example_is_right_usage() {
-        walk(&Cli::command(), "p2m", &mut |command, path| {
+        visit_commands(&Cli::command(), "p2m", &mut |command, path| {
             for example in examples(command) {
                 let line = example.split(" > ").next().unwrap();
                 for words in line.split(" | ").map(str::split_whitespace).filter(|w| w.clone().next() == Some("p2m")) {

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     if let Err(error) = p2m_cli::listen() {
-        // If the message cannot be written there is nobody to tell.
+        // An error of writing the message cannot be reported anywhere.
         let _ = writeln!(std::io::stderr(), "error: cannot listen for Ctrl-C: {error}");
         return ExitCode::FAILURE;
     }

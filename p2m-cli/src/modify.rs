@@ -1,4 +1,4 @@
-//! Changes to scenes on their way from one file to another.
+//! The changes that `p2m convert` and `p2m generate` apply to scenes.
 
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
@@ -8,7 +8,7 @@ use p2m_mixed::generate::{GenerateError, Subdivide, Transform, gapped, penetrati
 use p2m_mixed::{Object, Scene};
 use serde_json::{Value, json};
 
-/// How to change a scene.
+/// The changes to a scene.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Changes, applied in this order")]
 pub(crate) struct Modifiers {
@@ -53,13 +53,13 @@ pub(crate) struct Modifiers {
     translate: Option<Vec<f64>>,
 }
 
-/// For the help of the commands that have these options.
+/// The paragraph of the help about these options.
 pub(crate) const ORDER: &str = "\
 Changes are applied in the order in which this help lists them, whatever their order on the command line; for another one, \
 chain runs: p2m convert a.obj - --to ply --rotate-z 30 | p2m convert - b.obj --from ply --subdivide 1.";
 
 impl Modifiers {
-    /// The scene after all changes. Names stay with their primitives and the parts of these.
+    /// Returns the scene after all changes. The parts of a subdivided primitive keep its name.
     pub(crate) fn apply(&self, streams: &Streams, scene: Scene) -> anyhow::Result<Scene> {
         self.changed(streams, scene).map_err(refused)
     }
@@ -110,7 +110,7 @@ impl Modifiers {
         (transform != Transform::default()).then_some(transform)
     }
 
-    /// The changes that are asked for, in their order.
+    /// Returns the requested changes in the order in which they are applied.
     pub(crate) fn json(&self) -> Value {
         let mut changes = Vec::new();
         let mut push = |name: &str, value: Option<Value>| {
@@ -131,7 +131,7 @@ impl Modifiers {
     }
 }
 
-/// A scene of another soup. What a reader has skipped is still skipped.
+/// Returns a scene with other primitives. The list of skipped records stays.
 fn with_soup(scene: &Scene, soup: Soup<f64>, objects: Vec<Object>) -> Scene {
     let mut changed = Scene::from(soup);
     changed.objects = objects;
@@ -139,13 +139,13 @@ fn with_soup(scene: &Scene, soup: Soup<f64>, objects: Vec<Object>) -> Scene {
     changed
 }
 
-/// Where the parts of named primitives are after that many levels: in the places of the primitives, one after the
-/// other.
+/// Returns the ranges of the parts of named primitives after this number of subdivisions. The parts of each primitive
+/// follow one another where the primitive was.
 fn subdivided_objects(scene: &Scene, levels: u32) -> Vec<Object> {
     if scene.objects.is_empty() {
         return Vec::new();
     }
-    // Too many parts are refused by whoever makes them.
+    // The subdivision itself refuses too many parts.
     let parts = |element| match element {
         Element::Point(_) => 1,
         Element::Segment(_) => 1usize.checked_shl(levels).unwrap_or(usize::MAX),
@@ -162,7 +162,7 @@ fn subdivided_objects(scene: &Scene, levels: u32) -> Vec<Object> {
     scene.objects.iter().map(moved).collect()
 }
 
-/// What cannot be made because of an option is wrong usage.
+/// Converts an error of an option into one of usage.
 pub(crate) fn refused(error: GenerateError) -> anyhow::Error {
     match error {
         GenerateError::Build(_) => anyhow::Error::from(error).context("the scene cannot be made"),

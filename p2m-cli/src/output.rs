@@ -1,4 +1,4 @@
-//! Where results go: the standard output, or a file that appears when it is complete.
+//! Writes results to the standard output, or to a file that appears when it is complete.
 
 use crate::input::is_standard;
 use crate::interrupt::{Listed, unfinished};
@@ -11,9 +11,11 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
-/// A buffered destination. Dropped before [`finish`](Self::finish), or interrupted, a file is as it was before; only a
-/// process that ends without any chance to clean up (SIGKILL, or a limit of the system) leaves its unfinished work
-/// under the name `.p2m-*` in the same folder.
+/// A buffered destination.
+///
+/// If it is dropped before [`finish`](Self::finish), or the program is interrupted, the file stays as it was before.
+/// A process that ends without a chance to clean up (by SIGKILL, or a limit of the system) leaves a file `.p2m-*` in
+/// the same folder.
 pub(crate) struct Output<'a> {
     sink: Sink<'a>,
     name: String,
@@ -23,25 +25,26 @@ pub(crate) struct Output<'a> {
 
 enum Sink<'a> {
     Stdout(BufWriter<Stream<'a, dyn Write>>),
-    /// Written under another name in the same directory, and renamed at the end.
+    /// A file, which is written under another name in the same directory and renamed at the end.
     File {
         temporary: BufWriter<File>,
         path: TempPath,
         target: PathBuf,
         listed: Listed,
     },
-    /// A device or a pipe: renaming would replace it.
+    /// A device or a pipe, which renaming would replace.
     Device(BufWriter<File>),
 }
 
-const BUFFER: usize = 1 << 16;
+/// The size of buffers for writing, in bytes.
+const BUFFER_BYTES: usize = 1 << 16;
 
 impl<'a> Output<'a> {
     /// Refuses to write over any of `inputs`, by whatever name or link `path` reaches it.
     ///
-    /// A hard link is harmless: a new file takes its name, the input keeps its content under its own.
+    /// A hard link is harmless: the new file takes the name of the link, and the input keeps its own name and content.
     pub(crate) fn refuse_inputs(path: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
-        // Nothing is there, so no input is.
+        // A path to nothing is no input.
         let Ok(target) = fs::canonicalize(path) else { return Ok(()) };
         for input in inputs {
             if !is_standard(path) && !is_standard(input) && fs::canonicalize(input).is_ok_and(|input| input == target) {
@@ -62,10 +65,11 @@ impl<'a> Output<'a> {
         Ok(())
     }
 
-    /// Opens `path`; the standard output if there is none or it is `-`. A link is followed; one to nothing is refused.
+    /// Opens `path`, or the standard output if there is none or it is `-`. A link is followed, and a link to
+    /// nothing is refused.
     pub(crate) fn open(streams: &'a Streams, path: Option<&Path>) -> anyhow::Result<Self> {
         let Some(path) = path.filter(|p| !is_standard(p)) else {
-            let sink = Sink::Stdout(BufWriter::with_capacity(BUFFER, streams.stdout()));
+            let sink = Sink::Stdout(BufWriter::with_capacity(BUFFER_BYTES, streams.stdout()));
             return Ok(Self { sink, name: "the standard output".to_owned(), bytes: 0, progress: None });
         };
         let name = path.display().to_string();
@@ -73,23 +77,23 @@ impl<'a> Output<'a> {
         Ok(Self { sink, name, bytes: 0, progress: None })
     }
 
-    /// Shows how much is written, if that takes long.
+    /// Shows the progress of writing if that takes long.
     pub(crate) fn with_progress(mut self, streams: &Streams) -> Self {
         self.progress = Some(Progress::start(streams, &format!("writing {}", self.name), None, Unit::Bytes));
         self
     }
 
-    /// How many bytes are written so far.
+    /// Returns the number of bytes that were written so far.
     pub(crate) fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// What to say when writing fails.
+    /// Returns the message for an error of writing.
     pub(crate) fn cannot_write(&self) -> String {
         cannot_write(&self.name)
     }
 
-    /// Makes the result visible.
+    /// Completes the output, and gives a file its name.
     pub(crate) fn finish(self) -> anyhow::Result<()> {
         self.sink.finish().with_context(|| cannot_write(&self.name))
     }
@@ -124,10 +128,10 @@ impl Write for Output<'_> {
 
 impl Sink<'_> {
     fn open(path: &Path) -> io::Result<Self> {
-        // A link is followed, so that it goes on pointing where it does.
+        // A link is followed, so that it keeps its target.
         let target = match fs::canonicalize(path) {
             Ok(target) => target,
-            // Renaming would replace the link.
+            // Renaming would replace a link to nothing.
             Err(_) if fs::symlink_metadata(path).is_ok_and(|m| m.is_symlink()) => {
                 return Err(io::Error::new(io::ErrorKind::NotFound, "it is a link to nothing"));
             }
@@ -139,14 +143,14 @@ impl Sink<'_> {
             Ok(old) if old.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
             Ok(old) if !old.is_file() => {
                 let file = File::options().write(true).open(&target)?;
-                return Ok(Self::Device(BufWriter::with_capacity(BUFFER, file)));
+                return Ok(Self::Device(BufWriter::with_capacity(BUFFER_BYTES, file)));
             }
             Ok(old) if old.permissions().readonly() => return Err(io::ErrorKind::PermissionDenied.into()),
             Ok(old) => {
                 builder.permissions(old.permissions());
             }
             Err(_) => {
-                // As for any new file: everybody may read it, unless the user's mask says otherwise.
+                // Like any new file it is readable for everybody, as far as the user's mask permits.
                 #[cfg(unix)]
                 builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
             }
@@ -156,15 +160,15 @@ impl Sink<'_> {
             _ => Path::new("."),
         };
         let mut unfinished = unfinished();
-        // The error of a temporary file names that file, of which the user knows nothing.
+        // The error of a temporary file names that file, which means nothing to the user.
         let temporary = builder.tempfile_in(directory).map_err(|e| {
             let folder = directory.display();
             io::Error::new(e.kind(), format!("no file can be made in the folder '{folder}': {}", e.kind()))
         })?;
-        // Apart, for errors of the two together name the file, too.
+        // The parts are used separately, because errors of the whole name the temporary file as well.
         let (temporary, path) = temporary.into_parts();
         let listed = Listed::new(&mut unfinished, &path);
-        Ok(Self::File { temporary: BufWriter::with_capacity(BUFFER, temporary), path, target, listed })
+        Ok(Self::File { temporary: BufWriter::with_capacity(BUFFER_BYTES, temporary), path, target, listed })
     }
 
     fn finish(self) -> io::Result<()> {

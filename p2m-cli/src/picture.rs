@@ -1,9 +1,9 @@
-//! Pictures in files.
+//! Pictures in PNG files.
 
 use crate::output::Output;
 use anyhow::Context;
 
-/// Writes rows of red, green and blue.
+/// Writes a picture. `bytes` has red, green and blue of each pixel, row by row.
 pub(crate) fn write_png(output: &mut Output<'_>, [width, height]: [u32; 2], bytes: &[u8]) -> anyhow::Result<()> {
     let cannot_write = output.cannot_write();
     let mut encoder = png::Encoder::new(output, width, height);

@@ -1,4 +1,4 @@
-//! What a long run is doing, on the standard error if that is a terminal, and not before a second has passed.
+//! Progress bars of long runs. They appear on the standard error after a second, if it is a terminal.
 
 use crate::streams::Streams;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -8,30 +8,32 @@ use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// One piece of work. Its line disappears when it is dropped.
+/// A piece of work. Its progress bar disappears when it is dropped.
 pub(crate) struct Progress {
     done: Arc<AtomicU64>,
-    /// What draws, and how to stop it; `None` where nobody is watching.
+    /// The thread that draws, and the channel that stops it; `None` without a terminal.
     drawing: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
-/// What is counted.
+/// The unit of work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Unit {
     Bytes,
-    /// Things of this name.
+    /// Items with this name.
     Items(&'static str),
     /// Hundredths of the work.
     Percent,
-    /// Work of which nothing is known but that it goes on.
+    /// Work of an unknown amount.
     None,
 }
 
-const PATIENCE: Duration = Duration::from_secs(1);
-const REFRESH: Duration = Duration::from_millis(100);
+/// The time before a bar appears.
+const DELAY: Duration = Duration::from_secs(1);
+/// The time between two states of a bar.
+const REFRESH_INTERVAL: Duration = Duration::from_millis(100);
 
 impl Progress {
-    /// Work called `what`, like `reading scene.ply`, of so many units if that is known.
+    /// Starts a bar with the label `what`, such as `reading scene.ply`. `total` is the amount of work, if it is known.
     pub(crate) fn start(streams: &Streams, what: &str, total: Option<u64>, unit: Unit) -> Self {
         let done = Arc::new(AtomicU64::new(0));
         // On a terminal that cannot move its cursor the bar hides itself.
@@ -41,7 +43,7 @@ impl Progress {
         let (stop, stopped) = mpsc::channel();
         let (position, what) = (Arc::clone(&done), what.to_owned());
         let draw = move || {
-            if stopped.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
+            if stopped.recv_timeout(DELAY) != Err(RecvTimeoutError::Timeout) {
                 return;
             }
             let bar = ProgressBar::with_draw_target(total, ProgressDrawTarget::stderr());
@@ -49,7 +51,7 @@ impl Progress {
                 bar.set_style(style.tick_chars("-\\|/ "));
             }
             bar.set_message(what);
-            while stopped.recv_timeout(REFRESH) == Err(RecvTimeoutError::Timeout) {
+            while stopped.recv_timeout(REFRESH_INTERVAL) == Err(RecvTimeoutError::Timeout) {
                 bar.set_position(position.load(Ordering::Relaxed));
                 bar.tick();
             }
@@ -60,12 +62,12 @@ impl Progress {
         Self { done, drawing }
     }
 
-    /// So much is done.
-    pub(crate) fn reach(&self, count: u64) {
+    /// Sets the amount of work that is done. It never decreases.
+    pub(crate) fn advance_to(&self, count: u64) {
         self.done.fetch_max(count, Ordering::Relaxed);
     }
 
-    /// So much more is done.
+    /// Adds to the amount of work that is done.
     pub(crate) fn add(&self, count: u64) {
         self.done.fetch_add(count, Ordering::Relaxed);
     }
@@ -75,7 +77,7 @@ impl Drop for Progress {
     fn drop(&mut self) {
         if let Some((stop, thread)) = self.drawing.take() {
             drop(stop);
-            // A bar that fails is no concern of the work.
+            // The work goes on if its bar fails.
             let _ = thread.join();
         }
     }

@@ -1,27 +1,27 @@
 //! `p2m query`: closest points as a table.
 
 use crate::accuracy::Accuracy;
-use crate::asking::{Asking, Questions, ask};
-use crate::backend::{Backend, Built, Search, Source, Wanted};
-use crate::faces;
+use crate::backend::{BackendChoice, PreparedIndex, SceneSource, backend_choices};
 use crate::input::{self, SceneArgs, point_format, read_points, read_scene_and_index};
 use crate::json;
+use crate::kdop_directions::requested;
 use crate::output::Output;
+use crate::query_args::{QueryArgs, QueryStream, answer_all};
 use crate::sampling::{Queries, Region};
 use crate::streams::Streams;
-use crate::summary::{Answers, Indexed, Run};
-use crate::usage::{not_negative, one_of, positive, whole};
+use crate::summary::{AnswerSummary, IndexSummary, RunSummary};
+use crate::usage::{not_negative, one_of, positive, whole_number};
 use anyhow::Context;
 use clap::ArgGroup;
 use nalgebra::Point3;
-use p2m_advisor::{Place, Workload};
+use p2m_advisor::{BuiltIndex, QueryRegion, Workload};
 use p2m_mixed::{AnswerWriter, PointFormat, Scene};
 use serde_json::{Value, json};
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// Each paragraph is one line, so that it wraps at the width of the terminal.
+/// The text of the help. Each paragraph is one line, so that it wraps at the width of the terminal.
 fn help() -> String {
     format!(
         "\
@@ -39,12 +39,12 @@ Answers as NPY are an array of NumPy with the fields query, point, distance, low
 feature_kind (0 a vertex, 1 an edge, 2 the face) and feature_number; as PLY a cloud of the queries that viewers can colour \
 by distance. Where there is no answer, numbers are NaN and -1.
 
-No distance is smaller than the true one but for rounding. With --epsilon or --budget it may be larger, by what the line `error` of the summary says at most: every answer has a lower bound that is certain (lower_bound in NPY).
+No distance is smaller than the true one but for rounding. With --epsilon or --max-visits it may be larger, by what the line `error` of the summary says at most: every answer has a lower bound that is certain (lower_bound in NPY).
 
 Points from a CSV file are taken from its columns qx, qy, qz, or else x, y, z (also like 'X [m]'), or else Points:0, \
-Points:1, Points:2, or else from the first three columns; so the table itself can be asked about again. XYZ and TXT \
+Points:1, Points:2, or else from the first three columns; so the table itself is a file of the same queries. XYZ and TXT \
 files have three or more columns separated by blanks. NPY files are arrays of three columns. Of PLY files the vertices are \
-asked about.
+read.
 
 {}
 
@@ -70,107 +70,109 @@ pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// Ask about the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
+    /// Query the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
 
-    /// The format of the points, if the extension of their file does not tell
+    /// The format of the points, if the extension of their file does not name it
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, conflicts_with_all = ["grid", "random"])]
     points_format: Option<PointFormat>,
 
-    /// Ask about a grid of N x N x N points that fills the scaled box of the scene, ends included; z runs fastest
+    /// Query a grid of N x N x N points that fills the scaled box of the scene, ends included; z runs fastest
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 21), allow_negative_numbers = true)]
     grid: Option<u64>,
 
-    /// Ask about N uniformly distributed points in the scaled box of the scene
-    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
+    /// Query N uniformly distributed points in the scaled box of the scene
+    #[arg(long, value_name = "N", value_parser = whole_number, allow_negative_numbers = true)]
     random: Option<u64>,
 
     /// Scale the box of the scene about its centre by this factor before filling it.
     ///
-    /// Along an axis on which the scene is flat, the box is widened to each side by as much as the factor adds to its
-    /// longest side.
+    /// Along an axis on which the scene is flat, the box is widened to each side by as much as the factor adds to
+    /// its longest side.
     #[arg(long, value_name = "S", default_value_t = 1.05, value_parser = positive, allow_negative_numbers = true, conflicts_with = "points")]
     box_scale: f64,
 
     /// Seed of the random points
-    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole, allow_negative_numbers = true, conflicts_with_all = ["points", "grid"])]
+    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole_number, allow_negative_numbers = true, conflicts_with_all = ["points", "grid"])]
     seed: u64,
 
     /// Give no answers farther than this, in the unit of the scene; at exactly this distance there is one
     #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true)]
     max_distance: Option<f64>,
 
-    /// How to search [default: aabb, or as a saved index does]
-    #[arg(long, value_enum)]
-    backend: Option<Wanted>,
+    /// The index to search [default: aabb, or as a saved index does]
+    #[arg(long, value_parser = backend_choices())]
+    backend: Option<BackendChoice>,
 
     #[command(flatten)]
-    asking: Asking,
+    query_args: QueryArgs,
 
     #[command(flatten)]
     accuracy: Accuracy,
 }
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
-    let (scene_args, asking) = (&args.scene, &args.asking);
-    asking.check(scene_args, args.points.as_deref(), "points")?;
-    let (format, out_format) = (scene_args.format()?, asking.format(streams)?);
+    let (scene_args, query_args) = (&args.scene, &args.query_args);
+    query_args.check(scene_args, args.points.as_deref(), "points")?;
+    let (format, out_format) = (scene_args.format()?, query_args.format(streams)?);
     let start = Instant::now();
     let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format)?;
     let (queries, sample) = queries(streams, args, &scene)?;
-    let read = start.elapsed();
-    // Before any work, so that it is not lost to a wrong name.
-    let mut output = Output::open(streams, Some(&asking.out))?;
+    let read_time = start.elapsed();
+    // The file is opened before the work, which would be lost if its name were wrong.
+    let mut output = Output::open(streams, Some(&query_args.out))?;
 
     let start = Instant::now();
     let saved = saved.as_ref();
-    let place = sample.as_deref().map_or(Place::Box, Place::Points);
-    let workload = Workload::new(queries.len(), place);
-    let backend = Wanted::resolve(args.backend, saved, &scene.soup, &workload).with_context(|| scene_args.name())?;
-    let faces = faces::only_for(backend == Backend::Search(Search::Kdop), asking.k)?;
-    let source = Source { soup: &scene.soup, faces, saved };
-    let Built { index, about, loaded, .. } = backend.build(streams, source).with_context(|| scene_args.name())?;
-    let build = start.elapsed();
+    let region = sample.as_deref().map_or(QueryRegion::SceneBox, QueryRegion::Like);
+    let workload = Workload::new(queries.len(), region);
+    let backend = BackendChoice::resolve(args.backend, saved, &scene.soup, &workload);
+    let backend = backend.with_context(|| scene_args.name())?;
+    let kdop_directions = requested(backend.has_kdop_directions, query_args.k)?;
+    let source = SceneSource { soup: &scene.soup, kdop_directions, saved };
+    let PreparedIndex { built: BuiltIndex { index, details }, is_loaded, .. } =
+        source.prepare(streams, backend).with_context(|| scene_args.name())?;
+    let build_time = start.elapsed();
 
-    let pool = asking.pool()?;
+    let pool = query_args.pool()?;
     let accuracy = &args.accuracy;
     let options = accuracy.options(args.max_distance);
-    let mut answers = Answers::default();
+    let mut summary = AnswerSummary::default();
     let write = || -> io::Result<Duration> {
         let mut writer = AnswerWriter::with_objects(&mut output, out_format, queries.len(), &scene.objects)?;
-        let questions = Questions { name: "queries", count: queries.len(), iter: queries };
-        let answer = |queries: &[_], answers: &mut [_]| accuracy.ask(&*index, queries, &options, answers);
-        let time = ask(streams, &pool, questions, answer, |query, answer| {
-            answers.add(answer.as_ref());
+        let queries = QueryStream { name: "queries", count: queries.len(), iter: queries };
+        let answer = |queries: &[_], answers: &mut [_]| accuracy.answer(&*index, queries, &options, answers);
+        let time = answer_all(streams, &pool, queries, answer, |query, answer| {
+            summary.add(answer.as_ref());
             writer.write(query, answer.as_ref())
         })?;
         writer.finish()?;
         Ok(time)
     };
-    let asked = write().with_context(|| output.cannot_write())?;
+    let query_time = write().with_context(|| output.cannot_write())?;
     let bytes = output.bytes();
     output.finish()?;
 
-    let (scene_name, backend, threads) = (scene_args.name(), backend.name(), pool.current_num_threads());
-    let indexed = Indexed { scene_name, scene: &scene, format, backend, about, loaded, read, build };
-    let run = Run { indexed, threads, asked };
-    if asking.json {
+    let (scene_name, backend, threads) = (scene_args.name(), backend.name, pool.current_num_threads());
+    let index = IndexSummary { scene_name, scene: &scene, format, backend, details, is_loaded, read_time, build_time };
+    let run = RunSummary { index, threads, query_time };
+    if query_args.json {
         let max_distance = args.max_distance.map_or(Value::Null, json::number);
-        let report = answers.json(&run.indexed.cells(), &max_distance, &accuracy.json(), &asked_about(args));
-        return json::print(streams, &run.json("query", report, &asking.written(out_format, bytes)));
+        let report = summary.json(&run.index.cells(), &max_distance, &accuracy.json(), &source_json(args));
+        return json::print(streams, &run.json("query", report, &query_args.output_json(out_format, bytes)));
     }
-    // The answers are complete; whether anybody reads this is not our concern.
-    let _ = write!(streams.stderr(), "{}{answers}", run.text("queries", "query", answers.queries()));
+    // The answers are complete, so an error of writing the summary is ignored.
+    let _ = write!(streams.stderr(), "{}{summary}", run.text("queries", "query", summary.queries()));
     Ok(())
 }
 
-/// And some of them where they are points of a file.
+/// Returns the queries and, if they come from a file, a sample of them.
 fn queries(streams: &Streams, args: &Args, scene: &Scene) -> anyhow::Result<(Queries, Option<Vec<Point3<f64>>>)> {
     if let Some(path) = &args.points {
         let points = read_points(streams, path, point_format(path, args.points_format, "--points-format")?)?;
-        let some = points.iter().step_by(points.len().div_ceil(SAMPLE).max(1)).copied().collect();
-        return Ok((Queries::list(points), Some(some)));
+        let sample = points.iter().step_by(points.len().div_ceil(MAX_SAMPLE_POINTS).max(1)).copied().collect();
+        return Ok((Queries::list(points), Some(sample)));
     }
     let region = Region::around(&scene.soup, args.box_scale);
     let queries = match args.grid {
@@ -180,11 +182,11 @@ fn queries(streams: &Streams, args: &Args, scene: &Scene) -> anyhow::Result<(Que
     Ok((queries, None))
 }
 
-/// Points by which a backend is chosen.
-const SAMPLE: usize = 16_384;
+/// The largest number of points by which the advisor chooses a backend.
+const MAX_SAMPLE_POINTS: usize = 16_384;
 
-/// Which points were asked about, for the report.
-fn asked_about(args: &Args) -> Value {
+/// Returns the part of a report about the origin of the queries.
+fn source_json(args: &Args) -> Value {
     match (&args.points, args.grid) {
         (Some(path), _) => json!({ "points": input::name(path) }),
         (_, Some(side)) => json!({ "grid": side, "box_scale": args.box_scale }),

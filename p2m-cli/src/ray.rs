@@ -1,20 +1,22 @@
-//! `p2m ray`: what rays meet, as a table.
+//! `p2m ray`: the hits of rays as a table.
 
-use crate::asking::{Asking, Questions, ask};
-use crate::backend::{Built, Index, Search, Source};
-use crate::faces;
-use crate::findings::Findings;
+use crate::backend::{Backend, PreparedIndex, SceneSource, backends, saved_or_default};
 use crate::input::{self, SceneArgs, point_format, read_rays, read_scene_and_index};
 use crate::json;
+use crate::kdop_directions::requested;
 use crate::output::Output;
+use crate::query_args::{QueryArgs, QueryStream, answer_all};
+use crate::ray_summary::RaySummary;
 use crate::sampling::{Region, random_rays};
 use crate::streams::Streams;
-use crate::summary::{Indexed, Run};
-use crate::usage::{finite_not_negative, number, one_of, positive, usage, whole};
+use crate::summary::{IndexSummary, RunSummary};
+use crate::usage::{finite_not_negative, number, one_of, positive, usage, whole_number};
 use anyhow::Context;
 use clap::{ArgGroup, ValueEnum};
 use nalgebra::{Point3, Vector3};
-use p2m_core::{Hit, Ray, RayError};
+use p2m_advisor::BuiltIndex;
+use p2m_core::storage::Reader;
+use p2m_core::{Hit, Ray, RayError, RayQuery};
 use p2m_mixed::{AnswerFormat, HitWriter, NumberWriter, Object, PointFormat, Scene};
 use rayon::ThreadPool;
 use serde_json::{Value, json};
@@ -22,7 +24,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// Each paragraph is one line, so that it wraps at the width of the terminal.
+/// The text of the help. Each paragraph is one line, so that it wraps at the width of the terminal.
 fn help() -> String {
     format!(
         "\
@@ -32,7 +34,7 @@ triangles with a common edge, and every backend gives the same table, but for `a
 triangles, and as a crossing it counts once.
 
 The table has the columns ray,ox,oy,oz,dx,dy,dz: the number of the ray from 0, its origin and its direction. With --mode \
-do, count and crossings it has one more, called hit (0 or 1), count or crossings. With the others it has \
+intersects, count and crossings it has one more, called hit (0 or 1), count or crossings. With the others it has \
 parameter,x,y,z,primitive,side,w0,w1,w2: the parameter t and the point of the hit, the number of the primitive from 0, the \
 side of the triangle that is met (front, back, or along for one in its plane, and for segments and points), and the weights \
 of the primitive's vertices. With --mode first and any each ray has one line, where the last nine are empty if it \
@@ -45,9 +47,9 @@ point, barycentric, primitive and side (0 front, 1 back, 2 along); as PLY a clou
 normals. Where there is no hit, numbers are NaN and -1.
 
 Rays from a CSV file are taken from its columns ox, oy, oz, dx, dy, dz, or else x, y, z, dx, dy, dz, or else x, y, z, nx, ny, \
-nz, or else Points:0 to Points:2 and Normals:0 to Normals:2, or else from the first six columns; so the table itself can be \
-asked about again. XYZ and TXT files have six or more columns separated by blanks. NPY files are arrays of six columns. Of \
-PLY files the vertices are asked about, along their normals nx, ny, nz. Numbers that are not finite, and directions that \
+nz, or else Points:0 to Points:2 and Normals:0 to Normals:2, or else from the first six columns; so the table itself is a \
+file of the same rays. XYZ and TXT files have six or more columns separated by blanks. NPY files are arrays of six columns. Of \
+PLY files the vertices are the origins, and their normals nx, ny, nz the directions. Numbers that are not finite, and directions that \
 are zero, are errors.
 
 {}
@@ -60,7 +62,7 @@ Examples:
   p2m ray scene.ply --random 100000 --seed 7 --mode all --out hits.npy --json
   p2m ray part.stl --random 1000 --line --mode crossings > crossings.csv
   p2m ray wires.obj --rays rays.npy --radius 0.01 --max 10 --backend kdop --k 14
-  p2m generate torus-knot | p2m ray - --format obj --random 1000 --mode do --out hit.ply",
+  p2m generate torus-knot | p2m ray - --format obj --random 1000 --mode intersects --out hit.ply",
         json::STABILITY
     )
 }
@@ -73,31 +75,31 @@ pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// Ask about the rays of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
+    /// Cast the rays of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
     #[arg(long, value_name = "FILE")]
     rays: Option<PathBuf>,
 
-    /// The format of the rays, if the extension of their file does not tell
+    /// The format of the rays, if the extension of their file does not name it
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, conflicts_with = "random")]
     rays_format: Option<PointFormat>,
 
-    /// Ask about N rays from uniformly distributed points in the scaled box of the scene into uniformly distributed
+    /// Cast N rays from uniformly distributed points in the scaled box of the scene into uniformly distributed
     /// directions of length 1
-    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole_number, allow_negative_numbers = true)]
     random: Option<u64>,
 
     /// Scale the box of the scene about its centre by this factor before filling it.
     ///
-    /// Along an axis on which the scene is flat, the box is widened to each side by as much as the factor adds to its
-    /// longest side.
+    /// Along an axis on which the scene is flat, the box is widened to each side by as much as the factor adds to
+    /// its longest side.
     #[arg(long, value_name = "S", default_value_t = 1.05, value_parser = positive, allow_negative_numbers = true, conflicts_with = "rays")]
     box_scale: f64,
 
     /// Seed of the random rays
-    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole, allow_negative_numbers = true, conflicts_with = "rays")]
+    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole_number, allow_negative_numbers = true, conflicts_with = "rays")]
     seed: u64,
 
-    /// What to find
+    /// The answer for each ray
     #[arg(long, value_enum, default_value_t = Mode::First)]
     mode: Mode,
 
@@ -117,18 +119,19 @@ pub(crate) struct Args {
     #[arg(long, value_name = "R", default_value_t = 0.0, value_parser = finite_not_negative, allow_negative_numbers = true)]
     radius: f64,
 
-    /// How to search; interception indexes (octree, p2m) answer no rays [default: aabb, or as a saved index does]
-    #[arg(long, value_enum)]
-    backend: Option<Search>,
+    /// The index to search; interception indexes (octree, p2m) answer no rays [default: aabb, or as a saved index does]
+    #[arg(long, value_parser = backends(|backend| backend.casts_rays))]
+    backend: Option<Backend>,
 
     #[command(flatten)]
-    asking: Asking,
+    query_args: QueryArgs,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Mode {
-    /// Whether a ray meets anything
-    Do,
+    /// Whether a ray hits anything
+    #[value(alias = "do")]
+    Intersects,
     /// The hit that is found first: some hit, which depends on the backend
     Any,
     /// The hit with the least parameter
@@ -137,14 +140,15 @@ enum Mode {
     All,
     /// The number of hits
     Count,
-    /// How often the surface of the triangles is crossed: once, too, where it is met on an edge or a vertex
+    /// The number of crossings of the surface of the triangles; one on an edge or a vertex counts once
     Crossings,
 }
 
 impl Mode {
+    /// The name on the command line and in reports.
     fn name(self) -> &'static str {
         match self {
-            Self::Do => "do",
+            Self::Intersects => "intersects",
             Self::Any => "any",
             Self::First => "first",
             Self::All => "all",
@@ -155,58 +159,67 @@ impl Mode {
 }
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
-    let (scene_args, asking) = (&args.scene, &args.asking);
-    asking.check(scene_args, args.rays.as_deref(), "rays")?;
+    let (scene_args, query_args) = (&args.scene, &args.query_args);
+    query_args.check(scene_args, args.rays.as_deref(), "rays")?;
     let along_x = Ray::new(&Point3::<f64>::origin(), &Vector3::x()).and_then(|ray| args.limited(&ray));
     along_x.map_err(|error| usage(format!("{error} (--min, --max)")))?;
-    let (format, out_format) = (scene_args.format()?, asking.format(streams)?);
+    let (format, out_format) = (scene_args.format()?, query_args.format(streams)?);
     let start = Instant::now();
     let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format)?;
     let rays = rays(streams, args, &scene)?;
-    let read = start.elapsed();
-    // Before any work, so that it is not lost to a wrong name.
-    let mut output = Output::open(streams, Some(&asking.out))?;
+    let read_time = start.elapsed();
+    // The file is opened before the work, which would be lost if its name were wrong.
+    let mut output = Output::open(streams, Some(&query_args.out))?;
 
     let start = Instant::now();
     let saved = saved.as_ref();
-    let backend = args.backend.or_else(|| Search::of_saved(saved)).unwrap_or(Search::Aabb);
-    let source = Source { soup: &scene.soup, faces: faces::only_for(backend == Search::Kdop, asking.k)?, saved };
-    let Built { index, about, loaded, .. } = backend.build(streams, source).with_context(|| scene_args.name())?;
-    let build = start.elapsed();
+    let backend = args.backend.unwrap_or_else(|| ray_backend(saved));
+    let kdop_directions = requested(backend.has_kdop_directions, query_args.k)?;
+    let source = SceneSource { soup: &scene.soup, kdop_directions, saved };
+    let PreparedIndex { built: BuiltIndex { index, details }, is_loaded, .. } =
+        source.prepare(streams, backend).with_context(|| scene_args.name())?;
+    let build_time = start.elapsed();
 
-    let pool = asking.pool()?;
-    let (index, output_file, objects) = (&*index, &mut output, scene.objects.as_slice());
+    let pool = query_args.pool()?;
+    let index = index.as_ray_query().context("the backend casts no rays")?;
+    let (output_file, objects) = (&mut output, scene.objects.as_slice());
     let task = Task { streams, index, pool: &pool, rays, output: output_file, format: out_format, objects };
-    let (asked, findings) = task.run(args.mode).with_context(|| output.cannot_write())?;
+    let (query_time, summary) = task.run(args.mode).with_context(|| output.cannot_write())?;
     let bytes = output.bytes();
     output.finish()?;
 
-    let (scene_name, backend, threads) = (scene_args.name(), backend.name(), pool.current_num_threads());
-    let indexed = Indexed { scene_name, scene: &scene, format, backend, about, loaded, read, build };
-    let run = Run { indexed, threads, asked };
-    if asking.json {
-        let report = args.report(findings.json());
-        return json::print(streams, &run.json("ray", report, &asking.written(out_format, bytes)));
+    let (scene_name, backend, threads) = (scene_args.name(), backend.name, pool.current_num_threads());
+    let index = IndexSummary { scene_name, scene: &scene, format, backend, details, is_loaded, read_time, build_time };
+    let run = RunSummary { index, threads, query_time };
+    if query_args.json {
+        let report = args.report(summary.json());
+        return json::print(streams, &run.json("ray", report, &query_args.output_json(out_format, bytes)));
     }
-    // The answers are complete; whether anybody reads this is not our concern.
-    let _ = write!(streams.stderr(), "{}{findings}", run.text("rays", "ray", findings.rays()));
+    // The answers are complete, so an error of writing the summary is ignored.
+    let _ = write!(streams.stderr(), "{}{summary}", run.text("rays", "ray", summary.rays()));
     Ok(())
 }
 
+/// Returns the backend of a saved index that casts rays, or else the default one.
+fn ray_backend(saved: Option<&Reader>) -> Backend {
+    Some(saved_or_default(saved)).filter(|backend| backend.casts_rays).unwrap_or_else(|| saved_or_default(None))
+}
+
 impl Args {
+    /// The least and the largest parameter.
     fn range(&self) -> [f64; 2] {
         [if self.line { f64::NEG_INFINITY } else { self.min }, self.max.unwrap_or(f64::INFINITY)]
     }
 
-    /// The ray as far as it is asked about.
+    /// Returns the ray with the range and the radius of the arguments.
     fn limited(&self, ray: &Ray) -> Result<Ray, RayError> {
         let [min, max] = self.range();
         ray.with_range(min, max)?.with_radius(self.radius)
     }
 
-    /// What was asked, and what came of it.
-    fn report(&self, findings: Value) -> Value {
-        let asked_about = match &self.rays {
+    /// Returns the part of a report about the rays and their answers.
+    fn report(&self, summary: Value) -> Value {
+        let source = match &self.rays {
             Some(path) => json!({ "rays": input::name(path) }),
             None => json!({ "random": self.random, "seed": self.seed, "box_scale": self.box_scale }),
         };
@@ -215,16 +228,20 @@ impl Args {
             "mode": self.mode.name(),
             "range": { "min": min, "max": max },
             "radius": self.radius,
-            "asked_about": asked_about,
+            "source": source,
         });
-        if let (Value::Object(report), Value::Object(findings)) = (&mut report, findings) {
-            report.extend(findings);
+        if let (Value::Object(report), Value::Object(summary)) = (&mut report, summary) {
+            report.extend(summary);
         }
         report
     }
 }
 
-type Rays<'a> = Questions<Box<dyn Iterator<Item = Ray> + 'a>>;
+/// An index that rays can be cast at.
+type RayIndex<'a> = dyn RayQuery<f64> + Sync + 'a;
+
+/// The rays of the arguments.
+type Rays<'a> = QueryStream<Box<dyn Iterator<Item = Ray> + 'a>>;
 
 fn rays<'a>(streams: &Streams, args: &'a Args, scene: &Scene) -> anyhow::Result<Rays<'a>> {
     let (count, rays): (u64, Box<dyn Iterator<Item = Ray>>) = match &args.rays {
@@ -238,13 +255,13 @@ fn rays<'a>(streams: &Streams, args: &'a Args, scene: &Scene) -> anyhow::Result<
         }
     };
     let rays = rays.map(|ray| args.limited(&ray).expect("the limits fit every ray"));
-    Ok(Questions { name: "rays", count, iter: Box::new(rays) })
+    Ok(QueryStream { name: "rays", count, iter: Box::new(rays) })
 }
 
-/// Rays to ask, and where their answers go.
+/// The rays to answer, and the file for their answers.
 struct Task<'a, 's> {
     streams: &'a Streams,
-    index: &'a dyn Index,
+    index: &'a RayIndex<'a>,
     pool: &'a ThreadPool,
     rays: Rays<'a>,
     output: &'a mut Output<'s>,
@@ -253,62 +270,70 @@ struct Task<'a, 's> {
 }
 
 impl Task<'_, '_> {
-    /// How long the asking took, and what came of it.
-    fn run(self, mode: Mode) -> io::Result<(Duration, Findings)> {
-        let (hits, one) = (Findings::with_numbers("hits"), Some(self.rays.count));
+    /// Answers all rays. Returns the time that this took, and a summary of the answers.
+    fn run(self, mode: Mode) -> io::Result<(Duration, RaySummary)> {
+        let (hits, one_each) = (RaySummary::with_counts("hits"), Some(self.rays.count));
         match mode {
-            Mode::Do => self.numbers("hit", Findings::default(), |index, ray| u64::from(index.do_intersect(ray))),
-            Mode::Count => self.numbers("count", hits, |index, ray| index.count(ray) as u64),
-            Mode::Crossings => {
-                let crossed = Findings::with_numbers("crossed");
-                self.numbers("crossings", crossed, |index, ray| index.crossings(ray) as u64)
+            Mode::Intersects => {
+                self.counts("hit", RaySummary::default(), |index, ray| u64::from(index.do_intersect(ray)))
             }
-            Mode::Any => self.hits(one, Findings::default(), |i, ray| i.any_intersection(ray), Option::as_slice),
-            Mode::First => self.hits(one, Findings::default(), |i, ray| i.first_intersection(ray), Option::as_slice),
+            Mode::Count => self.counts("count", hits, |index, ray| index.count(ray) as u64),
+            Mode::Crossings => {
+                let crossed = RaySummary::with_counts("crossed");
+                self.counts("crossings", crossed, |index, ray| index.crossings(ray) as u64)
+            }
+            Mode::Any => self.hits(one_each, RaySummary::default(), |i, ray| i.any_intersection(ray), Option::as_slice),
+            Mode::First => {
+                self.hits(one_each, RaySummary::default(), |i, ray| i.first_intersection(ray), Option::as_slice)
+            }
             Mode::All => self.hits(None, hits, |index, ray| index.all_intersections(ray), Vec::as_slice),
         }
     }
 
-    /// A number for each ray.
-    fn numbers(
+    /// Writes a count for each ray.
+    fn counts(
         self,
         name: &'static str,
-        mut findings: Findings,
-        question: impl Fn(&dyn Index, &Ray) -> u64 + Sync,
-    ) -> io::Result<(Duration, Findings)> {
+        mut summary: RaySummary,
+        count: impl Fn(&RayIndex<'_>, &Ray) -> u64 + Sync,
+    ) -> io::Result<(Duration, RaySummary)> {
         let mut writer = NumberWriter::new(self.output, self.format, name, self.rays.count)?;
-        let time = ask(self.streams, self.pool, self.rays, each(self.index, question), |ray, &number| {
-            writer.write(findings.rays(), ray, number)?;
-            findings.add(number);
+        let time = answer_all(self.streams, self.pool, self.rays, one_by_one(self.index, count), |ray, &count| {
+            writer.write(summary.rays(), ray, count)?;
+            summary.add(count);
             Ok(())
         })?;
         writer.finish()?;
-        Ok((time, findings))
+        Ok((time, summary))
     }
 
-    /// The hits of each ray, a slice of what it is answered: so many records in all, or one for each hit.
+    /// Writes the hits of each ray, which `slice` takes from its answer. `records` is the number of records if each ray
+    /// has exactly one; otherwise each hit has one.
     fn hits<A: Clone + Default + Send>(
         self,
         records: Option<u64>,
-        mut findings: Findings,
-        question: impl Fn(&dyn Index, &Ray) -> A + Sync,
+        mut summary: RaySummary,
+        intersect: impl Fn(&RayIndex<'_>, &Ray) -> A + Sync,
         slice: fn(&A) -> &[Hit],
-    ) -> io::Result<(Duration, Findings)> {
+    ) -> io::Result<(Duration, RaySummary)> {
         let mut writer = HitWriter::with_objects(self.output, self.format, records, self.objects)?;
-        let time = ask(self.streams, self.pool, self.rays, each(self.index, question), |ray, answer| {
-            let (number, hits) = (findings.rays(), slice(answer));
-            findings.add_hits(hits);
+        let time = answer_all(self.streams, self.pool, self.rays, one_by_one(self.index, intersect), |ray, answer| {
+            let (number, hits) = (summary.rays(), slice(answer));
+            summary.add_hits(hits);
             if hits.is_empty() && records.is_some() {
                 writer.write(number, ray, None)?;
             }
             hits.iter().try_for_each(|hit| writer.write(number, ray, Some(hit)))
         })?;
         writer.finish()?;
-        Ok((time, findings))
+        Ok((time, summary))
     }
 }
 
-/// Answers rays one by one.
-fn each<A>(index: &dyn Index, question: impl Fn(&dyn Index, &Ray) -> A + Sync) -> impl Fn(&[Ray], &mut [A]) + Sync {
-    move |rays, answers| rays.iter().zip(answers).for_each(|(ray, answer)| *answer = question(index, ray))
+/// Returns a function that answers rays one by one.
+fn one_by_one<A>(
+    index: &RayIndex<'_>,
+    answer_one: impl Fn(&RayIndex<'_>, &Ray) -> A + Sync,
+) -> impl Fn(&[Ray], &mut [A]) + Sync {
+    move |rays, answers| rays.iter().zip(answers).for_each(|(ray, answer)| *answer = answer_one(index, ray))
 }

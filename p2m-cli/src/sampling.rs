@@ -1,73 +1,75 @@
-//! Where to ask: given points, a grid, or random points and rays around the scene.
+//! Query points and rays: given points, a grid, or random points and rays around the scene.
 
 use nalgebra::{Point3, Vector3};
 use p2m_core::{PrimitiveSet, Ray, Soup};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// A box to ask in.
+/// The box that queries are in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Region {
     min: [f64; 3],
     max: [f64; 3],
-    /// That of the scene: the middle of the rounded ends need not be the same.
+    /// The centre of the box of the scene. The middle of the rounded ends may be another point.
     centre: [f64; 3],
 }
 
 impl Region {
-    /// The box of the primitives of `soup`, scaled about its centre; the unit cube around the origin for an empty
-    /// scene.
+    /// Returns the box of the primitives of `soup`, scaled about its centre. For an empty scene it is the unit cube
+    /// around the origin.
     ///
-    /// An axis without extent would put every query into the plane of the scene: it is widened to each side by what the
-    /// scale adds to the longest axis, and for a single point by what it would add to one of length 1.
+    /// An axis without extent would put every query into the plane of the scene. The box is widened along it, to each
+    /// side by as much as the scale adds to the longest axis, or for a single point by as much as it would add to an
+    /// axis of length 1.
     pub(crate) fn around(soup: &Soup<f64>, scale: f64) -> Self {
         let bounds = soup.aabb();
         let (min, max): ([f64; 3], [f64; 3]) =
             if soup.is_empty() { ([-0.5; 3], [0.5; 3]) } else { (bounds.min.coords.into(), bounds.max.coords.into()) };
-        // Halves first: the sum and the difference of two finite numbers may not be finite.
+        // Numbers are halved first, because the sum and the difference of two finite numbers may overflow.
         let half: [f64; 3] = std::array::from_fn(|k| max[k] / 2.0 - min[k] / 2.0);
         let longest = half.iter().fold(0.0f64, |a, &b| a.max(b));
         let reference = if longest > 0.0 { longest } else { 0.5 };
-        let centre: [f64; 3] = std::array::from_fn(|k| middle(min[k], max[k]));
+        let centre: [f64; 3] = std::array::from_fn(|k| midpoint(min[k], max[k]));
         let side = |k: usize, sign: f64| {
-            let reach = if half[k] > 0.0 { half[k] * scale } else { reference * (scale - 1.0).max(0.0) };
-            (centre[k] + sign * reach).clamp(f64::MIN, f64::MAX)
+            let half_side = if half[k] > 0.0 { half[k] * scale } else { reference * (scale - 1.0).max(0.0) };
+            (centre[k] + sign * half_side).clamp(f64::MIN, f64::MAX)
         };
         Self { min: std::array::from_fn(|k| side(k, -1.0)), max: std::array::from_fn(|k| side(k, 1.0)), centre }
     }
 
-    /// The point at fractions `t` of the sides, exact at 0 and 1.
+    /// Returns the point at fractions `t` of the sides. It is exact for 0 and 1.
     fn at(&self, t: [f64; 3]) -> Point3<f64> {
         Point3::from(std::array::from_fn(|k| self.min[k] * (1.0 - t[k]) + self.max[k] * t[k]))
     }
 }
 
-/// A sequence of queries, made as they are needed.
+/// A sequence of query points, which are computed as they are needed.
 pub(crate) enum Queries {
-    /// These points.
+    /// The given points, in order.
     List(std::vec::IntoIter<Point3<f64>>),
-    /// The points of a grid from number `next` on.
+    /// The points of a grid, from index `next` on.
     Grid { region: Region, side: u64, next: u64 },
-    /// So many random points.
+    /// Random points, of which `left` remain.
     Random { region: Region, left: u64, rng: Box<ChaCha8Rng> },
 }
 
 impl Queries {
+    /// Returns given points.
     pub(crate) fn list(points: Vec<Point3<f64>>) -> Self {
         Self::List(points.into_iter())
     }
 
-    /// `side` points along each axis, the ends included; z runs fastest, then y. `side` is at most 2^21.
+    /// Returns a grid of `side` points along each axis, ends included; z runs fastest, then y. `side` is at most 2^21.
     pub(crate) fn grid(region: Region, side: u64) -> Self {
         Self::Grid { region, side, next: 0 }
     }
 
-    /// `count` points from a uniform distribution, the same ones for the same seed everywhere.
+    /// Returns `count` uniformly distributed points. A seed gives the same points on every machine.
     pub(crate) fn random(region: Region, count: u64, seed: u64) -> Self {
         Self::Random { region, left: count, rng: Box::new(ChaCha8Rng::seed_from_u64(seed)) }
     }
 
-    /// How many are left.
+    /// Returns the number of points that remain.
     pub(crate) fn len(&self) -> u64 {
         match self {
             Self::List(points) => points.len() as u64,
@@ -92,7 +94,7 @@ impl Iterator for Queries {
                 if side == 1 {
                     return Some(Point3::from(region.centre));
                 }
-                let t = |place: u64| fraction(place, side - 1);
+                let t = |index: u64| fraction(index, side - 1);
                 Some(region.at([t(i / (side * side)), t(i / side % side), t(i % side)]))
             }
             Self::Random { region, left, rng } => {
@@ -103,16 +105,18 @@ impl Iterator for Queries {
     }
 }
 
-/// `count` rays, the same ones for the same seed everywhere: their origins are the points of [`Queries::random`], their
-/// directions come from a uniform distribution on the unit sphere.
+/// Returns `count` rays. Their origins are the points of [`Queries::random`], and their directions are uniformly
+/// distributed on the unit sphere. A seed gives the same rays on every machine.
 pub(crate) fn random_rays(region: Region, count: u64, seed: u64) -> impl Iterator<Item = Ray> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    rng.set_stream(1); // independent of that of the origins
+    // Directions are independent of origins.
+    rng.set_stream(1);
     Queries::random(region, count, seed)
         .map(move |origin| Ray::new(&origin, &direction(&mut rng)).expect("finite, and of length 1"))
 }
 
-/// A unit vector from a point of the unit disk \[Marsaglia1972\]: without functions that differ between platforms.
+/// Returns a random unit vector, computed from a point of the unit disk \[Marsaglia1972\]. That needs no functions
+/// whose results differ between platforms.
 fn direction(rng: &mut ChaCha8Rng) -> Vector3<f64> {
     loop {
         let [u, v] = std::array::from_fn(|_| 2.0 * unit(rng) - 1.0);
@@ -130,7 +134,7 @@ fn unit(rng: &mut ChaCha8Rng) -> f64 {
 }
 
 /// The number halfway between two others, rounded once unless it is subnormal or the sum would overflow.
-fn middle(a: f64, b: f64) -> f64 {
+fn midpoint(a: f64, b: f64) -> f64 {
     let sum = a + b;
     if sum.is_finite() { sum / 2.0 } else { a / 2.0 + b / 2.0 }
 }
@@ -154,7 +158,7 @@ mod tests {
         Soup::new(positions, (0..count).map(Element::Point)).unwrap()
     }
 
-    /// As many as announced.
+    /// Checks the number of points, and returns them.
     fn all(queries: Queries) -> Vec<Point3<f64>> {
         let count = queries.len();
         let all: Vec<_> = queries.collect();

@@ -1,4 +1,4 @@
-//! `p2m completions` and `p2m man`: what shells and manuals want to know.
+//! `p2m completions` and `p2m man`: completions of shells and manual pages.
 
 use crate::output::Output;
 use crate::streams::Streams;
@@ -32,7 +32,7 @@ pub(crate) struct Man {
 }
 
 pub(crate) fn completions(streams: &Streams, args: &Completions, mut command: clap::Command) -> anyhow::Result<()> {
-    // It writes to memory: its own writing panics when the reader has gone.
+    // The script is generated in memory, because the generator panics when its output is closed.
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut command, "p2m", &mut script);
     write(streams, None, &script)
@@ -45,7 +45,7 @@ pub(crate) fn man(streams: &Streams, args: &Man, mut command: clap::Command) -> 
     write_pages(streams, folder, &command)
 }
 
-/// The page of a command and those of its subcommands, named like `p2m-generate-knot.1`.
+/// Writes the page of a command and those of its subcommands, with names like `p2m-generate-knot.1`.
 fn write_pages(streams: &Streams, folder: &Path, command: &clap::Command) -> anyhow::Result<()> {
     let name = command.get_display_name().unwrap_or_else(|| command.get_name());
     write(streams, Some(&folder.join(format!("{name}.1"))), &page(command)?)?;

@@ -1,7 +1,7 @@
-//! `p2m stats`: what an index is made of and what its queries cost, in what does not depend on the machine.
+//! `p2m stats`: the parts of an index and the costs of its queries, in counts that do not depend on the machine.
 
-use crate::backend::{Built, Closest, Source, Stages};
-use crate::indexing::{Indexing, MANY};
+use crate::backend::{PreparedIndex, SceneSource, Stages};
+use crate::index_args::{DEFAULT_QUERY_COUNT, IndexArgs};
 use crate::input::read_scene_and_index;
 use crate::json;
 use crate::output::Output;
@@ -9,10 +9,11 @@ use crate::picture::write_png;
 use crate::progress::{Progress, Unit};
 use crate::sampling::{Queries, Region};
 use crate::streams::Streams;
-use crate::summary::Indexed;
-use crate::usage::{positive, whole};
+use crate::summary::IndexSummary;
+use crate::usage::{positive, whole_number};
 use anyhow::{Context, bail};
 use nalgebra::{Point3, Vector3};
+use p2m_advisor::{BuiltIndex, Index};
 use p2m_bvh::AabbTree;
 use p2m_core::{BuildIndex, ListStats, PrimitiveSet, QueryCost, RayQuery, Soup, Stat, StatsCollector};
 use p2m_mixed::Camera;
@@ -33,7 +34,7 @@ of the cells, is that of the list at a random point. Queries of trees visit node
 primitives, and evaluate some of these exactly.
 
 The picture of --out has each primitive in a colour of its own, from blue over green to red (in a PLY file with the number \
-as the property 'value'): the length of the list at its middle, or (for trees) how many packets a query there filters. Colours go by the \
+as the property 'value'): the length of the list at its centroid, or (for trees) how many packets a query there filters. Colours go by the \
 logarithm, from the least number to the largest.
 
 {}
@@ -52,9 +53,9 @@ Examples:
 #[command(after_help = help())]
 pub(crate) struct Args {
     #[command(flatten)]
-    indexing: Indexing,
+    index_args: IndexArgs,
 
-    /// How many random points of the box, and how many middles of primitives, to ask about
+    /// The number of random points of the box, and the number of centroids of primitives, to query
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=100_000_000), default_value_t = 10_000, allow_negative_numbers = true)]
     queries: u64,
 
@@ -63,7 +64,7 @@ pub(crate) struct Args {
     box_scale: f64,
 
     /// Seed of the random points
-    #[arg(long, value_name = "SEED", default_value_t = 0, value_parser = whole, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SEED", default_value_t = 0, value_parser = whole_number, allow_negative_numbers = true)]
     seed: u64,
 
     /// Colour the scene: a name that ends in .ply or .png
@@ -74,7 +75,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 800, value_parser = clap::value_parser!(u32).range(1..=8192), allow_negative_numbers = true)]
     width: u32,
 
-    /// From where a PNG picture is seen: the way from the middle of the scene, as x,y,z; y is up
+    /// From where a PNG picture is seen: the direction from the centre of the scene, as x,y,z; y is up
     #[arg(long, value_name = "X,Y,Z", default_value = "0.45,0.4,1", value_parser = direction, allow_hyphen_values = true)]
     eye: Vector3<f64>,
 
@@ -84,9 +85,9 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
-    let scene_args = &args.indexing.scene;
+    let scene_args = &args.index_args.scene;
     if let Some(out) = &args.out {
-        if !is(out, "ply") && !is(out, "png") {
+        if !has_extension(out, "ply") && !has_extension(out, "png") {
             bail!("{}: the name of a picture ends in .ply or .png", out.display());
         }
         Output::refuse_inputs(out, &[&scene_args.path])?;
@@ -94,32 +95,33 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = scene_args.format()?;
     let start = Instant::now();
     let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format)?;
-    let read = start.elapsed();
+    let read_time = start.elapsed();
     let picture = args.out.as_ref().map(|out| Output::open(streams, Some(out))).transpose()?;
 
     let start = Instant::now();
     let saved = saved.as_ref();
-    let (backend, faces) = args.indexing.choice(saved, &scene.soup, MANY)?;
-    let source = Source { soup: &scene.soup, faces, saved };
-    let Built { index, about, loaded, stages } = backend.build(streams, source).with_context(|| scene_args.name())?;
-    let build = start.elapsed();
+    let (backend, kdop_directions) = args.index_args.choice(saved, &scene.soup, DEFAULT_QUERY_COUNT)?;
+    let source = SceneSource { soup: &scene.soup, kdop_directions, saved };
+    let PreparedIndex { built: BuiltIndex { index, details }, is_loaded, stages } =
+        source.prepare(streams, backend).with_context(|| scene_args.name())?;
+    let build_time = start.elapsed();
 
-    let progress = Progress::start(streams, "asking", None, Unit::None);
+    let progress = Progress::start(streams, "querying", None, Unit::None);
     let region = Region::around(&scene.soup, args.box_scale);
     let random: Vec<_> = Queries::random(region, args.queries, args.seed).collect();
-    let stats = Stats {
+    let stats = IndexStats {
         lists: ListStats::of(&*index),
         in_box: QueryCost::of(&*index, &random),
-        on_scene: QueryCost::of(&*index, &some_middles(&scene.soup, args.queries)),
-        asked: random.len() as u64,
-        parts: index.parts(),
+        on_scene: QueryCost::of(&*index, &centroid_sample(&scene.soup, args.queries)),
+        random_queries: random.len() as u64,
+        memory: index.parts(),
         stages,
         primitives: scene.soup.len(),
-        loaded,
+        is_loaded,
     };
     if let Some(mut output) = picture {
-        let values: Vec<f64> = middles(&scene.soup).map(|middle| value(&*index, &middle)).collect();
-        if args.out.as_ref().is_some_and(|out| is(out, "ply")) {
+        let values: Vec<f64> = centroids(&scene.soup).map(|centroid| query_cost(&*index, &centroid)).collect();
+        if args.out.as_ref().is_some_and(|out| has_extension(out, "ply")) {
             write_values_ply(&scene.soup, &values, &mut output).with_context(|| output.cannot_write())?;
         } else {
             args.draw(&scene.soup, &values, &mut output)?;
@@ -128,38 +130,40 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
     drop(progress);
 
-    let (scene_name, backend) = (scene_args.name(), backend.name());
-    let indexed = Indexed { scene_name, scene: &scene, format, backend, about, loaded, read, build };
+    let (scene_name, backend) = (scene_args.name(), backend.name);
+    let index = IndexSummary { scene_name, scene: &scene, format, backend, details, is_loaded, read_time, build_time };
     if args.json {
         let end = json!({
-            "cells": indexed.cells(),
-            "seconds": { "read": read.as_secs_f64(), "build": build.as_secs_f64() },
+            "cells": index.cells(),
+            "seconds": { "read": read_time.as_secs_f64(), "build": build_time.as_secs_f64() },
             "out": args.out.as_ref().map(|out| json!({ "file": out.display().to_string() })),
         });
-        return json::print(streams, &json::joined([indexed.json("stats"), stats.json(), end]));
+        return json::print(streams, &json::joined([index.json("stats"), stats.json(), end]));
     }
     let mut text = String::new();
-    // Nothing fails in writing to memory.
-    let _ = indexed.write(&mut text, None);
+    // Writing to a string does not fail.
+    let _ = index.write(&mut text, None);
     let _ = write!(text, "{stats}");
     let mut output = Output::open(streams, None)?;
     output.write_all(text.as_bytes()).with_context(|| output.cannot_write())?;
     output.finish()
 }
 
-fn is(path: &Path, extension: &str) -> bool {
-    path.extension().is_some_and(|own| own.eq_ignore_ascii_case(extension))
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension))
 }
 
+/// Parses a direction that has an extent across the vertical axis.
 fn direction(text: &str) -> Result<Vector3<f64>, String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|x| x.trim().parse().ok()).collect();
     let numbers = numbers.and_then(|numbers| <[f64; 3]>::try_from(numbers).ok()).map(Vector3::from);
-    let sideways = |v: &Vector3<f64>| v.iter().all(|x| x.is_finite()) && v.cross(&Vector3::y()).norm() > 0.0;
-    numbers.filter(sideways).ok_or_else(|| "not three numbers x,y,z that lead sideways".to_owned())
+    let is_sideways = |v: &Vector3<f64>| v.iter().all(|x| x.is_finite()) && v.cross(&Vector3::y()).norm() > 0.0;
+    numbers.filter(is_sideways).ok_or_else(|| "not three numbers x,y,z that lead sideways".to_owned())
 }
 
 impl Args {
-    /// Draws the scene in colours: what the ray through each pixel meets first, darker where it is met askew.
+    /// Draws the scene in colours: the first hit of the ray through each pixel, darker where the surface is oblique
+    /// to the view.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 255")]
     fn draw(&self, soup: &Soup<f64>, values: &[f64], output: &mut Output<'_>) -> anyhow::Result<()> {
         let camera = Camera::before(soup, &self.eye, self.width).filter(|_| !soup.is_empty());
@@ -185,51 +189,54 @@ impl Args {
     }
 }
 
-/// The middles of the vertices of all primitives.
-fn middles(soup: &Soup<f64>) -> impl Iterator<Item = Point3<f64>> + '_ {
+/// The centroids of the vertices of all primitives.
+fn centroids(soup: &Soup<f64>) -> impl Iterator<Item = Point3<f64>> + '_ {
     (0..soup.len()).map(|i| {
         let vertices = soup.get(p2m_core::PrimitiveId::new(i));
         let vertices = vertices.vertices();
-        let part = 1.0 / vertices.len() as f64;
-        Point3::from(vertices.iter().map(|v| v.coords * part).sum::<nalgebra::Vector3<f64>>())
+        let weight = 1.0 / vertices.len() as f64;
+        Point3::from(vertices.iter().map(|v| v.coords * weight).sum::<nalgebra::Vector3<f64>>())
     })
 }
 
-/// Evenly chosen ones.
+/// Returns at most `count` centroids, evenly spaced in the order of the scene.
 #[allow(clippy::cast_possible_truncation, reason = "at most as many as there are primitives")]
-fn some_middles(soup: &Soup<f64>, count: u64) -> Vec<Point3<f64>> {
+fn centroid_sample(soup: &Soup<f64>, count: u64) -> Vec<Point3<f64>> {
     let count = count.min(soup.len() as u64) as usize;
-    middles(soup).step_by(soup.len().div_ceil(count.max(1)).max(1)).take(count).collect()
+    centroids(soup).step_by(soup.len().div_ceil(count.max(1)).max(1)).take(count).collect()
 }
 
-/// What a primitive is coloured by.
-fn value(index: &dyn Closest, middle: &Point3<f64>) -> f64 {
-    let packets = || StatsCollector::of_query(middle, |query, counting| index.inspect(query, counting))[1];
-    index.list_length(middle).unwrap_or_else(packets) as f64
+/// Returns the number by which a primitive is coloured: the length of the list at its centroid, or for trees the number
+/// of packets that a query there filters.
+fn query_cost(index: &dyn Index, centroid: &Point3<f64>) -> f64 {
+    let packets = || StatsCollector::of_query(centroid, |query, collector| index.inspect(query, collector))[1];
+    index.list_length(centroid).unwrap_or_else(packets) as f64
 }
 
-struct Stats {
+/// The statistics of an index and of the costs of its queries.
+struct IndexStats {
     lists: Option<ListStats>,
     in_box: QueryCost,
     on_scene: QueryCost,
-    /// How many random points.
-    asked: u64,
-    parts: Vec<(&'static str, usize)>,
+    /// The number of random points.
+    random_queries: u64,
+    /// The names of the parts of the index, and their bytes.
+    memory: Vec<(&'static str, usize)>,
     stages: Stages,
     primitives: usize,
-    loaded: bool,
+    is_loaded: bool,
 }
 
-impl Stats {
+impl IndexStats {
     fn json(&self) -> Value {
-        let load = |load: &Stat| json!({ "mean": load.mean, "most": load.most });
-        let visits = |visits: &QueryCost| {
+        let stat = |stat: &Stat| json!({ "mean": stat.mean, "max": stat.most });
+        let query_cost = |cost: &QueryCost| {
             json!({
-                "nodes": load(&visits.nodes),
-                "packets": load(&visits.packets),
-                "primitives": load(&visits.primitives),
-                "list": self.lists.map(|_| visits.list),
-                "without_list": self.lists.map(|_| visits.without_list),
+                "nodes": stat(&cost.nodes),
+                "packets": stat(&cost.packets),
+                "primitives": stat(&cost.primitives),
+                "list": self.lists.map(|_| cost.list),
+                "without_list": self.lists.map(|_| cost.without_list),
             })
         };
         let lists = self.lists.map(|lists| {
@@ -237,26 +244,27 @@ impl Stats {
                 "count": lists.count,
                 "mean": lists.mean,
                 "median": lists.median,
-                "percent_90": lists.percent_90,
-                "percent_99": lists.percent_99,
-                "most": lists.most,
+                "percentile_90": lists.percent_90,
+                "percentile_99": lists.percent_99,
+                "max": lists.most,
             })
         });
-        let parts: serde_json::Map<_, _> = self.parts.iter().map(|(name, n)| ((*name).to_owned(), json!(n))).collect();
+        let memory: serde_json::Map<_, _> =
+            self.memory.iter().map(|(name, n)| ((*name).to_owned(), json!(n))).collect();
         let stages: serde_json::Map<_, _> =
             self.stages.iter().map(|(stage, time)| (stage.name().to_owned(), json!(time.as_secs_f64()))).collect();
         json!({
             "lists": lists,
-            "queries": self.asked,
-            "in_box": visits(&self.in_box),
-            "on_scene": visits(&self.on_scene),
-            "memory": parts,
+            "queries": self.random_queries,
+            "in_box": query_cost(&self.in_box),
+            "on_scene": query_cost(&self.on_scene),
+            "memory": memory,
             "stages": stages,
         })
     }
 }
 
-impl fmt::Display for Stats {
+impl fmt::Display for IndexStats {
     #[allow(clippy::cast_precision_loss, reason = "bytes for people to read")]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(lists) = &self.lists {
@@ -274,11 +282,11 @@ impl fmt::Display for Stats {
                 100.0 * without_list
             )?;
         }
-        for (places, visits) in [("in the box", &self.in_box), ("on the scene", &self.on_scene)] {
-            let QueryCost { nodes, packets, primitives, .. } = visits;
+        for (region, cost) in [("in the box", &self.in_box), ("on the scene", &self.on_scene)] {
+            let QueryCost { nodes, packets, primitives, .. } = cost;
             writeln!(
                 f,
-                "queries  {places}: {:.2} nodes, {:.2} packets, {:.2} primitives each; at most {}, {}, {}",
+                "queries  {region}: {:.2} nodes, {:.2} packets, {:.2} primitives each; at most {}, {}, {}",
                 nodes.mean, packets.mean, primitives.mean, nodes.most, packets.most, primitives.most
             )?;
         }
@@ -287,12 +295,12 @@ impl fmt::Display for Stats {
                 self.stages.iter().map(|(stage, time)| format!("{} {time:.3?}", stage.name())).collect();
             writeln!(f, "stages   {}", stages.join(", "))?;
         }
-        if self.loaded {
+        if self.is_loaded {
             return writeln!(f, "memory   that of the file");
         }
-        let total: usize = self.parts.iter().map(|part| part.1).sum();
-        let held = self.parts.iter().filter(|part| part.1 > 0);
-        let parts: Vec<String> = held.map(|(name, bytes)| format!("{name} {:.1} MB", *bytes as f64 / 1e6)).collect();
+        let total: usize = self.memory.iter().map(|part| part.1).sum();
+        let used = self.memory.iter().filter(|part| part.1 > 0);
+        let parts: Vec<String> = used.map(|(name, bytes)| format!("{name} {:.1} MB", *bytes as f64 / 1e6)).collect();
         if !parts.is_empty() {
             let each = total as f64 / self.primitives.max(1) as f64;
             writeln!(f, "memory   {}: {each:.0} bytes a primitive", parts.join(", "))?;

@@ -3,12 +3,12 @@
 use std::cell::RefCell;
 use std::io::{self, IsTerminal, Read, Write};
 
-/// Holds the standard input, output and error of a run.
+/// The standard input, output and error of a run.
 pub struct Streams {
     stdin: RefCell<Box<dyn Read>>,
     stdout: RefCell<Box<dyn Write>>,
     stderr: RefCell<Box<dyn Write>>,
-    /// Tells whether these are the streams of the process, which may be terminals.
+    /// Whether these are the streams of the process, which may be terminals.
     is_process: bool,
 }
 
@@ -51,7 +51,7 @@ impl Streams {
 
     /// Gives help a fixed width, unless it is for the process, whose terminal sets the width.
     pub(crate) fn fit(&self, command: clap::Command) -> clap::Command {
-        if self.is_process { command } else { command.term_width(WIDTH) }
+        if self.is_process { command } else { command.term_width(HELP_COLUMNS) }
     }
 
     /// Writes wrong usage to the standard error, and help and the version to the standard output.
@@ -67,10 +67,10 @@ impl Streams {
     }
 }
 
-/// Help has this many columns where there is no terminal.
-const WIDTH: usize = 100;
+/// The number of columns of help without a terminal.
+const HELP_COLUMNS: usize = 100;
 
-/// Lends one of the streams of a run.
+/// A borrowed stream of a run.
 pub(crate) struct Stream<'a, S: ?Sized>(&'a RefCell<Box<S>>);
 
 impl Read for Stream<'_, dyn Read> {

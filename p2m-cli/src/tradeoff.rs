@@ -1,18 +1,18 @@
-//! `p2m tradeoff`: what each backend and each setting costs over a scene, and how wrong it is.
+//! `p2m tradeoff`: measures the costs and the errors of each backend with each setting over a scene.
 
+use crate::backend::{Backend, backends};
 use crate::input::{SceneArgs, point_format, read_points, read_scene};
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
-use crate::sampling::{Queries as Places, Region};
+use crate::sampling::{Queries as QueryPoints, Region};
 use crate::streams::Streams;
-use crate::usage::{one_of, positive, whole};
+use crate::usage::{one_of, positive, whole_number};
 use anyhow::{Context, bail};
-use clap::{ArgGroup, ValueEnum};
+use clap::ArgGroup;
 use nalgebra::Point3;
-use p2m_bvh::{AabbOptions, AabbTree};
-use p2m_core::{BruteForce, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, PrimitiveSet, Soup};
-use p2m_interception::{OctreeIndex, OctreeOptions, P2mIndex, P2mOptions};
-use p2m_kdop::{KdopOptions, KdopTree};
+use p2m_advisor::{BACKENDS, BuildSettings, Index, SearchStructure};
+use p2m_bvh::AabbTree;
+use p2m_core::{BuildIndex, CertifiedQuery, PrimitiveSet, Soup};
 use p2m_mixed::{PointFormat, Scene};
 use p2m_tradeoff::page::Page;
 use p2m_tradeoff::queries::Queries;
@@ -25,7 +25,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 const HELP: &str = "\
-Every backend is built over the scene, on one thread, and asked about the same places with every setting, in turns: the default, certified \
+Every backend is built over the scene, on one thread, and answers the same queries with every setting, in turns: the default, certified \
 answers and less exact ones. The table has for each the nanoseconds of a query (the median of the rounds), how many times \
 as fast that is as the default of the same backend, the largest error of the distance relative to it and what one query in a thousand \
 exceeds, the largest error in units of u M (u is 2^-53, M the distance to the farthest corner of the nearest primitive), what the certified \
@@ -45,19 +45,19 @@ pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// Ask about the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
+    /// Query the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
 
-    /// The format of the points, if the extension of their file does not tell
+    /// The format of the points, if the extension of their file does not name it
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, requires = "points")]
     points_format: Option<PointFormat>,
 
-    /// Ask about a grid of N x N x N points that fills the scaled box of the scene
+    /// Query a grid of N x N x N points that fills the scaled box of the scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=512), allow_negative_numbers = true)]
     grid: Option<u64>,
 
-    /// Ask about N uniformly distributed points in the scaled box of the scene
+    /// Query N uniformly distributed points in the scaled box of the scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000), allow_negative_numbers = true)]
     random: Option<u64>,
 
@@ -66,18 +66,18 @@ pub(crate) struct Args {
     box_scale: f64,
 
     /// Seed of the random points
-    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole, allow_negative_numbers = true, conflicts_with_all = ["points", "grid"])]
+    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole_number, allow_negative_numbers = true, conflicts_with_all = ["points", "grid"])]
     seed: u64,
 
     /// Backends to compare
-    #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Kind::Aabb, Kind::Kdop, Kind::Octree, Kind::P2m])]
-    backends: Vec<Kind>,
+    #[arg(long, value_parser = backends(|_| true), value_delimiter = ',', default_values = default_backends())]
+    backends: Vec<Backend>,
 
     /// Rounds, in which all take turns
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1000), allow_negative_numbers = true)]
     rounds: usize,
 
-    /// The most seconds that a round of one setting takes: slow ones are asked about fewer places
+    /// The most seconds that a round of one setting takes: slow ones get fewer queries
     #[arg(long, value_name = "S", default_value_t = 0.1, value_parser = positive, allow_negative_numbers = true)]
     round_seconds: f64,
 
@@ -90,88 +90,37 @@ pub(crate) struct Args {
     csv: Option<PathBuf>,
 }
 
-/// What is compared.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Kind {
-    /// Every primitive, every time
-    Brute,
-    /// A tree of boxes
-    Aabb,
-    /// A tree of polytopes with 14 faces
-    Kdop,
-    /// Cells in space with lists of what can be nearest there
-    Octree,
-    /// Cells of the vertices with lists of what can be nearest there
-    P2m,
+/// Returns the names of the backends that are compared by default: all but exhaustive searches.
+fn default_backends() -> impl Iterator<Item = &'static str> {
+    let has_index = |backend: &Backend| backend.structure != SearchStructure::Exhaustive;
+    BACKENDS.iter().filter(has_index).map(|backend| backend.name)
 }
 
-impl Kind {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Brute => "brute",
-            Self::Aabb => "aabb",
-            Self::Kdop => "kdop",
-            Self::Octree => "octree",
-            Self::P2m => "p2m",
-        }
-    }
-
-    fn about(self) -> &'static str {
-        match self {
-            Self::Brute => "every primitive, every time",
-            Self::Aabb => "a tree of boxes",
-            Self::Kdop => "a tree of polytopes with 14 faces, which fit closer what does not lie along the axes",
-            Self::Octree => "cells in space with lists of what can be nearest there",
-            Self::P2m => "cells of the vertices with lists of what can be nearest there",
-        }
-    }
-
-    /// Builds it, on one thread, which is what is measured.
-    fn build<'a>(self, soup: &'a Soup<f64>) -> anyhow::Result<Index<'a>> {
-        let splits = AabbOptions::default().with_parallel(false);
-        match self {
-            Self::Brute => built::<BruteForce<_>>(soup, &()),
-            Self::Aabb => built::<AabbTree<_, _>>(soup, &splits),
-            Self::Kdop => built::<KdopTree<_, _, 14>>(soup, &KdopOptions::default().with_splits(splits)),
-            Self::Octree => built::<OctreeIndex<_, _>>(soup, &OctreeOptions::default().with_splits(splits)),
-            Self::P2m => built::<P2mIndex<_, _>>(soup, &P2mOptions::default().with_splits(splits)),
-        }
-    }
+/// An index that was built for the comparison, with its cost.
+struct MeasuredIndex<'a> {
+    backend: Backend,
+    index: Box<dyn Index + 'a>,
+    cost: Build,
 }
 
-/// An index, and what it cost.
-type Index<'a> = (Box<dyn Askable + 'a>, Build);
+impl<'a> MeasuredIndex<'a> {
+    /// Builds an index on one thread, and measures the time. Bytes are not counted.
+    fn build(backend: Backend, soup: &'a Soup<f64>) -> anyhow::Result<Self> {
+        let settings = BuildSettings::default().with_parallel(false);
+        let (built, seconds) = thread_seconds(|| backend.build(soup, &settings));
+        Ok(Self { backend, index: built?.index, cost: Build { seconds, bytes_each: None } })
+    }
 
-/// An index of any type.
-trait Askable: Sync {
-    fn subject(&self, setting: &Setting) -> Box<dyn Subject + '_>;
-}
-
-struct Ours<I>(I);
-
-impl<I: ClosestPoint<f64> + CertifiedQuery<f64> + Sync> Askable for Ours<I> {
-    fn subject(&self, setting: &Setting) -> Box<dyn Subject + '_> {
+    /// Returns the index as a subject of the measurement with this setting.
+    fn with_setting(&self, setting: &Setting) -> Box<dyn Subject + '_> {
         match setting.ask {
-            Ask::Certified => Box::new(AskedForProof::new(&self.0)),
-            _ => Box::new(Asked::new(&self.0, setting.options::<f64>())),
+            Ask::Certified => Box::new(AskedForProof::new(&*self.index)),
+            _ => Box::new(Asked::new(&*self.index, setting.options::<f64>())),
         }
     }
 }
 
-/// Nobody counts bytes here.
-fn cost(seconds: f64) -> Build {
-    Build { seconds, bytes_each: None }
-}
-
-fn built<'a, I>(soup: &'a Soup<f64>, options: &I::Options) -> anyhow::Result<Index<'a>>
-where
-    I: BuildIndex<f64, &'a Soup<f64>, Error = BuildError> + CertifiedQuery<f64> + Sync + 'a,
-{
-    let (index, seconds) = thread_seconds(|| I::build(soup, options));
-    Ok((Box::new(Ours(index?)), cost(seconds)))
-}
-
-/// What is behind the points of a page, in words.
+/// The sentence of the page about the truth that answers are compared with.
 const TRUTH: &str = "The truth is what certified answers say: the nearest primitive, and its distance rounded once.";
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
@@ -186,18 +135,18 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
     let scene = read_scene(streams, &args.scene.path, args.scene.format()?)?;
     if scene.soup.is_empty() {
-        bail!("{}: there is nothing in it to ask about", args.scene.name());
+        bail!("{}: there is nothing in it", args.scene.name());
     }
-    let (places, about) = args.places(streams, &scene)?;
-    // Before any work, so that it is not lost to a wrong name.
+    let (queries, description) = args.queries(streams, &scene)?;
+    // The files are opened before the work, which would be lost if a name were wrong.
     let [html, csv] = outputs.map(|path| path.as_ref().map(|path| Output::open(streams, Some(path))).transpose());
     let (html, csv) = (html?, csv?);
-    let figures = args.measured(streams, &scene, places, about).with_context(|| args.scene.name())?;
+    let figures = args.measure(streams, &scene, queries, description).with_context(|| args.scene.name())?;
 
     let (provenance, clock) = (Provenance::collect(None, None), clock_nanoseconds());
     let scenes = std::slice::from_ref(&figures);
     if let Some(output) = html {
-        let backends: Vec<_> = args.backends.iter().map(|kind| (kind.name(), kind.about())).collect();
+        let backends: Vec<_> = args.backends.iter().map(|backend| (backend.name, backend.summary)).collect();
         let effort =
             format!("One thread, one call at a time, {} rounds in turns; one build of each index.", args.rounds);
         let page = Page {
@@ -224,70 +173,72 @@ fn save(mut output: Output<'_>, text: &str) -> anyhow::Result<()> {
 }
 
 impl Args {
-    /// Where to ask, and what that is in words. Places that are not finite have no answers that could be compared.
-    fn places(&self, streams: &Streams, scene: &Scene) -> anyhow::Result<(Vec<Point3<f64>>, String)> {
+    /// Returns the queries and a sentence that describes them. Points that are not finite are left out, because they
+    /// have no answers that could be compared.
+    fn queries(&self, streams: &Streams, scene: &Scene) -> anyhow::Result<(Vec<Point3<f64>>, String)> {
         let region = Region::around(&scene.soup, self.box_scale);
-        let (places, about) = match (&self.points, self.grid) {
+        let (queries, description) = match (&self.points, self.grid) {
             (Some(path), _) => {
                 let points = read_points(streams, path, point_format(path, self.points_format, "--points-format")?)?;
                 (points, format!("The points of {}.", crate::input::name(path)))
             }
             (None, Some(side)) => (
-                Places::grid(region, side).collect(),
+                QueryPoints::grid(region, side).collect(),
                 format!(
                     "A grid of {side} points along each axis of the box of the scene, scaled by {}.",
                     self.box_scale
                 ),
             ),
             _ => (
-                Places::random(region, self.random.unwrap_or(0), self.seed).collect(),
+                QueryPoints::random(region, self.random.unwrap_or(0), self.seed).collect(),
                 format!("Random points of the box of the scene, scaled by {}.", self.box_scale),
             ),
         };
-        let places: Vec<_> = places.into_iter().filter(|p: &Point3<f64>| p.iter().all(|x| x.is_finite())).collect();
-        if places.is_empty() {
-            bail!("no finite point to ask about");
+        let queries: Vec<_> = queries.into_iter().filter(|p: &Point3<f64>| p.iter().all(|x| x.is_finite())).collect();
+        if queries.is_empty() {
+            bail!("there is no finite point");
         }
-        Ok((places, about))
+        Ok((queries, description))
     }
 
-    fn measured(
+    /// Builds the indexes and measures all settings of all backends.
+    fn measure(
         &self,
         streams: &Streams,
         scene: &Scene,
-        places: Vec<Point3<f64>>,
-        about: String,
+        queries: Vec<Point3<f64>>,
+        description: String,
     ) -> anyhow::Result<SceneFigures> {
         let soup = &scene.soup;
         let progress =
             Progress::start(streams, "building indexes", Some(self.backends.len() as u64), Unit::Items("backends"));
         let mut indexes = Vec::new();
-        for (i, kind) in self.backends.iter().enumerate() {
-            if self.backends[..i].contains(kind) {
+        for (i, backend) in self.backends.iter().enumerate() {
+            if self.backends[..i].contains(backend) {
                 continue;
             }
-            indexes.push((*kind, kind.build(soup)?));
+            indexes.push(MeasuredIndex::build(backend, soup)?);
             progress.add(1);
         }
         drop(progress);
-        let truths = truths(soup, &places)?;
+        let truths = truths(soup, &queries)?;
         let entrants: Vec<Entrant<'_>> = indexes
             .iter()
-            .flat_map(|(kind, (index, build))| {
+            .flat_map(|index| {
                 SETTINGS.iter().map(move |setting| Entrant {
-                    backend: kind.name().to_owned(),
+                    backend: index.backend.name.to_owned(),
                     setting: setting.name.to_owned(),
                     promise: setting.promise(),
-                    subject: index.subject(setting),
-                    build: *build,
+                    subject: index.with_setting(setting),
+                    build: index.cost,
                 })
             })
             .collect();
-        let progress = Progress::start(streams, "asking", Some(100), Unit::Percent);
+        let progress = Progress::start(streams, "measuring", Some(100), Unit::Percent);
         let effort = Effort { rounds: self.rounds, seconds: self.round_seconds };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 100")]
-        let reach = |part: f64| progress.reach((part * 100.0) as u64);
-        let curves = measure(&entrants, &Queries::new(places), &truths, &effort, &reach);
+        let show_progress = |part: f64| progress.advance_to((part * 100.0) as u64);
+        let curves = measure(&entrants, &Queries::new(queries), &truths, &effort, &show_progress);
         drop(progress);
         let contents = format!(
             "{} triangles, {} segments, {} points.",
@@ -300,7 +251,7 @@ impl Args {
             (None, Some(_)) => "grid",
             (None, None) => "random",
         };
-        let set = SetFigures { name: name.to_owned(), about, curves };
+        let set = SetFigures { name: name.to_owned(), about: description, curves };
         Ok(SceneFigures {
             name: self.scene.name(),
             about: contents,
@@ -311,16 +262,16 @@ impl Args {
     }
 }
 
-/// What an exact index answers.
+/// Returns the certified answers to all queries.
 #[allow(clippy::cast_possible_truncation, reason = "ids are below 2^30")]
-fn truths(soup: &Soup<f64>, places: &[Point3<f64>]) -> anyhow::Result<Vec<Truth>> {
+fn truths(soup: &Soup<f64>, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Truth>> {
     let tree = AabbTree::build(soup, &Default::default())?;
-    let truth = |place: &Point3<f64>| {
-        let closest = tree.certified_closest_point(place, &Default::default())?;
+    let truth = |query: &Point3<f64>| {
+        let closest = tree.certified_closest_point(query, &Default::default())?;
         let closest = closest.context("the scene is not empty, and queries are finite")?;
         let shape = soup.get(closest.primitive);
-        let reach = shape.vertices().iter().map(|vertex| (vertex - place).norm()).fold(0.0, f64::max);
+        let reach = shape.vertices().iter().map(|vertex| (vertex - query).norm()).fold(0.0, f64::max);
         Ok(Truth { distance: closest.distance, rest: 0.0, reach, id: closest.primitive.index() as u32 })
     };
-    places.iter().map(truth).collect()
+    queries.iter().map(truth).collect()
 }

@@ -1,10 +1,10 @@
-//! Wrong usage that the grammar of the arguments does not show.
+//! Errors of usage that the grammar of the arguments does not detect, and parsers of values.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::fmt;
 use std::str::FromStr;
 
-/// What is wrong with the arguments; ends the program with code 2.
+/// An error of the arguments, which ends the program with code 2.
 #[derive(Debug)]
 pub(crate) struct Usage(String);
 
@@ -16,11 +16,12 @@ impl fmt::Display for Usage {
 
 impl std::error::Error for Usage {}
 
+/// Returns an error of usage with this message.
 pub(crate) fn usage(message: impl Into<String>) -> anyhow::Error {
     Usage(message.into()).into()
 }
 
-/// A parser of the names of formats, which shows them in the help and to the completions of shells.
+/// Returns a parser of the names of formats, which help and completions of shells show.
 pub(crate) fn one_of<F>(names: &'static [&'static str]) -> impl TypedValueParser<Value = F>
 where
     F: FromStr + Clone + Send + Sync + 'static,
@@ -29,11 +30,12 @@ where
     PossibleValuesParser::new(names).try_map(|name| name.parse::<F>())
 }
 
-/// Value parsers, each with what it expects as its message.
-pub(crate) fn whole(text: &str) -> Result<u64, String> {
+/// Parses a whole number.
+pub(crate) fn whole_number(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| format!("not a whole number from 0 to {}", u64::MAX))
 }
 
+/// Parses a positive finite number.
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
@@ -41,6 +43,7 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Parses a number that is not negative; infinity is one.
 pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if x >= 0.0 => Ok(x),
@@ -48,10 +51,12 @@ pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Parses a finite number that is not negative.
 pub(crate) fn finite_not_negative(text: &str) -> Result<f64, String> {
     not_negative(text).ok().filter(|x| x.is_finite()).ok_or_else(|| "not a finite number from 0 up".to_owned())
 }
 
+/// Parses any number but NaN.
 pub(crate) fn number(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if !x.is_nan() => Ok(x),
@@ -59,6 +64,7 @@ pub(crate) fn number(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Parses a finite number.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if x.is_finite() => Ok(x),

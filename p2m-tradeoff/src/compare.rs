@@ -1,4 +1,4 @@
-//! Two records side by side: what became faster or slower, and which errors changed.
+//! Compares two records: times that changed, and errors that changed.
 
 use crate::error::RecordError;
 use crate::record::Line;
@@ -12,33 +12,33 @@ pub struct Change {
     pub key: [String; 4],
     /// The median of the second over that of the first: below 1 is faster.
     pub ratio: f64,
-    /// The least and the most that the ratio of a round of the second to one of the first can be.
+    /// The smallest and the largest ratio of a round of the second to one of the first.
     pub range: [f64; 2],
-    /// Whether both are about as many queries, which are then the same ones. A slow backend gets as many as it has time for;
-    /// of others errors are not compared.
+    /// Whether both have the same number of queries. They are then the same queries, and only then errors are compared.
+    /// A slow backend gets as many queries as fit into its time.
     pub same_queries: bool,
-    /// What is said otherwise about errors: what, in the first, in the second.
+    /// The errors that differ: their name, and their values in the first and in the second record.
     pub errors: Vec<(&'static str, String, String)>,
 }
 
 impl Change {
-    /// Whether every round of one is faster than every round of the other.
+    /// Returns whether every round of one record is faster than every round of the other, which is beyond noise.
     #[must_use]
-    pub fn is_beyond_noise(&self) -> bool {
+    pub fn is_significant(&self) -> bool {
         self.range[0] > 1.0 || self.range[1] < 1.0
     }
 }
 
-/// What two records have in common, and what not.
+/// The comparison of two records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// What both have.
+    /// The points that both records have.
     pub changes: Vec<Change>,
-    /// Points of the first or the second alone.
+    /// The numbers of points of the first and of the second record alone.
     pub alone: [usize; 2],
-    /// Points of both, of scenes of another size or of other seeds, which are not compared.
+    /// The number of points of both records that are not compared, because the size of the scene or the seed differs.
     pub other_jobs: usize,
-    /// Processor, compiler, flags and commit, where they differ.
+    /// The processor, compiler, flags and commit, as far as they differ.
     pub origins: Vec<(&'static str, String, String)>,
 }
 
@@ -75,7 +75,7 @@ fn change(a: &Line, b: &Line) -> Change {
     }
 }
 
-/// What the first lines say otherwise about where they are from.
+/// Returns the origins of the first lines, as far as they differ.
 fn origins(first: &[Line], second: &[Line]) -> Vec<(&'static str, String, String)> {
     let (Some(a), Some(b)) = (first.first(), second.first()) else { return Vec::new() };
     let names = ["processor", "compiler", "flags", "commit"];
@@ -97,7 +97,7 @@ impl fmt::Display for Comparison {
         for change in &self.changes {
             let mut row = change.key.to_vec();
             row.extend([change.ratio, change.range[0], change.range[1]].map(|ratio| format!("{ratio:.3}")));
-            let mark = match change.is_beyond_noise() {
+            let mark = match change.is_significant() {
                 false => "",
                 true if change.ratio < 1.0 => "faster",
                 true => "SLOWER",
@@ -108,9 +108,9 @@ impl fmt::Display for Comparison {
             table.push(row);
         }
         writeln!(f, "{table}")?;
-        let beyond = self.changes.iter().filter(|change| change.is_beyond_noise()).count();
-        let wrong = self.changes.iter().filter(|change| !change.errors.is_empty()).count();
-        writeln!(f, "{} compared, {beyond} beyond noise, {wrong} with other errors.", self.changes.len())?;
+        let significant = self.changes.iter().filter(|change| change.is_significant()).count();
+        let changed = self.changes.iter().filter(|change| !change.errors.is_empty()).count();
+        writeln!(f, "{} compared, {significant} beyond noise, {changed} with other errors.", self.changes.len())?;
         let others = self.changes.iter().filter(|change| !change.same_queries).count();
         if others > 0 {
             writeln!(f, "{others} with other numbers of queries, whose errors are not compared.")?;
@@ -135,29 +135,29 @@ fn or_none(value: &str) -> &str {
 mod tests {
     use super::*;
     use crate::curve::SceneFigures;
+    use crate::fixtures;
     use crate::record::{read_record, record};
-    use crate::sample;
 
     fn lines(scene: SceneFigures) -> Vec<Line> {
-        read_record(&record(&sample::provenance(), &[scene], 1, 25.0)).unwrap()
+        read_record(&record(&fixtures::provenance(), &[scene], 1, 25.0)).unwrap()
     }
 
     #[test]
     fn the_same_record_has_no_changes() {
-        let same = compare(&lines(sample::scene()), &lines(sample::scene())).unwrap();
+        let same = compare(&lines(fixtures::scene()), &lines(fixtures::scene())).unwrap();
         assert_eq!((same.changes.len(), same.alone, same.other_jobs, same.origins.len()), (3, [0, 0], 0, 0));
-        assert!(same.changes.iter().all(|c| c.ratio == 1.0 && !c.is_beyond_noise() && c.errors.is_empty()));
+        assert!(same.changes.iter().all(|c| c.ratio == 1.0 && !c.is_significant() && c.errors.is_empty()));
     }
 
     #[test]
     fn changes_beyond_the_spread_are_marked_and_others_are_not() {
-        let mut scene = sample::scene();
+        let mut scene = fixtures::scene();
         let points = &mut scene.sets[0].curves[0].points;
-        points[0] = sample::point("default", 1000.5 * 1.1, 0.0, 0.1);
-        points[1] = sample::point("epsilon 0.1", 500.0 * 1.3, 0.05, 0.1);
-        scene.sets[0].curves[1].points[0] = sample::point("default", 100.25 * 0.7, 1e-16, 5.0);
-        let comparison = compare(&lines(sample::scene()), &lines(scene)).unwrap();
-        let marks: Vec<bool> = comparison.changes.iter().map(Change::is_beyond_noise).collect();
+        points[0] = fixtures::point("default", 1000.5 * 1.1, 0.0, 0.1);
+        points[1] = fixtures::point("epsilon 0.1", 500.0 * 1.3, 0.05, 0.1);
+        scene.sets[0].curves[1].points[0] = fixtures::point("default", 100.25 * 0.7, 1e-16, 5.0);
+        let comparison = compare(&lines(fixtures::scene()), &lines(scene)).unwrap();
+        let marks: Vec<bool> = comparison.changes.iter().map(Change::is_significant).collect();
         assert_eq!(marks, [false, true, true]);
         assert!((comparison.changes[1].ratio - 1.3).abs() < 1e-12);
         let text = comparison.to_string();
@@ -170,21 +170,21 @@ mod tests {
 
     #[test]
     fn other_errors_other_machines_and_other_jobs_are_told() {
-        let mut scene = sample::scene();
-        scene.sets[0].curves[0].points[1].errors.bounds_above = 3;
+        let mut scene = fixtures::scene();
+        scene.sets[0].curves[0].points[1].errors.bounds_above_truth = 3;
         scene.sets[0].curves[0].points[0].setting = "new".to_owned();
         scene.sets[0].curves[1].points[0].queries = 99;
         scene.sets[0].curves[1].points[0].errors.broken = 1;
         let mut second = lines(scene);
         second[0].origin[3] = "def".to_owned();
-        let comparison = compare(&lines(sample::scene()), &second).unwrap();
+        let comparison = compare(&lines(fixtures::scene()), &second).unwrap();
         assert_eq!((comparison.changes.len(), comparison.alone, comparison.other_jobs), (2, [1, 1], 0));
         assert!(comparison.changes[0].same_queries && !comparison.changes[1].same_queries);
         assert!(comparison.changes[1].errors.is_empty());
         assert_eq!(comparison.changes[0].errors, [("bounds_above_truth", "0".to_owned(), "3".to_owned())]);
         assert_eq!(comparison.origins, [("commit", "abc".to_owned(), "def".to_owned())]);
         second[1].job[0] = "4".to_owned();
-        assert_eq!(compare(&lines(sample::scene()), &second).unwrap().other_jobs, 1);
+        assert_eq!(compare(&lines(fixtures::scene()), &second).unwrap().other_jobs, 1);
         let text = comparison.to_string();
         assert!(text.contains("1 with other numbers of queries"), "{text}");
         assert!(text.contains("bounds_above_truth 0 -> 3") && text.contains("`abc`, then `def`"), "{text}");
@@ -192,7 +192,7 @@ mod tests {
 
     #[test]
     fn records_of_other_things_are_refused() {
-        let other = SceneFigures { name: "another".to_owned(), ..sample::scene() };
-        assert_eq!(compare(&lines(sample::scene()), &lines(other)), Err(RecordError::Foreign));
+        let other = SceneFigures { name: "another".to_owned(), ..fixtures::scene() };
+        assert_eq!(compare(&lines(fixtures::scene()), &lines(other)), Err(RecordError::Foreign));
     }
 }

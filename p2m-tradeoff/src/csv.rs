@@ -1,6 +1,6 @@
-//! Comma-separated values, as records are kept.
+//! Comma-separated values, the format of records.
 
-/// A line of a comma-separated file, quoted where needed.
+/// Joins fields to a line of a comma-separated file. Fields are quoted where necessary.
 #[must_use]
 pub fn csv_line(fields: &[String]) -> String {
     let quoted = |field: &String| {
@@ -9,7 +9,8 @@ pub fn csv_line(fields: &[String]) -> String {
     fields.iter().map(quoted).collect::<Vec<_>>().join(",")
 }
 
-/// The records of a comma-separated text, fields unquoted; `None` if a quote does not end or ends amid a field.
+/// Parses a comma-separated text into records of unquoted fields. Returns `None` if a quote does not end, or ends
+/// within a field.
 #[must_use]
 pub fn csv_records(text: &str) -> Option<Vec<Vec<String>>> {
     let mut records = Vec::new();
@@ -44,7 +45,7 @@ pub fn csv_records(text: &str) -> Option<Vec<Vec<String>>> {
     Some(records)
 }
 
-/// A field behind its opening quote, and what follows its closing one.
+/// Returns a field without its quotes, and the text after it. `text` begins after the opening quote.
 fn quoted_field(text: &str) -> Option<(String, &str)> {
     let mut field = String::new();
     let mut rest = text;

@@ -1,102 +1,103 @@
-//! What was measured: a curve for each backend with a point for each setting, in each set of queries of each scene.
+//! The results of a measurement: for each scene and each set of queries a curve for each backend, which has a point
+//! for each setting.
 
 use crate::errors::Errors;
+use crate::quantiles::{Spread, percentile};
 use crate::settings::DEFAULT;
-use crate::spread::{Spread, percentile};
 
-/// What a backend costs before its first query.
+/// The cost of an index before its first query.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Build {
-    /// Seconds to build it on one thread.
+    /// The time to build it on one thread, in seconds.
     pub seconds: f64,
-    /// Heap bytes that it owns for each primitive, besides the scene; `None` where they were not counted.
+    /// The heap memory besides the scene, in bytes for each primitive; `None` if it was not measured.
     pub bytes_each: Option<f64>,
 }
 
-/// How long single queries took by the wall clock, in nanoseconds, reading the clock included.
+/// Percentiles of the wall time of single queries, in nanoseconds. The time to read the clock is included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Latency {
-    /// Half of them.
+    /// The median time.
     pub p50: u64,
-    /// All but one in ten.
+    /// The 90th percentile.
     pub p90: u64,
-    /// All but one in a hundred.
+    /// The 99th percentile.
     pub p99: u64,
-    /// All but one in a thousand.
+    /// The 99.9th percentile.
     pub p999: u64,
-    /// All.
+    /// The longest time.
     pub max: u64,
 }
 
 impl Latency {
-    /// Of queries in any order; `None` without any.
+    /// Computes the percentiles of times in any order. Returns `None` if there are none.
     #[must_use]
     pub fn of(mut nanoseconds: Vec<u64>) -> Option<Self> {
         nanoseconds.sort_unstable();
-        let at = |parts| percentile(&nanoseconds, parts, 1000);
+        let at = |per_mille| percentile(&nanoseconds, per_mille, 1000);
         Some(Self { p50: at(500)?, p90: at(900)?, p99: at(990)?, p999: at(999)?, max: at(1000)? })
     }
 }
 
-/// One setting of one backend.
+/// The results of one setting of one backend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
     /// The name of the setting.
     pub setting: String,
-    /// Queries a round.
+    /// The number of queries of a round.
     pub queries: usize,
-    /// Rounds.
+    /// The number of rounds.
     pub rounds: usize,
-    /// Nanoseconds of thread CPU time per query, of the rounds.
+    /// The thread CPU time per query in nanoseconds, over the rounds.
     pub nanoseconds: Spread,
-    /// Of its answers.
+    /// The errors of the answers.
     pub errors: Errors,
-    /// Of single queries.
+    /// The times of single queries.
     pub latency: Option<Latency>,
-    /// Of its index.
+    /// The cost of the index.
     pub build: Build,
 }
 
-/// The settings of one backend.
+/// The results of one backend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// The name of the backend.
     pub name: String,
-    /// At least one.
+    /// The results of its settings, at least one.
     pub points: Vec<Point>,
 }
 
 impl Curve {
-    /// Its usual setting: that of this name, or the first.
+    /// Returns the point of the default setting, or else the first one.
     #[must_use]
     pub fn usual(&self) -> Option<&Point> {
         self.points.iter().find(|point| point.setting == DEFAULT.name).or(self.points.first())
     }
 }
 
-/// A set of queries.
+/// The results for one set of queries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetFigures {
-    /// Its name.
+    /// The name of the set.
     pub name: String,
-    /// What its queries are.
+    /// A sentence that describes the queries.
     pub about: String,
-    /// What was measured.
+    /// The results of the backends.
     pub curves: Vec<Curve>,
 }
 
-/// A scene.
+/// The results for one scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneFigures {
-    /// Its name.
+    /// The name of the scene.
     pub name: String,
-    /// What it has, in words.
+    /// A sentence that describes the scene.
     pub about: String,
-    /// How many primitives.
+    /// The number of primitives.
     pub primitives: usize,
-    /// The sets of queries.
+    /// The results for the sets of queries.
     pub sets: Vec<SetFigures>,
-    /// What is missing and why, in sentences.
+    /// Sentences about results that are missing.
     pub notes: Vec<String>,
 }
 

@@ -1,57 +1,57 @@
-//! What can go wrong.
+//! The errors of plots and records.
 
-/// Why a plot is not drawn.
+/// The reason why a plot was not drawn.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlotError {
-    /// No point that its axes can show.
+    /// The plot has no point that its axes can show.
     #[error("a plot without points")]
     Empty,
-    /// What the drawing library says.
+    /// The drawing library failed with this message.
     #[error("cannot draw: {0}")]
     Draw(String),
-    /// It cannot be written.
+    /// The file cannot be written.
     #[error("{}: {error}", path.display())]
     Write {
-        /// Where to.
+        /// The path of the file.
         path: std::path::PathBuf,
-        /// Why not.
+        /// The error of the system.
         error: std::io::Error,
     },
 }
 
-/// Why a file of records is no use.
+/// The reason why a file of records cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// A quote that does not end.
+    /// A quoted field does not end.
     #[error("not comma-separated values")]
     Syntax,
-    /// Nothing but a head, or not even that.
+    /// The file has no records.
     #[error("no records")]
     Empty,
-    /// A column that is needed.
+    /// A column is missing.
     #[error("no column {0}")]
     Column(&'static str),
-    /// A line with more or fewer fields than there are columns.
+    /// A line has more or fewer fields than there are columns.
     #[error("line {line} has {fields} fields in place of {columns}")]
     Fields {
-        /// From 1, that of the head.
+        /// The number of the line; the head has number 1.
         line: usize,
-        /// Of this line.
+        /// The number of fields of the line.
         fields: usize,
-        /// Of the head.
+        /// The number of columns of the head.
         columns: usize,
     },
-    /// A field that is no number.
+    /// A field is not a number.
     #[error("line {line}: {column} is not a number")]
     Number {
-        /// From 1, that of the head.
+        /// The number of the line; the head has number 1.
         line: usize,
-        /// Which column.
+        /// The name of the column.
         column: &'static str,
     },
-    /// Two records that have no scene, set, backend and setting in common.
+    /// Two records have no scene, set, backend and setting in common.
     #[error("the records have nothing in common: no scene, set, backend and setting is in both")]
     Foreign,
 }

@@ -1,84 +1,84 @@
-//! How wrong answers are.
+//! The errors of answers.
 
+use crate::backend::Answer;
+use crate::quantiles::percentile;
 use crate::settings::Promise;
-use crate::spread::percentile;
-use crate::subject::Answer;
 use p2m_core::Real;
 
-/// What is true of a query.
+/// The true answer to a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Truth {
     /// The true distance, rounded.
     pub distance: f64,
-    /// What the true distance has beyond that, as far as it is known; 0 where rounding is not looked at.
+    /// The true distance minus the rounded one, as far as it is known; 0 if rounding errors are not compared.
     pub rest: f64,
     /// M: the largest distance from the query to a vertex of the nearest primitive.
     pub reach: f64,
-    /// The nearest primitive, the one of the lowest number among equally near ones.
+    /// The id of the nearest primitive, the lowest one among equally near primitives.
     pub id: u32,
 }
 
 impl Truth {
-    /// By how much a distance differs from it.
+    /// The error of a distance.
     fn error(&self, distance: f64) -> f64 {
         ((distance - self.distance) - self.rest).abs()
     }
 
-    /// u M
+    /// The unit of scaled errors, u M.
     fn unit(&self) -> f64 {
         f64::UNIT_ROUNDOFF * self.reach
     }
 }
 
-/// The worst of some errors, and what is exceeded by one in a thousand; NaN if there are none.
+/// The largest error and the 99.9th percentile of errors; NaN if there are none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Worst {
-    /// The largest.
+pub struct ErrorQuantiles {
+    /// The largest error.
     pub max: f64,
     /// The 99.9th percentile.
     pub p999: f64,
 }
 
-impl Worst {
-    /// Of errors in any order.
+impl ErrorQuantiles {
+    /// Computes the quantiles of errors in any order.
     #[must_use]
     pub fn of(mut errors: Vec<f64>) -> Self {
         errors.sort_by(f64::total_cmp);
-        let at = |parts| percentile(&errors, parts, 1000).unwrap_or(f64::NAN);
+        let at = |per_mille| percentile(&errors, per_mille, 1000).unwrap_or(f64::NAN);
         Self { max: at(1000), p999: at(999) }
     }
 }
 
-/// How wrong the answers to some queries are.
+/// The errors of the answers to some queries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
-    /// Answers that were compared.
+    /// The number of answers that were compared.
     pub compared: usize,
-    /// Queries without a finite answer, which count in nothing below.
+    /// The number of queries without a finite answer. They are left out of all other figures.
     pub unanswered: usize,
-    /// In units of u M.
-    pub scaled: Worst,
-    /// Relative to the true distance, of queries where it is not 0.
-    pub relative: Worst,
-    /// The largest part of an answer that its certified lower bound leaves open; NaN where there are no bounds.
+    /// The errors in units of u M.
+    pub scaled: ErrorQuantiles,
+    /// The errors relative to the true distance, for queries where it is not 0.
+    pub relative: ErrorQuantiles,
+    /// The largest gap between a distance and its certified lower bound, relative to the distance; NaN without bounds.
     pub gap: f64,
-    /// How many lower bounds are above the true distance.
-    pub bounds_above: usize,
-    /// How many answers name another primitive than the nearest one; `None` where primitives are not named.
+    /// The number of lower bounds above the true distance.
+    pub bounds_above_truth: usize,
+    /// The number of answers with another primitive than the nearest one; `None` if answers have no primitives.
     pub other_ids: Option<usize>,
-    /// How many answers are farther from the truth than promised.
+    /// The number of answers with a larger error than promised.
     pub broken: usize,
 }
 
 impl Errors {
-    /// Compares answers with what is true, one for one.
+    /// Compares each answer with its truth.
     #[must_use]
     pub fn of(answers: &[Answer], truths: &[Truth], promise: Promise) -> Self {
         let pairs = || answers.iter().zip(truths).filter(|(answer, _)| answer.distance.is_finite());
         let error = |(answer, truth): &(&Answer, &Truth)| truth.error(answer.distance);
         let named = pairs().any(|(answer, _)| answer.id != u32::MAX);
         let bounded = || pairs().filter(|(answer, _)| !answer.lower_bound.is_nan());
-        // The true distance is within half a unit in the last place of the rounded one, and exact with its rest.
+        // The sum of the rounded distance and its rest is exact.
         let above = |(answer, truth): &(&Answer, &Truth)| (answer.lower_bound - truth.distance) - truth.rest > 0.0;
         let gap = |(answer, _): (&Answer, &Truth)| {
             if answer.distance > 0.0 { (answer.distance - answer.lower_bound) / answer.distance } else { 0.0 }
@@ -86,20 +86,20 @@ impl Errors {
         Self {
             compared: pairs().count(),
             unanswered: answers.len() - pairs().count(),
-            scaled: Worst::of(pairs().map(|pair| over(error(&pair), pair.1.unit())).collect()),
-            relative: Worst::of(
+            scaled: ErrorQuantiles::of(pairs().map(|pair| in_units(error(&pair), pair.1.unit())).collect()),
+            relative: ErrorQuantiles::of(
                 pairs().filter(|(_, t)| t.distance > 0.0).map(|pair| error(&pair) / pair.1.distance).collect(),
             ),
             gap: bounded().map(gap).fold(f64::NAN, f64::max),
-            bounds_above: bounded().filter(above).count(),
+            bounds_above_truth: bounded().filter(above).count(),
             other_ids: named.then(|| pairs().filter(|(answer, truth)| answer.id != truth.id).count()),
             broken: pairs().filter(|p| !promise.is_kept(error(p), p.1.distance, p.1.unit())).count(),
         }
     }
 }
 
-/// A quotient, of which 0 over 0 is 0: no error, of something that has no size.
-fn over(error: f64, unit: f64) -> f64 {
+/// Divides an error by its unit. The quotient of 0 and 0 is 0: a query on a point primitive has no error and no unit.
+fn in_units(error: f64, unit: f64) -> f64 {
     if error > 0.0 { error / unit } else { 0.0 }
 }
 
@@ -122,7 +122,7 @@ mod tests {
         assert_eq!((errors.compared, errors.unanswered), (3, 1));
         assert_eq!(errors.scaled.max, 0.25 / (2.0 * U));
         assert_eq!((errors.relative.max, errors.gap), (0.25, 0.4));
-        assert_eq!((errors.bounds_above, errors.other_ids, errors.broken), (1, Some(1), 1));
+        assert_eq!((errors.bounds_above_truth, errors.other_ids, errors.broken), (1, Some(1), 1));
         let alone = Errors::of(&answers[2..3], &[TRUTH], Promise::Nothing);
         assert_eq!((alone.scaled.max, alone.relative.p999), (4.0, 8.0 * U));
     }
@@ -131,9 +131,9 @@ mod tests {
     fn what_the_true_distance_has_beyond_rounding_counts() {
         let truth = Truth { rest: 0.25 * U, ..TRUTH };
         let errors = Errors::of(&[answer(1.0, 1.0, 7)], &[truth], Promise::Within(0.0));
-        assert_eq!((errors.scaled.max, errors.bounds_above), (0.125, 0));
+        assert_eq!((errors.scaled.max, errors.bounds_above_truth), (0.125, 0));
         let below = Truth { rest: -0.25 * U, ..TRUTH };
-        assert_eq!(Errors::of(&[answer(1.0, 1.0, 7)], &[below], Promise::Nothing).bounds_above, 1);
+        assert_eq!(Errors::of(&[answer(1.0, 1.0, 7)], &[below], Promise::Nothing).bounds_above_truth, 1);
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! Measures speed against accuracy of backends, and reports it.
 //!
-//! A backend answers faster when it may be less accurate. [`settings`] lists the ways to ask for that, [`measure`]
-//! asks everyone in turns and compares the answers with what is true, and what comes out ([`Curve`]: a backend, [`Point`]: one
-//! of its settings) becomes a page ([`page`]), a table ([`text`]), a record ([`record`]) and, of two records, a
-//! comparison ([`compare`]).
+//! A backend answers faster if it may be less accurate. [`settings`] lists the settings of accuracy. [`measure`] runs
+//! all backends with all settings in turns, and compares their answers with the truth. A [`Curve`] has the results of
+//! one backend, and a [`Point`] those of one of its settings. The results become a page ([`page`]), a table ([`text`])
+//! or a record ([`record`]), and two records become a comparison ([`compare`]).
 //!
 //! ```
 //! use nalgebra::Point3;
@@ -31,33 +31,33 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod backend;
+mod break_even;
 pub mod compare;
 mod csv;
 mod curve;
-mod economy;
 mod error;
 mod errors;
+#[cfg(test)]
+mod fixtures;
 mod measure;
 pub mod page;
 pub mod plot;
 mod provenance;
+mod quantiles;
 pub mod queries;
 pub mod record;
-#[cfg(test)]
-mod sample;
 pub mod settings;
-mod spread;
-mod subject;
 mod table;
 pub mod text;
 
+pub use backend::{Answer, Asked, AskedForProof, Respond, Subject, clock_nanoseconds};
+pub use break_even::{JobCost, break_even, cheapest, default_costs};
 pub use csv::{csv_line, csv_records};
 pub use curve::{Build, Curve, Latency, Point, SceneFigures, SetFigures};
-pub use economy::{Cost, break_even, cheapest, usual_costs};
 pub use error::{PlotError, RecordError};
-pub use errors::{Errors, Truth, Worst};
+pub use errors::{ErrorQuantiles, Errors, Truth};
 pub use measure::{Effort, Entrant, measure, rotated, thread_seconds};
 pub use provenance::Provenance;
-pub use spread::{Spread, percentile};
-pub use subject::{Answer, Asked, AskedForProof, Respond, Subject, clock_nanoseconds};
+pub use quantiles::{RunningStats, Spread, percentile};
 pub use table::Table;

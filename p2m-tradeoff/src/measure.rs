@@ -1,44 +1,46 @@
-//! Rounds of queries, subjects taking turns, in thread CPU time; answers are compared outside of it.
+//! Measures rounds of queries in thread CPU time. Backends take turns, so that drift of the machine affects all of them
+//! alike. Answers are compared outside of the measured time.
 
+use crate::backend::{Answer, Subject};
 use crate::curve::{Build, Curve, Latency, Point};
 use crate::errors::{Errors, Truth};
+use crate::quantiles::Spread;
 use crate::queries::{Queries, spread};
 use crate::settings::Promise;
-use crate::spread::Spread;
-use crate::subject::{Answer, Subject};
 use cpu_time::ThreadTime;
 use std::hint::black_box;
 
-/// Enough probing to tell how slow a subject is, in nanoseconds.
-const PROBE: f64 = 2e6;
+/// The duration of a calibration run, in nanoseconds.
+const CALIBRATION_NANOSECONDS: f64 = 2e6;
 
-/// Something to be measured.
+/// A backend with a setting that takes part in a measurement.
 pub struct Entrant<'a> {
-    /// The name of its backend: points of the same name are one curve.
+    /// The name of the backend. Points of the same name become one curve.
     pub backend: String,
-    /// The name of its setting.
+    /// The name of the setting.
     pub setting: String,
-    /// What its answers promise.
+    /// The accuracy that its answers promise.
     pub promise: Promise,
-    /// What answers.
+    /// The backend itself.
     pub subject: Box<dyn Subject + 'a>,
-    /// What it cost to build.
+    /// The cost of its index.
     pub build: Build,
 }
 
-/// How much is measured.
+/// The amount of work of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
-    /// Rounds; medians need five.
+    /// The number of rounds. A median needs five.
     pub rounds: usize,
-    /// Seconds that a round of a subject may take: slow ones get fewer queries.
+    /// The largest number of seconds of a round of one setting. Slow ones get fewer queries.
     pub seconds: f64,
 }
 
-/// Asks everyone about `queries`, of which `truths` are true, and says how much of the work is done, from 0 to 1.
+/// Measures all entrants with `queries`, and compares their answers with `truths`. Calls `progress` with the fraction
+/// of the work that is done, from 0 to 1.
 ///
 /// # Panics
-/// If there is not one truth for each query, and if a subject panics.
+/// If there is not one truth for each query, or if a backend panics.
 #[must_use]
 pub fn measure(
     entrants: &[Entrant<'_>],
@@ -49,23 +51,23 @@ pub fn measure(
 ) -> Vec<Curve> {
     assert_eq!(queries.len(), truths.len(), "one truth for each query");
     let mut runs: Vec<Run> = entrants.iter().map(|entrant| Run::new(entrant, queries, effort)).collect();
-    // One round more before, which is not counted: it takes what is asked first out of memory. One more after for single queries.
+    // The first round is not counted, because it loads indexes into the caches. The last one times single queries.
     let steps = (effort.rounds + 2) * runs.len();
     for round in 0..effort.rounds + 2 {
         for (step, at) in rotated(runs.len(), round).enumerate() {
             let (run, entrant) = (&mut runs[at], &entrants[at]);
             if round <= effort.rounds {
-                let nanoseconds = run.round(entrant);
+                let nanoseconds = run.run_round(entrant);
                 run.nanoseconds.extend((round > 0).then_some(nanoseconds));
             } else {
-                run.singly(entrant);
+                run.time_single_queries(entrant);
             }
             progress((round * runs.len() + step + 1) as f64 / steps as f64);
         }
     }
     let mut curves: Vec<Curve> = Vec::new();
     for (entrant, run) in entrants.iter().zip(runs) {
-        let Some(point) = run.point(entrant, truths) else { continue };
+        let Some(point) = run.into_point(entrant, truths) else { continue };
         match curves.iter_mut().find(|curve| curve.name == entrant.backend) {
             Some(curve) => curve.points.push(point),
             None => curves.push(Curve { name: entrant.backend.clone(), points: vec![point] }),
@@ -74,39 +76,40 @@ pub fn measure(
     curves
 }
 
-/// What `work` returns, and the seconds of CPU time that this thread spent on it.
+/// Returns the result of `work` and the CPU time that this thread spent on it, in seconds.
 pub fn thread_seconds<V>(work: impl FnOnce() -> V) -> (V, f64) {
     let start = ThreadTime::now();
     let value = work();
     (value, start.elapsed().as_secs_f64())
 }
 
-/// The numbers below `n`, beginning with another one in every round.
+/// Returns the numbers below `n` in their cyclic order, beginning with another one in every round.
 pub fn rotated(n: usize, round: usize) -> impl Iterator<Item = usize> {
     (0..n).map(move |i| (i + round) % n)
 }
 
-/// The state of an entrant.
+/// The state of the measurement of an entrant.
 struct Run {
-    /// The places of its queries among all.
+    /// The indices of its queries among all queries.
     chosen: Vec<usize>,
     queries: Queries,
     answers: Vec<Answer>,
-    /// Per query, of each round.
+    /// The mean time of a query in each round, in nanoseconds.
     nanoseconds: Vec<f64>,
-    singles: Vec<u64>,
+    /// The time of each single query, in nanoseconds.
+    single_nanoseconds: Vec<u64>,
 }
 
 impl Run {
     fn new(entrant: &Entrant<'_>, queries: &Queries, effort: &Effort) -> Self {
-        let chosen = spread(queries.len(), affordable(probe(&*entrant.subject, queries), effort.seconds));
+        let chosen = spread(queries.len(), affordable_queries(calibrate(&*entrant.subject, queries), effort.seconds));
         let answers = vec![Answer::NONE; chosen.len()];
-        let singles = vec![0; chosen.len()];
-        Self { queries: queries.gather(&chosen), chosen, answers, nanoseconds: Vec::new(), singles }
+        let single_nanoseconds = vec![0; chosen.len()];
+        Self { queries: queries.gather(&chosen), chosen, answers, nanoseconds: Vec::new(), single_nanoseconds }
     }
 
-    /// The nanoseconds of a query.
-    fn round(&mut self, entrant: &Entrant<'_>) -> f64 {
+    /// Runs a round and returns the nanoseconds per query.
+    fn run_round(&mut self, entrant: &Entrant<'_>) -> f64 {
         self.answers.fill(Answer::NONE);
         let start = ThreadTime::now();
         entrant.subject.answer(black_box(self.queries.all()), &mut self.answers);
@@ -115,13 +118,14 @@ impl Run {
         elapsed.as_secs_f64() * 1e9 / self.answers.len() as f64
     }
 
-    fn singly(&mut self, entrant: &Entrant<'_>) {
-        entrant.subject.answer_timed(black_box(self.queries.all()), &mut self.answers, &mut self.singles);
+    /// Times single queries.
+    fn time_single_queries(&mut self, entrant: &Entrant<'_>) {
+        entrant.subject.answer_timed(black_box(self.queries.all()), &mut self.answers, &mut self.single_nanoseconds);
         black_box(&self.answers);
     }
 
-    /// What there is to say about it, if there were queries and rounds.
-    fn point(self, entrant: &Entrant<'_>, truths: &[Truth]) -> Option<Point> {
+    /// Returns the results, if there were queries and rounds.
+    fn into_point(self, entrant: &Entrant<'_>, truths: &[Truth]) -> Option<Point> {
         let truths: Vec<Truth> = self.chosen.iter().map(|&i| truths[i]).collect();
         Some(Point {
             setting: entrant.setting.clone(),
@@ -129,14 +133,14 @@ impl Run {
             rounds: self.nanoseconds.len(),
             nanoseconds: Spread::of(&self.nanoseconds)?,
             errors: Errors::of(&self.answers, &truths, entrant.promise),
-            latency: Latency::of(self.singles),
+            latency: Latency::of(self.single_nanoseconds),
             build: entrant.build,
         })
     }
 }
 
-/// Rough nanoseconds per query, from ever more queries.
-fn probe(subject: &dyn Subject, queries: &Queries) -> f64 {
+/// Estimates the nanoseconds per query, with more and more queries until the run is long enough.
+fn calibrate(subject: &dyn Subject, queries: &Queries) -> f64 {
     let mut count = 1;
     loop {
         let picked = queries.gather(&spread(queries.len(), count));
@@ -144,16 +148,17 @@ fn probe(subject: &dyn Subject, queries: &Queries) -> f64 {
         let start = ThreadTime::now();
         subject.answer(picked.all(), &mut answers);
         let elapsed = start.elapsed().as_secs_f64() * 1e9;
-        if elapsed > PROBE || count >= queries.len() {
+        if elapsed > CALIBRATION_NANOSECONDS || count >= queries.len() {
             return elapsed / picked.len().max(1) as f64;
         }
         count *= 8;
     }
 }
 
-/// How many queries of so many nanoseconds fit into so many seconds: a power of two, which is mostly the same from run to run.
+/// Returns the number of queries of this duration that fit into the time. It is rounded down to a power of two, which
+/// is mostly the same from run to run.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is not negative")]
-fn affordable(nanoseconds: f64, seconds: f64) -> usize {
+fn affordable_queries(nanoseconds: f64, seconds: f64) -> usize {
     let count = (seconds * 1e9 / nanoseconds.max(1.0)) as usize;
     count.checked_ilog2().map_or(0, |bits| 1 << bits)
 }
@@ -161,8 +166,8 @@ fn affordable(nanoseconds: f64, seconds: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::backend::Asked;
     use crate::settings::SETTINGS;
-    use crate::subject::Asked;
     use nalgebra::Point3;
     use p2m_core::{BruteForce, ClosestPoint, Point as Site};
 
@@ -176,7 +181,10 @@ mod tests {
 
     #[test]
     fn slow_entrants_get_fewer_queries() {
-        assert_eq!([affordable(1e3, 0.1), affordable(1e9, 0.1), affordable(0.0, 1e-9)], [65_536, 0, 1]);
+        assert_eq!(
+            [affordable_queries(1e3, 0.1), affordable_queries(1e9, 0.1), affordable_queries(0.0, 1e-9)],
+            [65_536, 0, 1]
+        );
     }
 
     #[test]
@@ -210,7 +218,7 @@ mod tests {
         assert_eq!(curves.iter().map(|curve| curve.name.as_str()).collect::<Vec<_>>(), ["a", "b"]);
         for point in curves.iter().flat_map(|curve| &curve.points) {
             assert_eq!((point.queries, point.rounds, point.errors.compared), (40, 3, 40));
-            assert_eq!((point.errors.bounds_above, point.errors.broken, point.errors.unanswered), (0, 0, 0));
+            assert_eq!((point.errors.bounds_above_truth, point.errors.broken, point.errors.unanswered), (0, 0, 0));
             assert!(point.nanoseconds.min > 0.0 && point.latency.is_some());
         }
         assert_eq!(curves[0].usual().unwrap().errors.relative.max, 0.0);

@@ -1,30 +1,30 @@
-//! Where a figure comes from: machine, compiler, flags, commit, command.
+//! The origin of figures: machine, compiler, flags, commit and command.
 
 use std::path::Path;
 use std::process::Command;
 
-/// What is said above every table and in every line of a record.
+/// The origin of figures, which every table and every line of a record states.
 #[derive(Clone, Debug)]
 pub struct Provenance {
-    /// Which build this is: `portable` or `native` unless the user says otherwise.
+    /// The name of the build: `portable` or `native` unless the user names it.
     pub label: String,
-    /// UTC.
+    /// The date and time, in UTC.
     pub date: String,
-    /// Of the checkout, with a mark if files differ from it; or the version.
+    /// The commit of the checkout, with a mark if files differ from it; or the version of the program.
     pub commit: String,
-    /// Model, and which instruction sets it has.
+    /// The model of the processor, and its instruction sets.
     pub cpu: String,
-    /// Version.
+    /// The version of the compiler.
     pub rustc: String,
-    /// Profile, optimisation and RUSTFLAGS.
+    /// The profile, the optimisation and RUSTFLAGS.
     pub flags: String,
-    /// Instruction sets that the compiler was allowed to use everywhere.
+    /// The instruction sets that the compiler was allowed to use everywhere.
     pub target_features: String,
     /// The command line.
     pub command: String,
 }
 
-/// The names of those features for which a macro says so, at compile time or at run time.
+/// The names of the features for which a macro returns true, at compile time or at run time.
 macro_rules! features {
     ($has:ident) => {
         features!($has: "sse2", "sse4.1", "avx", "avx2", "fma", "bmi2", "avx512f", "avx512dq", "avx512vl")
@@ -56,7 +56,8 @@ macro_rules! detected {
 }
 
 impl Provenance {
-    /// Of this program, now; a program that runs from a checkout says where that is, any other is known by its version.
+    /// Collects the origin of figures of this program. A program that runs from a checkout passes its path; any other
+    /// is identified by its version.
     #[must_use]
     pub fn collect(label: Option<&str>, checkout: Option<&Path>) -> Self {
         let native = cfg!(target_feature = "avx2");
@@ -77,17 +78,17 @@ impl Provenance {
         }
     }
 
-    /// All but command and date.
+    /// Returns everything but the command and the date, in one line.
     #[must_use]
     pub fn machine(&self) -> String {
         let Self { label, commit, cpu, rustc, flags, .. } = self;
         format!("{cpu}; build `{label}`: {rustc}, {flags}; commit {commit}")
     }
 
-    /// The columns that [`Provenance::fields`] fills.
+    /// The names of the columns of [`Provenance::fields`].
     pub const COLUMNS: [&'static str; 7] = ["label", "date", "commit", "cpu", "rustc", "flags", "target_features"];
 
-    /// For a record.
+    /// Returns the fields of a record.
     #[must_use]
     pub fn fields(&self) -> [String; 7] {
         let Self { label, date, commit, cpu, rustc, flags, target_features, .. } = self.clone();
@@ -103,7 +104,7 @@ impl std::fmt::Display for Provenance {
     }
 }
 
-/// The command line, of the program its name alone.
+/// Returns the command line, with the program without its path.
 fn command() -> String {
     let mut arguments = std::env::args();
     let program = arguments.next().unwrap_or_default();
@@ -111,7 +112,7 @@ fn command() -> String {
     std::iter::once(name).chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
-/// The commit of a checkout, marked if files differ from it.
+/// Returns the commit of a checkout, with a mark if files differ from it.
 fn commit(checkout: &Path) -> String {
     let root = checkout.to_string_lossy();
     let git = |arguments: &[&str]| output("git", &[&["-C", &*root], arguments].concat());
@@ -128,7 +129,7 @@ fn cpu_model() -> String {
     model.unwrap_or(std::env::consts::ARCH).trim().to_owned()
 }
 
-/// What a command prints, `None` if it fails.
+/// Returns the output of a command, or `None` if it fails.
 fn output(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok().filter(|output| output.status.success())?;
     Some(String::from_utf8_lossy(&output.stdout).trim().to_owned())

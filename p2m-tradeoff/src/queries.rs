@@ -1,48 +1,48 @@
-//! Query sets in both scalars, and parts of them.
+//! Sets of queries in both scalars, and parts of them.
 
 use nalgebra::Point3;
 use p2m_core::{Real, Soup};
 
-/// Queries as every contender wants them.
+/// Queries in both scalars.
 #[derive(Clone, Debug)]
 pub struct Queries {
     double: Vec<Point3<f64>>,
     single: Vec<Point3<f32>>,
 }
 
-/// Some of them.
+/// A slice of queries in both scalars.
 #[derive(Clone, Copy, Debug)]
 pub struct QuerySlice<'a> {
-    /// In f64.
+    /// The queries in f64.
     pub double: &'a [Point3<f64>],
-    /// The same rounded to f32.
+    /// The queries rounded to f32.
     pub single: &'a [Point3<f32>],
 }
 
 impl Queries {
-    /// Rounds once for all.
+    /// Stores queries in f64, and rounds them to f32.
     #[must_use]
     pub fn new(double: Vec<Point3<f64>>) -> Self {
         let single = double.iter().map(|p| p.map(f32::of_f64)).collect();
         Self { double, single }
     }
 
-    /// How many there are.
+    /// Returns the number of queries.
     #[must_use]
     pub fn len(&self) -> usize {
         self.double.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no queries.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.double.is_empty()
     }
 
-    /// Those at the given places.
+    /// Returns the queries with these indices.
     ///
     /// # Panics
-    /// If there is no such place.
+    /// If an index is not below the number of queries.
     #[must_use]
     pub fn gather(&self, chosen: &[usize]) -> Self {
         Self {
@@ -51,25 +51,25 @@ impl Queries {
         }
     }
 
-    /// Those in a range.
+    /// Returns the queries of a range of indices.
     ///
     /// # Panics
-    /// If the range is not within them.
+    /// If the range exceeds the number of queries.
     #[must_use]
     pub fn slice(&self, range: std::ops::Range<usize>) -> QuerySlice<'_> {
         QuerySlice { double: &self.double[range.clone()], single: &self.single[range] }
     }
 
-    /// All of them.
+    /// Returns all queries.
     #[must_use]
     pub fn all(&self) -> QuerySlice<'_> {
         self.slice(0..self.len())
     }
 }
 
-/// The two scalars, as places where to find queries.
+/// A scalar in which queries are stored.
 pub trait Scalar: Real {
-    /// The queries in this scalar.
+    /// Returns the queries in this scalar.
     fn of(queries: QuerySlice<'_>) -> &[Point3<Self>];
 }
 
@@ -85,15 +85,16 @@ impl Scalar for f32 {
     }
 }
 
-/// The same scene in f32; `None` if a coordinate that it uses overflows.
+/// Rounds a scene to f32. Returns `None` if a coordinate of a primitive overflows.
 #[must_use]
 pub fn rounded(soup: &Soup<f64>) -> Option<Soup<f32>> {
     let positions = soup.positions().iter().map(|p| p.map(f32::of_f64)).collect();
     Soup::new(positions, soup.elements()).ok()
 }
 
-/// About `count` (never more, but at least one) of `total` places, spread evenly in at most 50 runs of neighbours: a
-/// slow contender gets the same mixture, and on the lattice the same order, as the others.
+/// Returns about `count` of the numbers below `total`: never more, but at least one. They are at most 50 runs of
+/// consecutive numbers, evenly spaced, so that a slow backend gets the same mixture of queries as the others, and on a
+/// lattice the same order.
 #[must_use]
 pub fn spread(total: usize, count: usize) -> Vec<usize> {
     if count >= total {

@@ -1,4 +1,4 @@
-//! Records: a line of comma-separated values for each point of each curve, with what it was measured by.
+//! Records: a line of comma-separated values for each point of each curve, with its origin.
 
 use crate::csv::{csv_line, csv_records};
 use crate::curve::SceneFigures;
@@ -6,7 +6,7 @@ use crate::error::RecordError;
 use crate::provenance::Provenance;
 use std::fmt::Write;
 
-/// The columns behind those of the provenance.
+/// The columns after those of the provenance.
 const COLUMNS: [&str; 30] = [
     "scene",
     "primitives",
@@ -40,8 +40,8 @@ const COLUMNS: [&str; 30] = [
     "program",
 ];
 
-/// Everything as text, beginning with the names of the columns. `seed` is that of the queries, `clock` what reading the
-/// clock takes, in nanoseconds.
+/// Returns a record of all results as text, which begins with the names of the columns. `seed` is the seed of the
+/// queries, and `clock` the time to read the clock, in nanoseconds.
 #[must_use]
 pub fn record(provenance: &Provenance, scenes: &[SceneFigures], seed: u64, clock: f64) -> String {
     let head: Vec<String> = Provenance::COLUMNS.iter().chain(&COLUMNS).map(|c| (*c).to_owned()).collect();
@@ -51,7 +51,7 @@ pub fn record(provenance: &Provenance, scenes: &[SceneFigures], seed: u64, clock
             for curve in &set.curves {
                 for point in &curve.points {
                     let (ns, errors) = (&point.nanoseconds, &point.errors);
-                    // Every digit: what is read back is the same.
+                    // All digits are written, so that the same numbers are read back.
                     let number = |value: f64| if value.is_nan() { String::new() } else { format!("{value:e}") };
                     let latency = point.latency.map(|l| [l.p50, l.p90, l.p99, l.p999, l.max]);
                     let latency: [String; 5] =
@@ -74,7 +74,7 @@ pub fn record(provenance: &Provenance, scenes: &[SceneFigures], seed: u64, clock
                         number(errors.relative.max),
                         number(errors.relative.p999),
                         number(errors.gap),
-                        errors.bounds_above.to_string(),
+                        errors.bounds_above_truth.to_string(),
                         errors.other_ids.map_or_else(String::new, |count| count.to_string()),
                         errors.broken.to_string(),
                         errors.compared.to_string(),
@@ -99,25 +99,25 @@ pub fn record(provenance: &Provenance, scenes: &[SceneFigures], seed: u64, clock
     text
 }
 
-/// What is compared of a line.
+/// The fields of a line that are compared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// Scene, set, backend and setting.
+    /// The scene, set, backend and setting.
     pub key: [String; 4],
-    /// Processor, compiler, flags and commit.
+    /// The processor, compiler, flags and commit.
     pub origin: [String; 4],
-    /// Primitives of the scene, and seed of the queries: with others nothing can be compared.
+    /// The number of primitives and the seed of the queries. Lines with different ones cannot be compared.
     pub job: [String; 2],
-    /// How many queries: with other ones errors cannot be compared.
+    /// The number of queries. Errors of different numbers of queries cannot be compared.
     pub queries: String,
-    /// Nanoseconds per query: median, least and most of the rounds.
+    /// The nanoseconds per query: median, minimum and maximum of the rounds.
     pub nanoseconds: [f64; 3],
-    /// The names of what is said about errors, and what is said.
+    /// The columns about errors: their names and values.
     pub errors: Vec<(&'static str, String)>,
 }
 
-/// What is said about errors, which is the same whenever the same is asked.
-const ERRORS: [&str; 9] = [
+/// The columns about errors, which are reproducible.
+const ERROR_COLUMNS: [&str; 9] = [
     "error_um_max",
     "error_um_p999",
     "error_relative_max",
@@ -129,31 +129,31 @@ const ERRORS: [&str; 9] = [
     "unanswered",
 ];
 
-/// The lines of a record, columns found by their names; others are passed over.
+/// Reads the lines of a record. Columns are found by their names, and unknown columns are ignored.
 ///
 /// # Errors
 /// [`RecordError`], other than [`RecordError::Foreign`].
 pub fn read_record(text: &str) -> Result<Vec<Line>, RecordError> {
     let mut records = csv_records(text).ok_or(RecordError::Syntax)?.into_iter();
     let head = records.next().ok_or(RecordError::Empty)?;
-    let place = |name: &'static str| head.iter().position(|c| c == name).ok_or(RecordError::Column(name));
-    fn places<const N: usize>(
+    let column = |name: &'static str| head.iter().position(|c| c == name).ok_or(RecordError::Column(name));
+    fn columns<const N: usize>(
         names: [&'static str; N],
-        place: impl Fn(&'static str) -> Result<usize, RecordError>,
+        column: impl Fn(&'static str) -> Result<usize, RecordError>,
     ) -> Result<[usize; N], RecordError> {
-        let mut places = [0; N];
-        for (at, name) in places.iter_mut().zip(names) {
-            *at = place(name)?;
+        let mut indices = [0; N];
+        for (index, name) in indices.iter_mut().zip(names) {
+            *index = column(name)?;
         }
-        Ok(places)
+        Ok(indices)
     }
     const NUMBERS: [&str; 3] = ["ns_median", "ns_min", "ns_max"];
-    let keys = places(["scene", "set", "backend", "setting"], place)?;
-    let origins = places(["cpu", "rustc", "flags", "commit"], place)?;
-    let jobs = places(["primitives", "seed"], place)?;
-    let queries = place("queries")?;
-    let numbers = places(NUMBERS, place)?;
-    let errors = places(ERRORS, place)?;
+    let keys = columns(["scene", "set", "backend", "setting"], column)?;
+    let origins = columns(["cpu", "rustc", "flags", "commit"], column)?;
+    let jobs = columns(["primitives", "seed"], column)?;
+    let queries = column("queries")?;
+    let numbers = columns(NUMBERS, column)?;
+    let errors = columns(ERROR_COLUMNS, column)?;
     let mut lines = Vec::new();
     for (record, line) in records.zip(2..) {
         if record.len() != head.len() {
@@ -170,7 +170,7 @@ pub fn read_record(text: &str) -> Result<Vec<Line>, RecordError> {
             job: jobs.map(|at| record[at].clone()),
             queries: record[queries].clone(),
             nanoseconds,
-            errors: ERRORS.iter().copied().zip(errors.map(|at| record[at].clone())).collect(),
+            errors: ERROR_COLUMNS.iter().copied().zip(errors.map(|at| record[at].clone())).collect(),
         });
     }
     if lines.is_empty() { Err(RecordError::Empty) } else { Ok(lines) }
@@ -179,11 +179,11 @@ pub fn read_record(text: &str) -> Result<Vec<Line>, RecordError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sample;
+    use crate::fixtures;
 
     #[test]
     fn what_is_recorded_is_read_back() {
-        let (provenance, scene) = (sample::provenance(), sample::scene());
+        let (provenance, scene) = (fixtures::provenance(), fixtures::scene());
         let text = record(&provenance, std::slice::from_ref(&scene), 7, 25.0);
         let lines = read_record(&text).unwrap();
         let points: Vec<_> = scene.sets.iter().flat_map(|s| s.curves.iter().flat_map(|c| &c.points)).collect();
@@ -203,7 +203,7 @@ mod tests {
 
     #[test]
     fn what_is_no_record_is_told() {
-        let text = record(&sample::provenance(), &[sample::scene()], 7, 25.0);
+        let text = record(&fixtures::provenance(), &[fixtures::scene()], 7, 25.0);
         let head = text.lines().next().unwrap();
         assert_eq!(read_record(""), Err(RecordError::Empty));
         assert_eq!(read_record(head), Err(RecordError::Empty));
@@ -213,7 +213,7 @@ mod tests {
         let columns = Provenance::COLUMNS.len() + COLUMNS.len();
         let short = format!("{head}\na,b\n");
         assert_eq!(read_record(&short), Err(RecordError::Fields { line: 2, fields: 2, columns }));
-        let median = sample::scene().sets[0].curves[0].points[0].nanoseconds.median;
+        let median = fixtures::scene().sets[0].curves[0].points[0].nanoseconds.median;
         let broken = text.replacen(&format!("{median:e}"), "quick", 1);
         assert_eq!(read_record(&broken), Err(RecordError::Number { line: 2, column: "ns_median" }));
     }

@@ -1,47 +1,45 @@
-//! What can be asked for other than the usual: the one list of all settings.
+//! The list of all settings of accuracy.
 //!
-//! A new way to trade accuracy for speed is a variant of [`Ask`], a line of [`SETTINGS`] and an arm of each method here.
+//! A new way to trade accuracy for speed needs a variant of [`Ask`], a line of [`SETTINGS`] and an arm of each method
+//! of this module.
 
 use p2m_core::kernel::ERROR_CONSTANT;
 use p2m_core::{QueryOptions, Real};
 
-/// What a query asks.
+/// The kind of answer that a query requests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ask {
-    /// The closest point, with no more than the error of roundings.
+    /// The closest point up to rounding errors.
     Exact,
-    /// The nearest primitive for certain, and its distance rounded once.
+    /// The certified nearest primitive, with its distance rounded once.
     Certified,
-    /// A point that is farther by this part of the distance at most.
+    /// A point whose distance exceeds the least one by this relative error at most.
     Epsilon(f64),
-    /// The best that so many visits of nodes and packets find.
+    /// The best point that this number of visits of nodes and packets finds.
     Budget(u32),
 }
 
-/// A row of the list.
+/// A setting of accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
-    /// Its name in tables, plots and records.
+    /// The name in tables, plots and records.
     pub name: &'static str,
-    /// What it does, for who has not seen it.
+    /// A phrase that explains the setting to readers of a page.
     pub about: &'static str,
-    /// What is asked.
+    /// The kind of answer.
     pub ask: Ask,
 }
 
-/// What everything is compared with: what a call without options does.
-pub const DEFAULT: Setting = Setting {
-    name: "default",
-    about: "f64, no options: the closest point, its distance wrong by roundings alone",
-    ask: Ask::Exact,
-};
+/// The setting of a call without options, which the other settings are compared with.
+pub const DEFAULT: Setting =
+    Setting { name: "default", about: "f64, no options: the closest point, up to rounding errors", ask: Ask::Exact };
 
-/// All of them, the usual one first.
+/// All settings, the default one first.
 pub const SETTINGS: &[Setting] = &[
     DEFAULT,
     Setting {
         name: "certified",
-        about: "`certified_closest_point`: the nearest primitive without doubt, its distance within half a unit in the last place",
+        about: "`certified_closest_point`: the certified nearest primitive, with its distance within half a unit in the last place",
         ask: Ask::Certified,
     },
     within("epsilon 0.001", 0.001, "`QueryOptions::with_epsilon(0.001)`: at most 0.1 % farther than the closest point"),
@@ -50,7 +48,7 @@ pub const SETTINGS: &[Setting] = &[
     within("epsilon 1", 1.0, "`QueryOptions::with_epsilon(1.0)`: at most twice as far"),
     Setting {
         name: "budget 0",
-        about: "`QueryOptions::with_max_visits(0)`: the first thing found; of `octree` and `p2m` what the cell itself tells",
+        about: "`QueryOptions::with_max_visits(0)`: the first primitive that is found; for `octree` and `p2m` the one that the cell itself has",
         ask: Ask::Budget(0),
     },
     Setting {
@@ -60,54 +58,55 @@ pub const SETTINGS: &[Setting] = &[
     },
 ];
 
+/// A setting with an epsilon.
 const fn within(name: &'static str, epsilon: f64, about: &'static str) -> Setting {
     Setting { name, about, ask: Ask::Epsilon(epsilon) }
 }
 
 impl Setting {
-    /// The options of a query.
+    /// Returns the options of a query.
     #[must_use]
     pub fn options<T: Real>(&self) -> QueryOptions<T> {
-        let usual = QueryOptions::default();
+        let defaults = QueryOptions::default();
         match self.ask {
-            Ask::Exact | Ask::Certified => usual,
-            Ask::Budget(visits) => usual.with_max_visits(visits),
-            Ask::Epsilon(epsilon) => usual.with_epsilon(T::of_f64(epsilon)),
+            Ask::Exact | Ask::Certified => defaults,
+            Ask::Budget(visits) => defaults.with_max_visits(visits),
+            Ask::Epsilon(epsilon) => defaults.with_epsilon(T::of_f64(epsilon)),
         }
     }
 
-    /// What its answers promise.
+    /// Returns the accuracy that answers promise.
     #[must_use]
     pub fn promise(&self) -> Promise {
         match self.ask {
             Ask::Exact => Promise::Within(0.0),
-            Ask::Certified => Promise::LastPlace,
+            Ask::Certified => Promise::OneUlp,
             Ask::Epsilon(epsilon) => Promise::Within(epsilon),
             Ask::Budget(_) => Promise::Nothing,
         }
     }
 }
 
-/// How wrong an answer may be.
+/// The error that an answer may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Promise {
-    /// As wrong as it likes.
+    /// The answer promises nothing but its lower bound.
     Nothing,
-    /// No more than one unit in the last place.
-    LastPlace,
-    /// No farther than this part of the distance, besides the roundings of the contract.
+    /// The error is at most one unit in the last place.
+    OneUlp,
+    /// The error is at most this part of the distance, besides the rounding errors that the contract allows.
     Within(f64),
 }
 
 impl Promise {
-    /// Whether an answer at `error` from a distance keeps it; `unit` is u M.
+    /// Returns whether an answer with this error keeps the promise. `unit` is u M.
     #[must_use]
     pub fn is_kept(self, error: f64, distance: f64, unit: f64) -> bool {
         match self {
             Self::Nothing => true,
-            Self::LastPlace => error <= distance.next_up() - distance,
-            // Once for the primitive that is answered and once for the nearest one (contract N1, N2, N7).
-            Self::Within(part) => error <= part * distance + 2.0 * ERROR_CONSTANT * unit,
+            Self::OneUlp => error <= distance.next_up() - distance,
+            // The primitive of the answer and the nearest one may each have this rounding error (contract N1, N2, N7).
+            Self::Within(relative) => error <= relative * distance + 2.0 * ERROR_CONSTANT * unit,
         }
     }
 }
@@ -131,13 +130,13 @@ mod tests {
             let options: QueryOptions<f64> = setting.options();
             match setting.promise() {
                 Promise::Nothing => assert!(options.max_visits < u32::MAX, "{}", setting.name),
-                Promise::LastPlace => assert_eq!(setting.ask, Ask::Certified),
+                Promise::OneUlp => assert_eq!(setting.ask, Ask::Certified),
                 Promise::Within(part) => assert!((part - options.epsilon).abs() <= 0.0, "{}", setting.name),
             }
         }
         assert!(Promise::Within(0.1).is_kept(0.1, 1.0, 1e-16) && !Promise::Within(0.1).is_kept(0.2, 1.0, 1e-16));
         assert!(Promise::Within(0.0).is_kept(1e-16, 1.0, 1e-16) && !Promise::Within(0.0).is_kept(1e-14, 1.0, 1e-16));
         assert!(Promise::Nothing.is_kept(9.0, 1.0, 0.0));
-        assert!(Promise::LastPlace.is_kept(2e-16, 1.0, 1.0) && !Promise::LastPlace.is_kept(3e-16, 1.0, 1.0));
+        assert!(Promise::OneUlp.is_kept(2e-16, 1.0, 1.0) && !Promise::OneUlp.is_kept(3e-16, 1.0, 1.0));
     }
 }

@@ -1,8 +1,8 @@
-//! Tables as text: Markdown with columns of even width.
+//! Tables as Markdown text with aligned columns.
 
 use std::fmt;
 
-/// A table of text, printed as Markdown with columns of even width.
+/// A table of text, which is printed as Markdown with aligned columns.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     head: Vec<String>,
@@ -10,13 +10,13 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table with these columns.
+    /// Makes a table with these columns and no rows.
     #[must_use]
     pub fn new(head: impl IntoIterator<Item = impl Into<String>>) -> Self {
         Self { head: head.into_iter().map(Into::into).collect(), rows: Vec::new() }
     }
 
-    /// Adds a row; missing cells are empty.
+    /// Adds a row. Missing cells are empty.
     pub fn push(&mut self, row: Vec<String>) {
         self.rows.push(row);
     }
@@ -31,7 +31,7 @@ impl fmt::Display for Table {
             .collect();
         for (number, line) in lines().enumerate() {
             for (i, width) in widths.iter().enumerate() {
-                // Names to the left, figures to the right.
+                // The first column has names, which are aligned to the left.
                 match i {
                     0 => write!(f, "| {:<width$} ", cell(line, i))?,
                     _ => write!(f, "| {:>width$} ", cell(line, i))?,

@@ -1,13 +1,13 @@
-//! Curves as a table for a terminal.
+//! Results as a table for a terminal.
 
 use crate::curve::{Curve, Latency, SetFigures};
 use crate::errors::Errors;
 use crate::table::Table;
 
-/// What one in a thousand exceeds is seen only among so many.
-const IN_A_THOUSAND: usize = 1000;
+/// The smallest number of queries that has a 99.9th percentile.
+const MIN_QUERIES_FOR_P999: usize = 1000;
 
-/// What each setting of each backend has, in a set of queries.
+/// Returns a table with a row for each setting of each backend.
 #[must_use]
 pub fn table(set: &SetFigures) -> Table {
     let head = [
@@ -29,21 +29,21 @@ pub fn table(set: &SetFigures) -> Table {
     for curve in &set.curves {
         for point in &curve.points {
             let Errors { relative, scaled, gap, .. } = point.errors;
-            let latency = |of: fn(&Latency) -> u64, least: usize| {
-                let seen = point.latency.as_ref().filter(|_| point.queries >= least);
-                seen.map_or("-".to_owned(), |latency| of(latency).to_string())
+            let latency = |of: fn(&Latency) -> u64, min_queries: usize| {
+                let shown = point.latency.as_ref().filter(|_| point.queries >= min_queries);
+                shown.map_or("-".to_owned(), |latency| of(latency).to_string())
             };
             table.push(vec![
                 curve.name.clone(),
                 point.setting.clone(),
                 format!("{:.0}", point.nanoseconds.median),
-                gain(curve, point.nanoseconds.median),
+                speedup(curve, point.nanoseconds.median),
                 error(relative.max),
-                if point.queries < IN_A_THOUSAND { "-".to_owned() } else { error(relative.p999) },
+                if point.queries < MIN_QUERIES_FOR_P999 { "-".to_owned() } else { error(relative.p999) },
                 error(scaled.max),
                 error(gap),
                 latency(|l| l.p50, 2),
-                latency(|l| l.p999, IN_A_THOUSAND),
+                latency(|l| l.p999, MIN_QUERIES_FOR_P999),
                 seconds(point.build.seconds),
                 bytes(point.build.bytes_each),
                 failures(&point.errors),
@@ -53,25 +53,25 @@ pub fn table(set: &SetFigures) -> Table {
     table
 }
 
-/// How many times as fast as the usual setting of its backend.
+/// Returns the speed relative to that of the default setting of the backend, in words.
 #[must_use]
-pub fn gain(curve: &Curve, nanoseconds: f64) -> String {
-    curve.usual().map_or("-".to_owned(), |usual| format!("{:.2}x", usual.nanoseconds.median / nanoseconds))
+pub fn speedup(curve: &Curve, nanoseconds: f64) -> String {
+    curve.usual().map_or("-".to_owned(), |default| format!("{:.2}x", default.nanoseconds.median / nanoseconds))
 }
 
-/// What is wrong with answers, in words; nothing if nothing is.
+/// Returns the failures of answers in words; an empty string if there are none.
 #[must_use]
 pub fn failures(errors: &Errors) -> String {
     let count = |count: usize, what: &str| (count > 0).then(|| format!("{count} of {} {what}", errors.compared));
     let all = [
         count(errors.unanswered, "unanswered"),
         count(errors.broken, "farther than promised"),
-        count(errors.bounds_above, "bounds above the truth"),
+        count(errors.bounds_above_truth, "bounds above the truth"),
     ];
     all.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-/// An error, with one digit behind the point.
+/// Formats an error with one decimal.
 #[must_use]
 pub fn error(value: f64) -> String {
     match value {
@@ -82,7 +82,7 @@ pub fn error(value: f64) -> String {
     }
 }
 
-/// Seconds, with three digits.
+/// Formats seconds with three digits.
 #[must_use]
 pub fn seconds(value: f64) -> String {
     match value {
@@ -92,13 +92,13 @@ pub fn seconds(value: f64) -> String {
     }
 }
 
-/// Bytes of a primitive, if they were counted.
+/// Formats bytes for each primitive, if they were measured.
 #[must_use]
 pub fn bytes(value: Option<f64>) -> String {
     value.map_or("-".to_owned(), |bytes| format!("{bytes:.0}"))
 }
 
-/// How many, short: 1,234 or 1.2 million.
+/// Formats a count in words, such as 12.3 thousand or 1.2 million.
 #[must_use]
 pub fn count(value: f64) -> String {
     match value {
@@ -113,11 +113,11 @@ pub fn count(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sample;
+    use crate::fixtures;
 
     #[test]
     fn every_point_has_a_row() {
-        let scene = sample::scene();
+        let scene = fixtures::scene();
         let text = table(&scene.sets[0]).to_string();
         assert_eq!(text.lines().count(), 2 + 3, "{text}");
         assert!(text.contains("2.00x") && text.contains("| p2m "), "{text}");
@@ -125,10 +125,10 @@ mod tests {
 
     #[test]
     fn failures_are_told() {
-        let mut errors = sample::point("default", 1.0, 0.0, 0.0).errors;
+        let mut errors = fixtures::point("default", 1.0, 0.0, 0.0).errors;
         assert_eq!(failures(&errors), "");
         errors.broken = 2;
-        errors.bounds_above = 1;
+        errors.bounds_above_truth = 1;
         assert_eq!(failures(&errors), "2 of 100 farther than promised, 1 of 100 bounds above the truth");
     }
 

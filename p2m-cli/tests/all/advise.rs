@@ -1,10 +1,10 @@
-//! `p2m advise`, and `--backend auto`.
+//! Tests of `p2m advise` and `--backend auto`.
 
 use crate::common::*;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// The estimates of a report.
+/// Returns name, build, query and total of each estimate of a report.
 fn estimates(report: &Value) -> Vec<(String, f64, f64, f64)> {
     let number = |e: &Value, key: &str| e[key].as_f64().unwrap();
     let all = report["estimates"].as_array().unwrap().iter();
@@ -34,7 +34,7 @@ fn the_least_total_is_recommended_and_break_even_is_where_totals_meet() {
             }
         }
         assert_eq!(report["backend"] == "brute", queries == "1", "{report}");
-        assert_eq!(report["patch"].as_u64().unwrap() > 0, count > 1e6, "{report}");
+        assert_eq!(report["sample_primitives"].as_u64().unwrap() > 0, count > 1e6, "{report}");
     }
 }
 
@@ -44,7 +44,7 @@ fn memory_and_time_are_limits() {
     assert_eq!(report["backend"], "brute");
     assert!(report["estimates"][1]["reason"].as_str().unwrap().contains("more than there may be"), "{report}");
     let report = json(&["advise", SCENE, "--queries", "100000000", "--box", "--time", "0", "--json"]);
-    assert_eq!(report["patch"], 0);
+    assert_eq!(report["sample_primitives"], 0);
     let text = table(&["advise", SCENE, "--queries", "100000000", "--box"]);
     assert!(text.starts_with("backend  ") && text.contains("the least time for building and all queries"), "{text}");
 }

@@ -1,4 +1,4 @@
-//! `p2m boxes`, end to end.
+//! Tests of `p2m boxes`.
 
 use crate::common::{SCENE, p2m};
 
@@ -14,7 +14,7 @@ fn levels_and_leaves_are_drawn_and_listed() {
         let drawn = titles.lines().count();
         assert_eq!((panels.unwrap_or(drawn), svg.matches("<text").count()), (drawn, drawn), "{titles}");
         if panels.is_none() {
-            // The deepest level is the last, and shows the leaves.
+            // The deepest level is the last one, and shows the leaves.
             let counts: Vec<_> = titles.lines().rev().map(|title| title.split(": ").nth(1)).collect();
             assert!(counts[0] == counts[1] && counts[1] != counts[2], "{titles}");
         }
@@ -22,7 +22,7 @@ fn levels_and_leaves_are_drawn_and_listed() {
             assert!(svg.contains(&format!(">{title}</text>")), "{title}");
         }
         if levels == "3" {
-            // One root, and at most eight children of a node.
+            // There is one root, and a node has at most eight children.
             let counts: Vec<usize> = titles
                 .lines()
                 .map(|title| title.split([':', ' ']).filter_map(|word| word.parse().ok()).next_back().unwrap())
@@ -40,7 +40,7 @@ fn the_boxes_of_a_level_hold_the_scene() {
     assert_eq!(p2m(&["boxes", SCENE, "--levels", "1", "--out", out.to_str().unwrap()]).code, 0);
     let [picture, scene] = [out.as_path(), SCENE.as_ref()].map(|p| p2m_mixed::read_scene(p).unwrap().soup);
     let bounds = p2m_core::PrimitiveSet::aabb(&scene);
-    // The root first, then its children; boxes are rounded outwards by 2^-22 of the scene's size at most.
+    // The root is followed by its children. Boxes are rounded outwards by 2^-22 of the scene's size at most.
     let slack = (bounds.max - bounds.min).max() * 2f64.powi(-22);
     for drawn in [&picture.positions()[..24], &picture.positions()[24..]] {
         let all = p2m_core::Aabb::of_points(drawn);
@@ -59,12 +59,12 @@ fn polytopes_of_the_k_dop_tree_hold_the_scene_and_fit_closer() {
         let titles = String::from_utf8(run.stderr).unwrap();
         let lines: Vec<_> = titles.lines().collect();
         assert!(lines[0].starts_with("leaves: ") && lines[0].ends_with(" polytopes"), "{titles}");
-        // Why these faces is said where the scene was asked.
+        // The reason is printed if the directions were derived from the scene.
         assert_eq!(lines[1..].iter().filter(|line| line.starts_with("k-DOPs: ")).count(), usize::from(k == "scene"));
         let picture = p2m_mixed::read_scene(&out).unwrap().soup;
         let all = p2m_core::Aabb::of_points(picture.positions());
         assert!(all.contains(&p2m_core::PrimitiveSet::aabb(&scene)), "{k}");
-        // How far corners of polytopes are from the scene on average: the closer they fit, the nearer.
+        // The mean distance from corners of polytopes to the scene is smaller if they fit more closely.
         let index = p2m_bvh::AabbTree::<f64, _>::build_with(&scene, &Default::default()).unwrap();
         let distance = |p| p2m_core::ClosestPoint::closest_point(&index, p).unwrap().distance;
         picture.positions().iter().map(distance).sum::<f64>() / picture.positions().len() as f64

@@ -1,4 +1,4 @@
-//! `p2m build` and the commands that take what it saved, end to end.
+//! Tests of `p2m build` and of the commands that load saved indexes.
 
 use crate::common::{SCENE, failure, p2m, path, table, text, write};
 use serde_json::Value;
@@ -23,7 +23,7 @@ fn a_saved_index_gives_the_table_of_its_scene() {
         let summary = text(&run.stderr);
         let line = summary.lines().find(|line| line.starts_with("backend")).unwrap().to_owned();
         assert!(line.starts_with(&format!("backend  {}", backend[0])) && line.contains(", loaded in"), "{summary}");
-        // Another backend is built over the scene of the file.
+        // Another backend is built over the scene in the file.
         let run = p2m(&["query", &file, "--random", "300", "--backend", "kdop", "--k", "6"]);
         assert_eq!(text(&run.stdout), expected);
         assert!(text(&run.stderr).contains("backend  kdop, 6 faces, built in"), "{}", text(&run.stderr));
@@ -50,7 +50,7 @@ fn every_command_takes_it_in_place_of_a_scene() {
     assert!(table(&["info", &file]).lines().any(|line| line == "index       p2m"));
     let svg = path(&folder, "boxes.svg");
     assert_eq!(p2m(&["boxes", &file, "--out", &svg]).code, 0);
-    // Through a pipe as well.
+    // A saved index is read through a pipe as well.
     let run = crate::common::p2m_with(&["query", "-", "--format", "p2m", "--grid", "4"], fs::read(&file).unwrap());
     assert_eq!(text(&run.stdout), table(&["query", SCENE, "--grid", "4"]));
 }
@@ -61,9 +61,9 @@ fn the_report_says_what_was_written() {
     let out = path(&folder, "scene.p2m");
     let report: Value =
         serde_json::from_str(&table(&["build", SCENE, "--backend", "octree", "--out", &out, "--json"])).unwrap();
-    assert_eq!((&report["p2m"], &report["version"]), (&"build".into(), &1.into()));
+    assert_eq!((&report["p2m"], &report["version"]), (&"build".into(), &2.into()));
     assert_eq!(report["out"]["bytes"].as_u64(), Some(fs::metadata(&out).unwrap().len()));
-    assert!(report["cells"]["lists"].as_u64() > Some(100), "{report}");
+    assert!(report["cells"]["list_cells"].as_u64() > Some(100), "{report}");
     for stage in ["read", "build", "write"] {
         assert!(report["seconds"][stage].as_f64() > Some(0.0), "{report}");
     }

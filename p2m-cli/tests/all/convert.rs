@@ -1,11 +1,11 @@
-//! `p2m convert`: formats, changes, and what gets lost.
+//! Tests of `p2m convert`: formats, changes and losses.
 
 use crate::common::*;
 use serde_json::{Value, json};
 use std::fs;
 use tempfile::TempDir;
 
-/// The figures of a scene that formats may not change.
+/// Returns the figures of a scene that no format may change.
 fn geometry(file: &str) -> Value {
     let report = json(&["info", file, "--json"]);
     let keys = ["primitives", "bounds", "edge_length", "area", "shapes", "edges", "duplicates", "components"];
@@ -71,21 +71,21 @@ lost     which corners are shared: each triangle has its own
     assert_eq!(
         lost(&stl),
         json!([
-            { "what": "names", "count": 2 },
-            { "what": "unused_positions", "count": 1 },
-            { "what": "precision", "count": 2, "largest": rounding.abs() },
-            { "what": "shared_positions" },
+            { "kind": "names", "count": 2 },
+            { "kind": "unused_positions", "count": 1 },
+            { "kind": "precision", "count": 2, "largest": rounding.abs() },
+            { "kind": "shared_positions" },
         ])
     );
-    assert_eq!(lost(&path(&folder, "s.ply")), json!([{ "what": "names", "count": 2 }]));
+    assert_eq!(lost(&path(&folder, "s.ply")), json!([{ "kind": "names", "count": 2 }]));
     assert_eq!(lost(&path(&folder, "t.obj")), json!([]));
-    // What was skipped is told whatever the changes.
+    // Skipped records are reported with and without changes.
     let report = json(&["convert", &scene, &stl, "--json", "--subdivide", "1", "--gap", "0.5"]);
-    assert_eq!(report["skipped"], json!([{ "what": "vn", "count": 1 }]));
-    // Nothing to lose.
+    assert_eq!(report["skipped"], json!([{ "kind": "vn", "count": 1 }]));
+    // This scene has nothing that a format could lose.
     let plain = write(&folder, "plain.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     assert_eq!(json(&["convert", &plain, &stl, "--json"])["out"]["lost"], json!([]));
-    // Positions alone are no scene in a text format.
+    // Text formats do not keep positions that no primitive uses.
     let alone = write(
         &folder,
         "alone.ply",
@@ -94,7 +94,7 @@ lost     which corners are shared: each triangle has its own
     );
     assert_eq!(
         json(&["convert", &alone, &path(&folder, "alone.off"), "--json"])["out"]["lost"],
-        json!([{ "what": "unused_positions", "count": 1 }])
+        json!([{ "kind": "unused_positions", "count": 1 }])
     );
 }
 
@@ -105,16 +105,16 @@ fn polygons_that_are_cut_are_told() {
     let (scene, out) = (write(&folder, "s.obj", text), path(&folder, "s.ply"));
     let report = json(&["convert", &scene, &out, "--json"]);
     assert_eq!(report["in"]["primitives"], json!({ "triangles": 8, "segments": 2, "points": 0 }));
-    assert_eq!(report["out"]["lost"], json!([{ "what": "polygons", "count": 3 }]));
-    // However they are changed on the way.
+    assert_eq!(report["out"]["lost"], json!([{ "kind": "polygons", "count": 3 }]));
+    // Changes to the scene do not change the losses.
     let report = json(&["convert", &scene, &out, "--subdivide", "1", "--json"]);
-    assert_eq!(report["out"]["lost"], json!([{ "what": "polygons", "count": 3 }]));
+    assert_eq!(report["out"]["lost"], json!([{ "kind": "polygons", "count": 3 }]));
     let message = text_of_error(&["convert", &scene, &out]);
     assert!(
         message.ends_with("\nlost     polygons: 3 are written as the triangles that they are cut into\n"),
         "{message}"
     );
-    // Triangles are no polygons any more.
+    // The triangles of the written file count as no polygons.
     assert_eq!(json(&["convert", &out, &path(&folder, "t.off"), "--json"])["out"]["lost"], json!([]));
 }
 
@@ -130,7 +130,7 @@ fn the_report_says_what_was_done() {
     let report = json(&["convert", &scene, &out, "--subdivide", "1", "--translate", "1", "-2", "0.5", "--json"]);
     let expected = json!({
         "p2m": "convert",
-        "version": 1,
+        "version": 2,
         "in": { "file": scene, "format": "obj", "primitives": { "triangles": 1, "segments": 1, "points": 1 } },
         "changes": [{ "change": "subdivide", "by": 1 }, { "change": "translate", "by": [1.0, -2.0, 0.5] }],
         "out": {
@@ -147,7 +147,7 @@ fn the_report_says_what_was_done() {
     assert_eq!(json(&["info", &out, "--json"])["bounds"], json!({ "min": [1.0, -2.0, 0.5], "max": [5.0, 2.0, 0.5] }));
 }
 
-/// One triangle with legs 4 and 2 after the given changes, as lines of an OBJ file.
+/// Returns a triangle with legs 4 and 2 after the given changes, as lines of an OBJ file.
 fn changed(changes: &[&str]) -> String {
     let input = "v 0 0 0\nv 4 0 0\nv 0 2 0\nf 1 2 3\n";
     let output = p2m_with(&[&["convert", "-", "-", "--from", "obj", "--to", "obj"], changes].concat(), input);
@@ -160,11 +160,11 @@ fn changes_come_in_their_order() {
     assert_eq!(changed(&["--rotate-z", "90"]), "v 0.0 0.0 0.0\nv 0.0 4.0 0.0\nv -2.0 0.0 0.0\nf 1 2 3\n");
     assert_eq!(changed(&["--rotate-x", "90"]), "v 0.0 0.0 0.0\nv 4.0 0.0 0.0\nv 0.0 0.0 2.0\nf 1 2 3\n");
     assert_eq!(changed(&["--rotate-y", "-90"]), "v 0.0 0.0 0.0\nv 0.0 0.0 4.0\nv 0.0 2.0 0.0\nf 1 2 3\n");
-    // Whatever their order on the command line: rotate, scale, translate.
+    // In any order of the options, the scene is rotated, then scaled, then translated.
     let expected = "v 1.0 0.0 0.0\nv 1.0 2.0 0.0\nv 0.0 0.0 0.0\nf 1 2 3\n";
     assert_eq!(changed(&["--rotate-z", "90", "--scale", "0.5", "--translate", "1", "0", "0"]), expected);
     assert_eq!(changed(&["--translate", "1", "0", "0", "--scale", "0.5", "--rotate-z", "90"]), expected);
-    // Subdividing goes before opening gaps: four small triangles, none of which share a corner.
+    // The scene is subdivided before gaps open, so no two of the four small triangles share a corner.
     let shards = changed(&["--gap", "0.5", "--subdivide", "1"]);
     assert_eq!((shards.matches("v ").count(), shards.matches("f ").count()), (12, 4));
     let burr = changed(&["--penetrate", "3"]);

@@ -1,10 +1,10 @@
-//! `p2m field`: grids, octrees, signs, pictures.
+//! Tests of `p2m field`: grids, octrees, signs and pictures.
 
 use crate::common::*;
 use std::fs;
 use tempfile::TempDir;
 
-/// The values of a raw file.
+/// Returns the values of a raw file.
 fn values(path: &str) -> Vec<f32> {
     let bytes = fs::read(path).unwrap();
     bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect()
@@ -22,7 +22,7 @@ fn backends_and_threads_give_the_same_field() {
     for backend in ["aabb", "kdop", "octree", "p2m"] {
         assert!(field("other.raw", &["--backend", backend]) == expected, "{backend}");
     }
-    // By lists.
+    // Without a named backend, distances come from lists.
     assert!(field("one.raw", &["--threads", "1"]) == expected);
     assert!(field("auto.raw", &["--backend", "auto"]) == expected);
     let report = |more: &[&str]| {
@@ -60,7 +60,7 @@ fn signs_are_told_by_closed_surfaces_and_by_winding_numbers() {
     assert_eq!(report["signs"], "winding");
     assert_eq!(values(&winding), all);
 
-    // With a hole, by winding numbers; or not at all.
+    // A surface with a hole has signs by winding numbers alone.
     let whole = path(&folder, "knot.obj");
     table(&["convert", &knot, &whole]);
     let text = fs::read_to_string(whole).unwrap();

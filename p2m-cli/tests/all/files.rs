@@ -1,4 +1,4 @@
-//! What the program leaves behind: whole files or none, and nothing written over that should not be.
+//! The program leaves complete files or none, and overwrites no inputs.
 
 use crate::common::*;
 use std::fs;
@@ -16,7 +16,7 @@ fn files_are_written_whole() {
     assert_eq!((output.code, text(&output.stdout)), (0, String::new()));
     let expected = table(&["query", SCENE, "--random", "100"]);
     assert_eq!(fs::read_to_string(&out).unwrap(), expected);
-    // Over an old file, and with a bare name in the current directory.
+    // An old file is replaced, also under a bare name in the current directory.
     fs::write(&out, "old").unwrap();
     assert_eq!(run(&out).code, 0);
     assert_eq!(fs::read_to_string(&out).unwrap(), expected);
@@ -39,13 +39,13 @@ fn files_keep_their_kind_and_permissions() {
     assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
     assert_eq!(fs::metadata(&real).unwrap().permissions().mode() & 0o777, 0o640);
     assert_eq!(fs::read_to_string(&real).unwrap(), table(&["query", SCENE, "--random", "3"]));
-    // A new file is as readable as any other new file.
+    // A new file has the permissions of any other new file.
     let (new, other) = (path(&folder, "new.csv"), path(&folder, "other"));
     table(&["query", SCENE, "--random", "3", "--out", &new]);
     fs::write(&other, "").unwrap();
     let mode = |p: &str| fs::metadata(p).unwrap().permissions().mode();
     assert_eq!(mode(&new), mode(&other));
-    // A device is written to, not replaced.
+    // A device is written to and not replaced.
     table(&["query", SCENE, "--random", "3", "--out", "/dev/null"]);
     assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
 }
@@ -103,7 +103,7 @@ fn inputs_are_not_written_over() {
     }
     assert_eq!(fs::read_to_string(&scene).unwrap(), "v 0 0 0\n");
     assert_eq!(fs::read_to_string(&points).unwrap(), "1 2 3\n");
-    // Before any work: this scene cannot even be read.
+    // The name is checked before any work: this scene cannot be read.
     let broken = write(&folder, "broken.obj", "v x\n");
     assert!(failure(&["query", &broken, "--grid", "1", "--out", &broken], 1).contains("it is an input"));
 }
@@ -150,7 +150,7 @@ fn causes_are_told_once() {
     assert_eq!(message, format!("error: {directory}: cannot be read: is a directory\n"));
 }
 
-/// Breaks like a pipe whose reader leaves after three bytes.
+/// A writer that fails like a pipe whose reader closes it after three bytes.
 struct Left {
     is_begun: bool,
 }
@@ -179,7 +179,7 @@ fn a_reader_that_leaves_is_no_error() {
         let (code, stderr) = p2m_into(arguments, "", Left { is_begun: false });
         assert_eq!((code, text(&stderr)), (0, String::new()), "{arguments:?}");
     }
-    // The program meets a real pipe whose reader has left.
+    // The program writes to a real pipe whose reader has closed it.
     let mut query = program(&["query", SCENE, "--random", "50000"]);
     let mut child = query.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut first = [0; 3];

@@ -1,4 +1,4 @@
-//! `p2m generate`.
+//! Tests of `p2m generate`.
 
 use crate::common::*;
 use std::fs;
@@ -52,11 +52,11 @@ fn every_kind_of_the_library_is_made() {
         assert_eq!((&report["p2m"], &report["kind"]), (&"generate".into(), &kind.name().into()));
         assert_eq!(report["out"]["primitives"]["triangles"], soup.triangles().len());
         assert_eq!(report["out"]["bytes"], fs::metadata(&out).unwrap().len());
-        // Bit by bit what the library makes.
+        // The scene is bit for bit that of the library.
         assert_eq!(p2m_mixed::read_scene(out.as_ref()).unwrap().soup, soup, "{}", kind.name());
-        // Each option has the name on the command line under which it is reported, and alone makes another scene.
+        // Each option has the same name on the command line and in the report, and changes the scene.
         for (name, default) in report["options"].as_object().unwrap() {
-            // No default; and 7 has no divisor in common with the windings of a knot.
+            // The value 7 is no default, and has no common divisor with the windings of a knot.
             let value: serde_json::Value = if default.is_f64() { 0.25.into() } else { 7.into() };
             let option = format!("--{}", name.replace('_', "-"));
             let report = json(&["generate", kind.name(), "--out", &out, "--json", &option, &value.to_string()]);
@@ -87,7 +87,8 @@ fn options_reach_the_scene() {
 fn scenes_go_to_files_in_their_format() {
     let folder = TempDir::new().unwrap();
     let out = path(&folder, "ball.stl");
-    // Of 12 corners two coordinates each are no numbers of f32, of 24 middles of edges two; 6 middles are on the axes.
+    // Two coordinates of each of 12 corners and of each of 24 midpoints of edges are not representable in f32. The
+    // other 6 midpoints are on the axes.
     let output = p2m(&["generate", "ico-sphere", "--frequency", "2", "--out", &out]);
     assert_eq!(
         text(&output.stderr),

@@ -1,10 +1,11 @@
-//! `p2m info`: the report for people and the one for programs.
+//! Tests of `p2m info`: the report for people and the one for programs.
 
 use crate::common::*;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-/// A corner of a cube, a pole, and what one finds in files: repeated, unused and badly named things.
+/// A scene with a corner of a cube, a pole, and common defects: duplicates, unused positions and names
+/// with control characters.
 const COURT: &str = "mtllib x.mtl\nv 0 0 0\nv 3 0 0\nv 0 4 0\nv 0 0 12\nv nan 0 0\no wall\nf 1 3 2\nf 1 2 4\no pole\u{7}\nl 1 4\n\
     o wall\nf 1 4 3\nf 1 3 4\nf 1 2 2\no\np 1\n";
 
@@ -46,7 +47,7 @@ fn the_json_report_has_the_same_figures() {
     let counts = |triangles: u32, segments: u32, points: u32| json!({ "triangles": triangles, "segments": segments, "points": points });
     let expected = json!({
         "p2m": "info",
-        "version": 1,
+        "version": 2,
         "file": scene,
         "format": "obj",
         "index": null,
@@ -73,7 +74,7 @@ fn the_json_report_has_the_same_figures() {
             "f32_step": f64::from(f32::EPSILON) * 8.0,
             "f64_step": f64::EPSILON * 8.0,
         },
-        "skipped": [{ "what": "mtllib", "count": 1 }],
+        "skipped": [{ "kind": "mtllib", "count": 1 }],
     });
     let mut found = report.clone();
     let notes = found.as_object_mut().unwrap().shift_remove("notes").unwrap();
@@ -114,7 +115,7 @@ fn scenes_come_from_the_standard_input() {
     let message = text(&p2m_with(&["info", "-"], &file).stderr);
     assert!(message.contains("add --format obj|ply|stl|off") && message.contains("'p2m info --help'"), "{message}");
     failure(&["info", "-"], 2);
-    // A place in what has no name.
+    // The message names a line of the standard input.
     let output = p2m_with(&["info", "-", "--format", "off"], "OFF\n1 0 0\n0 0 x\n");
     assert_eq!(text(&output.stderr), "error: standard input:3: 'x' is not a number that fits here\n");
 }
@@ -158,7 +159,7 @@ fn empty_and_extreme_scenes_are_reported_in_finite_numbers() {
         }
         assert_eq!(report["shapes"]["median_aspect"], 2.0, "{size}");
     }
-    // What f32 does not reach has no steps there.
+    // Coordinates beyond the range of f32 have no step in f32.
     let report = json(&["info", &write(&folder, "y.obj", "v 1e300 0 0\np 1\n"), "--json"]);
     assert_eq!(report["location"]["f32_step"], Value::Null);
 }

@@ -1,4 +1,4 @@
-//! What is left when a run is interrupted: nothing.
+//! An interrupted run leaves nothing behind.
 
 #![cfg(unix)]
 
@@ -8,8 +8,8 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// More than enough for every machine: hours of work.
-const LONG: [&str; 5] = ["--random", "1000000000", "--backend", "brute", "--out"];
+/// A run that takes hours on every machine.
+const LONG_RUN: [&str; 5] = ["--random", "1000000000", "--backend", "brute", "--out"];
 
 /// Starts a long query that writes to `answers.csv`, and waits until its unfinished file is there.
 fn start(folder: &Path, before: &mut Command) -> Child {
@@ -28,7 +28,7 @@ fn query(folder: &Path) -> Command {
 
 fn long(name: &str, folder: &Path) -> Command {
     let mut command = program(&[name, SCENE]);
-    command.args(LONG).arg(folder.join("answers.csv"));
+    command.args(LONG_RUN).arg(folder.join("answers.csv"));
     command
 }
 
@@ -36,8 +36,8 @@ fn send(signal: &str, child: &Child) {
     assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
 }
 
-/// Whether the tests themselves were started with that signal ignored, in the background of a script (SIGINT) or by
-/// `nohup` (SIGHUP, number 1): then the program has to ignore it as well.
+/// Returns whether the tests were started with this signal ignored, in the background of a script (SIGINT) or by
+/// `nohup` (SIGHUP, number 1). The program then has to ignore it as well.
 fn is_ignored_here(number: u32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -86,7 +86,7 @@ fn ignored_signals_stay_ignored() {
         let child = start(folder.path(), &mut command);
         send(sent, &child);
         std::thread::sleep(Duration::from_millis(300));
-        // Already gone where it is not ignored; then this signal reaches nobody.
+        // If the signal was not ignored, the program has ended and this signal has no effect.
         let _ = Command::new("kill").args(["-TERM", &child.id().to_string()]).stderr(Stdio::null()).status();
         assert_eq!(child.wait_with_output().unwrap().status.code(), Some(code), "{sent} while {ignored} is ignored");
         assert!(names(folder.path()).is_empty());

@@ -1,4 +1,4 @@
-//! docs/json.md lists every key of every report.
+//! A test that docs/json.md lists every key of every report.
 
 use crate::common::*;
 use serde_json::Value;
@@ -10,7 +10,7 @@ fn keys(value: &Value, found: &mut BTreeSet<String>) {
         Value::Object(map) => {
             for (key, value) in map {
                 found.insert(key.clone());
-                // Those are the options of each generator.
+                // The keys of `options` are the options of generators.
                 if key != "options" {
                     keys(value, found);
                 }

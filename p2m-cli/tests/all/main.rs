@@ -1,4 +1,5 @@
-//! What `p2m` prints, writes and returns. `cargo test -p p2m-cli --test all query::` runs the tests of one command.
+//! Tests of the output, the files and the exit codes of `p2m`. `cargo test -p p2m-cli --test all query::` runs the
+//! tests of one command.
 
 mod advise;
 mod boxes;

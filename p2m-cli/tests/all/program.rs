@@ -1,4 +1,4 @@
-//! The program itself does the same as a run within the process of the tests.
+//! A test that the program does the same as a run within the process of the tests.
 
 use crate::common::*;
 use std::io::Write;

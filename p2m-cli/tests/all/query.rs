@@ -1,4 +1,4 @@
-//! `p2m query`: tables, other forms of answers, summaries.
+//! Tests of `p2m query`: tables, other formats and summaries.
 
 use crate::common::*;
 use std::fs;
@@ -91,7 +91,7 @@ fn directions_of_the_scene_are_explained() {
     let report = |more: &[&str]| {
         let output = p2m(&[&["query", SCENE, "--random", "5", "--json", "--out", &out], more].concat());
         let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-        ["faces", "choice"].map(|key| report[key].clone())
+        ["faces", "directions_reason"].map(|key| report[key].clone())
     };
     assert_eq!(
         report(&["--backend", "kdop", "--k", "scene"]),
@@ -106,7 +106,7 @@ fn directions_of_the_scene_are_explained() {
     assert_eq!(output.code, 2);
 }
 
-/// What stands behind `start` in a line of the summary.
+/// Returns the text after `start` in a line of the summary.
 fn after<'a>(summary: &'a str, start: &str) -> &'a str {
     summary.lines().find_map(|line| line.strip_prefix(start)).unwrap_or_else(|| panic!("{start}: {summary}"))
 }
@@ -141,7 +141,7 @@ fn given_points_are_answered_in_their_order() {
     assert_eq!(answers, table(&["query", &scene, "--points", &points]));
     assert!(answers.starts_with(&expected), "{answers}");
     assert!(answers.lines().last().unwrap().ends_with(",1,vertex0"), "{answers}");
-    // The table itself asks the same questions again.
+    // The table itself is a file of the same queries.
     let again = write(&folder, "q.csv", &answers);
     assert_eq!(table(&["query", &scene, "--points", &again]), answers);
 }
@@ -222,9 +222,9 @@ fn answers_come_in_every_format() {
     for format in ["npy", "ply", "csv", "NPY"] {
         let out = path(&folder, &format!("answers.{format}"));
         assert_eq!(table(&["query", SCENE, "--random", "50", "--max-distance", "0.5", "--out", &out]), "");
-        // The file asks the same questions again.
+        // The file of answers is a file of the same queries.
         assert_eq!(table(&["query", SCENE, "--points", &out, "--max-distance", "0.5"]), expected, "{format}");
-        // By option, whatever the name, and on the standard output.
+        // The option names the format, for any file name and for the standard output.
         let unnamed = path(&folder, "answers");
         let arguments = ["query", SCENE, "--random", "50", "--max-distance", "0.5", "--out-format", format];
         table(&[&arguments[..], &["--out", &unnamed]].concat());
@@ -286,11 +286,11 @@ fn the_json_summary_agrees_with_the_table() {
     let mut rest = report.clone();
     rest.as_object_mut().unwrap().shift_remove("seconds");
     let error = rest.as_object_mut().unwrap().shift_remove("error").unwrap();
-    // 8 u M with M up to twice the size of the scene; no lower bound is above a distance.
+    // The error is at most 8 u M with M up to twice the size of the scene, and no lower bound is above its distance.
     assert!(error["min"].as_f64().unwrap() >= 0.0 && error["max"].as_f64().unwrap() < 1e-14, "{error}");
     let expected = serde_json::json!({
         "p2m": "query",
-        "version": 1,
+        "version": 2,
         "scene": {
             "file": SCENE,
             "format": "obj",
@@ -300,12 +300,12 @@ fn the_json_summary_agrees_with_the_table() {
         "backend": "aabb",
         "loaded": false,
         "faces": null,
-        "choice": null,
+        "directions_reason": null,
         "cells": null,
         "threads": 2,
         "max_distance": 0.7,
-        "accuracy": { "epsilon": null, "budget": null, "certified": false },
-        "asked_about": { "random": 200, "seed": 3, "box_scale": 1.05 },
+        "accuracy": { "epsilon": null, "max_visits": null, "certified": false },
+        "source": { "random": 200, "seed": 3, "box_scale": 1.05 },
         "queries": 200,
         "answered": answered,
         "unanswered": 200 - answered,
@@ -328,13 +328,13 @@ fn json_has_no_numbers_that_are_none() {
     let report = json(&["query", &scene, "--points", &points, "--max-distance", "inf", "--out", &out, "--json"]);
     assert_eq!(report["max_distance"], serde_json::Value::Null);
     assert_eq!(report["distance"], serde_json::json!({ "min": null, "max": null, "mean": null }));
-    assert_eq!(report["asked_about"], serde_json::json!({ "points": points }));
+    assert_eq!(report["source"], serde_json::json!({ "points": points }));
     let report = json(&["query", &scene, "--grid", "2", "--max-distance", "0", "--out", &out, "--json"]);
     assert_eq!((&report["distance"], &report["unanswered"]), (&serde_json::Value::Null, &8.into()));
-    assert_eq!(report["asked_about"], serde_json::json!({ "grid": 2, "box_scale": 1.05 }));
+    assert_eq!(report["source"], serde_json::json!({ "grid": 2, "box_scale": 1.05 }));
 }
 
-/// Distances of 300 random queries, and what the report says of their errors.
+/// Returns the distances of 300 random queries, and the report.
 fn distances(out: &str, options: &[&str]) -> (Vec<f64>, serde_json::Value) {
     let report = json(&[&["query", SCENE, "--random", "300", "--out", out, "--json"], options].concat());
     let table = fs::read_to_string(out).unwrap();
@@ -356,13 +356,15 @@ fn accuracy_is_traded_within_what_is_told() {
         let (rough, report) = ask(&["--epsilon", "0.3"]);
         assert_eq!(report["accuracy"]["epsilon"], 0.3);
         assert!(rough.iter().zip(&exact).all(|(a, b)| b <= a && *a <= b * 1.3 * (1.0 + 1e-15)), "{backend}");
-        let (budget, report) = ask(&["--budget", "0"]);
+        let (budget, report) = ask(&["--max-visits", "0"]);
+        assert_eq!(report["accuracy"]["max_visits"], 0);
+        assert_eq!(ask(&["--budget", "0"]).0, budget, "the old name of the option");
         assert!(budget.iter().zip(&exact).all(|(a, b)| b <= a) && budget != exact, "{backend}");
         let most = budget.iter().zip(&exact).map(|(a, b)| a - b).fold(0.0, f64::max);
         assert!(report["error"]["max"].as_f64().unwrap() >= most, "{backend}: {report}");
     }
     for wrong in
-        [&["--epsilon", "-1"][..], &["--epsilon", "nan"], &["--budget", "many"], &["--certified", "--epsilon", "1"]]
+        [&["--epsilon", "-1"][..], &["--epsilon", "nan"], &["--max-visits", "many"], &["--certified", "--epsilon", "1"]]
     {
         assert_eq!(p2m(&[&["query", SCENE, "--random", "3"], wrong].concat()).code, 2, "{wrong:?}");
     }

@@ -1,4 +1,4 @@
-//! `p2m ray`: tables, modes, other forms of answers, summaries.
+//! Tests of `p2m ray`: tables, modes, other formats and summaries.
 
 use crate::common::*;
 use std::fs;
@@ -6,11 +6,11 @@ use tempfile::TempDir;
 
 const HITS: &str = "ray,ox,oy,oz,dx,dy,dz,parameter,x,y,z,primitive,side,w0,w1,w2";
 
-/// A unit square in two triangles at z = 0, one at z = -1 that faces down, a segment and a point above.
+/// A scene of a unit square in two triangles at z = 0, one at z = -1 that faces down, a segment and a point above.
 const SQUARES: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 -1\nv 0 2 -1\nv 2 1 -1\nv 0 .5 1\nv 1 .5 1\nv .5 .5 2\n\
     f 1 2 3\nf 1 3 4\nf 5 6 7\nl 8 9\np 10\n";
 
-/// The records of a table, without its header.
+/// Returns the records of a table without its header.
 fn rows(table: &str) -> Vec<Vec<&str>> {
     table.lines().skip(1).map(|line| line.split(',').collect()).collect()
 }
@@ -18,7 +18,7 @@ fn rows(table: &str) -> Vec<Vec<&str>> {
 #[test]
 fn backends_and_threads_give_the_same_table() {
     for sample in [&["--random", "400"][..], &["--random", "300", "--seed", "9", "--box-scale", "1.5", "--line"]] {
-        for mode in ["do", "first", "all", "count", "crossings"] {
+        for mode in ["intersects", "first", "all", "count", "crossings"] {
             let run =
                 |more: &[&str]| table(&[&["ray", SCENE, "--mode", mode, "--radius", "0.02"], sample, more].concat());
             let expected = run(&["--backend", "brute"]);
@@ -54,7 +54,7 @@ fn objects_are_named_in_tables() {
 #[test]
 fn modes_agree_with_one_another() {
     let run = |mode: &str| table(&["ray", SCENE, "--random", "500", "--radius", "0.05", "--mode", mode]);
-    let [met, any, first, all, count] = ["do", "any", "first", "all", "count"].map(run);
+    let [met, any, first, all, count] = ["intersects", "any", "first", "all", "count"].map(run);
     let [met, any, first, all, count] = [&met, &any, &first, &all, &count].map(|table| rows(table));
     assert!(all.len() > 200);
     assert!(all.iter().any(|hit| hit[12] == "along") && all.iter().any(|hit| hit[12] == "back"));
@@ -87,7 +87,7 @@ fn given_rays_are_answered_in_their_order() {
             start[0], start[1], start[2]
         )
     );
-    // The point, the segment, both triangles on their diagonal, and the one below.
+    // The ray hits the point, the segment, both triangles on their diagonal, and the triangle below.
     let all = ask(&["--mode", "all"]);
     let [primitives, sides] = [11, 12].map(|column| rows(&all).iter().map(|row| row[column]).collect::<Vec<_>>());
     assert_eq!(primitives, ["4", "3", "0", "1", "2", "0", "2"]);
@@ -107,14 +107,14 @@ fn given_rays_are_answered_in_their_order() {
 #[test]
 fn answers_come_in_every_format_and_ask_again() {
     let folder = TempDir::new().unwrap();
-    for mode in ["do", "first", "all", "count", "crossings"] {
+    for mode in ["intersects", "first", "all", "count", "crossings"] {
         let ask = ["ray", SCENE, "--mode", mode];
         let expected = table(&[&ask[..], &["--random", "50"]].concat());
         for format in ["npy", "ply", "csv", "NPY"] {
             let out = path(&folder, &format!("{mode}.{format}"));
             assert_eq!(table(&[&ask[..], &["--random", "50", "--out", &out]].concat()), "");
             if mode != "all" {
-                // The file asks the same questions again.
+                // The file of answers is a file of the same rays.
                 assert_eq!(table(&[&ask[..], &["--rays", &out]].concat()), expected, "{mode} {format}");
             }
             let arguments = [&ask[..], &["--random", "50", "--out-format", format]].concat();
@@ -176,7 +176,7 @@ fn the_summary_tells_what_was_done() {
         assert_eq!(lines[4], "hitting  2, missing 1");
         lines[5..].join("|")
     };
-    assert_eq!(lines("do"), "");
+    assert_eq!(lines("intersects"), "");
     assert_eq!(lines("first"), "at t     min 1.0, max 1.5, mean 1.25");
     assert_eq!(lines("any").split_once("min").unwrap().0, "at t     ");
     assert_eq!(lines("count"), "hits     6, per ray min 0, max 5, mean 2.0");
@@ -217,11 +217,11 @@ fn the_json_summary_agrees_with_the_table() {
     let hits = rows(&table);
     let parameters: Vec<f64> = hits.iter().map(|hit| hit[7].parse().unwrap()).collect();
     let per_ray: Vec<usize> = (0..200).map(|ray| hits.iter().filter(|hit| hit[0] == ray.to_string()).count()).collect();
-    let hitting = per_ray.iter().filter(|n| **n > 0).count();
+    let with_hit = per_ray.iter().filter(|n| **n > 0).count();
     assert!(report.as_object_mut().unwrap().shift_remove("seconds").unwrap()["query"].as_f64().unwrap() > 0.0);
     let expected = serde_json::json!({
         "p2m": "ray",
-        "version": 1,
+        "version": 2,
         "scene": {
             "file": SCENE,
             "format": "obj",
@@ -231,16 +231,16 @@ fn the_json_summary_agrees_with_the_table() {
         "backend": "aabb",
         "loaded": false,
         "faces": null,
-        "choice": null,
+        "directions_reason": null,
         "threads": 2,
         "mode": "all",
         "range": { "min": null, "max": 7.0 },
         "radius": 0.0,
-        "asked_about": { "random": 200, "seed": 3, "box_scale": 1.05 },
+        "source": { "random": 200, "seed": 3, "box_scale": 1.05 },
         "rays": 200,
-        "hitting": hitting,
-        "missing": 200 - hitting,
-        "numbers": {
+        "with_hit": with_hit,
+        "without_hit": 200 - with_hit,
+        "counts": {
             "total": hits.len(),
             "min": 0,
             "max": per_ray.iter().max(),
@@ -256,8 +256,8 @@ fn the_json_summary_agrees_with_the_table() {
     assert_eq!(report, expected);
     let rays = write(&folder, "r.xyz", "9 9 9 1 0 0\n");
     let report = json(&["ray", SCENE, "--rays", &rays, "--out", &out, "--json"]);
-    assert_eq!((&report["numbers"], &report["parameter"]), (&serde_json::Value::Null, &serde_json::Value::Null));
-    assert_eq!(report["asked_about"], serde_json::json!({ "rays": rays }));
+    assert_eq!((&report["counts"], &report["parameter"]), (&serde_json::Value::Null, &serde_json::Value::Null));
+    assert_eq!(report["source"], serde_json::json!({ "rays": rays }));
     assert_eq!(report["range"], serde_json::json!({ "min": 0.0, "max": null }));
 }
 
@@ -301,7 +301,7 @@ fn wrong_usage_is_told_what_is_wrong() {
         (&["--random", "1", "--radius", "inf"], "not a finite number from 0 up"),
         (&["--random", "1", "--k", "14"], "--k is for --backend kdop"),
         (&["--random", "1", "--backend", "octree"], "[possible values: brute, aabb, kdop]"),
-        (&["--random", "1", "--mode", "last"], "[possible values: do, any, first, all, count, crossings]"),
+        (&["--random", "1", "--mode", "last"], "[possible values: intersects, any, first, all, count, crossings]"),
         (&["--random", "1", "--json"], "add --out FILE"),
         (&["--random", "1", "--rays", "r.csv"], "cannot be used with"),
         (&["--rays", "r.csv", "--seed", "1"], "cannot be used with"),

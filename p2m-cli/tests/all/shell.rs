@@ -1,4 +1,4 @@
-//! `p2m completions` and `p2m man`.
+//! Tests of `p2m completions` and `p2m man`.
 
 use crate::common::*;
 use std::fs;

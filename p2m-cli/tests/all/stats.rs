@@ -1,4 +1,4 @@
-//! `p2m stats`, end to end.
+//! Tests of `p2m stats`.
 
 use crate::common::{SCENE, failure, path, table};
 use p2m_mixed::read_scene;
@@ -24,7 +24,7 @@ fn every_backend_says_what_it_is_made_of() {
         for place in ["in_box", "on_scene"] {
             let [nodes, packets, primitives] =
                 ["nodes", "packets", "primitives"].map(|n| number(&format!("/{place}/{n}/mean")));
-            let most = number(&format!("/{place}/primitives/most"));
+            let most = number(&format!("/{place}/primitives/max"));
             assert!(most >= primitives && most <= 4080.0, "{report}");
             assert!(primitives >= 1.0, "{report}");
             match backend {
@@ -35,7 +35,7 @@ fn every_backend_says_what_it_is_made_of() {
             }
         }
         if has_lists {
-            let lengths = ["median", "percent_90", "percent_99", "most"].map(|n| number(&format!("/lists/{n}")));
+            let lengths = ["median", "percentile_90", "percentile_99", "max"].map(|n| number(&format!("/lists/{n}")));
             assert!(lengths.is_sorted() && lengths[0] >= 1.0, "{report}");
             assert!(number("/lists/mean") <= lengths[3] && number("/lists/count") > 100.0, "{report}");
             assert!(number("/in_box/list") >= 1.0 && number("/in_box/without_list") < 0.5, "{report}");
@@ -68,7 +68,7 @@ fn the_picture_has_each_primitive_with_its_number() {
             all
         };
         assert_eq!(corners(&picture), corners(&scene));
-        // The least and the largest number stand in the head, and colours differ.
+        // The header has the least and the largest number, and colours differ.
         let bytes = fs::read(&out).unwrap();
         let head = String::from_utf8_lossy(&bytes[..400]).into_owned();
         let range = head.lines().find_map(|line| line.strip_prefix("comment value: ")).unwrap().to_owned();
@@ -93,7 +93,7 @@ fn the_png_shows_the_scene_in_colours() {
     assert_eq!((frame.width, frame.color_type), (120, png::ColorType::Rgb));
     let pixels: Vec<&[u8]> = bytes.chunks_exact(3).collect();
     let white = pixels.iter().filter(|p| **p == [255; 3]).count();
-    // Blue more than red by that much, and the other way round.
+    // Some pixels have more blue than red by this much, and others more red than blue.
     let leans = |p: &[u8], more: usize, less: usize| p[more].saturating_sub(p[less]) > 60;
     let [blue, red] = [[2, 0], [0, 2]].map(|[more, less]| pixels.iter().filter(|p| leans(p, more, less)).count());
     assert!(white * 10 > pixels.len() && white * 10 < pixels.len() * 9, "{white} of {}", pixels.len());

@@ -1,4 +1,4 @@
-//! What only a terminal sees. Needs the program `script` of util-linux, which makes one.
+//! The output on a terminal. These tests need the program `script` of util-linux, which makes a terminal.
 
 #![cfg(target_os = "linux")]
 
@@ -6,7 +6,7 @@ use crate::common::*;
 use std::collections::BTreeSet;
 use std::process::{Command, Stdio};
 
-/// What a terminal shows of a shell command; `None` without `script`.
+/// Returns the output of a shell command on a terminal, or `None` without `script`.
 fn on_terminal(command: &str, environment: &[(&str, &str)]) -> Option<String> {
     let mut script = Command::new("script");
     script.args(["-qec", command, "/dev/null"]).env("P2M", program(&[]).get_program()).env("SCENE", SCENE);
@@ -21,18 +21,19 @@ fn on_terminal(command: &str, environment: &[(&str, &str)]) -> Option<String> {
     Some(text(&output.stdout))
 }
 
-const LONG: &str = "timeout 3 \"$P2M\" query \"$SCENE\" --random 100000000 --backend brute --threads 1 --out /dev/null";
+const LONG_RUN: &str =
+    "timeout 3 \"$P2M\" query \"$SCENE\" --random 100000000 --backend brute --threads 1 --out /dev/null";
 
 #[test]
 fn long_work_shows_a_bar_on_a_terminal_only() {
-    let Some(shown) = on_terminal(LONG, &[]) else { return };
-    // It moves on.
+    let Some(shown) = on_terminal(LONG_RUN, &[]) else { return };
+    // The bar moves.
     let words: BTreeSet<_> = shown.split_whitespace().filter(|word| word.ends_with("/100,000,000")).collect();
-    assert!(shown.contains("asking") && words.len() > 3, "{shown:?}");
-    let shown = on_terminal(&format!("{LONG} 2>/dev/null"), &[]).unwrap();
+    assert!(shown.contains("answering") && words.len() > 3, "{shown:?}");
+    let shown = on_terminal(&format!("{LONG_RUN} 2>/dev/null"), &[]).unwrap();
     assert_eq!(shown, "");
-    // No bar, but the prompt of the shell goes to a line of its own after an interruption.
-    let shown = on_terminal(LONG, &[("TERM", "dumb")]).unwrap();
+    // There is no bar, but after an interruption the prompt of the shell is on a line of its own.
+    let shown = on_terminal(LONG_RUN, &[("TERM", "dumb")]).unwrap();
     assert_eq!(shown, "\r\n");
 }
 
@@ -40,7 +41,7 @@ fn long_work_shows_a_bar_on_a_terminal_only() {
 fn short_work_shows_no_bar() {
     let Some(shown) = on_terminal("\"$P2M\" query \"$SCENE\" --random 10 --out /dev/null", &[]) else { return };
     assert!(shown.starts_with("scene    "), "{shown:?}");
-    assert!(!shown.contains('\u{1b}') && !shown.contains("asking"), "{shown:?}");
+    assert!(!shown.contains('\u{1b}') && !shown.contains("answering"), "{shown:?}");
 }
 
 #[test]
@@ -50,9 +51,9 @@ fn colours_are_for_terminals_that_want_them() {
     assert!(shown.contains("\u{1b}["), "{shown:?}");
     let shown = on_terminal(help, &[("NO_COLOR", "1")]).unwrap();
     assert!(shown.contains("error: ") && !shown.contains('\u{1b}'), "{shown:?}");
-    // The bar has no colours at all: of the codes only those that move the cursor and clear the line.
-    let shown = on_terminal(LONG, &[("NO_COLOR", "1")]).unwrap();
-    assert!(shown.contains("asking") && !shown.contains("\u{1b}[3"), "{shown:?}");
+    // The bar has no colours, only codes that move the cursor and clear the line.
+    let shown = on_terminal(LONG_RUN, &[("NO_COLOR", "1")]).unwrap();
+    assert!(shown.contains("answering") && !shown.contains("\u{1b}[3"), "{shown:?}");
 }
 
 #[test]

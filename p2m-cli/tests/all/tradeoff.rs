@@ -1,4 +1,4 @@
-//! `p2m tradeoff`.
+//! Tests of `p2m tradeoff`.
 
 use crate::common::*;
 use std::fs;
@@ -18,7 +18,7 @@ fn table_page_and_record_have_every_setting_of_every_backend() {
         }
         assert!(page.contains(&format!("<dt>{backend}</dt>")));
     }
-    // What is exact is as the tree, and every promise is kept.
+    // No answer is farther than its setting promises.
     assert!(page.contains("<p>0 of ") && !shown.contains("farther than promised"), "{shown}");
 }
 

@@ -1,7 +1,7 @@
-//! docs/transcript.md is what really comes out.
+//! A test that docs/transcript.md has the real output of its commands.
 //!
-//! In blocks marked `console`, lines that start with `$ ` are commands, and what follows is their output, the standard
-//! error included. `P2M_BLESS=1` writes the file anew.
+//! In blocks marked `console`, lines that start with `$ ` are commands. The lines after them are their output, with the
+//! standard error. `P2M_BLESS=1` writes the file anew.
 
 #![cfg(unix)]
 
@@ -14,7 +14,7 @@ use tempfile::TempDir;
 
 const TRANSCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/transcript.md");
 
-/// What a command of the transcript prints, and its exit code if it is not 0.
+/// Returns the output of a command of the transcript, with its exit code if it is not 0.
 fn run(command: &str, folder: &Path) -> String {
     let program = program(&[]);
     let programs = Path::new(program.get_program()).parent().unwrap();
@@ -39,7 +39,7 @@ fn run(command: &str, folder: &Path) -> String {
     text
 }
 
-/// The file with all outputs replaced by real ones.
+/// Returns the transcript with the real output of each command.
 fn replay(transcript: &str, folder: &Path) -> String {
     let mut replayed = String::new();
     let mut is_console = false;
@@ -57,12 +57,12 @@ fn replay(transcript: &str, folder: &Path) -> String {
     replayed
 }
 
-/// With dots for times, which no two runs share.
+/// Replaces times by dots, because they differ from run to run.
 fn masked(transcript: &str) -> String {
     let mask = |line: &str| {
         for start in ["backend  ", "queries  ", "rays     "] {
             if let Some((before, after)) = line.split_once(" in ").filter(|_| line.starts_with(start)) {
-                // The number of threads is no time.
+                // The number of threads is kept.
                 let words: Vec<&str> = after.split(' ').collect();
                 let is_time = |i: usize| words[i].starts_with(char::is_numeric) && (i == 0 || words[i - 1] != "on");
                 let masked: Vec<&str> = (0..words.len()).map(|i| if is_time(i) { "..." } else { words[i] }).collect();

@@ -1,4 +1,4 @@
-//! Wrong usage, and help against it.
+//! Tests of help, and of messages about wrong usage.
 
 use crate::common::*;
 

@@ -1,38 +1,38 @@
-//! HTML with every tag closed and every text escaped.
+//! A writer of HTML that closes every tag and escapes every text.
 
 use crate::plot::escaped;
 
-/// Letters of a cell that stay in one line.
-const LONG: usize = 40;
+/// The largest number of bytes of a cell that stays on one line.
+const MAX_ONE_LINE_BYTES: usize = 40;
 
-/// A page, or a part of one.
+/// A page or a part of a page.
 #[derive(Default)]
 pub(super) struct Html {
     out: String,
 }
 
 impl Html {
-    /// An element of text.
+    /// Writes an element with text.
     pub(super) fn text(&mut self, tag: &str, text: &str) {
         self.within(tag, "", |html| html.out.push_str(&escaped(text)));
     }
 
-    /// An element with attributes, which are written as they are, around others.
+    /// Writes an element around the content that `write` writes. Attributes are not escaped.
     pub(super) fn within(&mut self, tag: &str, attributes: &str, write: impl FnOnce(&mut Self)) {
         let space = if attributes.is_empty() { "" } else { " " };
         self.out.push_str(&format!("<{tag}{space}{attributes}>"));
         write(self);
-        // A line break within a sentence would be a space.
+        // A line break after these elements would be a space within a sentence.
         let end = if tag == "code" || tag == "a" { "" } else { "\n" };
         self.out.push_str(&format!("</{tag}>{end}"));
     }
 
-    /// Text with parts in backticks as code.
+    /// Writes a paragraph. Parts in backticks become code.
     pub(super) fn paragraph(&mut self, text: &str) {
         self.within("p", "", |html| html.words(text));
     }
 
-    /// Names, and what they mean.
+    /// Writes a list of terms with their meanings.
     pub(super) fn terms<'a>(&mut self, terms: impl IntoIterator<Item = (&'a str, &'a str)>) {
         self.within("dl", "", |html| {
             for (name, meaning) in terms {
@@ -42,7 +42,7 @@ impl Html {
         });
     }
 
-    /// The same without an element.
+    /// Writes text without an element. Parts in backticks become code.
     pub(super) fn words(&mut self, text: &str) {
         for (i, part) in text.split('`').enumerate() {
             if i % 2 == 1 {
@@ -53,7 +53,7 @@ impl Html {
         }
     }
 
-    /// A table whose first columns are names and all others figures.
+    /// Writes a table. The first `names` columns are names, and all others are figures.
     pub(super) fn table(&mut self, head: &[&str], names: usize, rows: &[Vec<String>]) {
         let class = |i: usize| if i < names { "class=\"name\"" } else { "" };
         self.within("div", "class=\"wide\"", |html| {
@@ -69,8 +69,8 @@ impl Html {
                     for row in rows {
                         html.within("tr", "", |html| {
                             for (i, cell) in row.iter().enumerate() {
-                                // What is long is words, and may have several lines.
-                                let class = if cell.len() > LONG { "class=\"long\"" } else { class(i) };
+                                // Long cells have words, and may have several lines.
+                                let class = if cell.len() > MAX_ONE_LINE_BYTES { "class=\"long\"" } else { class(i) };
                                 html.within("td", class, |html| html.out.push_str(&escaped(cell)));
                             }
                         });
@@ -80,7 +80,7 @@ impl Html {
         });
     }
 
-    /// A picture with what it shows below it.
+    /// Writes a picture with its caption.
     pub(super) fn figure(&mut self, svg: &str, caption: &str) {
         self.within("figure", "", |html| {
             html.out.push_str(&inlined(svg));
@@ -88,28 +88,28 @@ impl Html {
         });
     }
 
-    /// Style or markup of our own, as it is.
+    /// Writes style or markup without escaping it.
     pub(super) fn raw(&mut self, text: &str) {
         self.out.push_str(text);
     }
 
-    /// What was written.
+    /// Returns the page.
     pub(super) fn finish(self) -> String {
         self.out
     }
 }
 
-/// A picture as part of a page, where it needs no name space; without what goes without saying and what is not seen.
+/// Prepares a picture for a page: removes the name space, default attributes and invisible elements.
 fn inlined(svg: &str) -> String {
-    let seen = svg.lines().filter(|line| !line.contains(" opacity=\"0\"")).map(|line| line.to_owned() + "\n");
-    let unsaid = [
+    let visible = svg.lines().filter(|line| !line.contains(" opacity=\"0\"")).map(|line| line.to_owned() + "\n");
+    let defaults = [
         " xmlns=\"http://www.w3.org/2000/svg\"",
         " opacity=\"1\"",
         " stroke-width=\"1\"",
         " font-family=\"sans-serif\"",
         " fill=\"#000000\"",
     ];
-    unsaid.iter().fold(seen.collect(), |svg: String, words| svg.replace(words, ""))
+    defaults.iter().fold(visible.collect(), |svg: String, words| svg.replace(words, ""))
 }
 
 #[cfg(test)]

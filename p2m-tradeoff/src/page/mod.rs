@@ -1,4 +1,4 @@
-//! Everything that was measured as one page that needs nothing else: no other file, no network, no script.
+//! All results as one HTML page, which needs no other file, no network and no script.
 
 mod html;
 mod plots;
@@ -14,42 +14,42 @@ use crate::text::error;
 use html::Html;
 use plots::{Colours, Unit};
 
-/// A quantity of each backend that depends on another one, as a plot and a table.
+/// A quantity of each backend as a function of another quantity. It becomes a plot and a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
-    /// Its head.
+    /// The heading of its section.
     pub title: String,
-    /// What was done.
+    /// A sentence about the measurement.
     pub about: String,
-    /// The names of what is given and of what was measured.
+    /// The names of the given and of the measured quantity.
     pub axes: [&'static str; 2],
-    /// Backends, and their points.
+    /// The names of backends, and their points.
     pub lines: Vec<(String, Vec<(f64, f64)>)>,
 }
 
-/// What a page is made of.
+/// The content of a page.
 #[derive(Clone, Copy, Debug)]
 pub struct Page<'a> {
-    /// By what it was measured.
+    /// The origin of the figures.
     pub provenance: &'a Provenance,
-    /// How, in sentences: rounds, queries, seed, how long it took.
+    /// Sentences about the amount of work: rounds, queries, seed and duration.
     pub effort: &'a str,
-    /// What answers were compared with, in sentences.
+    /// Sentences about the truth that answers were compared with.
     pub truth: &'a str,
-    /// What reading the clock takes, in nanoseconds.
+    /// The time to read the clock, in nanoseconds.
     pub clock: f64,
-    /// What was measured.
+    /// The results for each scene.
     pub scenes: &'a [SceneFigures],
-    /// What was measured besides.
+    /// The results that depend on another quantity.
     pub sweeps: &'a [Sweep],
-    /// What the names of backends stand for: names and sentences.
+    /// The names of backends, and phrases that describe them.
     pub backends: &'a [(&'a str, &'a str)],
 }
 
 const STYLE: &str = include_str!("style.css");
 
 impl Page<'_> {
-    /// The page as HTML.
+    /// Returns the page as HTML.
     ///
     /// # Errors
     /// [`PlotError::Draw`]
@@ -75,7 +75,7 @@ impl Page<'_> {
         Ok(html.finish())
     }
 
-    /// The plots that stand well alone, with names for their files: speed over the largest relative error.
+    /// Returns the plots of speed over the largest relative error and those of sweeps, with names for their files.
     ///
     /// # Errors
     /// [`PlotError::Draw`]
@@ -96,7 +96,7 @@ impl Page<'_> {
         Ok(plots)
     }
 
-    /// Every backend has its colour, in the order of its first appearance.
+    /// Assigns colours to backends, in the order of their first appearance.
     fn colours(&self) -> Colours {
         let mut names: Vec<String> = Vec::new();
         let curves = self.scenes.iter().flat_map(|scene| scene.sets.iter().flat_map(|set| &set.curves));
@@ -110,9 +110,9 @@ impl Page<'_> {
 
     fn write_head(&self, html: &mut Html) {
         html.paragraph(
-            "Given a scene of triangles, segments and points, and a place: which point of the scene is closest to it? There are several \
-             ways to find out (backends), and each can be told to be less exact (settings). This page says what each costs and how wrong it \
-             is, as measured, so that one can be chosen.",
+            "Which point of a scene of triangles, segments and points is closest to a query point? Several backends compute it, \
+             and each has settings that trade accuracy for speed. This page shows the measured time and the measured errors of \
+             each, so that one can be chosen.",
         );
         html.within("div", "class=\"machine\"", |html| {
             html.paragraph(&format!(
@@ -125,7 +125,7 @@ impl Page<'_> {
         });
     }
 
-    /// Ways to the scenes.
+    /// Writes links to the scenes.
     fn write_contents(&self, html: &mut Html) {
         html.within("nav", "", |html| {
             html.words("The scenes in detail: ");
@@ -148,10 +148,11 @@ impl Page<'_> {
     fn write_verdict(&self, html: &mut Html) {
         html.text("h2", "In short");
         html.paragraph(
-            "The fastest backend and setting for each scene and set of queries: once whatever answers with no error but rounding (16 u M at \
-             most) with its default, then with a largest error of 1 % and of 10 % of the distance, where a setting counts only if it is faster beyond \
-             noise. The last three columns have the backend that takes the least time altogether, building included, without errors but \
-             rounding. All of it on one thread; what the names mean is said below.",
+            "The table has the fastest backend and setting for each scene and set of queries. The first of these columns \
+             requires the default setting with no error but rounding (16 u M at most). The next two allow a largest error of \
+             1 % and of 10 % of the distance, and a setting counts only if it is faster beyond noise. The last three columns \
+             have the backend that takes the least total time, with the build, without errors but rounding. All times are for \
+             one thread. The names are explained below.",
         );
         html.within("div", "class=\"words\"", |html| html.table(&verdict::head(), 2, &verdict::rows(self.scenes)));
         let promised =
@@ -162,64 +163,65 @@ impl Page<'_> {
             broken += point.errors.broken;
         }
         html.paragraph(&format!(
-            "{broken} of {answers} answers were farther from the truth than their setting promises (rivals and budgets promise nothing but their lower bounds)."
+            "{broken} of {answers} answers have a larger error than their setting promises (other libraries and limits of visits promise nothing but lower bounds)."
         ));
     }
 
     fn write_reading(&self, html: &mut Html) {
         html.text("h2", "How to read it");
         let clock = format!(
-            "Each one timed by itself, by the wall clock; nothing is subtracted. Reading the clock takes {:.0} ns here, measured, and is \
-             part of each figure. The largest ones show what else the machine does.",
+            "Each query is timed on its own by the wall clock. Reading the clock takes {:.0} ns here, as measured, and is \
+             included in each figure. The largest times show other activity of the machine.",
             self.clock
         );
-        let truth = format!("Those of the distance. {}", self.truth);
+        let truth = format!("Errors are those of the distance. {}", self.truth);
         html.terms([
             (
                 "A point in a plot",
-                "One setting of one backend: how long a query takes (the median of the rounds) and how wrong it is (the worst, or what one \
-                 query in a thousand exceeds). The line through points is one backend, from its most exact setting on; dots beside it are \
-                 settings that are both slower and less exact than another. What is below and to the left of a point beats it in both. With a mouse, a point \
-                 tells its name.",
+                "A point shows one setting of one backend: the time of a query (the median of the rounds) and the error (the \
+                 largest one, or the one that one query in a thousand exceeds). A line connects the settings of one backend \
+                 from the most accurate one on. Dots beside it are settings that are both slower and less accurate than another \
+                 one. A point below and to the left of another is better in both. The name of a point appears under the mouse.",
             ),
-            ("exact", "At the left end of an axis: where errors of 0 lie, which a logarithmic axis has no place for."),
+            ("exact", "Errors of 0 lie at the left end of an axis, because a logarithmic axis has no position for them."),
             (
                 "Time",
-                "Thread CPU time of one thread, one query at a time, contenders taking turns; in brackets the least and the most of the \
-                 rounds. A slow contender gets fewer queries, which is remarked. What is more than 30 times slower than the fastest is in \
-                 the tables alone.",
+                "Times are thread CPU times of one thread, for one query at a time, with backends taking turns. The minimum and \
+                 the maximum of the rounds are in brackets. Slow backends get fewer queries, which the remarks state. Backends \
+                 that are more than 30 times slower than the fastest one are in the tables only.",
             ),
             ("Errors", &truth),
             (
                 "u M",
-                "What roundings can be measured by: u = 2^-53, and M is the largest distance from the query to a corner of the nearest \
-                 primitive. An error of 8 u M in a scene of a metre is less than 1e-15 metres.",
+                "This is the unit of rounding errors: u = 2^-53, and M is the largest distance from the query to a vertex of the \
+                 nearest primitive. An error of 8 u M in a scene of one metre is less than 1e-15 metres.",
             ),
             (
                 "Relative errors",
-                "Parts of the true distance. Queries on the surface itself have distances that are nothing but roundings (or 0, which is left \
-                 out): read u M there.",
+                "They are relative to the true distance. Queries on the surface itself have distances that consist of rounding \
+                 errors (or are 0, and left out); their errors in u M are meaningful.",
             ),
             (
                 "Bound gap",
-                "Every answer of ours comes with a certified lower bound of the true distance. This is the largest part of an answer that the \
-                 bound leaves open.",
+                "Each answer of a p2m backend has a certified lower bound of the true distance. The gap is the largest \
+                 difference between a distance and its lower bound, relative to the distance.",
             ),
             (
                 "Other primitive",
-                "How often another primitive than the nearest is named. Of equally near ones it is the one of the lowest number. Rivals are not \
-                 asked for it.",
+                "This is the number of answers with another primitive than the nearest one. Among equally near primitives the \
+                 one with the lowest id is right. Other libraries do not return it.",
             ),
             (
                 "Remarks",
-                "What is wrong with answers, if anything is. `no \
-                 faster`: rounds were not all faster than all of the default of the same backend.",
+                "They state failures of answers. `no faster` means that some rounds were not faster than all rounds of the \
+                 default setting of the same backend.",
             ),
-            ("How long single queries take", &clock),
+            ("The time of single queries", &clock),
             (
-                "From how many queries on",
-                "The time to build divided by the time that each query saves. The row is what one has, the column what one would take instead. \
-                 `never`: slower to ask; `always`: neither slower to build nor to ask.",
+                "The number of queries from which on a longer build pays",
+                "It is the additional time to build divided by the time that each query saves. The row is the present backend, \
+                 and the column the one that replaces it. `never` means that its queries are slower, and `always` that neither \
+                 its build nor its queries are slower.",
             ),
         ]);
     }
@@ -251,7 +253,7 @@ fn sweep_plot(sweep: &Sweep, colours: &Colours) -> Plot {
         y: sweep.axes[1],
         series: series.collect(),
         size: plots::SIZE,
-        legend: plots::LEGEND,
+        legend: plots::LEGEND_WIDTH,
         ..Plot::default()
     }
 }
@@ -271,7 +273,7 @@ fn sweep_table(sweep: &Sweep) -> (Vec<String>, Vec<Vec<String>>) {
     (head.collect(), rows.collect())
 }
 
-/// About three digits.
+/// Formats a number with about three digits.
 fn figure(value: f64) -> String {
     match value {
         x if x >= 100.0 => format!("{x:.0}"),
@@ -281,12 +283,12 @@ fn figure(value: f64) -> String {
     }
 }
 
-/// A name without an extension.
+/// Returns a name without its extension.
 fn stem(name: &str) -> &str {
     name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }
 
-/// A name that every file system takes.
+/// Returns a name that every file system accepts.
 fn file_name(text: &str) -> String {
     let kept = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c.to_ascii_lowercase() } else { '-' };
     format!("{}.svg", text.chars().map(kept).collect::<String>())

@@ -1,37 +1,39 @@
 //! The plots of a set of queries.
 
+use crate::break_even::default_costs;
 use crate::curve::{Curve, Point, SetFigures};
-use crate::economy::usual_costs;
-use crate::errors::Worst;
+use crate::errors::ErrorQuantiles;
 use crate::plot::{Mark, Plot, Series};
 use crate::text::{count, error};
 
-/// Width and height of a plot of which two stand side by side.
+/// The width and height of a plot in pixels. Two stand side by side.
 pub(super) const SIZE: (u32, u32) = (640, 400);
-/// Room for names beside it.
-pub(super) const LEGEND: u32 = 110;
+/// The width of the legend, in pixels.
+pub(super) const LEGEND_WIDTH: u32 = 110;
 
-/// A curve that is slower than the fastest by more than this is not drawn: it would leave no room for the others.
-const FAR: f64 = 30.0;
+/// Curves that are slower than the fastest one by more than this factor are not drawn, because they would
+/// compress the others.
+const MAX_DRAWN_TIME_FACTOR: f64 = 30.0;
 
-/// The curves that are drawn, and the names of others.
+/// Returns the curves that are drawn, and the names of the others.
 pub(super) fn drawn(set: &SetFigures) -> (Vec<&Curve>, Vec<&str>) {
-    let nanoseconds = |curve: &Curve| curve.usual().map_or(f64::INFINITY, |usual| usual.nanoseconds.median);
+    let nanoseconds = |curve: &Curve| curve.usual().map_or(f64::INFINITY, |default| default.nanoseconds.median);
     let least = set.curves.iter().map(nanoseconds).fold(f64::INFINITY, f64::min);
-    let (near, far): (Vec<_>, Vec<_>) = set.curves.iter().partition(|curve| nanoseconds(curve) <= FAR * least);
+    let (near, far): (Vec<_>, Vec<_>) =
+        set.curves.iter().partition(|curve| nanoseconds(curve) <= MAX_DRAWN_TIME_FACTOR * least);
     (near, far.into_iter().map(|curve| curve.name.as_str()).collect())
 }
 
-/// What errors are measured in.
+/// The unit of errors.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Unit {
-    /// u M
+    /// The unit u M.
     Scaled,
     /// The true distance.
     Relative,
 }
 
-/// Names of backends, in the order of their colours in all plots.
+/// The names of backends in the order of their colours, which are the same in all plots.
 pub(super) struct Colours(pub(super) Vec<String>);
 
 impl Colours {
@@ -39,44 +41,44 @@ impl Colours {
         self.0.iter().position(|known| known == name).unwrap_or(self.0.len())
     }
 
-    /// A line of this colour.
+    /// Makes a line with the colour of this backend.
     pub(super) fn line(&self, name: &str, points: Vec<(f64, f64)>) -> Series {
         Series { name: name.to_owned(), mark: Mark::Line, colour: self.of(name), points, notes: Vec::new() }
     }
 }
 
-/// Where a setting stands among those of its backend.
+/// The rank of a setting among those of its backend.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Place {
-    /// Faster than all that are more exact.
+enum Dominance {
+    /// The setting is faster than all more accurate ones: it is on the Pareto front.
     Front,
-    /// Not.
-    Behind,
+    /// A more accurate setting is as fast.
+    Dominated,
 }
 
-impl Place {
-    const ALL: [Self; 2] = [Self::Front, Self::Behind];
+impl Dominance {
+    const ALL: [Self; 2] = [Self::Front, Self::Dominated];
 
-    /// Of one after the other, the most exact one first.
-    fn of(point: &Point, least: &mut f64) -> Self {
+    /// Classifies points that come in order of increasing error. `least` is the least time of all points so far.
+    fn classify(point: &Point, least: &mut f64) -> Self {
         if point.nanoseconds.median < *least {
             *least = point.nanoseconds.median;
             Self::Front
         } else {
-            Self::Behind
+            Self::Dominated
         }
     }
 
     fn mark(self) -> Mark {
         match self {
             Self::Front => Mark::Line,
-            Self::Behind => Mark::Dot,
+            Self::Dominated => Mark::Dot,
         }
     }
 }
 
-/// Speed over error: a point for each setting.
-pub(super) fn pareto(set: &SetFigures, colours: &Colours, unit: Unit, of: fn(&Worst) -> f64) -> Plot {
+/// Plots speed over error, with a point for each setting.
+pub(super) fn pareto(set: &SetFigures, colours: &Colours, unit: Unit, of: fn(&ErrorQuantiles) -> f64) -> Plot {
     let x = match unit {
         Unit::Scaled => "error, in u M",
         Unit::Relative => "error, relative to the distance",
@@ -85,11 +87,11 @@ pub(super) fn pareto(set: &SetFigures, colours: &Colours, unit: Unit, of: fn(&Wo
         Unit::Scaled => of(&point.errors.scaled),
         Unit::Relative => of(&point.errors.relative),
     };
-    let series = |curve: &Curve, place: Place| {
+    let series = |curve: &Curve, dominance: Dominance| {
         let mut points: Vec<&Point> = curve.points.iter().collect();
         points.sort_by(|a, b| worst(a).total_cmp(&worst(b)));
         let mut least = f64::INFINITY;
-        points.retain(|point| place == Place::of(point, &mut least));
+        points.retain(|point| dominance == Dominance::classify(point, &mut least));
         let note = |point: &&Point| {
             format!(
                 "{}, {}: {:.0} ns, error {}",
@@ -100,20 +102,20 @@ pub(super) fn pareto(set: &SetFigures, colours: &Colours, unit: Unit, of: fn(&Wo
             )
         };
         Series {
-            // Named once.
-            name: if place == Place::Front { curve.name.clone() } else { String::new() },
-            mark: place.mark(),
+            // The name appears once in the legend.
+            name: if dominance == Dominance::Front { curve.name.clone() } else { String::new() },
+            mark: dominance.mark(),
             notes: points.iter().map(note).collect(),
             ..colours.line(&curve.name, points.iter().map(|point| (worst(point), point.nanoseconds.median)).collect())
         }
     };
     let (curves, _) = drawn(set);
-    let series = curves.into_iter().flat_map(|curve| Place::ALL.map(|place| series(curve, place)));
+    let series = curves.into_iter().flat_map(|curve| Dominance::ALL.map(|dominance| series(curve, dominance)));
     let series = series.filter(|series| !series.points.is_empty()).collect();
-    Plot { x, y: "ns per query", zero: Some("exact"), series, size: SIZE, legend: LEGEND, ..Plot::default() }
+    Plot { x, y: "ns per query", zero: Some("exact"), series, size: SIZE, legend: LEGEND_WIDTH, ..Plot::default() }
 }
 
-/// How long single queries take, over how rare they are.
+/// Plots the times of single queries over their rarity.
 pub(super) fn latencies(set: &SetFigures, colours: &Colours) -> Plot {
     let series = drawn(set).0.into_iter().filter_map(|curve| {
         let point = curve.usual()?;
@@ -129,14 +131,14 @@ pub(super) fn latencies(set: &SetFigures, colours: &Colours) -> Plot {
         y: "takes longer than so many ns",
         series: series.collect(),
         size: SIZE,
-        legend: LEGEND,
+        legend: LEGEND_WIDTH,
         ..Plot::default()
     }
 }
 
-/// What building and asking take together, over the number of queries.
+/// Plots the total time of building and querying over the number of queries.
 pub(super) fn totals(set: &SetFigures, colours: &Colours) -> Plot {
-    let series = usual_costs(&set.curves).into_iter().map(|(name, cost)| {
+    let series = default_costs(&set.curves).into_iter().map(|(name, cost)| {
         let points: Vec<(f64, f64)> =
             (4..=18).map(|i| 10f64.powf(f64::from(i) / 2.0)).map(|n| (n, cost.total(n))).collect();
         let note = |p: &(f64, f64)| format!("{name}: {} queries in {:.3} s, built", count(p.0), p.1);
@@ -147,7 +149,7 @@ pub(super) fn totals(set: &SetFigures, colours: &Colours) -> Plot {
         y: "seconds, with building",
         series: series.collect(),
         size: SIZE,
-        legend: LEGEND,
+        legend: LEGEND_WIDTH,
         ..Plot::default()
     }
 }

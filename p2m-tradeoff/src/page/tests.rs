@@ -1,10 +1,10 @@
 //! A page of made-up figures.
 
 use super::*;
-use crate::sample;
+use crate::fixtures;
 
 fn page() -> String {
-    let provenance = sample::provenance();
+    let provenance = fixtures::provenance();
     let lines = vec![("aabb".to_owned(), vec![(1.0, 10.0), (2.0, 6.5)]), ("p2m".to_owned(), vec![(2.0, 3.0)])];
     let sweep = Sweep { title: "Threads".to_owned(), about: "Batches.".to_owned(), axes: ["threads", "ns"], lines };
     let page = Page {
@@ -12,7 +12,7 @@ fn page() -> String {
         effort: "Five rounds & <more>.",
         truth: "Nobody knows.",
         clock: 25.4,
-        scenes: &[sample::scene()],
+        scenes: &[fixtures::scene()],
         sweeps: &[sweep],
         backends: &[("aabb", "a tree")],
     };

@@ -1,18 +1,18 @@
-//! Bars of parts.
+//! Stacked bars.
 
-use super::{FONT, LEGEND, ROW, SIZE, colour, failed, label, name_at};
+use super::{FONT, LEGEND_ROW_HEIGHT, LEGEND_WIDTH, SIZE, colour, failed, label, legend_text};
 use crate::error::PlotError;
 use plotters::prelude::*;
 use std::path::Path;
 
-/// Bars of parts, one below the other, all with the same unit.
+/// Horizontal stacked bars, one below the other, all in the same unit.
 #[derive(Clone, Debug)]
 pub struct Bars {
     /// The name of the axis.
     pub x: &'static str,
-    /// What the parts are called.
+    /// The names of the parts.
     pub parts: Vec<&'static str>,
-    /// A bar's name and the sizes of its parts.
+    /// The names of the bars, and the sizes of their parts.
     pub bars: Vec<(String, Vec<f64>)>,
 }
 
@@ -29,7 +29,7 @@ impl Bars {
         std::fs::write(path, text).map_err(|error| PlotError::Write { path: path.to_owned(), error })
     }
 
-    /// The picture as the text of an SVG file.
+    /// Returns the picture as the text of an SVG file.
     ///
     /// # Errors
     /// [`PlotError::Draw`]
@@ -43,7 +43,7 @@ impl Bars {
         let area = SVGBackend::with_string(&mut svg, (SIZE.0, 90 + 34 * u32::try_from(count).map_err(failed)?))
             .into_drawing_area();
         area.fill(&WHITE).map_err(failed)?;
-        let (left, names) = area.split_horizontally(SIZE.0 - LEGEND);
+        let (left, names) = area.split_horizontally(SIZE.0 - LEGEND_WIDTH);
         let mut chart = ChartBuilder::on(&left)
             .margin(12)
             .x_label_area_size(44)
@@ -51,7 +51,7 @@ impl Bars {
             .build_cartesian_2d(0.0..most * 1.05, (0..count.saturating_sub(1)).into_segmented())
             .map_err(failed)?;
         let name = |at: &SegmentValue<usize>| match at {
-            // From below.
+            // The axis runs upwards, and bars are listed downwards.
             SegmentValue::CenterOf(i) => self.bars.iter().rev().nth(*i).map_or(String::new(), |bar| bar.0.clone()),
             _ => String::new(),
         };
@@ -81,10 +81,10 @@ impl Bars {
             chart.draw_series(boxes).map_err(failed)?;
         }
         for ((part, name), row) in self.parts.iter().enumerate().zip(1..) {
-            let y = ROW * row;
+            let y = LEGEND_ROW_HEIGHT * row;
             let mark = Rectangle::new([(6, y - 5), (18, y + 5)], colour(part).filled());
             names.draw(&mark).map_err(failed)?;
-            names.draw(&name_at(name, y)).map_err(failed)?;
+            names.draw(&legend_text(name, y)).map_err(failed)?;
         }
         area.present().map_err(failed)?;
         drop((chart, names, left, area));

@@ -1,4 +1,4 @@
-//! Plots as SVG, in a file or as text.
+//! Plots as SVG, in files or as text.
 
 mod bars;
 
@@ -15,66 +15,77 @@ pub use bars::Bars;
 /// How the points of a series are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
-    /// With a line through them.
+    /// Dots with a line through them.
     Line,
-    /// With a broken line, for what is greatest where a mean is drawn with a line.
+    /// A dashed line, for maxima beside means.
     Dashes,
-    /// Alone.
+    /// Dots without a line.
     Dot,
-    /// As crosses: cited.
+    /// Crosses, for cited figures.
     Cross,
 }
 
-/// Points of one name.
+/// A named series of points.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// What stands beside its colour; a series without a name has no place there.
+    /// The name in the legend. A series without a name is not in the legend.
     pub name: String,
-    /// How it is drawn.
+    /// The style of its points.
     pub mark: Mark,
-    /// Which colour, by number: the same contender has the same one in all plots.
+    /// The number of its colour. A backend has the same colour in all plots.
     pub colour: usize,
-    /// Along and across.
+    /// The points (x, y).
     pub points: Vec<(f64, f64)>,
-    /// What is shown of each point where the mouse rests on it; fewer than points, or none.
+    /// The notes that appear when the mouse rests on a point. There may be fewer notes than points.
     pub notes: Vec<String>,
 }
 
 /// A plot of series over one axis.
 #[derive(Clone, Debug)]
 pub struct Plot {
-    /// The name of the axis along.
+    /// The name of the x axis.
     pub x: &'static str,
-    /// The name of the axis across.
+    /// The name of the y axis.
     pub y: &'static str,
-    /// Whether an axis is logarithmic.
+    /// Whether the x and the y axis are logarithmic.
     pub logarithmic: [bool; 2],
-    /// What zeros are called on a logarithmic axis along, where they lie on a line of their own at its lower end. Without a
-    /// name they are left out.
+    /// The label of zeros on a logarithmic x axis, where they lie on a line of their own at its lower end. Without a
+    /// label they are left out.
     pub zero: Option<&'static str>,
-    /// What is drawn.
+    /// The series that are drawn.
     pub series: Vec<Series>,
-    /// Width and height.
+    /// The width and height in pixels.
     pub size: (u32, u32),
-    /// Of the width, room for names at the right.
+    /// The width of the legend at the right, in pixels. It is part of the width of the plot.
     pub legend: u32,
 }
 
 impl Default for Plot {
     fn default() -> Self {
-        Self { x: "", y: "", logarithmic: [true, true], zero: None, series: Vec::new(), size: SIZE, legend: LEGEND }
+        Self {
+            x: "",
+            y: "",
+            logarithmic: [true, true],
+            zero: None,
+            series: Vec::new(),
+            size: SIZE,
+            legend: LEGEND_WIDTH,
+        }
     }
 }
 
+/// The default width and height of plots, in pixels.
 const SIZE: (u32, u32) = (860, 440);
-/// Room for names at the right, and for each of them.
-const LEGEND: u32 = 150;
-const ROW: i32 = 20;
+/// The default width of the legend, in pixels.
+const LEGEND_WIDTH: u32 = 150;
+/// The height of a row of the legend, in pixels.
+const LEGEND_ROW_HEIGHT: i32 = 20;
+/// The font and its size in pixels.
 const FONT: (&str, u32) = ("sans-serif", 14);
-/// Room above the highest point.
-const ROOM: f64 = 1.15;
+/// The end of an axis relative to its largest value.
+const AXIS_END_FACTOR: f64 = 1.15;
 
-/// Distinct for most people who see colours otherwise, too \[Okabe2008\].
+/// Colours that most people with colour-vision deficiencies can distinguish as well \[Okabe2008\].
 const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -90,7 +101,7 @@ fn colour(number: usize) -> RGBColor {
     COLOURS[number % COLOURS.len()]
 }
 
-/// What the drawing library says.
+/// Converts an error of the drawing library.
 fn failed(error: impl std::fmt::Display) -> PlotError {
     PlotError::Draw(error.to_string())
 }
@@ -104,7 +115,7 @@ impl Plot {
         std::fs::write(path, self.svg()?).map_err(|error| PlotError::Write { path: path.to_owned(), error })
     }
 
-    /// The plot as the text of an SVG file.
+    /// Returns the plot as the text of an SVG file.
     ///
     /// # Errors
     /// [`PlotError::Empty`], and [`PlotError::Draw`].
@@ -123,7 +134,7 @@ impl Plot {
         self.series.iter().flat_map(|series| self.points(series).map(|(_, point)| point))
     }
 
-    /// The points that can be shown, with their places in the series.
+    /// Returns the points that can be shown, with their indices in the series.
     fn points<'a>(&'a self, series: &'a Series) -> impl Iterator<Item = (usize, (f64, f64))> + 'a {
         let floor = self.floor();
         let fits = |value: f64, logarithmic: bool| value.is_finite() && (value > 0.0 || !logarithmic);
@@ -134,7 +145,7 @@ impl Plot {
         points.enumerate().filter(move |(_, p)| fits(p.0, self.logarithmic[0]) && fits(p.1, self.logarithmic[1]))
     }
 
-    /// Where zeros lie: at the power of ten below the decade of the least point.
+    /// Returns the position of zeros on the x axis: the power of ten below the decade of the least point.
     fn floor(&self) -> Option<f64> {
         let all = || self.series.iter().flat_map(|series| &series.points).map(|point| point.0);
         if self.zero.is_none() || !self.logarithmic[0] || all().all(|x| x.abs() > 0.0 || x.is_nan()) {
@@ -150,10 +161,15 @@ impl Plot {
         if least > most {
             return None;
         }
-        // From a power of ten: plotters has no ticks in a part of a decade at the lower end. Beyond the line of zeros there is room.
+        // The axis begins at a power of ten, because plotters has no ticks in an incomplete decade at the lower end.
+        // Beyond the line of zeros it has half a decade more.
         let below = if axis == 0 && self.floor().is_some() { 0.5 } else { 0.999 };
         let decade = || below * 10f64.powf(least.log10().floor());
-        Some(if self.logarithmic[axis] { decade()..most * ROOM } else { 0.0..most.max(f64::MIN_POSITIVE) * ROOM })
+        Some(if self.logarithmic[axis] {
+            decade()..most * AXIS_END_FACTOR
+        } else {
+            0.0..most.max(f64::MIN_POSITIVE) * AXIS_END_FACTOR
+        })
     }
 
     fn draw<X, Y>(&self, x: X, y: Y) -> Result<String, PlotError>
@@ -185,7 +201,7 @@ impl Plot {
             .draw()
             .map_err(failed)?;
         if let Some(floor) = self.floor() {
-            // The room beyond is of unknown height in units of the axis: from end to end in pixels.
+            // The line reaches from end to end of the plot, whose ends are known in pixels only.
             let (from, to) = (chart.backend_coord(&(floor, bottom)), chart.plotting_area().get_y_axis_pixel_range());
             let line = PathElement::new(vec![(from.0, to.start), (from.0, to.end)], colour(7).stroke_width(1));
             area.draw(&line).map_err(failed)?;
@@ -207,10 +223,10 @@ impl Plot {
                 Mark::Cross => chart.draw_series(points.iter().map(|p| Cross::new(*p, 6, colour.stroke_width(2)))),
             };
             drawn.map_err(failed)?;
-            for (place, point) in self.points(series) {
-                if let Some(note) = series.notes.get(place) {
+            for (index, point) in self.points(series) {
+                if let Some(note) = series.notes.get(index) {
                     let (x, y) = chart.backend_coord(&point);
-                    // plotters has no titles: what is not seen lies above what is.
+                    // plotters has no titles, so an invisible circle with a title lies above the point.
                     let _ = writeln!(
                         notes,
                         "<circle cx=\"{x}\" cy=\"{y}\" r=\"7\" fill-opacity=\"0\"><title>{}</title></circle>",
@@ -220,7 +236,7 @@ impl Plot {
             }
         }
         for (row, series) in (1..).zip(self.series.iter().filter(|series| !series.name.is_empty())) {
-            let (colour, y) = (colour(series.colour), ROW * row);
+            let (colour, y) = (colour(series.colour), LEGEND_ROW_HEIGHT * row);
             let line = |width: u32| PathElement::new(vec![(4, y), (22, y)], colour.stroke_width(width)).into_dyn();
             let mark = match series.mark {
                 Mark::Line => line(3),
@@ -229,7 +245,7 @@ impl Plot {
                 Mark::Cross => Cross::new((13, y), 5, colour.stroke_width(2)).into_dyn(),
             };
             names.draw(&mark).map_err(failed)?;
-            names.draw(&name_at(&series.name, y)).map_err(failed)?;
+            names.draw(&legend_text(&series.name, y)).map_err(failed)?;
         }
         area.present().map_err(failed)?;
         drop((chart, names, left, area));
@@ -238,41 +254,42 @@ impl Plot {
         Ok(svg)
     }
 
-    /// A number at an axis, if there is room for it.
+    /// Returns the label of a tick; empty for ticks of a logarithmic axis that have no room for one.
     fn tick(&self, axis: usize, value: f64) -> String {
         if self.logarithmic[axis] && !is_round(value) { String::new() } else { label(value) }
     }
 
-    /// A number at the axis along: zeros have their name.
+    /// Returns the label of a tick of the x axis.
     fn x_label(&self, value: f64) -> String {
         match (self.zero, self.floor()) {
-            // A tick is a power of ten within some roundings, and the next one is ten times as much.
+            // Ticks are powers of ten up to rounding errors, so the tick of zeros is the only one below
+            // twice its position.
             (Some(name), Some(floor)) if value < 2.0 * floor => name.to_owned(),
             _ => self.tick(0, value),
         }
     }
 }
 
-/// Whether a number begins with 1, 2 or 5: others of a logarithmic axis have no room for their names.
+/// Returns whether a number begins with 1, 2 or 5. Other ticks of a logarithmic axis have no room for labels.
 fn is_round(value: f64) -> bool {
     let digits = value / 10f64.powf(value.log10().floor());
-    // Ticks are what they are but for roundings, by which a logarithm may be below a whole number.
+    // Ticks have rounding errors, by which a logarithm may be below a whole number.
     [1.0, 2.0, 5.0, 10.0].iter().any(|round| (digits / round - 1.0).abs() < 0.01)
 }
 
-/// Text between tags.
+/// Escapes text for use between tags.
 #[must_use]
 pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// The name of a series in its row.
-fn name_at(name: &str, y: i32) -> Text<'static, (i32, i32), String> {
+/// Returns the name of a series in its row of the legend.
+fn legend_text(name: &str, y: i32) -> Text<'static, (i32, i32), String> {
     let style = FONT.into_text_style(&SIZE).pos(Pos::new(HPos::Left, VPos::Center));
     Text::new(name.to_owned(), (28, y), style)
 }
 
-/// A number at an axis, short.
+/// Formats a number briefly, for an axis.
 fn label(value: f64) -> String {
     let short = |x: f64, unit: &str| format!("{}{unit}", (x * 100.0).round() / 100.0);
     match value.abs() {

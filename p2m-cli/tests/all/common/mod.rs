@@ -12,14 +12,14 @@ use tempfile::TempDir;
 pub(crate) const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/knot_and_cables.obj");
 pub(crate) const HEADER: &str = "qx,qy,qz,x,y,z,distance,primitive,feature";
 
-/// Holds the exit code of a run and everything that it wrote.
+/// The exit code and the output of a run.
 pub(crate) struct Output {
     pub(crate) code: u8,
     pub(crate) stdout: Vec<u8>,
     pub(crate) stderr: Vec<u8>,
 }
 
-/// Keeps the bytes that are written to it or to one of its clones.
+/// A writer that keeps the bytes that are written to it or to one of its clones.
 #[derive(Clone, Default)]
 struct Kept(Rc<RefCell<Vec<u8>>>);
 
@@ -64,14 +64,14 @@ pub(crate) fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-/// The table on the standard output of a run that succeeds.
+/// Returns the table on the standard output of a run that succeeds.
 pub(crate) fn table(arguments: &[&str]) -> String {
     let output = p2m(arguments);
     assert_eq!(output.code, 0, "{arguments:?}: {}", text(&output.stderr));
     text(&output.stdout)
 }
 
-/// The message of a run that fails.
+/// Returns the message of a run that fails.
 pub(crate) fn failure(arguments: &[&str], code: u8) -> String {
     let output = p2m(arguments);
     let message = text(&output.stderr);
@@ -98,7 +98,7 @@ pub(crate) fn names(folder: &Path) -> Vec<PathBuf> {
     names
 }
 
-/// The only JSON object on the standard output of a run that succeeds.
+/// Returns the only JSON object on the standard output of a run that succeeds.
 pub(crate) fn json(arguments: &[&str]) -> serde_json::Value {
     let text = table(arguments);
     serde_json::from_str(&text).unwrap_or_else(|e| panic!("{arguments:?}: {e}: {text}"))

@@ -1,11 +1,11 @@
-//! Figures for tests.
+//! Results for tests.
 
 use crate::curve::{Build, Curve, Latency, Point, SceneFigures, SetFigures};
-use crate::errors::{Errors, Worst};
+use crate::errors::{ErrorQuantiles, Errors};
 use crate::provenance::Provenance;
-use crate::spread::Spread;
+use crate::quantiles::Spread;
 
-/// A provenance with a comma.
+/// Returns a provenance with characters that files have to escape.
 pub(crate) fn provenance() -> Provenance {
     let [label, date, commit, cpu, rustc, flags, target_features, command] =
         ["portable", "2026-01-01", "abc", "a <processor>, fast", "rustc 1", "release", "sse2", "p2m tradeoff"]
@@ -13,16 +13,16 @@ pub(crate) fn provenance() -> Provenance {
     Provenance { label, date, commit, cpu, rustc, flags, target_features, command }
 }
 
-/// A point of so many nanoseconds and so large a relative error.
+/// Returns a point with these nanoseconds per query, this relative error and these seconds of building.
 pub(crate) fn point(setting: &str, ns: f64, error: f64, seconds: f64) -> Point {
-    let worst = |max: f64| Worst { max, p999: max / 2.0 };
+    let worst = |max: f64| ErrorQuantiles { max, p999: max / 2.0 };
     let errors = Errors {
         compared: 100,
         unanswered: 0,
         scaled: worst(error * 1e14),
         relative: worst(error),
         gap: 1e-15,
-        bounds_above: 0,
+        bounds_above_truth: 0,
         other_ids: Some(0),
         broken: 0,
     };
@@ -37,7 +37,7 @@ pub(crate) fn point(setting: &str, ns: f64, error: f64, seconds: f64) -> Point {
     }
 }
 
-/// A scene of a set and two backends.
+/// Returns a scene with one set of queries and two backends.
 pub(crate) fn scene() -> SceneFigures {
     let curve = |name: &str, points| Curve { name: name.to_owned(), points };
     let tree = curve("aabb", vec![point("default", 1000.5, 0.0, 0.1), point("epsilon 0.1", 500.0, 0.05, 0.1)]);

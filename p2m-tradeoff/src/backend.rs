@@ -1,27 +1,27 @@
-//! What is measured: something that answers queries, many in one call, so that a query costs no dynamic call but those
-//! of the backend itself.
+//! The interface of measured backends. One dynamic call answers many queries, so that a query itself costs no dynamic
+//! call but those of the backend.
 
 use crate::queries::{QuerySlice, Scalar};
 use nalgebra::Point3;
 use p2m_core::{CertifiedQuery, Closest, ClosestPoint, QueryOptions};
 use std::time::Instant;
 
-/// The answer to a query, as far as it is compared.
+/// The part of an answer that is compared with the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer {
     /// The distance; NaN if there was no answer.
     pub distance: f64,
     /// The certified lower bound; NaN if there is none.
     pub lower_bound: f64,
-    /// The primitive; [`u32::MAX`] if it is not known.
+    /// The id of the primitive; [`u32::MAX`] if it is not known.
     pub id: u32,
 }
 
 impl Answer {
-    /// No answer.
+    /// The value of a query without an answer.
     pub const NONE: Self = Self { distance: f64::NAN, lower_bound: f64::NAN, id: u32::MAX };
 
-    /// Of a distance alone.
+    /// Makes an answer of a distance without a lower bound and a primitive.
     #[must_use]
     pub const fn of_distance(distance: f64) -> Self {
         Self { distance, ..Self::NONE }
@@ -40,26 +40,27 @@ impl<T: Scalar> From<Option<Closest<T>>> for Answer {
     }
 }
 
-/// Something that answers one query at a time. [`Subject`] follows.
+/// A backend that answers one query at a time. It is a [`Subject`] as well.
 pub trait Respond: Sync {
-    /// The scalar of its queries.
+    /// The scalar of the queries.
     type Scalar: Scalar;
-    /// Answers a query.
+    /// Answers one query.
     fn respond(&self, query: &Point3<Self::Scalar>) -> Answer;
 }
 
-/// The same with its scalar erased: the loop over queries is compiled for each one.
+/// A backend whose scalar is erased. The loop over queries is compiled for each backend.
 pub trait Subject: Sync {
     /// Answers queries in their order.
     ///
     /// # Panics
-    /// If the subject does, which those of this project do not.
+    /// If the backend panics. Those of this project do not.
     fn answer(&self, queries: QuerySlice<'_>, answers: &mut [Answer]);
 
-    /// The same, with the nanoseconds of wall time of each query by itself, those of reading the clock included.
+    /// Answers queries in their order, and measures the wall time of each single query in nanoseconds. The time to read
+    /// the clock is included.
     ///
     /// # Panics
-    /// As [`answer`](Self::answer).
+    /// If the backend panics.
     fn answer_timed(&self, queries: QuerySlice<'_>, answers: &mut [Answer], nanoseconds: &mut [u64]);
 }
 
@@ -74,26 +75,26 @@ impl<R: Respond> Subject for R {
         for ((query, answer), nanoseconds) in R::Scalar::of(queries).iter().zip(answers).zip(nanoseconds) {
             let start = Instant::now();
             *answer = self.respond(query);
-            *nanoseconds = elapsed(start);
+            *nanoseconds = elapsed_nanoseconds(start);
         }
     }
 }
 
 #[allow(clippy::cast_possible_truncation, reason = "584 years")]
-fn elapsed(start: Instant) -> u64 {
+fn elapsed_nanoseconds(start: Instant) -> u64 {
     start.elapsed().as_nanos() as u64
 }
 
-/// What two readings of the clock take, in nanoseconds: the median of many.
+/// Measures the time between two readings of the clock, in nanoseconds: the median of many.
 #[must_use]
 pub fn clock_nanoseconds() -> f64 {
     const READINGS: usize = 10_000;
-    let mut all: Vec<u64> = (0..READINGS).map(|_| elapsed(Instant::now())).collect();
+    let mut all: Vec<u64> = (0..READINGS).map(|_| elapsed_nanoseconds(Instant::now())).collect();
     all.sort_unstable();
     all[READINGS / 2] as f64
 }
 
-/// An index that is asked with options.
+/// An index that answers with these options.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked<T: Scalar, I> {
     index: I,
@@ -101,7 +102,7 @@ pub struct Asked<T: Scalar, I> {
 }
 
 impl<T: Scalar, I: ClosestPoint<T> + Sync> Asked<T, I> {
-    /// The index is often borrowed: several settings ask the same one.
+    /// Makes a backend of an index, which is often borrowed because several settings use the same one.
     pub fn new(index: I, options: QueryOptions<T>) -> Self {
         Self { index, options }
     }
@@ -116,7 +117,7 @@ impl<T: Scalar, I: ClosestPoint<T> + Sync> Respond for Asked<T, I> {
     }
 }
 
-/// An index that is asked for certified answers.
+/// An index that returns certified answers.
 #[derive(Clone, Copy, Debug)]
 pub struct AskedForProof<T: Scalar, I> {
     index: I,
@@ -124,16 +125,16 @@ pub struct AskedForProof<T: Scalar, I> {
 }
 
 impl<T: Scalar, I> AskedForProof<T, I> {
-    /// The index is often borrowed: several settings ask the same one.
+    /// Makes a backend of an index, which is often borrowed because several settings use the same one.
     pub fn new(index: I) -> Self {
         Self { index, options: QueryOptions::default() }
     }
 }
 
-impl<T: Scalar, I: CertifiedQuery<T> + Sync> Respond for AskedForProof<T, &I> {
+impl<T: Scalar, I: CertifiedQuery<T> + Sync + ?Sized> Respond for AskedForProof<T, &I> {
     type Scalar = T;
 
-    /// No answer where there is no proof.
+    /// Returns no answer where there is no certificate.
     #[inline(always)]
     fn respond(&self, query: &Point3<T>) -> Answer {
         self.index.certified_closest_point(query, &self.options).ok().flatten().into()

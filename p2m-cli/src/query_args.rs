@@ -1,7 +1,7 @@
-//! How `query` and `ray` ask: the options that they share, and many questions at once.
+//! The arguments that `query` and `ray` share, and the loop that answers queries in chunks on all threads.
 
-use crate::faces::Faces;
 use crate::input::{SceneArgs, is_standard, or_option};
+use crate::kdop_directions::KdopFaces;
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
@@ -16,10 +16,10 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 #[derive(clap::Args)]
-pub(crate) struct Asking {
+pub(crate) struct QueryArgs {
     /// How many faces the polytopes of --backend kdop have [default: 14, or as a saved index]
     #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
-    pub(crate) k: Option<Faces>,
+    pub(crate) k: Option<KdopFaces>,
 
     /// Where to write the answers; `-` is the standard output.
     ///
@@ -29,7 +29,7 @@ pub(crate) struct Asking {
     #[arg(long, value_name = "FILE", default_value = "-")]
     pub(crate) out: PathBuf,
 
-    /// The format of the answers, if the extension of their file does not tell; CSV is the default
+    /// The format of the answers, if the extension of their file does not name it; CSV is the default
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<AnswerFormat>(AnswerFormat::NAMES), ignore_case = true)]
     out_format: Option<AnswerFormat>,
 
@@ -42,8 +42,9 @@ pub(crate) struct Asking {
     threads: Option<u16>,
 }
 
-impl Asking {
-    /// Refuses what cannot be, before any work: `file` has the questions, which are called `what`.
+impl QueryArgs {
+    /// Refuses impossible combinations of arguments before any work. `file` has the queries, which messages call
+    /// `what`.
     pub(crate) fn check(&self, scene: &SceneArgs, file: Option<&Path>, what: &str) -> anyhow::Result<()> {
         if self.json && is_standard(&self.out) {
             return Err(usage(
@@ -57,7 +58,7 @@ impl Asking {
         Output::refuse_inputs(&self.out, &inputs)
     }
 
-    /// The format of the answers: the given one, or that of the extension; CSV for names that have none.
+    /// Returns the format of the answers: the given one, or else that of the extension, or CSV without an extension.
     pub(crate) fn format(&self, streams: &Streams) -> anyhow::Result<AnswerFormat> {
         let format = match self.out_format {
             Some(format) => format,
@@ -70,51 +71,57 @@ impl Asking {
         Ok(format)
     }
 
-    /// The threads.
+    /// Starts the threads.
     pub(crate) fn pool(&self) -> anyhow::Result<ThreadPool> {
         pool(self.threads)
     }
 
-    /// The file of the answers, for the report.
-    pub(crate) fn written(&self, format: AnswerFormat, bytes: u64) -> Value {
+    /// Returns the part of a report about the file of the answers.
+    pub(crate) fn output_json(&self, format: AnswerFormat, bytes: u64) -> Value {
         json!({ "file": self.out.display().to_string(), "format": format.name(), "bytes": bytes })
     }
 }
 
-/// So many threads, or as many as there are cores.
+/// Starts this number of threads, or as many as there are cores.
 pub(crate) fn pool(threads: Option<u16>) -> anyhow::Result<ThreadPool> {
-    let threads = threads.map_or(0, usize::from); // 0 is all of them
+    // For rayon 0 stands for the number of cores.
+    let threads = threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.map_err(|e| anyhow!("cannot start threads: {e}")) // as text: its source says the same again
+    // The error is kept as text, because its source repeats it.
+    pool.map_err(|e| anyhow!("cannot start threads: {e}"))
 }
 
-/// Questions that are asked before their answers are written: enough to keep all threads busy, few enough to hold.
-const CHUNK: usize = 1 << 14;
-/// Questions that one thread takes at a time. A brute-force query of a large scene takes milliseconds.
-const SHARE: usize = 32;
+/// The number of queries that are answered before their answers are written. It keeps all threads busy and
+/// fits into memory.
+const QUERIES_PER_CHUNK: usize = 1 << 14;
+/// The number of queries that one thread takes at a time. It is small because a brute-force query of a large
+/// scene takes milliseconds.
+const QUERIES_PER_TASK: usize = 32;
 
-/// So many questions, made as they are needed.
-pub(crate) struct Questions<I> {
-    /// What they are called.
+/// A stream of points or rays to query with.
+pub(crate) struct QueryStream<I> {
+    /// The name of the queries in messages, in the plural.
     pub(crate) name: &'static str,
+    /// The number of queries that `iter` returns.
     pub(crate) count: u64,
     pub(crate) iter: I,
 }
 
-/// Asks chunk by chunk on all threads, and hands on every question with its answer, in order; how long the asking took.
-pub(crate) fn ask<Q: Sync, A: Clone + Default + Send>(
+/// Answers queries chunk by chunk on all threads, and passes each query with its answer to `take`, in order. Returns
+/// the time that the answers took.
+pub(crate) fn answer_all<Q: Sync, A: Clone + Default + Send>(
     streams: &Streams,
     pool: &ThreadPool,
-    mut questions: Questions<impl Iterator<Item = Q>>,
+    mut queries: QueryStream<impl Iterator<Item = Q>>,
     answer: impl Fn(&[Q], &mut [A]) + Sync,
     mut take: impl FnMut(&Q, &A) -> io::Result<()>,
 ) -> io::Result<Duration> {
-    let progress = Progress::start(streams, "asking", Some(questions.count), Unit::Items(questions.name));
+    let progress = Progress::start(streams, "answering", Some(queries.count), Unit::Items(queries.name));
     let mut time = Duration::ZERO;
     let (mut chunk, mut answers) = (Vec::new(), Vec::new());
     loop {
         chunk.clear();
-        chunk.extend(questions.iter.by_ref().take(CHUNK));
+        chunk.extend(queries.iter.by_ref().take(QUERIES_PER_CHUNK));
         if chunk.is_empty() {
             return Ok(time);
         }
@@ -122,14 +129,16 @@ pub(crate) fn ask<Q: Sync, A: Clone + Default + Send>(
         answers.resize(chunk.len(), A::default());
         let start = Instant::now();
         pool.install(|| {
-            chunk.par_chunks(SHARE).zip(answers.par_chunks_mut(SHARE)).for_each(|(questions, answers)| {
-                answer(questions, answers);
-                progress.add(questions.len() as u64);
-            });
+            chunk.par_chunks(QUERIES_PER_TASK).zip(answers.par_chunks_mut(QUERIES_PER_TASK)).for_each(
+                |(queries, answers)| {
+                    answer(queries, answers);
+                    progress.add(queries.len() as u64);
+                },
+            );
         });
         time += start.elapsed();
-        for (question, answer) in chunk.iter().zip(&answers) {
-            take(question, answer)?;
+        for (query, answer) in chunk.iter().zip(&answers) {
+            take(query, answer)?;
         }
     }
 }

@@ -1,0 +1,159 @@
+//! An index of any backend behind one pointer, and the settings that it is built with.
+
+use crate::kdop_directions::{ChosenDirections, KdopDirections};
+use p2m_bvh::{SplitOptions, TreeIndex, Volume};
+use p2m_core::storage::{Saved, Writer};
+use p2m_core::{BoxQuery, BruteForce, CertifiedQuery, ClosestPoint, Inspect, RayQuery, Soup};
+use p2m_interception::{InterceptionIndex, OctreeReport, P2mReport, Partition, Progress};
+
+/// An index of any backend over a scene that it borrows.
+///
+/// Every index answers closest-point, near and certified queries and reports its costs. Rays and boxes are optional.
+pub trait Index: ClosestPoint<f64> + CertifiedQuery<f64> + Inspect<f64> + Send + Sync {
+    /// Adds the index to a file, without its scene. Indexes of backends that are not
+    /// [saveable](crate::registry::BackendEntry::is_saveable) add nothing.
+    fn save<'s>(&'s self, writer: &mut Writer<'s>);
+
+    /// Returns the heap memory that the index owns besides its scene, in bytes.
+    fn memory_bytes(&self) -> usize;
+
+    /// Returns the index as one that rays can be cast at, if it is one.
+    fn as_ray_query(&self) -> Option<&(dyn RayQuery<f64> + Sync)> {
+        None
+    }
+
+    /// Returns the index as one that boxes can be queried with, if it is one.
+    fn as_box_query(&self) -> Option<&(dyn BoxQuery<f64> + Sync)> {
+        None
+    }
+}
+
+impl Index for BruteForce<&Soup<f64>> {
+    fn save<'s>(&'s self, _: &mut Writer<'s>) {}
+
+    fn memory_bytes(&self) -> usize {
+        0
+    }
+
+    fn as_ray_query(&self) -> Option<&(dyn RayQuery<f64> + Sync)> {
+        Some(self)
+    }
+
+    fn as_box_query(&self) -> Option<&(dyn BoxQuery<f64> + Sync)> {
+        Some(self)
+    }
+}
+
+impl<V: Volume> Index for TreeIndex<f64, &Soup<f64>, V> {
+    fn save<'s>(&'s self, writer: &mut Writer<'s>) {
+        self.save(writer);
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.memory()
+    }
+
+    fn as_ray_query(&self) -> Option<&(dyn RayQuery<f64> + Sync)> {
+        Some(self)
+    }
+
+    fn as_box_query(&self) -> Option<&(dyn BoxQuery<f64> + Sync)> {
+        Some(self)
+    }
+}
+
+impl<P: Partition + Saved + Send + Sync> Index for InterceptionIndex<f64, &Soup<f64>, P> {
+    fn save<'s>(&'s self, writer: &mut Writer<'s>) {
+        self.save(writer);
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.memory()
+    }
+}
+
+/// An index that was built or loaded, with the details that reports have about it.
+pub struct BuiltIndex<'a> {
+    /// The index itself.
+    pub index: Box<dyn Index + 'a>,
+    /// The details of its backend.
+    pub details: IndexDetails,
+}
+
+impl BuiltIndex<'_> {
+    /// Adds the index and its details to a file, without the scene.
+    pub fn save<'s>(&'s self, writer: &mut Writer<'s>) {
+        self.index.save(writer);
+        if let IndexDetails::Kdop(directions) = &self.details {
+            directions.save(writer);
+        }
+    }
+}
+
+/// The details of an index that only its backend has.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum IndexDetails {
+    /// The backend has none.
+    None,
+    /// The directions of a k-DOP tree.
+    Kdop(ChosenDirections),
+    /// The numbers of cells of an octree.
+    Octree(OctreeReport),
+    /// The numbers of cells of a P2M index.
+    P2m(P2mReport),
+}
+
+/// The settings that a build by name accepts. A backend ignores those that it does not have.
+#[derive(Clone, Copy)]
+#[non_exhaustive]
+pub struct BuildSettings<'p> {
+    /// Whether the build uses all threads of the current pool; true by default. It has no effect without the feature
+    /// `rayon` of the crate of the index.
+    pub is_parallel: bool,
+    /// The directions of k-DOPs; `None` for those with 14 faces.
+    pub kdop_directions: Option<KdopDirections>,
+    /// The factor of the memory and work budgets of an octree, 1 by default. These budgets have a minimum, which is
+    /// too large for a small sample of a scene.
+    pub octree_budget_scale: f64,
+    /// A function that is called with the progress of the build, by backends that
+    /// [report it](crate::registry::BackendEntry::reports_progress).
+    pub progress: &'p (dyn Fn(Progress) + Sync),
+}
+
+impl Default for BuildSettings<'_> {
+    fn default() -> Self {
+        Self { is_parallel: true, kdop_directions: None, octree_budget_scale: 1.0, progress: &|_| () }
+    }
+}
+
+impl<'p> BuildSettings<'p> {
+    /// Sets whether the build uses all threads.
+    #[must_use]
+    pub fn with_parallel(self, is_parallel: bool) -> Self {
+        Self { is_parallel, ..self }
+    }
+
+    /// Sets the directions of k-DOPs.
+    #[must_use]
+    pub fn with_kdop_directions(self, kdop_directions: Option<KdopDirections>) -> Self {
+        Self { kdop_directions, ..self }
+    }
+
+    /// Sets the factor of the budgets of an octree.
+    #[must_use]
+    pub fn with_octree_budget_scale(self, octree_budget_scale: f64) -> Self {
+        Self { octree_budget_scale, ..self }
+    }
+
+    /// Sets the function that receives the progress of the build.
+    #[must_use]
+    pub fn with_progress(self, progress: &'p (dyn Fn(Progress) + Sync)) -> Self {
+        Self { progress, ..self }
+    }
+
+    /// The splits of trees, with the choice of threads.
+    pub(crate) fn splits(&self) -> SplitOptions {
+        SplitOptions::default().with_parallel(self.is_parallel)
+    }
+}

@@ -1,0 +1,144 @@
+//! The choice of the directions of a k-DOP tree at run time.
+//!
+//! In the library the number of faces K is a const parameter. [`KdopVisitor`] turns a number that is known at run time
+//! into that parameter.
+
+use p2m_bvh::SplitOptions;
+use p2m_core::storage::{self, LoadError, Reader, Writer};
+use p2m_core::{BuildError, Soup};
+use p2m_kdop::{DirectionChoice, Directions, KdopOptions, KdopTree};
+
+/// The prefix of the kinds of k-DOP trees in saved files.
+const KIND_PREFIX: &str = "kdop-";
+/// The section of a saved file with the reason for the directions that were chosen for the scene.
+const REASON_SECTION: &str = "kdop/choice";
+/// The numbers of faces that a tree may have.
+const FACE_COUNTS: [usize; 4] = [6, 14, 18, 26];
+
+/// The directions of the faces of k-DOPs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KdopDirections {
+    /// Three pairs of faces along the axes: the k-DOPs are boxes.
+    Six,
+    /// The faces of boxes, and four pairs that cut off their corners.
+    Fourteen,
+    /// The faces of boxes, and six pairs that cut off their edges.
+    Eighteen,
+    /// The faces of boxes, and ten pairs that cut off their corners and edges.
+    TwentySix,
+    /// The number of faces that the scene is worth, along the axes or rotated with the scene.
+    Scene,
+}
+
+/// The directions that a k-DOP tree was built with.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChosenDirections {
+    /// The number of faces of each k-DOP.
+    pub faces: usize,
+    /// The reason for these directions, as a sentence for people; `None` if they were not derived from the scene.
+    pub reason: Option<String>,
+}
+
+impl ChosenDirections {
+    /// Adds the reason to a file, if there is one.
+    pub fn save(&self, writer: &mut Writer<'_>) {
+        if let Some(reason) = &self.reason {
+            writer.put_copy(REASON_SECTION, reason.as_bytes());
+        }
+    }
+}
+
+/// A function of a k-DOP tree that is compiled once for each K.
+pub trait KdopVisitor<'a> {
+    /// The result of the visit.
+    type Output;
+    /// Receives the tree.
+    fn visit<const K: usize>(self, tree: KdopTree<f64, &'a Soup<f64>, K>) -> Self::Output;
+}
+
+impl KdopDirections {
+    /// All values, in order of the number of faces; the choice by the scene is the last one.
+    pub const ALL: [Self; 5] = [Self::Six, Self::Fourteen, Self::Eighteen, Self::TwentySix, Self::Scene];
+
+    /// The number of faces, or `None` if it depends on the scene.
+    #[must_use]
+    pub const fn faces(self) -> Option<usize> {
+        match self {
+            Self::Six => Some(6),
+            Self::Fourteen => Some(14),
+            Self::Eighteen => Some(18),
+            Self::TwentySix => Some(26),
+            Self::Scene => None,
+        }
+    }
+
+    /// Returns the number of faces of the tree in a saved file, if there is one and it has the requested directions.
+    ///
+    /// Without a request every tree fits. A request for a number of faces is not met by a tree whose directions were
+    /// derived from its scene.
+    #[must_use]
+    pub fn saved_faces(requested: Option<Self>, reader: &Reader) -> Option<usize> {
+        let kind = storage::kind(reader).ok()?;
+        let faces = kind.strip_prefix(KIND_PREFIX)?.parse().ok().filter(|faces| FACE_COUNTS.contains(faces))?;
+        let is_from_scene = reader.has(REASON_SECTION);
+        let fits = requested.is_none_or(|directions| {
+            if is_from_scene { directions == Self::Scene } else { directions.faces() == Some(faces) }
+        });
+        fits.then_some(faces)
+    }
+
+    /// Loads a tree with this number of faces from a file, and passes it to the visitor.
+    ///
+    /// # Errors
+    /// The errors of [`TreeIndex::load`](p2m_bvh::TreeIndex::load).
+    pub fn load<'a, V: KdopVisitor<'a>>(
+        faces: usize,
+        soup: &'a Soup<f64>,
+        reader: &Reader,
+        visitor: V,
+    ) -> Result<(V::Output, ChosenDirections), LoadError> {
+        let output = match faces {
+            6 => visitor.visit::<6>(KdopTree::load(soup, reader)?),
+            14 => visitor.visit::<14>(KdopTree::load(soup, reader)?),
+            18 => visitor.visit::<18>(KdopTree::load(soup, reader)?),
+            _ => visitor.visit::<26>(KdopTree::load(soup, reader)?),
+        };
+        let reason = reader.copy::<u8>(REASON_SECTION).ok().map(|text| String::from_utf8_lossy(&text).into_owned());
+        Ok((output, ChosenDirections { faces, reason }))
+    }
+
+    /// Builds a tree with these directions, and passes it to the visitor.
+    ///
+    /// # Errors
+    /// The errors of [`TreeIndex::build_with`](p2m_bvh::TreeIndex::build_with).
+    pub fn build<'a, V: KdopVisitor<'a>>(
+        self,
+        soup: &'a Soup<f64>,
+        splits: SplitOptions,
+        visitor: V,
+    ) -> Result<(V::Output, ChosenDirections), BuildError> {
+        let choice = (self == Self::Scene).then(|| DirectionChoice::from_scene(soup)).transpose()?;
+        let faces = self.faces().unwrap_or_else(|| choice.as_ref().map_or(6, |choice| choice.k));
+        let output = match faces {
+            6 => build_tree::<6, _>(soup, splits, choice.as_ref(), visitor),
+            14 => build_tree::<14, _>(soup, splits, choice.as_ref(), visitor),
+            18 => build_tree::<18, _>(soup, splits, choice.as_ref(), visitor),
+            _ => build_tree::<26, _>(soup, splits, choice.as_ref(), visitor),
+        }?;
+        Ok((output, ChosenDirections { faces, reason: choice.map(|choice| choice.to_string()) }))
+    }
+}
+
+fn build_tree<'a, const K: usize, V: KdopVisitor<'a>>(
+    soup: &'a Soup<f64>,
+    splits: SplitOptions,
+    choice: Option<&DirectionChoice>,
+    visitor: V,
+) -> Result<V::Output, BuildError>
+where
+    Directions<K>: Default,
+{
+    let directions = choice.map(|choice| choice.directions::<K>().expect("the choice has K faces"));
+    let options = KdopOptions::new(directions.unwrap_or_default()).with_splits(splits);
+    KdopTree::build_with(soup, &options).map(|tree| visitor.visit(tree))
+}

@@ -1,0 +1,356 @@
+//! The registry of backends: one table that the program `p2m` and the advisor read.
+//!
+//! A new backend joins both with one entry of [`BACKENDS`] and, if its index has a type of its own, with an
+//! implementation of [`Index`] for that type. The values of `--backend`, the files of `p2m build` and the estimates of
+//! `p2m advise` all come from that entry.
+//!
+//! Indexes are behind one pointer, [`Box<dyn Index>`](Index), with f64 as the scalar and a borrowed [`Soup`] as the
+//! set. The pointer costs one indirect call for each query, or for each batch of queries. In rounds of `p2m tradeoff`
+//! it makes no measurable difference to queries of 700 to 1000 ns, so no command needs the types behind it. The
+//! searches below that call are compiled for each index. Code that needs another scalar or another set uses the types
+//! of the index crates instead.
+
+use crate::cost_model::CostModel;
+use crate::index::{BuildSettings, BuiltIndex, Index, IndexDetails};
+use crate::kdop_directions::{KdopDirections, KdopVisitor};
+use p2m_bvh::AabbTree;
+use p2m_core::storage::{self, LoadError, Reader, Saved};
+use p2m_core::{BruteForce, BuildError, BuildIndex, Soup};
+use p2m_interception::{Octree, OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, Voronoi};
+use p2m_kdop::KdopTree;
+use std::fmt;
+
+/// The structure that a backend searches, as far as it determines how costs grow with the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SearchStructure {
+    /// Every query examines every primitive.
+    Exhaustive,
+    /// A tree of bounding volumes over the primitives.
+    Tree,
+    /// Cells of space with lists of the primitives that can be nearest in them.
+    SpaceCells,
+    /// Cells of vertices with lists of the primitives that can be nearest in them.
+    VertexCells,
+}
+
+impl SearchStructure {
+    /// Whether the structure consists of cells with lists.
+    #[must_use]
+    pub const fn has_cells(self) -> bool {
+        matches!(self, Self::SpaceCells | Self::VertexCells)
+    }
+}
+
+/// A function that builds an index over a scene.
+type BuildFn = for<'a> fn(&'a Soup<f64>, &BuildSettings<'_>) -> Result<BuiltIndex<'a>, BuildError>;
+/// A function that loads an index from a file with its scene.
+type LoadFn = for<'a> fn(&'a Soup<f64>, &Reader) -> Result<BuiltIndex<'a>, LoadError>;
+
+/// The functions that recognize and load saved indexes of a backend.
+#[derive(Clone, Copy)]
+struct SavedFormat {
+    /// Returns whether the file has an index of this backend with the requested directions of k-DOPs.
+    is_in: fn(&Reader, Option<KdopDirections>) -> bool,
+    load: LoadFn,
+}
+
+/// An entry of [`BACKENDS`]. Two entries are equal if their names are.
+pub struct BackendEntry {
+    /// The name on the command line, in reports and in saved files.
+    pub name: &'static str,
+    /// A phrase that describes the backend, for the help of commands and for reports.
+    pub summary: &'static str,
+    /// The structure that is searched.
+    pub structure: SearchStructure,
+    /// Whether [`Index::as_ray_query`] returns something.
+    pub casts_rays: bool,
+    /// Whether a build calls [`BuildSettings::progress`].
+    pub reports_progress: bool,
+    /// Whether it uses [`BuildSettings::kdop_directions`].
+    pub has_kdop_directions: bool,
+    /// The expected cost.
+    pub cost: CostModel,
+    build: BuildFn,
+    saved: Option<SavedFormat>,
+}
+
+/// All backends, the simplest one first. Tables and estimates keep this order.
+pub static BACKENDS: &[BackendEntry] = &[
+    BackendEntry {
+        name: "brute",
+        summary: "Every primitive, every time",
+        structure: SearchStructure::Exhaustive,
+        casts_rays: true,
+        reports_progress: false,
+        has_kdop_directions: false,
+        cost: CostModel {
+            build_seconds_per_primitive: 0.04e-6,
+            near_query_seconds: 0.0,
+            box_query_seconds: 0.0,
+            bytes_per_primitive: 0.0,
+            near_growth: 2.0,
+            box_growth: 2.0,
+            sliver_query_factor: 1.0,
+            sample_correction: 1.0,
+        },
+        build: |soup, _| Ok(built(BruteForce::build(soup, &())?, IndexDetails::None)),
+        saved: None,
+    },
+    BackendEntry {
+        name: "aabb",
+        summary: "A tree of boxes",
+        structure: SearchStructure::Tree,
+        casts_rays: true,
+        reports_progress: false,
+        has_kdop_directions: false,
+        cost: CostModel {
+            build_seconds_per_primitive: 0.75e-6,
+            near_query_seconds: 700e-9,
+            box_query_seconds: 1200e-9,
+            bytes_per_primitive: 65.0,
+            near_growth: 1.11,
+            box_growth: 1.27,
+            sliver_query_factor: 1.0,
+            sample_correction: 1.0,
+        },
+        build: |soup, settings| Ok(built(AabbTree::build(soup, &settings.splits())?, IndexDetails::None)),
+        saved: Some(SavedFormat {
+            is_in: |reader, _| has_kind(reader, "aabb"),
+            load: |soup, reader| Ok(built(AabbTree::load(soup, reader)?, IndexDetails::None)),
+        }),
+    },
+    BackendEntry {
+        name: "kdop",
+        summary: "A tree of polytopes (k-DOPs), which fit closer what does not lie along the axes",
+        structure: SearchStructure::Tree,
+        casts_rays: true,
+        reports_progress: false,
+        has_kdop_directions: true,
+        cost: CostModel {
+            build_seconds_per_primitive: 0.8e-6,
+            near_query_seconds: 750e-9,
+            box_query_seconds: 1250e-9,
+            bytes_per_primitive: 66.0,
+            near_growth: 1.11,
+            box_growth: 1.27,
+            sliver_query_factor: 0.75,
+            sample_correction: 1.08,
+        },
+        build: |soup, settings| {
+            let directions = settings.kdop_directions.unwrap_or(KdopDirections::Fourteen);
+            let (index, directions) = directions.build(soup, settings.splits(), BoxTree)?;
+            Ok(BuiltIndex { index, details: IndexDetails::Kdop(directions) })
+        },
+        saved: Some(SavedFormat {
+            is_in: |reader, directions| KdopDirections::saved_faces(directions, reader).is_some(),
+            load: |soup, reader| {
+                let faces = KdopDirections::saved_faces(None, reader).unwrap_or(14);
+                let (index, directions) = KdopDirections::load(faces, soup, reader, BoxTree)?;
+                Ok(BuiltIndex { index, details: IndexDetails::Kdop(directions) })
+            },
+        }),
+    },
+    BackendEntry {
+        name: "octree",
+        summary: "Cells in space with lists of what can be nearest there: no search, for more memory and a longer build",
+        structure: SearchStructure::SpaceCells,
+        casts_rays: false,
+        reports_progress: true,
+        has_kdop_directions: false,
+        cost: CostModel {
+            build_seconds_per_primitive: 10e-6,
+            near_query_seconds: 640e-9,
+            box_query_seconds: 690e-9,
+            bytes_per_primitive: 235.0,
+            near_growth: 1.15,
+            box_growth: 1.23,
+            sliver_query_factor: 1.0,
+            sample_correction: 1.0,
+        },
+        build: |soup, settings| {
+            let options = OctreeOptions::default().with_splits(settings.splits());
+            let (memory, work) = (options.memory, options.work);
+            let scale = settings.octree_budget_scale;
+            let options = options.with_memory(memory * scale).with_work(work * scale);
+            let index = OctreeIndex::build_with_progress(soup, &options, settings.progress)?;
+            let report = index.report();
+            Ok(built(index, IndexDetails::Octree(report)))
+        },
+        saved: Some(SavedFormat {
+            is_in: |reader, _| has_kind(reader, &Octree::kind()),
+            load: |soup, reader| {
+                let index = OctreeIndex::load(soup, reader)?;
+                let report = index.report();
+                Ok(built(index, IndexDetails::Octree(report)))
+            },
+        }),
+    },
+    BackendEntry {
+        name: "p2m",
+        summary: "Cells of the vertices with lists of what can be nearest there: fastest far from the scene",
+        structure: SearchStructure::VertexCells,
+        casts_rays: false,
+        reports_progress: true,
+        has_kdop_directions: false,
+        cost: CostModel {
+            build_seconds_per_primitive: 32e-6,
+            near_query_seconds: 430e-9,
+            box_query_seconds: 500e-9,
+            bytes_per_primitive: 330.0,
+            near_growth: 1.12,
+            box_growth: 1.24,
+            sliver_query_factor: 1.0,
+            sample_correction: 1.0,
+        },
+        build: |soup, settings| {
+            let options = P2mOptions::default().with_splits(settings.splits());
+            let index = P2mIndex::build_with_progress(soup, &options, settings.progress)?;
+            let report = index.report();
+            Ok(built(index, IndexDetails::P2m(report)))
+        },
+        saved: Some(SavedFormat {
+            is_in: |reader, _| has_kind(reader, &Voronoi::kind()),
+            load: |soup, reader| {
+                let index = P2mIndex::load(soup, reader)?;
+                let report = index.report();
+                Ok(built(index, IndexDetails::P2m(report)))
+            },
+        }),
+    },
+];
+
+fn built<'a>(index: impl Index + 'a, details: IndexDetails) -> BuiltIndex<'a> {
+    BuiltIndex { index: Box::new(index), details }
+}
+
+fn has_kind(reader: &Reader, kind: &str) -> bool {
+    storage::kind(reader).is_ok_and(|found| found == kind)
+}
+
+/// Erases the number of faces of a k-DOP tree.
+struct BoxTree;
+
+impl<'a> KdopVisitor<'a> for BoxTree {
+    type Output = Box<dyn Index + 'a>;
+    fn visit<const K: usize>(self, tree: KdopTree<f64, &'a Soup<f64>, K>) -> Self::Output {
+        Box::new(tree)
+    }
+}
+
+impl BackendEntry {
+    /// Returns the backend of this name.
+    #[must_use]
+    pub fn find(name: &str) -> Option<&'static Self> {
+        BACKENDS.iter().find(|backend| backend.name == name)
+    }
+
+    /// Returns the backend that is used where none is named: the tree of boxes, which is quick to build and answers
+    /// every kind of query.
+    ///
+    /// # Panics
+    /// It does not panic: the table has a tree.
+    #[must_use]
+    pub fn default_backend() -> &'static Self {
+        BACKENDS.iter().find(|backend| backend.structure == SearchStructure::Tree).expect("the table has a tree")
+    }
+
+    /// Returns the backend of the index in a saved file, if there is one.
+    #[must_use]
+    pub fn from_saved(reader: &Reader) -> Option<&'static Self> {
+        BACKENDS.iter().find(|backend| backend.is_in(reader, None))
+    }
+
+    /// Whether indexes of this backend can be saved and loaded.
+    #[must_use]
+    pub fn is_saveable(&self) -> bool {
+        self.saved.is_some()
+    }
+
+    /// Whether a saved file has an index of this backend, with these directions if it is a k-DOP tree.
+    #[must_use]
+    pub fn is_in(&self, reader: &Reader, directions: Option<KdopDirections>) -> bool {
+        self.saved.is_some_and(|saved| (saved.is_in)(reader, directions))
+    }
+
+    /// Builds an index over a scene.
+    ///
+    /// # Errors
+    /// [`BuildError`] for a scene with coordinates that are not finite, or with too many primitives.
+    pub fn build<'a>(&self, soup: &'a Soup<f64>, settings: &BuildSettings<'_>) -> Result<BuiltIndex<'a>, BuildError> {
+        (self.build)(soup, settings)
+    }
+
+    /// Loads the index of a saved file over the scene that it was built over.
+    ///
+    /// # Errors
+    /// [`LoadError`], and always if the file has no index of this backend.
+    pub fn load<'a>(&self, soup: &'a Soup<f64>, reader: &Reader) -> Result<BuiltIndex<'a>, LoadError> {
+        match self.saved {
+            Some(saved) => (saved.load)(soup, reader),
+            None => Err(LoadError::OtherKind { found: storage::kind(reader)?, expected: self.name.to_owned() }),
+        }
+    }
+}
+
+impl PartialEq for BackendEntry {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for BackendEntry {}
+
+impl fmt::Debug for BackendEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("BackendEntry").field(&self.name).finish()
+    }
+}
+
+impl fmt::Display for BackendEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point3;
+    use p2m_core::storage::{SavedFile, Writer};
+    use p2m_mixed::generate::{IcoSphere, ico_sphere};
+
+    #[test]
+    fn entries_are_what_they_say_of_themselves() {
+        let soup = ico_sphere(&IcoSphere::default()).unwrap();
+        let query = Point3::new(0.1, 0.2, 3.0);
+        for (i, backend) in BACKENDS.iter().enumerate() {
+            assert!(BACKENDS[..i].iter().all(|other| other != backend), "{backend}");
+            assert_eq!(BackendEntry::find(backend.name), Some(backend));
+            let built = backend.build(&soup, &BuildSettings::default()).unwrap();
+            let answer = built.index.closest_point(&query);
+            assert!(answer.is_some());
+            assert_eq!(built.index.as_ray_query().is_some(), backend.casts_rays, "{backend}");
+            assert_eq!(built.index.memory_bytes() > 0, backend.is_saveable(), "{backend}");
+            assert_eq!(matches!(built.details, IndexDetails::Kdop(_)), backend.has_kdop_directions, "{backend}");
+            let mut file = Vec::new();
+            let mut writer = Writer::default();
+            built.save(&mut writer);
+            writer.write(&mut file).unwrap();
+            let file = SavedFile::read(&file[..]).unwrap();
+            let reader = file.checked().unwrap();
+            for other in BACKENDS {
+                assert_eq!(other.is_in(reader, None), other == backend && backend.is_saveable(), "{other} {backend}");
+            }
+            if backend.is_saveable() {
+                assert_eq!(BackendEntry::from_saved(reader), Some(backend));
+                let loaded = backend.load(&soup, reader).unwrap();
+                assert_eq!(loaded.index.closest_point(&query), answer, "{backend}");
+                assert_eq!(loaded.details, built.details, "{backend}");
+            } else {
+                assert!(backend.load(&soup, reader).is_err());
+            }
+        }
+        assert_eq!(BackendEntry::default_backend().name, "aabb");
+    }
+}
