@@ -34,7 +34,6 @@ pub mod generate;
 mod obj;
 mod off;
 pub mod picture;
-mod places;
 mod ply;
 mod points;
 mod polygon;
@@ -44,6 +43,7 @@ pub mod statistics;
 mod stl;
 mod text;
 mod vector;
+mod weld;
 mod write;
 
 pub use answers::{AnswerWriter, HitWriter, NumberWriter};
@@ -67,8 +67,8 @@ pub use write::{
 pub mod engine {
     pub use crate::answers::npy_header;
     pub use crate::format::{unknown_extension, unknown_format};
-    pub mod places {
-        pub use crate::places::*;
+    pub mod weld {
+        pub use crate::weld::*;
     }
     pub mod vector {
         pub use crate::vector::*;

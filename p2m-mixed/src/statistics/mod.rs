@@ -13,7 +13,7 @@ mod shape;
 pub use notes::{FAR, Note, SPREAD};
 pub use objects::{ObjectCounts, objects};
 
-use crate::places::{Places, UNUSED, by_place};
+use crate::weld::{UNUSED, VertexWelder, group_by_vertex};
 use nalgebra::Point3;
 use p2m_core::kernel::SLIVER_SINE;
 use p2m_core::{Aabb, Element, PrimitiveSet, Soup};
@@ -216,23 +216,23 @@ impl Statistics {
     /// O(n log n) time, about 40 bytes a triangle while it runs.
     #[must_use]
     pub fn of(soup: &Soup<f64>) -> Self {
-        let places = Places::new(soup);
+        let welder = VertexWelder::new(soup);
         let (shapes, sizes) = measure(soup);
         let bounds = (!soup.is_empty()).then(|| soup.aabb());
         Self {
             primitives: Counts::of(soup),
             positions: Positions {
                 total: soup.positions().len() as u64,
-                used: places.used as u64,
-                distinct: places.len as u64,
+                used: welder.used_positions as u64,
+                distinct: welder.vertex_count as u64,
             },
             bounds,
-            duplicates: duplicates(soup, &places),
-            edges: edges(soup, &places),
-            components: places.components(soup) as u64,
+            duplicates: duplicates(soup, &welder),
+            edges: edges(soup, &welder),
+            components: welder.count_components(soup) as u64,
             shapes,
             sizes,
-            location: bounds.map_or_else(Location::default, |b| locate(soup, &places, &b)),
+            location: bounds.map_or_else(Location::default, |b| locate(soup, &welder, &b)),
         }
     }
 
@@ -248,34 +248,34 @@ fn repeated<K: PartialEq>(sorted: &[K]) -> u64 {
     sorted.windows(2).filter(|w| w[0] == w[1]).count() as u64
 }
 
-fn duplicates(soup: &Soup<f64>, places: &Places) -> Counts {
+fn duplicates(soup: &Soup<f64>, welder: &VertexWelder) -> Counts {
     let mut counts = Counts::default();
     let triangles = soup.triangles().iter().map(|t| {
-        let mut corners = places.of(*t);
+        let mut corners = welder.weld(*t);
         corners.sort_unstable();
         (corners[0], [corners[1], corners[2]])
     });
-    by_place(places.len, triangles, |group| counts.triangles += repeated(group));
+    group_by_vertex(welder.vertex_count, triangles, |group| counts.triangles += repeated(group));
     let segments = soup.segments().iter().map(|s| {
-        let [a, b] = places.of(*s);
+        let [a, b] = welder.weld(*s);
         (a.min(b), a.max(b))
     });
-    by_place(places.len, segments, |group| counts.segments += repeated(group));
-    by_place(places.len, soup.points().iter().map(|p| (places.of([*p])[0], ())), |group| {
+    group_by_vertex(welder.vertex_count, segments, |group| counts.segments += repeated(group));
+    group_by_vertex(welder.vertex_count, soup.points().iter().map(|p| (welder.weld([*p])[0], ())), |group| {
         counts.points += repeated(group)
     });
     counts
 }
 
-fn edges(soup: &Soup<f64>, places: &Places) -> Edges {
+fn edges(soup: &Soup<f64>, welder: &VertexWelder) -> Edges {
     let mut edges = Edges::default();
     // The end with the lower number, the other one, and whether the triangle runs from the former to the latter.
     let all = soup.triangles().iter().flat_map(|t| {
-        let [a, b, c] = places.of(*t);
+        let [a, b, c] = welder.weld(*t);
         let has_edges = a != b && b != c && c != a;
         [(a, b), (b, c), (c, a)].into_iter().filter(move |_| has_edges).map(|(a, b)| (a.min(b), (a.max(b), a < b)))
     });
-    by_place(places.len, all, |group| {
+    group_by_vertex(welder.vertex_count, all, |group| {
         for edge in group.chunk_by(|x, y| x.0 == y.0) {
             edges.total += 1;
             match edge {
@@ -328,10 +328,10 @@ fn measure(soup: &Soup<f64>) -> (Shapes, Sizes) {
 }
 
 #[allow(clippy::cast_possible_truncation, clippy::float_cmp, reason = "whether f32 rounds is the question")]
-fn locate(soup: &Soup<f64>, places: &Places, bounds: &Aabb<f64>) -> Location {
-    let mut seen = vec![false; places.len];
+fn locate(soup: &Soup<f64>, welder: &VertexWelder, bounds: &Aabb<f64>) -> Location {
+    let mut seen = vec![false; welder.vertex_count];
     let mut location = Location::default();
-    for (p, &place) in soup.positions().iter().zip(&places.of) {
+    for (p, &place) in soup.positions().iter().zip(&welder.vertex_ids) {
         if place == UNUSED || std::mem::replace(&mut seen[place as usize], true) {
             continue;
         }
