@@ -12,7 +12,7 @@ const MAX_KINDS: usize = 64;
 
 /// Counts what is skipped.
 #[derive(Default)]
-pub(crate) struct Skips {
+pub(crate) struct SkippedRecords {
     /// The same thing is often skipped many times in a row: the last one is tried first.
     last: usize,
     keys: Vec<Vec<u8>>,
@@ -20,7 +20,7 @@ pub(crate) struct Skips {
     others: u64,
 }
 
-impl Skips {
+impl SkippedRecords {
     /// Adds to the count of a name; nothing if `count` is 0.
     pub(crate) fn add(&mut self, key: &[u8], count: u64) {
         if count == 0 {
@@ -44,7 +44,7 @@ impl Skips {
     }
 
     /// Adds so many of what `what` is the plural of, unless there are none.
-    pub(crate) fn add_many(&mut self, count: u64, what: &str) {
+    pub(crate) fn add_plural(&mut self, count: u64, what: &str) {
         if count > 0 {
             self.keys.push(what.as_bytes().to_vec());
             self.list.push(Skipped { what: what.to_owned(), count, is_plural: true });
@@ -52,7 +52,7 @@ impl Skips {
     }
 
     /// Takes back what was added under a name.
-    pub(crate) fn forget(&mut self, key: &[u8]) {
+    pub(crate) fn remove(&mut self, key: &[u8]) {
         if let Some(at) = self.keys.iter().position(|k| k == key) {
             self.keys.remove(at);
             self.list.remove(at);
@@ -62,21 +62,21 @@ impl Skips {
 
     fn finish(mut self) -> Vec<Skipped> {
         let others = self.others;
-        self.add_many(others, "other statements");
+        self.add_plural(others, "other statements");
         self.list
     }
 }
 
 /// Collects objects. A name costs memory only where it starts a run of primitives.
 #[derive(Default)]
-struct Objects {
+struct ObjectRuns {
     list: Vec<Object>,
     /// The name at hand, in the bytes of the file, and the first id under it.
     name: Vec<u8>,
     start: usize,
 }
 
-impl Objects {
+impl ObjectRuns {
     /// What follows from id `next` on is of this name.
     fn start(&mut self, name: &[u8], next: usize) {
         self.end(next);
@@ -98,22 +98,22 @@ impl Objects {
 
 /// A scene under construction; whoever adds to it has checked indices, and that what they name is finite.
 #[derive(Default)]
-pub(crate) struct Builder {
-    pub(crate) skips: Skips,
+pub(crate) struct SceneBuilder {
+    pub(crate) skipped: SkippedRecords,
     soup: Soup<f64>,
     sources: Vec<u32>,
-    objects: Objects,
+    objects: ObjectRuns,
     corners: Vec<Point3<f64>>,
     triangulator: Triangulator,
 }
 
-impl Builder {
+impl SceneBuilder {
     pub(crate) fn positions(&self) -> &[Point3<f64>] {
         self.soup.positions()
     }
 
     /// Adds a vertex, unless there are more than u32 can count.
-    pub(crate) fn vertex(&mut self, position: Point3<f64>) -> Result<u32, Reason> {
+    pub(crate) fn push_vertex(&mut self, position: Point3<f64>) -> Result<u32, Reason> {
         let count = self.positions().len() as u64;
         let vertex = u32::try_from(count).ok().filter(|&vertex| vertex < u32::MAX);
         let vertex = vertex.ok_or(Reason::ElementTooLarge { count: count + 1, limit: u64::from(u32::MAX) })?;
@@ -129,7 +129,7 @@ impl Builder {
     }
 
     /// Adds the triangles of a polygon.
-    pub(crate) fn polygon(&mut self, vertices: &[u32], source: usize) -> Result<(), Reason> {
+    pub(crate) fn push_polygon(&mut self, vertices: &[u32], source: usize) -> Result<(), Reason> {
         if let &[a, b, c] = vertices {
             return self.push(Element::Triangle([a, b, c]), source);
         }
@@ -149,18 +149,18 @@ impl Builder {
     }
 
     /// What follows belongs to the object of this name, or to none if it is empty.
-    pub(crate) fn object(&mut self, name: &[u8]) {
+    pub(crate) fn start_object(&mut self, name: &[u8]) {
         self.objects.start(trim(name), self.soup.len());
     }
 
     /// Forgets all objects.
-    pub(crate) fn forget_objects(&mut self) {
-        self.objects = Objects { start: self.soup.len(), ..Objects::default() };
+    pub(crate) fn clear_objects(&mut self) {
+        self.objects = ObjectRuns { start: self.soup.len(), ..ObjectRuns::default() };
     }
 
     /// Makes every vertex a point, except those that are not finite.
     #[allow(clippy::cast_possible_truncation, reason = "there are no more vertices than u32 can count")]
-    pub(crate) fn point_cloud(&mut self) -> Result<(), Reason> {
+    pub(crate) fn push_point_cloud(&mut self) -> Result<(), Reason> {
         let mut left_out = 0;
         for i in 0..self.positions().len() {
             if self.is_finite(i as u32) {
@@ -169,7 +169,7 @@ impl Builder {
                 left_out += 1;
             }
         }
-        self.skips.add_many(left_out, "vertices that are not finite");
+        self.skipped.add_plural(left_out, "vertices that are not finite");
         Ok(())
     }
 
@@ -178,7 +178,7 @@ impl Builder {
         self.soup.shrink_to_fit();
         self.sources.shrink_to_fit();
         self.objects.end(self.soup.len());
-        let Self { soup, sources, skips, objects, .. } = self;
-        Scene { soup, sources, objects: objects.list, skipped: skips.finish() }
+        let Self { soup, sources, skipped, objects, .. } = self;
+        Scene { soup, sources, objects: objects.list, skipped: skipped.finish() }
     }
 }

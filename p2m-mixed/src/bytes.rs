@@ -35,14 +35,14 @@ impl Scalar {
 }
 
 /// A binary file with the offset that it is read at.
-pub(crate) struct Bytes<R> {
+pub(crate) struct ByteReader<R> {
     reader: R,
     /// Of the number that was read last, and of the one to come.
     start: u64,
     offset: u64,
 }
 
-impl<R: BufRead> Bytes<R> {
+impl<R: BufRead> ByteReader<R> {
     /// `reader` stands at `offset`.
     pub(crate) fn new(reader: R, offset: u64) -> Self {
         Self { reader, start: offset, offset }

@@ -18,20 +18,20 @@ pub struct ReadError {
     /// The name of the file as the caller gave it.
     pub file: String,
     /// Where in the file.
-    pub place: Place,
+    pub location: FileLocation,
     /// What is wrong there.
     pub reason: Reason,
 }
 
 impl ReadError {
-    pub(crate) fn new(file: &str, place: Place, reason: Reason) -> Self {
-        Self { file: file.to_owned(), place, reason }
+    pub(crate) fn new(file: &str, location: FileLocation, reason: Reason) -> Self {
+        Self { file: file.to_owned(), location, reason }
     }
 }
 
 impl fmt::Display for ReadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{}: {}", self.file, self.place, self.reason)
+        write!(f, "{}{}: {}", self.file, self.location, self.reason)
     }
 }
 
@@ -42,9 +42,9 @@ impl std::error::Error for ReadError {
     }
 }
 
-/// A place in a file.
+/// A location in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum FileLocation {
     /// The file as a whole.
     File,
     /// A line of text, from 1.
@@ -55,7 +55,7 @@ pub enum Place {
     Row(u64),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FileLocation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File => Ok(()),
@@ -109,7 +109,7 @@ pub enum Reason {
         text: String,
     },
     /// A primitive has a vertex with a coordinate that is NaN or infinite, or too large for a number of double
-    /// precision. OBJ counts vertices from 1, PLY and OFF from 0. The place is that of the vertex in a PLY file, of
+    /// precision. OBJ counts vertices from 1, PLY and OFF from 0. The location is that of the vertex in a PLY file, of
     /// the primitive in the others.
     #[error("vertex {index} is part of a primitive, but has a coordinate that is not finite")]
     NonFiniteVertex {

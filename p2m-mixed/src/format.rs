@@ -1,6 +1,6 @@
 //! The formats of files, by name and by extension.
 
-use crate::{Place, ReadError, Reason};
+use crate::{FileLocation, ReadError, Reason};
 use std::path::Path;
 
 /// A name that is of no format.
@@ -85,7 +85,7 @@ macro_rules! formats {
 /// The error for a file whose extension is that of no format.
 pub fn unknown_extension(path: &Path, extension: String, supported: &'static [&'static str]) -> ReadError {
     let reason = Reason::UnknownExtension { extension, supported };
-    ReadError::new(&path.display().to_string(), Place::File, reason)
+    ReadError::new(&path.display().to_string(), FileLocation::File, reason)
 }
 
 /// The error for a name of no format.

@@ -48,7 +48,7 @@ mod write;
 
 pub use answers::{AnswerWriter, HitWriter, NumberWriter};
 pub use camera::Camera;
-pub use error::{HeaderProblem, Place, ReadError, Reason};
+pub use error::{FileLocation, HeaderProblem, ReadError, Reason};
 pub use format::{AnswerFormat, Format, PointFormat, UnknownFormat};
 pub use obj::read_obj;
 pub use off::read_off;

@@ -1,9 +1,9 @@
 //! Wavefront OBJ: the geometry of it.
 
-use crate::builder::Builder;
+use crate::builder::SceneBuilder;
 use crate::polygon::MAX_CORNERS;
-use crate::text::{Lines, Words, integer, number, quote};
-use crate::{Place, ReadError, Reason, Scene};
+use crate::text::{LineReader, Tokens, parse_integer, parse_number, quote};
+use crate::{FileLocation, ReadError, Reason, Scene};
 use nalgebra::Point3;
 use p2m_core::Element;
 use std::io::BufRead;
@@ -35,25 +35,25 @@ use std::io::BufRead;
 /// with too few vertices, faces beyond [`MAX_CORNERS`], and for what goes wrong in reading. A file without any vertex,
 /// but with statements that are unknown to OBJ, is refused as none.
 pub fn read_obj(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
-    let mut lines = Lines::new(reader, 0);
+    let mut lines = LineReader::new(reader, 0);
     let mut parser = Parser::default();
     loop {
         match lines.read_continued() {
             Ok(true) => {}
             Ok(false) => break,
-            Err(e) => return Err(ReadError::new(name, Place::Line(lines.line()), Reason::Io(e))),
+            Err(e) => return Err(ReadError::new(name, FileLocation::Line(lines.line()), Reason::Io(e))),
         }
-        let mut words = Words::new(lines.bytes());
+        let mut tokens = Tokens::new(lines.bytes());
         parser
-            .statement(&mut words)
-            .map_err(|reason| ReadError::new(name, Place::Line(lines.line() + words.lines_down()), reason))?;
+            .statement(&mut tokens)
+            .map_err(|reason| ReadError::new(name, FileLocation::Line(lines.line() + tokens.line_offset()), reason))?;
     }
-    parser.finish().map_err(|reason| ReadError::new(name, Place::File, reason))
+    parser.finish().map_err(|reason| ReadError::new(name, FileLocation::File, reason))
 }
 
 #[derive(Default)]
 struct Parser {
-    builder: Builder,
+    builder: SceneBuilder,
     /// Statements so far, of each kind.
     faces: usize,
     lines: usize,
@@ -67,23 +67,23 @@ struct Parser {
 }
 
 impl Parser {
-    /// `words` is left at the word that an error is about.
-    fn statement(&mut self, words: &mut Words<'_>) -> Result<(), Reason> {
-        let Some(keyword) = words.next() else { return Ok(()) };
+    /// `tokens` is left at the word that an error is about.
+    fn statement(&mut self, tokens: &mut Tokens<'_>) -> Result<(), Reason> {
+        let Some(keyword) = tokens.next() else { return Ok(()) };
         match keyword {
-            b"v" => self.vertex(words),
+            b"v" => self.vertex(tokens),
             b"f" | b"fo" => {
-                self.vertices(words, 3)?;
+                self.vertices(tokens, 3)?;
                 let found = self.vertices.len();
                 if found > MAX_CORNERS {
                     return Err(Reason::ElementTooLarge { count: found as u64, limit: MAX_CORNERS as u64 });
                 }
-                self.builder.polygon(&self.vertices, self.faces)?;
+                self.builder.push_polygon(&self.vertices, self.faces)?;
                 self.faces += 1;
                 Ok(())
             }
             b"l" => {
-                self.vertices(words, 2)?;
+                self.vertices(tokens, 2)?;
                 for ends in self.vertices.windows(2) {
                     self.builder.push(Element::Segment([ends[0], ends[1]]), self.lines)?;
                 }
@@ -91,7 +91,7 @@ impl Parser {
                 Ok(())
             }
             b"p" => {
-                self.vertices(words, 1)?;
+                self.vertices(tokens, 1)?;
                 for &vertex in &self.vertices {
                     self.builder.push(Element::Point(vertex), self.points)?;
                 }
@@ -100,13 +100,13 @@ impl Parser {
             }
             b"o" | b"g" => {
                 // Whether it is passed over is known at the end.
-                self.builder.skips.add(keyword, 1);
+                self.builder.skipped.add(keyword, 1);
                 if keyword == b"o" && !self.has_objects {
-                    self.builder.forget_objects(); // groups so far
+                    self.builder.clear_objects(); // groups so far
                     self.has_objects = true;
                 }
                 if keyword == b"o" || !self.has_objects {
-                    self.object(words.rest());
+                    self.object(tokens.rest());
                 }
                 Ok(())
             }
@@ -114,7 +114,7 @@ impl Parser {
             other => {
                 self.has_free_form |= is_free_form(other);
                 self.has_unknown |= !is_known(other) && !is_free_form(other);
-                self.builder.skips.add(other, 1);
+                self.builder.skipped.add(other, 1);
                 Ok(())
             }
         }
@@ -124,9 +124,9 @@ impl Parser {
         if name.contains(&b'\n') {
             // A line that is continued.
             let name: Vec<u8> = name.iter().map(|&b| if b == b'\n' { b' ' } else { b }).collect();
-            self.builder.object(&name);
+            self.builder.start_object(&name);
         } else {
-            self.builder.object(name);
+            self.builder.start_object(name);
         }
     }
 
@@ -135,33 +135,33 @@ impl Parser {
             return Err(Reason::NoVertex);
         }
         if self.faces + self.lines + self.points > 0 || self.has_free_form {
-            self.builder.skips.forget(if self.has_objects { b"o" } else { b"g" });
+            self.builder.skipped.remove(if self.has_objects { b"o" } else { b"g" });
         } else {
-            self.builder.forget_objects();
-            self.builder.point_cloud()?;
+            self.builder.clear_objects();
+            self.builder.push_point_cloud()?;
         }
         Ok(self.builder.finish())
     }
 
-    fn vertex(&mut self, words: &mut Words<'_>) -> Result<(), Reason> {
-        words.end_at_comment();
+    fn vertex(&mut self, tokens: &mut Tokens<'_>) -> Result<(), Reason> {
+        tokens.end_at_comment();
         let mut position = [0.0; 3];
         for (found, x) in position.iter_mut().enumerate() {
-            *x = number(words.next().ok_or(Reason::TooFewCoordinates { found })?)?;
+            *x = parse_number(tokens.next().ok_or(Reason::TooFewCoordinates { found })?)?;
         }
         // Anything else behind the coordinates means that the line is not what it seems.
-        while let Some(word) = words.next() {
-            number(word)?;
+        while let Some(token) = tokens.next() {
+            parse_number(token)?;
         }
-        self.builder.vertex(Point3::from(position)).map(|_| ())
+        self.builder.push_vertex(Point3::from(position)).map(|_| ())
     }
 
     /// Reads the references of a statement, `needed` or more, into `self.vertices`.
-    fn vertices(&mut self, words: &mut Words<'_>, needed: u64) -> Result<(), Reason> {
-        words.end_at_comment();
+    fn vertices(&mut self, tokens: &mut Tokens<'_>, needed: u64) -> Result<(), Reason> {
+        tokens.end_at_comment();
         self.vertices.clear();
-        while let Some(word) = words.next() {
-            let vertex = vertex_of(word, self.builder.positions().len())?;
+        while let Some(token) = tokens.next() {
+            let vertex = vertex_of(token, self.builder.positions().len())?;
             if !self.builder.is_finite(vertex) {
                 return Err(Reason::NonFiniteVertex { index: u64::from(vertex) + 1 });
             }
@@ -227,24 +227,24 @@ fn is_known(keyword: &[u8]) -> bool {
 }
 
 /// The number, from 0, of the vertex that a reference like `7/1/2` names when `count` are known.
-fn vertex_of(word: &[u8], count: usize) -> Result<u32, Reason> {
-    let bad = || Reason::BadNumber { text: quote(word) };
-    let mut parts = word.split(|&b| b == b'/');
-    let index = parts.next().and_then(|part| integer(part).ok()).ok_or_else(bad)?;
+fn vertex_of(token: &[u8], count: usize) -> Result<u32, Reason> {
+    let bad = || Reason::BadNumber { text: quote(token) };
+    let mut parts = token.split(|&b| b == b'/');
+    let index = parts.next().and_then(|part| parse_integer(part).ok()).ok_or_else(bad)?;
     // Texture and normal are not looked up, but they should be numbers, if they are there.
     for part in parts.by_ref().take(2) {
         if !part.is_empty() {
-            integer(part).map_err(|_| bad())?;
+            parse_integer(part).map_err(|_| bad())?;
         }
     }
     if parts.next().is_some() {
         return Err(bad());
     }
     let count = count as u64;
-    let place = match index {
+    let vertex = match index {
         0 => return Err(Reason::IndexZero),
         1.. => Some(index.unsigned_abs() - 1).filter(|&i| i < count),
         _ => count.checked_sub(index.unsigned_abs()),
     };
-    place.and_then(|i| u32::try_from(i).ok()).ok_or(Reason::IndexOutOfRange { index, count })
+    vertex.and_then(|i| u32::try_from(i).ok()).ok_or(Reason::IndexOutOfRange { index, count })
 }

@@ -79,7 +79,7 @@ impl Frame {
         Self { centre, half: if half > 0.0 { half } else { 1.0 } }
     }
 
-    fn place(&self, p: &Point3<f64>) -> Vector3<f64> {
+    fn to_frame(&self, p: &Point3<f64>) -> Vector3<f64> {
         (p.coords / 2.0 - self.centre.coords / 2.0) / self.half
     }
 }
@@ -102,7 +102,7 @@ pub fn write_svg(panels: &[Panel], backdrop: &[Point3<f64>], view: View, mut wri
     // A cube of sides 1 standing on its corner is 1.634 high.
     let scale = (SIDE - 2.0 * MARGIN) / if view == View::Isometric { 1.65 } else { 1.0 };
     let at = |p: &Point3<f64>| {
-        let p = frame.place(p);
+        let p = frame.to_frame(p);
         let middle = SIDE / 2.0;
         format!("{:.1} {:.1}", middle + scale * right.dot(&p), middle - scale * up.dot(&p))
     };

@@ -30,11 +30,11 @@ const MANY_CORNERS: usize = 256;
 #[derive(Default)]
 pub(crate) struct Triangulator {
     offsets: Vec<[f64; 3]>,
-    flat: Vec<[f64; 2]>,
+    projected: Vec<[f64; 2]>,
     cutter: Option<Earcut<f64>>,
     indices: Vec<u32>,
     edges: Vec<[u32; 2]>,
-    places: Vec<[u64; 2]>,
+    corner_keys: Vec<[u64; 2]>,
     triangles: Vec<[u32; 3]>,
 }
 
@@ -47,7 +47,7 @@ impl Triangulator {
         } else if n == 4 {
             // One of the two diagonals of a simple quadrilateral is inside.
             self.fan(u32::from(self.fan_covers(1)), n);
-        } else if n > MANY_CORNERS && 2 * self.distinct() < n {
+        } else if n > MANY_CORNERS && 2 * self.count_distinct_corners() < n {
             self.fan(0, n);
         } else {
             self.cut();
@@ -83,8 +83,8 @@ impl Triangulator {
         }
         let axis = (1..3).fold(0, |best, k| if normal[k].abs() > normal[best].abs() { k } else { best });
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        self.flat.clear();
-        self.flat.extend(self.offsets.iter().map(|o| [o[i], o[j]]));
+        self.projected.clear();
+        self.projected.extend(self.offsets.iter().map(|o| [o[i], o[j]]));
         normal[axis] != 0.0
     }
 
@@ -94,10 +94,10 @@ impl Triangulator {
     /// the same orientation, those of a simple polygon therefore cover the inside once and nothing else. A convex
     /// polygon passes with any apex.
     fn fan_covers(&self, apex: u32) -> bool {
-        let n = self.flat.len();
+        let n = self.projected.len();
         let (mut left, mut right) = (false, false);
         for triangle in fan(apex, n) {
-            let area = area(&self.flat, triangle);
+            let area = area(&self.projected, triangle);
             left |= area > 0.0;
             right |= area < 0.0;
         }
@@ -105,13 +105,13 @@ impl Triangulator {
     }
 
     /// How many distinct places the projected corners have.
-    fn distinct(&mut self) -> usize {
-        self.places.clear();
+    fn count_distinct_corners(&mut self) -> usize {
+        self.corner_keys.clear();
         // Adding zero turns -0 into 0, which is the same place with other bits.
-        self.places.extend(self.flat.iter().map(|p| p.map(|x| (x + 0.0).to_bits())));
-        self.places.sort_unstable();
-        self.places.dedup();
-        self.places.len()
+        self.corner_keys.extend(self.projected.iter().map(|p| p.map(|x| (x + 0.0).to_bits())));
+        self.corner_keys.sort_unstable();
+        self.corner_keys.dedup();
+        self.corner_keys.len()
     }
 
     fn fan(&mut self, apex: u32, n: usize) {
@@ -122,12 +122,12 @@ impl Triangulator {
     /// Cuts ears; then puts back what the cutter leaves out.
     fn cut(&mut self) {
         let cutter = self.cutter.get_or_insert_with(Earcut::new);
-        cutter.earcut_slice::<u32>(&self.flat, &[], &mut self.indices);
-        let positive = outline_area(&self.flat) > 0.0;
+        cutter.earcut_slice::<u32>(&self.projected, &[], &mut self.indices);
+        let positive = outline_area(&self.projected) > 0.0;
         self.triangles.clear();
         for t in self.indices.chunks_exact(3) {
             let triangle = [t[0], t[1], t[2]];
-            let turned = (area(&self.flat, triangle) > 0.0) != positive;
+            let turned = (area(&self.projected, triangle) > 0.0) != positive;
             self.triangles.push(if turned { [t[0], t[2], t[1]] } else { triangle });
         }
         self.add_missing_edges();
@@ -141,7 +141,7 @@ impl Triangulator {
         self.edges.clear();
         self.edges.extend(self.triangles.iter().flat_map(|&[a, b, c]| [edge(a, b), edge(b, c), edge(c, a)]));
         self.edges.sort_unstable();
-        let n = self.flat.len() as u32;
+        let n = self.projected.len() as u32;
         for a in 0..n {
             let b = (a + 1) % n;
             if self.edges.binary_search(&edge(a, b)).is_err() {
@@ -153,9 +153,9 @@ impl Triangulator {
     /// Whether the areas of the triangles add up to that of the polygon.
     #[allow(clippy::cast_precision_loss, reason = "at most MAX_CORNERS corners")]
     fn covers(&self) -> bool {
-        let n = self.flat.len();
-        let outline = outline_area(&self.flat).abs();
-        let inside: f64 = self.triangles.iter().map(|&t| area(&self.flat, t).abs()).sum();
+        let n = self.projected.len();
+        let outline = outline_area(&self.projected).abs();
+        let inside: f64 = self.triangles.iter().map(|&t| area(&self.projected, t).abs()).sum();
         // Rounding: a sum of m terms errs by m u times the sum of their sizes (u = EPSILON / 2), to first order. Terms
         // come from coordinates of size up to 2, differences up to 4, so each errs by less than 64 u on its own. The
         // products of the outline are at most 8 each.
@@ -172,14 +172,14 @@ fn fan(apex: u32, n: usize) -> impl Iterator<Item = [u32; 3]> {
 }
 
 /// Twice the area, positive if counter-clockwise.
-fn area(flat: &[[f64; 2]], [a, b, c]: [u32; 3]) -> f64 {
-    let [a, b, c] = [a, b, c].map(|i| flat[i as usize]);
+fn area(projected: &[[f64; 2]], [a, b, c]: [u32; 3]) -> f64 {
+    let [a, b, c] = [a, b, c].map(|i| projected[i as usize]);
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
 /// Twice the area of the polygon, whose first corner is the origin.
-fn outline_area(flat: &[[f64; 2]]) -> f64 {
-    flat.windows(2).map(|p| p[0][0] * p[1][1] - p[0][1] * p[1][0]).sum()
+fn outline_area(projected: &[[f64; 2]]) -> f64 {
+    projected.windows(2).map(|p| p[0][0] * p[1][1] - p[0][1] * p[1][0]).sum()
 }
 
 /// Multiplication by a power of two, in two factors because the inverse of a tiny number may exceed the range.

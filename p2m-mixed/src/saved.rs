@@ -1,6 +1,6 @@
 //! Scenes in the files of saved indexes.
 
-use crate::{Object, Place, ReadError, Reason, Scene, Skipped};
+use crate::{FileLocation, Object, ReadError, Reason, Scene, Skipped};
 use nalgebra::Point3;
 use p2m_core::storage::{LoadError, Reader, SavedFile, Writer};
 use p2m_core::{Element, Soup};
@@ -104,7 +104,7 @@ pub fn load_scene(reader: &Reader) -> Result<Scene, LoadError> {
 /// [`ReadError`] with [`Reason::Saved`].
 pub fn read_p2m(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     let load = || load_scene(SavedFile::read(reader)?.checked()?);
-    load().map_err(|error| ReadError::new(name, Place::File, Reason::Saved(error)))
+    load().map_err(|error| ReadError::new(name, FileLocation::File, Reason::Saved(error)))
 }
 
 /// Writes a scene as a file like that of a saved index, but without one. What the scene has comes back as it is, names

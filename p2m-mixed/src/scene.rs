@@ -1,6 +1,6 @@
 //! Scenes as they come from files.
 
-use crate::{Format, Place, ReadError, Reason, read_obj, read_off, read_p2m, read_ply, read_stl};
+use crate::{FileLocation, Format, ReadError, Reason, read_obj, read_off, read_p2m, read_ply, read_stl};
 use p2m_core::{Element, PrimitiveId, Soup};
 use std::fmt;
 use std::fs::File;
@@ -123,7 +123,7 @@ pub fn read_scene_from(reader: impl BufRead, format: Format, name: &str) -> Resu
 }
 
 pub(crate) fn open(path: &Path, name: &str) -> Result<BufReader<File>, ReadError> {
-    let fail = |e| ReadError::new(name, Place::File, Reason::Io(e));
+    let fail = |e| ReadError::new(name, FileLocation::File, Reason::Io(e));
     let file = File::open(path).map_err(fail)?;
     // Some systems open a directory and fail only at its first line.
     if file.metadata().is_ok_and(|m| m.is_dir()) {

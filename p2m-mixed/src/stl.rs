@@ -1,10 +1,10 @@
 //! STL: triangles and nothing else, as text or binary.
 
-use crate::builder::Builder;
-use crate::bytes::Bytes;
+use crate::builder::SceneBuilder;
+use crate::bytes::ByteReader;
 use crate::polygon::MAX_CORNERS;
-use crate::text::{Lines, Stream, finite, is_space, quote};
-use crate::{HeaderProblem, Place, ReadError, Reason, Scene};
+use crate::text::{LineReader, Tokenizer, is_space, parse_finite, quote};
+use crate::{FileLocation, HeaderProblem, ReadError, Reason, Scene};
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 use nalgebra::Point3;
@@ -33,7 +33,7 @@ const HEAD: u64 = 1024;
 /// numbers, words that are out of place, an early end, and for what goes wrong in reading. No memory is taken for
 /// facets that are merely announced.
 pub fn read_stl(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
-    let fail = |reason| ReadError::new(name, Place::File, reason);
+    let fail = |reason| ReadError::new(name, FileLocation::File, reason);
     let mut head = Vec::new();
     reader.by_ref().take(HEAD).read_to_end(&mut head).map_err(|e| fail(Reason::Io(e)))?;
     let is_text = !head.iter().any(|&b| is_control(b));
@@ -43,14 +43,14 @@ pub fn read_stl(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
     }
     let reader = Cursor::new(head).chain(reader);
     if is_text && says_solid {
-        let mut text = Text { words: Stream::new(Lines::new(reader, 0)), facets: Facets::default() };
+        let mut text = Text { tokens: Tokenizer::new(LineReader::new(reader, 0)), facets: Facets::default() };
         match text.solids() {
             Ok(()) => Ok(text.facets.builder.finish()),
-            Err(reason) => Err(ReadError::new(name, Place::Line(text.words.line()), reason)),
+            Err(reason) => Err(ReadError::new(name, FileLocation::Line(text.tokens.line()), reason)),
         }
     } else {
-        let mut bytes = Bytes::new(reader, 0);
-        read_binary(&mut bytes).map_err(|reason| ReadError::new(name, Place::Byte(bytes.start()), reason))
+        let mut bytes = ByteReader::new(reader, 0);
+        read_binary(&mut bytes).map_err(|reason| ReadError::new(name, FileLocation::Byte(bytes.start()), reason))
     }
 }
 
@@ -62,14 +62,14 @@ fn is_control(byte: u8) -> bool {
 fn starts_with_solid(head: &[u8]) -> bool {
     let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head); // the mark of UTF-8
     let start = head.iter().position(|&b| !is_space(b)).unwrap_or(head.len());
-    let word = &head[start..];
-    word.len() >= 5 && word[..5].eq_ignore_ascii_case(b"solid") && word.get(5).is_none_or(|&b| is_space(b))
+    let token = &head[start..];
+    token.len() >= 5 && token[..5].eq_ignore_ascii_case(b"solid") && token.get(5).is_none_or(|&b| is_space(b))
 }
 
 /// Facets with merged vertices.
 #[derive(Default)]
 struct Facets {
-    builder: Builder,
+    builder: SceneBuilder,
     vertices: HashTable<u32>,
     hasher: RandomState,
     /// How many there are, and the vertices of the last.
@@ -88,7 +88,7 @@ impl Facets {
         let vertex = match self.vertices.entry(hash(&corner), equal, |&vertex| hash(&positions[vertex as usize])) {
             Entry::Occupied(entry) => *entry.get(),
             Entry::Vacant(entry) => {
-                let vertex = self.builder.vertex(corner)?;
+                let vertex = self.builder.push_vertex(corner)?;
                 entry.insert(vertex);
                 vertex
             }
@@ -105,7 +105,7 @@ impl Facets {
         if found > MAX_CORNERS {
             return Err(Reason::ElementTooLarge { count: found as u64, limit: MAX_CORNERS as u64 });
         }
-        self.builder.polygon(&self.corners, self.count)?;
+        self.builder.push_polygon(&self.corners, self.count)?;
         self.corners.clear();
         self.count += 1;
         Ok(())
@@ -113,7 +113,7 @@ impl Facets {
 }
 
 struct Text<R> {
-    words: Stream<R>,
+    tokens: Tokenizer<R>,
     facets: Facets,
 }
 
@@ -121,23 +121,23 @@ impl<R: BufRead> Text<R> {
     fn solids(&mut self) -> Result<(), Reason> {
         let mut is_open = false;
         loop {
-            let word = match self.words.word() {
+            let token = match self.tokens.next() {
                 Err(Reason::UnexpectedEnd) if !is_open => return Ok(()),
-                word => word?,
+                token => token?,
             };
-            if is(word, "solid") {
-                self.facets.builder.object(self.words.rest_of_line());
+            if is(token, "solid") {
+                self.facets.builder.start_object(self.tokens.rest_of_line());
                 is_open = true;
-            } else if is_open && is(word, "facet") {
+            } else if is_open && is(token, "facet") {
                 self.facet()?;
-            } else if is_open && is(word, "endsolid") {
-                self.words.rest_of_line();
+            } else if is_open && is(token, "endsolid") {
+                self.tokens.rest_of_line();
                 is_open = false;
-            } else if !is_open && word == b"\x1a" {
+            } else if !is_open && token == b"\x1a" {
                 // The end mark of old systems.
             } else {
                 let expected = if is_open { "'facet' or 'endsolid'" } else { "'solid'" };
-                return Err(Reason::UnexpectedWord { text: quote(word), expected });
+                return Err(Reason::UnexpectedWord { text: quote(token), expected });
             }
         }
     }
@@ -146,7 +146,7 @@ impl<R: BufRead> Text<R> {
     fn facet(&mut self) -> Result<(), Reason> {
         // `normal` and three numbers, or what was written for numbers.
         for _ in 0..4 {
-            if is(self.words.word()?, "outer") {
+            if is(self.tokens.next()?, "outer") {
                 return self.corners();
             }
         }
@@ -158,16 +158,16 @@ impl<R: BufRead> Text<R> {
     fn corners(&mut self) -> Result<(), Reason> {
         self.expect("loop", "'loop'")?;
         loop {
-            let word = self.words.word()?;
-            if is(word, "endloop") {
+            let token = self.tokens.next()?;
+            if is(token, "endloop") {
                 break;
             }
-            if !is(word, "vertex") {
-                return Err(Reason::UnexpectedWord { text: quote(word), expected: "'vertex' or 'endloop'" });
+            if !is(token, "vertex") {
+                return Err(Reason::UnexpectedWord { text: quote(token), expected: "'vertex' or 'endloop'" });
             }
             let mut corner = [0.0; 3];
             for x in &mut corner {
-                *x = finite(self.words.word()?)?;
+                *x = parse_finite(self.tokens.next()?)?;
             }
             self.facets.corner(corner)?;
         }
@@ -176,16 +176,16 @@ impl<R: BufRead> Text<R> {
     }
 
     fn expect(&mut self, keyword: &str, expected: &'static str) -> Result<(), Reason> {
-        let word = self.words.word()?;
-        if is(word, keyword) { Ok(()) } else { Err(Reason::UnexpectedWord { text: quote(word), expected }) }
+        let token = self.tokens.next()?;
+        if is(token, keyword) { Ok(()) } else { Err(Reason::UnexpectedWord { text: quote(token), expected }) }
     }
 }
 
-fn is(word: &[u8], keyword: &str) -> bool {
-    word.eq_ignore_ascii_case(keyword.as_bytes())
+fn is(token: &[u8], keyword: &str) -> bool {
+    token.eq_ignore_ascii_case(keyword.as_bytes())
 }
 
-fn read_binary(bytes: &mut Bytes<impl BufRead>) -> Result<Scene, Reason> {
+fn read_binary(bytes: &mut ByteReader<impl BufRead>) -> Result<Scene, Reason> {
     bytes.array::<80>()?;
     let count = u32::from_le_bytes(bytes.array()?);
     let mut facets = Facets::default();
@@ -207,7 +207,7 @@ fn read_binary(bytes: &mut Bytes<impl BufRead>) -> Result<Scene, Reason> {
         with_attribute += u64::from(facet[48..] != [0, 0]);
     }
     let rest = bytes.rest()?;
-    facets.builder.skips.add_many(with_attribute, "facets with attribute bytes");
-    facets.builder.skips.add_many(rest, "bytes after the last facet");
+    facets.builder.skipped.add_plural(with_attribute, "facets with attribute bytes");
+    facets.builder.skipped.add_plural(rest, "bytes after the last facet");
     Ok(facets.builder.finish())
 }

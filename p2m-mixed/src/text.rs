@@ -16,25 +16,25 @@ pub(crate) fn quote(bytes: &[u8]) -> String {
 }
 
 /// A number, or NaN or an infinity; overflow parses as infinity.
-pub(crate) fn number(word: &[u8]) -> Result<f64, Reason> {
-    let number = std::str::from_utf8(word).ok().and_then(|s| s.parse::<f64>().ok());
-    number.ok_or_else(|| Reason::BadNumber { text: quote(word) })
+pub(crate) fn parse_number(token: &[u8]) -> Result<f64, Reason> {
+    let number = std::str::from_utf8(token).ok().and_then(|s| s.parse::<f64>().ok());
+    number.ok_or_else(|| Reason::BadNumber { text: quote(token) })
 }
 
 /// A finite number.
-pub(crate) fn finite(word: &[u8]) -> Result<f64, Reason> {
-    number(word).and_then(|x| if x.is_finite() { Ok(x) } else { Err(Reason::NonFinite { text: quote(word) }) })
+pub(crate) fn parse_finite(token: &[u8]) -> Result<f64, Reason> {
+    parse_number(token).and_then(|x| if x.is_finite() { Ok(x) } else { Err(Reason::NonFinite { text: quote(token) }) })
 }
 
 /// A decimal integer with an optional sign. What exceeds the range saturates: as an index it is out of range anyway.
-pub(crate) fn integer(word: &[u8]) -> Result<i64, Reason> {
-    let (negative, digits) = match word {
+pub(crate) fn parse_integer(token: &[u8]) -> Result<i64, Reason> {
+    let (negative, digits) = match token {
         [b'-', rest @ ..] => (true, rest),
         [b'+', rest @ ..] => (false, rest),
-        _ => (false, word),
+        _ => (false, token),
     };
     if digits.is_empty() || !digits.iter().all(u8::is_ascii_digit) {
-        return Err(Reason::BadNumber { text: quote(word) });
+        return Err(Reason::BadNumber { text: quote(token) });
     }
     let value = digits.iter().fold(0i64, |v, d| v.saturating_mul(10).saturating_add(i64::from(d - b'0')));
     Ok(if negative { -value } else { value })
@@ -52,7 +52,7 @@ pub(crate) fn is_space(byte: u8) -> bool {
 }
 
 /// What `reader` has at hand; nothing at the end of the text.
-pub(crate) fn at_hand(reader: &mut impl BufRead) -> io::Result<&[u8]> {
+pub(crate) fn fill_buffer(reader: &mut impl BufRead) -> io::Result<&[u8]> {
     loop {
         match reader.fill_buf() {
             Err(e) if e.kind() == ErrorKind::Interrupted => {}
@@ -72,7 +72,7 @@ pub(crate) fn read_until(
 ) -> io::Result<usize> {
     let mut read = 0;
     while read < most {
-        let bytes = at_hand(reader)?;
+        let bytes = fill_buffer(reader)?;
         let bytes = &bytes[..bytes.len().min(most - read)];
         let end = bytes.iter().position(|&b| ends(b));
         let take = end.map_or(bytes.len(), |end| end + 1);
@@ -87,14 +87,14 @@ pub(crate) fn read_until(
 }
 
 /// The words of a statement, with the line that each stands on.
-pub(crate) struct Words<'a> {
+pub(crate) struct Tokens<'a> {
     bytes: &'a [u8],
     /// Where the last word starts and where the rest begins.
     start: usize,
     end: usize,
 }
 
-impl<'a> Words<'a> {
+impl<'a> Tokens<'a> {
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, start: 0, end: 0 }
     }
@@ -126,13 +126,13 @@ impl<'a> Words<'a> {
     }
 
     /// How many lines below the first line of the statement the last word stands.
-    pub(crate) fn lines_down(&self) -> u64 {
+    pub(crate) fn line_offset(&self) -> u64 {
         self.bytes[..self.start].iter().filter(|&&b| b == b'\n').count() as u64
     }
 }
 
 /// Reads a text line by line into one buffer. A line ends at `\n`, `\r\n` or, as on old Macs, `\r`.
-pub(crate) struct Lines<R> {
+pub(crate) struct LineReader<R> {
     reader: R,
     buffer: Vec<u8>,
     /// Number of the first line in `buffer`, from 1, and of the line to come.
@@ -144,7 +144,7 @@ pub(crate) struct Lines<R> {
     read: u64,
 }
 
-impl<R: BufRead> Lines<R> {
+impl<R: BufRead> LineReader<R> {
     /// `lines_before` have been read already.
     pub(crate) fn new(reader: R, lines_before: u64) -> Self {
         Self { reader, buffer: Vec::new(), line: lines_before, next: lines_before + 1, after_return: false, read: 0 }
@@ -202,7 +202,7 @@ impl<R: BufRead> Lines<R> {
     /// Passes over the second byte of a line end. Not right behind the `\r`: no line is held back until the next one is
     /// there.
     fn end_line(&mut self) -> io::Result<()> {
-        if std::mem::take(&mut self.after_return) && at_hand(&mut self.reader)?.first() == Some(&b'\n') {
+        if std::mem::take(&mut self.after_return) && fill_buffer(&mut self.reader)?.first() == Some(&b'\n') {
             self.reader.consume(1);
             self.read += 1;
         }
@@ -230,20 +230,20 @@ impl<R: BufRead> Lines<R> {
 }
 
 /// A text as a row of words, whatever lines they stand on.
-pub(crate) struct Stream<R> {
-    lines: Lines<R>,
+pub(crate) struct Tokenizer<R> {
+    lines: LineReader<R>,
     /// Where the rest of the line begins.
     at: usize,
     /// Whether `#` begins a comment.
     has_comments: bool,
 }
 
-impl<R: BufRead> Stream<R> {
-    pub(crate) fn new(lines: Lines<R>) -> Self {
+impl<R: BufRead> Tokenizer<R> {
+    pub(crate) fn new(lines: LineReader<R>) -> Self {
         Self { lines, at: 0, has_comments: false }
     }
 
-    pub(crate) fn with_comments(lines: Lines<R>) -> Self {
+    pub(crate) fn with_comments(lines: LineReader<R>) -> Self {
         Self { has_comments: true, ..Self::new(lines) }
     }
 
@@ -253,10 +253,10 @@ impl<R: BufRead> Stream<R> {
     }
 
     /// The next word, on this line or further down.
-    pub(crate) fn word(&mut self) -> Result<&[u8], Reason> {
+    pub(crate) fn next(&mut self) -> Result<&[u8], Reason> {
         loop {
-            if let Some(word) = self.find() {
-                return Ok(&self.lines.bytes()[word]);
+            if let Some(token) = self.find() {
+                return Ok(&self.lines.bytes()[token]);
             }
             self.at = 0;
             if !self.lines.read().map_err(Reason::Io)? {
@@ -269,8 +269,8 @@ impl<R: BufRead> Stream<R> {
     }
 
     /// The next word on this line.
-    pub(crate) fn word_on_line(&mut self) -> Option<&[u8]> {
-        self.find().map(|word| &self.lines.bytes()[word])
+    pub(crate) fn next_on_line(&mut self) -> Option<&[u8]> {
+        self.find().map(|token| &self.lines.bytes()[token])
     }
 
     fn find(&mut self) -> Option<std::ops::Range<usize>> {
@@ -287,7 +287,7 @@ impl<R: BufRead> Stream<R> {
         &self.lines.bytes()[start..]
     }
 
-    pub(crate) fn into_lines(self) -> Lines<R> {
+    pub(crate) fn into_lines(self) -> LineReader<R> {
         self.lines
     }
 }
@@ -298,13 +298,13 @@ mod tests {
 
     #[test]
     fn words_know_their_line_across_continuations() {
-        let mut lines = Lines::new("\u{feff}a b\\\r\n c\\\nd # e\\\nf\\".as_bytes(), 0);
+        let mut lines = LineReader::new("\u{feff}a b\\\r\n c\\\nd # e\\\nf\\".as_bytes(), 0);
         assert!(lines.read_continued().unwrap());
-        let mut words = Words::new(lines.bytes());
-        words.end_at_comment();
+        let mut tokens = Tokens::new(lines.bytes());
+        tokens.end_at_comment();
         let mut seen = Vec::new();
-        while let Some(word) = words.next() {
-            seen.push((word.to_vec(), lines.line() + words.lines_down()));
+        while let Some(token) = tokens.next() {
+            seen.push((token.to_vec(), lines.line() + tokens.line_offset()));
         }
         assert_eq!(seen, [(b"a".to_vec(), 1), (b"b".to_vec(), 1), (b"c".to_vec(), 2), (b"d".to_vec(), 3)]);
         assert!(lines.read_continued().unwrap());
@@ -318,7 +318,7 @@ mod tests {
         let expected = ["a", "b", "c", "d", "", "e", "", "f"];
         // With a buffer of one byte, `\r` and `\n` are never at hand together.
         for room in [1, 2, 100] {
-            let mut lines = Lines::new(std::io::BufReader::with_capacity(room, text.as_bytes()), 0);
+            let mut lines = LineReader::new(std::io::BufReader::with_capacity(room, text.as_bytes()), 0);
             let mut seen = Vec::new();
             while lines.read().unwrap() {
                 seen.push(String::from_utf8(lines.bytes().to_vec()).unwrap());
@@ -330,22 +330,22 @@ mod tests {
 
     #[test]
     fn integers_have_a_sign_at_most_and_saturate() {
-        assert_eq!(integer(b"-12").unwrap(), -12);
-        assert_eq!(integer(b"+7").unwrap(), 7);
-        assert_eq!(integer(b"99999999999999999999").unwrap(), i64::MAX);
+        assert_eq!(parse_integer(b"-12").unwrap(), -12);
+        assert_eq!(parse_integer(b"+7").unwrap(), 7);
+        assert_eq!(parse_integer(b"99999999999999999999").unwrap(), i64::MAX);
         for bad in [&b""[..], b"-", b"1.0", b"0x1", b"--1", b"1e3"] {
-            assert!(matches!(integer(bad), Err(Reason::BadNumber { .. })), "{bad:?}");
+            assert!(matches!(parse_integer(bad), Err(Reason::BadNumber { .. })), "{bad:?}");
         }
     }
 
     #[test]
     fn numbers_that_are_not_finite_are_told_from_those_that_are_none() {
-        assert_eq!(finite(b"-1.5e3").unwrap(), -1500.0);
+        assert_eq!(parse_finite(b"-1.5e3").unwrap(), -1500.0);
         for bad in ["nan", "inf", "-Infinity", "1e999"] {
-            assert!(matches!(finite(bad.as_bytes()), Err(Reason::NonFinite { .. })), "{bad}");
+            assert!(matches!(parse_finite(bad.as_bytes()), Err(Reason::NonFinite { .. })), "{bad}");
         }
         for bad in [&b""[..], b"x", b"1,5", b"1.#QNAN", b"\xff"] {
-            assert!(matches!(finite(bad), Err(Reason::BadNumber { .. })), "{bad:?}");
+            assert!(matches!(parse_finite(bad), Err(Reason::BadNumber { .. })), "{bad:?}");
         }
     }
 }

@@ -1,8 +1,8 @@
 //! The header of a PLY file: what elements there are, and of what properties.
 
 use crate::bytes::Scalar;
-use crate::text::{Words, at_hand, integer, quote, read_until};
-use crate::{HeaderProblem, Place, ReadError, Reason};
+use crate::text::{Tokens, fill_buffer, parse_integer, quote, read_until};
+use crate::{FileLocation, HeaderProblem, ReadError, Reason};
 use std::collections::HashSet;
 use std::io::{self, BufRead};
 
@@ -87,7 +87,7 @@ pub(super) fn read_header(reader: &mut impl BufRead, file: &str) -> Result<Heade
             }),
         };
         header.lines += 1;
-        let fail = |reason| Err(ReadError::new(file, Place::Line(header.lines), reason));
+        let fail = |reason| Err(ReadError::new(file, FileLocation::Line(header.lines), reason));
         match read {
             Err(e) => return fail(Reason::Io(e)),
             Ok(read) => header.bytes += read as u64,
@@ -128,7 +128,7 @@ fn first_line(reader: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<u8> {
     if line.last() != Some(&b'\r') {
         return Ok(b'\n');
     }
-    if at_hand(reader)?.first() != Some(&b'\n') {
+    if fill_buffer(reader)?.first() != Some(&b'\n') {
         return Ok(b'\r');
     }
     reader.consume(1);
@@ -149,12 +149,12 @@ impl Parser {
     /// Takes a line; `true` if it ends the header.
     fn line(&mut self, line: &[u8], elements: &mut Vec<Element>) -> Result<bool, Reason> {
         let bad_line = || Reason::BadHeader(HeaderProblem::BadLine { text: quote(line.trim_ascii()) });
-        let mut words = Words::new(line);
-        match words.next() {
+        let mut tokens = Tokens::new(line);
+        match tokens.next() {
             None | Some(b"comment" | b"obj_info") => return Ok(false),
             Some(b"end_header") => return Ok(true),
             Some(b"format") => {
-                let encoding = match (words.next(), words.next()) {
+                let encoding = match (tokens.next(), tokens.next()) {
                     (Some(b"ascii"), Some(b"1.0")) => Encoding::Ascii,
                     (Some(b"binary_little_endian"), Some(b"1.0")) => Encoding::Little,
                     (Some(b"binary_big_endian"), Some(b"1.0")) => Encoding::Big,
@@ -168,8 +168,8 @@ impl Parser {
                 }
             }
             Some(b"element") => {
-                let (Some(name), Some(count)) = (words.next(), words.next()) else { return Err(bad_line()) };
-                let count = integer(count).ok().and_then(|c| u64::try_from(c).ok()).ok_or_else(bad_line)?;
+                let (Some(name), Some(count)) = (tokens.next(), tokens.next()) else { return Err(bad_line()) };
+                let count = parse_integer(count).ok().and_then(|c| u64::try_from(c).ok()).ok_or_else(bad_line)?;
                 if !self.element_names.insert(name.to_vec()) {
                     return Err(duplicate(name));
                 }
@@ -178,7 +178,7 @@ impl Parser {
             }
             Some(b"property") => {
                 let element = elements.last_mut().ok_or_else(bad_line)?;
-                let property = property(&mut words).ok_or_else(bad_line)??;
+                let property = property(&mut tokens).ok_or_else(bad_line)??;
                 if !self.property_names.insert(property.name.clone()) {
                     return Err(duplicate(&property.name));
                 }
@@ -187,7 +187,7 @@ impl Parser {
             Some(_) => return Err(bad_line()),
         }
         // A word too many means that the line says something else.
-        if words.next().is_some() { Err(bad_line()) } else { Ok(false) }
+        if tokens.next().is_some() { Err(bad_line()) } else { Ok(false) }
     }
 }
 
@@ -196,15 +196,15 @@ fn duplicate(name: &[u8]) -> Reason {
 }
 
 /// The property that the words behind `property` declare; `None` if there are too few of them.
-fn property(words: &mut Words<'_>) -> Option<Result<Property, Reason>> {
-    let first = words.next()?;
+fn property(tokens: &mut Tokens<'_>) -> Option<Result<Property, Reason>> {
+    let first = tokens.next()?;
     let (layout, name, declared) = if first == b"list" {
-        let (count, item, name) = (words.next()?, words.next()?, words.next()?);
+        let (count, item, name) = (tokens.next()?, tokens.next()?, tokens.next()?);
         let declared = format!("list {} {}", quote(count), quote(item));
         let count = scalar_named(count).filter(|s| s.is_integer());
         (count.zip(scalar_named(item)).map(|(count, item)| Layout::List { count, item }), name, declared)
     } else {
-        (scalar_named(first).map(Layout::Scalar), words.next()?, quote(first))
+        (scalar_named(first).map(Layout::Scalar), tokens.next()?, quote(first))
     };
     Some(match layout {
         Some(layout) => Ok(Property { name: name.to_vec(), layout, declared }),

@@ -3,10 +3,10 @@
 use super::data::Data;
 use super::header::Property;
 use super::plan::{Form, Kind, List, MemberPlan};
-use crate::builder::Builder;
+use crate::builder::SceneBuilder;
 use crate::bytes::Scalar;
 use crate::polygon::MAX_CORNERS;
-use crate::{Place, ReadError, Reason, Scene};
+use crate::{FileLocation, ReadError, Reason, Scene};
 use nalgebra::Point3;
 use p2m_core::Element;
 use std::io::BufRead;
@@ -53,7 +53,7 @@ impl Batch {
 
 /// Primitives under construction.
 pub(super) struct Members {
-    pub(super) builder: Builder,
+    pub(super) builder: SceneBuilder,
     vertex_count: u64,
     /// How many faces there are: sources of strips go on behind them.
     faces: u64,
@@ -63,13 +63,13 @@ pub(super) struct Members {
     /// The vertices of the member at hand.
     member: Vec<u32>,
     /// Vertices that are not finite, in ascending order, and where they stand.
-    not_finite: Vec<(u32, Place)>,
+    not_finite: Vec<(u32, FileLocation)>,
 }
 
 impl Members {
     pub(super) fn new(vertex_count: u64, faces: u64, ids: Option<u64>) -> Self {
         Self {
-            builder: Builder::default(),
+            builder: SceneBuilder::default(),
             vertex_count,
             faces,
             ids,
@@ -80,9 +80,9 @@ impl Members {
     }
 
     /// Adds a vertex, and where it stands if it is not finite.
-    pub(super) fn vertex(&mut self, position: Point3<f64>, bad: Option<Place>) -> Result<(), Reason> {
-        let vertex = self.builder.vertex(position)?;
-        self.not_finite.extend(bad.map(|place| (vertex, place)));
+    pub(super) fn vertex(&mut self, position: Point3<f64>, bad: Option<FileLocation>) -> Result<(), Reason> {
+        let vertex = self.builder.push_vertex(position)?;
+        self.not_finite.extend(bad.map(|location| (vertex, location)));
         Ok(())
     }
 
@@ -98,7 +98,8 @@ impl Members {
                 let length = batch.lengths.get(number).map_or(batch.length, |&length| length as usize);
                 let (vertices, more) = rest.split_at(length);
                 rest = more;
-                self.add(batch.form, vertices, number).map_err(|reason| ReadError::new(name, Place::File, reason))?;
+                self.add(batch.form, vertices, number)
+                    .map_err(|reason| ReadError::new(name, FileLocation::File, reason))?;
             }
         }
         Ok(())
@@ -177,7 +178,7 @@ impl Members {
     /// Adds the primitives of a member.
     fn add(&mut self, form: Form, vertices: &[u32], number: usize) -> Result<(), Reason> {
         match form {
-            Form::Polygon => self.builder.polygon(vertices, number),
+            Form::Polygon => self.builder.push_polygon(vertices, number),
             Form::Segment => self.builder.push(Element::Segment([vertices[0], vertices[1]]), number),
             Form::Point => self.builder.push(Element::Point(vertices[0]), number),
             Form::Strip => {
@@ -260,7 +261,7 @@ impl Members {
     /// Adds members in the order of their ids: one primitive each. Nothing waits otherwise.
     #[allow(clippy::cast_possible_truncation, reason = "there are fewer members than ids, which are u32")]
     fn add_by_id(&mut self, batches: &[Batch], name: &str) -> Result<(), ReadError> {
-        let fail = |reason| ReadError::new(name, Place::File, reason);
+        let fail = |reason| ReadError::new(name, FileLocation::File, reason);
         let count: usize = batches.iter().map(|batch| batch.ids.len()).sum();
         // Of each id the number of its member, counted over all batches.
         let mut order = vec![u32::MAX; count];

@@ -5,9 +5,9 @@ mod header;
 mod members;
 mod plan;
 
-use crate::builder::Builder;
+use crate::builder::SceneBuilder;
 use crate::points::Row;
-use crate::{HeaderProblem, Place, ReadError, Reason, Scene};
+use crate::{FileLocation, HeaderProblem, ReadError, Reason, Scene};
 use data::Data;
 use header::read_header;
 use members::Members;
@@ -47,7 +47,7 @@ const ID: &str = "p2m_id";
 /// taken for data that is merely announced.
 pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     let header = read_header(&mut reader, name)?;
-    let fail = |reason| ReadError::new(name, Place::File, reason);
+    let fail = |reason| ReadError::new(name, FileLocation::File, reason);
 
     // What each element is for, before any data: a header that cannot serve is refused at once.
     let mut plans = Vec::new();
@@ -80,7 +80,7 @@ pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
         match plan {
             Plan::Skip => {
                 skip(&mut data, element)?;
-                members.builder.skips.add(&[b"element ", element.name.as_slice()].concat(), element.count);
+                members.builder.skipped.add(&[b"element ", element.name.as_slice()].concat(), element.count);
             }
             Plan::Vertices(xyz) => {
                 for _ in 0..element.count {
@@ -88,7 +88,7 @@ pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
                     // Nothing uses the vertices of a cloud.
                     let bad = bad.filter(|_| !is_cloud);
                     members
-                        .vertex(Point3::from(position), bad.map(|(place, _)| place))
+                        .vertex(Point3::from(position), bad.map(|(location, _)| location))
                         .map_err(|reason| data.error(reason))?;
                 }
                 members.end_vertices(name)?;
@@ -105,9 +105,9 @@ pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
         }
     }
     let (rest, what) = data.rest()?;
-    members.builder.skips.add_many(rest, what);
+    members.builder.skipped.add_plural(rest, what);
     if is_cloud {
-        members.builder.point_cloud().map_err(fail)?;
+        members.builder.push_point_cloud().map_err(fail)?;
     }
     members.finish(name)
 }
@@ -118,7 +118,7 @@ pub(crate) fn read_vertices<R: Row<N>, const N: usize>(
     name: &str,
 ) -> Result<Vec<R>, ReadError> {
     let header = read_header(&mut reader, name)?;
-    let fail = |problem| ReadError::new(name, Place::File, Reason::BadHeader(problem));
+    let fail = |problem| ReadError::new(name, FileLocation::File, Reason::BadHeader(problem));
     let at = header.elements.iter().position(|element| element.name == b"vertex");
     let at = at.ok_or_else(|| fail(HeaderProblem::MissingElement { element: "vertex" }))?;
     let vertices = &header.elements[at];
@@ -133,8 +133,8 @@ pub(crate) fn read_vertices<R: Row<N>, const N: usize>(
     }
     for _ in 0..vertices.count {
         let (numbers, bad) = vertex(&mut data, &vertices.properties, &coordinates)?;
-        if let Some((place, coordinate)) = bad {
-            return Err(ReadError::new(name, place, Reason::NonFinite { text: coordinate.to_string() }));
+        if let Some((location, coordinate)) = bad {
+            return Err(ReadError::new(name, location, Reason::NonFinite { text: coordinate.to_string() }));
         }
         rows.push(R::new(numbers).map_err(|reason| data.error(reason))?);
     }
@@ -158,7 +158,7 @@ fn skip_properties(data: &mut Data<'_, impl BufRead>, properties: &[header::Prop
 }
 
 /// A coordinate that is not finite, and where it stands.
-type Bad = Option<(Place, f64)>;
+type Bad = Option<(FileLocation, f64)>;
 
 /// Reads a vertex.
 fn vertex<const N: usize>(
@@ -173,7 +173,7 @@ fn vertex<const N: usize>(
             Some(axis) => {
                 position[axis] = data.coordinate(coordinates[axis].1)?;
                 if !position[axis].is_finite() {
-                    bad = Some((data.place(), position[axis]));
+                    bad = Some((data.location(), position[axis]));
                 }
             }
             None => data.skip(property.layout)?,
@@ -184,9 +184,9 @@ fn vertex<const N: usize>(
 }
 
 /// Notes the properties other than those `used`.
-fn report(builder: &mut Builder, element: &header::Element, used: &[usize]) {
+fn report(builder: &mut SceneBuilder, element: &header::Element, used: &[usize]) {
     for (_, property) in element.properties.iter().enumerate().filter(|(k, _)| !used.contains(k)) {
         let what = [b"property ", property.name.as_slice(), b" of ", element.name.as_slice()].concat();
-        builder.skips.add(&what, element.count);
+        builder.skipped.add(&what, element.count);
     }
 }

@@ -1,26 +1,26 @@
 //! Rows of tables of text.
 
 use super::Row;
-use crate::text::{Lines, Words, finite, number, quote};
-use crate::{Place, ReadError, Reason};
+use crate::text::{LineReader, Tokens, parse_finite, parse_number, quote};
+use crate::{FileLocation, ReadError, Reason};
 use std::io::BufRead;
 
 pub(super) fn read_xyz<R: Row<N>, const N: usize>(reader: impl BufRead, name: &str) -> Result<Vec<R>, ReadError> {
-    let mut lines = Lines::new(reader, 0);
+    let mut lines = LineReader::new(reader, 0);
     let mut rows = Vec::new();
     loop {
         match lines.read() {
             Ok(true) => {}
             Ok(false) => return Ok(rows),
-            Err(e) => return Err(ReadError::new(name, Place::Line(lines.line()), Reason::Io(e))),
+            Err(e) => return Err(ReadError::new(name, FileLocation::Line(lines.line()), Reason::Io(e))),
         }
-        let mut words = Words::new(lines.bytes());
-        let Some(first) = words.next() else { continue };
+        let mut tokens = Tokens::new(lines.bytes());
+        let Some(first) = tokens.next() else { continue };
         if first.starts_with(b"#") || first.starts_with(b"//") {
             continue;
         }
         let mut fields = [Some(first); N];
-        fields[1..].fill_with(|| words.next());
+        fields[1..].fill_with(|| tokens.next());
         match row(fields) {
             Ok(row) => rows.push(row),
             Err(reason) => {
@@ -28,7 +28,7 @@ pub(super) fn read_xyz<R: Row<N>, const N: usize>(reader: impl BufRead, name: &s
                     Reason::BadNumber { text } if text.contains([',', ';']) => Reason::SeparatorInNumber { text },
                     other => other,
                 };
-                return Err(ReadError::new(name, Place::Line(lines.line()), reason));
+                return Err(ReadError::new(name, FileLocation::Line(lines.line()), reason));
             }
         }
     }
@@ -39,18 +39,18 @@ fn row<R: Row<N>, const N: usize>(fields: [Option<&[u8]>; N]) -> Result<R, Reaso
     for (k, field) in fields.into_iter().enumerate() {
         match field {
             None => return Err(R::too_few(k)),
-            Some(field) => numbers[k] = finite(field)?,
+            Some(field) => numbers[k] = parse_finite(field)?,
         }
     }
     R::new(numbers)
 }
 
 pub(super) fn read_csv<R: Row<N>, const N: usize>(reader: impl BufRead, name: &str) -> Result<Vec<R>, ReadError> {
-    let mut lines = Lines::new(reader, 0);
+    let mut lines = LineReader::new(reader, 0);
     let mut format = None;
     let mut rows = Vec::new();
     loop {
-        let fail = |line, reason| Err(ReadError::new(name, Place::Line(line), reason));
+        let fail = |line, reason| Err(ReadError::new(name, FileLocation::Line(line), reason));
         match lines.read() {
             Ok(true) => {}
             Ok(false) => return Ok(rows),
@@ -123,7 +123,7 @@ fn header<R: Row<N>, const N: usize>(fields: &[&[u8]]) -> Result<([usize; N], bo
     }
     // What merely starts like a number is one in a form that we do not read, such as `1D0` or `0,5`: an error, no name.
     let like_number = |field: &[u8]| {
-        matches!(field.first(), Some(b'0'..=b'9' | b'+' | b'-' | b'.')) || number(field).is_ok() // `nan`
+        matches!(field.first(), Some(b'0'..=b'9' | b'+' | b'-' | b'.')) || parse_number(field).is_ok() // `nan`
     };
     let is_header = !fields.iter().take(N).any(|f| like_number(f));
     if is_header && fields.len() > N {

@@ -331,8 +331,8 @@ fn measure(soup: &Soup<f64>) -> (Shapes, Sizes) {
 fn locate(soup: &Soup<f64>, welder: &VertexWelder, bounds: &Aabb<f64>) -> Location {
     let mut seen = vec![false; welder.vertex_count];
     let mut location = Location::default();
-    for (p, &place) in soup.positions().iter().zip(&welder.vertex_ids) {
-        if place == UNUSED || std::mem::replace(&mut seen[place as usize], true) {
+    for (p, &vertex) in soup.positions().iter().zip(&welder.vertex_ids) {
+        if vertex == UNUSED || std::mem::replace(&mut seen[vertex as usize], true) {
             continue;
         }
         for &x in p.iter() {

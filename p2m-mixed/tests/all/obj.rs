@@ -3,7 +3,7 @@
 use crate::common::{RICH_OBJ, elements, obj, p, s, skipped, t};
 use nalgebra::Point3;
 use p2m_core::{Element, Soup};
-use p2m_mixed::{MAX_CORNERS, Place, Reason, read_scene, write_obj};
+use p2m_mixed::{FileLocation, MAX_CORNERS, Reason, read_scene, write_obj};
 use p2m_testkit::amount;
 use std::error::Error;
 use std::path::Path;
@@ -108,7 +108,7 @@ fn files_of_other_formats_are_refused() {
         b"# a comment\ng\nword\n",
     ] {
         let error = obj(text).unwrap_err();
-        assert!(matches!((&error.place, &error.reason), (Place::File, Reason::NoVertex)), "{error}");
+        assert!(matches!((&error.location, &error.reason), (FileLocation::File, Reason::NoVertex)), "{error}");
     }
 }
 
@@ -118,7 +118,7 @@ fn lines_may_end_in_a_return_alone() {
     let scene = obj(&text).unwrap();
     assert_eq!(elements(&scene), [t(0, 1, 2), s(0, 3)]);
     assert_eq!(obj(text.replace('\n', "\r")).unwrap(), scene);
-    assert_eq!(obj("v 0 0 0\r\rp 2\r").unwrap_err().place, Place::Line(3));
+    assert_eq!(obj("v 0 0 0\r\rp 2\r").unwrap_err().location, FileLocation::Line(3));
 }
 
 #[test]
@@ -144,16 +144,16 @@ fn degenerate_faces_stay() {
 }
 
 /// The error of `FOUR` followed by `statements`.
-fn refused(statements: &str) -> (Place, Reason) {
+fn refused(statements: &str) -> (FileLocation, Reason) {
     let error = obj(format!("{FOUR}{statements}")).unwrap_err();
     assert_eq!(error.file, "t.obj");
-    (error.place, error.reason)
+    (error.location, error.reason)
 }
 
 macro_rules! assert_refused {
     ($statements:expr, $line:expr, $reason:pat) => {
-        let (place, reason) = refused($statements);
-        assert_eq!(place, Place::Line($line), "{:?}", $statements);
+        let (location, reason) = refused($statements);
+        assert_eq!(location, FileLocation::Line($line), "{:?}", $statements);
         assert!(matches!(&reason, $reason), "{:?}: {reason:?}", $statements);
     };
 }
@@ -247,7 +247,7 @@ fn files_are_told_by_their_extension() {
     std::fs::create_dir_all(&folder).unwrap();
     let error = read_scene(&folder).unwrap_err();
     std::fs::remove_dir(&folder).unwrap();
-    assert_eq!(error.place, Place::File);
+    assert_eq!(error.location, FileLocation::File);
     assert!(matches!(&error.reason, Reason::Io(e) if e.kind() == std::io::ErrorKind::IsADirectory), "{error}");
 }
 

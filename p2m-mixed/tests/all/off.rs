@@ -3,7 +3,7 @@
 use crate::common::{elements, off, p, s, skipped, t};
 use nalgebra::Point3;
 use p2m_core::Element;
-use p2m_mixed::{HeaderProblem, Place, Reason};
+use p2m_mixed::{FileLocation, HeaderProblem, Reason};
 
 const SQUARE: &str = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
@@ -144,7 +144,7 @@ fn errors_tell_place_and_reason() {
     for header in ["ply", "v 0 0 0", "xOFF", "OFFx", "OFF8x 1", "nOFF3 1 0 0", "-4 1 0", "COF"] {
         let error = off(format!("{header}\n1 0 0\n0 0 0\n")).unwrap_err();
         assert!(matches!(error.reason, Reason::BadHeader(HeaderProblem::NotOff { .. })), "{header}: {error}");
-        assert_eq!(error.place, Place::Line(1));
+        assert_eq!(error.location, FileLocation::Line(1));
     }
 }
 
@@ -183,20 +183,20 @@ fn binary_files() {
             let error = off(&file[..end]).unwrap_err();
             assert!(matches!(error.reason, Reason::UnexpectedEnd), "{error}");
         }
-        let place = file.len() - 16;
+        let location = file.len() - 16;
         file.extend(b"abc");
         assert_eq!(off(&file).unwrap().skipped.last().unwrap().to_string(), "3 bytes after the last face");
-        file[place + 7] = 3;
+        file[location + 7] = 3;
         let error = off(&file).unwrap_err();
-        assert_eq!(error.place, Place::Byte(place as u64 + 4), "{error}");
+        assert_eq!(error.location, FileLocation::Byte(location as u64 + 4), "{error}");
         assert!(matches!(error.reason, Reason::NonFiniteVertex { index: 3 }), "{error}");
-        file[place + 7] = 4;
+        file[location + 7] = 4;
         assert!(matches!(off(&file).unwrap_err().reason, Reason::NoSuchVertex { index: 4, count: 4 }));
     }
     let error = off([b"OFF BINARY\n".to_vec(), be(&[-1, 0, 0])].concat()).unwrap_err();
     assert_eq!(
-        (error.place, error.to_string().as_str()),
-        (Place::Byte(11), "t.off at byte 11: a list cannot have -1 items")
+        (error.location, error.to_string().as_str()),
+        (FileLocation::Byte(11), "t.off at byte 11: a list cannot have -1 items")
     );
     let file = [b"OFF BINARY\n".to_vec(), be(&[1, 1, 0]), floats(&[0.0; 3]), be(&[1, 0, 5, 0, 0, 0, 0, 0])].concat();
     assert!(matches!(off(file).unwrap_err().reason, Reason::BadListCount { count: 5 }));

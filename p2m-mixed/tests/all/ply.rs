@@ -3,7 +3,7 @@
 use crate::common::{ENCODINGS, Encoding, N, Ply, elements, p, ply, rich_ply, s, skipped, t};
 use nalgebra::Point3;
 use p2m_core::Element;
-use p2m_mixed::{HeaderProblem, Place, ReadError, Reason};
+use p2m_mixed::{FileLocation, HeaderProblem, ReadError, Reason};
 
 const XYZ: &str = "property float x\nproperty float y\nproperty float z";
 const LIST: &str = "property list uchar int vertex_indices";
@@ -185,9 +185,9 @@ fn text_is_read_in_double_precision() {
     assert_eq!(ply(text).unwrap().soup.positions(), [Point3::new(0.1, 90_706.123_456_789, 1e300)]);
 }
 
-fn header_error(text: &str) -> (Place, HeaderProblem) {
+fn header_error(text: &str) -> (FileLocation, HeaderProblem) {
     match ply(text).unwrap_err() {
-        ReadError { place, reason: Reason::BadHeader(problem), .. } => (place, problem),
+        ReadError { location, reason: Reason::BadHeader(problem), .. } => (location, problem),
         other => panic!("{other}"),
     }
 }
@@ -195,7 +195,7 @@ fn header_error(text: &str) -> (Place, HeaderProblem) {
 #[test]
 fn bad_headers() {
     for text in ["", "p", "plyx\n", "OFF\n", " ply\n", "\0\0\0\0"] {
-        assert_eq!(header_error(text), (Place::Line(1), HeaderProblem::NotPly), "{text:?}");
+        assert_eq!(header_error(text), (FileLocation::Line(1), HeaderProblem::NotPly), "{text:?}");
     }
     let start = "ply\nformat ascii 1.0\n";
     for line in [
@@ -209,7 +209,7 @@ fn bad_headers() {
         "element vertex 99999999999999999999999 7",
     ] {
         let problem = HeaderProblem::BadLine { text: line.to_owned() };
-        assert_eq!(header_error(&format!("{start}{line}\n")), (Place::Line(3), problem));
+        assert_eq!(header_error(&format!("{start}{line}\n")), (FileLocation::Line(3), problem));
     }
     let vertex = format!("{start}element vertex 1\n");
     let bad_type = |declared: &str| HeaderProblem::BadType { name: "x".to_owned(), declared: declared.to_owned() };
@@ -220,15 +220,15 @@ fn bad_headers() {
         ("property list float int x", bad_type("list float int")),
         ("property list uchar half x", bad_type("list uchar half")),
     ] {
-        assert_eq!(header_error(&format!("{vertex}{line}\n")), (Place::Line(4), problem));
+        assert_eq!(header_error(&format!("{vertex}{line}\n")), (FileLocation::Line(4), problem));
     }
     let twice = format!("{vertex}property float x\nproperty int x\n");
-    assert_eq!(header_error(&twice), (Place::Line(5), HeaderProblem::Duplicate { name: "x".to_owned() }));
+    assert_eq!(header_error(&twice), (FileLocation::Line(5), HeaderProblem::Duplicate { name: "x".to_owned() }));
     let twice = format!("{vertex}property float x\nelement vertex 2\n");
-    assert_eq!(header_error(&twice), (Place::Line(5), HeaderProblem::Duplicate { name: "vertex".to_owned() }));
-    assert_eq!(header_error("ply\nend_header\n"), (Place::Line(2), HeaderProblem::NoFormat));
+    assert_eq!(header_error(&twice), (FileLocation::Line(5), HeaderProblem::Duplicate { name: "vertex".to_owned() }));
+    assert_eq!(header_error("ply\nend_header\n"), (FileLocation::Line(2), HeaderProblem::NoFormat));
     let long = format!("ply\ncomment {}\n", "x".repeat(70_000));
-    assert_eq!(header_error(&long), (Place::Line(2), HeaderProblem::LineTooLong));
+    assert_eq!(header_error(&long), (FileLocation::Line(2), HeaderProblem::LineTooLong));
     for (header, element, property) in [
         ("element vertex 1\nproperty float x\nproperty float y", "vertex", "z"),
         ("element face 1\nproperty int vertex_indices_of", "face", "vertex_indices"),
@@ -236,7 +236,7 @@ fn bad_headers() {
         ("element edge 1\nproperty int vertex1", "edge", "vertex2"),
     ] {
         let problem = HeaderProblem::MissingProperty { element, property };
-        assert_eq!(header_error(&format!("{start}{header}\nend_header\n")), (Place::File, problem));
+        assert_eq!(header_error(&format!("{start}{header}\nend_header\n")), (FileLocation::File, problem));
     }
     for (header, name, declared) in [
         ("element vertex 1\nproperty list uchar float x\nproperty float y\nproperty float z", "x", "list uchar float"),
@@ -245,7 +245,7 @@ fn bad_headers() {
         ("element edge 1\nproperty float vertex1\nproperty int vertex2", "vertex1", "float"),
     ] {
         let problem = HeaderProblem::BadType { name: name.to_owned(), declared: declared.to_owned() };
-        assert_eq!(header_error(&format!("{start}{header}\nend_header\n")), (Place::File, problem));
+        assert_eq!(header_error(&format!("{start}{header}\nend_header\n")), (FileLocation::File, problem));
     }
 }
 
@@ -253,7 +253,7 @@ fn bad_headers() {
 fn formats_we_do_not_know() {
     for format in ["ascii 2.0", "binary_middle_endian 1.0", "ascii", ""] {
         let error = ply(format!("ply\nformat {format}\nend_header\n")).unwrap_err();
-        assert_eq!(error.place, Place::Line(2));
+        assert_eq!(error.location, FileLocation::Line(2));
         assert!(matches!(&error.reason, Reason::UnsupportedFormat { text } if text == format), "{error}");
     }
 }
@@ -263,12 +263,12 @@ fn check(encoding: Encoding, file: &Ply, bytes_or_line: (u64, u64), expected: im
     let error = file.read().unwrap_err();
     let data = file.bytes.windows(11).position(|w| w == b"end_header\n").unwrap() as u64 + 11;
     let lines = file.bytes[..usize::try_from(data).unwrap()].iter().filter(|&&b| b == b'\n').count() as u64;
-    let place = if encoding == Encoding::Ascii {
-        Place::Line(lines + bytes_or_line.1)
+    let location = if encoding == Encoding::Ascii {
+        FileLocation::Line(lines + bytes_or_line.1)
     } else {
-        Place::Byte(data + bytes_or_line.0)
+        FileLocation::Byte(data + bytes_or_line.0)
     };
-    assert_eq!(error.place, place, "{encoding:?} {error}");
+    assert_eq!(error.location, location, "{encoding:?} {error}");
     assert!(expected(&error.reason), "{encoding:?} {error}");
 }
 
@@ -395,7 +395,7 @@ fn headers_end_lines_as_their_first_one_does() {
     }
     let text =
         format!("ply\nformat ascii 1.0\nelement vertex 2\n{XYZ}\nend_header\n1 2 3\n4 x 6\n").replace('\n', "\r");
-    assert_eq!(ply(text).unwrap_err().place, Place::Line(9));
+    assert_eq!(ply(text).unwrap_err().location, FileLocation::Line(9));
 }
 
 #[test]

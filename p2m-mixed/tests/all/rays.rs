@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 use p2m_core::{BruteForce, Element, Hit, Ray, RayError, RayQuery, Side, Soup};
-use p2m_mixed::{AnswerFormat, HitWriter, NumberWriter, Place, PointFormat, ReadError, Reason, read_rays_from};
+use p2m_mixed::{AnswerFormat, FileLocation, HitWriter, NumberWriter, PointFormat, ReadError, Reason, read_rays_from};
 use std::io::ErrorKind;
 
 const FORMATS: [AnswerFormat; 3] = [AnswerFormat::Csv, AnswerFormat::Npy, AnswerFormat::Ply];
@@ -86,21 +86,21 @@ fn vertices_go_along_their_normals() {
 
 #[test]
 fn what_is_no_ray_is_told_with_its_place() {
-    for (format, file, place, message) in [
-        (PointFormat::Csv, "1,2,3,4,5,6\n1,2,3,0,-0,0\n", Place::Line(2), "the direction of the ray is zero"),
-        (PointFormat::Csv, "1,2,3,4,5,6\n1,2,3,0,0,inf\n", Place::Line(2), "coordinate 'inf' is not finite"),
-        (PointFormat::Csv, "x,y,z,dx,dy,dz\n1,2,3,4,5\n", Place::Line(2), "a ray needs 6 coordinates, found 5"),
-        (PointFormat::Csv, "x,y,z\n1,2,3\n", Place::Line(1), "a ray needs 6 coordinates, found 3"),
-        (PointFormat::Xyz, "\n1 2 3 0 0 0\n", Place::Line(2), "the direction of the ray is zero"),
-        (PointFormat::Xyz, "1 2 3 4\n", Place::Line(1), "a ray needs 6 coordinates, found 4"),
+    for (format, file, location, message) in [
+        (PointFormat::Csv, "1,2,3,4,5,6\n1,2,3,0,-0,0\n", FileLocation::Line(2), "the direction of the ray is zero"),
+        (PointFormat::Csv, "1,2,3,4,5,6\n1,2,3,0,0,inf\n", FileLocation::Line(2), "coordinate 'inf' is not finite"),
+        (PointFormat::Csv, "x,y,z,dx,dy,dz\n1,2,3,4,5\n", FileLocation::Line(2), "a ray needs 6 coordinates, found 5"),
+        (PointFormat::Csv, "x,y,z\n1,2,3\n", FileLocation::Line(1), "a ray needs 6 coordinates, found 3"),
+        (PointFormat::Xyz, "\n1 2 3 0 0 0\n", FileLocation::Line(2), "the direction of the ray is zero"),
+        (PointFormat::Xyz, "1 2 3 4\n", FileLocation::Line(1), "a ray needs 6 coordinates, found 4"),
     ] {
         let error = read(file, format).unwrap_err();
-        assert_eq!((error.place, error.reason.to_string()), (place, message.to_owned()));
+        assert_eq!((error.location, error.reason.to_string()), (location, message.to_owned()));
     }
     for order in ["False", "True"] {
         let mut numbers = [1.0; 18];
         let places = if order == "True" { [10, 13, 16] } else { [9, 10, 11] };
-        places.into_iter().for_each(|place| numbers[place] = 0.0);
+        places.into_iter().for_each(|location| numbers[location] = 0.0);
         let error = read(npy("'<f8'", order, "(3, 6)", &numbers), PointFormat::Npy).unwrap_err();
         assert!(matches!(error.reason, Reason::Ray(RayError::ZeroDirection)));
         assert_eq!(error.to_string(), "r in row 1, counted from 0: the direction of the ray is zero");

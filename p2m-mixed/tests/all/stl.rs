@@ -2,7 +2,7 @@
 
 use crate::common::{elements, skipped, stl, t};
 use nalgebra::Point3;
-use p2m_mixed::{HeaderProblem, Place, Reason, Scene};
+use p2m_mixed::{FileLocation, HeaderProblem, Reason, Scene};
 
 /// A binary file.
 fn binary(header: &str, facets: &[[[f32; 3]; 3]]) -> Vec<u8> {
@@ -165,7 +165,7 @@ fn errors_tell_place_and_reason() {
         let mut facets = SQUARE;
         facets[1][2][0] = bad;
         let error = stl(binary("", &facets)).unwrap_err();
-        assert_eq!(error.place, Place::Byte(84 + 50));
+        assert_eq!(error.location, FileLocation::Byte(84 + 50));
         assert!(matches!(&error.reason, Reason::NonFinite { text } if *text == bad.to_string()), "{error}");
     }
 }

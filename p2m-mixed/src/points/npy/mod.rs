@@ -3,9 +3,9 @@
 mod literal;
 
 use super::Row;
-use crate::bytes::{Bytes, Scalar};
+use crate::bytes::{ByteReader, Scalar};
 use crate::text::quote;
-use crate::{HeaderProblem, Place, ReadError, Reason};
+use crate::{FileLocation, HeaderProblem, ReadError, Reason};
 use literal::{Value, parse};
 use std::io::BufRead;
 
@@ -16,11 +16,11 @@ const LONGEST_HEADER: u32 = 1 << 16;
 const LISTED: usize = 16;
 
 pub(super) fn read_npy<R: Row<N>, const N: usize>(reader: impl BufRead, name: &str) -> Result<Vec<R>, ReadError> {
-    let mut bytes = Bytes::new(reader, 0);
+    let mut bytes = ByteReader::new(reader, 0);
     let rows = read_header::<R, N>(&mut bytes).and_then(|array| read_array(&mut bytes, &array));
-    let rows = rows.map_err(|reason| ReadError::new(name, Place::Byte(bytes.start()), reason))?;
+    let rows = rows.map_err(|reason| ReadError::new(name, FileLocation::Byte(bytes.start()), reason))?;
     // Where each is as large as its numbers, it takes their place.
-    let row = |(i, numbers)| R::new(numbers).map_err(|reason| ReadError::new(name, Place::Row(i), reason));
+    let row = |(i, numbers)| R::new(numbers).map_err(|reason| ReadError::new(name, FileLocation::Row(i), reason));
     (0..).zip(rows).map(row).collect()
 }
 
@@ -46,7 +46,7 @@ fn bad(problem: HeaderProblem) -> Reason {
     Reason::BadHeader(problem)
 }
 
-fn read_header<R: Row<N>, const N: usize>(bytes: &mut Bytes<impl BufRead>) -> Result<Array<N>, Reason> {
+fn read_header<R: Row<N>, const N: usize>(bytes: &mut ByteReader<impl BufRead>) -> Result<Array<N>, Reason> {
     let not_npy = |reason| match reason {
         Reason::UnexpectedEnd => bad(HeaderProblem::NotNpy),
         other => other,
@@ -209,7 +209,7 @@ fn size(descr: &Value<'_>, shape: Option<&Value<'_>>) -> Option<u64> {
     }
 }
 
-fn read_array<const N: usize>(bytes: &mut Bytes<impl BufRead>, array: &Array<N>) -> Result<Vec<[f64; N]>, Reason> {
+fn read_array<const N: usize>(bytes: &mut ByteReader<impl BufRead>, array: &Array<N>) -> Result<Vec<[f64; N]>, Reason> {
     let mut rows = Vec::new();
     if array.is_fortran {
         for (axis, c) in array.coordinates.iter().enumerate() {
@@ -248,7 +248,7 @@ fn read_array<const N: usize>(bytes: &mut Bytes<impl BufRead>, array: &Array<N>)
     }
 }
 
-fn coordinate(bytes: &mut Bytes<impl BufRead>, c: &Coordinate) -> Result<f64, Reason> {
+fn coordinate(bytes: &mut ByteReader<impl BufRead>, c: &Coordinate) -> Result<f64, Reason> {
     let x = bytes.number(c.scalar, c.big_endian)?;
     if x.is_finite() { Ok(x) } else { Err(Reason::NonFinite { text: x.to_string() }) }
 }
