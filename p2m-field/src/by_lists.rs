@@ -22,16 +22,16 @@ use p2m_core::{Aabb, ClosestPoint, PrimitiveSet};
 
 /// Returns the distances at the points of a grid, computed from candidate lists instead of an index.
 ///
-/// The values are those of [`distances`](crate::distances), bit for bit. Lists are the fastest way to a field whose blocks
-/// of 64 points are not much larger than the primitives, or are farther from the primitives than they are wide. The
-/// option `hints` is ignored.
+/// The values are those of [`distances`](crate::distances), bit for bit. Lists are the fastest way to a field whose
+/// blocks of 64 points are not much larger than the primitives, or are farther from the primitives than they are wide.
+/// The option `hints` is ignored.
 ///
 /// # Errors
 /// [`GridError::Memory`] if the values do not fit into memory, and [`GridError::Range`] for coordinates above 2^250.
 ///
 /// # Complexity
-/// O(k) for each point, with k candidates in its block. Memory is 4 bytes for each point, and 4 bytes for each candidate
-/// of a block and of the larger blocks that contain it.
+/// O(k) for each point, with k candidates in its block. Memory is 4 bytes for each point, and 4 bytes for each
+/// candidate of a block and of the larger blocks that contain it.
 pub fn distances_by_lists<S: PrimitiveSet<f64> + Sync + ?Sized>(
     lists: &CandidateLists<'_, S>,
     grid: &Grid,
@@ -43,8 +43,8 @@ pub fn distances_by_lists<S: PrimitiveSet<f64> + Sync + ?Sized>(
 
 /// Returns the signed distances at the points of a grid, computed from candidate lists.
 ///
-/// The values are those of [`signed_distances`](crate::signed_distances), bit for bit. `lists` and `signed` have to be of
-/// the same scene.
+/// The values are those of [`signed_distances`](crate::signed_distances), bit for bit. `lists` and `signed` have to be
+/// of the same scene.
 ///
 /// # Errors
 /// [`GridError::Memory`] if the values do not fit into memory, and [`GridError::Range`] for coordinates above 2^250.
@@ -86,8 +86,8 @@ struct Sampler<'a, S: ?Sized> {
     #[cfg_attr(not(feature = "rayon"), allow(dead_code, reason = "there is one thread"))]
     parallel: bool,
     band: f64,
-    /// An upper bound on the distance of neighbouring points, including the rounding of points and values. A point whose
-    /// value exceeds it is farther from the surface than from its neighbours.
+    /// An upper bound on the distance of neighbouring points, including the rounding of points and values. A point
+    /// whose value exceeds it is farther from the surface than from its neighbours.
     max_neighbour_distance: f64,
     progress: &'a (dyn Fn(usize) + Sync),
 }

@@ -4,11 +4,11 @@
 //! one, or a batch of points is passed to the index at once. The values are the answers to single queries, bit for bit,
 //! rounded to f32.
 //!
-//! **Bands.** A block of points has no point in the band if the distance of its centre exceeds the band plus half of the
-//! diagonal of the block. Other blocks are divided into eight until they are empty or single points. Signs beyond the
-//! band equal those of single queries as well. Winding numbers are computed for each point. For a closed surface the sign
-//! of the centre holds for the whole block, because no surface crosses it; if the surface intersects itself, that is the
-//! sign of the part that is nearest to the centre.
+//! **Bands.** A block of points has no point in the band if the distance of its centre exceeds the band plus half of
+//! the diagonal of the block. Other blocks are divided into eight until they are empty or single points. Signs beyond
+//! the band equal those of single queries as well. Winding numbers are computed for each point. For a closed surface
+//! the sign of the centre holds for the whole block, because no surface crosses it; if the surface intersects itself,
+//! that is the sign of the part that is nearest to the centre.
 
 use crate::grid::{Grid, GridError};
 use crate::layers::Layers;
@@ -19,9 +19,9 @@ use p2m_core::{Closest, ClosestPoint, QueryOptions};
 
 /// Returns the distances at the points of a grid, in the order of [`Grid::number`].
 ///
-/// A value is the distance of [`ClosestPoint::closest_point`], rounded to f32. It is infinite if the scene is empty or the
-/// distance exceeds the range of f32. `progress` is called with the number of points that were finished since its last
-/// call, from any thread.
+/// A value is the distance of [`ClosestPoint::closest_point`], rounded to f32. It is infinite if the scene is empty or
+/// the distance exceeds the range of f32. `progress` is called with the number of points that were finished since its
+/// last call, from any thread.
 ///
 /// # Errors
 /// [`GridError::Memory`] if the values do not fit into memory.

@@ -41,8 +41,8 @@ impl Grid {
     /// Makes a grid of `counts` points along the axes.
     ///
     /// # Errors
-    /// [`GridError::Count`] for no points or more than 2^40. [`GridError::Spacing`] if the spacing is not positive, or a
-    /// coordinate is not finite.
+    /// [`GridError::Count`] for no points or more than 2^40. [`GridError::Spacing`] if the spacing is not positive, or
+    /// a coordinate is not finite.
     pub fn new(origin: Point3<f64>, spacing: f64, counts: [usize; 3]) -> Result<Self, GridError> {
         let [x, y, z] = counts;
         let total = x.checked_mul(y).and_then(|n| n.checked_mul(z));
@@ -61,8 +61,8 @@ impl Grid {
     /// cover them, and each axis gets at least two.
     ///
     /// # Errors
-    /// [`GridError::Empty`] for an empty box. [`GridError::Spacing`] for a box without extent, or if a coordinate of the
-    /// grid is not finite. [`GridError::Count`] for more than 2^40 points.
+    /// [`GridError::Empty`] for an empty box. [`GridError::Spacing`] for a box without extent, or if a coordinate of
+    /// the grid is not finite. [`GridError::Count`] for more than 2^40 points.
     pub fn around(bounds: &Aabb<f64>, resolution: usize, scale: f64) -> Result<Self, GridError> {
         if bounds.min.x > bounds.max.x {
             return Err(GridError::Empty);

@@ -1,9 +1,10 @@
 //! Distance fields, signed distances and winding numbers of scenes.
 //!
-//! - **Fields** are distances at the points of a regular [`Grid`], or on an octree whose cells are small near the surface
-//!   ([`refined`]). [`distances`] and [`signed_distances`] query an index for each point. [`distances_by_lists`] and
-//!   [`signed_distances_by_lists`] need no index: they divide the grid into blocks and evaluate the few primitives that
-//!   can be nearest in a block for all of its points at once ([`grid_candidates`]). Both ways return the same bits.
+//! - **Fields** are distances at the points of a regular [`Grid`], or on an octree whose cells are small near the
+//!   surface ([`refined`]). [`distances`] and [`signed_distances`] query an index for each point.
+//!   [`distances_by_lists`] and [`signed_distances_by_lists`] need no index: they divide the grid into blocks and
+//!   evaluate the few primitives that can be nearest in a block for all of its points at once ([`grid_candidates`]).
+//!   Both ways return the same bits.
 //! - **Signs** tell inside from outside ([`sign`]): by pseudonormals and exact rays for closed surfaces
 //!   \[Baerentzen2005\], or by generalised winding numbers for any triangles \[Jacobson2013\], which a tree of dipoles
 //!   approximates within a bound \[Barill2018\].

@@ -6,11 +6,12 @@ use crate::sign::Sign;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FieldOptions {
-    /// The largest distance that is computed, in units of the scene. Beyond it the field has this value, with the correct
-    /// sign. The default is infinite.
+    /// The largest distance that is computed, in units of the scene. Beyond it the field has this value, with the
+    /// correct sign. The default is infinite.
     pub band: f64,
-    /// Whether the closest primitive of a point is the hint for the next point. Hints make trees faster and interception
-    /// indexes slower, and do not change the field. Fields by lists ignore this option. The default is `true`.
+    /// Whether the closest primitive of a point is the hint for the next point. Hints make trees faster and
+    /// interception indexes slower, and do not change the field. Fields by lists ignore this option. The default is
+    /// `true`.
     pub hints: bool,
     /// Whether all threads of the current pool are used, which does not change the field. Without the feature `rayon`
     /// one thread computes the field in any case. The default is `true`.

@@ -33,8 +33,8 @@ impl Cell {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RefineOptions {
-    /// The largest interpolation error in cells that the surface may cross, in units of the scene. The error is measured
-    /// at the centres of the cell, its faces and its edges, and a cell with a larger one is divided.
+    /// The largest interpolation error in cells that the surface may cross, in units of the scene. The error is
+    /// measured at the centres of the cell, its faces and its edges, and a cell with a larger one is divided.
     pub error: f64,
     /// The largest interpolation error in all other cells, as a fraction of the distance. By default it is infinite, so
     /// these cells are as large as possible.
@@ -92,7 +92,8 @@ const MAX_DEPTH: u32 = 28;
 
 struct Refine<'a> {
     origin: [f64; 3],
-    /// Half of the edge of a cell of the greatest depth. A point is identified by its offset from `origin` in this unit.
+    /// Half of the edge of a cell of the greatest depth. A point is identified by its offset from `origin` in this
+    /// unit.
     unit: f64,
     distance: &'a dyn Fn(&Point3<f64>) -> f64,
     options: &'a RefineOptions,
@@ -129,8 +130,8 @@ impl Refine<'_> {
     /// Whether the interpolation error of the cell exceeds the limit that the options give.
     fn is_divided(&mut self, cell: &Cell, first: [u32; 3], half: u32) -> bool {
         let distance_at_centre = self.value(first.map(|x| x + half)).abs();
-        // The surface does not cross the cell if it is farther from the centre than a corner is. NaN compares as `false`,
-        // so a cell without a distance may have surface in it.
+        // The surface does not cross the cell if it is farther from the centre than a corner is. NaN compares as
+        // `false`, so a cell without a distance may have surface in it.
         let is_off_surface = distance_at_centre > cell.size * 0.75f64.sqrt();
         let may_have_surface = !is_off_surface;
         if !may_have_surface && self.options.relative == f64::INFINITY {

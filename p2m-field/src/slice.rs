@@ -4,8 +4,8 @@ use crate::grid::Grid;
 
 /// Draws a layer of a field perpendicular to an axis (0 to 2).
 ///
-/// Returns width and height, and the rows of pixels from top to bottom as bytes of red, green and blue. Perpendicular to
-/// z, x runs to the right and y upwards; the other axes follow cyclically. Each point is a square of pixels, and the
+/// Returns width and height, and the rows of pixels from top to bottom as bytes of red, green and blue. Perpendicular
+/// to z, x runs to the right and y upwards; the other axes follow cyclically. Each point is a square of pixels, and the
 /// longer side of the picture has at least 512.
 ///
 /// Points outside are coloured from white to blue, points inside from white to orange, and points without a number are

@@ -10,7 +10,8 @@ use std::io::{self, Write};
 ///
 /// - **NPY**: an array of NumPy of type `<f4` and shape (x, y, z) in Fortran order. `field[i, j, k]` is the value at
 ///   `Grid::point([i, j, k])`.
-/// - **VTI**: an ImageData of VTK with origin and spacing, which ParaView reads. The values are the point data `distance`.
+/// - **VTI**: an ImageData of VTK with origin and spacing, which ParaView reads. The values are the point data
+///   `distance`.
 /// - **Raw**: the values alone as little-endian f32, with x running fastest.
 ///
 /// ```

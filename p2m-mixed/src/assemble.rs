@@ -6,8 +6,8 @@ use p2m_core::{BuildError, Element, PrimitiveId, PrimitiveSet, Soup};
 use std::ops::Range;
 
 impl Scene {
-    /// Adds a part under a name, without blanks around it (or, if nothing is left of that, under none); the ids that its
-    /// primitives got.
+    /// Adds a part under a name, without blanks around it (or, if nothing is left of that, under none); the ids that
+    /// its primitives got.
     ///
     /// To turn, scale or move it first, [`Transform::apply`](crate::generate::Transform::apply) it: coordinates are
     /// transformed once, and queries are as fast as ever.
@@ -31,8 +31,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// [`BuildError::TooMany`] for more primitives than ids, or more vertices than u32 can number; the scene is then as it
-    /// was.
+    /// [`BuildError::TooMany`] for more primitives than ids, or more vertices than u32 can number; the scene is then as
+    /// it was.
     ///
     /// # Complexity
     /// O(1) for each vertex and primitive of the part. A part without primitives leaves nothing.

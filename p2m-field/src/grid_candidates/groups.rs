@@ -1,7 +1,7 @@
 //! A bounding volume hierarchy with eight members in each group.
 //!
-//! Primitives are sorted along a Hilbert curve. Eight consecutive primitives form a group, eight groups form a group of the
-//! next level, and the last level is one group.
+//! Primitives are sorted along a Hilbert curve. Eight consecutive primitives form a group, eight groups form a group of
+//! the next level, and the last level is one group.
 
 use super::local_primitive::LocalPrimitive;
 use nalgebra::Point3;

@@ -5,9 +5,9 @@ use p2m_core::engine::vector::{V3, add_scaled, combine, dot, larger, norm_square
 
 /// A point, a segment or a triangle in a local frame.
 ///
-/// The longest edge is on the first axis, and a triangle is in the plane of the first two axes. The axes are orthonormal
-/// within some u for any shape: if the third vertex is too near to the longest edge to determine a direction, it is as near
-/// to the plane of any direction.
+/// The longest edge is on the first axis, and a triangle is in the plane of the first two axes. The axes are
+/// orthonormal within some u for any shape: if the third vertex is too near to the longest edge to determine a
+/// direction, it is as near to the plane of any direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LocalPrimitive {
     /// The vertex that is the origin of the frame.
@@ -120,8 +120,8 @@ impl LocalPrimitive {
         Self { origin, axes, length, edges, kind: Kind::Triangle }
     }
 
-    /// Returns the closest point of the primitive, up to rounding, as an offset from the origin of the frame. As a position
-    /// it would have a larger rounding error if the scene is far from zero.
+    /// Returns the closest point of the primitive, up to rounding, as an offset from the origin of the frame. As a
+    /// position it would have a larger rounding error if the scene is far from zero.
     pub(crate) fn closest_offset(&self, point: V3) -> V3 {
         let offset = sub(point, self.origin);
         let local = [dot(offset, self.axes[0]), dot(offset, self.axes[1])];
@@ -140,7 +140,8 @@ impl LocalPrimitive {
 
     /// Returns the closest point of a triangle to a point in its plane.
     fn closest_in_plane(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        // Points on the line of the first edge do not count as inside, because a triangle without a height is part of it.
+        // Points on the line of the first edge do not count as inside, because a triangle without a height is part of
+        // it.
         let mut is_inside = y > 0.0;
         let nearest = smaller(larger(x, 0.0), self.length);
         let mut best = [nearest, 0.0];

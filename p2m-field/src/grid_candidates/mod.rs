@@ -1,16 +1,17 @@
 //! Candidate lists of boxes: distances of many points from the few primitives that can be nearest in a box.
 //!
-//! An index answers one query after the other. Points that fill a box, as those of a grid do, have the same few primitives
-//! to choose from. [`Candidates`] are the primitives that can be nearest in a box, found among those of a larger box, and
-//! [`CandidateLists::distances`] evaluates them for all points of the box, with points as lanes of a vector.
+//! An index answers one query after the other. Points that fill a box, as those of a grid do, have the same few
+//! primitives to choose from. [`Candidates`] are the primitives that can be nearest in a box, found among those of a
+//! larger box, and [`CandidateLists::distances`] evaluates them for all points of the box, with points as lanes of a
+//! vector.
 //!
 //! # Which primitives can be nearest in a box
 //!
-//! Let s be any point of the scene. For any primitive p, |q - s|^2 - d(q, p)^2 is convex in q, because it is the maximum
-//! over x in p of 2 q (x - s) + |s|^2 - |x|^2, which are linear in q. So if s is nearer than p at the eight corners of a
-//! box, it is nearer in all of the box, and p is not the nearest primitive anywhere in it (**proved**). The closest points
-//! to the eight corners serve as s. Of a flat surface with primitives of the size of the box, the primitives below the box
-//! and around its rim remain. A group of primitives is excluded if its bounding box is.
+//! Let s be any point of the scene. For any primitive p, |q - s|^2 - d(q, p)^2 is convex in q, because it is the
+//! maximum over x in p of 2 q (x - s) + |s|^2 - |x|^2, which are linear in q. So if s is nearer than p at the eight
+//! corners of a box, it is nearer in all of the box, and p is not the nearest primitive anywhere in it (**proved**).
+//! The closest points to the eight corners serve as s. Of a flat surface with primitives of the size of the box, the
+//! primitives below the box and around its rim remain. A group of primitives is excluded if its bounding box is.
 //!
 //! # Error bound
 //!
@@ -25,26 +26,28 @@
 //! - An offset is rounded by u R. Its three components in the frame are rounded by 3 u R each for the sums and by 4 u R
 //!   for the axes, and axes that are not quite orthonormal change lengths by 10 u R. That is 23 u R for the offset. The
 //!   vertices of the primitive have offsets of at most 2 R, so they add twice as much: 46 u R.
-//! - The rest is about a triangle in the plane whose corners are numbers of f64. Directions of edges are accurate to 4 u,
-//!   sums of two products to 10 u R, and the components perpendicular to an edge and beyond its ends to 20 u R together.
-//! - A point counts as inside if it is by 2^-46 R = 128 u R for all edges, and then it is inside without rounding too. A
-//!   point that is inside and does not count is within 128 u R + 79 u R of the line of an edge. It is as near to the
+//! - The rest is about a triangle in the plane whose corners are numbers of f64. Directions of edges are accurate to 4
+//!   u, sums of two products to 10 u R, and the components perpendicular to an edge and beyond its ends to 20 u R
+//!   together.
+//! - A point counts as inside if it is by 2^-46 R = 128 u R for all edges, and then it is inside without rounding too.
+//!   A point that is inside and does not count is within 128 u R + 79 u R of the line of an edge. It is as near to the
 //!   boundary, since the segment to that line leaves the triangle before it ends, and that is its error at most.
-//! - Squares and the root add 6 u R. All together is less than 400 u R. The contract's own 8 u R is added, and 512 u R is
-//!   2^-44 R.
+//! - Squares and the root add 6 u R. All together is less than 400 u R. The contract's own 8 u R is added, and 512 u R
+//!   is 2^-44 R.
 //! - Edges below 2^-450 count as points, and squares lose less than 2^-1000 near zero; 2^-400 exceeds both. Coordinates
 //!   up to 2^250 have squares. The closest point of a query has the error of its distance.
 //!
 //! A value that is rounded to f32 equals that of the kernel if all of [d - E, d + E] is rounded to it. For other points
-//! the kernel evaluates all candidates. That is one point of 10^5 if the scene is not much farther away than it is large.
+//! the kernel evaluates all candidates. That is one point of 10^5 if the scene is not much farther away than it is
+//! large.
 //!
 //! Dominators have to be nearer by a slack that covers these errors. Let m be the largest distance of a corner from s.
 //! Then p is excluded if it is farther than s at all corners by 16 E m + 64 E^2 in the computed squares. In the true
-//! squares that is at least 12 E m + 47 E^2, since those of p err by 2 E (m + 8 E) + E^2. By convexity it holds in all of
-//! the box, where |q - s| <= m, so d(q, p)^2 >= (|q - s| + 4 E)^2. Hence p is farther than s by 4 E, the primitive of s is
-//! within E of s, and the distances of the kernel are in the same order. That primitive may be excluded by another one
-//! that is nearer still, but the one that is nearest by the kernel cannot be. So the values of the candidates are those of
-//! all primitives, bit for bit.
+//! squares that is at least 12 E m + 47 E^2, since those of p err by 2 E (m + 8 E) + E^2. By convexity it holds in all
+//! of the box, where |q - s| <= m, so d(q, p)^2 >= (|q - s| + 4 E)^2. Hence p is farther than s by 4 E, the primitive
+//! of s is within E of s, and the distances of the kernel are in the same order. That primitive may be excluded by
+//! another one that is nearer still, but the one that is nearest by the kernel cannot be. So the values of the
+//! candidates are those of all primitives, bit for bit.
 
 mod candidates;
 mod error_bounds;
@@ -75,8 +78,8 @@ pub struct CandidateLists<'a, S: ?Sized> {
 impl<'a, S: PrimitiveSet<f64> + ?Sized> CandidateLists<'a, S> {
     /// Prepares the candidate lists of a set.
     ///
-    /// Returns `None` if a primitive is not the convex hull of its [`vertices`](Primitive::vertices), if a coordinate is
-    /// not finite or exceeds [`LARGEST`], or if memory does not suffice.
+    /// Returns `None` if a primitive is not the convex hull of its [`vertices`](Primitive::vertices), if a coordinate
+    /// is not finite or exceeds [`LARGEST`], or if memory does not suffice.
     ///
     /// # Complexity
     /// O(n log n) time; 238 bytes for each primitive.
@@ -119,8 +122,8 @@ impl<'a, S: PrimitiveSet<f64> + ?Sized> CandidateLists<'a, S> {
     /// Returns the candidates of a part of a box, found among those of the box.
     ///
     /// # Panics
-    /// If the part is empty, not contained in the box of `candidates`, or has coordinates above [`LARGEST`]. Candidates of
-    /// other lists may cause a panic or a wrong result.
+    /// If the part is empty, not contained in the box of `candidates`, or has coordinates above [`LARGEST`]. Candidates
+    /// of other lists may cause a panic or a wrong result.
     ///
     /// # Complexity
     /// O(k) for k candidates.
@@ -133,8 +136,8 @@ impl<'a, S: PrimitiveSet<f64> + ?Sized> CandidateLists<'a, S> {
     /// Computes the distances at all points (x, y, z) of a grid in the box of `candidates`.
     ///
     /// `axes` has the coordinates along each axis, and x runs fastest in `values`. The values are the distances of
-    /// [`ClosestPoint::closest_point`](p2m_core::ClosestPoint::closest_point) in f64, rounded to f32, bit for bit. Returns
-    /// the number of points that needed the contract's kernel.
+    /// [`ClosestPoint::closest_point`](p2m_core::ClosestPoint::closest_point) in f64, rounded to f32, bit for bit.
+    /// Returns the number of points that needed the contract's kernel.
     ///
     /// # Panics
     /// If the values are not one for each point, if a point is not in the box, or if the candidates have groups.

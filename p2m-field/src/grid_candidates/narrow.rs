@@ -62,8 +62,8 @@ fn entry_squared_distances<D: Doubles>(entry: Entry<'_>, points: &[D; 3], margin
     }
 }
 
-/// Returns whether no dominator is nearer at all corners, that is, whether a candidate with these squared distances from
-/// the corners is kept.
+/// Returns whether no dominator is nearer at all corners, that is, whether a candidate with these squared distances
+/// from the corners is kept.
 #[inline(always)]
 fn is_kept<D: Doubles>(squares: D, dominators: &[D; 8]) -> bool {
     let mut is_kept = true;

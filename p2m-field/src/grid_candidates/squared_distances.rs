@@ -6,8 +6,8 @@ use p2m_core::engine::vector::V3;
 
 /// Eight points or vectors: the eight values of each coordinate are the lanes of one `D`.
 ///
-/// Functions on it write the coordinates out, because closures that are passed to standard functions such as `map` would
-/// be compiled without the instruction set.
+/// Functions on it write the coordinates out, because closures that are passed to standard functions such as `map`
+/// would be compiled without the instruction set.
 pub(crate) type Eight<D> = [D; 3];
 
 #[inline(always)]
@@ -32,8 +32,8 @@ fn square_from_edge<D: Doubles>(across: D, along: D, length: f64) -> D {
     beyond.mul_add(beyond, across.mul(across))
 }
 
-/// Returns the squared distances of eight points from a primitive. A point counts as above the inside of a triangle if it
-/// is inside of all edges by at least `margin`.
+/// Returns the squared distances of eight points from a primitive. A point counts as above the inside of a triangle if
+/// it is inside of all edges by at least `margin`.
 #[inline(always)]
 pub(crate) fn squared_distances<D: Doubles>(primitive: &LocalPrimitive, points: &Eight<D>, margin: D) -> D {
     let offset = sub(points, &splat(&primitive.origin));

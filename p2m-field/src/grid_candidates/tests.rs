@@ -43,8 +43,8 @@ fn axes(low: V3, side: f64, count: usize) -> [Vec<f64>; 3] {
     low.map(|x| (0..count).map(|i| x + side * i as f64 / (count - 1) as f64).collect())
 }
 
-/// The evaluation of single primitives is compared with the kernel, which is accurate to 8 u M, and stays within the proved
-/// error.
+/// The evaluation of single primitives is compared with the kernel, which is accurate to 8 u M, and stays within the
+/// proved error.
 #[test]
 fn distances_to_one_primitive_are_within_half_of_the_error_bound() {
     struct SquaredDistance<'a>(&'a LocalPrimitive, V3, f64);
@@ -165,8 +165,8 @@ fn check(soup: &Soup<f64>, axes: &[Vec<f64>; 3]) {
     }
 }
 
-/// The triangles are on a lattice, and many of them are collinear or have equal vertices. The points are on their lines and
-/// in their planes.
+/// The triangles are on a lattice, and many of them are collinear or have equal vertices. The points are on their lines
+/// and in their planes.
 #[test]
 fn degenerate_triangles_have_the_distances_of_their_convex_hulls() {
     let collinear =

@@ -1,10 +1,10 @@
 //! The boundary of a set of triangles, which bounds how much winding numbers vary away from the triangles.
 //!
-//! Two surfaces with the same boundary have the same solid angle up to multiples of 4 pi. So the gradient of the solid angle
-//! is an integral along the boundary, that of dl x r / |r|^3 (the law of Biot and Savart; **cited**: winding numbers are
-//! harmonic functions off the surface \[Jacobson2013\]). Let a point have the distance d from a boundary of length L. Then
-//! the winding number varies by at most r L / (4 pi (d - r)^2) within r of the point, unless a triangle is in between. It is
-//! constant if there is no boundary.
+//! Two surfaces with the same boundary have the same solid angle up to multiples of 4 pi. So the gradient of the solid
+//! angle is an integral along the boundary, that of dl x r / |r|^3 (the law of Biot and Savart; **cited**: winding
+//! numbers are harmonic functions off the surface \[Jacobson2013\]). Let a point have the distance d from a boundary of
+//! length L. Then the winding number varies by at most r L / (4 pi (d - r)^2) within r of the point, unless a triangle
+//! is in between. It is constant if there is no boundary.
 
 use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
@@ -66,7 +66,8 @@ impl Boundary {
         self.length == 0.0
     }
 
-    /// Returns an upper bound on the change of winding numbers within `radius` of a point, if no triangle is in between.
+    /// Returns an upper bound on the change of winding numbers within `radius` of a point, if no triangle is in
+    /// between.
     pub(super) fn max_change_within(&self, radius: f64, centre: &Point3<f64>) -> f64 {
         let Some(edges) = &self.edges else { return f64::INFINITY };
         let Some(closest) = edges.closest_point(centre) else { return 0.0 };

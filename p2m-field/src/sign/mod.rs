@@ -2,12 +2,13 @@
 //!
 //! [`SignedDistance`] adds a sign to the answers of any index over triangles, by one of two rules:
 //!
-//! - **Closed surfaces** ([`SignedDistance::new`]): a point is inside if a ray from it crosses the surface an odd number of
-//!   times. The angle-weighted pseudonormal at the closest point gives the same sign without a ray \[Baerentzen2005\].
-//!   Where rounding makes its sign ambiguous, exact ray crossings decide.
+//! - **Closed surfaces** ([`SignedDistance::new`]): a point is inside if a ray from it crosses the surface an odd
+//!   number of times. The angle-weighted pseudonormal at the closest point gives the same sign without a ray
+//!   \[Baerentzen2005\]. Where rounding makes its sign ambiguous, exact ray crossings decide.
 //! - **Any triangles** ([`SignedDistance::with_winding_numbers`]): a point is inside if its generalised winding number
-//!   \[Jacobson2013\] exceeds a half in magnitude. The triangles may have holes, be unconnected, or intersect each other.
-//!   Dipoles stand for far parts of the scene \[Barill2018\], within an error that is bounded ([`WindingNumbers`]).
+//!   \[Jacobson2013\] exceeds a half in magnitude. The triangles may have holes, be unconnected, or intersect each
+//!   other. Dipoles stand for far parts of the scene \[Barill2018\], within an error that is bounded
+//!   ([`WindingNumbers`]).
 //!
 //! ```
 //! use nalgebra::Point3;
@@ -68,19 +69,19 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
     /// they have the same coordinates. An empty scene is not an error.
     ///
     /// # Accuracy
-    /// Signs are those of an exact count of crossings under two conditions. The surface does not intersect itself, which
-    /// [`meets_itself`] checks; otherwise the sign is that of the nearest part, which differs where that part is inside of
-    /// others. And no two sheets of the surface are closer to each other than the error of a distance, which is 16 u M if
-    /// the farthest vertex of the closest triangle has the distance M. This is cited \[Baerentzen2005\] for distances
-    /// without rounding, and observed on all models that are closed and do not intersect themselves
+    /// Signs are those of an exact count of crossings under two conditions. The surface does not intersect itself,
+    /// which [`meets_itself`] checks; otherwise the sign is that of the nearest part, which differs where that part is
+    /// inside of others. And no two sheets of the surface are closer to each other than the error of a distance, which
+    /// is 16 u M if the farthest vertex of the closest triangle has the distance M. This is cited \[Baerentzen2005\]
+    /// for distances without rounding, and observed on all models that are closed and do not intersect themselves
     /// (`cargo test --test all signs::`).
     ///
     /// # Errors
     /// [`SignError::OtherKinds`], [`SignError::Open`], [`SignError::NotOriented`] and [`SignError::Build`].
     ///
     /// # Complexity
-    /// O(n log n) time. Memory is 13 bytes for each triangle, 28 bytes for each vertex, and a tree of boxes for ambiguous
-    /// queries.
+    /// O(n log n) time. Memory is 13 bytes for each triangle, 28 bytes for each vertex, and a tree of boxes for
+    /// ambiguous queries.
     pub fn new(index: I, soup: &'a Soup<f64>) -> Result<Self, SignError> {
         let normals = Pseudonormals::new(soup, &index)?;
         Ok(Self { index, rule: SignRule::Closed(Box::new(normals)) })
@@ -111,8 +112,8 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
         self.closest_point_with(query, &QueryOptions::default())
     }
 
-    /// Returns the closest point within the limits of `options`, and the sign of a query. With an epsilon the sign follows
-    /// from the approximate closest point.
+    /// Returns the closest point within the limits of `options`, and the sign of a query. With an epsilon the sign
+    /// follows from the approximate closest point.
     pub fn closest_point_with(&self, query: &Point3<f64>, options: &QueryOptions<f64>) -> Option<Signed> {
         let closest = self.index.closest_point_with(query, options)?;
         Some(Signed { closest, sign: self.rule.sign(query, &closest) })
@@ -149,7 +150,8 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
         }
     }
 
-    /// Returns the number of queries so far whose sign was ambiguous, so that rays or the sum of all triangles decided it.
+    /// Returns the number of queries so far whose sign was ambiguous, so that rays or the sum of all triangles decided
+    /// it.
     pub fn doubts(&self) -> u64 {
         match &self.rule {
             SignRule::Closed(normals) => normals.doubts(),
@@ -171,8 +173,8 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
 /// [`SignError::OtherKinds`], [`SignError::Open`], [`SignError::NotOriented`] and [`SignError::Build`].
 ///
 /// # Complexity
-/// One ray for each edge. A ray takes a few microseconds, or milliseconds where thousands of long slivers lie in one plane
-/// along two axes.
+/// One ray for each edge. A ray takes a few microseconds, or milliseconds where thousands of long slivers lie in one
+/// plane along two axes.
 pub fn meets_itself(soup: &Soup<f64>) -> Result<Option<[PrimitiveId; 2]>, SignError> {
     let topology = Topology::new(soup)?;
     let rays = RayTree::build(soup, &Default::default())?;

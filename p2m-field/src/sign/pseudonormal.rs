@@ -1,15 +1,15 @@
 //! Signs of closed surfaces by pseudonormals, and by rays where the pseudonormal is ambiguous.
 //!
-//! The pseudonormal at a point of the surface is the normal of its face, the sum of the unit normals of the two faces at its
-//! edge, or the sum of the unit normals of the faces around its vertex, each multiplied by its angle there. The offset of a
-//! query from its closest point has a positive dot product with the pseudonormal at that point if and only if the query is
-//! outside \[Baerentzen2005, Theorem 1\].
+//! The pseudonormal at a point of the surface is the normal of its face, the sum of the unit normals of the two faces
+//! at its edge, or the sum of the unit normals of the faces around its vertex, each multiplied by its angle there. The
+//! offset of a query from its closest point has a positive dot product with the pseudonormal at that point if and only
+//! if the query is outside \[Baerentzen2005, Theorem 1\].
 //!
 //! A sign is ambiguous if the dot product is near zero, a face is a sliver, an edge has more than two triangles, or the
 //! triangles around a vertex form several fans. Then the exact number of crossings of a ray decides.
 //!
-//! Rays also decide, once for each component of the surface, which side of it is inside. So pseudonormals and rays agree on
-//! surfaces that are inside out, and on components inside of others.
+//! Rays also decide, once for each component of the surface, which side of it is inside. So pseudonormals and rays
+//! agree on surfaces that are inside out, and on components inside of others.
 
 use super::topology::{NO_TRIANGLE, RayTree, Topology};
 use super::types::{Sign, SignError};
@@ -19,8 +19,8 @@ use p2m_core::{Aabb, BuildIndex, Closest, ClosestPoint, Feature, PrimitiveSet, R
 use p2m_mixed::engine::vector::{V3, add, cross, dot, largest, length, scaled, sub};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The smallest sine that is not ambiguous: 2^-20. The limit applies to the angle between the offset and the tangent plane,
-/// and to the angle of a triangle at its first vertex.
+/// The smallest sine that is not ambiguous: 2^-20. The limit applies to the angle between the offset and the tangent
+/// plane, and to the angle of a triangle at its first vertex.
 const MIN_SINE: f64 = 1.0 / (1 << 20) as f64;
 /// The smallest dot product that is not ambiguous, as a fraction of the offset from the vertex: 2^-26. The normal of a
 /// triangle with a sine of 2^-20 has an error of 12 * 2^-53 / 2^-20 < 2^-29, and the sum of two one of 2^-28.
@@ -101,15 +101,15 @@ impl<'a> Pseudonormals<'a> {
         self.fronts = components.iter().map(|component| fronts[*component as usize]).collect();
     }
 
-    /// Determines the front of a triangle by points on both sides of it, whose heights decrease until the component of the
-    /// triangle is closest to them.
+    /// Determines the front of a triangle by points on both sides of it, whose heights decrease until the component of
+    /// the triangle is closest to them.
     fn front(&self, size: f64, triangle: u32, components: &[u32], index: &impl ClosestPoint<f64>) -> Front {
         let Some(corner_numbers) = self.soup.triangles().get(triangle as usize) else { return Front::Unknown };
         let corners = corners(self.soup, *corner_numbers);
         let Some(normal) = unit_normal(corners) else { return Front::Unknown };
         let centre = corners.iter().fold([0.0; 3], |sum, corner| add(sum, scaled(*corner, 1.0 / 3.0)));
-        // Returns whether a ray finds the point at some height above the triangle inside, or `None` unless the closest point
-        // confirms on which side of the component the point is.
+        // Returns whether a ray finds the point at some height above the triangle inside, or `None` unless the closest
+        // point confirms on which side of the component the point is.
         let is_inside = |height: f64| {
             let point = Point3::from(add(centre, scaled(normal, height)));
             let closest = index.closest_point(&point)?;

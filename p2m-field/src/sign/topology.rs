@@ -10,7 +10,8 @@ use std::ops::ControlFlow;
 /// The tree in which rays are cast.
 pub(super) type RayTree<'a> = TreeIndex<f64, &'a Soup<f64>, Aabb<f64>>;
 
-/// The neighbour of an edge that has none, because more than two triangles have the edge or the triangle has equal corners.
+/// The neighbour of an edge that has none, because more than two triangles have the edge or the triangle has equal
+/// corners.
 pub(super) const NO_TRIANGLE: u32 = u32::MAX;
 
 /// The connections between the triangles of a closed surface.
@@ -83,8 +84,8 @@ impl Topology {
         Ok(Self { welder, neighbours, components, is_fan })
     }
 
-    /// Returns the lowest triangle with an edge that intersects a triangle which does not touch the ends of the edge, and
-    /// the lowest such triangle.
+    /// Returns the lowest triangle with an edge that intersects a triangle which does not touch the ends of the edge,
+    /// and the lowest such triangle.
     pub(super) fn find_self_intersection(&self, soup: &Soup<f64>, rays: &RayTree<'_>) -> Option<[usize; 2]> {
         let at = |position: u32| -> Point3<f64> { soup.positions()[position as usize] };
         for (t, corners) in soup.triangles().iter().enumerate() {
@@ -109,8 +110,8 @@ impl Topology {
     }
 }
 
-/// Collects the lowest triangle that an edge intersects. Triangles with a corner at an end of the edge are ignored, because
-/// they all intersect it there.
+/// Collects the lowest triangle that an edge intersects. Triangles with a corner at an end of the edge are ignored,
+/// because they all intersect it there.
 struct LowestNonAdjacentHit<'a> {
     welder: &'a VertexWelder,
     soup: &'a Soup<f64>,

@@ -9,8 +9,8 @@ pub enum Sign {
     Outside,
     /// The surface encloses the point.
     Inside,
-    /// The point is on the surface: its distance is 0. For closed surfaces a point that is exactly on a triangle also has
-    /// this sign if the error of its distance cannot exclude 0.
+    /// The point is on the surface: its distance is 0. For closed surfaces a point that is exactly on a triangle also
+    /// has this sign if the error of its distance cannot exclude 0.
     Boundary,
     /// The sign is not defined, because the winding number is a half within the accuracy of f64.
     Undefined,

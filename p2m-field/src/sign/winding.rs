@@ -1,14 +1,14 @@
 //! Generalised winding numbers by a tree of dipoles.
 //!
-//! The winding number of triangles around q is the sum of their solid angles divided by 4 pi \[Jacobson2013\]. The solid
-//! angle of one triangle has a closed form \[VanOosterom1983\]. The winding number is the integral of K(x) . n over the
-//! triangles, where K(x) = (x - q) / (4 pi |x - q|^3). For the triangles of a node of the tree, which lie within r of its
-//! centre p, K is replaced by its Taylor polynomial of degree 1 at p \[Barill2018\].
+//! The winding number of triangles around q is the sum of their solid angles divided by 4 pi \[Jacobson2013\]. The
+//! solid angle of one triangle has a closed form \[VanOosterom1983\]. The winding number is the integral of K(x) . n
+//! over the triangles, where K(x) = (x - q) / (4 pi |x - q|^3). For the triangles of a node of the tree, which lie
+//! within r of its centre p, K is replaced by its Taylor polynomial of degree 1 at p \[Barill2018\].
 //!
 //! **Error (proved).** K is the gradient of -1 / (4 pi |x - q|), whose third derivatives in any directions are at most
-//! 3! / (4 pi rho^4) at a distance of rho. So the remainder is at most 3 r^2 / (4 pi rho^4) times the area, with
-//! rho = |p - q| - r. A node stands for its triangles if that is at most `accuracy` times its share of the area of the
-//! scene, so the error of all nodes together is at most `accuracy`, apart from rounding. The condition is a minimum distance
+//! 3! / (4 pi rho^4) at a distance of rho. So the remainder is at most 3 r^2 / (4 pi rho^4) times the area, with rho =
+//! |p - q| - r. A node stands for its triangles if that is at most `accuracy` times its share of the area of the scene,
+//! so the error of all nodes together is at most `accuracy`, apart from rounding. The condition is a minimum distance
 //! of q from the node, which is computed at build.
 
 use super::boundary::Boundary;
@@ -60,8 +60,8 @@ struct Node {
     min_distance: f64,
     /// The sum of the normals times areas, divided by 4 pi.
     normal: V3,
-    /// The sum of the outer products of these normals with the offsets of the centroids from the centre. Each row belongs
-    /// to one component of the normal.
+    /// The sum of the outer products of these normals with the offsets of the centroids from the centre. Each row
+    /// belongs to one component of the normal.
     moments: [V3; 3],
     /// The range of the triangles in the order.
     triangles: Range<u32>,
@@ -82,8 +82,8 @@ impl<'a> WindingNumbers<'a> {
     /// Builds the tree of dipoles of a soup.
     ///
     /// # Errors
-    /// [`SignError::OtherKinds`] if a primitive is not a triangle, [`SignError::Accuracy`] if the accuracy is not above 0
-    /// and below 0.5, and [`SignError::Build`] if a tree of the boundary cannot be built.
+    /// [`SignError::OtherKinds`] if a primitive is not a triangle, [`SignError::Accuracy`] if the accuracy is not above
+    /// 0 and below 0.5, and [`SignError::Build`] if a tree of the boundary cannot be built.
     ///
     /// # Complexity
     /// O(n log n) time; 40 to 70 bytes for each triangle.
@@ -189,8 +189,8 @@ impl<'a> WindingNumbers<'a> {
     /// It is 1 inside of a closed surface whose fronts are outside, 0 outside, and in between near holes.
     ///
     /// # Accuracy
-    /// The rounding error is below 1e-9 in addition to the accuracy (observed), unless the query is so near to an edge that
-    /// its offset consists of rounding errors. Triangles smaller than 1e-100 of the scene count as nothing.
+    /// The rounding error is below 1e-9 in addition to the accuracy (observed), unless the query is so near to an edge
+    /// that its offset consists of rounding errors. Triangles smaller than 1e-100 of the scene count as nothing.
     #[must_use]
     pub fn number(&self, query: &Point3<f64>) -> f64 {
         self.number_with_distance_factor(query, 1.0)
@@ -260,8 +260,8 @@ impl<'a> WindingNumbers<'a> {
         }
     }
 
-    /// Returns the common sign of all points within `radius` of a centre that no triangle separates from it, or `None` if
-    /// their signs may differ.
+    /// Returns the common sign of all points within `radius` of a centre that no triangle separates from it, or `None`
+    /// if their signs may differ.
     pub(super) fn sign_within(&self, radius: f64, centre: &Point3<f64>) -> Option<Sign> {
         if self.boundary.is_empty() {
             return Some(self.sign(centre));
@@ -305,7 +305,8 @@ struct Triangle {
 }
 
 impl Triangle {
-    /// Returns the solid angle of the triangle, which is positive from its back, and zero in its plane and at its vertices.
+    /// Returns the solid angle of the triangle, which is positive from its back, and zero in its plane and at its
+    /// vertices.
     fn solid_angle(&self, query: V3) -> f64 {
         let [a, b, c] = self.corners.map(|corner| sub(corner, query));
         let [la, lb, lc] = [a, b, c].map(length);

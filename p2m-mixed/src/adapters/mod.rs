@@ -1,5 +1,5 @@
-//! Trees of other crates as indexes that keep our contract: they find candidates, our kernel decides. And shapes of parry as
-//! parts of a scene.
+//! Trees of other crates as indexes that keep our contract: they find candidates, our kernel decides. And shapes of
+//! parry as parts of a scene.
 //!
 //! Trees are for programs that have such a tree at heart, and for comparison; the indexes of this project are faster.
 

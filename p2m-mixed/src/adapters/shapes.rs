@@ -30,9 +30,9 @@ macro_rules! shapes {
             impl Scene {
                 #[doc = concat!("Adds a shape of the crate ", stringify!($parry), " where `pose` puts it (feature `", $feature, "`).")]
                 ///
-                /// Triangles, segments, meshes, polylines, cuboids, convex polyhedra, height fields, voxels, and compounds
-                /// of these. Solids become their surface: what is inside of one is near its surface, not at distance 0.
-                /// Parry turns and moves positions, in its own precision, once.
+                /// Triangles, segments, meshes, polylines, cuboids, convex polyhedra, height fields, voxels, and
+                /// compounds of these. Solids become their surface: what is inside of one is near its surface, not at
+                /// distance 0. Parry turns and moves positions, in its own precision, once.
                 ///
                 /// ```
                 #[doc = concat!("use ", stringify!($parry), "::math::{Pose, Vector};")]
@@ -49,8 +49,8 @@ macro_rules! shapes {
                 ///
                 /// let ball = Ball::new(1.0);
                 #[doc = concat!("assert!(scene.", stringify!($add), "(\"ball\", &ball, &Pose::IDENTITY).is_err());")]
-                /// let (positions, triangles) = ball.to_trimesh(32, 16);
-                /// let positions: Vec<[f64; 3]> = positions.iter().map(|p| [p.x.into(), p.y.into(), p.z.into()]).collect();
+                /// let (positions, triangles) = ball.to_trimesh(32, 16); let positions: Vec<[f64; 3]> =
+                /// positions.iter().map(|p| [p.x.into(), p.y.into(), p.z.into()]).collect();
                 /// scene.add_triangles("ball", &positions, &triangles)?;
                 /// # Ok::<(), Box<dyn std::error::Error>>(())
                 /// ```

@@ -153,7 +153,8 @@ impl<W: Write> AnswerWriter<W> {
     /// Ends the file and gives the writer back, flushed.
     ///
     /// # Errors
-    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) if there were fewer answers than announced.
+    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) if there were fewer answers than
+    /// announced.
     pub fn finish(self) -> io::Result<W> {
         self.records.finish()
     }

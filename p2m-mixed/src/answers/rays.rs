@@ -13,11 +13,11 @@ use std::io::{self, Write};
 /// records as often).
 ///
 /// # CSV
-/// The columns `ray,ox,oy,oz,dx,dy,dz,parameter,x,y,z,primitive,side,w0,w1,w2`: the number of the ray, its origin and its
-/// direction, the parameter and the point of the hit, the id of the primitive, from where it is met (`front`, `back` or
-/// `along`, see [`Side`]), and the weights of its vertices. Numbers are the shortest that read back as the same ones.
-/// The last nine are empty where there is no hit. With [objects](Self::with_objects) there is one column more, `object`: the
-/// name of the one that is met, empty where none is.
+/// The columns `ray,ox,oy,oz,dx,dy,dz,parameter,x,y,z,primitive,side,w0,w1,w2`: the number of the ray, its origin and
+/// its direction, the parameter and the point of the hit, the id of the primitive, from where it is met (`front`,
+/// `back` or `along`, see [`Side`]), and the weights of its vertices. Numbers are the shortest that read back as the
+/// same ones. The last nine are empty where there is no hit. With [objects](Self::with_objects) there is one column
+/// more, `object`: the name of the one that is met, empty where none is.
 ///
 /// # NPY
 /// A structured array of shape `(count,)`, little-endian, without gaps; a record has 120 bytes, and every number stands
@@ -36,8 +36,8 @@ use std::io::{self, Write};
 ///
 /// # PLY
 /// A cloud of the origins with the directions as normals, binary and little-endian: each `vertex` has the properties
-/// `double` `x`, `y`, `z`, `nx`, `ny`, `nz`, `ray`, `parameter`, `hx`, `hy`, `hz` (the point of the hit), `w0`, `w1`, `w2`,
-/// `int` `primitive` and `side`, as above. Viewers can colour it by parameter.
+/// `double` `x`, `y`, `z`, `nx`, `ny`, `nz`, `ray`, `parameter`, `hx`, `hy`, `hz` (the point of the hit), `w0`, `w1`,
+/// `w2`, `int` `primitive` and `side`, as above. Viewers can colour it by parameter.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
@@ -65,8 +65,9 @@ pub struct HitWriter<W: Write> {
 /// Each file holds the rays, so [`read_rays`](crate::read_rays) asks the same questions again.
 ///
 /// CSV has the columns `ray,ox,oy,oz,dx,dy,dz` of [`HitWriter`] and one more under the name of the number. NPY is a
-/// structured array with the fields `origin`, `direction`, `ray` of [`HitWriter`] and the number, of type `<i8`. PLY is a
-/// cloud with the properties `x`, `y`, `z`, `nx`, `ny`, `nz`, `ray` of [`HitWriter`] and the number, of type `double`.
+/// structured array with the fields `origin`, `direction`, `ray` of [`HitWriter`] and the number, of type `<i8`. PLY is
+/// a cloud with the properties `x`, `y`, `z`, `nx`, `ny`, `nz`, `ray` of [`HitWriter`] and the number, of type
+/// `double`.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
@@ -91,8 +92,8 @@ const HIT: usize = 120;
 const NUMBER: usize = 64;
 
 impl<W: Write> HitWriter<W> {
-    /// Begins a file of `count` records. Without a count, NPY and PLY files are kept in memory until their end: the number
-    /// stands in their beginning.
+    /// Begins a file of `count` records. Without a count, NPY and PLY files are kept in memory until their end: the
+    /// number stands in their beginning.
     ///
     /// # Errors
     /// Those of `writer`.
@@ -167,7 +168,8 @@ impl<W: Write> HitWriter<W> {
     /// Ends the file and gives the writer back, flushed.
     ///
     /// # Errors
-    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) if there were fewer records than announced.
+    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) if there were fewer records than
+    /// announced.
     pub fn finish(self) -> io::Result<W> {
         self.records.finish()
     }
@@ -205,7 +207,8 @@ impl<W: Write> NumberWriter<W> {
     /// Ends the file and gives the writer back, flushed.
     ///
     /// # Errors
-    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) if there were fewer numbers than announced.
+    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) if there were fewer numbers than
+    /// announced.
     pub fn finish(self) -> io::Result<W> {
         self.records.finish()
     }

@@ -36,9 +36,9 @@ impl Row<6> for Ray {
 /// the direction, of any length but zero.
 ///
 /// Columns of a CSV file are taken by the names `ox`, `oy`, `oz`, `dx`, `dy`, `dz`, or else `x`, `y`, `z`, `dx`, `dy`,
-/// `dz`, or else `x`, `y`, `z`, `nx`, `ny`, `nz`, or else `Points:0` to `Points:2` and `Normals:0` to `Normals:2`; arrays
-/// have the shape `(n, 6)`, or the fields `origin` and `direction` of shape `(3,)`, or else `x`, `y`, `z`, `dx`, `dy`,
-/// `dz`. The vertices of a PLY file are rays along their normals `nx`, `ny`, `nz`.
+/// `dz`, or else `x`, `y`, `z`, `nx`, `ny`, `nz`, or else `Points:0` to `Points:2` and `Normals:0` to `Normals:2`;
+/// arrays have the shape `(n, 6)`, or the fields `origin` and `direction` of shape `(3,)`, or else `x`, `y`, `z`, `dx`,
+/// `dy`, `dz`. The vertices of a PLY file are rays along their normals `nx`, `ny`, `nz`.
 ///
 /// What a [`HitWriter`](crate::HitWriter) or a [`NumberWriter`](crate::NumberWriter) writes asks the same questions
 /// again, in each of its formats.

@@ -67,8 +67,8 @@ pub enum WriteError {
 /// ```
 ///
 /// # Errors
-/// [`WriteError`]: for STL what its files cannot hold, before anything is written; and those of `writer`, after which a file
-/// may be incomplete.
+/// [`WriteError`]: for STL what its files cannot hold, before anything is written; and those of `writer`, after which a
+/// file may be incomplete.
 pub fn write_scene(scene: &Scene, format: Format, writer: impl Write) -> Result<(), WriteError> {
     match format {
         Format::Obj => write_obj(scene, writer),
