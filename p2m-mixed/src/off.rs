@@ -1,4 +1,4 @@
-//! OFF, the object file format of Geomview: text and binary.
+//! Reads OFF files, the object file format of Geomview, as text or binary.
 
 use crate::builder::SceneBuilder;
 use crate::bytes::{ByteReader, Scalar};
@@ -9,28 +9,30 @@ use nalgebra::Point3;
 use p2m_core::Element;
 use std::io::BufRead;
 
-/// Reads an OFF file; `name` is for messages.
+/// Reads an OFF file. `name` is the name of the file in messages.
 ///
-/// Faces of three vertices or more are polygons of any shape, faces of two are segments, those of one are points. A
-/// file without faces is a point cloud: each vertex is a point. Faces count from 0 in [`Scene::sources`], whatever they
-/// are.
+/// Faces of three or more vertices are polygons of any shape, faces of two vertices are segments, and faces of one
+/// vertex are points. A file without faces is a point cloud, and each vertex is a point. [`Scene::sources`] counts faces
+/// of any number of vertices from 0.
 ///
-/// The first word is `OFF` behind any of `ST`, `C` and `N`, which announce texture coordinates, colours and normals of
-/// vertices; it may be missing, and the counts may follow it on the same line, even without a blank. The number of
-/// edges may be missing. A `#` begins a comment. Vertices and faces may go on over several lines. What follows the
-/// coordinates of a vertex on its line (colours, normals), and up to four numbers behind a face (its colour), are left
-/// out and counted in [`Scene::skipped`], as is what follows the last face. `OFF BINARY` files are read, too.
+/// The first word is `OFF`, prefixed by any of `ST`, `C` and `N`, which announce texture coordinates, colours and
+/// normals of vertices. The word may be missing, and the counts may follow it on the same line, even without a blank.
+/// The number of edges may be missing. A `#` starts a comment. Vertices and faces may extend over several lines.
 ///
-/// Vertices in other dimensions (`4OFF`, `nOFF`) are refused, unless `nOFF` says 3.
+/// Numbers after the coordinates of a vertex on its line (colours, normals), up to four numbers after a face (its
+/// colour), and anything after the last face are left out and counted in [`Scene::skipped`]. `OFF BINARY` files are
+/// supported as well.
 ///
-/// Coordinates that are not finite are no error as long as no primitive uses the vertex. A point cloud leaves such
-/// vertices out and counts them in [`Scene::skipped`].
+/// Vertices in other dimensions (`4OFF`, `nOFF`) are an error, except `nOFF` with 3 dimensions.
+///
+/// Coordinates that are not finite are allowed if no primitive uses the vertex. A point cloud leaves such vertices out
+/// and counts them in [`Scene::skipped`].
 ///
 /// # Errors
-/// [`ReadError`] with the line or (binary) the offset for a header that makes no sense, an early end, numbers that are
-/// none or too many for their line, indices of no vertex, vertices of primitives that are not finite (with the place of
-/// the primitive), faces of no vertex or of more than [`MAX_CORNERS`], and for what goes wrong in reading. No memory is
-/// taken for data that is merely announced.
+/// [`ReadError`] with the line (text) or the offset (binary) for an invalid header, an early end, invalid numbers or too
+/// many of them on a line, indices that are out of range, primitives with a vertex that is not finite, faces without
+/// vertices or with more than [`MAX_CORNERS`], and errors of `reader`. No memory is allocated for data that the header
+/// only announces.
 pub fn read_off(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     let mut tokens = Tokenizer::with_comments(LineReader::new(reader, 0));
     let fail = |line, reason| ReadError::new(name, FileLocation::Line(line), reason);
@@ -46,9 +48,9 @@ pub fn read_off(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
 }
 
 struct Header {
-    /// How many vertices and faces there are; none if binary data follow.
+    /// The numbers of vertices and faces, or `None` if binary data follow.
     counts: Option<[u64; 2]>,
-    /// Numbers behind the coordinates of a vertex, if they are binary.
+    /// The number of further numbers that each vertex of a binary file has.
     extras: u64,
 }
 
@@ -79,7 +81,7 @@ fn read_header(tokens: &mut Tokenizer<impl BufRead>) -> Result<Header, Reason> {
         prefix = &prefix[length..];
     }
     if !glued.is_empty() {
-        // As in `OFF490 518 0`, which a well-known collection has.
+        // A well-known collection has headers like `OFF490 518 0`.
         if has_dimension || !glued.iter().all(u8::is_ascii_digit) {
             return Err(not_off());
         }
@@ -99,11 +101,11 @@ fn read_header(tokens: &mut Tokenizer<impl BufRead>) -> Result<Header, Reason> {
     Ok(Header { counts: Some([count(&vertices)?, faces_of_header(tokens)?]), extras })
 }
 
-/// The number of faces, and behind it on the same line perhaps that of edges.
+/// Reads the number of faces, and the optional number of edges after it on the same line.
 fn faces_of_header(tokens: &mut Tokenizer<impl BufRead>) -> Result<u64, Reason> {
     let faces = count(tokens.next()?)?;
     if let Some(edges) = tokens.next_on_line() {
-        parse_integer(edges)?; // not used, and often wrong
+        parse_integer(edges)?; // the number of edges is not used, and often wrong
     }
     match tokens.next_on_line() {
         Some(token) => Err(Reason::ExtraWord { text: quote(token) }),
@@ -115,8 +117,8 @@ fn count(token: &[u8]) -> Result<u64, Reason> {
     u64::try_from(parse_integer(token)?).map_err(|_| Reason::BadNumber { text: quote(token) })
 }
 
-/// Files hold no more numbers than this behind a face.
-const COLOUR: u64 = 4;
+/// The largest number of numbers after a face, which are its colour.
+const MAX_COLOUR_NUMBERS: u64 = 4;
 
 fn read_text(tokens: &mut Tokenizer<impl BufRead>, [vertices, faces]: [u64; 2]) -> Result<Scene, Reason> {
     let mut off = Off::new([vertices, faces])?;
@@ -138,7 +140,7 @@ fn read_text(tokens: &mut Tokenizer<impl BufRead>, [vertices, faces]: [u64; 2]) 
             parse_number(token)?;
             extras += 1;
             if is_wrapped {
-                // A number is missing further up, rather.
+                // The vertex extends over several lines, so the likely cause is a missing number on an earlier line.
                 return Err(Reason::ExtraWord { text: quote(token) });
             }
         }
@@ -153,7 +155,7 @@ fn read_text(tokens: &mut Tokenizer<impl BufRead>, [vertices, faces]: [u64; 2]) 
         while let Some(token) = tokens.next_on_line() {
             parse_number(token)?;
             extras += 1;
-            if extras > COLOUR {
+            if extras > MAX_COLOUR_NUMBERS {
                 return Err(Reason::ExtraWord { text: quote(token) });
             }
         }
@@ -192,21 +194,22 @@ fn read_binary(bytes: &mut ByteReader<impl BufRead>, extras: u64) -> Result<Scen
             off.corner(i64::from(i32::from_be_bytes(bytes.array()?)))?;
         }
         let colour = i32::from_be_bytes(bytes.array()?);
-        let numbers = u64::try_from(colour).ok().filter(|&n| n <= COLOUR);
+        let numbers = u64::try_from(colour).ok().filter(|&n| n <= MAX_COLOUR_NUMBERS);
         let numbers = numbers.ok_or(Reason::BadListCount { count: i64::from(colour) })?;
         bytes.skip(4 * numbers)?;
         off.end_face(face, numbers)?;
     }
-    let rest = bytes.rest()?;
+    let rest = bytes.skip_rest()?;
     off.finish(rest, "bytes after the last face")
 }
 
-/// A scene under construction.
+/// Builds the scene of an OFF file.
 struct Off {
     builder: SceneBuilder,
     counts: [u64; 2],
-    /// Vertices and faces with numbers that are left out.
+    /// The numbers of vertices and of faces with numbers that are left out.
     extras: [u64; 2],
+    /// The vertices of the current face.
     corners: Vec<u32>,
 }
 
@@ -223,7 +226,7 @@ impl Off {
         self.builder.push_vertex(position).map(|_| ())
     }
 
-    /// How many corners there are to come.
+    /// Starts a face and returns its number of corners.
     fn start_face(&mut self, corners: i64) -> Result<u64, Reason> {
         let count = u64::try_from(corners).map_err(|_| Reason::BadListCount { count: corners })?;
         if count == 0 {

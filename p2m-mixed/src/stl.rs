@@ -1,4 +1,4 @@
-//! STL: triangles and nothing else, as text or binary.
+//! Reads STL files, which have only triangles, as text or binary.
 
 use crate::builder::SceneBuilder;
 use crate::bytes::ByteReader;
@@ -11,31 +11,31 @@ use nalgebra::Point3;
 use std::hash::{BuildHasher, RandomState};
 use std::io::{BufRead, Cursor, Read};
 
-/// How much of a file is looked at to tell text from binary.
-const HEAD: u64 = 1024;
+/// The number of bytes that decide whether a file is text or binary.
+const DETECTION_BYTES: u64 = 1024;
 
-/// Reads an STL file, text or binary; `name` is for messages.
+/// Reads an STL file, text or binary. `name` is the name of the file in messages.
 ///
-/// What the file is, its first 1024 bytes tell: text begins with `solid`, perhaps behind blanks, and has no control
-/// characters; many binary files begin with `solid`, too, but they have zeros among the first facets.
+/// The first 1024 bytes decide whether the file is text. Text starts with `solid`, possibly after blanks, and has no
+/// control characters. Many binary files start with `solid` too, but they have zero bytes in the first facets.
 ///
-/// Facets share vertices: corners with equal coordinates are one vertex, which is where the first of them is (0 and -0
-/// are equal). No other corners are merged. Degenerate facets are kept. Facets count from 0 in [`Scene::sources`].
+/// Corners with equal coordinates become one vertex, which has the coordinates of the first of them (0 and -0 are
+/// equal). Other corners are not merged. Degenerate facets are kept. [`Scene::sources`] counts facets from 0.
 ///
-/// - Text: any number of solids, whose names are in [`Scene::objects`]; keywords in any case, numbers in double
-///   precision as they are written. Normals may be missing or anything. A facet of more than three vertices is cut like
-///   any polygon.
-/// - Binary: coordinates in single precision, which are exact in double precision. Attribute bytes that are not zero,
-///   and whatever follows the last facet, are counted in [`Scene::skipped`].
+/// - **Text** has any number of solids, whose names are in [`Scene::objects`]. Keywords may have any case, and numbers
+///   are read in double precision. Normals are ignored and may be missing. A facet of more than three vertices is
+///   divided into triangles like any polygon.
+/// - **Binary** files have coordinates in single precision, which are exact in double precision. Attribute bytes other
+///   than zero, and bytes after the last facet, are counted in [`Scene::skipped`].
 ///
 /// # Errors
-/// [`ReadError`] with the line (text) or the offset of the facet (binary) for coordinates that are not finite or no
-/// numbers, words that are out of place, an early end, and for what goes wrong in reading. No memory is taken for
-/// facets that are merely announced.
+/// [`ReadError`] with the line (text) or the offset of the facet (binary) for coordinates that are not finite, invalid
+/// numbers, unexpected words, an early end, and errors of `reader`. No memory is allocated for facets that the header
+/// only announces.
 pub fn read_stl(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     let fail = |reason| ReadError::new(name, FileLocation::File, reason);
     let mut head = Vec::new();
-    reader.by_ref().take(HEAD).read_to_end(&mut head).map_err(|e| fail(Reason::Io(e)))?;
+    reader.by_ref().take(DETECTION_BYTES).read_to_end(&mut head).map_err(|e| fail(Reason::Io(e)))?;
     let is_text = !head.iter().any(|&b| is_control(b));
     let says_solid = starts_with_solid(&head);
     if is_text && !says_solid && !head.is_empty() {
@@ -54,7 +54,7 @@ pub fn read_stl(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
     }
 }
 
-/// A byte that no text has; the end mark of old systems (0x1a) may be there.
+/// Returns whether a byte does not occur in text. The end mark of old systems (0x1a) does.
 fn is_control(byte: u8) -> bool {
     byte < b' ' && !is_space(byte) && byte != 0x1a
 }
@@ -66,22 +66,23 @@ fn starts_with_solid(head: &[u8]) -> bool {
     token.len() >= 5 && token[..5].eq_ignore_ascii_case(b"solid") && token.get(5).is_none_or(|&b| is_space(b))
 }
 
-/// Facets with merged vertices.
+/// Builds the scene of an STL file and merges equal vertices.
 #[derive(Default)]
 struct Facets {
     builder: SceneBuilder,
     vertices: HashTable<u32>,
     hasher: RandomState,
-    /// How many there are, and the vertices of the last.
+    /// The number of facets so far.
     count: usize,
+    /// The vertices of the current facet.
     corners: Vec<u32>,
 }
 
 impl Facets {
-    /// Adds a corner, which is finite, to the facet at hand.
+    /// Adds a corner, which has to be finite, to the current facet.
     fn corner(&mut self, corner: [f64; 3]) -> Result<(), Reason> {
         let corner = Point3::from(corner);
-        // Adding zero turns -0 into 0, which is equal.
+        // The sum of -0 and 0 is 0, so equal coordinates have equal hashes.
         let hash = |p: &Point3<f64>| self.hasher.hash_one([p.x, p.y, p.z].map(|x| (x + 0.0).to_bits()));
         let positions = self.builder.positions();
         let equal = |&vertex: &u32| positions[vertex as usize] == corner;
@@ -134,7 +135,7 @@ impl<R: BufRead> Text<R> {
                 self.tokens.rest_of_line();
                 is_open = false;
             } else if !is_open && token == b"\x1a" {
-                // The end mark of old systems.
+                // The end mark of old systems is ignored.
             } else {
                 let expected = if is_open { "'facet' or 'endsolid'" } else { "'solid'" };
                 return Err(Reason::UnexpectedWord { text: quote(token), expected });
@@ -142,9 +143,9 @@ impl<R: BufRead> Text<R> {
         }
     }
 
-    /// Behind the word `facet`.
+    /// Reads a facet after the word `facet`.
     fn facet(&mut self) -> Result<(), Reason> {
-        // `normal` and three numbers, or what was written for numbers.
+        // The word `normal` and three numbers are skipped. Some writers have other words in place of the numbers.
         for _ in 0..4 {
             if is(self.tokens.next()?, "outer") {
                 return self.corners();
@@ -154,7 +155,7 @@ impl<R: BufRead> Text<R> {
         self.corners()
     }
 
-    /// Behind the word `outer`.
+    /// Reads the corners of a facet after the word `outer`.
     fn corners(&mut self) -> Result<(), Reason> {
         self.expect("loop", "'loop'")?;
         loop {
@@ -191,7 +192,7 @@ fn read_binary(bytes: &mut ByteReader<impl BufRead>) -> Result<Scene, Reason> {
     let mut facets = Facets::default();
     let mut with_attribute = 0;
     for _ in 0..count {
-        // The normal, three vertices, an attribute.
+        // A facet has a normal, three vertices and an attribute of two bytes.
         let facet: [u8; 50] = bytes.array()?;
         for corner in facet[12..48].chunks_exact(12) {
             let mut position = [0.0; 3];
@@ -206,7 +207,7 @@ fn read_binary(bytes: &mut ByteReader<impl BufRead>) -> Result<Scene, Reason> {
         facets.end_facet()?;
         with_attribute += u64::from(facet[48..] != [0, 0]);
     }
-    let rest = bytes.rest()?;
+    let rest = bytes.skip_rest()?;
     facets.builder.skipped.add_plural(with_attribute, "facets with attribute bytes");
     facets.builder.skipped.add_plural(rest, "bytes after the last facet");
     Ok(facets.builder.finish())

@@ -1,4 +1,4 @@
-//! The numbers behind the header of a PLY file, in any of its encodings.
+//! The numbers after the header of a PLY file, in any encoding.
 
 use super::header::{Encoding, Header, Layout};
 use crate::bytes::{ByteReader, Scalar};
@@ -6,14 +6,14 @@ use crate::text::{LineReader, Tokenizer, parse_integer, parse_number, quote};
 use crate::{FileLocation, ReadError, Reason};
 use std::io::BufRead;
 
-/// Hands out one number after the other.
+/// Reads one number of a PLY file after the other.
 pub(super) struct Data<'n, R> {
     file: &'n str,
     source: Source<R>,
 }
 
 enum Source<R> {
-    /// Not every writer keeps an element on its line.
+    /// Numbers of text are read as a stream of tokens, because some writers spread an element over several lines.
     Text(Tokenizer<R>),
     Binary {
         bytes: ByteReader<R>,
@@ -22,7 +22,7 @@ enum Source<R> {
 }
 
 impl<'n, R: BufRead> Data<'n, R> {
-    /// `reader` stands behind `header`.
+    /// `reader` is positioned after `header`.
     pub(super) fn new(reader: R, header: &Header, file: &'n str) -> Self {
         let source = match header.encoding {
             Encoding::Ascii => Source::Text(Tokenizer::new(LineReader::new(reader, header.lines))),
@@ -33,7 +33,7 @@ impl<'n, R: BufRead> Data<'n, R> {
         Self { file, source }
     }
 
-    /// Where the number stands that was read last.
+    /// Returns the location of the number that was read last.
     pub(super) fn location(&self) -> FileLocation {
         match &self.source {
             Source::Text(tokens) => FileLocation::Line(tokens.line()),
@@ -41,18 +41,18 @@ impl<'n, R: BufRead> Data<'n, R> {
         }
     }
 
-    /// The name of the file.
+    /// Returns the name of the file.
     pub(super) fn file(&self) -> &'n str {
         self.file
     }
 
-    /// The error that `reason` makes at the number that was read last.
+    /// Returns an error for this reason, located at the number that was read last.
     pub(super) fn error(&self, reason: Reason) -> ReadError {
         ReadError::new(self.file, self.location(), reason)
     }
 
-    /// Checks that nothing follows an element on its line of a text. Otherwise the header declares fewer numbers than
-    /// there are, and what follows would be read as something that it is not.
+    /// Checks that nothing follows an element on its line of a text. Otherwise the header declares too few numbers, and the
+    /// rest of the line would be read as the next element.
     pub(super) fn end_element(&mut self) -> Result<(), ReadError> {
         if let Source::Text(tokens) = &mut self.source
             && let Some(token) = tokens.next_on_line()
@@ -63,12 +63,12 @@ impl<'n, R: BufRead> Data<'n, R> {
         Ok(())
     }
 
-    /// A coordinate, finite or not.
+    /// Reads a coordinate, which need not be finite.
     pub(super) fn coordinate(&mut self, scalar: Scalar) -> Result<f64, ReadError> {
         let value = match &mut self.source {
             Source::Text(tokens) => tokens.next().and_then(|token| {
                 if scalar.is_integer() {
-                    parse_integer(token)?; // refuses what is a number, but no integer
+                    parse_integer(token)?; // numbers that are not integers are an error
                 }
                 parse_number(token)
             }),
@@ -77,7 +77,7 @@ impl<'n, R: BufRead> Data<'n, R> {
         value.map_err(|reason| self.error(reason))
     }
 
-    /// An integer; `scalar` is of an integer type.
+    /// Reads an integer. `scalar` has to be an integer type.
     #[allow(clippy::cast_possible_truncation, reason = "integers of up to 32 bits are exact in f64")]
     pub(super) fn integer(&mut self, scalar: Scalar) -> Result<i64, ReadError> {
         let value = match &mut self.source {
@@ -87,13 +87,13 @@ impl<'n, R: BufRead> Data<'n, R> {
         value.map_err(|reason| self.error(reason))
     }
 
-    /// The length of a list.
+    /// Reads the length of a list.
     pub(super) fn count(&mut self, scalar: Scalar) -> Result<u64, ReadError> {
         let count = self.integer(scalar)?;
         u64::try_from(count).map_err(|_| self.error(Reason::BadListCount { count }))
     }
 
-    /// Passes over a property.
+    /// Skips a property.
     pub(super) fn skip(&mut self, layout: Layout) -> Result<(), ReadError> {
         let (numbers, scalar) = match layout {
             Layout::Scalar(scalar) => (1, scalar),
@@ -101,16 +101,16 @@ impl<'n, R: BufRead> Data<'n, R> {
         };
         let skipped = match &mut self.source {
             Source::Text(tokens) => (0..numbers).try_for_each(|_| tokens.next().map(|_| ())),
-            // No overflow: the longest list of a binary file has 2^32 - 1 items of 8 bytes.
+            // The product does not overflow, because the longest list of a binary file has 2^32 - 1 items of 8 bytes.
             Source::Binary { bytes, .. } => bytes.skip(numbers * scalar.size() as u64),
         };
         skipped.map_err(|reason| self.error(reason))
     }
 
-    /// Reads to the end of the file; how many bytes (binary) or words (text) there are, and what they are called.
+    /// Skips the rest of the file. Returns its number of bytes (binary) or words (text), and their description.
     pub(super) fn rest(mut self) -> Result<(u64, &'static str), ReadError> {
         let rest = match &mut self.source {
-            Source::Binary { bytes, .. } => bytes.rest().map(|rest| (rest, "bytes after the last element")),
+            Source::Binary { bytes, .. } => bytes.skip_rest().map(|rest| (rest, "bytes after the last element")),
             Source::Text(tokens) => {
                 let mut rest = 0;
                 loop {

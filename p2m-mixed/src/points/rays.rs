@@ -1,4 +1,4 @@
-//! Rays to ask about.
+//! Readers of rays.
 
 use super::{Row, read};
 use crate::scene::open;
@@ -44,14 +44,14 @@ impl Row<6> for Ray {
 /// again, in each of its formats.
 ///
 /// # Errors
-/// As [`read_points`](crate::read_points), and [`Reason::Ray`] for a direction that is zero.
+/// The errors are those of [`read_points`](crate::read_points), and [`Reason::Ray`] for a direction that is zero.
 pub fn read_rays(path: &Path) -> Result<Vec<Ray>, ReadError> {
     let format = PointFormat::from_path(path)?;
     let name = path.display().to_string();
     read_rays_from(open(path, &name)?, format, &name)
 }
 
-/// Reads rays from whatever can be read, such as the standard input; `name` is for messages.
+/// Reads rays from any reader, such as the standard input. `name` is the name of the file in messages.
 ///
 /// ```
 /// use p2m_mixed::{PointFormat, read_rays_from};
@@ -62,7 +62,7 @@ pub fn read_rays(path: &Path) -> Result<Vec<Ray>, ReadError> {
 /// ```
 ///
 /// # Errors
-/// As [`read_rays`].
+/// The errors are those of [`read_rays`].
 pub fn read_rays_from(reader: impl BufRead, format: PointFormat, name: &str) -> Result<Vec<Ray>, ReadError> {
     read(reader, format, name)
 }
