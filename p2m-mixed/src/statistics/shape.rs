@@ -130,7 +130,7 @@ fn exponent_of(x: f64) -> i32 {
     exponent + 63 - i32::try_from(mantissa.leading_zeros()).unwrap_or(0)
 }
 
-/// Returns x * 2^e, which is exact unless the result is subnormal.
+/// Returns x * 2^e, which is exact unless the result is subnormal or infinite.
 fn times_power_of_two(mut x: f64, mut e: i32) -> f64 {
     while e > 1000 {
         x *= power_of_two(1000);
