@@ -10,8 +10,8 @@ impl Scene {
     ///
     /// Blanks around the name are removed. If nothing is left, the part has no name.
     ///
-    /// [`Transform::apply`](crate::generate::Transform::apply) turns, scales or moves a part before it is added. Coordinates
-    /// are transformed once, so queries are not slowed down.
+    /// [`Transform::apply`](crate::generate::Transform::apply) turns, scales or moves a part before it is added.
+    /// Coordinates are transformed once, so queries are not slowed down.
     ///
     /// ```
     /// use nalgebra::Point3;
@@ -32,8 +32,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// [`BuildError::TooMany`] for more primitives than ids, or more vertices than u32 can number. After an error the scene
-    /// is unchanged.
+    /// [`BuildError::TooMany`] for more primitives than ids, or more vertices than u32 can number. After an error the
+    /// scene is unchanged.
     ///
     /// # Complexity
     /// O(1) for each vertex and primitive of the part. A part without primitives does not change the scene.
@@ -44,7 +44,8 @@ impl Scene {
             return Ok(start..end);
         }
         let first = self.soup.positions().len();
-        // Vertices are numbered by u32, and a scene with more of them returns the same error as one with too many primitives.
+        // Vertices are numbered by u32, and a scene with more of them returns the same error as one with too many
+        // primitives.
         let last = u32::try_from(first + part.positions().len());
         let (Ok(first), Ok(_), true) = (u32::try_from(first), last, end <= PrimitiveId::MAX_COUNT) else {
             return Err(BuildError::TooMany { len: end });

@@ -7,8 +7,8 @@ use crate::text::{quote, trim};
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveSet, Soup};
 
-/// The largest number of kinds of skipped records with a count of their own. Further kinds, as a file of noise has them,
-/// share one count.
+/// The largest number of kinds of skipped records with a count of their own. Further kinds, as a file of noise has
+/// them, share one count.
 const MAX_SKIPPED_KINDS: usize = 64;
 
 /// Counts the records of a file that a reader skips, by kind.

@@ -24,8 +24,8 @@ pub struct Camera {
 impl Camera {
     /// Makes a camera that sees the whole scene in a picture of this width in pixels.
     ///
-    /// `towards` is the direction from the centre of the scene to the eye. Returns `None` if it is vertical, zero or not
-    /// finite.
+    /// `towards` is the direction from the centre of the scene to the eye. Returns `None` if it is vertical, zero or
+    /// not finite.
     #[must_use]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
     pub fn before(scene: &Soup<f64>, towards: &Vector3<f64>, width: u32) -> Option<Self> {
@@ -77,15 +77,15 @@ impl Camera {
         &self.axes
     }
 
-    /// Returns the depth of a point behind the centre of the scene, in diagonals. Points of the scene have depths from -0.5
-    /// to 0.5.
+    /// Returns the depth of a point behind the centre of the scene, in diagonals. Points of the scene have depths from
+    /// -0.5 to 0.5.
     #[must_use]
     pub fn depth(&self, point: &Point3<f64>) -> f64 {
         (self.eye - point).dot(&self.axes[2]) / self.diagonal - EYE_DISTANCE_DIAGONALS
     }
 
-    /// Returns the ray from the eye through a point of the picture, which is given in pixels from the upper left corner.
-    /// The ray has a radius of 0.75 pixels.
+    /// Returns the ray from the eye through a point of the picture, which is given in pixels from the upper left
+    /// corner. The ray has a radius of 0.75 pixels.
     ///
     /// # Panics
     /// If the extent of the scene exceeds the range of f64.

@@ -109,8 +109,8 @@ pub enum Reason {
         /// The text in the file.
         text: String,
     },
-    /// A primitive has a vertex with a coordinate that is NaN, infinite, or too large for double precision. The location
-    /// is that of the vertex in a PLY file, and that of the primitive in other files.
+    /// A primitive has a vertex with a coordinate that is NaN, infinite, or too large for double precision. The
+    /// location is that of the vertex in a PLY file, and that of the primitive in other files.
     #[error("vertex {index} is part of a primitive, but has a coordinate that is not finite")]
     NonFiniteVertex {
         /// The number of the vertex, which OBJ counts from 1, PLY and OFF from 0.
@@ -151,7 +151,8 @@ pub enum Reason {
     /// A vertex index of an OBJ file is 0, but indices count from 1, or backwards from -1.
     #[error("vertex index 0, but vertices are numbered from 1")]
     IndexZero,
-    /// An OBJ file does not have the vertex with this index before this line. Indices count from 1, or backwards from -1.
+    /// An OBJ file does not have the vertex with this index before this line. Indices count from 1, or backwards from
+    /// -1.
     #[error("vertex index {index} is out of range, the file has {count} vertices so far")]
     IndexOutOfRange {
         /// The index in the file.

@@ -114,7 +114,8 @@ formats! {
         /// This is the object file format of Geomview, see [`read_off`](crate::read_off) and
         /// [`write_off`](crate::write_off).
         Off = "off",
-        /// Files of saved indexes can have a scene, see [`read_p2m`](crate::read_p2m) and [`write_p2m`](crate::write_p2m).
+        /// Files of saved indexes can have a scene, see [`read_p2m`](crate::read_p2m) and
+        /// [`write_p2m`](crate::write_p2m).
         P2m = "p2m",
     }
 }

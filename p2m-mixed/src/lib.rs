@@ -1,8 +1,8 @@
 //! Scenes of triangles, segments and points, with their readers, writers, generators and statistics.
 //!
 //! - **Scenes**: [`read_scene`] reads OBJ, PLY, STL and OFF files into a [`Scene`], and [`write_scene`] writes them.
-//!   [`Scene::add`] and similar methods build a scene from named parts. [`Scene::skipped`] lists the data of a file that
-//!   the reader left out.
+//!   [`Scene::add`] and similar methods build a scene from named parts. [`Scene::skipped`] lists the data of a file
+//!   that the reader left out.
 //! - **Queries**: [`read_points`] and [`read_rays`] read query points and rays from XYZ, CSV, NPY and PLY files.
 //! - **Answers**: [`AnswerWriter`], [`HitWriter`] and [`NumberWriter`] write the answers to queries.
 //! - **Generators**: [`generate`] makes scenes that are the same on every platform.

@@ -17,9 +17,9 @@ use std::io::BufRead;
 /// - `l` is a polyline, whose n vertices make n - 1 segments.
 /// - `p` is a list of points.
 ///
-/// A reference to a vertex may be `a`, `a/b`, `a//c` or `a/b/c`, where `a` counts vertices from 1, or backwards from -1.
-/// It has to refer to a vertex that is defined before. All other statements, free-form curves and surfaces included, are
-/// counted in [`Scene::skipped`] by keyword.
+/// A reference to a vertex may be `a`, `a/b`, `a//c` or `a/b/c`, where `a` counts vertices from 1, or backwards from
+/// -1. It has to refer to a vertex that is defined before. All other statements, free-form curves and surfaces
+/// included, are counted in [`Scene::skipped`] by keyword.
 ///
 /// A file without `f`, `l` and `p` is a point cloud, and each of its vertices is a point. If it has statements of
 /// free-form geometry (`cstype`, `curv`, `surf`, ...), its vertices are control points, and the scene is empty.

@@ -12,8 +12,8 @@ use std::io::BufRead;
 /// Reads an OFF file. `name` is the name of the file in messages.
 ///
 /// Faces of three or more vertices are polygons of any shape, faces of two vertices are segments, and faces of one
-/// vertex are points. A file without faces is a point cloud, and each vertex is a point. [`Scene::sources`] counts faces
-/// of any number of vertices from 0.
+/// vertex are points. A file without faces is a point cloud, and each vertex is a point. [`Scene::sources`] counts
+/// faces of any number of vertices from 0.
 ///
 /// The first word is `OFF`, prefixed by any of `ST`, `C` and `N`, which announce texture coordinates, colours and
 /// normals of vertices. The word may be missing, and the counts may follow it on the same line, even without a blank.
@@ -29,10 +29,10 @@ use std::io::BufRead;
 /// and counts them in [`Scene::skipped`].
 ///
 /// # Errors
-/// [`ReadError`] with the line (text) or the offset (binary) for an invalid header, an early end, invalid numbers or too
-/// many of them on a line, indices that are out of range, primitives with a vertex that is not finite, faces without
-/// vertices or with more than [`MAX_CORNERS`], and errors of `reader`. No memory is allocated for data that the header
-/// only announces.
+/// [`ReadError`] with the line (text) or the offset (binary) for an invalid header, an early end, invalid numbers or
+/// too many of them on a line, indices that are out of range, primitives with a vertex that is not finite, faces
+/// without vertices or with more than [`MAX_CORNERS`], and errors of `reader`. No memory is allocated for data that the
+/// header only announces.
 pub fn read_off(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     let mut tokens = Tokenizer::with_comments(LineReader::new(reader, 0));
     let fail = |line, reason| ReadError::new(name, FileLocation::Line(line), reason);

@@ -184,8 +184,8 @@ pub fn value_colours(values: &[f64]) -> Vec<[u8; 3]> {
     values.iter().map(|x| shade(fraction(*x))).collect()
 }
 
-/// Writes a scene as a binary PLY file in which each primitive has the colour of its value ([`value_colours`]). Primitives
-/// share no vertices, and vertices have the value as the property `value`.
+/// Writes a scene as a binary PLY file in which each primitive has the colour of its value ([`value_colours`]).
+/// Primitives share no vertices, and vertices have the value as the property `value`.
 ///
 /// # Errors
 /// Errors of `writer`, and [`io::ErrorKind::InvalidInput`] for more than 2^31 - 1 vertices.

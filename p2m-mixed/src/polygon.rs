@@ -18,12 +18,12 @@ const CHECK_REPEATS_ABOVE_CORNERS: usize = 256;
 ///
 /// - A simple planar polygon, convex or concave, is covered exactly and without overlap, up to rounding of the
 ///   orientation of three points; on small integer coordinates there is no rounding.
-/// - A polygon that is not planar gets the triangles of its projection. They form a patch without gaps if the projection
-///   is simple.
-/// - A polygon without area becomes a triangle fan. So does a polygon that crosses itself, whose triangles do not add up
-///   to its area, because there is no correct triangulation.
-/// - A large polygon with less than half as many distinct corners as corners becomes a fan as well, because cutting ears
-///   would take cubic time.
+/// - A polygon that is not planar gets the triangles of its projection. They form a patch without gaps if the
+///   projection is simple.
+/// - A polygon without area becomes a triangle fan. So does a polygon that crosses itself, whose triangles do not add
+///   up to its area, because there is no correct triangulation.
+/// - A large polygon with less than half as many distinct corners as corners becomes a fan as well, because cutting
+///   ears would take cubic time.
 ///
 /// In every case each edge of the polygon is an edge of a triangle, so the outline is complete.
 ///
@@ -41,7 +41,8 @@ pub(crate) struct Triangulator {
 }
 
 impl Triangulator {
-    /// Triangulates the polygon with these corners, of which there are at least three. Triangles are indices of corners.
+    /// Triangulates the polygon with these corners, of which there are at least three. Triangles are indices of
+    /// corners.
     pub(crate) fn triangulate(&mut self, corners: &[Point3<f64>]) -> &[[u32; 3]] {
         let n = corners.len();
         if n == 3 || !self.project(corners) || self.fan_covers(0) {
@@ -60,11 +61,11 @@ impl Triangulator {
         &self.triangles
     }
 
-    /// Projects the corners, with the first corner at the origin and the extent near 1. Returns `false` if the polygon has
-    /// no area.
+    /// Projects the corners, with the first corner at the origin and the extent near 1. Returns `false` if the polygon
+    /// has no area.
     fn project(&mut self, corners: &[Point3<f64>]) -> bool {
-        // Scales are powers of two, so they do not round. The first one prevents the overflow of differences, the second one
-        // prevents the underflow of products of differences.
+        // Scales are powers of two, so they do not round. The first one prevents the overflow of differences, the
+        // second one prevents the underflow of products of differences.
         let scale = Scale::to_unit(corners.iter().flat_map(|p| p.iter().copied()));
         let first = scale.apply3(corners[0].coords.into());
         self.offsets.clear();
@@ -93,9 +94,9 @@ impl Triangulator {
 
     /// Returns whether the fan around corner `apex` is a triangulation.
     ///
-    /// The oriented triangles of a fan add up to the winding number of the polygon, wherever its apex is. So if all of them
-    /// have the same orientation and the polygon is simple, they cover its inside exactly once. A convex polygon passes with
-    /// any apex.
+    /// The oriented triangles of a fan add up to the winding number of the polygon, wherever its apex is. So if all of
+    /// them have the same orientation and the polygon is simple, they cover its inside exactly once. A convex polygon
+    /// passes with any apex.
     fn fan_covers(&self, apex: u32) -> bool {
         let n = self.projected.len();
         let (mut left, mut right) = (false, false);
@@ -136,8 +137,8 @@ impl Triangulator {
         self.add_missing_edges();
     }
 
-    /// Adds each edge of the polygon that no triangle has as a degenerate triangle. The ear cutter leaves out spikes and
-    /// parts of polygons that cross or touch themselves. It keeps every corner of a simple polygon.
+    /// Adds each edge of the polygon that no triangle has as a degenerate triangle. The ear cutter leaves out spikes
+    /// and parts of polygons that cross or touch themselves. It keeps every corner of a simple polygon.
     #[allow(clippy::cast_possible_truncation, reason = "at most MAX_CORNERS corners")]
     fn add_missing_edges(&mut self) {
         let edge = |a: u32, b: u32| [a.min(b), a.max(b)];
@@ -159,9 +160,9 @@ impl Triangulator {
         let n = self.projected.len();
         let outline = outline_area(&self.projected).abs();
         let inside: f64 = self.triangles.iter().map(|&t| area(&self.projected, t).abs()).sum();
-        // To first order a sum of m terms has an error of m u times the sum of their magnitudes, where u = EPSILON / 2. Terms
-        // come from coordinates of magnitude up to 2 and differences up to 4, so each term has an error below 64 u. The
-        // products of the outline are at most 8 each.
+        // To first order a sum of m terms has an error of m u times the sum of their magnitudes, where u = EPSILON / 2.
+        // Terms come from coordinates of magnitude up to 2 and differences up to 4, so each term has an error below 64
+        // u. The products of the outline are at most 8 each.
         let terms = (n + self.triangles.len()) as f64;
         let sizes = inside + 8.0 * n as f64;
         (inside - outline).abs() <= 0.5 * f64::EPSILON * terms * (sizes + 64.0)

@@ -17,8 +17,8 @@ pub struct Scene {
     /// Polygons are divided into triangles, which have consecutive ids and the winding of the polygon. Coordinates are
     /// f64; for an f32 scene make a `Soup<f32>` of the rounded positions and the elements.
     pub soup: Soup<f64>,
-    /// The source of each primitive: `sources[id]` is the number of its statement among the statements of the same kind,
-    /// counted from 0 in the order of the file.
+    /// The source of each primitive: `sources[id]` is the number of its statement among the statements of the same
+    /// kind, counted from 0 in the order of the file.
     ///
     /// - OBJ files count the statements `f` for triangles, `l` for segments and `p` for points.
     /// - PLY files count the elements `face` for triangles, `edge` for segments and `point` for points. The elements
@@ -29,8 +29,9 @@ pub struct Scene {
     pub sources: Vec<u32>,
     /// The named parts of the scene, in ascending order of ids. They do not overlap, and primitives need not be in one.
     ///
-    /// The objects of an OBJ file are its statements `o` or, if it has none, `g`. The objects of a text STL file are its
-    /// solids. Other formats and point clouds have no objects. Objects without a name or without primitives are left out.
+    /// The objects of an OBJ file are its statements `o` or, if it has none, `g`. The objects of a text STL file are
+    /// its solids. Other formats and point clouds have no objects. Objects without a name or without primitives are
+    /// left out.
     pub objects: Vec<Object>,
     /// The records that the reader left out because they are not geometry, in the order of first appearance.
     pub skipped: Vec<Skipped>,
@@ -71,9 +72,9 @@ pub(crate) fn object_of(objects: &[Object], id: PrimitiveId) -> Option<&Object> 
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Skipped {
-    /// The name of the kind: the keyword of an OBJ statement, an element or a property of a PLY file, or a plural such as
-    /// `bytes after the last element` (`words` in a text), `facets with attribute bytes`, `vertices with further numbers`,
-    /// `faces with a colour`, `vertices that are not finite` (of a point cloud).
+    /// The name of the kind: the keyword of an OBJ statement, an element or a property of a PLY file, or a plural such
+    /// as `bytes after the last element` (`words` in a text), `facets with attribute bytes`, `vertices with further
+    /// numbers`, `faces with a colour`, `vertices that are not finite` (of a point cloud).
     pub what: String,
     /// The number of records.
     pub count: u64,

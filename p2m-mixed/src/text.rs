@@ -189,8 +189,8 @@ impl<R: BufRead> LineReader<R> {
 
     /// Reads the next statement of a text in which a backslash at the end of a line continues the statement.
     ///
-    /// The lines of a statement are joined by a newline. A backslash does not continue a comment, because a comment may end
-    /// with a path name that ends in a backslash.
+    /// The lines of a statement are joined by a newline. A backslash does not continue a comment, because a comment may
+    /// end with a path name that ends in a backslash.
     pub(crate) fn read_continued(&mut self) -> std::io::Result<bool> {
         if !self.read()? {
             return Ok(false);
@@ -207,8 +207,8 @@ impl<R: BufRead> LineReader<R> {
         Ok(true)
     }
 
-    /// Skips the second byte of a line end. This is done before the next line is read rather than after `\r`, so that a line
-    /// of an interactive input can be used before the next one arrives.
+    /// Skips the second byte of a line end. This is done before the next line is read rather than after `\r`, so that a
+    /// line of an interactive input can be used before the next one arrives.
     fn end_line(&mut self) -> io::Result<()> {
         if std::mem::take(&mut self.after_return) && fill_buffer(&mut self.reader)?.first() == Some(&b'\n') {
             self.reader.consume(1);

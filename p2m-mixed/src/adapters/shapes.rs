@@ -2,14 +2,14 @@
 
 use p2m_core::BuildError;
 
-/// Why a shape is not added to a scene.
+/// Reasons why a shape cannot be added to a scene.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShapeError {
-    /// It is round, endless or of a program's own kind, so it does not consist of triangles and segments.
+    /// The shape is round, infinite or custom, so it does not consist of triangles and segments.
     #[error("a shape of type {0} does not consist of triangles and segments; add a mesh of it, as fine as you need")]
     NotPolygonal(String),
-    /// It does not fit.
+    /// The scene would not be valid.
     #[error(transparent)]
     Build(#[from] BuildError),
 }

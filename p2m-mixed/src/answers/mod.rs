@@ -20,9 +20,9 @@ use std::io::{self, Write};
 /// [`read_points`](crate::read_points) reads them.
 ///
 /// # CSV
-/// The columns `qx,qy,qz,x,y,z,distance,primitive,feature` are the query, the closest point, its distance, the id of the
-/// primitive, and the feature of the primitive that has the point, as [`Feature`] displays it. Numbers have the fewest
-/// digits that read back as the same number. The last six columns are empty if there is no answer. With
+/// The columns `qx,qy,qz,x,y,z,distance,primitive,feature` are the query, the closest point, its distance, the id of
+/// the primitive, and the feature of the primitive that has the point, as [`Feature`] displays it. Numbers have the
+/// fewest digits that read back as the same number. The last six columns are empty if there is no answer. With
 /// [objects](Self::with_objects) there is a column `object` with the name of the object that the primitive belongs to,
 /// which is empty if it belongs to none.
 ///
@@ -88,8 +88,8 @@ impl<W: Write> AnswerWriter<W> {
 
     /// Starts a file of `count` answers with the names of objects.
     ///
-    /// The objects are [`Scene::objects`](crate::Scene::objects). A CSV table has a column of names if there are any; arrays
-    /// and point clouds have no names.
+    /// The objects are [`Scene::objects`](crate::Scene::objects). A CSV table has a column of names if there are any;
+    /// arrays and point clouds have no names.
     ///
     /// # Errors
     /// Errors of `writer`.
@@ -163,8 +163,8 @@ impl<W: Write> AnswerWriter<W> {
     }
 }
 
-/// Writes the columns of an answer. `{:?}` writes the shortest number that reads back the same, with an exponent if it is
-/// far from 1.
+/// Writes the columns of an answer. `{:?}` writes the shortest number that reads back the same, with an exponent if it
+/// is far from 1.
 fn row(out: &mut dyn Write, query: &Point3<f64>, answer: Option<&Closest<f64>>) -> io::Result<()> {
     write!(out, "{:?},{:?},{:?},", query.x, query.y, query.z)?;
     match answer {

@@ -12,15 +12,15 @@ use std::io::{self, Write};
 /// one ray for each record.
 ///
 /// # CSV
-/// The columns `ray,ox,oy,oz,dx,dy,dz,parameter,x,y,z,primitive,side,w0,w1,w2` are the number of the ray, its origin and
-/// its direction, the parameter and the point of the hit, the id of the primitive, the side that is hit (`front`, `back`
-/// or `along`, see [`Side`]), and the weights of its vertices. Numbers have the fewest digits that read back as the same
-/// number. The last nine columns are empty if there is no hit. With [objects](Self::with_objects) there is a column
-/// `object` with the name of the object that is hit, which is empty if the primitive belongs to none.
+/// The columns `ray,ox,oy,oz,dx,dy,dz,parameter,x,y,z,primitive,side,w0,w1,w2` are the number of the ray, its origin
+/// and its direction, the parameter and the point of the hit, the id of the primitive, the side that is hit (`front`,
+/// `back` or `along`, see [`Side`]), and the weights of its vertices. Numbers have the fewest digits that read back as
+/// the same number. The last nine columns are empty if there is no hit. With [objects](Self::with_objects) there is a
+/// column `object` with the name of the object that is hit, which is empty if the primitive belongs to none.
 ///
 /// # NPY
-/// The file is a structured array of shape `(count,)`, little-endian and without gaps. A record has 120 bytes, and every
-/// number is at a multiple of its size:
+/// The file is a structured array of shape `(count,)`, little-endian and without gaps. A record has 120 bytes, and
+/// every number is at a multiple of its size:
 ///
 /// | field | bytes | type | without a hit |
 /// |---|---|---|---|
@@ -35,8 +35,8 @@ use std::io::{self, Write};
 ///
 /// # PLY
 /// The file is a point cloud of the origins with the directions as normals, binary and little-endian. Each `vertex` has
-/// the properties `double` `x`, `y`, `z`, `nx`, `ny`, `nz`, `ray`, `parameter`, `hx`, `hy`, `hz` (the point of the hit),
-/// `w0`, `w1`, `w2`, `int` `primitive` and `side`, as above. Viewers can colour it by parameter.
+/// the properties `double` `x`, `y`, `z`, `nx`, `ny`, `nz`, `ray`, `parameter`, `hx`, `hy`, `hz` (the point of the
+/// hit), `w0`, `w1`, `w2`, `int` `primitive` and `side`, as above. Viewers can colour it by parameter.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
@@ -103,8 +103,8 @@ impl<W: Write> HitWriter<W> {
 
     /// Starts a file of `count` records with the names of objects.
     ///
-    /// The objects are [`Scene::objects`](crate::Scene::objects), and a CSV table has a column of their names. Without a
-    /// count, NPY and PLY files are kept in memory until they are finished.
+    /// The objects are [`Scene::objects`](crate::Scene::objects), and a CSV table has a column of their names. Without
+    /// a count, NPY and PLY files are kept in memory until they are finished.
     ///
     /// # Errors
     /// Errors of `writer`.

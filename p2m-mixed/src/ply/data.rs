@@ -51,8 +51,8 @@ impl<'n, R: BufRead> Data<'n, R> {
         ReadError::new(self.file, self.location(), reason)
     }
 
-    /// Checks that nothing follows an element on its line of a text. Otherwise the header declares too few numbers, and the
-    /// rest of the line would be read as the next element.
+    /// Checks that nothing follows an element on its line of a text. Otherwise the header declares too few numbers, and
+    /// the rest of the line would be read as the next element.
     pub(super) fn end_element(&mut self) -> Result<(), ReadError> {
         if let Source::Text(tokens) = &mut self.source
             && let Some(token) = tokens.next_on_line()

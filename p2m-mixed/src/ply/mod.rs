@@ -24,20 +24,20 @@ const ID_PROPERTY: &str = "p2m_id";
 ///
 /// - `vertex` has `x`, `y` and `z` of any type.
 /// - `face` has a list `vertex_indices` or `vertex_index`.
-/// - `tristrips` has such a list, in which -1 starts a new strip. Every other triangle is reversed, so that all have the
-///   winding of the first.
+/// - `tristrips` has such a list, in which -1 starts a new strip. Every other triangle is reversed, so that all have
+///   the winding of the first.
 /// - `edge` has `vertex1` and `vertex2`.
 /// - `point` has `vertex_index` of an integer type. [`write_ply`](crate::write_ply) writes such elements.
 ///
 /// Elements and properties may come in any order. Other elements and properties, and anything after the last element,
 /// are counted in [`Scene::skipped`].
 ///
-/// A file without faces, strips and edges, and without an element `point` of that form, is a point cloud, and each vertex
-/// is a point. If another element has a list of vertices (named `vertex_ind..`), such as polygons or tetrahedra under
-/// another name, that element is skipped, and the scene is empty.
+/// A file without faces, strips and edges, and without an element `point` of that form, is a point cloud, and each
+/// vertex is a point. If another element has a list of vertices (named `vertex_ind..`), such as polygons or tetrahedra
+/// under another name, that element is skipped, and the scene is empty.
 ///
-/// Primitives are numbered in the order of the file. If faces, edges and points have the property `p2m_id`, it is the id
-/// of the primitive, and every face has to have three vertices.
+/// Primitives are numbered in the order of the file. If faces, edges and points have the property `p2m_id`, it is the
+/// id of the primitive, and every face has to have three vertices.
 ///
 /// Coordinates that are not finite are allowed if no primitive uses the vertex. A point cloud leaves such vertices out
 /// and counts them in [`Scene::skipped`].
@@ -49,9 +49,9 @@ const ID_PROPERTY: &str = "p2m_id";
 /// # Errors
 /// [`ReadError`] with the line (header, text) or the offset of the number in bytes (binary) for an invalid header, an
 /// early end, invalid numbers or too many of them on a line, indices that are out of range, vertices of primitives that
-/// are not finite (with the location of the vertex), ids that are not a permutation of 0, 1, 2, ..., faces of fewer than
-/// three vertices or more than [`MAX_CORNERS`](crate::MAX_CORNERS), and errors of `reader`. No memory is allocated for
-/// data that the header only announces.
+/// are not finite (with the location of the vertex), ids that are not a permutation of 0, 1, 2, ..., faces of fewer
+/// than three vertices or more than [`MAX_CORNERS`](crate::MAX_CORNERS), and errors of `reader`. No memory is allocated
+/// for data that the header only announces.
 pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     let header = read_header(&mut reader, name)?;
     let fail = |reason| ReadError::new(name, FileLocation::File, reason);

@@ -22,8 +22,8 @@ use std::path::Path;
 /// with `#` or `//` are ignored. A first line with the number of points, as in files of chemistry, is not supported.
 ///
 /// # CSV
-/// Columns are separated by semicolons if the first line has one, otherwise by commas. Fields may be quoted, but may not
-/// extend over several lines. Blank lines and lines that start with `#` are ignored.
+/// Columns are separated by semicolons if the first line has one, otherwise by commas. Fields may be quoted, but may
+/// not extend over several lines. Blank lines and lines that start with `#` are ignored.
 ///
 /// If the first record has columns named `qx`, `qy`, `qz`, or else `x`, `y`, `z`, or else `Points:0`, `Points:1`,
 /// `Points:2`, these are used. The case of names is ignored, and so is text after a blank or a bracket, as in `X [m]`.
@@ -32,8 +32,8 @@ use std::path::Path;
 ///
 /// # NPY
 /// An array of NumPy has the shape `(n, 3)`, C or Fortran order, and integers or floats of 4 or 8 bytes in either byte
-/// order. A structured array has the shape `(n,)`, and a field `query` of shape `(3,)` or else the fields `x`, `y`, `z`.
-/// Integers of 64 bits are rounded to double precision. Nothing may follow the array.
+/// order. A structured array has the shape `(n,)`, and a field `query` of shape `(3,)` or else the fields `x`, `y`,
+/// `z`. Integers of 64 bits are rounded to double precision. Nothing may follow the array.
 ///
 /// # PLY
 /// The vertices are the points, whatever the primitives are.
@@ -42,9 +42,9 @@ use std::path::Path;
 /// A file that an [`AnswerWriter`](crate::AnswerWriter) wrote can be read as its queries, in each of its formats.
 ///
 /// # Errors
-/// [`ReadError`] with the location for numbers that are invalid or not finite, rows of fewer than three numbers, columns
-/// or fields whose names do not identify the coordinates, arrays of other shapes and types, an early end, and errors of
-/// the file. No memory is allocated for points that the header only announces.
+/// [`ReadError`] with the location for numbers that are invalid or not finite, rows of fewer than three numbers,
+/// columns or fields whose names do not identify the coordinates, arrays of other shapes and types, an early end, and
+/// errors of the file. No memory is allocated for points that the header only announces.
 pub fn read_points(path: &Path) -> Result<Vec<Point3<f64>>, ReadError> {
     let format = PointFormat::from_path(path)?;
     let name = path.display().to_string();

@@ -37,8 +37,8 @@ impl Row<6> for Ray {
 /// The formats are those of [`read_points`](crate::read_points) with six numbers for each ray: the origin, and then the
 /// direction, which may have any length but zero.
 ///
-/// - The columns of a CSV file are named `ox`, `oy`, `oz`, `dx`, `dy`, `dz`, or else `x`, `y`, `z`, `dx`, `dy`, `dz`, or
-///   else `x`, `y`, `z`, `nx`, `ny`, `nz`, or else `Points:0` to `Points:2` and `Normals:0` to `Normals:2`.
+/// - The columns of a CSV file are named `ox`, `oy`, `oz`, `dx`, `dy`, `dz`, or else `x`, `y`, `z`, `dx`, `dy`, `dz`,
+///   or else `x`, `y`, `z`, `nx`, `ny`, `nz`, or else `Points:0` to `Points:2` and `Normals:0` to `Normals:2`.
 /// - An array has the shape `(n, 6)`, or the fields `origin` and `direction` of shape `(3,)`, or else the fields `x`,
 ///   `y`, `z`, `dx`, `dy`, `dz`.
 /// - The vertices of a PLY file are the origins, and their normals `nx`, `ny`, `nz` are the directions.

@@ -2,8 +2,8 @@
 //!
 //! [`Statistics`] are numbers, and [`Statistics::notes`] are sentences that follow from them. Decisions are exact: a
 //! triangle has zero area if and only if its corners are on a line, and positions are equal if and only if their
-//! coordinates are. Lengths and areas are accurate to 2^-20 at every scale. Those beyond the range of f64 are rounded to
-//! the nearest positive number.
+//! coordinates are. Lengths and areas are accurate to 2^-20 at every scale. Those beyond the range of f64 are rounded
+//! to the nearest positive number.
 
 pub mod figure;
 mod notes;
@@ -19,8 +19,8 @@ use p2m_core::kernel::SLIVER_SINE;
 use p2m_core::{Aabb, Element, PrimitiveSet, Soup};
 use shape::{TriangleMeasures, length};
 
-/// The aspect above which triangles are [thin](Shapes::thin). An equilateral triangle has the aspect 1.15, half a square
-/// has 2, and a [sliver](Shapes::slivers) more than 1024.
+/// The aspect above which triangles are [thin](Shapes::thin). An equilateral triangle has the aspect 1.15, half a
+/// square has 2, and a [sliver](Shapes::slivers) more than 1024.
 pub const THIN_ASPECT: f64 = 10.0;
 
 /// The statistics of a scene.
@@ -44,8 +44,8 @@ pub struct Statistics {
     pub positions: Positions,
     /// The bounding box of the primitives, or `None` for an empty scene.
     pub bounds: Option<Aabb<f64>>,
-    /// The number of primitives that duplicate another one, which has the same corners by coordinates, in any order. One of
-    /// several equal primitives does not count.
+    /// The number of primitives that duplicate another one, which has the same corners by coordinates, in any order.
+    /// One of several equal primitives does not count.
     pub duplicates: Counts,
     /// The edges of the triangles, and how triangles share them.
     pub edges: Edges,
@@ -140,8 +140,8 @@ pub struct Shapes {
     pub zero_area: u64,
     /// The number of segments whose ends are equal.
     pub zero_length: u64,
-    /// The number of triangles with an area and an aspect above 1024, the inverse of [`SLIVER_SINE`]. Queries measure them
-    /// in double-double arithmetic.
+    /// The number of triangles with an area and an aspect above 1024, the inverse of [`SLIVER_SINE`]. Queries measure
+    /// them in double-double arithmetic.
     pub slivers: u64,
     /// The number of triangles with an area and an aspect above [`THIN_ASPECT`], slivers included.
     pub thin: u64,

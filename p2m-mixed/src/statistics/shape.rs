@@ -1,8 +1,8 @@
 //! Lengths, areas and shapes of primitives at any scale, and the exact decision whether a triangle has an area.
 //!
 //! Floating-point arithmetic is used where it is accurate to 2^-20, scaled arithmetic where squares would leave the
-//! range, and exact integers where a triangle is so flat that its area would be mostly rounding error. Results beyond the
-//! range of f64 are rounded to the nearest number.
+//! range, and exact integers where a triangle is so flat that its area would be mostly rounding error. Results beyond
+//! the range of f64 are rounded to the nearest number.
 
 use crate::vector::{V3, cross, largest, norm_squared, sub};
 use dashu_int::{IBig, ops::BitTest};

@@ -10,8 +10,8 @@ use std::io::Write;
 /// The positions come first, and then the primitives in the order of their ids, one statement each. An `o` starts each
 /// object, and an `o` without a name ends an object that no other object follows.
 ///
-/// Numbers have the fewest digits that read back as the same number. [`read_obj`](crate::read_obj) returns the same soup
-/// and objects, with these exceptions:
+/// Numbers have the fewest digits that read back as the same number. [`read_obj`](crate::read_obj) returns the same
+/// soup and objects, with these exceptions:
 ///
 /// - The positions of a scene without primitives are not written, because they would be read as a point cloud.
 /// - A position that is not finite, which no primitive uses, is written as the origin.

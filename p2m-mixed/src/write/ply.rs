@@ -15,9 +15,9 @@ use std::io::{self, Write};
 /// - If the ids of each kind are consecutive, the elements come in the order of the ids.
 /// - If kinds alternate, each primitive has a property `p2m_id` with its id, which [`read_ply`](crate::read_ply) reads
 ///   and other programs ignore.
-/// - A scene whose primitives are all of its positions in order is written as vertices alone, which is a point cloud for
-///   every program. Otherwise points are an element `point` with the property `vertex_index`. A scene with positions but
-///   no primitives has this element without members.
+/// - A scene whose primitives are all of its positions in order is written as vertices alone, which is a point cloud
+///   for every program. Otherwise points are an element `point` with the property `vertex_index`. A scene with
+///   positions but no primitives has this element without members.
 ///
 /// [`read_ply`](crate::read_ply) returns the same soup, bit by bit. Objects are lost.
 ///

@@ -14,9 +14,9 @@ const HEADER: &[u8; 80] = b"binary STL                                          
 /// Triangles come in the order of their ids, with unit normals. The normal of a triangle without area is 0. Coordinates
 /// are rounded to single precision, and [`stl_rounding`] computes by how much.
 ///
-/// Vertices are not shared in the file. [`read_stl`](crate::read_stl) returns the same soup if no coordinate is rounded,
-/// no two positions are equal, and the triangles use all positions in ascending order. Otherwise positions get other
-/// numbers, equal positions are merged, and unused positions are lost. Ids are kept, and objects are lost.
+/// Vertices are not shared in the file. [`read_stl`](crate::read_stl) returns the same soup if no coordinate is
+/// rounded, no two positions are equal, and the triangles use all positions in ascending order. Otherwise positions get
+/// other numbers, equal positions are merged, and unused positions are lost. Ids are kept, and objects are lost.
 ///
 /// # Errors
 /// [`WriteError`] for segments, points and coordinates that are infinite in single precision, before anything is

@@ -38,7 +38,8 @@ adapters! {
     rstar: RstarIndex,
 }
 
-/// Everything that consists of triangles and segments, in both precisions; what a shape of parry says of itself is the judge.
+/// Everything that consists of triangles and segments, in both precisions; what a shape of parry says of itself is the
+/// judge.
 macro_rules! shapes {
     ($($name:ident: $parry:ident, $add:ident, $tolerance:literal);+ $(;)?) => {
         $(mod $name {
