@@ -12,8 +12,8 @@ pub(crate) struct Layers<'a> {
 }
 
 impl Layers<'_> {
-    /// Sets the values of a block of points; `value` computes one from the indices of its point and is called with x
-    /// running fastest.
+    /// Sets the values of a block of points; `value` computes one from the indices of its point and is called with
+    /// x running fastest.
     pub(crate) fn fill(&mut self, first: [usize; 3], counts: [usize; 3], mut value: impl FnMut([usize; 3]) -> f32) {
         let before = self.grid.number([0, 0, self.first]);
         for (j, k) in (0..counts[1] * counts[2]).map(|n| (n % counts[1], n / counts[1])) {

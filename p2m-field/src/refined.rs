@@ -63,9 +63,9 @@ impl RefineOptions {
 
 /// Returns the leaves of an octree over a cube around `bounds`, in depth-first order.
 ///
-/// `distance` is the field: the distance of the scene from a point, with or without a sign. It is called once for each
-/// point. Where a small cell touches a large one the interpolated field is discontinuous, by at most the error of the
-/// large cell.
+/// `distance` is the field: the distance of the scene from a point, with or without a sign. It is called once for
+/// each point. Where a small cell touches a large one the interpolated field is discontinuous, by at most the error
+/// of the large cell.
 ///
 /// # Complexity
 /// Each examined cell needs 27 points, most of which it shares with its neighbours. Memory is 32 bytes for each point
@@ -92,8 +92,8 @@ const MAX_DEPTH: u32 = 28;
 
 struct Refine<'a> {
     origin: [f64; 3],
-    /// Half of the edge of a cell of the greatest depth. A point is identified by its offset from `origin` in this
-    /// unit.
+    /// Half of the edge of a cell of the greatest depth. A point is identified by its offset from `origin`
+    /// in this unit.
     unit: f64,
     distance: &'a dyn Fn(&Point3<f64>) -> f64,
     options: &'a RefineOptions,

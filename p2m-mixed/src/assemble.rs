@@ -77,8 +77,8 @@ impl Scene {
     /// Adds triangles, each of which has the indices of three positions.
     ///
     /// # Errors
-    /// The errors are those of [`Soup::new`], with ids and positions counted in this part. After an error the scene is
-    /// unchanged.
+    /// The errors are those of [`Soup::new`], with ids and positions counted in this part. After an error the
+    /// scene is unchanged.
     pub fn add_triangles<P: Copy + Into<Point3<f64>>>(
         &mut self,
         name: &str,
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_refused_leaves_the_scene_as_it_was() {
+    fn errors_leave_the_scene_unchanged() {
         let mut scene = Scene::default();
         scene.add_triangles("a", &CORNERS, &[[0, 1, 2]]).unwrap();
         let before = scene.clone();

@@ -24,8 +24,8 @@ pub struct Camera {
 impl Camera {
     /// Makes a camera that sees the whole scene in a picture of this width in pixels.
     ///
-    /// `towards` is the direction from the centre of the scene to the eye. Returns `None` if it is vertical, zero or
-    /// not finite.
+    /// `towards` is the direction from the centre of the scene to the eye. Returns `None` if it is vertical, zero
+    /// or not finite.
     #[must_use]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
     pub fn before(scene: &Soup<f64>, towards: &Vector3<f64>, width: u32) -> Option<Self> {

@@ -11,8 +11,8 @@ use std::fmt;
 /// assert!(matches!(error.reason, p2m_mixed::Reason::IndexOutOfRange { index: 2, count: 1 }));
 /// ```
 ///
-/// The message of the operating system is not part of the message, but the [`source`](std::error::Error::source) of the
-/// error.
+/// The message of the operating system is not part of the message, but the [`source`](std::error::Error::source)
+/// of the error.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct ReadError {
@@ -179,7 +179,7 @@ pub enum Reason {
     /// A list in a PLY or OFF file has a negative length, or one that is not valid there.
     #[error("a list cannot have {count} items")]
     BadListCount {
-        /// The length.
+        /// The length of the list.
         count: i64,
     },
     /// A face has more than [`MAX_CORNERS`](crate::MAX_CORNERS) vertices, or the file has more than 2^32 - 1.
@@ -208,8 +208,8 @@ pub enum Reason {
     #[error("bad header: {0}")]
     BadHeader(HeaderProblem),
     /// The variant of a format is not supported: a PLY file other than `ascii`, `binary_little_endian` and
-    /// `binary_big_endian` 1.0, an OFF file with vertices in another number of dimensions, or an NPY file of an unknown
-    /// version.
+    /// `binary_big_endian` 1.0, an OFF file with vertices in another number of dimensions, or an NPY file of
+    /// an unknown version.
     #[error("unsupported format '{text}'")]
     UnsupportedFormat {
         /// The variant in the words of the header.
@@ -276,7 +276,7 @@ pub enum HeaderProblem {
     /// The shape of an array is not that of points or rays.
     #[error("the array has the shape {text}, expected {expected}")]
     BadShape {
-        /// The shape.
+        /// The shape of the array.
         text: String,
         /// The shape that is expected.
         expected: &'static str,
@@ -287,7 +287,7 @@ pub enum HeaderProblem {
     /// A line is not a declaration of a PLY header.
     #[error("'{text}' is not understood")]
     BadLine {
-        /// The line.
+        /// The line of the header.
         text: String,
     },
     /// The header has no line `format`.
@@ -304,21 +304,21 @@ pub enum HeaderProblem {
     /// Two elements, or two properties of an element, have the same name.
     #[error("'{name}' is declared twice")]
     Duplicate {
-        /// The name.
+        /// The name that occurs twice.
         name: String,
     },
     /// The file has no element with this name.
     #[error("there is no element '{element}'")]
     MissingElement {
-        /// The element.
+        /// The name of the element.
         element: &'static str,
     },
     /// An element lacks a property that it needs.
     #[error("element '{element}' has no property '{property}'")]
     MissingProperty {
-        /// The element.
+        /// The name of the element.
         element: &'static str,
-        /// The property.
+        /// The name of the property.
         property: &'static str,
     },
 }

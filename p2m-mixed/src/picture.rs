@@ -10,7 +10,7 @@ use std::io::{self, Write};
 /// A drawing with a title.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Panel {
-    /// The title.
+    /// The title above the drawing.
     pub title: String,
     /// The line segments, in units of the scene. Coordinates have to be finite.
     pub lines: Vec<[Point3<f64>; 2]>,

@@ -41,21 +41,21 @@ pub(crate) struct Triangulator {
 }
 
 impl Triangulator {
-    /// Triangulates the polygon with these corners, of which there are at least three. Triangles are indices of
-    /// corners.
+    /// Triangulates the polygon with these corners, of which there are at least three. Triangles are
+    /// indices of corners.
     pub(crate) fn triangulate(&mut self, corners: &[Point3<f64>]) -> &[[u32; 3]] {
         let n = corners.len();
         if n == 3 || !self.project(corners) || self.fan_covers(0) {
-            self.fan(0, n);
+            self.make_fan(0, n);
         } else if n == 4 {
             // One of the two diagonals of a simple quadrilateral is inside.
-            self.fan(u32::from(self.fan_covers(1)), n);
+            self.make_fan(u32::from(self.fan_covers(1)), n);
         } else if n > CHECK_REPEATS_ABOVE_CORNERS && 2 * self.count_distinct_corners() < n {
-            self.fan(0, n);
+            self.make_fan(0, n);
         } else {
             self.cut_ears();
             if !self.covers() {
-                self.fan(0, n);
+                self.make_fan(0, n);
             }
         }
         &self.triangles
@@ -100,7 +100,7 @@ impl Triangulator {
     fn fan_covers(&self, apex: u32) -> bool {
         let n = self.projected.len();
         let (mut left, mut right) = (false, false);
-        for triangle in fan(apex, n) {
+        for triangle in triangle_fan(apex, n) {
             let area = area(&self.projected, triangle);
             left |= area > 0.0;
             right |= area < 0.0;
@@ -118,9 +118,9 @@ impl Triangulator {
         self.corner_keys.len()
     }
 
-    fn fan(&mut self, apex: u32, n: usize) {
+    fn make_fan(&mut self, apex: u32, n: usize) {
         self.triangles.clear();
-        self.triangles.extend(fan(apex, n));
+        self.triangles.extend(triangle_fan(apex, n));
     }
 
     /// Triangulates by cutting ears, and then adds the edges that the ear cutter left out.
@@ -170,7 +170,7 @@ impl Triangulator {
 }
 
 #[allow(clippy::cast_possible_truncation, reason = "at most MAX_CORNERS corners")]
-fn fan(apex: u32, n: usize) -> impl Iterator<Item = [u32; 3]> {
+fn triangle_fan(apex: u32, n: usize) -> impl Iterator<Item = [u32; 3]> {
     let n = n as u32;
     (1..n - 1).map(move |i| [apex, (apex + i) % n, (apex + i + 1) % n])
 }

@@ -51,8 +51,8 @@ pub fn save_scene(scene: &Scene, writer: &mut Writer<'_>) {
 /// Loads the scene of a file.
 ///
 /// # Errors
-/// [`LoadError::Missing`] if the file has no scene, and [`LoadError::Inconsistent`] if its sections contradict each
-/// other.
+/// [`LoadError::Missing`] if the file has no scene, and [`LoadError::Inconsistent`] if its sections
+/// contradict each other.
 pub fn load_scene(reader: &Reader) -> Result<Scene, LoadError> {
     let inconsistent = |section: &str| LoadError::Inconsistent { section: section.to_owned() };
     let numbers: Vec<f64> = reader.copy(POSITIONS)?;
@@ -110,8 +110,8 @@ pub fn read_p2m(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     load().map_err(|error| ReadError::new(name, FileLocation::File, Reason::Saved(error)))
 }
 
-/// Writes a scene as a file of saved indexes that has no index. Reading it returns the same scene, including names and
-/// sources.
+/// Writes a scene as a file of saved indexes that has no index. Reading it returns the same scene, including
+/// names and sources.
 ///
 /// # Errors
 /// Errors of `writer`.

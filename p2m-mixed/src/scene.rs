@@ -29,9 +29,9 @@ pub struct Scene {
     pub sources: Vec<u32>,
     /// The named parts of the scene, in ascending order of ids. They do not overlap, and primitives need not be in one.
     ///
-    /// The objects of an OBJ file are its statements `o` or, if it has none, `g`. The objects of a text STL file are
-    /// its solids. Other formats and point clouds have no objects. Objects without a name or without primitives are
-    /// left out.
+    /// The objects of an OBJ file are its statements `o` or, if it has none, `g`. The objects of a text STL file
+    /// are its solids. Other formats and point clouds have no objects. Objects without a name or without primitives
+    /// are left out.
     pub objects: Vec<Object>,
     /// The records that the reader left out because they are not geometry, in the order of first appearance.
     pub skipped: Vec<Skipped>,

@@ -29,9 +29,9 @@ const DETECTION_BYTES: u64 = 1024;
 ///   than zero, and bytes after the last facet, are counted in [`Scene::skipped`].
 ///
 /// # Errors
-/// [`ReadError`] with the line (text) or the offset of the facet (binary) for coordinates that are not finite, invalid
-/// numbers, unexpected words, an early end, and errors of `reader`. No memory is allocated for facets that the header
-/// only announces.
+/// [`ReadError`] with the line (text) or the offset of the facet (binary) for coordinates that are not finite,
+/// invalid numbers, unexpected words, an early end, and errors of `reader`. No memory is allocated for facets that
+/// the header only announces.
 pub fn read_stl(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     let fail = |reason| ReadError::new(name, FileLocation::File, reason);
     let mut head = Vec::new();

@@ -67,8 +67,8 @@ pub(crate) fn fill_buffer(reader: &mut impl BufRead) -> io::Result<&[u8]> {
     reader.fill_buf() // the buffer is borrowed again, because a borrow cannot leave the loop
 }
 
-/// Appends the bytes up to and including the next one for which `ends` is true, at most `max_count`, and returns their
-/// number.
+/// Appends the bytes up to and including the next one for which `ends` is true, at most `max_count`, and
+/// returns their number.
 pub(crate) fn read_until(
     reader: &mut impl BufRead,
     ends: impl Fn(u8) -> bool,
@@ -347,7 +347,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_not_finite_are_told_from_those_that_are_none() {
+    fn numbers_that_are_not_finite_and_invalid_numbers_have_different_errors() {
         assert_eq!(parse_finite(b"-1.5e3").unwrap(), -1500.0);
         for bad in ["nan", "inf", "-Infinity", "1e999"] {
             assert!(matches!(parse_finite(bad.as_bytes()), Err(Reason::NonFinite { .. })), "{bad}");

@@ -25,8 +25,8 @@ impl VertexWelder {
     /// Welds the positions of a soup.
     ///
     /// # Complexity
-    /// O(n log n) time. Memory is 32 bytes for each used position while the function runs, and 4 bytes for each
-    /// position afterwards.
+    /// O(n log n) time. Memory is 32 bytes for each used position while the function runs, and 4 bytes for
+    /// each position afterwards.
     #[allow(clippy::cast_possible_truncation, reason = "positions are numbered by u32")]
     pub fn new(soup: &Soup<f64>) -> Self {
         let mut vertex_ids = vec![UNUSED; soup.positions().len()];
@@ -113,8 +113,8 @@ impl UnionFind {
     }
 }
 
-/// Groups pairs by their vertex and calls `visit` for each vertex in ascending order with the sorted values of its
-/// pairs.
+/// Groups pairs by their vertex and calls `visit` for each vertex in ascending order with the sorted values
+/// of its pairs.
 ///
 /// # Complexity
 /// O(n log n) if most pairs are at one vertex, O(n) for meshes.

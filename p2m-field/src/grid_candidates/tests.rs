@@ -43,8 +43,8 @@ fn axes(low: V3, side: f64, count: usize) -> [Vec<f64>; 3] {
     low.map(|x| (0..count).map(|i| x + side * i as f64 / (count - 1) as f64).collect())
 }
 
-/// The evaluation of single primitives is compared with the kernel, which is accurate to 8 u M, and stays within the
-/// proved error.
+/// The evaluation of single primitives is compared with the kernel, which is accurate to 8 u M, and stays within
+/// the proved error.
 #[test]
 fn distances_to_one_primitive_are_within_half_of_the_error_bound() {
     struct SquaredDistance<'a>(&'a LocalPrimitive, V3, f64);

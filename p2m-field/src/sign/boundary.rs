@@ -66,8 +66,8 @@ impl Boundary {
         self.length == 0.0
     }
 
-    /// Returns an upper bound on the change of winding numbers within `radius` of a point, if no triangle is in
-    /// between.
+    /// Returns an upper bound on the change of winding numbers within `radius` of a point, if no triangle
+    /// is in between.
     pub(super) fn max_change_within(&self, radius: f64, centre: &Point3<f64>) -> f64 {
         let Some(edges) = &self.edges else { return f64::INFINITY };
         let Some(closest) = edges.closest_point(centre) else { return 0.0 };

@@ -80,8 +80,8 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
     /// [`SignError::OtherKinds`], [`SignError::Open`], [`SignError::NotOriented`] and [`SignError::Build`].
     ///
     /// # Complexity
-    /// O(n log n) time. Memory is 13 bytes for each triangle, 28 bytes for each vertex, and a tree of boxes for
-    /// ambiguous queries.
+    /// O(n log n) time. Memory is 13 bytes for each triangle, 28 bytes for each vertex, and a tree of boxes
+    /// for ambiguous queries.
     pub fn new(index: I, soup: &'a Soup<f64>) -> Result<Self, SignError> {
         let normals = Pseudonormals::new(soup, &index)?;
         Ok(Self { index, rule: SignRule::Closed(Box::new(normals)) })
@@ -150,8 +150,8 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
         }
     }
 
-    /// Returns the number of queries so far whose sign was ambiguous, so that rays or the sum of all triangles decided
-    /// it.
+    /// Returns the number of queries so far whose sign was ambiguous, so that rays or the sum of all
+    /// triangles decided it.
     pub fn doubts(&self) -> u64 {
         match &self.rule {
             SignRule::Closed(normals) => normals.doubts(),
@@ -166,8 +166,8 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
 /// that this edge intersects. `None` means that no such pair was found.
 ///
 /// Edges are cast as rays, whose directions are rounded, so triangles that barely touch may be missed or reported.
-/// Triangles with a common vertex are assumed to intersect only there, so sheets that coincide and have common vertices
-/// are missed.
+/// Triangles with a common vertex are assumed to intersect only there, so sheets that coincide and have common
+/// vertices are missed.
 ///
 /// # Errors
 /// [`SignError::OtherKinds`], [`SignError::Open`], [`SignError::NotOriented`] and [`SignError::Build`].

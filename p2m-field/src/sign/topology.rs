@@ -10,8 +10,8 @@ use std::ops::ControlFlow;
 /// The tree in which rays are cast.
 pub(super) type RayTree<'a> = TreeIndex<f64, &'a Soup<f64>, Aabb<f64>>;
 
-/// The neighbour of an edge that has none, because more than two triangles have the edge or the triangle has equal
-/// corners.
+/// The neighbour of an edge that has none, because more than two triangles have the edge or the triangle
+/// has equal corners.
 pub(super) const NO_TRIANGLE: u32 = u32::MAX;
 
 /// The connections between the triangles of a closed surface.
@@ -20,8 +20,8 @@ pub(super) struct Topology {
     pub(super) welder: VertexWelder,
     /// The triangle beyond each edge, or [`NO_TRIANGLE`].
     pub(super) neighbours: Vec<[u32; 3]>,
-    /// The component of each triangle. Components are connected along edges, and have the number of one of their
-    /// triangles.
+    /// The component of each triangle. Components are connected along edges, and have the number of one
+    /// of their triangles.
     pub(super) components: Vec<u32>,
     /// Whether the triangles around each vertex form a single fan.
     pub(super) is_fan: Vec<bool>,

@@ -286,8 +286,8 @@ impl<'a> WindingNumbers<'a> {
 }
 
 impl Node {
-    /// Evaluates the Taylor polynomial of the node. `offset` is that of the centre from the query, and `square` is its
-    /// squared length.
+    /// Evaluates the Taylor polynomial of the node. `offset` is that of the centre from the query, and `square` is
+    /// its squared length.
     fn dipole(&self, offset: V3, square: f64) -> f64 {
         let inverse = 1.0 / square;
         let cube = inverse * inverse.sqrt();
@@ -305,8 +305,8 @@ struct Triangle {
 }
 
 impl Triangle {
-    /// Returns the solid angle of the triangle, which is positive from its back, and zero in its plane and at its
-    /// vertices.
+    /// Returns the solid angle of the triangle, which is positive from its back, and zero in its plane and
+    /// at its vertices.
     fn solid_angle(&self, query: V3) -> f64 {
         let [a, b, c] = self.corners.map(|corner| sub(corner, query));
         let [la, lb, lc] = [a, b, c].map(length);

@@ -19,6 +19,6 @@ pub use rstar::RstarIndex;
 pub use shapes::ShapeError;
 
 #[cfg(any(feature = "parry", feature = "rstar"))]
-/// The factor that makes a lower bound of the squared distance of a query from a box as other crates compute it, with a
-/// few roundings.
+/// The factor that makes a lower bound of the squared distance of a query from a box as other crates compute it, with
+/// a few roundings.
 const ROUND_DOWN: f64 = 1.0 - 16.0 * f64::EPSILON;

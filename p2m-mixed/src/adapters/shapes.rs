@@ -65,7 +65,7 @@ macro_rules! shapes {
                 }
             }
 
-            /// What was taken from shapes so far.
+            /// The positions and elements of the shapes that were added so far.
             #[derive(Default)]
             struct Part {
                 positions: Vec<Point3<f64>>,
@@ -102,7 +102,7 @@ macro_rules! shapes {
                     elements: &[[u32; N]],
                     element: impl Fn([u32; N]) -> Element,
                 ) {
-                    // More of them than u32 can number are refused with the whole part.
+                    // If u32 cannot number the positions, the indices saturate, and the part is an error.
                     let first = u32::try_from(self.positions.len()).unwrap_or(u32::MAX);
                     self.positions.extend(positions.iter().map(|p| {
                         let p = *pose * *p;

@@ -60,8 +60,8 @@ const GOLDEN_TURN: f64 = 0.381_966_011_250_105_1;
 /// The fraction of the trefoil that the bundle follows. The bundle is open, because its strands would not close.
 const KNOT_FRACTION: f64 = 0.95;
 
-/// Makes strands that wind about a trefoil knot. Each strand is a polyline, and the segments of a strand are
-/// consecutive.
+/// Makes strands that wind about a trefoil knot. Each strand is a polyline, and the segments of a
+/// strand are consecutive.
 ///
 /// # Errors
 /// [`GenerateError`] if an option is not in its range or there are more primitives than ids.

@@ -20,8 +20,8 @@ use p2m_core::{Element, Soup};
 /// ```
 ///
 /// # Errors
-/// [`GenerateError::OutOfRange`] if the factor is not above 0 and below 1, [`GenerateError::Build`] if a coordinate
-/// overflows.
+/// [`GenerateError::OutOfRange`] if the factor is not above 0 and below 1, [`GenerateError::Build`] if
+/// a coordinate overflows.
 pub fn gapped(scene: &Soup<f64>, factor: f64) -> Result<Soup<f64>, GenerateError> {
     if !(factor > 0.0 && factor < 1.0) {
         let range = "above 0 and below 1";
@@ -45,8 +45,8 @@ pub fn gapped(scene: &Soup<f64>, factor: f64) -> Result<Soup<f64>, GenerateError
 /// ```
 ///
 /// # Errors
-/// [`GenerateError::OutOfRange`] if the factor is not above 1 and at most 1000, [`GenerateError::Build`] if a
-/// coordinate overflows.
+/// [`GenerateError::OutOfRange`] if the factor is not above 1 and at most 1000, [`GenerateError::Build`] if
+/// a coordinate overflows.
 pub fn penetrating(scene: &Soup<f64>, factor: f64) -> Result<Soup<f64>, GenerateError> {
     if !(factor > 1.0 && factor <= 1e3) {
         let range = "above 1 and at most 1000";

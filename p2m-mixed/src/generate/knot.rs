@@ -29,8 +29,8 @@ pub struct TorusKnot {
     pub rings: u32,
     /// The number of vertices of each ring, at least 3. There are two triangles for each vertex.
     pub sides: u32,
-    /// The radius of the tube. The radii of the torus are 2 and 0.8. A tube that is thicker than the gaps of the knot
-    /// intersects itself.
+    /// The radius of the tube. The radii of the torus are 2 and 0.8. A tube that is thicker than the gaps of the
+    /// knot intersects itself.
     pub tube_radius: f64,
 }
 
@@ -63,8 +63,8 @@ impl TorusKnot {
     }
 }
 
-/// Makes a closed tube along a torus knot. It has 2 `rings` `sides` triangles, which are counter-clockwise seen from
-/// outside.
+/// Makes a closed tube along a torus knot. It has 2 `rings` `sides` triangles, which are counter-clockwise
+/// seen from outside.
 ///
 /// # Errors
 /// [`GenerateError`] if an option is not in its range or there are more primitives than ids.
@@ -124,8 +124,8 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Returns the frame where the knot has turned by `long` around the axis and by `short` around the tube of the
-    /// torus.
+    /// Returns the frame where the knot has turned by `long` around the axis and by `short` around the tube
+    /// of the torus.
     ///
     /// The normal of the torus is perpendicular to any curve on it, and closes up where the curve does.
     pub(super) fn new(p: u32, q: u32, long: SinCos, short: SinCos) -> Self {

@@ -17,8 +17,8 @@ pub(super) struct SinCos {
 }
 
 impl SinCos {
-    /// Returns sine and cosine of `part / whole` turns. Angles that are mirror images of each other have the same
-    /// digits.
+    /// Returns sine and cosine of `part / whole` turns. Angles that are mirror images of each other have
+    /// the same digits.
     pub(super) fn of_fraction(part: u64, whole: u32) -> Self {
         let whole = u64::from(whole);
         // The product is below 2^35.
@@ -39,8 +39,8 @@ impl SinCos {
         Self::of_octant(octant, if octant.is_multiple_of(2) { rest } else { 1.0 - rest })
     }
 
-    /// Returns sine and cosine in an octant. `rest` is the distance to the nearest axis in eighths of a turn, from 0 to
-    /// 1.
+    /// Returns sine and cosine in an octant. `rest` is the distance to the nearest axis in eighths of a turn, from
+    /// 0 to 1.
     fn of_octant(octant: u64, rest: f64) -> Self {
         let (s, c) = Self::near_zero(rest);
         let (sin, cos) = match octant {
@@ -76,8 +76,8 @@ impl SinCos {
     }
 }
 
-/// Returns the rotation by an angle in degrees about axis 0, 1 or 2, counter-clockwise if the axis points at the
-/// viewer.
+/// Returns the rotation by an angle in degrees about axis 0, 1 or 2, counter-clockwise if the axis points
+/// at the viewer.
 pub(super) fn rotation(axis: usize, degrees: f64) -> Matrix3<f64> {
     let SinCos { sin, cos } = SinCos::of_turns(degrees / 360.0);
     let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);

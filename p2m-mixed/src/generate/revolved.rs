@@ -127,8 +127,8 @@ impl Cylinder {
     }
 }
 
-/// Makes the unit sphere by latitude and longitude. It has 2 `meridians` (`bands` - 1) triangles, which are thin at the
-/// poles.
+/// Makes the unit sphere by latitude and longitude. It has 2 `meridians` (`bands` - 1) triangles, which are thin
+/// at the poles.
 ///
 /// # Errors
 /// [`GenerateError`] if an option is not in its range or there are more primitives than ids.

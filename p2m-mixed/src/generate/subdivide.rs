@@ -55,10 +55,10 @@ impl Subdivide {
 
 /// Splits each triangle at the midpoints of its edges into four and each segment into two, `levels` times.
 ///
-/// The parts of a primitive take its position in the order. The parts of a triangle are those at its first, second and
-/// third corner and then the central one, and they have its orientation. Points do not change. Midpoints come after the
-/// positions of the level before. They are displaced in random directions, so triangles may cross each other for large
-/// amplitudes.
+/// The parts of a primitive take its position in the order. The parts of a triangle are those at its first, second
+/// and third corner and then the central one, and they have its orientation. Points do not change. Midpoints come
+/// after the positions of the level before. They are displaced in random directions, so triangles may cross each
+/// other for large amplitudes.
 ///
 /// # Errors
 /// [`GenerateError::OutOfRange`] for an amplitude that is not from 0 to 0.5, [`GenerateError::Build`] if there are more

@@ -7,8 +7,8 @@ use p2m_core::Soup;
 
 /// A similarity transformation: rotations, scalings and translations in the order in which they are added.
 ///
-/// The result is the same on every platform. Rotations by multiples of 90 degrees and scalings by powers of two are
-/// exact.
+/// The result is the same on every platform. Rotations by multiples of 90 degrees and scalings by powers of
+/// two are exact.
 ///
 /// ```
 /// use p2m_mixed::generate::{IcoSphere, Transform, ico_sphere};

@@ -123,8 +123,8 @@ pub(super) fn read_header(reader: &mut impl BufRead, file: &str) -> Result<Heade
 /// Reads the first line, and returns the byte that ends all lines of the header.
 ///
 /// That byte is `\n`, also in `\r\n`, unless the first line ends at `\r` alone. The first line decides, because the
-/// last line is ambiguous: the byte after `end_header` and `\r` may be a `\n`, or the number 10 as the first byte of
-/// the data.
+/// last line is ambiguous: the byte after `end_header` and `\r` may be a `\n`, or the number 10 as the first byte
+/// of the data.
 fn first_line(reader: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<u8> {
     read_until(reader, |b| matches!(b, b'\n' | b'\r'), MAX_LINE_BYTES, line)?;
     if line.last() != Some(&b'\r') {

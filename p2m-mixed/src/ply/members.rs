@@ -261,8 +261,8 @@ impl Members {
         Ok(self.builder.finish())
     }
 
-    /// Adds pending members in the order of their ids; each makes one primitive. Without ids no member is pending any
-    /// more.
+    /// Adds pending members in the order of their ids; each makes one primitive. Without ids no member is
+    /// pending any more.
     #[allow(clippy::cast_possible_truncation, reason = "there are fewer members than ids, which are u32")]
     fn add_by_id(&mut self, batches: &[PendingMembers], name: &str) -> Result<(), ReadError> {
         let fail = |reason| ReadError::new(name, FileLocation::File, reason);

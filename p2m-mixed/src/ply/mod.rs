@@ -119,8 +119,8 @@ pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
     members.finish(name)
 }
 
-/// Reads the vertices of a PLY file as rows, whose coordinates have to be finite. Elements after the vertices are not
-/// read.
+/// Reads the vertices of a PLY file as rows, whose coordinates have to be finite. Elements after the vertices
+/// are not read.
 pub(crate) fn read_vertices<R: Row<N>, const N: usize>(
     mut reader: impl BufRead,
     name: &str,

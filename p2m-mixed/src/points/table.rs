@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn xyz_errors_tell_the_line() {
+    fn xyz_errors_have_the_line() {
         assert_eq!(xyz("1 2 3\n\n1 2\n").unwrap_err(), "q.xyz:3: a point needs 3 coordinates, found 2");
         assert_eq!(xyz("1 2 x\n").unwrap_err(), "q.xyz:1: 'x' is not a number that fits here");
         assert_eq!(xyz("1 2 3\n1 nan 3").unwrap_err(), "q.xyz:2: coordinate 'nan' is not finite");
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn csv_errors_tell_the_line() {
+    fn csv_errors_have_the_line() {
         assert_eq!(csv("x,y,z\n1,2,3\n1,2\n").unwrap_err(), "q.csv:3: a point needs 3 coordinates, found 2");
         assert_eq!(csv("1,2,3\n\n# so\n1,b,3\n").unwrap_err(), "q.csv:4: 'b' is not a number that fits here");
         assert_eq!(csv("1,2,b\n").unwrap_err(), "q.csv:1: 'b' is not a number that fits here");

@@ -118,8 +118,8 @@ pub struct Edges {
     pub boundary: u64,
     /// The number of edges of more than two triangles.
     pub non_manifold: u64,
-    /// The number of edges of two triangles that run through the edge in the same direction, so that they face opposite
-    /// sides.
+    /// The number of edges of two triangles that run through the edge in the same direction, so that they
+    /// face opposite sides.
     pub inconsistent: u64,
 }
 
@@ -131,8 +131,8 @@ impl Edges {
     }
 }
 
-/// The shapes of triangles and segments. The aspect of a triangle is its longest edge divided by its height over that
-/// edge.
+/// The shapes of triangles and segments. The aspect of a triangle is its longest edge divided by its height
+/// over that edge.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Shapes {

@@ -18,8 +18,8 @@ pub enum Note {
     FarFromOrigin {
         /// The distance of its centre from the origin.
         distance: f64,
-        /// The distance in diagonals of the scene. Scenes of a single point, for which it is infinite, have no such
-        /// note.
+        /// The distance in diagonals of the scene. Scenes of a single point, for which it is infinite, have
+        /// no such note.
         times: f64,
         /// The distance between numbers of f32 at the largest coordinate, or `None` if it is beyond their range.
         f32_step: Option<f64>,

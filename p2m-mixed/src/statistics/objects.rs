@@ -17,8 +17,8 @@ pub struct ObjectCounts {
 
 /// Counts the primitives under each name of a scene, in the order in which names first appear.
 ///
-/// Objects of the same name are counted together. Primitives without a name come last. A scene without names has no
-/// counts.
+/// Objects of the same name are counted together. Primitives without a name come last. A scene without names
+/// has no counts.
 ///
 /// ```
 /// use p2m_mixed::statistics::objects;

@@ -32,7 +32,7 @@ pub enum WriteError {
     BeyondSinglePrecision {
         /// The first primitive with such a coordinate.
         id: PrimitiveId,
-        /// The coordinate.
+        /// The coordinate in double precision.
         coordinate: f64,
     },
     /// The scene has more triangles than the 2^32 - 1 that an STL file can have.
@@ -80,8 +80,8 @@ pub fn write_scene(scene: &Scene, format: Format, writer: impl Write) -> Result<
     }
 }
 
-/// Returns the position that text files have: one that is not finite becomes the origin. No primitive uses such a
-/// position.
+/// Returns the position that text files have: one that is not finite becomes the origin. No primitive uses
+/// such a position.
 fn finite_or_origin(position: &nalgebra::Point3<f64>) -> nalgebra::Point3<f64> {
     if position.iter().all(|x| x.is_finite()) { *position } else { nalgebra::Point3::origin() }
 }

@@ -10,10 +10,10 @@ use std::io::Write;
 /// The positions come first, and then the primitives in the order of their ids. Segments are faces of two vertices, and
 /// points are faces of one vertex, which not every reader supports.
 ///
-/// Numbers have the fewest digits that read back as the same number. [`read_off`](crate::read_off) returns the same
-/// soup, with two exceptions. The positions of a scene without primitives are not written, because they would be read
-/// as a point cloud. A position that is not finite, which no primitive uses, is written as the origin. Objects are
-/// lost.
+/// Numbers have the fewest digits that read back as the same number. [`read_off`](crate::read_off) returns the
+/// same soup, with two exceptions. The positions of a scene without primitives are not written, because they would
+/// be read as a point cloud. A position that is not finite, which no primitive uses, is written as the origin.
+/// Objects are lost.
 ///
 /// # Errors
 /// Errors of `writer`.

@@ -1,4 +1,4 @@
-//! Forms of OFF files, and what is refused.
+//! Forms of OFF files, and files that are errors.
 
 use crate::common::{elements, off, p, s, skipped, t};
 use nalgebra::Point3;
@@ -86,19 +86,19 @@ fn vertices_alone_are_a_point_cloud() {
 
 #[test]
 fn polygons_of_any_shape() {
-    // An arrow: its reflex corner is the last.
+    // The face is an arrow, whose reflex corner is the last one.
     let scene = off("OFF 4 1 0\n0 0 0\n4 0 0\n4 4 0\n3 1 0\n4 0 1 2 3\n").unwrap();
     assert_eq!(elements(&scene), [t(1, 2, 3), t(1, 3, 0)]);
 }
 
 #[test]
-fn what_follows_the_last_face_is_counted() {
+fn data_after_the_last_face_is_counted() {
     let scene = off(format!("OFF 4 1 0\n{SQUARE}3 0 1 2\n7 8 # no word\nx")).unwrap();
     assert_eq!(skipped(&scene), [("words after the last face", 3)]);
 }
 
 #[test]
-fn errors_tell_place_and_reason() {
+fn errors_have_location_and_reason() {
     let message = |file: &str| off(file).unwrap_err().to_string();
     let with = |rest: &str| format!("OFF\n4 2 0\n{SQUARE}3 0 1 2\n{rest}");
     assert_eq!(
@@ -148,7 +148,7 @@ fn errors_tell_place_and_reason() {
     }
 }
 
-/// Numbers in the byte order of binary files.
+/// Returns numbers in the byte order of binary files.
 fn be(numbers: &[i32]) -> Vec<u8> {
     numbers.iter().flat_map(|n| n.to_be_bytes()).collect()
 }
@@ -178,7 +178,7 @@ fn binary_files() {
         assert_eq!(scene.soup.positions()[2], Point3::new(1.0, f64::from(0.1f32), 0.0));
         let expected = [("vertices with further numbers", 4), ("faces with a colour", 2)];
         assert_eq!(skipped(&scene), expected[usize::from(extras == 0)..]);
-        // Every number is needed.
+        // Every number of the file is needed.
         for end in header.len()..file.len() {
             let error = off(&file[..end]).unwrap_err();
             assert!(matches!(error.reason, Reason::UnexpectedEnd), "{error}");
