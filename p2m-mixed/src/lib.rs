@@ -41,10 +41,12 @@ mod format;
 pub mod generate;
 mod obj;
 mod off;
+mod open;
 pub mod picture;
 mod ply;
 mod points;
 mod polygon;
+mod read;
 mod saved;
 mod scene;
 pub mod statistics;
@@ -63,8 +65,9 @@ pub use off::read_off;
 pub use ply::read_ply;
 pub use points::{read_points, read_points_from, read_rays, read_rays_from};
 pub use polygon::MAX_CORNERS;
+pub use read::{read_scene, read_scene_from};
 pub use saved::{load_scene, read_p2m, save_scene, write_p2m};
-pub use scene::{Object, Scene, Skipped, read_scene, read_scene_from};
+pub use scene::{Object, Scene, Skipped};
 pub use stl::read_stl;
 pub use write::{
     StlRounding, WriteError, stl_rounding, write_obj, write_off, write_ply, write_ply_ascii, write_scene, write_stl,

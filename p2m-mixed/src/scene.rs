@@ -1,12 +1,8 @@
 //! Scenes: primitives with their sources in a file, named objects, and records that the reader skipped.
 
-use crate::{FileLocation, Format, ReadError, Reason, read_obj, read_off, read_p2m, read_ply, read_stl};
 use p2m_core::{Element, PrimitiveId, Soup};
 use std::fmt;
-use std::fs::File;
-use std::io::{self, BufRead, BufReader};
 use std::ops::Range;
-use std::path::Path;
 
 /// A scene that was read from a file or built of parts that were [added](Scene::add).
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -86,49 +82,4 @@ impl fmt::Display for Skipped {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}{}", self.count, if self.is_plural { "" } else { "x " }, self.what)
     }
-}
-
-/// Reads a scene from a file. Its extension, in any case, selects the format: obj, ply, stl, off or p2m.
-///
-/// # Errors
-/// [`ReadError`] has the file, the location and the reason. No scene is returned for a file with an error.
-pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
-    let format = Format::from_path(path)?;
-    let name = path.display().to_string();
-    read_scene_from(open(path, &name)?, format, &name)
-}
-
-/// Reads a scene from any reader, such as the standard input. `name` is the name of the file in messages.
-///
-/// The file is read once from its start to its end. That takes at most three times the memory of the finished scene,
-/// whatever the file announces, besides small buffers and the longest line of a text.
-///
-/// ```
-/// use p2m_mixed::{Format, read_scene_from};
-///
-/// let scene = read_scene_from("OFF 3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n".as_bytes(), Format::Off, "standard input")?;
-/// assert_eq!(scene.soup.triangles(), [[0, 1, 2]]);
-/// # Ok::<(), p2m_mixed::ReadError>(())
-/// ```
-///
-/// # Errors
-/// The errors are those of [`read_scene`].
-pub fn read_scene_from(reader: impl BufRead, format: Format, name: &str) -> Result<Scene, ReadError> {
-    match format {
-        Format::Obj => read_obj(reader, name),
-        Format::Ply => read_ply(reader, name),
-        Format::Stl => read_stl(reader, name),
-        Format::Off => read_off(reader, name),
-        Format::P2m => read_p2m(reader, name),
-    }
-}
-
-pub(crate) fn open(path: &Path, name: &str) -> Result<BufReader<File>, ReadError> {
-    let fail = |e| ReadError::new(name, FileLocation::File, Reason::Io(e));
-    let file = File::open(path).map_err(fail)?;
-    // Some systems can open a directory, and return an error only when it is read.
-    if file.metadata().is_ok_and(|m| m.is_dir()) {
-        return Err(fail(io::ErrorKind::IsADirectory.into()));
-    }
-    Ok(BufReader::with_capacity(1 << 16, file))
 }

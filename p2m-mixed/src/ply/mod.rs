@@ -6,7 +6,7 @@ mod members;
 mod plan;
 
 use crate::builder::SceneBuilder;
-use crate::points::Row;
+use crate::points::row::Row;
 use crate::{FileLocation, HeaderProblem, ReadError, Reason, Scene};
 use data::Data;
 use header::read_header;
@@ -14,9 +14,6 @@ use members::Members;
 use nalgebra::Point3;
 use plan::{Coordinates, ElementPlan, has_vertex_list};
 use std::io::BufRead;
-
-/// The property with the id of a primitive, for files that have primitives in another order.
-const ID_PROPERTY: &str = "p2m_id";
 
 /// Reads a PLY file. `name` is the name of the file in messages.
 ///

@@ -1,10 +1,13 @@
 //! The plan of a PLY file: how each element of its header is read.
 
-use super::{ID_PROPERTY, header};
+use super::header;
 use crate::HeaderProblem;
 use crate::bytes::Scalar;
 use crate::text::quote;
 use header::Layout;
+
+/// The property with the id of a primitive, for files that have primitives in another order.
+const ID_PROPERTY: &str = "p2m_id";
 
 /// The index of each coordinate among the properties, and its type.
 pub(super) type Coordinates<const N: usize> = [(usize, Scalar); N];

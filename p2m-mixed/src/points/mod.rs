@@ -2,16 +2,16 @@
 
 mod npy;
 mod rays;
-mod row;
+mod read;
+pub(crate) mod row;
 mod table;
 
 pub use rays::{read_rays, read_rays_from};
-pub(crate) use row::Row;
 
-use crate::ply::read_vertices;
-use crate::scene::open;
+use crate::open::open;
 use crate::{PointFormat, ReadError};
 use nalgebra::Point3;
+use read::read;
 use std::io::BufRead;
 use std::path::Path;
 
@@ -65,16 +65,6 @@ pub fn read_points(path: &Path) -> Result<Vec<Point3<f64>>, ReadError> {
 /// The errors are those of [`read_points`].
 pub fn read_points_from(reader: impl BufRead, format: PointFormat, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
     read(reader, format, name)
-}
-
-/// Reads points or rays.
-fn read<R: Row<N>, const N: usize>(reader: impl BufRead, format: PointFormat, name: &str) -> Result<Vec<R>, ReadError> {
-    match format {
-        PointFormat::Xyz => table::read_xyz(reader, name),
-        PointFormat::Csv => table::read_csv(reader, name),
-        PointFormat::Npy => npy::read_npy(reader, name),
-        PointFormat::Ply => read_vertices(reader, name),
-    }
 }
 
 #[cfg(test)]

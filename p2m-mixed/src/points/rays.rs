@@ -1,7 +1,8 @@
 //! Readers of rays.
 
-use super::{Row, read};
-use crate::scene::open;
+use super::read::read;
+use super::row::Row;
+use crate::open::open;
 use crate::{PointFormat, ReadError, Reason};
 use nalgebra::{Point3, Vector3};
 use p2m_core::Ray;

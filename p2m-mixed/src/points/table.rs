@@ -1,6 +1,6 @@
 //! Readers of text tables: XYZ and CSV.
 
-use super::Row;
+use super::row::Row;
 use crate::text::{LineReader, Tokens, parse_finite, parse_number, quote};
 use crate::{FileLocation, ReadError, Reason};
 use std::io::BufRead;

@@ -1,6 +1,6 @@
 //! Writes scenes as OBJ.
 
-use super::{WriteError, finite_or_origin};
+use super::error::{WriteError, finite_or_origin};
 use crate::Scene;
 use p2m_core::{Element, PrimitiveSet};
 use std::io::Write;

@@ -1,6 +1,6 @@
 //! Writes scenes as OFF.
 
-use super::{WriteError, finite_or_origin};
+use super::error::{WriteError, finite_or_origin};
 use crate::Scene;
 use p2m_core::PrimitiveSet;
 use std::io::Write;

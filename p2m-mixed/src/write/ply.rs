@@ -1,6 +1,6 @@
 //! Writes scenes as PLY.
 
-use super::WriteError;
+use super::error::WriteError;
 use crate::Scene;
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveSet, Soup};

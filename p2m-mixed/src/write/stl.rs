@@ -1,6 +1,6 @@
 //! Writes scenes as STL.
 
-use super::WriteError;
+use super::error::WriteError;
 use crate::Scene;
 use nalgebra::Vector3;
 use p2m_core::{Element, PrimitiveId, PrimitiveSet, Soup};

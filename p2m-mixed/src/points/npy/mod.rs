@@ -2,7 +2,7 @@
 
 mod literal;
 
-use super::Row;
+use super::row::Row;
 use crate::bytes::{ByteReader, Scalar};
 use crate::text::quote;
 use crate::{FileLocation, HeaderProblem, ReadError, Reason};
