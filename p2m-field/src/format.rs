@@ -1,13 +1,13 @@
-//! The formats of distance fields in files.
+//! The file formats of distance fields.
 
 p2m_mixed::formats! {
-    /// The formats of distance fields, see [`write_field`](crate::write_field).
+    /// The file formats of distance fields, which [`write_field`](crate::write_field) describes.
     FieldFormat {
-        /// An array of NumPy.
+        /// This is an array of NumPy.
         Npy = "npy",
-        /// An image of VTK.
+        /// This is an image of VTK.
         Vti = "vti",
-        /// The values alone.
+        /// This has the values alone, without a header.
         Raw = "raw",
     }
 }

@@ -1,30 +1,32 @@
-//! Regular grids.
+//! Regular grids of query points.
 
 use nalgebra::Point3;
 use p2m_core::Aabb;
 
-/// Why there is no such grid.
+/// Reasons why a grid or a field cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GridError {
-    /// No points, or more than a field can hold.
+    /// The grid has no points, or more than 2^40.
     #[error("a grid of {0} x {1} x {2} points is none, or has more than 2^40")]
     Count(usize, usize, usize),
     /// The spacing is not positive and finite, or the grid reaches beyond the range of f64.
     #[error("a spacing of {0} is none for a grid in the range of numbers")]
     Spacing(f64),
-    /// Coordinates are too large for the squares that lists are made by.
+    /// Coordinates are so large that candidate lists cannot square them.
     #[error("coordinates above 2^250 are out of range for fields by lists")]
     Range,
-    /// There is no memory for its values.
+    /// The values of the field do not fit into memory.
     #[error("there is no memory for {0} values")]
     Memory(usize),
-    /// There is nothing around which to put a grid.
+    /// The scene is empty, so no grid can be put around it.
     #[error("the scene is empty: there is nothing around which to put a grid")]
     Empty,
 }
 
-/// Points at equal distances along the axes: that of the number (i, j, k) is origin + spacing (i, j, k), rounded.
+/// Points at equal distances along the axes.
+///
+/// The point with the indices (i, j, k) is origin + spacing * (i, j, k), rounded to f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     origin: Point3<f64>,
@@ -33,15 +35,18 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The most points.
-    const MOST: u64 = 1 << 40;
+    /// The largest number of points.
+    const MAX_POINTS: u64 = 1 << 40;
 
+    /// Makes a grid of `counts` points along the axes.
+    ///
     /// # Errors
-    /// [`GridError`].
+    /// [`GridError::Count`] for no points or more than 2^40. [`GridError::Spacing`] if the spacing is not positive, or
+    /// a coordinate is not finite.
     pub fn new(origin: Point3<f64>, spacing: f64, counts: [usize; 3]) -> Result<Self, GridError> {
         let [x, y, z] = counts;
         let total = x.checked_mul(y).and_then(|n| n.checked_mul(z));
-        if !total.is_some_and(|n| (1..=Self::MOST).contains(&(n as u64))) {
+        if !total.is_some_and(|n| (1..=Self::MAX_POINTS).contains(&(n as u64))) {
             return Err(GridError::Count(x, y, z));
         }
         let grid = Self { origin, spacing, counts };
@@ -50,17 +55,20 @@ impl Grid {
         if is_in_range { Ok(grid) } else { Err(GridError::Spacing(spacing)) }
     }
 
-    /// `resolution` points along the longest side of a box that is scaled about its centre, ends included, and as many along
-    /// the others as cover them; two at least along each axis.
+    /// Makes a grid that covers a box, scaled about its centre.
+    ///
+    /// The longest side of the scaled box gets `resolution` points, its ends included. The other sides get as many as
+    /// cover them, and each axis gets at least two.
     ///
     /// # Errors
-    /// [`GridError`]; for a box without extent, too.
+    /// [`GridError::Empty`] for an empty box. [`GridError::Spacing`] for a box without extent, or if a coordinate of
+    /// the grid is not finite. [`GridError::Count`] for more than 2^40 points.
     pub fn around(bounds: &Aabb<f64>, resolution: usize, scale: f64) -> Result<Self, GridError> {
         if bounds.min.x > bounds.max.x {
             return Err(GridError::Empty);
         }
         let resolution = resolution.max(2);
-        // Halves first: the difference of two finite numbers may not be finite.
+        // Bounds are halved before they are subtracted, because the difference of two finite numbers may be infinite.
         let half: [f64; 3] = std::array::from_fn(|k| (bounds.max[k] * 0.5 - bounds.min[k] * 0.5) * scale);
         let longest = half.into_iter().fold(0.0, f64::max);
         #[allow(clippy::cast_precision_loss, reason = "a number of points")]
@@ -81,39 +89,39 @@ impl Grid {
         Self::new(origin.into(), spacing, counts)
     }
 
-    /// The point of the number (0, 0, 0).
+    /// Returns the point with the indices (0, 0, 0).
     #[must_use]
     pub fn origin(&self) -> Point3<f64> {
         self.origin
     }
 
-    /// The distance of neighbours, in units of the scene.
+    /// Returns the distance of neighbouring points, in units of the scene.
     #[must_use]
     pub fn spacing(&self) -> f64 {
         self.spacing
     }
 
-    /// How many points there are along each axis.
+    /// Returns the number of points along each axis.
     #[must_use]
     pub fn counts(&self) -> [usize; 3] {
         self.counts
     }
 
-    /// How many points there are.
+    /// Returns the number of points.
     #[must_use]
     #[allow(clippy::len_without_is_empty, reason = "there is one at least")]
     pub fn len(&self) -> usize {
         self.counts.iter().product()
     }
 
-    /// A point.
+    /// Returns the point with the indices (i, j, k).
     #[must_use]
     #[allow(clippy::cast_precision_loss, reason = "below 2^40")]
-    pub fn point(&self, number: [usize; 3]) -> Point3<f64> {
-        std::array::from_fn::<f64, 3, _>(|k| self.origin[k] + self.spacing * number[k] as f64).into()
+    pub fn point(&self, indices: [usize; 3]) -> Point3<f64> {
+        std::array::from_fn::<f64, 3, _>(|k| self.origin[k] + self.spacing * indices[k] as f64).into()
     }
 
-    /// Where the value of a point stands in a field: x runs fastest, z slowest.
+    /// Returns the number of the point (i, j, k) in a field, where x runs fastest and z slowest.
     #[must_use]
     pub fn number(&self, [i, j, k]: [usize; 3]) -> usize {
         (k * self.counts[1] + j) * self.counts[0] + i
@@ -141,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_grid_is_refused() {
+    fn invalid_grids_return_errors() {
         assert_eq!(Grid::around(&Aabb::empty(), 5, 1.0), Err(GridError::Empty));
         assert!(matches!(Grid::around(&bounds([0.0; 3]), 5, 1.0), Err(GridError::Spacing(_))));
         assert!(matches!(Grid::around(&bounds([f64::MAX; 3]), 5, 3.0), Err(GridError::Spacing(_))));

@@ -1,4 +1,15 @@
-//! Distance fields: the distance at every point of a grid, or of an octree that is fine where the surface is.
+//! Distance fields, signed distances and winding numbers of scenes.
+//!
+//! - **Fields** are distances at the points of a regular [`Grid`], or on an octree whose cells are small near the
+//!   surface ([`refined`]). [`distances`] and [`signed_distances`] query an index for each point.
+//!   [`distances_by_lists`] and [`signed_distances_by_lists`] need no index: they divide the grid into blocks and
+//!   evaluate the few primitives that can be nearest in a block for all of its points at once ([`grid_candidates`]).
+//!   Both ways return the same bits.
+//! - **Signs** tell inside from outside ([`sign`]): by pseudonormals and exact rays for closed surfaces
+//!   \[Baerentzen2005\], or by generalised winding numbers for any triangles \[Jacobson2013\], which a tree of dipoles
+//!   approximates within a bound \[Barill2018\].
+//! - **Output**: [`write_field`] writes NPY, VTI or raw values, [`write_cells`] writes the cells of an octree, and
+//!   [`slice`] draws a layer of a grid.
 //!
 //! ```
 //! use p2m_core::BruteForce;
@@ -11,30 +22,34 @@
 //! assert_eq!(field.len(), 9 * 9 * 9);
 //! assert!((field[grid.number([4, 4, 4])] - 1.0).abs() < 0.02); // the centre
 //!
-//! // The same without an index, and much faster for fine grids.
+//! // Candidate lists give the same field without an index, and much faster for fine grids.
 //! use p2m_field::{CandidateLists, distances_by_lists};
 //! let lists = CandidateLists::new(&ball).unwrap();
 //! assert_eq!(distances_by_lists(&lists, &grid, &FieldOptions::default(), &|_| ()).unwrap(), field);
 //! ```
+//!
+//! The feature `rayon` computes fields on all threads of the current pool.
 
 #![forbid(unsafe_code)]
 
-mod dense;
+mod by_lists;
+mod by_queries;
 mod format;
 mod grid;
 pub mod grid_candidates;
 mod layers;
-mod listed;
+mod options;
 mod refined;
 pub mod sign;
 mod slice;
 mod write;
 
-pub use dense::{FieldOptions, distances, signed_distances};
+pub use by_lists::{distances_by_lists, signed_distances_by_lists};
+pub use by_queries::{distances, signed_distances};
 pub use format::FieldFormat;
 pub use grid::{Grid, GridError};
 pub use grid_candidates::CandidateLists;
-pub use listed::{distances_by_lists, signed_distances_by_lists};
+pub use options::FieldOptions;
 pub use refined::{Cell, RefineOptions, refined};
 pub use slice::slice;
 pub use write::{write_cells, write_field};

@@ -1,15 +1,18 @@
-//! Slices of fields as pictures.
+//! Pictures of slices through fields.
 
-use super::Grid;
+use crate::grid::Grid;
 
-/// A slice of a field across an axis (0 to 2), coloured: outside from white to blue, inside from white to orange, with lines at equal
-/// distances, a dark one where the surface is, and grey where there is no number. Rows of pixels from above, red, green and blue; width and
-/// height. Across z, x runs to the right and y upwards, and so on around.
+/// Draws a layer of a field perpendicular to an axis (0 to 2).
 ///
-/// Each point is a square of so many pixels that the picture has 512 at least along its longer side.
+/// Returns width and height, and the rows of pixels from top to bottom as bytes of red, green and blue. Perpendicular
+/// to z, x runs to the right and y upwards; the other axes follow cyclically. Each point is a square of pixels, and the
+/// longer side of the picture has at least 512.
+///
+/// Points outside are coloured from white to blue, points inside from white to orange, and points without a number are
+/// grey. Lines connect points of equal distance, and the surface is a dark line.
 ///
 /// # Panics
-/// If the axis is not below 3, there is no such layer, or the values are not one for each point.
+/// If the axis is not below 3, the grid has no such layer, or the values are not one for each point.
 #[must_use]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 255")]
 pub fn slice(grid: &Grid, values: &[f32], axis: usize, layer: usize) -> ([usize; 2], Vec<u8>) {
@@ -24,22 +27,22 @@ pub fn slice(grid: &Grid, values: &[f32], axis: usize, layer: usize) -> ([usize;
     };
     let all = (0..counts[right] * counts[up]).map(|n| at(n % counts[right], n / counts[right]));
     let farthest = all.filter(|x| x.is_finite()).fold(0.0f64, |most, x| most.max(x.abs()));
-    // About ten lines, and never closer to each other than three points.
+    // There are about ten lines, at least three points apart.
     let step = (farthest / 10.0).max(3.0 * grid.spacing());
     let colour = |value: f64| -> [f64; 3] {
         if value.is_nan() {
             return [0.6; 3];
         }
-        let part = if farthest > 0.0 { (value.abs() / farthest).min(1.0).sqrt() } else { 0.0 };
+        let saturation = if farthest > 0.0 { (value.abs() / farthest).min(1.0).sqrt() } else { 0.0 };
         let [full, line] =
             if value < 0.0 { [[0.85, 0.40, 0.05], [0.55, 0.25, 0.0]] } else { [[0.10, 0.35, 0.70], [0.05, 0.2, 0.45]] };
-        let (beside, width) = ((value.abs() / step).fract(), 0.5 * grid.spacing() / step);
+        let (past_line, width) = ((value.abs() / step).fract(), 0.5 * grid.spacing() / step);
         if value.abs() < 0.75 * grid.spacing() && value.abs() < farthest {
             [0.08; 3]
-        } else if beside < width || beside > 1.0 - width {
-            [0, 1, 2].map(|k| line[k] * part + (1.0 - part) * 0.6)
+        } else if past_line < width || past_line > 1.0 - width {
+            [0, 1, 2].map(|k| line[k] * saturation + (1.0 - saturation) * 0.6)
         } else {
-            full.map(|x| x * part + 1.0 - part)
+            full.map(|x| x * saturation + 1.0 - saturation)
         }
     };
     let size = 512usize.div_ceil(counts[right].max(counts[up]));

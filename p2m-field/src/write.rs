@@ -1,14 +1,18 @@
-//! Fields in files.
+//! Writers of fields.
 
-use super::{Cell, FieldFormat, Grid};
+use crate::format::FieldFormat;
+use crate::grid::Grid;
+use crate::refined::Cell;
 use p2m_mixed::engine::npy_header;
 use std::io::{self, Write};
 
 /// Writes a field in one of the formats.
 ///
-/// - **NPY**: an array of NumPy of type `<f4` and shape (x, y, z), in Fortran's order: `field[i, j, k]` is at `Grid::point([i, j, k])`.
-/// - **VTI**: VTK's ImageData with origin and spacing, for ParaView and the like; the values are the point data `distance`.
-/// - **Raw**: the values alone, little-endian, x fastest.
+/// - **NPY**: an array of NumPy of type `<f4` and shape (x, y, z) in Fortran order. `field[i, j, k]` is the value at
+///   `Grid::point([i, j, k])`.
+/// - **VTI**: an ImageData of VTK with origin and spacing, which ParaView reads. The values are the point data
+///   `distance`.
+/// - **Raw**: the values alone as little-endian f32, with x running fastest.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -22,7 +26,7 @@ use std::io::{self, Write};
 /// ```
 ///
 /// # Errors
-/// Those of `writer`, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more or fewer values than points.
+/// Errors of `writer`, and [`InvalidInput`](io::ErrorKind::InvalidInput) if the values are not one for each point.
 pub fn write_field(grid: &Grid, values: &[f32], format: FieldFormat, mut writer: impl Write) -> io::Result<()> {
     if values.len() != grid.len() {
         let message = format!("there are {} values for {} points", values.len(), grid.len());
@@ -47,8 +51,8 @@ pub fn write_field(grid: &Grid, values: &[f32], format: FieldFormat, mut writer:
             writer.write_all(&(4 * values.len() as u64).to_le_bytes())?;
         }
     }
-    let mut bytes = Vec::with_capacity(4 * CHUNK);
-    for values in values.chunks(CHUNK) {
+    let mut bytes = Vec::with_capacity(4 * CHUNK_VALUES);
+    for values in values.chunks(CHUNK_VALUES) {
         bytes.clear();
         bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
         writer.write_all(&bytes)?;
@@ -59,14 +63,16 @@ pub fn write_field(grid: &Grid, values: &[f32], format: FieldFormat, mut writer:
     writer.flush()
 }
 
-/// Values that are written at a time.
-const CHUNK: usize = 1 << 14;
+/// The number of values in one call of the writer.
+const CHUNK_VALUES: usize = 1 << 14;
 
-/// Writes the cells of a refined field as a structured array of NumPy with the fields `origin` (`<f8`, 3), `size` (`<f8`) and `values`
-/// (`<f8`, 8), in the order of [`Cell::values`].
+/// Writes the cells of a field on an octree as a structured array of NumPy.
+///
+/// The fields of the array are `origin` (`<f8`, 3), `size` (`<f8`) and `values` (`<f8`, 8, in the order of
+/// [`Cell::values`]).
 ///
 /// # Errors
-/// Those of `writer`.
+/// Errors of `writer`.
 pub fn write_cells(cells: &[Cell], mut writer: impl Write) -> io::Result<()> {
     let fields = "[('origin', '<f8', (3,)), ('size', '<f8'), ('values', '<f8', (8,))]";
     writer.write_all(&npy_header(fields, &format!("({},)", cells.len()), false))?;

@@ -1,4 +1,4 @@
-//! Scenes from what a program has: parts under names, one after the other.
+//! Building scenes from named parts.
 
 use crate::scene::{Object, Scene, object_of};
 use nalgebra::Point3;
@@ -6,11 +6,12 @@ use p2m_core::{BuildError, Element, PrimitiveId, PrimitiveSet, Soup};
 use std::ops::Range;
 
 impl Scene {
-    /// Adds a part under a name, without blanks around it (or, if nothing is left of that, under none); the ids that its
-    /// primitives got.
+    /// Adds a part under a name and returns the ids of its primitives.
     ///
-    /// To turn, scale or move it first, [`Transform::apply`](crate::generate::Transform::apply) it: coordinates are
-    /// transformed once, and queries are as fast as ever.
+    /// Blanks around the name are removed. If nothing is left, the part has no name.
+    ///
+    /// [`Transform::apply`](crate::generate::Transform::apply) turns, scales or moves a part before it is added.
+    /// Coordinates are transformed once, so queries are not slowed down.
     ///
     /// ```
     /// use nalgebra::Point3;
@@ -31,11 +32,11 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// [`BuildError::TooMany`] for more primitives than ids, or more vertices than u32 can number; the scene is then as it
-    /// was.
+    /// [`BuildError::TooMany`] for more primitives than ids, or more vertices than u32 can number. After an error the
+    /// scene is unchanged.
     ///
     /// # Complexity
-    /// O(1) for each vertex and primitive of the part. A part without primitives leaves nothing.
+    /// O(1) for each vertex and primitive of the part. A part without primitives does not change the scene.
     pub fn add(&mut self, name: &str, part: &Soup<f64>) -> Result<Range<usize>, BuildError> {
         let start = self.soup.len();
         let end = start + part.len();
@@ -43,7 +44,8 @@ impl Scene {
             return Ok(start..end);
         }
         let first = self.soup.positions().len();
-        // Vertices are numbered by u32: more of them than that are too many for the scene as well.
+        // Vertices are numbered by u32, and a scene with more of them returns the same error as one with too many
+        // primitives.
         let last = u32::try_from(first + part.positions().len());
         let (Ok(first), Ok(_), true) = (u32::try_from(first), last, end <= PrimitiveId::MAX_COUNT) else {
             return Err(BuildError::TooMany { len: end });
@@ -62,7 +64,7 @@ impl Scene {
             let count = &mut next[element.indices().len() - 1];
             self.sources.push(*count);
             *count += 1;
-            // Never refused: a part is valid, and there is room.
+            // This never fails, because the part is valid and the number of primitives was checked.
             self.soup.push(element)?;
         }
         let name = name.trim();
@@ -72,10 +74,11 @@ impl Scene {
         Ok(start..end)
     }
 
-    /// Adds triangles, each of three numbers of positions.
+    /// Adds triangles, each of which has the indices of three positions.
     ///
     /// # Errors
-    /// As [`Soup::new`], with ids and positions counted in this part; the scene is then as it was.
+    /// The errors are those of [`Soup::new`], with ids and positions counted in this part. After an error the
+    /// scene is unchanged.
     pub fn add_triangles<P: Copy + Into<Point3<f64>>>(
         &mut self,
         name: &str,
@@ -85,10 +88,10 @@ impl Scene {
         self.add_elements(name, positions, triangles.iter().map(|t| Element::Triangle(*t)))
     }
 
-    /// Adds segments, each of two numbers of positions.
+    /// Adds segments, each of which has the indices of two positions.
     ///
     /// # Errors
-    /// As [`add_triangles`](Self::add_triangles).
+    /// The errors are those of [`add_triangles`](Self::add_triangles).
     pub fn add_segments<P: Copy + Into<Point3<f64>>>(
         &mut self,
         name: &str,
@@ -98,28 +101,28 @@ impl Scene {
         self.add_elements(name, positions, segments.iter().map(|s| Element::Segment(*s)))
     }
 
-    /// Adds the segments from each position to the next; none for a single position.
+    /// Adds the segments from each position to the next. A single position has none.
     ///
     /// # Errors
-    /// As [`add_triangles`](Self::add_triangles).
+    /// The errors are those of [`add_triangles`](Self::add_triangles).
     pub fn add_polyline<P: Copy + Into<Point3<f64>>>(
         &mut self,
         name: &str,
         positions: &[P],
     ) -> Result<Range<usize>, BuildError> {
-        self.add_elements(name, positions, (1..number_of(positions)?).map(|i| Element::Segment([i - 1, i])))
+        self.add_elements(name, positions, (1..index_count(positions)?).map(|i| Element::Segment([i - 1, i])))
     }
 
-    /// Adds positions as points.
+    /// Adds a point for each position.
     ///
     /// # Errors
-    /// As [`add_triangles`](Self::add_triangles).
+    /// The errors are those of [`add_triangles`](Self::add_triangles).
     pub fn add_points<P: Copy + Into<Point3<f64>>>(
         &mut self,
         name: &str,
         positions: &[P],
     ) -> Result<Range<usize>, BuildError> {
-        self.add_elements(name, positions, (0..number_of(positions)?).map(Element::Point))
+        self.add_elements(name, positions, (0..index_count(positions)?).map(Element::Point))
     }
 
     fn add_elements<P: Copy + Into<Point3<f64>>>(
@@ -131,7 +134,7 @@ impl Scene {
         self.add(name, &Soup::new(positions.iter().map(|p| (*p).into()).collect(), elements)?)
     }
 
-    /// The named part that a primitive is in, if it is in one.
+    /// Returns the named part that a primitive is in.
     ///
     /// # Complexity
     /// O(log n) for n parts.
@@ -141,8 +144,8 @@ impl Scene {
     }
 }
 
-/// How many positions there are, as a number of one.
-fn number_of<P>(positions: &[P]) -> Result<u32, BuildError> {
+/// Returns the number of positions as the type of their indices.
+fn index_count<P>(positions: &[P]) -> Result<u32, BuildError> {
     u32::try_from(positions.len()).map_err(|_| BuildError::TooMany { len: positions.len() })
 }
 
@@ -179,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_refused_leaves_the_scene_as_it_was() {
+    fn errors_leave_the_scene_unchanged() {
         let mut scene = Scene::default();
         scene.add_triangles("a", &CORNERS, &[[0, 1, 2]]).unwrap();
         let before = scene.clone();

@@ -1,4 +1,4 @@
-//! Scenes under construction.
+//! The scene that a reader builds, statement by statement.
 
 use crate::Reason;
 use crate::polygon::Triangulator;
@@ -7,21 +7,22 @@ use crate::text::{quote, trim};
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveSet, Soup};
 
-/// Kinds of skipped things that are counted one by one. A file of noise has more: they share one count.
-const MAX_KINDS: usize = 64;
+/// The largest number of kinds of skipped records with a count of their own. Further kinds, as a file of noise has
+/// them, share one count.
+const MAX_SKIPPED_KINDS: usize = 64;
 
-/// Counts what is skipped.
+/// Counts the records of a file that a reader skips, by kind.
 #[derive(Default)]
-pub(crate) struct Skips {
-    /// The same thing is often skipped many times in a row: the last one is tried first.
+pub(crate) struct SkippedRecords {
+    /// The index of the kind that was counted last. It is tried first, because records of a kind often come in a row.
     last: usize,
     keys: Vec<Vec<u8>>,
     list: Vec<Skipped>,
     others: u64,
 }
 
-impl Skips {
-    /// Adds to the count of a name; nothing if `count` is 0.
+impl SkippedRecords {
+    /// Adds to the count of the kind with this name. A count of 0 adds no kind.
     pub(crate) fn add(&mut self, key: &[u8], count: u64) {
         if count == 0 {
             return;
@@ -29,7 +30,7 @@ impl Skips {
         if self.keys.get(self.last).is_none_or(|k| k != key) {
             match self.keys.iter().position(|k| k == key) {
                 Some(at) => self.last = at,
-                None if self.keys.len() < MAX_KINDS => {
+                None if self.keys.len() < MAX_SKIPPED_KINDS => {
                     self.last = self.keys.len();
                     self.keys.push(key.to_vec());
                     self.list.push(Skipped { what: quote(key), count: 0, is_plural: false });
@@ -43,16 +44,16 @@ impl Skips {
         self.list[self.last].count += count;
     }
 
-    /// Adds so many of what `what` is the plural of, unless there are none.
-    pub(crate) fn add_many(&mut self, count: u64, what: &str) {
+    /// Adds a kind that is described by a plural. A count of 0 adds no kind.
+    pub(crate) fn add_plural(&mut self, count: u64, what: &str) {
         if count > 0 {
             self.keys.push(what.as_bytes().to_vec());
             self.list.push(Skipped { what: what.to_owned(), count, is_plural: true });
         }
     }
 
-    /// Takes back what was added under a name.
-    pub(crate) fn forget(&mut self, key: &[u8]) {
+    /// Removes the kind with this name.
+    pub(crate) fn remove(&mut self, key: &[u8]) {
         if let Some(at) = self.keys.iter().position(|k| k == key) {
             self.keys.remove(at);
             self.list.remove(at);
@@ -62,22 +63,23 @@ impl Skips {
 
     fn finish(mut self) -> Vec<Skipped> {
         let others = self.others;
-        self.add_many(others, "other statements");
+        self.add_plural(others, "other statements");
         self.list
     }
 }
 
-/// Collects objects. A name costs memory only where it starts a run of primitives.
+/// Collects runs of primitives under one name. A name takes memory only if a run of primitives starts with it.
 #[derive(Default)]
-struct Objects {
+struct ObjectRuns {
     list: Vec<Object>,
-    /// The name at hand, in the bytes of the file, and the first id under it.
+    /// The current name, in the bytes of the file.
     name: Vec<u8>,
+    /// The first id under the current name.
     start: usize,
 }
 
-impl Objects {
-    /// What follows from id `next` on is of this name.
+impl ObjectRuns {
+    /// Starts a run with this name at id `next`.
     fn start(&mut self, name: &[u8], next: usize) {
         self.end(next);
         self.name.clear();
@@ -96,24 +98,27 @@ impl Objects {
     }
 }
 
-/// A scene under construction; whoever adds to it has checked indices, and that what they name is finite.
+/// Builds a scene. Callers have to check that indices are in range and that the vertices of primitives are finite.
 #[derive(Default)]
-pub(crate) struct Builder {
-    pub(crate) skips: Skips,
+pub(crate) struct SceneBuilder {
+    pub(crate) skipped: SkippedRecords,
     soup: Soup<f64>,
     sources: Vec<u32>,
-    objects: Objects,
+    objects: ObjectRuns,
     corners: Vec<Point3<f64>>,
     triangulator: Triangulator,
 }
 
-impl Builder {
+impl SceneBuilder {
     pub(crate) fn positions(&self) -> &[Point3<f64>] {
         self.soup.positions()
     }
 
-    /// Adds a vertex, unless there are more than u32 can count.
-    pub(crate) fn vertex(&mut self, position: Point3<f64>) -> Result<u32, Reason> {
+    /// Adds a vertex and returns its index.
+    ///
+    /// # Errors
+    /// [`Reason::ElementTooLarge`] if u32 cannot number it.
+    pub(crate) fn push_vertex(&mut self, position: Point3<f64>) -> Result<u32, Reason> {
         let count = self.positions().len() as u64;
         let vertex = u32::try_from(count).ok().filter(|&vertex| vertex < u32::MAX);
         let vertex = vertex.ok_or(Reason::ElementTooLarge { count: count + 1, limit: u64::from(u32::MAX) })?;
@@ -123,13 +128,13 @@ impl Builder {
 
     pub(crate) fn push(&mut self, element: Element, source: usize) -> Result<(), Reason> {
         self.soup.push(element).map_err(Reason::Build)?;
-        // There are no more statements than bytes; one beyond u32 has no primitive, since ids end before.
+        // `u32::MAX` stands for sources that u32 cannot number. A file with so many has too many primitives anyway.
         self.sources.push(u32::try_from(source).unwrap_or(u32::MAX));
         Ok(())
     }
 
-    /// Adds the triangles of a polygon.
-    pub(crate) fn polygon(&mut self, vertices: &[u32], source: usize) -> Result<(), Reason> {
+    /// Adds the triangles that a polygon is divided into.
+    pub(crate) fn push_polygon(&mut self, vertices: &[u32], source: usize) -> Result<(), Reason> {
         if let &[a, b, c] = vertices {
             return self.push(Element::Triangle([a, b, c]), source);
         }
@@ -143,24 +148,24 @@ impl Builder {
         Ok(())
     }
 
-    /// Whether a vertex may be part of a primitive.
+    /// Returns whether the coordinates of a vertex are finite, so that it may be part of a primitive.
     pub(crate) fn is_finite(&self, vertex: u32) -> bool {
         self.positions()[vertex as usize].iter().all(|x| x.is_finite())
     }
 
-    /// What follows belongs to the object of this name, or to none if it is empty.
-    pub(crate) fn object(&mut self, name: &[u8]) {
+    /// Starts an object with this name. Primitives under an empty name belong to no object.
+    pub(crate) fn start_object(&mut self, name: &[u8]) {
         self.objects.start(trim(name), self.soup.len());
     }
 
-    /// Forgets all objects.
-    pub(crate) fn forget_objects(&mut self) {
-        self.objects = Objects { start: self.soup.len(), ..Objects::default() };
+    /// Removes all objects.
+    pub(crate) fn clear_objects(&mut self) {
+        self.objects = ObjectRuns { start: self.soup.len(), ..ObjectRuns::default() };
     }
 
-    /// Makes every vertex a point, except those that are not finite.
+    /// Adds a point for every vertex with finite coordinates.
     #[allow(clippy::cast_possible_truncation, reason = "there are no more vertices than u32 can count")]
-    pub(crate) fn point_cloud(&mut self) -> Result<(), Reason> {
+    pub(crate) fn push_point_cloud(&mut self) -> Result<(), Reason> {
         let mut left_out = 0;
         for i in 0..self.positions().len() {
             if self.is_finite(i as u32) {
@@ -169,16 +174,16 @@ impl Builder {
                 left_out += 1;
             }
         }
-        self.skips.add_many(left_out, "vertices that are not finite");
+        self.skipped.add_plural(left_out, "vertices that are not finite");
         Ok(())
     }
 
     pub(crate) fn finish(mut self) -> Scene {
-        // Nothing is added any more.
+        // The scene does not grow any more.
         self.soup.shrink_to_fit();
         self.sources.shrink_to_fit();
         self.objects.end(self.soup.len());
-        let Self { soup, sources, skips, objects, .. } = self;
-        Scene { soup, sources, objects: objects.list, skipped: skips.finish() }
+        let Self { soup, sources, skipped, objects, .. } = self;
+        Scene { soup, sources, objects: objects.list, skipped: skipped.finish() }
     }
 }

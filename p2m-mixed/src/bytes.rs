@@ -1,9 +1,9 @@
-//! Numbers of binary files.
+//! A reader of the numbers in binary files.
 
 use crate::Reason;
 use std::io::{BufRead, ErrorKind};
 
-/// The types of numbers that files hold.
+/// The types of numbers in binary files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Scalar {
     I8,
@@ -19,7 +19,7 @@ pub(crate) enum Scalar {
 }
 
 impl Scalar {
-    /// Size in bytes.
+    /// Returns the size in bytes.
     pub(crate) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -34,21 +34,22 @@ impl Scalar {
     }
 }
 
-/// A binary file with the offset that it is read at.
-pub(crate) struct Bytes<R> {
+/// Reads numbers from a binary file and knows the offset of each.
+pub(crate) struct ByteReader<R> {
     reader: R,
-    /// Of the number that was read last, and of the one to come.
+    /// The offset of the number that was read last.
     start: u64,
+    /// The offset of the next byte.
     offset: u64,
 }
 
-impl<R: BufRead> Bytes<R> {
-    /// `reader` stands at `offset`.
+impl<R: BufRead> ByteReader<R> {
+    /// `offset` is the current position of `reader` in the file.
     pub(crate) fn new(reader: R, offset: u64) -> Self {
         Self { reader, start: offset, offset }
     }
 
-    /// Where the number stands that was read last.
+    /// Returns the offset of the number that was read last.
     pub(crate) fn start(&self) -> u64 {
         self.start
     }
@@ -72,7 +73,7 @@ impl<R: BufRead> Bytes<R> {
         Ok(bytes)
     }
 
-    /// The number of double precision that is nearest; all but large integers of 64 bits are exact.
+    /// Reads a number and rounds it to double precision. Only large integers of 64 bits are not exact.
     #[allow(clippy::cast_precision_loss, reason = "documented")]
     pub(crate) fn number(&mut self, scalar: Scalar, big_endian: bool) -> Result<f64, Reason> {
         Ok(match scalar {
@@ -89,7 +90,7 @@ impl<R: BufRead> Bytes<R> {
         })
     }
 
-    /// Passes over so many bytes.
+    /// Skips this number of bytes.
     pub(crate) fn skip(&mut self, bytes: u64) -> Result<(), Reason> {
         self.start = self.offset;
         let mut left = bytes;
@@ -102,8 +103,8 @@ impl<R: BufRead> Bytes<R> {
         Ok(())
     }
 
-    /// Passes over the rest of the file; how many bytes there are.
-    pub(crate) fn rest(&mut self) -> Result<u64, Reason> {
+    /// Skips the rest of the file and returns its number of bytes.
+    pub(crate) fn skip_rest(&mut self) -> Result<u64, Reason> {
         self.start = self.offset;
         let mut rest = 0;
         loop {
@@ -114,12 +115,12 @@ impl<R: BufRead> Bytes<R> {
         }
     }
 
-    /// Passes over what is at hand, up to `most` bytes; 0 at the end of the file.
-    fn discard(&mut self, most: u64) -> Result<u64, Reason> {
+    /// Skips buffered bytes, at most `max_count`, and returns their number, which is 0 at the end of the file.
+    fn discard(&mut self, max_count: u64) -> Result<u64, Reason> {
         loop {
             match self.reader.fill_buf() {
                 Ok(buffer) => {
-                    let passed = buffer.len().min(usize::try_from(most).unwrap_or(usize::MAX));
+                    let passed = buffer.len().min(usize::try_from(max_count).unwrap_or(usize::MAX));
                     self.reader.consume(passed);
                     self.offset += passed as u64;
                     return Ok(passed as u64);

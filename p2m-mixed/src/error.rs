@@ -1,9 +1,9 @@
-//! Why a file cannot be read, and where it goes wrong.
+//! Errors of readers: the file, the location in it, and the reason.
 
 use p2m_core::{BuildError, RayError};
 use std::fmt;
 
-/// A file that cannot be read.
+/// The error of a file that cannot be read.
 ///
 /// ```
 /// let error = p2m_mixed::read_obj("v 0 0 0\np 2\n".as_bytes(), "two.obj").unwrap_err();
@@ -11,51 +11,52 @@ use std::fmt;
 /// assert!(matches!(error.reason, p2m_mixed::Reason::IndexOutOfRange { index: 2, count: 1 }));
 /// ```
 ///
-/// What the operating system says is not part of the message, but its [`source`](std::error::Error::source).
+/// The message of the operating system is not part of the message, but the [`source`](std::error::Error::source)
+/// of the error.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct ReadError {
     /// The name of the file as the caller gave it.
     pub file: String,
-    /// Where in the file.
-    pub place: Place,
-    /// What is wrong there.
+    /// The location of the error in the file.
+    pub location: FileLocation,
+    /// The reason of the error.
     pub reason: Reason,
 }
 
 impl ReadError {
-    pub(crate) fn new(file: &str, place: Place, reason: Reason) -> Self {
-        Self { file: file.to_owned(), place, reason }
+    pub(crate) fn new(file: &str, location: FileLocation, reason: Reason) -> Self {
+        Self { file: file.to_owned(), location, reason }
     }
 }
 
 impl fmt::Display for ReadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{}: {}", self.file, self.place, self.reason)
+        write!(f, "{}{}: {}", self.file, self.location, self.reason)
     }
 }
 
 impl std::error::Error for ReadError {
-    /// That of the reason, which is itself in the message already.
+    /// Returns the source of the reason, because the reason itself is in the message.
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         self.reason.source()
     }
 }
 
-/// A place in a file.
+/// A location in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum FileLocation {
     /// The file as a whole.
     File,
-    /// A line of text, from 1.
+    /// The number of a line of text, counted from 1.
     Line(u64),
-    /// An offset in bytes from the start of the file, from 0.
+    /// An offset from the start of the file in bytes, counted from 0.
     Byte(u64),
-    /// A row of an array, from 0.
+    /// The number of a row of an array, counted from 0.
     Row(u64),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FileLocation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File => Ok(()),
@@ -66,167 +67,168 @@ impl fmt::Display for Place {
     }
 }
 
-/// What is wrong with a file. Texts quoted from it are shortened and escaped.
+/// Reasons why a file cannot be read. Texts that are quoted from the file are shortened and escaped.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Reason {
-    /// The operating system says no.
+    /// The operating system returned an error.
     #[error("cannot be read")]
     Io(#[source] std::io::Error),
-    /// It is no saved index, or a damaged one.
+    /// The file is not a saved index, or a damaged one.
     #[error(transparent)]
     Saved(p2m_core::storage::LoadError),
-    /// The primitives do not make a scene: there are too many.
+    /// The primitives do not make a scene, because there are too many.
     #[error("no scene can be made of it")]
     Build(#[source] BuildError),
-    /// The name of the file does not tell its format.
+    /// The extension of the file belongs to no format.
     #[error("unknown extension '{extension}', expected one of {}", supported.join(", "))]
     UnknownExtension {
-        /// What follows the last dot of the name, if anything.
+        /// The extension, which is empty if there is none.
         extension: String,
-        /// What could have followed.
+        /// The extensions that are supported here.
         supported: &'static [&'static str],
     },
     /// The file ends in the middle of something.
     #[error("unexpected end of file")]
     UnexpectedEnd,
-    /// A number was expected.
+    /// A text is not a number of the expected kind.
     #[error("'{text}' is not a number that fits here")]
     BadNumber {
-        /// What stands there.
+        /// The text in the file.
         text: String,
     },
-    /// A number was expected in a table whose columns are separated by blanks.
+    /// A text with commas or semicolons is not a number, in a table whose columns are separated by blanks.
     #[error("'{text}' is not a number that fits here (a table with commas or semicolons should be named .csv)")]
     SeparatorInNumber {
-        /// What stands there.
+        /// The text in the file.
         text: String,
     },
-    /// A coordinate of a query or of an STL facet is NaN or infinite, or too large for a number of double precision.
+    /// A coordinate of a query or of an STL facet is NaN, infinite, or too large for double precision.
     #[error("coordinate '{text}' is not finite")]
     NonFinite {
-        /// What stands there.
+        /// The text in the file.
         text: String,
     },
-    /// A primitive has a vertex with a coordinate that is NaN or infinite, or too large for a number of double
-    /// precision. OBJ counts vertices from 1, PLY and OFF from 0. The place is that of the vertex in a PLY file, of
-    /// the primitive in the others.
+    /// A primitive has a vertex with a coordinate that is NaN, infinite, or too large for double precision. The
+    /// location is that of the vertex in a PLY file, and that of the primitive in other files.
     #[error("vertex {index} is part of a primitive, but has a coordinate that is not finite")]
     NonFiniteVertex {
-        /// The number of the vertex.
+        /// The number of the vertex, which OBJ counts from 1, PLY and OFF from 0.
         index: u64,
     },
-    /// A file that should be OBJ has statements that OBJ does not know, and no vertex.
+    /// An OBJ file has no vertex, but statements that OBJ does not have.
     #[error("no vertex in it, is this an OBJ file?")]
     NoVertex,
-    /// A word that is not the keyword that should be there.
+    /// A word is not the expected keyword.
     #[error("'{text}' is not {expected}, which should be here")]
     UnexpectedWord {
-        /// The word.
+        /// The word in the file.
         text: String,
-        /// What should be there instead.
+        /// The words that are expected.
         expected: &'static str,
     },
     /// A line of a text PLY or OFF file has more words than the element that ends on it.
     #[error("'{text}' is more than the header declares for the element on this line")]
     ExtraWord {
-        /// The first word too many.
+        /// The first of the additional words.
         text: String,
     },
     /// A point has fewer than three coordinates.
     #[error("a point needs 3 coordinates, found {found}")]
     TooFewCoordinates {
-        /// How many it has.
+        /// The number of coordinates.
         found: usize,
     },
     /// A ray has fewer than six coordinates.
     #[error("a ray needs 6 coordinates, found {found}")]
     IncompleteRay {
-        /// How many it has.
+        /// The number of coordinates.
         found: usize,
     },
-    /// Six coordinates that make no ray.
+    /// The six coordinates do not make a ray.
     #[error("{0}")]
     Ray(RayError),
-    /// OBJ numbers vertices from 1 (or -1, backwards).
+    /// A vertex index of an OBJ file is 0, but indices count from 1, or backwards from -1.
     #[error("vertex index 0, but vertices are numbered from 1")]
     IndexZero,
-    /// A vertex that an OBJ file does not have, at least not before this line. Counted from 1 or, backwards, from -1.
+    /// An OBJ file does not have the vertex with this index before this line. Indices count from 1, or backwards from
+    /// -1.
     #[error("vertex index {index} is out of range, the file has {count} vertices so far")]
     IndexOutOfRange {
-        /// The index as it stands in the file.
+        /// The index in the file.
         index: i64,
-        /// How many vertices there are before this line.
+        /// The number of vertices before this line.
         count: u64,
     },
-    /// A vertex that a PLY or OFF file does not have. Counted from 0.
+    /// A PLY or OFF file does not have the vertex with this index. Indices count from 0.
     #[error("vertex index {index} is out of range, the file has {count} vertices, counted from 0")]
     NoSuchVertex {
-        /// The index as it stands in the file.
+        /// The index in the file.
         index: i64,
-        /// How many vertices there are in the whole file.
+        /// The number of vertices in the file.
         count: u64,
     },
-    /// A face of fewer than three vertices (in OFF: of none), a line of fewer than two, a point statement of none.
+    /// A face has fewer than three vertices (OFF: none), a polyline fewer than two, or a point statement none.
     #[error("{needed} or more vertices expected, found {found}")]
     TooFewVertices {
-        /// How many there are.
+        /// The number of vertices.
         found: u64,
-        /// How many it takes.
+        /// The number of vertices that are needed.
         needed: u64,
     },
-    /// A list in a PLY file, or something in an OFF file, has a negative length or one that makes no sense.
+    /// A list in a PLY or OFF file has a negative length, or one that is not valid there.
     #[error("a list cannot have {count} items")]
     BadListCount {
-        /// The length.
+        /// The length of the list.
         count: i64,
     },
-    /// A face of more vertices than [`MAX_CORNERS`](crate::MAX_CORNERS), or more than 2^32 - 1 vertices.
+    /// A face has more than [`MAX_CORNERS`](crate::MAX_CORNERS) vertices, or the file has more than 2^32 - 1.
     #[error("{count} vertices are more than the {limit} that are supported here")]
     ElementTooLarge {
-        /// How many there are.
+        /// The number of vertices.
         count: u64,
-        /// How many there may be.
+        /// The largest number that is supported.
         limit: u64,
     },
-    /// The numbers that a PLY file gives its primitives (its properties `p2m_id`) are not 0, 1, 2, ... in some order.
+    /// The ids of primitives in a PLY file (the properties `p2m_id`) are not a permutation of 0, 1, 2, ...
     #[error("primitive id {id} is out of range or there twice, the file has {count} primitives")]
     BadPrimitiveId {
-        /// A number that is.
+        /// An id that is out of range or repeated.
         id: i64,
-        /// How many primitives there are.
+        /// The number of primitives.
         count: u64,
     },
-    /// More data than the header of an array announces.
+    /// The file of an array has more data than its header announces.
     #[error("{bytes} bytes follow the end of the array")]
     TrailingBytes {
-        /// How many.
+        /// The number of additional bytes.
         bytes: u64,
     },
-    /// The header of a file makes no sense.
+    /// The header of the file is not valid.
     #[error("bad header: {0}")]
     BadHeader(HeaderProblem),
-    /// A PLY file in a format or version other than `ascii`, `binary_little_endian` and `binary_big_endian` 1.0, an OFF
-    /// file with vertices in another number of dimensions, an NPY file of an unknown version.
+    /// The variant of a format is not supported: a PLY file other than `ascii`, `binary_little_endian` and
+    /// `binary_big_endian` 1.0, an OFF file with vertices in another number of dimensions, or an NPY file of
+    /// an unknown version.
     #[error("unsupported format '{text}'")]
     UnsupportedFormat {
-        /// What the header says.
+        /// The variant in the words of the header.
         text: String,
     },
-    /// The names of a CSV file's columns do not tell which of them are coordinates.
+    /// The names of the columns of a CSV file do not identify the coordinates.
     #[error("no coordinates among the columns {}; they may be named {expected}", names.join(", "))]
     UnknownColumns {
-        /// The names, of the first columns if there are many.
+        /// The names of the columns, or of the first ones if there are many.
         names: Vec<String>,
-        /// What they could be.
+        /// The names that are expected.
         expected: &'static str,
     },
-    /// A CSV record with a quote that is not closed.
+    /// A CSV record has a quote that is not closed.
     #[error("a quote is not closed on this line")]
     BadRecord,
 }
 
-/// What is wrong with the header of a file.
+/// Reasons why the header of a file is not valid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum HeaderProblem {
@@ -236,87 +238,87 @@ pub enum HeaderProblem {
     /// An STL file is text, but does not start with `solid`.
     #[error("the file is text, but does not start with 'solid'")]
     NotStl,
-    /// The first word is neither a count nor `OFF` behind known letters.
+    /// The first word of an OFF file is neither a count nor `OFF` with a known prefix.
     #[error("the file starts with '{text}', not with 'OFF'")]
     NotOff {
         /// The first word.
         text: String,
     },
-    /// The first bytes are not those of an NPY file.
+    /// The file does not start with the magic bytes of an NPY file.
     #[error("the file does not start as an array of NumPy does (format .npy)")]
     NotNpy,
-    /// The dictionary in the header of an NPY file is not what NumPy writes.
+    /// The dictionary in the header of an NPY file is not one that NumPy writes.
     #[error("the description of the array is not understood near '{text}'")]
     BadDescription {
-        /// What stands where it stops making sense.
+        /// The text where parsing failed.
         text: String,
     },
-    /// The description of an array lacks one of its parts.
+    /// The description of an array has no entry with this key.
     #[error("the description of the array has no '{key}'")]
     MissingKey {
-        /// Which part.
+        /// The key of the missing entry.
         key: &'static str,
     },
-    /// An array of something else than numbers, or of numbers too large or too small to be coordinates.
+    /// The items of an array are not numbers, or numbers of a size that is not supported.
     #[error("items of type {text} are no coordinates, expected integers or floats of 4 or 8 bytes")]
     UnsupportedType {
         /// The type in the words of the header.
         text: String,
     },
-    /// A structured array in which no fields are coordinates.
+    /// The names of the fields of a structured array do not identify the coordinates.
     #[error("no coordinates among the fields {}; expected {expected}", names.join(", "))]
     UnknownFields {
-        /// The names, of the first fields if there are many.
+        /// The names of the fields, or of the first ones if there are many.
         names: Vec<String>,
-        /// What they could be.
+        /// The names that are expected.
         expected: &'static str,
     },
-    /// An array of a shape that no points have.
+    /// The shape of an array is not that of points or rays.
     #[error("the array has the shape {text}, expected {expected}")]
     BadShape {
-        /// The shape.
+        /// The shape of the array.
         text: String,
-        /// What it should be.
+        /// The shape that is expected.
         expected: &'static str,
     },
-    /// A line is longer than any sensible one.
+    /// A line or a header is too long.
     #[error("line too long")]
     LineTooLong,
-    /// A line that is not of the header's grammar.
+    /// A line is not a declaration of a PLY header.
     #[error("'{text}' is not understood")]
     BadLine {
-        /// The line.
+        /// The line of the header.
         text: String,
     },
-    /// There is no `format` line.
+    /// The header has no line `format`.
     #[error("no format line")]
     NoFormat,
-    /// A property of a type that does not exist, or whose type cannot serve its purpose.
+    /// A property has a type that does not exist, or that is not suitable for the property.
     #[error("property '{name}' is of type '{declared}', which is unknown or does not fit")]
     BadType {
-        /// The property.
+        /// The name of the property.
         name: String,
-        /// Its type in the words of the header.
+        /// The type in the words of the header.
         declared: String,
     },
     /// Two elements, or two properties of an element, have the same name.
     #[error("'{name}' is declared twice")]
     Duplicate {
-        /// The name.
+        /// The name that occurs twice.
         name: String,
     },
-    /// An element is missing.
+    /// The file has no element with this name.
     #[error("there is no element '{element}'")]
     MissingElement {
-        /// The element.
+        /// The name of the element.
         element: &'static str,
     },
-    /// An element lacks a property without which it means nothing.
+    /// An element lacks a property that it needs.
     #[error("element '{element}' has no property '{property}'")]
     MissingProperty {
-        /// The element.
+        /// The name of the element.
         element: &'static str,
-        /// The property.
+        /// The name of the property.
         property: &'static str,
     },
 }

@@ -1,9 +1,9 @@
-//! The formats of files, by name and by extension.
+//! The file formats of scenes, points and answers, with their names and extensions.
 
-use crate::{Place, ReadError, Reason};
+use crate::{FileLocation, ReadError, Reason};
 use std::path::Path;
 
-/// A name that is of no format.
+/// The error for a name that belongs to no format.
 ///
 /// ```
 /// let error = "step".parse::<p2m_mixed::Format>().unwrap_err();
@@ -13,13 +13,13 @@ use std::path::Path;
 #[error("unknown format '{name}', expected one of {}", supported.join(", "))]
 #[non_exhaustive]
 pub struct UnknownFormat {
-    /// The name.
+    /// The unknown name.
     pub name: String,
-    /// What it could have been.
+    /// The names of the formats that are supported here.
     pub supported: &'static [&'static str],
 }
 
-/// Defines an enum of formats with their names, which are extensions of files, too.
+/// Defines an enum of formats with their names, which are also the extensions of files.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! formats {
@@ -36,10 +36,10 @@ macro_rules! formats {
         }
 
         impl $format {
-            /// The names of all of them; each is an extension of files, too.
+            /// The names of all formats, which are also the extensions of files.
             pub const NAMES: &'static [&'static str] = &[$($name, $($other,)*)*];
 
-            /// Its name, which is the usual extension of its files.
+            /// Returns the name of the format, which is the usual extension of its files.
             #[must_use]
             pub fn name(self) -> &'static str {
                 match self {
@@ -54,10 +54,10 @@ macro_rules! formats {
                 }
             }
 
-            /// The format that the extension of a file says, in any case.
+            /// Returns the format that the extension of a file stands for, in any case.
             ///
             /// # Errors
-            /// `Reason::UnknownExtension` with the name of the file.
+            /// `Reason::UnknownExtension` if the extension belongs to no format.
             pub fn from_path(path: &std::path::Path) -> Result<Self, $crate::ReadError> {
                 let extension = path.extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
                 let known = Self::named(&extension);
@@ -74,7 +74,7 @@ macro_rules! formats {
         impl std::str::FromStr for $format {
             type Err = $crate::UnknownFormat;
 
-            /// By name, in any case.
+            /// Returns the format with this name, in any case.
             fn from_str(name: &str) -> Result<Self, $crate::UnknownFormat> {
                 Self::named(name).ok_or_else(|| $crate::engine::unknown_format(name, Self::NAMES))
             }
@@ -82,20 +82,20 @@ macro_rules! formats {
     };
 }
 
-/// The error for a file whose extension is that of no format.
+/// Returns the error for a file whose extension belongs to no format.
 pub fn unknown_extension(path: &Path, extension: String, supported: &'static [&'static str]) -> ReadError {
     let reason = Reason::UnknownExtension { extension, supported };
-    ReadError::new(&path.display().to_string(), Place::File, reason)
+    ReadError::new(&path.display().to_string(), FileLocation::File, reason)
 }
 
-/// The error for a name of no format.
+/// Returns the error for a name that belongs to no format.
 #[must_use]
 pub fn unknown_format(name: &str, supported: &'static [&'static str]) -> UnknownFormat {
     UnknownFormat { name: name.to_owned(), supported }
 }
 
 formats! {
-    /// The formats of scenes: all of them are read and written.
+    /// The file formats of scenes, all of which can be read and written.
     ///
     /// ```
     /// use p2m_mixed::Format;
@@ -104,43 +104,44 @@ formats! {
     /// assert_eq!(Format::from_path("a/b.off".as_ref()).unwrap().to_string(), "off");
     /// ```
     Format {
-        /// Wavefront OBJ, a text: [`read_obj`](crate::read_obj), [`write_obj`](crate::write_obj).
+        /// Wavefront OBJ is a text format, see [`read_obj`](crate::read_obj) and [`write_obj`](crate::write_obj).
         Obj = "obj",
-        /// The Stanford polygon format: [`read_ply`](crate::read_ply), [`write_ply`](crate::write_ply).
+        /// This is the Stanford polygon format, see [`read_ply`](crate::read_ply) and [`write_ply`](crate::write_ply).
         Ply = "ply",
-        /// Stereolithography, triangles in single precision: [`read_stl`](crate::read_stl),
+        /// Stereolithography files have triangles in single precision, see [`read_stl`](crate::read_stl) and
         /// [`write_stl`](crate::write_stl).
         Stl = "stl",
-        /// The object file format of Geomview: [`read_off`](crate::read_off), [`write_off`](crate::write_off).
+        /// This is the object file format of Geomview, see [`read_off`](crate::read_off) and
+        /// [`write_off`](crate::write_off).
         Off = "off",
-        /// Saved indexes with their scenes, of which the scene is read and written: [`read_p2m`](crate::read_p2m),
+        /// Files of saved indexes can have a scene, see [`read_p2m`](crate::read_p2m) and
         /// [`write_p2m`](crate::write_p2m).
         P2m = "p2m",
     }
 }
 
 formats! {
-    /// The formats of points to ask about, see [`read_points`](crate::read_points).
+    /// The file formats of query points and rays, see [`read_points`](crate::read_points).
     PointFormat {
-        /// Columns of text separated by white space.
+        /// This is text with columns that are separated by white space.
         Xyz = "xyz" | "txt",
-        /// Columns of text separated by commas or semicolons.
+        /// This is text with columns that are separated by commas or semicolons.
         Csv = "csv",
-        /// An array of NumPy.
+        /// This is an array of NumPy.
         Npy = "npy",
-        /// The vertices of a PLY file.
+        /// The points are the vertices of a PLY file.
         Ply = "ply",
     }
 }
 
 formats! {
-    /// The formats of answers, see [`AnswerWriter`](crate::AnswerWriter).
+    /// The file formats of answers, see [`AnswerWriter`](crate::AnswerWriter).
     AnswerFormat {
-        /// A table of text.
+        /// This is a text table.
         Csv = "csv",
-        /// A structured array of NumPy.
+        /// This is a structured array of NumPy.
         Npy = "npy",
-        /// The queries as a point cloud, with what was answered as properties.
+        /// This is a point cloud of the queries, which have the answers as properties.
         Ply = "ply",
     }
 }

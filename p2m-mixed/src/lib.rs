@@ -1,9 +1,17 @@
-//! Scenes of triangles, segments and points: from files, from parts, from generators.
+//! Scenes of triangles, segments and points, with their readers, writers, generators and statistics.
 //!
-//! [`read_scene`] reads OBJ, PLY, STL and OFF files into a [`Scene`], [`read_points`] reads query points from XYZ, CSV,
-//! NPY and PLY files. Both tell where and why a file is refused ([`ReadError`]), and a scene tells what it left out
-//! ([`Scene::skipped`]). [`write_scene`] is the way back, [`AnswerWriter`] writes what was answered, [`generate`] makes
-//! scenes from nothing, [`Scene::add`] and its like put them together.
+//! - **Scenes**: [`read_scene`] reads OBJ, PLY, STL and OFF files into a [`Scene`], and [`write_scene`] writes them.
+//!   [`Scene::add`] and similar methods build a scene from named parts. [`Scene::skipped`] lists the data of a file
+//!   that the reader left out.
+//! - **Queries**: [`read_points`] and [`read_rays`] read query points and rays from XYZ, CSV, NPY and PLY files.
+//! - **Answers**: [`AnswerWriter`], [`HitWriter`] and [`NumberWriter`] write the answers to queries.
+//! - **Generators**: [`generate`] makes scenes that are the same on every platform.
+//! - **Statistics**: [`statistics`] describes a scene, and [`picture`] and [`Camera`] draw it.
+//!
+//! A [`ReadError`] has the file, the location in it and the reason.
+//!
+//! The features `parry`, `parry-f32` and `rstar` add the module `adapters` and shapes of parry as parts of scenes. The
+//! feature `mint` lets [`Scene::add_points`] and similar methods take positions of the crate mint.
 //!
 //! ```
 //! use p2m_core::{BruteForce, ClosestPoint};
@@ -12,7 +20,7 @@
 //! let text = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 5\nf 1 2 3 4\nl 1 5 # a pole\n";
 //! let scene = p2m_mixed::read_obj(text.as_bytes(), "court.obj")?;
 //! assert_eq!((scene.soup.triangles().len(), scene.soup.segments().len()), (2, 1));
-//! assert_eq!(scene.sources, [0, 0, 0]); // both triangles are of the first face, the segment is of the first line
+//! assert_eq!(scene.sources, [0, 0, 0]); // both triangles come from the first face, the segment from the first line
 //!
 //! let index = BruteForce::new(&scene.soup).unwrap();
 //! assert_eq!(index.closest_point(&Point3::new(0.0, -1.0, 4.0)).unwrap().primitive.index(), 2);
@@ -33,42 +41,45 @@ mod format;
 pub mod generate;
 mod obj;
 mod off;
+mod open;
 pub mod picture;
-mod places;
 mod ply;
 mod points;
 mod polygon;
+mod read;
 mod saved;
 mod scene;
 pub mod statistics;
 mod stl;
 mod text;
 mod vector;
+mod weld;
 mod write;
 
 pub use answers::{AnswerWriter, HitWriter, NumberWriter};
 pub use camera::Camera;
-pub use error::{HeaderProblem, Place, ReadError, Reason};
+pub use error::{FileLocation, HeaderProblem, ReadError, Reason};
 pub use format::{AnswerFormat, Format, PointFormat, UnknownFormat};
 pub use obj::read_obj;
 pub use off::read_off;
 pub use ply::read_ply;
 pub use points::{read_points, read_points_from, read_rays, read_rays_from};
 pub use polygon::MAX_CORNERS;
+pub use read::{read_scene, read_scene_from};
 pub use saved::{load_scene, read_p2m, save_scene, write_p2m};
-pub use scene::{Object, Scene, Skipped, read_scene, read_scene_from};
+pub use scene::{Object, Scene, Skipped};
 pub use stl::read_stl;
 pub use write::{
     StlRounding, WriteError, stl_rounding, write_obj, write_off, write_ply, write_ply_ascii, write_scene, write_stl,
 };
 
-/// The inside of this crate, for its sibling crates: it may change at any time.
+/// The parts of this crate that its sibling crates use. They are not part of the public interface.
 #[doc(hidden)]
 pub mod engine {
     pub use crate::answers::npy_header;
     pub use crate::format::{unknown_extension, unknown_format};
-    pub mod places {
-        pub use crate::places::*;
+    pub mod weld {
+        pub use crate::weld::*;
     }
     pub mod vector {
         pub use crate::vector::*;

@@ -1,89 +1,99 @@
-//! Wavefront OBJ: the geometry of it.
+//! Reads the geometry of Wavefront OBJ files.
 
-use crate::builder::Builder;
+use crate::builder::SceneBuilder;
 use crate::polygon::MAX_CORNERS;
-use crate::text::{Lines, Words, integer, number, quote};
-use crate::{Place, ReadError, Reason, Scene};
+use crate::text::{LineReader, Tokens, parse_integer, parse_number, quote};
+use crate::{FileLocation, ReadError, Reason, Scene};
 use nalgebra::Point3;
 use p2m_core::Element;
 use std::io::BufRead;
 
-/// Reads an OBJ file; `name` is for messages.
+/// Reads an OBJ file. `name` is the name of the file in messages.
 ///
-/// Understood are `v` (three coordinates; weights or colours behind them are ignored, but must be numbers), `f` (and
-/// its old name `fo`) with polygons of any shape, `l` polylines, whose n vertices make n - 1 segments, and `p` points.
-/// References may be `a`, `a/b`, `a//c` or `a/b/c`, where `a` counts vertices from 1, or backwards from -1; only
-/// vertices further up can be referred to. Everything else, free-form curves and surfaces included, is counted in
-/// [`Scene::skipped`] by keyword. A file without any `f`, `l` and `p` is a point cloud: each of its vertices is a
-/// point, unless it has statements of free-form geometry (`cstype`, `curv`, `surf`, ...). Then its vertices are control
-/// points, and the scene is empty.
+/// The statements with geometry are:
 ///
-/// [`Scene::objects`] are made by the statements `o`; a file that has none of them takes `g` instead. The name is the
-/// rest of the line, a `#` included.
+/// - `v` is a vertex of three coordinates. Weights or colours after them are ignored, but have to be numbers.
+/// - `f` (or its old name `fo`) is a polygon of any shape.
+/// - `l` is a polyline, whose n vertices make n - 1 segments.
+/// - `p` is a list of points.
 ///
-/// Coordinates that are not finite are no error as long as no primitive uses the vertex. A point cloud leaves such
-/// vertices out and counts them in [`Scene::skipped`].
+/// A reference to a vertex may be `a`, `a/b`, `a//c` or `a/b/c`, where `a` counts vertices from 1, or backwards from
+/// -1. It has to refer to a vertex that is defined before. All other statements, free-form curves and surfaces
+/// included, are counted in [`Scene::skipped`] by keyword.
+///
+/// A file without `f`, `l` and `p` is a point cloud, and each of its vertices is a point. If it has statements of
+/// free-form geometry (`cstype`, `curv`, `surf`, ...), its vertices are control points, and the scene is empty.
+///
+/// The statements `o` make [`Scene::objects`], or the statements `g` in a file without `o`. The name is the rest of the
+/// line, a `#` included.
+///
+/// Coordinates that are not finite are allowed if no primitive uses the vertex. A point cloud leaves such vertices out
+/// and counts them in [`Scene::skipped`].
 ///
 /// Lines end at `\n`, `\r\n` or `\r`. A backslash at the end of a line continues it, except in a comment. Comments may
-/// follow data. Bytes outside of the statements above are never interpreted, so any encoding of names will do. The file
-/// is read line by line.
+/// follow data. Bytes outside of the statements above are not interpreted, so names may have any encoding. The file is
+/// read line by line.
 ///
-/// A face that repeats vertices is kept: it is the degenerate triangle or polygon that it says.
+/// A face with repeated vertices is kept as a degenerate triangle or polygon.
 ///
 /// # Errors
-/// [`ReadError`] with the line for numbers that are none, indices of no vertex or of one that is not finite, statements
-/// with too few vertices, faces beyond [`MAX_CORNERS`], and for what goes wrong in reading. A file without any vertex,
-/// but with statements that are unknown to OBJ, is refused as none.
+/// [`ReadError`] with the line for invalid numbers, indices that are out of range or refer to a vertex that is not
+/// finite, statements with too few vertices, faces with more than [`MAX_CORNERS`] vertices, and errors of `reader`. A
+/// file without vertices that has statements unknown to OBJ returns [`Reason::NoVertex`].
 pub fn read_obj(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
-    let mut lines = Lines::new(reader, 0);
+    let mut lines = LineReader::new(reader, 0);
     let mut parser = Parser::default();
     loop {
         match lines.read_continued() {
             Ok(true) => {}
             Ok(false) => break,
-            Err(e) => return Err(ReadError::new(name, Place::Line(lines.line()), Reason::Io(e))),
+            Err(e) => return Err(ReadError::new(name, FileLocation::Line(lines.line()), Reason::Io(e))),
         }
-        let mut words = Words::new(lines.bytes());
+        let mut tokens = Tokens::new(lines.bytes());
         parser
-            .statement(&mut words)
-            .map_err(|reason| ReadError::new(name, Place::Line(lines.line() + words.lines_down()), reason))?;
+            .statement(&mut tokens)
+            .map_err(|reason| ReadError::new(name, FileLocation::Line(lines.line() + tokens.line_offset()), reason))?;
     }
-    parser.finish().map_err(|reason| ReadError::new(name, Place::File, reason))
+    parser.finish().map_err(|reason| ReadError::new(name, FileLocation::File, reason))
 }
 
 #[derive(Default)]
 struct Parser {
-    builder: Builder,
-    /// Statements so far, of each kind.
+    builder: SceneBuilder,
+    /// The number of statements `f` so far.
     faces: usize,
+    /// The number of statements `l` so far.
     lines: usize,
+    /// The number of statements `p` so far.
     points: usize,
-    /// Whether there are statements that OBJ does not know, and such of free-form geometry.
+    /// Whether there is a statement that OBJ does not have.
     has_unknown: bool,
+    /// Whether there is a statement of free-form geometry.
     has_free_form: bool,
+    /// Whether there is a statement `o`.
     has_objects: bool,
-    /// The vertices of the statement at hand.
+    /// The vertices of the current statement.
     vertices: Vec<u32>,
 }
 
 impl Parser {
-    /// `words` is left at the word that an error is about.
-    fn statement(&mut self, words: &mut Words<'_>) -> Result<(), Reason> {
-        let Some(keyword) = words.next() else { return Ok(()) };
+    /// Parses a statement. After an error, the last token of `tokens` is the one that the error is about.
+    fn statement(&mut self, tokens: &mut Tokens<'_>) -> Result<(), Reason> {
+        let Some(keyword) = tokens.next() else { return Ok(()) };
         match keyword {
-            b"v" => self.vertex(words),
+            b"v" => self.vertex(tokens),
             b"f" | b"fo" => {
-                self.vertices(words, 3)?;
+                self.vertices(tokens, 3)?;
                 let found = self.vertices.len();
                 if found > MAX_CORNERS {
                     return Err(Reason::ElementTooLarge { count: found as u64, limit: MAX_CORNERS as u64 });
                 }
-                self.builder.polygon(&self.vertices, self.faces)?;
+                self.builder.push_polygon(&self.vertices, self.faces)?;
                 self.faces += 1;
                 Ok(())
             }
             b"l" => {
-                self.vertices(words, 2)?;
+                self.vertices(tokens, 2)?;
                 for ends in self.vertices.windows(2) {
                     self.builder.push(Element::Segment([ends[0], ends[1]]), self.lines)?;
                 }
@@ -91,7 +101,7 @@ impl Parser {
                 Ok(())
             }
             b"p" => {
-                self.vertices(words, 1)?;
+                self.vertices(tokens, 1)?;
                 for &vertex in &self.vertices {
                     self.builder.push(Element::Point(vertex), self.points)?;
                 }
@@ -99,14 +109,14 @@ impl Parser {
                 Ok(())
             }
             b"o" | b"g" => {
-                // Whether it is passed over is known at the end.
-                self.builder.skips.add(keyword, 1);
+                // Whether the statement counts as skipped is known only at the end of the file.
+                self.builder.skipped.add(keyword, 1);
                 if keyword == b"o" && !self.has_objects {
-                    self.builder.forget_objects(); // groups so far
+                    self.builder.clear_objects(); // removes groups
                     self.has_objects = true;
                 }
                 if keyword == b"o" || !self.has_objects {
-                    self.object(words.rest());
+                    self.object(tokens.rest());
                 }
                 Ok(())
             }
@@ -114,7 +124,7 @@ impl Parser {
             other => {
                 self.has_free_form |= is_free_form(other);
                 self.has_unknown |= !is_known(other) && !is_free_form(other);
-                self.builder.skips.add(other, 1);
+                self.builder.skipped.add(other, 1);
                 Ok(())
             }
         }
@@ -122,11 +132,11 @@ impl Parser {
 
     fn object(&mut self, name: &[u8]) {
         if name.contains(&b'\n') {
-            // A line that is continued.
+            // The statement extends over several lines.
             let name: Vec<u8> = name.iter().map(|&b| if b == b'\n' { b' ' } else { b }).collect();
-            self.builder.object(&name);
+            self.builder.start_object(&name);
         } else {
-            self.builder.object(name);
+            self.builder.start_object(name);
         }
     }
 
@@ -135,33 +145,33 @@ impl Parser {
             return Err(Reason::NoVertex);
         }
         if self.faces + self.lines + self.points > 0 || self.has_free_form {
-            self.builder.skips.forget(if self.has_objects { b"o" } else { b"g" });
+            self.builder.skipped.remove(if self.has_objects { b"o" } else { b"g" });
         } else {
-            self.builder.forget_objects();
-            self.builder.point_cloud()?;
+            self.builder.clear_objects();
+            self.builder.push_point_cloud()?;
         }
         Ok(self.builder.finish())
     }
 
-    fn vertex(&mut self, words: &mut Words<'_>) -> Result<(), Reason> {
-        words.end_at_comment();
+    fn vertex(&mut self, tokens: &mut Tokens<'_>) -> Result<(), Reason> {
+        tokens.end_at_comment();
         let mut position = [0.0; 3];
         for (found, x) in position.iter_mut().enumerate() {
-            *x = number(words.next().ok_or(Reason::TooFewCoordinates { found })?)?;
+            *x = parse_number(tokens.next().ok_or(Reason::TooFewCoordinates { found })?)?;
         }
-        // Anything else behind the coordinates means that the line is not what it seems.
-        while let Some(word) = words.next() {
-            number(word)?;
+        // A token that is not a number means that the line is not a vertex.
+        while let Some(token) = tokens.next() {
+            parse_number(token)?;
         }
-        self.builder.vertex(Point3::from(position)).map(|_| ())
+        self.builder.push_vertex(Point3::from(position)).map(|_| ())
     }
 
-    /// Reads the references of a statement, `needed` or more, into `self.vertices`.
-    fn vertices(&mut self, words: &mut Words<'_>, needed: u64) -> Result<(), Reason> {
-        words.end_at_comment();
+    /// Reads the references of a statement into `self.vertices`. There have to be at least `needed`.
+    fn vertices(&mut self, tokens: &mut Tokens<'_>, needed: u64) -> Result<(), Reason> {
+        tokens.end_at_comment();
         self.vertices.clear();
-        while let Some(word) = words.next() {
-            let vertex = vertex_of(word, self.builder.positions().len())?;
+        while let Some(token) = tokens.next() {
+            let vertex = vertex_of(token, self.builder.positions().len())?;
             if !self.builder.is_finite(vertex) {
                 return Err(Reason::NonFiniteVertex { index: u64::from(vertex) + 1 });
             }
@@ -172,7 +182,7 @@ impl Parser {
     }
 }
 
-/// Keywords of free-form curves and surfaces, superseded ones included.
+/// Returns whether a keyword belongs to free-form curves and surfaces, superseded keywords included.
 fn is_free_form(keyword: &[u8]) -> bool {
     matches!(
         keyword,
@@ -198,7 +208,7 @@ fn is_free_form(keyword: &[u8]) -> bool {
     )
 }
 
-/// Other keywords of OBJ that say nothing of the geometry.
+/// Returns whether a keyword is one of OBJ that does not affect the geometry.
 fn is_known(keyword: &[u8]) -> bool {
     matches!(
         keyword,
@@ -226,25 +236,26 @@ fn is_known(keyword: &[u8]) -> bool {
     )
 }
 
-/// The number, from 0, of the vertex that a reference like `7/1/2` names when `count` are known.
-fn vertex_of(word: &[u8], count: usize) -> Result<u32, Reason> {
-    let bad = || Reason::BadNumber { text: quote(word) };
-    let mut parts = word.split(|&b| b == b'/');
-    let index = parts.next().and_then(|part| integer(part).ok()).ok_or_else(bad)?;
-    // Texture and normal are not looked up, but they should be numbers, if they are there.
+/// Returns the index, counted from 0, of the vertex that a reference like `7/1/2` refers to. `count` is the number of
+/// vertices so far.
+fn vertex_of(token: &[u8], count: usize) -> Result<u32, Reason> {
+    let bad = || Reason::BadNumber { text: quote(token) };
+    let mut parts = token.split(|&b| b == b'/');
+    let index = parts.next().and_then(|part| parse_integer(part).ok()).ok_or_else(bad)?;
+    // Texture coordinate and normal are not used, but they have to be numbers if they are present.
     for part in parts.by_ref().take(2) {
         if !part.is_empty() {
-            integer(part).map_err(|_| bad())?;
+            parse_integer(part).map_err(|_| bad())?;
         }
     }
     if parts.next().is_some() {
         return Err(bad());
     }
     let count = count as u64;
-    let place = match index {
+    let vertex = match index {
         0 => return Err(Reason::IndexZero),
         1.. => Some(index.unsigned_abs() - 1).filter(|&i| i < count),
         _ => count.checked_sub(index.unsigned_abs()),
     };
-    place.and_then(|i| u32::try_from(i).ok()).ok_or(Reason::IndexOutOfRange { index, count })
+    vertex.and_then(|i| u32::try_from(i).ok()).ok_or(Reason::IndexOutOfRange { index, count })
 }

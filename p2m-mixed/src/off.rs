@@ -1,61 +1,63 @@
-//! OFF, the object file format of Geomview: text and binary.
+//! Reads OFF files, the object file format of Geomview, as text or binary.
 
-use crate::builder::Builder;
-use crate::bytes::{Bytes, Scalar};
+use crate::builder::SceneBuilder;
+use crate::bytes::{ByteReader, Scalar};
 use crate::polygon::MAX_CORNERS;
-use crate::text::{Lines, Stream, integer, number, quote};
-use crate::{HeaderProblem, Place, ReadError, Reason, Scene};
+use crate::text::{LineReader, Tokenizer, parse_integer, parse_number, quote};
+use crate::{FileLocation, HeaderProblem, ReadError, Reason, Scene};
 use nalgebra::Point3;
 use p2m_core::Element;
 use std::io::BufRead;
 
-/// Reads an OFF file; `name` is for messages.
+/// Reads an OFF file. `name` is the name of the file in messages.
 ///
-/// Faces of three vertices or more are polygons of any shape, faces of two are segments, those of one are points. A
-/// file without faces is a point cloud: each vertex is a point. Faces count from 0 in [`Scene::sources`], whatever they
-/// are.
+/// Faces of three or more vertices are polygons of any shape, faces of two vertices are segments, and faces of one
+/// vertex are points. A file without faces is a point cloud, and each vertex is a point. [`Scene::sources`] counts
+/// faces of any number of vertices from 0.
 ///
-/// The first word is `OFF` behind any of `ST`, `C` and `N`, which announce texture coordinates, colours and normals of
-/// vertices; it may be missing, and the counts may follow it on the same line, even without a blank. The number of
-/// edges may be missing. A `#` begins a comment. Vertices and faces may go on over several lines. What follows the
-/// coordinates of a vertex on its line (colours, normals), and up to four numbers behind a face (its colour), are left
-/// out and counted in [`Scene::skipped`], as is what follows the last face. `OFF BINARY` files are read, too.
+/// The first word is `OFF`, prefixed by any of `ST`, `C` and `N`, which announce texture coordinates, colours and
+/// normals of vertices. The word may be missing, and the counts may follow it on the same line, even without a blank.
+/// The number of edges may be missing. A `#` starts a comment. Vertices and faces may extend over several lines.
 ///
-/// Vertices in other dimensions (`4OFF`, `nOFF`) are refused, unless `nOFF` says 3.
+/// Numbers after the coordinates of a vertex on its line (colours, normals), up to four numbers after a face (its
+/// colour), and anything after the last face are left out and counted in [`Scene::skipped`]. `OFF BINARY` files are
+/// supported as well.
 ///
-/// Coordinates that are not finite are no error as long as no primitive uses the vertex. A point cloud leaves such
-/// vertices out and counts them in [`Scene::skipped`].
+/// Vertices in other dimensions (`4OFF`, `nOFF`) are an error, except `nOFF` with 3 dimensions.
+///
+/// Coordinates that are not finite are allowed if no primitive uses the vertex. A point cloud leaves such vertices out
+/// and counts them in [`Scene::skipped`].
 ///
 /// # Errors
-/// [`ReadError`] with the line or (binary) the offset for a header that makes no sense, an early end, numbers that are
-/// none or too many for their line, indices of no vertex, vertices of primitives that are not finite (with the place of
-/// the primitive), faces of no vertex or of more than [`MAX_CORNERS`], and for what goes wrong in reading. No memory is
-/// taken for data that is merely announced.
+/// [`ReadError`] with the line (text) or the offset (binary) for an invalid header, an early end, invalid numbers or
+/// too many of them on a line, indices that are out of range, primitives with a vertex that is not finite, faces
+/// without vertices or with more than [`MAX_CORNERS`], and errors of `reader`. No memory is allocated for data that the
+/// header only announces.
 pub fn read_off(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
-    let mut words = Stream::with_comments(Lines::new(reader, 0));
-    let fail = |line, reason| ReadError::new(name, Place::Line(line), reason);
-    let header = read_header(&mut words).map_err(|reason| fail(words.line(), reason))?;
+    let mut tokens = Tokenizer::with_comments(LineReader::new(reader, 0));
+    let fail = |line, reason| ReadError::new(name, FileLocation::Line(line), reason);
+    let header = read_header(&mut tokens).map_err(|reason| fail(tokens.line(), reason))?;
     let Some(counts) = header.counts else {
-        let line = words.line();
-        let (reader, offset) = words.into_lines().into_reader().map_err(|e| fail(line, Reason::Io(e)))?;
-        let mut bytes = Bytes::new(reader, offset);
+        let line = tokens.line();
+        let (reader, offset) = tokens.into_lines().into_reader().map_err(|e| fail(line, Reason::Io(e)))?;
+        let mut bytes = ByteReader::new(reader, offset);
         return read_binary(&mut bytes, header.extras)
-            .map_err(|reason| ReadError::new(name, Place::Byte(bytes.start()), reason));
+            .map_err(|reason| ReadError::new(name, FileLocation::Byte(bytes.start()), reason));
     };
-    read_text(&mut words, counts).map_err(|reason| fail(words.line(), reason))
+    read_text(&mut tokens, counts).map_err(|reason| fail(tokens.line(), reason))
 }
 
 struct Header {
-    /// How many vertices and faces there are; none if binary data follow.
+    /// The numbers of vertices and faces, or `None` if binary data follow.
     counts: Option<[u64; 2]>,
-    /// Numbers behind the coordinates of a vertex, if they are binary.
+    /// The number of further numbers that each vertex of a binary file has.
     extras: u64,
 }
 
-fn read_header(words: &mut Stream<impl BufRead>) -> Result<Header, Reason> {
-    let first = words.word()?.to_vec();
+fn read_header(tokens: &mut Tokenizer<impl BufRead>) -> Result<Header, Reason> {
+    let first = tokens.next()?.to_vec();
     if first.iter().all(u8::is_ascii_digit) {
-        return Ok(Header { counts: Some([count(&first)?, faces_of_header(words)?]), extras: 0 });
+        return Ok(Header { counts: Some([count(&first)?, faces_of_header(tokens)?]), extras: 0 });
     }
     let not_off = || Reason::BadHeader(HeaderProblem::NotOff { text: quote(&first) });
     let unsupported = || Reason::UnsupportedFormat { text: quote(&first) };
@@ -79,89 +81,89 @@ fn read_header(words: &mut Stream<impl BufRead>) -> Result<Header, Reason> {
         prefix = &prefix[length..];
     }
     if !glued.is_empty() {
-        // As in `OFF490 518 0`, which a well-known collection has.
+        // A well-known collection has headers like `OFF490 518 0`.
         if has_dimension || !glued.iter().all(u8::is_ascii_digit) {
             return Err(not_off());
         }
-        return Ok(Header { counts: Some([count(glued)?, faces_of_header(words)?]), extras });
+        return Ok(Header { counts: Some([count(glued)?, faces_of_header(tokens)?]), extras });
     }
-    let mut next = words.word_on_line().map(<[u8]>::to_vec);
+    let mut next = tokens.next_on_line().map(<[u8]>::to_vec);
     if next.as_ref().is_some_and(|word| word.eq_ignore_ascii_case(b"binary")) {
         return if has_dimension { Err(unsupported()) } else { Ok(Header { counts: None, extras }) };
     }
     if has_dimension {
-        let dimension = next.take().map_or_else(|| words.word().map(<[u8]>::to_vec), Ok)?;
+        let dimension = next.take().map_or_else(|| tokens.next().map(<[u8]>::to_vec), Ok)?;
         if count(&dimension)? != 3 {
             return Err(unsupported());
         }
     }
-    let vertices = next.map_or_else(|| words.word().map(<[u8]>::to_vec), Ok)?;
-    Ok(Header { counts: Some([count(&vertices)?, faces_of_header(words)?]), extras })
+    let vertices = next.map_or_else(|| tokens.next().map(<[u8]>::to_vec), Ok)?;
+    Ok(Header { counts: Some([count(&vertices)?, faces_of_header(tokens)?]), extras })
 }
 
-/// The number of faces, and behind it on the same line perhaps that of edges.
-fn faces_of_header(words: &mut Stream<impl BufRead>) -> Result<u64, Reason> {
-    let faces = count(words.word()?)?;
-    if let Some(edges) = words.word_on_line() {
-        integer(edges)?; // not used, and often wrong
+/// Reads the number of faces, and the optional number of edges after it on the same line.
+fn faces_of_header(tokens: &mut Tokenizer<impl BufRead>) -> Result<u64, Reason> {
+    let faces = count(tokens.next()?)?;
+    if let Some(edges) = tokens.next_on_line() {
+        parse_integer(edges)?; // the number of edges is not used, and often wrong
     }
-    match words.word_on_line() {
-        Some(word) => Err(Reason::ExtraWord { text: quote(word) }),
+    match tokens.next_on_line() {
+        Some(token) => Err(Reason::ExtraWord { text: quote(token) }),
         None => Ok(faces),
     }
 }
 
-fn count(word: &[u8]) -> Result<u64, Reason> {
-    u64::try_from(integer(word)?).map_err(|_| Reason::BadNumber { text: quote(word) })
+fn count(token: &[u8]) -> Result<u64, Reason> {
+    u64::try_from(parse_integer(token)?).map_err(|_| Reason::BadNumber { text: quote(token) })
 }
 
-/// Files hold no more numbers than this behind a face.
-const COLOUR: u64 = 4;
+/// The largest number of numbers after a face, which are its colour.
+const MAX_COLOUR_NUMBERS: u64 = 4;
 
-fn read_text(words: &mut Stream<impl BufRead>, [vertices, faces]: [u64; 2]) -> Result<Scene, Reason> {
+fn read_text(tokens: &mut Tokenizer<impl BufRead>, [vertices, faces]: [u64; 2]) -> Result<Scene, Reason> {
     let mut off = Off::new([vertices, faces])?;
     for _ in 0..vertices {
         let mut position = Point3::origin();
-        position.x = number(words.word()?)?;
+        position.x = parse_number(tokens.next()?)?;
         let mut is_wrapped = false;
         for k in 1..3 {
-            position[k] = match words.word_on_line().map(number) {
+            position[k] = match tokens.next_on_line().map(parse_number) {
                 Some(number) => number?,
                 None => {
                     is_wrapped = true;
-                    number(words.word()?)?
+                    parse_number(tokens.next()?)?
                 }
             };
         }
         let mut extras = 0;
-        while let Some(word) = words.word_on_line() {
-            number(word)?;
+        while let Some(token) = tokens.next_on_line() {
+            parse_number(token)?;
             extras += 1;
             if is_wrapped {
-                // A number is missing further up, rather.
-                return Err(Reason::ExtraWord { text: quote(word) });
+                // The vertex extends over several lines, so the likely cause is a missing number on an earlier line.
+                return Err(Reason::ExtraWord { text: quote(token) });
             }
         }
         off.vertex(position, extras)?;
     }
     for face in 0..faces {
-        let corners = integer(words.word()?)?;
+        let corners = parse_integer(tokens.next()?)?;
         for _ in 0..off.start_face(corners)? {
-            off.corner(integer(words.word()?)?)?;
+            off.corner(parse_integer(tokens.next()?)?)?;
         }
         let mut extras = 0;
-        while let Some(word) = words.word_on_line() {
-            number(word)?;
+        while let Some(token) = tokens.next_on_line() {
+            parse_number(token)?;
             extras += 1;
-            if extras > COLOUR {
-                return Err(Reason::ExtraWord { text: quote(word) });
+            if extras > MAX_COLOUR_NUMBERS {
+                return Err(Reason::ExtraWord { text: quote(token) });
             }
         }
         off.end_face(face, extras)?;
     }
     let mut rest = 0;
     loop {
-        match words.word() {
+        match tokens.next() {
             Ok(_) => rest += 1,
             Err(Reason::UnexpectedEnd) => break,
             Err(reason) => return Err(reason),
@@ -170,7 +172,7 @@ fn read_text(words: &mut Stream<impl BufRead>, [vertices, faces]: [u64; 2]) -> R
     off.finish(rest, "words after the last face")
 }
 
-fn read_binary(bytes: &mut Bytes<impl BufRead>, extras: u64) -> Result<Scene, Reason> {
+fn read_binary(bytes: &mut ByteReader<impl BufRead>, extras: u64) -> Result<Scene, Reason> {
     let mut counts = [0; 3];
     for count in &mut counts {
         let number = i32::from_be_bytes(bytes.array()?);
@@ -192,21 +194,22 @@ fn read_binary(bytes: &mut Bytes<impl BufRead>, extras: u64) -> Result<Scene, Re
             off.corner(i64::from(i32::from_be_bytes(bytes.array()?)))?;
         }
         let colour = i32::from_be_bytes(bytes.array()?);
-        let numbers = u64::try_from(colour).ok().filter(|&n| n <= COLOUR);
+        let numbers = u64::try_from(colour).ok().filter(|&n| n <= MAX_COLOUR_NUMBERS);
         let numbers = numbers.ok_or(Reason::BadListCount { count: i64::from(colour) })?;
         bytes.skip(4 * numbers)?;
         off.end_face(face, numbers)?;
     }
-    let rest = bytes.rest()?;
+    let rest = bytes.skip_rest()?;
     off.finish(rest, "bytes after the last face")
 }
 
-/// A scene under construction.
+/// Builds the scene of an OFF file.
 struct Off {
-    builder: Builder,
+    builder: SceneBuilder,
     counts: [u64; 2],
-    /// Vertices and faces with numbers that are left out.
+    /// The numbers of vertices and of faces with numbers that are left out.
     extras: [u64; 2],
+    /// The vertices of the current face.
     corners: Vec<u32>,
 }
 
@@ -215,15 +218,15 @@ impl Off {
         if counts[0] > u64::from(u32::MAX) {
             return Err(Reason::ElementTooLarge { count: counts[0], limit: u64::from(u32::MAX) });
         }
-        Ok(Self { builder: Builder::default(), counts, extras: [0; 2], corners: Vec::new() })
+        Ok(Self { builder: SceneBuilder::default(), counts, extras: [0; 2], corners: Vec::new() })
     }
 
     fn vertex(&mut self, position: Point3<f64>, extras: u64) -> Result<(), Reason> {
         self.extras[0] += u64::from(extras > 0);
-        self.builder.vertex(position).map(|_| ())
+        self.builder.push_vertex(position).map(|_| ())
     }
 
-    /// How many corners there are to come.
+    /// Starts a face and returns its number of corners.
     fn start_face(&mut self, corners: i64) -> Result<u64, Reason> {
         let count = u64::try_from(corners).map_err(|_| Reason::BadListCount { count: corners })?;
         if count == 0 {
@@ -253,17 +256,17 @@ impl Off {
         match *self.corners.as_slice() {
             [a] => self.builder.push(Element::Point(a), face),
             [a, b] => self.builder.push(Element::Segment([a, b]), face),
-            _ => self.builder.polygon(&self.corners, face),
+            _ => self.builder.push_polygon(&self.corners, face),
         }
     }
 
     fn finish(mut self, rest: u64, what: &str) -> Result<Scene, Reason> {
         let [vertices, faces] = self.extras;
-        self.builder.skips.add_many(vertices, "vertices with further numbers");
-        self.builder.skips.add_many(faces, "faces with a colour");
-        self.builder.skips.add_many(rest, what);
+        self.builder.skipped.add_plural(vertices, "vertices with further numbers");
+        self.builder.skipped.add_plural(faces, "faces with a colour");
+        self.builder.skipped.add_plural(rest, what);
         if self.counts[1] == 0 {
-            self.builder.point_cloud()?;
+            self.builder.push_point_cloud()?;
         }
         Ok(self.builder.finish())
     }

@@ -1,26 +1,26 @@
-//! Pictures of line drawings: the volumes of a tree, level by level.
+//! Line drawings, such as the bounding volumes of a tree level by level.
 //!
-//! A [`Panel`] is a drawing of its own in an SVG file ([`write_svg`]), and a value of the property `panel` in a PLY
-//! file ([`write_picture_ply`]). Whoever has volumes turns them into lines; [`box_edges`] does so for boxes.
+//! A [`Panel`] is one of the drawings in an SVG file ([`write_svg`]), and a value of the property `panel` in a PLY file
+//! ([`write_picture_ply`]). [`box_edges`] returns the lines of a box.
 
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Aabb, Element, PrimitiveSet, Soup};
 use std::io::{self, Write};
 
-/// A drawing under a title.
+/// A drawing with a title.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Panel {
-    /// What it shows.
+    /// The title above the drawing.
     pub title: String,
-    /// Line segments, in units of the scene; finite.
+    /// The line segments, in units of the scene. Coordinates have to be finite.
     pub lines: Vec<[Point3<f64>; 2]>,
 }
 
-/// The twelve edges of a box.
+/// Returns the twelve edges of a box.
 pub fn box_edges(bounds: &Aabb<f64>) -> impl Iterator<Item = [Point3<f64>; 2]> + use<> {
     let corners = [bounds.min, bounds.max];
     (0..12).map(move |edge: usize| {
-        // Along `axis`, at one of the four corners of the other two.
+        // The edge runs along `axis`, at one of the four corners in the plane of the other two axes.
         let (axis, at) = (edge / 4, edge % 4);
         [0, 1].map(|end| {
             let mut corner = corners[end];
@@ -31,22 +31,22 @@ pub fn box_edges(bounds: &Aabb<f64>) -> impl Iterator<Item = [Point3<f64>; 2]> +
     })
 }
 
-/// From where a picture is seen; z is up.
+/// The direction of view, with z upwards.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum View {
-    /// From a corner, all three axes equally long.
+    /// This is the view from a corner, in which all three axes are equally long.
     #[default]
     Isometric,
-    /// Along y: x to the right.
+    /// This is the view along y, with x to the right.
     Front,
-    /// Along -x: y to the right.
+    /// This is the view along -x, with y to the right.
     Side,
-    /// Along -z: x to the right, y up.
+    /// This is the view along -z, with x to the right and y upwards.
     Top,
 }
 
 impl View {
-    /// Right and up in the picture.
+    /// Returns the directions to the right and upwards in the picture.
     fn axes(self) -> [Vector3<f64>; 2] {
         match self {
             Self::Isometric => {
@@ -60,10 +60,10 @@ impl View {
     }
 }
 
-/// Scales whatever is drawn to a cube of sides 1 around the origin, whatever its size and place.
+/// Maps the drawing to a cube of side 1 around the origin.
 struct Frame {
     centre: Point3<f64>,
-    /// Half of the longest side.
+    /// Half of the longest side of the drawing.
     half: f64,
 }
 
@@ -73,55 +73,57 @@ impl Frame {
         if bounds.is_empty() {
             return Self { centre: Point3::origin(), half: 1.0 };
         }
-        // Halves first: the difference of two finite numbers may not be finite.
+        // Bounds are halved before they are subtracted, because the difference of two finite numbers may be infinite.
         let half = (bounds.max.coords / 2.0 - bounds.min.coords / 2.0).max();
         let centre = Point3::from(bounds.max.coords / 2.0 + bounds.min.coords / 2.0);
         Self { centre, half: if half > 0.0 { half } else { 1.0 } }
     }
 
-    fn place(&self, p: &Point3<f64>) -> Vector3<f64> {
+    fn to_frame(&self, p: &Point3<f64>) -> Vector3<f64> {
         (p.coords / 2.0 - self.centre.coords / 2.0) / self.half
     }
 }
 
-/// Side of a panel in units of the picture, and what is left free around it.
-const SIDE: f64 = 300.0;
-const MARGIN: f64 = 24.0;
-const COLUMNS: usize = 4;
+/// The side of a panel, in units of the picture.
+const PANEL_SIDE: f64 = 300.0;
+/// The margin around the drawing of a panel, in units of the picture.
+const PANEL_MARGIN: f64 = 24.0;
+/// The largest number of panels in a row.
+const MAX_COLUMNS: usize = 4;
 
-/// Writes the panels side by side, each over `backdrop`, points of the scene that show what the lines are about.
+/// Writes the panels side by side. Each is drawn over `backdrop`, which are points of the scene.
 ///
-/// Panels have the same scale. Coordinates are rounded to a tenth of a unit, 300 units being the side of a panel.
+/// All panels have the same scale. Coordinates are rounded to a tenth of a unit, and a panel has a side of 300 units.
 ///
 /// # Errors
-/// Those of `writer`.
+/// Errors of `writer`.
 pub fn write_svg(panels: &[Panel], backdrop: &[Point3<f64>], view: View, mut writer: impl Write) -> io::Result<()> {
     let lines = || panels.iter().flat_map(|panel| &panel.lines);
     let frame = Frame::around(lines().flatten().chain(backdrop));
     let [right, up] = view.axes();
-    // A cube of sides 1 standing on its corner is 1.634 high.
-    let scale = (SIDE - 2.0 * MARGIN) / if view == View::Isometric { 1.65 } else { 1.0 };
+    // A cube of side 1 that stands on a corner is 1.634 high in the picture.
+    let scale = (PANEL_SIDE - 2.0 * PANEL_MARGIN) / if view == View::Isometric { 1.65 } else { 1.0 };
     let at = |p: &Point3<f64>| {
-        let p = frame.place(p);
-        let middle = SIDE / 2.0;
+        let p = frame.to_frame(p);
+        let middle = PANEL_SIDE / 2.0;
         format!("{:.1} {:.1}", middle + scale * right.dot(&p), middle - scale * up.dot(&p))
     };
-    let (columns, rows) = (panels.len().clamp(1, COLUMNS), panels.len().div_ceil(COLUMNS));
-    let [width, height] = [columns, rows].map(|n| n as f64 * SIDE);
+    let (columns, rows) = (panels.len().clamp(1, MAX_COLUMNS), panels.len().div_ceil(MAX_COLUMNS));
+    let [width, height] = [columns, rows].map(|n| n as f64 * PANEL_SIDE);
     writeln!(
         writer,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
          font-family=\"sans-serif\" font-size=\"14\" fill=\"none\" stroke-width=\"0.6\" stroke-linecap=\"round\">"
     )?;
     writeln!(writer, "<rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>")?;
-    // Points are lines of no length with round ends.
+    // Points are drawn as lines without length and with round ends.
     write!(writer, "<defs><path id=\"scene\" stroke=\"#bbb\" stroke-width=\"1.2\" d=\"")?;
     for p in backdrop {
         write!(writer, "M{}h0", at(p))?;
     }
     writeln!(writer, "\"/></defs>")?;
     for (number, panel) in panels.iter().enumerate() {
-        let [x, y] = [number % COLUMNS, number / COLUMNS].map(|n| n as f64 * SIDE);
+        let [x, y] = [number % MAX_COLUMNS, number / MAX_COLUMNS].map(|n| n as f64 * PANEL_SIDE);
         let [r, g, b] = colour(number, panels.len());
         writeln!(writer, "<g transform=\"translate({x} {y})\">")?;
         writeln!(writer, "<use href=\"#scene\"/>")?;
@@ -137,11 +139,11 @@ pub fn write_svg(panels: &[Panel], backdrop: &[Point3<f64>], view: View, mut wri
     writer.flush()
 }
 
-/// Writes the lines of all panels as edges of a binary PLY file; vertices have a colour and the property `panel`, the
-/// number of their panel from 0.
+/// Writes the lines of all panels as edges of a binary PLY file. Vertices have a colour and the property `panel`, which
+/// is the number of their panel, counted from 0.
 ///
 /// # Errors
-/// Those of `writer`, and [`io::ErrorKind::InvalidInput`] for more than 2^31 - 1 vertices.
+/// Errors of `writer`, and [`io::ErrorKind::InvalidInput`] for more than 2^31 - 1 vertices.
 pub fn write_picture_ply(panels: &[Panel], mut writer: impl Write) -> io::Result<()> {
     let count: usize = panels.iter().map(|panel| panel.lines.len()).sum();
     let edges = i32::try_from(count).ok().filter(|n| n.checked_mul(2).is_some());
@@ -170,24 +172,26 @@ pub fn write_picture_ply(panels: &[Panel], mut writer: impl Write) -> io::Result
     writer.flush()
 }
 
-/// A colour for each value: from blue over green to red by the logarithm, from the least to the largest; what is not
-/// positive is blue.
+/// Returns a colour for each value, from blue for the smallest over green to red for the largest, by the logarithm of
+/// the value. Values that are not positive are blue.
 #[must_use]
 pub fn value_colours(values: &[f64]) -> Vec<[u8; 3]> {
     let logarithms = || values.iter().filter(|x| **x > 0.0).map(|x| x.ln());
-    let (least, most) = (logarithms().fold(f64::INFINITY, f64::min), logarithms().fold(f64::NEG_INFINITY, f64::max));
-    let part = |x: f64| if x > 0.0 && most > least { (x.ln() - least) / (most - least) } else { 0.0 };
-    values.iter().map(|x| shade(part(*x))).collect()
+    let (smallest, largest) =
+        (logarithms().fold(f64::INFINITY, f64::min), logarithms().fold(f64::NEG_INFINITY, f64::max));
+    let fraction =
+        |x: f64| if x > 0.0 && largest > smallest { (x.ln() - smallest) / (largest - smallest) } else { 0.0 };
+    values.iter().map(|x| shade(fraction(*x))).collect()
 }
 
-/// Writes a scene as a binary PLY file in which each primitive has a colour of its own ([`value_colours`]), on vertices
-/// of its own, with the values as the property `value`.
+/// Writes a scene as a binary PLY file in which each primitive has the colour of its value ([`value_colours`]).
+/// Primitives share no vertices, and vertices have the value as the property `value`.
 ///
 /// # Errors
-/// Those of `writer`, and [`io::ErrorKind::InvalidInput`] for more than 2^31 - 1 vertices.
+/// Errors of `writer`, and [`io::ErrorKind::InvalidInput`] for more than 2^31 - 1 vertices.
 ///
 /// # Panics
-/// If there is not one value for each primitive.
+/// If the values are not one for each primitive.
 pub fn write_values_ply(soup: &Soup<f64>, values: &[f64], mut writer: impl Write) -> io::Result<()> {
     assert_eq!(soup.len(), values.len(), "a value for each primitive");
     let [points, segments, triangles] = [soup.points().len(), soup.segments().len(), soup.triangles().len()];
@@ -230,12 +234,12 @@ pub fn write_values_ply(soup: &Soup<f64>, values: &[f64], mut writer: impl Write
     writer.flush()
 }
 
-/// From blue over green to red, dark enough for thin lines on white.
+/// Returns the colour of a panel, from blue over green to red.
 fn colour(number: usize, of: usize) -> [u8; 3] {
     shade(if of > 1 { number as f64 / (of - 1) as f64 } else { 0.0 })
 }
 
-/// The same for a part from 0 to 1.
+/// Returns a colour from blue for 0 over green to red for 1. All are dark enough for thin lines on white.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 255")]
 fn shade(t: f64) -> [u8; 3] {
     [40.0 + 170.0 * t, 90.0 + 160.0 * t * (1.0 - t), 200.0 - 160.0 * t].map(|x| x as u8)

@@ -1,67 +1,71 @@
-//! Polygons to triangles.
+//! Triangulation of polygons.
 
 use earcut::Earcut;
 use nalgebra::Point3;
 use p2m_core::kernel::power_of_two;
 
-/// The largest polygon that is cut into triangles: 2^15 vertices. A simple concave one takes quadratic time (observed:
-/// two to three seconds for a spiral of this size), so this is a limit of patience rather than of memory.
+/// The largest number of vertices of a polygon in a file: 2^15. The limit bounds the time of triangulation, which is
+/// quadratic for simple concave polygons (observed: two to three seconds for a spiral of this size).
 pub const MAX_CORNERS: usize = 1 << 15;
 
-/// Polygons of more corners are checked for running over themselves before they are cut.
-const MANY_CORNERS: usize = 256;
+/// Polygons of more corners are checked for repeated corners before they are triangulated.
+const CHECK_REPEATS_ABOVE_CORNERS: usize = 256;
 
-/// Cuts polygons into triangles; keeps its buffers between them.
+/// Divides polygons into triangles, and reuses its buffers for the next polygon.
 ///
-/// The polygon is projected along the axis on which its normal (by Newell's sum) is largest, and cut there:
+/// The polygon is projected along the axis on which its normal (by Newell's sum) is largest, and triangulated in the
+/// projection:
 ///
 /// - A simple planar polygon, convex or concave, is covered exactly and without overlap, up to rounding of the
 ///   orientation of three points; on small integer coordinates there is no rounding.
-/// - A polygon that is not planar is cut as its projection is; if that is simple, into a patch without gaps.
-/// - A polygon without area is cut as a fan, and so is one whose triangles do not add up to its area, because it
-///   crosses itself: there is no right answer.
-/// - So is a large polygon with less than half of its corners at distinct places: it runs over itself, and cutting ears
-///   would take cubic time.
+/// - A polygon that is not planar gets the triangles of its projection. They form a patch without gaps if the
+///   projection is simple.
+/// - A polygon without area becomes a triangle fan. So does a polygon that crosses itself, whose triangles do not add
+///   up to its area, because there is no correct triangulation.
+/// - A large polygon with less than half as many distinct corners as corners becomes a fan as well, because cutting
+///   ears would take cubic time.
 ///
-/// In every case each edge of the polygon is an edge of a triangle, so that nothing of the outline is lost.
+/// In every case each edge of the polygon is an edge of a triangle, so the outline is complete.
 ///
-/// Triangles have the winding of the polygon, in the projection; but not all of those in the fan of a polygon that
-/// crosses itself or runs over itself.
+/// Triangles have the winding of the polygon in the projection, except some triangles in the fan of a polygon that
+/// crosses itself or repeats corners.
 #[derive(Default)]
 pub(crate) struct Triangulator {
     offsets: Vec<[f64; 3]>,
-    flat: Vec<[f64; 2]>,
+    projected: Vec<[f64; 2]>,
     cutter: Option<Earcut<f64>>,
     indices: Vec<u32>,
     edges: Vec<[u32; 2]>,
-    places: Vec<[u64; 2]>,
+    corner_keys: Vec<[u64; 2]>,
     triangles: Vec<[u32; 3]>,
 }
 
 impl Triangulator {
-    /// The triangles of the polygon with these corners, three or more, by the numbers of the corners.
+    /// Triangulates the polygon with these corners, of which there are at least three. Triangles are
+    /// indices of corners.
     pub(crate) fn triangulate(&mut self, corners: &[Point3<f64>]) -> &[[u32; 3]] {
         let n = corners.len();
         if n == 3 || !self.project(corners) || self.fan_covers(0) {
-            self.fan(0, n);
+            self.make_fan(0, n);
         } else if n == 4 {
             // One of the two diagonals of a simple quadrilateral is inside.
-            self.fan(u32::from(self.fan_covers(1)), n);
-        } else if n > MANY_CORNERS && 2 * self.distinct() < n {
-            self.fan(0, n);
+            self.make_fan(u32::from(self.fan_covers(1)), n);
+        } else if n > CHECK_REPEATS_ABOVE_CORNERS && 2 * self.count_distinct_corners() < n {
+            self.make_fan(0, n);
         } else {
-            self.cut();
+            self.cut_ears();
             if !self.covers() {
-                self.fan(0, n);
+                self.make_fan(0, n);
             }
         }
         &self.triangles
     }
 
-    /// Projects into `flat`, with the first corner at the origin and the extent near 1. `false` if there is no area.
+    /// Projects the corners, with the first corner at the origin and the extent near 1. Returns `false` if the polygon
+    /// has no area.
     fn project(&mut self, corners: &[Point3<f64>]) -> bool {
-        // Powers of two, so that nothing is rounded by them: first to make differences safe from overflow, then to make
-        // products of differences safe from underflow.
+        // Scales are powers of two, so they do not round. The first one prevents the overflow of differences, the
+        // second one prevents the underflow of products of differences.
         let scale = Scale::to_unit(corners.iter().flat_map(|p| p.iter().copied()));
         let first = scale.apply3(corners[0].coords.into());
         self.offsets.clear();
@@ -83,65 +87,65 @@ impl Triangulator {
         }
         let axis = (1..3).fold(0, |best, k| if normal[k].abs() > normal[best].abs() { k } else { best });
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        self.flat.clear();
-        self.flat.extend(self.offsets.iter().map(|o| [o[i], o[j]]));
+        self.projected.clear();
+        self.projected.extend(self.offsets.iter().map(|o| [o[i], o[j]]));
         normal[axis] != 0.0
     }
 
-    /// Whether the fan around corner `apex` is a triangulation.
+    /// Returns whether the fan around corner `apex` is a triangulation.
     ///
-    /// The oriented triangles of a fan add up to the winding number of the polygon wherever its apex is. If all have
-    /// the same orientation, those of a simple polygon therefore cover the inside once and nothing else. A convex
-    /// polygon passes with any apex.
+    /// The oriented triangles of a fan add up to the winding number of the polygon, wherever its apex is. So if all of
+    /// them have the same orientation and the polygon is simple, they cover its inside exactly once. A convex polygon
+    /// passes with any apex.
     fn fan_covers(&self, apex: u32) -> bool {
-        let n = self.flat.len();
+        let n = self.projected.len();
         let (mut left, mut right) = (false, false);
-        for triangle in fan(apex, n) {
-            let area = area(&self.flat, triangle);
+        for triangle in triangle_fan(apex, n) {
+            let area = area(&self.projected, triangle);
             left |= area > 0.0;
             right |= area < 0.0;
         }
         !(left && right)
     }
 
-    /// How many distinct places the projected corners have.
-    fn distinct(&mut self) -> usize {
-        self.places.clear();
-        // Adding zero turns -0 into 0, which is the same place with other bits.
-        self.places.extend(self.flat.iter().map(|p| p.map(|x| (x + 0.0).to_bits())));
-        self.places.sort_unstable();
-        self.places.dedup();
-        self.places.len()
+    /// Returns the number of distinct projected corners.
+    fn count_distinct_corners(&mut self) -> usize {
+        self.corner_keys.clear();
+        // The sum of -0 and 0 is 0, so equal corners have equal bits.
+        self.corner_keys.extend(self.projected.iter().map(|p| p.map(|x| (x + 0.0).to_bits())));
+        self.corner_keys.sort_unstable();
+        self.corner_keys.dedup();
+        self.corner_keys.len()
     }
 
-    fn fan(&mut self, apex: u32, n: usize) {
+    fn make_fan(&mut self, apex: u32, n: usize) {
         self.triangles.clear();
-        self.triangles.extend(fan(apex, n));
+        self.triangles.extend(triangle_fan(apex, n));
     }
 
-    /// Cuts ears; then puts back what the cutter leaves out.
-    fn cut(&mut self) {
+    /// Triangulates by cutting ears, and then adds the edges that the ear cutter left out.
+    fn cut_ears(&mut self) {
         let cutter = self.cutter.get_or_insert_with(Earcut::new);
-        cutter.earcut_slice::<u32>(&self.flat, &[], &mut self.indices);
-        let positive = outline_area(&self.flat) > 0.0;
+        cutter.earcut_slice::<u32>(&self.projected, &[], &mut self.indices);
+        let positive = outline_area(&self.projected) > 0.0;
         self.triangles.clear();
         for t in self.indices.chunks_exact(3) {
             let triangle = [t[0], t[1], t[2]];
-            let turned = (area(&self.flat, triangle) > 0.0) != positive;
+            let turned = (area(&self.projected, triangle) > 0.0) != positive;
             self.triangles.push(if turned { [t[0], t[2], t[1]] } else { triangle });
         }
         self.add_missing_edges();
     }
 
-    /// Adds each edge of the polygon that no triangle has as a triangle of two corners. The cutter leaves out spikes
-    /// and parts of polygons that cross or touch themselves; of a simple polygon it keeps every corner.
+    /// Adds each edge of the polygon that no triangle has as a degenerate triangle. The ear cutter leaves out spikes
+    /// and parts of polygons that cross or touch themselves. It keeps every corner of a simple polygon.
     #[allow(clippy::cast_possible_truncation, reason = "at most MAX_CORNERS corners")]
     fn add_missing_edges(&mut self) {
         let edge = |a: u32, b: u32| [a.min(b), a.max(b)];
         self.edges.clear();
         self.edges.extend(self.triangles.iter().flat_map(|&[a, b, c]| [edge(a, b), edge(b, c), edge(c, a)]));
         self.edges.sort_unstable();
-        let n = self.flat.len() as u32;
+        let n = self.projected.len() as u32;
         for a in 0..n {
             let b = (a + 1) % n;
             if self.edges.binary_search(&edge(a, b)).is_err() {
@@ -150,15 +154,15 @@ impl Triangulator {
         }
     }
 
-    /// Whether the areas of the triangles add up to that of the polygon.
+    /// Returns whether the areas of the triangles add up to that of the polygon, within the rounding error.
     #[allow(clippy::cast_precision_loss, reason = "at most MAX_CORNERS corners")]
     fn covers(&self) -> bool {
-        let n = self.flat.len();
-        let outline = outline_area(&self.flat).abs();
-        let inside: f64 = self.triangles.iter().map(|&t| area(&self.flat, t).abs()).sum();
-        // Rounding: a sum of m terms errs by m u times the sum of their sizes (u = EPSILON / 2), to first order. Terms
-        // come from coordinates of size up to 2, differences up to 4, so each errs by less than 64 u on its own. The
-        // products of the outline are at most 8 each.
+        let n = self.projected.len();
+        let outline = outline_area(&self.projected).abs();
+        let inside: f64 = self.triangles.iter().map(|&t| area(&self.projected, t).abs()).sum();
+        // To first order a sum of m terms has an error of m u times the sum of their magnitudes, where u = EPSILON / 2.
+        // Terms come from coordinates of magnitude up to 2 and differences up to 4, so each term has an error below 64
+        // u. The products of the outline are at most 8 each.
         let terms = (n + self.triangles.len()) as f64;
         let sizes = inside + 8.0 * n as f64;
         (inside - outline).abs() <= 0.5 * f64::EPSILON * terms * (sizes + 64.0)
@@ -166,27 +170,27 @@ impl Triangulator {
 }
 
 #[allow(clippy::cast_possible_truncation, reason = "at most MAX_CORNERS corners")]
-fn fan(apex: u32, n: usize) -> impl Iterator<Item = [u32; 3]> {
+fn triangle_fan(apex: u32, n: usize) -> impl Iterator<Item = [u32; 3]> {
     let n = n as u32;
     (1..n - 1).map(move |i| [apex, (apex + i) % n, (apex + i + 1) % n])
 }
 
-/// Twice the area, positive if counter-clockwise.
-fn area(flat: &[[f64; 2]], [a, b, c]: [u32; 3]) -> f64 {
-    let [a, b, c] = [a, b, c].map(|i| flat[i as usize]);
+/// Returns twice the signed area, which is positive if the corners are counter-clockwise.
+fn area(projected: &[[f64; 2]], [a, b, c]: [u32; 3]) -> f64 {
+    let [a, b, c] = [a, b, c].map(|i| projected[i as usize]);
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Twice the area of the polygon, whose first corner is the origin.
-fn outline_area(flat: &[[f64; 2]]) -> f64 {
-    flat.windows(2).map(|p| p[0][0] * p[1][1] - p[0][1] * p[1][0]).sum()
+/// Returns twice the signed area of the polygon, whose first corner is the origin.
+fn outline_area(projected: &[[f64; 2]]) -> f64 {
+    projected.windows(2).map(|p| p[0][0] * p[1][1] - p[0][1] * p[1][0]).sum()
 }
 
-/// Multiplication by a power of two, in two factors because the inverse of a tiny number may exceed the range.
+/// A power of two as a product of two factors, because the inverse of a tiny number may exceed the range of f64.
 struct Scale([f64; 2]);
 
 impl Scale {
-    /// Makes the largest of some finite numbers lie in [1, 2), or nearly so where it is subnormal.
+    /// Returns the scale that brings the largest of some finite numbers into [1, 2), or near to it if it is subnormal.
     #[allow(clippy::cast_possible_truncation, reason = "11 bits")]
     fn to_unit(numbers: impl Iterator<Item = f64>) -> Self {
         let largest = numbers.fold(0.0f64, |m, x| m.max(x.abs()));

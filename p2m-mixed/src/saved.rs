@@ -1,28 +1,30 @@
-//! Scenes in the files of saved indexes.
+//! Scenes as sections of the files of saved indexes.
 
-use crate::{Object, Place, ReadError, Reason, Scene, Skipped};
+use crate::{FileLocation, Object, ReadError, Reason, Scene, Skipped};
 use nalgebra::Point3;
 use p2m_core::storage::{LoadError, Reader, SavedFile, Writer};
 use p2m_core::{Element, Soup};
 use std::io::{self, BufRead, Write};
 
+/// `(n, 3)` f64: the positions.
 const POSITIONS: &str = "scene/positions";
-/// How many vertices each primitive has; nothing if all have three.
+/// `(n,)` u8: the number of vertices of each primitive. The section is empty if all primitives are triangles.
 const KINDS: &str = "scene/kinds";
-/// The vertices of all primitives, one after the other.
+/// u32: the indices of the vertices of all primitives, one primitive after the other.
 const INDICES: &str = "scene/indices";
+/// `(n,)` u32: [`Scene::sources`].
 const SOURCES: &str = "scene/sources";
-/// Texts, one after the other,
+/// u8: the names of objects and then of skipped records, as concatenated UTF-8.
 const TEXTS: &str = "scene/texts";
-/// and for each object the length of its name, and its first and its last id and one;
+/// `(n, 3)` u64: for each object the length of its name, its first id, and the id after its last one.
 const OBJECTS: &str = "scene/objects";
-/// for what was skipped the length of its name, how often, and whether it is a plural.
+/// `(n, 3)` u64: for each kind of skipped records the length of its name, the count, and whether the name is a plural.
 const SKIPPED: &str = "scene/skipped";
 
-/// Adds a scene to a file.
+/// Adds the sections of a scene to a file.
 ///
 /// # Panics
-/// If the file has a scene already.
+/// If the file has a scene.
 pub fn save_scene(scene: &Scene, writer: &mut Writer<'_>) {
     let soup = &scene.soup;
     let positions: Vec<[f64; 3]> = soup.positions().iter().map(|p| p.coords.into()).collect();
@@ -46,10 +48,11 @@ pub fn save_scene(scene: &Scene, writer: &mut Writer<'_>) {
     writer.put_copy(SKIPPED, skipped.collect::<Vec<_>>().as_flattened());
 }
 
-/// The scene of a file.
+/// Loads the scene of a file.
 ///
 /// # Errors
-/// [`LoadError::Missing`] and [`LoadError::Inconsistent`].
+/// [`LoadError::Missing`] if the file has no scene, and [`LoadError::Inconsistent`] if its sections
+/// contradict each other.
 pub fn load_scene(reader: &Reader) -> Result<Scene, LoadError> {
     let inconsistent = |section: &str| LoadError::Inconsistent { section: section.to_owned() };
     let numbers: Vec<f64> = reader.copy(POSITIONS)?;
@@ -98,20 +101,20 @@ pub fn load_scene(reader: &Reader) -> Result<Scene, LoadError> {
     Ok(Scene { soup, sources, objects, skipped })
 }
 
-/// Reads the scene of a saved index.
+/// Reads the scene from a file of a saved index. `name` is the name of the file in messages.
 ///
 /// # Errors
-/// [`ReadError`] with [`Reason::Saved`].
+/// [`ReadError`] with [`Reason::Saved`] if the file is damaged or has no scene.
 pub fn read_p2m(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     let load = || load_scene(SavedFile::read(reader)?.checked()?);
-    load().map_err(|error| ReadError::new(name, Place::File, Reason::Saved(error)))
+    load().map_err(|error| ReadError::new(name, FileLocation::File, Reason::Saved(error)))
 }
 
-/// Writes a scene as a file like that of a saved index, but without one. What the scene has comes back as it is, names
-/// and origins included.
+/// Writes a scene as a file of saved indexes that has no index. Reading it returns the same scene, including
+/// names and sources.
 ///
 /// # Errors
-/// Those of `writer`.
+/// Errors of `writer`.
 pub fn write_p2m(scene: &Scene, writer: impl Write) -> io::Result<()> {
     let mut sections = Writer::default();
     save_scene(scene, &mut sections);

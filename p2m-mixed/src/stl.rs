@@ -1,41 +1,41 @@
-//! STL: triangles and nothing else, as text or binary.
+//! Reads STL files, which have only triangles, as text or binary.
 
-use crate::builder::Builder;
-use crate::bytes::Bytes;
+use crate::builder::SceneBuilder;
+use crate::bytes::ByteReader;
 use crate::polygon::MAX_CORNERS;
-use crate::text::{Lines, Stream, finite, is_space, quote};
-use crate::{HeaderProblem, Place, ReadError, Reason, Scene};
+use crate::text::{LineReader, Tokenizer, is_space, parse_finite, quote};
+use crate::{FileLocation, HeaderProblem, ReadError, Reason, Scene};
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 use nalgebra::Point3;
 use std::hash::{BuildHasher, RandomState};
 use std::io::{BufRead, Cursor, Read};
 
-/// How much of a file is looked at to tell text from binary.
-const HEAD: u64 = 1024;
+/// The number of bytes that decide whether a file is text or binary.
+const DETECTION_BYTES: u64 = 1024;
 
-/// Reads an STL file, text or binary; `name` is for messages.
+/// Reads an STL file, text or binary. `name` is the name of the file in messages.
 ///
-/// What the file is, its first 1024 bytes tell: text begins with `solid`, perhaps behind blanks, and has no control
-/// characters; many binary files begin with `solid`, too, but they have zeros among the first facets.
+/// The first 1024 bytes decide whether the file is text. Text starts with `solid`, possibly after blanks, and has no
+/// control characters. Many binary files start with `solid` too, but they have zero bytes in the first facets.
 ///
-/// Facets share vertices: corners with equal coordinates are one vertex, which is where the first of them is (0 and -0
-/// are equal). No other corners are merged. Degenerate facets are kept. Facets count from 0 in [`Scene::sources`].
+/// Corners with equal coordinates become one vertex, which has the coordinates of the first of them (0 and -0 are
+/// equal). Other corners are not merged. Degenerate facets are kept. [`Scene::sources`] counts facets from 0.
 ///
-/// - Text: any number of solids, whose names are in [`Scene::objects`]; keywords in any case, numbers in double
-///   precision as they are written. Normals may be missing or anything. A facet of more than three vertices is cut like
-///   any polygon.
-/// - Binary: coordinates in single precision, which are exact in double precision. Attribute bytes that are not zero,
-///   and whatever follows the last facet, are counted in [`Scene::skipped`].
+/// - **Text** has any number of solids, whose names are in [`Scene::objects`]. Keywords may have any case, and numbers
+///   are read in double precision. Normals are ignored and may be missing. A facet of more than three vertices is
+///   divided into triangles like any polygon.
+/// - **Binary** files have coordinates in single precision, which are exact in double precision. Attribute bytes other
+///   than zero, and bytes after the last facet, are counted in [`Scene::skipped`].
 ///
 /// # Errors
-/// [`ReadError`] with the line (text) or the offset of the facet (binary) for coordinates that are not finite or no
-/// numbers, words that are out of place, an early end, and for what goes wrong in reading. No memory is taken for
-/// facets that are merely announced.
+/// [`ReadError`] with the line (text) or the offset of the facet (binary) for coordinates that are not finite,
+/// invalid numbers, unexpected words, an early end, and errors of `reader`. No memory is allocated for facets that
+/// the header only announces.
 pub fn read_stl(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
-    let fail = |reason| ReadError::new(name, Place::File, reason);
+    let fail = |reason| ReadError::new(name, FileLocation::File, reason);
     let mut head = Vec::new();
-    reader.by_ref().take(HEAD).read_to_end(&mut head).map_err(|e| fail(Reason::Io(e)))?;
+    reader.by_ref().take(DETECTION_BYTES).read_to_end(&mut head).map_err(|e| fail(Reason::Io(e)))?;
     let is_text = !head.iter().any(|&b| is_control(b));
     let says_solid = starts_with_solid(&head);
     if is_text && !says_solid && !head.is_empty() {
@@ -43,18 +43,18 @@ pub fn read_stl(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
     }
     let reader = Cursor::new(head).chain(reader);
     if is_text && says_solid {
-        let mut text = Text { words: Stream::new(Lines::new(reader, 0)), facets: Facets::default() };
+        let mut text = Text { tokens: Tokenizer::new(LineReader::new(reader, 0)), facets: Facets::default() };
         match text.solids() {
             Ok(()) => Ok(text.facets.builder.finish()),
-            Err(reason) => Err(ReadError::new(name, Place::Line(text.words.line()), reason)),
+            Err(reason) => Err(ReadError::new(name, FileLocation::Line(text.tokens.line()), reason)),
         }
     } else {
-        let mut bytes = Bytes::new(reader, 0);
-        read_binary(&mut bytes).map_err(|reason| ReadError::new(name, Place::Byte(bytes.start()), reason))
+        let mut bytes = ByteReader::new(reader, 0);
+        read_binary(&mut bytes).map_err(|reason| ReadError::new(name, FileLocation::Byte(bytes.start()), reason))
     }
 }
 
-/// A byte that no text has; the end mark of old systems (0x1a) may be there.
+/// Returns whether a byte does not occur in text. The end mark of old systems (0x1a) does.
 fn is_control(byte: u8) -> bool {
     byte < b' ' && !is_space(byte) && byte != 0x1a
 }
@@ -62,33 +62,34 @@ fn is_control(byte: u8) -> bool {
 fn starts_with_solid(head: &[u8]) -> bool {
     let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head); // the mark of UTF-8
     let start = head.iter().position(|&b| !is_space(b)).unwrap_or(head.len());
-    let word = &head[start..];
-    word.len() >= 5 && word[..5].eq_ignore_ascii_case(b"solid") && word.get(5).is_none_or(|&b| is_space(b))
+    let token = &head[start..];
+    token.len() >= 5 && token[..5].eq_ignore_ascii_case(b"solid") && token.get(5).is_none_or(|&b| is_space(b))
 }
 
-/// Facets with merged vertices.
+/// Builds the scene of an STL file and merges equal vertices.
 #[derive(Default)]
 struct Facets {
-    builder: Builder,
+    builder: SceneBuilder,
     vertices: HashTable<u32>,
     hasher: RandomState,
-    /// How many there are, and the vertices of the last.
+    /// The number of facets so far.
     count: usize,
+    /// The vertices of the current facet.
     corners: Vec<u32>,
 }
 
 impl Facets {
-    /// Adds a corner, which is finite, to the facet at hand.
+    /// Adds a corner, which has to be finite, to the current facet.
     fn corner(&mut self, corner: [f64; 3]) -> Result<(), Reason> {
         let corner = Point3::from(corner);
-        // Adding zero turns -0 into 0, which is equal.
+        // The sum of -0 and 0 is 0, so equal coordinates have equal hashes.
         let hash = |p: &Point3<f64>| self.hasher.hash_one([p.x, p.y, p.z].map(|x| (x + 0.0).to_bits()));
         let positions = self.builder.positions();
         let equal = |&vertex: &u32| positions[vertex as usize] == corner;
         let vertex = match self.vertices.entry(hash(&corner), equal, |&vertex| hash(&positions[vertex as usize])) {
             Entry::Occupied(entry) => *entry.get(),
             Entry::Vacant(entry) => {
-                let vertex = self.builder.vertex(corner)?;
+                let vertex = self.builder.push_vertex(corner)?;
                 entry.insert(vertex);
                 vertex
             }
@@ -105,7 +106,7 @@ impl Facets {
         if found > MAX_CORNERS {
             return Err(Reason::ElementTooLarge { count: found as u64, limit: MAX_CORNERS as u64 });
         }
-        self.builder.polygon(&self.corners, self.count)?;
+        self.builder.push_polygon(&self.corners, self.count)?;
         self.corners.clear();
         self.count += 1;
         Ok(())
@@ -113,7 +114,7 @@ impl Facets {
 }
 
 struct Text<R> {
-    words: Stream<R>,
+    tokens: Tokenizer<R>,
     facets: Facets,
 }
 
@@ -121,32 +122,32 @@ impl<R: BufRead> Text<R> {
     fn solids(&mut self) -> Result<(), Reason> {
         let mut is_open = false;
         loop {
-            let word = match self.words.word() {
+            let token = match self.tokens.next() {
                 Err(Reason::UnexpectedEnd) if !is_open => return Ok(()),
-                word => word?,
+                token => token?,
             };
-            if is(word, "solid") {
-                self.facets.builder.object(self.words.rest_of_line());
+            if is(token, "solid") {
+                self.facets.builder.start_object(self.tokens.rest_of_line());
                 is_open = true;
-            } else if is_open && is(word, "facet") {
+            } else if is_open && is(token, "facet") {
                 self.facet()?;
-            } else if is_open && is(word, "endsolid") {
-                self.words.rest_of_line();
+            } else if is_open && is(token, "endsolid") {
+                self.tokens.rest_of_line();
                 is_open = false;
-            } else if !is_open && word == b"\x1a" {
-                // The end mark of old systems.
+            } else if !is_open && token == b"\x1a" {
+                // The end mark of old systems is ignored.
             } else {
                 let expected = if is_open { "'facet' or 'endsolid'" } else { "'solid'" };
-                return Err(Reason::UnexpectedWord { text: quote(word), expected });
+                return Err(Reason::UnexpectedWord { text: quote(token), expected });
             }
         }
     }
 
-    /// Behind the word `facet`.
+    /// Reads a facet after the word `facet`.
     fn facet(&mut self) -> Result<(), Reason> {
-        // `normal` and three numbers, or what was written for numbers.
+        // The word `normal` and three numbers are skipped. Some writers have other words in place of the numbers.
         for _ in 0..4 {
-            if is(self.words.word()?, "outer") {
+            if is(self.tokens.next()?, "outer") {
                 return self.corners();
             }
         }
@@ -154,20 +155,20 @@ impl<R: BufRead> Text<R> {
         self.corners()
     }
 
-    /// Behind the word `outer`.
+    /// Reads the corners of a facet after the word `outer`.
     fn corners(&mut self) -> Result<(), Reason> {
         self.expect("loop", "'loop'")?;
         loop {
-            let word = self.words.word()?;
-            if is(word, "endloop") {
+            let token = self.tokens.next()?;
+            if is(token, "endloop") {
                 break;
             }
-            if !is(word, "vertex") {
-                return Err(Reason::UnexpectedWord { text: quote(word), expected: "'vertex' or 'endloop'" });
+            if !is(token, "vertex") {
+                return Err(Reason::UnexpectedWord { text: quote(token), expected: "'vertex' or 'endloop'" });
             }
             let mut corner = [0.0; 3];
             for x in &mut corner {
-                *x = finite(self.words.word()?)?;
+                *x = parse_finite(self.tokens.next()?)?;
             }
             self.facets.corner(corner)?;
         }
@@ -176,22 +177,22 @@ impl<R: BufRead> Text<R> {
     }
 
     fn expect(&mut self, keyword: &str, expected: &'static str) -> Result<(), Reason> {
-        let word = self.words.word()?;
-        if is(word, keyword) { Ok(()) } else { Err(Reason::UnexpectedWord { text: quote(word), expected }) }
+        let token = self.tokens.next()?;
+        if is(token, keyword) { Ok(()) } else { Err(Reason::UnexpectedWord { text: quote(token), expected }) }
     }
 }
 
-fn is(word: &[u8], keyword: &str) -> bool {
-    word.eq_ignore_ascii_case(keyword.as_bytes())
+fn is(token: &[u8], keyword: &str) -> bool {
+    token.eq_ignore_ascii_case(keyword.as_bytes())
 }
 
-fn read_binary(bytes: &mut Bytes<impl BufRead>) -> Result<Scene, Reason> {
+fn read_binary(bytes: &mut ByteReader<impl BufRead>) -> Result<Scene, Reason> {
     bytes.array::<80>()?;
     let count = u32::from_le_bytes(bytes.array()?);
     let mut facets = Facets::default();
     let mut with_attribute = 0;
     for _ in 0..count {
-        // The normal, three vertices, an attribute.
+        // A facet has a normal, three vertices and an attribute of two bytes.
         let facet: [u8; 50] = bytes.array()?;
         for corner in facet[12..48].chunks_exact(12) {
             let mut position = [0.0; 3];
@@ -206,8 +207,8 @@ fn read_binary(bytes: &mut Bytes<impl BufRead>) -> Result<Scene, Reason> {
         facets.end_facet()?;
         with_attribute += u64::from(facet[48..] != [0, 0]);
     }
-    let rest = bytes.rest()?;
-    facets.builder.skips.add_many(with_attribute, "facets with attribute bytes");
-    facets.builder.skips.add_many(rest, "bytes after the last facet");
+    let rest = bytes.skip_rest()?;
+    facets.builder.skipped.add_plural(with_attribute, "facets with attribute bytes");
+    facets.builder.skipped.add_plural(rest, "bytes after the last facet");
     Ok(facets.builder.finish())
 }

@@ -1,46 +1,50 @@
-//! Lines, words and numbers of text files, as bytes: names and comments need not be UTF-8.
+//! Lines, tokens and numbers of text files.
+//!
+//! A token is a run of bytes without white space. Everything is read as bytes, because names and comments need not be
+//! UTF-8.
 
 use crate::Reason;
 use std::io::{self, BufRead, ErrorKind};
 
-/// Words longer than this are shortened in messages.
-const QUOTED: usize = 40;
+/// Longer texts are shortened in messages.
+const MAX_QUOTED_BYTES: usize = 40;
 
-/// `bytes` as a message may show them: short, printable, on one line.
+/// Returns `bytes` in the form in which a message shows them: short, printable and on one line.
 pub(crate) fn quote(bytes: &[u8]) -> String {
-    if bytes.len() > QUOTED {
-        format!("{}..", bytes[..QUOTED].escape_ascii())
+    if bytes.len() > MAX_QUOTED_BYTES {
+        format!("{}..", bytes[..MAX_QUOTED_BYTES].escape_ascii())
     } else {
         bytes.escape_ascii().to_string()
     }
 }
 
-/// A number, or NaN or an infinity; overflow parses as infinity.
-pub(crate) fn number(word: &[u8]) -> Result<f64, Reason> {
-    let number = std::str::from_utf8(word).ok().and_then(|s| s.parse::<f64>().ok());
-    number.ok_or_else(|| Reason::BadNumber { text: quote(word) })
+/// Parses a number, which may be NaN or infinite. A number beyond the range of f64 is infinite.
+pub(crate) fn parse_number(token: &[u8]) -> Result<f64, Reason> {
+    let number = std::str::from_utf8(token).ok().and_then(|s| s.parse::<f64>().ok());
+    number.ok_or_else(|| Reason::BadNumber { text: quote(token) })
 }
 
-/// A finite number.
-pub(crate) fn finite(word: &[u8]) -> Result<f64, Reason> {
-    number(word).and_then(|x| if x.is_finite() { Ok(x) } else { Err(Reason::NonFinite { text: quote(word) }) })
+/// Parses a finite number.
+pub(crate) fn parse_finite(token: &[u8]) -> Result<f64, Reason> {
+    parse_number(token).and_then(|x| if x.is_finite() { Ok(x) } else { Err(Reason::NonFinite { text: quote(token) }) })
 }
 
-/// A decimal integer with an optional sign. What exceeds the range saturates: as an index it is out of range anyway.
-pub(crate) fn integer(word: &[u8]) -> Result<i64, Reason> {
-    let (negative, digits) = match word {
+/// Parses a decimal integer with an optional sign. An integer beyond the range of i64 saturates, because it is out of
+/// range as an index anyway.
+pub(crate) fn parse_integer(token: &[u8]) -> Result<i64, Reason> {
+    let (negative, digits) = match token {
         [b'-', rest @ ..] => (true, rest),
         [b'+', rest @ ..] => (false, rest),
-        _ => (false, word),
+        _ => (false, token),
     };
     if digits.is_empty() || !digits.iter().all(u8::is_ascii_digit) {
-        return Err(Reason::BadNumber { text: quote(word) });
+        return Err(Reason::BadNumber { text: quote(token) });
     }
     let value = digits.iter().fold(0i64, |v, d| v.saturating_mul(10).saturating_add(i64::from(d - b'0')));
     Ok(if negative { -value } else { value })
 }
 
-/// Without white space around it.
+/// Returns the text without white space around it.
 pub(crate) fn trim(bytes: &[u8]) -> &[u8] {
     let start = bytes.iter().position(|&b| !is_space(b)).unwrap_or(bytes.len());
     let end = bytes.iter().rposition(|&b| !is_space(b)).map_or(start, |last| last + 1);
@@ -51,8 +55,8 @@ pub(crate) fn is_space(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\r' | b'\n' | 0x0b | 0x0c)
 }
 
-/// What `reader` has at hand; nothing at the end of the text.
-pub(crate) fn at_hand(reader: &mut impl BufRead) -> io::Result<&[u8]> {
+/// Returns the buffered bytes of `reader`, which are empty only at the end of the text.
+pub(crate) fn fill_buffer(reader: &mut impl BufRead) -> io::Result<&[u8]> {
     loop {
         match reader.fill_buf() {
             Err(e) if e.kind() == ErrorKind::Interrupted => {}
@@ -60,20 +64,21 @@ pub(crate) fn at_hand(reader: &mut impl BufRead) -> io::Result<&[u8]> {
             Ok(_) => break,
         }
     }
-    reader.fill_buf() // the same again: a borrow cannot leave the loop
+    reader.fill_buf() // the buffer is borrowed again, because a borrow cannot leave the loop
 }
 
-/// Appends what comes up to and including the next byte that `ends`, at most `most` bytes; how many there were.
+/// Appends the bytes up to and including the next one for which `ends` is true, at most `max_count`, and
+/// returns their number.
 pub(crate) fn read_until(
     reader: &mut impl BufRead,
     ends: impl Fn(u8) -> bool,
-    most: usize,
+    max_count: usize,
     buffer: &mut Vec<u8>,
 ) -> io::Result<usize> {
     let mut read = 0;
-    while read < most {
-        let bytes = at_hand(reader)?;
-        let bytes = &bytes[..bytes.len().min(most - read)];
+    while read < max_count {
+        let bytes = fill_buffer(reader)?;
+        let bytes = &bytes[..bytes.len().min(max_count - read)];
         let end = bytes.iter().position(|&b| ends(b));
         let take = end.map_or(bytes.len(), |end| end + 1);
         buffer.extend_from_slice(&bytes[..take]);
@@ -86,15 +91,16 @@ pub(crate) fn read_until(
     Ok(read)
 }
 
-/// The words of a statement, with the line that each stands on.
-pub(crate) struct Words<'a> {
+/// Iterates over the tokens of a statement, which may extend over several lines.
+pub(crate) struct Tokens<'a> {
     bytes: &'a [u8],
-    /// Where the last word starts and where the rest begins.
+    /// The start of the last token.
     start: usize,
+    /// The end of the last token.
     end: usize,
 }
 
-impl<'a> Words<'a> {
+impl<'a> Tokens<'a> {
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, start: 0, end: 0 }
     }
@@ -113,76 +119,78 @@ impl<'a> Words<'a> {
         (start < end).then(|| &self.bytes[start..end])
     }
 
-    /// What follows the last word.
+    /// Returns the bytes after the last token.
     pub(crate) fn rest(&self) -> &'a [u8] {
         &self.bytes[self.end..]
     }
 
-    /// Ends the statement where a comment begins.
+    /// Ends the statement at the start of a comment.
     pub(crate) fn end_at_comment(&mut self) {
         if let Some(at) = self.bytes[self.end..].iter().position(|&b| b == b'#') {
             self.bytes = &self.bytes[..self.end + at];
         }
     }
 
-    /// How many lines below the first line of the statement the last word stands.
-    pub(crate) fn lines_down(&self) -> u64 {
+    /// Returns the line of the last token, counted from the first line of the statement.
+    pub(crate) fn line_offset(&self) -> u64 {
         self.bytes[..self.start].iter().filter(|&&b| b == b'\n').count() as u64
     }
 }
 
 /// Reads a text line by line into one buffer. A line ends at `\n`, `\r\n` or, as on old Macs, `\r`.
-pub(crate) struct Lines<R> {
+pub(crate) struct LineReader<R> {
     reader: R,
     buffer: Vec<u8>,
-    /// Number of the first line in `buffer`, from 1, and of the line to come.
+    /// The number of the first line in `buffer`, counted from 1.
     line: u64,
+    /// The number of the next line.
     next: u64,
-    /// Whether the last line ended at `\r`: a `\n` right behind is of the same end.
+    /// Whether the last line ended at `\r`, so that a following `\n` belongs to the same line end.
     after_return: bool,
-    /// Bytes that were read.
+    /// The number of bytes that were read.
     read: u64,
 }
 
-impl<R: BufRead> Lines<R> {
-    /// `lines_before` have been read already.
+impl<R: BufRead> LineReader<R> {
+    /// `lines_before` is the number of lines that were read from `reader` before.
     pub(crate) fn new(reader: R, lines_before: u64) -> Self {
         Self { reader, buffer: Vec::new(), line: lines_before, next: lines_before + 1, after_return: false, read: 0 }
     }
 
-    /// Number of the first line of the statement that was read last.
+    /// Returns the number of the first line of the statement that was read last.
     pub(crate) fn line(&self) -> u64 {
         self.line
     }
 
-    /// The statement that was read last.
+    /// Returns the statement that was read last.
     pub(crate) fn bytes(&self) -> &[u8] {
         &self.buffer
     }
 
-    /// The reader behind the line that was read last, and how many bytes are before.
+    /// Returns the reader, positioned after the line that was read last, and the number of bytes before that position.
     pub(crate) fn into_reader(mut self) -> io::Result<(R, u64)> {
         self.end_line()?;
         Ok((self.reader, self.read))
     }
 
-    /// Reads the next line; `false` at the end of the text.
+    /// Reads the next line and returns `false` at the end of the text.
     pub(crate) fn read(&mut self) -> std::io::Result<bool> {
         self.buffer.clear();
         self.line = self.next;
         self.append()
     }
 
-    /// Ends the line where a comment begins.
+    /// Ends the line at the start of a comment.
     fn end_at_comment(&mut self) {
         if let Some(at) = self.buffer.iter().position(|&b| b == b'#') {
             self.buffer.truncate(at);
         }
     }
 
-    /// Reads the next statement of a text in which a backslash at the end of a line continues it on the next one.
+    /// Reads the next statement of a text in which a backslash at the end of a line continues the statement.
     ///
-    /// Lines are joined by a newline. A comment ends with its line: a path name in it may well end in a backslash.
+    /// The lines of a statement are joined by a newline. A backslash does not continue a comment, because a comment may
+    /// end with a path name that ends in a backslash.
     pub(crate) fn read_continued(&mut self) -> std::io::Result<bool> {
         if !self.read()? {
             return Ok(false);
@@ -199,10 +207,10 @@ impl<R: BufRead> Lines<R> {
         Ok(true)
     }
 
-    /// Passes over the second byte of a line end. Not right behind the `\r`: no line is held back until the next one is
-    /// there.
+    /// Skips the second byte of a line end. This is done before the next line is read rather than after `\r`, so that a
+    /// line of an interactive input can be used before the next one arrives.
     fn end_line(&mut self) -> io::Result<()> {
-        if std::mem::take(&mut self.after_return) && at_hand(&mut self.reader)?.first() == Some(&b'\n') {
+        if std::mem::take(&mut self.after_return) && fill_buffer(&mut self.reader)?.first() == Some(&b'\n') {
             self.reader.consume(1);
             self.read += 1;
         }
@@ -218,7 +226,7 @@ impl<R: BufRead> Lines<R> {
             read => self.read += read as u64,
         }
         if self.next == 1 && self.buffer.starts_with(b"\xef\xbb\xbf") {
-            self.buffer.drain(..3); // the mark that some editors put in front of UTF-8
+            self.buffer.drain(..3); // the byte order mark of UTF-8
         }
         self.next += 1;
         if let Some(end @ (b'\n' | b'\r')) = self.buffer[start..].last() {
@@ -229,34 +237,34 @@ impl<R: BufRead> Lines<R> {
     }
 }
 
-/// A text as a row of words, whatever lines they stand on.
-pub(crate) struct Stream<R> {
-    lines: Lines<R>,
-    /// Where the rest of the line begins.
+/// Reads the tokens of a text, whatever lines they are on.
+pub(crate) struct Tokenizer<R> {
+    lines: LineReader<R>,
+    /// The end of the last token in the current line.
     at: usize,
-    /// Whether `#` begins a comment.
+    /// Whether `#` starts a comment.
     has_comments: bool,
 }
 
-impl<R: BufRead> Stream<R> {
-    pub(crate) fn new(lines: Lines<R>) -> Self {
+impl<R: BufRead> Tokenizer<R> {
+    pub(crate) fn new(lines: LineReader<R>) -> Self {
         Self { lines, at: 0, has_comments: false }
     }
 
-    pub(crate) fn with_comments(lines: Lines<R>) -> Self {
+    pub(crate) fn with_comments(lines: LineReader<R>) -> Self {
         Self { has_comments: true, ..Self::new(lines) }
     }
 
-    /// Number of the line that the last word stands on.
+    /// Returns the number of the line that the last token is on.
     pub(crate) fn line(&self) -> u64 {
         self.lines.line()
     }
 
-    /// The next word, on this line or further down.
-    pub(crate) fn word(&mut self) -> Result<&[u8], Reason> {
+    /// Returns the next token, on this line or a later one.
+    pub(crate) fn next(&mut self) -> Result<&[u8], Reason> {
         loop {
-            if let Some(word) = self.find() {
-                return Ok(&self.lines.bytes()[word]);
+            if let Some(token) = self.find() {
+                return Ok(&self.lines.bytes()[token]);
             }
             self.at = 0;
             if !self.lines.read().map_err(Reason::Io)? {
@@ -268,9 +276,9 @@ impl<R: BufRead> Stream<R> {
         }
     }
 
-    /// The next word on this line.
-    pub(crate) fn word_on_line(&mut self) -> Option<&[u8]> {
-        self.find().map(|word| &self.lines.bytes()[word])
+    /// Returns the next token on this line.
+    pub(crate) fn next_on_line(&mut self) -> Option<&[u8]> {
+        self.find().map(|token| &self.lines.bytes()[token])
     }
 
     fn find(&mut self) -> Option<std::ops::Range<usize>> {
@@ -281,13 +289,13 @@ impl<R: BufRead> Stream<R> {
         (start < end).then_some(start..end)
     }
 
-    /// The rest of this line.
+    /// Returns the rest of this line.
     pub(crate) fn rest_of_line(&mut self) -> &[u8] {
         let start = std::mem::replace(&mut self.at, self.lines.bytes().len());
         &self.lines.bytes()[start..]
     }
 
-    pub(crate) fn into_lines(self) -> Lines<R> {
+    pub(crate) fn into_lines(self) -> LineReader<R> {
         self.lines
     }
 }
@@ -298,13 +306,13 @@ mod tests {
 
     #[test]
     fn words_know_their_line_across_continuations() {
-        let mut lines = Lines::new("\u{feff}a b\\\r\n c\\\nd # e\\\nf\\".as_bytes(), 0);
+        let mut lines = LineReader::new("\u{feff}a b\\\r\n c\\\nd # e\\\nf\\".as_bytes(), 0);
         assert!(lines.read_continued().unwrap());
-        let mut words = Words::new(lines.bytes());
-        words.end_at_comment();
+        let mut tokens = Tokens::new(lines.bytes());
+        tokens.end_at_comment();
         let mut seen = Vec::new();
-        while let Some(word) = words.next() {
-            seen.push((word.to_vec(), lines.line() + words.lines_down()));
+        while let Some(token) = tokens.next() {
+            seen.push((token.to_vec(), lines.line() + tokens.line_offset()));
         }
         assert_eq!(seen, [(b"a".to_vec(), 1), (b"b".to_vec(), 1), (b"c".to_vec(), 2), (b"d".to_vec(), 3)]);
         assert!(lines.read_continued().unwrap());
@@ -316,9 +324,9 @@ mod tests {
     fn lines_end_in_three_ways() {
         let text = "a\r\nb\rc\nd\r\re\r\n\nf\r";
         let expected = ["a", "b", "c", "d", "", "e", "", "f"];
-        // With a buffer of one byte, `\r` and `\n` are never at hand together.
-        for room in [1, 2, 100] {
-            let mut lines = Lines::new(std::io::BufReader::with_capacity(room, text.as_bytes()), 0);
+        // A buffer of one byte never holds both `\r` and `\n`.
+        for capacity in [1, 2, 100] {
+            let mut lines = LineReader::new(std::io::BufReader::with_capacity(capacity, text.as_bytes()), 0);
             let mut seen = Vec::new();
             while lines.read().unwrap() {
                 seen.push(String::from_utf8(lines.bytes().to_vec()).unwrap());
@@ -330,22 +338,22 @@ mod tests {
 
     #[test]
     fn integers_have_a_sign_at_most_and_saturate() {
-        assert_eq!(integer(b"-12").unwrap(), -12);
-        assert_eq!(integer(b"+7").unwrap(), 7);
-        assert_eq!(integer(b"99999999999999999999").unwrap(), i64::MAX);
+        assert_eq!(parse_integer(b"-12").unwrap(), -12);
+        assert_eq!(parse_integer(b"+7").unwrap(), 7);
+        assert_eq!(parse_integer(b"99999999999999999999").unwrap(), i64::MAX);
         for bad in [&b""[..], b"-", b"1.0", b"0x1", b"--1", b"1e3"] {
-            assert!(matches!(integer(bad), Err(Reason::BadNumber { .. })), "{bad:?}");
+            assert!(matches!(parse_integer(bad), Err(Reason::BadNumber { .. })), "{bad:?}");
         }
     }
 
     #[test]
-    fn numbers_that_are_not_finite_are_told_from_those_that_are_none() {
-        assert_eq!(finite(b"-1.5e3").unwrap(), -1500.0);
+    fn numbers_that_are_not_finite_and_invalid_numbers_have_different_errors() {
+        assert_eq!(parse_finite(b"-1.5e3").unwrap(), -1500.0);
         for bad in ["nan", "inf", "-Infinity", "1e999"] {
-            assert!(matches!(finite(bad.as_bytes()), Err(Reason::NonFinite { .. })), "{bad}");
+            assert!(matches!(parse_finite(bad.as_bytes()), Err(Reason::NonFinite { .. })), "{bad}");
         }
         for bad in [&b""[..], b"x", b"1,5", b"1.#QNAN", b"\xff"] {
-            assert!(matches!(finite(bad), Err(Reason::BadNumber { .. })), "{bad:?}");
+            assert!(matches!(parse_finite(bad), Err(Reason::BadNumber { .. })), "{bad:?}");
         }
     }
 }

@@ -1,59 +1,64 @@
-//! A bounding volume hierarchy of boxes: primitives along a Hilbert curve, eight in a group, and eight groups in one, up to a single
-//! group.
+//! A bounding volume hierarchy with eight members in each group.
+//!
+//! Primitives are sorted along a Hilbert curve. Eight consecutive primitives form a group, eight groups form a group of
+//! the next level, and the last level is one group.
 
-use super::flat::Flat;
+use super::local_primitive::LocalPrimitive;
 use nalgebra::Point3;
 use p2m_core::engine::curve::along_the_curve;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 use p2m_core::{Aabb, Primitive, PrimitiveId, PrimitiveSet};
 
-/// Members of a group.
-const MEMBERS: usize = 8;
-/// At most, of which each may have a group that is not full.
-const LEVELS: usize = 11;
+/// The largest number of members of a group.
+const MAX_MEMBERS: usize = 8;
+/// The largest number of levels. Each may have one group that is not full.
+const MAX_LEVELS: usize = 11;
 
-/// Primitives in their order along the curve, and groups of them.
+/// The primitives in their order along the curve, and all groups.
 #[derive(Debug)]
 pub(crate) struct Groups {
-    pub(crate) flats: Vec<Flat>,
+    pub(crate) primitives: Vec<LocalPrimitive>,
+    /// The id of each primitive in the set.
     pub(crate) ids: Vec<PrimitiveId>,
-    /// The groups of primitives, the groups of these, and so on; the last one has all.
+    /// The groups of primitives, then the groups of each higher level. The last group is the root.
     groups: Vec<Group>,
 }
 
-/// The box around some neighbours.
+/// A group of consecutive primitives, or of consecutive groups, and its bounding box.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Group {
+    /// The corners of the bounding box with the smallest and the largest coordinates.
     pub(crate) bounds: [V3; 2],
+    /// The index of the first member, and the index after the last one.
     members: [u32; 2],
-    of_groups: bool,
+    has_groups: bool,
 }
 
-/// A primitive or a group: its number, with the upper bit for groups.
+/// The index of a primitive or of a group. The highest bit is set for groups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Item(u32);
+pub(crate) struct EntryId(u32);
 
-/// What an [`Item`] is.
+/// The primitive or group that an [`EntryId`] refers to.
 #[derive(Clone, Copy)]
-pub(crate) enum Is<'a> {
-    One(&'a Flat),
-    Many(&'a Group),
+pub(crate) enum Entry<'a> {
+    Primitive(&'a LocalPrimitive),
+    Group(&'a Group),
 }
 
-const GROUP: u32 = 1 << 31;
+const GROUP_BIT: u32 = 1 << 31;
 
-impl Item {
-    /// The place of a primitive; `None` for a group.
-    pub(crate) fn one(self) -> Option<usize> {
-        (self.0 & GROUP == 0).then_some(self.0 as usize)
+impl EntryId {
+    /// Returns the index of a primitive along the curve, or `None` for a group.
+    pub(crate) fn primitive(self) -> Option<usize> {
+        (self.0 & GROUP_BIT == 0).then_some(self.0 as usize)
     }
 }
 
 impl Group {
     #[inline(always)]
-    pub(crate) fn members(&self) -> impl ExactSizeIterator<Item = Item> + use<> {
-        let bit = if self.of_groups { GROUP } else { 0 };
-        (self.members[0]..self.members[1]).map(move |i| Item(i | bit))
+    pub(crate) fn members(&self) -> impl ExactSizeIterator<Item = EntryId> + use<> {
+        let bit = if self.has_groups { GROUP_BIT } else { 0 };
+        (self.members[0]..self.members[1]).map(move |i| EntryId(i | bit))
     }
 
     #[inline(always)]
@@ -67,76 +72,81 @@ impl Group {
     }
 
     #[allow(clippy::cast_possible_truncation, reason = "fewer than primitives, of which there are at most 2^30")]
-    fn of(members: impl ExactSizeIterator<Item = Aabb<f64>>, first: usize, of_groups: bool) -> Self {
-        let members_end = first + members.len();
-        let all = members.fold(Aabb::empty(), |all, one| all.union(&one));
-        let bounds = [all.min.coords.into(), all.max.coords.into()];
-        Self { bounds, members: [first as u32, members_end as u32], of_groups }
+    fn from_boxes(members: impl ExactSizeIterator<Item = Aabb<f64>>, first: usize, has_groups: bool) -> Self {
+        let end = first + members.len();
+        let union = members.fold(Aabb::empty(), |union, member| union.union(&member));
+        let bounds = [union.min.coords.into(), union.max.coords.into()];
+        Self { bounds, members: [first as u32, end as u32], has_groups }
     }
 }
 
 impl Groups {
-    /// `None` if a primitive is not told by its vertices, or if there is no memory.
+    /// Returns `None` if a primitive is not the convex hull of its vertices, or if memory does not suffice.
     pub(crate) fn new<S: PrimitiveSet<f64> + ?Sized>(set: &S) -> Option<Self> {
         let count = set.len();
         let ids = || (0..count).map(PrimitiveId::new);
-        let middles: Vec<V3> = ids()
+        let centres: Vec<V3> = ids()
             .map(|id| {
                 let bounds = set.get(id).aabb();
                 std::array::from_fn(|k| bounds.min[k] * 0.5 + bounds.max[k] * 0.5)
             })
             .collect();
         let mut order: Vec<u32> = ids().map(PrimitiveId::number).collect();
-        along_the_curve(&middles, &mut order);
-        drop(middles);
+        along_the_curve(&centres, &mut order);
+        drop(centres);
         let ids: Vec<PrimitiveId> = order.into_iter().map(|i| PrimitiveId::new(i as usize)).collect();
-        let mut flats = Vec::new();
-        flats.try_reserve_exact(count).ok()?;
+        let mut primitives = Vec::new();
+        primitives.try_reserve_exact(count).ok()?;
         for id in &ids {
-            flats.push(Flat::of(&set.get(*id))?);
+            primitives.push(LocalPrimitive::from_primitive(&set.get(*id))?);
         }
-        let mut groups: Vec<Group> = Vec::with_capacity(count.div_ceil(MEMBERS - 1) + LEVELS);
-        for (n, members) in ids.chunks(MEMBERS).enumerate() {
-            groups.push(Group::of(members.iter().map(|id| set.get(*id).aabb()), n * MEMBERS, false));
+        let mut groups: Vec<Group> = Vec::with_capacity(count.div_ceil(MAX_MEMBERS - 1) + MAX_LEVELS);
+        for (n, members) in ids.chunks(MAX_MEMBERS).enumerate() {
+            groups.push(Group::from_boxes(members.iter().map(|id| set.get(*id).aabb()), n * MAX_MEMBERS, false));
         }
         let mut first = 0;
         while groups.len() - first > 1 {
             let end = groups.len();
-            for start in (first..end).step_by(MEMBERS) {
-                let members = &groups[start..end.min(start + MEMBERS)];
-                let group = Group::of(members.iter().map(Group::aabb), start, true);
+            for start in (first..end).step_by(MAX_MEMBERS) {
+                let members = &groups[start..end.min(start + MAX_MEMBERS)];
+                let group = Group::from_boxes(members.iter().map(Group::aabb), start, true);
                 groups.push(group);
             }
             first = end;
         }
-        Some(Self { flats, ids, groups })
+        Some(Self { primitives, ids, groups })
     }
 
     #[inline(always)]
-    pub(crate) fn get(&self, item: Item) -> Is<'_> {
-        let number = (item.0 & !GROUP) as usize;
-        if item.0 & GROUP == 0 { Is::One(&self.flats[number]) } else { Is::Many(&self.groups[number]) }
+    pub(crate) fn get(&self, entry: EntryId) -> Entry<'_> {
+        let index = (entry.0 & !GROUP_BIT) as usize;
+        if entry.0 & GROUP_BIT == 0 {
+            Entry::Primitive(&self.primitives[index])
+        } else {
+            Entry::Group(&self.groups[index])
+        }
     }
 
-    /// The group of all; `None` if there is nothing.
+    /// Returns the group that contains all primitives, or `None` if there are none.
     #[allow(clippy::cast_possible_truncation, reason = "fewer than primitives")]
-    pub(crate) fn all(&self) -> Option<Item> {
-        self.groups.len().checked_sub(1).map(|last| Item(last as u32 | GROUP))
+    pub(crate) fn root(&self) -> Option<EntryId> {
+        self.groups.len().checked_sub(1).map(|last| EntryId(last as u32 | GROUP_BIT))
     }
 
-    /// The primitive that is found by way of the nearest boxes, which is among the nearer ones of an item.
-    pub(crate) fn near(&self, mut item: Item, place: V3) -> &Flat {
+    /// Descends from an entry to the nearest member on each level. The result is a primitive near the point, though not
+    /// always the nearest one.
+    pub(crate) fn descend(&self, mut entry: EntryId, point: V3) -> &LocalPrimitive {
         loop {
-            match self.get(item) {
-                Is::One(flat) => return flat,
-                Is::Many(group) => {
-                    let square = |item: &Item| match self.get(*item) {
-                        Is::One(flat) => flat.square(place),
-                        Is::Many(group) => group.aabb().lower_bound(&place.into()),
+            match self.get(entry) {
+                Entry::Primitive(primitive) => return primitive,
+                Entry::Group(group) => {
+                    let square = |entry: &EntryId| match self.get(*entry) {
+                        Entry::Primitive(primitive) => primitive.squared_distance(point),
+                        Entry::Group(group) => group.aabb().lower_bound(&point.into()),
                     };
-                    item = group
+                    entry = group
                         .members()
-                        .map(|item| (square(&item), item))
+                        .map(|entry| (square(&entry), entry))
                         .reduce(|a, b| if b.0 < a.0 { b } else { a })
                         .expect("groups are not empty")
                         .1;
@@ -146,7 +156,7 @@ impl Groups {
     }
 
     pub(crate) fn memory(&self) -> usize {
-        self.flats.capacity() * size_of::<Flat>()
+        self.primitives.capacity() * size_of::<LocalPrimitive>()
             + self.ids.capacity() * size_of::<PrimitiveId>()
             + self.groups.capacity() * size_of::<Group>()
     }

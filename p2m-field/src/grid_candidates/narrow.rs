@@ -1,71 +1,76 @@
-//! From the candidates of a box to those of a part of it: what no foot of a corner is nearer than at all corners.
+//! Narrows the candidates of a box to those of a part of the box.
+//!
+//! The closest points to the eight corners of the part are the dominators. A candidate is excluded if one of them is
+//! nearer than the candidate at all eight corners.
 
-use super::groups::{Group, Groups, Is};
-use super::lanes::{squares, squares_from_box};
-use super::{Candidates, Detail, ERROR, MARGIN, TINY};
+use super::candidates::{Candidates, Detail};
+use super::error_bounds::{ERROR_PER_REACH, INSIDE_MARGIN_PER_REACH, UNDERFLOW_ERROR};
+use super::groups::{Entry, Group, Groups};
+use super::squared_distances::{squared_distances, squared_distances_from_box};
 use p2m_core::Aabb;
 use p2m_core::engine::simd::{Doubles, InstructionSet, SimdKernel};
 use p2m_core::engine::vector::{V3, larger, norm_squared, sub};
 
-/// The sphere around a box, for the distances that occur in it.
+/// The bounding ball of a box, which bounds the distances of its points.
 struct Ball {
     centre: V3,
     radius: f64,
 }
 
-/// Above what a few roundings take away.
+/// A factor that makes an upper bound of a result that a few roundings have lowered.
 const ROUND_UP: f64 = 1.0 + 1e-9;
 
 impl Ball {
-    /// Around a box.
     fn around([low, high]: [V3; 2]) -> Self {
         let centre = [0, 1, 2].map(|k: usize| low[k] * 0.5 + high[k] * 0.5);
-        // The centre may be rounded by an ulp of it.
+        // The radius covers the rounding of the centre, which is at most one ulp.
         let ulp = f64::EPSILON * p2m_core::engine::vector::largest(&[low, high]);
         Self { centre, radius: norm_squared(sub(high, low)).sqrt() * 0.5 * ROUND_UP + 2.0 * ulp }
     }
 
-    /// No place of it is farther than this from a vertex.
+    /// Returns an upper bound on the distance of a point of the ball from a vertex of an entry.
     #[inline(always)]
-    fn reach(&self, item: Is<'_>) -> f64 {
-        let (way, length) = match item {
-            Is::One(flat) => (sub(flat.origin, self.centre), flat.length),
-            Is::Many(Group { bounds: [low, high], .. }) => {
+    fn reach(&self, entry: Entry<'_>) -> f64 {
+        let (offset, length) = match entry {
+            Entry::Primitive(primitive) => (sub(primitive.origin, self.centre), primitive.length),
+            Entry::Group(Group { bounds: [low, high], .. }) => {
                 let (low, high) = (sub(*low, self.centre), sub(*high, self.centre));
                 ([0, 1, 2].map(|k: usize| larger(-low[k], high[k])), 0.0)
             }
         };
-        (norm_squared(way).sqrt() + length + self.radius) * ROUND_UP
+        (norm_squared(offset).sqrt() + length + self.radius) * ROUND_UP
     }
 }
 
-/// Finds the candidates of a part.
+/// Finds the candidates of a part of the box of `candidates`.
 pub(crate) struct Narrow<'a> {
     pub(crate) groups: &'a Groups,
-    pub(crate) of: &'a Candidates,
+    pub(crate) candidates: &'a Candidates,
     pub(crate) part: &'a Aabb<f64>,
     pub(crate) detail: Detail,
 }
 
-/// Groups whose diagonal is less than this part of the diagonal of the box stay together.
-const SMALL: f64 = 0.35;
+/// Groups with a smaller diagonal than this fraction of the diagonal of the box stay together.
+const MAX_GROUP_DIAGONAL_FRACTION: f64 = 0.35;
 
+/// Returns the squared distances of eight points from an entry.
 #[inline(always)]
-fn squares_from<D: Doubles>(item: Is<'_>, places: &[D; 3], margin: D) -> D {
-    match item {
-        Is::One(flat) => squares(flat, places, margin),
-        Is::Many(group) => squares_from_box(&group.bounds, places),
+fn entry_squared_distances<D: Doubles>(entry: Entry<'_>, points: &[D; 3], margin: D) -> D {
+    match entry {
+        Entry::Primitive(primitive) => squared_distances(primitive, points, margin),
+        Entry::Group(group) => squared_distances_from_box(&group.bounds, points),
     }
 }
 
-/// Whether no dominator is nearer to all corners.
+/// Returns whether no dominator is nearer at all corners, that is, whether a candidate with these squared distances
+/// from the corners is kept.
 #[inline(always)]
-fn stays<D: Doubles>(squares: D, dominators: &[D; 8]) -> bool {
-    let mut stays = true;
+fn is_kept<D: Doubles>(squares: D, dominators: &[D; 8]) -> bool {
+    let mut is_kept = true;
     for dominator in dominators {
-        stays &= squares.at_most(*dominator) != 0;
+        is_kept &= squares.at_most(*dominator) != 0;
     }
-    stays
+    is_kept
 }
 
 impl SimdKernel for Narrow<'_> {
@@ -73,81 +78,85 @@ impl SimdKernel for Narrow<'_> {
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) -> Candidates {
-        let Self { groups, of, part, detail } = self;
-        let Some(first) = of.items.first() else {
-            return Candidates { items: Vec::new(), nearest: f64::INFINITY, reach: 0.0, part: Some(*part) };
+        let Self { groups, candidates, part, detail } = self;
+        let Some(first) = candidates.entries.first() else {
+            return Candidates { entries: Vec::new(), nearest: f64::INFINITY, reach: 0.0, bounds: Some(*part) };
         };
         let ends: [V3; 2] = [part.min.coords.into(), part.max.coords.into()];
         let ball = Ball::around(ends);
         let corners: [[f64; 8]; 3] = std::array::from_fn(|k| std::array::from_fn(|i| ends[i >> k & 1][k]));
-        let places = [I::Doubles::load(&corners[0]), I::Doubles::load(&corners[1]), I::Doubles::load(&corners[2])];
-        let reach = of.items.iter().map(|item| ball.reach(groups.get(*item)));
-        let reach = if of.reach < f64::INFINITY { of.reach } else { reach.fold(0.0, larger) };
-        let (error, margin) = (reach * ERROR + TINY, I::Doubles::splat(reach * MARGIN));
+        let points = [I::Doubles::load(&corners[0]), I::Doubles::load(&corners[1]), I::Doubles::load(&corners[2])];
+        let reach = candidates.entries.iter().map(|entry| ball.reach(groups.get(*entry)));
+        let reach = if candidates.reach < f64::INFINITY { candidates.reach } else { reach.fold(0.0, larger) };
+        let error = reach * ERROR_PER_REACH + UNDERFLOW_ERROR;
+        let margin = I::Doubles::splat(reach * INSIDE_MARGIN_PER_REACH);
 
-        // What is nearest to each corner.
-        let mut kept: Vec<I::Doubles> = Vec::with_capacity(of.items.len());
+        // The loop finds the entry that is nearest to each corner.
+        let mut all_squares: Vec<I::Doubles> = Vec::with_capacity(candidates.entries.len());
         let mut least = I::Doubles::splat(f64::INFINITY);
         let mut nearest = [*first; 8];
-        for &item in &of.items {
-            let squares = squares_from(groups.get(item), &places, margin);
+        for &entry in &candidates.entries {
+            let squares = entry_squared_distances(groups.get(entry), &points, margin);
             let mut nearer = !least.at_most(squares);
             least = squares.min(least);
             while nearer != 0 {
-                nearest[nearer.trailing_zeros() as usize] = item;
+                nearest[nearer.trailing_zeros() as usize] = entry;
                 nearer &= nearer - 1;
             }
-            kept.push(squares);
+            all_squares.push(squares);
         }
-        // Their feet, and how far they are from all corners, with room for 4 E and the errors of either side.
+        // The closest point of that entry is a dominator. Its squared distances from all corners are increased by the
+        // slack of the proof, which is 4 E and the errors of both sides.
         let mut dominators = [I::Doubles::splat(0.0); 8];
         for (j, squares) in dominators.iter_mut().enumerate() {
             let corner: V3 = [corners[0][j], corners[1][j], corners[2][j]];
-            let flat = groups.near(nearest[j], corner);
-            let foot = flat.foot(corner);
-            let mut most = 0.0f64;
-            let mut own = [0.0; 8];
-            for (i, square) in own.iter_mut().enumerate() {
+            let primitive = groups.descend(nearest[j], corner);
+            let closest = primitive.closest_offset(corner);
+            let mut largest = 0.0f64;
+            let mut from_corners = [0.0; 8];
+            for (i, square) in from_corners.iter_mut().enumerate() {
                 let corner = [corners[0][i], corners[1][i], corners[2][i]];
-                *square = norm_squared(sub(sub(corner, flat.origin), foot));
-                most = larger(*square, most);
+                *square = norm_squared(sub(sub(corner, primitive.origin), closest));
+                largest = larger(*square, largest);
             }
-            let room = 16.0 * error * most.sqrt() + 64.0 * error * error;
-            *squares = I::Doubles::load(&own.map(|square| square + room));
+            let slack = 16.0 * error * largest.sqrt() + 64.0 * error * error;
+            *squares = I::Doubles::load(&from_corners.map(|square| square + slack));
         }
-        let small = match detail {
-            Detail::Groups => SMALL * SMALL * norm_squared(sub(ends[1], ends[0])),
+        let max_squared_diagonal = match detail {
+            Detail::Groups => {
+                MAX_GROUP_DIAGONAL_FRACTION * MAX_GROUP_DIAGONAL_FRACTION * norm_squared(sub(ends[1], ends[0]))
+            }
             Detail::Primitives => -1.0,
         };
-        let (mut items, mut own_reach) = (Vec::with_capacity(of.items.len()), 0.0);
-        let mut waiting = Vec::new();
-        for (&item, &squares) in of.items.iter().zip(&kept) {
-            if !stays(squares, &dominators) {
+        let (mut entries, mut kept_reach) = (Vec::with_capacity(candidates.entries.len()), 0.0);
+        let mut pending = Vec::new();
+        for (&entry, &squares) in candidates.entries.iter().zip(&all_squares) {
+            if !is_kept(squares, &dominators) {
                 continue;
             }
-            let mut next = Some(item);
-            while let Some(item) = next {
-                match groups.get(item) {
-                    Is::Many(group) if group.squared_diagonal() > small => {
+            let mut next = Some(entry);
+            while let Some(id) = next {
+                match groups.get(id) {
+                    Entry::Group(group) if group.squared_diagonal() > max_squared_diagonal => {
                         for member in group.members() {
-                            if stays(squares_from(groups.get(member), &places, margin), &dominators) {
-                                waiting.push(member);
+                            if is_kept(entry_squared_distances(groups.get(member), &points, margin), &dominators) {
+                                pending.push(member);
                             }
                         }
                     }
-                    is => {
-                        own_reach = larger(ball.reach(is), own_reach);
-                        items.push(item);
+                    entry => {
+                        kept_reach = larger(ball.reach(entry), kept_reach);
+                        entries.push(id);
                     }
                 }
-                next = waiting.pop();
+                next = pending.pop();
             }
         }
         let mut squares = [0.0; 8];
         least.store(&mut squares);
         let farthest = squares.into_iter().fold(0.0, larger).sqrt();
         let nearest = larger((farthest - error) * (1.0 - 1e-9) - 2.0 * ball.radius, 0.0);
-        assert!(!items.is_empty(), "one is nearest");
-        Candidates { items, nearest, reach: own_reach, part: Some(*part) }
+        assert!(!entries.is_empty(), "the nearest primitive is a candidate");
+        Candidates { entries, nearest, reach: kept_reach, bounds: Some(*part) }
     }
 }

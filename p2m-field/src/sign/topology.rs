@@ -1,100 +1,107 @@
-//! How the triangles of a closed surface are joined along their edges.
+//! The topology of a closed surface: how its triangles are connected along edges.
 
-use super::pseudonormal::Rays;
-use super::{SignError, check_kinds};
+use super::types::{SignError, check_kinds};
 use nalgebra::Point3;
-use p2m_core::{Crossing, PrimitiveId, Ray, RayCollector, Soup};
-use p2m_mixed::engine::places::{Forest, Places, UNUSED, by_place};
+use p2m_bvh::TreeIndex;
+use p2m_core::{Aabb, Crossing, PrimitiveId, Ray, RayCollector, Soup};
+use p2m_mixed::engine::weld::{UNUSED, UnionFind, VertexWelder, group_by_vertex};
 use std::ops::ControlFlow;
 
-/// No triangle: more than two have the edge, or the triangle has corners at one place.
-pub(super) const NONE: u32 = u32::MAX;
+/// The tree in which rays are cast.
+pub(super) type RayTree<'a> = TreeIndex<f64, &'a Soup<f64>, Aabb<f64>>;
 
-/// The neighbours of triangles.
+/// The neighbour of an edge that has none, because more than two triangles have the edge or the triangle
+/// has equal corners.
+pub(super) const NO_TRIANGLE: u32 = u32::MAX;
+
+/// The connections between the triangles of a closed surface.
 pub(super) struct Topology {
-    /// The place of each position.
-    pub(super) places: Places,
-    /// The triangle beyond each edge.
+    /// The vertices of the surface.
+    pub(super) welder: VertexWelder,
+    /// The triangle beyond each edge, or [`NO_TRIANGLE`].
     pub(super) neighbours: Vec<[u32; 3]>,
-    /// The part of the surface that each triangle is in, which hangs together along edges.
-    pub(super) parts: Vec<u32>,
-    /// Whether the triangles around a place are one fan.
+    /// The component of each triangle. Components are connected along edges, and have the number of one
+    /// of their triangles.
+    pub(super) components: Vec<u32>,
+    /// Whether the triangles around each vertex form a single fan.
     pub(super) is_fan: Vec<bool>,
 }
 
-/// A half-edge: where it ends, whether it runs to the place of the higher number, and whose it is (3 triangle + edge).
-type Half = (u32, bool, u32);
+/// A half-edge, stored at its lower vertex: the higher vertex, whether it runs upwards, and 3 * triangle + edge.
+type HalfEdge = (u32, bool, u32);
 
 impl Topology {
     /// # Errors
-    /// For what is no closed surface with one side out.
+    /// [`SignError::OtherKinds`], [`SignError::Open`] and [`SignError::NotOriented`].
     #[allow(clippy::cast_possible_truncation, reason = "ids are below 2^30")]
     pub(super) fn new(soup: &Soup<f64>) -> Result<Self, SignError> {
         check_kinds(soup)?;
-        let places = Places::new(soup);
+        let welder = VertexWelder::new(soup);
         let triangles = soup.triangles();
-        let halves = triangles.iter().enumerate().flat_map(|(t, corners)| {
-            let [a, b, c] = places.of(*corners);
+        let half_edges = triangles.iter().enumerate().flat_map(|(t, corners)| {
+            let [a, b, c] = welder.weld(*corners);
             let has_edges = a != b && b != c && c != a;
             let edges = [(a, b), (b, c), (c, a)].into_iter().enumerate().filter(move |_| has_edges);
             edges.map(move |(i, (a, b))| (a.min(b), (a.max(b), a < b, (3 * t + i) as u32)))
         });
-        let mut neighbours = vec![[NONE; 3]; triangles.len()];
-        let (mut parts, mut fans) = (Forest::new(triangles.len()), Forest::new(3 * triangles.len()));
+        let mut neighbours = vec![[NO_TRIANGLE; 3]; triangles.len()];
+        let (mut components, mut fans) = (UnionFind::new(triangles.len()), UnionFind::new(3 * triangles.len()));
         let mut error: Option<(u32, bool)> = None;
-        by_place(places.len, halves, |halves: &[Half]| {
-            for halves in halves.chunk_by(|x, y| x.0 == y.0) {
-                let along = halves.iter().filter(|half| half.1).count();
-                if 2 * along != halves.len() {
-                    let whose = halves.iter().map(|half| half.2).min().unwrap_or(0);
-                    let is_open = halves.len() % 2 == 1;
-                    error = Some(error.map_or((whose, is_open), |error| error.min((whose, is_open))));
-                } else if let [(_, _, one), (_, _, other)] = *halves {
-                    let next = |half: u32| half - half % 3 + (half + 1) % 3;
+        group_by_vertex(welder.vertex_count, half_edges, |half_edges: &[HalfEdge]| {
+            for half_edges in half_edges.chunk_by(|x, y| x.0 == y.0) {
+                let upwards = half_edges.iter().filter(|half_edge| half_edge.1).count();
+                if 2 * upwards != half_edges.len() {
+                    let lowest = half_edges.iter().map(|half_edge| half_edge.2).min().unwrap_or(0);
+                    let is_open = half_edges.len() % 2 == 1;
+                    error = Some(error.map_or((lowest, is_open), |error| error.min((lowest, is_open))));
+                } else if let [(_, _, one), (_, _, other)] = *half_edges {
+                    let next = |corner: u32| corner - corner % 3 + (corner + 1) % 3;
                     neighbours[one as usize / 3][one as usize % 3] = other / 3;
                     neighbours[other as usize / 3][other as usize % 3] = one / 3;
-                    parts.unite(one / 3, other / 3);
-                    fans.unite(one, next(other));
-                    fans.unite(next(one), other);
+                    components.union(one / 3, other / 3);
+                    fans.union(one, next(other));
+                    fans.union(next(one), other);
                 }
             }
         });
-        if let Some((whose, is_open)) = error {
-            let (triangle, edge) = (whose as usize / 3, whose as usize % 3);
+        if let Some((half_edge, is_open)) = error {
+            let (triangle, edge) = (half_edge as usize / 3, half_edge as usize % 3);
             return Err(if is_open {
                 SignError::Open { triangle, edge }
             } else {
                 SignError::NotOriented { triangle, edge }
             });
         }
-        let (mut is_fan, mut fan_of) = (vec![true; places.len], vec![UNUSED; places.len]);
+        let (mut is_fan, mut fan_of) = (vec![true; welder.vertex_count], vec![UNUSED; welder.vertex_count]);
         for (corner, position) in triangles.iter().flatten().enumerate() {
-            let (place, fan) = (places.of[*position as usize] as usize, fans.root(corner as u32));
-            if fan_of[place] == UNUSED {
-                fan_of[place] = fan;
+            let (vertex, fan) = (welder.vertex_ids[*position as usize] as usize, fans.find(corner as u32));
+            if fan_of[vertex] == UNUSED {
+                fan_of[vertex] = fan;
             }
-            is_fan[place] &= fan_of[place] == fan;
+            is_fan[vertex] &= fan_of[vertex] == fan;
         }
-        let parts = (0..triangles.len() as u32).map(|t| parts.root(t)).collect();
-        Ok(Self { places, neighbours, parts, is_fan })
+        let components = (0..triangles.len() as u32).map(|t| components.find(t)).collect();
+        Ok(Self { welder, neighbours, components, is_fan })
     }
 
-    /// The lowest triangle an edge of which meets another one, beside those at its ends; and that one.
-    pub(super) fn meets_itself(&self, soup: &Soup<f64>, rays: &Rays<'_>) -> Option<[usize; 2]> {
+    /// Returns the lowest triangle with an edge that intersects a triangle which does not touch the ends of the edge,
+    /// and the lowest such triangle.
+    pub(super) fn find_self_intersection(&self, soup: &Soup<f64>, rays: &RayTree<'_>) -> Option<[usize; 2]> {
         let at = |position: u32| -> Point3<f64> { soup.positions()[position as usize] };
         for (t, corners) in soup.triangles().iter().enumerate() {
             for (i, neighbour) in self.neighbours[t].iter().enumerate() {
-                // Each edge once, by its triangle of the lower number.
+                // Each edge is cast once, for its lower triangle.
                 if (*neighbour as usize) < t {
                     continue;
                 }
                 let ends = [corners[i], corners[(i + 1) % 3]];
-                // No ray: the ends are one place, or so far apart that there is no number for it.
+                // There is no ray if the ends are equal, or so far apart that their difference is infinite.
                 let Ok(ray) = Ray::new(&at(ends[0]), &(at(ends[1]) - at(ends[0]))) else { continue };
                 let ray = ray.with_range(0.0, 1.0).expect("one is above zero");
-                let mut apart = Apart { places: &self.places, soup, ends: self.places.of(ends), lowest: None };
-                rays.visit_ray(&ray, &mut apart);
-                if let Some(other) = apart.lowest {
+                let ends = self.welder.weld(ends);
+                let mut hit = LowestNonAdjacentHit { welder: &self.welder, soup, ends, lowest: None };
+                rays.visit_ray(&ray, &mut hit);
+                if let Some(other) = hit.lowest {
                     return Some([t, other.index()]);
                 }
             }
@@ -103,19 +110,20 @@ impl Topology {
     }
 }
 
-/// The lowest triangle that an edge meets, of those without a corner at one of its ends: the others all meet it there, which only
-/// exact arithmetic could tell.
-struct Apart<'a> {
-    places: &'a Places,
+/// Collects the lowest triangle that an edge intersects. Triangles with a corner at an end of the edge are ignored,
+/// because they all intersect it there.
+struct LowestNonAdjacentHit<'a> {
+    welder: &'a VertexWelder,
     soup: &'a Soup<f64>,
+    /// The vertices at the ends of the edge.
     ends: [u32; 2],
     lowest: Option<PrimitiveId>,
 }
 
-impl<'r> RayCollector<'r> for Apart<'_> {
+impl<'r> RayCollector<'r> for LowestNonAdjacentHit<'_> {
     fn wants(&self, triangle: PrimitiveId) -> bool {
-        let corners = self.places.of(self.soup.triangles()[triangle.index()]);
-        self.lowest.is_none_or(|lowest| triangle < lowest) && corners.iter().all(|place| !self.ends.contains(place))
+        let corners = self.welder.weld(self.soup.triangles()[triangle.index()]);
+        self.lowest.is_none_or(|lowest| triangle < lowest) && corners.iter().all(|vertex| !self.ends.contains(vertex))
     }
 
     fn offer(&mut self, triangle: PrimitiveId, _: &Crossing<'r>) -> ControlFlow<()> {

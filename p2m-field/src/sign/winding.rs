@@ -1,17 +1,18 @@
-//! Generalised winding numbers, by a tree of dipoles.
+//! Generalised winding numbers by a tree of dipoles.
 //!
-//! The winding number of triangles around q is the sum of their solid angles, over 4 pi \[Jacobson2013\]; that of one triangle is
-//! known in closed form \[VanOosterom1983\]. It is the integral of K(x) . n over the triangles, with K(x) = (x - q) / (4 pi |x - q|^3).
-//! For those of a node of the tree, which lie within r of its centre p, K is replaced by its Taylor polynomial of degree 1 in p
-//! \[Barill2018\].
+//! The winding number of triangles around q is the sum of their solid angles divided by 4 pi \[Jacobson2013\]. The
+//! solid angle of one triangle has a closed form \[VanOosterom1983\]. The winding number is the integral of K(x) . n
+//! over the triangles, where K(x) = (x - q) / (4 pi |x - q|^3). For the triangles of a node of the tree, which lie
+//! within r of its centre p, K is replaced by its Taylor polynomial of degree 1 at p \[Barill2018\].
 //!
 //! **Error (proved).** K is the gradient of -1 / (4 pi |x - q|), whose third derivatives in any directions are at most
-//! 3! / (4 pi rho^4) at a distance of rho. So the remainder is at most 3 r^2 / (4 pi rho^4) times the area, with rho = |p - q| - r.
-//! A node stands for its triangles where that is at most `accuracy` times its part of the area of the scene; so all of them together
-//! are wrong by at most `accuracy`, beside rounding. For each node that is a distance, computed at build.
+//! 3! / (4 pi rho^4) at a distance of rho. So the remainder is at most 3 r^2 / (4 pi rho^4) times the area, with rho =
+//! |p - q| - r. A node stands for its triangles if that is at most `accuracy` times its share of the area of the scene,
+//! so the error of all nodes together is at most `accuracy`, apart from rounding. The condition is a minimum distance
+//! of q from the node, which is computed at build.
 
 use super::boundary::Boundary;
-use super::{Sign, SignError, check_kinds};
+use super::types::{Sign, SignError, check_kinds};
 use nalgebra::Point3;
 use p2m_core::kernel::power_of_two;
 use p2m_core::{PrimitiveSet, Soup};
@@ -20,7 +21,7 @@ use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Winding numbers of triangles.
+/// The generalised winding numbers of a set of triangles.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -35,51 +36,57 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// ```
 pub struct WindingNumbers<'a> {
     soup: &'a Soup<f64>,
-    /// What coordinates are multiplied by: a power of two.
-    unit: f64,
+    /// The power of two that coordinates are multiplied by, so that the largest is about 1.
+    scale: f64,
     accuracy: f64,
     boundary: Boundary,
-    /// The scales of distances for [`ROUGH`] and [`SHARED`].
-    rough: f64,
-    shared: f64,
-    /// The triangles, node by node.
+    /// The factor of minimum distances for which winding numbers are accurate to [`ROUGH_ACCURACY`].
+    rough_distance_factor: f64,
+    /// The factor of minimum distances for which winding numbers are accurate to [`SHARED_SIGN_ACCURACY`].
+    shared_distance_factor: f64,
+    /// The triangles, ordered so that those of each node are consecutive.
     order: Vec<u32>,
-    /// A node, then the nodes of its first half, then those of its second one.
+    /// The nodes in depth-first order. The first child of a node follows it.
     nodes: Vec<Node>,
     doubts: AtomicU64,
 }
 
-/// Triangles that are one dipole from far away.
+/// A group of triangles that a dipole approximates from far away.
 struct Node {
     centre: V3,
-    /// No vertex is farther from the centre.
+    /// An upper bound on the distance of the vertices from the centre.
     radius: f64,
-    /// It is one from this distance beyond the radius on.
-    beyond: f64,
-    /// The sum of normals times areas, over 4 pi.
+    /// The minimum distance from the ball of the node at which its dipole is accurate enough.
+    min_distance: f64,
+    /// The sum of the normals times areas, divided by 4 pi.
     normal: V3,
-    /// The sum of these times the offset of the centroid from the centre: one row for each component of the normal.
+    /// The sum of the outer products of these normals with the offsets of the centroids from the centre. Each row
+    /// belongs to one component of the normal.
     moments: [V3; 3],
+    /// The range of the triangles in the order.
     triangles: Range<u32>,
-    /// The second half; 0 for a leaf.
+    /// The index of the second child, or 0 for a leaf.
     second: u32,
 }
 
-/// Triangles of a leaf.
-const LEAF: usize = 8;
-/// The accuracy that is enough for most signs.
-const ROUGH: f64 = 0.45;
-/// The accuracy that tells the sign of many places near each other.
-const SHARED: f64 = 0.2;
-/// Winding numbers this near to a half tell nothing: what rounding may do.
-const ROUNDING: f64 = 1e-9;
+/// The largest number of triangles in a leaf.
+const MAX_LEAF_TRIANGLES: usize = 8;
+/// The accuracy of the first attempt to determine a sign, which suffices for most queries.
+const ROUGH_ACCURACY: f64 = 0.45;
+/// The accuracy with which the common sign of a neighbourhood is determined.
+const SHARED_SIGN_ACCURACY: f64 = 0.2;
+/// An upper bound on the rounding error of a winding number (observed). Closer to a half the sign is not defined.
+const ROUNDING_ERROR: f64 = 1e-9;
 
 impl<'a> WindingNumbers<'a> {
+    /// Builds the tree of dipoles of a soup.
+    ///
     /// # Errors
-    /// [`SignError::OtherKinds`] for what is no triangle, and [`SignError::Accuracy`] for one that is not between 0 and 0.5.
+    /// [`SignError::OtherKinds`] if a primitive is not a triangle, [`SignError::Accuracy`] if the accuracy is not above
+    /// 0 and below 0.5, and [`SignError::Build`] if a tree of the boundary cannot be built.
     ///
     /// # Complexity
-    /// O(n log n) time, 40 to 70 bytes a triangle.
+    /// O(n log n) time; 40 to 70 bytes for each triangle.
     pub fn new(soup: &'a Soup<f64>, accuracy: f64) -> Result<Self, SignError> {
         check_kinds(soup)?;
         if !(accuracy > 0.0 && accuracy < 0.5) {
@@ -89,15 +96,25 @@ impl<'a> WindingNumbers<'a> {
         let corners = [bounds.min, bounds.max];
         let largest = corners.iter().flat_map(|p| p.iter()).filter(|x| x.is_finite());
         let largest = largest.fold(0.0f64, |largest, x| largest.max(x.abs()));
-        // Coordinates up to about 1, so that no area and no product of lengths leaves the range.
+        // Coordinates are scaled to about 1, so that areas and products of lengths stay within the range of f64.
         #[allow(clippy::cast_possible_truncation, reason = "exponents of f64")]
         let exponent = if largest > 0.0 { (largest.log2() as i32).clamp(-1000, 1000) } else { 0 };
         let boundary = Boundary::new(soup)?;
         let count = u32::try_from(soup.triangles().len()).unwrap_or(u32::MAX);
         let (order, nodes, doubts) = ((0..count).collect(), Vec::new(), AtomicU64::new(0));
-        let [rough, shared] = [ROUGH, SHARED].map(|a| (accuracy / a).sqrt().sqrt().min(1.0) * (1.0 + 1e-12));
-        let mut numbers =
-            Self { soup, unit: power_of_two(-exponent), accuracy, boundary, rough, shared, order, nodes, doubts };
+        let [rough_distance_factor, shared_distance_factor] =
+            [ROUGH_ACCURACY, SHARED_SIGN_ACCURACY].map(|a| (accuracy / a).sqrt().sqrt().min(1.0) * (1.0 + 1e-12));
+        let mut numbers = Self {
+            soup,
+            scale: power_of_two(-exponent),
+            accuracy,
+            boundary,
+            rough_distance_factor,
+            shared_distance_factor,
+            order,
+            nodes,
+            doubts,
+        };
         if count > 0 {
             let area: f64 = (0..count).map(|t| length(numbers.triangle(t).normal)).sum();
             let mut order = std::mem::take(&mut numbers.order);
@@ -107,14 +124,14 @@ impl<'a> WindingNumbers<'a> {
         Ok(numbers)
     }
 
-    /// Appends the nodes of these triangles, of which `first` others come before.
+    /// Appends the nodes of the triangles `order`, which come after `first` others. `area` is that of the scene.
     #[allow(clippy::cast_possible_truncation, reason = "numbers of triangles are u32")]
     fn build(&mut self, order: &mut [u32], first: usize, area: f64) {
         let number = self.nodes.len();
         let triangles = first as u32..(first + order.len()) as u32;
         let node = self.node(order, triangles, area);
         self.nodes.push(node);
-        if order.len() <= LEAF {
+        if order.len() <= MAX_LEAF_TRIANGLES {
             return;
         }
         let centroids = order.iter().map(|t| self.triangle(*t).centroid);
@@ -142,7 +159,7 @@ impl<'a> WindingNumbers<'a> {
         });
         let centre = match weighted {
             (weight, sum) if weight > 0.0 => scaled(sum, 1.0 / weight),
-            // Without area, anywhere.
+            // Triangles without area contribute nothing, so any centre will do.
             _ => self.triangle(order[0]).centroid,
         };
         let corners = all().flat_map(|t| t.corners);
@@ -150,38 +167,41 @@ impl<'a> WindingNumbers<'a> {
         let rho = (3.0 * radius * radius * area / (4.0 * PI * self.accuracy)).sqrt().sqrt();
         let (mut normal, mut moments) = ([0.0; 3], [[0.0; 3]; 3]);
         for t in all() {
-            let part = scaled(t.normal, 0.25 / PI);
+            let dipole = scaled(t.normal, 0.25 / PI);
             let offset = sub(t.centroid, centre);
-            normal = add(normal, part);
-            moments = [0, 1, 2].map(|k| add(moments[k], scaled(offset, part[k])));
+            normal = add(normal, dipole);
+            moments = [0, 1, 2].map(|k| add(moments[k], scaled(offset, dipole[k])));
         }
-        Node { centre, radius, beyond: rho * (1.0 + 1e-12), normal, moments, triangles, second: 0 }
+        Node { centre, radius, min_distance: rho * (1.0 + 1e-12), normal, moments, triangles, second: 0 }
     }
 
     fn triangle(&self, number: u32) -> Triangle {
         let corners: [V3; 3] = self.soup.triangles()[number as usize]
             .map(|i| self.soup.positions()[i as usize].into())
-            .map(|corner| scaled(corner, self.unit));
+            .map(|corner| scaled(corner, self.scale));
         let [a, b, c] = corners;
         let centroid = scaled(add(add(a, b), c), 1.0 / 3.0);
         Triangle { corners, centroid, normal: scaled(cross(sub(b, a), sub(c, a)), 0.5) }
     }
 
-    /// The winding number, within the accuracy: 1 inside of a surface that is closed and has its fronts outside, 0 outside, and
-    /// something between them near holes.
+    /// Returns the winding number of a point, within the accuracy.
     ///
-    /// Rounding is beside that: less than 1e-9, unless the query is so near to an edge that its offset is rounding itself
-    /// (observed). Triangles of less than 1e-100 of the scene count as nothing.
+    /// It is 1 inside of a closed surface whose fronts are outside, 0 outside, and in between near holes.
+    ///
+    /// # Accuracy
+    /// The rounding error is below 1e-9 in addition to the accuracy (observed), unless the query is so near to an edge
+    /// that its offset consists of rounding errors. Triangles smaller than 1e-100 of the scene count as nothing.
     #[must_use]
     pub fn number(&self, query: &Point3<f64>) -> f64 {
-        self.number_within(query, 1.0)
+        self.number_with_distance_factor(query, 1.0)
     }
 
-    /// The same within the accuracy divided by the fourth power of `scale`, since that is how the bound goes down with the distance.
-    fn number_within(&self, query: &Point3<f64>, scale: f64) -> f64 {
-        let query = scaled((*query).into(), self.unit);
+    /// Returns the winding number with all minimum distances multiplied by a factor. Its error is at most the accuracy
+    /// divided by the fourth power of the factor.
+    fn number_with_distance_factor(&self, query: &Point3<f64>, factor: f64) -> f64 {
+        let query = scaled((*query).into(), self.scale);
         let mut sum = 0.0;
-        // Halving triangles ends after 30 levels.
+        // Each level halves the triangles, so there are at most 30 levels.
         let mut stack = [0u32; 64];
         let mut len = usize::from(!self.nodes.is_empty());
         while len > 0 {
@@ -190,13 +210,13 @@ impl<'a> WindingNumbers<'a> {
             let node = &self.nodes[number as usize];
             let offset = sub(node.centre, query);
             let square = dot(offset, offset);
-            let far = (node.radius + node.beyond * scale) * (1.0 + 1e-12);
+            let far = (node.radius + node.min_distance * factor) * (1.0 + 1e-12);
             if !square.is_finite() {
-                // So far away that nothing is left of the node.
+                // The node is so far away that its solid angle vanishes.
             } else if square > far * far {
-                sum += node.far_away(offset, square);
+                sum += node.dipole(offset, square);
             } else if node.second == 0 {
-                sum += self.near(query, node.triangles.clone());
+                sum += self.sum_of_triangles(query, node.triangles.clone());
             } else {
                 stack[len] = node.second;
                 stack[len + 1] = number + 1;
@@ -206,57 +226,58 @@ impl<'a> WindingNumbers<'a> {
         sum
     }
 
-    /// The same by the sum of all triangles, beside rounding.
+    /// Returns the winding number of a point as the sum over all triangles, which is exact up to rounding.
     ///
     /// # Complexity
     /// O(n).
     #[must_use]
     pub fn exact_number(&self, query: &Point3<f64>) -> f64 {
-        let query = scaled((*query).into(), self.unit);
-        self.nodes.first().map_or(0.0, |root| self.near(query, root.triangles.clone()))
+        let query = scaled((*query).into(), self.scale);
+        self.nodes.first().map_or(0.0, |root| self.sum_of_triangles(query, root.triangles.clone()))
     }
 
-    fn near(&self, query: V3, triangles: Range<u32>) -> f64 {
+    fn sum_of_triangles(&self, query: V3, triangles: Range<u32>) -> f64 {
         let triangles = &self.order[triangles.start as usize..triangles.end as usize];
         triangles.iter().map(|t| self.triangle(*t).solid_angle(query)).sum::<f64>() / (4.0 * PI)
     }
 
     pub(super) fn sign(&self, query: &Point3<f64>) -> Sign {
-        // Mostly it is about 0 or 1, so a rough one tells which side of a half it is on.
-        let mut beyond = self.number_within(query, self.rough).abs() - 0.5;
-        if beyond.abs() <= ROUGH + ROUNDING {
-            beyond = self.number(query).abs() - 0.5;
+        // Most numbers are about 0 or 1, so a rough number decides on which side of a half they are.
+        let mut above_half = self.number_with_distance_factor(query, self.rough_distance_factor).abs() - 0.5;
+        if above_half.abs() <= ROUGH_ACCURACY + ROUNDING_ERROR {
+            above_half = self.number(query).abs() - 0.5;
         }
-        if beyond.abs() <= self.accuracy + ROUNDING {
+        if above_half.abs() <= self.accuracy + ROUNDING_ERROR {
             self.doubts.fetch_add(1, Ordering::Relaxed);
-            beyond = self.exact_number(query).abs() - 0.5;
+            above_half = self.exact_number(query).abs() - 0.5;
         }
-        if beyond > ROUNDING {
+        if above_half > ROUNDING_ERROR {
             Sign::Inside
-        } else if beyond < -ROUNDING {
+        } else if above_half < -ROUNDING_ERROR {
             Sign::Outside
         } else {
             Sign::Undefined
         }
     }
 
-    /// The sign of all places within `radius` of one, between which and it no triangle is; `None` where they may differ.
-    pub(super) fn sign_within(&self, radius: f64, place: &Point3<f64>) -> Option<Sign> {
-        if self.boundary.is_none() {
-            return Some(self.sign(place));
+    /// Returns the common sign of all points within `radius` of a centre that no triangle separates from it, or `None`
+    /// if their signs may differ.
+    pub(super) fn sign_within(&self, radius: f64, centre: &Point3<f64>) -> Option<Sign> {
+        if self.boundary.is_empty() {
+            return Some(self.sign(centre));
         }
-        let change = self.boundary.change_within(radius, place);
-        let least = change + SHARED + self.accuracy + 2.0 * ROUNDING;
+        let change = self.boundary.max_change_within(radius, centre);
+        let least = change + SHARED_SIGN_ACCURACY + self.accuracy + 2.0 * ROUNDING_ERROR;
         if least >= 0.5 {
             return None;
         }
-        let beyond = self.number_within(place, self.shared).abs() - 0.5;
-        (beyond.abs() > least).then_some(if beyond > 0.0 { Sign::Inside } else { Sign::Outside })
+        let above_half = self.number_with_distance_factor(centre, self.shared_distance_factor).abs() - 0.5;
+        (above_half.abs() > least).then_some(if above_half > 0.0 { Sign::Inside } else { Sign::Outside })
     }
 
-    /// Whether numbers are whole and change at triangles alone.
+    /// Returns whether winding numbers are integers and change only at triangles.
     pub(super) fn is_closed(&self) -> bool {
-        self.boundary.is_none()
+        self.boundary.is_empty()
     }
 
     pub(super) fn doubts(&self) -> u64 {
@@ -265,8 +286,9 @@ impl<'a> WindingNumbers<'a> {
 }
 
 impl Node {
-    /// The Taylor polynomial, with the centre at `offset` from the query.
-    fn far_away(&self, offset: V3, square: f64) -> f64 {
+    /// Evaluates the Taylor polynomial of the node. `offset` is that of the centre from the query, and `square` is
+    /// its squared length.
+    fn dipole(&self, offset: V3, square: f64) -> f64 {
         let inverse = 1.0 / square;
         let cube = inverse * inverse.sqrt();
         let trace = self.moments[0][0] + self.moments[1][1] + self.moments[2][2];
@@ -278,12 +300,13 @@ impl Node {
 struct Triangle {
     corners: [V3; 3],
     centroid: V3,
-    /// As long as the area.
+    /// A normal vector whose length is the area.
     normal: V3,
 }
 
 impl Triangle {
-    /// Positive from the back. Zero in the plane of the triangle, and at its vertices.
+    /// Returns the solid angle of the triangle, which is positive from its back, and zero in its plane and
+    /// at its vertices.
     fn solid_angle(&self, query: V3) -> f64 {
         let [a, b, c] = self.corners.map(|corner| sub(corner, query));
         let [la, lb, lc] = [a, b, c].map(length);

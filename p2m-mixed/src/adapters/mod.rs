@@ -1,7 +1,8 @@
-//! Trees of other crates as indexes that keep our contract: they find candidates, our kernel decides. And shapes of parry as
-//! parts of a scene.
+//! Adapters for other crates: their trees as indexes, and shapes of parry as parts of a scene.
 //!
-//! Trees are for programs that have such a tree at heart, and for comparison; the indexes of this project are faster.
+//! A foreign tree finds candidates, and our kernel decides between them, so the indexes keep the contract of
+//! [`ClosestPoint`](p2m_core::ClosestPoint). They exist for comparison and for programs that already use such a tree.
+//! The indexes of this project are faster.
 
 #[cfg(feature = "parry")]
 mod parry;
@@ -18,6 +19,6 @@ pub use rstar::RstarIndex;
 pub use shapes::ShapeError;
 
 #[cfg(any(feature = "parry", feature = "rstar"))]
-/// What another crate computes for the squared distance of a query from a box is wrong by a few roundings; less by this
-/// factor it is a lower bound.
+/// The factor that makes a lower bound of the squared distance of a query from a box as other crates compute it, with
+/// a few roundings.
 const ROUND_DOWN: f64 = 1.0 - 16.0 * f64::EPSILON;

@@ -1,4 +1,4 @@
-//! The bounding volume hierarchy of the crate parry3d-f64.
+//! An index by the bounding volume hierarchy of the crate parry3d-f64.
 
 use super::ROUND_DOWN;
 use nalgebra::Point3;
@@ -11,10 +11,10 @@ use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 use std::cell::RefCell;
 use std::marker::PhantomData;
 
-/// No bound is above this: parry leaves out what costs as much as the largest number.
-const FAR: f64 = 1e300;
+/// The largest bound that is passed to parry, which ignores nodes whose cost is the largest number.
+const MAX_BOUND: f64 = 1e300;
 
-/// An index over a set of primitives by the tree of boxes of parry.
+/// An index over a set of primitives that uses the tree of boxes of parry.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -28,7 +28,7 @@ const FAR: f64 = 1e300;
 /// ```
 ///
 /// # Complexity
-/// Build O(n log n); queries expected O(log n).
+/// Building takes O(n log n), and a query is expected to take O(log n).
 pub struct ParryIndex<T: Real, S> {
     set: S,
     scalar: PhantomData<T>,
@@ -36,33 +36,34 @@ pub struct ParryIndex<T: Real, S> {
 }
 
 impl<T: Real, S: PrimitiveSet<T>> ParryIndex<T, S> {
-    /// The set it was built over.
+    /// Returns the set that the index was built over.
     pub fn set(&self) -> &S {
         &self.set
     }
 
-    /// Offers to any collector every primitive that it could want. `query` is finite.
+    /// Offers a collector every primitive within its bound. `query` has to be finite.
     pub fn visit<C: Collector>(&self, query: &Point3<T>, collector: &mut C) {
-        let place = query.coords.map(Real::to_f64);
-        // Parry takes functions that change nothing.
+        let point = query.coords.map(Real::to_f64);
+        // Parry takes functions that cannot change what they capture.
         let collector = RefCell::new(collector);
-        // What is as far as the bound may tie, so that is not the bound for parry, which goes below it.
+        // Parry visits only nodes strictly below its bound. Candidates exactly at the bound may tie, so it gets the
+        // next larger number.
         let cost = |collector: &C| collector.prune_above().next_up().min(f64::MAX);
         let bound = |node: &BvhNode, _: f64| {
             let (min, max) = (node.mins(), node.maxs());
-            let beside = |x: f64, min: f64, max: f64| (min - x).max(x - max).max(0.0);
-            let way = [beside(place.x, min.x, max.x), beside(place.y, min.y, max.y), beside(place.z, min.z, max.z)];
-            let square = (way[0] * way[0] + way[1] * way[1] + way[2] * way[2]) * ROUND_DOWN;
-            if square < FAR { square } else { FAR }
+            let gap = |x: f64, min: f64, max: f64| (min - x).max(x - max).max(0.0);
+            let gaps = [gap(point.x, min.x, max.x), gap(point.y, min.y, max.y), gap(point.z, min.z, max.z)];
+            let square = (gaps[0] * gaps[0] + gaps[1] * gaps[1] + gaps[2] * gaps[2]) * ROUND_DOWN;
+            if square < MAX_BOUND { square } else { MAX_BOUND }
         };
-        let offer = |number: u32, _: f64| {
-            let id = PrimitiveId::new(number as usize);
+        let offer = |index: u32, _: f64| {
+            let id = PrimitiveId::new(index as usize);
             let mut collector = collector.borrow_mut();
             collector.offer(id, self.set.get(id).project(query));
             Some(cost(&collector))
         };
-        let most = cost(&collector.borrow());
-        let _ = self.tree.find_best(most, bound, offer);
+        let bound_at_start = cost(&collector.borrow());
+        let _ = self.tree.find_best(bound_at_start, bound, offer);
     }
 }
 
@@ -94,8 +95,8 @@ impl<T: Real, S: PrimitiveSet<T>> BuildIndex<T, S> for ParryIndex<T, S> {
         let boxes: Vec<Aabb> = (0..set.len())
             .map(|i| {
                 let bounds = set.get(PrimitiveId::new(i)).aabb().to_f64();
-                let place = |p: Point3<f64>| <[f64; 3]>::from(p.coords).into();
-                Aabb { mins: place(bounds.min), maxs: place(bounds.max) }
+                let point = |p: Point3<f64>| <[f64; 3]>::from(p.coords).into();
+                Aabb { mins: point(bounds.min), maxs: point(bounds.max) }
             })
             .collect();
         let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);

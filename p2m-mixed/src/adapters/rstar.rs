@@ -1,4 +1,4 @@
-//! The R*-tree of the crate rstar.
+//! An index by the R*-tree of the crate rstar.
 
 use super::ROUND_DOWN;
 use nalgebra::Point3;
@@ -12,9 +12,9 @@ use std::marker::PhantomData;
 
 type Entry = GeomWithData<Rectangle<[f64; 3]>, PrimitiveId>;
 
-/// An index over a set of primitives by an R*-tree of their boxes \[Beckmann1990\].
+/// An index over a set of primitives that uses an R*-tree of their boxes \[Beckmann1990\].
 ///
-/// Boxes come nearest first, until the next one is farther than what was found.
+/// Boxes are visited nearest first, until the next one is farther than the incumbent.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -28,7 +28,7 @@ type Entry = GeomWithData<Rectangle<[f64; 3]>, PrimitiveId>;
 /// ```
 ///
 /// # Complexity
-/// Build O(n log n); queries expected O(log n).
+/// Building takes O(n log n), and a query is expected to take O(log n).
 #[derive(Debug, Clone)]
 pub struct RstarIndex<T: Real, S> {
     set: S,
@@ -37,15 +37,15 @@ pub struct RstarIndex<T: Real, S> {
 }
 
 impl<T: Real, S: PrimitiveSet<T>> RstarIndex<T, S> {
-    /// The set it was built over.
+    /// Returns the set that the index was built over.
     pub fn set(&self) -> &S {
         &self.set
     }
 
-    /// Offers to any collector every primitive that it could want. `query` is finite.
+    /// Offers a collector every primitive within its bound. `query` has to be finite.
     pub fn visit<C: Collector>(&self, query: &Point3<T>, collector: &mut C) {
-        let place: [f64; 3] = query.coords.map(Real::to_f64).into();
-        for (entry, square) in self.tree.nearest_neighbor_iter_with_distance_2(place) {
+        let point: [f64; 3] = query.coords.map(Real::to_f64).into();
+        for (entry, square) in self.tree.nearest_neighbor_iter_with_distance_2(point) {
             if square * ROUND_DOWN > collector.prune_above() {
                 return;
             }

@@ -2,14 +2,14 @@
 
 use p2m_core::BuildError;
 
-/// Why a shape is not added to a scene.
+/// Reasons why a shape cannot be added to a scene.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShapeError {
-    /// It is round, endless or of a program's own kind, so it does not consist of triangles and segments.
+    /// The shape is round, infinite or custom, so it does not consist of triangles and segments.
     #[error("a shape of type {0} does not consist of triangles and segments; add a mesh of it, as fine as you need")]
     NotPolygonal(String),
-    /// It does not fit.
+    /// The scene would not be valid.
     #[error(transparent)]
     Build(#[from] BuildError),
 }
@@ -30,9 +30,9 @@ macro_rules! shapes {
             impl Scene {
                 #[doc = concat!("Adds a shape of the crate ", stringify!($parry), " where `pose` puts it (feature `", $feature, "`).")]
                 ///
-                /// Triangles, segments, meshes, polylines, cuboids, convex polyhedra, height fields, voxels, and compounds
-                /// of these. Solids become their surface: what is inside of one is near its surface, not at distance 0.
-                /// Parry turns and moves positions, in its own precision, once.
+                /// Triangles, segments, meshes, polylines, cuboids, convex polyhedra, height fields, voxels, and
+                /// compounds of these. Solids become their surface: what is inside of one is near its surface, not at
+                /// distance 0. Parry turns and moves positions, in its own precision, once.
                 ///
                 /// ```
                 #[doc = concat!("use ", stringify!($parry), "::math::{Pose, Vector};")]
@@ -49,8 +49,8 @@ macro_rules! shapes {
                 ///
                 /// let ball = Ball::new(1.0);
                 #[doc = concat!("assert!(scene.", stringify!($add), "(\"ball\", &ball, &Pose::IDENTITY).is_err());")]
-                /// let (positions, triangles) = ball.to_trimesh(32, 16);
-                /// let positions: Vec<[f64; 3]> = positions.iter().map(|p| [p.x.into(), p.y.into(), p.z.into()]).collect();
+                /// let (positions, triangles) = ball.to_trimesh(32, 16); let positions: Vec<[f64; 3]> =
+                /// positions.iter().map(|p| [p.x.into(), p.y.into(), p.z.into()]).collect();
                 /// scene.add_triangles("ball", &positions, &triangles)?;
                 /// # Ok::<(), Box<dyn std::error::Error>>(())
                 /// ```
@@ -65,7 +65,7 @@ macro_rules! shapes {
                 }
             }
 
-            /// What was taken from shapes so far.
+            /// The positions and elements of the shapes that were added so far.
             #[derive(Default)]
             struct Part {
                 positions: Vec<Point3<f64>>,
@@ -102,7 +102,7 @@ macro_rules! shapes {
                     elements: &[[u32; N]],
                     element: impl Fn([u32; N]) -> Element,
                 ) {
-                    // More of them than u32 can number are refused with the whole part.
+                    // If u32 cannot number the positions, the indices saturate, and the part is an error.
                     let first = u32::try_from(self.positions.len()).unwrap_or(u32::MAX);
                     self.positions.extend(positions.iter().map(|p| {
                         let p = *pose * *p;

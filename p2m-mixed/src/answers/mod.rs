@@ -1,4 +1,4 @@
-//! Answers to files.
+//! Writers of answers to queries.
 
 mod names;
 mod rays;
@@ -14,20 +14,21 @@ use p2m_core::{Closest, Feature};
 use records::{Fields, Header, Records};
 use std::io::{self, Write};
 
-/// Writes answers one by one, in any [`AnswerFormat`]; the file is never in memory, but the writer should have a
-/// buffer.
+/// Writes answers one by one, in any [`AnswerFormat`].
 ///
-/// Each file holds the queries, so [`read_points`](crate::read_points) asks the same questions again.
+/// Every answer is written at once, so `writer` should have a buffer. A file contains the queries, and
+/// [`read_points`](crate::read_points) reads them.
 ///
 /// # CSV
-/// The columns `qx,qy,qz,x,y,z,distance,primitive,feature`: the query, the closest point, its distance, the id of the
-/// primitive, and the part of it that holds the point, in the words of [`Feature`]. Numbers are the shortest that read
-/// back as the same ones. The last six are empty where there is no answer. With [objects](Self::with_objects) there is
-/// one column more, `object`: the name of the one that holds the point, empty where none does.
+/// The columns `qx,qy,qz,x,y,z,distance,primitive,feature` are the query, the closest point, its distance, the id of
+/// the primitive, and the feature of the primitive that has the point, as [`Feature`] displays it. Numbers have the
+/// fewest digits that read back as the same number. The last six columns are empty if there is no answer. With
+/// [objects](Self::with_objects) there is a column `object` with the name of the object that the primitive belongs to,
+/// which is empty if it belongs to none.
 ///
 /// # NPY
-/// A structured array of shape `(count,)`, little-endian, without gaps; a record has 96 bytes, and every number stands
-/// at a multiple of its size:
+/// The file is a structured array of shape `(count,)`, little-endian and without gaps. A record has 96 bytes, and every
+/// number is at a multiple of its size:
 ///
 /// | field | bytes | type | without an answer |
 /// |---|---|---|---|
@@ -46,9 +47,9 @@ use std::io::{self, Write};
 /// ```
 ///
 /// # PLY
-/// A point cloud of the queries, binary and little-endian: each `vertex` has the properties `double` `x`, `y`, `z` (the
-/// query), `cx`, `cy`, `cz` (the closest point) and `distance`, `int` `primitive`, `char` `feature_kind` and
-/// `feature_number`, as above. Viewers can colour it by distance.
+/// The file is a point cloud of the queries, binary and little-endian. Each `vertex` has the properties `double` `x`,
+/// `y`, `z` (the query), `cx`, `cy`, `cz` (the closest point) and `distance`, `int` `primitive`, `char` `feature_kind`
+/// and `feature_number`, as above. Viewers can colour it by distance.
 ///
 /// ```
 /// use p2m_core::{BruteForce, ClosestPoint, Point};
@@ -71,24 +72,27 @@ pub struct AnswerWriter<W: Write> {
     names: Names,
 }
 
-/// Bytes of a record of an array, and of a vertex.
-const RECORD: usize = 96;
-const VERTEX: usize = 62;
+/// The size of a record of an array.
+const RECORD_BYTES: usize = 96;
+/// The size of a vertex of a PLY file.
+const VERTEX_BYTES: usize = 62;
 
 impl<W: Write> AnswerWriter<W> {
-    /// Begins a file of `count` answers.
+    /// Starts a file of `count` answers.
     ///
     /// # Errors
-    /// Those of `writer`.
+    /// Errors of `writer`.
     pub fn new(writer: W, format: AnswerFormat, count: u64) -> io::Result<Self> {
         Self::with_objects(writer, format, count, &[])
     }
 
-    /// Begins a file of `count` answers. If there are any, a table tells the names of these objects, which are those of
-    /// [`Scene::objects`](crate::Scene::objects) in their order; arrays and clouds have numbers alone.
+    /// Starts a file of `count` answers with the names of objects.
+    ///
+    /// The objects are [`Scene::objects`](crate::Scene::objects). A CSV table has a column of names if there are any;
+    /// arrays and point clouds have no names.
     ///
     /// # Errors
-    /// Those of `writer`.
+    /// Errors of `writer`.
     pub fn with_objects(writer: W, format: AnswerFormat, count: u64, objects: &[Object]) -> io::Result<Self> {
         let names = Names::new(objects);
         let header = match format {
@@ -110,7 +114,7 @@ impl<W: Write> AnswerWriter<W> {
     /// Writes the answer to a query.
     ///
     /// # Errors
-    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more answers than announced.
+    /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more answers than announced.
     pub fn write(&mut self, query: &Point3<f64>, answer: Option<&Closest<f64>>) -> io::Result<()> {
         let out = self.records.next()?;
         match self.format {
@@ -119,7 +123,7 @@ impl<W: Write> AnswerWriter<W> {
                 self.names.end_line(out, answer.map(|a| a.primitive))
             }
             AnswerFormat::Npy => {
-                let mut record = Fields::<RECORD>::default();
+                let mut record = Fields::<RECORD_BYTES>::default();
                 record.numbers(query.coords.as_ref());
                 match answer {
                     None => record.numbers(&[f64::NAN; 8]),
@@ -134,7 +138,7 @@ impl<W: Write> AnswerWriter<W> {
                 out.write_all(&record.bytes)
             }
             AnswerFormat::Ply => {
-                let mut vertex = Fields::<VERTEX>::default();
+                let mut vertex = Fields::<VERTEX_BYTES>::default();
                 vertex.numbers(query.coords.as_ref());
                 match answer {
                     None => vertex.numbers(&[f64::NAN; 4]),
@@ -150,16 +154,17 @@ impl<W: Write> AnswerWriter<W> {
         }
     }
 
-    /// Ends the file and gives the writer back, flushed.
+    /// Ends the file and returns the flushed writer.
     ///
     /// # Errors
-    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) if there were fewer answers than announced.
+    /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for fewer answers than announced.
     pub fn finish(self) -> io::Result<W> {
         self.records.finish()
     }
 }
 
-/// `{:?}` writes the shortest number that reads back the same, with an exponent where it is far from 1.
+/// Writes the columns of an answer. `{:?}` writes the shortest number that reads back the same, with an exponent if it
+/// is far from 1.
 fn row(out: &mut dyn Write, query: &Point3<f64>, answer: Option<&Closest<f64>>) -> io::Result<()> {
     write!(out, "{:?},{:?},{:?},", query.x, query.y, query.z)?;
     match answer {
@@ -170,12 +175,12 @@ fn row(out: &mut dyn Write, query: &Point3<f64>, answer: Option<&Closest<f64>>) 
     }
 }
 
-/// -1 if there is none; ids end at 2^30.
+/// Returns the id of the primitive, which is below 2^30, or -1 if there is no answer.
 fn primitive(answer: Option<&Closest<f64>>) -> i32 {
     answer.and_then(|a| i32::try_from(a.primitive.index()).ok()).unwrap_or(-1)
 }
 
-/// Kind and number.
+/// Returns the kind and the number of the feature, or -1 twice if there is no answer.
 fn feature(answer: Option<&Closest<f64>>) -> [i8; 2] {
     match answer.map(|a| a.feature) {
         None => [-1, -1],

@@ -1,10 +1,10 @@
-//! The column of the names of objects in tables.
+//! The column with the names of objects in tables.
 
 use crate::scene::{Object, object_of};
 use p2m_core::PrimitiveId;
 use std::io::{self, Write};
 
-/// The objects of a scene; without any there is no column.
+/// The objects of a scene. If there are none, tables have no column of names.
 #[derive(Debug, Default)]
 pub(super) struct Names(Vec<Object>);
 
@@ -13,12 +13,12 @@ impl Names {
         Self(objects.to_vec())
     }
 
-    /// The header of a table of these columns.
+    /// Returns the header of a table with these columns, followed by the column of names.
     pub(super) fn header(&self, columns: &str) -> String {
         if self.0.is_empty() { columns.to_owned() } else { format!("{columns},object") }
     }
 
-    /// The end of the line of an answer.
+    /// Ends the line of an answer with the name of the object that the primitive belongs to.
     pub(super) fn end_line(&self, out: &mut dyn Write, primitive: Option<PrimitiveId>) -> io::Result<()> {
         if self.0.is_empty() {
             return writeln!(out);
@@ -30,7 +30,7 @@ impl Names {
     }
 }
 
-/// A name as a field of a table: in quotes where it has to be, and on one line.
+/// Returns a name as a field of a table, on one line and in quotes if that is necessary.
 fn field(name: &str) -> String {
     let name: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let is_plain = !name.contains(['"', ',', ';']) && name.trim() == name;

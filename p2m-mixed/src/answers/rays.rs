@@ -1,4 +1,4 @@
-//! What rays meet.
+//! Writers of hits and numbers for rays.
 
 use super::names::Names;
 use super::records::{Fields, Header, Records};
@@ -6,22 +6,21 @@ use crate::{AnswerFormat, Object};
 use p2m_core::{Hit, Ray, Side};
 use std::io::{self, Write};
 
-/// Writes hits of rays one by one, each with its ray and the number of it; a ray without a hit may have a record of its
-/// own or none.
+/// Writes hits of rays one by one, each with its ray and the number of the ray.
 ///
-/// Each file holds the rays, so [`read_rays`](crate::read_rays) asks the same questions again (a ray with several
-/// records as often).
+/// A ray without a hit may have a record or none. A file contains the rays, and [`read_rays`](crate::read_rays) reads
+/// one ray for each record.
 ///
 /// # CSV
-/// The columns `ray,ox,oy,oz,dx,dy,dz,parameter,x,y,z,primitive,side,w0,w1,w2`: the number of the ray, its origin and its
-/// direction, the parameter and the point of the hit, the id of the primitive, from where it is met (`front`, `back` or
-/// `along`, see [`Side`]), and the weights of its vertices. Numbers are the shortest that read back as the same ones.
-/// The last nine are empty where there is no hit. With [objects](Self::with_objects) there is one column more, `object`: the
-/// name of the one that is met, empty where none is.
+/// The columns `ray,ox,oy,oz,dx,dy,dz,parameter,x,y,z,primitive,side,w0,w1,w2` are the number of the ray, its origin
+/// and its direction, the parameter and the point of the hit, the id of the primitive, the side that is hit (`front`,
+/// `back` or `along`, see [`Side`]), and the weights of its vertices. Numbers have the fewest digits that read back as
+/// the same number. The last nine columns are empty if there is no hit. With [objects](Self::with_objects) there is a
+/// column `object` with the name of the object that is hit, which is empty if the primitive belongs to none.
 ///
 /// # NPY
-/// A structured array of shape `(count,)`, little-endian, without gaps; a record has 120 bytes, and every number stands
-/// at a multiple of its size:
+/// The file is a structured array of shape `(count,)`, little-endian and without gaps. A record has 120 bytes, and
+/// every number is at a multiple of its size:
 ///
 /// | field | bytes | type | without a hit |
 /// |---|---|---|---|
@@ -35,9 +34,9 @@ use std::io::{self, Write};
 /// | `side` | 116..120 | `<i4`: 0 the front, 1 the back, 2 along | -1 |
 ///
 /// # PLY
-/// A cloud of the origins with the directions as normals, binary and little-endian: each `vertex` has the properties
-/// `double` `x`, `y`, `z`, `nx`, `ny`, `nz`, `ray`, `parameter`, `hx`, `hy`, `hz` (the point of the hit), `w0`, `w1`, `w2`,
-/// `int` `primitive` and `side`, as above. Viewers can colour it by parameter.
+/// The file is a point cloud of the origins with the directions as normals, binary and little-endian. Each `vertex` has
+/// the properties `double` `x`, `y`, `z`, `nx`, `ny`, `nz`, `ray`, `parameter`, `hx`, `hy`, `hz` (the point of the
+/// hit), `w0`, `w1`, `w2`, `int` `primitive` and `side`, as above. Viewers can colour it by parameter.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
@@ -62,11 +61,12 @@ pub struct HitWriter<W: Write> {
 
 /// Writes a number for each ray, in the order of the rays.
 ///
-/// Each file holds the rays, so [`read_rays`](crate::read_rays) asks the same questions again.
+/// A file contains the rays, and [`read_rays`](crate::read_rays) reads them.
 ///
 /// CSV has the columns `ray,ox,oy,oz,dx,dy,dz` of [`HitWriter`] and one more under the name of the number. NPY is a
-/// structured array with the fields `origin`, `direction`, `ray` of [`HitWriter`] and the number, of type `<i8`. PLY is a
-/// cloud with the properties `x`, `y`, `z`, `nx`, `ny`, `nz`, `ray` of [`HitWriter`] and the number, of type `double`.
+/// structured array with the fields `origin`, `direction`, `ray` of [`HitWriter`] and the number, of type `<i8`. PLY is
+/// a cloud with the properties `x`, `y`, `z`, `nx`, `ny`, `nz`, `ray` of [`HitWriter`] and the number, of type
+/// `double`.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
@@ -86,45 +86,48 @@ pub struct NumberWriter<W: Write> {
     format: AnswerFormat,
 }
 
-/// Bytes of records.
-const HIT: usize = 120;
-const NUMBER: usize = 64;
+/// The size of the record of a hit.
+const HIT_BYTES: usize = 120;
+/// The size of the record of a number.
+const NUMBER_BYTES: usize = 64;
 
 impl<W: Write> HitWriter<W> {
-    /// Begins a file of `count` records. Without a count, NPY and PLY files are kept in memory until their end: the number
-    /// stands in their beginning.
+    /// Starts a file of `count` records. Without a count, NPY and PLY files are kept in memory until they are finished,
+    /// because their header has the number of records.
     ///
     /// # Errors
-    /// Those of `writer`.
+    /// Errors of `writer`.
     pub fn new(writer: W, format: AnswerFormat, count: Option<u64>) -> io::Result<Self> {
         Self::with_objects(writer, format, count, &[])
     }
 
-    /// The same, with the names of these objects in a table, as
-    /// [`AnswerWriter::with_objects`](crate::AnswerWriter::with_objects) has them.
+    /// Starts a file of `count` records with the names of objects.
+    ///
+    /// The objects are [`Scene::objects`](crate::Scene::objects), and a CSV table has a column of their names. Without
+    /// a count, NPY and PLY files are kept in memory until they are finished.
     ///
     /// # Errors
-    /// Those of `writer`.
+    /// Errors of `writer`.
     pub fn with_objects(writer: W, format: AnswerFormat, count: Option<u64>, objects: &[Object]) -> io::Result<Self> {
         let names = Names::new(objects);
         let header = match format {
-            AnswerFormat::Csv => line(&names.header("parameter,x,y,z,primitive,side,w0,w1,w2")),
-            AnswerFormat::Npy => npy(
+            AnswerFormat::Csv => csv_header(&names.header("parameter,x,y,z,primitive,side,w0,w1,w2")),
+            AnswerFormat::Npy => npy_header(
                 "('parameter', '<f8'), ('point', '<f8', (3,)), ('barycentric', '<f8', (3,)), ('primitive', '<i4'), \
                 ('side', '<i4')",
             ),
             AnswerFormat::Ply => {
                 let doubles = ["parameter", "hx", "hy", "hz", "w0", "w1", "w2"].map(|name| ("double", name));
-                ply(doubles.into_iter().chain([("int", "primitive"), ("int", "side")]))
+                ply_header(doubles.into_iter().chain([("int", "primitive"), ("int", "side")]))
             }
         };
         Ok(Self { records: Records::new(writer, header, count)?, format, names })
     }
 
-    /// Writes a hit of a ray, or that there is none.
+    /// Writes a hit of a ray, or a record without a hit. `number` is the number of the ray.
     ///
     /// # Errors
-    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more records than announced.
+    /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more records than announced.
     pub fn write(&mut self, number: u64, ray: &Ray, hit: Option<&Hit>) -> io::Result<()> {
         let out = self.records.next()?;
         if self.format == AnswerFormat::Csv {
@@ -143,7 +146,7 @@ impl<W: Write> HitWriter<W> {
             write!(out, "{parameter:?},{x:?},{y:?},{z:?},{primitive},{side},{a:?},{b:?},{c:?}")?;
             return self.names.end_line(out, Some(primitive));
         }
-        let mut record = record::<HIT>(self.format, number, ray);
+        let mut record = record::<HIT_BYTES>(self.format, number, ray);
         match hit {
             None => record.numbers(&[f64::NAN; 7]),
             Some(hit) => {
@@ -164,84 +167,86 @@ impl<W: Write> HitWriter<W> {
         out.write_all(&record.bytes)
     }
 
-    /// Ends the file and gives the writer back, flushed.
+    /// Ends the file and returns the flushed writer.
     ///
     /// # Errors
-    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) if there were fewer records than announced.
+    /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for fewer records than announced.
     pub fn finish(self) -> io::Result<W> {
         self.records.finish()
     }
 }
 
 impl<W: Write> NumberWriter<W> {
-    /// Begins a file of `count` numbers, which are called `name`: a word of letters.
+    /// Starts a file of `count` numbers, which are called `name`. The name has to be a word of letters.
     ///
     /// # Errors
-    /// Those of `writer`.
+    /// Errors of `writer`.
     pub fn new(writer: W, format: AnswerFormat, name: &'static str, count: u64) -> io::Result<Self> {
         let header = match format {
-            AnswerFormat::Csv => line(name),
-            AnswerFormat::Npy => npy(&format!("('{name}', '<i8')")),
-            AnswerFormat::Ply => ply([("double", name)].into_iter()),
+            AnswerFormat::Csv => csv_header(name),
+            AnswerFormat::Npy => npy_header(&format!("('{name}', '<i8')")),
+            AnswerFormat::Ply => ply_header([("double", name)].into_iter()),
         };
         Ok(Self { records: Records::new(writer, header, Some(count))?, format })
     }
 
-    /// Writes the number of a ray.
+    /// Writes a value for a ray. `number` is the number of the ray.
     ///
     /// # Errors
-    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more numbers than announced.
+    /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more numbers than announced.
     pub fn write(&mut self, number: u64, ray: &Ray, value: u64) -> io::Result<()> {
         let out = self.records.next()?;
         if self.format == AnswerFormat::Csv {
             row(out, number, ray)?;
             return writeln!(out, "{value}");
         }
-        let mut record = record::<NUMBER>(self.format, number, ray);
-        record.add(whole(self.format, value));
+        let mut record = record::<NUMBER_BYTES>(self.format, number, ray);
+        record.add(integer_bytes(self.format, value));
         out.write_all(&record.bytes)
     }
 
-    /// Ends the file and gives the writer back, flushed.
+    /// Ends the file and returns the flushed writer.
     ///
     /// # Errors
-    /// Those of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) if there were fewer numbers than announced.
+    /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for fewer numbers than announced.
     pub fn finish(self) -> io::Result<W> {
         self.records.finish()
     }
 }
 
-/// Headers: the columns of the ray, and then others.
-fn line(columns: &str) -> Header {
+/// Returns the header of a table with the columns of a ray and then others.
+fn csv_header(columns: &str) -> Header {
     Header::Line(format!("ray,ox,oy,oz,dx,dy,dz,{columns}"))
 }
 
-fn npy(fields: &str) -> Header {
+/// Returns the header of an array with the fields of a ray and then others.
+fn npy_header(fields: &str) -> Header {
     Header::Npy(format!("('origin', '<f8', (3,)), ('direction', '<f8', (3,)), ('ray', '<i8'), {fields}"))
 }
 
-fn ply(properties: impl Iterator<Item = (&'static str, &'static str)>) -> Header {
+/// Returns the header of a point cloud with the properties of a ray and then others.
+fn ply_header(properties: impl Iterator<Item = (&'static str, &'static str)>) -> Header {
     let ray = ["x", "y", "z", "nx", "ny", "nz", "ray"].map(|name| ("double", name));
     Header::Ply(ray.into_iter().chain(properties).collect())
 }
 
-/// The columns of a ray. `{:?}` writes the shortest number that reads back the same.
+/// Writes the columns of a ray. `{:?}` writes the shortest number that reads back the same.
 fn row(out: &mut dyn Write, number: u64, ray: &Ray) -> io::Result<()> {
     let (o, d) = (ray.origin(), ray.direction());
     write!(out, "{number},{:?},{:?},{:?},{:?},{:?},{:?},", o.x, o.y, o.z, d.x, d.y, d.z)
 }
 
-/// A record that begins with a ray.
+/// Makes a record and fills in the fields of a ray.
 fn record<const N: usize>(format: AnswerFormat, number: u64, ray: &Ray) -> Fields<N> {
     let mut record = Fields::default();
     record.numbers(ray.origin().coords.as_ref());
     record.numbers(ray.direction().as_ref());
-    record.add(whole(format, number));
+    record.add(integer_bytes(format, number));
     record
 }
 
-/// A whole number as an integer, for which PLY has no type of 64 bits.
-#[allow(clippy::cast_precision_loss, reason = "nobody asks 2^53 rays")]
-fn whole(format: AnswerFormat, number: u64) -> [u8; 8] {
+/// Returns the bytes of an integer. PLY has no integers of 64 bits, so it gets a `double`.
+#[allow(clippy::cast_precision_loss, reason = "there are fewer than 2^53 rays")]
+fn integer_bytes(format: AnswerFormat, number: u64) -> [u8; 8] {
     if format == AnswerFormat::Ply { (number as f64).to_le_bytes() } else { number.to_le_bytes() }
 }

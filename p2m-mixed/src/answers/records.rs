@@ -1,27 +1,27 @@
-//! Files of records, the number of which may stand in their header.
+//! Files of a header and records, whose number may be part of the header.
 
 use std::io::{self, ErrorKind, Write};
 
-/// Writes a header and so many records.
+/// Writes a header and records.
 #[derive(Debug)]
 pub(super) struct Records<W> {
     writer: W,
     header: Header,
-    /// Announced, if it is known from the start.
+    /// The number of records, if it was announced.
     count: Option<u64>,
     written: u64,
-    /// All records, where the header needs a number that was not announced.
-    held: Vec<u8>,
+    /// All records, if the header needs their number and it was not announced.
+    buffered: Vec<u8>,
 }
 
-/// What stands in front of the records.
+/// The header before the records.
 #[derive(Debug)]
 pub(super) enum Header {
-    /// A line of text, without a number.
+    /// The header of a text table is a line without the number of records.
     Line(String),
-    /// That of an array of NumPy, by its fields.
+    /// The header of an array of NumPy, with its fields.
     Npy(String),
-    /// That of a cloud in a PLY file, by types and names of its properties.
+    /// The header of a point cloud in a PLY file, with the types and names of its properties.
     Ply(Vec<(&'static str, &'static str)>),
 }
 
@@ -30,32 +30,32 @@ impl<W: Write> Records<W> {
         if count.is_some() || matches!(header, Header::Line(_)) {
             writer.write_all(&header.bytes(count.unwrap_or(0)))?;
         }
-        Ok(Self { writer, header, count, written: 0, held: Vec::new() })
+        Ok(Self { writer, header, count, written: 0, buffered: Vec::new() })
     }
 
-    /// Where the next record goes.
+    /// Returns the writer of the next record.
     pub(super) fn next(&mut self) -> io::Result<&mut dyn Write> {
         if let Some(count) = self.count.filter(|count| *count == self.written) {
             let message = format!("there are more answers than the {count} announced");
             return Err(io::Error::new(ErrorKind::InvalidInput, message));
         }
         self.written += 1;
-        Ok(if self.is_held() { &mut self.held } else { &mut self.writer })
+        Ok(if self.is_buffered() { &mut self.buffered } else { &mut self.writer })
     }
 
-    fn is_held(&self) -> bool {
+    fn is_buffered(&self) -> bool {
         self.count.is_none() && !matches!(self.header, Header::Line(_))
     }
 
-    /// Ends the file and gives the writer back, flushed.
+    /// Ends the file and returns the flushed writer.
     pub(super) fn finish(mut self) -> io::Result<W> {
         if let Some(count) = self.count.filter(|count| *count > self.written) {
             let message = format!("there are {} answers, not the {count} announced", self.written);
             return Err(io::Error::new(ErrorKind::InvalidInput, message));
         }
-        if self.is_held() {
+        if self.is_buffered() {
             self.writer.write_all(&self.header.bytes(self.written))?;
-            self.writer.write_all(&self.held)?;
+            self.writer.write_all(&self.buffered)?;
         }
         self.writer.flush()?;
         Ok(self.writer)
@@ -78,7 +78,7 @@ impl Header {
     }
 }
 
-/// A header as NumPy writes it: version 1.0, filled up to a multiple of 64 bytes.
+/// Returns a header of an NPY file of version 1.0, padded to a multiple of 64 bytes as NumPy does.
 pub fn npy_header(descr: &str, shape: &str, is_fortran: bool) -> Vec<u8> {
     let order = if is_fortran { "True" } else { "False" };
     let mut description = format!("{{'descr': {descr}, 'fortran_order': {order}, 'shape': {shape}, }}");
@@ -94,7 +94,7 @@ pub fn npy_header(descr: &str, shape: &str, is_fortran: bool) -> Vec<u8> {
     header
 }
 
-/// A record that is filled from its beginning.
+/// A record of N bytes that is filled field by field.
 pub(super) struct Fields<const N: usize> {
     pub(super) bytes: [u8; N],
     end: usize,

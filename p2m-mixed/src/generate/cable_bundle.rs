@@ -1,11 +1,11 @@
-//! A bundle of twisted strands along a knot: segments only.
+//! A bundle of twisted strands along a knot, which consists of segments.
 
 use super::error::{GenerateError, at_least, capacity};
 use super::knot::Frame;
 use super::portable::SinCos;
 use p2m_core::{Element, Soup};
 
-/// What [`cable_bundle`] makes: by default 64 strands of 256 segments.
+/// Options of [`cable_bundle`]. The default makes 64 strands of 256 segments.
 ///
 /// ```
 /// use p2m_mixed::generate::{CableBundle, cable_bundle};
@@ -16,13 +16,13 @@ use p2m_core::{Element, Soup};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct CableBundle {
-    /// Strands; at least 1.
+    /// The number of strands, at least 1.
     pub strands: u32,
-    /// Segments of each strand; at least 1.
+    /// The number of segments of each strand, at least 1.
     pub segments: u32,
-    /// How often the bundle turns about itself, from -1000 to 1000.
+    /// The number of turns of the bundle about itself, from -1000 to 1000.
     pub twists: f64,
-    /// The radius of the bundle, where the knot's torus has radii 2 and 0.8.
+    /// The radius of the bundle. The torus of the knot has the radii 2 and 0.8.
     pub radius: f64,
 }
 
@@ -33,34 +33,35 @@ impl Default for CableBundle {
 }
 
 impl CableBundle {
-    /// With that many strands.
+    /// Sets the number of strands.
     #[must_use]
     pub fn with_strands(self, strands: u32) -> Self {
         Self { strands, ..self }
     }
-    /// With that many segments in a strand.
+    /// Sets the number of segments in a strand.
     #[must_use]
     pub fn with_segments(self, segments: u32) -> Self {
         Self { segments, ..self }
     }
-    /// Turning about itself that often.
+    /// Sets the number of turns of the bundle about itself.
     #[must_use]
     pub fn with_twists(self, twists: f64) -> Self {
         Self { twists, ..self }
     }
-    /// With that radius.
+    /// Sets the radius of the bundle.
     #[must_use]
     pub fn with_radius(self, radius: f64) -> Self {
         Self { radius, ..self }
     }
 }
 
-/// The golden section of a turn: strands placed at its multiples fill a disc evenly.
+/// The golden section of a turn. Strands at its multiples fill a disc evenly.
 const GOLDEN_TURN: f64 = 0.381_966_011_250_105_1;
-/// How much of the trefoil the bundle follows. It does not close, since its strands would not.
-const LENGTH: f64 = 0.95;
+/// The fraction of the trefoil that the bundle follows. The bundle is open, because its strands would not close.
+const KNOT_FRACTION: f64 = 0.95;
 
-/// Strands that wind about a trefoil knot, strand after strand, each a polyline from end to end.
+/// Makes strands that wind about a trefoil knot. Each strand is a polyline, and the segments of a
+/// strand are consecutive.
 ///
 /// # Errors
 /// [`GenerateError`] if an option is not in its range or there are more primitives than ids.
@@ -79,11 +80,11 @@ pub fn cable_bundle(options: &CableBundle) -> Result<Soup<f64>, GenerateError> {
 
     let mut positions = Vec::with_capacity(len + strands as usize);
     for strand in 0..strands {
-        let place = (f64::from(strand) + 0.5) / f64::from(strands);
-        let (distance, phase) = (radius * place.sqrt(), GOLDEN_TURN * f64::from(strand));
+        let area_fraction = (f64::from(strand) + 0.5) / f64::from(strands);
+        let (distance, phase) = (radius * area_fraction.sqrt(), GOLDEN_TURN * f64::from(strand));
         positions.extend((0..=segments).map(|step| {
             let s = f64::from(step) / f64::from(segments);
-            Frame::at(2, 3, LENGTH * s).around(distance, SinCos::of_turns(phase + twists * s))
+            Frame::at(2, 3, KNOT_FRACTION * s).around(distance, SinCos::of_turns(phase + twists * s))
         }));
     }
     let elements = (0..strands).flat_map(|strand| {

@@ -1,8 +1,8 @@
-//! Why a scene cannot be made, and the checks that say so before anything is allocated.
+//! Errors of generators, and the checks of options that precede any allocation.
 
 use p2m_core::{BuildError, PrimitiveId};
 
-/// Why a scene cannot be made or changed.
+/// Reasons why a scene cannot be generated or changed.
 ///
 /// ```
 /// use p2m_mixed::generate::{GenerateError, TorusKnot, torus_knot};
@@ -14,35 +14,35 @@ use p2m_core::{BuildError, PrimitiveId};
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GenerateError {
-    /// An option that counts something is too small for the scene to exist.
+    /// A count among the options is too small.
     #[error("{option} is {value}, but must be at least {least}")]
     TooFew {
-        /// The field of the options.
+        /// The name of the option.
         option: &'static str,
-        /// Its value.
+        /// The value of the option.
         value: u32,
-        /// The least that makes sense.
+        /// The smallest value that is supported.
         least: u32,
     },
-    /// A number is not in its range, or not a number.
+    /// An option is out of range or NaN.
     #[error("{option} is {value}, but must be {range}")]
     OutOfRange {
-        /// The field of the options or the argument.
+        /// The name of the option or argument.
         option: &'static str,
-        /// Its value.
+        /// The value of the option.
         value: f64,
-        /// The range in words.
+        /// The range, in words.
         range: &'static str,
     },
-    /// The windings of a torus knot have a common divisor: the curve would run over itself.
+    /// The windings of a torus knot have a common divisor, so the curve would cover itself.
     #[error("p = {p} and q = {q} must have no common divisor")]
     CommonDivisor {
-        /// Turns around the axis of the torus.
+        /// The number of turns around the axis of the torus.
         p: u32,
-        /// Turns around its tube.
+        /// The number of turns around the tube of the torus.
         q: u32,
     },
-    /// The scene is no valid soup: there are more primitives than ids, or a coordinate overflows.
+    /// The scene is not a valid soup, because it has more primitives than ids or a coordinate overflows.
     #[error(transparent)]
     Build(#[from] BuildError),
 }
@@ -51,8 +51,8 @@ pub(super) fn at_least(least: u32, option: &'static str, value: u32) -> Result<(
     if value < least { Err(GenerateError::TooFew { option, value, least }) } else { Ok(()) }
 }
 
-/// That many primitives, if there are ids for them. Three numbers of 32 bits can be multiplied
-/// without overflow in the argument.
+/// Returns the number of primitives, or an error if there are not enough ids. The argument has room for the product of
+/// three numbers of 32 bits.
 pub(super) fn capacity(primitives: u128) -> Result<usize, BuildError> {
     let len = usize::try_from(primitives).unwrap_or(usize::MAX);
     if len > PrimitiveId::MAX_COUNT { Err(BuildError::TooMany { len }) } else { Ok(len) }

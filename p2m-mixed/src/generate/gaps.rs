@@ -1,14 +1,14 @@
-//! Meshes torn into primitives without shared vertices, with gaps between them or through each other.
+//! Meshes divided into primitives without shared vertices, which have gaps between them or penetrate each other.
 //!
-//! The two hard cases of [Zong2023, section 5.5, Figure 19].
+//! These are the two hard cases of \[Zong2023, section 5.5, Figure 19\].
 
 use super::error::GenerateError;
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Element, Soup};
 
-/// Each primitive shrunk about its centroid to `factor` of its size, with vertices of its own.
+/// Shrinks each primitive about its centroid to `factor` times its size, and gives it vertices of its own.
 ///
-/// Points stay where they are. Triangles and segments that had at most their boundaries in common are apart.
+/// Points do not move. Triangles and segments that shared at most their boundaries are disjoint afterwards.
 ///
 /// ```
 /// use p2m_mixed::generate::{IcoSphere, gapped, ico_sphere};
@@ -20,8 +20,8 @@ use p2m_core::{Element, Soup};
 /// ```
 ///
 /// # Errors
-/// [`GenerateError::OutOfRange`] if the factor is not above 0 and below 1, [`GenerateError::Build`] if a coordinate
-/// overflows.
+/// [`GenerateError::OutOfRange`] if the factor is not above 0 and below 1, [`GenerateError::Build`] if
+/// a coordinate overflows.
 pub fn gapped(scene: &Soup<f64>, factor: f64) -> Result<Soup<f64>, GenerateError> {
     if !(factor > 0.0 && factor < 1.0) {
         let range = "above 0 and below 1";
@@ -30,11 +30,11 @@ pub fn gapped(scene: &Soup<f64>, factor: f64) -> Result<Soup<f64>, GenerateError
     about_centroids(scene, factor)
 }
 
-/// Each primitive enlarged about its centroid to `factor` of its size, with vertices of its own: on a curved mesh, each
-/// triangle crosses its neighbours.
+/// Enlarges each primitive about its centroid to `factor` times its size, and gives it vertices of its own. On a curved
+/// mesh, each triangle crosses its neighbours.
 ///
-/// A place of the surface is then under `factor`^2 triangles in the mean. Points stay where they are. On a planar part,
-/// triangles lie on each other.
+/// A point of the surface is then covered by `factor`^2 triangles on average. Points of the scene do not move. On a
+/// planar part, triangles overlap in the plane.
 ///
 /// ```
 /// use p2m_mixed::generate::{IcoSphere, ico_sphere, penetrating};
@@ -45,8 +45,8 @@ pub fn gapped(scene: &Soup<f64>, factor: f64) -> Result<Soup<f64>, GenerateError
 /// ```
 ///
 /// # Errors
-/// [`GenerateError::OutOfRange`] if the factor is not above 1 and at most 1000, [`GenerateError::Build`] if a
-/// coordinate overflows.
+/// [`GenerateError::OutOfRange`] if the factor is not above 1 and at most 1000, [`GenerateError::Build`] if
+/// a coordinate overflows.
 pub fn penetrating(scene: &Soup<f64>, factor: f64) -> Result<Soup<f64>, GenerateError> {
     if !(factor > 1.0 && factor <= 1e3) {
         let range = "above 1 and at most 1000";
@@ -59,7 +59,7 @@ fn about_centroids(scene: &Soup<f64>, factor: f64) -> Result<Soup<f64>, Generate
     let corners = 3 * scene.triangles().len() + 2 * scene.segments().len() + scene.points().len();
     let mut positions: Vec<Point3<f64>> = Vec::with_capacity(corners);
     let mut elements = Vec::new();
-    // At most three times the number of ids, which is below 2^32.
+    // There are at most three vertices for each id, so their number is below 2^32.
     let mut first = 0;
     for element in scene.elements() {
         let corners = element.indices().iter().map(|&i| scene.positions()[i as usize].coords);

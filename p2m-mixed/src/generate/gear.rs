@@ -1,11 +1,12 @@
-//! A gear whose triangles are nearly all slivers: the hard case for boxes, and for k-DOPs whose directions miss it.
+//! A gear whose triangles are nearly all slivers. It is a hard case for boxes, and for k-DOPs with unsuitable
+//! directions.
 
 use super::error::{GenerateError, at_least, capacity};
 use super::portable::SinCos;
 use nalgebra::Point3;
 use p2m_core::{Element, Soup};
 
-/// What [`skewed_gear`] makes: by default 28,348 vertices and 56,696 triangles.
+/// Options of [`skewed_gear`]. The default makes 28,348 vertices and 56,696 triangles.
 ///
 /// ```
 /// use p2m_mixed::generate::{SkewedGear, Transform, skewed_gear};
@@ -18,9 +19,9 @@ use p2m_core::{Element, Soup};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SkewedGear {
-    /// Teeth; at least 3.
+    /// The number of teeth, at least 3.
     pub teeth: u32,
-    /// Points of the outline for each tooth; at least 4. The more, the thinner the triangles.
+    /// The number of points of the outline for each tooth, at least 4. More points make thinner triangles.
     pub points: u32,
 }
 
@@ -31,12 +32,12 @@ impl Default for SkewedGear {
 }
 
 impl SkewedGear {
-    /// With that many teeth.
+    /// Sets the number of teeth.
     #[must_use]
     pub fn with_teeth(self, teeth: u32) -> Self {
         Self { teeth, ..self }
     }
-    /// With that many points of the outline for each tooth.
+    /// Sets the number of points of the outline for each tooth.
     #[must_use]
     pub fn with_points(self, points: u32) -> Self {
         Self { points, ..self }
@@ -47,14 +48,14 @@ const BORE_RADIUS: f64 = 25.0;
 const ROOT_RADIUS: f64 = 46.0;
 const TIP_RADIUS: f64 = 52.0;
 const HEIGHT: f64 = 24.0;
-/// By how much of a turn the upper face is turned against the lower one: 18 degrees.
+/// The rotation of the upper face relative to the lower one, in turns. It is 18 degrees.
 const TWIST: f64 = 0.05;
 
-/// A helical gear with a bore around the z axis, its lower face at z = 0 and its upper one at z = 24.
+/// Makes a helical gear with a bore around the z axis, whose lower face is at z = 0 and whose upper face is at z = 24.
 ///
-/// Outline and bore have the same number of points, and every triangle spans the height of the gear or the way from
-/// bore to outline: by default nine of ten triangles are 380 to 1250 times as long as high, 950 in the median. Closed,
-/// outside counter-clockwise, of genus 1. The faces are planar to the last bit.
+/// Outline and bore have the same number of points, and every triangle spans the height of the gear or the distance
+/// from bore to outline. By default nine of ten triangles have an aspect of 380 to 1250, and the median is 950. The
+/// surface is closed, of genus 1, and counter-clockwise seen from outside. The faces are exactly planar.
 ///
 /// # Errors
 /// [`GenerateError`] if an option is not in its range or there are more primitives than ids.
@@ -65,7 +66,7 @@ pub fn skewed_gear(options: &SkewedGear) -> Result<Soup<f64>, GenerateError> {
     capacity(8 * u128::from(teeth) * u128::from(points))?;
     let around = teeth * points;
 
-    // Four rings: lower outline, upper outline, upper bore, lower bore. Each is joined to the next.
+    // The four rings are lower outline, upper outline, upper bore and lower bore. Each is connected to the next.
     let mut positions = Vec::with_capacity(4 * around as usize);
     for (is_bore, is_upper) in [(false, false), (false, true), (true, true), (true, false)] {
         let twist = SinCos::of_turns(if is_upper { TWIST } else { 0.0 });
@@ -88,7 +89,7 @@ pub fn skewed_gear(options: &SkewedGear) -> Result<Soup<f64>, GenerateError> {
     Ok(Soup::new(positions, elements)?)
 }
 
-/// The radius at a point of a tooth: a quarter of it each is root, rising flank, tip and falling flank.
+/// Returns the radius at a point of a tooth, of which root, rising flank, tip and falling flank are a quarter each.
 fn outline(point: u32, points: u32) -> f64 {
     let quarters = 4.0 * f64::from(point) / f64::from(points);
     let rise = if quarters < 3.0 { quarters - 1.0 } else { 4.0 - quarters };

@@ -4,7 +4,7 @@ use super::error::{GenerateError, at_least, capacity};
 use nalgebra::{Point3, Vector3};
 use p2m_core::Soup;
 
-/// What [`ico_sphere`] makes: by default 11,520 triangles.
+/// Options of [`ico_sphere`]. The default makes 11,520 triangles.
 ///
 /// ```
 /// use p2m_mixed::generate::{IcoSphere, ico_sphere};
@@ -16,7 +16,7 @@ use p2m_core::Soup;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct IcoSphere {
-    /// Into how many parts each edge of the icosahedron is cut; at least 1.
+    /// The number of parts that each edge of the icosahedron is divided into, at least 1.
     pub frequency: u32,
 }
 
@@ -27,15 +27,15 @@ impl Default for IcoSphere {
 }
 
 impl IcoSphere {
-    /// With edges of the icosahedron cut into that many parts.
+    /// Sets the number of parts that each edge of the icosahedron is divided into.
     #[must_use]
     pub fn with_frequency(self, frequency: u32) -> Self {
         Self { frequency }
     }
 }
 
-/// The unit sphere as an icosahedron whose faces are cut into `frequency`^2 triangles: 20 `frequency`^2 triangles,
-/// 10 `frequency`^2 + 2 vertices.
+/// Makes the unit sphere as an icosahedron whose faces are divided into `frequency`^2 triangles each. It has
+/// 20 `frequency`^2 triangles and 10 `frequency`^2 + 2 vertices.
 ///
 /// # Errors
 /// [`GenerateError`] if an option is not in its range or there are more primitives than ids.
@@ -45,7 +45,7 @@ pub fn ico_sphere(options: &IcoSphere) -> Result<Soup<f64>, GenerateError> {
     let len = capacity(20 * u128::from(n) * u128::from(n))?;
     let (corners, faces) = icosahedron();
 
-    // Vertices: the corners, then those within edges, then those within faces.
+    // The corners come first, then the vertices within edges, then those within faces.
     let weighted = |weights: [u32; 3], at: [u32; 3]| {
         let sum = |i: usize, j: usize| f64::from(weights[i]) * corners[at[j] as usize];
         Point3::from((sum(0, 0) + sum(1, 1) + sum(2, 2)).normalize())
@@ -68,7 +68,7 @@ pub fn ico_sphere(options: &IcoSphere) -> Result<Soup<f64>, GenerateError> {
         for i in 1..n {
             positions.extend((1..n - i).map(|j| weighted([n - i - j, i, j], [a, b, c])));
         }
-        // The vertex i steps towards b and j steps towards c.
+        // `vertex` returns the vertex i steps from a towards b and j steps towards c.
         let within = |from: u32, to: u32, steps: u32| {
             let edge = edges.binary_search(&[from.min(to), from.max(to)]).unwrap_or_else(|_| unreachable!("an edge"));
             let steps = if from < to { steps } else { n - steps };
@@ -81,7 +81,7 @@ pub fn ico_sphere(options: &IcoSphere) -> Result<Soup<f64>, GenerateError> {
             (_, i, 0) => within(a, b, i),
             (_, 0, j) => within(a, c, j),
             (0, _, j) => within(b, c, j),
-            // Row i holds n - 1 - i vertices.
+            // Row i has n - 1 - i vertices.
             (_, i, j) => in_edges + face * in_face + (i - 1) * (n - 1) - i * (i - 1) / 2 + j - 1,
         };
         for i in 0..n {
@@ -96,11 +96,13 @@ pub fn ico_sphere(options: &IcoSphere) -> Result<Soup<f64>, GenerateError> {
     Ok(Soup::from_triangles(positions, triangles)?)
 }
 
-/// Corner 4k + 2s + t is +-1 along axis k and +-phi, the golden ratio, along the next one: the signs are those of s
-/// and t, 0 for plus. Edges have length 2.
+/// Returns the corners and faces of an icosahedron with edges of length 2.
 ///
-/// Eight faces have one corner of each k and lie in one octant each. The other twelve have an edge between two corners
-/// that differ in s only, and a corner of the next k that points to the same side. Their orientation is the sign of a
+/// Corner 4k + 2s + t has the coordinate +-1 on axis k and +-phi, the golden ratio, on the next axis. The first sign is
+/// positive if s is 0, the second if t is 0.
+///
+/// Eight faces have one corner of each k and lie in one octant each. The other twelve faces have an edge between two
+/// corners that differ only in s, and a corner of the next k on the same side. Their orientation is the sign of a
 /// determinant, which is that of a product of signs.
 fn icosahedron() -> ([Vector3<f64>; 12], [[u32; 3]; 20]) {
     let phi = (1.0 + 5f64.sqrt()) / 2.0;

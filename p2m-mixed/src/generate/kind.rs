@@ -6,7 +6,7 @@ use super::{
 };
 use p2m_core::Soup;
 
-/// A kind of scene with its options.
+/// A kind of generated scene with its options.
 ///
 /// ```
 /// use p2m_mixed::generate::{Kind, Sphere};
@@ -20,28 +20,28 @@ use p2m_core::Soup;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Kind {
-    /// That of [`knot_and_cables`].
+    /// This is the scene of [`knot_and_cables`].
     KnotAndCables(KnotAndCables),
-    /// That of [`torus_knot`].
+    /// This is the scene of [`torus_knot`].
     TorusKnot(TorusKnot),
-    /// That of [`skewed_gear`].
+    /// This is the scene of [`skewed_gear`].
     SkewedGear(SkewedGear),
-    /// That of [`sphere`].
+    /// This is the scene of [`sphere`].
     Sphere(Sphere),
-    /// That of [`ico_sphere`].
+    /// This is the scene of [`ico_sphere`].
     IcoSphere(IcoSphere),
-    /// That of [`cone`].
+    /// This is the scene of [`cone`].
     Cone(Cone),
-    /// That of [`cylinder`].
+    /// This is the scene of [`cylinder`].
     Cylinder(Cylinder),
-    /// That of [`cable_bundle`].
+    /// This is the scene of [`cable_bundle`].
     CableBundle(CableBundle),
-    /// That of [`mixed_sizes`].
+    /// This is the scene of [`mixed_sizes`].
     MixedSizes(MixedSizes),
 }
 
 impl Kind {
-    /// All kinds with their default options.
+    /// Returns all kinds with their default options.
     #[must_use]
     pub fn all() -> [Self; 9] {
         [
@@ -57,13 +57,13 @@ impl Kind {
         ]
     }
 
-    /// The kind of that name with its default options.
+    /// Returns the kind of this name with its default options.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::all().into_iter().find(|kind| kind.name() == name)
     }
 
-    /// Its name in tables and on the command line.
+    /// Returns the name of the kind in tables and on the command line.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -79,7 +79,7 @@ impl Kind {
         }
     }
 
-    /// What it is, in a few words.
+    /// Returns a description of the kind in a few words.
     #[must_use]
     pub fn description(&self) -> &'static str {
         match self {
@@ -95,7 +95,7 @@ impl Kind {
         }
     }
 
-    /// The scene.
+    /// Generates the scene.
     ///
     /// # Errors
     /// [`GenerateError`] if an option is not in its range or there are more primitives than ids.

@@ -5,11 +5,12 @@ use super::portable::SinCos;
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Element, Soup};
 
-/// The torus on which the knot lies.
+/// The distance from the axis of the torus on which the knot lies to the centre of its tube.
 const MAJOR_RADIUS: f64 = 2.0;
+/// The radius of the tube of that torus.
 const MINOR_RADIUS: f64 = 0.8;
 
-/// What [`torus_knot`] makes: by default 12,000 triangles along the trefoil.
+/// Options of [`torus_knot`]. The default makes 12,000 triangles along the trefoil.
 ///
 /// ```
 /// use p2m_mixed::generate::{TorusKnot, torus_knot};
@@ -20,16 +21,16 @@ const MINOR_RADIUS: f64 = 0.8;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct TorusKnot {
-    /// Turns of the knot around the axis of its torus.
+    /// The number of turns of the knot around the axis of its torus.
     pub p: u32,
-    /// Turns around the tube of the torus; no common divisor with `p`.
+    /// The number of turns around the tube of the torus. It may not have a common divisor with `p`.
     pub q: u32,
-    /// Rings of vertices along the knot; at least 3.
+    /// The number of rings of vertices along the knot, at least 3.
     pub rings: u32,
-    /// Vertices of each ring; at least 3. There are two triangles for each vertex.
+    /// The number of vertices of each ring, at least 3. There are two triangles for each vertex.
     pub sides: u32,
-    /// The radius of the tube, where those of the torus are 2 and 0.8. A tube thicker than the gaps of the knot meets
-    /// itself.
+    /// The radius of the tube. The radii of the torus are 2 and 0.8. A tube that is thicker than the gaps of the
+    /// knot intersects itself.
     pub tube_radius: f64,
 }
 
@@ -40,29 +41,30 @@ impl Default for TorusKnot {
 }
 
 impl TorusKnot {
-    /// With `p` turns around the axis of the torus and `q` around its tube.
+    /// Sets the turns `p` around the axis of the torus and `q` around its tube.
     #[must_use]
     pub fn with_windings(self, p: u32, q: u32) -> Self {
         Self { p, q, ..self }
     }
-    /// With that many rings.
+    /// Sets the number of rings.
     #[must_use]
     pub fn with_rings(self, rings: u32) -> Self {
         Self { rings, ..self }
     }
-    /// With that many vertices in a ring.
+    /// Sets the number of vertices in a ring.
     #[must_use]
     pub fn with_sides(self, sides: u32) -> Self {
         Self { sides, ..self }
     }
-    /// With a tube that thick.
+    /// Sets the radius of the tube.
     #[must_use]
     pub fn with_tube_radius(self, tube_radius: f64) -> Self {
         Self { tube_radius, ..self }
     }
 }
 
-/// A closed tube of triangles along a torus knot: 2 `rings` `sides` triangles, outside counter-clockwise.
+/// Makes a closed tube along a torus knot. It has 2 `rings` `sides` triangles, which are counter-clockwise
+/// seen from outside.
 ///
 /// # Errors
 /// [`GenerateError`] if an option is not in its range or there are more primitives than ids.
@@ -92,7 +94,7 @@ fn greatest_common_divisor(mut a: u32, mut b: u32) -> u32 {
     a
 }
 
-/// The vertices of a tube, ring after ring.
+/// Returns the vertices of a tube, ring after ring.
 pub(super) fn tube(p: u32, q: u32, rings: u32, sides: u32, radius: f64) -> impl Iterator<Item = Point3<f64>> {
     (0..rings).flat_map(move |ring| {
         let along = |windings: u32| SinCos::of_fraction(u64::from(windings) * u64::from(ring), rings);
@@ -101,7 +103,7 @@ pub(super) fn tube(p: u32, q: u32, rings: u32, sides: u32, radius: f64) -> impl 
     })
 }
 
-/// The triangles of a tube whose vertices come first in the scene.
+/// Returns the triangles of a tube whose vertices are the first ones of the scene.
 pub(super) fn tube_elements(rings: u32, sides: u32) -> impl Iterator<Item = Element> {
     (0..rings).flat_map(move |ring| {
         (0..sides).flat_map(move |side| {
@@ -114,7 +116,7 @@ pub(super) fn tube_elements(rings: u32, sides: u32) -> impl Iterator<Item = Elem
     })
 }
 
-/// A point of the knot with two directions across it.
+/// A point of the knot with two directions perpendicular to the knot.
 pub(super) struct Frame {
     origin: Point3<f64>,
     outwards: Vector3<f64>,
@@ -122,7 +124,8 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Where the knot has turned by `long` around the axis and by `short` around the tube of the torus.
+    /// Returns the frame where the knot has turned by `long` around the axis and by `short` around the tube
+    /// of the torus.
     ///
     /// The normal of the torus is perpendicular to any curve on it, and closes up where the curve does.
     pub(super) fn new(p: u32, q: u32, long: SinCos, short: SinCos) -> Self {
@@ -135,7 +138,7 @@ impl Frame {
         Self { origin, outwards, sideways }
     }
 
-    /// After that many turns of the parameter, of which one leads along the whole knot.
+    /// Returns the frame at a parameter in turns. One turn is the complete knot.
     pub(super) fn at(p: u32, q: u32, turns: f64) -> Self {
         Self::new(p, q, SinCos::of_turns(f64::from(p) * turns), SinCos::of_turns(f64::from(q) * turns))
     }

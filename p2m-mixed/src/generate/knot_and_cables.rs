@@ -6,7 +6,7 @@ use super::portable::SinCos;
 use nalgebra::Point3;
 use p2m_core::{BuildError, Element, Soup};
 
-/// How fine [`knot_and_cables`] is. The default is that of `scenes/knot_and_cables.obj`.
+/// Options of [`knot_and_cables`]. The default makes the scene of `scenes/knot_and_cables.obj`.
 ///
 /// ```
 /// use p2m_mixed::generate::{KnotAndCables, knot_and_cables};
@@ -17,13 +17,13 @@ use p2m_core::{BuildError, Element, Soup};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct KnotAndCables {
-    /// Rings along the knot; at least 3.
+    /// The number of rings along the knot, at least 3.
     pub rings: u32,
-    /// Vertices of each ring; at least 3. There are two triangles for each vertex.
+    /// The number of vertices of each ring, at least 3. There are two triangles for each vertex.
     pub sides: u32,
-    /// Cables.
+    /// The number of cables.
     pub cables: u32,
-    /// Segments of each cable; at least 1.
+    /// The number of segments of each cable, at least 1.
     pub cable_segments: u32,
 }
 
@@ -34,37 +34,36 @@ impl Default for KnotAndCables {
 }
 
 impl KnotAndCables {
-    /// With that many rings.
+    /// Sets the number of rings.
     #[must_use]
     pub fn with_rings(self, rings: u32) -> Self {
         Self { rings, ..self }
     }
-    /// With that many vertices in a ring.
+    /// Sets the number of vertices in a ring.
     #[must_use]
     pub fn with_sides(self, sides: u32) -> Self {
         Self { sides, ..self }
     }
-    /// With that many cables.
+    /// Sets the number of cables.
     #[must_use]
     pub fn with_cables(self, cables: u32) -> Self {
         Self { cables, ..self }
     }
-    /// With that many segments in a cable.
+    /// Sets the number of segments in a cable.
     #[must_use]
     pub fn with_cable_segments(self, cable_segments: u32) -> Self {
         Self { cable_segments, ..self }
     }
 }
 
-/// The knot and its thickness.
+/// The turns of the knot around the axis of its torus and around its tube.
 const KNOT: (u32, u32) = (2, 3);
 const TUBE_RADIUS: f64 = 0.3;
 
-/// A closed tube of triangles along a (2, 3) torus knot, and free cables of segments that wind around it and leave it.
+/// Makes a closed tube of triangles along a (2, 3) torus knot, and cables of segments that wind around it and leave it.
 ///
-/// The tube's triangles come first, outside counter-clockwise; then the segments, cable after cable. Coordinates are
-/// within 4 of the origin and rounded to five decimals. Numbers below the least
-/// that makes sense count as that.
+/// The triangles of the tube come first, counter-clockwise seen from outside, and then the segments, cable after cable.
+/// Coordinates are within 4 of the origin and rounded to five decimals. Options below their minimum are raised to it.
 ///
 /// # Errors
 /// [`BuildError`] if there are more primitives than ids.
@@ -80,7 +79,8 @@ pub fn knot_and_cables(options: &KnotAndCables) -> Result<Soup<f64>, BuildError>
     for cable in 0..cables {
         let phase = f64::from(cable) / f64::from(cables);
         for step in 0..=steps {
-            // From near the tube, twice around it per third of the knot, and outwards ever faster.
+            // A cable starts near the tube, winds twice around it in a third of the knot, and moves outwards ever
+            // faster.
             let s = f64::from(step) / f64::from(steps);
             let radius = TUBE_RADIUS * (1.15 + 0.15 * f64::from(cable % 3) + 2.0 * s * s * s);
             let angle = SinCos::of_turns(phase + 4.0 * s);
@@ -94,8 +94,8 @@ pub fn knot_and_cables(options: &KnotAndCables) -> Result<Soup<f64>, BuildError>
     Soup::new(positions, elements)
 }
 
-/// To five decimals, which makes for short files.
+/// Rounds to five decimals, which keeps files short.
 fn rounded(p: Point3<f64>) -> Point3<f64> {
-    // Adding zero turns -0 into 0.
+    // The sum of -0 and 0 is 0.
     p.map(|x| (x * 1e5).round() / 1e5 + 0.0)
 }

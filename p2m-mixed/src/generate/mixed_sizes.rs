@@ -1,11 +1,11 @@
-//! Triangles, segments and points of sizes over orders of magnitude, strewn over a cube.
+//! Triangles, segments and points of sizes over several orders of magnitude, distributed in a cube.
 
 use super::error::{GenerateError, capacity};
 use super::portable::{Random, power_of_a_tenth};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Element, Soup};
 
-/// What [`mixed_sizes`] makes: by default 6,000 triangles, 3,000 segments and 1,000 points over six decades.
+/// Options of [`mixed_sizes`]. The default makes 6,000 triangles, 3,000 segments and 1,000 points over six decades.
 ///
 /// ```
 /// use p2m_mixed::generate::{MixedSizes, mixed_sizes};
@@ -16,15 +16,15 @@ use p2m_core::{Element, Soup};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct MixedSizes {
-    /// Triangles.
+    /// The number of triangles.
     pub triangles: u32,
-    /// Segments.
+    /// The number of segments.
     pub segments: u32,
-    /// Points.
+    /// The number of points.
     pub points: u32,
-    /// The largest size is 10^`decades` times the least one; from 0 to 12.
+    /// The orders of magnitude between the smallest and the largest size, from 0 to 12.
     pub decades: f64,
-    /// Another seed makes another scene.
+    /// The seed of the random numbers.
     pub seed: u64,
 }
 
@@ -35,27 +35,27 @@ impl Default for MixedSizes {
 }
 
 impl MixedSizes {
-    /// With that many triangles.
+    /// Sets the number of triangles.
     #[must_use]
     pub fn with_triangles(self, triangles: u32) -> Self {
         Self { triangles, ..self }
     }
-    /// With that many segments.
+    /// Sets the number of segments.
     #[must_use]
     pub fn with_segments(self, segments: u32) -> Self {
         Self { segments, ..self }
     }
-    /// With that many points.
+    /// Sets the number of points.
     #[must_use]
     pub fn with_points(self, points: u32) -> Self {
         Self { points, ..self }
     }
-    /// With sizes over that many orders of magnitude.
+    /// Sets the orders of magnitude between the smallest and the largest size.
     #[must_use]
     pub fn with_decades(self, decades: f64) -> Self {
         Self { decades, ..self }
     }
-    /// From that seed.
+    /// Sets the seed of the random numbers.
     #[must_use]
     pub fn with_seed(self, seed: u64) -> Self {
         Self { seed, ..self }
@@ -63,19 +63,19 @@ impl MixedSizes {
 }
 
 /// The size of the largest primitives.
-const LARGEST: f64 = 0.5;
+const LARGEST_SIZE: f64 = 0.5;
 
-/// Primitives of random shape in random order, without shared vertices.
+/// Makes primitives of random shape in random order, without shared vertices.
 ///
-/// Their centres are uniform in the cube from -1 to 1. Each lies on a sphere about its centre whose radius, its size,
-/// is at most 1/2 and has a uniform logarithm: three random places on it for a triangle, two opposite ones for a
-/// segment.
+/// The centres are uniformly distributed in the cube from -1 to 1. The vertices of a primitive are on a sphere about
+/// its centre: three random points for a triangle, two opposite points for a segment. The radius of the sphere is the
+/// size of the primitive. It is at most 1/2, and its logarithm is uniformly distributed.
 ///
 /// # Errors
 /// [`GenerateError`] if an option is not in its range or there are more primitives than ids.
 pub fn mixed_sizes(options: &MixedSizes) -> Result<Soup<f64>, GenerateError> {
     let &MixedSizes { triangles, segments, points, decades, seed } = options;
-    // Beyond 12, the least ones would be a few units in the last place of their coordinates.
+    // Beyond 12, the smallest sizes would be a few units in the last place of the coordinates.
     if !(0.0..=12.0).contains(&decades) {
         return Err(GenerateError::OutOfRange { option: "decades", value: decades, range: "from 0 to 12" });
     }
@@ -89,8 +89,8 @@ pub fn mixed_sizes(options: &MixedSizes) -> Result<Soup<f64>, GenerateError> {
     let [mut triangles, mut segments, mut points] = kinds;
     while triangles + segments + points > 0 {
         let centre = Point3::from(Vector3::from_fn(|_, _| 2.0 * random.unit() - 1.0));
-        let size = LARGEST * power_of_a_tenth(decades * random.unit());
-        // Drawn without putting back: the numbers of the kinds come out as asked for.
+        let size = LARGEST_SIZE * power_of_a_tenth(decades * random.unit());
+        // Kinds are drawn without replacement, so the numbers of the options are met.
         let draw = random.below(triangles + segments + points);
         if draw < triangles {
             triangles -= 1;
@@ -113,11 +113,11 @@ pub fn mixed_sizes(options: &MixedSizes) -> Result<Soup<f64>, GenerateError> {
     Ok(Soup::new(positions, elements)?)
 }
 
-/// Uniform on the unit sphere.
+/// Returns a uniformly distributed unit vector.
 fn direction(random: &mut Random) -> Vector3<f64> {
     loop {
         let v = random.in_ball();
-        // Away from the centre, where few digits are left.
+        // Vectors near the centre are rejected, because they have few significant digits.
         if v.norm_squared() > 1e-6 {
             return v.normalize();
         }

@@ -1,8 +1,8 @@
-//! Scenes made from nothing, so that everyone can repeat every measurement.
+//! Generators of scenes, which make measurements repeatable.
 //!
-//! Each kind of scene has a function and a struct of options; [`Kind`] lists them by name. [`Transform`],
-//! [`subdivide`], [`gapped`] and [`penetrating`] change any scene. All of it is the same on every platform, bit for
-//! bit: sines and random numbers are the module's own, and tests hold each kind to a checksum.
+//! Each kind of scene has a function and a struct of options, and [`Kind`] lists them by name. [`Transform`],
+//! [`subdivide`], [`gapped`] and [`penetrating`] change any scene. Scenes are the same on every platform, bit for bit:
+//! the module has its own sines and random numbers, and tests compare each kind with a checksum.
 //!
 //! ```
 //! use p2m_mixed::generate::{Kind, Subdivide, Transform, penetrating, subdivide};

@@ -1,8 +1,8 @@
-//! Sine, cosine, powers of ten and random numbers whose every bit is the same on every platform.
+//! Sine, cosine, powers of ten and random numbers that are the same on every platform, bit for bit.
 //!
-//! The libraries of platforms round their sine as they like. Everything here is made of additions, multiplications,
-//! divisions and square roots of f64, which IEEE 754 fixes to the last bit, in one order; `powi` and `mul_add` are not
-//! used. Errors are a few units in the last place, which does not matter: what matters is that they are the same.
+//! The mathematical libraries of platforms differ in their rounding. The functions here consist of additions,
+//! multiplications, divisions and square roots of f64 in a fixed order, which IEEE 754 determines to the last bit.
+//! `powi` and `mul_add` are not used. The error is a few units in the last place.
 
 use nalgebra::{Matrix3, Vector3};
 use rand_chacha::ChaCha8Rng;
@@ -17,19 +17,20 @@ pub(super) struct SinCos {
 }
 
 impl SinCos {
-    /// Of `part / whole` turns. Symmetric: angles that mirror each other have the same digits.
+    /// Returns sine and cosine of `part / whole` turns. Angles that are mirror images of each other have
+    /// the same digits.
     pub(super) fn of_fraction(part: u64, whole: u32) -> Self {
         let whole = u64::from(whole);
-        // Below 2^35.
+        // The product is below 2^35.
         let eighths = part % whole * 8;
         let (octant, rest) = (eighths / whole, eighths % whole);
         let rest = if octant.is_multiple_of(2) { rest } else { whole - rest };
         Self::of_octant(octant, rest as f64 / whole as f64)
     }
 
-    /// Of that many turns, a finite number.
+    /// Returns sine and cosine of a finite number of turns.
     pub(super) fn of_turns(turns: f64) -> Self {
-        // Both differences are exact for turns >= 0. A tiny negative number counts as a whole turn.
+        // Both differences are exact for turns >= 0. A tiny negative number counts as one turn.
         let eighths = (turns - turns.floor()) * 8.0;
         let octant = eighths.floor().min(7.0);
         let rest = eighths - octant;
@@ -38,7 +39,8 @@ impl SinCos {
         Self::of_octant(octant, if octant.is_multiple_of(2) { rest } else { 1.0 - rest })
     }
 
-    /// `rest` is the distance in eighths of a turn to the next axis, from 0 to 1.
+    /// Returns sine and cosine in an octant. `rest` is the distance to the nearest axis in eighths of a turn, from
+    /// 0 to 1.
     fn of_octant(octant: u64, rest: f64) -> Self {
         let (s, c) = Self::near_zero(rest);
         let (sin, cos) = match octant {
@@ -51,11 +53,11 @@ impl SinCos {
             6 => (-c, s),
             _ => (-s, c),
         };
-        // Adding zero turns -0 into 0.
+        // The sum of -0 and 0 is 0.
         Self { sin: sin + 0.0, cos: cos + 0.0 }
     }
 
-    /// The Taylor series, in eighths of a turn from 0 to 1: what is left out is below 1e-17.
+    /// Returns sine and cosine by Taylor series, for eighths of a turn from 0 to 1. The remainder is below 1e-17.
     fn near_zero(eighths: f64) -> (f64, f64) {
         if eighths >= 1.0 {
             return (FRAC_1_SQRT_2, FRAC_1_SQRT_2);
@@ -74,7 +76,8 @@ impl SinCos {
     }
 }
 
-/// The rotation by that many degrees about axis 0, 1 or 2, counter-clockwise if the axis points at the viewer.
+/// Returns the rotation by an angle in degrees about axis 0, 1 or 2, counter-clockwise if the axis points
+/// at the viewer.
 pub(super) fn rotation(axis: usize, degrees: f64) -> Matrix3<f64> {
     let SinCos { sin, cos } = SinCos::of_turns(degrees / 360.0);
     let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -84,12 +87,12 @@ pub(super) fn rotation(axis: usize, degrees: f64) -> Matrix3<f64> {
     matrix
 }
 
-/// 10^-decades, for decades from 0 to 300.
+/// Returns 10^-decades, for decades from 0 to 300.
 pub(super) fn power_of_a_tenth(decades: f64) -> f64 {
     let bits = decades * LOG2_10;
     let whole = bits.floor();
     let x = (bits - whole) * LN_2;
-    // e^-x for x below 0.7: what is left out is below 1e-18.
+    // This is the series of e^-x for x below 0.7, whose remainder is below 1e-18.
     let mut sum = 1.0;
     for n in (1..=17).rev() {
         sum = 1.0 - sum * x / f64::from(n);
@@ -99,12 +102,12 @@ pub(super) fn power_of_a_tenth(decades: f64) -> f64 {
     sum * f64::from_bits(exponent << 52)
 }
 
-/// The upper 53 bits as a number from 0 inclusive to 1 exclusive.
+/// Returns the upper 53 bits as a number from 0 inclusive to 1 exclusive.
 pub(super) fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// A vector of the unit ball, uniformly distributed, from a source of random bits.
+/// Returns a uniformly distributed vector of the unit ball. `next` is a source of random bits.
 pub(super) fn in_ball(mut next: impl FnMut() -> u64) -> Vector3<f64> {
     loop {
         let v = Vector3::from_fn(|_, _| 2.0 * unit(next()) - 1.0);
@@ -114,7 +117,7 @@ pub(super) fn in_ball(mut next: impl FnMut() -> u64) -> Vector3<f64> {
     }
 }
 
-/// Random numbers from a seed.
+/// A generator of random numbers.
 pub(super) struct Random(ChaCha8Rng);
 
 impl Random {
@@ -128,12 +131,12 @@ impl Random {
         self.0.next_u64()
     }
 
-    /// From 0 inclusive to 1 exclusive.
+    /// Returns a number from 0 inclusive to 1 exclusive.
     pub(super) fn unit(&mut self) -> f64 {
         unit(self.bits())
     }
 
-    /// A whole number below `end`, which is below 2^32.
+    /// Returns an integer below `end`, which has to be below 2^32.
     pub(super) fn below(&mut self, end: u64) -> u64 {
         // The bias is below 2^-32.
         ((self.bits() >> 32) * end) >> 32

@@ -5,7 +5,7 @@ use super::portable::SinCos;
 use nalgebra::Point3;
 use p2m_core::Soup;
 
-/// What [`sphere`] makes: by default 12,480 triangles.
+/// Options of [`sphere`]. The default makes 12,480 triangles.
 ///
 /// ```
 /// use p2m_mixed::generate::{Sphere, sphere};
@@ -16,9 +16,9 @@ use p2m_core::Soup;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Sphere {
-    /// Vertices of each parallel; at least 3.
+    /// The number of vertices of each parallel, at least 3.
     pub meridians: u32,
-    /// Bands between the parallels, those at the poles included; at least 2.
+    /// The number of bands between parallels, those at the poles included, at least 2.
     pub bands: u32,
 }
 
@@ -29,19 +29,19 @@ impl Default for Sphere {
 }
 
 impl Sphere {
-    /// With that many meridians.
+    /// Sets the number of meridians.
     #[must_use]
     pub fn with_meridians(self, meridians: u32) -> Self {
         Self { meridians, ..self }
     }
-    /// With that many bands.
+    /// Sets the number of bands.
     #[must_use]
     pub fn with_bands(self, bands: u32) -> Self {
         Self { bands, ..self }
     }
 }
 
-/// What [`cone`] makes: by default 12,400 triangles.
+/// Options of [`cone`]. The default makes 12,400 triangles.
 ///
 /// ```
 /// use p2m_mixed::generate::{Cone, cone};
@@ -52,11 +52,11 @@ impl Sphere {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Cone {
-    /// Vertices around; at least 3.
+    /// The number of vertices around the axis, at least 3.
     pub sides: u32,
-    /// Bands of the slope, that at the apex included; at least 1.
+    /// The number of bands of the slope, the one at the apex included, at least 1.
     pub bands: u32,
-    /// Rings of triangles of the base; at least 1.
+    /// The number of rings of triangles of the base, at least 1.
     pub cap_bands: u32,
 }
 
@@ -67,24 +67,24 @@ impl Default for Cone {
 }
 
 impl Cone {
-    /// With that many vertices around.
+    /// Sets the number of vertices around.
     #[must_use]
     pub fn with_sides(self, sides: u32) -> Self {
         Self { sides, ..self }
     }
-    /// With that many bands of the slope.
+    /// Sets the number of bands of the slope.
     #[must_use]
     pub fn with_bands(self, bands: u32) -> Self {
         Self { bands, ..self }
     }
-    /// With that many rings of triangles of the base.
+    /// Sets the number of rings of triangles of the base.
     #[must_use]
     pub fn with_cap_bands(self, cap_bands: u32) -> Self {
         Self { cap_bands, ..self }
     }
 }
 
-/// What [`cylinder`] makes: by default 12,200 triangles.
+/// Options of [`cylinder`]. The default makes 12,200 triangles.
 ///
 /// ```
 /// use p2m_mixed::generate::{Cylinder, cylinder};
@@ -95,11 +95,11 @@ impl Cone {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Cylinder {
-    /// Vertices around; at least 3.
+    /// The number of vertices around the axis, at least 3.
     pub sides: u32,
-    /// Bands of the wall; at least 1.
+    /// The number of bands of the wall, at least 1.
     pub bands: u32,
-    /// Rings of triangles of each cap; at least 1.
+    /// The number of rings of triangles of each cap, at least 1.
     pub cap_bands: u32,
 }
 
@@ -110,24 +110,25 @@ impl Default for Cylinder {
 }
 
 impl Cylinder {
-    /// With that many vertices around.
+    /// Sets the number of vertices around.
     #[must_use]
     pub fn with_sides(self, sides: u32) -> Self {
         Self { sides, ..self }
     }
-    /// With that many bands of the wall.
+    /// Sets the number of bands of the wall.
     #[must_use]
     pub fn with_bands(self, bands: u32) -> Self {
         Self { bands, ..self }
     }
-    /// With that many rings of triangles of each cap.
+    /// Sets the number of rings of triangles of each cap.
     #[must_use]
     pub fn with_cap_bands(self, cap_bands: u32) -> Self {
         Self { cap_bands, ..self }
     }
 }
 
-/// The unit sphere by latitude and longitude: 2 `meridians` (`bands` - 1) triangles, thin at the poles.
+/// Makes the unit sphere by latitude and longitude. It has 2 `meridians` (`bands` - 1) triangles, which are thin
+/// at the poles.
 ///
 /// # Errors
 /// [`GenerateError`] if an option is not in its range or there are more primitives than ids.
@@ -137,15 +138,15 @@ pub fn sphere(options: &Sphere) -> Result<Soup<f64>, GenerateError> {
     at_least(2, "bands", bands)?;
     check_size(meridians, &[bands])?;
     let parallel = |i: u32| {
-        // The bands share half a turn.
+        // The bands divide half a turn evenly.
         let SinCos { sin, cos } = SinCos::of_fraction(u64::from(i), 2 * bands);
         (sin, 0.0 - cos)
     };
     revolve(meridians, -1.0, 1.0, (1..bands).map(parallel))
 }
 
-/// A closed cone of radius 1 from its base at z = -1 to its apex at z = 1: `sides` (2 `bands` + 2 `cap_bands` - 2)
-/// triangles.
+/// Makes a closed cone of radius 1 from its base at z = -1 to its apex at z = 1. It has
+/// `sides` (2 `bands` + 2 `cap_bands` - 2) triangles.
 ///
 /// # Errors
 /// [`GenerateError`] if an option is not in its range or there are more primitives than ids.
@@ -158,7 +159,7 @@ pub fn cone(options: &Cone) -> Result<Soup<f64>, GenerateError> {
     revolve(sides, -1.0, 1.0, base.chain(slope))
 }
 
-/// A closed cylinder of radius 1 from z = -1 to z = 1: `sides` (2 `bands` + 4 `cap_bands` - 2) triangles.
+/// Makes a closed cylinder of radius 1 from z = -1 to z = 1. It has `sides` (2 `bands` + 4 `cap_bands` - 2) triangles.
 ///
 /// # Errors
 /// [`GenerateError`] if an option is not in its range or there are more primitives than ids.
@@ -182,14 +183,14 @@ fn check_sides_and_bands(sides: u32, bands: u32, cap_bands: u32) -> Result<(), G
     at_least(1, "cap bands", cap_bands)
 }
 
-/// With that many bands in a row from pole to pole, there is one ring less.
+/// Checks the number of primitives. `bands` are the bands from pole to pole, and there is one ring less than bands.
 fn check_size(sides: u32, bands: &[u32]) -> Result<(), GenerateError> {
     let bands: u128 = bands.iter().copied().map(u128::from).sum();
     capacity(2 * u128::from(sides) * (bands - 1))?;
     Ok(())
 }
 
-/// The closed surface from the lower pole over rings of given radius and height to the upper pole.
+/// Makes the closed surface from the lower pole over rings of given radius and height to the upper pole.
 fn revolve(
     sides: u32,
     bottom: f64,
@@ -199,7 +200,7 @@ fn revolve(
     let mut positions = vec![Point3::new(0.0, 0.0, bottom)];
     let mut triangles = Vec::new();
     let next = |side: u32| if side + 1 == sides { 0 } else { side + 1 };
-    // The first vertex of the ring at hand.
+    // `first` is the first vertex of the current ring.
     let mut first = 1;
     for (i, (radius, z)) in rings.enumerate() {
         if i > 0 {

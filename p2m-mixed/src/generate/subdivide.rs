@@ -1,14 +1,14 @@
-//! Midpoint subdivision with displacement, which makes scenes of any size from small ones.
+//! Midpoint subdivision with displacement, which makes large scenes from small ones.
 //!
-//! What belongs to an edge depends on nothing but the edge: a vertex that two triangles share stays shared, two edges
-//! at the same place are split at the same place, and the order of the primitives changes no position.
+//! The displacement of an edge depends only on the coordinates of its ends. So a shared edge stays shared, two edges
+//! with the same ends get the same midpoint, and the order of primitives changes no position.
 
 use super::error::{GenerateError, capacity};
 use super::portable::in_ball;
 use nalgebra::{Point3, Vector3};
 use p2m_core::{BuildError, Element, Soup};
 
-/// How [`subdivide`] splits and displaces.
+/// Options of [`subdivide`].
 ///
 /// ```
 /// use p2m_mixed::generate::{IcoSphere, Subdivide, ico_sphere, subdivide};
@@ -20,12 +20,12 @@ use p2m_core::{BuildError, Element, Soup};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Subdivide {
-    /// How often each triangle becomes four and each segment two.
+    /// The number of times that each triangle becomes four and each segment two.
     pub levels: u32,
-    /// How far at most the middle of an edge is displaced, relative to the length of the edge: from 0 to 0.5. In each
-    /// level, edges are those of the level before.
+    /// The largest displacement of a midpoint as a fraction of the length of its edge, from 0 to 0.5. Each level
+    /// displaces the midpoints of the edges of the level before.
     pub amplitude: f64,
-    /// Another seed displaces otherwise.
+    /// The seed of the random displacements.
     pub seed: u64,
 }
 
@@ -36,28 +36,29 @@ impl Default for Subdivide {
 }
 
 impl Subdivide {
-    /// That often.
+    /// Sets the number of levels.
     #[must_use]
     pub fn with_levels(self, levels: u32) -> Self {
         Self { levels, ..self }
     }
-    /// With displacements up to that part of an edge.
+    /// Sets the largest displacement as a fraction of the length of the edge.
     #[must_use]
     pub fn with_amplitude(self, amplitude: f64) -> Self {
         Self { amplitude, ..self }
     }
-    /// From that seed.
+    /// Sets the seed of the random numbers.
     #[must_use]
     pub fn with_seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
 }
 
-/// Splits each triangle at the middles of its edges into four and each segment into two, `levels` times.
+/// Splits each triangle at the midpoints of its edges into four and each segment into two, `levels` times.
 ///
-/// The parts of a primitive follow each other in its place, those of a triangle with its orientation: at its first,
-/// second and third corner, then the middle one. Points stay. The positions come first, those of the middles after
-/// them. Middles are displaced in random directions, so that large amplitudes let triangles cross each other.
+/// The parts of a primitive take its position in the order. The parts of a triangle are those at its first, second
+/// and third corner and then the central one, and they have its orientation. Points do not change. Midpoints come
+/// after the positions of the level before. They are displaced in random directions, so triangles may cross each
+/// other for large amplitudes.
 ///
 /// # Errors
 /// [`GenerateError::OutOfRange`] for an amplitude that is not from 0 to 0.5, [`GenerateError::Build`] if there are more
@@ -70,7 +71,7 @@ pub fn subdivide(scene: &Soup<f64>, options: &Subdivide) -> Result<Soup<f64>, Ge
     if !(0.0..=0.5).contains(&amplitude) {
         return Err(GenerateError::OutOfRange { option: "amplitude", value: amplitude, range: "from 0 to 0.5" });
     }
-    // A segment has too many parts after 31 levels already.
+    // More levels make no difference, because a segment has too many parts after 31 levels.
     let parts = |count: usize, each: u128| count as u128 * each.pow(levels.min(31));
     capacity(parts(scene.triangles().len(), 4) + parts(scene.segments().len(), 2) + scene.points().len() as u128)?;
 
@@ -82,7 +83,7 @@ pub fn subdivide(scene: &Soup<f64>, options: &Subdivide) -> Result<Soup<f64>, Ge
     for _ in 0..levels {
         let edges = Edges::of(&elements, positions.len());
         let old = positions.len();
-        // A soup of 2^30 primitives uses fewer positions than 2^32, but may have others.
+        // A soup of 2^30 primitives uses fewer than 2^32 positions, but may have unused ones.
         if u32::try_from(old + edges.upper.len()).is_err() {
             return Err(BuildError::TooMany { len: old + edges.upper.len() }.into());
         }
@@ -93,7 +94,7 @@ pub fn subdivide(scene: &Soup<f64>, options: &Subdivide) -> Result<Soup<f64>, Ge
         }
         let mut parts = Vec::with_capacity(2 * elements.len());
         for &element in &elements {
-            let middle = |a: u32, b: u32| edges.number(a, b, old);
+            let middle = |a: u32, b: u32| edges.midpoint_index(a, b, old);
             match element {
                 Element::Point(_) => parts.push(element),
                 Element::Segment([a, b]) => {
@@ -111,10 +112,11 @@ pub fn subdivide(scene: &Soup<f64>, options: &Subdivide) -> Result<Soup<f64>, Ge
     Ok(Soup::new(positions, elements)?)
 }
 
-/// The edges of all primitives, each once, in the order of their lower and then their upper vertex.
+/// The distinct edges of all primitives, sorted by their lower and then their upper vertex.
 struct Edges {
-    /// Where the edges of a lower vertex begin, and where those of the last one end.
+    /// The index of the first edge of each lower vertex, and the number of edges at the end.
     start: Vec<usize>,
+    /// The upper vertex of each edge.
     upper: Vec<u32>,
 }
 
@@ -150,18 +152,18 @@ impl Edges {
             .flat_map(|(lower, range)| self.upper[range[0]..range[1]].iter().map(move |&upper| (lower, upper as usize)))
     }
 
-    /// The number of the vertex in the middle of an edge, if the first one has the number `first`.
-    fn number(&self, a: u32, b: u32, first: usize) -> u32 {
+    /// Returns the index of the midpoint of an edge. `first` is the index of the first midpoint.
+    fn midpoint_index(&self, a: u32, b: u32, first: usize) -> u32 {
         let (lower, upper) = (a.min(b) as usize, a.max(b));
         let start = self.start[lower];
-        let place = self.upper[start..self.start[lower + 1]].partition_point(|&u| u < upper);
+        let offset = self.upper[start..self.start[lower + 1]].partition_point(|&u| u < upper);
         #[allow(clippy::cast_possible_truncation, reason = "checked by the caller for the last edge")]
-        let number = (first + start + place) as u32;
-        number
+        let index = (first + start + offset) as u32;
+        index
     }
 }
 
-/// The middle of an edge, displaced: the same for both directions of the edge.
+/// Returns the displaced midpoint of an edge, which is the same for both directions of the edge.
 fn middle(a: &Point3<f64>, b: &Point3<f64>, amplitude: f64, seed: u64) -> Point3<f64> {
     let middle = Point3::from(a.coords * 0.5 + b.coords * 0.5);
     let along = b - a;
@@ -175,12 +177,13 @@ fn middle(a: &Point3<f64>, b: &Point3<f64>, amplitude: f64, seed: u64) -> Point3
     middle + by
 }
 
-/// Random numbers of an edge, from the digits of its ends: splitmix64, absorbing them first.
+/// Random numbers that depend on the coordinates of the ends of an edge: a splitmix64 generator that absorbs them first
+/// \[Steele2014\].
 struct EdgeRandom(u64);
 
 impl EdgeRandom {
     fn new(a: &Point3<f64>, b: &Point3<f64>, seed: u64) -> Self {
-        // Adding zero turns -0 into 0.
+        // The sum of -0 and 0 is 0, so equal coordinates have equal bits.
         let digits = |p: &Point3<f64>| [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
         let mut ends = [digits(a), digits(b)];
         ends.sort_unstable();

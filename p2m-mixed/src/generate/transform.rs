@@ -1,13 +1,14 @@
-//! Turning, scaling and moving scenes.
+//! Rotation, scaling and translation of scenes.
 
 use super::error::GenerateError;
 use super::portable::rotation;
 use nalgebra::{Matrix3, Point3, Vector3};
 use p2m_core::Soup;
 
-/// A similarity: rotations, scalings and translations, one after the other in the order in which they are added.
+/// A similarity transformation: rotations, scalings and translations in the order in which they are added.
 ///
-/// The same on every platform. Turns by multiples of 90 degrees and scalings by powers of two are exact.
+/// The result is the same on every platform. Rotations by multiples of 90 degrees and scalings by powers of
+/// two are exact.
 ///
 /// ```
 /// use p2m_mixed::generate::{IcoSphere, Transform, ico_sphere};
@@ -20,31 +21,31 @@ use p2m_core::Soup;
 pub struct Transform {
     linear: Matrix3<f64>,
     translation: Vector3<f64>,
-    /// The first step that makes no sense.
+    /// The error of the first invalid step.
     error: Option<GenerateError>,
 }
 
 impl Default for Transform {
-    /// The one that changes nothing.
+    /// Returns the identity.
     fn default() -> Self {
         Self { linear: Matrix3::identity(), translation: Vector3::zeros(), error: None }
     }
 }
 
 impl Transform {
-    /// Then rotates by that many degrees about the x axis, counter-clockwise seen from its positive end.
+    /// Adds a rotation by an angle in degrees about the x axis, counter-clockwise seen from its positive end.
     #[must_use]
     pub fn rotated_x(self, degrees: f64) -> Self {
         self.rotated(0, degrees)
     }
 
-    /// Then rotates by that many degrees about the y axis.
+    /// Adds a rotation by an angle in degrees about the y axis, counter-clockwise seen from its positive end.
     #[must_use]
     pub fn rotated_y(self, degrees: f64) -> Self {
         self.rotated(1, degrees)
     }
 
-    /// Then rotates by that many degrees about the z axis.
+    /// Adds a rotation by an angle in degrees about the z axis, counter-clockwise seen from its positive end.
     #[must_use]
     pub fn rotated_z(self, degrees: f64) -> Self {
         self.rotated(2, degrees)
@@ -58,7 +59,7 @@ impl Transform {
         Self { linear: matrix * self.linear, translation: matrix * self.translation, ..self }
     }
 
-    /// Then scales about the origin by a positive factor.
+    /// Adds a scaling about the origin by a positive factor.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         if !(factor > 0.0 && factor.is_finite()) {
@@ -68,7 +69,7 @@ impl Transform {
         Self { linear: self.linear * factor, translation: self.translation * factor, ..self }
     }
 
-    /// Then moves by that vector.
+    /// Adds a translation by a vector.
     #[must_use]
     pub fn translated(self, by: [f64; 3]) -> Self {
         if let Some(&value) = by.iter().find(|x| !x.is_finite()) {
@@ -81,11 +82,11 @@ impl Transform {
         Self { error: self.error.or(Some(error)), ..self }
     }
 
-    /// The scene with its positions changed, and nothing else.
+    /// Returns the scene with transformed positions.
     ///
     /// # Errors
-    /// [`GenerateError::OutOfRange`] for an angle, a translation or a factor that is not finite or a factor that is not
-    /// positive, whenever it was added; [`GenerateError::Build`] if a coordinate overflows.
+    /// [`GenerateError::OutOfRange`] if any step has an angle, a translation or a factor that is not finite, or a
+    /// factor that is not positive. [`GenerateError::Build`] if a coordinate overflows.
     pub fn apply(&self, scene: &Soup<f64>) -> Result<Soup<f64>, GenerateError> {
         if let Some(error) = self.error {
             return Err(error);
@@ -96,7 +97,7 @@ impl Transform {
 
     fn apply_to(&self, p: &Point3<f64>) -> Point3<f64> {
         let m = &self.linear;
-        // Spelled out: the order of the operations decides the last bit. Adding zero turns -0 into 0.
+        // The order of operations is written out, because it determines the last bit. The sum of -0 and 0 is 0.
         Point3::from(Vector3::from_fn(|i, _| {
             m[(i, 0)] * p.x + m[(i, 1)] * p.y + m[(i, 2)] * p.z + self.translation[i] + 0.0
         }))

@@ -1,15 +1,15 @@
-//! The header of a PLY file: what elements there are, and of what properties.
+//! The header of a PLY file, which declares the elements and their properties.
 
 use crate::bytes::Scalar;
-use crate::text::{Words, at_hand, integer, quote, read_until};
-use crate::{HeaderProblem, Place, ReadError, Reason};
+use crate::text::{Tokens, fill_buffer, parse_integer, quote, read_until};
+use crate::{FileLocation, HeaderProblem, ReadError, Reason};
 use std::collections::HashSet;
 use std::io::{self, BufRead};
 
-/// No line of a sensible header is longer. A file of other data may have no line ends at all.
-const LONGEST_LINE: usize = 1 << 16;
+/// The longest line of a header in bytes. A file of other data may have no line ends at all.
+const MAX_LINE_BYTES: usize = 1 << 16;
 
-/// How numbers are written.
+/// The encoding of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
     Ascii,
@@ -17,7 +17,7 @@ pub(super) enum Encoding {
     Big,
 }
 
-/// The types of numbers, under two names each.
+/// Returns the type of numbers with this name. Each type has two names.
 fn scalar_named(name: &[u8]) -> Option<Scalar> {
     Some(match name {
         b"char" | b"int8" => Scalar::I8,
@@ -32,7 +32,7 @@ fn scalar_named(name: &[u8]) -> Option<Scalar> {
     })
 }
 
-/// One number, or a list of them behind their count.
+/// The layout of a property: one number, or a list of numbers after its count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Layout {
     Scalar(Scalar),
@@ -43,20 +43,20 @@ pub(super) enum Layout {
 pub(super) struct Property {
     pub(super) name: Vec<u8>,
     pub(super) layout: Layout,
-    /// The type in the words of the header, for messages.
+    /// The type in the words of the header, which messages quote.
     pub(super) declared: String,
 }
 
 #[derive(Debug)]
 pub(super) struct Element {
     pub(super) name: Vec<u8>,
-    /// As the header claims.
+    /// The number of members that the header announces.
     pub(super) count: u64,
     pub(super) properties: Vec<Property>,
 }
 
 impl Element {
-    /// Where the property of one of these names is, if it exists.
+    /// Returns the index of the first property with one of these names.
     pub(super) fn find(&self, names: &[&str]) -> Option<usize> {
         self.properties.iter().position(|p| names.iter().any(|n| n.as_bytes() == p.name))
     }
@@ -66,12 +66,13 @@ impl Element {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// Lines and bytes of the header.
+    /// The number of lines of the header.
     pub(super) lines: u64,
+    /// The number of bytes of the header.
     pub(super) bytes: u64,
 }
 
-/// Reads up to the end of the line `end_header`.
+/// Reads the header up to the end of the line `end_header`.
 pub(super) fn read_header(reader: &mut impl BufRead, file: &str) -> Result<Header, ReadError> {
     let mut header = Header { encoding: Encoding::Ascii, elements: Vec::new(), lines: 0, bytes: 0 };
     let mut parser = Parser::default();
@@ -80,20 +81,20 @@ pub(super) fn read_header(reader: &mut impl BufRead, file: &str) -> Result<Heade
     loop {
         line.clear();
         let read = match end {
-            Some(end) => read_until(reader, |b| b == end, LONGEST_LINE, &mut line),
+            Some(end) => read_until(reader, |b| b == end, MAX_LINE_BYTES, &mut line),
             None => first_line(reader, &mut line).map(|found| {
                 end = Some(found);
                 line.len()
             }),
         };
         header.lines += 1;
-        let fail = |reason| Err(ReadError::new(file, Place::Line(header.lines), reason));
+        let fail = |reason| Err(ReadError::new(file, FileLocation::Line(header.lines), reason));
         match read {
             Err(e) => return fail(Reason::Io(e)),
             Ok(read) => header.bytes += read as u64,
         }
         if header.lines == 1 {
-            // Some editors put a mark in front of UTF-8.
+            // Some editors write the byte order mark of UTF-8.
             let text = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&line);
             if text.trim_ascii_end() != b"ply" {
                 return fail(Reason::BadHeader(HeaderProblem::NotPly));
@@ -101,7 +102,7 @@ pub(super) fn read_header(reader: &mut impl BufRead, file: &str) -> Result<Heade
             continue;
         }
         if line.last().copied() != end {
-            let too_long = line.len() == LONGEST_LINE;
+            let too_long = line.len() == MAX_LINE_BYTES;
             let reason = if too_long { Reason::BadHeader(HeaderProblem::LineTooLong) } else { Reason::UnexpectedEnd };
             return fail(reason);
         }
@@ -119,16 +120,17 @@ pub(super) fn read_header(reader: &mut impl BufRead, file: &str) -> Result<Heade
     }
 }
 
-/// Reads the first line, and tells the byte that ends it and the other lines of the header.
+/// Reads the first line, and returns the byte that ends all lines of the header.
 ///
-/// That is `\n`, also in `\r\n`, unless the first line ends at `\r` alone. The first line decides because the last one
-/// cannot: the byte behind `end_header` and `\r` may be a `\n` or the number 10, the first of the data.
+/// That byte is `\n`, also in `\r\n`, unless the first line ends at `\r` alone. The first line decides, because the
+/// last line is ambiguous: the byte after `end_header` and `\r` may be a `\n`, or the number 10 as the first byte
+/// of the data.
 fn first_line(reader: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<u8> {
-    read_until(reader, |b| matches!(b, b'\n' | b'\r'), LONGEST_LINE, line)?;
+    read_until(reader, |b| matches!(b, b'\n' | b'\r'), MAX_LINE_BYTES, line)?;
     if line.last() != Some(&b'\r') {
         return Ok(b'\n');
     }
-    if at_hand(reader)?.first() != Some(&b'\n') {
+    if fill_buffer(reader)?.first() != Some(&b'\n') {
         return Ok(b'\r');
     }
     reader.consume(1);
@@ -136,25 +138,25 @@ fn first_line(reader: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<u8> {
     Ok(b'\n')
 }
 
-/// What has been seen so far.
+/// The declarations that were parsed so far.
 #[derive(Default)]
 struct Parser {
     encoding: Option<Encoding>,
     element_names: HashSet<Vec<u8>>,
-    /// Of the last element.
+    /// The names of the properties of the last element.
     property_names: HashSet<Vec<u8>>,
 }
 
 impl Parser {
-    /// Takes a line; `true` if it ends the header.
+    /// Parses a line and returns whether it ends the header.
     fn line(&mut self, line: &[u8], elements: &mut Vec<Element>) -> Result<bool, Reason> {
         let bad_line = || Reason::BadHeader(HeaderProblem::BadLine { text: quote(line.trim_ascii()) });
-        let mut words = Words::new(line);
-        match words.next() {
+        let mut tokens = Tokens::new(line);
+        match tokens.next() {
             None | Some(b"comment" | b"obj_info") => return Ok(false),
             Some(b"end_header") => return Ok(true),
             Some(b"format") => {
-                let encoding = match (words.next(), words.next()) {
+                let encoding = match (tokens.next(), tokens.next()) {
                     (Some(b"ascii"), Some(b"1.0")) => Encoding::Ascii,
                     (Some(b"binary_little_endian"), Some(b"1.0")) => Encoding::Little,
                     (Some(b"binary_big_endian"), Some(b"1.0")) => Encoding::Big,
@@ -168,8 +170,8 @@ impl Parser {
                 }
             }
             Some(b"element") => {
-                let (Some(name), Some(count)) = (words.next(), words.next()) else { return Err(bad_line()) };
-                let count = integer(count).ok().and_then(|c| u64::try_from(c).ok()).ok_or_else(bad_line)?;
+                let (Some(name), Some(count)) = (tokens.next(), tokens.next()) else { return Err(bad_line()) };
+                let count = parse_integer(count).ok().and_then(|c| u64::try_from(c).ok()).ok_or_else(bad_line)?;
                 if !self.element_names.insert(name.to_vec()) {
                     return Err(duplicate(name));
                 }
@@ -178,7 +180,7 @@ impl Parser {
             }
             Some(b"property") => {
                 let element = elements.last_mut().ok_or_else(bad_line)?;
-                let property = property(&mut words).ok_or_else(bad_line)??;
+                let property = property(&mut tokens).ok_or_else(bad_line)??;
                 if !self.property_names.insert(property.name.clone()) {
                     return Err(duplicate(&property.name));
                 }
@@ -186,8 +188,8 @@ impl Parser {
             }
             Some(_) => return Err(bad_line()),
         }
-        // A word too many means that the line says something else.
-        if words.next().is_some() { Err(bad_line()) } else { Ok(false) }
+        // A further token means that the line is not the declaration that it seems to be.
+        if tokens.next().is_some() { Err(bad_line()) } else { Ok(false) }
     }
 }
 
@@ -195,16 +197,16 @@ fn duplicate(name: &[u8]) -> Reason {
     Reason::BadHeader(HeaderProblem::Duplicate { name: quote(name) })
 }
 
-/// The property that the words behind `property` declare; `None` if there are too few of them.
-fn property(words: &mut Words<'_>) -> Option<Result<Property, Reason>> {
-    let first = words.next()?;
+/// Parses the tokens after `property`. Returns `None` if there are too few.
+fn property(tokens: &mut Tokens<'_>) -> Option<Result<Property, Reason>> {
+    let first = tokens.next()?;
     let (layout, name, declared) = if first == b"list" {
-        let (count, item, name) = (words.next()?, words.next()?, words.next()?);
+        let (count, item, name) = (tokens.next()?, tokens.next()?, tokens.next()?);
         let declared = format!("list {} {}", quote(count), quote(item));
         let count = scalar_named(count).filter(|s| s.is_integer());
         (count.zip(scalar_named(item)).map(|(count, item)| Layout::List { count, item }), name, declared)
     } else {
-        (scalar_named(first).map(Layout::Scalar), words.next()?, quote(first))
+        (scalar_named(first).map(Layout::Scalar), tokens.next()?, quote(first))
     };
     Some(match layout {
         Some(layout) => Ok(Property { name: name.to_vec(), layout, declared }),

@@ -1,32 +1,35 @@
-//! The primitives of a PLY file: added as they come where that is possible, otherwise kept until all is known.
+//! The primitives of a PLY file.
+//!
+//! A member of an element is added to the scene as soon as it is read, if its vertices are known and primitives have no
+//! ids. Otherwise it is kept until the vertices or all ids are known.
 
 use super::data::Data;
 use super::header::Property;
 use super::plan::{Form, Kind, List, MemberPlan};
-use crate::builder::Builder;
+use crate::builder::SceneBuilder;
 use crate::bytes::Scalar;
 use crate::polygon::MAX_CORNERS;
-use crate::{Place, ReadError, Reason, Scene};
+use crate::{FileLocation, ReadError, Reason, Scene};
 use nalgebra::Point3;
 use p2m_core::Element;
 use std::io::BufRead;
 
-/// Stands for -1 in a strip; vertices are fewer than that.
-const RESTART: u32 = u32::MAX;
+/// The index that stands for -1 in a strip. No vertex has it.
+const STRIP_RESTART: u32 = u32::MAX;
 
-/// Members of one element that wait.
-struct Batch {
+/// The pending members of one element.
+struct PendingMembers {
     form: Form,
-    /// Vertices of all members in a row.
+    /// The vertices of all members, one member after the other.
     vertices: Vec<u32>,
-    /// How many each one has; empty as long as all have `length`.
+    /// The number of vertices of each member. It is empty as long as all members have `length` vertices.
     lengths: Vec<u32>,
     length: usize,
-    /// The id of each, if they have any.
+    /// The id of each member, if members have ids.
     ids: Vec<u32>,
 }
 
-impl Batch {
+impl PendingMembers {
     fn len(&self) -> usize {
         if self.lengths.is_empty() {
             self.vertices.len().checked_div(self.length).unwrap_or(0)
@@ -41,7 +44,7 @@ impl Batch {
             self.length = vertices.len();
         }
         if self.lengths.is_empty() && (vertices.len() != self.length || self.length == 0) {
-            // The first one that differs: write down what was implicit so far.
+            // This is the first member of another length, so the lengths of all members before are stored.
             self.lengths = vec![self.length as u32; self.len()];
             self.lengths.push(vertices.len() as u32);
         } else if !self.lengths.is_empty() {
@@ -51,25 +54,25 @@ impl Batch {
     }
 }
 
-/// Primitives under construction.
+/// Builds the primitives of a PLY file.
 pub(super) struct Members {
-    pub(super) builder: Builder,
+    pub(super) builder: SceneBuilder,
     vertex_count: u64,
-    /// How many faces there are: sources of strips go on behind them.
+    /// The number of faces. The sources of strips are numbered after them.
     faces: u64,
-    /// How many primitives have an id of their own, if they have.
+    /// The number of primitives if they have ids, otherwise `None`.
     ids: Option<u64>,
-    batches: Vec<Batch>,
-    /// The vertices of the member at hand.
+    batches: Vec<PendingMembers>,
+    /// The vertices of the current member.
     member: Vec<u32>,
-    /// Vertices that are not finite, in ascending order, and where they stand.
-    not_finite: Vec<(u32, Place)>,
+    /// The vertices that are not finite, in ascending order, with their locations.
+    not_finite: Vec<(u32, FileLocation)>,
 }
 
 impl Members {
     pub(super) fn new(vertex_count: u64, faces: u64, ids: Option<u64>) -> Self {
         Self {
-            builder: Builder::default(),
+            builder: SceneBuilder::default(),
             vertex_count,
             faces,
             ids,
@@ -79,14 +82,14 @@ impl Members {
         }
     }
 
-    /// Adds a vertex, and where it stands if it is not finite.
-    pub(super) fn vertex(&mut self, position: Point3<f64>, bad: Option<Place>) -> Result<(), Reason> {
-        let vertex = self.builder.vertex(position)?;
-        self.not_finite.extend(bad.map(|place| (vertex, place)));
+    /// Adds a vertex, with its location if it is not finite.
+    pub(super) fn vertex(&mut self, position: Point3<f64>, bad: Option<FileLocation>) -> Result<(), Reason> {
+        let vertex = self.builder.push_vertex(position)?;
+        self.not_finite.extend(bad.map(|location| (vertex, location)));
         Ok(())
     }
 
-    /// Called when all vertices are there: what waited for them is added.
+    /// Adds the pending members. This is called when all vertices are known.
     pub(super) fn end_vertices(&mut self, name: &str) -> Result<(), ReadError> {
         if self.ids.is_some() {
             return Ok(());
@@ -98,22 +101,23 @@ impl Members {
                 let length = batch.lengths.get(number).map_or(batch.length, |&length| length as usize);
                 let (vertices, more) = rest.split_at(length);
                 rest = more;
-                self.add(batch.form, vertices, number).map_err(|reason| ReadError::new(name, Place::File, reason))?;
+                self.add(batch.form, vertices, number)
+                    .map_err(|reason| ReadError::new(name, FileLocation::File, reason))?;
             }
         }
         Ok(())
     }
 
-    /// Called before the members of an element that makes primitives.
+    /// Starts an element that makes primitives.
     pub(super) fn start_element(&mut self, plan: &MemberPlan) {
         if !self.is_immediate() {
             let form = plan.form();
             let (vertices, lengths, ids) = Default::default();
-            self.batches.push(Batch { form, vertices, lengths, length: 0, ids });
+            self.batches.push(PendingMembers { form, vertices, lengths, length: 0, ids });
         }
     }
 
-    /// Called behind them.
+    /// Ends an element that makes primitives.
     pub(super) fn end_element(&mut self) {
         if let Some(batch) = self.batches.last_mut() {
             batch.vertices.shrink_to_fit();
@@ -122,12 +126,12 @@ impl Members {
         }
     }
 
-    /// Whether primitives are added as they come: their vertices are there, and they come in the order of their ids.
+    /// Returns whether members are added as soon as they are read: all vertices are known, and members have no ids.
     fn is_immediate(&self) -> bool {
         self.ids.is_none() && self.builder.positions().len() as u64 == self.vertex_count
     }
 
-    /// Reads a member.
+    /// Reads a member of an element.
     pub(super) fn read<R: BufRead>(
         &mut self,
         data: &mut Data<'_, R>,
@@ -161,7 +165,7 @@ impl Members {
                 _ => data.skip(property.layout)?,
             }
         }
-        data.end_element()?; // before what the member itself is checked for
+        data.end_element()?; // this check comes before those of the member
         if self.is_immediate() {
             let member = std::mem::take(&mut self.member);
             self.check_finite(&member, data.file())?;
@@ -174,15 +178,15 @@ impl Members {
         Ok(())
     }
 
-    /// Adds the primitives of a member.
+    /// Adds the primitives of a member to the scene.
     fn add(&mut self, form: Form, vertices: &[u32], number: usize) -> Result<(), Reason> {
         match form {
-            Form::Polygon => self.builder.polygon(vertices, number),
+            Form::Polygon => self.builder.push_polygon(vertices, number),
             Form::Segment => self.builder.push(Element::Segment([vertices[0], vertices[1]]), number),
             Form::Point => self.builder.push(Element::Point(vertices[0]), number),
             Form::Strip => {
                 let source = usize::try_from(self.faces).unwrap_or(usize::MAX).saturating_add(number);
-                for strip in vertices.split(|&v| v == RESTART) {
+                for strip in vertices.split(|&v| v == STRIP_RESTART) {
                     for (k, t) in strip.windows(3).enumerate() {
                         let triangle = if k % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
                         self.builder.push(Element::Triangle(triangle), source)?;
@@ -193,7 +197,7 @@ impl Members {
         }
     }
 
-    /// Checks that what primitives use is finite.
+    /// Checks that the vertices of primitives are finite.
     fn check_finite(&self, vertices: &[u32], name: &str) -> Result<(), ReadError> {
         if !self.not_finite.is_empty() {
             for &vertex in vertices {
@@ -213,7 +217,7 @@ impl Members {
             return Err(data.error(Reason::TooFewVertices { found: count, needed: 3 }));
         }
         let limit = match self.ids {
-            Some(_) => 3, // one id, one triangle
+            Some(_) => 3, // an id belongs to one triangle
             None if is_face => MAX_CORNERS as u64,
             None => u64::from(u32::MAX),
         };
@@ -222,7 +226,7 @@ impl Members {
         }
         for _ in 0..count {
             let index = data.integer(list.item)?;
-            let vertex = if index == -1 && !is_face { RESTART } else { self.check(data, index)? };
+            let vertex = if index == -1 && !is_face { STRIP_RESTART } else { self.check(data, index)? };
             self.member.push(vertex);
         }
         Ok(())
@@ -241,7 +245,7 @@ impl Members {
             .ok_or_else(|| data.error(Reason::NoSuchVertex { index, count }))
     }
 
-    /// The id of a member; nothing if ids are passed over because no member has one.
+    /// Reads the id of a member. Returns `None` if ids are ignored.
     fn id<R: BufRead>(&self, data: &mut Data<'_, R>, scalar: Scalar) -> Result<Option<u32>, ReadError> {
         let id = data.integer(scalar)?;
         let Some(count) = self.ids else { return Ok(None) };
@@ -257,12 +261,13 @@ impl Members {
         Ok(self.builder.finish())
     }
 
-    /// Adds members in the order of their ids: one primitive each. Nothing waits otherwise.
+    /// Adds pending members in the order of their ids; each makes one primitive. Without ids no member is
+    /// pending any more.
     #[allow(clippy::cast_possible_truncation, reason = "there are fewer members than ids, which are u32")]
-    fn add_by_id(&mut self, batches: &[Batch], name: &str) -> Result<(), ReadError> {
-        let fail = |reason| ReadError::new(name, Place::File, reason);
+    fn add_by_id(&mut self, batches: &[PendingMembers], name: &str) -> Result<(), ReadError> {
+        let fail = |reason| ReadError::new(name, FileLocation::File, reason);
         let count: usize = batches.iter().map(|batch| batch.ids.len()).sum();
-        // Of each id the number of its member, counted over all batches.
+        // `order` has the number of the member of each id, counted over all elements.
         let mut order = vec![u32::MAX; count];
         for (member, &id) in batches.iter().flat_map(|batch| &batch.ids).enumerate() {
             if std::mem::replace(&mut order[id as usize], member as u32) != u32::MAX {

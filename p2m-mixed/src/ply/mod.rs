@@ -1,70 +1,74 @@
-//! PLY, the Stanford polygon format: text and both binary encodings.
+//! Reads PLY files, the Stanford polygon format, as text or in both binary encodings.
 
 mod data;
 mod header;
 mod members;
 mod plan;
 
-use crate::builder::Builder;
-use crate::points::Row;
-use crate::{HeaderProblem, Place, ReadError, Reason, Scene};
+use crate::builder::SceneBuilder;
+use crate::points::row::Row;
+use crate::{FileLocation, HeaderProblem, ReadError, Reason, Scene};
 use data::Data;
 use header::read_header;
 use members::Members;
 use nalgebra::Point3;
-use plan::{Coordinates, Plan, has_vertex_list};
+use plan::{Coordinates, ElementPlan, has_vertex_list};
 use std::io::BufRead;
 
-/// The property with the id of a primitive, for primitives that are not in the order of their ids.
-const ID: &str = "p2m_id";
-
-/// Reads a PLY file; `name` is for messages.
+/// Reads a PLY file. `name` is the name of the file in messages.
 ///
-/// Understood are the elements `vertex` (`x`, `y`, `z` of any type), `face` and `tristrips` (a list `vertex_indices` or
-/// `vertex_index`; in strips -1 starts a new one, and every other triangle is turned so that all have the winding of
-/// the first), `edge` (`vertex1`, `vertex2`), and `point` (`vertex_index`, of an integer type;
-/// [`write_ply`](crate::write_ply) writes them). Elements and properties may come in any order. Other elements and
-/// properties, and whatever follows the last element, are counted in [`Scene::skipped`]. Without any face, strip or
-/// edge, and without an element `point` of that form, the file is a point cloud: each vertex is a point. But not if
-/// there are other elements with a list of vertices (named `vertex_ind..`), such as polygons or tetrahedra under a name
-/// of their own: they are skipped, and the scene is empty.
+/// The elements with geometry are:
 ///
-/// Primitives are numbered in the order of the file, unless faces (of three vertices each, then), edges and points have
-/// the property `p2m_id`: then by that.
+/// - `vertex` has `x`, `y` and `z` of any type.
+/// - `face` has a list `vertex_indices` or `vertex_index`.
+/// - `tristrips` has such a list, in which -1 starts a new strip. Every other triangle is reversed, so that all have
+///   the winding of the first.
+/// - `edge` has `vertex1` and `vertex2`.
+/// - `point` has `vertex_index` of an integer type. [`write_ply`](crate::write_ply) writes such elements.
 ///
-/// Coordinates that are not finite are no error as long as no primitive uses the vertex. A point cloud leaves such
-/// vertices out and counts them in [`Scene::skipped`].
+/// Elements and properties may come in any order. Other elements and properties, and anything after the last element,
+/// are counted in [`Scene::skipped`].
 ///
-/// In a text file, numbers are taken as they are written, in double precision, even if the header says `float`. An
-/// element may go on over several lines, but nothing may follow it on its last one. Lines end at `\n`, `\r\n` or `\r`;
-/// those of a header before binary data as its first one does.
+/// A file without faces, strips and edges, and without an element `point` of that form, is a point cloud, and each
+/// vertex is a point. If another element has a list of vertices (named `vertex_ind..`), such as polygons or tetrahedra
+/// under another name, that element is skipped, and the scene is empty.
+///
+/// Primitives are numbered in the order of the file. If faces, edges and points have the property `p2m_id`, it is the
+/// id of the primitive, and every face has to have three vertices.
+///
+/// Coordinates that are not finite are allowed if no primitive uses the vertex. A point cloud leaves such vertices out
+/// and counts them in [`Scene::skipped`].
+///
+/// The numbers of a text file are read in double precision, even if the header says `float`. An element may extend over
+/// several lines, but nothing may follow it on its last line. Lines end at `\n`, `\r\n` or `\r`. All lines of a header
+/// before binary data end as its first line does.
 ///
 /// # Errors
-/// [`ReadError`] with the line (header, text) or the offset of the number in bytes (binary) for a header that makes no
-/// sense, an early end, numbers that are none or too many for their line, indices of no vertex, vertices of primitives
-/// that are not finite (with the place of the vertex), ids that are not 0, 1, 2, ... in some order, faces of fewer than
-/// three vertices or more than [`MAX_CORNERS`](crate::MAX_CORNERS), and for what goes wrong in reading. No memory is
-/// taken for data that is merely announced.
+/// [`ReadError`] with the line (header, text) or the offset of the number in bytes (binary) for an invalid header, an
+/// early end, invalid numbers or too many of them on a line, indices that are out of range, vertices of primitives that
+/// are not finite (with the location of the vertex), ids that are not a permutation of 0, 1, 2, ..., faces of fewer
+/// than three vertices or more than [`MAX_CORNERS`](crate::MAX_CORNERS), and errors of `reader`. No memory is allocated
+/// for data that the header only announces.
 pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     let header = read_header(&mut reader, name)?;
-    let fail = |reason| ReadError::new(name, Place::File, reason);
+    let fail = |reason| ReadError::new(name, FileLocation::File, reason);
 
-    // What each element is for, before any data: a header that cannot serve is refused at once.
+    // Every element gets its plan before any data is read, so an unsuitable header is an error at once.
     let mut plans = Vec::new();
     let mut vertex_count = 0;
     let mut is_cloud = true;
     for element in &header.elements {
-        let plan = match Plan::of(element) {
-            // Of what there is none, no property is missing.
-            Err(_) if element.count == 0 => Plan::Skip,
+        let plan = match ElementPlan::of(element) {
+            // An element without members needs no properties.
+            Err(_) if element.count == 0 => ElementPlan::Skip,
             plan => plan.map_err(|problem| fail(Reason::BadHeader(problem)))?,
         };
         match &plan {
-            Plan::Vertices(_) => vertex_count = element.count,
-            // Ours, and there to say that no vertex is a point by itself.
-            Plan::Members(members) if members.is_point() => is_cloud = false,
-            Plan::Members(_) => is_cloud &= element.count == 0,
-            Plan::Skip => is_cloud &= element.count == 0 || !has_vertex_list(element),
+            ElementPlan::Vertices(_) => vertex_count = element.count,
+            // Our writer adds this element to a scene that is no point cloud, even if it has no members.
+            ElementPlan::Members(members) if members.is_point() => is_cloud = false,
+            ElementPlan::Members(_) => is_cloud &= element.count == 0,
+            ElementPlan::Skip => is_cloud &= element.count == 0 || !has_vertex_list(element),
         }
         plans.push(plan);
     }
@@ -78,53 +82,54 @@ pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
     let mut members = Members::new(vertex_count, faces, ids);
     for (element, plan) in header.elements.iter().zip(&plans) {
         match plan {
-            Plan::Skip => {
+            ElementPlan::Skip => {
                 skip(&mut data, element)?;
-                members.builder.skips.add(&[b"element ", element.name.as_slice()].concat(), element.count);
+                members.builder.skipped.add(&[b"element ", element.name.as_slice()].concat(), element.count);
             }
-            Plan::Vertices(xyz) => {
+            ElementPlan::Vertices(xyz) => {
                 for _ in 0..element.count {
                     let (position, bad) = vertex(&mut data, &element.properties, xyz)?;
-                    // Nothing uses the vertices of a cloud.
+                    // No primitive of a cloud uses a vertex that is not finite.
                     let bad = bad.filter(|_| !is_cloud);
                     members
-                        .vertex(Point3::from(position), bad.map(|(place, _)| place))
+                        .vertex(Point3::from(position), bad.map(|(location, _)| location))
                         .map_err(|reason| data.error(reason))?;
                 }
                 members.end_vertices(name)?;
-                report(&mut members.builder, element, &xyz.map(|(at, _)| at));
+                count_skipped_properties(&mut members.builder, element, &xyz.map(|(at, _)| at));
             }
-            Plan::Members(plan) => {
+            ElementPlan::Members(plan) => {
                 members.start_element(plan);
                 for number in 0..usize::try_from(element.count).unwrap_or(usize::MAX) {
                     members.read(&mut data, &element.properties, plan, number)?;
                 }
                 members.end_element();
-                report(&mut members.builder, element, &plan.used());
+                count_skipped_properties(&mut members.builder, element, &plan.used());
             }
         }
     }
     let (rest, what) = data.rest()?;
-    members.builder.skips.add_many(rest, what);
+    members.builder.skipped.add_plural(rest, what);
     if is_cloud {
-        members.builder.point_cloud().map_err(fail)?;
+        members.builder.push_point_cloud().map_err(fail)?;
     }
     members.finish(name)
 }
 
-/// Reads the vertices of a PLY file as rows; all coordinates have to be finite. What follows them is not read.
+/// Reads the vertices of a PLY file as rows, whose coordinates have to be finite. Elements after the vertices
+/// are not read.
 pub(crate) fn read_vertices<R: Row<N>, const N: usize>(
     mut reader: impl BufRead,
     name: &str,
 ) -> Result<Vec<R>, ReadError> {
     let header = read_header(&mut reader, name)?;
-    let fail = |problem| ReadError::new(name, Place::File, Reason::BadHeader(problem));
+    let fail = |problem| ReadError::new(name, FileLocation::File, Reason::BadHeader(problem));
     let at = header.elements.iter().position(|element| element.name == b"vertex");
     let at = at.ok_or_else(|| fail(HeaderProblem::MissingElement { element: "vertex" }))?;
     let vertices = &header.elements[at];
     let mut rows = Vec::new();
     if vertices.count == 0 {
-        return Ok(rows); // of what there is none, no property is missing
+        return Ok(rows); // an element without members needs no properties
     }
     let coordinates = plan::coordinates(vertices, R::PROPERTIES).map_err(fail)?;
     let mut data = Data::new(reader, &header, name);
@@ -133,17 +138,17 @@ pub(crate) fn read_vertices<R: Row<N>, const N: usize>(
     }
     for _ in 0..vertices.count {
         let (numbers, bad) = vertex(&mut data, &vertices.properties, &coordinates)?;
-        if let Some((place, coordinate)) = bad {
-            return Err(ReadError::new(name, place, Reason::NonFinite { text: coordinate.to_string() }));
+        if let Some((location, coordinate)) = bad {
+            return Err(ReadError::new(name, location, Reason::NonFinite { text: coordinate.to_string() }));
         }
         rows.push(R::new(numbers).map_err(|reason| data.error(reason))?);
     }
     Ok(rows)
 }
 
-/// Passes over an element.
+/// Skips an element.
 fn skip(data: &mut Data<'_, impl BufRead>, element: &header::Element) -> Result<(), ReadError> {
-    // An element without properties takes no room, however many of it there are.
+    // The members of an element without properties take no bytes.
     if !element.properties.is_empty() {
         for _ in 0..element.count {
             skip_properties(data, &element.properties)?;
@@ -157,15 +162,15 @@ fn skip_properties(data: &mut Data<'_, impl BufRead>, properties: &[header::Prop
     properties.iter().try_for_each(|p| data.skip(p.layout))
 }
 
-/// A coordinate that is not finite, and where it stands.
-type Bad = Option<(Place, f64)>;
+/// A coordinate that is not finite, and its location.
+type NonFiniteCoordinate = (FileLocation, f64);
 
-/// Reads a vertex.
+/// Reads a vertex, and the last of its coordinates that is not finite.
 fn vertex<const N: usize>(
     data: &mut Data<'_, impl BufRead>,
     properties: &[header::Property],
     coordinates: &Coordinates<N>,
-) -> Result<([f64; N], Bad), ReadError> {
+) -> Result<([f64; N], Option<NonFiniteCoordinate>), ReadError> {
     let mut position = [0.0; N];
     let mut bad = None;
     for (k, property) in properties.iter().enumerate() {
@@ -173,7 +178,7 @@ fn vertex<const N: usize>(
             Some(axis) => {
                 position[axis] = data.coordinate(coordinates[axis].1)?;
                 if !position[axis].is_finite() {
-                    bad = Some((data.place(), position[axis]));
+                    bad = Some((data.location(), position[axis]));
                 }
             }
             None => data.skip(property.layout)?,
@@ -183,10 +188,10 @@ fn vertex<const N: usize>(
     Ok((position, bad))
 }
 
-/// Notes the properties other than those `used`.
-fn report(builder: &mut Builder, element: &header::Element, used: &[usize]) {
+/// Counts the properties other than those `used` as skipped.
+fn count_skipped_properties(builder: &mut SceneBuilder, element: &header::Element, used: &[usize]) {
     for (_, property) in element.properties.iter().enumerate().filter(|(k, _)| !used.contains(k)) {
         let what = [b"property ", property.name.as_slice(), b" of ", element.name.as_slice()].concat();
-        builder.skips.add(&what, element.count);
+        builder.skipped.add(&what, element.count);
     }
 }

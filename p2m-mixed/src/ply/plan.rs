@@ -1,29 +1,32 @@
-//! What the elements of a PLY file are for, by its header.
+//! The plan of a PLY file: how each element of its header is read.
 
-use super::{ID, header};
+use super::header;
 use crate::HeaderProblem;
 use crate::bytes::Scalar;
 use crate::text::quote;
 use header::Layout;
 
-/// The places of coordinates among the properties, and the types of their numbers.
+/// The property with the id of a primitive, for files that have primitives in another order.
+const ID_PROPERTY: &str = "p2m_id";
+
+/// The index of each coordinate among the properties, and its type.
 pub(super) type Coordinates<const N: usize> = [(usize, Scalar); N];
 
-/// What an element is for, with the places of its useful properties and the type of their numbers.
-pub(super) enum Plan {
+/// How an element is read, with the indices and types of its properties.
+pub(super) enum ElementPlan {
     Vertices(Coordinates<3>),
     Members(MemberPlan),
     Skip,
 }
 
-/// An element that makes primitives.
+/// The plan of an element that makes primitives.
 pub(super) struct MemberPlan {
     pub(super) kind: Kind,
-    /// The property with the id.
+    /// The index and type of the property with the id.
     pub(super) id: Option<(usize, Scalar)>,
 }
 
-/// What primitives an element makes.
+/// The kind of an element that makes primitives, with the indices and types of its properties.
 pub(super) enum Kind {
     Face(usize, List),
     Strip(usize, List),
@@ -31,7 +34,7 @@ pub(super) enum Kind {
     Point((usize, Scalar)),
 }
 
-/// How members of an element become primitives.
+/// The form in which the vertices of a member make primitives.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Form {
     Polygon,
@@ -40,14 +43,14 @@ pub(super) enum Form {
     Point,
 }
 
-/// Types of a list of vertices.
+/// The types of a list of vertices: those of its count and of its items.
 #[derive(Clone, Copy)]
 pub(super) struct List {
     pub(super) count: Scalar,
     pub(super) item: Scalar,
 }
 
-impl Plan {
+impl ElementPlan {
     pub(super) fn of(element: &header::Element) -> Result<Self, HeaderProblem> {
         let kind = match element.name.as_slice() {
             b"vertex" => return Ok(Self::Vertices(coordinates(element, ["x", "y", "z"])?)),
@@ -62,15 +65,15 @@ impl Plan {
                 let (at, list) = list(element, "tristrips")?;
                 Kind::Strip(at, list)
             }
-            // Others may mean something else by the name.
+            // An element of this name from another program may have another meaning.
             b"point" => match scalar(element, "point", "vertex_index", true) {
                 Ok(vertex) => Kind::Point(vertex),
                 Err(_) => return Ok(Self::Skip),
             },
             _ => return Ok(Self::Skip),
         };
-        let id = match element.find(&[ID]) {
-            Some(_) if !matches!(kind, Kind::Strip(..)) => Some(scalar(element, "face", ID, true)?),
+        let id = match element.find(&[ID_PROPERTY]) {
+            Some(_) if !matches!(kind, Kind::Strip(..)) => Some(scalar(element, "face", ID_PROPERTY, true)?),
             _ => None,
         };
         Ok(Self::Members(MemberPlan { kind, id }))
@@ -91,7 +94,7 @@ impl MemberPlan {
         matches!(self.kind, Kind::Point(_))
     }
 
-    /// The properties that are of use.
+    /// Returns the indices of the properties that are read.
     pub(super) fn used(&self) -> Vec<usize> {
         let mut used = match self.kind {
             Kind::Face(at, _) | Kind::Strip(at, _) | Kind::Point((at, _)) => vec![at],
@@ -102,11 +105,11 @@ impl MemberPlan {
     }
 }
 
-/// How many primitives are numbered by an id of their own: all that the header announces, or none.
-pub(super) fn ids(elements: &[header::Element], plans: &[Plan]) -> Result<Option<u64>, HeaderProblem> {
+/// Returns the number of primitives if they have ids, otherwise `None`. It is an error if only some of them do.
+pub(super) fn ids(elements: &[header::Element], plans: &[ElementPlan]) -> Result<Option<u64>, HeaderProblem> {
     let (mut with, mut without) = (0u64, None);
     for (element, plan) in elements.iter().zip(plans) {
-        if let Plan::Members(members) = plan
+        if let ElementPlan::Members(members) = plan
             && element.count > 0
         {
             match (&members.id, &members.kind) {
@@ -120,7 +123,7 @@ pub(super) fn ids(elements: &[header::Element], plans: &[Plan]) -> Result<Option
     }
     match without {
         _ if with == 0 => Ok(None),
-        Some(element) => Err(HeaderProblem::MissingProperty { element, property: ID }),
+        Some(element) => Err(HeaderProblem::MissingProperty { element, property: ID_PROPERTY }),
         None => Ok(Some(with)),
     }
 }
@@ -136,7 +139,7 @@ pub(super) fn coordinates<const N: usize>(
     Ok(found)
 }
 
-/// Whether the members of an element are made of vertices, by the usual names of such a list.
+/// Returns whether an element has a list of vertices, by the usual names of such a list.
 pub(super) fn has_vertex_list(element: &header::Element) -> bool {
     element.properties.iter().any(|p| matches!(p.layout, Layout::List { .. }) && p.name.starts_with(b"vertex_ind"))
 }

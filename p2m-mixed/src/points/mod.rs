@@ -1,52 +1,57 @@
-//! Points and rays to ask about.
+//! Readers of query points and rays.
 
 mod npy;
 mod rays;
-mod row;
+mod read;
+pub(crate) mod row;
 mod table;
 
 pub use rays::{read_rays, read_rays_from};
-pub(crate) use row::Row;
 
-use crate::ply::read_vertices;
-use crate::scene::open;
+use crate::open::open;
 use crate::{PointFormat, ReadError};
 use nalgebra::Point3;
+use read::read;
 use std::io::BufRead;
 use std::path::Path;
 
-/// Reads points, in the format that the extension of the file's name says, in any case.
+/// Reads query points from a file. Its extension, in any case, selects the format.
 ///
-/// `xyz` and `txt`: the first three columns, separated by white space, are x, y and z; further ones are ignored, as are
-/// blank lines and lines that begin with `#` or `//`. There is no line with the number of points in front, as chemists
-/// have it.
+/// # XYZ and TXT
+/// The first three columns, separated by white space, are x, y and z. Further columns, blank lines and lines that start
+/// with `#` or `//` are ignored. A first line with the number of points, as in files of chemistry, is not supported.
 ///
-/// `csv`: separated by semicolons if the first line has one, otherwise by commas; fields may be quoted, but not run
-/// over several lines; blank lines and lines that begin with `#` are passed over. If the first record has columns named
-/// `qx`, `qy`, `qz`, or else `x`, `y`, `z`, or else `Points:0`, `Points:1`, `Points:2`, these are used. Case does not
-/// matter, nor does what follows a name behind a blank or a bracket, as in `X [m]`. Without such names the first three
-/// columns are used. A first record with other names, that is one with none of its first three fields starting like a
-/// number, is passed over if it has exactly three fields.
+/// # CSV
+/// Columns are separated by semicolons if the first line has one, otherwise by commas. Fields may be quoted, but may
+/// not extend over several lines. Blank lines and lines that start with `#` are ignored.
 ///
-/// `npy`: an array of NumPy of shape `(n, 3)`, in C or Fortran order, of integers or floats of 4 or 8 bytes, in either
-/// byte order; or a structured array of shape `(n,)` with a field `query` of shape `(3,)`, or else with fields `x`,
-/// `y`, `z`. Integers of 64 bits are rounded to double precision. Nothing may follow the array.
+/// If the first record has columns named `qx`, `qy`, `qz`, or else `x`, `y`, `z`, or else `Points:0`, `Points:1`,
+/// `Points:2`, these are used. The case of names is ignored, and so is text after a blank or a bracket, as in `X [m]`.
+/// Without such names the first three columns are used. A first record with other names is skipped if it has exactly
+/// three fields. A record has names if none of its first three fields starts like a number.
 ///
-/// `ply`: the vertices, whatever the primitives.
+/// # NPY
+/// An array of NumPy has the shape `(n, 3)`, C or Fortran order, and integers or floats of 4 or 8 bytes in either byte
+/// order. A structured array has the shape `(n,)`, and a field `query` of shape `(3,)` or else the fields `x`, `y`,
+/// `z`. Integers of 64 bits are rounded to double precision. Nothing may follow the array.
 ///
-/// What an [`AnswerWriter`](crate::AnswerWriter) writes asks the same questions again, in each of its formats.
+/// # PLY
+/// The vertices are the points, whatever the primitives are.
+///
+/// # Files of answers
+/// A file that an [`AnswerWriter`](crate::AnswerWriter) wrote can be read as its queries, in each of its formats.
 ///
 /// # Errors
-/// [`ReadError`] with the place for numbers that are none or not finite, for fewer than three of them, for names of
-/// columns or fields that do not tell which are the coordinates, for arrays of other shapes and types, and for an early
-/// end. No memory is taken for points that are merely announced.
+/// [`ReadError`] with the location for numbers that are invalid or not finite, rows of fewer than three numbers,
+/// columns or fields whose names do not identify the coordinates, arrays of other shapes and types, an early end, and
+/// errors of the file. No memory is allocated for points that the header only announces.
 pub fn read_points(path: &Path) -> Result<Vec<Point3<f64>>, ReadError> {
     let format = PointFormat::from_path(path)?;
     let name = path.display().to_string();
     read_points_from(open(path, &name)?, format, &name)
 }
 
-/// Reads points from whatever can be read, such as the standard input; `name` is for messages.
+/// Reads query points from any reader, such as the standard input. `name` is the name of the file in messages.
 ///
 /// ```
 /// use p2m_mixed::{PointFormat, read_points_from};
@@ -57,19 +62,9 @@ pub fn read_points(path: &Path) -> Result<Vec<Point3<f64>>, ReadError> {
 /// ```
 ///
 /// # Errors
-/// As [`read_points`].
+/// The errors are those of [`read_points`].
 pub fn read_points_from(reader: impl BufRead, format: PointFormat, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
     read(reader, format, name)
-}
-
-/// Reads rows of any kind.
-fn read<R: Row<N>, const N: usize>(reader: impl BufRead, format: PointFormat, name: &str) -> Result<Vec<R>, ReadError> {
-    match format {
-        PointFormat::Xyz => table::read_xyz(reader, name),
-        PointFormat::Csv => table::read_csv(reader, name),
-        PointFormat::Npy => npy::read_npy(reader, name),
-        PointFormat::Ply => read_vertices(reader, name),
-    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
-//! Rays to ask about.
+//! Readers of rays.
 
-use super::{Row, read};
-use crate::scene::open;
+use super::read::read;
+use super::row::Row;
+use crate::open::open;
 use crate::{PointFormat, ReadError, Reason};
 use nalgebra::{Point3, Vector3};
 use p2m_core::Ray;
@@ -32,26 +33,29 @@ impl Row<6> for Ray {
     }
 }
 
-/// Reads rays: files are those of [`read_points`](crate::read_points), with six numbers for three, the origin and then
-/// the direction, of any length but zero.
+/// Reads rays from a file. Its extension, in any case, selects the format.
 ///
-/// Columns of a CSV file are taken by the names `ox`, `oy`, `oz`, `dx`, `dy`, `dz`, or else `x`, `y`, `z`, `dx`, `dy`,
-/// `dz`, or else `x`, `y`, `z`, `nx`, `ny`, `nz`, or else `Points:0` to `Points:2` and `Normals:0` to `Normals:2`; arrays
-/// have the shape `(n, 6)`, or the fields `origin` and `direction` of shape `(3,)`, or else `x`, `y`, `z`, `dx`, `dy`,
-/// `dz`. The vertices of a PLY file are rays along their normals `nx`, `ny`, `nz`.
+/// The formats are those of [`read_points`](crate::read_points) with six numbers for each ray: the origin, and then the
+/// direction, which may have any length but zero.
 ///
-/// What a [`HitWriter`](crate::HitWriter) or a [`NumberWriter`](crate::NumberWriter) writes asks the same questions
-/// again, in each of its formats.
+/// - The columns of a CSV file are named `ox`, `oy`, `oz`, `dx`, `dy`, `dz`, or else `x`, `y`, `z`, `dx`, `dy`, `dz`,
+///   or else `x`, `y`, `z`, `nx`, `ny`, `nz`, or else `Points:0` to `Points:2` and `Normals:0` to `Normals:2`.
+/// - An array has the shape `(n, 6)`, or the fields `origin` and `direction` of shape `(3,)`, or else the fields `x`,
+///   `y`, `z`, `dx`, `dy`, `dz`.
+/// - The vertices of a PLY file are the origins, and their normals `nx`, `ny`, `nz` are the directions.
+///
+/// A file that a [`HitWriter`](crate::HitWriter) or a [`NumberWriter`](crate::NumberWriter) wrote can be read as its
+/// rays, in each of its formats.
 ///
 /// # Errors
-/// As [`read_points`](crate::read_points), and [`Reason::Ray`] for a direction that is zero.
+/// The errors are those of [`read_points`](crate::read_points), and [`Reason::Ray`] for a direction that is zero.
 pub fn read_rays(path: &Path) -> Result<Vec<Ray>, ReadError> {
     let format = PointFormat::from_path(path)?;
     let name = path.display().to_string();
     read_rays_from(open(path, &name)?, format, &name)
 }
 
-/// Reads rays from whatever can be read, such as the standard input; `name` is for messages.
+/// Reads rays from any reader, such as the standard input. `name` is the name of the file in messages.
 ///
 /// ```
 /// use p2m_mixed::{PointFormat, read_rays_from};
@@ -62,7 +66,7 @@ pub fn read_rays(path: &Path) -> Result<Vec<Ray>, ReadError> {
 /// ```
 ///
 /// # Errors
-/// As [`read_rays`].
+/// The errors are those of [`read_rays`].
 pub fn read_rays_from(reader: impl BufRead, format: PointFormat, name: &str) -> Result<Vec<Ray>, ReadError> {
     read(reader, format, name)
 }

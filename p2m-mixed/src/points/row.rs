@@ -1,27 +1,29 @@
-//! What a row of a table is.
+//! Rows of tables, which are points or rays.
 
 use crate::Reason;
 use nalgebra::Point3;
 
-/// Something that is told by N numbers, of which files have many.
+/// A value that N numbers make, such as a point or a ray.
 pub(crate) trait Row<const N: usize>: Sized {
-    /// The columns of a CSV file, the names that are looked for first in front, in lower case; and a message that lists
-    /// them.
+    /// The names of the columns of a CSV file in lower case. The first names take precedence.
     const COLUMNS: &[[&'static str; N]];
+    /// The text of a message that lists the names of columns.
     const EXPECTED_COLUMNS: &'static str;
-    /// The fields of an array of NumPy: three numbers each, or one; and a message that lists them.
+    /// The fields of a structured array that have three numbers each.
     const TRIPLES: &[&'static str];
+    /// The fields of a structured array that have one number each.
     const FIELDS: [&'static str; N];
+    /// The text of a message that lists the fields.
     const EXPECTED_FIELDS: &'static str;
-    /// The shape of a plain array.
+    /// The shape of an array without fields, as messages show it.
     const SHAPE: &'static str;
     /// The properties of the vertices of a PLY file.
     const PROPERTIES: [&'static str; N];
 
-    /// Why fewer numbers are not enough.
+    /// Returns the reason why a row of `found` numbers is an error.
     fn too_few(found: usize) -> Reason;
 
-    /// From finite numbers.
+    /// Makes a row from finite numbers.
     fn new(numbers: [f64; N]) -> Result<Self, Reason>;
 }
 

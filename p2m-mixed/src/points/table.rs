@@ -1,26 +1,26 @@
-//! Rows of tables of text.
+//! Readers of text tables: XYZ and CSV.
 
-use super::Row;
-use crate::text::{Lines, Words, finite, number, quote};
-use crate::{Place, ReadError, Reason};
+use super::row::Row;
+use crate::text::{LineReader, Tokens, parse_finite, parse_number, quote};
+use crate::{FileLocation, ReadError, Reason};
 use std::io::BufRead;
 
 pub(super) fn read_xyz<R: Row<N>, const N: usize>(reader: impl BufRead, name: &str) -> Result<Vec<R>, ReadError> {
-    let mut lines = Lines::new(reader, 0);
+    let mut lines = LineReader::new(reader, 0);
     let mut rows = Vec::new();
     loop {
         match lines.read() {
             Ok(true) => {}
             Ok(false) => return Ok(rows),
-            Err(e) => return Err(ReadError::new(name, Place::Line(lines.line()), Reason::Io(e))),
+            Err(e) => return Err(ReadError::new(name, FileLocation::Line(lines.line()), Reason::Io(e))),
         }
-        let mut words = Words::new(lines.bytes());
-        let Some(first) = words.next() else { continue };
+        let mut tokens = Tokens::new(lines.bytes());
+        let Some(first) = tokens.next() else { continue };
         if first.starts_with(b"#") || first.starts_with(b"//") {
             continue;
         }
         let mut fields = [Some(first); N];
-        fields[1..].fill_with(|| words.next());
+        fields[1..].fill_with(|| tokens.next());
         match row(fields) {
             Ok(row) => rows.push(row),
             Err(reason) => {
@@ -28,7 +28,7 @@ pub(super) fn read_xyz<R: Row<N>, const N: usize>(reader: impl BufRead, name: &s
                     Reason::BadNumber { text } if text.contains([',', ';']) => Reason::SeparatorInNumber { text },
                     other => other,
                 };
-                return Err(ReadError::new(name, Place::Line(lines.line()), reason));
+                return Err(ReadError::new(name, FileLocation::Line(lines.line()), reason));
             }
         }
     }
@@ -39,18 +39,18 @@ fn row<R: Row<N>, const N: usize>(fields: [Option<&[u8]>; N]) -> Result<R, Reaso
     for (k, field) in fields.into_iter().enumerate() {
         match field {
             None => return Err(R::too_few(k)),
-            Some(field) => numbers[k] = finite(field)?,
+            Some(field) => numbers[k] = parse_finite(field)?,
         }
     }
     R::new(numbers)
 }
 
 pub(super) fn read_csv<R: Row<N>, const N: usize>(reader: impl BufRead, name: &str) -> Result<Vec<R>, ReadError> {
-    let mut lines = Lines::new(reader, 0);
+    let mut lines = LineReader::new(reader, 0);
     let mut format = None;
     let mut rows = Vec::new();
     loop {
-        let fail = |line, reason| Err(ReadError::new(name, Place::Line(line), reason));
+        let fail = |line, reason| Err(ReadError::new(name, FileLocation::Line(line), reason));
         match lines.read() {
             Ok(true) => {}
             Ok(false) => return Ok(rows),
@@ -84,16 +84,16 @@ pub(super) fn read_csv<R: Row<N>, const N: usize>(reader: impl BufRead, name: &s
     }
 }
 
-/// The fields of a record, without blanks and quotes around them; `None` if a quote is not closed.
+/// Splits a record into fields, without blanks and quotes around them. Returns `None` if a quote is not closed.
 ///
-/// A quote opens at the start of a field only: elsewhere it is a letter, as in `5'11"`. A quote doubled inside of
-/// quotes stays doubled: no number and no name of a column has any.
+/// A quote opens only at the start of a field; elsewhere it is a character like any other, as in `5'11"`. A quote that
+/// is doubled inside of quotes stays doubled, because numbers and names of columns have none.
 fn split(line: &[u8], delimiter: u8) -> Option<Vec<&[u8]>> {
     let mut fields = Vec::new();
     let (mut quoted, mut started) = (false, false);
     let ends = line.split(|&b| {
         if quoted {
-            // The second one of a doubled quote opens it again: the field counts as not started behind the first.
+            // The field counts as not started after a closing quote, so the second of two quotes opens it again.
             (quoted, started) = (b != b'"', b != b'"' && started);
             return false;
         }
@@ -113,7 +113,7 @@ fn split(line: &[u8], delimiter: u8) -> Option<Vec<&[u8]>> {
     (!quoted).then_some(fields)
 }
 
-/// The columns to use, by the first record, and whether it is a header.
+/// Returns the columns of the coordinates, and whether the first record is a header.
 fn header<R: Row<N>, const N: usize>(fields: &[&[u8]]) -> Result<([usize; N], bool), Reason> {
     for names in R::COLUMNS {
         let columns = names.map(|n| fields.iter().position(|f| first_word(f).eq_ignore_ascii_case(n.as_bytes())));
@@ -121,13 +121,14 @@ fn header<R: Row<N>, const N: usize>(fields: &[&[u8]]) -> Result<([usize; N], bo
             return Ok((columns.map(Option::unwrap_or_default), true));
         }
     }
-    // What merely starts like a number is one in a form that we do not read, such as `1D0` or `0,5`: an error, no name.
+    // A field that starts like a number, such as `1D0` or `0,5`, is not a name. It is a number in a form that is not
+    // supported, so the record is read as data and causes an error.
     let like_number = |field: &[u8]| {
-        matches!(field.first(), Some(b'0'..=b'9' | b'+' | b'-' | b'.')) || number(field).is_ok() // `nan`
+        matches!(field.first(), Some(b'0'..=b'9' | b'+' | b'-' | b'.')) || parse_number(field).is_ok() // `nan`
     };
     let is_header = !fields.iter().take(N).any(|f| like_number(f));
     if is_header && fields.len() > N {
-        let names = fields.iter().take(LISTED).map(|f| quote(f)).collect();
+        let names = fields.iter().take(MAX_LISTED_COLUMNS).map(|f| quote(f)).collect();
         return Err(Reason::UnknownColumns { names, expected: R::EXPECTED_COLUMNS });
     }
     if is_header && fields.len() < N {
@@ -136,10 +137,10 @@ fn header<R: Row<N>, const N: usize>(fields: &[&[u8]]) -> Result<([usize; N], bo
     Ok((std::array::from_fn(|column| column), is_header))
 }
 
-/// No message lists more columns.
-const LISTED: usize = 16;
+/// The largest number of columns that a message lists.
+const MAX_LISTED_COLUMNS: usize = 16;
 
-/// The name of a column without the unit behind it.
+/// Returns the name of a column without a unit after it.
 fn first_word(field: &[u8]) -> &[u8] {
     let end = field.iter().position(|b| b.is_ascii_whitespace() || matches!(b, b'[' | b'('));
     &field[..end.unwrap_or(field.len())]
@@ -168,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn xyz_errors_tell_the_line() {
+    fn xyz_errors_have_the_line() {
         assert_eq!(xyz("1 2 3\n\n1 2\n").unwrap_err(), "q.xyz:3: a point needs 3 coordinates, found 2");
         assert_eq!(xyz("1 2 x\n").unwrap_err(), "q.xyz:1: 'x' is not a number that fits here");
         assert_eq!(xyz("1 2 3\n1 nan 3").unwrap_err(), "q.xyz:2: coordinate 'nan' is not finite");
@@ -193,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn csv_errors_tell_the_line() {
+    fn csv_errors_have_the_line() {
         assert_eq!(csv("x,y,z\n1,2,3\n1,2\n").unwrap_err(), "q.csv:3: a point needs 3 coordinates, found 2");
         assert_eq!(csv("1,2,3\n\n# so\n1,b,3\n").unwrap_err(), "q.csv:4: 'b' is not a number that fits here");
         assert_eq!(csv("1,2,b\n").unwrap_err(), "q.csv:1: 'b' is not a number that fits here");

@@ -1,8 +1,8 @@
-//! Numbers as people read them.
+//! Display of numbers for people.
 
 use std::fmt;
 
-/// A count with its thousands apart: `871,414`.
+/// A count that is displayed with separated thousands: `871,414`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Count(pub u64);
 
@@ -20,8 +20,8 @@ impl fmt::Display for Count {
     }
 }
 
-/// A measure with four significant digits: `0.03125`, `1,234`, `4.45e5` from a hundred thousand up and below a
-/// thousandth.
+/// A number that is displayed with four significant digits: `0.03125`, `1,234`. Numbers from a hundred thousand up and
+/// below a thousandth have an exponent: `4.45e5`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Figure(pub f64);
 
@@ -31,7 +31,7 @@ impl fmt::Display for Figure {
         if x == 0.0 {
             return f.pad("0");
         }
-        // Rounding first: 99,999.9 is 1e5 then.
+        // The number is rounded before its exponent is examined, so that 99,999.9 becomes 1e5.
         let scientific = format!("{x:.3e}");
         let Some((mantissa, exponent)) = scientific.split_once('e') else { return f.pad(&scientific) };
         let exponent: i32 = exponent.parse().unwrap_or(0);
@@ -54,30 +54,31 @@ impl fmt::Display for Figure {
     }
 }
 
-/// All digits of a number, the shortest that read back the same: `500000.25`, `-2`, `1e300`.
+/// A number that is displayed with the fewest digits that identify it: `500000.25`, `-2`, `1e300`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Exact(pub f64);
 
 impl fmt::Display for Exact {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Adding zero turns -0 into 0.
+        // The sum of -0 and 0 is 0.
         let x = self.0 + 0.0;
         let is_plain = x == 0.0 || (1e-5..1e16).contains(&x.abs());
         f.pad(&if is_plain { format!("{x}") } else { format!("{x:e}") })
     }
 }
 
-/// Without zeros at the end of its decimals.
+/// Removes zeros at the end of decimals.
 fn trim(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
-/// A share of a whole: `41 %`, `0.3 %`, `less than 0.1 %`; never `0 %` of something or `100 %` of less than all.
+/// A percentage that is displayed with two digits: `41 %`, `0.3 %`, `less than 0.1 %`. It is never `0 %` if the part is
+/// not 0, and never `100 %` if the part is less than the whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Share {
-    /// How many.
+    /// The number of items in the part.
     pub part: u64,
-    /// Of how many.
+    /// The number of all items.
     pub whole: u64,
 }
 

@@ -1,29 +1,29 @@
-//! What a scene is made of, and what a person should know before asking it for closest points.
+//! Statistics of a scene, and notes on properties that affect queries.
 //!
-//! [`Statistics`] are figures; [`Statistics::notes`] are the sentences that these figures warrant. What can be decided
-//! exactly is: a triangle counts as one of zero area if and only if its corners are on a line, positions are the same
-//! if and only if their coordinates are. Lengths and areas are good to 2^-20 at every scale; those that f64 cannot hold
-//! are given as the nearest positive number that it can.
+//! [`Statistics`] are numbers, and [`Statistics::notes`] are sentences that follow from them. Decisions are exact: a
+//! triangle has zero area if and only if its corners are on a line, and positions are equal if and only if their
+//! coordinates are. Lengths and areas are accurate to 2^-20 at every scale. Those beyond the range of f64 are rounded
+//! to the nearest positive number.
 
 pub mod figure;
 mod notes;
 mod objects;
 mod shape;
 
-pub use notes::{FAR, Note, SPREAD};
+pub use notes::{MIN_FAR_DIAGONALS, MIN_SPREAD_ORDERS, Note};
 pub use objects::{ObjectCounts, objects};
 
-use crate::places::{Places, UNUSED, by_place};
+use crate::weld::{UNUSED, VertexWelder, group_by_vertex};
 use nalgebra::Point3;
 use p2m_core::kernel::SLIVER_SINE;
 use p2m_core::{Aabb, Element, PrimitiveSet, Soup};
-use shape::{Measure, length};
+use shape::{TriangleMeasures, length};
 
-/// Triangles whose longest edge is more than so many times the height over it are [thin](Shapes::thin). An equilateral
-/// one has 1.15, half a square 2, a [sliver](Shapes::slivers) more than 1024.
+/// The aspect above which triangles are [thin](Shapes::thin). An equilateral triangle has the aspect 1.15, half a
+/// square has 2, and a [sliver](Shapes::slivers) more than 1024.
 pub const THIN_ASPECT: f64 = 10.0;
 
-/// Figures of a scene.
+/// The statistics of a scene.
 ///
 /// ```
 /// use p2m_mixed::statistics::Statistics;
@@ -38,46 +38,46 @@ pub const THIN_ASPECT: f64 = 10.0;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Statistics {
-    /// Primitives by kind.
+    /// The number of primitives of each kind.
     pub primitives: Counts,
-    /// Positions of the file.
+    /// The number of positions.
     pub positions: Positions,
-    /// The box of the primitives; `None` for an empty scene.
+    /// The bounding box of the primitives, or `None` for an empty scene.
     pub bounds: Option<Aabb<f64>>,
-    /// Primitives that repeat another one: all but one of those that have the same corners, by coordinates and in any
-    /// order.
+    /// The number of primitives that duplicate another one, which has the same corners by coordinates, in any order.
+    /// One of several equal primitives does not count.
     pub duplicates: Counts,
-    /// How triangles meet.
+    /// The edges of the triangles, and how triangles share them.
     pub edges: Edges,
-    /// Parts of the scene that share no corner (by coordinates) with each other, segments and points included.
+    /// The number of parts, segments and points included, that share no corner (by coordinates) with each other.
     pub components: u64,
-    /// Shapes of triangles and segments.
+    /// The shapes of triangles and segments.
     pub shapes: Shapes,
-    /// The smallest and the largest.
+    /// The smallest and largest sizes.
     pub sizes: Sizes,
-    /// Where the scene lies, and what f32 would make of it.
+    /// The location of the scene, and how f32 represents it.
     pub location: Location,
 }
 
-/// Primitives by kind.
+/// The number of primitives of each kind.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Triangles.
+    /// The number of triangles.
     pub triangles: u64,
-    /// Segments.
+    /// The number of segments.
     pub segments: u64,
-    /// Points.
+    /// The number of points.
     pub points: u64,
 }
 
 impl Counts {
-    /// Of all kinds.
+    /// Returns the number of primitives of all kinds.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.triangles + self.segments + self.points
     }
 
-    /// Those of a soup.
+    /// Counts the primitives of a soup.
     #[must_use]
     pub fn of(soup: &Soup<f64>) -> Self {
         Self {
@@ -96,63 +96,65 @@ impl Counts {
     }
 }
 
-/// Positions of a file.
+/// The number of positions of a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Positions {
-    /// All of them.
+    /// The number of all positions.
     pub total: u64,
-    /// Those that belong to a primitive.
+    /// The number of positions that belong to a primitive.
     pub used: u64,
-    /// Different coordinates among those that are used.
+    /// The number of distinct coordinates among the used positions.
     pub distinct: u64,
 }
 
-/// Edges of triangles, by the coordinates of their ends; triangles with two equal corners have none.
+/// The edges of triangles, identified by the coordinates of their ends. Triangles with two equal corners have none.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Edges {
-    /// All of them.
+    /// The number of all edges.
     pub total: u64,
-    /// Those of one triangle: the rim of an open surface.
+    /// The number of edges of one triangle, which are the rim of an open surface.
     pub boundary: u64,
-    /// Those of more than two.
+    /// The number of edges of more than two triangles.
     pub non_manifold: u64,
-    /// Those of two triangles which both run through them in the same direction: neighbours that face opposite sides.
+    /// The number of edges of two triangles that run through the edge in the same direction, so that they
+    /// face opposite sides.
     pub inconsistent: u64,
 }
 
 impl Edges {
-    /// Whether the triangles enclose volumes: every edge belongs to two of them that face the same side.
+    /// Returns whether the triangles enclose volumes: every edge belongs to two triangles that face the same side.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.total > 0 && self.boundary + self.non_manifold + self.inconsistent == 0
     }
 }
 
-/// Shapes of triangles and segments. The aspect of a triangle is its longest edge over its height over that edge.
+/// The shapes of triangles and segments. The aspect of a triangle is its longest edge divided by its height
+/// over that edge.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Shapes {
-    /// Triangles whose corners are exactly on a line, or in one place.
+    /// The number of triangles whose corners are exactly on a line, or equal.
     pub zero_area: u64,
-    /// Segments whose ends are in one place.
+    /// The number of segments whose ends are equal.
     pub zero_length: u64,
-    /// Triangles with an area whose aspect is above 1024, the inverse of [`SLIVER_SINE`]: they are measured in
-    /// double-double.
+    /// The number of triangles with an area and an aspect above 1024, the inverse of [`SLIVER_SINE`]. Queries measure
+    /// them in double-double arithmetic.
     pub slivers: u64,
-    /// Triangles with an area whose aspect is above [`THIN_ASPECT`], slivers among them.
+    /// The number of triangles with an area and an aspect above [`THIN_ASPECT`], slivers included.
     pub thin: u64,
-    /// The (upper) median aspect of the triangles with an area, if there are any.
+    /// The (upper) median aspect of the triangles with an area, or `None` if there are none.
     pub median_aspect: Option<f64>,
 }
 
-/// The smallest and the largest of something.
+/// The smallest and the largest value of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extremes {
-    /// The smallest.
+    /// The smallest value.
     pub min: f64,
-    /// The largest.
+    /// The largest value.
     pub max: f64,
 }
 
@@ -162,39 +164,39 @@ impl Extremes {
         *extremes = Some(Self { min: old.min.min(x), max: old.max.max(x) });
     }
 
-    /// By how many orders of magnitude they differ: log10(max / min).
+    /// Returns the orders of magnitude between the values: log10(max / min).
     #[must_use]
     pub fn orders_of_magnitude(&self) -> f64 {
         self.max.log10() - self.min.log10()
     }
 }
 
-/// Sizes; what has none (zero length, zero area) is left out.
+/// The sizes of a scene, in units of the scene. Sizes of zero are left out.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Sizes {
-    /// The diagonal of the box.
+    /// The diagonal of the bounding box.
     pub diagonal: f64,
-    /// Lengths of the edges of triangles, and of segments.
+    /// The smallest and largest length of a segment or of an edge of a triangle.
     pub edge: Option<Extremes>,
-    /// Areas of triangles.
+    /// The smallest and largest area of a triangle.
     pub area: Option<Extremes>,
 }
 
-/// Where a scene lies; everything is 0, and fits, for an empty one.
+/// The location of a scene. All numbers of an empty scene are 0.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Location {
-    /// The centre of the box to the origin.
+    /// The distance of the centre of the bounding box from the origin.
     pub distance_from_origin: f64,
     /// The largest magnitude of a coordinate.
     pub largest_coordinate: f64,
-    /// Coordinates (three a distinct position) that are no numbers of f32.
+    /// The number of coordinates, three for each distinct position, that f32 cannot represent exactly.
     pub beyond_f32: u64,
 }
 
 impl Location {
-    /// How far the numbers of f32 are apart at the largest coordinate; `None` if they do not reach it.
+    /// Returns the distance between numbers of f32 at the largest coordinate, or `None` if it is beyond their range.
     #[must_use]
     pub fn f32_step(&self) -> Option<f64> {
         #[allow(clippy::cast_possible_truncation, reason = "rounded on purpose")]
@@ -202,7 +204,7 @@ impl Location {
         x.is_finite().then(|| f64::from(x) - f64::from(x.next_down()))
     }
 
-    /// How far the numbers of f64 are apart at the largest coordinate.
+    /// Returns the distance between numbers of f64 at the largest coordinate.
     #[must_use]
     pub fn f64_step(&self) -> f64 {
         self.largest_coordinate - self.largest_coordinate.next_down()
@@ -210,72 +212,72 @@ impl Location {
 }
 
 impl Statistics {
-    /// The figures of a scene.
+    /// Computes the statistics of a scene.
     ///
     /// # Complexity
-    /// O(n log n) time, about 40 bytes a triangle while it runs.
+    /// O(n log n) time. Memory is about 40 bytes for each triangle while the function runs.
     #[must_use]
     pub fn of(soup: &Soup<f64>) -> Self {
-        let places = Places::new(soup);
+        let welder = VertexWelder::new(soup);
         let (shapes, sizes) = measure(soup);
         let bounds = (!soup.is_empty()).then(|| soup.aabb());
         Self {
             primitives: Counts::of(soup),
             positions: Positions {
                 total: soup.positions().len() as u64,
-                used: places.used as u64,
-                distinct: places.len as u64,
+                used: welder.used_positions as u64,
+                distinct: welder.vertex_count as u64,
             },
             bounds,
-            duplicates: duplicates(soup, &places),
-            edges: edges(soup, &places),
-            components: places.components(soup) as u64,
+            duplicates: duplicates(soup, &welder),
+            edges: edges(soup, &welder),
+            components: welder.count_components(soup) as u64,
             shapes,
             sizes,
-            location: bounds.map_or_else(Location::default, |b| locate(soup, &places, &b)),
+            location: bounds.map_or_else(Location::default, |b| locate(soup, &welder, &b)),
         }
     }
 
-    /// What a person should know, most important first; nothing that the figures do not warrant.
+    /// Returns the notes that follow from the statistics, the most important first.
     #[must_use]
     pub fn notes(&self) -> Vec<Note> {
         notes::notes(self)
     }
 }
 
-/// How many of a sorted list are like the one before.
+/// Returns the number of items of a sorted list that equal the item before.
 fn repeated<K: PartialEq>(sorted: &[K]) -> u64 {
     sorted.windows(2).filter(|w| w[0] == w[1]).count() as u64
 }
 
-fn duplicates(soup: &Soup<f64>, places: &Places) -> Counts {
+fn duplicates(soup: &Soup<f64>, welder: &VertexWelder) -> Counts {
     let mut counts = Counts::default();
     let triangles = soup.triangles().iter().map(|t| {
-        let mut corners = places.of(*t);
+        let mut corners = welder.weld(*t);
         corners.sort_unstable();
         (corners[0], [corners[1], corners[2]])
     });
-    by_place(places.len, triangles, |group| counts.triangles += repeated(group));
+    group_by_vertex(welder.vertex_count, triangles, |group| counts.triangles += repeated(group));
     let segments = soup.segments().iter().map(|s| {
-        let [a, b] = places.of(*s);
+        let [a, b] = welder.weld(*s);
         (a.min(b), a.max(b))
     });
-    by_place(places.len, segments, |group| counts.segments += repeated(group));
-    by_place(places.len, soup.points().iter().map(|p| (places.of([*p])[0], ())), |group| {
+    group_by_vertex(welder.vertex_count, segments, |group| counts.segments += repeated(group));
+    group_by_vertex(welder.vertex_count, soup.points().iter().map(|p| (welder.weld([*p])[0], ())), |group| {
         counts.points += repeated(group)
     });
     counts
 }
 
-fn edges(soup: &Soup<f64>, places: &Places) -> Edges {
+fn edges(soup: &Soup<f64>, welder: &VertexWelder) -> Edges {
     let mut edges = Edges::default();
-    // The end with the lower number, the other one, and whether the triangle runs from the former to the latter.
+    // An edge is stored at its lower vertex, with the higher vertex and whether the triangle runs upwards.
     let all = soup.triangles().iter().flat_map(|t| {
-        let [a, b, c] = places.of(*t);
+        let [a, b, c] = welder.weld(*t);
         let has_edges = a != b && b != c && c != a;
         [(a, b), (b, c), (c, a)].into_iter().filter(move |_| has_edges).map(|(a, b)| (a.min(b), (a.max(b), a < b)))
     });
-    by_place(places.len, all, |group| {
+    group_by_vertex(welder.vertex_count, all, |group| {
         for edge in group.chunk_by(|x, y| x.0 == y.0) {
             edges.total += 1;
             match edge {
@@ -299,7 +301,7 @@ fn measure(soup: &Soup<f64>) -> (Shapes, Sizes) {
     };
     let mut aspects = Vec::with_capacity(soup.triangles().len());
     for t in soup.triangles() {
-        let measure = Measure::of(t.map(at));
+        let measure = TriangleMeasures::new(t.map(at));
         measure.edges.into_iter().for_each(&mut add_length);
         if measure.area > 0.0 {
             Extremes::add(&mut sizes.area, measure.area);
@@ -317,8 +319,8 @@ fn measure(soup: &Soup<f64>) -> (Shapes, Sizes) {
         shapes.zero_length += u64::from(length == 0.0);
     }
     if !aspects.is_empty() {
-        let middle = aspects.len() / 2;
-        shapes.median_aspect = Some(aspects.select_nth_unstable_by(middle, f64::total_cmp).1.min(f64::MAX));
+        let median = aspects.len() / 2;
+        shapes.median_aspect = Some(aspects.select_nth_unstable_by(median, f64::total_cmp).1.min(f64::MAX));
     }
     if !soup.is_empty() {
         let bounds = soup.aabb();
@@ -328,11 +330,11 @@ fn measure(soup: &Soup<f64>) -> (Shapes, Sizes) {
 }
 
 #[allow(clippy::cast_possible_truncation, clippy::float_cmp, reason = "whether f32 rounds is the question")]
-fn locate(soup: &Soup<f64>, places: &Places, bounds: &Aabb<f64>) -> Location {
-    let mut seen = vec![false; places.len];
+fn locate(soup: &Soup<f64>, welder: &VertexWelder, bounds: &Aabb<f64>) -> Location {
+    let mut seen = vec![false; welder.vertex_count];
     let mut location = Location::default();
-    for (p, &place) in soup.positions().iter().zip(&places.of) {
-        if place == UNUSED || std::mem::replace(&mut seen[place as usize], true) {
+    for (p, &vertex) in soup.positions().iter().zip(&welder.vertex_ids) {
+        if vertex == UNUSED || std::mem::replace(&mut seen[vertex as usize], true) {
             continue;
         }
         for &x in p.iter() {

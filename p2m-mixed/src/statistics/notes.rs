@@ -1,99 +1,100 @@
-//! Sentences about scenes, each where the figures warrant it.
+//! Notes on a scene: sentences that follow from its statistics.
 
 use super::figure::{Count, Exact, Figure, Share};
 use super::{Statistics, THIN_ASPECT};
 use std::fmt;
 
-/// Something that a person should know about a scene. It displays as a sentence without a stop.
+/// A property of a scene that affects queries. It displays as a sentence without a stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Note {
-    /// There are no primitives.
+    /// The scene has no primitives.
     Empty,
-    /// Distances of this scene may be beyond 1e-120..1e120, where trees do not prune: a coordinate or an edge is.
+    /// A coordinate or an edge is beyond 1e-120..1e120, so distances may be too, where trees do not prune.
     ExtremeScale,
     /// A coordinate is beyond the range of f32.
     BeyondF32,
-    /// The scene is [`FAR`] times its own size from the origin, or more.
+    /// The scene is at least [`MIN_FAR_DIAGONALS`] diagonals away from the origin.
     FarFromOrigin {
-        /// The distance of its centre.
+        /// The distance of its centre from the origin.
         distance: f64,
-        /// How many times its diagonal that is; infinite for a single point is not reported.
+        /// The distance in diagonals of the scene. Scenes of a single point, for which it is infinite, have
+        /// no such note.
         times: f64,
-        /// How far the numbers of f32 are apart there, if they reach it.
+        /// The distance between numbers of f32 at the largest coordinate, or `None` if it is beyond their range.
         f32_step: Option<f64>,
-        /// How far the numbers of f64 are apart there.
+        /// The distance between numbers of f64 at the largest coordinate.
         f64_step: f64,
     },
     /// At least 1 % of the triangles are slivers.
     Slivers {
-        /// How many, of how many.
+        /// The number of such triangles among all triangles.
         share: Share,
     },
     /// At least half of the triangles are thin.
     Thin {
-        /// How many, of how many.
+        /// The number of such triangles among all triangles.
         share: Share,
         /// The median aspect.
         median: f64,
     },
-    /// There are triangles without area.
+    /// The scene has triangles without area.
     ZeroArea {
-        /// How many.
+        /// The number of such triangles.
         count: u64,
     },
-    /// There are segments without length.
+    /// The scene has segments without length.
     ZeroLength {
-        /// How many.
+        /// The number of such segments.
         count: u64,
     },
-    /// There are primitives that repeat others.
+    /// The scene has primitives that duplicate others.
     Duplicates {
-        /// How many.
+        /// The number of such primitives.
         count: u64,
     },
-    /// There are edges of more than two triangles.
+    /// The scene has edges of more than two triangles.
     NonManifold {
-        /// How many.
+        /// The number of such edges.
         count: u64,
     },
-    /// There are edges of two triangles that face opposite sides.
+    /// The scene has edges of two triangles that face opposite sides.
     Inconsistent {
-        /// How many.
+        /// The number of such edges.
         count: u64,
     },
-    /// The longest edge is [`SPREAD`] orders of magnitude longer than the shortest, or more.
+    /// The longest edge is at least [`MIN_SPREAD_ORDERS`] orders of magnitude longer than the shortest.
     Spread {
-        /// How many.
+        /// The orders of magnitude.
         orders: f64,
     },
     /// The scene has no extent along one axis.
     Flat {
-        /// 0 is x.
+        /// The axis: 0 is x, 1 is y and 2 is z.
         axis: usize,
-        /// Its coordinate there.
+        /// The coordinate of the scene along this axis.
         at: f64,
     },
-    /// Positions are repeated, on the average at least once: primitives do not share them.
+    /// Used positions are repeated at least once on average, so primitives do not share them.
     Unshared {
-        /// Positions that are used.
+        /// The number of used positions.
         used: u64,
-        /// Different ones among them.
+        /// The number of distinct coordinates among them.
         distinct: u64,
     },
-    /// Positions that no primitive uses.
+    /// The scene has positions that no primitive uses.
     Unused {
-        /// How many.
+        /// The number of such positions.
         count: u64,
     },
 }
 
-/// From this multiple of a scene's size on its distance from the origin is worth a word: two digits are lost.
-pub const FAR: f64 = 100.0;
-/// So many orders of magnitude between the longest and the shortest edge are worth a word.
-pub const SPREAD: f64 = 6.0;
+/// The distance from the origin, in diagonals of the scene, from which on there is a note. It costs two digits.
+pub const MIN_FAR_DIAGONALS: f64 = 100.0;
+/// The orders of magnitude between the longest and the shortest edge from which on there is a note.
+pub const MIN_SPREAD_ORDERS: f64 = 6.0;
 
-/// The notes of a scene.
+/// Returns the notes that follow from the statistics of a scene.
 pub(super) fn notes(s: &Statistics) -> Vec<Note> {
     let mut notes = Vec::new();
     let mut note_if = |warranted: bool, note: Note| {
@@ -114,7 +115,10 @@ pub(super) fn notes(s: &Statistics) -> Vec<Note> {
     let distance = location.distance_from_origin;
     let times = distance / sizes.diagonal;
     let (f32_step, f64_step) = (location.f32_step(), location.f64_step());
-    note_if(times >= FAR && times.is_finite(), Note::FarFromOrigin { distance, times, f32_step, f64_step });
+    note_if(
+        times >= MIN_FAR_DIAGONALS && times.is_finite(),
+        Note::FarFromOrigin { distance, times, f32_step, f64_step },
+    );
     let triangles = s.primitives.triangles;
     let slivers = Share { part: shapes.slivers, whole: triangles };
     note_if(shapes.slivers > 0 && slivers.part * 100 >= triangles, Note::Slivers { share: slivers });
@@ -128,7 +132,7 @@ pub(super) fn notes(s: &Statistics) -> Vec<Note> {
     note_if(s.edges.non_manifold > 0, Note::NonManifold { count: s.edges.non_manifold });
     note_if(s.edges.inconsistent > 0, Note::Inconsistent { count: s.edges.inconsistent });
     if let Some(orders) = sizes.edge.map(|e| e.orders_of_magnitude()) {
-        note_if(orders >= SPREAD, Note::Spread { orders });
+        note_if(orders >= MIN_SPREAD_ORDERS, Note::Spread { orders });
     }
     for axis in 0..3 {
         let is_flat = bounds.min[axis] >= bounds.max[axis];
@@ -140,13 +144,13 @@ pub(super) fn notes(s: &Statistics) -> Vec<Note> {
     notes
 }
 
-/// `one` or `many` behind a count.
+/// Returns a count followed by `one` or `many`.
 fn counted(count: u64, one: &str, many: &str) -> String {
     format!("{} {}", Count(count), if count == 1 { one } else { many })
 }
 
 impl Note {
-    /// A word for programs; it stays the same in later versions.
+    /// Returns the name of the note for programs, which stays the same in later versions.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -247,7 +251,7 @@ impl fmt::Display for Note {
     }
 }
 
-/// To two digits.
+/// Rounds to two significant digits.
 fn round(x: f64) -> f64 {
     format!("{x:.1e}").parse().unwrap_or(x)
 }

@@ -1,22 +1,24 @@
-//! What belongs to which name.
+//! The primitives of each named object.
 
 use super::Counts;
 use crate::Scene;
 use p2m_core::PrimitiveId;
 use std::collections::HashMap;
 
-/// The primitives of one name.
+/// The number of primitives under one name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ObjectCounts {
-    /// The name; `None` for those that have none.
+    /// The name, or `None` for primitives without a name.
     pub name: Option<String>,
-    /// How many there are of it.
+    /// The number of primitives of each kind.
     pub primitives: Counts,
 }
 
-/// The primitives of each name of a scene, in the order in which names first appear; parts of the same name are one.
-/// Those without a name come last. Nothing for a scene without names.
+/// Counts the primitives under each name of a scene, in the order in which names first appear.
+///
+/// Objects of the same name are counted together. Primitives without a name come last. A scene without names
+/// has no counts.
 ///
 /// ```
 /// use p2m_mixed::statistics::objects;
@@ -31,7 +33,7 @@ pub struct ObjectCounts {
 /// O(n).
 ///
 /// # Panics
-/// If an object goes beyond the end of the scene, which those of readers do not.
+/// If an object has ids beyond the end of the scene, which does not happen for scenes of readers.
 #[must_use]
 pub fn objects(scene: &Scene) -> Vec<ObjectCounts> {
     if scene.objects.is_empty() {

@@ -1,36 +1,37 @@
-//! Lengths, areas and shapes of primitives at any scale, and whether a triangle has an area at all.
+//! Lengths, areas and shapes of primitives at any scale, and the exact decision whether a triangle has an area.
 //!
-//! Plain arithmetic where it is good to 2^-20, scaled arithmetic where squares would leave the range, exact integers
-//! where a triangle is so flat that its area is mostly rounding error. Results that f64 cannot hold are given as the
-//! nearest number that it can.
+//! Floating-point arithmetic is used where it is accurate to 2^-20, scaled arithmetic where squares would leave the
+//! range, and exact integers where a triangle is so flat that its area would be mostly rounding error. Results beyond
+//! the range of f64 are rounded to the nearest number.
 
 use crate::vector::{V3, cross, largest, norm_squared, sub};
 use dashu_int::{IBig, ops::BitTest};
 use nalgebra::Point3;
 use p2m_core::kernel::power_of_two;
 
-/// Triangles whose height is below 2^-26 of the longest edge are measured in integers: plain arithmetic has that ratio
-/// with an absolute error below 2^-48, so what is zero is among them, and what is above is good to 2^-22.
-const UNCERTAIN_SINE: f64 = power_of_two(-26);
-/// Offsets from 2^-200 to 2^200 have fourth powers in the range of f64.
-const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-200)..=power_of_two(200);
+/// Triangles whose height is below 2^-26 of the longest edge are measured in integers. Floating-point arithmetic has an
+/// absolute error below 2^-48 in this ratio, so triangles without area are among them, and the area of other triangles
+/// is accurate to 2^-22.
+const EXACT_BELOW_SINE: f64 = power_of_two(-26);
+/// The range of offsets that need no scaling. Their fourth powers are in the range of f64.
+const UNSCALED_OFFSETS: std::ops::RangeInclusive<f64> = power_of_two(-200)..=power_of_two(200);
 
-/// What a triangle measures.
+/// The measures of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Measure {
-    /// The lengths of its edges; edge i runs from vertex i to vertex i + 1.
+pub(super) struct TriangleMeasures {
+    /// The lengths of the edges. Edge i runs from vertex i to vertex i + 1.
     pub(super) edges: V3,
-    /// Zero if and only if its corners are on a line.
+    /// The area, which is zero if and only if the corners are on a line.
     pub(super) area: f64,
-    /// Its height over its longest edge, divided by that edge. Zero if and only if the area is.
+    /// The height over the longest edge, divided by that edge. It is zero if and only if the area is.
     pub(super) sine: f64,
 }
 
-impl Measure {
-    pub(super) fn of(corners: [Point3<f64>; 3]) -> Self {
+impl TriangleMeasures {
+    pub(super) fn new(corners: [Point3<f64>; 3]) -> Self {
         let corners = corners.map(|p| [p.x, p.y, p.z]);
         let lengths = [0, 1, 2].map(|i| length(corners[i], corners[(i + 1) % 3]));
-        // The offsets divided by 2^exponent.
+        // `offsets` are the edges divided by 2^exponent.
         let edges =
             |unit: f64| [0, 1, 2].map(|i| sub(corners[(i + 1) % 3].map(|x| x * unit), corners[i].map(|x| x * unit)));
         let (mut offsets, mut exponent) = (edges(1.0), 0);
@@ -38,9 +39,9 @@ impl Measure {
         if size == 0.0 {
             return Self { edges: lengths, area: 0.0, sine: 0.0 };
         }
-        if !PLAIN.contains(&size) {
+        if !UNSCALED_OFFSETS.contains(&size) {
             if size > 1.0 {
-                // Differences of quarters are finite; what they lose is nothing beside a size like this.
+                // Differences of quarters are finite, and what they lose to underflow is negligible beside such sizes.
                 offsets = edges(0.25);
                 exponent = 2;
                 size = largest(&offsets);
@@ -51,7 +52,7 @@ impl Measure {
         }
         let longest = offsets.iter().fold(0.0f64, |a, v| a.max(norm_squared(*v)));
         let cross = norm_squared(cross(offsets[0], offsets[1])).sqrt();
-        if cross > UNCERTAIN_SINE * longest {
+        if cross > EXACT_BELOW_SINE * longest {
             let area = representable(times_power_of_two(cross / 2.0, 2 * exponent));
             return Self { edges: lengths, area, sine: cross / longest };
         }
@@ -66,11 +67,11 @@ impl Measure {
     }
 }
 
-/// The distance between two points; zero only if they are the same.
+/// Returns the distance between two points, which is zero only if they are equal.
 pub(super) fn length(a: V3, b: V3) -> f64 {
     let offset = sub(b, a);
     let size = largest(&[offset]);
-    if PLAIN.contains(&size) || size == 0.0 {
+    if UNSCALED_OFFSETS.contains(&size) || size == 0.0 {
         return norm_squared(offset).sqrt();
     }
     let (offset, exponent) = if size > 1.0 { (sub(b.map(|x| x / 4.0), a.map(|x| x / 4.0)), 2) } else { (offset, 0) };
@@ -79,15 +80,15 @@ pub(super) fn length(a: V3, b: V3) -> f64 {
     representable(times_power_of_two(norm_squared(scaled).sqrt(), scale + exponent))
 }
 
-/// The length of the cross product of two edges, as a number and a power of two to multiply it by; `None` if it is
-/// zero.
+/// Returns the length of the cross product of two edges, as a number and the exponent of a power of two to multiply it
+/// by, or `None` if it is zero.
 #[cold]
 fn exact_cross(corners: [V3; 3]) -> Option<(f64, i32)> {
     let parts = corners.map(|v| v.map(decompose));
     let unit = parts.iter().flatten().filter(|p| p.0 != 0).map(|p| p.1).min()?;
     let corners = parts.map(|v| {
         v.map(|(mantissa, exponent)| {
-            // Zero has any exponent.
+            // The exponent of zero may be below `unit`, and its shift is irrelevant.
             let shift = usize::try_from(exponent - unit).unwrap_or(0);
             IBig::from(mantissa) << shift
         })
@@ -100,7 +101,7 @@ fn exact_cross(corners: [V3; 3]) -> Option<(f64, i32)> {
     if bits == 0 {
         return None;
     }
-    // The upper 60 bits are enough.
+    // The upper 60 bits suffice for the accuracy.
     let drop = bits.saturating_sub(60);
     #[allow(clippy::cast_precision_loss, reason = "a length to be rounded")]
     let rounded = cross.map(|x| i64::try_from(x >> drop).map_or(f64::NAN, |x| x as f64));
@@ -108,7 +109,7 @@ fn exact_cross(corners: [V3; 3]) -> Option<(f64, i32)> {
     Some((norm_squared(rounded).sqrt(), power))
 }
 
-/// An integer and the power of two by which it gives `x`, which is finite.
+/// Returns an integer and an exponent with integer * 2^exponent = `x`. `x` has to be finite.
 fn decompose(x: f64) -> (i64, i32) {
     let bits = x.to_bits();
     let fraction = (bits & ((1 << 52) - 1)).cast_signed();
@@ -118,18 +119,18 @@ fn decompose(x: f64) -> (i64, i32) {
     (if x < 0.0 { -magnitude } else { magnitude }, exponent - 1075)
 }
 
-/// The nearest positive finite number to a positive one.
+/// Returns the positive finite number nearest to a positive number.
 fn representable(x: f64) -> f64 {
     x.clamp(f64::from_bits(1), f64::MAX)
 }
 
-/// The power of two below a positive number, or near it if that is subnormal.
+/// Returns the exponent of the largest power of two that does not exceed a positive number.
 fn exponent_of(x: f64) -> i32 {
     let (mantissa, exponent) = decompose(x);
     exponent + 63 - i32::try_from(mantissa.leading_zeros()).unwrap_or(0)
 }
 
-/// x 2^e, rounded once unless subnormal.
+/// Returns x * 2^e, which is exact unless the result is subnormal or infinite.
 fn times_power_of_two(mut x: f64, mut e: i32) -> f64 {
     while e > 1000 {
         x *= power_of_two(1000);
@@ -152,11 +153,11 @@ fn times_power_of_two(mut x: f64, mut e: i32) -> f64 {
 mod tests {
     use super::*;
 
-    fn measure(corners: [V3; 3]) -> Measure {
-        Measure::of(corners.map(Point3::from))
+    fn measure(corners: [V3; 3]) -> TriangleMeasures {
+        TriangleMeasures::new(corners.map(Point3::from))
     }
 
-    /// A 3-4-5 triangle at every scale, whose measures are exact there.
+    /// The measures of a 3-4-5 triangle are exact at every scale.
     #[test]
     fn measures_are_exact_at_every_scale() {
         for e in [-1060, -1022, -600, -540, -201, -200, -30, 0, 30, 200, 201, 500, 540, 1019] {
@@ -174,7 +175,7 @@ mod tests {
         assert_eq!((found.edges[0], found.edges[2], found.area, found.sine), (tiny, tiny, tiny, 0.5));
     }
 
-    /// Against integers: every triangle on a lattice, moved and scaled so that nothing is rounded.
+    /// Every triangle on a lattice, moved and scaled without rounding, is compared with integer arithmetic.
     #[test]
     fn zero_area_is_decided_as_integers_do() {
         let at = |i: i64| [i % 3, i / 3 % 3, i / 9];
@@ -196,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn collinear_corners_are_told_from_nearly_collinear_ones() {
+    fn collinear_and_nearly_collinear_corners_are_distinguished() {
         let collinear = measure([[0.0; 3], [0.1, 0.2, 0.4], [0.2, 0.4, 0.8]]);
         assert_eq!((collinear.area, collinear.sine), (0.0, 0.0));
         let off = f64::from_bits(0.2f64.to_bits() + 1);
@@ -213,9 +214,9 @@ mod tests {
         assert!(found.edges[1] == tiny, "{:?}", found.edges);
     }
 
-    /// The needles just above and below the bound between plain and exact arithmetic.
+    /// The needles are just above and below the limit between floating-point and exact arithmetic.
     #[test]
-    fn plain_and_exact_lanes_agree() {
+    fn floating_point_and_exact_arithmetic_agree() {
         for e in 10..40 {
             let height = power_of_two(-e);
             let found = measure([[1e3, 7.0, 1.0], [1e3 + 1.0, 7.0, 1.0], [1e3 + 0.5, 7.0 + height, 1.0]]);

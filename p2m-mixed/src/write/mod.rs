@@ -1,53 +1,26 @@
-//! Scenes to files.
+//! Writers of scenes.
 
+mod error;
 mod obj;
 mod off;
 mod ply;
 mod stl;
 
+pub use error::WriteError;
 pub use obj::write_obj;
 pub use off::write_off;
 pub use ply::{write_ply, write_ply_ascii};
 pub use stl::{StlRounding, stl_rounding, write_stl};
 
 use crate::{Format, Scene};
-use p2m_core::PrimitiveId;
-use std::io::{self, Write};
+use std::io::Write;
 
-/// Why a scene cannot be written.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum WriteError {
-    /// The operating system says no.
-    #[error(transparent)]
-    Io(#[from] io::Error),
-    /// STL files hold triangles only.
-    #[error("primitive {id} is no triangle, and an STL file holds nothing else")]
-    NotATriangle {
-        /// The first primitive that is none.
-        id: PrimitiveId,
-    },
-    /// STL files hold numbers of single precision only.
-    #[error("primitive {id} has a coordinate {coordinate:e}, which is beyond the single precision of an STL file")]
-    BeyondSinglePrecision {
-        /// The first such primitive.
-        id: PrimitiveId,
-        /// The coordinate.
-        coordinate: f64,
-    },
-    /// STL files hold up to 2^32 - 1 facets.
-    #[error("{count} triangles are more than an STL file can hold")]
-    TooMany {
-        /// How many there are.
-        count: usize,
-    },
-}
-
-/// Writes a scene, number by number: `writer` should have a buffer.
+/// Writes a scene. Every number is written at once, so `writer` should have a buffer.
 ///
-/// A file in [`Obj`](Format::Obj), [`Ply`](Format::Ply) or [`Off`](Format::Off) reads back as the same scene: the same
-/// positions bit by bit, the same primitives with the same ids. [`Stl`](Format::Stl) holds triangles in single
-/// precision and no shared vertices, see [`write_stl`]. In [`P2m`](Format::P2m) nothing of the scene is lost; else:
+/// A file in [`Obj`](Format::Obj), [`Ply`](Format::Ply) or [`Off`](Format::Off) reads back as the same scene, with the
+/// same positions bit by bit and the same primitives with the same ids. [`Stl`](Format::Stl) files have triangles in
+/// single precision without shared vertices, see [`write_stl`]. [`P2m`](Format::P2m) files keep everything. The other
+/// formats keep:
 ///
 /// | | OBJ | PLY | OFF | STL |
 /// |---|---|---|---|---|
@@ -67,8 +40,8 @@ pub enum WriteError {
 /// ```
 ///
 /// # Errors
-/// [`WriteError`]: for STL what its files cannot hold, before anything is written; and those of `writer`, after which a file
-/// may be incomplete.
+/// [`WriteError`] for scenes that STL cannot represent, before anything is written, and for errors of `writer`, after
+/// which the file may be incomplete.
 pub fn write_scene(scene: &Scene, format: Format, writer: impl Write) -> Result<(), WriteError> {
     match format {
         Format::Obj => write_obj(scene, writer),
@@ -77,9 +50,4 @@ pub fn write_scene(scene: &Scene, format: Format, writer: impl Write) -> Result<
         Format::Off => write_off(scene, writer),
         Format::P2m => Ok(crate::write_p2m(scene, writer)?),
     }
-}
-
-/// A position as a text can hold it: one that is not finite becomes the origin. No primitive uses such a position.
-fn finite_or_origin(position: &nalgebra::Point3<f64>) -> nalgebra::Point3<f64> {
-    if position.iter().all(|x| x.is_finite()) { *position } else { nalgebra::Point3::origin() }
 }

@@ -1,20 +1,24 @@
-//! Scenes to OBJ.
+//! Writes scenes as OBJ.
 
-use super::{WriteError, finite_or_origin};
+use super::error::{WriteError, finite_or_origin};
 use crate::Scene;
 use p2m_core::{Element, PrimitiveSet};
 use std::io::Write;
 
-/// Writes a scene as OBJ: its positions, then its primitives in the order of their ids, one statement each, with an `o`
-/// where an object begins (and one without a name where it ends and no other begins).
+/// Writes a scene as OBJ.
 ///
-/// Numbers are the shortest that read back as the same ones. [`read_obj`](crate::read_obj) gives soup and objects back,
-/// with these exceptions: positions without any primitive would be read as a point cloud, so they are not written. A
-/// position that no primitive uses may be anything, but a file cannot hold all of that: one that is not finite is
-/// written as the origin. Line ends in names become blanks, blanks around names are lost.
+/// The positions come first, and then the primitives in the order of their ids, one statement each. An `o` starts each
+/// object, and an `o` without a name ends an object that no other object follows.
+///
+/// Numbers have the fewest digits that read back as the same number. [`read_obj`](crate::read_obj) returns the same
+/// soup and objects, with these exceptions:
+///
+/// - The positions of a scene without primitives are not written, because they would be read as a point cloud.
+/// - A position that is not finite, which no primitive uses, is written as the origin.
+/// - Line ends in names become blanks, and blanks around names are lost.
 ///
 /// # Errors
-/// Those of `writer`.
+/// Errors of `writer`.
 pub fn write_obj(scene: &Scene, mut writer: impl Write) -> Result<(), WriteError> {
     let soup = &scene.soup;
     if soup.len() > 0 {
@@ -25,7 +29,7 @@ pub fn write_obj(scene: &Scene, mut writer: impl Write) -> Result<(), WriteError
     let mut objects = scene.objects.iter().peekable();
     let mut end = None;
     for (id, element) in soup.elements().enumerate() {
-        // Objects that are in no order are none of the reader's: they are passed over.
+        // Objects that are not in ascending order do not come from a reader, and are skipped.
         while objects.next_if(|o| o.ids.start < id || o.ids.is_empty()).is_some() {}
         if let Some(object) = objects.next_if(|o| o.ids.start == id) {
             writeln!(writer, "{}", statement(&object.name))?;
@@ -48,7 +52,7 @@ pub fn write_obj(scene: &Scene, mut writer: impl Write) -> Result<(), WriteError
     Ok(())
 }
 
-/// The line that names an object.
+/// Returns the line that starts an object.
 fn statement(name: &str) -> String {
     let mut line = format!("o {}", name.replace(['\n', '\r'], " "));
     if line.ends_with('\\') {

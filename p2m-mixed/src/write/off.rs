@@ -1,19 +1,22 @@
-//! Scenes to OFF.
+//! Writes scenes as OFF.
 
-use super::{WriteError, finite_or_origin};
+use super::error::{WriteError, finite_or_origin};
 use crate::Scene;
 use p2m_core::PrimitiveSet;
 use std::io::Write;
 
-/// Writes a scene as OFF text: its positions, then its primitives in the order of their ids. Segments are faces of two
-/// vertices, points are faces of one, which not every reader expects.
+/// Writes a scene as OFF text.
 ///
-/// Numbers are the shortest that read back as the same ones. [`read_off`](crate::read_off) gives the soup back, with
-/// two exceptions: positions without any primitive would be read as a point cloud, so they are not written; and a
-/// position that is not finite (no primitive uses it) is written as the origin. Objects are lost.
+/// The positions come first, and then the primitives in the order of their ids. Segments are faces of two vertices, and
+/// points are faces of one vertex, which not every reader supports.
+///
+/// Numbers have the fewest digits that read back as the same number. [`read_off`](crate::read_off) returns the
+/// same soup, with two exceptions. The positions of a scene without primitives are not written, because they would
+/// be read as a point cloud. A position that is not finite, which no primitive uses, is written as the origin.
+/// Objects are lost.
 ///
 /// # Errors
-/// Those of `writer`.
+/// Errors of `writer`.
 pub fn write_off(scene: &Scene, mut writer: impl Write) -> Result<(), WriteError> {
     let soup = &scene.soup;
     let positions = if soup.len() > 0 { soup.positions() } else { &[] };

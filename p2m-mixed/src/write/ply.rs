@@ -1,42 +1,45 @@
-//! Scenes to PLY.
+//! Writes scenes as PLY.
 
-use super::WriteError;
+use super::error::WriteError;
 use crate::Scene;
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveSet, Soup};
 use std::io::{self, Write};
 
-/// Writes a scene as binary PLY, little-endian: the positions in double precision, triangles as `face`, segments as
-/// `edge`, points as `point`.
+/// Writes a scene as binary PLY, little-endian.
 ///
-/// A PLY file groups primitives by kind. Ids survive all the same:
+/// Positions are in double precision. Triangles are elements `face`, segments are `edge`, and points are `point`.
 ///
-/// - Where the ids of each kind are consecutive, the elements come in the order of the ids; nothing else is needed.
-/// - Where kinds alternate, each primitive has a property `p2m_id`, its id, which [`read_ply`](crate::read_ply)
-///   honours. Other programs pass over it.
-/// - A scene whose primitives are exactly all of its positions in order is written as vertices alone, a point cloud for
-///   everybody. Otherwise points are an element of their own, `point` with the property `vertex_index`. It is there,
-///   with no member, if a scene has positions but no primitives.
+/// A PLY file groups primitives by kind. Ids are kept nevertheless:
 ///
-/// [`read_ply`](crate::read_ply) gives the soup back, bit by bit; objects are lost.
+/// - If the ids of each kind are consecutive, the elements come in the order of the ids.
+/// - If kinds alternate, each primitive has a property `p2m_id` with its id, which [`read_ply`](crate::read_ply) reads
+///   and other programs ignore.
+/// - A scene whose primitives are all of its positions in order is written as vertices alone, which is a point cloud
+///   for every program. Otherwise points are an element `point` with the property `vertex_index`. A scene with
+///   positions but no primitives has this element without members.
+///
+/// [`read_ply`](crate::read_ply) returns the same soup, bit by bit. Objects are lost.
 ///
 /// # Errors
-/// Those of `writer`.
+/// Errors of `writer`.
 pub fn write_ply(scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
     write(&scene.soup, Rows { writer, is_text: false })
 }
 
-/// Writes a scene as [`write_ply`] does, but as text. Numbers are the shortest that read back as the same ones.
+/// Writes a scene as [`write_ply`] does, but as text. Numbers have the fewest digits that read back as the same number.
 ///
 /// # Errors
-/// Those of `writer`.
+/// Errors of `writer`.
 pub fn write_ply_ascii(scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
     write(&scene.soup, Rows { writer, is_text: true })
 }
 
-/// Kinds of primitives are named by the number of their vertices.
+/// A point, as a kind of primitive. Kinds are the numbers of vertices.
 const POINT: usize = 1;
+/// A segment, as a kind of primitive.
 const EDGE: usize = 2;
+/// A triangle, as a kind of primitive.
 const FACE: usize = 3;
 
 fn write(soup: &Soup<f64>, mut rows: Rows<impl Write>) -> Result<(), WriteError> {
@@ -54,7 +57,7 @@ fn write(soup: &Soup<f64>, mut rows: Rows<impl Write>) -> Result<(), WriteError>
     let format = if rows.is_text { "ascii" } else { "binary_little_endian" };
     let mut header = format!("ply\nformat {format} 1.0\nelement vertex {}\n", positions.len());
     header += "property double x\nproperty double y\nproperty double z\n";
-    // Signed ones are more widely understood.
+    // More programs support signed indices.
     let index = if i32::try_from(positions.len()).is_ok() { "int" } else { "uint" };
     for &kind in &kinds {
         header += &match kind {
@@ -93,7 +96,7 @@ fn write(soup: &Soup<f64>, mut rows: Rows<impl Write>) -> Result<(), WriteError>
     Ok(())
 }
 
-/// Whether the primitives are the positions, all of them in order.
+/// Returns whether the primitives are all of the positions in order.
 fn is_point_cloud(soup: &Soup<f64>) -> bool {
     let points = soup.points();
     points.len() == soup.len()
@@ -101,7 +104,7 @@ fn is_point_cloud(soup: &Soup<f64>) -> bool {
         && (0..).zip(points).all(|(i, &point): (u32, _)| i == point)
 }
 
-/// The kinds in the order of the ids; nothing if one comes back after another.
+/// Returns the kinds in the order of the ids, or `None` if the ids of a kind are not consecutive.
 fn kinds_in_order(soup: &Soup<f64>) -> Option<Vec<usize>> {
     let mut kinds = Vec::new();
     for element in soup.elements() {
@@ -116,7 +119,7 @@ fn kinds_in_order(soup: &Soup<f64>) -> Option<Vec<usize>> {
     Some(kinds)
 }
 
-/// Rows of numbers in one of the encodings.
+/// Writes rows of numbers as text or binary.
 struct Rows<W> {
     writer: W,
     is_text: bool,
@@ -134,7 +137,7 @@ impl<W: Write> Rows<W> {
         self.writer.write_all(&row)
     }
 
-    /// Signed and unsigned numbers have the same bytes where both are in range.
+    /// Writes a primitive. Signed and unsigned integers have the same bytes within the range of both.
     fn primitive(&mut self, element: Element, id: Option<u32>) -> io::Result<()> {
         let indices = element.indices();
         let is_face = indices.len() == FACE;

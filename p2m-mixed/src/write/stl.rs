@@ -1,24 +1,26 @@
-//! Scenes to STL.
+//! Writes scenes as STL.
 
-use super::WriteError;
+use super::error::WriteError;
 use crate::Scene;
 use nalgebra::Vector3;
 use p2m_core::{Element, PrimitiveId, PrimitiveSet, Soup};
 use std::io::Write;
 
-/// Does not begin with `solid`.
+/// The header of a binary file, which must not start with `solid`.
 const HEADER: &[u8; 80] = b"binary STL                                                                      ";
 
-/// Writes a scene as binary STL: its triangles in the order of their ids, with unit normals (0 where there is none).
+/// Writes a scene as binary STL.
 ///
-/// Coordinates are rounded to single precision; [`stl_rounding`] tells by how much. Vertices are not shared in the
-/// file: [`read_stl`](crate::read_stl) gives the soup back if no coordinate is rounded, no two positions are equal and
-/// the triangles use them in ascending order, each of them. Otherwise positions are numbered anew, equal ones merged
-/// and unused ones lost; ids stay. Objects are lost.
+/// Triangles come in the order of their ids, with unit normals. The normal of a triangle without area is 0. Coordinates
+/// are rounded to single precision, and [`stl_rounding`] computes by how much.
+///
+/// Vertices are not shared in the file. [`read_stl`](crate::read_stl) returns the same soup if no coordinate is
+/// rounded, no two positions are equal, and the triangles use all positions in ascending order. Otherwise positions get
+/// other numbers, equal positions are merged, and unused positions are lost. Ids are kept, and objects are lost.
 ///
 /// # Errors
-/// [`WriteError`] for segments and points, and for coordinates that are infinite in single precision, before anything
-/// is written; and those of `writer`.
+/// [`WriteError`] for segments, points and coordinates that are infinite in single precision, before anything is
+/// written, and for errors of `writer`.
 pub fn write_stl(scene: &Scene, mut writer: impl Write) -> Result<(), WriteError> {
     let soup = &scene.soup;
     for (i, element) in soup.elements().enumerate() {
@@ -54,7 +56,8 @@ fn corners(soup: &Soup<f64>, triangle: [u32; 3]) -> [[f64; 3]; 3] {
     triangle.map(|i| soup.positions()[i as usize].coords.into())
 }
 
-/// The unit normal, 0 if there is none. Products of differences of single precision neither overflow nor vanish.
+/// Returns the unit normal of a triangle, or 0 if it has no area. Products of differences of single precision neither
+/// overflow nor vanish in f64.
 fn normal(corners: &[[f32; 3]; 3]) -> [f32; 3] {
     let [a, b, c] = corners.map(|p| Vector3::from(p.map(f64::from)));
     let normal = (b - a).cross(&(c - a));
@@ -62,18 +65,18 @@ fn normal(corners: &[[f32; 3]; 3]) -> [f32; 3] {
     if length > 0.0 { (normal / length).map(single).into() } else { [0.0; 3] }
 }
 
-/// What is lost when a scene is written as STL, see [`stl_rounding`].
+/// The rounding of a scene that is written as STL, see [`stl_rounding`].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
 pub struct StlRounding {
-    /// How many coordinates of vertices of triangles are no numbers of single precision. Each vertex counts once.
+    /// The number of coordinates of triangles that single precision cannot represent exactly. Each vertex counts once.
     pub count: u64,
-    /// By how much the one that changes most is moved, in the unit of the scene. Infinite if one is beyond the range:
-    /// then [`write_stl`] refuses the scene.
+    /// The largest change of a coordinate, in units of the scene. It is infinite if a coordinate is beyond the range of
+    /// single precision, and then [`write_stl`] returns an error.
     pub largest: f64,
 }
 
-/// Tells how much [`write_stl`] would round the vertices of the triangles of a scene.
+/// Computes how much [`write_stl`] rounds the vertices of the triangles of a scene.
 ///
 /// ```
 /// use p2m_mixed::{read_obj, stl_rounding};
@@ -92,7 +95,7 @@ pub fn stl_rounding(scene: &Scene) -> StlRounding {
             continue;
         }
         for x in soup.positions()[vertex as usize].iter() {
-            // The difference is exact, or infinite.
+            // The difference is exact or infinite.
             let error = (x - f64::from(single(*x))).abs();
             if error > 0.0 {
                 rounding.count += 1;

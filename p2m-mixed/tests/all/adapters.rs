@@ -1,4 +1,4 @@
-//! Trees of other crates, held to the contract of ours.
+//! The adapters of other crates are compared with the contract of our indexes.
 #![cfg(all(feature = "parry", feature = "parry-f32", feature = "rstar"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -38,7 +38,7 @@ adapters! {
     rstar: RstarIndex,
 }
 
-/// Everything that consists of triangles and segments, in both precisions; what a shape of parry says of itself is the judge.
+/// All shapes of triangles and segments, in both precisions, have the distances that parry computes for them.
 macro_rules! shapes {
     ($($name:ident: $parry:ident, $add:ident, $tolerance:literal);+ $(;)?) => {
         $(mod $name {
@@ -51,7 +51,7 @@ macro_rules! shapes {
                 Ball, Compound, ConvexPolyhedron, Cuboid, HalfSpace, Polyline, Segment, Shape, SharedShape, TriMesh, Triangle,
             };
 
-            /// Somewhere, turned.
+            /// A rotated pose away from the origin.
             fn pose(z: f64) -> Pose {
                 Pose::from_parts(Vector::new(1.0, -2.0, z as _), Rotation::from_rotation_x(0.5))
             }
@@ -78,7 +78,8 @@ macro_rules! shapes {
                     assert_eq!(scene.$add("shape", shape, &pose(0.5)).unwrap(), 1..1 + count, "shape {k}");
                     let index = BruteForce::new(&scene.soup).unwrap();
                     for i in 0..200 {
-                        // Beside every shape: inside of solids parry's distance is to the surface as well.
+                        // The query is outside of every shape. Inside of solids, the distance of parry is to the
+                        // surface as well.
                         let q = Point3::new(i as f64 * 0.07 - 6.0, (i * i % 17) as f64 - 8.0, (i * i % 23) as f64 - 11.0);
                         let answer = index.closest_point(&q).unwrap();
                         let place = Vector::new(q.x as _, q.y as _, q.z as _);
@@ -91,7 +92,7 @@ macro_rules! shapes {
             }
 
             #[test]
-            fn round_and_endless_shapes_are_refused() {
+            fn round_and_infinite_shapes_are_errors() {
                 let ball = SharedShape::new(Ball::new(1.0));
                 let compound = Compound::new(vec![(Pose::IDENTITY, SharedShape::cuboid(1.0, 1.0, 1.0)), (pose(1.0), ball)]);
                 let mut scene = Scene::default();
@@ -131,7 +132,7 @@ where
     near_check::agrees(seed, soup, queries, &index);
 }
 
-/// More primitives than ids, of which none is ever asked for.
+/// A set with more primitives than ids, none of which is ever requested.
 struct Absurd(usize);
 
 impl PrimitiveSet<f64> for Absurd {

@@ -1,4 +1,4 @@
-//! Files of answers: what is in them, byte by byte, and that they ask the same questions again.
+//! Files of answers have the documented bytes, and can be read as their queries.
 
 use nalgebra::Point3;
 use p2m_core::{BruteForce, Closest, ClosestPoint, Element, Feature, Soup};
@@ -7,7 +7,7 @@ use std::io::ErrorKind;
 
 const FORMATS: [AnswerFormat; 3] = [AnswerFormat::Csv, AnswerFormat::Npy, AnswerFormat::Ply];
 
-/// Queries and answers of every feature, and queries without an answer.
+/// Returns queries with answers of every feature, and queries without an answer.
 fn answers() -> Vec<(Point3<f64>, Option<Closest<f64>>)> {
     let at = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
     let positions = vec![at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0), at(0.0, 1.0, 0.0), at(50.0, 0.0, 0.1)];
@@ -73,7 +73,7 @@ fn a_table_has_the_numbers_as_they_are() {
     assert_eq!(lines.next(), None);
 }
 
-/// Kind and number as the documentation has them.
+/// Returns the kind and number of a feature as documented.
 fn feature(answer: Option<&Closest<f64>>) -> (i16, i16) {
     match answer.map(|a| a.feature) {
         None => (-1, -1),
@@ -142,7 +142,7 @@ fn a_cloud_has_the_documented_properties() {
         assert_eq!(i32_at(vertex, 56), a.map_or(-1, |a| a.primitive.index() as i32));
         assert_eq!((i16::from(vertex[60].cast_signed()), i16::from(vertex[61].cast_signed())), feature(a));
     }
-    // A viewer sees the queries.
+    // The vertices of the file are the queries.
     let scene = read_scene_from(&file[..], Format::Ply, "a").unwrap();
     assert_eq!(scene.soup.points().len(), answers.len());
 }
@@ -176,7 +176,7 @@ fn numpy_reads_the_array() {
     std::fs::create_dir_all(&folder).unwrap();
     let path = folder.join("a.npy");
     std::fs::write(&path, write(&answers(), AnswerFormat::Npy)).unwrap();
-    // Numbers as Rust writes them are numbers of Python; an unanswered distance is 0 here.
+    // Python reads numbers as Rust writes them. A distance without an answer is 0 here.
     let queries: Vec<[f64; 3]> = answers().iter().map(|(q, _)| q.coords.into()).collect();
     let distances: Vec<f64> = answers().iter().map(|(_, a)| a.map_or(0.0, |a| a.distance)).collect();
     let script = format!(

@@ -1,4 +1,4 @@
-//! The synthetic scene, and the file that was made from it.
+//! The generated scene equals the file that was made from it.
 
 use p2m_core::Element;
 use p2m_mixed::generate::{KnotAndCables, knot_and_cables};

@@ -1,4 +1,4 @@
-//! Every kind of scene: closed where it says so, as large as it says, and the same as ever.
+//! Every kind of scene has the documented topology and size, and the checksum of earlier versions.
 
 use crate::generator_support::{aspect, assert_not_degenerate, assert_watertight, checksum, corners, volume};
 use p2m_core::{BuildError, Element, PrimitiveSet, Soup};
@@ -8,15 +8,15 @@ use p2m_mixed::generate::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// Relative error of sums of some thousand terms of one sign, each a few roundings.
+/// The relative error of sums of some thousand terms of one sign, each of which has a few roundings.
 const SUM: f64 = 1e4 * f64::EPSILON;
 
-/// Area of the regular polygon in the unit circle.
+/// Returns the area of the regular polygon in the unit circle.
 fn polygon(sides: u32) -> f64 {
     f64::from(sides) / 2.0 * (TAU / f64::from(sides)).sin()
 }
 
-/// Watertight, not degenerate, of that topology and that many triangles, and not inside out.
+/// Checks that a scene is watertight, not degenerate and not inside out, and has this topology and number of triangles.
 fn assert_closed(soup: &Soup<f64>, characteristic: i64, triangles: u32) {
     assert_eq!(soup.triangles().len(), triangles as usize);
     assert_eq!(soup.len(), triangles as usize, "triangles only");
@@ -68,8 +68,8 @@ fn torus_knots_are_closed_tubes() {
         };
         let length: f64 = (0..4096).map(speed).sum::<f64>() * TAU / 4096.0;
         let expected = 0.01 * polygon(sides) * length;
-        // Rings turn against each other, so that quadrilaterals are not planar: of first order in the angle between
-        // them.
+        // Rings turn relative to each other, so quadrilaterals are not planar. The effect is of first order in the
+        // angle between rings.
         let angle = TAU * f64::from(p.max(q)) / f64::from(rings);
         let relative = volume(&knot) / expected - 1.0;
         assert!(relative.abs() < angle, "({p}, {q}): {relative}");
@@ -112,7 +112,7 @@ fn the_default_gear_is_made_of_slivers() {
     assert!(aspects[0] > 300.0, "{}", aspects[0]);
     assert!(gear.positions().iter().all(|p| p.x.hypot(p.y) < 52.0 + 1e-12 && p.x.hypot(p.y) > 25.0 - 1e-12));
 
-    // The area of a section, which is that of the outline turned, and shrunk by the chord that a turning point takes.
+    // A section is the rotated outline, which is smaller because points move along a chord rather than an arc.
     let outline: Vec<_> = gear.positions()[..7087].iter().map(|p| (p.x, p.y)).collect();
     let area: f64 = (0..7087).map(|i| (outline[i], outline[(i + 1) % 7087])).map(|(a, b)| a.0 * b.1 - a.1 * b.0).sum();
     let shrunk = 1.0 - (1.0 - (0.05 * TAU).cos()) / 3.0;
@@ -121,7 +121,7 @@ fn the_default_gear_is_made_of_slivers() {
     assert!(relative.abs() < 1e-3, "{relative}");
 }
 
-/// The solid over a regular polygon whose profile runs through these radii and heights.
+/// Returns the volume of the solid over a regular polygon whose profile has these radii and heights.
 fn revolved_volume(sides: u32, profile: &[(f64, f64)]) -> f64 {
     let frustum = |a: (f64, f64), b: (f64, f64)| (b.1 - a.1) * (a.0 * a.0 + a.0 * b.0 + b.0 * b.0) / 3.0;
     polygon(sides) * profile.windows(2).map(|w| frustum(w[0], w[1])).sum::<f64>()
@@ -171,11 +171,11 @@ fn ico_spheres_are_closed_round_and_even() {
         assert!(ball.triangles().iter().all(|&t| aspect(corners(&ball, t)) < 1.7));
         missing.push(4.0 * PI / 3.0 - volume(&ball));
     }
-    // Edges of that length make a circumsphere of radius 1.
+    // Edges of this length have a circumsphere of radius 1.
     let edge = 4.0 / (10.0 + 2.0 * 5f64.sqrt()).sqrt();
     let icosahedron = 5.0 * (3.0 + 5f64.sqrt()) / 12.0 * edge.powi(3);
     assert!((4.0 * PI / 3.0 - missing[0] - icosahedron).abs() < SUM, "{icosahedron}");
-    // Of second order: half as long edges leave a quarter.
+    // The error is of second order: edges of half the length have a quarter of it.
     let ratio = missing[5] / missing[6];
     assert!((3.9..4.1).contains(&ratio), "{ratio}");
 }
@@ -191,7 +191,7 @@ fn bundles_are_polylines() {
         for strand in bundle.segments().chunks(segments as usize) {
             assert!(strand.windows(2).all(|pair| pair[0][1] == pair[1][0]));
         }
-        // Strands are apart from each other: no position is used by two.
+        // No position belongs to two strands.
         let mut ends: Vec<u32> = bundle.segments().chunks(segments as usize).map(|strand| strand[0][0]).collect();
         ends.dedup();
         assert_eq!(ends.len(), strands as usize);
@@ -214,13 +214,13 @@ fn strands_stay_within_the_radius_of_the_first_one() {
             turned += usize::from((p - straight.positions()[strand * 41 + step]).norm() > 0.01);
         }
     }
-    // The outermost strand is at sqrt(19.5 / 20) of the radius; the mean of all is near the centre line.
+    // The outermost strand is at sqrt(19.5 / 20) of the radius, and the mean of all strands is near the centre line.
     assert!((0.22..0.28).contains(&far), "{far}");
-    // Twelve turns in 40 steps are whole after 0, 10, 20, 30 and 40.
+    // Twelve turns in 40 steps are integers after 0, 10, 20, 30 and 40 steps.
     assert_eq!(turned, 20 * 36);
 }
 
-/// Half their lengths, which is how far their ends are from their centres.
+/// Returns half of the lengths of segments, which is the distance of their ends from their centres.
 fn segment_sizes(soup: &Soup<f64>) -> Vec<f64> {
     let at = |i: u32| soup.positions()[i as usize];
     soup.segments().iter().map(|&[a, b]| (at(b) - at(a)).norm() / 2.0).collect()
@@ -277,7 +277,7 @@ fn kinds_are_mixed_in_random_order_and_counts_are_exact() {
 }
 
 #[test]
-fn options_out_of_range_are_refused() {
+fn options_out_of_range_are_errors() {
     fn few(option: &'static str, value: u32, least: u32) -> Result<Soup<f64>, GenerateError> {
         Err(GenerateError::TooFew { option, value, least })
     }
@@ -311,7 +311,7 @@ fn options_out_of_range_are_refused() {
 }
 
 #[test]
-fn more_primitives_than_ids_are_refused_before_anything_is_made() {
+fn more_primitives_than_ids_are_errors_before_anything_is_made() {
     const MAX: u32 = u32::MAX;
     let kinds = [
         Kind::KnotAndCables(KnotAndCables::default().with_rings(MAX).with_sides(MAX).with_cables(MAX)),

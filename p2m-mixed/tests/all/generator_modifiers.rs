@@ -1,5 +1,5 @@
-//! What changes scenes: gaps and crossings that certain predicates see, subdivision that keeps meshes closed,
-//! transforms.
+//! Functions that change scenes: gaps and crossings are checked by predicates with error bounds, subdivision keeps
+//! meshes closed, and transforms are exact where they have to be.
 
 use crate::generator_support::{assert_not_degenerate, assert_watertight, below, checksum, corners, orient2d, volume};
 use nalgebra::{Point3, Vector3};
@@ -19,7 +19,7 @@ fn vertices(soup: &Soup<f64>, element: &Element) -> Vec<Point3<f64>> {
     element.indices().iter().map(|&i| soup.positions()[i as usize]).collect()
 }
 
-/// The digits of the corners of each triangle and segment, in an order that does not depend on that in the soup.
+/// Returns the bits of the corners of each triangle and segment, in an order that does not depend on the soup.
 fn geometry(soup: &Soup<f64>) -> Vec<Vec<[u64; 3]>> {
     let digits = |p: Point3<f64>| [p.x, p.y, p.z].map(f64::to_bits);
     let mut all: Vec<Vec<_>> = soup.elements().map(|e| vertices(soup, &e).into_iter().map(digits).collect()).collect();
@@ -27,7 +27,7 @@ fn geometry(soup: &Soup<f64>) -> Vec<Vec<[u64; 3]>> {
     all
 }
 
-/// The same primitives with vertices of their own.
+/// Returns the primitives of a scene with vertices of their own.
 fn torn(soup: &Soup<f64>) -> Soup<f64> {
     let mut positions = Vec::new();
     let mut elements = Vec::new();
@@ -91,7 +91,7 @@ fn sizes_are_scaled_about_centroids() {
     assert_eq!(penetrating(&scene, 2.0).unwrap().positions(), [expected, triangle].concat());
 }
 
-/// Whether all corners of `other` are certainly below the plane of `triangle`.
+/// Returns whether all corners of `other` are certainly below the plane of `triangle`.
 fn is_below(triangle: &[Point3<f64>; 3], other: &[Point3<f64>; 3]) -> bool {
     let [a, b, c] = triangle;
     other.iter().all(|p| below(a, b, c, p) == Some(true))
@@ -111,8 +111,8 @@ fn gapped_triangles_of_a_convex_mesh_are_apart() {
     }
 }
 
-/// Whether a plane through an edge of one triangle, upright on it, certainly separates them: for halves of a planar
-/// quadrilateral.
+/// Returns whether a plane through an edge of one triangle and perpendicular to it certainly separates both triangles.
+/// This is needed for the halves of a planar quadrilateral.
 fn separated_in_space(s: &[Point3<f64>; 3], t: &[Point3<f64>; 3]) -> bool {
     [(s, t), (t, s)].iter().any(|(s, t)| {
         let away = (s[1] - s[0]).cross(&(s[2] - s[0]));
@@ -141,7 +141,7 @@ fn gapped_triangles_of_a_planar_mesh_are_apart() {
     assert!(touching(&lid(&can)) >= 12 * 7, "without gaps, neighbours touch");
 }
 
-/// Whether all of one triangle is certainly beyond an edge of the other. Both are counter-clockwise.
+/// Returns whether one triangle is certainly beyond an edge of the other. Both are counter-clockwise.
 fn separated_in_plane(s: &[[f64; 2]; 3], t: &[[f64; 2]; 3]) -> bool {
     let beyond = |s: &[[f64; 2]; 3], t: &[[f64; 2]; 3]| {
         (0..3).any(|i| t.iter().all(|&p| orient2d(s[i], s[(i + 1) % 3], p) == Some(false)))
@@ -149,9 +149,9 @@ fn separated_in_plane(s: &[[f64; 2]; 3], t: &[[f64; 2]; 3]) -> bool {
     beyond(s, t) || beyond(t, s)
 }
 
-/// Whether a median of one triangle certainly passes through the inside of the other, away from its edges.
+/// Returns whether a median of one triangle certainly passes through the inside of the other, away from its edges.
 ///
-/// Edges do not tell: those of two triangles that mirror each other meet where they cross.
+/// Edges are not sufficient, because the edges of two mirrored triangles intersect where the triangles cross.
 fn cross(s: &[Point3<f64>; 3], t: &[Point3<f64>; 3]) -> bool {
     [(s, t), (t, s)].iter().any(|(s, [a, b, c])| {
         (0..3).any(|i| {
@@ -163,7 +163,7 @@ fn cross(s: &[Point3<f64>; 3], t: &[Point3<f64>; 3]) -> bool {
     })
 }
 
-/// The pairs of triangles that share an edge.
+/// Returns the pairs of triangles that share an edge.
 fn neighbours(mesh: &Soup<f64>) -> Vec<[usize; 2]> {
     let mut first = HashMap::new();
     let mut pairs = Vec::new();
@@ -191,7 +191,7 @@ fn penetrating_triangles_cross_all_their_neighbours() {
     assert_eq!(crossing(&penetrating(&mesh, 2.0).unwrap()), pairs.len());
     assert_eq!(crossing(&torn(&mesh)), 0, "they touch, but do not cross");
 
-    // Those of a mesh that is nearly planar in places do not all do so with certainty.
+    // Where a mesh is nearly planar, the predicates are not certain for all pairs.
     let mesh = torus_knot(&TorusKnot::default().with_rings(60).with_sides(8)).unwrap();
     let pairs = neighbours(&mesh);
     let soup = penetrating(&mesh, 2.0).unwrap();
@@ -201,7 +201,7 @@ fn penetrating_triangles_cross_all_their_neighbours() {
 }
 
 #[test]
-fn factors_out_of_range_are_refused() {
+fn factors_out_of_range_are_errors() {
     let scene = ball(1);
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1.0] {
         let refused = |result| matches!(result, Err(GenerateError::OutOfRange { option: "factor", .. }));
@@ -269,7 +269,7 @@ fn middles_move_by_up_to_the_amplitude_and_reach_far_into_it() {
     }
     let longest = moved.iter().map(|v| v.norm()).fold(0.0, f64::max);
     assert!((0.98 * amplitude..=amplitude * (1.0 + 16.0 * f64::EPSILON)).contains(&longest), "{longest}");
-    // Each coordinate of the unit ball has variance 1/5 and no mean.
+    // Each coordinate of the unit ball has the variance 1/5 and the mean 0.
     for k in 0..3 {
         let mean = moved.iter().map(|v| v[k] / amplitude).sum::<f64>() / moved.len() as f64;
         let square = moved.iter().map(|v| (v[k] / amplitude).powi(2)).sum::<f64>() / moved.len() as f64;
@@ -284,7 +284,7 @@ fn the_order_of_the_primitives_changes_no_position() {
     elements.reverse();
     elements.rotate_left(77);
     for (i, element) in elements.iter_mut().enumerate() {
-        // Other corners first, and some triangles inside out.
+        // Triangles start at other corners, and some are reversed.
         if let Element::Triangle(t) = element {
             t.rotate_left(i % 3);
             if i % 2 == 0 {
@@ -342,7 +342,7 @@ fn scenes_of_any_scale_are_displaced_alike() {
 }
 
 #[test]
-fn subdivisions_that_do_not_fit_are_refused() {
+fn subdivisions_with_too_many_primitives_are_errors() {
     let too_many = |scene: &Soup<f64>, levels| {
         let result = subdivide(scene, &Subdivide::default().with_levels(levels));
         matches!(result, Err(GenerateError::Build(BuildError::TooMany { .. })))
@@ -381,7 +381,7 @@ fn rotations_keep_shapes() {
     let turned = Transform::default().rotated_x(45.0).rotated_y(45.0).apply(&gear).unwrap();
     assert_eq!(turned.triangles(), gear.triangles());
     assert!((volume(&turned) / volume(&gear) - 1.0).abs() < 1e4 * f64::EPSILON);
-    // Where the axis of the gear leads.
+    // This is the direction of the axis of the gear.
     let axis = Vector3::new(0.5, -(0.5f64.sqrt()), 0.5);
     let heights = turned.positions().iter().map(|p| p.coords.dot(&axis));
     assert!(heights.into_iter().all(|z| z.abs() < 1e-13 || (z - 24.0).abs() < 1e-13));
@@ -390,7 +390,7 @@ fn rotations_keep_shapes() {
 }
 
 #[test]
-fn transforms_that_make_no_sense_are_refused() {
+fn invalid_transforms_are_errors() {
     let scene = ball(1);
     let none = Transform::default();
     for bad in [f64::NAN, f64::INFINITY] {

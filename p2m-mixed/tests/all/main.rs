@@ -1,4 +1,4 @@
-//! Readers, writers, generators and adapters, as one program; its allocator counts for each thread.
+//! Tests of readers, writers, generators and adapters in one program, whose allocator counts bytes for each thread.
 
 mod adapters;
 mod answers;

@@ -1,4 +1,4 @@
-//! How much memory reading takes: within three times what the scene holds, for large files of every format.
+//! Reading takes at most three times the memory of the scene, for large files of every format.
 
 use crate::common::written;
 use nalgebra::Point3;
@@ -6,18 +6,18 @@ use p2m_core::{Element, PrimitiveSet, Soup};
 use p2m_mixed::{Format, Scene, read_scene, read_scene_from};
 use p2m_testkit::amount;
 
-/// Buffers of a fixed size.
+/// The size of buffers that do not depend on the file.
 const FIXED: usize = 1 << 17;
 
-/// Reads a scene; what it holds, and how much was taken at most.
+/// Reads a scene, and returns it with its memory and the largest memory while it was read.
 fn measure(read: impl FnOnce() -> Scene) -> (Scene, usize, usize) {
     let mut scene = None;
     let taken = allocation_counter::measure(|| scene = Some(read()));
     (scene.expect("a scene"), usize::try_from(taken.bytes_current).expect("not negative"), taken.bytes_max as usize)
 }
 
-/// What the scene holds according to its documentation, apart from names.
-fn holds(scene: &Scene) -> usize {
+/// Returns the memory of a scene according to its documentation, without names.
+fn scene_bytes(scene: &Scene) -> usize {
     let soup = &scene.soup;
     let kinds = [soup.points().len(), soup.segments().len(), soup.triangles().len()];
     let slots = if kinds.iter().filter(|&&n| n > 0).count() > 1 { 4 * soup.len() } else { 0 };
@@ -34,14 +34,15 @@ fn check(what: &str, file: &[u8], format: Format) -> Scene {
 fn check_peak(what: &str, scene: &Scene, held: usize, peak: usize) {
     println!("{what}: {:.2} of {held} bytes", peak as f64 / held as f64);
     assert!(peak <= 3 * held + FIXED, "{what}: {peak} bytes taken for {held}");
-    let least = holds(scene);
+    let least = scene_bytes(scene);
     assert!(held >= least, "{what}");
     let names: usize = scene.objects.iter().map(|o| o.name.len()).sum();
     let objects = 2 * scene.objects.len() * size_of_val(scene.objects.first().map_or(&[][..], std::slice::from_ref));
     assert!(held <= least + names + objects + 1000, "{what}: {held} bytes held, {least} needed");
 }
 
-/// A grid of n x n squares, each of two triangles; with every tenth edge and every tenth vertex, in turns, if mixed.
+/// Returns a grid of n x n squares, each of two triangles. A mixed grid also has every tenth edge and every tenth
+/// vertex, alternately.
 fn grid(n: u32, is_mixed: bool) -> Scene {
     let side = n + 1;
     let positions = (0..side * side)
@@ -58,7 +59,8 @@ fn grid(n: u32, is_mixed: bool) -> Scene {
 
 #[test]
 fn reading_takes_no_more_than_three_times_the_scene() {
-    // Just behind a power of two, where vectors that grow are largest beside what they hold; and just before.
+    // Just above a power of two, the capacity of growing vectors is largest relative to their length. Other sizes are
+    // just below.
     for n in amount(vec![363, 361, 400, 460], vec![91]) {
         let scene = grid(n, false);
         for format in [Format::Obj, Format::Ply, Format::Stl, Format::Off] {
@@ -71,7 +73,7 @@ fn reading_takes_no_more_than_three_times_the_scene() {
             assert_eq!(again.soup, scene.soup);
         }
 
-        // Faces in front of their vertices.
+        // The faces come before their vertices.
         let soup = grid(n, false).soup;
         let xyz = "property float x\nproperty float y\nproperty float z\n";
         let header = format!(
@@ -88,7 +90,7 @@ fn reading_takes_no_more_than_three_times_the_scene() {
         soup.positions().iter().flat_map(|p| p.iter()).for_each(|&x| file.extend((x as f32).to_le_bytes()));
         assert_eq!(check(&format!("{n}, faces first"), &file, Format::Ply).soup, soup);
 
-        // The cloud of a scanner, in which every other point is none.
+        // The point cloud is that of a scanner, in which every other point is invalid.
         let count = 2 * n * n;
         let header = format!("ply\nformat binary_little_endian 1.0\nelement vertex {count}\n{xyz}end_header\n");
         let mut file = header.into_bytes();
@@ -99,7 +101,7 @@ fn reading_takes_no_more_than_three_times_the_scene() {
         let scene = check(&format!("{n}, half a cloud"), &file, Format::Ply);
         assert_eq!(scene.soup.points().len(), (n * n) as usize);
 
-        // Point clouds, and a group for each face.
+        // These are point clouds, and a file with a group for each face.
         let mut cloud = String::new();
         let mut groups = String::from("v 0 0 0\n");
         for i in 0..n * n {
@@ -111,7 +113,7 @@ fn reading_takes_no_more_than_three_times_the_scene() {
         assert_eq!(scene.objects.len(), (n * n).div_ceil(2) as usize);
     }
 
-    // One strip that is the whole file, and facets that share nothing: just behind a power of two again.
+    // These are a file of one strip, and facets without shared vertices. The sizes are just above a power of two again.
     for count in amount(vec![262_147i32, 300_000], vec![32_771]) {
         let mut strip = b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
             property float z\nelement tristrips 1\nproperty list int uchar vertex_indices\nend_header\n"

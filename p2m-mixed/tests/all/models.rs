@@ -1,10 +1,10 @@
-//! Files of the wild, with the counts that their list states.
+//! Real models have the numbers of primitives that the list of models states.
 
 use crate::common::{bits, read_back};
 use p2m_mixed::{Format, WriteError, read_scene, stl_rounding, write_stl};
 use std::path::PathBuf;
 
-/// Name, triangles, segments.
+/// The name of a model and its numbers of triangles and segments.
 const MODELS: &[(&str, usize, usize)] = &[
     ("bunny.obj", 28_576, 0),
     ("armadillo.obj", 86_482, 0),
@@ -23,7 +23,7 @@ const MODELS: &[(&str, usize, usize)] = &[
     ("track_lines.obj", 0, 16_266),
     ("rings_lines.obj", 0, 6_144),
     ("degenerate_small.obj", 24, 0),
-    // 40,211 faces, quadrilaterals among them.
+    // The file has 40,211 faces, some of which are quadrilaterals.
     ("sponza_66k.obj", 66_450, 0),
     ("camel.off", 19_536, 0),
     ("gear_diff_ring.stl", 57_640, 0),
@@ -45,7 +45,7 @@ fn models_have_the_counts_of_their_list() {
     }
 }
 
-/// The models of this depth, with their names and their numbers of triangles and segments.
+/// Returns the models of this depth, with their names and their numbers of triangles and segments.
 fn models() -> impl Iterator<Item = (PathBuf, &'static str, [usize; 2])> {
     MODELS
         .iter()
@@ -67,7 +67,7 @@ fn models_are_written_and_read_back_as_the_same_scene() {
             assert!(matches!(error, WriteError::NotATriangle { .. }), "{name}: {error}");
             continue;
         }
-        // The corners of each triangle, in single precision; positions are numbered anew.
+        // The corners of each triangle are compared in single precision, because positions get other numbers.
         let again = read_back(&scene, Format::Stl);
         let (before, after) = (scene.soup.triangles(), again.soup.triangles());
         assert_eq!(before.len(), after.len(), "{name}");

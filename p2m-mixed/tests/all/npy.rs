@@ -1,7 +1,7 @@
-//! Points from arrays of NumPy, and what is refused.
+//! Points from arrays of NumPy, and arrays that are errors.
 
 use nalgebra::Point3;
-use p2m_mixed::{HeaderProblem, Place, PointFormat, ReadError, Reason, read_points_from};
+use p2m_mixed::{FileLocation, HeaderProblem, PointFormat, ReadError, Reason, read_points_from};
 
 fn read(file: &[u8]) -> Result<Vec<[f64; 3]>, ReadError> {
     let points = read_points_from(file, PointFormat::Npy, "q.npy")?;
@@ -87,7 +87,8 @@ fn structured_arrays() {
     for fortran in ["True", "False"] {
         assert_eq!(read(&npy(1, &described(fields, fortran, "(2,)"), &data)).unwrap(), POINTS);
     }
-    // Coordinates in any order, of any types, with gaps; others of their names are of no use.
+    // Coordinates may be in any order, of any types and with gaps. Fields of these names with another shape are
+    // ignored.
     let fields = "[('z', '<i2'), ('', '|V5'), ('x', '>f8'), ('y', '<u8'), ('X', '|S3')]";
     let mut data = Vec::new();
     for [x, y, z] in POINTS {
@@ -98,14 +99,14 @@ fn structured_arrays() {
         data.extend(b"abc");
     }
     assert_eq!(read(&npy(1, &described(fields, "False", "(2,)"), &data)).unwrap(), POINTS);
-    // The query goes before x, y, z.
+    // The field `query` takes precedence over x, y, z.
     let fields = "[('x', '<f8'), ('y', '<f8'), ('z', '<f8'), ('query', '<f8', 3)]";
     let data = doubles(&[9.0, 9.0, 9.0, 1.0, 2.0, 3.0, 9.0, 9.0, 9.0, 4.0, 5.0, 100.0]);
     assert_eq!(read(&npy(1, &described(fields, "False", "(2,)"), &data)).unwrap(), POINTS);
 }
 
 #[test]
-fn what_is_no_array_of_points_is_refused() {
+fn other_arrays_are_errors() {
     let message = |descr: &str, shape: &str| {
         read(&npy(1, &described(descr, "False", shape), &[0; 400]))
             .unwrap_err()
@@ -136,7 +137,7 @@ fn what_is_no_array_of_points_is_refused() {
         "items of type '|S8' are no coordinates, expected integers or floats of 4 or 8 bytes"
     );
     assert!(message("[('o', '|O8'), ('query', '<f8', (3,))]", "(2,)").starts_with("items of type ('o', '|O8') are no"));
-    // An object in any field: its size is not known, and what is stored is a pickle.
+    // A field of objects is an error, because the size of an object is not known and the data is a pickle.
     assert_eq!(
         message("[('o', '|O'), ('query', '<f8', (3,))]", "(2,)"),
         "items of type ('o', '|O') are no coordinates, expected integers or floats of 4 or 8 bytes"
@@ -212,7 +213,7 @@ fn numbers_that_are_not_finite_have_a_place() {
     for bad in [f64::NAN, f64::INFINITY] {
         let file = npy(1, &described("'<f8'", "False", "(2, 3)"), &doubles(&[1.0, 2.0, 3.0, 4.0, bad, 6.0]));
         let error = read(&file).unwrap_err();
-        assert_eq!(error.place, Place::Byte(file.len() as u64 - 16));
+        assert_eq!(error.location, FileLocation::Byte(file.len() as u64 - 16));
         assert!(matches!(&error.reason, Reason::NonFinite { text } if *text == bad.to_string()), "{error}");
     }
 }

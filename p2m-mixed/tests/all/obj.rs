@@ -1,9 +1,9 @@
-//! Forms of OBJ statements, and what is refused.
+//! Forms of OBJ statements, and statements that are errors.
 
 use crate::common::{RICH_OBJ, elements, obj, p, s, skipped, t};
 use nalgebra::Point3;
 use p2m_core::{Element, Soup};
-use p2m_mixed::{MAX_CORNERS, Place, Reason, read_scene, write_obj};
+use p2m_mixed::{FileLocation, MAX_CORNERS, Reason, read_scene, write_obj};
 use p2m_testkit::amount;
 use std::error::Error;
 use std::path::Path;
@@ -18,7 +18,8 @@ fn with_four(statements: &str) -> Vec<Element> {
 fn a_bit_of_everything() {
     let scene = obj(RICH_OBJ).unwrap();
     let quad = [t(0, 1, 2), t(0, 2, 3)];
-    // The last face has its dent at vertex 4, from where it is a fan; the cutter may choose otherwise.
+    // The last face has its reflex corner at vertex 4. A fan around that vertex covers it, but other triangulations do
+    // too.
     let found = elements(&scene);
     assert_eq!(found[..3], [t(0, 1, 2), quad[0], quad[1]]);
     assert!(found[3..6].iter().all(|e| matches!(e, Element::Triangle(_))));
@@ -94,13 +95,13 @@ fn control_points_are_no_point_cloud() {
         let scene = obj(format!("v 0 0 0\nv 1 0 0\n{statement}\n")).unwrap();
         assert_eq!(elements(&scene), [], "{statement}");
         assert_eq!(skipped(&scene), [(statement.split(' ').next().unwrap(), 1)]);
-        // What else there is stays.
+        // Other statements are unchanged.
         assert_eq!(elements(&obj(format!("v 0 0 0\n{statement}\np 1")).unwrap()), [p(0)]);
     }
 }
 
 #[test]
-fn files_of_other_formats_are_refused() {
+fn files_of_other_formats_are_errors() {
     for text in [
         &b"<!DOCTYPE html>\n<p>not found</p>\n"[..],
         b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendloop\n",
@@ -108,7 +109,7 @@ fn files_of_other_formats_are_refused() {
         b"# a comment\ng\nword\n",
     ] {
         let error = obj(text).unwrap_err();
-        assert!(matches!((&error.place, &error.reason), (Place::File, Reason::NoVertex)), "{error}");
+        assert!(matches!((&error.location, &error.reason), (FileLocation::File, Reason::NoVertex)), "{error}");
     }
 }
 
@@ -118,7 +119,7 @@ fn lines_may_end_in_a_return_alone() {
     let scene = obj(&text).unwrap();
     assert_eq!(elements(&scene), [t(0, 1, 2), s(0, 3)]);
     assert_eq!(obj(text.replace('\n', "\r")).unwrap(), scene);
-    assert_eq!(obj("v 0 0 0\r\rp 2\r").unwrap_err().place, Place::Line(3));
+    assert_eq!(obj("v 0 0 0\r\rp 2\r").unwrap_err().location, FileLocation::Line(3));
 }
 
 #[test]
@@ -143,23 +144,23 @@ fn degenerate_faces_stay() {
     assert_eq!(with_four("f 1 1 2 2"), [t(0, 0, 1), t(0, 1, 1)]);
 }
 
-/// The error of `FOUR` followed by `statements`.
-fn refused(statements: &str) -> (Place, Reason) {
+/// Returns the error of `FOUR` followed by `statements`.
+fn statement_error(statements: &str) -> (FileLocation, Reason) {
     let error = obj(format!("{FOUR}{statements}")).unwrap_err();
     assert_eq!(error.file, "t.obj");
-    (error.place, error.reason)
+    (error.location, error.reason)
 }
 
 macro_rules! assert_refused {
     ($statements:expr, $line:expr, $reason:pat) => {
-        let (place, reason) = refused($statements);
-        assert_eq!(place, Place::Line($line), "{:?}", $statements);
+        let (location, reason) = statement_error($statements);
+        assert_eq!(location, FileLocation::Line($line), "{:?}", $statements);
         assert!(matches!(&reason, $reason), "{:?}: {reason:?}", $statements);
     };
 }
 
 #[test]
-fn errors_tell_line_and_reason() {
+fn errors_have_line_and_reason() {
     assert_refused!("f 1 2 0\n", 5, Reason::IndexZero);
     assert_refused!("\n\nf 1 2 5\n", 7, Reason::IndexOutOfRange { index: 5, count: 4 });
     assert_refused!("f 1 2 -5\n", 5, Reason::IndexOutOfRange { index: -5, count: 4 });
@@ -192,7 +193,7 @@ fn errors_tell_line_and_reason() {
     for word in ["x", "1,5", "1e", "\u{e9}", "0x10", "1_000"] {
         assert_refused!(&format!("v 1 {word} 2\n"), 5, Reason::BadNumber { .. });
     }
-    // How some C libraries print NaN: what follows `#` is a comment, so it comes out as a missing number.
+    // Some C libraries print NaN like this. Text after `#` is a comment, so the error is about a missing number.
     assert_refused!("v 1 2 1.#QNAN\nv 1 1.#QNAN 2\n", 6, Reason::TooFewCoordinates { found: 2 });
     for word in ["nan", "NaN", "-nan", "inf", "-Infinity", "1e999", "-1e400"] {
         assert_refused!(&format!("v 1 {word} 2\nf 1 2 3\nl 1 5\n"), 7, Reason::NonFiniteVertex { index: 5 });
@@ -200,7 +201,7 @@ fn errors_tell_line_and_reason() {
     for words in ["x", "1 red", "0 0 0,5", "1 v"] {
         assert_refused!(&format!("v 1 2 3 {words}\n"), 5, Reason::BadNumber { .. });
     }
-    let text = refused(&format!("v 1 2 {}\n", "x\u{7}".repeat(1000))).1.to_string();
+    let text = statement_error(&format!("v 1 2 {}\n", "x\u{7}".repeat(1000))).1.to_string();
     assert!(text.len() < 150 && !text.contains('\u{7}'), "{text}");
 }
 
@@ -229,7 +230,7 @@ fn messages_read_well() {
 }
 
 #[test]
-fn files_are_told_by_their_extension() {
+fn extensions_select_the_format() {
     let error = read_scene(Path::new("scene.stp")).unwrap_err();
     assert_eq!(error.to_string(), "scene.stp: unknown extension 'stp', expected one of obj, ply, stl, off, p2m");
     assert_eq!(
@@ -242,17 +243,17 @@ fn files_are_told_by_their_extension() {
         assert_eq!(error.to_string(), format!("{name}: cannot be read"));
         assert!(error.source().is_some_and(|e| e.is::<std::io::Error>()));
     }
-    // Not a line of it, whatever the system says when one is read.
+    // The error has no line, whatever error the system returns for a directory.
     let folder = std::env::temp_dir().join(format!("p2m-mixed-{}.obj", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let error = read_scene(&folder).unwrap_err();
     std::fs::remove_dir(&folder).unwrap();
-    assert_eq!(error.place, Place::File);
+    assert_eq!(error.location, FileLocation::File);
     assert!(matches!(&error.reason, Reason::Io(e) if e.kind() == std::io::ErrorKind::IsADirectory), "{error}");
 }
 
 #[test]
-fn what_is_written_reads_back_bit_by_bit() {
+fn written_scenes_read_back_bit_by_bit() {
     let values =
         [0.0, -0.0, 0.1, -1.0 / 3.0, 1e300, -1e-300, 5e-324, f64::MAX, f64::MIN_POSITIVE, 123_456_789.123_456_79, 1.0];
     let positions: Vec<_> = (0..values.len())

@@ -1,9 +1,9 @@
-//! Forms of OFF files, and what is refused.
+//! Forms of OFF files, and files that are errors.
 
 use crate::common::{elements, off, p, s, skipped, t};
 use nalgebra::Point3;
 use p2m_core::Element;
-use p2m_mixed::{HeaderProblem, Place, Reason};
+use p2m_mixed::{FileLocation, HeaderProblem, Reason};
 
 const SQUARE: &str = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
@@ -86,19 +86,19 @@ fn vertices_alone_are_a_point_cloud() {
 
 #[test]
 fn polygons_of_any_shape() {
-    // An arrow: its reflex corner is the last.
+    // The face is an arrow, whose reflex corner is the last one.
     let scene = off("OFF 4 1 0\n0 0 0\n4 0 0\n4 4 0\n3 1 0\n4 0 1 2 3\n").unwrap();
     assert_eq!(elements(&scene), [t(1, 2, 3), t(1, 3, 0)]);
 }
 
 #[test]
-fn what_follows_the_last_face_is_counted() {
+fn data_after_the_last_face_is_counted() {
     let scene = off(format!("OFF 4 1 0\n{SQUARE}3 0 1 2\n7 8 # no word\nx")).unwrap();
     assert_eq!(skipped(&scene), [("words after the last face", 3)]);
 }
 
 #[test]
-fn errors_tell_place_and_reason() {
+fn errors_have_location_and_reason() {
     let message = |file: &str| off(file).unwrap_err().to_string();
     let with = |rest: &str| format!("OFF\n4 2 0\n{SQUARE}3 0 1 2\n{rest}");
     assert_eq!(
@@ -144,11 +144,11 @@ fn errors_tell_place_and_reason() {
     for header in ["ply", "v 0 0 0", "xOFF", "OFFx", "OFF8x 1", "nOFF3 1 0 0", "-4 1 0", "COF"] {
         let error = off(format!("{header}\n1 0 0\n0 0 0\n")).unwrap_err();
         assert!(matches!(error.reason, Reason::BadHeader(HeaderProblem::NotOff { .. })), "{header}: {error}");
-        assert_eq!(error.place, Place::Line(1));
+        assert_eq!(error.location, FileLocation::Line(1));
     }
 }
 
-/// Numbers in the byte order of binary files.
+/// Returns numbers in the byte order of binary files.
 fn be(numbers: &[i32]) -> Vec<u8> {
     numbers.iter().flat_map(|n| n.to_be_bytes()).collect()
 }
@@ -178,25 +178,25 @@ fn binary_files() {
         assert_eq!(scene.soup.positions()[2], Point3::new(1.0, f64::from(0.1f32), 0.0));
         let expected = [("vertices with further numbers", 4), ("faces with a colour", 2)];
         assert_eq!(skipped(&scene), expected[usize::from(extras == 0)..]);
-        // Every number is needed.
+        // Every number of the file is needed.
         for end in header.len()..file.len() {
             let error = off(&file[..end]).unwrap_err();
             assert!(matches!(error.reason, Reason::UnexpectedEnd), "{error}");
         }
-        let place = file.len() - 16;
+        let location = file.len() - 16;
         file.extend(b"abc");
         assert_eq!(off(&file).unwrap().skipped.last().unwrap().to_string(), "3 bytes after the last face");
-        file[place + 7] = 3;
+        file[location + 7] = 3;
         let error = off(&file).unwrap_err();
-        assert_eq!(error.place, Place::Byte(place as u64 + 4), "{error}");
+        assert_eq!(error.location, FileLocation::Byte(location as u64 + 4), "{error}");
         assert!(matches!(error.reason, Reason::NonFiniteVertex { index: 3 }), "{error}");
-        file[place + 7] = 4;
+        file[location + 7] = 4;
         assert!(matches!(off(&file).unwrap_err().reason, Reason::NoSuchVertex { index: 4, count: 4 }));
     }
     let error = off([b"OFF BINARY\n".to_vec(), be(&[-1, 0, 0])].concat()).unwrap_err();
     assert_eq!(
-        (error.place, error.to_string().as_str()),
-        (Place::Byte(11), "t.off at byte 11: a list cannot have -1 items")
+        (error.location, error.to_string().as_str()),
+        (FileLocation::Byte(11), "t.off at byte 11: a list cannot have -1 items")
     );
     let file = [b"OFF BINARY\n".to_vec(), be(&[1, 1, 0]), floats(&[0.0; 3]), be(&[1, 0, 5, 0, 0, 0, 0, 0])].concat();
     assert!(matches!(off(file).unwrap_err().reason, Reason::BadListCount { count: 5 }));

@@ -1,4 +1,4 @@
-//! Pictures: what is in the files, and that any scale can be drawn.
+//! Pictures have the expected content at every scale.
 
 use nalgebra::Point3;
 use p2m_core::{Aabb, Element};
@@ -28,7 +28,7 @@ fn svg(panels: &[Panel], backdrop: &[Point3<f64>], view: View) -> String {
     String::from_utf8(bytes).unwrap()
 }
 
-/// Every pair of numbers behind M and L.
+/// Returns every pair of numbers after M and L.
 fn places(svg: &str) -> Vec<[f64; 2]> {
     let paths = svg.split("d=\"").skip(1).map(|rest| rest.split('"').next().unwrap());
     let points = paths.flat_map(|path| path.split(['M', 'L']).skip(1));
@@ -55,7 +55,7 @@ fn panels_are_titled_and_everything_lies_in_them() {
             let places = places(&text);
             assert_eq!(places.len(), 1 + 5 * 24);
             assert!(places.iter().flatten().all(|x| (0.0..=300.0).contains(x)), "{view:?} {scale}");
-            // The longest side fills most of a panel's height, seen from anywhere but above.
+            // The longest side fills most of the height of a panel in all views except that from above.
             let heights = places.iter().map(|p| p[1]);
             let extent = heights.clone().fold(0.0, f64::max) - heights.fold(300.0, f64::min);
             assert!(extent > if view == View::Top { 100.0 } else { 140.0 }, "{view:?} {extent}");

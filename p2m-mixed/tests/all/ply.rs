@@ -1,14 +1,14 @@
-//! Forms of PLY files, and what is refused.
+//! Forms of PLY files, and files that are errors.
 
 use crate::common::{ENCODINGS, Encoding, N, Ply, elements, p, ply, rich_ply, s, skipped, t};
 use nalgebra::Point3;
 use p2m_core::Element;
-use p2m_mixed::{HeaderProblem, Place, ReadError, Reason};
+use p2m_mixed::{FileLocation, HeaderProblem, ReadError, Reason};
 
 const XYZ: &str = "property float x\nproperty float y\nproperty float z";
 const LIST: &str = "property list uchar int vertex_indices";
 
-/// Four vertices of a square, and these faces.
+/// Returns a file with the four vertices of a square and these faces.
 fn square(encoding: Encoding, faces: &[&[i32]]) -> Ply {
     let header = format!("element vertex 4\n{XYZ}\nelement face {}\n{LIST}", faces.len());
     let file = Ply::new(encoding, &header)
@@ -58,7 +58,7 @@ fn every_type_under_both_names() {
         for (i, &(old, new, _)) in values.iter().enumerate() {
             for name in [old, new] {
                 let (_, other_type, other) = values[(i + 3) % 8];
-                // Properties in another order, and lists of every type in between.
+                // Properties are in another order, and lists of every type are between them.
                 let header = format!(
                     "element vertex 1\nproperty {other_type} z\nproperty list uchar {name} more\nproperty {name} x\nproperty {name} y"
                 );
@@ -108,7 +108,7 @@ fn counts_and_indices_of_every_integer_type() {
 #[test]
 fn header_lines_may_end_either_way() {
     for encoding in ENCODINGS {
-        // The first byte of data is a line end: it belongs to the number.
+        // The first byte of the data is that of a line end, but belongs to a number.
         let header = format!("comment x\n\nelement vertex 1\n{XYZ}");
         let value = f32::from_le_bytes([b'\n', b'\r', b'\n', 0x40]);
         let value = if encoding == Encoding::Big { f32::from_bits(value.to_bits().swap_bytes()) } else { value };
@@ -140,7 +140,7 @@ fn vertices_alone_are_a_point_cloud() {
         assert_eq!(elements(&square(encoding, &[]).read().unwrap()).len(), 4);
         assert_eq!(elements(&Ply::new(encoding, &format!("element vertex 0\n{XYZ}")).read().unwrap()), []);
         assert_eq!(elements(&Ply::new(encoding, "comment nothing").read().unwrap()), []);
-        // A strip too short for a triangle is no point cloud.
+        // A file with a strip that is too short for a triangle is not a point cloud.
         let file = Ply::new(encoding, &format!("element vertex 1\n{XYZ}\nelement tristrips 1\n{LIST}"))
             .float_row([0.0; 3])
             .list(&[0]);
@@ -160,7 +160,7 @@ fn strips_turn_every_other_triangle_and_start_anew() {
 }
 
 #[test]
-fn what_follows_the_last_element_is_reported() {
+fn data_after_the_last_element_is_reported() {
     for encoding in ENCODINGS {
         let mut file = square(encoding, &[&[0, 1, 2]]);
         file.bytes.extend(b"more\n");
@@ -185,9 +185,9 @@ fn text_is_read_in_double_precision() {
     assert_eq!(ply(text).unwrap().soup.positions(), [Point3::new(0.1, 90_706.123_456_789, 1e300)]);
 }
 
-fn header_error(text: &str) -> (Place, HeaderProblem) {
+fn header_error(text: &str) -> (FileLocation, HeaderProblem) {
     match ply(text).unwrap_err() {
-        ReadError { place, reason: Reason::BadHeader(problem), .. } => (place, problem),
+        ReadError { location, reason: Reason::BadHeader(problem), .. } => (location, problem),
         other => panic!("{other}"),
     }
 }
@@ -195,7 +195,7 @@ fn header_error(text: &str) -> (Place, HeaderProblem) {
 #[test]
 fn bad_headers() {
     for text in ["", "p", "plyx\n", "OFF\n", " ply\n", "\0\0\0\0"] {
-        assert_eq!(header_error(text), (Place::Line(1), HeaderProblem::NotPly), "{text:?}");
+        assert_eq!(header_error(text), (FileLocation::Line(1), HeaderProblem::NotPly), "{text:?}");
     }
     let start = "ply\nformat ascii 1.0\n";
     for line in [
@@ -209,7 +209,7 @@ fn bad_headers() {
         "element vertex 99999999999999999999999 7",
     ] {
         let problem = HeaderProblem::BadLine { text: line.to_owned() };
-        assert_eq!(header_error(&format!("{start}{line}\n")), (Place::Line(3), problem));
+        assert_eq!(header_error(&format!("{start}{line}\n")), (FileLocation::Line(3), problem));
     }
     let vertex = format!("{start}element vertex 1\n");
     let bad_type = |declared: &str| HeaderProblem::BadType { name: "x".to_owned(), declared: declared.to_owned() };
@@ -220,15 +220,15 @@ fn bad_headers() {
         ("property list float int x", bad_type("list float int")),
         ("property list uchar half x", bad_type("list uchar half")),
     ] {
-        assert_eq!(header_error(&format!("{vertex}{line}\n")), (Place::Line(4), problem));
+        assert_eq!(header_error(&format!("{vertex}{line}\n")), (FileLocation::Line(4), problem));
     }
     let twice = format!("{vertex}property float x\nproperty int x\n");
-    assert_eq!(header_error(&twice), (Place::Line(5), HeaderProblem::Duplicate { name: "x".to_owned() }));
+    assert_eq!(header_error(&twice), (FileLocation::Line(5), HeaderProblem::Duplicate { name: "x".to_owned() }));
     let twice = format!("{vertex}property float x\nelement vertex 2\n");
-    assert_eq!(header_error(&twice), (Place::Line(5), HeaderProblem::Duplicate { name: "vertex".to_owned() }));
-    assert_eq!(header_error("ply\nend_header\n"), (Place::Line(2), HeaderProblem::NoFormat));
+    assert_eq!(header_error(&twice), (FileLocation::Line(5), HeaderProblem::Duplicate { name: "vertex".to_owned() }));
+    assert_eq!(header_error("ply\nend_header\n"), (FileLocation::Line(2), HeaderProblem::NoFormat));
     let long = format!("ply\ncomment {}\n", "x".repeat(70_000));
-    assert_eq!(header_error(&long), (Place::Line(2), HeaderProblem::LineTooLong));
+    assert_eq!(header_error(&long), (FileLocation::Line(2), HeaderProblem::LineTooLong));
     for (header, element, property) in [
         ("element vertex 1\nproperty float x\nproperty float y", "vertex", "z"),
         ("element face 1\nproperty int vertex_indices_of", "face", "vertex_indices"),
@@ -236,7 +236,7 @@ fn bad_headers() {
         ("element edge 1\nproperty int vertex1", "edge", "vertex2"),
     ] {
         let problem = HeaderProblem::MissingProperty { element, property };
-        assert_eq!(header_error(&format!("{start}{header}\nend_header\n")), (Place::File, problem));
+        assert_eq!(header_error(&format!("{start}{header}\nend_header\n")), (FileLocation::File, problem));
     }
     for (header, name, declared) in [
         ("element vertex 1\nproperty list uchar float x\nproperty float y\nproperty float z", "x", "list uchar float"),
@@ -245,7 +245,7 @@ fn bad_headers() {
         ("element edge 1\nproperty float vertex1\nproperty int vertex2", "vertex1", "float"),
     ] {
         let problem = HeaderProblem::BadType { name: name.to_owned(), declared: declared.to_owned() };
-        assert_eq!(header_error(&format!("{start}{header}\nend_header\n")), (Place::File, problem));
+        assert_eq!(header_error(&format!("{start}{header}\nend_header\n")), (FileLocation::File, problem));
     }
 }
 
@@ -253,29 +253,29 @@ fn bad_headers() {
 fn formats_we_do_not_know() {
     for format in ["ascii 2.0", "binary_middle_endian 1.0", "ascii", ""] {
         let error = ply(format!("ply\nformat {format}\nend_header\n")).unwrap_err();
-        assert_eq!(error.place, Place::Line(2));
+        assert_eq!(error.location, FileLocation::Line(2));
         assert!(matches!(&error.reason, Reason::UnsupportedFormat { text } if text == format), "{error}");
     }
 }
 
-/// Reason, and place as the number of numbers of vertices and faces in front.
+/// Checks the reason of an error, and its location as the number of numbers of vertices and faces before it.
 fn check(encoding: Encoding, file: &Ply, bytes_or_line: (u64, u64), expected: impl Fn(&Reason) -> bool) {
     let error = file.read().unwrap_err();
     let data = file.bytes.windows(11).position(|w| w == b"end_header\n").unwrap() as u64 + 11;
     let lines = file.bytes[..usize::try_from(data).unwrap()].iter().filter(|&&b| b == b'\n').count() as u64;
-    let place = if encoding == Encoding::Ascii {
-        Place::Line(lines + bytes_or_line.1)
+    let location = if encoding == Encoding::Ascii {
+        FileLocation::Line(lines + bytes_or_line.1)
     } else {
-        Place::Byte(data + bytes_or_line.0)
+        FileLocation::Byte(data + bytes_or_line.0)
     };
-    assert_eq!(error.place, place, "{encoding:?} {error}");
+    assert_eq!(error.location, location, "{encoding:?} {error}");
     assert!(expected(&error.reason), "{encoding:?} {error}");
 }
 
 #[test]
-fn errors_tell_place_and_reason() {
+fn errors_have_location_and_reason() {
     for e in ENCODINGS {
-        // 48 bytes of vertices on 4 lines; a face of three has 13 bytes.
+        // The vertices have 48 bytes on 4 lines, and a face of three vertices has 13 bytes.
         let faces: [&[i32]; 2] = [&[0, 1, 2], &[0, 4, 1]];
         check(e, &square(e, &faces), (48 + 13 + 5, 6), |r| matches!(r, Reason::NoSuchVertex { index: 4, count: 4 }));
         let faces: [&[i32]; 1] = [&[0, 1, -1]];
@@ -302,14 +302,14 @@ fn errors_tell_place_and_reason() {
             let file = Ply::new(e, &format!("element vertex 2\n{XYZ}\nelement face 1\n{LIST}"))
                 .float_row([1.0; 3])
                 .float_row([0.0, bad, 0.0]);
-            // The place is that of the vertex.
+            // The location is that of the vertex.
             check(e, &file.list(&[0, 0, 1]), (16, 2), |r| matches!(r, Reason::NonFiniteVertex { index: 1 }));
-            // The same with the face in front.
+            // The location is that of the vertex even if the face comes first.
             let header = format!("element face 1\n{LIST}\nelement vertex 2\n{XYZ}");
             let file = Ply::new(e, &header).list(&[0, 0, 1]).float_row([1.0; 3]).float_row([0.0, bad, 0.0]);
             check(e, &file, (13 + 16, 3), |r| matches!(r, Reason::NonFiniteVertex { index: 1 }));
         }
-        // Faces in front of vertices: the header tells how many there are.
+        // The faces come before the vertices, whose number is in the header.
         let file = Ply::new(e, &format!("element face 1\n{LIST}\nelement vertex 3\n{XYZ}")).list(&[0, 1, 3]);
         check(e, &file, (9, 1), |r| matches!(r, Reason::NoSuchVertex { index: 3, count: 3 }));
     }
@@ -342,7 +342,7 @@ fn vertices_that_are_not_finite_may_stay_unused() {
 }
 
 #[test]
-fn text_with_more_columns_than_declared_is_refused() {
+fn text_with_more_columns_than_declared_is_an_error() {
     let read = |rest: &str, data: &str| {
         let text = format!("ply\nformat ascii 1.0\nelement vertex 3\n{XYZ}{rest}\nend_header\n{data}");
         ply(text).unwrap_err().to_string()
@@ -368,7 +368,7 @@ fn unknown_connectivity_is_no_point_cloud() {
             assert_eq!(elements(&scene), [], "{e:?} {name}");
             assert_eq!(skipped(&scene), [("element tetra", 1)]);
         }
-        // None of them, or something else of them.
+        // The element has no members, or has another meaning.
         let header = format!("element vertex 1\n{XYZ}\nelement tetra 0\nproperty list uchar int vertex_indices");
         assert_eq!(elements(&Ply::new(e, &header).float_row([0.0; 3]).read().unwrap()), [p(0)]);
     }
@@ -385,7 +385,7 @@ fn elements_of_which_there_are_none_need_no_properties() {
 
 #[test]
 fn headers_end_lines_as_their_first_one_does() {
-    // The first byte of the data is a line feed, or a carriage return, as a number.
+    // The first byte of the data is the number of a line feed or of a carriage return.
     for (end, first) in [("\n", 10), ("\n", 13), ("\r\n", 10), ("\r\n", 13), ("\r", 10), ("\r", 13)] {
         for e in ENCODINGS {
             let header = "element vertex 1\nproperty uchar x\nproperty uchar y\nproperty uchar z";
@@ -395,7 +395,7 @@ fn headers_end_lines_as_their_first_one_does() {
     }
     let text =
         format!("ply\nformat ascii 1.0\nelement vertex 2\n{XYZ}\nend_header\n1 2 3\n4 x 6\n").replace('\n', "\r");
-    assert_eq!(ply(text).unwrap_err().place, Place::Line(9));
+    assert_eq!(ply(text).unwrap_err().location, FileLocation::Line(9));
 }
 
 #[test]
@@ -435,12 +435,12 @@ fn announced_sizes_are_not_believed() {
             format!("element vertex 3\n{XYZ}\nelement face 4000000000\n{LIST}"),
             "element tristrips 1\nproperty list uint int vertex_indices".to_owned(),
         ] {
-            // Large as a count, finite as a number.
+            // The number is too large as a count, and finite as a coordinate.
             let file = Ply::new(encoding, &header).row(&[N::U32(0x7f00_0000)]);
             let error = file.read().unwrap_err();
             assert!(matches!(error.reason, Reason::UnexpectedEnd), "{header}: {error}");
         }
-        // No room, no time: there is nothing to read.
+        // This takes neither memory nor time, because there is nothing to read.
         let file = Ply::new(encoding, "element x 9000000000000000000");
         assert_eq!(skipped(&file.read().unwrap()), [("element x", 9_000_000_000_000_000_000)]);
         let file = Ply::new(encoding, &format!("element vertex 4294967296\n{XYZ}"));

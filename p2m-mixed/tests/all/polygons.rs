@@ -1,4 +1,4 @@
-//! Polygons to triangles, through the OBJ reader: areas and overlaps in exact arithmetic.
+//! The triangles of polygons, through the OBJ reader. Areas and overlaps are checked in exact arithmetic.
 
 use crate::common::obj;
 use nalgebra::Point3;
@@ -19,7 +19,7 @@ fn outline_area(polygon: &[P]) -> i64 {
     (0..polygon.len()).map(|i| cross([0, 0], polygon[i], polygon[(i + 1) % polygon.len()])).sum()
 }
 
-/// Triangles of a polygon with these corners, by the numbers of the corners.
+/// Returns the triangles of a polygon with these corners, as indices of corners.
 fn cut3(corners: &[[f64; 3]]) -> Vec<[u32; 3]> {
     let mut text = String::new();
     for [x, y, z] in corners {
@@ -42,7 +42,7 @@ fn cut3(corners: &[[f64; 3]]) -> Vec<[u32; 3]> {
         .collect()
 }
 
-/// In a plane across `axis`, tilted towards the others.
+/// Maps corners to a plane that is perpendicular to `axis`, or tilted.
 #[allow(clippy::cast_precision_loss, reason = "small integers")]
 fn lift(polygon: &[P], axis: usize, tilt: i64) -> Vec<[f64; 3]> {
     polygon
@@ -57,7 +57,7 @@ fn lift(polygon: &[P], axis: usize, tilt: i64) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// Whether the insides of two counter-clockwise triangles share a point: no edge of either separates them.
+/// Returns whether the insides of two counter-clockwise triangles share a point, that is, no edge separates them.
 fn overlap(s: [P; 3], t: [P; 3]) -> bool {
     let separates = |s: [P; 3], t: [P; 3]| (0..3).any(|i| t.iter().all(|&p| cross(s[i], s[(i + 1) % 3], p) <= 0));
     !separates(s, t) && !separates(t, s)
@@ -71,7 +71,7 @@ fn check(polygon: &[P], triangles: &[[u32; 3]]) {
     let areas: Vec<i64> = triangles.iter().map(&corners).map(|[a, b, c]| cross(a, b, c)).collect();
     assert!(areas.iter().all(|&a| a == 0 || (a > 0) == (area > 0)), "winding: {polygon:?} {triangles:?}");
     assert_eq!(areas.iter().sum::<i64>(), area, "area: {polygon:?} {triangles:?}");
-    // As the areas add up, a triangle that sticks out would have to overlap another one.
+    // The areas add up, so a triangle outside of the polygon would have to overlap another one.
     let oriented: Vec<[P; 3]> = triangles
         .iter()
         .zip(&areas)
@@ -90,7 +90,7 @@ fn check(polygon: &[P], triangles: &[[u32; 3]]) {
     assert_eq!(triangles.len(), n - 2, "{polygon:?} {triangles:?}");
 }
 
-/// Every edge of the polygon is an edge of a triangle.
+/// Checks that every edge of the polygon is an edge of a triangle.
 fn check_edges(n: usize, triangles: &[[u32; 3]]) {
     let edges: HashSet<[u32; 2]> =
         triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).flat_map(|[a, b]| [[a, b], [b, a]]).collect();
@@ -100,7 +100,7 @@ fn check_edges(n: usize, triangles: &[[u32; 3]]) {
     }
 }
 
-/// Every start, both windings, all axes and some tilts.
+/// Checks a polygon with every first corner, both windings, all axes and some tilts.
 fn check_all_ways(polygon: &[P]) {
     let n = polygon.len();
     for start in 0..n {
@@ -128,7 +128,7 @@ fn convex_polygons() {
 fn concave_quadrilaterals_are_cut_along_the_inner_diagonal() {
     check_all_ways(&[[0, 0], [4, 0], [1, 1], [0, 4]]);
     check_all_ways(&[[0, 0], [10, 1], [9, 0], [10, -1]]);
-    // A corner on an edge: one of the triangles has no area.
+    // A corner is on an edge, so one of the triangles has no area.
     check_all_ways(&[[0, 0], [4, 0], [2, 2], [0, 4]]);
 }
 
@@ -142,7 +142,7 @@ fn concave_polygons() {
     comb.extend((0..9).map(|i| [2 * i, if i % 2 == 0 { 10 } else { 0 }]));
     comb.push([16, -1]);
     check_all_ways(&comb);
-    // Square teeth: many corners in line, on several lines.
+    // Square teeth have many collinear corners on several lines.
     let mut teeth = vec![[0, -2], [40, -2]];
     for i in (0..10).rev() {
         teeth.extend([[4 * i + 4, 0], [4 * i + 4, 7], [4 * i + 2, 7], [4 * i + 2, 0]]);
@@ -153,7 +153,7 @@ fn concave_polygons() {
     }
 }
 
-/// A square spiral of width 1 with gaps of 1, of so many arms.
+/// Returns a square spiral of this number of arms, with a width of 1 and gaps of 1.
 fn spiral(arms: i64) -> Vec<P> {
     const DIRECTIONS: [P; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
     let longest = arms + 2;
@@ -163,7 +163,7 @@ fn spiral(arms: i64) -> Vec<P> {
         let [dx, dy] = DIRECTIONS[usize::try_from(arm % 4).unwrap()];
         at = [at[0] + length * dx, at[1] + length * dy];
         outer.push(at);
-        // To the left of this arm and, if there is one, of the next.
+        // The corner is to the left of this arm and, if there is one, of the next.
         let [left_x, left_y] = if arm + 1 < arms { [-dy - dx, dx - dy] } else { [-dy, dx] };
         inner.push([at[0] + left_x, at[1] + left_y]);
     }
@@ -171,7 +171,7 @@ fn spiral(arms: i64) -> Vec<P> {
     outer
 }
 
-/// Whether two closed segments share a point.
+/// Returns whether two closed segments share a point.
 fn touch([a, b]: [P; 2], [c, d]: [P; 2]) -> bool {
     let inside =
         |p: P, a: P, b: P| cross(a, b, p) == 0 && (0..2).all(|k| a[k].min(b[k]) <= p[k] && p[k] <= a[k].max(b[k]));
@@ -179,7 +179,7 @@ fn touch([a, b]: [P; 2], [c, d]: [P; 2]) -> bool {
     inside(a, c, d) || inside(b, c, d) || inside(c, a, b) || inside(d, a, b) || (sides(a, b, c, d) && sides(c, d, a, b))
 }
 
-/// Two edges that meet where they should not.
+/// Returns two edges that intersect each other elsewhere than at a common corner.
 fn conflict(polygon: &[P]) -> Option<(usize, usize)> {
     let n = polygon.len();
     let edge = |i: usize| [polygon[i % n], polygon[(i + 1) % n]];
@@ -200,7 +200,7 @@ fn conflict(polygon: &[P]) -> Option<(usize, usize)> {
     None
 }
 
-/// A random simple polygon, from points on a lattice whose order is changed until no edges meet.
+/// Returns a random simple polygon of points on a lattice, whose order is changed until no edges intersect.
 fn random_simple(rng: &mut ChaCha8Rng) -> Option<Vec<P>> {
     let size = rng.random_range(2..12);
     let mut polygon: Vec<P> = Vec::new();
@@ -219,7 +219,7 @@ fn random_simple(rng: &mut ChaCha8Rng) -> Option<Vec<P>> {
     None
 }
 
-/// The first random polygon that is simple.
+/// Returns the first random polygon that is simple.
 fn simple(rng: &mut ChaCha8Rng) -> Vec<P> {
     std::iter::repeat_with(|| random_simple(rng)).flatten().next().expect("some are")
 }
@@ -240,14 +240,14 @@ fn random_simple_polygons() {
 
 #[test]
 fn long_polygons() {
-    // Beyond 80 corners the cutter uses another search.
+    // Above 80 corners the ear cutter uses another search.
     for polygon in [spiral(60), spiral(61)] {
         assert_eq!(conflict(&polygon), None);
         check(&polygon, &cut3(&lift(&polygon, 1, 2)));
     }
     for case in cases(20, 6) {
         let (round, mut rng) = (case as usize, rng("long polygons", case));
-        // A star: corners in the order of their angle around the origin.
+        // The polygon is a star, whose corners are in the order of their angles around the origin.
         let mut star: Vec<P> = (0..300).map(|_| [rng.random_range(-500..500), rng.random_range(-500..500)]).collect();
         #[allow(clippy::cast_precision_loss, reason = "small integers")]
         let angle = |p: &P| (p[1] as f64).atan2(p[0] as f64);
@@ -271,11 +271,11 @@ fn scaling_by_powers_of_two_changes_nothing() {
             assert_eq!(cut3(&scaled), expected, "2^{exponent}: {polygon:?}");
         }
     }
-    // Opposite ends of the range, whose difference overflows. The dent is the second corner.
+    // The corners are at opposite ends of the range, and their difference overflows. The second corner is reflex.
     let big = f64::MAX;
     let corners = [[big, -big, 0.0], [-big / 2.0, -big / 2.0, 0.0], [-big, big, 0.0], [-big, -big, 0.0]];
     assert_eq!(cut3(&corners), [[1, 2, 3], [1, 3, 0]]);
-    // A tiny polygon in a plane far from the origin.
+    // The polygon is tiny, in a plane far from the origin.
     let tiny = 2f64.powi(-700);
     let corners = [[1.0, 4.0 * tiny, 0.0], [1.0, tiny, tiny], [1.0, 0.0, 4.0 * tiny], [1.0, 0.0, 0.0]];
     assert_eq!(cut3(&corners), [[1, 2, 3], [1, 3, 0]]);
@@ -325,7 +325,7 @@ fn spikes_and_repeated_corners_keep_outline_and_area() {
                 check_edges(polygon.len(), &triangles);
                 let corners = triangles.iter().map(|t| t.map(|i| polygon[i as usize]));
                 let area: i64 = corners.map(|[a, b, c]| cross(a, b, c).abs()).sum();
-                // A spike with spikes is too much for the cutter: a fan covers more than the polygon, but not less.
+                // The ear cutter fails on a spike with spikes. The fan then covers the polygon and more.
                 assert!(area == outline_area(&l) || forked, "{polygon:?} {triangles:?}");
             }
         }
@@ -345,7 +345,7 @@ fn polygons_that_cross_themselves_keep_their_outline() {
         let polygon: Vec<P> = (0..n).map(|_| [rng.random_range(0..=size), rng.random_range(0..=size)]).collect();
         let triangles = cut3(&lift(&polygon, round % 3, 1));
         check_edges(n, &triangles);
-        // Either the areas add up, or it is a fan.
+        // Either the areas add up, or the triangles are a fan.
         let areas = triangles.iter().map(|t| t.map(|i| polygon[i as usize])).map(|[a, b, c]| cross(a, b, c).abs());
         if areas.sum::<i64>() != outline_area(&polygon).abs() {
             let last = u32::try_from(n).unwrap() - 1;
@@ -381,7 +381,7 @@ fn polygons_that_are_not_planar_become_a_closed_patch() {
 fn points_that_are_not_of_the_lattice() {
     for case in cases(5000, 400) {
         let mut rng = rng("stars in any plane", case);
-        // Stars around the origin, in a random plane.
+        // The polygons are stars around the origin in a random plane.
         let n = rng.random_range(5..60);
         let (u, v) = (random_vector(&mut rng), random_vector(&mut rng));
         let corners: Vec<[f64; 3]> = (0..n)
@@ -407,7 +407,7 @@ fn random_vector(rng: &mut ChaCha8Rng) -> nalgebra::Vector3<f64> {
 
 #[test]
 fn large_polygons_over_few_places_are_cut_in_no_time() {
-    // A star of nine corners, many times around. Cutting ears takes cubic time on it.
+    // The polygon runs many times around a star of nine corners, for which cutting ears takes cubic time.
     const TURNS: usize = 3000;
     let star: [P; 9] = [[0, 9], [-2, 2], [-9, 2], [-3, -2], [-5, -9], [0, -4], [5, -9], [3, -2], [9, 2]];
     let polygon = star.repeat(TURNS);

@@ -1,8 +1,8 @@
-//! Files of rays, and of what they meet.
+//! Files of rays and of their hits.
 
 use nalgebra::{Point3, Vector3};
 use p2m_core::{BruteForce, Element, Hit, Ray, RayError, RayQuery, Side, Soup};
-use p2m_mixed::{AnswerFormat, HitWriter, NumberWriter, Place, PointFormat, ReadError, Reason, read_rays_from};
+use p2m_mixed::{AnswerFormat, FileLocation, HitWriter, NumberWriter, PointFormat, ReadError, Reason, read_rays_from};
 use std::io::ErrorKind;
 
 const FORMATS: [AnswerFormat; 3] = [AnswerFormat::Csv, AnswerFormat::Npy, AnswerFormat::Ply];
@@ -19,7 +19,7 @@ fn two() -> [Ray; 2] {
     [ray([1.0, 2.0, 3.0], [4.0, 5.0, 6.0]), ray([-1.0, 0.5, 0.0], [0.0, 0.0, -1e300])]
 }
 
-/// An array of NumPy.
+/// Returns the bytes of an array of NumPy.
 fn npy(descr: &str, order: &str, shape: &str, numbers: &[f64]) -> Vec<u8> {
     let description = format!("{{'descr': {descr}, 'fortran_order': {order}, 'shape': {shape}}}\n");
     let data: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
@@ -37,7 +37,7 @@ fn tables_have_six_columns() {
     }
     let exported = "id;Normals:0;Normals:1;Normals:2;Points:0;Points:1;Points:2\n7;4;5;6;1;2;3\n";
     assert_eq!(read(exported, PointFormat::Csv).unwrap(), two()[..1]);
-    // The origin, not the hit.
+    // The vertex is the origin rather than the hit.
     let answers = "ray,ox,oy,oz,dx,dy,dz,parameter,x,y,z\n0,1,2,3,4,5,6,9,9,9,9\n";
     assert_eq!(read(answers, PointFormat::Csv).unwrap(), two()[..1]);
 }
@@ -85,29 +85,29 @@ fn vertices_go_along_their_normals() {
 }
 
 #[test]
-fn what_is_no_ray_is_told_with_its_place() {
-    for (format, file, place, message) in [
-        (PointFormat::Csv, "1,2,3,4,5,6\n1,2,3,0,-0,0\n", Place::Line(2), "the direction of the ray is zero"),
-        (PointFormat::Csv, "1,2,3,4,5,6\n1,2,3,0,0,inf\n", Place::Line(2), "coordinate 'inf' is not finite"),
-        (PointFormat::Csv, "x,y,z,dx,dy,dz\n1,2,3,4,5\n", Place::Line(2), "a ray needs 6 coordinates, found 5"),
-        (PointFormat::Csv, "x,y,z\n1,2,3\n", Place::Line(1), "a ray needs 6 coordinates, found 3"),
-        (PointFormat::Xyz, "\n1 2 3 0 0 0\n", Place::Line(2), "the direction of the ray is zero"),
-        (PointFormat::Xyz, "1 2 3 4\n", Place::Line(1), "a ray needs 6 coordinates, found 4"),
+fn invalid_rays_have_errors_with_their_location() {
+    for (format, file, location, message) in [
+        (PointFormat::Csv, "1,2,3,4,5,6\n1,2,3,0,-0,0\n", FileLocation::Line(2), "the direction of the ray is zero"),
+        (PointFormat::Csv, "1,2,3,4,5,6\n1,2,3,0,0,inf\n", FileLocation::Line(2), "coordinate 'inf' is not finite"),
+        (PointFormat::Csv, "x,y,z,dx,dy,dz\n1,2,3,4,5\n", FileLocation::Line(2), "a ray needs 6 coordinates, found 5"),
+        (PointFormat::Csv, "x,y,z\n1,2,3\n", FileLocation::Line(1), "a ray needs 6 coordinates, found 3"),
+        (PointFormat::Xyz, "\n1 2 3 0 0 0\n", FileLocation::Line(2), "the direction of the ray is zero"),
+        (PointFormat::Xyz, "1 2 3 4\n", FileLocation::Line(1), "a ray needs 6 coordinates, found 4"),
     ] {
         let error = read(file, format).unwrap_err();
-        assert_eq!((error.place, error.reason.to_string()), (place, message.to_owned()));
+        assert_eq!((error.location, error.reason.to_string()), (location, message.to_owned()));
     }
     for order in ["False", "True"] {
         let mut numbers = [1.0; 18];
         let places = if order == "True" { [10, 13, 16] } else { [9, 10, 11] };
-        places.into_iter().for_each(|place| numbers[place] = 0.0);
+        places.into_iter().for_each(|location| numbers[location] = 0.0);
         let error = read(npy("'<f8'", order, "(3, 6)", &numbers), PointFormat::Npy).unwrap_err();
         assert!(matches!(error.reason, Reason::Ray(RayError::ZeroDirection)));
         assert_eq!(error.to_string(), "r in row 1, counted from 0: the direction of the ray is zero");
     }
 }
 
-/// Rays with hits from all sides, and one without.
+/// Returns rays with hits from all sides, and one without a hit.
 fn answers() -> Vec<(Ray, Vec<Hit>)> {
     let at = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
     let positions = vec![at(0.0, 0.0, 0.0), at(4.0, 0.0, 0.0), at(0.0, 4.0, 0.0), at(1.0, 1.0, 2.0), at(3.0, 1.0, 2.0)];
@@ -127,7 +127,7 @@ fn answers() -> Vec<(Ray, Vec<Hit>)> {
     answers
 }
 
-/// A record for each first hit or for a ray without, or for each hit.
+/// Writes a record for the first hit of each ray, or for each hit.
 fn write(format: AnswerFormat, is_all: bool, count: Option<u64>) -> std::io::Result<Vec<u8>> {
     let mut writer = HitWriter::new(Vec::new(), format, count)?;
     for (number, (ray, hits)) in (0..).zip(&answers()) {
@@ -154,7 +154,7 @@ fn every_format_asks_the_same_questions_again() {
         let again = |file: Vec<u8>| bits(&read(file, format.name().parse().unwrap()).unwrap());
         let first = write(format, false, Some(4)).unwrap();
         assert_eq!(again(first.clone()), bits(&rays), "{format}");
-        // The number of records may be told or counted.
+        // The number of records may be announced or counted.
         assert_eq!(write(format, false, None).unwrap(), first, "{format}");
         let all = write(format, true, None).unwrap();
         assert_eq!(write(format, true, Some(6)).unwrap(), all, "{format}");

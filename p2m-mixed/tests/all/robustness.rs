@@ -1,4 +1,4 @@
-//! Broken files: an error or a scene, never a panic, and never much memory. What is read is written and read back.
+//! Broken files give an error or a scene, but no panic, and take little memory. Scenes are written and read again.
 
 use crate::common::{
     ENCODINGS, RICH_NPY, RICH_OBJ, RICH_OFF, RICH_STL, elements, npy, obj, off, ply, read_back, rich_binary_off,
@@ -12,24 +12,24 @@ use p2m_mixed::{
 use p2m_testkit::{cases, rng};
 use rand::{Rng, RngExt};
 
-/// Far more than the files at hand need, far less than their headers can announce.
-const MOST: u64 = 64 << 20;
+/// A limit far above the memory that the files need, and far below the memory that their headers can announce.
+const MAX_ALLOCATED_BYTES: u64 = 64 << 20;
 
-/// Works, and fails if that took more than [`MOST`] bytes at a time.
+/// Runs `work`, and fails if it had more than [`MAX_ALLOCATED_BYTES`] allocated at a time.
 fn with_little_memory(work: impl FnOnce()) {
     let taken = allocation_counter::measure(work).bytes_max;
-    assert!(taken < MOST, "{taken} bytes");
+    assert!(taken < MAX_ALLOCATED_BYTES, "{taken} bytes");
 }
 
-/// Reads a file and checks what comes of it; whether it is one.
+/// A function that reads a file, checks the result, and returns whether the file is valid.
 type Reader = fn(&[u8]) -> bool;
 
-/// Files, how to read them, and at how many places they can be cut off without harm: where an end is no error.
+/// Returns files, how to read them, and the number of lengths at which a truncated file is still valid.
 fn files() -> Vec<(Vec<u8>, Reader, usize)> {
     let anywhere = usize::MAX;
     let mut files: Vec<(Vec<u8>, Reader, usize)> = vec![
         (RICH_OBJ.into(), |b| check(obj(b)), anywhere),
-        // A text needs no line end, nor what follows the word `endsolid`, twice there.
+        // A text needs neither a line end nor text after the word `endsolid`, which occurs twice.
         (RICH_STL.into(), |b| check(stl(b)), 9),
         (rich_binary_stl(), |b| check(stl(b)), 0),
         (RICH_OFF.into(), |b| check(off(b)), 1),
@@ -49,7 +49,7 @@ fn files() -> Vec<(Vec<u8>, Reader, usize)> {
         (b"1 2 3\n# c\n4 5 6\n".into(), |b| check_points(read_points_from(b, PointFormat::Xyz, "t")), anywhere),
     ];
     files.extend(ENCODINGS.map(|e| (rich_ply(e), (|b| check(ply(b))) as Reader, 3)));
-    // What follows the vertices does not matter.
+    // Data after the vertices is not read.
     let points: Reader = |b| check_points(read_points_from(b, PointFormat::Ply, "t"));
     files.extend(ENCODINGS.map(|e| (rich_ply(e), points, anywhere)));
     files
@@ -138,7 +138,7 @@ fn random_damage() {
                         3 => bytes.insert(at, rng.random()),
                         4 => drop(bytes.remove(at)),
                         _ => {
-                            // A piece of the file in another place.
+                            // A part of the file is copied to another position.
                             let from = rng.random_range(0..bytes.len());
                             let piece = bytes[from..bytes.len().min(from + 20)].to_vec();
                             bytes.splice(at..at, piece);
@@ -152,7 +152,7 @@ fn random_damage() {
     });
 }
 
-/// Files that announce more than there can be, and are some bytes long.
+/// Returns short files that announce more than there can be.
 #[test]
 fn sizes_that_are_merely_announced() {
     let huge = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\nproperty double y\n\
@@ -170,7 +170,7 @@ fn sizes_that_are_merely_announced() {
 fn noise() {
     with_little_memory(|| {
         for case in cases(2000, 200) {
-            // A step without a common divisor leads to each length, and soon to short and long ones.
+            // Steps without a common divisor reach every length, and reach short and long ones early.
             let (mut rng, length) = (rng("noise", case), case as usize * 677 % 2000);
             let mut bytes = vec![0; length];
             rng.fill_bytes(&mut bytes);
@@ -182,10 +182,10 @@ fn noise() {
                 check_points(read_points_from(&bytes[..], format, "t"));
                 check_rays(read_rays_from(&bytes[..], format, "t"));
             }
-            // Facets and faces without end, all of them of noise.
+            // These are endless facets and faces of noise.
             check(stl([&[0; 80][..], &[0xff; 4], &bytes].concat()));
             check(off([b"OFF BINARY\n", &[0, 0, 0, 2, 0x7f, 0xff, 0xff, 0xff, 0, 0, 0, 0][..], &bytes].concat()));
-            // Noise behind a header.
+            // This is noise after a header.
             for encoding in ENCODINGS {
                 let mut file = rich_ply(encoding);
                 let data = file.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
@@ -193,7 +193,7 @@ fn noise() {
                 file.extend(&bytes);
                 check(ply(&file));
             }
-            // Noise of the letters of the format.
+            // This is noise of the characters of the format.
             let text: Vec<u8> = bytes.iter().map(|b| b"vflp0123456789 -\n\n/#\\."[usize::from(*b) % 22]).collect();
             check(obj(&text));
             check(off([b"OFF\n9 9 9\n", &text[..]].concat()));

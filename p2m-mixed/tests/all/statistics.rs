@@ -1,4 +1,4 @@
-//! Figures of scenes small enough to count by hand, of real ones with known figures, and the sentences made of them.
+//! Statistics of small scenes that are counted by hand, of real models with known statistics, and the resulting notes.
 
 use nalgebra::Point3;
 use p2m_core::{Element, Soup};
@@ -15,14 +15,14 @@ fn obj(text: &str) -> Statistics {
     Statistics::of(&p2m_mixed::read_obj(text.as_bytes(), "scene.obj").unwrap().soup)
 }
 
-/// A corner of a cube: three right triangles, one open side.
+/// The corner of a cube: three right triangles with one open side.
 const CORNER: &str = "v 0 0 0\nv 3 0 0\nv 0 4 0\nv 0 0 12\nf 1 3 2\nf 1 2 4\nf 1 4 3\n";
 
 fn names(statistics: &Statistics) -> Vec<&'static str> {
     statistics.notes().iter().map(Note::name).collect()
 }
 
-/// The sentence of that name.
+/// Returns the note of this name.
 fn sentence(statistics: &Statistics, name: &str) -> String {
     let notes = statistics.notes();
     notes.iter().find(|n| n.name() == name).unwrap_or_else(|| panic!("no note {name}: {notes:?}")).to_string()
@@ -42,7 +42,7 @@ fn a_small_scene_is_counted_by_hand() {
     assert_eq!(s.sizes.diagonal, 13.0);
     assert_eq!(s.sizes.edge, Some(Extremes { min: 3.0, max: 160f64.sqrt() }));
     assert_eq!(s.sizes.area, Some(Extremes { min: 6.0, max: 24.0 }));
-    // Aspects: c^2 / (a b) of legs (3, 4), (3, 12), (4, 12): 25/12, 153/36, 160/48.
+    // The aspect of a right triangle is c^2 / (a b). The legs (3, 4), (3, 12), (4, 12) give 25/12, 153/36, 160/48.
     assert_eq!(s.shapes.median_aspect, Some(160.0 / 48.0));
     assert_eq!((s.location.distance_from_origin, s.location.largest_coordinate, s.location.beyond_f32), (6.5, 12.0, 0));
     assert_eq!(s.location.f32_step(), Some(f64::from(12.0f32 - 12.0f32.next_down())));
@@ -64,7 +64,7 @@ fn closed_surfaces_are_closed_and_flips_are_seen() {
 
 #[test]
 fn edges_are_matched_by_coordinates() {
-    // Three triangles around the z axis, without a shared position; and one that has no edges, two corners being equal.
+    // Three triangles around the z axis share no position, and one has no edges because two of its corners are equal.
     let fin = |x: i32, y: i32| format!("v 0 0 0\nv 0 0 1\nv {x} {y} 0\nf -3 -2 -1\n");
     let text = format!("{}{}{}v 5 0 0\nv 5 0 0\nv 6 0 0\nf -3 -2 -1\n", fin(1, 0), fin(0, 1), fin(-1, -1));
     let s = obj(&text);
@@ -101,7 +101,7 @@ fn duplicates_have_the_same_corners_in_any_order() {
             Element::Point(3),
             Element::Point(2),
             Element::Point(3),
-            // Not a duplicate of the point, although it covers the same.
+            // The degenerate segment is not a duplicate of the point, although it covers the same position.
             Element::Segment([1, 3]),
         ],
     );
@@ -139,7 +139,7 @@ fn unused_positions_may_be_anything() {
     assert_eq!(with, without);
 }
 
-/// `count` triangles of base 1, of which the first `special` have that height and the others height 1.
+/// Returns `count` triangles of base 1, of which the first `special` have this height and the others have height 1.
 fn strip(count: u32, special: u32, height: f64) -> Statistics {
     let mut positions = Vec::new();
     for i in 0..count {
@@ -165,7 +165,7 @@ fn slivers_are_below_a_1024th_and_noted_from_one_percent_on() {
     assert!(s.notes().contains(&Note::Slivers { share: Share { part: 2, whole: 200 } }));
     assert!(!names(&strip(201, 2, 1e-6)).contains(&"slivers"));
     assert!(sentence(&strip(100, 41, 1e-9), "slivers").starts_with("41 % of the triangles are slivers"));
-    // No area, no sliver.
+    // A triangle without area is not a sliver.
     let s = strip(4, 2, 0.0);
     assert_eq!((s.shapes.slivers, s.shapes.thin, s.shapes.zero_area), (0, 0, 2));
     assert_eq!(s.shapes.median_aspect, Some(1.25), "of those with an area");
@@ -184,7 +184,7 @@ fn thin_triangles_are_noted_from_one_half_on() {
     assert!(names(&strip(10, 5, 0.01)).contains(&"thin"));
 }
 
-/// A box of that size with one corner at `x`, as a segment.
+/// Returns the diagonal of a box of this size, with one end at `x`, as a segment.
 fn rod(x: f64, size: f64) -> Statistics {
     Statistics::of(&soup(&[[x, 0.0, 0.0], [x + size, size, size]], &[Element::Segment([0, 1])]))
 }
@@ -230,7 +230,8 @@ fn flat_scenes_say_where() {
 
 #[test]
 fn f32_holds_what_it_holds() {
-    // 0.1 and 2^24 + 1 are no numbers of f32; a position used or written twice counts once, an unused one not.
+    // f32 does not have the numbers 0.1 and 2^24 + 1. A repeated position counts once, and an unused one does not
+    // count.
     let s = obj("v 0.1 16777217 0.5\nv 1 2 3\nv 0.3 0 0\nv 0.1 16777217 0.5\nl 1 2\np 1\np 4\n");
     assert_eq!(s.location.beyond_f32, 2);
     assert_eq!(s.location.f32_step(), Some(1.0));
@@ -240,7 +241,7 @@ fn f32_holds_what_it_holds() {
 
 #[test]
 fn figures_are_finite_at_every_scale() {
-    // Nor where the sum of two coordinates overflows.
+    // There is no note either if the sum of two coordinates overflows.
     let high = Statistics::of(&soup(&[[1.5e308, 0.0, 0.0], [1e308, 0.0, 0.0]], &[Element::Segment([0, 1])]));
     assert_eq!((high.location.distance_from_origin, high.sizes.diagonal), (1.25e308, 0.5e308));
     for (scale, zero_area) in [(1e-300, 0), (1e300, 0), (5e-324, 0), (f64::MAX, 0), (0.0, 1)] {
@@ -269,8 +270,8 @@ fn figures_are_finite_at_every_scale() {
     }
 }
 
-/// Name, zero area, slivers, non-manifold edges, duplicates, parts; as the list of the models has the figures that it
-/// has.
+/// The name of a model and its statistics, as far as the list of models states them: zero area, slivers, non-manifold
+/// edges, duplicates, components.
 const MODELS: &[(&str, [u64; 5])] = &[
     ("degenerate_small.obj", [0, 0, 6, 12, 1]),
     ("degenerate_sliding.off", [4, 0, 0, 0, 1]),
@@ -317,7 +318,7 @@ fn objects_are_counted_by_name() {
     assert_eq!(found, [(name("b"), counts(2, 0, 1)), (name("a"), counts(0, 2, 0)), (None, counts(0, 1, 1))]);
     let total: u64 = objects(&scene).iter().map(|o| o.primitives.total()).sum();
     assert_eq!(total, Statistics::of(&scene.soup).primitives.total());
-    // All of it named: no rest. Nothing named: no list.
+    // If all primitives have a name, there is no entry without one. If none has a name, the list is empty.
     let named = p2m_mixed::read_obj("v 0 0 0\no x\np 1\n".as_bytes(), "scene.obj").unwrap();
     assert_eq!(objects(&named).len(), 1);
     assert!(objects(&p2m_mixed::read_obj("v 0 0 0\np 1\n".as_bytes(), "scene.obj").unwrap()).is_empty());

@@ -1,10 +1,10 @@
-//! Forms of STL files, and what is refused.
+//! Forms of STL files, and files that are errors.
 
 use crate::common::{elements, skipped, stl, t};
 use nalgebra::Point3;
-use p2m_mixed::{HeaderProblem, Place, Reason, Scene};
+use p2m_mixed::{FileLocation, HeaderProblem, Reason, Scene};
 
-/// A binary file.
+/// Returns a binary file.
 fn binary(header: &str, facets: &[[[f32; 3]; 3]]) -> Vec<u8> {
     let mut file = header.as_bytes().to_vec();
     file.resize(80, if header.len().is_multiple_of(2) { b' ' } else { 0 });
@@ -23,12 +23,12 @@ const SQUARE: [[[f32; 3]; 3]; 2] =
 fn check_square(scene: &Scene) {
     assert_eq!(elements(scene), [t(0, 1, 2), t(0, 2, 3)]);
     assert_eq!(scene.sources, [0, 1]);
-    // Exactly the number of single precision, and the sign of the first zero.
+    // The vertex has the exact number of single precision, and the sign of the first zero.
     assert_eq!(scene.soup.positions()[2], Point3::new(1.0, f64::from(0.1f32), 0.0));
     assert!(scene.soup.positions()[0].iter().all(|x| x.is_sign_positive()));
 }
 
-/// A text file of one facet between these words.
+/// Returns a text file of one facet between these words.
 fn text(facet: &str) -> String {
     format!("solid\n{facet}\nendsolid\n")
 }
@@ -36,13 +36,13 @@ fn text(facet: &str) -> String {
 const FACET: &str = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet";
 
 #[test]
-fn binary_files_are_told_from_text_whatever_their_header_says() {
+fn binary_files_are_recognised_whatever_their_header_says() {
     for header in ["", "binary", "solid", "solid part", "solid part\nfacet normal", "  SOLID x\n  facet normal 0 0 1\n"]
     {
         check_square(&stl(binary(header, &SQUARE)).unwrap());
         assert_eq!(elements(&stl(binary(header, &[])).unwrap()), [], "{header}");
     }
-    // A reader that hands out one byte at a time.
+    // The reader returns one byte at a time.
     let file = binary("solid", &SQUARE);
     check_square(&p2m_mixed::read_stl(std::io::BufReader::with_capacity(1, &file[..]), "t.stl").unwrap());
 }
@@ -126,7 +126,7 @@ fn attributes_and_what_follows_are_counted() {
 }
 
 #[test]
-fn errors_tell_place_and_reason() {
+fn errors_have_location_and_reason() {
     let message = |file: &str| stl(file).unwrap_err().to_string();
     assert_eq!(
         message(&text(&FACET.replace("vertex 1 0 0", "vertex 1 nan 0"))),
@@ -159,19 +159,19 @@ fn errors_tell_place_and_reason() {
         let reason = stl(not_stl).unwrap_err().reason;
         assert!(matches!(reason, Reason::BadHeader(HeaderProblem::NotStl)), "{not_stl}: {reason}");
     }
-    // A text without its end.
+    // The text is truncated.
     assert_eq!(message(&format!("solid\n{FACET}\n")), "t.stl:9: unexpected end of file");
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         let mut facets = SQUARE;
         facets[1][2][0] = bad;
         let error = stl(binary("", &facets)).unwrap_err();
-        assert_eq!(error.place, Place::Byte(84 + 50));
+        assert_eq!(error.location, FileLocation::Byte(84 + 50));
         assert!(matches!(&error.reason, Reason::NonFinite { text } if *text == bad.to_string()), "{error}");
     }
 }
 
 #[test]
-fn a_binary_file_that_is_cut_off_is_refused() {
+fn a_truncated_binary_file_is_an_error() {
     let file = binary("", &SQUARE);
     for end in 0..file.len() {
         let error = stl(&file[..end]).unwrap_err();

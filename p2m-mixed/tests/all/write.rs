@@ -1,4 +1,4 @@
-//! Scenes in files and back, in every format.
+//! Scenes are written and read again in every format.
 
 use crate::common::{bits, elements, obj, p, ply, read_back, s, t, written};
 use nalgebra::Point3;
@@ -13,7 +13,7 @@ fn scene(positions: Vec<Point3<f64>>, elements: impl IntoIterator<Item = Element
     Soup::new(positions, elements).unwrap().into()
 }
 
-/// Numbers that are hard to write down.
+/// Numbers that are hard to write without loss.
 fn awkward() -> Vec<Point3<f64>> {
     let values =
         [0.0, -0.0, 0.1, -1.0 / 3.0, 1e300, -1e-300, 5e-324, f64::MAX, f64::MIN_POSITIVE, 123_456_789.123_456_79, 1.0];
@@ -64,7 +64,7 @@ fn kinds_in_a_row_need_no_ids_in_a_ply_file() {
     let h = header(&[p(1), t(0, 1, 2), p(1)]);
     assert_eq!(names(&h), ["vertex 11", "face 1", "point 2"]);
     assert_eq!(h.matches("property int p2m_id").count(), 2);
-    // A point cloud is one for everybody.
+    // A point cloud is one for every program.
     assert_eq!(names(&header(&(0..11).map(p).collect::<Vec<_>>())), ["vertex 11"]);
     assert_eq!(names(&header(&(1..11).map(p).collect::<Vec<_>>())), ["vertex 11", "point 10"]);
 }
@@ -85,7 +85,7 @@ fn positions_without_primitives_survive_in_ply_only() {
     let nothing = scene(Vec::new(), []);
     for format in LOSSLESS {
         let again = read_back(&empty, format);
-        // Never a point cloud.
+        // The file is not read as a point cloud.
         assert_eq!(again.soup.len(), 0, "{format}");
         assert_eq!(bits(&again), bits(if format == Format::Ply { &empty } else { &nothing }), "{format}");
     }
@@ -119,7 +119,7 @@ fn objects_survive_in_obj() {
     assert_eq!(read_back(&scene, Format::Obj).objects, scene.objects);
     assert_eq!(read_back(&scene, Format::Ply).objects, []);
 
-    // Names that a line cannot hold as they are.
+    // These names cannot be written on a line as they are.
     let mut named = obj("v 0 0 0\no a\np 1\no b\np 1\no c\np 1\n").unwrap();
     named.objects[0].name = "path\\".to_owned();
     named.objects[1].name = " two\r\nlines ".to_owned();
@@ -129,12 +129,12 @@ fn objects_survive_in_obj() {
     let names: Vec<_> = again.objects.iter().map(|o| (o.name.as_str(), o.ids.clone())).collect();
     assert_eq!(names, [("path\\", 0..1), ("two  lines", 1..2), ("\\", 2..3)]);
 
-    // Nonsense that no reader makes is no reason to panic.
+    // Invalid objects, which no reader makes, do not cause a panic.
     named.objects[0].ids = 1..9;
     named.objects[1].ids = 2..2;
     named.objects[2].ids = 0..2;
     assert_eq!(read_back(&named, Format::Obj).soup, named.soup);
-    // What is in order is written all the same.
+    // Valid objects among them are written.
     named.objects[0].ids = 0..0;
     named.objects[1].ids = 0..1;
     named.objects[2].ids = 2..3;
@@ -180,7 +180,7 @@ fn rounding_counts_each_coordinate_of_a_used_vertex_once() {
 }
 
 #[test]
-fn what_stl_cannot_hold_is_refused_before_anything_is_written() {
+fn scenes_beyond_stl_are_errors_before_anything_is_written() {
     let at = |x: f64| Point3::new(x, 0.0, 0.0);
     let refused = |elements: &[Element], positions: Vec<_>| {
         let mut file = Vec::new();
@@ -193,7 +193,7 @@ fn what_stl_cannot_hold_is_refused_before_anything_is_written() {
         "primitive 1 is no triangle, and an STL file holds nothing else"
     );
     assert_eq!(refused(&[p(0)], vec![at(0.0)]), "primitive 0 is no triangle, and an STL file holds nothing else");
-    // The least number that is rounded to infinity.
+    // This is the smallest number that is rounded to infinity.
     let above = f64::from(f32::MAX) + 0.5 * (2.0f64.powi(128) - f64::from(f32::MAX));
     assert_eq!(
         refused(&[t(1, 1, 1), t(1, 0, 1)], vec![at(-above), at(above.next_down())]),
@@ -232,7 +232,7 @@ fn a_soup_is_a_scene_of_statements_of_their_own() {
     assert_eq!(read_back(&scene, Format::Obj), scene);
 }
 
-/// Refuses after so many bytes.
+/// A writer that returns an error after this number of bytes.
 struct Full(usize);
 
 impl std::io::Write for Full {
@@ -259,7 +259,7 @@ fn a_full_disk_is_reported_wherever_it_is_noticed() {
     assert!(write_stl(&scene, Full(83)).is_err());
 }
 
-/// A text PLY file with three vertices, these elements and rows.
+/// Returns a text PLY file with three vertices, these elements and rows.
 fn ply_with(elements: &str, rows: &str) -> Result<Scene, p2m_mixed::ReadError> {
     let xyz = "property float x\nproperty float y\nproperty float z";
     ply(format!(
@@ -279,7 +279,7 @@ fn ids_in_ply_files_decide_the_order() {
     assert_eq!(scene.sources, [1, 0, 0, 0]);
     assert!(scene.skipped.is_empty());
     check_same(&scene);
-    // Before the vertices, too.
+    // The element may come before the vertices.
     let text = "ply\nformat ascii 1.0\nelement face 2\nproperty list uchar int vertex_indices\nproperty int p2m_id\n\
         element vertex 3\nproperty float x\nproperty float y\nproperty float z\nend_header\n3 0 1 2 1\n3 2 1 0 0\n0 0 0\n\
         1 0 0\n0 1 0\n";
@@ -287,7 +287,7 @@ fn ids_in_ply_files_decide_the_order() {
 }
 
 #[test]
-fn ids_in_ply_files_that_make_no_sense_are_refused() {
+fn invalid_ids_in_ply_files_are_errors() {
     let message = |elements: &str, rows: &str| ply_with(elements, rows).unwrap_err().to_string();
     let faces = format!("element face 2\n{FACES}");
     assert_eq!(
@@ -313,7 +313,7 @@ fn ids_in_ply_files_that_make_no_sense_are_refused() {
     let float = "element face 1\nproperty list uchar int vertex_indices\nproperty float p2m_id";
     let error = ply_with(float, "").unwrap_err();
     assert!(matches!(error.reason, Reason::BadHeader(HeaderProblem::BadType { .. })), "{error}");
-    // Of what there is none, no property is missing.
+    // An element without members needs no properties.
     let none = without.replace("edge 1", "edge 0");
     assert_eq!(elements(&ply_with(&none, "3 0 1 2 1\n3 2 1 0 0").unwrap()), [t(2, 1, 0), t(0, 1, 2)]);
 }
@@ -351,7 +351,7 @@ fn elements_of_points_are_primitives_if_they_name_vertices() {
     assert_eq!(scene.sources, [0, 1]);
     let scene = ply_with("element point 0\nproperty int vertex_index", "").unwrap();
     assert_eq!((elements(&scene).len(), scene.soup.positions().len()), (0, 3));
-    // Something else by that name.
+    // The element of this name has another meaning.
     let scene = ply_with("element point 1\nproperty float x", "0.5").unwrap();
     assert_eq!(elements(&scene), [p(0), p(1), p(2)]);
     assert_eq!(crate::common::skipped(&scene), [("element point", 1)]);

@@ -1,15 +1,15 @@
-//! The part of Python's literals that describes an array.
+//! Parser of the Python literals that describe an array.
 
 use std::fmt;
 
-/// Deeper nesting is no description of an array.
-const DEEPEST: usize = 16;
+/// The deepest nesting of a literal. Descriptions of arrays are less nested.
+const MAX_DEPTH: usize = 16;
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Value<'a> {
-    /// What is between the quotes; escapes are not undone, no name that is looked for has any.
+    /// The bytes between quotes. Escape sequences are kept, because the names that are searched for have none.
     Text(&'a [u8]),
-    /// What exceeds the range is no integer of a description.
+    /// A natural number. Numbers beyond the range do not occur in descriptions.
     Integer(u64),
     Boolean(bool),
     Tuple(Vec<Value<'a>>),
@@ -44,7 +44,7 @@ impl fmt::Display for Value<'_> {
     }
 }
 
-/// The value that a text is; where it stops being one otherwise.
+/// Parses a literal. The error is the rest of the text from where parsing failed.
 pub(super) fn parse(text: &[u8]) -> Result<Value<'_>, &[u8]> {
     let mut parser = Parser { rest: text };
     match parser.value(0) {
@@ -58,7 +58,7 @@ struct Parser<'a> {
 }
 
 impl<'a> Parser<'a> {
-    /// The next byte that is no blank.
+    /// Returns the next byte after white space.
     fn peek(&mut self) -> Option<u8> {
         self.rest = self.rest.trim_ascii_start();
         self.rest.first().copied()
@@ -73,7 +73,7 @@ impl<'a> Parser<'a> {
     }
 
     fn value(&mut self, depth: usize) -> Option<Value<'a>> {
-        if depth > DEEPEST {
+        if depth > MAX_DEPTH {
             return None;
         }
         match self.peek()? {
@@ -108,18 +108,18 @@ impl<'a> Parser<'a> {
         let digits = self.rest.iter().take_while(|b| b.is_ascii_digit()).count();
         let (number, rest) = self.rest.split_at(digits);
         let number = std::str::from_utf8(number).ok()?.parse().ok()?;
-        self.rest = rest.strip_prefix(b"L").unwrap_or(rest); // as Python 2 wrote it
+        self.rest = rest.strip_prefix(b"L").unwrap_or(rest); // Python 2 writes a suffix `L`
         Some(Value::Integer(number))
     }
 
-    /// A tuple, or a value in brackets.
+    /// Parses a tuple, or a value in parentheses.
     fn tuple(&mut self, depth: usize) -> Option<Value<'a>> {
         self.accept(b'(');
         let (mut items, has_comma) = self.items(b')', depth)?;
         if items.len() == 1 && !has_comma { items.pop() } else { Some(Value::Tuple(items)) }
     }
 
-    /// Values up to a closing bracket, and whether a comma is behind the last one.
+    /// Parses values up to a closing bracket, and returns them and whether a comma follows the last one.
     fn items(&mut self, close: u8, depth: usize) -> Option<(Vec<Value<'a>>, bool)> {
         let mut items = Vec::new();
         let mut has_comma = false;

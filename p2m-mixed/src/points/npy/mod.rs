@@ -1,37 +1,38 @@
-//! Rows of arrays of NumPy.
+//! Reads arrays of NumPy as points or rays.
 
 mod literal;
 
-use super::Row;
-use crate::bytes::{Bytes, Scalar};
+use super::row::Row;
+use crate::bytes::{ByteReader, Scalar};
 use crate::text::quote;
-use crate::{HeaderProblem, Place, ReadError, Reason};
+use crate::{FileLocation, HeaderProblem, ReadError, Reason};
 use literal::{Value, parse};
 use std::io::BufRead;
 
-/// NumPy writes longer headers only for arrays of very many fields, and does not read them itself.
-const LONGEST_HEADER: u32 = 1 << 16;
+/// The longest header in bytes. NumPy writes longer ones only for arrays of very many fields, and does not read them.
+const MAX_HEADER_BYTES: u32 = 1 << 16;
 
-/// No message lists more fields.
-const LISTED: usize = 16;
+/// The largest number of fields that a message lists.
+const MAX_LISTED_FIELDS: usize = 16;
 
 pub(super) fn read_npy<R: Row<N>, const N: usize>(reader: impl BufRead, name: &str) -> Result<Vec<R>, ReadError> {
-    let mut bytes = Bytes::new(reader, 0);
+    let mut bytes = ByteReader::new(reader, 0);
     let rows = read_header::<R, N>(&mut bytes).and_then(|array| read_array(&mut bytes, &array));
-    let rows = rows.map_err(|reason| ReadError::new(name, Place::Byte(bytes.start()), reason))?;
-    // Where each is as large as its numbers, it takes their place.
-    let row = |(i, numbers)| R::new(numbers).map_err(|reason| ReadError::new(name, Place::Row(i), reason));
+    let rows = rows.map_err(|reason| ReadError::new(name, FileLocation::Byte(bytes.start()), reason))?;
+    // `collect` reuses the memory of the numbers if a row is as large as its numbers.
+    let row = |(i, numbers)| R::new(numbers).map_err(|reason| ReadError::new(name, FileLocation::Row(i), reason));
     (0..).zip(rows).map(row).collect()
 }
 
-/// Where the coordinates of an array are.
+/// The layout of an array.
 #[derive(Debug)]
 struct Array<const N: usize> {
     count: u64,
-    /// Bytes of an item, and where in it its coordinates are.
+    /// The size of an item in bytes.
     size: u64,
+    /// The coordinates of an item.
     coordinates: [Coordinate; N],
-    /// Whether all x come first, then all y.
+    /// Whether the array has all x first, then all y, and so on.
     is_fortran: bool,
 }
 
@@ -46,7 +47,7 @@ fn bad(problem: HeaderProblem) -> Reason {
     Reason::BadHeader(problem)
 }
 
-fn read_header<R: Row<N>, const N: usize>(bytes: &mut Bytes<impl BufRead>) -> Result<Array<N>, Reason> {
+fn read_header<R: Row<N>, const N: usize>(bytes: &mut ByteReader<impl BufRead>) -> Result<Array<N>, Reason> {
     let not_npy = |reason| match reason {
         Reason::UnexpectedEnd => bad(HeaderProblem::NotNpy),
         other => other,
@@ -60,7 +61,7 @@ fn read_header<R: Row<N>, const N: usize>(bytes: &mut Bytes<impl BufRead>) -> Re
         2 | 3 => u32::from_le_bytes(bytes.array()?),
         _ => return Err(Reason::UnsupportedFormat { text: format!("NPY {major}.{minor}") }),
     };
-    if length > LONGEST_HEADER {
+    if length > MAX_HEADER_BYTES {
         return Err(bad(HeaderProblem::LineTooLong));
     }
     let mut text = Vec::new();
@@ -70,7 +71,7 @@ fn read_header<R: Row<N>, const N: usize>(bytes: &mut Bytes<impl BufRead>) -> Re
     array::<R, N>(&text)
 }
 
-/// What a description like `{'descr': '<f8', 'fortran_order': False, 'shape': (5, 3), }` says.
+/// Parses a description like `{'descr': '<f8', 'fortran_order': False, 'shape': (5, 3), }`.
 fn array<R: Row<N>, const N: usize>(text: &[u8]) -> Result<Array<N>, Reason> {
     let value = parse(text).map_err(|rest| bad(HeaderProblem::BadDescription { text: quote(rest) }))?;
     let Value::Dictionary(entries) = value else {
@@ -106,7 +107,7 @@ fn array<R: Row<N>, const N: usize>(text: &[u8]) -> Result<Array<N>, Reason> {
     }
 }
 
-/// The coordinates among the fields of a structured array, and the size of an item.
+/// Returns the coordinates among the fields of a structured array, and the size of an item.
 fn structure<R: Row<N>, const N: usize>(fields: &[Value<'_>]) -> Result<([Coordinate; N], u64), Reason> {
     let mut offset = 0u64;
     let (mut of_triples, mut singles) = ([None; N], [None; N]);
@@ -121,7 +122,7 @@ fn structure<R: Row<N>, const N: usize>(fields: &[Value<'_>]) -> Result<([Coordi
             },
             _ => return Err(too_large()),
         };
-        // A field may have a title in front of its name.
+        // A field may have a title before its name.
         let name = match names_of_field {
             Value::Text(name) => *name,
             Value::Tuple(both) => match both.as_slice() {
@@ -142,7 +143,7 @@ fn structure<R: Row<N>, const N: usize>(fields: &[Value<'_>]) -> Result<([Coordi
         } else if let (Some(axis), None) = (R::FIELDS.iter().position(is_name), shape) {
             singles[axis] = coordinate.ok();
         }
-        if names.len() < LISTED {
+        if names.len() < MAX_LISTED_FIELDS {
             names.push(quote(name));
         }
         let size = size(descr, shape).ok_or_else(too_large)?;
@@ -155,7 +156,7 @@ fn structure<R: Row<N>, const N: usize>(fields: &[Value<'_>]) -> Result<([Coordi
     }
 }
 
-/// The type that a word like `<f8` stands for, and whether its bytes are big-endian.
+/// Returns the type that a description like `<f8` stands for, and whether its bytes are big-endian.
 fn scalar(descr: &Value<'_>) -> Result<(Scalar, bool), Reason> {
     let unsupported = || bad(HeaderProblem::UnsupportedType { text: descr.to_string() });
     let Value::Text([order, kind @ ..]) = descr else { return Err(unsupported()) };
@@ -180,7 +181,7 @@ fn scalar(descr: &Value<'_>) -> Result<(Scalar, bool), Reason> {
     }
 }
 
-/// The size in bytes of a field of any type; nothing for objects, which are not of a known size.
+/// Returns the size in bytes of a field of any type, or `None` for objects, whose size is not known.
 fn size(descr: &Value<'_>, shape: Option<&Value<'_>>) -> Option<u64> {
     let item = match descr {
         Value::Text([b'<' | b'>' | b'|', kind, rest @ ..]) => {
@@ -209,7 +210,7 @@ fn size(descr: &Value<'_>, shape: Option<&Value<'_>>) -> Option<u64> {
     }
 }
 
-fn read_array<const N: usize>(bytes: &mut Bytes<impl BufRead>, array: &Array<N>) -> Result<Vec<[f64; N]>, Reason> {
+fn read_array<const N: usize>(bytes: &mut ByteReader<impl BufRead>, array: &Array<N>) -> Result<Vec<[f64; N]>, Reason> {
     let mut rows = Vec::new();
     if array.is_fortran {
         for (axis, c) in array.coordinates.iter().enumerate() {
@@ -242,13 +243,13 @@ fn read_array<const N: usize>(bytes: &mut Bytes<impl BufRead>, array: &Array<N>)
             rows.push(row);
         }
     }
-    match bytes.rest()? {
+    match bytes.skip_rest()? {
         0 => Ok(rows),
         bytes => Err(Reason::TrailingBytes { bytes }),
     }
 }
 
-fn coordinate(bytes: &mut Bytes<impl BufRead>, c: &Coordinate) -> Result<f64, Reason> {
+fn coordinate(bytes: &mut ByteReader<impl BufRead>, c: &Coordinate) -> Result<f64, Reason> {
     let x = bytes.number(c.scalar, c.big_endian)?;
     if x.is_finite() { Ok(x) } else { Err(Reason::NonFinite { text: x.to_string() }) }
 }

@@ -26,12 +26,12 @@ pub(crate) fn written(scene: &Scene, format: Format) -> Vec<u8> {
     file
 }
 
-/// The scene after it has been in a file.
+/// Writes a scene and reads it again.
 pub(crate) fn read_back(scene: &Scene, format: Format) -> Scene {
     read_scene_from(&written(scene, format)[..], format, "again").unwrap()
 }
 
-/// The coordinates, bit by bit.
+/// Returns the bits of the coordinates.
 pub(crate) fn bits(scene: &Scene) -> Vec<[u64; 3]> {
     scene.soup.positions().iter().map(|p| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits()]).collect()
 }
@@ -79,14 +79,14 @@ pub(crate) enum N {
     F64(f64),
 }
 
-/// A PLY file under construction.
+/// Builds a PLY file.
 pub(crate) struct Ply {
     encoding: Encoding,
     pub(crate) bytes: Vec<u8>,
 }
 
 impl Ply {
-    /// With this header, apart from the first, the format and the last line.
+    /// Starts a file with these lines of the header. The first, the format and the last line are added.
     pub(crate) fn new(encoding: Encoding, header: &str) -> Self {
         Self::with_line_end(encoding, header, "\n")
     }
@@ -135,7 +135,7 @@ impl Ply {
     }
 }
 
-/// A file with a bit of everything.
+/// Returns a file that uses every part of the format.
 pub(crate) fn rich_ply(encoding: Encoding) -> Vec<u8> {
     let header = "comment all of it\nobj_info here\nelement face 3\nproperty uchar flags\n\
         property list uchar int vertex_indices\nelement vertex 6\nproperty float x\nproperty list uchar short bones\n\
@@ -162,17 +162,17 @@ pub(crate) fn rich_ply(encoding: Encoding) -> Vec<u8> {
         .bytes
 }
 
-/// An OBJ file with a bit of everything.
+/// An OBJ file that uses every part of the format.
 pub(crate) const RICH_OBJ: &str = "# caf\u{e9}\r\nmtllib x.mtl\r\nv 0 0 0\nv 4 0 0 1.0\n  v\t4 4 0 1 0 0 # red\nv 0 4 0\nv 2 1 0\n\
     v .5 5e-1 -7.\nvt 0 0\nvn 0 0 1\nusemtl a\\\nb\nf 1 2 3\nf 1/1 2/1/1 3//1 4 # quad\nf -6 5 -5 \\\n -4 -3\nl 1 6 2\n\
     l 1/1 2/2\np 1 6\nfo 1 1 2\ncurv 0 1 1 2\n";
 
-/// A text STL file with a bit of everything.
+/// A text STL file that uses every part of the format.
 pub(crate) const RICH_STL: &str = "solid text\r\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   \
     vertex 0 1 0\n  endloop\n endfacet\nendsolid text\n\nSOLID\nFACET NORMAL nan nan nan\nOUTER LOOP\nVERTEX 0 0 -0\n\
     VERTEX 1e0 0 0\nVERTEX 5 .5 5\nVERTEX 0 1 0\nENDLOOP\nENDFACET\nENDSOLID\n";
 
-/// A binary STL file whose header is that of a text.
+/// Returns a binary STL file whose header looks like text.
 pub(crate) fn rich_binary_stl() -> Vec<u8> {
     let mut file = b"solid but binary".to_vec();
     file.resize(80, b' ');
@@ -185,11 +185,11 @@ pub(crate) fn rich_binary_stl() -> Vec<u8> {
     file
 }
 
-/// A text OFF file with a bit of everything.
+/// A text OFF file that uses every part of the format.
 pub(crate) const RICH_OFF: &str = "CNOFF # text\n5 5 0\n0 0 0 0 0 1 255 0 0 255\n1 0 0\n1 1 0\n0 1 0\n.5 .5 1e0\n\n4 0 1 2 3 \
     255 0 0\n3 0 1 4 0.5 0.5 0.5 1\n2 0 4 7\n1 4\n5 0 1\n2 4 3\n";
 
-/// A binary OFF file with a bit of everything.
+/// Returns a binary OFF file that uses every part of the format.
 pub(crate) fn rich_binary_off() -> Vec<u8> {
     let mut file = b"NOFF BINARY\n".to_vec();
     let counts = [4, 3, 0].iter().flat_map(|n: &i32| n.to_be_bytes());
@@ -199,11 +199,11 @@ pub(crate) fn rich_binary_off() -> Vec<u8> {
     file
 }
 
-/// What describes an array with a bit of everything.
+/// Descriptions of an array that use every part of the grammar.
 pub(crate) const RICH_NPY: &str = "{'descr': [('a', '<U2'), (('t', 'query'), '>f4', (3,)), ('b', [('c', '|V4'), \
     ('d', '<i4', (2, 2))]), ('e', '|S4')], 'fortran_order': False, 'shape': (2,), }";
 
-/// A file with an array.
+/// Returns a file with an array.
 pub(crate) fn npy(description: &str, data: &[u8]) -> Vec<u8> {
     let mut file = b"\x93NUMPY\x01\x00".to_vec();
     file.extend((description.len() as u16).to_le_bytes());

@@ -1,10 +1,10 @@
-//! What the tests of the generators share: topology, volume, certain predicates, checksums.
+//! Functions that the tests of generators share: topology, volume, exact predicates, checksums.
 
 use nalgebra::Point3;
 use p2m_core::{Element, Soup};
 use std::collections::HashMap;
 
-/// FNV-1a over the digits of the positions, and the kind and indices of the primitives.
+/// Returns the FNV-1a hash of the bits of the positions and of the kinds and indices of the primitives.
 pub(crate) fn checksum(soup: &Soup<f64>) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut eat = |bytes: &[u8]| {
@@ -26,7 +26,8 @@ pub(crate) fn corners(soup: &Soup<f64>, triangle: [u32; 3]) -> [Point3<f64>; 3] 
     triangle.map(|i| soup.positions()[i as usize])
 }
 
-/// That every edge has two triangles, which run along it in opposite directions. The Euler characteristic.
+/// Checks that every edge has two triangles that run along it in opposite directions, and returns
+/// the Euler characteristic.
 pub(crate) fn assert_watertight(soup: &Soup<f64>) -> i64 {
     let mut edges = HashMap::new();
     let mut used = vec![false; soup.positions().len()];
@@ -49,13 +50,13 @@ pub(crate) fn volume(soup: &Soup<f64>) -> f64 {
     soup.triangles().iter().map(six_fold).sum::<f64>() / 6.0
 }
 
-/// The longest edge by the height on it.
+/// Returns the longest edge divided by the height over it.
 pub(crate) fn aspect([a, b, c]: [Point3<f64>; 3]) -> f64 {
     let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
     longest * longest / (b - a).cross(&(c - a)).norm()
 }
 
-/// The sign of the area of a triangle in the plane, if f64 is certain of it.
+/// Returns the sign of the area of a triangle in the plane, if rounding cannot change it.
 ///
 /// The bound is that of Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates"
 /// (1997), A of orient2d: (3 + 16 u) u times the sum of the absolute products.
@@ -66,7 +67,8 @@ pub(crate) fn orient2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Option<bool> {
     certain(left - right, (3.0 + 16.0 * u) * u * (left.abs() + right.abs()))
 }
 
-/// Whether `d` is below the plane of a, b, c, which run counter-clockwise seen from above, if f64 is certain of it.
+/// Returns whether `d` is below the plane of a, b, c, which are counter-clockwise seen from above, if rounding cannot
+/// change the answer.
 ///
 /// The bound is that of the same paper, A of orient3d: (7 + 56 u) u times the sum of the absolute products.
 pub(crate) fn below(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, d: &Point3<f64>) -> Option<bool> {
@@ -82,7 +84,7 @@ fn certain(value: f64, bound: f64) -> Option<bool> {
     (value.abs() > bound).then_some(value > 0.0)
 }
 
-/// Whether the triangle certainly has an area: one of its projections has one.
+/// Returns whether the triangle certainly has an area, because one of its projections has one.
 pub(crate) fn has_area([a, b, c]: [Point3<f64>; 3]) -> bool {
     [(0, 1), (1, 2), (2, 0)].iter().any(|&(i, j)| orient2d([a[i], a[j]], [b[i], b[j]], [c[i], c[j]]).is_some())
 }

@@ -1,0 +1,95 @@
+//! The sign of a query, and the reasons why a scene has none.
+
+use p2m_core::{Closest, Soup};
+
+/// The side of the surface that a point is on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Sign {
+    /// The surface does not enclose the point.
+    Outside,
+    /// The surface encloses the point.
+    Inside,
+    /// The point is on the surface: its distance is 0. For closed surfaces a point that is exactly on a triangle also
+    /// has this sign if the error of its distance cannot exclude 0.
+    Boundary,
+    /// The sign is not defined, because the winding number is a half within the accuracy of f64.
+    Undefined,
+}
+
+impl std::fmt::Display for Sign {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Outside => "outside",
+            Self::Inside => "inside",
+            Self::Boundary => "boundary",
+            Self::Undefined => "undefined",
+        })
+    }
+}
+
+/// Reasons why a scene has no signs.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SignError {
+    /// The scene has segments or points, which have no sides.
+    #[error("{others} of the primitives are no triangles, and have no side")]
+    OtherKinds {
+        /// The number of segments and points.
+        others: usize,
+    },
+    /// The surface has an edge with an odd number of triangles, so it is not closed.
+    #[error("the surface is open at edge {edge} of triangle {triangle}; winding numbers have signs for it")]
+    Open {
+        /// The lowest index of a triangle with such an edge.
+        triangle: usize,
+        /// The edge of that triangle, which runs from the vertex of this index to the next.
+        edge: usize,
+    },
+    /// Neighbouring triangles have opposite orientations: both run through their common edge in the same direction.
+    #[error(
+        "edge {edge} of triangle {triangle} has neighbours of the opposite orientation; winding numbers have signs, but those count by orientation"
+    )]
+    NotOriented {
+        /// The lowest index of a triangle with such an edge.
+        triangle: usize,
+        /// The edge of that triangle, which runs from the vertex of this index to the next.
+        edge: usize,
+    },
+    /// An index of the scene cannot be built.
+    #[error(transparent)]
+    Build(#[from] p2m_core::BuildError),
+    /// The accuracy of winding numbers is not above 0 and below 0.5.
+    #[error("{0} is no accuracy of winding numbers: it is above 0 and below 0.5")]
+    Accuracy(f64),
+}
+
+/// A closest point, and the side of the surface that the query is on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Signed {
+    /// The closest point; its distance has no sign.
+    pub closest: Closest<f64>,
+    /// The sign of the query.
+    pub sign: Sign,
+}
+
+impl Signed {
+    /// Returns the distance, negative inside, or `None` where the sign is not defined.
+    #[must_use]
+    pub fn distance(&self) -> Option<f64> {
+        match self.sign {
+            Sign::Outside => Some(self.closest.distance),
+            Sign::Inside => Some(-self.closest.distance),
+            Sign::Boundary => Some(0.0),
+            Sign::Undefined => None,
+        }
+    }
+}
+
+/// Returns an error if a primitive is not a triangle.
+pub(super) fn check_kinds(soup: &Soup<f64>) -> Result<(), SignError> {
+    match soup.segments().len() + soup.points().len() {
+        0 => Ok(()),
+        others => Err(SignError::OtherKinds { others }),
+    }
+}

@@ -1,0 +1,48 @@
+//! Reading a scene in any format.
+
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::obj::read_obj;
+use crate::off::read_off;
+use crate::open::open;
+use crate::ply::read_ply;
+use crate::saved::read_p2m;
+use crate::scene::Scene;
+use crate::stl::read_stl;
+use std::io::BufRead;
+use std::path::Path;
+
+/// Reads a scene from a file. Its extension, in any case, selects the format: obj, ply, stl, off or p2m.
+///
+/// # Errors
+/// [`ReadError`] has the file, the location and the reason. No scene is returned for a file with an error.
+pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
+    let format = Format::from_path(path)?;
+    let name = path.display().to_string();
+    read_scene_from(open(path, &name)?, format, &name)
+}
+
+/// Reads a scene from any reader, such as the standard input. `name` is the name of the file in messages.
+///
+/// The file is read once from its start to its end. That takes at most three times the memory of the finished scene,
+/// whatever the file announces, besides small buffers and the longest line of a text.
+///
+/// ```
+/// use p2m_mixed::{Format, read_scene_from};
+///
+/// let scene = read_scene_from("OFF 3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n".as_bytes(), Format::Off, "standard input")?;
+/// assert_eq!(scene.soup.triangles(), [[0, 1, 2]]);
+/// # Ok::<(), p2m_mixed::ReadError>(())
+/// ```
+///
+/// # Errors
+/// The errors are those of [`read_scene`].
+pub fn read_scene_from(reader: impl BufRead, format: Format, name: &str) -> Result<Scene, ReadError> {
+    match format {
+        Format::Obj => read_obj(reader, name),
+        Format::Ply => read_ply(reader, name),
+        Format::Stl => read_stl(reader, name),
+        Format::Off => read_off(reader, name),
+        Format::P2m => read_p2m(reader, name),
+    }
+}
