@@ -19,7 +19,7 @@ use p2m::backend::{Best, Hits, RayStatsCollector, StatsCollector};
 use p2m::scene::generate::{IcoSphere, Subdivide, ico_sphere, subdivide};
 use p2m::storage::{SavedFile, Writer};
 use p2m::{AabbTree, BuildIndex, ClosestPoint, Inspect, Isa, KdopTree, OctreeIndex, P2mIndex, Ray, Soup};
-use p2m_testkit::asking::{self, Way};
+use p2m_testkit::counted_queries::{self, QueryMode};
 use p2m_testkit::compiled;
 use p2m_testkit::queries::QuerySet;
 use std::fmt::Write as _;
@@ -156,17 +156,17 @@ impl<I: Inspect<f64>> ClosestPoint<f64> for Counted<'_, I> {
 fn point_tasks<'a, I: Inspect<f64> + Sync>(
     backend: &'static str,
     index: &'a I,
-    object: &'a asking::Index<'a>,
+    object: &'a counted_queries::Index<'a>,
     soup: &'a Soup<f64>,
-    way: Way,
+    way: QueryMode,
 ) -> impl Iterator<Item = Task<'a>> {
     SETS.into_iter().map(move |set| {
         let queries = points(set, soup);
         let same_queries = queries.clone();
-        let ask = move || asking::ask(object, way, &queries);
+        let ask = move || counted_queries::run_queries(object, way, &queries);
         let count = move || {
             let counted = Counted { index, soup, counts: Mutex::default() };
-            asking::ask(&counted, way, &same_queries);
+            counted_queries::run_queries(&counted, way, &same_queries);
             counted.counts.into_inner().expect("one thread")
         };
         Task { backend, set: set.name(), ask: Box::new(ask), count: Box::new(count) }
@@ -176,11 +176,11 @@ fn point_tasks<'a, I: Inspect<f64> + Sync>(
 /// The rays from the scene's box, of which the first hits are asked for.
 fn ray_task<'a>(
     backend: &'static str,
-    object: &'a dyn asking::Tree,
+    object: &'a dyn counted_queries::Tree,
     rays: &'a [Ray],
     visit: impl Fn(&'a Ray, &mut RayStatsCollector<Hits<'a>>) + 'a,
 ) -> Task<'a> {
-    let ask = move || asking::ask_rays(object, rays);
+    let ask = move || counted_queries::run_rays(object, rays);
     let count = move || RayStatsCollector::of_rays(rays, &Hits::first(), &visit);
     Task { backend, set: "rays", ask: Box::new(ask), count: Box::new(count) }
 }
@@ -248,18 +248,18 @@ impl<'a> Indexes<'a> {
     /// All queries, in the order of the table.
     fn tasks(&self) -> Vec<Task<'_>> {
         let Self { soup, rays, aabb, kdop, octree, p2m } = self;
-        let (aabb_object, kdop_object) = (asking::aabb_tree(aabb), asking::kdop_tree(kdop));
-        let (octree_object, p2m_object) = (asking::octree(octree), asking::p2m(p2m));
+        let (aabb_object, kdop_object) = (counted_queries::aabb_tree(aabb), counted_queries::kdop_tree(kdop));
+        let (octree_object, p2m_object) = (counted_queries::octree(octree), counted_queries::p2m(p2m));
         // Trees gain from hints, and cells from several queries at a time.
-        point_tasks("aabb", aabb, aabb_object, soup, Way::Single)
+        point_tasks("aabb", aabb, aabb_object, soup, QueryMode::Single)
             .chain([ray_task("aabb", aabb_object, rays, |ray, counting| aabb.visit_ray(ray, counting))])
-            .chain(point_tasks("aabb batch", aabb, aabb_object, soup, Way::Hints))
-            .chain(point_tasks("kdop-14", kdop, kdop_object, soup, Way::Single))
+            .chain(point_tasks("aabb batch", aabb, aabb_object, soup, QueryMode::Hints))
+            .chain(point_tasks("kdop-14", kdop, kdop_object, soup, QueryMode::Single))
             .chain([ray_task("kdop-14", kdop_object, rays, |ray, counting| kdop.visit_ray(ray, counting))])
-            .chain(point_tasks("octree", octree, octree_object, soup, Way::Single))
-            .chain(point_tasks("octree batch", octree, octree_object, soup, Way::Several))
-            .chain(point_tasks("p2m", p2m, p2m_object, soup, Way::Single))
-            .chain(point_tasks("p2m batch", p2m, p2m_object, soup, Way::Several))
+            .chain(point_tasks("octree", octree, octree_object, soup, QueryMode::Single))
+            .chain(point_tasks("octree batch", octree, octree_object, soup, QueryMode::Several))
+            .chain(point_tasks("p2m", p2m, p2m_object, soup, QueryMode::Single))
+            .chain(point_tasks("p2m batch", p2m, p2m_object, soup, QueryMode::Several))
             .collect()
     }
 }

@@ -124,7 +124,7 @@ where
 {
     let tree = KdopTree::<f64, _, K>::build(&scene.double, &KdopOptions::default()).expect("built before");
     let work = count(queries, |query, counting| tree.visit(query, counting));
-    let left_first = LeftFirst::of_packets(tree.tree());
+    let left_first = LeftFirst::from_packets(tree.tree());
     let some: Vec<_> = queries.iter().step_by(20).collect();
     let mut sums = [0usize; 2];
     for query in &some {

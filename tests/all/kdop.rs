@@ -133,7 +133,7 @@ fn far_fewer_nodes_are_visited_than_from_left_to_right() {
         let queries = QuerySet::Box1.generate(&soup, amount(500, 60), 1);
         let tree = built::<14>(&soup);
         let [nodes, packets] = work(&tree, &queries);
-        let left_first = LeftFirst::of_packets(tree.tree());
+        let left_first = LeftFirst::from_packets(tree.tree());
         let mut sums = [0; 2];
         for query in &queries {
             let (distance, work) = left_first.distance(&&soup, query);

@@ -10,7 +10,7 @@
 use nalgebra::{Point3, Vector3};
 use p2m::interception::Partition;
 use p2m::{BruteForce, BuildIndex, ClosestPoint, P2mIndex, PrimitiveId, PrimitiveSet, Soup};
-use p2m_testkit::paper::{Mesh, NEARER, Polytope, Table, centre};
+use p2m_testkit::paper::{Mesh, NEARER_BY, Polytope, Table, centre};
 use p2m_testkit::scenes::{self, Kinds, Layout};
 use p2m_testkit::{amount, is_deep, rng, vector};
 use rand::{Rng, RngExt};
@@ -72,7 +72,7 @@ impl Scene {
         assert!(self.lists[v].contains(&id), "{name}: {id} is not in the list of {v}, at {query:?}");
         assert_eq!(list(&self.index, query), self.lists[v], "{name}: the cell of {v} has {query:?}");
         let error = self.table.distance_squared(mesh, v, query) - closest.distance * closest.distance;
-        assert!(error.abs() <= 2.0 * NEARER, "{name}: the paper errs by {error} in the cell of {v}, at {query:?}");
+        assert!(error.abs() <= 2.0 * NEARER_BY, "{name}: the paper errs by {error} in the cell of {v}, at {query:?}");
         Some(id)
     }
 

@@ -23,7 +23,7 @@ fn manual<const K: usize>(soup: &Soup<f64>) -> LeftFirst<K>
 where
     Directions<K>: Default,
 {
-    LeftFirst::of_primitives(&soup, &Directions::default())
+    LeftFirst::from_primitives(&soup, &Directions::default())
 }
 
 /// The manual's own way leaves out nothing that a ray meets, or it would count too little.

@@ -40,7 +40,7 @@ fn agrees_with_rays(name: &str, soup: &Soup<f64>, sets: &[QuerySet], cases: &Cas
     let signed = SignedDistance::new(tree(soup), soup).expect("closed");
     let mut inside = 0;
     for set in sets {
-        for query in set.of_cases(soup, cases, 3) {
+        for query in set.generate_for_cases(soup, cases, 3) {
             let answer = signed.closest_point(&query).expect("not empty");
             let expected = expected(&index, &query, &answer.closest);
             assert_eq!(answer.sign, expected, "{name}, {set}, {query:?}: {:?}", answer.closest);
@@ -237,7 +237,7 @@ fn every_backend_has_the_same_signs() {
     let octree = SignedDistance::new(octree, &soup).expect("closed");
     let p2m = P2mIndex::build(&soup, &Default::default()).expect("valid");
     let p2m = SignedDistance::new(p2m, &soup).expect("closed");
-    for query in QuerySet::Box1.of_cases(&soup, &cases(1000, 100), 5) {
+    for query in QuerySet::Box1.generate_for_cases(&soup, &cases(1000, 100), 5) {
         let known = |c: Option<p2m::field::sign::Signed>| c.map(|c| (c.distance(), c.sign, c.closest.primitive));
         let expected = known(aabb.closest_point(&query));
         assert_eq!(known(octree.closest_point(&query)), expected);
@@ -249,7 +249,7 @@ fn every_backend_has_the_same_signs() {
 fn is_near_analytic(name: &str, soup: &Soup<f64>, error: f64, analytic: impl Fn(&Point3<f64>) -> f64) {
     let signed = SignedDistance::new(tree(soup), soup).expect("closed");
     let winding = SignedDistance::with_winding_numbers(tree(soup), soup, 0.01).expect("triangles");
-    for query in QuerySet::Box1.of_cases(soup, &cases(2000, 60), 11) {
+    for query in QuerySet::Box1.generate_for_cases(soup, &cases(2000, 60), 11) {
         let expected = analytic(&query);
         let found = signed.closest_point(&query).and_then(|s| s.distance()).expect("defined");
         assert!((found - expected).abs() <= error, "{name}, {query}: {found} for {expected}");
@@ -329,7 +329,7 @@ fn winding_numbers_are_within_their_bound() {
             let winding = WindingNumbers::new(soup, accuracy).expect("triangles");
             let mut worst = 0.0f64;
             for set in [QuerySet::Box1, QuerySet::Near, QuerySet::Box10] {
-                for query in set.of_cases(soup, &cases, 7) {
+                for query in set.generate_for_cases(soup, &cases, 7) {
                     let (found, exact) = (winding.number(&query), winding.exact_number(&query));
                     worst = worst.max((found - exact).abs());
                 }
@@ -352,7 +352,7 @@ fn winding_numbers_of_closed_models_have_the_signs_of_rays() {
         let winding = SignedDistance::with_winding_numbers(tree(&soup), &soup, 0.01).expect("triangles");
         let index = tree(&soup);
         for set in [QuerySet::Box1, QuerySet::Near] {
-            for query in set.of_cases(&soup, &cases, 4) {
+            for query in set.generate_for_cases(&soup, &cases, 4) {
                 let found = winding.closest_point(&query).expect("not empty");
                 let expected = if is_inside(&index, &query) { Sign::Inside } else { Sign::Outside };
                 assert!(found.sign == expected || found.closest.distance == 0.0, "{name}, {query}");

@@ -39,9 +39,9 @@ pub(super) fn judged(
     let named = vertices.get(answer.id as usize).filter(|_| names && answer.id as usize != nearest && !beyond);
     let wrong = named.is_some_and(|named| {
         // The distance of the nearest primitive may be above the true one by the rounding of both.
-        let least = truth.exact().length()[0] + truth.of_reach(ROUNDING * 2f64.powi(-bits.cast_signed()));
+        let least = truth.exact().length()[0] + truth.times_max_vertex_distance(ROUNDING * 2f64.powi(-bits.cast_signed()));
         let theirs = Truth::new(query, named);
-        theirs.is_at_least(least + theirs.of_reach(ROUNDING * 2f64.powi(-bits.cast_signed())) + eta)
+        theirs.is_at_least(least + theirs.times_max_vertex_distance(ROUNDING * 2f64.powi(-bits.cast_signed())) + eta)
     });
     (error, wrong)
 }

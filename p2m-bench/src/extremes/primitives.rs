@@ -72,7 +72,7 @@ fn labels() -> Vec<String> {
     for (scalar, span) in SPANS {
         labels.extend(span.scales.iter().map(|scale| format!("scale 2^{scale} of {scalar}")));
     }
-    labels.extend(PLACES.iter().map(|place| format!("query {place}")));
+    labels.extend(PLACES.iter().map(|position| format!("query {position}")));
     labels
 }
 
@@ -103,7 +103,7 @@ fn rows_of(scalar: usize, family: &Family) -> impl Iterator<Item = usize> {
         Family::Wild => alone(1),
         Family::AlmostFlat => alone(2),
         Family::Neighbours => alone(3),
-        Family::Shaped { sine, scale, offset, needle, place } => {
+        Family::Shaped { sine, scale, offset, needle, query_position } => {
             let (scaled, moved) = (scale != 0, offset != 0.0);
             let mut first = 5;
             let mut find = |at: Option<usize>, len: usize, counts: bool| {
@@ -117,7 +117,7 @@ fn rows_of(scalar: usize, family: &Family) -> impl Iterator<Item = usize> {
                 let scales = SPANS[of].1.scales;
                 find(scales.iter().position(|s| *s == scale), scales.len(), !moved && of == scalar)
             });
-            let places = find(PLACES.iter().position(|p| *p == place), PLACES.len(), !scaled && !moved);
+            let places = find(PLACES.iter().position(|p| *p == query_position), PLACES.len(), !scaled && !moved);
             [(needle && !scaled && !moved).then_some(4), sines, offsets, double, single, places]
         }
     };

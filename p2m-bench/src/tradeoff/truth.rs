@@ -23,7 +23,7 @@ pub(super) fn truths(scene: &Scene, queries: &[Point3<f64>]) -> Vec<Truth> {
         let vertices: Vec<[f64; 3]> = shape.vertices().iter().map(|vertex| vertex.coords.into()).collect();
         let exact = Distance::new(query.coords.into(), &vertices);
         let [distance, rest] = exact.length();
-        Truth { distance, rest, reach: exact.reach(), id: id.index() as u32 }
+        Truth { distance, rest, reach: exact.max_vertex_distance(), id: id.index() as u32 }
     };
     queries.par_iter().map(truth).collect()
 }
