@@ -1,18 +1,17 @@
-//! A gate for performance that repeats: it holds the work of a query to a table, for each backend and query set.
+//! A repeatable gate for performance: it compares the work of a query with a table, for each backend and query set.
 //!
 //! `tests/instructions.csv` has the nodes, packets and primitives that a query visits, and the instructions that it
 //! executes with the portable instruction set and with AVX2. No time is measured.
 //!
 //! - **Counters** are taken in this process with the portable instruction set, and do not depend on the number of
-//!   threads. They have to be exactly those of the table, and the table is to be renewed where they fall.
-//! - **Instructions** are counted by callgrind, where valgrind is installed: this program saves the indexes and starts
-//!   itself under valgrind, which counts nothing but the queries. Instructions depend on the compiler, the target and
-//!   the profile, so they are left out with a message where those are not the table's. The test fails for a query that
-//!   takes more instructions than the table has, beyond a tolerance, and prints a message for one that takes fewer.
+//!   threads. They have to be exactly those of the table; after an improvement the table is renewed.
+//! - **Instructions** are counted by callgrind, if valgrind is installed: this program saves the indexes and starts
+//!   itself under valgrind, which counts the queries only. Instructions depend on the compiler, the target and the
+//!   profile, so they are left out, with a message, if those are not the table's. The test fails for a query that takes
+//!   more instructions than the table has, beyond a tolerance, and prints a message for one that takes fewer.
 //!
 //! `CARGO_INCREMENTAL=0 P2M_BLESS=1 cargo test --test instructions` writes the table anew. The table is made for the
-//! profile `test`, which optimises the crates p2m-core and p2m-testkit, in which the counted code is compiled, and not
-//! this program.
+//! profile `test`, which optimises the libraries in which the counted code is compiled, and not this program.
 
 use nalgebra::Point3;
 use p2m::backend::{Best, Hits, RayStatsCollector, StatsCollector};
@@ -28,32 +27,32 @@ use std::process::{Command, ExitCode};
 use std::sync::Mutex;
 use std::{env, fs};
 
-/// Queries of each set. A count divided by 200 has three decimals at most, so the table has all of them.
+/// The number of queries of each set. A count divided by 200 has at most three decimals, so the table has all of them.
 const QUERIES: usize = 200;
 /// The seed of all queries.
 const SEED: u64 = 1;
-/// How many more instructions a query may take than in the table, as a part of them. The same code takes up to 0.4 %
-/// more or fewer where the stack lies elsewhere, and up to 0.2 % after a change of unrelated functions of p2m-core.
+/// The fraction by which the instructions of a query may exceed those of the table. The same code takes up to 0.4 %
+/// more or fewer at another address of the stack, and up to 0.2 % after a change of unrelated functions.
 const TOLERANCE: f64 = 0.02;
-/// The tolerance where crates are compiled incrementally: in smaller parts, between which less is inlined. The same
+/// The tolerance for crates that are compiled incrementally, in smaller parts with less inlining between them. The same
 /// code takes up to 3.8 % more instructions.
 const TOLERANCE_OF_INCREMENTAL: f64 = 0.06;
 /// The scenes, in the order of the table.
 const SCENES: [&str; 2] = ["knot_and_cables", "scan"];
 /// The query sets of closest points.
 const SETS: [QuerySet; 4] = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface];
-/// The instruction sets whose instructions are counted, without AVX-512, which valgrind does not know.
+/// The instruction sets whose instructions are counted. AVX-512 is missing, because valgrind does not support it.
 const INSTRUCTION_SETS: [&str; 2] = ["portable", "avx2"];
 /// The columns of figures.
 const COLUMNS: [&str; 5] = ["nodes", "packets", "primitives", "portable", "avx2"];
-/// How many of the columns are counters.
+/// The number of columns that are counters.
 const COUNTERS: usize = 3;
-/// Whether counters are compared without the tolerance. Where the portable instruction set multiplies and adds with one
-/// rounding, bounds differ in their last bits from those for which the table was made, and counters may differ.
+/// Whether counters are compared without the tolerance. If the portable instruction set has fused multiply-add, bounds
+/// differ in their last bits from those of the table, and counters may differ.
 const IS_EXACT: bool = cfg!(all(target_arch = "x86_64", not(target_feature = "fma")));
-/// The argument that makes this program ask the indexes in a folder all queries.
+/// The argument that makes this program run all queries on the indexes of a folder.
 const MEASURE: &str = "--measure-in=";
-/// How the table is renewed.
+/// The command that renews the table.
 const RENEWAL: &str = "CARGO_INCREMENTAL=0 P2M_BLESS=1 cargo test --test instructions";
 
 fn main() -> ExitCode {
@@ -68,7 +67,7 @@ fn main() -> ExitCode {
 /// The name of the only test.
 const NAME: &str = "work_is_that_of_the_table";
 
-/// Whether the arguments of a test program ask for this test to be run. If they ask for a list of the tests, it is
+/// Returns whether the arguments of a test program select this test. If they request a list of the tests, it is
 /// printed.
 fn is_asked_for(arguments: &[String]) -> bool {
     let is_set = |flag: &str| arguments.iter().any(|argument| argument == flag);
@@ -94,7 +93,7 @@ fn is_asked_for(arguments: &[String]) -> bool {
     is_chosen
 }
 
-/// A rough lump of 11,520 triangles, which is noisy as a scan is and the same on every platform.
+/// Returns a rough lump of 11,520 triangles, which is noisy like a scan and the same on every platform.
 fn scan() -> Soup<f64> {
     let lump = ico_sphere(&IcoSphere::default().with_frequency(3)).expect("valid options");
     subdivide(&lump, &Subdivide::default().with_levels(3).with_amplitude(0.15)).expect("valid options")
@@ -105,7 +104,7 @@ fn scene(name: &str) -> Soup<f64> {
     if name == "scan" { scan() } else { p2m::scene::read_scene(&carried).expect("a carried scene").soup }
 }
 
-/// The nearest number in f32: it takes the last bits off, in which logarithms and cosines differ between platforms.
+/// Rounds to f32, which removes the last bits, in which logarithms and cosines differ between platforms.
 fn rounded(x: f64) -> f64 {
     f64::from(x as f32)
 }
@@ -120,21 +119,21 @@ fn rays(soup: &Soup<f64>) -> Vec<Ray> {
     rays.map(|ray| Ray::new(&ray.origin(), &ray.direction().map(rounded)).expect("finite, and not zero")).collect()
 }
 
-/// Nodes, packets and primitives of all queries of a set.
+/// The nodes, packets and primitives of all queries of a set.
 type Counts = [usize; COUNTERS];
 
-/// Some queries of one index.
+/// The queries of one set on one index.
 struct Task<'a> {
     backend: &'static str,
     set: &'static str,
-    /// Asks the queries as a user does.
+    /// Runs the queries as a user does.
     ask: Box<dyn Fn() + 'a>,
-    /// Asks the queries with counters.
+    /// Runs the queries with counters.
     count: Box<dyn Fn() -> Counts + 'a>,
 }
 
-/// An index that counts what its searches visit. It answers the queries of a batch one by one, so searches side by side
-/// are not counted.
+/// An index that counts the nodes, packets and primitives of its searches. It answers the queries of a batch one by
+/// one, so interleaved searches are not counted.
 struct Counted<'a, I> {
     index: &'a I,
     soup: &'a Soup<f64>,
@@ -152,7 +151,7 @@ impl<I: Inspect<f64>> ClosestPoint<f64> for Counted<'_, I> {
     }
 }
 
-/// The queries of all sets of closest points, to an index and to the same one as a trait object.
+/// Returns the queries of all sets of closest points, for an index that counts and the same index as a trait object.
 fn point_tasks<'a, I: Inspect<f64> + Sync>(
     backend: &'static str,
     index: &'a I,
@@ -173,7 +172,7 @@ fn point_tasks<'a, I: Inspect<f64> + Sync>(
     })
 }
 
-/// The rays from the scene's box, of which the first hits are asked for.
+/// Returns the rays from the scene's box, whose first hits are searched for.
 fn ray_task<'a>(
     backend: &'static str,
     object: &'a dyn counted_queries::Tree,
@@ -196,7 +195,7 @@ struct Indexes<'a> {
     p2m: P2mIndex<f64, &'a Soup<f64>>,
 }
 
-/// The file of an index.
+/// Returns the path of the file of an index.
 fn file(folder: &Path, scene: &str, backend: &str) -> PathBuf {
     folder.join(format!("{scene}-{backend}.p2m"))
 }
@@ -227,7 +226,7 @@ impl<'a> Indexes<'a> {
     }
 
     fn load(soup: &'a Soup<f64>, folder: &Path, scene: &str) -> Self {
-        // The files are not checked, for that takes long under valgrind.
+        // The files are not verified, because that takes long under valgrind.
         let open = |backend: &str| SavedFile::open(&file(folder, scene, backend)).expect("written by this program");
         Self {
             soup,
@@ -245,12 +244,12 @@ impl<'a> Indexes<'a> {
         Self { aabb, kdop, octree: octree.with_isa(isa), p2m: p2m.with_isa(isa), ..self }
     }
 
-    /// All queries, in the order of the table.
+    /// Returns all queries, in the order of the table.
     fn tasks(&self) -> Vec<Task<'_>> {
         let Self { soup, rays, aabb, kdop, octree, p2m } = self;
         let (aabb_object, kdop_object) = (counted_queries::aabb_tree(aabb), counted_queries::kdop_tree(kdop));
         let (octree_object, p2m_object) = (counted_queries::octree(octree), counted_queries::p2m(p2m));
-        // Trees gain from hints, and cells from several queries at a time.
+        // Hints help trees, and interleaving helps cells.
         point_tasks("aabb", aabb, aabb_object, soup, QueryMode::Single)
             .chain([ray_task("aabb", aabb_object, rays, |ray, counting| aabb.visit_ray(ray, counting))])
             .chain(point_tasks("aabb batch", aabb, aabb_object, soup, QueryMode::Hints))
@@ -271,14 +270,14 @@ fn counted_by_callgrind(task: &Task<'_>) {
     std::hint::black_box(task);
 }
 
-/// The function after which callgrind writes a file of what it has counted.
+/// The function after which callgrind writes a file with its counts.
 #[inline(never)]
 fn written_by_callgrind(task: &Task<'_>) {
     counted_by_callgrind(task);
     std::hint::black_box(task);
 }
 
-/// Asks the indexes in a folder all queries, for each scene with each instruction set in turn, under callgrind.
+/// Runs all queries on the indexes of a folder, for each scene with each instruction set in turn, under callgrind.
 fn ask_everything(folder: &Path) {
     for name in SCENES {
         let soup = scene(name);
@@ -289,7 +288,7 @@ fn ask_everything(folder: &Path) {
     }
 }
 
-/// A row of the table: the figures of a query in columns, of which some may be unknown.
+/// A row of the table: the figures of a query in columns, some of which may be unknown.
 #[derive(Clone, Debug, PartialEq)]
 struct Row {
     /// The scene, the backend and the query set.
@@ -303,13 +302,13 @@ impl Row {
     }
 }
 
-/// A figure as the table has it.
+/// Formats a figure as in the table.
 fn shown(figure: Option<f64>, column: usize) -> String {
     let decimals = if column < COUNTERS { 3 } else { 0 };
     figure.map_or_else(|| "-".to_owned(), |x| format!("{x:.decimals$}"))
 }
 
-/// The rows of the indexes, with their counters.
+/// Returns the rows of the indexes, with their counters.
 fn counted(scene: &str, indexes: Indexes<'_>) -> Vec<Row> {
     let row = |task: &Task<'_>| {
         let mut figures = [None; COLUMNS.len()];
@@ -321,7 +320,7 @@ fn counted(scene: &str, indexes: Indexes<'_>) -> Vec<Row> {
     indexes.with_isa(Isa::PORTABLE).tasks().iter().map(row).collect()
 }
 
-/// The reason why callgrind cannot count instructions as it did for the table; `None` if it can.
+/// Returns the reason why callgrind cannot count instructions as it did for the table; `None` if it can.
 fn find_obstacle() -> Option<String> {
     let program = env::current_exe().expect("a program");
     let is_in_debug_folder = program.components().any(|part| part.as_os_str() == "debug");
@@ -340,7 +339,7 @@ fn find_obstacle() -> Option<String> {
     }
 }
 
-/// Fills in the instructions of the indexes in a folder.
+/// Adds the instructions of the indexes of a folder to the rows.
 fn count_instructions(folder: &Path, rows: &mut [Row]) {
     let counts = folder.join("callgrind");
     let output = Command::new("valgrind")
@@ -373,16 +372,16 @@ fn count_instructions(folder: &Path, rows: &mut [Row]) {
     }
 }
 
-/// The sum of a file of callgrind; `None` where there is no such file.
+/// Returns the sum of a file of callgrind; `None` if there is no such file.
 fn instructions(file: &Path) -> Option<u64> {
     let text = fs::read_to_string(file).ok()?;
     let total = text.lines().find_map(|line| line.strip_prefix("totals: ")).expect("a file of callgrind has totals");
     Some(total.trim().parse().expect("a number"))
 }
 
-/// The checked-in table.
+/// The table that is checked in.
 struct Table {
-    /// The compiler and the target for which it has instructions.
+    /// The compiler and the target for which the table has instructions.
     compiler: String,
     rows: Vec<Row>,
 }
@@ -425,12 +424,12 @@ impl Table {
     }
 }
 
-/// Whether cargo compiles incrementally, as it does unless the environment says otherwise.
+/// Returns whether cargo compiles incrementally, as it does unless the environment says otherwise.
 fn is_incremental() -> bool {
     env::var_os("CARGO_INCREMENTAL").is_none_or(|value| value != "0")
 }
 
-/// How a figure differs from that of the table, beyond the tolerance.
+/// The difference of a figure from that of the table, beyond the tolerance.
 enum Change {
     None,
     Less,
@@ -438,7 +437,7 @@ enum Change {
 }
 
 impl Change {
-    /// The change of a figure of a column.
+    /// Classifies the change of a figure of a column.
     fn of(column: usize, before: f64, now: f64) -> Self {
         let part = if is_incremental() { TOLERANCE_OF_INCREMENTAL } else { TOLERANCE };
         let tolerance = if column < COUNTERS && IS_EXACT { 0.0 } else { part * before };
@@ -474,7 +473,7 @@ fn print_rows(rows: &[Row], table: &Table) {
     }
 }
 
-/// Compares the rows with the table, and returns what is wrong and what is better than there.
+/// Compares the rows with the table, and returns messages about figures that are worse and about those that are better.
 fn compare(rows: &[Row], table: &Table) -> (Vec<String>, Vec<String>) {
     let (mut wrong, mut better) = (Vec::new(), Vec::new());
     let absent = |list: &[Row], row: &Row| !list.iter().any(|other| other.has_names_of(row));
@@ -513,7 +512,7 @@ fn compare(rows: &[Row], table: &Table) -> (Vec<String>, Vec<String>) {
     (wrong, better)
 }
 
-/// Measures everything and compares it with the table, or writes that.
+/// Measures everything, and compares it with the table or writes the table.
 fn hold_to_table() -> ExitCode {
     let is_renewed = env::var_os("P2M_BLESS").is_some();
     if is_renewed && is_incremental() {

@@ -1,4 +1,4 @@
-//! What is asked of an index about closest points, and what its answers have to be.
+//! The questions about closest points, and the checks of the answers.
 
 use super::backends::Index;
 use super::{approximation, exactness};
@@ -9,7 +9,7 @@ use p2m::{BruteForce, Closest, ClosestPoint, Feature, PrimitiveId, PrimitiveSet,
 /// The groups of questions.
 pub const QUESTIONS: [&str; 7] = ["agreement", "exactness", "certified", "approximate", "near", "batches", "boxes"];
 
-/// An index, and what it is asked about.
+/// An index, with the scene that it was built over.
 pub struct Asked<'a, T: Real> {
     pub soup: &'a Soup<T>,
     pub brute: &'a BruteForce<&'a Soup<T>>,
@@ -18,10 +18,10 @@ pub struct Asked<'a, T: Real> {
     pub seed: u64,
 }
 
-/// All of an answer but its lower bound, to the last bit.
+/// All fields of an answer but its lower bound, to the last bit.
 pub type Known = (PrimitiveId, u64, [u64; 3], Feature, [u64; 3]);
 
-/// What every index has to find.
+/// Returns the fields of an answer that every index has to return.
 pub fn known<T: Real>(c: &Closest<T>) -> Known {
     let bits = |x: T| x.to_f64().to_bits();
     let point: [T; 3] = c.point.coords.into();
@@ -33,7 +33,7 @@ impl<T: Real> Asked<'_, T> {
         format!("{} of {} primitives, {query:?}", self.name, self.soup.len())
     }
 
-    /// One of the questions about a place.
+    /// Checks one of the questions about a query point.
     pub fn one(&self, question: &str, query: &Point3<T>) {
         let Some(expected) = self.brute.closest_point(query) else {
             return self.nothing(query);
@@ -46,7 +46,7 @@ impl<T: Real> Asked<'_, T> {
         }
     }
 
-    /// There is an answer for each query that is finite, if there is anything.
+    /// Checks that each finite query has an answer, if the scene has primitives.
     fn nothing(&self, query: &Point3<T>) {
         assert!(self.soup.is_empty() || !query.iter().all(|x| x.is_finite()), "{}", self.say(query));
         assert_eq!(self.index.closest_point(query), None, "{}", self.say(query));
@@ -56,7 +56,7 @@ impl<T: Real> Asked<'_, T> {
         assert_eq!(self.index.closest_point_with(query, &rough), None, "{}", self.say(query));
     }
 
-    /// The bits of brute force, whatever changes the work alone.
+    /// Checks that the answer has the bits of brute force, with every option that changes the work alone.
     fn agreement(&self, query: &Point3<T>, expected: &Closest<T>) {
         let say = || self.say(query);
         let usual = QueryOptions::default();
@@ -65,12 +65,12 @@ impl<T: Real> Asked<'_, T> {
         let found = ask(&usual).expect("something");
         assert_eq!(known(&found), expected.0, "{}", say());
         assert!(found.lower_bound <= found.distance && found.lower_bound >= T::zero(), "{}: {found:?}", say());
-        // A hint, also to a primitive that there is not.
+        // A hint may be any primitive, and also one that does not exist.
         for id in [self.seed as usize % (self.soup.len() + 1), found.primitive.index()] {
             let hinted = ask(&usual.with_hint(PrimitiveId::new(id)));
             assert_eq!(hinted.as_ref().map(known), Some(expected.0), "{}: hint {id}", say());
         }
-        // A radius changes whether, not what; it is inclusive.
+        // A radius decides whether there is an answer and does not change it; it is inclusive.
         let beside = [expected.1, expected.1 * T::of_f64(1.5), T::of_f64_below(expected.1.to_f64() * (1.0 - 1e-7))];
         for radius in beside {
             let limited = ask(&usual.with_max_distance(radius).with_hint(PrimitiveId::new(0)));
@@ -82,7 +82,7 @@ impl<T: Real> Asked<'_, T> {
         }
     }
 
-    /// Each query as if it were alone; enough of them for those that are answered side by side.
+    /// Checks that a batch has the answers of single queries; there are enough of them to be interleaved.
     pub fn in_batches(&self, queries: &[Point3<T>]) {
         let queries: Vec<_> = queries.iter().copied().cycle().take(37).collect();
         let radius = queries.iter().find_map(|query| self.brute.closest_point(query)).map_or(T::one(), |c| c.distance);

@@ -1,4 +1,4 @@
-//! Answers that may be rough: the error that was asked for, and a lower bound that holds.
+//! Checks approximate answers: the requested error, and a valid lower bound.
 
 use super::answers::{Asked, known};
 use super::scene::vertices;
@@ -7,7 +7,7 @@ use p2m::{Closest, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Sou
 use p2m_testkit::oracle::Distance;
 use std::cmp::Ordering;
 
-/// What holds for every answer; `exact` is that of brute force.
+/// Queries an index and checks the promises of every answer; `exact` is the answer of brute force.
 fn ask<T: Real>(asked: &Asked<'_, T>, query: &Point3<T>, exact: &Closest<T>, options: &QueryOptions<T>) -> Closest<T> {
     let found = asked.index.closest_point_with(query, options);
     let say = || format!("{}, {options:?}: {found:?}, not {exact:?}", asked.say(query));
@@ -27,7 +27,7 @@ fn nearest<T: Real>(soup: &Soup<T>, query: &Point3<T>) -> Distance {
     all.reduce(|a, b| if b.compare(&a) == Ordering::Less { b } else { a }).expect("not empty")
 }
 
-/// Every option, of sizes that the seed chooses.
+/// Checks every option, with values that the seed chooses.
 pub fn check<T: Real>(asked: &Asked<'_, T>, query: &Point3<T>, exact: &Closest<T>) {
     let say = || format!("{}, {exact:?}", asked.say(query));
     let usual = QueryOptions::default();
@@ -41,7 +41,7 @@ pub fn check<T: Real>(asked: &Asked<'_, T>, query: &Point3<T>, exact: &Closest<T
     ask(asked, query, exact, &usual.with_max_visits([0, 1, 2, 3, 5, 9][seed % 6]).with_hint(hint));
     let found = ask(asked, query, exact, &usual.with_max_visits(u32::MAX - 1));
     assert_eq!(known(&found), known(exact), "{}: a budget for everything: {found:?}", say());
-    // With a radius that holds something and one that does not.
+    // One radius contains a primitive and the other one does not.
     let rough = usual.with_epsilon(T::of_f64(epsilon));
     let found = ask(asked, query, exact, &rough.with_max_distance(exact.distance).with_hint(hint));
     assert_eq!(found.distance, exact.distance, "{}: {found:?}", say());

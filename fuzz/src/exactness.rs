@@ -1,4 +1,4 @@
-//! Answers against rational arithmetic.
+//! Compares answers with rational arithmetic.
 
 use super::answers::{Asked, known};
 use super::scene::vertices;
@@ -9,7 +9,7 @@ use p2m_testkit::contract;
 use p2m_testkit::oracle::Distance;
 use std::cmp::Ordering;
 
-/// The digits of a scalar, and its largest number.
+/// Returns the precision of a scalar in bits, and its largest number.
 fn digits<T: Real>() -> (u32, f64) {
     if T::UNIT_ROUNDOFF == f64::UNIT_ROUNDOFF { (53, f64::MAX) } else { (24, f64::from(f32::MAX)) }
 }
@@ -18,14 +18,14 @@ fn wide<T: Real>(p: &Point3<T>) -> [f64; 3] {
     p.map(T::to_f64).coords.into()
 }
 
-/// The nearest primitive, the lowest id of several, and the distances of all.
+/// Returns the nearest primitive (the lowest id of several) and the distances of all.
 fn nearest<T: Real>(soup: &Soup<T>, query: [f64; 3]) -> (usize, Vec<Distance>) {
     let all: Vec<_> = (0..soup.len()).map(|id| Distance::new(query, &vertices(soup, id))).collect();
     let less = |a: usize, b: usize| if all[b].compare(&all[a]) == Ordering::Less { b } else { a };
     ((0..all.len()).reduce(less).expect("not empty"), all)
 }
 
-/// N1, N2, N5 and N7 of an answer.
+/// Checks N1, N2, N5 and N7 of an answer.
 pub fn ordinary<T: Real>(asked: &Asked<'_, T>, query: &Point3<T>, found: &Closest<T>) {
     let say = || format!("{}: {found:?}", asked.say(query));
     let (bits, largest) = digits::<T>();
@@ -34,23 +34,24 @@ pub fn ordinary<T: Real>(asked: &Asked<'_, T>, query: &Point3<T>, found: &Closes
     let own = vertices(asked.soup, id);
     let distance = found.distance.to_f64();
     if distance.is_finite() {
-        // No farther than what is nearest by more than the rounding of that, from which N2 follows.
+        // The distance exceeds that of the nearest primitive by at most its rounding, which implies N2.
         if !all[best].is_at_least(distance) {
             let wrong = all[best].error(distance, bits, T::SMALLEST_SUBNORMAL);
             assert!(wrong <= ERROR_CONSTANT, "{}: N2, {wrong} from primitive {best}", say());
         }
     } else {
-        // The error of the largest vertices that there can be.
+        // A distance above the range has the rounding error of the largest possible vertices.
         assert!(all[best].is_at_least(largest * (1.0 - 32.0 * T::UNIT_ROUNDOFF)), "{}: infinite", say());
     }
     assert!(all[best].is_at_least(found.lower_bound.to_f64()), "{}: N7", say());
-    // And what it says of the primitive that it names.
+    // The other fields are checked against the primitive that the answer names.
     if let Err(broken) = contract::check(place, &own, found) {
         panic!("{}: {broken}", say());
     }
 }
 
-/// N8: the nearest primitive, the lowest id of several that are exactly as near, and the distance rounded.
+/// Checks N8: the answer is the nearest primitive, the lowest id of several that are exactly as near, with the rounded
+/// distance.
 pub fn certified<T: Real>(asked: &Asked<'_, T>, query: &Point3<T>) {
     let (bits, largest) = digits::<T>();
     let (id, all) = nearest(asked.soup, wide(query));

@@ -1,7 +1,8 @@
-//! Closest points of scenes from bytes: every backend against brute force, bit for bit, and against rational arithmetic.
+//! Closest points of scenes from bytes: every backend is compared with brute force, bit for bit, and with rational
+//! arithmetic.
 //!
-//! The first byte says what is asked, the second one the scalar, the next ones choose a backend; then come the scene
-//! and up to four queries.
+//! The first byte selects the question, the second one the scalar, and the next ones a backend; then come the scene and
+//! up to four queries.
 
 use super::answers::{Asked, QUESTIONS};
 use super::backends::{index, tree};
@@ -13,12 +14,12 @@ use p2m::{AabbTree, BruteForce, BuildError, BuildIndex, Real, Soup};
 use p2m_testkit::near_check;
 use p2m_testkit::scenes::{narrow, to_f32};
 
-/// What an input came to.
+/// The part of the library that an input reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Reached {
     /// The mode of the scene, the backend and the question.
     Answers(&'static str, &'static str, &'static str),
-    /// A scene that has to be refused, and was.
+    /// The scene is an error, as it has to be.
     Refused,
 }
 
@@ -43,7 +44,7 @@ impl<'a> Input<'a> {
     }
 }
 
-/// What an input is, as a program.
+/// Formats an input as Rust source.
 #[must_use]
 pub fn source(input: &[u8]) -> String {
     let input = Input::new(input);
@@ -51,10 +52,10 @@ pub fn source(input: &[u8]) -> String {
     format!("// {}\n{}{queries}", QUESTIONS[input.question], input.drawn.source())
 }
 
-/// Asks what an input asks.
+/// Runs the check of an input.
 ///
 /// # Panics
-/// If an answer is wrong.
+/// Panics if an answer is wrong.
 pub fn check(input: &[u8]) -> Reached {
     let input = Input::new(input);
     let Ok(soup) = input.drawn.soup() else {
@@ -93,7 +94,7 @@ fn ask<T: Real>(mut input: Input<'_>, soup: &Soup<T>, place: impl Fn(Point3<f64>
     Reached::Answers(input.drawn.mode, name, QUESTIONS[input.question])
 }
 
-/// A scene with a coordinate that is not finite is refused by what is built over its primitives, too.
+/// Checks that a build over the primitives of a scene with a coordinate that is not finite is an error, too.
 fn refused(drawn: &Drawn) {
     let shapes = drawn.shapes();
     let id = drawn.soup().expect_err("not finite");

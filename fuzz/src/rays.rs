@@ -1,6 +1,6 @@
-//! Rays at scenes from bytes: every tree against rational arithmetic.
+//! Rays at scenes from bytes: every tree is compared with rational arithmetic.
 //!
-//! The first byte tells the scalar, the next ones choose a tree; then come the scene and up to three rays.
+//! The first byte selects the scalar, and the next ones a tree; then come the scene and up to three rays.
 
 use super::backends::tree;
 use super::bytes::Bytes;
@@ -10,7 +10,7 @@ use p2m::{BruteForce, PrimitiveSet, Ray, RayError, Real, Soup};
 use p2m_testkit::ray_check::{Truth, agrees};
 use p2m_testkit::scenes::narrow;
 
-/// Primitives of a scene at most: integers of a ray are long.
+/// The largest number of primitives of a scene, because the integers of a ray are long.
 const LARGEST: usize = 16;
 
 struct Input<'a> {
@@ -32,7 +32,7 @@ impl<'a> Input<'a> {
     }
 }
 
-/// From one place to or through another, or along an axis.
+/// Returns a ray from one point to or through another, or along an axis.
 fn draw(bytes: &mut Bytes<'_>, drawn: &Drawn) -> Result<Ray, RayError> {
     let (kind, from) = (bytes.below(5), drawn.query(bytes));
     let direction = match kind {
@@ -57,17 +57,17 @@ fn draw(bytes: &mut Bytes<'_>, drawn: &Drawn) -> Result<Ray, RayError> {
     Ok(if bytes.below(2) == 0 { ray } else { ray.line() })
 }
 
-/// The scene and the rays of an input, as a program.
+/// Formats the scene and the rays of an input as Rust source.
 #[must_use]
 pub fn source(input: &[u8]) -> String {
     let Input { drawn, rays, .. } = Input::new(input);
     rays.iter().fold(drawn.source(), |text, ray| format!("{text}\n// {ray:?}"))
 }
 
-/// Asks what an input asks; which backend it was, and of how many rays.
+/// Runs the check of an input, and returns the backend and the number of rays.
 ///
 /// # Panics
-/// If an answer is wrong.
+/// Panics if an answer is wrong.
 pub fn check(input: &[u8]) -> Option<(&'static str, usize)> {
     let Input { is_single, backend, seed, drawn, rays } = Input::new(input);
     let soup = drawn.soup().ok()?;

@@ -1,9 +1,9 @@
-//! Files of saved indexes from bytes: damaged, changed on purpose, or made up.
+//! Files of saved indexes from bytes: damaged, modified on purpose, or made up.
 //!
-//! The first byte says which of these it is, and the next two choose a whole file. Damage has to be told, or to change no
-//! answer. A file that is changed with its sums mended passes for a whole one: `p2m::storage` promises that it is read or
-//! refused, in memory in proportion to its size, and that nothing is undefined; asked, it may answer wrongly or panic. A
-//! search in it may also go round in circles, so it is stopped.
+//! The first byte selects one of these, and the next two choose a valid file. Damage has to be detected, or to change
+//! no answer. A file that is modified and has its checksums corrected passes for a valid one: `p2m::storage` promises
+//! that loading it succeeds or is an error, takes memory in proportion to its size, and has no undefined behaviour. Its
+//! answers may be wrong, and queries may panic. A search in it may also run in circles, so it is stopped.
 
 use super::bytes::Bytes;
 use super::memory;
@@ -20,27 +20,27 @@ use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::sync::{LazyLock, Once};
 use twox_hash::XxHash3_64;
 
-/// Memory for a byte of a file.
+/// The memory that loading may take for each byte of a file.
 const PER_BYTE: usize = 64;
-/// Steps of a search in a file that was changed on purpose.
+/// The largest number of steps of a search in a file that was modified on purpose.
 const STEPS: usize = 20_000;
-/// Bytes of the head, and of an entry of the table, as p2m-core/src/saved has them.
+/// The bytes of the header and of an entry of the table, as in p2m-core/src/storage.
 const HEAD: usize = 64;
 
 type Answers = Vec<Option<(u64, PrimitiveId, [u64; 3])>>;
 
-/// What became of an input.
+/// The outcome of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Reached {
-    /// Refused.
+    /// The file is an error.
     Refused,
-    /// Answered, rightly where that is promised.
+    /// The file was loaded and answered, correctly where that is promised.
     Answered,
-    /// Read, but not asked without a panic.
+    /// The file was loaded, but queries panic.
     Unusable,
 }
 
-/// [`Best`] that ends a search by a panic after so many steps.
+/// A [`Best`] that ends a search with a panic after a number of steps.
 struct Stopped {
     best: Best<f64>,
     left: usize,
@@ -77,14 +77,14 @@ impl Collector for Stopped {
     }
 }
 
-/// A loaded index: asked as it is, and step by step.
+/// A loaded index, queried normally and with a limit of steps.
 trait Loaded: ClosestPoint<f64> {
     fn step_by_step(&self, query: &Point3<f64>);
 }
 
 type LoadedFrom<'a> = Result<Box<dyn Loaded + 'a>, LoadError>;
 
-/// A kind of index: its file, and what is loaded from one.
+/// A type of index, with functions that write its file and load it.
 struct Kind {
     saved: fn(&Scene) -> Vec<u8>,
     loaded: for<'a> fn(&'a Soup<f64>, &Reader) -> LoadedFrom<'a>,
@@ -122,7 +122,7 @@ kinds! {
     "p2m": P2mIndex,
 }
 
-/// A bent strip that is worth cells, a tripod, one point, nothing.
+/// Returns a bent strip large enough for cells, a tripod, one point, and an empty scene.
 fn scenes() -> [Scene; 4] {
     let at = |i: i32, j: i32| {
         let (x, y) = (f64::from(i) * 0.5, f64::from(j) * 0.5);
@@ -143,13 +143,13 @@ fn scenes() -> [Scene; 4] {
     [Scene::from(strip), tripod, Scene::from(point), Scene::default()]
 }
 
-/// A whole file and what it answers.
+/// A valid file with its answers.
 struct Whole {
     bytes: Vec<u8>,
     answers: Answers,
 }
 
-/// Of every scene and kind.
+/// The valid files of every scene and type of index.
 static WHOLE: LazyLock<Vec<Whole>> = LazyLock::new(|| {
     let of = |scene: &Scene, kind: &Kind| {
         let bytes = (kind.saved)(scene);
@@ -166,7 +166,7 @@ fn places(soup: &Soup<f64>) -> Vec<Point3<f64>> {
     places
 }
 
-/// The index of a file over the scene of the file, given to `use_it`.
+/// Loads the index of a file over the scene of the file, and passes both to `use_it`.
 fn loaded<R>(bytes: &[u8], use_it: impl FnOnce(&Soup<f64>, &dyn Loaded) -> R) -> Result<R, LoadError> {
     let missing = |section: &str| LoadError::Missing { section: section.to_owned() };
     let mut scene = None;
@@ -180,7 +180,7 @@ fn loaded<R>(bytes: &[u8], use_it: impl FnOnce(&Soup<f64>, &dyn Loaded) -> R) ->
     Ok(use_it(soup, &*index))
 }
 
-/// What the index of a file answers.
+/// Returns the answers of the index of a file.
 fn asked(bytes: &[u8]) -> Result<Answers, LoadError> {
     let bits = |c: p2m::Closest<f64>| (c.distance.to_bits(), c.primitive, [0, 1, 2].map(|k| c.point[k].to_bits()));
     loaded(bytes, |soup, index| {
@@ -194,11 +194,11 @@ fn asked(bytes: &[u8]) -> Result<Answers, LoadError> {
 }
 
 thread_local! {
-    /// Whether a panic of this thread is nobody's business.
+    /// Whether a panic of this thread is expected and is not reported.
     static IS_EXPECTED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether something ends without a panic; a fuzzer would end at one.
+/// Returns whether `work` ends without a panic; the hook of a fuzzer would abort.
 fn ends(work: impl FnOnce()) -> bool {
     static QUIET: Once = Once::new();
     QUIET.call_once(|| {
@@ -215,7 +215,7 @@ fn ends(work: impl FnOnce()) -> bool {
     ended
 }
 
-/// A file that passes for a whole one: it is read or refused, and its searches end.
+/// Loads a file that passes for a valid one, and checks that its searches end.
 fn on_purpose(bytes: &[u8]) -> Reached {
     let read = loaded(bytes, |soup, index| {
         places(soup).iter().fold(Reached::Answered, |all, place| {
@@ -232,7 +232,7 @@ fn on_purpose(bytes: &[u8]) -> Reached {
     told(read).unwrap_or(Reached::Refused)
 }
 
-/// What was read; an error has something to say.
+/// Returns the result of loading; an error has to have a message.
 fn told<R>(read: Result<R, LoadError>) -> Option<R> {
     if let Err(error) = &read {
         assert!(!matches!(error, LoadError::Io(_)) && !error.to_string().is_empty(), "{error:?}");
@@ -244,21 +244,21 @@ fn number(bytes: &[u8], at: usize) -> Option<usize> {
     usize::try_from(u64::from_le_bytes(bytes.get(at..)?.get(..8)?.try_into().ok()?)).ok()
 }
 
-/// Where the entries of the table are, as far as there is one.
+/// Returns the offsets of the entries of the table, as far as there is one.
 fn entries(bytes: &[u8]) -> impl Iterator<Item = usize> + use<> {
     let announced = bytes.get(12..16).map_or(0, |n| u32::from_le_bytes(n.try_into().expect("four")) as usize);
     let room = (bytes.len() / HEAD).saturating_sub(1);
     (0..announced.min(room)).map(|i| HEAD * (1 + i))
 }
 
-/// Where the section of an entry is, if it is in the file.
+/// Returns the range of the section of an entry, if it is in the file.
 fn section(bytes: &[u8], entry: usize) -> Option<std::ops::Range<usize>> {
     let [offset, count, size] = [32, 40, 48].map(|k| number(bytes, entry + k));
     let end = offset?.checked_add(count?.checked_mul(size?)?)?;
     (end <= bytes.len()).then_some(offset?..end)
 }
 
-/// Puts right what tells damage: the length and all sums.
+/// Corrects the fields that detect damage: the length and all checksums.
 fn mend(bytes: &mut [u8]) {
     let all: Vec<usize> = entries(bytes).collect();
     for entry in &all {
@@ -276,7 +276,7 @@ fn mend(bytes: &mut [u8]) {
     bytes[24..32].copy_from_slice(&sum.to_le_bytes());
 }
 
-/// Changes a file as the bytes of an input say, in the head, the table, or a section.
+/// Modifies a file as the bytes of an input say, in the header, the table, or a section.
 fn change(file: &mut Vec<u8>, bytes: &mut Bytes<'_>) {
     while !bytes.is_empty() && !file.is_empty() {
         let what = bytes.below(8);
@@ -291,7 +291,7 @@ fn change(file: &mut Vec<u8>, bytes: &mut Bytes<'_>) {
         };
         let at = place(bytes);
         let mut put = |at: usize, own: &[u8]| {
-            // Numbers are where they can be.
+            // Elements are aligned in their section.
             let at = at - at % own.len();
             if let Some(to) = file.get_mut(at..at + own.len()) {
                 to.copy_from_slice(own);
@@ -317,10 +317,10 @@ fn change(file: &mut Vec<u8>, bytes: &mut Bytes<'_>) {
     }
 }
 
-/// Reads what an input makes.
+/// Runs the check of an input.
 ///
 /// # Panics
-/// If a promise is not kept.
+/// Panics if a promise is broken.
 pub fn check(input: &[u8]) -> Reached {
     let mut bytes = Bytes::new(input);
     let (way, scene, kind) = (bytes.below(3), bytes.below(4), bytes.below(KINDS.len()));

@@ -1,41 +1,41 @@
-//! Scenes and places from bytes, by coordinates that are hard in one way or another.
+//! Scenes and query points from bytes, with coordinates that are hard in one way or another.
 
 use super::bytes::Bytes;
 use nalgebra::Point3;
 use p2m::{Element, Point, PrimitiveId, PrimitiveSet, Segment, Shape, Soup, Triangle};
 use std::fmt::Write;
 
-/// Primitives of a scene at most.
+/// The largest number of primitives of a scene.
 const LARGEST: usize = 40;
-/// Positions that they share.
+/// The number of positions that the primitives share.
 const POSITIONS: usize = 48;
 
-/// x 2^exponent, in two steps, so that no factor leaves the range.
+/// Returns x 2^exponent, in two steps, so that no factor leaves the range.
 fn scaled(x: f64, exponent: i32) -> f64 {
     x * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2)
 }
 
-/// The number so many representable ones further up or down; what is not finite stays.
+/// Returns the number that is `steps` representable numbers further up or down; numbers that are not finite stay.
 fn beside(x: f64, steps: i8) -> f64 {
     let one = |x: f64| if steps < 0 { x.next_down() } else { x.next_up() };
     if x.is_finite() { (0..steps.unsigned_abs()).fold(x, |x, _| one(x)) } else { x }
 }
 
-/// How coordinates are drawn.
+/// The distribution of coordinates.
 enum Coordinates {
-    /// Whole numbers from -4 to 4, quarters for queries, moved and scaled without rounding: ties are frequent.
+    /// Integers from -4 to 4, and quarters for queries, moved and scaled without rounding, so that ties are frequent.
     Lattice { offset: f64, exponent: i32 },
-    /// Any bits, mostly of a pool, so that some coincide.
+    /// Any bits, mostly from a pool, so that some coincide.
     Bits { pool: [f64; 6] },
-    /// Within some units in the last place of an f32.
+    /// Numbers within a few units in the last place of an f32.
     Neighbours { anchor: [f32; 3] },
-    /// A lattice, and next to it: slivers and needles.
+    /// Positions on and next to a lattice: slivers and needles.
     Slivers,
-    /// Few digits of any magnitude.
+    /// Numbers with few digits and any magnitude.
     Magnitudes,
 }
 
-/// What there are.
+/// The names of the distributions.
 pub const MODES: [&str; 5] = ["lattice", "bits", "neighbours", "slivers", "magnitudes"];
 
 const EXPONENTS: [i32; 16] = [0, 0, 0, 0, -1074, -1060, -541, -400, -300, -260, -100, 100, 252, 400, 515, 970];
@@ -97,7 +97,7 @@ impl Coordinates {
     }
 }
 
-/// A scene that may not be one, and where places are drawn from.
+/// A scene that may be invalid, and the distribution from which query points are drawn.
 pub struct Drawn {
     pub mode: &'static str,
     pub positions: Vec<Point3<f64>>,
@@ -106,12 +106,12 @@ pub struct Drawn {
 }
 
 impl Drawn {
-    /// A scene of at most so many primitives, and of [`LARGEST`].
+    /// Generates a scene of at most `most` primitives, and at most [`LARGEST`].
     pub fn new(bytes: &mut Bytes<'_>, most: usize) -> Self {
         let coordinates = Coordinates::draw(bytes);
         let count = 1 + bytes.below(POSITIONS);
         let mut positions: Vec<_> = (0..count).map(|_| coordinates.place(bytes, false)).collect();
-        // Near-ties, of what ties by itself.
+        // Near-ties arise from positions that tie exactly.
         for _ in 0..bytes.below(8) {
             let (position, axis) = (bytes.below(count), bytes.below(3));
             positions[position][axis] = beside(positions[position][axis], bytes.signed() % 4);
@@ -129,7 +129,7 @@ impl Drawn {
         Self { mode: coordinates.mode(), positions, elements, coordinates }
     }
 
-    /// A place around the scene, or anywhere; perhaps not finite.
+    /// Returns a point around the scene or anywhere, which may be not finite.
     pub fn query(&self, bytes: &mut Bytes<'_>) -> Point3<f64> {
         let kind = bytes.below(9);
         let vertex = |bytes: &mut Bytes<'_>| self.positions[bytes.below(self.positions.len())];
@@ -149,7 +149,7 @@ impl Drawn {
         }
     }
 
-    /// The primitives one by one, whatever their coordinates.
+    /// Returns the primitives one by one, whatever their coordinates are.
     pub fn shapes(&self) -> Vec<Shape<f64>> {
         let at = |i: u32| self.positions[i as usize];
         let shape = |element: &Element| match *element {
@@ -160,7 +160,7 @@ impl Drawn {
         self.elements.iter().map(shape).collect()
     }
 
-    /// The scene; the first primitive with a coordinate that is not finite, if there is one.
+    /// Returns the scene, or the first primitive with a coordinate that is not finite.
     pub fn soup(&self) -> Result<Soup<f64>, PrimitiveId> {
         let is_finite = |i: &u32| self.positions[*i as usize].iter().all(|x| x.is_finite());
         let soup = Soup::new(self.positions.clone(), self.elements.iter().copied());
@@ -174,7 +174,7 @@ impl Drawn {
         }
     }
 
-    /// The scene as a program.
+    /// Formats the scene as Rust source.
     pub fn source(&self) -> String {
         let mut text = String::from("let soup = Soup::new(vec![\n");
         for p in &self.positions {
@@ -188,7 +188,7 @@ impl Drawn {
     }
 }
 
-/// A place as a program.
+/// Formats a point as Rust source.
 pub fn place(p: &Point3<f64>) -> String {
     let coordinate = |x: f64| match x {
         _ if x.is_nan() => "f64::NAN".to_owned(),
@@ -199,7 +199,7 @@ pub fn place(p: &Point3<f64>) -> String {
     format!("Point3::new({}, {}, {})", coordinate(p.x), coordinate(p.y), coordinate(p.z))
 }
 
-/// The vertices of a primitive in f64.
+/// Returns the vertices of a primitive in f64.
 pub fn vertices<T: p2m::Real>(soup: &Soup<T>, id: usize) -> Vec<[f64; 3]> {
     let shape = soup.get(PrimitiveId::new(id));
     p2m::Primitive::vertices(&shape).iter().map(|v| v.map(T::to_f64).coords.into()).collect()

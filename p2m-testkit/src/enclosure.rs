@@ -30,7 +30,7 @@ fn sum(a: f64, b: f64) -> Pair {
     Pair { high, low: (a - (high - b_part)) + (b - b_part) }
 }
 
-/// Returns a + b without error, for |a| at minimum |b|.
+/// Returns a + b without error, for |a| at least |b|.
 fn ordered(a: f64, b: f64) -> Pair {
     let high = a + b;
     Pair { high, low: b - (high - a) }
@@ -198,7 +198,7 @@ impl Enclosure {
         Some(((above.max(below) - at(eta)) / unit).max(0.0) * (1.0 + 2f64.powi(-40)))
     }
 
-    /// Returns whether the distance is at minimum `bound`; `None` if `bound` lies between the two bounds.
+    /// Returns whether the distance is at least `bound`; `None` if `bound` lies between the two bounds.
     #[must_use]
     pub fn is_at_least(&self, bound: f64) -> Option<bool> {
         let there = scaled(bound, -self.exponent);

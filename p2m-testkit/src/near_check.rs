@@ -69,7 +69,7 @@ pub fn agrees<T: Real>(
         let k = [0, 1, 2, 7, soup.len() / 2, soup.len(), soup.len() + 3][rng.random_range(0..7)];
         exactly(&all[..k.min(all.len())], &index.k_nearest(q, k, T::INFINITY));
 
-        // The radius is the distance of reference primitive, or slightly different.
+        // The radius is the distance of some primitive, or slightly different.
         let reference = all.get(rng.random_range(0..all.len().clamp(1, 40)));
         let radius = reference.map_or(T::one(), |(_, p)| T::of_f64(p.key.distance()));
         let radius = [radius, radius * T::of_f64(0.99), radius * T::of_f64(1.01)][rng.random_range(0..3)];

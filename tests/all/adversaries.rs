@@ -1,5 +1,5 @@
-//! Scenes that are made to be bad (p2m-testkit's `adversaries`), over every backend: answers are those of brute force, and what
-//! is counted stays under its bounds. docs/adversaries.md states them; `p2m-bench adversaries` measures times and memory.
+//! Runs every backend over the adversarial scenes of p2m-testkit: answers have to equal those of brute force, and
+//! counters have to stay below the bounds of docs/adversaries.md. `p2m-bench adversaries` measures times and memory.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 
 use nalgebra::Point3;
@@ -15,28 +15,28 @@ use p2m_testkit::ball::Ball;
 use p2m_testkit::{amount, is_deep};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Primitives of a scene.
+/// Returns the number of primitives of a scene.
 fn count() -> usize {
     amount(2_000, 200)
 }
 
-/// Queries of a scene.
+/// Returns the number of queries of a scene.
 fn asked() -> usize {
     amount(40, 6)
 }
 
-/// Nodes on the way to a packet, however the scene is.
+/// The largest number of nodes on a path to a packet, for any scene.
 const DEPTH: usize = 66;
-/// Bytes of a primitive in trees.
+/// The largest number of bytes per primitive in trees.
 const TREE: usize = 160;
-/// Those of a site with its neighbours, and of its places in the grids, besides lists.
+/// The largest number of bytes of a site with its neighbours and its entries in the grids, without lists.
 const SITE: usize = 512;
 
 fn answers(index: &impl ClosestPoint<f64>, queries: &[Point3<f64>]) -> Vec<Option<(u64, PrimitiveId)>> {
     queries.iter().map(|q| index.closest_point(q).map(|c| (c.distance.to_bits(), c.primitive))).collect()
 }
 
-/// Holds an index against brute force, and what its queries visit against what there is.
+/// Compares an index with brute force, and the work of its queries with the size of the tree.
 fn holds<I: ClosestPoint<f64> + Inspect<f64>, V: Volume>(
     name: &str,
     index: &I,
@@ -49,11 +49,11 @@ fn holds<I: ClosestPoint<f64> + Inspect<f64>, V: Volume>(
         assert_eq!(found, expected, "{name} {q:?}");
     }
     let visits = QueryCost::of(index, &queries);
-    // Nothing is looked at twice, but for what is evaluated early, being held to be near.
+    // No node or packet is visited twice. Only primitives may be evaluated early because they seem near.
     assert!(visits.packets.most <= tree.packets().0, "{name}: {visits:?}");
     assert!(visits.primitives.most <= soup.len() + 1, "{name}: {visits:?}");
     assert!(tree.depth() <= DEPTH, "{name}: {}", tree.depth());
-    // Small trees have nodes that are almost empty.
+    // Small trees have nodes that are almost empty, so a minimum number of primitives is assumed.
     assert!(tree.memory() <= TREE * soup.len().max(amount(64, 320)), "{name}: {} bytes of tree", tree.memory());
 }
 
@@ -99,13 +99,14 @@ fn every_backend(adversary: &Adversary) {
     assert!(report.bytes as f64 <= options.memory * count() as f64 + (SITE * sites) as f64, "{name}: {report}");
     assert!(report.entries <= options.max_list_packets * report.lists, "{name}: {report}");
     assert!(p2m.list_lengths().into_iter().all(|len| len <= options.max_list_packets * 16), "{name}");
-    // Fewer primitives are not too much for it.
+    // With fewer primitives the budget is sufficient.
     if is_deep() && ["skew points", "skew wires", "helices", "moment curve"].contains(&name) {
         assert!(report.lists == 0 && report.bytes == 0, "{name}: {report}");
     }
 }
 
-/// Points on two skew lines: every pair of neighbours on one makes a tetrahedron with every pair on the other.
+/// Two skew lines of points need quadratically many tetrahedra: every pair of neighbours on one line makes a
+/// tetrahedron with every pair on the other.
 #[test]
 fn quadratic_tetrahedra_are_given_up() {
     let points = |n: usize| -> Vec<[f64; 3]> {
@@ -122,7 +123,7 @@ fn quadratic_tetrahedra_are_given_up() {
     };
     too_many(&few, count - 1);
     too_many(&few, 0);
-    // Of some millions of tetrahedra a few are made.
+    // The build stops after a few of some millions of tetrahedra.
     too_many(&points(4_000), 16 * 4_000);
     let within = Delaunay::within(&few, 300.0, 2 * count).expect("few enough");
     assert_eq!((within.tetrahedra(), within.work()), (all.tetrahedra(), all.work()));
@@ -151,7 +152,7 @@ fn cells_of_vertices_that_take_too_much_are_left_to_the_tree() {
     assert_eq!(ample.report(), usual.report());
 }
 
-/// Primitives that count how often they are asked for.
+/// A set that counts how often its primitives are accessed.
 struct Counted<'a> {
     balls: &'a [Ball],
     asked: AtomicUsize,
@@ -172,7 +173,8 @@ impl PrimitiveSet<f64> for Counted<'_> {
     }
 }
 
-/// Where everything is as near, a search for one corner of a cell looks at the whole scene: that counts as work.
+/// Where all primitives are equally near, a search for one corner of a cell visits the whole scene, and that counts as
+/// work.
 #[test]
 #[ignore = "deep: the least budget of an octree is millions of searches for corners"]
 fn corners_of_cubes_that_take_the_whole_scene_are_few() {
@@ -182,11 +184,11 @@ fn corners_of_cubes_that_take_the_whole_scene_are_few() {
     let index = OctreeIndex::build(&set, &options).expect("valid");
     let asked = set.asked.load(Relaxed);
     println!("{asked} times; {}", index.report());
-    // The budget, as often as it may be spent, and the tree and its last searches.
+    // The limit is the budget, as often as it may be spent, plus the tree and its last searches.
     assert!((asked as f64) < 7.0 * options.work * 10_000.0, "{asked}");
 }
 
-/// More primitives than ids, of which none is ever asked for.
+/// A set of more primitives than there are ids, none of which is ever accessed.
 struct Absurd(usize);
 
 impl PrimitiveSet<f64> for Absurd {

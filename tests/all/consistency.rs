@@ -1,7 +1,7 @@
-//! Every backend against brute force in every kind of query, on scenes that shrink: a failure is printed as the smallest
-//! scene that proptest finds, in Rust.
+//! Compares every backend with brute force in every kind of query, on scenes that proptest shrinks: a failure prints
+//! the smallest scene that it finds as Rust source.
 //!
-//! Scenes are some primitives of a large one: of each generator, or random of each kind and layout.
+//! A scene has some primitives of a large one, which comes from each generator or is random of each kind and layout.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -18,7 +18,7 @@ use proptest::test_runner::{RngSeed, TestRunner};
 use std::fmt::{self, Debug, Formatter};
 use std::sync::LazyLock;
 
-/// What scenes are made from.
+/// The large scenes from which cases take primitives.
 static SOURCES: LazyLock<Vec<Soup<f64>>> = LazyLock::new(|| {
     let generated = Kind::all().into_iter().map(|kind| kind.generate().expect("default options"));
     let random = KINDS
@@ -28,12 +28,12 @@ static SOURCES: LazyLock<Vec<Soup<f64>>> = LazyLock::new(|| {
     generated.chain(random).collect()
 });
 
-/// A scene with queries. What is printed of it compiles.
+/// A scene with queries, which prints as Rust source.
 #[derive(Clone)]
 struct Case {
     soup: Soup<f64>,
     queries: Vec<Point3<f64>>,
-    /// Draws radii, hints, boxes and rays.
+    /// The seed of radii, hints, boxes and rays.
     seed: u64,
 }
 
@@ -60,7 +60,7 @@ impl Debug for Case {
     }
 }
 
-/// Some primitives of a scene, with the vertices that they have.
+/// Returns some primitives of a scene with their vertices.
 fn part(source: &Soup<f64>, chosen: &[usize]) -> Soup<f64> {
     let mut soup = Soup::default();
     let mut numbers = std::collections::HashMap::new();
@@ -98,15 +98,15 @@ fn case() -> impl Strategy<Value = Case> {
     })
 }
 
-/// An index that answers what all do.
+/// An index that answers the queries of all backends.
 trait Index<T: Real>: ClosestPoint<T> + NearQuery<T> {}
 impl<T: Real, I: ClosestPoint<T> + NearQuery<T>> Index<T> for I {}
 
-/// An index that answers everything.
+/// An index that answers all queries.
 trait Tree<T: Real>: Index<T> + RayQuery<T> + BoxQuery<T> {}
 impl<T: Real, I: Index<T> + RayQuery<T> + BoxQuery<T>> Tree<T> for I {}
 
-/// All but the certified bound.
+/// Returns all fields of an answer except the certified bound.
 fn known<T: Real>(closest: &Closest<T>) -> impl PartialEq + Debug + use<T> {
     (closest.primitive, closest.distance, closest.point, closest.feature, closest.barycentric)
 }
@@ -174,13 +174,13 @@ fn check<T: Real>(case: &Case, soup: &Soup<T>, point: impl Fn(&Point3<f64>) -> P
     Ok(())
 }
 
-/// The same cases each time, each of them drawn by a runner of its own, whose seed is its number: `P2M_SEED` draws the same scene
-/// again, and a failure makes it smaller in the same steps.
+/// Runs a check on the same cases each time. Each case has a runner of its own whose seed is the case's number, so that
+/// `P2M_SEED` generates the same scene again, and a failure shrinks in the same steps.
 fn on_all(check: impl Fn(&Case) -> Result<(), TestCaseError>) {
     for number in p2m_testkit::cases(1000, 24) {
         let config = ProptestConfig {
             cases: 1,
-            // A failure would be made smaller in no more than four steps for each case otherwise.
+            // The default would shrink a failure in at most four steps for each case.
             max_shrink_iters: 4000,
             rng_seed: RngSeed::Fixed(number),
             failure_persistence: None,

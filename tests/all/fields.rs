@@ -1,4 +1,4 @@
-//! Distance fields: every value is the answer of a single query, whatever the way to it.
+//! Every value of a distance field has to be the answer of a single query, whatever method fills the field.
 
 #![cfg(all(feature = "bvh", feature = "interception", feature = "mixed"))]
 
@@ -25,8 +25,8 @@ fn places(grid: &Grid) -> impl Iterator<Item = Point3<f64>> + '_ {
 #[test]
 fn fields_are_single_answers_by_every_index_and_on_all_threads() {
     let soup = if is_deep() { knot_and_cables(&KnotAndCables::default()).expect("valid") } else { knot() };
-    // Neither a multiple of slabs nor of batches, and more than one of each: where tests are not deep, the grid reaches far above
-    // the scene for that.
+    // The size is a multiple neither of slabs nor of batches, and larger than one of each. In shallow tests the grid
+    // reaches far above the scene for that.
     let around = Grid::around(&soup.aabb(), amount(69, 13), 1.3).expect("a box");
     let high = Grid::new(around.origin(), around.spacing(), [13, 11, 19]).expect("finite");
     let grid = amount(around, high);
@@ -64,7 +64,8 @@ fn fields_are_single_answers_by_every_index_and_on_all_threads() {
     }
 }
 
-/// Models of all kinds, around the whole and close to the surface, where values have few digits in common with their distance from zero.
+/// Fields of models of all kinds, around the whole model and close to its surface, where values have few digits in
+/// common with the distance from zero.
 #[test]
 fn fields_by_lists_are_those_of_a_tree_on_models() {
     for name in [
@@ -140,7 +141,7 @@ fn bands_are_cut_from_whole_fields() {
     }
 }
 
-/// Counts what is asked.
+/// An index that counts its queries.
 struct Counted<'a, I>(&'a I, AtomicUsize);
 
 impl<I: ClosestPoint<f64>> ClosestPoint<f64> for Counted<'_, I> {
@@ -150,9 +151,9 @@ impl<I: ClosestPoint<f64>> ClosestPoint<f64> for Counted<'_, I> {
     }
 }
 
-/// Fields have the signs of single answers, with and without a band.
+/// Checks that fields have the signs of single answers, with and without a band.
 fn has_signs_of_answers(soup: &Soup<f64>, signed: &SignedDistance<'_, AabbTree<f64, &Soup<f64>>>, least: usize) {
-    // Through the middle, where the sign of an open surface changes far from it.
+    // The grid passes through the middle, where the sign of an open surface changes far from it.
     let grid = Grid::around(&soup.aabb(), amount(47, 9), 1.2).expect("a box");
     let value = |place: Point3<f64>, band: f64| {
         let answer = signed.closest_point(&place).expect("not empty");
@@ -181,7 +182,7 @@ fn signs_of_fields_are_those_of_single_answers() {
     has_signs_of_answers(&soup, &SignedDistance::new(tree(&soup), &soup).expect("closed"), least);
     let winding = SignedDistance::with_winding_numbers(tree(&soup), &soup, 0.01).expect("triangles");
     has_signs_of_answers(&soup, &winding, least);
-    // Half a ball: where it is open the sign changes far from the surface, and is undefined in between.
+    // The sign of half a ball changes far from the surface where it is open, and is undefined in between.
     let ball = ico_sphere(&IcoSphere::default().with_frequency(8)).expect("valid");
     let is_low = |t: &[u32; 3]| t.iter().all(|i| ball.positions()[*i as usize].x <= 0.0);
     let half = ball.triangles().iter().filter(|t| is_low(t)).copied().collect();
@@ -204,7 +205,7 @@ fn an_empty_scene_is_infinitely_far() {
     }
 }
 
-/// Closed surfaces so large and so small that f32 hardly tells distances.
+/// Closed surfaces are so large or so small that f32 barely represents distances.
 #[test]
 fn signs_by_lists_are_right_where_f32_has_no_digits() {
     let cube = |side: f64| {
@@ -270,7 +271,7 @@ fn refined_cells_tile_their_cube_and_follow_the_surface() {
         assert!((volume / side.powi(3) - 1.0).abs() < 1e-9, "{volume}");
         assert!(cells.len() > last, "{error}: {} cells", cells.len());
         last = cells.len();
-        // Near the surface, at places where nothing was asked.
+        // The positions are near the surface, where no sample of the field is.
         let mut worst = 0.0f64;
         for cell in &cells {
             for n in 0..27 {
@@ -285,7 +286,7 @@ fn refined_cells_tile_their_cube_and_follow_the_surface() {
         println!("{} cells for {error}, at most {worst:.4} off near the surface", cells.len());
         assert!(worst < 1.5 * error, "{error}: {worst}");
     }
-    // No finer than told.
+    // The refinement is not finer than requested.
     let coarse = refined(&ball.aabb(), &distance, &RefineOptions::new(1e-9).with_depth(3));
     assert!(coarse.len() <= 512 && coarse.iter().any(|cell| cell.size < 0.3));
     let far = RefineOptions::new(0.1).with_relative(0.01);
@@ -316,14 +317,14 @@ fn files_and_slices_have_every_value_in_its_place() {
     assert_eq!((&vti[start..start + 8], &vti[start + 8..start + 104]), (&96u64.to_le_bytes()[..], &raw[..]));
     assert!(write_field(&grid, &values[1..], p2m::field::FieldFormat::Raw, Vec::new()).is_err());
 
-    // One point inside, one without a number.
+    // One value is inside, and one is NaN.
     let mut values = vec![4.0f32; 24];
     values[grid.number([2, 0, 1])] = -4.0;
     values[grid.number([0, 1, 1])] = f32::NAN;
     let ([width, height], pixels) = slice(&grid, &values, 2, 1);
     assert_eq!((width, height, pixels.len()), (513, 342, 3 * 513 * 342));
     let pixel = |x: usize, y: usize| &pixels[3 * (y * width + x)..][..3];
-    assert_eq!(pixel(0, 0), [153; 3]); // above, to the left: no number
-    assert!(pixel(512, 341)[0] > 200 && pixel(512, 341)[2] < 40); // below, to the right: inside
+    assert_eq!(pixel(0, 0), [153; 3]); // The value above, to the left, is NaN.
+    assert!(pixel(512, 341)[0] > 200 && pixel(512, 341)[2] < 40); // The value below, to the right, is inside.
     assert!(pixel(0, 341)[2] > 150 && pixel(0, 341)[0] < 50);
 }

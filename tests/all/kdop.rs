@@ -1,4 +1,4 @@
-//! k-DOP trees: every instruction set, moved sets, box queries, and how much work is done.
+//! Tests k-DOP trees: every instruction set, moved sets, box queries, and the work of queries.
 #![cfg(all(feature = "bvh", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -20,7 +20,7 @@ use std::ops::ControlFlow;
 
 type Tree<'a, const K: usize> = KdopTree<f64, &'a Soup<f64>, K>;
 
-/// Nodes and packets that a search of the tree visits, for all queries.
+/// Returns the nodes and packets that all queries visit.
 fn work<V: Volume>(tree: &TreeIndex<f64, &Soup<f64>, V>, queries: &[Point3<f64>]) -> [usize; 2] {
     let [nodes, packets, _] = StatsCollector::of_queries(queries, |query, counting| tree.visit(query, counting));
     [nodes, packets]
@@ -82,8 +82,8 @@ fn every_instruction_set_refitted_and_boxes_agree_with_brute_force() {
     assert_eq!(error, Err(BuildError::OtherLength { len: other.len(), expected: few.len() }));
 }
 
-/// More faces, fewer nodes and packets; and all of them fewer than boxes. `most` is what the nodes of 14, 18 and 26
-/// faces are at most of those of 6, in percent, for queries in the box.
+/// Checks that more faces lead to fewer nodes and packets, and that k-DOPs visit fewer than boxes. `most` is the
+/// largest percentage of the nodes of 6 faces that 14, 18 and 26 faces may visit, for queries in the box.
 fn falls(soup: &Soup<f64>, most: [usize; 3]) {
     let boxes = AabbTree::build(soup, &Default::default()).expect("valid");
     let trees = (built::<6>(soup), built::<14>(soup), built::<18>(soup), built::<26>(soup));
@@ -93,13 +93,13 @@ fn falls(soup: &Soup<f64>, most: [usize; 3]) {
         let rows =
             [work(&trees.0, &queries), work(&trees.1, &queries), work(&trees.2, &queries), work(&trees.3, &queries)];
         println!("{set}: boxes {boxes:?}, k-DOPs {rows:?} nodes and packets");
-        // The six-DOP of the axes is the box.
+        // The 6-DOP of the axes is the box.
         let [six, fourteen, eighteen, all] = rows;
         assert!(
             six[0].abs_diff(boxes[0]) * 1000 <= boxes[0] && six[1].abs_diff(boxes[1]) * 1000 <= boxes[1],
             "{six:?} {boxes:?}"
         );
-        // The sets of 14 and of 18 directions are not part of each other: far from the scene 14 may visit less.
+        // The sets of 14 and of 18 directions are not subsets of each other, so far from the scene 14 may visit less.
         for (more, less) in [(fourteen, six), (eighteen, six), (all, fourteen), (all, eighteen)] {
             assert!(more[0] < less[0] && more[1] < less[1], "{set}: {rows:?}");
         }
@@ -122,7 +122,8 @@ fn visits_fall_with_the_number_of_faces_on_a_turned_gear() {
     }
 }
 
-/// Nearest first, with the bound of two half-spaces and over nodes of eight, against the manual's way.
+/// Compares the search that visits the nearest of eight children first, with the bound of two half-spaces, with the
+/// manual's search.
 #[test]
 fn far_fewer_nodes_are_visited_than_from_left_to_right() {
     let mut all = vec![("a skewed gear", scenes::skewed_gear(amount(2000, 600)))];
@@ -144,13 +145,13 @@ fn far_fewer_nodes_are_visited_than_from_left_to_right() {
             "{name}: {nodes} nodes and {packets} packets, left first {} nodes, of them {} leaves",
             sums[0], sums[1]
         );
-        // The nodes of left first are binary and include the leaves.
+        // The nodes of the manual's search are binary and include the leaves.
         assert!(sums[0] * 10 >= amount(40, 33) * (nodes + packets), "{name}: {} of {nodes} and {packets}", sums[0]);
         assert!(sums[1] > packets, "{name}");
     }
 }
 
-/// Of the leaves whose boxes meet a box, those are left out whose k-DOPs do not.
+/// A box query skips leaves whose boxes intersect the box if their k-DOPs do not.
 #[test]
 fn fewer_primitives_are_asked_by_box_queries_with_more_faces() {
     fn asked<const K: usize>(soup: &Soup<f64>, boxes: &[Aabb<f64>]) -> usize

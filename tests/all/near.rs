@@ -1,5 +1,5 @@
-//! The k nearest primitives, all within a distance, whether there is any, and the closest of some, on every backend
-//! against the primitives one by one.
+//! Compares near queries (k nearest, all within a distance, any within a distance, filtered nearest) of every backend
+//! with the primitives one by one.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -81,7 +81,7 @@ fn what_cannot_be_has_a_stated_answer() {
     assert!(empty.k_nearest(&at, 3, f64::INFINITY).is_empty() && !empty.is_any_within(&at, f64::INFINITY));
 }
 
-/// A lost bound or a lost end would show here.
+/// The counters detect a lost bound or a lost early exit.
 #[test]
 fn searches_end_early() {
     let soup = soup(&mut rng("near sheet", 0), Kinds::Triangles, Layout::Sheet, 20_000);

@@ -1,5 +1,5 @@
-//! The octree: domains, budgets, threads, instruction sets, progress, other collectors, and how much work is done. That
-//! its answers are those of brute force is tested in `agreement`.
+//! Tests the octree: domains, budgets, threads, instruction sets, progress, other collectors, and the work of queries.
+//! `agreement` compares its answers with brute force.
 #![cfg(feature = "interception")]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -22,7 +22,7 @@ fn built<'a>(soup: &'a Soup<f64>, options: &OctreeOptions) -> OctreeIndex<f64, &
     OctreeIndex::build(soup, options).expect("valid")
 }
 
-/// In, around and far from the box of a scene.
+/// Returns a query in, around or far from the box of a scene.
 fn query(rng: &mut impl Rng, soup: &Soup<f64>) -> Point3<f64> {
     let bounds = soup.aabb();
     let size = bounds.max - bounds.min;
@@ -47,7 +47,7 @@ fn domains_change_the_work_and_never_the_answer() {
             Domain::Box(Aabb { min: bounds.min + half, max: bounds.max - half }),
             Domain::Box(Aabb { min: away, max: away + half }),
             Domain::Band(half.max() * 0.1),
-            // Of no use, and no harm.
+            // An empty domain is useless but harmless.
             Domain::Box(Aabb::empty()),
             Domain::Box(Aabb { min: [f64::NAN; 3].into(), max: away }),
             Domain::Box(Aabb { min: [-f64::MAX; 3].into(), max: [f64::MAX; 3].into() }),
@@ -91,7 +91,7 @@ fn what_is_not_asked_for_is_not_made() {
 #[test]
 fn budgets_are_kept() {
     let soup = sheet(amount(20_000, 3_000));
-    // The least budget is that of ten thousand primitives.
+    // The smallest budget is that of ten thousand primitives.
     let count = soup.len().max(10_000) as f64;
     let usual = built(&soup, &OctreeOptions::default()).report();
     assert!(usual.bytes as f64 <= OctreeOptions::default().memory * count && usual.lists > soup.len() / 20, "{usual}");
@@ -167,7 +167,7 @@ fn progress_goes_from_nothing_to_all() {
     }
 }
 
-/// All primitives within a distance.
+/// A collector of all primitives within a distance.
 struct Within(f64, Vec<PrimitiveId>);
 
 impl Collector for Within {
@@ -203,7 +203,7 @@ fn other_collectors_get_all_that_they_want() {
     assert!(sum > 500, "{sum}");
 }
 
-/// Lost bounds, lost lists or coarser cells would show here first.
+/// The counters detect lost bounds, lost lists and coarser cells.
 #[test]
 fn lookups_do_little() {
     let soup = sheet(amount(20_000, 4_000));
@@ -223,13 +223,14 @@ fn lookups_do_little() {
     }
 }
 
-/// Rounding may put a query into the cell beside its own: what ties everywhere in that cell may be the nearest here.
+/// Rounding may put a query into the cell beside its own, where a tie of the whole cell may be the nearest primitive.
 #[test]
 fn queries_beside_a_face_that_rounding_moves_across_it_lose_nothing() {
     let mut found = 0;
     for shift in [36.0f64, 36.5, 37.0] {
         let mut rng = rng("face", 0);
-        // So near to a face of cells, the plane x = 0, that a difference to the end of the domain cannot tell.
+        // The query is so near to a face of cells, the plane x = 0, that its offset from the end of the domain rounds
+        // to that of the plane.
         let a = 2f64.powf(-shift);
         let along = Vector3::new(-(2f64.powi(-5)), 0.0, 0.0);
         let vertices: Vec<_> =
@@ -277,7 +278,7 @@ fn any_resolution_ends() {
             let options = options.with_memory(memory);
             let report = built(&soup, &options.with_resolution(resolution)).report();
             let usual = built(&soup, &options).report();
-            // Who asks for more has no less.
+            // A larger budget does not lead to fewer cells.
             assert!(
                 resolution.is_nan() || resolution <= 1.0 || report.bytes >= usual.bytes,
                 "{resolution} {memory}: {report}\n{usual}"

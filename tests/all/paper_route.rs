@@ -1,10 +1,11 @@
-//! The lists of the P2M index, held against the paper's own table ([`p2m_testkit::paper`]) on small meshes.
+//! Compares the lists of the P2M index with the paper's own table ([`p2m_testkit::paper`]) on small meshes.
 //!
-//! Our lists have every pair of a vertex and a triangle that the paper's rule keeps, nearest somewhere or not. For if a
-//! feature is nearer than the vertex at a point of its vertical space in the cell, the point is in the region of the
-//! triangle (docs/proofs/p2m.md), and no side of that space has the whole region behind it; our cells hold the paper's, as
-//! bounding sites are farther away. And both have every pair of which the triangle is the answer of brute force at some
-//! point of the cell; such points are searched for in what cells and vertical spaces have in common.
+//! Our lists have every pair of a vertex and a triangle that the paper's rule keeps, whether it is nearest somewhere or
+//! not. If a feature is nearer than the vertex at a point of its vertical space in the cell, the point is in the region
+//! of the triangle (docs/proofs/p2m.md), and no side of that space has the whole region behind it. Our cells contain
+//! the paper's, because bounding sites are farther away. Both tables have every pair whose triangle is the answer of
+//! brute force at some point of the cell; such points are searched for in the intersections of cells and vertical
+//! spaces.
 #![cfg(feature = "interception")]
 
 use nalgebra::{Point3, Vector3};
@@ -20,11 +21,11 @@ use std::collections::{BTreeMap, BTreeSet};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Pairs {
     all: usize,
-    /// In our lists.
+    /// The number of pairs in our lists.
     ours: usize,
-    /// In the paper's table, and so in our lists.
+    /// The number of pairs in the paper's table, all of which are in our lists.
     paper: usize,
-    /// Those of which the triangle was the answer somewhere in the cell of the vertex: in both.
+    /// The number of pairs whose triangle is the answer somewhere in the cell of the vertex, all of which are in both.
     nearest: usize,
 }
 
@@ -33,7 +34,7 @@ struct Scene {
     soup: Soup<f64>,
     mesh: Mesh,
     table: Table,
-    /// Of each vertex.
+    /// For each vertex, the triangles of our list.
     lists: Vec<BTreeSet<usize>>,
     brute: BruteForce<Soup<f64>>,
     index: P2mIndex<f64, Soup<f64>>,
@@ -49,7 +50,7 @@ impl Scene {
         Self { name, soup, mesh, table, lists, brute, index }
     }
 
-    /// Theorems 2 and 7.
+    /// Checks Theorems 2 and 7.
     fn check_table(&self) {
         let Self { name, mesh, table, .. } = self;
         assert_eq!(table.intercepted, mesh.inspect_all().intercepted, "{name}: the flood finds all pairs");
@@ -59,7 +60,8 @@ impl Scene {
         }
     }
 
-    /// The answer at a point of the cell of a vertex, by all; nothing if another vertex is as near.
+    /// Checks all answers at a point of the cell of a vertex, and returns the nearest triangle; `None` if another
+    /// vertex is equally near.
     fn ask(&self, v: usize, query: &Point3<f64>) -> Option<usize> {
         let Self { name, mesh, .. } = self;
         let square = |place: &Point3<f64>| (query - place).norm_squared();
@@ -107,14 +109,15 @@ impl Scene {
     }
 }
 
-/// Squared distances to vertices that differ by less may be equal. Meshes here are about two wide.
+/// Squared distances to vertices that differ by less may be equal. The meshes are about two wide.
 const ROUNDING: f64 = 1e-10;
 
 fn list(index: &P2mIndex<f64, Soup<f64>>, query: &Point3<f64>) -> BTreeSet<usize> {
     index.partition().list(query).expect("no cell of the tree").into_iter().map(PrimitiveId::index).collect()
 }
 
-/// Points of a polytope: its middle, corners drawn a little inwards, and anywhere between some of its corners.
+/// Returns points of a polytope: its middle, corners moved a little inwards, and random convex combinations of its
+/// corners.
 fn inside(rng: &mut impl Rng, polytope: &Polytope, count: usize) -> Vec<Point3<f64>> {
     let corners: Vec<_> = polytope.corners().copied().collect();
     let Some(middle) = centre(&corners) else { return Vec::new() };
@@ -129,20 +132,20 @@ fn inside(rng: &mut impl Rng, polytope: &Polytope, count: usize) -> Vec<Point3<f
     points
 }
 
-/// A point of the cell of v on the way to a point of a feature: the last one, or nearly.
+/// Returns a point of the cell of v on the segment to a point of a feature, as far as possible along it.
 fn towards(rng: &mut impl Rng, mesh: &Mesh, v: usize, corners: &[Point3<f64>]) -> Point3<f64> {
     let weights: Vec<f64> = corners.iter().map(|_| rng.random_range(0.01..1.0f64).powi(3)).collect();
     let sum: f64 = weights.iter().sum();
     let point: Vector3<f64> = corners.iter().zip(&weights).map(|(x, weight)| x.coords * (weight / sum)).sum();
     let own = mesh.vertices[v];
     let way = Point3::from(point) - own;
-    // Half of the way to each other vertex, seen along this one.
+    // The bisector with each other vertex limits the segment.
     let others = mesh.vertices.iter().map(|w| w - own).filter(|w| w.dot(&way) > 0.0);
     let end = others.map(|w| w.norm_squared() / w.dot(&way) / 2.0).fold(1.0, f64::min);
     own + way * (end * 0.999)
 }
 
-/// Each triangle in four, so many times.
+/// Divides each triangle into four, `times` times.
 fn subdivided(mut places: Vec<Point3<f64>>, mut triangles: Vec<[u32; 3]>, times: usize) -> Soup<f64> {
     for _ in 0..times {
         let mut halves: BTreeMap<[u32; 2], u32> = BTreeMap::new();
@@ -190,7 +193,7 @@ fn torus(around: u32, across: u32) -> Soup<f64> {
     Soup::from_triangles((0..around * across).map(place).collect(), triangles.collect()).expect("valid")
 }
 
-/// With all vertices elsewhere.
+/// Returns the soup with all vertices moved.
 fn moved(soup: &Soup<f64>, to: impl FnMut(&Point3<f64>) -> Point3<f64>) -> Soup<f64> {
     Soup::from_triangles(soup.positions().iter().map(to).collect(), soup.triangles().to_vec()).expect("valid")
 }
@@ -221,7 +224,7 @@ fn lists_have_all_pairs_of_the_paper_and_all_that_can_be_nearest() {
     ];
     let mut sum = Pairs::default();
     for (name, soup) in scenes {
-        // Few of them where tests are not deep.
+        // Shallow tests use few of the meshes.
         if !is_deep() && !["sphere", "shaken torus", "shaken cube", "strewn"].contains(&name) {
             continue;
         }
@@ -236,7 +239,7 @@ fn lists_have_all_pairs_of_the_paper_and_all_that_can_be_nearest() {
         );
         assert!(pairs.nearest > scene.soup.len() && pairs.paper * 2 > pairs.nearest, "{name}");
         if name == "sphere" {
-            // Cells meet in the middle ("each vertex intercepts any triangle", section 6).
+            // All cells contain the middle ("each vertex intercepts any triangle", section 6).
             assert_eq!((pairs.paper, pairs.ours), (pairs.all, pairs.all));
             continue;
         }

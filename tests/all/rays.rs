@@ -1,5 +1,5 @@
-//! Rays against exact rational arithmetic: every backend on every instruction set, every function, ranges that begin
-//! and end at hits.
+//! Compares rays with exact rational arithmetic: every backend on every instruction set, every function, and ranges
+//! that begin and end at hits.
 #![cfg(all(feature = "bvh", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -20,7 +20,7 @@ use std::ops::ControlFlow;
 
 type Index<'a, T> = (String, Box<dyn RayQuery<T> + 'a>);
 
-/// A tree with every instruction set.
+/// Adds a tree with every instruction set.
 fn kdops<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a, const K: usize>(all: &mut Vec<Index<'a, T>>, set: S)
 where
     Directions<K>: Default,
@@ -33,10 +33,10 @@ where
     );
 }
 
-/// Finds the hits in another order than that of ids.
+/// An index that finds hits in another order than that of ids.
 struct Reversed<T: Real, S>(AabbTree<T, S>);
 
-/// Keeps what is offered.
+/// A collector that keeps all offers.
 struct Offered<'r> {
     only_crossings: bool,
     all: Vec<(PrimitiveId, Crossing<'r>)>,
@@ -62,7 +62,7 @@ impl<T: Real, S: PrimitiveSet<T>> RayQuery<T> for Reversed<T, S> {
     }
 }
 
-/// Brute force first, then every tree with every instruction set.
+/// Returns brute force first, then every tree with every instruction set.
 fn backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: S) -> Vec<Index<'a, T>> {
     let mut all = some_backends(set);
     kdops::<T, S, 6>(&mut all, set);
@@ -71,7 +71,7 @@ fn backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: S) -> Vec<I
     all
 }
 
-/// Brute force, boxes and 14-DOPs: each tree is compiled for each type of set, which takes its time.
+/// Returns brute force, boxes and 14-DOPs. They are few because each tree is compiled for each type of set.
 fn some_backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: S) -> Vec<Index<'a, T>> {
     let mut all: Vec<Index<'a, T>> = vec![("brute force".to_owned(), Box::new(BruteForce::new(set).expect("valid")))];
     let boxes = AabbTree::<T, S>::build(set, &Default::default()).expect("valid");
@@ -83,7 +83,7 @@ fn some_backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: S) -> 
     all
 }
 
-/// What was checked: rays, hits, and hits along a stretch.
+/// The numbers of rays, hits, and hits along a segment that were checked.
 #[derive(Debug, Default)]
 struct Checked {
     rays: usize,
@@ -92,7 +92,7 @@ struct Checked {
     crossings: usize,
 }
 
-/// All backends against the truth, each ray with its own range and with others.
+/// Compares all backends with the exact hits, for each ray with its own range and with other ranges.
 fn check<T: Real, R: Rng>(soup: &Soup<T>, rays: &[Ray], rng: &mut R, checked: &mut Checked, say: &dyn Fn() -> String) {
     let wide = |v: &Point3<T>| -> [f64; 3] { v.map(T::to_f64).coords.into() };
     let primitives: Vec<Vec<[f64; 3]>> =
@@ -114,7 +114,7 @@ fn check<T: Real, R: Rng>(soup: &Soup<T>, rays: &[Ray], rng: &mut R, checked: &m
             checked.hits += hits.len();
             checked.along += hits.iter().filter(|h| h.side == Side::Along).count();
             checked.crossings += crossings;
-            // Ranges take turns.
+            // The ranges take turns.
             let turn = rng.random_range(0..3);
             for (i, (name, index)) in backends.iter().enumerate() {
                 if round == 0 || i == 0 || i % 3 == turn {
@@ -128,7 +128,7 @@ fn check<T: Real, R: Rng>(soup: &Soup<T>, rays: &[Ray], rng: &mut R, checked: &m
     }
 }
 
-/// One ray of each aim.
+/// Returns one ray of each aim.
 fn rays<R: Rng>(rng: &mut R, soup: &Soup<f64>) -> Vec<Ray> {
     let radius = |rng: &mut R| match rng.random_range(0..3) {
         0 => 0.0,
@@ -138,12 +138,12 @@ fn rays<R: Rng>(rng: &mut R, soup: &Soup<f64>) -> Vec<Ray> {
     AIMS.iter().map(|aim| ray(rng, soup, &soup.aabb(), *aim).with_radius(radius(rng)).expect("valid")).collect()
 }
 
-/// x 2^e; infinite or rounded beyond the range of f64.
+/// Returns x 2^e, which is infinite or rounded beyond the range of f64.
 fn scaled(x: f64, e: i32) -> f64 {
     x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2)
 }
 
-/// A ray at 2^e times the scene, with 2^f times the direction, if there is one.
+/// Returns the ray at 2^e times the scene, with 2^f times the direction, if there is one.
 fn scaled_ray(ray: &Ray, e: i32, f: i32) -> Option<Ray> {
     let (origin, direction) = (ray.origin().map(|x| scaled(x, e)), ray.direction().map(|x| scaled(x, f)));
     let [min, max] = ray.range();
@@ -169,8 +169,8 @@ fn soup_of(primitives: &[Vec<[f64; 3]>]) -> Soup<f64> {
     Soup::new(positions, elements).expect("finite")
 }
 
-/// The random scenes of all kinds and layouts, with rays of all aims: three of each, or one in fourteen of them where tests
-/// are not deep.
+/// Runs a check on random scenes of all kinds and layouts with rays of all aims: three of each, or one in fourteen of
+/// them in shallow tests.
 fn on_random_scenes(name: &str, cases: Cases, sizes: &[usize], mut each: impl FnMut(u64, Soup<f64>, Vec<Ray>)) {
     for seed in cases {
         let mut rng = rng(name, seed);
@@ -213,7 +213,7 @@ fn scenes_of_f32_are_met_as_exact_arithmetic_says() {
     assert!(cases.have_more_than(amount(1000, 102), checked.hits), "{checked:?}");
 }
 
-/// Powers of two change no sign, and a parameter by its own power of two: unless something under- or overflows.
+/// Powers of two change no side, and change a parameter by a power of two, unless a number under- or overflows.
 #[test]
 fn no_scale_of_scene_or_direction_is_too_small_or_too_large() {
     let mut checked = Checked::default();
@@ -221,13 +221,14 @@ fn no_scale_of_scene_or_direction_is_too_small_or_too_large() {
     on_random_scenes("scaled rays", cases.clone(), &[1, 5, amount(20, 10)], |seed, soup, rays| {
         let mut rng = rng("scales", seed);
         let scales = SCALES.into_iter().chain([-540, -340, 340, 1022]);
-        // They take turns where tests are not deep.
+        // The scales take turns in shallow tests.
         for e in scales.skip(seed as usize % amount(1, 4)).step_by(amount(1, 4)) {
             let positions = soup.positions().iter().map(|p| p.map(|x| scaled(x, e))).collect();
             let Ok(soup) = Soup::new(positions, soup.elements()) else { continue };
             let mut some = Vec::new();
             for ray in &rays {
-                // Any length, or so long that parameters get near a limit: of f64, of plain arithmetic, or none.
+                // The direction has any length, or is so long that parameters come near a limit of f64 or of plain
+                // arithmetic, or exceed it.
                 let f = match rng.random_range(0..4) {
                     0 => [-1074, -1000, -600, -250, 0, 0, 250, 600, 1000, 1023][rng.random_range(0..10)],
                     1 => e + rng.random_range(-30..30),
@@ -265,7 +266,7 @@ fn magnitudes_may_mix_in_scene_and_ray() {
             .map(|aim| ray(&mut rng, &soup, &soup.aabb(), aim))
             .collect();
         for (case, other) in cases.iter().zip(&cases[1..]) {
-            // From a vertex or a query into the direction of coordinates, and to another vertex.
+            // Rays lead from a vertex or a query into the direction of coordinates, and to another vertex.
             let vertex = Point3::from(case.vertices[0]);
             let queries = [Point3::from(case.query), vertex];
             let directions = [other.query.into(), Point3::from(other.vertices[0]) - vertex];
@@ -283,8 +284,8 @@ fn magnitudes_may_mix_in_scene_and_ray() {
     assert!(is_crossed && has_more(amount(2000, 220), checked.hits), "{checked:?}");
 }
 
-/// A scene that is thin along one axis, and so far away along another one that the rounding of its centre there is 2^178
-/// times its size: its tree cannot place a line.
+/// The scene is thin along one axis, and so far away along another one that the rounding of its centre there is 2^178
+/// times its size, so that its tree cannot locate a line.
 #[test]
 fn thin_scenes_far_from_the_origin_are_met() {
     let place = -8.799083088101401e24;
@@ -297,7 +298,7 @@ fn thin_scenes_far_from_the_origin_are_met() {
     assert!(checked.hits > 0, "{checked:?}");
 }
 
-/// Far away the parameter of a hit has as many digits as near.
+/// The parameter of a hit has as many digits far away as near.
 #[test]
 fn far_origins_lose_nothing() {
     let mut checked = Checked::default();
@@ -321,8 +322,8 @@ fn far_origins_lose_nothing() {
     assert!(cases.have_more_than(amount(100, 10), checked.hits), "{checked:?}");
 }
 
-/// All triangles of a lattice of 27 points (some of them where tests are not deep), most of them degenerate or in a plane of the lattice, with their vertices
-/// in any order; and all its segments and points.
+/// Checks all triangles of a lattice of 27 points (some of them in shallow tests), most of which are degenerate or in a
+/// plane of the lattice, with their vertices in any order, and all segments and points of the lattice.
 #[test]
 fn the_whole_lattice_of_three_is_met_as_exact_arithmetic_says() {
     let at = |i: usize| -> [f64; 3] { [i / 9, i / 3 % 3, i % 3].map(|x| x as f64) };
@@ -347,7 +348,7 @@ fn the_whole_lattice_of_three_is_met_as_exact_arithmetic_says() {
     let cases = cases(24, 10);
     for case in cases.clone() {
         let mut rng = rng("rays on the lattice", case + 1);
-        // Where tests are not deep, each line meets another part of them.
+        // In shallow tests each line is tested against another subset.
         let (skipped, step) = (case as usize % amount(1, 43), amount(1, 43));
         let soup = soup_of(&primitives.iter().skip(skipped).step_by(step).cloned().collect::<Vec<_>>());
         let origin = Point3::from(at(rng.random_range(0..27))) + Vector3::repeat(if case % 7 == 0 { 0.5 } else { 0.0 });
@@ -368,8 +369,8 @@ fn the_whole_lattice_of_three_is_met_as_exact_arithmetic_says() {
     assert!(has_many(checked.along) && has_many(checked.crossings), "{checked:?}");
 }
 
-/// The cube of two triangles a side, and one with its sides cut into four: every line of the lattice crosses the
-/// surface as often from outside as from inside, and a ray once more than the other way if it begins inside.
+/// Every line of the lattice crosses the surface of a cube as often from outside as from inside, and a ray that begins
+/// inside leaves once more than it enters. The cubes have two triangles a side, or sides cut into four.
 #[test]
 fn closed_surfaces_are_crossed_an_even_number_of_times() {
     let corners: Vec<Point3<f64>> =
@@ -390,7 +391,7 @@ fn closed_surfaces_are_crossed_an_even_number_of_times() {
     for soup in [&halves, &quarters] {
         let backends = backends(soup);
         for case in cases.clone() {
-            // A step without a common divisor leads to each of them, and soon all around.
+            // A step without a common divisor reaches all lines, and a few steps reach all directions.
             let i = case as usize * 100 % 343;
             let origin = Point3::from([i / 49, i / 7 % 7, i % 7].map(|x| x as f64 - 2.0)) * 0.5 + Vector3::repeat(0.5);
             let inside = origin.iter().all(|x| 0.0 < *x && *x < 2.0);
@@ -414,7 +415,7 @@ fn closed_surfaces_are_crossed_an_even_number_of_times() {
     assert!(has_many(crossed[0]) && has_many(crossed[2]), "{crossed:?}");
 }
 
-/// [t0, t1], [t1.next_up(), t2], ..: each hit of a single point is in one of them.
+/// Each hit of a single point is in exactly one of the adjacent ranges [t0, t1], [t1.next_up(), t2] and so on.
 #[test]
 fn ranges_in_a_row_share_the_hits_out() {
     let mut shared = 0;
@@ -449,12 +450,12 @@ fn ranges_in_a_row_share_the_hits_out() {
     assert!(cases.have_more_than(500, shared), "{shared}");
 }
 
-/// Zero has one sign: what begins at -0 begins at 0, and the lowest id wins.
+/// Both zeros are equal: a hit at -0 begins at 0, and the lowest id wins.
 #[test]
 fn ranges_may_begin_at_minus_zero() {
     let flat = |y: f64| vec![[-1.0, 0.0, y], [1.0, 0.0, y], [0.0, 1.0, y]];
     let upright = |z: f64| vec![[0.0, 0.0, z], [0.0, 4.0, z - 1.0], [0.0, 4.0, z + 1.0]];
-    // The first begins at zero, the second before.
+    // The first hit begins at zero, the second before it.
     let soup = soup_of(&[upright(0.0), flat(0.0), upright(0.0), flat(0.0)]);
     for (name, index) in backends(&soup) {
         for min in [-0.0, 0.0] {
@@ -468,7 +469,7 @@ fn ranges_may_begin_at_minus_zero() {
     }
 }
 
-/// Products of coordinates underflow, and a long direction makes much of what they lack.
+/// Products of coordinates underflow, and a long direction magnifies the error.
 #[test]
 fn a_tiny_triangle_is_hit_into_a_long_direction() {
     let triangle = [[0.0, 0.0, 1.0], [1.0, 2.0, 0.0], [-1.0, -3.0, -1.0]];
@@ -481,7 +482,7 @@ fn a_tiny_triangle_is_hit_into_a_long_direction() {
     }
 }
 
-/// The end of a stretch may be beyond the range of f64, and then it is all that a range at infinity has of it.
+/// The end of a common segment may be beyond the range of f64, and it is then all that a range at infinity contains.
 #[test]
 fn a_stretch_may_end_at_infinity() {
     let [near, far] = [[1.0, 0.0, 0.0], [2f64.powi(900), 0.0, 0.0]];
@@ -496,7 +497,7 @@ fn a_stretch_may_end_at_infinity() {
     }
 }
 
-/// A user's primitive.
+/// A user-defined primitive.
 #[derive(Clone, Copy)]
 struct Ball {
     centre: Point3<f64>,
@@ -558,7 +559,7 @@ fn primitives_of_ones_own_are_hit_where_they_say() {
     assert!(count > amount(100, 20), "{count}");
 }
 
-/// A primitive that does not keep to the range, or answers nonsense.
+/// A user-defined primitive that ignores the range or returns nonsense.
 #[derive(Clone, Copy)]
 struct Stubborn(f64);
 
@@ -633,7 +634,8 @@ fn scenes_small_beside_their_coordinates_are_hit_from_afar() {
     for case in cases.clone() {
         let mut rng = rng("small and far", case);
         let mut vector = || Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0f64));
-        // A few clusters: all within 2^-20 to 2^-52 of their coordinates, and each as small as can be.
+        // All vertices of a cluster are within 2^-20 to 2^-52 of their coordinates, and each primitive is as small as
+        // possible.
         let extent = 2f64.powi(-20 - i32::try_from(case % 33).expect("small"));
         let centre = Vector3::new(1.3, 1.6, 1.9);
         let mut primitives = Vec::new();
@@ -662,7 +664,7 @@ fn scenes_small_beside_their_coordinates_are_hit_from_afar() {
     assert!(cases.have_more_than(amount(20_000, 6_600), hits), "{hits}");
 }
 
-/// All hits, comparable to the last bit.
+/// Returns all hits, comparable to the last bit.
 fn bits_of<T: Real>((_, index): &Index<'_, T>, ray: &Ray) -> Vec<(usize, u64)> {
     let bits = |hit: &Hit| (hit.primitive.index(), hit.parameter.to_bits());
     index.all_intersections(ray).iter().map(bits).collect()
