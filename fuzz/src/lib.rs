@@ -18,5 +18,6 @@ pub mod rays;
 pub mod readers;
 pub mod saved;
 pub mod scene;
+pub mod subject;
 
 pub use answers::QUESTIONS;

@@ -12,10 +12,10 @@ use p2m_mixed::{
 /// The memory that a reader may take for each byte of the file, in addition to buffers of a fixed size.
 ///
 /// The most memory is needed for a polygon whose corners are two bytes each.
-const PER_BYTE: usize = 256;
+const MEMORY_PER_BYTE: usize = 256;
 
 fn measured<T>(file: &[u8], read: impl FnOnce() -> T) -> T {
-    memory::at_most(PER_BYTE * file.len(), read)
+    memory::at_most(MEMORY_PER_BYTE * file.len(), read)
 }
 
 /// Reads a scene, writes it, and reads it again.

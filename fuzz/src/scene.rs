@@ -6,7 +6,7 @@ use p2m::{Element, Point, PrimitiveId, PrimitiveSet, Segment, Shape, Soup, Trian
 use std::fmt::Write;
 
 /// The largest number of primitives of a scene.
-const LARGEST: usize = 40;
+const MAX_PRIMITIVES: usize = 40;
 /// The number of positions that the primitives share.
 const POSITIONS: usize = 48;
 
@@ -46,7 +46,7 @@ impl Coordinates {
         match bytes.below(MODES.len()) {
             0 => Self::Lattice { offset: bytes.pick(&OFFSETS), exponent: bytes.pick(&EXPONENTS) },
             1 => Self::Bits { pool: std::array::from_fn(|_| f64::from_bits(bytes.word())) },
-            #[allow(clippy::cast_possible_truncation, reason = "half of the bits are meant")]
+            #[allow(clippy::cast_possible_truncation, reason = "half of the bits are used")]
             2 => Self::Neighbours { anchor: std::array::from_fn(|_| f32::from_bits(bytes.word() as u32)) },
             3 => Self::Slivers,
             _ => Self::Magnitudes,
@@ -63,11 +63,11 @@ impl Coordinates {
         }]
     }
 
-    fn one(&self, bytes: &mut Bytes<'_>, axis: usize, is_query: bool) -> f64 {
-        let whole = |bytes: &mut Bytes<'_>| f64::from(bytes.byte() % 9) - 4.0;
+    fn number(&self, bytes: &mut Bytes<'_>, axis: usize, is_query: bool) -> f64 {
+        let integer = |bytes: &mut Bytes<'_>| f64::from(bytes.byte() % 9) - 4.0;
         match self {
             Self::Lattice { offset, exponent } => {
-                let small = if is_query { (f64::from(bytes.byte() % 65) - 32.0) * 0.25 } else { whole(bytes) };
+                let small = if is_query { (f64::from(bytes.byte() % 65) - 32.0) * 0.25 } else { integer(bytes) };
                 scaled(offset + small, *exponent)
             }
             Self::Bits { pool } => match bytes.below(9) {
@@ -80,7 +80,7 @@ impl Coordinates {
                 f64::from(f32::from_bits(anchor[axis].to_bits().wrapping_add_signed(i32::from(bytes.signed()))))
             }
             Self::Slivers => {
-                let (near, steps) = (whole(bytes), bytes.signed());
+                let (near, steps) = (integer(bytes), bytes.signed());
                 let aside = 2f64.powi(-i32::from(steps.unsigned_abs()));
                 match steps {
                     0 => near,
@@ -92,31 +92,31 @@ impl Coordinates {
         }
     }
 
-    fn place(&self, bytes: &mut Bytes<'_>, is_query: bool) -> Point3<f64> {
-        Point3::from(std::array::from_fn(|axis| self.one(bytes, axis, is_query)))
+    fn point(&self, bytes: &mut Bytes<'_>, is_query: bool) -> Point3<f64> {
+        Point3::from(std::array::from_fn(|axis| self.number(bytes, axis, is_query)))
     }
 }
 
 /// A scene that may be invalid, and the distribution from which query points are drawn.
-pub struct Drawn {
+pub struct SceneDraft {
     pub mode: &'static str,
     pub positions: Vec<Point3<f64>>,
     pub elements: Vec<Element>,
     coordinates: Coordinates,
 }
 
-impl Drawn {
-    /// Generates a scene of at most `most` primitives, and at most [`LARGEST`].
-    pub fn new(bytes: &mut Bytes<'_>, most: usize) -> Self {
+impl SceneDraft {
+    /// Generates a scene of at most `max_primitives` primitives, and at most [`MAX_PRIMITIVES`].
+    pub fn new(bytes: &mut Bytes<'_>, max_primitives: usize) -> Self {
         let coordinates = Coordinates::draw(bytes);
         let count = 1 + bytes.below(POSITIONS);
-        let mut positions: Vec<_> = (0..count).map(|_| coordinates.place(bytes, false)).collect();
+        let mut positions: Vec<_> = (0..count).map(|_| coordinates.point(bytes, false)).collect();
         // Near-ties arise from positions that tie exactly.
         for _ in 0..bytes.below(8) {
             let (position, axis) = (bytes.below(count), bytes.below(3));
             positions[position][axis] = beside(positions[position][axis], bytes.signed() % 4);
         }
-        let len = bytes.below(1 + most.min(LARGEST));
+        let len = bytes.below(1 + max_primitives.min(MAX_PRIMITIVES));
         let element = |_| {
             let mut vertex = || bytes.byte() % u8::try_from(count).expect("few");
             match vertex() % 4 {
@@ -134,7 +134,7 @@ impl Drawn {
         let kind = bytes.below(9);
         let vertex = |bytes: &mut Bytes<'_>| self.positions[bytes.below(self.positions.len())];
         match kind {
-            0 | 1 => self.coordinates.place(bytes, true),
+            0 | 1 => self.coordinates.point(bytes, true),
             2 => vertex(bytes),
             3 => vertex(bytes).map(|x| beside(x, bytes.signed() % 4)),
             4 => (vertex(bytes) * 0.5) + vertex(bytes).coords * 0.5,
@@ -178,7 +178,7 @@ impl Drawn {
     pub fn source(&self) -> String {
         let mut text = String::from("let soup = Soup::new(vec![\n");
         for p in &self.positions {
-            writeln!(text, "    {},", place(p)).expect("memory");
+            writeln!(text, "    {},", point_source(p)).expect("memory");
         }
         text += "], [\n";
         for element in &self.elements {
@@ -189,7 +189,7 @@ impl Drawn {
 }
 
 /// Formats a point as Rust source.
-pub fn place(p: &Point3<f64>) -> String {
+pub fn point_source(p: &Point3<f64>) -> String {
     let coordinate = |x: f64| match x {
         _ if x.is_nan() => "f64::NAN".to_owned(),
         f64::INFINITY => "f64::INFINITY".to_owned(),

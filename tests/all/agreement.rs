@@ -396,7 +396,8 @@ fn the_returned_primitive_is_nearest_within_rounding() {
             assert!(exact.iter().all(|d| d.is_at_least(found.lower_bound)), "{}: N7", say());
             if returned.compare(&exact[nearest]).is_gt() {
                 wrong += 1;
-                let slack = 4.0 * f64::EPSILON / 2.0 * (returned.max_vertex_distance() + exact[nearest].max_vertex_distance());
+                let slack =
+                    4.0 * f64::EPSILON / 2.0 * (returned.max_vertex_distance() + exact[nearest].max_vertex_distance());
                 let allowed = (found.distance - 2.0 * slack).max(0.0);
                 assert!(exact[nearest].is_at_least(allowed), "{}: N2", say());
             }

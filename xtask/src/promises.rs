@@ -5,10 +5,6 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// The features of the facade, each of which is checked alone.
-const FEATURES: [&str; 11] =
-    ["advisor", "bvh", "interception", "kdop", "kiddo", "mint", "mixed", "parry", "parry-f32", "rayon", "rstar"];
-
 /// The targets for which the library is checked if their standard library is installed: 32 bits, and other processors.
 const TARGETS: [&str; 3] = ["i686-unknown-linux-gnu", "aarch64-unknown-linux-gnu", "wasm32-unknown-unknown"];
 
@@ -17,11 +13,23 @@ pub(crate) fn check() -> Outcome {
     check_rust_version()?;
     let library = ["check", "--locked", "--package", "p2m", "--no-default-features"];
     cargo(&library, &[])?;
-    for feature in FEATURES {
-        cargo(&[&library[..], &["--features", feature]].concat(), &[])?;
+    for feature in features()? {
+        cargo(&[&library[..], &["--features", &feature]].concat(), &[])?;
     }
     cargo(&["check", "--locked", "--package", "p2m-mixed", "--features", "rstar"], &[])?;
     check_targets()
+}
+
+/// Returns the features of the facade apart from `default`, as the manifest of the workspace lists them.
+fn features() -> Result<Vec<String>, String> {
+    let manifest = fs::read_to_string("Cargo.toml").map_err(|error| format!("Cargo.toml: {error}"))?;
+    let lines = manifest.lines().skip_while(|line| *line != "[features]").skip(1);
+    let lines = lines.take_while(|line| !line.starts_with('[')).filter(|line| !line.starts_with('#'));
+    let names: Vec<String> = lines.filter_map(|line| Some(line.split_once(" = ")?.0.to_owned())).collect();
+    if names.is_empty() {
+        return Err("Cargo.toml has no features".to_owned());
+    }
+    Ok(names.into_iter().filter(|name| name != "default").collect())
 }
 
 /// Checks that both lock files belong to their manifests.
