@@ -17,10 +17,10 @@ use std::collections::BinaryHeap;
 const TOLERANCE: f64 = 1e-4;
 
 /// Two points of an axis with their distances.
-type Part = [(Point3<f64>, f64); 2];
+type AxisPart = [(Point3<f64>, f64); 2];
 
 /// Returns a lower bound on the distances of all points between the two ends.
-fn bound([(a, at_a), (b, at_b)]: &Part) -> f64 {
+fn bound([(a, at_a), (b, at_b)]: &AxisPart) -> f64 {
     ((at_a + at_b - (b - a).norm()) / 2.0).max(0.0)
 }
 
@@ -31,7 +31,7 @@ fn clearance<I: ClosestPoint<f64>>(index: &I, axis: [Point3<f64>; 2], tolerance:
     let (mut least, mut asked) = (ends[0].1.min(ends[1].1), 2);
     // The queue has numbers of parts, with the smallest bound on top. Bits of numbers that are not negative have their
     // order.
-    let mut parts: Vec<Part> = vec![ends];
+    let mut parts: Vec<AxisPart> = vec![ends];
     let mut next = BinaryHeap::from([(Reverse(bound(&ends).to_bits()), 0)]);
     while let Some((Reverse(bits), number)) = next.pop() {
         if f64::from_bits(bits) >= least - tolerance {

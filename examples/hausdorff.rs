@@ -26,8 +26,8 @@ fn bound(corners: &[Corner; 3]) -> f64 {
     corners.iter().map(|corner| corner.1 + longest(corner)).fold(f64::INFINITY, f64::min)
 }
 
-/// Returns the largest distance of a point of the surface from the indexed scene. The true value is larger by at most
-/// the tolerance.
+/// Returns the largest distance of a point of the surface from the indexed scene. The true value is larger by at
+/// most the tolerance.
 fn directed<I: ClosestPoint<f64>>(surface: &Soup<f64>, index: &I, tolerance: f64) -> Option<f64> {
     let at = |p: Point3<f64>| index.closest_point(&p).map(|answer| (p, answer.distance));
     let mut parts: Vec<[Corner; 3]> = Vec::new();

@@ -48,8 +48,9 @@ fn main() -> anyhow::Result<()> {
     let pixel = |(row, column): (u32, u32)| {
         let mut sum = Vector3::zeros();
         for (i, j) in (0..RAYS).flat_map(|i| (0..RAYS).map(move |j| (i, j))) {
-            let place = [f64::from(column) + (f64::from(i) + 0.5) * step, f64::from(row) + (f64::from(j) + 0.5) * step];
-            sum += colour(&camera, &scene, &index, &camera.ray(place));
+            let position =
+                [f64::from(column) + (f64::from(i) + 0.5) * step, f64::from(row) + (f64::from(j) + 0.5) * step];
+            sum += colour(&camera, &scene, &index, &camera.ray(position));
         }
         <[f64; 3]>::from(sum * step * step).map(byte)
     };

@@ -58,18 +58,18 @@ const RENEWAL: &str = "CARGO_INCREMENTAL=0 P2M_BLESS=1 cargo test --test instruc
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
     if let Some(folder) = arguments.iter().find_map(|argument| argument.strip_prefix(MEASURE)) {
-        ask_everything(Path::new(folder));
+        run_everything(Path::new(folder));
         return ExitCode::SUCCESS;
     }
-    if is_asked_for(&arguments) { hold_to_table() } else { ExitCode::SUCCESS }
+    if is_selected(&arguments) { check_table() } else { ExitCode::SUCCESS }
 }
 
 /// The name of the only test.
 const NAME: &str = "work_is_that_of_the_table";
 
-/// Returns whether the arguments of a test program select this test. If they request a list of the tests, it is
-/// printed.
-fn is_asked_for(arguments: &[String]) -> bool {
+/// Returns whether the arguments of a test program select this test. If they request a list of the tests,
+/// it is printed.
+fn is_selected(arguments: &[String]) -> bool {
     let is_set = |flag: &str| arguments.iter().any(|argument| argument == flag);
     let (mut filters, mut skips) = (Vec::new(), Vec::new());
     let mut rest = arguments.iter();
@@ -127,7 +127,7 @@ struct Task<'a> {
     backend: &'static str,
     set: &'static str,
     /// Runs the queries as a user does.
-    ask: Box<dyn Fn() + 'a>,
+    run: Box<dyn Fn() + 'a>,
     /// Runs the queries with counters.
     count: Box<dyn Fn() -> Counts + 'a>,
 }
@@ -162,13 +162,13 @@ fn point_tasks<'a, I: Inspect<f64> + Sync>(
     SETS.into_iter().map(move |set| {
         let queries = points(set, soup);
         let same_queries = queries.clone();
-        let ask = move || counted_queries::run_queries(object, way, &queries);
+        let run = move || counted_queries::run_queries(object, way, &queries);
         let count = move || {
-            let counted = Counted { index, soup, counts: Mutex::default() };
-            counted_queries::run_queries(&counted, way, &same_queries);
-            counted.counts.into_inner().expect("one thread")
+            let count_rows = Counted { index, soup, counts: Mutex::default() };
+            counted_queries::run_queries(&count_rows, way, &same_queries);
+            count_rows.counts.into_inner().expect("one thread")
         };
-        Task { backend, set: set.name(), ask: Box::new(ask), count: Box::new(count) }
+        Task { backend, set: set.name(), run: Box::new(run), count: Box::new(count) }
     })
 }
 
@@ -179,9 +179,9 @@ fn ray_task<'a>(
     rays: &'a [Ray],
     visit: impl Fn(&'a Ray, &mut RayStatsCollector<Hits<'a>>) + 'a,
 ) -> Task<'a> {
-    let ask = move || counted_queries::run_rays(object, rays);
+    let run = move || counted_queries::run_rays(object, rays);
     let count = move || RayStatsCollector::of_rays(rays, &Hits::first(), &visit);
-    Task { backend, set: "rays", ask: Box::new(ask), count: Box::new(count) }
+    Task { backend, set: "rays", run: Box::new(run), count: Box::new(count) }
 }
 
 /// One scene with all indexes that are measured.
@@ -266,7 +266,7 @@ impl<'a> Indexes<'a> {
 /// The function in which callgrind counts instructions.
 #[inline(never)]
 fn counted_by_callgrind(task: &Task<'_>) {
-    (task.ask)();
+    (task.run)();
     std::hint::black_box(task);
 }
 
@@ -278,7 +278,7 @@ fn written_by_callgrind(task: &Task<'_>) {
 }
 
 /// Runs all queries on the indexes of a folder, for each scene with each instruction set in turn, under callgrind.
-fn ask_everything(folder: &Path) {
+fn run_everything(folder: &Path) {
     for name in SCENES {
         let soup = scene(name);
         let indexes = Indexes::load(&soup, folder, name);
@@ -303,13 +303,13 @@ impl Row {
 }
 
 /// Formats a figure as in the table.
-fn shown(figure: Option<f64>, column: usize) -> String {
+fn formatted(figure: Option<f64>, column: usize) -> String {
     let decimals = if column < COUNTERS { 3 } else { 0 };
     figure.map_or_else(|| "-".to_owned(), |x| format!("{x:.decimals$}"))
 }
 
 /// Returns the rows of the indexes, with their counters.
-fn counted(scene: &str, indexes: Indexes<'_>) -> Vec<Row> {
+fn count_rows(scene: &str, indexes: Indexes<'_>) -> Vec<Row> {
     let row = |task: &Task<'_>| {
         let mut figures = [None; COLUMNS.len()];
         for (figure, count) in figures.iter_mut().zip((task.count)()) {
@@ -417,7 +417,7 @@ impl Table {
             COLUMNS.join(",")
         );
         for row in &self.rows {
-            let figures: Vec<String> = (0..).zip(row.figures).map(|(column, x)| shown(x, column)).collect();
+            let figures: Vec<String> = (0..).zip(row.figures).map(|(column, x)| formatted(x, column)).collect();
             writeln!(text, "{},{}", row.names.join(","), figures.join(",")).expect("memory");
         }
         fs::write(Self::path(), text).expect("a checkout to write to");
@@ -465,7 +465,7 @@ fn print_rows(rows: &[Row], table: &Table) {
             let change = before.and_then(|before| before.figures[column]).zip(row.figures[column]);
             let change = change.filter(|(before, now)| before != now);
             let change = change.map(|(before, now)| format!(" {:>+7.2} %", percent(before, now)));
-            format!("{:>10}{:10}", shown(row.figures[column], column), change.unwrap_or_default())
+            format!("{:>10}{:10}", formatted(row.figures[column], column), change.unwrap_or_default())
         };
         let ([scene, backend, set], cells) =
             (&row.names, std::array::from_fn::<_, { COLUMNS.len() }, _>(cell).join(""));
@@ -497,9 +497,9 @@ fn compare(rows: &[Row], table: &Table) -> (Vec<String>, Vec<String>) {
             let message = format!(
                 "{}: {} {}{kind} a query, {} in the table, {:+.2} %",
                 row.names.join(", "),
-                shown(Some(now), column),
+                formatted(Some(now), column),
                 name,
-                shown(Some(before), column),
+                formatted(Some(before), column),
                 percent(before, now)
             );
             match Change::of(column, before, now) {
@@ -513,7 +513,7 @@ fn compare(rows: &[Row], table: &Table) -> (Vec<String>, Vec<String>) {
 }
 
 /// Measures everything, and compares it with the table or writes the table.
-fn hold_to_table() -> ExitCode {
+fn check_table() -> ExitCode {
     let is_renewed = env::var_os("P2M_BLESS").is_some();
     if is_renewed && is_incremental() {
         println!("the table is for what is not compiled incrementally: {RENEWAL}");
@@ -533,7 +533,7 @@ fn hold_to_table() -> ExitCode {
         if obstacle.is_none() {
             indexes.save(folder.path(), name);
         }
-        rows.extend(counted(name, indexes));
+        rows.extend(count_rows(name, indexes));
     }
     match &obstacle {
         None => count_instructions(folder.path(), &mut rows),

@@ -21,7 +21,7 @@ use std::time::{Duration, Instant};
 static MEMORY: PeakAlloc = PeakAlloc;
 
 /// The number of times that memory is measured.
-const PARTS: usize = 10;
+const MEASUREMENTS: usize = 10;
 
 type Answers = Vec<Option<(u64, PrimitiveId)>>;
 
@@ -102,7 +102,7 @@ fn nothing_is_lost_and_memory_is_flat() {
     let before = MEMORY.current_usage();
     let (scenes, answers) = (AtomicU64::new(first), AtomicU64::new(0));
     // The largest use of memory in each part of the time, as each thread measures it between two scenes.
-    let most: [AtomicUsize; PARTS] = Default::default();
+    let peaks: [AtomicUsize; MEASUREMENTS] = Default::default();
     let start = Instant::now();
     let failed = Mutex::new(false);
     std::thread::scope(|scope| {
@@ -116,17 +116,17 @@ fn nothing_is_lost_and_memory_is_flat() {
                     };
                     answers.fetch_add(count, Ordering::Relaxed);
                     #[allow(clippy::cast_sign_loss, reason = "time is not negative")]
-                    let part = (start.elapsed().as_secs_f64() / seconds * PARTS as f64) as usize;
-                    most[part.min(PARTS - 1)].fetch_max(MEMORY.current_usage(), Ordering::Relaxed);
+                    let part = (start.elapsed().as_secs_f64() / seconds * MEASUREMENTS as f64) as usize;
+                    peaks[part.min(MEASUREMENTS - 1)].fetch_max(MEMORY.current_usage(), Ordering::Relaxed);
                 }
             });
         }
     });
     assert!(!failed.into_inner().expect("plain"), "see above");
     let after = MEMORY.current_usage();
-    let most = most.map(AtomicUsize::into_inner);
+    let peaks = peaks.map(AtomicUsize::into_inner);
     println!(
-        "{} scenes, {} answers in {:.0?}; {before} bytes before, {after} after, at most {most:?} between two scenes",
+        "{} scenes, {} answers in {:.0?}; {before} bytes before, {after} after, at most {peaks:?} between two scenes",
         scenes.into_inner() - first,
         answers.into_inner(),
         start.elapsed()

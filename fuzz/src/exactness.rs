@@ -50,8 +50,8 @@ pub fn check<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>, found: &Close
     }
 }
 
-/// Checks N8: the answer is the nearest primitive, the lowest id of several that are exactly as near, with the rounded
-/// distance.
+/// Checks N8: the answer is the nearest primitive, the lowest id of several that are exactly as near, with
+/// the rounded distance.
 pub fn check_certified<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>) {
     let (bits, largest) = precision::<T>();
     let (id, all) = nearest(subject.soup, to_f64(query));

@@ -46,7 +46,8 @@ fn select(common: &Common, is_wanted: impl Fn(&Backend) -> bool) -> Vec<&'static
     backends::ALL.iter().filter(|b| common.scalar.contains(&b.scalar) && is_wanted(b)).collect()
 }
 
-/// Measures backends, and returns whether ours agree. Answers of external libraries are left to the reader of the table.
+/// Measures backends, and returns whether ours agree. Answers of external libraries are left to the reader
+/// of the table.
 fn query(arguments: &QueryArguments) -> Result<bool> {
     let common = &arguments.common;
     let selected = select(common, |b| arguments.backends.iter().any(|name| name == b.name));

@@ -11,8 +11,8 @@ use p2m_testkit::{rng, vector};
 use p2m_tradeoff::Table;
 use std::path::PathBuf;
 
-/// The distance of the bounding sites from the centre of the scene, in half diagonals, for queries in ten times the
-/// box.
+/// The distance of the bounding sites from the centre of the scene, in half diagonals, for queries in ten
+/// times the box.
 const DOMAIN_HALF_DIAGONALS: f64 = 22.78;
 
 /// Points with a name.

@@ -36,8 +36,8 @@ struct Method<'a> {
     difference: f64,
 }
 
-/// Prints the table of a scene for every `stride`-th slab of the grid, and returns whether all fields of ours are
-/// equal.
+/// Prints the table of a scene for every `stride`-th slab of the grid, and returns whether all fields of
+/// ours are equal.
 pub(crate) fn print(scene: &Scene, resolution: usize, stride: usize) -> Result<bool> {
     let bounds = scene.double.aabb();
     let grid = Grid::around(&bounds, resolution, 1.05)?;

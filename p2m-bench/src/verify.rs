@@ -8,8 +8,8 @@ use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 use std::thread;
 
-/// Compares `backends` with the oracle of their scalar on every set, prints counts, and returns whether all answers are
-/// equal.
+/// Compares `backends` with the oracle of their scalar on every set, prints counts, and returns whether all
+/// answers are equal.
 pub(crate) fn verify(
     scene: &Scene,
     oracles: &[&'static Backend],

@@ -6,9 +6,9 @@ use p2m_core::{Aabb, Feature, Primitive, Projection};
 /// A solid ball, which has no vertices.
 #[derive(Clone, Copy, Debug)]
 pub struct Ball {
-    /// The centre.
+    /// The centre of the ball.
     pub centre: Point3<f64>,
-    /// The radius.
+    /// The radius of the ball.
     pub radius: f64,
 }
 

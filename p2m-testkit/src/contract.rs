@@ -125,8 +125,8 @@ pub fn answer<T: Real>(query: [T; 3], vertices: &[[T; 3]]) -> Closest<T> {
     best.finish().expect("the distance is within infinity")
 }
 
-/// The exponent of two below which N4 promises nothing: coordinates are zero or at least 2^N4_MIN_EXPONENT of the
-/// largest one.
+/// The exponent of two below which N4 promises nothing: coordinates are zero or at least 2^N4_MIN_EXPONENT of
+/// the largest one.
 const N4_MIN_EXPONENT: i32 = -200;
 
 /// Checks N4: the answer has to stay the same when the vertices are reordered, and has to scale with the coordinates

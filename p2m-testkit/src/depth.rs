@@ -35,8 +35,8 @@ pub struct Cases {
 }
 
 impl Cases {
-    /// Returns whether a single case runs because its number is in `P2M_SEED`. Statistics of many cases are meaningless
-    /// then.
+    /// Returns whether a single case runs because its number is in `P2M_SEED`. Statistics of many cases
+    /// are meaningless then.
     #[must_use]
     pub fn is_replay(&self) -> bool {
         self.is_replay
@@ -181,8 +181,8 @@ pub fn is_deep() -> bool {
     depth() > 0
 }
 
-/// Returns the multiple of the full number of cases that runs, which is the number in `P2M_DEEP`, and zero for shallow
-/// tests.
+/// Returns the multiple of the full number of cases that runs, which is the number in `P2M_DEEP`, and zero
+/// for shallow tests.
 #[must_use]
 pub fn depth() -> u64 {
     Settings::from_environment().times().unwrap_or(0)

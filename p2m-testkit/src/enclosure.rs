@@ -1,10 +1,11 @@
 //! Lower and upper bounds of a distance, computed in about a microsecond: a filter in front of rational arithmetic.
 //!
-//! The convex hull of up to three vertices has a point of minimum norm, seen from the query. Any point of the hull bounds
-//! the distance from above. Any direction n bounds it from below by the minimum of n . a / |n| over the vertices a,
-//! because the hull lies beyond that plane. Neither bound depends on how the point was found, so a mistake in finding
-//! it makes the bounds wide but never wrong. The check is therefore independent of every formula that it checks. Where
-//! the bounds are too far apart, for slivers and beside edges, [`Distance`](crate::oracle::Distance) decides.
+//! The convex hull of up to three vertices has a point of minimum norm, seen from the query. Any point of the hull
+//! bounds the distance from above. Any direction n bounds it from below by the minimum of n . a / |n| over the
+//! vertices a, because the hull lies beyond that plane. Neither bound depends on how the point was found, so a mistake
+//! in finding it makes the bounds wide but never wrong. The check is therefore independent of every formula that it
+//! checks. Where the bounds are too far apart, for slivers and beside edges, [`Distance`](crate::oracle::Distance)
+//! decides.
 //!
 //! Numbers are unevaluated sums of two f64, with operations whose relative errors are below 2^-100, on offsets from the
 //! query whose largest component is between 1 and 2. `SLACK` is about thirty times the largest sum of these errors.

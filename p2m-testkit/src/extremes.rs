@@ -42,7 +42,7 @@ pub enum Extreme {
 }
 
 impl Extreme {
-    /// All families.
+    /// All families, in the order of the tables.
     pub const ALL: [Self; 14] = [
         Self::Isolated,
         Self::Slivers,

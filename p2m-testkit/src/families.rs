@@ -168,8 +168,8 @@ pub(crate) fn triangle(rng: &mut impl Rng, sine: f64) -> [V; 3] {
     t
 }
 
-/// Generates small integers and a query at integers of any size, so that ties are exact and large lengths round to
-/// ties.
+/// Generates small integers and a query at integers of any size, so that ties are exact and large lengths
+/// round to ties.
 fn lattice(rng: &mut impl Rng) -> Case {
     let count = rng.random_range(1..=3);
     let vertices: Vec<V> = (0..count).map(|_| std::array::from_fn(|_| f64::from(rng.random_range(-6..=6)))).collect();
@@ -250,8 +250,8 @@ pub fn case(rng: &mut impl Rng) -> Case {
     case_in(rng, &Span::F64)
 }
 
-/// Generates a case of any family in the range of a scalar. All numbers are numbers of that scalar and not all are
-/// zero.
+/// Generates a case of any family in the range of a scalar. All numbers are numbers of that scalar and not
+/// all are zero.
 pub fn case_in(rng: &mut impl Rng, span: &Span) -> Case {
     loop {
         let Case { family, query, vertices } = drawn(rng, span);

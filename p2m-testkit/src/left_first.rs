@@ -54,8 +54,8 @@ impl<const K: usize> LeftFirst<K> {
         result
     }
 
-    /// Builds a tree as the manual does: the primitives of a box are halved along its longest side until each one is a
-    /// leaf.
+    /// Builds a tree as the manual does: the primitives of a box are halved along its longest side until each one
+    /// is a leaf.
     #[must_use]
     pub fn from_primitives<T: Real, S: PrimitiveSet<T>>(set: &S, directions: &Directions<K>) -> Self {
         let mut result = Self { directions: *directions, nodes: Vec::new() };

@@ -13,6 +13,7 @@ pub mod depth;
 pub mod enclosure;
 pub mod extremes;
 pub mod families;
+pub mod interception_check;
 pub mod left_first;
 mod line_and_primitive;
 pub mod line_filter;
@@ -35,8 +36,8 @@ use nalgebra::Vector3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Returns the random generator of case number `case` of the test `name`. Cases are independent of each other and of
-/// their order.
+/// Returns the random generator of case number `case` of the test `name`. Cases are independent of each other and
+/// of their order.
 #[must_use]
 pub fn rng(name: &str, case: u64) -> ChaCha8Rng {
     // The FNV-1a hash of the name makes two tests with the same case number draw different numbers.

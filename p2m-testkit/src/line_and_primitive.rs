@@ -1,8 +1,8 @@
 //! A line and a primitive in integers, and the part of the primitive that is on the line.
 //!
-//! A point P of a primitive is given by the weights of its vertices. It is on the line through O with direction D if the
-//! three components of (P - O) x D are zero. Two components suffice where the third component of D is not zero, because
-//! D . ((P - O) x D) = 0. So the primitive is clipped by four half-spaces, and a point or a segment remains.
+//! A point P of a primitive is given by the weights of its vertices. It is on the line through O with direction D if
+//! the three components of (P - O) x D are zero. Two components suffice where the third component of D is not zero,
+//! because D . ((P - O) x D) = 0. So the primitive is clipped by four half-spaces, and a point or a segment remains.
 
 use crate::oracle::{V, cross, dot, integer, lowest_bit, sub};
 use crate::ratio::Ratio;
@@ -16,8 +16,8 @@ pub(crate) struct LinePoint {
     pub(crate) weights: [Ratio; 3],
 }
 
-/// A ray and a primitive in integers: offsets from the origin as multiples of 2^unit, and the direction in a unit of
-/// its own.
+/// A ray and a primitive in integers: offsets from the origin as multiples of 2^unit, and the direction in a unit
+/// of its own.
 pub(crate) struct LineAndPrimitive {
     pub(crate) offsets: Vec<V>,
     pub(crate) direction: V,
@@ -41,8 +41,8 @@ impl LineAndPrimitive {
         }
     }
 
-    /// Returns the part of the primitive that is on the line, as the corners of a polygon in the triangle of all
-    /// weights.
+    /// Returns the part of the primitive that is on the line, as the corners of a polygon in the triangle
+    /// of all weights.
     pub(crate) fn clip_to_line(&self) -> Vec<V> {
         let aside: Vec<V> = self.offsets.iter().map(|v| cross(v, &self.direction)).collect();
         let corner = |i: usize| std::array::from_fn(|k| IBig::from(u8::from(i == k)));

@@ -113,8 +113,8 @@ impl Line {
         })
     }
 
-    /// Returns whether the line misses the hull of the vertices: projected along or across an edge, all are on one
-    /// side.
+    /// Returns whether the line misses the hull of the vertices: projected along or across an edge, all are
+    /// on one side.
     fn misses_hull(&self, vertices: &[P]) -> bool {
         let aside: Vec<P> =
             vertices.iter().map(|v| cross(&std::array::from_fn(|k| v[k] - self.point[k]), &self.direction)).collect();

@@ -18,9 +18,12 @@ fn sorted<T: Real>(soup: &Soup<T>, query: &Point3<T>) -> Vec<(PrimitiveId, Proje
 }
 
 /// The fields of an answer that are compared exactly: all of them apart from the lower bound.
-type ComparedFields<T> = (PrimitiveId, T, Point3<T>, Feature, [T; 3]);
+pub type ComparedFields<T> = (PrimitiveId, T, Point3<T>, Feature, [T; 3]);
 
-fn compared_fields<T: Real>(closest: &Closest<T>) -> ComparedFields<T> {
+/// Returns the fields of an answer that every exact backend has to return: all of them except the certified bound,
+/// which depends on the candidates that were evaluated.
+#[must_use]
+pub fn compared_fields<T: Real>(closest: &Closest<T>) -> ComparedFields<T> {
     (closest.primitive, closest.distance, closest.point, closest.feature, closest.barycentric)
 }
 
@@ -29,8 +32,8 @@ fn expected<T: Real>((id, projection): &(PrimitiveId, Projection)) -> ComparedFi
     (*id, T::of_f64(projection.key.distance()), point, projection.feature, projection.barycentric.map(T::of_f64))
 }
 
-/// Checks that an index over a soup answers every method of [`NearQuery`] as its primitives do one by one, number for
-/// number.
+/// Checks that an index over a soup answers every method of [`NearQuery`] as its primitives do one by one,
+/// number for number.
 ///
 /// # Panics
 /// Panics if an answer differs.

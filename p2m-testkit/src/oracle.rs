@@ -223,8 +223,8 @@ impl Distance {
     }
 }
 
-/// Returns whether the convex hull of one to three vertices has a point in a closed box. All coordinates must be
-/// finite.
+/// Returns whether the convex hull of one to three vertices has a point in a closed box. All coordinates
+/// must be finite.
 ///
 /// The hull is clipped by the six half-spaces, one after the other, in homogeneous coordinates.
 #[must_use]

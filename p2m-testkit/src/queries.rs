@@ -133,8 +133,8 @@ pub fn scaled_box(soup: &Soup<f64>, scale: f64, count: usize, seed: u64) -> Vec<
     in_box(&Frame::new(soup), scale, count, &mut ChaCha8Rng::seed_from_u64(seed))
 }
 
-/// Returns the diagonal of a scene's box, and 1 for a scene that is one point. It is the unit of offsets and
-/// differences.
+/// Returns the diagonal of a scene's box, and 1 for a scene that is one point. It is the unit of
+/// offsets and differences.
 #[must_use]
 pub fn diagonal(soup: &Soup<f64>) -> f64 {
     Frame::new(soup).diagonal

@@ -1,7 +1,8 @@
 //! The intersections of lines with primitives in exact rational arithmetic.
 //!
 //! The common part of a line and a primitive is a point or a segment, whose ends have exact parameters and weights.
-//! Crossings are found by moving the line by a sufficiently small number and solving for its intersection with the plane.
+//! Crossings are found by moving the line by a sufficiently small number and solving for its intersection with the
+//! plane.
 
 #![allow(clippy::float_cmp, reason = "nothing here has a tolerance")]
 
@@ -33,7 +34,8 @@ pub struct LineIntersection {
     ends: [LinePoint; 2],
     parameters: [f64; 2],
     side: Side,
-    /// Whether the weights of a point are has_unique_weights, which they are not if three vertices span only a segment or a point.
+    /// Whether the weights of a point are has_unique_weights, which they are not if three vertices span only a segment
+    /// or a point.
     has_unique_weights: bool,
     vertices: Vec<[f64; 3]>,
 }
@@ -198,9 +200,9 @@ fn determinant([a, b, c]: [&V; 3]) -> IBig {
     even - odd
 }
 
-/// Returns the side from which the line of a ray crosses a triangle, and the parameter of its plane, after the line is
-/// moved by e along x, by e^2 along y and by e^3 along z. The number e is so small that no smaller one decides
-/// otherwise.
+/// Returns the side from which the line of a ray crosses a triangle, and the parameter of its plane, after
+/// the line is moved by e along x, by e^2 along y and by e^3 along z. The number e is so small that no
+/// smaller one decides otherwise.
 #[must_use]
 pub fn crossing(ray: &Ray, vertices: &[[f64; 3]]) -> Option<(Side, f64)> {
     if vertices.len() < 3 {

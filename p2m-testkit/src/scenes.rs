@@ -37,7 +37,7 @@ pub enum Layout {
     Far,
 }
 
-/// All distributions.
+/// All distributions of coordinates.
 pub const LAYOUTS: [Layout; 6] =
     [Layout::Uniform, Layout::Strewn, Layout::Lattice, Layout::Sheet, Layout::Sizes, Layout::Far];
 
@@ -157,8 +157,8 @@ pub fn narrow(soup: &Soup<f64>) -> Option<Soup<f32>> {
     Soup::new(positions, soup.elements()).ok()
 }
 
-/// Returns the sides of a gear with fine teeth, skewed and turned: long triangles that are askew to each other and to
-/// the axes.
+/// Returns the sides of a gear with fine teeth, skewed and turned: long triangles that are askew to each other and
+/// to the axes.
 #[must_use]
 pub fn skewed_gear(teeth: u32) -> Soup<f64> {
     let turn = nalgebra::Rotation3::new(Vector3::new(0.4, 0.7, 0.3));
@@ -176,8 +176,8 @@ pub fn skewed_gear(teeth: u32) -> Soup<f64> {
     Soup::new(positions.collect(), elements.collect::<Vec<_>>()).expect("finite")
 }
 
-/// Generates a query around a scene: on a position, between two, near, uniform in the box, on a half-integer lattice,
-/// or far.
+/// Generates a query around a scene: on a position, between two, near, uniform in the box, on a half-integer
+/// lattice, or far.
 pub fn query(rng: &mut impl Rng, positions: &[Point3<f64>]) -> Point3<f64> {
     if positions.is_empty() {
         return Point3::origin();

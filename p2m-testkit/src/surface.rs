@@ -54,8 +54,8 @@ impl<'a> SurfaceSampler<'a> {
     }
 
     /// Returns a random point of the scene and a unit vector: the normal of a triangle, a random perpendicular of a
-    /// segment, or any direction at a point. A degenerate triangle counts as its longest edge, a degenerate segment as
-    /// a point.
+    /// segment, or any direction at a point. A degenerate triangle counts as its longest edge, a degenerate segment
+    /// as a point.
     pub(crate) fn draw(&self, rng: &mut ChaCha8Rng) -> (Point3<f64>, Vector3<f64>) {
         match self.soup.get(PrimitiveId::new(self.primitive(rng))) {
             Shape::Triangle(t) => {

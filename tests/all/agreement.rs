@@ -13,6 +13,7 @@ use p2m::{
 };
 use p2m_testkit::ball::Ball;
 use p2m_testkit::families::shape;
+use p2m_testkit::near_check::compared_fields;
 use p2m_testkit::scenes::{self, extreme_soups, of_case, queries, random_soups, to_f32};
 use p2m_testkit::{amount, cases, oracle::Distance, rng};
 use rand::RngExt;
@@ -222,45 +223,44 @@ fn agrees_with<T: Real>(
     index: &dyn ClosestPoint<T>,
 ) {
     let mut rng = rng("options", seed);
-    // All fields are compared except the certified bound, which depends on the candidates that were evaluated.
-    let without_bound = |c: Option<Closest<T>>| c.map(|c| (c.point, c.distance, c.primitive, c.feature, c.barycentric));
+    let without_bound = |c: Option<Closest<T>>| c.as_ref().map(compared_fields);
     let mut batch = vec![None; queries.len()];
     index.closest_points_into(queries, &QueryOptions::default(), &mut batch);
     for (i, q) in queries.iter().enumerate() {
         let expected = brute.closest_point(q);
-        let say = || format!("seed {seed}, query {i} {q:?}");
+        let context = || format!("seed {seed}, query {i} {q:?}");
         let found = index.closest_point(q);
-        assert_eq!(without_bound(found), without_bound(expected), "{}", say());
-        assert_eq!(found, batch[i], "{}: batch", say());
+        assert_eq!(without_bound(found), without_bound(expected), "{}", context());
+        assert_eq!(found, batch[i], "{}: batch", context());
         let (Some(found), Some(expected)) = (found, expected) else {
-            assert_eq!(len, 0, "{}", say());
+            assert_eq!(len, 0, "{}", context());
             continue;
         };
-        assert!(found.lower_bound <= found.distance, "{}", say());
+        assert!(found.lower_bound <= found.distance, "{}", context());
         // A hint, good or bad or out of range, changes no answer.
         let hint = PrimitiveId::new(rng.random_range(0..len + 1));
         let hinted = index.closest_point_with(q, &QueryOptions::default().with_hint(hint));
-        assert_eq!(without_bound(hinted), without_bound(Some(expected)), "{}: hint {hint}", say());
+        assert_eq!(without_bound(hinted), without_bound(Some(expected)), "{}: hint {hint}", context());
         // A radius decides whether there is an answer, but does not change it.
         let at = |r: T| index.closest_point_with(q, &QueryOptions::default().with_max_distance(r));
-        assert_eq!(without_bound(at(found.distance)), without_bound(Some(expected)), "{}: at its distance", say());
+        assert_eq!(without_bound(at(found.distance)), without_bound(Some(expected)), "{}: at its distance", context());
         let factor = T::of_f64(rng.random_range(0.0..2.0));
         let limited = at(found.distance * factor);
         let within = found.distance <= found.distance * factor;
-        assert_eq!(without_bound(limited), without_bound(Some(expected)).filter(|_| within), "{}: radius", say());
+        assert_eq!(without_bound(limited), without_bound(Some(expected)).filter(|_| within), "{}: radius", context());
         // Epsilon bounds the error of the distance.
         let epsilon = [0.001, 0.1, 3.0][rng.random_range(0..3)];
         let rough =
             index.closest_point_with(q, &QueryOptions::default().with_epsilon(T::of_f64(epsilon))).expect("found");
         let (rough_distance, distance) = (rough.distance.to_f64(), expected.distance.to_f64());
         let slack = 1.0 + 8.0 * T::UNIT_ROUNDOFF;
-        assert!(rough_distance >= distance, "{}: epsilon {epsilon}", say());
+        assert!(rough_distance >= distance, "{}: epsilon {epsilon}", context());
         assert!(
             rough_distance <= distance * (1.0 + epsilon) * slack + T::SMALLEST_SUBNORMAL,
             "{}: epsilon {epsilon}: {rough_distance:e}, not {distance:e}",
-            say()
+            context()
         );
-        assert!(rough.lower_bound <= expected.distance, "{}: epsilon {epsilon}", say());
+        assert!(rough.lower_bound <= expected.distance, "{}: epsilon {epsilon}", context());
         // With a hint and a radius in addition, there is an answer if any primitive is within the radius, and it keeps
         // the bounds.
         let stretch = rng.random_range(1.0..1.0 + epsilon);
@@ -268,12 +268,12 @@ fn agrees_with<T: Real>(
         let options = QueryOptions::default().with_epsilon(T::of_f64(epsilon)).with_max_distance(radius);
         for options in [options, options.with_hint(hint)] {
             let Some(rough) = index.closest_point_with(q, &options) else {
-                assert!(expected.distance > radius, "{}: epsilon {epsilon} within {radius:?}", say());
+                assert!(expected.distance > radius, "{}: epsilon {epsilon} within {radius:?}", context());
                 continue;
             };
             let bound = distance * (1.0 + epsilon) * slack + T::SMALLEST_SUBNORMAL;
-            assert!(rough.distance.to_f64() <= bound && rough.distance <= radius, "{}: epsilon {epsilon}", say());
-            assert!(rough.lower_bound <= expected.distance, "{}: epsilon {epsilon} and radius", say());
+            assert!(rough.distance.to_f64() <= bound && rough.distance <= radius, "{}: epsilon {epsilon}", context());
+            assert!(rough.lower_bound <= expected.distance, "{}: epsilon {epsilon} and radius", context());
         }
     }
 }
@@ -370,7 +370,7 @@ where
 #[test]
 fn the_returned_primitive_is_nearest_within_rounding() {
     let mut wrong = 0;
-    let mut asked = 0;
+    let mut query_count = 0;
     let cases = cases(200, 48);
     for seed in cases.clone() {
         let mut rng = rng("identity", seed);
@@ -389,23 +389,23 @@ fn the_returned_primitive_is_nearest_within_rounding() {
                 .collect();
             let nearest = (0..exact.len()).min_by(|a, b| exact[*a].compare(&exact[*b])).expect("not empty");
             let returned = &exact[found.primitive.index()];
-            let say = || format!("seed {seed}, query {i}");
+            let context = || format!("seed {seed}, query {i}");
             // N1 for the scene: the returned primitive's M bounds the error on one side, the nearest one's M on the
             // other.
-            assert!(returned.error(found.distance, 53, 0.0) <= 4.0, "{}: N1", say());
-            assert!(exact.iter().all(|d| d.is_at_least(found.lower_bound)), "{}: N7", say());
+            assert!(returned.error(found.distance, 53, 0.0) <= 4.0, "{}: N1", context());
+            assert!(exact.iter().all(|d| d.is_at_least(found.lower_bound)), "{}: N7", context());
             if returned.compare(&exact[nearest]).is_gt() {
                 wrong += 1;
                 let slack =
                     4.0 * f64::EPSILON / 2.0 * (returned.max_vertex_distance() + exact[nearest].max_vertex_distance());
                 let allowed = (found.distance - 2.0 * slack).max(0.0);
-                assert!(exact[nearest].is_at_least(allowed), "{}: N2", say());
+                assert!(exact[nearest].is_at_least(allowed), "{}: N2", context());
             }
-            asked += 1;
+            query_count += 1;
         }
     }
-    println!("{asked} queries, {wrong} answered with a primitive that is farther by rounding");
-    assert!(cases.is_replay() || wrong < asked / 50, "{wrong} of {asked}");
+    println!("{query_count} queries, {wrong} answered with a primitive that is farther by rounding");
+    assert!(cases.is_replay() || wrong < query_count / 50, "{wrong} of {query_count}");
 }
 
 /// Permuting and duplicating primitives and adding far geometry change answers only as they must.

@@ -46,8 +46,8 @@ fn primitives_meet_boxes_as_exact_arithmetic_says() {
         missed += usize::from(!expected);
     }
     println!("{met} met, {touched} touched, {missed} missed");
-    let least = met.min(touched).min(missed);
-    assert!(cases.have_more_than(6000, least), "the lattice should have all three: {met} {touched} {missed}");
+    let rarest = met.min(touched).min(missed);
+    assert!(cases.have_more_than(6000, rarest), "the lattice should have all three: {met} {touched} {missed}");
 }
 
 /// A box has one corner at the rounded point of a face or an edge, or one ulp beside it, so that the sign depends on
@@ -81,17 +81,17 @@ fn the_last_bit_decides_whether_a_corner_touches() {
 #[test]
 fn boxes_that_are_odd_have_stated_answers() {
     let t = shape(&[[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]]);
-    let meets = |corners| t.meets_box(&aabb(corners));
+    let intersects = |corners| t.meets_box(&aabb(corners));
     let inf = f64::INFINITY;
-    assert!(meets([[-inf; 3], [inf; 3]]));
-    assert!(meets([[2.0, 2.0, -inf], [inf, inf, inf]]) && !meets([[2.1, 2.0, -inf], [inf, inf, inf]]));
-    assert!(meets([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0]]), "a box may be a point");
-    assert!(!meets([[1.0, 1.0, 1.0], [2.0, 2.0, -1.0]]), "empty on one axis");
-    assert!(!meets([[3.0, 3.0, -1.0], [1.0, 1.0, 1.0]]), "empty, although its corners enclose the face");
+    assert!(intersects([[-inf; 3], [inf; 3]]));
+    assert!(intersects([[2.0, 2.0, -inf], [inf, inf, inf]]) && !intersects([[2.1, 2.0, -inf], [inf, inf, inf]]));
+    assert!(intersects([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0]]), "a box may be a point");
+    assert!(!intersects([[1.0, 1.0, 1.0], [2.0, 2.0, -1.0]]), "empty on one axis");
+    assert!(!intersects([[3.0, 3.0, -1.0], [1.0, 1.0, 1.0]]), "empty, although its corners enclose the face");
     for at in 0..6 {
         let mut corners = [[-1.0; 3], [1.0; 3]];
         corners[at / 3][at % 3] = f64::NAN;
-        assert!(!meets(corners), "NaN at {at}");
+        assert!(!intersects(corners), "NaN at {at}");
     }
     let empty = <AabbTree<f64, Vec<Shape<f64>>>>::build(Vec::new(), &Default::default()).unwrap();
     assert!(!empty.meets_box(&aabb([[-inf; 3], [inf; 3]])) && empty.closest_leaf(&Point3::origin()).is_none());
@@ -100,8 +100,8 @@ fn boxes_that_are_odd_have_stated_answers() {
     assert!(tree.closest_leaf(&Point3::new(f64::NAN, 0.0, 0.0)).is_none());
 }
 
-/// Returns a box of any size, or of size zero, around or between the positions of a scene; most of them touch a
-/// position.
+/// Returns a box of any size, or of size zero, around or between the positions of a scene; most of them
+/// touch a position.
 fn random_box<R: Rng>(rng: &mut R, soup: &Soup<f64>, bounds: &Aabb<f64>) -> Aabb<f64> {
     let id = PrimitiveId::new(rng.random_range(0..soup.len()));
     let primitive = soup.get(id);
@@ -137,20 +137,22 @@ impl<T: Real> Boxes<T> {
         let mut each: Vec<_> = ids.map(|id| (id, soup.get(id).aabb())).collect();
         let scene = soup.aabb().to_f64();
         let size = scene.max - scene.min;
-        each.sort_by_cached_key(|(_, own)| {
-            let at = own.to_f64().min - scene.min;
+        each.sort_by_cached_key(|(_, primitive_box)| {
+            let at = primitive_box.to_f64().min - scene.min;
             // In a flat scene the quotient is NaN, which converts to 0.
             [0, 1, 2].map(|k: usize| (at[k] / size[k] * Self::CELLS) as u32)
         });
-        let around = |run: &[(PrimitiveId, Aabb<T>)]| run.iter().fold(Aabb::empty(), |all, (_, own)| all.union(own));
-        let runs = each.chunks(Self::RUN).map(around).collect();
+        let enclosing = |run: &[(PrimitiveId, Aabb<T>)]| {
+            run.iter().fold(Aabb::empty(), |all, (_, primitive_box)| all.union(primitive_box))
+        };
+        let runs = each.chunks(Self::RUN).map(enclosing).collect();
         Self { each, runs }
     }
 
     /// Returns the ids of the primitives whose boxes intersect `bounds`.
-    fn meeting(&self, bounds: &Aabb<T>) -> Vec<PrimitiveId> {
+    fn intersecting(&self, bounds: &Aabb<T>) -> Vec<PrimitiveId> {
         let runs = self.each.chunks(Self::RUN).zip(&self.runs).filter(|(_, run)| run.meets(bounds));
-        let members = runs.flat_map(|(members, _)| members).filter(|(_, own)| own.meets(bounds));
+        let members = runs.flat_map(|(members, _)| members).filter(|(_, primitive_box)| primitive_box.meets(bounds));
         let mut found: Vec<_> = members.map(|(id, _)| *id).collect();
         found.sort_unstable();
         found
@@ -158,7 +160,7 @@ impl<T: Real> Boxes<T> {
 }
 
 /// Returns the candidates that intersect `bounds`.
-fn meeting<T: Real>(soup: &Soup<T>, candidates: &[PrimitiveId], bounds: &Aabb<T>) -> Vec<PrimitiveId> {
+fn intersecting<T: Real>(soup: &Soup<T>, candidates: &[PrimitiveId], bounds: &Aabb<T>) -> Vec<PrimitiveId> {
     candidates.iter().copied().filter(|id| soup.get(*id).meets_box(bounds)).collect()
 }
 
@@ -261,8 +263,8 @@ fn trees_find_the_same_primitives_as_brute_force_in_every_model() {
                         for _ in 0..boxes_of_each / 2 {
                             let bounds = random_box(&mut rng, soup, &scene);
                             tree.primitives_in_box_into(&bounds, &mut found);
-                            let candidates = boxes.meeting(&bounds);
-                            assert_eq!(found, meeting(soup, &candidates, &bounds), "{name} {bounds:?}");
+                            let candidates = boxes.intersecting(&bounds);
+                            assert_eq!(found, intersecting(soup, &candidates, &bounds), "{name} {bounds:?}");
                             assert_eq!(tree.meets_box(&bounds), !found.is_empty(), "{name} {bounds:?}");
                             met += found.len();
                             // Rational arithmetic checks a few of the candidates whose boxes intersect.

@@ -11,6 +11,7 @@ use p2m::{
     Aabb, AabbTree, BoxQuery, BruteForce, BuildIndex, Closest, ClosestPoint, Element, KdopTree, NearQuery, OctreeIndex,
     P2mIndex, PrimitiveId, PrimitiveSet, QueryOptions, RayQuery, Real, Soup,
 };
+use p2m_testkit::near_check::compared_fields;
 use p2m_testkit::rays::{self, AIMS};
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS, narrow};
 use proptest::prelude::*;
@@ -39,11 +40,12 @@ struct Case {
 
 impl Debug for Case {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let place = |f: &mut Formatter<'_>, p: &Point3<f64>| write!(f, "Point3::new({:?}, {:?}, {:?})", p.x, p.y, p.z);
+        let write_point =
+            |f: &mut Formatter<'_>, p: &Point3<f64>| write!(f, "Point3::new({:?}, {:?}, {:?})", p.x, p.y, p.z);
         writeln!(f, "\nlet soup = Soup::new(\n    vec![")?;
         for p in self.soup.positions() {
             write!(f, "        ")?;
-            place(f, p)?;
+            write_point(f, p)?;
             writeln!(f, ",")?;
         }
         writeln!(f, "    ],\n    [")?;
@@ -53,7 +55,7 @@ impl Debug for Case {
         writeln!(f, "    ],\n)\n.unwrap();")?;
         for query in &self.queries {
             write!(f, "let query = ")?;
-            place(f, query)?;
+            write_point(f, query)?;
             writeln!(f, ";")?;
         }
         write!(f, "let seed = {};", self.seed)
@@ -67,8 +69,8 @@ fn part(source: &Soup<f64>, chosen: &[usize]) -> Soup<f64> {
     for id in chosen {
         let element = source.element(PrimitiveId::new(id % source.len()));
         let mut number = |i: u32| {
-            let own = *numbers.entry(i).or_insert_with(|| soup.push_position(source.positions()[i as usize]));
-            u32::try_from(own).expect("few vertices")
+            let copy = *numbers.entry(i).or_insert_with(|| soup.push_position(source.positions()[i as usize]));
+            u32::try_from(copy).expect("few vertices")
         };
         let element = match element {
             Element::Triangle(t) => Element::Triangle(t.map(&mut number)),
@@ -106,13 +108,8 @@ impl<T: Real, I: ClosestPoint<T> + NearQuery<T>> Index<T> for I {}
 trait Tree<T: Real>: Index<T> + RayQuery<T> + BoxQuery<T> {}
 impl<T: Real, I: Index<T> + RayQuery<T> + BoxQuery<T>> Tree<T> for I {}
 
-/// Returns all fields of an answer except the certified bound.
-fn known<T: Real>(closest: &Closest<T>) -> impl PartialEq + Debug + use<T> {
-    (closest.primitive, closest.distance, closest.point, closest.feature, closest.barycentric)
-}
-
 fn all<T: Real>(closest: &[Closest<T>]) -> impl PartialEq + Debug + use<T> {
-    closest.iter().map(known).collect::<Vec<_>>()
+    closest.iter().map(compared_fields).collect::<Vec<_>>()
 }
 
 fn check<T: Real>(case: &Case, soup: &Soup<T>, point: impl Fn(&Point3<f64>) -> Point3<T>) -> Result<(), TestCaseError> {
@@ -130,10 +127,22 @@ fn check<T: Real>(case: &Case, soup: &Soup<T>, point: impl Fn(&Point3<f64>) -> P
         let odd = |id: PrimitiveId| (id.index() as u64 ^ case.seed).is_multiple_of(3);
         for (name, index) in indexes {
             let found = index.closest_point(&query);
-            prop_assert_eq!(found.as_ref().map(known), expected.as_ref().map(known), "{}, {:?}", name, query);
+            prop_assert_eq!(
+                found.as_ref().map(compared_fields),
+                expected.as_ref().map(compared_fields),
+                "{}, {:?}",
+                name,
+                query
+            );
             let (found, near) =
                 (index.closest_point_with(&query, &options), brute.closest_point_with(&query, &options));
-            prop_assert_eq!(found.as_ref().map(known), near.as_ref().map(known), "{}, {:?} within", name, query);
+            prop_assert_eq!(
+                found.as_ref().map(compared_fields),
+                near.as_ref().map(compared_fields),
+                "{}, {:?} within",
+                name,
+                query
+            );
             let (found, nearest) = (index.k_nearest(&query, 3, radius), brute.k_nearest(&query, 3, radius));
             prop_assert_eq!(all(&found), all(&nearest), "{}, three nearest of {:?}", name, query);
             let (found, within) = (index.all_within(&query, radius), brute.all_within(&query, radius));
@@ -141,7 +150,13 @@ fn check<T: Real>(case: &Case, soup: &Soup<T>, point: impl Fn(&Point3<f64>) -> P
             prop_assert_eq!(index.is_any_within(&query, radius), !within.is_empty(), "{}, any near {:?}", name, query);
             let among = |index: &dyn Index<T>| index.closest_point_among(&query, &options, &mut |id| odd(id));
             let (found, some) = (among(index), brute.closest_point_among(&query, &options, &mut |id| odd(id)));
-            prop_assert_eq!(found.as_ref().map(known), some.as_ref().map(known), "{}, some near {:?}", name, query);
+            prop_assert_eq!(
+                found.as_ref().map(compared_fields),
+                some.as_ref().map(compared_fields),
+                "{}, some near {:?}",
+                name,
+                query
+            );
         }
     }
     let trees: [(&str, &dyn Tree<T>); 2] = [("aabb", &tree), ("kdop", &kdop)];

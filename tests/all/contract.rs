@@ -112,25 +112,38 @@ fn n4_scaling_by_powers_of_two_changes_no_bit() {
         let scale = |v: [f64; 3], e: i32| v.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
         case.query = scale(case.query, -to_one);
         case.vertices = case.vertices.iter().map(|v| scale(*v, -to_one)).collect();
-        let here = answer(case.query, &case.vertices);
+        let unscaled = answer(case.query, &case.vertices);
         for e in [-900, -510, -300, -251, -249, -40, 1, 40, 248, 252, 300, 510, 900] {
             let query = scale(case.query, e);
             let vertices: Vec<_> = case.vertices.iter().map(|v| scale(*v, e)).collect();
-            let there = answer(query, &vertices);
-            let results = there.point.iter().chain([&there.distance]).chain(&there.barycentric);
+            let scaled = answer(query, &vertices);
+            let results = scaled.point.iter().chain([&scaled.distance]).chain(&scaled.barycentric);
             let pairs =
                 query.iter().zip(&case.query).chain(vertices.as_flattened().iter().zip(case.vertices.as_flattened()));
-            let kept = pairs.into_iter().all(|(x, y)| normal(*x) && normal(*y) && (*x == 0.0) == (*y == 0.0));
-            if !kept || !results.into_iter().all(|x| normal(*x)) {
+            let stays_normal = pairs.into_iter().all(|(x, y)| normal(*x) && normal(*y) && (*x == 0.0) == (*y == 0.0));
+            if !stays_normal || !results.into_iter().all(|x| normal(*x)) {
                 continue;
             }
             compared += 1;
-            let expected = scale([here.distance, 0.0, 0.0], e)[0];
-            require!(there.distance == expected, seed, case, "2^{e}: distance {:e}, not {expected:e}", there.distance);
-            require!(there.feature == here.feature, seed, case, "2^{e}: {:?}, not {:?}", there.feature, here.feature);
-            let point: [f64; 3] = here.point.coords.into();
-            require!(there.point == scale(point, e).into(), seed, case, "2^{e}: another point");
-            require!(there.barycentric == here.barycentric, seed, case, "2^{e}: other weights");
+            let expected = scale([unscaled.distance, 0.0, 0.0], e)[0];
+            require!(
+                scaled.distance == expected,
+                seed,
+                case,
+                "2^{e}: distance {:e}, not {expected:e}",
+                scaled.distance
+            );
+            require!(
+                scaled.feature == unscaled.feature,
+                seed,
+                case,
+                "2^{e}: {:?}, not {:?}",
+                scaled.feature,
+                unscaled.feature
+            );
+            let point: [f64; 3] = unscaled.point.coords.into();
+            require!(scaled.point == scale(point, e).into(), seed, case, "2^{e}: another point");
+            require!(scaled.barycentric == unscaled.barycentric, seed, case, "2^{e}: other weights");
         }
     }
     assert!(cases.have_more_than(300_000, compared), "{compared}");
@@ -140,21 +153,21 @@ fn n4_scaling_by_powers_of_two_changes_no_bit() {
 fn n4_the_order_of_vertices_changes_no_bit() {
     for seed in cases(100_000, 3_000) {
         let case = case("contract permutation", seed);
-        let here = answer(case.query, &case.vertices);
+        let unscaled = answer(case.query, &case.vertices);
         let n = case.vertices.len();
         let permutations: &[[usize; 3]] = &[[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
         for p in permutations.iter().filter(|p| p[n..].iter().all(|i| *i >= n)) {
             let vertices: Vec<_> = p[..n].iter().map(|i| case.vertices[*i]).collect();
-            let there = answer(case.query, &vertices);
+            let scaled = answer(case.query, &vertices);
             require!(
-                there.distance == here.distance,
+                scaled.distance == unscaled.distance,
                 seed,
                 case,
                 "{p:?}: {:e}, not {:e}",
-                there.distance,
-                here.distance
+                scaled.distance,
+                unscaled.distance
             );
-            require!(there.point == here.point, seed, case, "{p:?}: {} is not {}", there.point, here.point);
+            require!(scaled.point == unscaled.point, seed, case, "{p:?}: {} is not {}", scaled.point, unscaled.point);
         }
     }
 }
@@ -170,7 +183,7 @@ fn shared_features_have_the_same_key_in_every_primitive() {
         let triangle = project(case.query, &[a, b, c]);
         let edges = [[a, b], [b, c], [c, a]].map(|e| project(case.query, &e).key);
         let points = [a, b, c].map(|v| project(case.query, &[v]).key);
-        let least = |keys: &[Key]| *keys.iter().min().expect("three keys");
+        let min_key = |keys: &[Key]| *keys.iter().min().expect("three keys");
         let expected = match triangle.feature {
             Feature::Vertex(i) => points[usize::from(i)],
             Feature::Edge(i) => edges[usize::from(i)],
@@ -178,8 +191,8 @@ fn shared_features_have_the_same_key_in_every_primitive() {
         };
         faces += usize::from(triangle.feature == Feature::Face);
         require!(triangle.key == expected, seed, case, "key of {:?} differs", triangle.feature);
-        require!(triangle.key <= least(&edges), seed, case, "an edge is nearer");
-        require!(least(&edges) <= least(&points), seed, case, "a vertex is nearer");
+        require!(triangle.key <= min_key(&edges), seed, case, "an edge is nearer");
+        require!(min_key(&edges) <= min_key(&points), seed, case, "a vertex is nearer");
     }
     assert!(cases.have_more_than(10_000, faces), "{faces}");
 }

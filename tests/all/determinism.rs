@@ -34,7 +34,7 @@ const SCENES: [(Kinds, Layout, [usize; 2], [usize; 2]); 5] = [
 
 fn scene(number: usize) -> (Soup<f64>, Vec<Point3<f64>>) {
     let (kinds, layout, full, shallow) = SCENES[number];
-    let [len, asked] = amount(full, shallow);
+    let [len, query_count] = amount(full, shallow);
     let mut rng = p2m_testkit::rng("determinism", number as u64);
     let soup = scenes::soup(&mut rng, kinds, layout, len);
     let bounds = soup.aabb();
@@ -44,7 +44,7 @@ fn scene(number: usize) -> (Soup<f64>, Vec<Point3<f64>>) {
         0 => soup.positions()[rng.random_range(0..soup.positions().len())],
         _ => centre + size.map(|x| x * rng.random_range(-1.0..1.0)),
     };
-    let queries = (0..asked).map(&mut query).collect();
+    let queries = (0..query_count).map(&mut query).collect();
     (soup, queries)
 }
 
@@ -68,20 +68,20 @@ fn hash<T: Real>(mut hash: u64, answers: &[Option<Closest<T>>]) -> u64 {
 /// The queries that each index answers.
 trait Answers<T: Real>: Send + Sync {
     /// Answers on one thread with the given instruction set.
-    fn alone(&self, isa: Isa, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>>;
+    fn single_threaded(&self, isa: Isa, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>>;
     /// Answers in batches on the current thread pool.
-    fn together(&self, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>>;
+    fn in_batches(&self, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>>;
 }
 
 macro_rules! answers {
     ($($index:ty),+) => {
         $(impl<T: Real> Answers<T> for $index {
-            fn alone(&self, isa: Isa, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>> {
+            fn single_threaded(&self, isa: Isa, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>> {
                 let index = self.clone().with_isa(isa);
                 queries.iter().map(|query| index.closest_point(query)).collect()
             }
 
-            fn together(&self, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>> {
+            fn in_batches(&self, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>> {
                 let mut answers = vec![None; queries.len()];
                 closest_points_into(self, queries, &QueryOptions::default(), &BatchOptions::default(), &mut answers);
                 answers
@@ -101,11 +101,13 @@ where
 
 fn check<T: Real>(of: impl Fn(usize) -> (Soup<T>, Vec<Point3<T>>), expected: u64) {
     let mut hashes: Vec<(String, u64)> = Vec::new();
-    let mut add =
-        |name: String, answers: &[Option<Closest<T>>]| match hashes.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, so_far)) => *so_far = hash(*so_far, answers),
-            None => hashes.push((name, hash(0xcbf2_9ce4_8422_2325, answers))),
-        };
+    let mut add = |name: String, answers: &[Option<Closest<T>>]| match hashes
+        .iter_mut()
+        .find(|(seen_name, _)| *seen_name == name)
+    {
+        Some((_, so_far)) => *so_far = hash(*so_far, answers),
+        None => hashes.push((name, hash(0xcbf2_9ce4_8422_2325, answers))),
+    };
     for number in 0..SCENES.len() {
         let (soup, queries) = of(number);
         // Different numbers of threads build the index as well.
@@ -120,10 +122,10 @@ fn check<T: Real>(of: impl Fn(usize) -> (Soup<T>, Vec<Point3<T>>), expected: u64
                 ]
             });
             for (name, index) in &indexes {
-                add(format!("{name}, {threads} threads"), &pool.install(|| index.together(&queries)));
+                add(format!("{name}, {threads} threads"), &pool.install(|| index.in_batches(&queries)));
                 if threads == 1 {
                     for isa in Isa::available() {
-                        add(format!("{name}, {}", isa.name()), &index.alone(isa, &queries));
+                        add(format!("{name}, {}", isa.name()), &index.single_threaded(isa, &queries));
                     }
                 }
             }
@@ -133,8 +135,8 @@ fn check<T: Real>(of: impl Fn(usize) -> (Soup<T>, Vec<Point3<T>>), expected: u64
         assert_eq!(*hash, expected, "{name}: {hash:#x}");
     }
     assert_eq!(hashes.len(), 4 * (3 + Isa::available().len()));
-    let asked: usize = SCENES.iter().map(|(_, _, full, shallow)| amount(full, shallow)[1]).sum();
-    println!("{} answers, {expected:#x}", hashes.len() * asked);
+    let query_count: usize = SCENES.iter().map(|(_, _, full, shallow)| amount(full, shallow)[1]).sum();
+    println!("{} answers, {expected:#x}", hashes.len() * query_count);
 }
 
 #[test]

@@ -64,9 +64,9 @@ fn every_instruction_set_refitted_and_boxes_agree_with_brute_force() {
                     assert_eq!(found, expected, "case {case}: {isa} {kinds:?} {layout:?} {q}");
                     let leaf = tree.closest_leaf(&q).expect("not empty");
                     assert!(leaf.distance >= expected.expect("one").0 && leaf.lower_bound <= expected.expect("one").0);
-                    let half = Vector3::from_fn(|_, _| rng.random_range(0.0..0.2))
+                    let half_extent = Vector3::from_fn(|_, _| rng.random_range(0.0..0.2))
                         * (scene.aabb().max - scene.aabb().min).norm();
-                    let bounds = Aabb { min: q - half, max: q + half };
+                    let bounds = Aabb { min: q - half_extent, max: q + half_extent };
                     let (mut found, mut expected) = (Vec::new(), Vec::new());
                     tree.primitives_in_box_into(&bounds, &mut found);
                     brute.primitives_in_box_into(&bounds, &mut expected);
@@ -84,7 +84,7 @@ fn every_instruction_set_refitted_and_boxes_agree_with_brute_force() {
 
 /// Checks that more faces lead to fewer nodes and packets, and that k-DOPs visit fewer than boxes. `most` is the
 /// largest percentage of the nodes of 6 faces that 14, 18 and 26 faces may visit, for queries in the box.
-fn falls(soup: &Soup<f64>, most: [usize; 3]) {
+fn check_work_falls(soup: &Soup<f64>, max_percent: [usize; 3]) {
     let boxes = AabbTree::build(soup, &Default::default()).expect("valid");
     let trees = (built::<6>(soup), built::<14>(soup), built::<18>(soup), built::<26>(soup));
     for set in [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface] {
@@ -107,8 +107,8 @@ fn falls(soup: &Soup<f64>, most: [usize; 3]) {
             assert!(eighteen[0] < fourteen[0] && eighteen[1] < fourteen[1], "{set}: {rows:?}");
         }
         if set == QuerySet::Box1 {
-            for (row, most) in rows[1..].iter().zip(most) {
-                assert!(row[0] * 100 <= six[0] * most, "{rows:?}");
+            for (row, max_percent) in rows[1..].iter().zip(max_percent) {
+                assert!(row[0] * 100 <= six[0] * max_percent, "{rows:?}");
             }
         }
     }
@@ -116,9 +116,9 @@ fn falls(soup: &Soup<f64>, most: [usize; 3]) {
 
 #[test]
 fn visits_fall_with_the_number_of_faces_on_a_turned_gear() {
-    falls(&scenes::skewed_gear(amount(2000, 600)), amount([70, 66, 58], [74, 70, 64]));
+    check_work_falls(&scenes::skewed_gear(amount(2000, 600)), amount([70, 66, 58], [74, 70, 64]));
     if let Some(soup) = model("gear_skewed_57k_rotated.ply") {
-        falls(&soup, [65, 66, 53]);
+        check_work_falls(&soup, [65, 66, 53]);
     }
 }
 
@@ -154,26 +154,30 @@ fn far_fewer_nodes_are_visited_than_from_left_to_right() {
 /// A box query skips leaves whose boxes intersect the box if their k-DOPs do not.
 #[test]
 fn fewer_primitives_are_asked_by_box_queries_with_more_faces() {
-    fn asked<const K: usize>(soup: &Soup<f64>, boxes: &[Aabb<f64>]) -> usize
+    fn tested_primitives<const K: usize>(soup: &Soup<f64>, boxes: &[Aabb<f64>]) -> usize
     where
         Directions<K>: Default,
     {
         let tree = built::<K>(soup);
-        let asked = Cell::new(0);
+        let tested_primitives = Cell::new(0);
         for bounds in boxes {
-            let meets = |id| {
-                asked.set(asked.get() + 1);
+            let is_hit = |id| {
+                tested_primitives.set(tested_primitives.get() + 1);
                 Primitive::meets_box(&soup.get(id), bounds)
             };
-            let _ = tree.tree().visit_box(bounds, meets, &mut |_| ControlFlow::Continue(()));
+            let _ = tree.tree().visit_box(bounds, is_hit, &mut |_| ControlFlow::Continue(()));
         }
-        asked.get()
+        tested_primitives.get()
     }
     let soup = scenes::skewed_gear(amount(500, 300));
-    let half = Vector3::repeat(0.03);
+    let half_extent = Vector3::repeat(0.03);
     let queries = QuerySet::Near.generate(&soup, amount(300, 50), 1);
-    let boxes: Vec<_> = queries.iter().map(|q| Aabb { min: q - half, max: q + half }).collect();
-    let counts = [asked::<6>(&soup, &boxes), asked::<14>(&soup, &boxes), asked::<26>(&soup, &boxes)];
+    let boxes: Vec<_> = queries.iter().map(|q| Aabb { min: q - half_extent, max: q + half_extent }).collect();
+    let counts = [
+        tested_primitives::<6>(&soup, &boxes),
+        tested_primitives::<14>(&soup, &boxes),
+        tested_primitives::<26>(&soup, &boxes),
+    ];
     println!("{counts:?} primitives asked");
     assert!(counts[1] * 10 < counts[0] * 8 && counts[2] < counts[1], "{counts:?}");
 }

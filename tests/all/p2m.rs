@@ -7,12 +7,12 @@ use nalgebra::{Point3, Vector3};
 use p2m::backend::StatsCollector;
 use p2m::interception::{BuildStage, Partition, Progress};
 use p2m::{
-    Aabb, BruteForce, BuildIndex, ClosestPoint, Isa, P2mIndex, P2mOptions, Point, Primitive, PrimitiveSet, Projection,
+    Aabb, BruteForce, BuildIndex, ClosestPoint, P2mIndex, P2mOptions, Point, Primitive, PrimitiveSet, Projection,
     Segment, Shape, Soup, Triangle,
 };
 use p2m_testkit::ball::Ball;
 use p2m_testkit::scenes::{self, Kinds, Layout, of_case};
-use p2m_testkit::{amount, cases, rng, vector};
+use p2m_testkit::{amount, cases, interception_check, rng, vector};
 use rand::{Rng, RngExt};
 use std::sync::Mutex;
 
@@ -20,21 +20,9 @@ fn built<S: PrimitiveSet<f64> + Sync>(set: S) -> P2mIndex<f64, S> {
     P2mIndex::build(set, &Default::default()).expect("valid")
 }
 
-/// Compares an index with brute force, bit for bit, with every instruction set, one query at a time and interleaved.
+/// Compares the default index of a set with brute force.
 fn agrees<S: PrimitiveSet<f64> + Sync + Copy>(name: &str, set: S, queries: &[Point3<f64>]) {
-    let brute = BruteForce::new(set).expect("valid");
-    let key = |c: p2m::Closest<f64>| (c.distance.to_bits(), c.primitive);
-    let expected: Vec<_> = queries.iter().map(|q| brute.closest_point(q).map(key)).collect();
-    let mut index = built(set);
-    for isa in Isa::available() {
-        index = index.with_isa(isa);
-        let mut side_by_side = vec![None; queries.len()];
-        index.closest_points_into(queries, &Default::default(), &mut side_by_side);
-        for ((q, other), expected) in queries.iter().zip(side_by_side).zip(&expected) {
-            assert_eq!(index.closest_point(q).map(key), *expected, "{name} {isa} {q:?}");
-            assert_eq!(other.map(key), *expected, "{name} {isa} side by side {q:?}");
-        }
-    }
+    interception_check::agrees(name, set, built(set), queries);
 }
 
 /// Returns queries on, near and between vertices, around, far from and beyond the domain of a scene of about size 1.
@@ -60,8 +48,8 @@ fn queries(rng: &mut impl Rng, shapes: &[Shape<f64>], count: usize) -> Vec<Point
         .collect()
 }
 
-/// Returns the surface of a cube of n x n squares a side whose coordinates are multiples of a step, so that ties are
-/// everywhere.
+/// Returns the surface of a cube of n x n squares a side whose coordinates are multiples of a step, so that
+/// ties are everywhere.
 fn lattice(n: i32, step: f64) -> Vec<Shape<f64>> {
     let mut shapes = Vec::new();
     let at = |axis: usize, side: i32, i: i32, j: i32| {
@@ -194,12 +182,12 @@ fn scenes_on_a_line_or_in_a_plane_and_small_ones_agree() {
         let (case, mut rng) = (seed as usize, rng("p2m flat", seed));
         let count = rng.random_range(1..40);
         let dimensions = case % 3 + 1;
-        let place = vector(&mut rng) * [0.0, 1.0, 1e6][case % 3];
+        let shift = vector(&mut rng) * [0.0, 1.0, 1e6][case % 3];
         let grid = rng.random::<bool>();
         let mut point = || {
             let mut p = vector(&mut rng) * 0.5;
             p.iter_mut().skip(dimensions).for_each(|x| *x = 0.0);
-            Point3::from(place + if grid { p.map(|x| (x * 8.0).round() / 8.0) } else { p })
+            Point3::from(shift + if grid { p.map(|x| (x * 8.0).round() / 8.0) } else { p })
         };
         let shapes: Vec<Shape<f64>> = (0..count)
             .map(|i| match (i + case) % 3 {
@@ -208,7 +196,7 @@ fn scenes_on_a_line_or_in_a_plane_and_small_ones_agree() {
                 _ => Point::new(point()).into(),
             })
             .collect();
-        let all: Vec<_> = queries(&mut rng, &shapes, amount(60, 15)).into_iter().flat_map(|q| [q, q + place]).collect();
+        let all: Vec<_> = queries(&mut rng, &shapes, amount(60, 15)).into_iter().flat_map(|q| [q, q + shift]).collect();
         agrees(&format!("case {case}"), &shapes[..], &all);
     }
 }
@@ -312,18 +300,18 @@ fn slivers_and_vertices_that_are_nearly_one_agree() {
         let (a, c) = (Point3::from(vector(&mut rng)), Point3::from(vector(&mut rng)));
         // The vertices differ by some units in the last place.
         let b = a.map(|x| x + f64::EPSILON * 0.5 * f64::from(rng.random_range(-3..=3)));
-        let own: [Shape<f64>; 2] = if rng.random() {
+        let pair: [Shape<f64>; 2] = if rng.random() {
             [Segment::new(b, a).into(), Segment::new(a, c).into()]
         } else {
             [Segment::new(a, c).into(), Triangle::new(b, a, c).into()]
         };
-        shapes.extend(own);
+        shapes.extend(pair);
         let queries: Vec<_> = (0..20)
             .map(|_| {
                 // The query is on the plane between both vertices.
-                let way = a - v;
+                let edge = a - v;
                 let aside = vector(&mut rng);
-                nalgebra::center(&a, &v) + aside - way * (aside.dot(&way) / way.norm_squared())
+                nalgebra::center(&a, &v) + aside - edge * (aside.dot(&edge) / edge.norm_squared())
             })
             .collect();
         agrees(&format!("case {case}"), &shapes[..], &queries);
@@ -393,12 +381,20 @@ fn lists_that_are_too_long_are_left_to_the_tree() {
         let options = P2mOptions::default().with_max_list_packets(longest).with_max_extra_sites(0.0);
         P2mIndex::<f64, _>::build(&soup, &options).expect("valid").report()
     };
-    let usual = report(128);
-    assert!(usual.lists > soup.len() / 3 && usual.trees == 0 && usual.entries > 2 * usual.lists, "{usual}");
+    let default_report = report(128);
+    assert!(
+        default_report.lists > soup.len() / 3
+            && default_report.trees == 0
+            && default_report.entries > 2 * default_report.lists,
+        "{default_report}"
+    );
     let short = report(12);
-    assert!(short.trees > soup.len() / 30 && short.bytes < usual.bytes && short.entries <= 12 * short.lists, "{short}");
+    assert!(
+        short.trees > soup.len() / 30 && short.bytes < default_report.bytes && short.entries <= 12 * short.lists,
+        "{short}"
+    );
     let none = report(0);
-    assert!(none.lists == 0 && none.trees == usual.lists && none.bytes == 0, "{none}");
+    assert!(none.lists == 0 && none.trees == default_report.lists && none.bytes == 0, "{none}");
 }
 
 /// The counters detect lost lists, lost bounds, lost hints and lost paths to answers far away.
@@ -410,20 +406,20 @@ fn lookups_do_little() {
     let bounds = soup.aabb();
     let size = bounds.max - bounds.min;
     println!("{}", index.report());
-    for (name, reach, most) in
+    for (name, extent, limits) in
         [("around", 0.52, [1_750, 2_900, 1_350]), ("far", 4.9, [1_850, amount(1_500, 400), 1_100])]
     {
         let centre = nalgebra::center(&bounds.min, &bounds.max);
-        let mut place = || centre + Vector3::from_fn(|k, _| rng.random_range(-reach..reach) * size[k]);
-        let queries: Vec<_> = (0..1000).map(|_| place()).collect();
+        let mut shift = || centre + Vector3::from_fn(|k, _| rng.random_range(-extent..extent) * size[k]);
+        let queries: Vec<_> = (0..1000).map(|_| shift()).collect();
         let sums = StatsCollector::of_queries(&queries, |query, counting| index.visit(query, counting));
         println!("{name}: per 1000 queries {sums:?} nodes and sites, packets, primitives");
-        assert!((0..3).all(|i| sums[i] <= most[i]), "{name}: {sums:?}");
+        assert!((0..3).all(|i| sums[i] <= limits[i]), "{name}: {sums:?}");
     }
 }
 
-/// Cells of a town are cut by planes that are equal up to rounding, and the polytope that remains must not grow without
-/// end.
+/// Cells of a town are cut by planes that are equal up to rounding, and the polytope that remains must not
+/// grow without end.
 #[test]
 fn a_part_of_a_flat_town_is_built_within_its_memory() {
     let Some(folder) = p2m_testkit::models() else { return };

@@ -94,7 +94,7 @@ impl Collector for Within {
 
 #[test]
 fn collectors_of_more_than_the_nearest_get_all() {
-    let (mut total, mut asked) = (0, 0);
+    let (mut total, mut searches) = (0, 0);
     let cases = cases(24, 24);
     for case in cases.clone() {
         let (mut rng, (kinds, layout)) = (rng("collectors", case), of_case(case));
@@ -113,10 +113,10 @@ fn collectors_of_more_than_the_nearest_get_all() {
             collector.found.sort();
             assert_eq!(collector.found, expected.found, "case {case}: {kinds:?} {layout:?} {q} {radius}");
             total += expected.found.len();
-            asked += 1;
+            searches += 1;
         }
     }
-    assert!(cases.have_more_than(amount(10_000, 8 * asked), total), "{total} found, {asked} times");
+    assert!(cases.have_more_than(amount(10_000, 8 * searches), total), "{total} found, {searches} times");
 }
 
 #[test]
@@ -220,14 +220,14 @@ fn batches_are_single_queries() {
         for options in [QueryOptions::default(), near, near.with_hint(PrimitiveId::new(7)), near.with_epsilon(0.1)] {
             let expected: Vec<_> = queries.iter().map(|q| tree.closest_point_with(q, &options)).collect();
             for bits in 0..8 {
-                let way = batch::BatchOptions::default()
+                let batch_options = batch::BatchOptions::default()
                     .with_reorder(bits & 1 != 0)
                     .with_hints(bits & 2 != 0)
                     .with_parallel(bits & 4 != 0);
                 let mut out = vec![None; queries.len()];
-                batch::closest_points_into(&tree, &queries, &options, &way, &mut out);
+                batch::closest_points_into(&tree, &queries, &options, &batch_options, &mut out);
                 for (i, (found, expected)) in out.into_iter().zip(&expected).enumerate() {
-                    same(found, *expected, &format!("{layout:?} {way:?} query {i}"));
+                    same(found, *expected, &format!("{layout:?} {batch_options:?} query {i}"));
                 }
             }
         }

@@ -54,19 +54,19 @@ impl Scene {
     fn check_table(&self) {
         let Self { name, mesh, table, .. } = self;
         assert_eq!(table.intercepted, mesh.inspect_all().intercepted, "{name}: the flood finds all pairs");
-        for (v, place) in mesh.vertices.iter().enumerate() {
-            let own = (0..mesh.features.len()).filter(|feature| mesh.features[*feature].corners.contains(place));
-            assert!(own.into_iter().all(|feature| table.intercepted[v].contains(&feature)), "{name}: {v}");
+        for (v, position) in mesh.vertices.iter().enumerate() {
+            let vertex = (0..mesh.features.len()).filter(|feature| mesh.features[*feature].corners.contains(position));
+            assert!(vertex.into_iter().all(|feature| table.intercepted[v].contains(&feature)), "{name}: {v}");
         }
     }
 
     /// Checks all answers at a point of the cell of a vertex, and returns the nearest triangle; `None` if another
     /// vertex is equally near.
-    fn ask(&self, v: usize, query: &Point3<f64>) -> Option<usize> {
+    fn check_point(&self, v: usize, query: &Point3<f64>) -> Option<usize> {
         let Self { name, mesh, .. } = self;
-        let square = |place: &Point3<f64>| (query - place).norm_squared();
-        let own = square(&mesh.vertices[v]);
-        if mesh.vertices.iter().filter(|w| square(w) < own + ROUNDING).count() > 1 {
+        let square = |position: &Point3<f64>| (query - position).norm_squared();
+        let vertex = square(&mesh.vertices[v]);
+        if mesh.vertices.iter().filter(|w| square(w) < vertex + ROUNDING).count() > 1 {
             return None;
         }
         let closest = self.brute.closest_point(query).expect("not empty");
@@ -98,7 +98,7 @@ impl Scene {
                 queries.extend(inside(&mut rng, &common, amount(4, 1)));
                 queries.push(towards(&mut rng, mesh, v, &mesh.features[feature].corners));
             }
-            let nearest: BTreeSet<usize> = queries.iter().filter_map(|query| self.ask(v, query)).collect();
+            let nearest: BTreeSet<usize> = queries.iter().filter_map(|query| self.check_point(v, query)).collect();
             let lost: Vec<_> = nearest.difference(&paper).collect();
             assert!(lost.is_empty(), "{name}: {lost:?} are not in the paper's list of {v}");
             pairs.ours += list.len();
@@ -116,8 +116,8 @@ fn list(index: &P2mIndex<f64, Soup<f64>>, query: &Point3<f64>) -> BTreeSet<usize
     index.partition().list(query).expect("no cell of the tree").into_iter().map(PrimitiveId::index).collect()
 }
 
-/// Returns points of a polytope: its middle, corners moved a little inwards, and random convex combinations of its
-/// corners.
+/// Returns points of a polytope: its middle, corners moved a little inwards, and random convex combinations
+/// of its corners.
 fn inside(rng: &mut impl Rng, polytope: &Polytope, count: usize) -> Vec<Point3<f64>> {
     let corners: Vec<_> = polytope.corners().copied().collect();
     let Some(middle) = centre(&corners) else { return Vec::new() };
@@ -137,50 +137,51 @@ fn towards(rng: &mut impl Rng, mesh: &Mesh, v: usize, corners: &[Point3<f64>]) -
     let weights: Vec<f64> = corners.iter().map(|_| rng.random_range(0.01..1.0f64).powi(3)).collect();
     let sum: f64 = weights.iter().sum();
     let point: Vector3<f64> = corners.iter().zip(&weights).map(|(x, weight)| x.coords * (weight / sum)).sum();
-    let own = mesh.vertices[v];
-    let way = Point3::from(point) - own;
+    let vertex = mesh.vertices[v];
+    let direction = Point3::from(point) - vertex;
     // The bisector with each other vertex limits the segment.
-    let others = mesh.vertices.iter().map(|w| w - own).filter(|w| w.dot(&way) > 0.0);
-    let end = others.map(|w| w.norm_squared() / w.dot(&way) / 2.0).fold(1.0, f64::min);
-    own + way * (end * 0.999)
+    let others = mesh.vertices.iter().map(|w| w - vertex).filter(|w| w.dot(&direction) > 0.0);
+    let end = others.map(|w| w.norm_squared() / w.dot(&direction) / 2.0).fold(1.0, f64::min);
+    vertex + direction * (end * 0.999)
 }
 
 /// Divides each triangle into four, `times` times.
-fn subdivided(mut places: Vec<Point3<f64>>, mut triangles: Vec<[u32; 3]>, times: usize) -> Soup<f64> {
+fn subdivided(mut corners_of_mesh: Vec<Point3<f64>>, mut triangles: Vec<[u32; 3]>, times: usize) -> Soup<f64> {
     for _ in 0..times {
         let mut halves: BTreeMap<[u32; 2], u32> = BTreeMap::new();
-        let mut half = |a: u32, b: u32| {
+        let mut middle_of = |a: u32, b: u32| {
             *halves.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-                places.push(nalgebra::center(&places[a as usize], &places[b as usize]));
-                u32::try_from(places.len() - 1).expect("few")
+                corners_of_mesh.push(nalgebra::center(&corners_of_mesh[a as usize], &corners_of_mesh[b as usize]));
+                u32::try_from(corners_of_mesh.len() - 1).expect("few")
             })
         };
         let split = |[a, b, c]: [u32; 3]| {
-            let [d, e, f] = [half(a, b), half(b, c), half(c, a)];
+            let [d, e, f] = [middle_of(a, b), middle_of(b, c), middle_of(c, a)];
             [[a, d, f], [d, b, e], [f, e, c], [d, e, f]]
         };
         triangles = triangles.into_iter().flat_map(split).collect();
     }
-    Soup::from_triangles(places, triangles).expect("valid")
+    Soup::from_triangles(corners_of_mesh, triangles).expect("valid")
 }
 
 fn octahedron(times: usize) -> Soup<f64> {
-    let places = (0..6).map(|i| Point3::from(Vector3::ith(i / 2, if i % 2 == 0 { 1.0 } else { -1.0 }))).collect();
+    let corners_of_mesh =
+        (0..6).map(|i| Point3::from(Vector3::ith(i / 2, if i % 2 == 0 { 1.0 } else { -1.0 }))).collect();
     let triangles = (0..8u32).map(|i| [i & 1, 2 + (i >> 1 & 1), 4 + (i >> 2)]).collect();
-    subdivided(places, triangles, times)
+    subdivided(corners_of_mesh, triangles, times)
 }
 
 fn cube(times: usize) -> Soup<f64> {
-    let place = |i: u32| Point3::from([0, 1, 2].map(|k| f64::from(i >> k & 1)));
+    let position = |i: u32| Point3::from([0, 1, 2].map(|k| f64::from(i >> k & 1)));
     let triangles = [0, 1, 2].into_iter().flat_map(|axis| {
         let [u, v] = [1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3)];
         [0, 1u32 << axis].into_iter().flat_map(move |o| [[o, o + u, o + u + v], [o, o + u + v, o + v]])
     });
-    subdivided((0..8).map(place).collect(), triangles.collect(), times)
+    subdivided((0..8).map(position).collect(), triangles.collect(), times)
 }
 
 fn torus(around: u32, across: u32) -> Soup<f64> {
-    let place = |i: u32| {
+    let position = |i: u32| {
         let angle = |i: u32, n: u32| (f64::from(i) * std::f64::consts::TAU / f64::from(n)).sin_cos();
         let ((s, c), (z, r)) = (angle(i / across, around), angle(i % across, across));
         Point3::new((1.0 + 0.4 * r) * c, (1.0 + 0.4 * r) * s, 0.4 * z)
@@ -190,7 +191,7 @@ fn torus(around: u32, across: u32) -> Soup<f64> {
         let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
         [[a, b, c], [a, c, d]]
     });
-    Soup::from_triangles((0..around * across).map(place).collect(), triangles.collect()).expect("valid")
+    Soup::from_triangles((0..around * across).map(position).collect(), triangles.collect()).expect("valid")
 }
 
 /// Returns the soup with all vertices moved.

@@ -4,12 +4,9 @@
 #![cfg(feature = "interception")]
 
 use nalgebra::{Point3, Vector3};
-use p2m::{
-    BruteForce, BuildIndex, Closest, ClosestPoint, Element, Isa, P2mIndex, P2mOptions, P2mReport, PrimitiveSet, Real,
-    Soup,
-};
+use p2m::{BuildIndex, Element, P2mIndex, P2mOptions, P2mReport, PrimitiveSet, Real, Soup};
 use p2m_testkit::scenes::narrow;
-use p2m_testkit::{amount, cases, rng, vector};
+use p2m_testkit::{amount, cases, interception_check, rng, vector};
 
 /// The random numbers of a case of a test.
 struct Numbers(Box<dyn FnMut() -> Vector3<f64>>);
@@ -39,28 +36,17 @@ impl Numbers {
     }
 
     /// Returns a point with integer coordinates from 0 to n.
-    fn whole(&mut self, n: usize) -> Point3<f64> {
+    fn integer_point(&mut self, n: usize) -> Point3<f64> {
         Point3::from([(); 3].map(|()| self.below(n + 1) as f64))
     }
 }
 
-/// Checks that an index returns the same distance bits and primitive as brute force, with each instruction set, one
-/// query at a time and interleaved.
+/// Compares an index with brute force, and returns its report.
 fn agrees<T: Real>(name: &str, soup: &Soup<T>, options: &P2mOptions, queries: &[Point3<T>]) -> P2mReport {
-    let key = |c: Closest<T>| (c.distance.to_f64().to_bits(), c.primitive.index());
-    let brute = BruteForce::new(soup).expect("valid");
-    let expected: Vec<_> = queries.iter().map(|q| brute.closest_point(q).map(key)).collect();
-    let mut index = P2mIndex::build(soup, options).expect("valid");
-    for isa in Isa::available() {
-        index = index.with_isa(isa);
-        let mut several = vec![None; queries.len()];
-        index.closest_points_into(queries, &Default::default(), &mut several);
-        for ((q, several), expected) in queries.iter().zip(several).zip(&expected) {
-            assert_eq!(index.closest_point(q).map(key), *expected, "{name} {isa} {q:?}");
-            assert_eq!(several.map(key), *expected, "{name} {isa} side by side {q:?}");
-        }
-    }
-    index.report()
+    let index = P2mIndex::build(soup, options).expect("valid");
+    let report = index.report();
+    interception_check::agrees(name, soup, index, queries);
+    report
 }
 
 fn vertices(element: Element) -> Vec<u32> {
@@ -78,8 +64,8 @@ fn queries(numbers: &mut Numbers, soup: &Soup<f64>, count: usize) -> Vec<Point3<
     let elements: Vec<_> = soup.elements().collect();
     (0..count)
         .map(|i| {
-            let own = vertices(numbers.pick(&elements));
-            let [a, b] = [(); 2].map(|()| soup.positions()[numbers.pick(&own) as usize]);
+            let indices = vertices(numbers.pick(&elements));
+            let [a, b] = [(); 2].map(|()| soup.positions()[numbers.pick(&indices) as usize]);
             let on_edge = a + (b - a) * [0.5, 0.25, numbers.vector().x.abs()][numbers.below(3)];
             let little = numbers.vector() * (size * 0.5f64.powi([2, 4, 6, 12, 24, 36, 48][numbers.below(7)]));
             match i % 8 {
@@ -96,7 +82,7 @@ fn queries(numbers: &mut Numbers, soup: &Soup<f64>, count: usize) -> Vec<Point3<
 }
 
 /// Returns a soup of triangles in a random order of ids.
-fn of_triangles(numbers: &mut Numbers, mut triangles: Vec<[Point3<f64>; 3]>) -> Soup<f64> {
+fn shuffled_soup(numbers: &mut Numbers, mut triangles: Vec<[Point3<f64>; 3]>) -> Soup<f64> {
     numbers.shuffle(&mut triangles);
     let elements = (0..u32::try_from(triangles.len()).expect("few")).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
     Soup::from_triangles(triangles.concat(), elements.collect()).expect("finite")
@@ -106,8 +92,8 @@ fn in_another_order<A: Copy>(numbers: &mut Numbers, [a, b, c]: [A; 3]) -> [A; 3]
     numbers.pick(&[[a, b, c], [b, c, a], [c, a, b], [a, c, b], [c, b, a], [b, a, c]])
 }
 
-/// A surface of revolution around the z axis, given by an outline of radii and heights and closed by a vertex at each
-/// end.
+/// A surface of revolution around the z axis, given by an outline of radii and heights and closed by a vertex
+/// at each end.
 struct Lathe {
     positions: Vec<Point3<f64>>,
     triangles: Vec<[u32; 3]>,
@@ -161,7 +147,7 @@ impl Lathe {
 
     /// Returns the corners of all triangles.
     fn corners(&self) -> Vec<[Point3<f64>; 3]> {
-        self.triangles.iter().map(|own| own.map(|i| self.positions[i as usize])).collect()
+        self.triangles.iter().map(|indices| indices.map(|i| self.positions[i as usize])).collect()
     }
 }
 
@@ -196,7 +182,7 @@ fn book(
         let page = numbers.pick(&pages);
         pages.push(in_another_order(numbers, page));
     }
-    of_triangles(numbers, pages)
+    shuffled_soup(numbers, pages)
 }
 
 /// An edge of many triangles belongs to the lowest of them, and the edge puts no other triangle into a list.
@@ -212,7 +198,7 @@ fn books_agree() {
         for _ in 0..amount(40, 12) {
             let size = [0.05, 0.5][case % 2];
             let book = if case.is_multiple_of(3) {
-                let from = numbers.whole(8);
+                let from = numbers.integer_point(8);
                 let to = from + numbers.pick(&[Vector3::x(), Vector3::y() * 2.0, Vector3::new(1.0, 1.0, 0.0)]);
                 book(&mut numbers, [from, to], |n| from + n.vector().map(|x| (2.0 * x).round()))
             } else {
@@ -220,11 +206,11 @@ fn books_agree() {
                 let to = from + numbers.vector() * size;
                 book(&mut numbers, [from, to], |n| from + n.vector() * size)
             };
-            triangles.extend(book.triangles().iter().map(|own| own.map(|i| book.positions()[i as usize])));
+            triangles.extend(book.triangles().iter().map(|indices| indices.map(|i| book.positions()[i as usize])));
         }
-        let soup = of_triangles(&mut numbers, triangles);
+        let soup = shuffled_soup(&mut numbers, triangles);
         let mut all = queries(&mut numbers, &soup, amount(600, 60));
-        all.extend((0..amount(200, 20)).map(|_| numbers.whole(24).map(|x| 0.5 * x - 2.0)));
+        all.extend((0..amount(200, 20)).map(|_| numbers.integer_point(24).map(|x| 0.5 * x - 2.0)));
         let report = agrees(&format!("case {case}"), &soup, &P2mOptions::default(), &all);
         lists += report.lists;
         primitives += report.primitives;
@@ -249,11 +235,11 @@ fn duplicates_agree() {
         let noise = [0.0, 0.1][case / 2 % 2];
         mesh.positions.iter_mut().for_each(|p| *p = p.map(|x| (8.0 * x).round() / 8.0) + numbers.vector() * noise);
         let mut elements = Vec::new();
-        for own in &mesh.triangles {
+        for indices in &mesh.triangles {
             for _ in 0..=numbers.below(3) {
-                elements.push(Element::Triangle(in_another_order(&mut numbers, *own)));
+                elements.push(Element::Triangle(in_another_order(&mut numbers, *indices)));
             }
-            let [a, b, c] = in_another_order(&mut numbers, *own);
+            let [a, b, c] = in_another_order(&mut numbers, *indices);
             match numbers.below(4) {
                 0 => elements.extend([Element::Segment([a, b]), Element::Segment([b, a])]),
                 1 => elements.extend([Element::Segment([b, c]), Element::Point(c)]),
@@ -264,7 +250,7 @@ fn duplicates_agree() {
         // These points tie with each other on the borders of their cells and nowhere else.
         for _ in 0..60 {
             elements.push(Element::Point(u32::try_from(mesh.positions.len()).expect("few")));
-            mesh.positions.push(numbers.whole(8).map(|x| 0.25 * x - 1.0));
+            mesh.positions.push(numbers.integer_point(8).map(|x| 0.25 * x - 1.0));
         }
         numbers.shuffle(&mut elements);
         let soup = Soup::new(mesh.positions, elements).expect("finite");
@@ -295,7 +281,7 @@ fn snapped_vertices_of_round_shapes_agree() {
             snapped.push(*p);
         }
         assert_eq!(snapped.len(), 6 * around as usize, "six triangles have each vertex of the middle");
-        let soup = of_triangles(&mut numbers, triangles);
+        let soup = shuffled_soup(&mut numbers, triangles);
         let mut elements: Vec<_> = soup.elements().collect();
         // Some of the vertices are points as well.
         let is_snapped = |i: &u32| soup.positions()[*i as usize].z.abs() < 0.5f64.powi(160);
@@ -350,8 +336,8 @@ fn round_shapes() -> [(&'static str, Lathe); 6] {
     ]
 }
 
-/// Checks that most vertices have lists, and that sites were added except for two shapes whose empty balls intersect
-/// few primitives.
+/// Checks that most vertices have lists, and that sites were added except for two shapes whose empty balls
+/// intersect few primitives.
 fn has_sites_and_lists(name: &str, report: &P2mReport) {
     println!("{name}: {report}");
     let long = name == "of long triangles";

@@ -123,17 +123,17 @@ fn rows(name: &str, trees: &Trees<'_>, rays: &[Ray]) -> (Rows, Rows) {
 
 /// Checks that more faces lead to less work with either tree, as in the manual's table, where 56, 49 and 43 % of the
 /// nodes remain and 44, 32 and 25 % of the leaves.
-fn falls(name: &str, soup: &Soup<f64>, most: [[[usize; 2]; 3]; 2]) {
+fn check_work_falls(name: &str, soup: &Soup<f64>, max_percent: [[[usize; 2]; 3]; 2]) {
     let trees = Trees::build(soup);
     // Few rays from the wider box hit the scene.
     for (set, count) in [(QuerySet::Box10, 20_000), (QuerySet::Box1, 2000)] {
         let (ours, theirs) = rows(&format!("{name}, {set}"), &trees, &set.rays(soup, count, 1));
-        for (rows, most) in [ours, theirs].iter().zip(most) {
+        for (rows, max_percent) in [ours, theirs].iter().zip(max_percent) {
             for counter in [0, 1] {
                 let falling = rows.windows(2).all(|pair| pair[1][counter] < pair[0][counter]);
                 assert!(falling, "{name} {set}: {rows:?}");
-                for (row, most) in rows[1..].iter().zip(most) {
-                    assert!(row[counter] * 100 <= rows[0][counter] * most[counter], "{name} {set}: {rows:?}");
+                for (row, max_percent) in rows[1..].iter().zip(max_percent) {
+                    assert!(row[counter] * 100 <= rows[0][counter] * max_percent[counter], "{name} {set}: {rows:?}");
                 }
             }
         }
@@ -142,18 +142,22 @@ fn falls(name: &str, soup: &Soup<f64>, most: [[[usize; 2]; 3]; 2]) {
 
 #[test]
 fn visits_fall_with_the_number_of_faces_on_a_turned_gear() {
-    falls(
+    check_work_falls(
         "a skewed gear",
         &scenes::skewed_gear(2000),
         [[[59, 50], [54, 44], [47, 36]], [[49, 47], [44, 41], [36, 32]]],
     );
     if let Some(soup) = model("gear_skewed_57k_rotated.ply") {
-        falls("gear_skewed_57k_rotated", &soup, [[[50, 42], [45, 35], [37, 25]], [[43, 42], [36, 34], [27, 24]]]);
+        check_work_falls(
+            "gear_skewed_57k_rotated",
+            &soup,
+            [[[50, 42], [45, 35], [37, 25]], [[43, 42], [36, 34], [27, 24]]],
+        );
     }
 }
 
-/// Lines so far away that neighbouring coordinates differ by more than the scene's size miss it without a test, or pass
-/// near it.
+/// Lines so far away that neighbouring coordinates differ by more than the scene's size miss it without a test, or
+/// pass near it.
 #[test]
 fn lines_that_pass_far_away_cost_nothing() {
     let mut rng = rng("far away", 0);

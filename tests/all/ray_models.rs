@@ -61,11 +61,11 @@ fn every_model_is_met_as_exact_arithmetic_says() {
             let [min, max] = truth.range(&mut rng);
             let mut sums = [asked, 0, 0, 0];
             for ray in [ray, ray.with_range(min, max).expect("in order")] {
-                let say = || format!("{name}, ray {i}");
-                let hits = truth.checked_hits(&boxes, &ray, &say);
+                let context = || format!("{name}, ray {i}");
+                let hits = truth.checked_hits(&boxes, &ray, &context);
                 let crossings = truth.crossings(&ray);
-                agrees(&boxes, &ray, &hits, crossings, &|| format!("{}, boxes", say()));
-                agrees(&kdops, &ray, &hits, crossings, &|| format!("{}, k-DOPs", say()));
+                agrees(&boxes, &ray, &hits, crossings, &|| format!("{}, boxes", context()));
+                agrees(&kdops, &ray, &hits, crossings, &|| format!("{}, k-DOPs", context()));
                 let along = hits.iter().filter(|hit| hit.side == Side::Along).count();
                 sums = [sums[0], sums[1] + hits.len(), sums[2] + along, sums[3] + crossings];
             }
@@ -125,8 +125,8 @@ fn is_closed(soup: &Soup<f64>) -> bool {
 fn line<R: Rng>(rng: &mut R, soup: &Soup<f64>, bounds: &Aabb<f64>) -> Ray {
     let size = (bounds.max - bounds.min).amax();
     let middle = bounds.min + (bounds.max - bounds.min) * 0.5;
-    let mut place = || middle + Vector3::from_fn(|_, _| rng.random_range(-0.7..0.7)) * size;
-    let (from, to) = (place(), place());
+    let mut point = || middle + Vector3::from_fn(|_, _| rng.random_range(-0.7..0.7)) * size;
+    let (from, to) = (point(), point());
     let triangle = soup.get(PrimitiveId::new(rng.random_range(0..soup.len())));
     let [a, b]: [Point3<f64>; 2] = [triangle.vertices()[0], triangle.vertices()[1]];
     let edge = a + (b - a) * rng.random::<f64>();

@@ -64,7 +64,7 @@ impl<T: Real, S: PrimitiveSet<T>> RayQuery<T> for Reversed<T, S> {
 
 /// Returns brute force first, then every tree with every instruction set.
 fn backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: S) -> Vec<Index<'a, T>> {
-    let mut all = some_backends(set);
+    let mut all = few_backends(set);
     kdops::<T, S, 6>(&mut all, set);
     kdops::<T, S, 18>(&mut all, set);
     kdops::<T, S, 26>(&mut all, set);
@@ -72,7 +72,7 @@ fn backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: S) -> Vec<I
 }
 
 /// Returns brute force, boxes and 14-DOPs. They are few because each tree is compiled for each type of set.
-fn some_backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: S) -> Vec<Index<'a, T>> {
+fn few_backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: S) -> Vec<Index<'a, T>> {
     let mut all: Vec<Index<'a, T>> = vec![("brute force".to_owned(), Box::new(BruteForce::new(set).expect("valid")))];
     let boxes = AabbTree::<T, S>::build(set, &Default::default()).expect("valid");
     for isa in Isa::available() {
@@ -93,7 +93,13 @@ struct Checked {
 }
 
 /// Compares all backends with the exact hits, for each ray with its own range and with other ranges.
-fn check<T: Real, R: Rng>(soup: &Soup<T>, rays: &[Ray], rng: &mut R, checked: &mut Checked, say: &dyn Fn() -> String) {
+fn check<T: Real, R: Rng>(
+    soup: &Soup<T>,
+    rays: &[Ray],
+    rng: &mut R,
+    checked: &mut Checked,
+    context: &dyn Fn() -> String,
+) {
     let wide = |v: &Point3<T>| -> [f64; 3] { v.map(T::to_f64).coords.into() };
     let primitives: Vec<Vec<[f64; 3]>> =
         (0..soup.len()).map(|i| soup.get(PrimitiveId::new(i)).vertices().iter().map(wide).collect()).collect();
@@ -108,7 +114,7 @@ fn check<T: Real, R: Rng>(soup: &Soup<T>, rays: &[Ray], rng: &mut R, checked: &m
                     ray.with_range(min, max).expect("in order")
                 }
             };
-            let hits = truth.checked_hits(&*backends[0].1, &ray, say);
+            let hits = truth.checked_hits(&*backends[0].1, &ray, context);
             let crossings = truth.crossings(&ray);
             checked.rays += 1;
             checked.hits += hits.len();
@@ -118,7 +124,7 @@ fn check<T: Real, R: Rng>(soup: &Soup<T>, rays: &[Ray], rng: &mut R, checked: &m
             let turn = rng.random_range(0..3);
             for (i, (name, index)) in backends.iter().enumerate() {
                 if round == 0 || i == 0 || i % 3 == turn {
-                    agrees(&**index, &ray, &hits, crossings, &|| format!("{name}: {}", say()));
+                    agrees(&**index, &ray, &hits, crossings, &|| format!("{name}: {}", context()));
                 }
             }
         }
@@ -539,7 +545,7 @@ fn primitives_of_ones_own_are_hit_where_they_say() {
     let mut rng = rng("balls and rays", 0);
     let mut place = || Point3::from(std::array::from_fn(|_| rng.random_range(-5.0..5.0)));
     let balls: Vec<Ball> = (0..200).map(|i| Ball { centre: place(), radius: f64::from(i % 10) * 0.1 }).collect();
-    let backends = some_backends(&balls[..]);
+    let backends = few_backends(&balls[..]);
     let mut count = 0;
     for i in 0..amount(200, 40) {
         let (from, to) = (place(), place());
@@ -583,7 +589,7 @@ fn answers_of_others_count_in_the_range_only() {
     let set = [0.5, f64::NAN, 3.0, 2.0, -1.0, f64::INFINITY, 0.0, -0.0].map(Stubborn);
     let ray = Ray::new(&Point3::new(0.0, 0.5, 0.5), &Vector3::x()).expect("valid");
     let ray = ray.with_range(0.0, 2.0).expect("in order");
-    for (name, index) in some_backends(&set[..]) {
+    for (name, index) in few_backends(&set[..]) {
         let hits = index.all_intersections(&ray);
         let ids: Vec<usize> = hits.iter().map(|hit| hit.primitive.index()).collect();
         assert_eq!(ids, [6, 7, 0, 3], "{name}");
@@ -645,7 +651,7 @@ fn scenes_small_beside_their_coordinates_are_hit_from_afar() {
             primitives.push(near[..1 + usize::from(i % 3)].to_vec());
         }
         let soup = soup_of(&primitives);
-        let backends = some_backends(&soup);
+        let backends = few_backends(&soup);
         for primitive in primitives.iter().skip(case as usize % amount(1, 3)).step_by(amount(1, 3)) {
             let target = Point3::from(primitive[0]);
             let far = 2f64.powi(10 + i32::try_from(case % 26).expect("small"));

@@ -189,12 +189,12 @@ fn other_files_are_told_apart() {
     let message = error(&newer);
     assert!(matches!(message, LoadError::Version { found } if found == VERSION + 1), "{message}");
     let mut last = bytes.clone();
-    let place = last.len() - 80;
-    last[place] ^= 4;
+    let offset = last.len() - 80;
+    last[offset] ^= 4;
     assert!(matches!(error(&last), LoadError::Damaged { .. }), "{}", error(&last));
 
-    let whole = SavedFile::read(&bytes[..]).expect("read");
-    let reader = whole.checked().expect("whole");
+    let valid = SavedFile::read(&bytes[..]).expect("read");
+    let reader = valid.checked().expect("whole");
     let other = OctreeIndex::<f64, _>::load(&scene.soup, reader).expect_err("another kind");
     assert_eq!(other.to_string(), "has an index of the kind aabb, not octree");
     // The sets differ in the number of primitives, in a coordinate, or in a kind.
@@ -258,16 +258,16 @@ fn sizes_that_are_merely_announced_are_refused() {
     // elements.
     let sections = u32::from_le_bytes([file[12], file[13], file[14], file[15]]) as usize;
     let places = (0..sections).flat_map(|section| [32, 40, 48].map(|field| (64 + 64 * section + field, 8)));
-    for (place, size) in [(12, 4), (16, 8)].into_iter().chain(places) {
+    for (offset, size) in [(12, 4), (16, 8)].into_iter().chain(places) {
         for number in [u64::MAX, 1 << 60, u64::from(u32::MAX)] {
             let mut other = file.clone();
-            other[place..place + size].copy_from_slice(&number.to_le_bytes()[..size]);
+            other[offset..offset + size].copy_from_slice(&number.to_le_bytes()[..size]);
             // The checksum is corrected as if the file had been written so.
             let sum = twox_hash::XxHash3_64::oneshot(&other[64..64 + 64 * sections]);
             other[24..32].copy_from_slice(&sum.to_le_bytes());
             let load = || -> Result<Scene, LoadError> { load_scene(SavedFile::read(&other[..])?.checked()?) };
-            let taken = allocation_counter::measure(|| assert!(load().is_err(), "{number} at {place}")).bytes_max;
-            assert!(taken < ENOUGH, "{number} at {place}: {taken} bytes");
+            let taken = allocation_counter::measure(|| assert!(load().is_err(), "{number} at {offset}")).bytes_max;
+            assert!(taken < ENOUGH, "{number} at {offset}: {taken} bytes");
         }
     }
 }

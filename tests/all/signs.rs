@@ -16,8 +16,8 @@ fn tree(soup: &Soup<f64>) -> AabbTree<f64, &Soup<f64>> {
     AabbTree::build(soup, &Default::default()).expect("valid")
 }
 
-/// Returns whether a line to another point than the library's crosses the surface an odd number of times behind the
-/// query.
+/// Returns whether a line to another point than the library's crosses the surface an odd number of times
+/// behind the query.
 fn is_inside(index: &impl RayQuery<f64>, query: &Point3<f64>) -> bool {
     let ray = Ray::new(query, &Vector3::new(-0.31, 0.17, -0.83)).expect("finite");
     index.crossings(&ray) % 2 == 1
@@ -74,7 +74,8 @@ fn signs_of_closed_models_are_those_of_rays() {
                 closed += 1;
                 let (inside, doubts) = agrees_with_rays(&name, &soup, &sets, &cases);
                 println!("{name}: {inside} of {} inside, {doubts} in doubt", 2 * cases.len());
-                assert!(cases.is_replay() || inside > 0 || name == "degenerate_small.obj", "{name}"); // All sheets of this model occur twice.
+                // All sheets of degenerate_small.obj occur twice, so nothing is inside.
+                assert!(cases.is_replay() || inside > 0 || name == "degenerate_small.obj", "{name}");
             }
         }
     }
@@ -246,8 +247,8 @@ fn every_backend_has_the_same_signs() {
     }
 }
 
-/// Checks that distances of a mesh with its vertices on a surface are those of the surface, up to the distance between
-/// the two.
+/// Checks that distances of a mesh with its vertices on a surface are those of the surface, up to the distance
+/// between the two.
 fn is_near_analytic(name: &str, soup: &Soup<f64>, error: f64, analytic: impl Fn(&Point3<f64>) -> f64) {
     let signed = SignedDistance::new(tree(soup), soup).expect("closed");
     let winding = SignedDistance::with_winding_numbers(tree(soup), soup, 0.01).expect("triangles");
@@ -305,9 +306,9 @@ fn winding_numbers_are_within_their_bound() {
     let options = TorusKnot::default();
     let options = amount(options, options.with_rings(60).with_sides(8));
     let knot = torus_knot(&options).expect("valid");
-    let half: Vec<[u32; 3]> =
+    let half_cube: Vec<[u32; 3]> =
         knot.triangles().iter().enumerate().filter(|(i, _)| i % 3 != 0).map(|(_, t)| *t).collect();
-    let holes = Soup::from_triangles(knot.positions().to_vec(), half).expect("valid");
+    let holes = Soup::from_triangles(knot.positions().to_vec(), half_cube).expect("valid");
     let mut random = rng("winding numbers", 0);
     let loose_ones = amount(2000, 500);
     let loose: Vec<Point3<f64>> =
@@ -368,18 +369,18 @@ fn winding_numbers_of_closed_models_have_the_signs_of_rays() {
 #[test]
 fn in_the_middle_of_a_hole_there_is_no_sign() {
     // The half of a cube is cut at x = 0 and open there, so its winding number is a half on that plane.
-    let half = cube([-1.0; 3], [1.0; 3]);
-    let open: Vec<[u32; 3]> = half
+    let half_cube = cube([-1.0; 3], [1.0; 3]);
+    let open: Vec<[u32; 3]> = half_cube
         .triangles()
         .iter()
-        .filter(|t| !t.iter().all(|i| half.positions()[*i as usize].x == 1.0))
+        .filter(|t| !t.iter().all(|i| half_cube.positions()[*i as usize].x == 1.0))
         .copied()
         .collect();
-    let positions = half.positions().iter().map(|p| Point3::new(p.x.min(0.0), p.y, p.z)).collect();
-    let half = Soup::from_triangles(positions, open).expect("valid");
-    let winding = SignedDistance::with_winding_numbers(tree(&half), &half, 0.01).expect("triangles");
+    let positions = half_cube.positions().iter().map(|p| Point3::new(p.x.min(0.0), p.y, p.z)).collect();
+    let half_cube = Soup::from_triangles(positions, open).expect("valid");
+    let winding = SignedDistance::with_winding_numbers(tree(&half_cube), &half_cube, 0.01).expect("triangles");
     let at = |x: f64| winding.closest_point(&Point3::new(x, 0.1, 0.2)).expect("not empty");
-    let number = WindingNumbers::new(&half, 0.01).expect("triangles").exact_number(&Point3::new(0.0, 0.1, 0.2));
+    let number = WindingNumbers::new(&half_cube, 0.01).expect("triangles").exact_number(&Point3::new(0.0, 0.1, 0.2));
     // Seen from the plane of the cut, half a cube covers half of all directions.
     assert!((number - 0.5).abs() < 1e-12, "{number}");
     assert_eq!((at(0.0).sign, at(0.0).distance()), (Sign::Undefined, None));

@@ -88,8 +88,8 @@ fn main() -> ExitCode {
             println!("  {:<30} {about}", format!("{name} {arguments}"));
         }
         // A request for help is not an error.
-        let asks = name.as_deref().is_none_or(|name| ["help", "-h", "--help"].contains(&name));
-        return if asks { ExitCode::SUCCESS } else { ExitCode::from(2) };
+        let wants_help = name.as_deref().is_none_or(|name| ["help", "-h", "--help"].contains(&name));
+        return if wants_help { ExitCode::SUCCESS } else { ExitCode::from(2) };
     };
     // Paths of tasks are relative to the workspace, wherever the task is called.
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("this crate is a folder of the workspace");

@@ -21,8 +21,8 @@ pub(super) const TIME_LIMIT: Duration = Duration::from_secs(60);
 /// The largest number of bytes that a process may hold, where the system reports it.
 const MAX_RESIDENT_BYTES: u64 = 4 << 30;
 
-/// Builds a backend over an adversarial scene, queries it, and prints the outcome in the format that [`Outcome::read`]
-/// reads.
+/// Builds a backend over an adversarial scene, queries it, and prints the outcome in the format that
+/// [`Outcome::read`] reads.
 pub(crate) fn attempt(name: &str, adversary: &str, count: usize) -> Result<()> {
     let backend = crate::backends::ALL.iter().find(|b| b.name == name).context("a backend of the list")?;
     let scene = Scene::new(adversary.to_owned(), Adversary::named(adversary).soup(count))?;

@@ -39,7 +39,8 @@ pub(super) fn judged(
     let named = vertices.get(answer.id as usize).filter(|_| names && answer.id as usize != nearest && !beyond);
     let wrong = named.is_some_and(|named| {
         // The distance of the nearest primitive may be above the true one by the rounding of both.
-        let least = truth.exact().length()[0] + truth.times_max_vertex_distance(ROUNDING * 2f64.powi(-bits.cast_signed()));
+        let least =
+            truth.exact().length()[0] + truth.times_max_vertex_distance(ROUNDING * 2f64.powi(-bits.cast_signed()));
         let theirs = Truth::new(query, named);
         theirs.is_at_least(least + theirs.times_max_vertex_distance(ROUNDING * 2f64.powi(-bits.cast_signed())) + eta)
     });
@@ -59,8 +60,8 @@ impl Example {
         format!("query `{:?}`, primitives `{:?}`", self.query, self.vertices)
     }
 
-    /// Queries the library again and describes its answer, if that is still wrong in the same way by rational
-    /// arithmetic.
+    /// Queries the library again and describes its answer, if that is still wrong in the same way
+    /// by rational arithmetic.
     pub(super) fn confirmed(&self) -> Option<String> {
         let backend = ALL.iter().find(|backend| backend.name == self.library).expect("a name of the list");
         let (mut positions, mut elements) = (Vec::new(), Vec::new());

@@ -143,7 +143,9 @@ impl Side {
             errors.push(error);
             for truth in &truths {
                 // No primitive may be nearer by more than its results rounding.
-                let error = truth.times_max_vertex_distance(ERROR_CONSTANT * 2f64.powi(-bits.cast_signed()) * (1.0 + 1e-9)) + eta;
+                let error = truth
+                    .times_max_vertex_distance(ERROR_CONSTANT * 2f64.powi(-bits.cast_signed()) * (1.0 + 1e-9))
+                    + eta;
                 let least = if distance < f64::INFINITY { (distance - error).next_down() } else { limit };
                 if !truth.is_at_least(least) {
                     fail("N1, N2: another primitive is nearer");

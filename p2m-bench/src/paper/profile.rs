@@ -72,7 +72,7 @@ pub(super) const FULL: Profile = Profile {
     min_primitives: 1000,
 };
 
-/// The same tables and plots with fewer and smaller scenes.
+/// A profile with all tables and plots but fewer and smaller scenes.
 pub(super) const QUICK: Profile = Profile {
     scope: "**A quick look**: few models, little ones; what is said below is said of the full page, docs/paper.md.",
     queries: 20_000,

@@ -25,9 +25,9 @@ pub(crate) const ROUNDING: f64 = 1000.0 / (1u32 << 24) as f64;
 
 /// An index together with the function that it is measured with.
 pub(crate) struct Competitor<'a> {
-    /// The index.
+    /// The index that answers.
     pub(crate) index: &'a RayIndex<'a>,
-    /// The function.
+    /// The function that is measured.
     pub(crate) function: Function,
 }
 

@@ -180,7 +180,7 @@ fn external_index<'a, C: BenchIndex + 'a>(build: impl FnOnce() -> Result<C, Unav
 pub(super) struct Index<'a> {
     /// The backend that was built.
     pub(super) candidate: &'static Candidate,
-    /// The index.
+    /// The index that answers.
     pub(super) built: Box<dyn Built + 'a>,
     /// The cost of the builds.
     pub(super) build: Build,

@@ -102,7 +102,7 @@ pub(super) const FULL: Profile = Profile {
     batch: 1_000_000,
 };
 
-/// The same page with fewer scenes and queries.
+/// A profile of the whole page with fewer scenes and queries.
 pub(super) const QUICK: Profile = Profile {
     scenes: &[DRAGON, WIREFRAME, CARRIED],
     queries: 15_000,

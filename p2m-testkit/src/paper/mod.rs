@@ -148,8 +148,8 @@ impl Mesh {
         }
     }
 
-    /// Returns by how much the line or plane of a feature is nearer to a point than a vertex is, as a difference of
-    /// squared distances.
+    /// Returns by how much the line or plane of a feature is nearer to a point than a vertex is, as a difference
+    /// of squared distances.
     fn gain(&self, v: usize, feature: usize, x: &Point3<f64>) -> f64 {
         (x - self.vertices[v]).norm_squared() - self.features[feature].distance_squared(x)
     }
@@ -171,9 +171,9 @@ impl Mesh {
     /// let y be its projection, which is in the feature. All vertices are farther from x than y is. If z is between x
     /// and y, the ball around z through y is in the ball around x through y, so all vertices are farther from z than y
     /// is. Also, z is in the vertical space and has the projection y. So every vertex whose cell the segment from x to
-    /// y intersects intercepts the feature. The same holds for a path in the feature from y to one of its vertex vertices,
-    /// because that path has distance zero from the feature. Finally, cells that share a point are neighbours, or are
-    /// joined by others that have the point.
+    /// y intersects intercepts the feature. The same holds for a path in the feature from y to one of its vertex
+    /// vertices, because that path has distance zero from the feature. Finally, cells that share a point are
+    /// neighbours, or are joined by others that have the point.
     #[must_use]
     pub fn flood(&self) -> Table {
         let mut table = Table::new(self.vertices.len());

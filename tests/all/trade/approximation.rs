@@ -11,6 +11,7 @@ use p2m::{
     AabbTree, BruteForce, BuildIndex, CertifiedQuery, Closest, ClosestPoint, KdopTree, OctreeIndex, P2mIndex,
     Primitive, PrimitiveSet, QueryOptions, Real, Soup,
 };
+use p2m_testkit::near_check::compared_fields;
 use p2m_testkit::oracle::Distance;
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS, narrow};
 use p2m_testkit::{amount, cases};
@@ -23,11 +24,6 @@ const EXPONENTS: [i32; 3] = [0, -350, 450];
 /// An index with counters.
 trait Index<T: Real>: ClosestPoint<T> + Inspect<T> + Sync {}
 impl<T: Real, I: ClosestPoint<T> + Inspect<T> + Sync> Index<T> for I {}
-
-/// Returns all fields of an answer except the certified bound.
-fn known<T: Real>(c: &Closest<T>) -> impl PartialEq + std::fmt::Debug + use<T> {
-    (c.primitive, c.distance, c.point, c.feature, c.barycentric)
-}
 
 struct Case<'a, T: Real> {
     soup: &'a Soup<T>,
@@ -44,12 +40,17 @@ struct Case<'a, T: Real> {
 
 impl<T: Real> Case<'_, T> {
     /// Queries the index and checks the promises of every answer.
-    fn ask(&mut self, options: &QueryOptions<T>) -> Closest<T> {
+    fn checked_answer(&mut self, options: &QueryOptions<T>) -> Closest<T> {
         let found = self.index.closest_point_with(&self.query, options).expect("there is something");
-        let say = || format!("{}, {options:?} at {:?}: {found:?}, not {:?}", self.name, self.query, self.exact);
-        assert!(found.lower_bound <= self.exact.distance && found.distance >= self.exact.distance, "{}", say());
-        let own = self.soup.get(found.primitive).project(&self.query);
-        assert_eq!(T::of_f64(own.key.distance()), found.distance, "{}: the distance of another primitive", say());
+        let context = || format!("{}, {options:?} at {:?}: {found:?}, not {:?}", self.name, self.query, self.exact);
+        assert!(found.lower_bound <= self.exact.distance && found.distance >= self.exact.distance, "{}", context());
+        let projection = self.soup.get(found.primitive).project(&self.query);
+        assert_eq!(
+            T::of_f64(projection.key.distance()),
+            found.distance,
+            "{}: the distance of another primitive",
+            context()
+        );
         *self.checked += 1;
         if found.lower_bound > self.truth.lower_bound {
             *self.compared += 1;
@@ -57,37 +58,41 @@ impl<T: Real> Case<'_, T> {
                 .map(|v| v.map(|x| x.to_f64()).coords.into())
                 .collect();
             let distance = Distance::new(self.query.map(|x| x.to_f64()).coords.into(), &vertices);
-            assert!(distance.is_at_least(found.lower_bound.to_f64()), "{}: the bound is too large", say());
+            assert!(distance.is_at_least(found.lower_bound.to_f64()), "{}: the bound is too large", context());
         }
         found
     }
 
     fn check(&mut self) {
-        let usual = QueryOptions::default();
+        let defaults = QueryOptions::default();
         let exact = self.exact;
         let u = T::UNIT_ROUNDOFF;
         let (distance, rounding) = (exact.distance.to_f64(), (exact.distance - exact.lower_bound).to_f64());
         for epsilon in [1e-9, 0.001, 0.03, 0.3, 3.0] {
-            let found = self.ask(&usual.with_epsilon(T::of_f64(epsilon)));
-            let most = (1.0 + epsilon) * (1.0 + 8.0 * u);
+            let found = self.checked_answer(&defaults.with_epsilon(T::of_f64(epsilon)));
+            let max_distance = (1.0 + epsilon) * (1.0 + 8.0 * u);
             let reached = found.distance.to_f64();
             assert!(
-                reached <= distance * most + T::SMALLEST_SUBNORMAL,
+                reached <= distance * max_distance + T::SMALLEST_SUBNORMAL,
                 "{}: {epsilon}: {found:?}, {exact:?}",
                 self.name
             );
             // The lower bound proves it, up to the roundings of candidates.
-            let told = (found.lower_bound.to_f64() + 4.0 * rounding) * most * (1.0 + 8.0 * u);
-            assert!(reached <= told + T::SMALLEST_SUBNORMAL, "{}: {epsilon}: bound of {found:?}, {exact:?}", self.name);
+            let proved = (found.lower_bound.to_f64() + 4.0 * rounding) * max_distance * (1.0 + 8.0 * u);
+            assert!(
+                reached <= proved + T::SMALLEST_SUBNORMAL,
+                "{}: {epsilon}: bound of {found:?}, {exact:?}",
+                self.name
+            );
         }
         for budget in [0, 1, 3, 10, 100] {
-            self.ask(&usual.with_max_visits(budget));
+            self.checked_answer(&defaults.with_max_visits(budget));
         }
-        let found = self.ask(&usual.with_max_visits(u32::MAX - 1));
-        assert_eq!(known(&found), known(&exact), "{}: a budget for everything", self.name);
+        let found = self.checked_answer(&defaults.with_max_visits(u32::MAX - 1));
+        assert_eq!(compared_fields(&found), compared_fields(&exact), "{}: a budget for everything", self.name);
         // Within a radius that allows no error, the answer is the nearest primitive.
-        let options = usual.with_epsilon(T::of_f64(0.5));
-        let found = self.ask(&options.with_max_distance(exact.distance));
+        let options = defaults.with_epsilon(T::of_f64(0.5));
+        let found = self.checked_answer(&options.with_max_distance(exact.distance));
         assert!(found.distance == exact.distance, "{}: {found:?}, {exact:?}", self.name);
         let short = exact.distance.to_f64() * 0.99;
         if short < distance {
@@ -110,8 +115,8 @@ fn check_scene<T: Real>(soup: &Soup<T>, queries: &[Point3<T>], counts: &mut [usi
         // Brute force may ignore options that allow an error.
         if soup.len() < 1000 {
             let rough = QueryOptions::default().with_max_visits(0).with_epsilon(T::of_f64(1.0));
-            let found = brute.closest_point_with(query, &rough).map(|c| known(&c));
-            assert_eq!(found, Some(known(&exact)), "brute force at {query:?}");
+            let found = brute.closest_point_with(query, &rough).map(|c| compared_fields(&c));
+            assert_eq!(found, Some(compared_fields(&exact)), "brute force at {query:?}");
         }
         for (name, index) in indexes {
             let [checked, compared] = counts;
@@ -153,7 +158,7 @@ fn check_scale(soup: &Soup<f64>, exponent: i32, rng: &mut impl Rng) -> [[usize; 
 
 /// Returns the choice out of `choices` for a case of one of `count` sources, which take turns. After `choices` rounds
 /// each source has had each choice, and each source begins with another choice than the previous one.
-fn of_source(case: u64, count: u64, choices: u64) -> usize {
+fn choice_of_source(case: u64, count: u64, choices: u64) -> usize {
     ((case % count + case / count) % choices) as usize
 }
 
@@ -167,7 +172,7 @@ fn approximate_answers_keep_what_they_promise() {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let work = |first| {
         for case in cases.clone().skip(first).step_by(threads) {
-            let (soup, exponent) = (&sources[(case % count) as usize], EXPONENTS[of_source(case, count, 3)]);
+            let (soup, exponent) = (&sources[(case % count) as usize], EXPONENTS[choice_of_source(case, count, 3)]);
             let [double, single] = check_scale(soup, exponent, &mut p2m_testkit::rng("approximation", case + 1));
             let mut counts = counts.lock().expect("no check failed");
             for (sum, count) in counts.as_flattened_mut().iter_mut().zip([double, single].as_flattened()) {
@@ -198,8 +203,8 @@ fn slivers_side_by_side_keep_epsilon() {
         let exact = tree.closest_point(&query).expect("found");
         for epsilon in [0.001, 0.01] {
             let found = tree.closest_point_with(&query, &QueryOptions::default().with_epsilon(epsilon)).expect("found");
-            let most = exact.distance * (1.0 + epsilon) * (1.0 + f64::EPSILON);
-            assert!(found.distance <= most, "case {case}: {epsilon} at {query:?}: {found:?}, {exact:?}");
+            let max_distance = exact.distance * (1.0 + epsilon) * (1.0 + f64::EPSILON);
+            assert!(found.distance <= max_distance, "case {case}: {epsilon} at {query:?}: {found:?}, {exact:?}");
             assert!(found.lower_bound <= exact.distance, "case {case}: {epsilon} at {query:?}: {found:?}, {exact:?}");
         }
     }

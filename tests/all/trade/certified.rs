@@ -36,8 +36,8 @@ fn is_within_a_unit<T: Real>(true_one: &Distance, distance: T) -> bool {
     true_one.is_at_least(low.max(0.0)) && !true_one.is_at_least(high.next_up())
 }
 
-/// Checks certified answers, and returns how many queries there were and how many answers without certification named
-/// another primitive.
+/// Checks certified answers, and returns how many queries there were and how many answers without certification
+/// named another primitive.
 fn check<T: Real>(soup: &Soup<T>, queries: &[Point3<T>]) -> [usize; 2] {
     let brute = BruteForce::new(soup).expect("valid");
     let tree = AabbTree::build(soup, &Default::default()).expect("valid");
@@ -48,14 +48,14 @@ fn check<T: Real>(soup: &Soup<T>, queries: &[Point3<T>]) -> [usize; 2] {
         [("brute", &brute), ("aabb", &tree), ("kdop", &kdop), ("octree", &octree), ("p2m", &p2m)];
     let mut counts = [0; 2];
     for query in queries {
-        let place: [f64; 3] = query.map(|x| x.to_f64()).coords.into();
-        let (id, distance) = nearest(soup, place);
+        let query_point: [f64; 3] = query.map(|x| x.to_f64()).coords.into();
+        let (id, distance) = nearest(soup, query_point);
         for (name, index) in indexes {
             let found = index.certified_closest_point(query, &Default::default()).expect("vertices").expect("found");
-            let say = || format!("{name}, {query:?}: {found:?}, not {id}");
-            assert_eq!(found.primitive.index(), id, "{}", say());
-            assert!(is_within_a_unit(&distance, found.distance), "{}: off by more than a unit", say());
-            assert!(distance.is_at_least(found.lower_bound.to_f64()), "{}: the bound is too large", say());
+            let context = || format!("{name}, {query:?}: {found:?}, not {id}");
+            assert_eq!(found.primitive.index(), id, "{}", context());
+            assert!(is_within_a_unit(&distance, found.distance), "{}: off by more than a unit", context());
+            assert!(distance.is_at_least(found.lower_bound.to_f64()), "{}: the bound is too large", context());
             let usual = index.closest_point(query).expect("found");
             counts[0] += 1;
             counts[1] += usize::from(usual.primitive.index() != id);
@@ -67,12 +67,12 @@ fn check<T: Real>(soup: &Soup<T>, queries: &[Point3<T>]) -> [usize; 2] {
             };
             let beyond = |r: f64| T::of_f64(r).to_f64().max(r);
             if !distance.is_at_least(reported) {
-                assert!(within(reported), "{}: radius", say());
+                assert!(within(reported), "{}: radius", context());
             }
             if distance.is_at_least(reported.next_up()) {
-                assert!(!within(reported), "{}: radius", say());
+                assert!(!within(reported), "{}: radius", context());
             }
-            assert!(within(beyond(reported * (1.0 + 8.0 * T::UNIT_ROUNDOFF) + T::SMALLEST_SUBNORMAL)), "{}", say());
+            assert!(within(beyond(reported * (1.0 + 8.0 * T::UNIT_ROUNDOFF) + T::SMALLEST_SUBNORMAL)), "{}", context());
         }
     }
     counts
@@ -123,12 +123,12 @@ fn near_ties_are_decided_rightly_by_every_backend() {
     for case in cases.clone() {
         let (round, mut rng) = (case as usize, p2m_testkit::rng("certified near ties", case));
         let scale = 2f64.powi([0, 0, 0, -30, 200, -480][round % 6]);
-        let place = Point3::from([0; 3].map(|_| rng.random_range(-1.0..1.0) * scale));
+        let query_point = Point3::from([0; 3].map(|_| rng.random_range(-1.0..1.0) * scale));
         let offset = [0.0, 0.0, 1e3][round % 3] * scale;
-        let place = place.map(|x| x + offset);
+        let query_point = query_point.map(|x| x + offset);
         let radius = scale * 2f64.powi(rng.random_range(-8..3));
-        let soup = almost_tied(&mut rng, place, radius, 4, round % 60);
-        let [all, other] = check(&soup, &[place]);
+        let soup = almost_tied(&mut rng, query_point, radius, 4, round % 60);
+        let [all, other] = check(&soup, &[query_point]);
         counts = [counts[0] + all, counts[1] + other];
     }
     println!("of {} answers without proof {} named a primitive that is not nearest", counts[0], counts[1]);
