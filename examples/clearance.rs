@@ -1,35 +1,37 @@
-//! How much room cables and pipes have beside a mesh: for each segment the least distance of its axis from the
-//! triangles, to a tolerance, less the radius of the pipe.
+//! Computes the clearance between cables or pipes and a mesh: for each segment the minimum distance of its axis from
+//! the triangles, to a tolerance, minus the radius of the pipe.
 //!
-//! `cargo run --release --example clearance -- [SCENE] [RADIUS]`, with the carried scene and pipes of radius 0.02 unless
-//! told otherwise: its triangles are the mesh, its segments the pipes.
+//! `cargo run --release --example clearance -- [SCENE] [RADIUS]`. The triangles of the scene are the mesh and its
+//! segments are the pipes. The defaults are a scene of the repository and pipes of radius 0.02.
 //!
-//! A distance changes by at most as much as its place moves. So between two places of a pipe that are h apart it is at
-//! least (a + b - h) / 2, of the distances a and b there, and the part where that is least is halved until it is certain.
+//! A distance changes by at most as much as its query point moves. So between two points of a pipe that are h apart it
+//! is at least (a + b - h) / 2, where a and b are the distances of the two points. The part with the smallest bound is
+//! halved until the bound is within the tolerance.
 
 use nalgebra::Point3;
 use p2m::{AabbTree, BuildIndex, ClosestPoint, NearQuery};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// The room between what is proved and what is found, as a part of the diagonal of the scene.
+/// The largest difference between lower bound and result, relative to the diagonal of the scene.
 const TOLERANCE: f64 = 1e-4;
 
-/// Two places of an axis with their distances.
-type Part = [(Point3<f64>, f64); 2];
+/// Two points of an axis with their distances.
+type AxisPart = [(Point3<f64>, f64); 2];
 
-/// No place between the ends is nearer than this.
-fn bound([(a, at_a), (b, at_b)]: &Part) -> f64 {
+/// Returns a lower bound on the distances of all points between the two ends.
+fn bound([(a, at_a), (b, at_b)]: &AxisPart) -> f64 {
     ((at_a + at_b - (b - a).norm()) / 2.0).max(0.0)
 }
 
-/// The least distance of an axis from what is indexed, to a tolerance, and how often that was asked.
+/// Returns the minimum distance of an axis from the primitives, to a tolerance, and the number of queries.
 fn clearance<I: ClosestPoint<f64>>(index: &I, axis: [Point3<f64>; 2], tolerance: f64) -> Option<(f64, usize)> {
     let at = |p: Point3<f64>| index.closest_point(&p).map(|answer| (p, answer.distance));
     let ends = [at(axis[0])?, at(axis[1])?];
     let (mut least, mut asked) = (ends[0].1.min(ends[1].1), 2);
-    // Numbers of parts, the one with the least bound on top: bits of numbers that are not negative have their order.
-    let mut parts: Vec<Part> = vec![ends];
+    // The queue has numbers of parts, with the smallest bound on top. Bits of numbers that are not negative have their
+    // order.
+    let mut parts: Vec<AxisPart> = vec![ends];
     let mut next = BinaryHeap::from([(Reverse(bound(&ends).to_bits()), 0)]);
     while let Some((Reverse(bits), number)) = next.pop() {
         if f64::from_bits(bits) >= least - tolerance {
@@ -53,11 +55,11 @@ fn main() -> anyhow::Result<()> {
     let radius: f64 = arguments.next().map_or(Ok(0.02), |text| text.parse())?;
     let scene = p2m::scene::read_scene(name.as_ref())?.soup;
     let places = scene.positions();
-    // The mesh alone, borrowed from the scene of both.
+    // The index has the mesh alone, borrowed from the scene of mesh and pipes.
     let index = AabbTree::build(scene.triangle_set(), &Default::default())?;
 
     let bounds = p2m::PrimitiveSet::aabb(&scene);
-    // Not below what coordinates can tell.
+    // The tolerance is at least the resolution of the coordinates.
     let tolerance =
         TOLERANCE * (bounds.max - bounds.min).norm() + 1e-12 * bounds.min.coords.amax().max(bounds.max.coords.amax());
     let pipes: Vec<[Point3<f64>; 2]> = scene.segments().iter().map(|s| s.map(|i| places[i as usize])).collect();
@@ -73,7 +75,7 @@ fn main() -> anyhow::Result<()> {
     println!("the least clearance is {:.6}, of pipe {tightest}", least - radius);
     println!("{touching} pipes touch the mesh");
     println!("{:.2} queries a pipe", found.iter().map(|f| f.1).sum::<usize>() as f64 / pipes.len() as f64);
-    // Whether anything is that near needs no distance: at the ends of the pipes, which are places of theirs.
+    // `is_any_within` is cheaper than a distance, and is tested at the ends of the pipes.
     let near = pipes.iter().filter(|axis| axis.iter().any(|end| index.is_any_within(end, radius))).count();
     println!("{near} of these already at an end: {}", near <= touching);
     Ok(())

@@ -1,11 +1,13 @@
-//! The Hausdorff distance between the surfaces of two scenes: how far a point of one can be from the other, to a
-//! tolerance, both ways.
+//! Computes the Hausdorff distance between the surfaces of two scenes: the largest distance of a point of one from the
+//! other, in both directions, to a tolerance.
 //!
-//! `cargo run --release --example hausdorff -- [A] [B]`; without files of two spheres of triangles, one of which is moved
-//! by (0.3, 0, 0.4): the distance of a convex surface from itself moved is the way, 0.5. Only triangles count.
+//! `cargo run --release --example hausdorff -- [A] [B]`. Only triangles count. Without files the scenes are two spheres
+//! of triangles, one of which is moved by (0.3, 0, 0.4): the distance of a convex surface from its translated copy is
+//! the length of the translation, 0.5.
 //!
-//! A distance changes by at most as much as its place moves. So on a triangle it is at most that of a vertex and the
-//! longest side from there, and the triangle where that is most is cut until it is certain.
+//! A distance changes by at most as much as its query point moves. So on a triangle it is at most the distance of a
+//! vertex plus the longest side from there. The triangle with the largest bound is cut until the bound is within the
+//! tolerance.
 
 use anyhow::Context;
 use nalgebra::{Point3, Vector3};
@@ -15,16 +17,17 @@ use std::collections::BinaryHeap;
 
 const TOLERANCE: f64 = 1e-3;
 
-/// A place of one scene with its distance from the other.
+/// A point of one scene with its distance from the other.
 type Corner = (Point3<f64>, f64);
 
-/// No place of the triangle is farther than this.
+/// Returns an upper bound on the distances of all points of the triangle.
 fn bound(corners: &[Corner; 3]) -> f64 {
     let longest = |from: &Corner| corners.iter().map(|to| (to.0 - from.0).norm()).fold(0.0, f64::max);
     corners.iter().map(|corner| corner.1 + longest(corner)).fold(f64::INFINITY, f64::min)
 }
 
-/// How far a point of the surface can be from what is indexed: at least this, and at most by the tolerance more.
+/// Returns the largest distance of a point of the surface from the indexed scene. The true value is larger by at
+/// most the tolerance.
 fn directed<I: ClosestPoint<f64>>(surface: &Soup<f64>, index: &I, tolerance: f64) -> Option<f64> {
     let at = |p: Point3<f64>| index.closest_point(&p).map(|answer| (p, answer.distance));
     let mut parts: Vec<[Corner; 3]> = Vec::new();
@@ -32,7 +35,8 @@ fn directed<I: ClosestPoint<f64>>(surface: &Soup<f64>, index: &I, tolerance: f64
         let [a, b, c] = triangle.map(|i| at(surface.positions()[i as usize]));
         parts.push([a?, b?, c?]);
     }
-    // Numbers of parts, the one with the greatest bound on top: bits of numbers that are not negative have their order.
+    // The queue has numbers of parts, with the largest bound on top. Bits of numbers that are not negative have their
+    // order.
     let mut next: BinaryHeap<(u64, usize)> = (0..).zip(&parts).map(|(i, part)| (bound(part).to_bits(), i)).collect();
     let mut greatest = parts.iter().flatten().map(|corner| corner.1).fold(0.0, f64::max);
     while let Some((bits, number)) = next.pop() {
@@ -69,7 +73,7 @@ fn main() -> anyhow::Result<()> {
     };
     let indexes = [AabbTree::build(&a, &Default::default())?, AabbTree::build(&b, &Default::default())?];
     let bounds = a.aabb().union(&b.aabb());
-    // Not below what coordinates can tell.
+    // The tolerance is at least the resolution of the coordinates.
     let largest = bounds.min.coords.amax().max(bounds.max.coords.amax());
     let tolerance = TOLERANCE * (bounds.max - bounds.min).norm() + 1e-12 * largest;
     let there = directed(&a, &indexes[1], tolerance).context("the second is empty")?;

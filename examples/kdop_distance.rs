@@ -5,7 +5,7 @@
 use nalgebra::Point3;
 use p2m::{BuildIndex, ClosestPoint, KdopTree};
 
-/// Faces of the k-DOPs, both signs of each direction counted.
+/// The number of faces of the k-DOPs, where both signs of each direction count.
 const FACES: usize = 14;
 
 fn main() -> anyhow::Result<()> {

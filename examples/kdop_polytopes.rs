@@ -1,7 +1,8 @@
-//! The third example of the k-DOP tree's manual: the volumes of a tree as polytopes, of the manual's own directions.
+//! The third example of the k-DOP tree's manual: writes the volumes of a tree as polytopes, with the manual's own
+//! directions.
 //!
-//! Writes some levels of nodes and all leaves as PLY files of polygons into the folder of temporary files, or into the
-//! folder that is named behind the mesh. The levels are named behind the folder; the root and its children by default.
+//! Some levels of nodes and all leaves become PLY files of polygons in the temporary folder, or in the folder that is
+//! given after the mesh. The levels are given after the folder; the default is the root and its children.
 //!
 //! `cargo run --release --example kdop_polytopes -- mesh.obj folder 0 1 3`
 
@@ -27,7 +28,7 @@ fn main() -> anyhow::Result<()> {
     }
     let scene = p2m::scene::read_scene(name.as_ref())?.soup;
     std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
-    // The axes, and four others; they need not be unit vectors, and opposites follow by themselves.
+    // The directions are the axes and four others. They need not be unit vectors, and their opposites are added.
     let directions = Directions::<14>::new(&[
         Vector3::x(),
         Vector3::y(),

@@ -1,11 +1,11 @@
-//! The ray example of the k-DOP tree's manual: where a ray first meets a mesh.
+//! The ray example of the k-DOP tree's manual: the first hit of a ray with a mesh.
 //!
 //! `cargo run --release --example kdop_ray -- mesh.obj`
 
 use nalgebra::Point3;
 use p2m::{BuildIndex, KdopTree, Ray, RayQuery};
 
-/// Faces of the k-DOPs, both signs of each direction counted.
+/// The number of faces of the k-DOPs, where both signs of each direction count.
 const FACES: usize = 14;
 
 fn main() -> anyhow::Result<()> {

@@ -1,8 +1,8 @@
-//! A slice through the cells of an octree, coloured by the length of their lists.
+//! Draws a slice through the cells of an octree, coloured by the length of their lists.
 //!
-//! Writes a PNG: dark where one packet is left, bright where lists are long (logarithmically, white from 64 packets
-//! on), blue where the tree answers, red where the scene itself is within half a pixel. The slice is a square about the
-//! middle of the scene's box, perpendicular to z; its side is in sizes of the scene.
+//! The picture is a PNG file. Cells are dark if one packet remains and bright if lists are long (logarithmically, white
+//! from 64 packets on), blue if the tree answers, and red where the scene itself is within half a pixel. The slice is a
+//! square about the middle of the scene's box, perpendicular to z. The last argument is its side in sizes of the scene.
 //!
 //! `cargo run --release --example octree_slice -- mesh.obj slice.png 1.5`
 
@@ -11,7 +11,7 @@ mod common;
 use nalgebra::Point3;
 use p2m::{BuildIndex, ClosestPoint, OctreeIndex, PrimitiveSet};
 
-/// Pixels on each side.
+/// The number of pixels on each side.
 const PIXELS: u32 = 600;
 
 fn main() -> anyhow::Result<()> {
@@ -45,7 +45,7 @@ fn colour(length: Option<usize>, on_scene: bool) -> [u8; 3] {
         return if on_scene { [200, 30, 30] } else { [60, 90, 200] };
     };
     let t = ((length as f64).log2() / 6.0).min(1.0);
-    // Dark green over yellow to white.
+    // Colours range from dark green over yellow to white.
     let mix = |dark: f64, middle: f64| {
         let x = if t < 0.5 { dark + (middle - dark) * 2.0 * t } else { middle + (255.0 - middle) * (2.0 * t - 1.0) };
         x as u8

@@ -1,10 +1,10 @@
-//! A picture of a scene by rays: a pixel is the mean of what four rays from the eye meet first.
+//! Draws a picture of a scene with rays: a pixel is the mean of the first hits of four rays from the eye.
 //!
-//! Triangles are shaded by their normals and by whether another ray gets from them to the light; back sides are blue.
-//! Segments and points are as thick as a pixel or two. What is farther from the eye is paler.
+//! Triangles are shaded by their normals and by whether another ray from them reaches the light; back sides are blue.
+//! Segments and points are a pixel or two thick. Surfaces far from the eye are paler.
 //!
-//! `cargo run --release --example ray_picture -- mesh.obj picture.png 800 1 0.5 0.3`, where the first number is the width in
-//! pixels, and the others are the direction towards the eye.
+//! `cargo run --release --example ray_picture -- mesh.obj picture.png 800 1 0.5 0.3`, where the first number is the
+//! width in pixels, and the others are the direction towards the eye.
 
 mod common;
 
@@ -14,13 +14,13 @@ use p2m::scene::Camera;
 use p2m::{AabbTree, BuildIndex, PrimitiveSet, Ray, RayQuery, Side, Soup};
 use rayon::prelude::*;
 
-/// From the middle of the scene towards the eye, unless told otherwise; y is up.
+/// The default direction from the middle of the scene towards the eye; y is up.
 const EYE: [f64; 3] = [0.45, 0.4, 1.0];
-/// Towards the light: to the right in the picture, up, and towards the eye.
+/// The direction towards the light: to the left in the picture, up, and towards the eye.
 const LIGHT: [f64; 3] = [-0.4, 0.6, 0.9];
-/// A pixel is asked by so many rays along each side.
+/// The number of rays of a pixel along each side.
 const RAYS: u32 = 2;
-/// How much paler the far end of the scene is than the near one.
+/// The amount by which the far end of the scene is paler than the near one.
 const FADING: f64 = 0.45;
 
 const PAPER: [f64; 3] = [250.0, 250.0, 247.0];
@@ -48,8 +48,9 @@ fn main() -> anyhow::Result<()> {
     let pixel = |(row, column): (u32, u32)| {
         let mut sum = Vector3::zeros();
         for (i, j) in (0..RAYS).flat_map(|i| (0..RAYS).map(move |j| (i, j))) {
-            let place = [f64::from(column) + (f64::from(i) + 0.5) * step, f64::from(row) + (f64::from(j) + 0.5) * step];
-            sum += colour(&camera, &scene, &index, &camera.ray(place));
+            let position =
+                [f64::from(column) + (f64::from(i) + 0.5) * step, f64::from(row) + (f64::from(j) + 0.5) * step];
+            sum += colour(&camera, &scene, &index, &camera.ray(position));
         }
         <[f64; 3]>::from(sum * step * step).map(byte)
     };
@@ -64,7 +65,7 @@ fn byte(x: f64) -> u8 {
     x.round() as u8
 }
 
-/// What a ray sees.
+/// Returns the colour that a ray sees.
 fn colour(camera: &Camera, scene: &Soup<f64>, index: &impl RayQuery<f64>, ray: &Ray) -> Vector3<f64> {
     let paper = Vector3::from(PAPER);
     let Some(hit) = index.first_intersection(ray) else { return paper };
@@ -81,11 +82,11 @@ fn colour(camera: &Camera, scene: &Soup<f64>, index: &impl RayQuery<f64>, ray: &
     seen.lerp(&paper, FADING * (camera.depth(&point) + 0.5).clamp(0.0, 1.0))
 }
 
-/// How bright a surface is.
+/// Returns the brightness of a surface.
 fn light(camera: &Camera, index: &impl RayQuery<f64>, point: &Point3<f64>, normal: &Vector3<f64>) -> f64 {
     let to_light: Vector3<f64> = camera.axes().iter().zip(LIGHT).map(|(axis, x)| axis * x).sum();
     let cosine = normal.dot(&to_light.normalize());
-    // From beside the surface, so that it does not shade itself.
+    // The ray starts beside the surface, so that the surface does not shade itself.
     let start = point + normal * camera.pixel();
     let is_lit = cosine > 0.0 && Ray::new(&start, &to_light).is_ok_and(|ray| !index.do_intersect(&ray));
     0.22 + 0.3 * (0.5 + 0.5 * cosine) + if is_lit { 0.5 * cosine } else { 0.0 }

@@ -1,14 +1,14 @@
-//! Shrink-wraps a cloud of points onto a scene: each goes to the closest point.
+//! Shrink-wraps a cloud of points onto a scene: each point moves to the closest point of the scene.
 //!
-//! `cargo run --release --example shrink_wrap -- [SCENE] [WRAP.ply]`, with the carried scene and no file unless told
-//! otherwise. The cloud is a sphere of points around the scene. That they arrived is checked with brute force.
+//! `cargo run --release --example shrink_wrap -- [SCENE] [WRAP.ply]`. The default is a scene of the repository and no
+//! file. The cloud is a sphere of points around the scene, and brute force checks that the results are on the scene.
 
 use anyhow::Context;
 use nalgebra::Point3;
 use p2m::scene::generate::{IcoSphere, ico_sphere};
 use p2m::{BruteForce, BuildIndex, Closest, ClosestPoint, OctreeIndex, QueryOptions, Soup};
 
-/// Works with every index, and compiles to the one it is called with.
+/// Wraps with any index; the function is compiled for the index that it is called with.
 fn wrap<I: ClosestPoint<f64>>(index: &I, cloud: &[Point3<f64>]) -> Option<Vec<Closest<f64>>> {
     let mut answers = vec![None; cloud.len()];
     index.closest_points_into(cloud, &QueryOptions::default(), &mut answers);

@@ -1,22 +1,22 @@
-//! The example programs, run, and what they print.
+//! Runs the example programs and checks their output.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 
 use p2m::{AabbTree, BuildIndex, ClosestPoint};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Where cargo puts examples: beside the folder of tests.
+/// Returns the folder into which cargo puts examples, which is beside the folder of tests.
 fn folder() -> PathBuf {
     let test = std::env::current_exe().expect("a program");
     test.ancestors().nth(2).expect("a folder of builds").join("examples")
 }
 
-/// What an example prints, run in the root of the project.
+/// Runs an example in the root of the project and returns its output.
 fn output(name: &str, arguments: &[&str]) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let program = folder().join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
     let made = |path: &Path| path.metadata().and_then(|metadata| metadata.modified()).ok();
-    // `cargo test` makes examples, `cargo test --test examples` does not.
+    // `cargo test` builds examples, `cargo test --test examples` does not.
     let is_new = made(&program) > made(&root.join("examples").join(format!("{name}.rs")));
     assert!(is_new, "{} is missing or old: cargo build --examples makes it", program.display());
     let output = Command::new(&program).args(arguments).current_dir(root).output().expect("a program that runs");
@@ -24,7 +24,7 @@ fn output(name: &str, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// The numbers of a text, in their order.
+/// Returns the numbers of a text, in their order.
 fn numbers(text: &str) -> Vec<f64> {
     text.split(|c: char| !(c.is_ascii_digit() || ".-e".contains(c)))
         .filter_map(|word| word.trim_end_matches('.').parse().ok())
@@ -47,13 +47,13 @@ fn cables_have_room_beside_the_tube() {
     let text = output("clearance", &[]);
     assert!(text.starts_with("480 pipes beside 3600 triangles"), "{text}");
     assert!(text.contains("already at an end: true"), "{text}");
-    // Wider pipes have as much less room.
-    let least = |text: &str| numbers(text.lines().nth(1).expect("a line"))[0];
+    // The clearance of wider pipes is smaller by the difference of the radii.
+    let clearance = |text: &str| numbers(text.lines().nth(1).expect("a line"))[0];
     let wide = output("clearance", &["scenes/knot_and_cables.obj", "0.03"]);
-    assert!((least(&text) - least(&wide) - 0.01).abs() < 2e-6, "{text}{wide}");
+    assert!((clearance(&text) - clearance(&wide) - 0.01).abs() < 2e-6, "{text}{wide}");
     let asked = numbers(text.lines().nth(3).expect("a line"))[0];
     assert!(asked > 2.0 && asked < 100.0, "{text}");
-    // No nearer than what places of the axes say, and hardly farther.
+    // The clearance is not below the distance of points of the axes, and barely above it.
     let scene = p2m::scene::read_scene("scenes/knot_and_cables.obj".as_ref()).expect("carried").soup;
     let index = AabbTree::build(scene.triangle_set(), &Default::default()).expect("valid");
     let distances = scene.segments().iter().flat_map(|s| {
@@ -61,14 +61,14 @@ fn cables_have_room_beside_the_tube() {
         (0..=50).map(move |i| a + (b - a) * (f64::from(i) / 50.0))
     });
     let sampled = distances.filter_map(|p| index.closest_point(&p)).map(|c| c.distance).fold(f64::MAX, f64::min);
-    let found = least(&text) + 0.02;
+    let found = clearance(&text) + 0.02;
     assert!(found <= sampled + 1e-3 && found > sampled - 1e-2, "{found} and {sampled}");
 }
 
 #[test]
 fn tracks_are_snapped_to_their_streets() {
     let text = output("snap_track", &[]);
-    // Every 50th place is too far away.
+    // Every 50th position is too far away.
     assert!(text.starts_with("800 places beside 3280 parts of streets\n784 are on a street, 16 on none"), "{text}");
     let right = numbers(text.lines().nth(2).expect("a line"))[0];
     assert!((650.0..=784.0).contains(&right), "{text}");

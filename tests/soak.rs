@@ -1,8 +1,8 @@
-//! Random scenes that are built, asked, moved, saved, loaded and dropped on all cores, for as long as one likes: nothing is lost, and
-//! memory stays flat.
+//! Builds, queries, moves, saves, loads and drops random scenes on all cores, for as long as requested: no answer may
+//! be lost, and memory has to stay constant.
 //!
-//! `P2M_SOAK=600 cargo test --release --test soak -- --nocapture` does it for ten minutes. By default it is a moment, and three
-//! seconds with `P2M_DEEP`.
+//! `P2M_SOAK=600 cargo test --release --test soak -- --nocapture` runs for ten minutes. The default is a moment, and
+//! three seconds with `P2M_DEEP`.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 
 use nalgebra::Point3;
@@ -20,8 +20,8 @@ use std::time::{Duration, Instant};
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Memory is looked at so often.
-const PARTS: usize = 10;
+/// The number of times that memory is measured.
+const MEASUREMENTS: usize = 10;
 
 type Answers = Vec<Option<(u64, PrimitiveId)>>;
 
@@ -33,7 +33,7 @@ fn brute(soup: &Soup<f64>, queries: &[Point3<f64>]) -> Answers {
     answers(&BruteForce::new(soup).expect("valid"), queries)
 }
 
-/// A small scene that is hard, or a larger one that is not.
+/// Returns a small scene that is hard, or a larger one that is not.
 fn scene(rng: &mut impl Rng) -> (Soup<f64>, Vec<Point3<f64>>) {
     if rng.random_bool(0.5) {
         return Extreme::ALL[rng.random_range(0..Extreme::ALL.len())].generate(rng, 32);
@@ -45,13 +45,13 @@ fn scene(rng: &mut impl Rng) -> (Soup<f64>, Vec<Point3<f64>>) {
     (soup, queries)
 }
 
-/// The same elements elsewhere: each vertex moves by up to a tenth of itself.
+/// Returns the same elements with each vertex moved by up to a tenth of itself.
 fn moved(rng: &mut impl Rng, soup: &Soup<f64>) -> Soup<f64> {
     let positions = soup.positions().iter().map(|p| p.map(|x| x * rng.random_range(0.9..1.0)));
     Soup::new(positions.collect(), soup.elements()).expect("smaller numbers are finite")
 }
 
-/// How many answers one scene was worth.
+/// Runs one scene and returns the number of answers.
 fn cycle(seed: u64) -> u64 {
     let mut rng = p2m_testkit::rng("soak", seed);
     let (soup, queries) = scene(&mut rng);
@@ -94,15 +94,15 @@ fn cycle(seed: u64) -> u64 {
 #[test]
 fn nothing_is_lost_and_memory_is_flat() {
     let seconds: f64 = std::env::var("P2M_SOAK").map_or_else(|_| amount(3.0, 0.5), |s| s.parse().expect("seconds"));
-    // Once before, so that what is allocated only once is there.
+    // One cycle runs first, so that memory that is allocated only once exists.
     let first = amount(50, 12);
     for seed in 0..first {
         cycle(seed);
     }
     let before = MEMORY.current_usage();
     let (scenes, answers) = (AtomicU64::new(first), AtomicU64::new(0));
-    // The largest use of each part of the time, as each thread sees it between two scenes.
-    let most: [AtomicUsize; PARTS] = Default::default();
+    // The largest use of memory in each part of the time, as each thread measures it between two scenes.
+    let peaks: [AtomicUsize; MEASUREMENTS] = Default::default();
     let start = Instant::now();
     let failed = Mutex::new(false);
     std::thread::scope(|scope| {
@@ -116,17 +116,17 @@ fn nothing_is_lost_and_memory_is_flat() {
                     };
                     answers.fetch_add(count, Ordering::Relaxed);
                     #[allow(clippy::cast_sign_loss, reason = "time is not negative")]
-                    let part = (start.elapsed().as_secs_f64() / seconds * PARTS as f64) as usize;
-                    most[part.min(PARTS - 1)].fetch_max(MEMORY.current_usage(), Ordering::Relaxed);
+                    let part = (start.elapsed().as_secs_f64() / seconds * MEASUREMENTS as f64) as usize;
+                    peaks[part.min(MEASUREMENTS - 1)].fetch_max(MEMORY.current_usage(), Ordering::Relaxed);
                 }
             });
         }
     });
     assert!(!failed.into_inner().expect("plain"), "see above");
     let after = MEMORY.current_usage();
-    let most = most.map(AtomicUsize::into_inner);
+    let peaks = peaks.map(AtomicUsize::into_inner);
     println!(
-        "{} scenes, {} answers in {:.0?}; {before} bytes before, {after} after, at most {most:?} between two scenes",
+        "{} scenes, {} answers in {:.0?}; {before} bytes before, {after} after, at most {peaks:?} between two scenes",
         scenes.into_inner() - first,
         answers.into_inner(),
         start.elapsed()

@@ -1,4 +1,4 @@
-//! What examples share.
+//! Functions that several examples use.
 
 use anyhow::Context;
 use std::fs::File;

@@ -1,53 +1,63 @@
-//! Answers that may be rough: the error that was asked for, and a lower bound that holds.
+//! Checks approximate answers: the requested error, and a valid lower bound.
 
-use super::answers::{Asked, known};
 use super::scene::vertices;
+use super::subject::{Subject, compared_fields};
 use nalgebra::Point3;
 use p2m::{Closest, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Soup};
 use p2m_testkit::oracle::Distance;
 use std::cmp::Ordering;
 
-/// What holds for every answer; `exact` is that of brute force.
-fn ask<T: Real>(asked: &Asked<'_, T>, query: &Point3<T>, exact: &Closest<T>, options: &QueryOptions<T>) -> Closest<T> {
-    let found = asked.index.closest_point_with(query, options);
-    let say = || format!("{}, {options:?}: {found:?}, not {exact:?}", asked.say(query));
-    let found = found.unwrap_or_else(|| panic!("{}", say()));
-    assert!(found.distance >= exact.distance && found.lower_bound <= exact.distance, "{}", say());
-    let own = asked.soup.get(found.primitive).project(query);
-    assert_eq!(T::of_f64(own.key.distance()), found.distance, "{}: the distance of another primitive", say());
+/// Queries an index and checks the promises of every answer; `exact` is the answer of brute force.
+fn checked_answer<T: Real>(
+    subject: &Subject<'_, T>,
+    query: &Point3<T>,
+    exact: &Closest<T>,
+    options: &QueryOptions<T>,
+) -> Closest<T> {
+    let found = subject.index.closest_point_with(query, options);
+    let context = || format!("{}, {options:?}: {found:?}, not {exact:?}", subject.describe(query));
+    let found = found.unwrap_or_else(|| panic!("{}", context()));
+    assert!(found.distance >= exact.distance && found.lower_bound <= exact.distance, "{}", context());
+    let projection = subject.soup.get(found.primitive).project(query);
+    assert_eq!(
+        T::of_f64(projection.key.distance()),
+        found.distance,
+        "{}: the distance of another primitive",
+        context()
+    );
     if found.lower_bound > exact.lower_bound {
-        assert!(nearest(asked.soup, query).is_at_least(found.lower_bound.to_f64()), "{}: bound", say());
+        assert!(nearest(subject.soup, query).is_at_least(found.lower_bound.to_f64()), "{}: bound", context());
     }
     found
 }
 
 fn nearest<T: Real>(soup: &Soup<T>, query: &Point3<T>) -> Distance {
-    let place: [f64; 3] = query.map(T::to_f64).coords.into();
-    let all = (0..soup.len()).map(|id| Distance::new(place, &vertices(soup, id)));
+    let point: [f64; 3] = query.map(T::to_f64).coords.into();
+    let all = (0..soup.len()).map(|id| Distance::new(point, &vertices(soup, id)));
     all.reduce(|a, b| if b.compare(&a) == Ordering::Less { b } else { a }).expect("not empty")
 }
 
-/// Every option, of sizes that the seed chooses.
-pub fn check<T: Real>(asked: &Asked<'_, T>, query: &Point3<T>, exact: &Closest<T>) {
-    let say = || format!("{}, {exact:?}", asked.say(query));
-    let usual = QueryOptions::default();
+/// Checks every option, with values that the seed chooses.
+pub fn check<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>, exact: &Closest<T>) {
+    let context = || format!("{}, {exact:?}", subject.describe(query));
+    let default = QueryOptions::default();
     let distance = exact.distance.to_f64();
-    let seed = asked.seed as usize;
+    let seed = subject.seed as usize;
     let epsilon = [1e-9, 0.001, 0.03, 0.3, 3.0, 1e30][seed % 6];
-    let found = ask(asked, query, exact, &usual.with_epsilon(T::of_f64(epsilon)));
-    let most = distance * ((1.0 + epsilon) * (1.0 + 8.0 * T::UNIT_ROUNDOFF)) + T::SMALLEST_SUBNORMAL;
-    assert!(found.distance.to_f64() <= most, "{}: epsilon {epsilon}: {found:?}", say());
-    let hint = PrimitiveId::new(seed % (asked.soup.len() + 1));
-    ask(asked, query, exact, &usual.with_max_visits([0, 1, 2, 3, 5, 9][seed % 6]).with_hint(hint));
-    let found = ask(asked, query, exact, &usual.with_max_visits(u32::MAX - 1));
-    assert_eq!(known(&found), known(exact), "{}: a budget for everything: {found:?}", say());
-    // With a radius that holds something and one that does not.
-    let rough = usual.with_epsilon(T::of_f64(epsilon));
-    let found = ask(asked, query, exact, &rough.with_max_distance(exact.distance).with_hint(hint));
-    assert_eq!(found.distance, exact.distance, "{}: {found:?}", say());
+    let found = checked_answer(subject, query, exact, &default.with_epsilon(T::of_f64(epsilon)));
+    let max_distance = distance * ((1.0 + epsilon) * (1.0 + 8.0 * T::UNIT_ROUNDOFF)) + T::SMALLEST_SUBNORMAL;
+    assert!(found.distance.to_f64() <= max_distance, "{}: epsilon {epsilon}: {found:?}", context());
+    let hint = PrimitiveId::new(seed % (subject.soup.len() + 1));
+    checked_answer(subject, query, exact, &default.with_max_visits([0, 1, 2, 3, 5, 9][seed % 6]).with_hint(hint));
+    let found = checked_answer(subject, query, exact, &default.with_max_visits(u32::MAX - 1));
+    assert_eq!(compared_fields(&found), compared_fields(exact), "{}: a budget for everything: {found:?}", context());
+    // One radius contains a primitive and the other one does not.
+    let rough = default.with_epsilon(T::of_f64(epsilon));
+    let found = checked_answer(subject, query, exact, &rough.with_max_distance(exact.distance).with_hint(hint));
+    assert_eq!(found.distance, exact.distance, "{}: {found:?}", context());
     let short = T::of_f64_below(distance * (1.0 - 1e-6));
     if short < exact.distance {
         let options = rough.with_max_distance(short).with_max_visits(5);
-        assert_eq!(asked.index.closest_point_with(query, &options), None, "{}: beyond {short:?}", say());
+        assert_eq!(subject.index.closest_point_with(query, &options), None, "{}: beyond {short:?}", context());
     }
 }

@@ -1,4 +1,4 @@
-//! Every backend by a number.
+//! Selects a backend by a number.
 
 use super::bytes::Bytes;
 use p2m::kdop::Directions;
@@ -7,24 +7,24 @@ use p2m::{
     NearQuery, OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, PrimitiveSet, RayQuery, Real, Soup,
 };
 
-/// An index that answers what all do.
+/// An index that answers the queries of all backends.
 pub trait Index<T: Real>: ClosestPoint<T> + NearQuery<T> + CertifiedQuery<T> + Sync {}
 impl<T: Real, I: ClosestPoint<T> + NearQuery<T> + CertifiedQuery<T> + Sync> Index<T> for I {}
 
-/// An index that answers about rays and boxes as well.
+/// An index that answers ray and box queries as well.
 pub trait Tree<T: Real>: Index<T> + RayQuery<T> + BoxQuery<T> + ClosestLeaf<T> {}
 impl<T: Real, I: Index<T> + RayQuery<T> + BoxQuery<T> + ClosestLeaf<T>> Tree<T> for I {}
 
-/// The trees.
+/// The names of the trees.
 pub const TREES: [&str; 4] = ["aabb", "kdop-6", "kdop-14", "kdop-26"];
-/// What there is beside them, for closest points.
+/// The names of the other backends, which answer closest-point queries only.
 pub const OTHERS: [&str; 4] = ["octree", "p2m", "rstar", "parry"];
 
 type Built<'a, I> = Result<(&'static str, Box<I>), BuildError>;
 
 fn isa(bytes: &mut Bytes<'_>) -> Isa {
     let mut available = Isa::available();
-    // The best one for a zero.
+    // A zero selects the best instruction set.
     available.reverse();
     bytes.pick(&available)
 }
@@ -36,10 +36,10 @@ where
     Ok(Box::new(KdopTree::<T, _, K>::build(soup, &Default::default())?.with_isa(isa)))
 }
 
-/// A tree, with any instruction set.
+/// Builds a tree, with any instruction set.
 ///
 /// # Errors
-/// Those of building it.
+/// Returns the errors of the build.
 pub fn tree<'a, T: Real>(bytes: &mut Bytes<'_>, soup: &'a Soup<T>) -> Built<'a, dyn Tree<T> + 'a> {
     let (name, isa) = (bytes.pick(&TREES), isa(bytes));
     let built = match name {
@@ -51,11 +51,11 @@ pub fn tree<'a, T: Real>(bytes: &mut Bytes<'_>, soup: &'a Soup<T>) -> Built<'a, 
     Ok((name, built))
 }
 
-/// An index of any kind, with any instruction set and some options; a tree of another crate if its feature is on, and
-/// the tree of boxes otherwise.
+/// Builds an index of any backend, with any instruction set and some options. A tree of another crate is built if its
+/// feature is on, and the tree of boxes otherwise.
 ///
 /// # Errors
-/// Those of building it.
+/// Returns the errors of the build.
 pub fn index<'a, T: Real>(bytes: &mut Bytes<'_>, soup: &'a Soup<T>) -> Built<'a, dyn Index<T> + 'a> {
     let number = bytes.below(TREES.len() + OTHERS.len());
     let Some(name) = number.checked_sub(TREES.len()).map(|number| OTHERS[number]) else {

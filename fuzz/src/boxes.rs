@@ -1,4 +1,4 @@
-//! What meets a box, and the closest leaf, of scenes from bytes.
+//! Checks box queries and the closest leaf on scenes from bytes.
 
 use super::backends::Tree;
 use super::scene::vertices;
@@ -6,7 +6,7 @@ use nalgebra::Point3;
 use p2m::{Aabb, PrimitiveId, PrimitiveSet, Real, Soup};
 use p2m_testkit::oracle::{Distance, meets_box};
 
-/// Boxes between queries.
+/// Checks boxes that are spanned by pairs of queries.
 pub fn check<T: Real>(soup: &Soup<T>, tree: &dyn Tree<T>, name: &str, queries: &[Point3<T>]) {
     for (a, b) in queries.iter().zip(queries.iter().cycle().skip(1)) {
         let bounds = Aabb { min: a.inf(b), max: a.sup(b) };
@@ -14,8 +14,8 @@ pub fn check<T: Real>(soup: &Soup<T>, tree: &dyn Tree<T>, name: &str, queries: &
         let mut found = Vec::new();
         tree.primitives_in_box_into(&bounds, &mut found);
         if corners.as_flattened().iter().all(|x| x.is_finite()) {
-            let meets = |id: &usize| meets_box(&vertices(soup, *id), &corners);
-            let expected: Vec<_> = (0..soup.len()).filter(meets).map(PrimitiveId::new).collect();
+            let is_hit = |id: &usize| meets_box(&vertices(soup, *id), &corners);
+            let expected: Vec<_> = (0..soup.len()).filter(is_hit).map(PrimitiveId::new).collect();
             assert_eq!(found, expected, "{name}: {bounds:?}");
         }
         assert_eq!(tree.meets_box(&bounds), !found.is_empty(), "{name}: {bounds:?}");
@@ -25,8 +25,8 @@ pub fn check<T: Real>(soup: &Soup<T>, tree: &dyn Tree<T>, name: &str, queries: &
         };
         let best = tree.closest_point(a).expect("something");
         assert!(leaf.distance >= best.distance, "{name}: {a:?}, {leaf:?}, {best:?}");
-        let place: [f64; 3] = a.map(T::to_f64).coords.into();
-        let is_below = |id| Distance::new(place, &vertices(soup, id)).is_at_least(leaf.lower_bound.to_f64());
+        let point: [f64; 3] = a.map(T::to_f64).coords.into();
+        let is_below = |id| Distance::new(point, &vertices(soup, id)).is_at_least(leaf.lower_bound.to_f64());
         assert!((0..soup.len()).all(is_below), "{name}: {a:?}, {leaf:?}");
     }
 }

@@ -1,6 +1,6 @@
-//! An input as a row of choices.
+//! Interprets an input as a sequence of choices.
 
-/// The bytes of an input that are left. After its end there are zeros, so every input is a whole one.
+/// The remaining bytes of an input. After its end there are zeros, so every input is complete.
 pub struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {
@@ -14,12 +14,12 @@ impl<'a> Bytes<'a> {
         *first
     }
 
-    /// From -128 to 127.
+    /// Returns a number from -128 to 127.
     pub fn signed(&mut self) -> i8 {
         self.byte().cast_signed()
     }
 
-    /// A number below `count`, which is at most 256.
+    /// Returns a number below `count`, which is at most 256.
     pub fn below(&mut self, count: usize) -> usize {
         usize::from(self.byte()) % count
     }
@@ -28,7 +28,7 @@ impl<'a> Bytes<'a> {
         from[self.below(from.len())]
     }
 
-    /// Two bytes as a number.
+    /// Returns a number of two bytes.
     pub fn pair(&mut self) -> usize {
         usize::from(u16::from_le_bytes([self.byte(), self.byte()]))
     }
@@ -37,7 +37,7 @@ impl<'a> Bytes<'a> {
         u64::from_le_bytes(std::array::from_fn(|_| self.byte()))
     }
 
-    /// The next bytes for somebody else: so many, if there are.
+    /// Returns the next `count` bytes, or as many as there are.
     pub fn take(&mut self, count: usize) -> &'a [u8] {
         let (taken, rest) = self.0.split_at(count.min(self.0.len()));
         self.0 = rest;

@@ -1,9 +1,9 @@
-//! What fuzz targets check, each as a function of the bytes of an input; `tests/all/fuzzed.rs` of the workspace gives them the
-//! seeds and what once failed.
+//! The checks of the fuzz targets, each as a function of the bytes of an input. `tests/all/fuzzed.rs` of the workspace
+//! runs them on the seeds and on inputs that once failed.
 //!
 //! - [`readers`]: files of scenes and points.
-//! - [`queries`], [`rays`]: scenes and questions are made from the bytes, answers held against brute force and against
-//!   rational arithmetic.
+//! - [`queries`], [`rays`]: scenes and questions are made from the bytes, and answers are compared with brute force and
+//!   with rational arithmetic.
 //! - [`saved`]: files of saved indexes, damaged or made up.
 
 mod answers;
@@ -18,5 +18,6 @@ pub mod rays;
 pub mod readers;
 pub mod saved;
 pub mod scene;
+pub mod subject;
 
 pub use answers::QUESTIONS;

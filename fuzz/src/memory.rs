@@ -1,13 +1,13 @@
-//! How much memory a piece of work takes.
+//! Bounds the memory that a function allocates.
 
 /// Buffers of a fixed size, in bytes.
-const FIXED: usize = 1 << 17;
+const FIXED_BUFFER_BYTES: usize = 1 << 17;
 
-/// Works, and fails if that took more than so many bytes at a time, besides [`FIXED`]; on this thread, which is the only one that
-/// reading works on.
+/// Runs `work`, and panics if it allocated more than `bytes` at a time in addition to [`FIXED_BUFFER_BYTES`]. Only
+/// this thread is measured, because readers work on one thread.
 pub fn at_most<T>(bytes: usize, work: impl FnOnce() -> T) -> T {
     let mut result = None;
     let taken = allocation_counter::measure(|| result = Some(work())).bytes_max as usize;
-    assert!(taken <= FIXED + bytes, "{taken} bytes taken, {bytes} and {FIXED} expected");
+    assert!(taken <= FIXED_BUFFER_BYTES + bytes, "{taken} bytes taken, {bytes} and {FIXED_BUFFER_BYTES} expected");
     result.expect("done")
 }

@@ -1,24 +1,26 @@
-//! Closest points of scenes from bytes: every backend against brute force, bit for bit, and against rational arithmetic.
+//! Closest points of scenes from bytes: every backend is compared with brute force, bit for bit, and with rational
+//! arithmetic.
 //!
-//! The first byte says what is asked, the second one the scalar, the next ones choose a backend; then come the scene
-//! and up to four queries.
+//! The first byte selects the question, the second one the scalar, and the next ones a backend; then come the scene and
+//! up to four queries.
 
-use super::answers::{Asked, QUESTIONS};
+use super::answers::{self, QUESTIONS};
 use super::backends::{index, tree};
 use super::boxes;
 use super::bytes::Bytes;
-use super::scene::{Drawn, place};
+use super::scene::{SceneDraft, point_source};
+use super::subject::Subject;
 use nalgebra::Point3;
 use p2m::{AabbTree, BruteForce, BuildError, BuildIndex, Real, Soup};
 use p2m_testkit::near_check;
 use p2m_testkit::scenes::{narrow, to_f32};
 
-/// What an input came to.
+/// The part of the library that an input reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Reached {
     /// The mode of the scene, the backend and the question.
     Answers(&'static str, &'static str, &'static str),
-    /// A scene that has to be refused, and was.
+    /// The scene is an error, as it has to be.
     Refused,
 }
 
@@ -26,7 +28,7 @@ struct Input<'a> {
     question: usize,
     is_single: bool,
     backend: Bytes<'a>,
-    drawn: Drawn,
+    draft: SceneDraft,
     queries: Vec<Point3<f64>>,
     seed: u64,
 }
@@ -37,39 +39,39 @@ impl<'a> Input<'a> {
         let (question, is_single) = (bytes.below(QUESTIONS.len()), bytes.byte() % 4 == 1);
         let backend = Bytes::new(bytes.take(3));
         let seed = u64::from(bytes.byte());
-        let drawn = Drawn::new(&mut bytes, 40);
-        let queries = (0..=bytes.below(4)).map(|_| drawn.query(&mut bytes)).collect();
-        Self { question, is_single, backend, drawn, queries, seed }
+        let draft = SceneDraft::new(&mut bytes, 40);
+        let queries = (0..=bytes.below(4)).map(|_| draft.query(&mut bytes)).collect();
+        Self { question, is_single, backend, draft, queries, seed }
     }
 }
 
-/// What an input is, as a program.
+/// Formats an input as Rust source.
 #[must_use]
 pub fn source(input: &[u8]) -> String {
     let input = Input::new(input);
-    let queries: String = input.queries.iter().map(|query| format!("\nlet query = {};", place(query))).collect();
-    format!("// {}\n{}{queries}", QUESTIONS[input.question], input.drawn.source())
+    let queries: String = input.queries.iter().map(|query| format!("\nlet query = {};", point_source(query))).collect();
+    format!("// {}\n{}{queries}", QUESTIONS[input.question], input.draft.source())
 }
 
-/// Asks what an input asks.
+/// Runs the check of an input.
 ///
 /// # Panics
-/// If an answer is wrong.
+/// Panics if an answer is wrong.
 pub fn check(input: &[u8]) -> Reached {
     let input = Input::new(input);
-    let Ok(soup) = input.drawn.soup() else {
-        refused(&input.drawn);
+    let Ok(soup) = input.draft.soup() else {
+        check_build_error(&input.draft);
         return Reached::Refused;
     };
     match narrow(&soup).filter(|_| input.is_single) {
-        Some(single) => ask(input, &single, to_f32),
-        None => ask(input, &soup, |query| query),
+        Some(single) => check_in(input, &single, to_f32),
+        None => check_in(input, &soup, |query| query),
     }
 }
 
-fn ask<T: Real>(mut input: Input<'_>, soup: &Soup<T>, place: impl Fn(Point3<f64>) -> Point3<T>) -> Reached {
+fn check_in<T: Real>(mut input: Input<'_>, soup: &Soup<T>, to_scalar: impl Fn(Point3<f64>) -> Point3<T>) -> Reached {
     let brute = BruteForce::new(soup).expect("finite");
-    let queries: Vec<Point3<T>> = input.queries.iter().map(|query| place(*query)).collect();
+    let queries: Vec<Point3<T>> = input.queries.iter().map(|query| to_scalar(*query)).collect();
     let name = match QUESTIONS[input.question] {
         "boxes" => {
             let (name, tree) = tree(&mut input.backend, soup).expect("finite");
@@ -78,25 +80,25 @@ fn ask<T: Real>(mut input: Input<'_>, soup: &Soup<T>, place: impl Fn(Point3<f64>
         }
         question => {
             let (name, index) = index(&mut input.backend, soup).expect("finite");
-            let asked = Asked { soup, brute: &brute, index: &*index, name, seed: input.seed };
+            let subject = Subject { soup, brute: &brute, index: &*index, name, seed: input.seed };
             match question {
-                "batches" => asked.in_batches(&queries),
+                "batches" => answers::check_batches(&subject, &queries),
                 "near" => {
                     let finite: Vec<_> = queries.into_iter().filter(|q| q.iter().all(|x| x.is_finite())).collect();
                     near_check::agrees(input.seed, soup, &finite, &*index);
                 }
-                _ => queries.iter().for_each(|query| asked.one(question, query)),
+                _ => queries.iter().for_each(|query| answers::check_answer(&subject, question, query)),
             }
             name
         }
     };
-    Reached::Answers(input.drawn.mode, name, QUESTIONS[input.question])
+    Reached::Answers(input.draft.mode, name, QUESTIONS[input.question])
 }
 
-/// A scene with a coordinate that is not finite is refused by what is built over its primitives, too.
-fn refused(drawn: &Drawn) {
-    let shapes = drawn.shapes();
-    let id = drawn.soup().expect_err("not finite");
+/// Checks that a build over the primitives of a scene with a coordinate that is not finite is an error, too.
+fn check_build_error(draft: &SceneDraft) {
+    let shapes = draft.shapes();
+    let id = draft.soup().expect_err("not finite");
     let error = Some(BuildError::NonFinite { id });
     assert_eq!(BruteForce::new::<f64>(&shapes).err(), error);
     assert_eq!(AabbTree::<f64, _>::build(&shapes, &Default::default()).err(), error);

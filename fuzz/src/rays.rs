@@ -1,23 +1,23 @@
-//! Rays at scenes from bytes: every tree against rational arithmetic.
+//! Rays at scenes from bytes: every tree is compared with rational arithmetic.
 //!
-//! The first byte tells the scalar, the next ones choose a tree; then come the scene and up to three rays.
+//! The first byte selects the scalar, and the next ones a tree; then come the scene and up to three rays.
 
 use super::backends::tree;
 use super::bytes::Bytes;
-use super::scene::{Drawn, vertices};
+use super::scene::{SceneDraft, vertices};
 use nalgebra::{Point3, Vector3};
 use p2m::{BruteForce, PrimitiveSet, Ray, RayError, Real, Soup};
 use p2m_testkit::ray_check::{Truth, agrees};
 use p2m_testkit::scenes::narrow;
 
-/// Primitives of a scene at most: integers of a ray are long.
-const LARGEST: usize = 16;
+/// The largest number of primitives of a scene, because the integers of a ray are long.
+const MAX_PRIMITIVES: usize = 16;
 
 struct Input<'a> {
     is_single: bool,
     backend: Bytes<'a>,
     seed: u64,
-    drawn: Drawn,
+    draft: SceneDraft,
     rays: Vec<Ray>,
 }
 
@@ -26,20 +26,20 @@ impl<'a> Input<'a> {
         let mut bytes = Bytes::new(input);
         let is_single = bytes.byte() % 4 == 1;
         let (backend, seed) = (Bytes::new(bytes.take(2)), u64::from(bytes.byte()));
-        let drawn = Drawn::new(&mut bytes, LARGEST);
-        let rays = (0..=bytes.below(3)).filter_map(|_| draw(&mut bytes, &drawn).ok()).collect();
-        Self { is_single, backend, seed, drawn, rays }
+        let draft = SceneDraft::new(&mut bytes, MAX_PRIMITIVES);
+        let rays = (0..=bytes.below(3)).filter_map(|_| draw_ray(&mut bytes, &draft).ok()).collect();
+        Self { is_single, backend, seed, draft, rays }
     }
 }
 
-/// From one place to or through another, or along an axis.
-fn draw(bytes: &mut Bytes<'_>, drawn: &Drawn) -> Result<Ray, RayError> {
-    let (kind, from) = (bytes.below(5), drawn.query(bytes));
+/// Returns a ray from one point to or through another, or along an axis.
+fn draw_ray(bytes: &mut Bytes<'_>, draft: &SceneDraft) -> Result<Ray, RayError> {
+    let (kind, from) = (bytes.below(5), draft.query(bytes));
     let direction = match kind {
-        0 | 1 => drawn.query(bytes) - from,
+        0 | 1 => draft.query(bytes) - from,
         2 => Vector3::from([0; 3].map(|_| f64::from(bytes.signed() % 4))),
-        3 => drawn.query(bytes) - drawn.query(bytes),
-        _ => drawn.query(bytes).coords,
+        3 => draft.query(bytes) - draft.query(bytes),
+        _ => draft.query(bytes).coords,
     };
     let finite = from.iter().chain(&direction).all(|x| x.is_finite());
     let expected = match finite {
@@ -57,27 +57,27 @@ fn draw(bytes: &mut Bytes<'_>, drawn: &Drawn) -> Result<Ray, RayError> {
     Ok(if bytes.below(2) == 0 { ray } else { ray.line() })
 }
 
-/// The scene and the rays of an input, as a program.
+/// Formats the scene and the rays of an input as Rust source.
 #[must_use]
 pub fn source(input: &[u8]) -> String {
-    let Input { drawn, rays, .. } = Input::new(input);
-    rays.iter().fold(drawn.source(), |text, ray| format!("{text}\n// {ray:?}"))
+    let Input { draft, rays, .. } = Input::new(input);
+    rays.iter().fold(draft.source(), |text, ray| format!("{text}\n// {ray:?}"))
 }
 
-/// Asks what an input asks; which backend it was, and of how many rays.
+/// Runs the check of an input, and returns the backend and the number of rays.
 ///
 /// # Panics
-/// If an answer is wrong.
+/// Panics if an answer is wrong.
 pub fn check(input: &[u8]) -> Option<(&'static str, usize)> {
-    let Input { is_single, backend, seed, drawn, rays } = Input::new(input);
-    let soup = drawn.soup().ok()?;
+    let Input { is_single, backend, seed, draft, rays } = Input::new(input);
+    let soup = draft.soup().ok()?;
     match narrow(&soup).filter(|_| is_single) {
-        Some(single) => Some(ask(&single, backend, &rays, seed)),
-        None => Some(ask(&soup, backend, &rays, seed)),
+        Some(single) => Some(check_in(&single, backend, &rays, seed)),
+        None => Some(check_in(&soup, backend, &rays, seed)),
     }
 }
 
-fn ask<T: Real>(soup: &Soup<T>, mut backend: Bytes<'_>, rays: &[Ray], seed: u64) -> (&'static str, usize) {
+fn check_in<T: Real>(soup: &Soup<T>, mut backend: Bytes<'_>, rays: &[Ray], seed: u64) -> (&'static str, usize) {
     let primitives: Vec<_> = (0..soup.len()).map(|id| vertices(soup, id)).collect();
     let brute = BruteForce::new(soup).expect("finite");
     let (name, tree) = tree(&mut backend, soup).expect("finite");

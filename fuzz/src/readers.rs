@@ -1,5 +1,5 @@
-//! What every file has to satisfy, whatever is in it: reading it does not panic and takes memory in proportion to its
-//! size; and what it holds can be written in every format and reads back as the same.
+//! Checks the promises of readers for any file: reading does not panic and takes memory in proportion to the size of
+//! the file, and the scene can be written in every format and reads back as the same.
 
 use super::memory;
 use nalgebra::Point3;
@@ -9,13 +9,13 @@ use p2m_mixed::{
     write_ply_ascii, write_scene, write_stl,
 };
 
-/// Memory that a reader may take for a byte of the file, besides buffers of a fixed size.
+/// The memory that a reader may take for each byte of the file, in addition to buffers of a fixed size.
 ///
-/// The largest that is needed is for a polygon whose corners are two bytes each.
-const PER_BYTE: usize = 256;
+/// The most memory is needed for a polygon whose corners are two bytes each.
+const MEMORY_PER_BYTE: usize = 256;
 
 fn measured<T>(file: &[u8], read: impl FnOnce() -> T) -> T {
-    memory::at_most(PER_BYTE * file.len(), read)
+    memory::at_most(MEMORY_PER_BYTE * file.len(), read)
 }
 
 /// Reads a scene, writes it, and reads it again.
@@ -35,7 +35,7 @@ pub fn scene(file: &[u8], format: Format) {
         assert!(again.skipped.is_empty(), "{format}: {:?}", again.skipped);
         let expected = match format {
             Format::Ply => bits(&scene.soup),
-            // What the documentation of the writers says.
+            // The documentation of the writers has these exceptions.
             _ if scene.soup.len() == 0 => Vec::new(),
             _ => bits(&scene.soup).into_iter().map(finite_or_origin).collect(),
         };
@@ -82,9 +82,9 @@ fn stl(scene: &Scene) {
     let corner = |soup: &Soup<f64>, i: u32| soup.positions()[i as usize].map(|x| x as f32);
     let pairs = again.soup.triangles().as_flattened().iter().zip(scene.soup.triangles().as_flattened());
     for (&i, &j) in pairs {
-        assert_eq!(corner(&again.soup, i), corner(&scene.soup, j)); // 0 and -0 are equal
+        assert_eq!(corner(&again.soup, i), corner(&scene.soup, j)); // 0 and -0 are equal.
     }
-    // Once it has been an STL file, it stays the same.
+    // A scene that was read from an STL file stays the same when it is written as STL again.
     let mut twice = Vec::new();
     write_stl(&again, &mut twice).unwrap();
     assert_eq!(read_scene_from(&twice[..], Format::Stl, "twice").unwrap().soup, again.soup);
@@ -98,7 +98,7 @@ fn finite_or_origin(position: [u64; 3]) -> [u64; 3] {
     if position.iter().all(|x| f64::from_bits(*x).is_finite()) { position } else { [0; 3] }
 }
 
-/// Reads points, answers them, and reads the queries out of the answers.
+/// Reads points, answers them, and reads the queries from the answers.
 pub fn points(file: &[u8], format: PointFormat) {
     let points = match measured(file, || read_points_from(file, format, "fuzz")) {
         Ok(points) => points,

@@ -1,9 +1,9 @@
-//! Files of saved indexes from bytes: damaged, changed on purpose, or made up.
+//! Files of saved indexes from bytes: damaged, modified on purpose, or made up.
 //!
-//! The first byte says which of these it is, and the next two choose a whole file. Damage has to be told, or to change no
-//! answer. A file that is changed with its sums mended passes for a whole one: `p2m::storage` promises that it is read or
-//! refused, in memory in proportion to its size, and that nothing is undefined; asked, it may answer wrongly or panic. A
-//! search in it may also go round in circles, so it is stopped.
+//! The first byte selects one of these, and the next two choose a valid file. Damage has to be detected, or to change
+//! no answer. A file that is modified and has its checksums corrected passes for a valid one: `p2m::storage` promises
+//! that loading it succeeds or is an error, takes memory in proportion to its size, and has no undefined behaviour. Its
+//! answers may be wrong, and queries may panic. A search in it may also run in circles, so it is stopped.
 
 use super::bytes::Bytes;
 use super::memory;
@@ -20,39 +20,39 @@ use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::sync::{LazyLock, Once};
 use twox_hash::XxHash3_64;
 
-/// Memory for a byte of a file.
-const PER_BYTE: usize = 64;
-/// Steps of a search in a file that was changed on purpose.
-const STEPS: usize = 20_000;
-/// Bytes of the head, and of an entry of the table, as p2m-core/src/saved has them.
-const HEAD: usize = 64;
+/// The memory that loading may take for each byte of a file.
+const MEMORY_PER_BYTE: usize = 64;
+/// The largest number of steps of a search in a file that was modified on purpose.
+const MAX_STEPS: usize = 20_000;
+/// The bytes of the header and of an entry of the table, as in p2m-core/src/storage.
+const HEADER_BYTES: usize = 64;
 
 type Answers = Vec<Option<(u64, PrimitiveId, [u64; 3])>>;
 
-/// What became of an input.
+/// The outcome of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Reached {
-    /// Refused.
+    /// The file is an error.
     Refused,
-    /// Answered, rightly where that is promised.
+    /// The file was loaded and answered, correctly where that is promised.
     Answered,
-    /// Read, but not asked without a panic.
+    /// The file was loaded, but queries panic.
     Unusable,
 }
 
-/// [`Best`] that ends a search by a panic after so many steps.
-struct Stopped {
+/// A [`Best`] that ends a search with a panic after a number of steps.
+struct StepLimit {
     best: Best<f64>,
-    left: usize,
+    steps_left: usize,
 }
 
-impl Stopped {
+impl StepLimit {
     fn step(&mut self) {
-        self.left = self.left.checked_sub(1).expect("round in circles");
+        self.steps_left = self.steps_left.checked_sub(1).expect("the search runs in circles");
     }
 }
 
-impl Collector for Stopped {
+impl Collector for StepLimit {
     fn prune_above(&self) -> f64 {
         self.best.prune_above()
     }
@@ -77,25 +77,25 @@ impl Collector for Stopped {
     }
 }
 
-/// A loaded index: asked as it is, and step by step.
-trait Loaded: ClosestPoint<f64> {
-    fn step_by_step(&self, query: &Point3<f64>);
+/// A loaded index, queried normally and with a limit of steps.
+trait LoadedIndex: ClosestPoint<f64> {
+    fn search_with_step_limit(&self, query: &Point3<f64>);
 }
 
-type LoadedFrom<'a> = Result<Box<dyn Loaded + 'a>, LoadError>;
+type LoadResult<'a> = Result<Box<dyn LoadedIndex + 'a>, LoadError>;
 
-/// A kind of index: its file, and what is loaded from one.
+/// A type of index, with functions that write its file and load it.
 struct Kind {
     saved: fn(&Scene) -> Vec<u8>,
-    loaded: for<'a> fn(&'a Soup<f64>, &Reader) -> LoadedFrom<'a>,
+    loaded: for<'a> fn(&'a Soup<f64>, &Reader) -> LoadResult<'a>,
     name: &'static str,
 }
 
 macro_rules! kinds {
     ($all:ident: $($name:literal: $index:ident $(<$k:literal>)?,)*) => {
-        $(impl Loaded for $index<f64, &Soup<f64> $(, $k)?> {
-            fn step_by_step(&self, query: &Point3<f64>) {
-                self.visit(query, &mut Stopped { best: Best::new(&QueryOptions::default()), left: STEPS });
+        $(impl LoadedIndex for $index<f64, &Soup<f64> $(, $k)?> {
+            fn search_with_step_limit(&self, query: &Point3<f64>) {
+                self.visit(query, &mut StepLimit { best: Best::new(&QueryOptions::default()), steps_left: MAX_STEPS });
             }
         })*
         const $all: &[Kind] = &[$(Kind {
@@ -122,7 +122,7 @@ kinds! {
     "p2m": P2mIndex,
 }
 
-/// A bent strip that is worth cells, a tripod, one point, nothing.
+/// Returns a bent strip large enough for cells, a tripod, one point, and an empty scene.
 fn scenes() -> [Scene; 4] {
     let at = |i: i32, j: i32| {
         let (x, y) = (f64::from(i) * 0.5, f64::from(j) * 0.5);
@@ -143,34 +143,34 @@ fn scenes() -> [Scene; 4] {
     [Scene::from(strip), tripod, Scene::from(point), Scene::default()]
 }
 
-/// A whole file and what it answers.
-struct Whole {
+/// A valid file with its answers.
+struct ValidFile {
     bytes: Vec<u8>,
     answers: Answers,
 }
 
-/// Of every scene and kind.
-static WHOLE: LazyLock<Vec<Whole>> = LazyLock::new(|| {
+/// The valid files of every scene and type of index.
+static VALID_FILES: LazyLock<Vec<ValidFile>> = LazyLock::new(|| {
     let of = |scene: &Scene, kind: &Kind| {
         let bytes = (kind.saved)(scene);
-        let answers = asked(&bytes).expect("whole");
-        Whole { bytes, answers }
+        let answers = answers_of(&bytes).expect("valid");
+        ValidFile { bytes, answers }
     };
     scenes().iter().flat_map(|scene| KINDS.iter().map(move |kind| of(scene, kind))).collect()
 });
 
-fn places(soup: &Soup<f64>) -> Vec<Point3<f64>> {
-    let mut places =
+fn query_points(soup: &Soup<f64>) -> Vec<Point3<f64>> {
+    let mut query_points =
         [[0.0; 3], [1.1, 0.7, 0.2], [-3.0, 9.0, 1.0], [1e4, -2e5, 7e3], [1e200, 0.0, 0.0]].map(Point3::from).to_vec();
-    places.extend(soup.positions().iter().step_by(5).take(6).filter(|p| p.iter().all(|x| x.is_finite())));
-    places
+    query_points.extend(soup.positions().iter().step_by(5).take(6).filter(|p| p.iter().all(|x| x.is_finite())));
+    query_points
 }
 
-/// The index of a file over the scene of the file, given to `use_it`.
-fn loaded<R>(bytes: &[u8], use_it: impl FnOnce(&Soup<f64>, &dyn Loaded) -> R) -> Result<R, LoadError> {
+/// Loads the index of a file over the scene of the file, and passes both to `use_it`.
+fn loaded<R>(bytes: &[u8], use_it: impl FnOnce(&Soup<f64>, &dyn LoadedIndex) -> R) -> Result<R, LoadError> {
     let missing = |section: &str| LoadError::Missing { section: section.to_owned() };
     let mut scene = None;
-    let limit = PER_BYTE * bytes.len();
+    let limit = MEMORY_PER_BYTE * bytes.len();
     let file = memory::at_most(limit, || SavedFile::read(bytes))?;
     let reader = file.checked()?;
     let soup = &scene.insert(memory::at_most(limit, || load_scene(reader))?).soup;
@@ -180,32 +180,36 @@ fn loaded<R>(bytes: &[u8], use_it: impl FnOnce(&Soup<f64>, &dyn Loaded) -> R) ->
     Ok(use_it(soup, &*index))
 }
 
-/// What the index of a file answers.
-fn asked(bytes: &[u8]) -> Result<Answers, LoadError> {
+/// Returns the answers of the index of a file.
+fn answers_of(bytes: &[u8]) -> Result<Answers, LoadError> {
     let bits = |c: p2m::Closest<f64>| (c.distance.to_bits(), c.primitive, [0, 1, 2].map(|k| c.point[k].to_bits()));
     loaded(bytes, |soup, index| {
-        let places = places(soup);
-        let mut answers: Answers = places.iter().map(|q| index.closest_point(q).map(bits)).collect();
-        let mut side_by_side = vec![None; 2 * places.len()];
-        index.closest_points_into(&[&places[..], &places].concat(), &QueryOptions::default(), &mut side_by_side);
+        let query_points = query_points(soup);
+        let mut answers: Answers = query_points.iter().map(|q| index.closest_point(q).map(bits)).collect();
+        let mut side_by_side = vec![None; 2 * query_points.len()];
+        index.closest_points_into(
+            &[&query_points[..], &query_points].concat(),
+            &QueryOptions::default(),
+            &mut side_by_side,
+        );
         answers.extend(side_by_side.into_iter().map(|c| c.map(bits)));
         answers
     })
 }
 
 thread_local! {
-    /// Whether a panic of this thread is nobody's business.
+    /// Whether a panic of this thread is expected and is not reported.
     static IS_EXPECTED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether something ends without a panic; a fuzzer would end at one.
-fn ends(work: impl FnOnce()) -> bool {
+/// Returns whether `work` ends without a panic; the hook of a fuzzer would abort.
+fn ends_without_panic(work: impl FnOnce()) -> bool {
     static QUIET: Once = Once::new();
     QUIET.call_once(|| {
-        let usual = take_hook();
+        let default_hook = take_hook();
         set_hook(Box::new(move |info| {
             if !IS_EXPECTED.get() {
-                usual(info);
+                default_hook(info);
             }
         }));
     });
@@ -215,25 +219,25 @@ fn ends(work: impl FnOnce()) -> bool {
     ended
 }
 
-/// A file that passes for a whole one: it is read or refused, and its searches end.
-fn on_purpose(bytes: &[u8]) -> Reached {
+/// Loads a file that passes for a valid one, and checks that its searches end.
+fn check_modified(bytes: &[u8]) -> Reached {
     let read = loaded(bytes, |soup, index| {
-        places(soup).iter().fold(Reached::Answered, |all, place| {
-            if ends(|| index.step_by_step(place)) { all } else { Reached::Unusable }
+        query_points(soup).iter().fold(Reached::Answered, |all, point| {
+            if ends_without_panic(|| index.search_with_step_limit(point)) { all } else { Reached::Unusable }
         })
     });
-    let scene = memory::at_most(PER_BYTE * bytes.len(), || read_p2m(bytes, "fuzz"));
+    let scene = memory::at_most(MEMORY_PER_BYTE * bytes.len(), || read_p2m(bytes, "fuzz"));
     if let Ok(scene) = scene {
         let mut written = Vec::new();
         write_p2m(&scene, &mut written).expect("memory");
-        let again = read_p2m(&written[..], "again").expect("whole");
+        let again = read_p2m(&written[..], "again").expect("valid");
         assert!(again.soup.elements().eq(scene.soup.elements()) && again.objects == scene.objects);
     }
-    told(read).unwrap_or(Reached::Refused)
+    checked_result(read).unwrap_or(Reached::Refused)
 }
 
-/// What was read; an error has something to say.
-fn told<R>(read: Result<R, LoadError>) -> Option<R> {
+/// Returns the result of loading; an error has to have a message.
+fn checked_result<R>(read: Result<R, LoadError>) -> Option<R> {
     if let Err(error) = &read {
         assert!(!matches!(error, LoadError::Io(_)) && !error.to_string().is_empty(), "{error:?}");
     }
@@ -244,22 +248,22 @@ fn number(bytes: &[u8], at: usize) -> Option<usize> {
     usize::try_from(u64::from_le_bytes(bytes.get(at..)?.get(..8)?.try_into().ok()?)).ok()
 }
 
-/// Where the entries of the table are, as far as there is one.
+/// Returns the offsets of the entries of the table, as far as there is one.
 fn entries(bytes: &[u8]) -> impl Iterator<Item = usize> + use<> {
     let announced = bytes.get(12..16).map_or(0, |n| u32::from_le_bytes(n.try_into().expect("four")) as usize);
-    let room = (bytes.len() / HEAD).saturating_sub(1);
-    (0..announced.min(room)).map(|i| HEAD * (1 + i))
+    let max_entries = (bytes.len() / HEADER_BYTES).saturating_sub(1);
+    (0..announced.min(max_entries)).map(|i| HEADER_BYTES * (1 + i))
 }
 
-/// Where the section of an entry is, if it is in the file.
+/// Returns the range of the section of an entry, if it is in the file.
 fn section(bytes: &[u8], entry: usize) -> Option<std::ops::Range<usize>> {
     let [offset, count, size] = [32, 40, 48].map(|k| number(bytes, entry + k));
     let end = offset?.checked_add(count?.checked_mul(size?)?)?;
     (end <= bytes.len()).then_some(offset?..end)
 }
 
-/// Puts right what tells damage: the length and all sums.
-fn mend(bytes: &mut [u8]) {
+/// Corrects the fields that detect damage: the length and all checksums.
+fn correct_checksums(bytes: &mut [u8]) {
     let all: Vec<usize> = entries(bytes).collect();
     for entry in &all {
         if let Some(section) = section(bytes, *entry) {
@@ -267,37 +271,37 @@ fn mend(bytes: &mut [u8]) {
             bytes[entry + 56..entry + 64].copy_from_slice(&sum.to_le_bytes());
         }
     }
-    if bytes.len() < HEAD {
+    if bytes.len() < HEADER_BYTES {
         return;
     }
-    let sum = XxHash3_64::oneshot(&bytes[HEAD..HEAD * (1 + all.len())]);
+    let sum = XxHash3_64::oneshot(&bytes[HEADER_BYTES..HEADER_BYTES * (1 + all.len())]);
     let length = bytes.len() as u64;
     bytes[16..24].copy_from_slice(&length.to_le_bytes());
     bytes[24..32].copy_from_slice(&sum.to_le_bytes());
 }
 
-/// Changes a file as the bytes of an input say, in the head, the table, or a section.
-fn change(file: &mut Vec<u8>, bytes: &mut Bytes<'_>) {
+/// Modifies a file as the bytes of an input say, in the header, the table, or a section.
+fn modify(file: &mut Vec<u8>, bytes: &mut Bytes<'_>) {
     while !bytes.is_empty() && !file.is_empty() {
-        let what = bytes.below(8);
+        let operation = bytes.below(8);
         let all: Vec<_> = entries(file).collect();
         let parts = all.iter().filter_map(|entry| section(file, *entry)).filter(|part| !part.is_empty());
         let mut parts: Vec<_> = parts.collect();
         parts.extend(all.iter().map(|entry| entry + 32..entry + 56));
-        parts.push(0..file.len().min(HEAD));
-        let place = |bytes: &mut Bytes<'_>| {
+        parts.push(0..file.len().min(HEADER_BYTES));
+        let position = |bytes: &mut Bytes<'_>| {
             let part = &parts[bytes.below(256) % parts.len()];
             part.start + bytes.pair() % part.len()
         };
-        let at = place(bytes);
-        let mut put = |at: usize, own: &[u8]| {
-            // Numbers are where they can be.
-            let at = at - at % own.len();
-            if let Some(to) = file.get_mut(at..at + own.len()) {
-                to.copy_from_slice(own);
+        let at = position(bytes);
+        let mut put = |at: usize, value: &[u8]| {
+            // Elements are aligned in their section.
+            let at = at - at % value.len();
+            if let Some(to) = file.get_mut(at..at + value.len()) {
+                to.copy_from_slice(value);
             }
         };
-        match what {
+        match operation {
             0 => put(at, &[bytes.byte()]),
             1 => file[at] ^= 1 << bytes.below(8),
             2 => put(at, &bytes.pick(&[0, 1, 2, 8, 1 << 30, 1 << 31, 3 << 30, u32::MAX - 1, u32::MAX]).to_le_bytes()),
@@ -305,7 +309,7 @@ fn change(file: &mut Vec<u8>, bytes: &mut Bytes<'_>) {
             4 => put(at, &bytes.pick(&[0.0, -1.0, 1e-300, f64::MAX, f64::INFINITY, f64::NAN]).to_le_bytes()),
             5 => put(at, &bytes.word().to_le_bytes()),
             6 => {
-                let (from, len) = (place(bytes), 1 + usize::from(bytes.byte()));
+                let (from, len) = (position(bytes), 1 + usize::from(bytes.byte()));
                 let len = len.min(file.len() - at.max(from));
                 file.copy_within(from..from + len, at);
             }
@@ -317,26 +321,26 @@ fn change(file: &mut Vec<u8>, bytes: &mut Bytes<'_>) {
     }
 }
 
-/// Reads what an input makes.
+/// Runs the check of an input.
 ///
 /// # Panics
-/// If a promise is not kept.
+/// Panics if a promise is broken.
 pub fn check(input: &[u8]) -> Reached {
     let mut bytes = Bytes::new(input);
-    let (way, scene, kind) = (bytes.below(3), bytes.below(4), bytes.below(KINDS.len()));
-    let whole = &WHOLE[scene * KINDS.len() + kind];
-    let mut file = match way {
-        0 | 1 => whole.bytes.clone(),
+    let (mode, scene, kind) = (bytes.below(3), bytes.below(4), bytes.below(KINDS.len()));
+    let valid = &VALID_FILES[scene * KINDS.len() + kind];
+    let mut file = match mode {
+        0 | 1 => valid.bytes.clone(),
         _ => bytes.rest().to_vec(),
     };
-    if way < 2 {
-        change(&mut file, &mut bytes);
+    if mode < 2 {
+        modify(&mut file, &mut bytes);
     }
-    if way == 0 {
-        let Some(answers) = told(asked(&file)) else { return Reached::Refused };
-        assert_eq!(answers, whole.answers, "another answer");
+    if mode == 0 {
+        let Some(answers) = checked_result(answers_of(&file)) else { return Reached::Refused };
+        assert_eq!(answers, valid.answers, "another answer");
         return Reached::Answered;
     }
-    mend(&mut file);
-    on_purpose(&file)
+    correct_checksums(&mut file);
+    check_modified(&file)
 }

@@ -1,41 +1,41 @@
-//! Scenes and places from bytes, by coordinates that are hard in one way or another.
+//! Scenes and query points from bytes, with coordinates that are hard in one way or another.
 
 use super::bytes::Bytes;
 use nalgebra::Point3;
 use p2m::{Element, Point, PrimitiveId, PrimitiveSet, Segment, Shape, Soup, Triangle};
 use std::fmt::Write;
 
-/// Primitives of a scene at most.
-const LARGEST: usize = 40;
-/// Positions that they share.
+/// The largest number of primitives of a scene.
+const MAX_PRIMITIVES: usize = 40;
+/// The number of positions that the primitives share.
 const POSITIONS: usize = 48;
 
-/// x 2^exponent, in two steps, so that no factor leaves the range.
+/// Returns x 2^exponent, in two steps, so that no factor leaves the range.
 fn scaled(x: f64, exponent: i32) -> f64 {
     x * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2)
 }
 
-/// The number so many representable ones further up or down; what is not finite stays.
+/// Returns the number that is `steps` representable numbers further up or down; numbers that are not finite stay.
 fn beside(x: f64, steps: i8) -> f64 {
     let one = |x: f64| if steps < 0 { x.next_down() } else { x.next_up() };
     if x.is_finite() { (0..steps.unsigned_abs()).fold(x, |x, _| one(x)) } else { x }
 }
 
-/// How coordinates are drawn.
+/// The distribution of coordinates.
 enum Coordinates {
-    /// Whole numbers from -4 to 4, quarters for queries, moved and scaled without rounding: ties are frequent.
+    /// Integers from -4 to 4, and quarters for queries, moved and scaled without rounding, so that ties are frequent.
     Lattice { offset: f64, exponent: i32 },
-    /// Any bits, mostly of a pool, so that some coincide.
+    /// Any bits, mostly from a pool, so that some coincide.
     Bits { pool: [f64; 6] },
-    /// Within some units in the last place of an f32.
+    /// Numbers within a few units in the last place of an f32.
     Neighbours { anchor: [f32; 3] },
-    /// A lattice, and next to it: slivers and needles.
+    /// Positions on and next to a lattice: slivers and needles.
     Slivers,
-    /// Few digits of any magnitude.
+    /// Numbers with few digits and any magnitude.
     Magnitudes,
 }
 
-/// What there are.
+/// The names of the distributions.
 pub const MODES: [&str; 5] = ["lattice", "bits", "neighbours", "slivers", "magnitudes"];
 
 const EXPONENTS: [i32; 16] = [0, 0, 0, 0, -1074, -1060, -541, -400, -300, -260, -100, 100, 252, 400, 515, 970];
@@ -46,7 +46,7 @@ impl Coordinates {
         match bytes.below(MODES.len()) {
             0 => Self::Lattice { offset: bytes.pick(&OFFSETS), exponent: bytes.pick(&EXPONENTS) },
             1 => Self::Bits { pool: std::array::from_fn(|_| f64::from_bits(bytes.word())) },
-            #[allow(clippy::cast_possible_truncation, reason = "half of the bits are meant")]
+            #[allow(clippy::cast_possible_truncation, reason = "half of the bits are used")]
             2 => Self::Neighbours { anchor: std::array::from_fn(|_| f32::from_bits(bytes.word() as u32)) },
             3 => Self::Slivers,
             _ => Self::Magnitudes,
@@ -63,11 +63,11 @@ impl Coordinates {
         }]
     }
 
-    fn one(&self, bytes: &mut Bytes<'_>, axis: usize, is_query: bool) -> f64 {
-        let whole = |bytes: &mut Bytes<'_>| f64::from(bytes.byte() % 9) - 4.0;
+    fn number(&self, bytes: &mut Bytes<'_>, axis: usize, is_query: bool) -> f64 {
+        let integer = |bytes: &mut Bytes<'_>| f64::from(bytes.byte() % 9) - 4.0;
         match self {
             Self::Lattice { offset, exponent } => {
-                let small = if is_query { (f64::from(bytes.byte() % 65) - 32.0) * 0.25 } else { whole(bytes) };
+                let small = if is_query { (f64::from(bytes.byte() % 65) - 32.0) * 0.25 } else { integer(bytes) };
                 scaled(offset + small, *exponent)
             }
             Self::Bits { pool } => match bytes.below(9) {
@@ -80,7 +80,7 @@ impl Coordinates {
                 f64::from(f32::from_bits(anchor[axis].to_bits().wrapping_add_signed(i32::from(bytes.signed()))))
             }
             Self::Slivers => {
-                let (near, steps) = (whole(bytes), bytes.signed());
+                let (near, steps) = (integer(bytes), bytes.signed());
                 let aside = 2f64.powi(-i32::from(steps.unsigned_abs()));
                 match steps {
                     0 => near,
@@ -92,31 +92,31 @@ impl Coordinates {
         }
     }
 
-    fn place(&self, bytes: &mut Bytes<'_>, is_query: bool) -> Point3<f64> {
-        Point3::from(std::array::from_fn(|axis| self.one(bytes, axis, is_query)))
+    fn point(&self, bytes: &mut Bytes<'_>, is_query: bool) -> Point3<f64> {
+        Point3::from(std::array::from_fn(|axis| self.number(bytes, axis, is_query)))
     }
 }
 
-/// A scene that may not be one, and where places are drawn from.
-pub struct Drawn {
+/// A scene that may be invalid, and the distribution from which query points are drawn.
+pub struct SceneDraft {
     pub mode: &'static str,
     pub positions: Vec<Point3<f64>>,
     pub elements: Vec<Element>,
     coordinates: Coordinates,
 }
 
-impl Drawn {
-    /// A scene of at most so many primitives, and of [`LARGEST`].
-    pub fn new(bytes: &mut Bytes<'_>, most: usize) -> Self {
+impl SceneDraft {
+    /// Generates a scene of at most `max_primitives` primitives, and at most [`MAX_PRIMITIVES`].
+    pub fn new(bytes: &mut Bytes<'_>, max_primitives: usize) -> Self {
         let coordinates = Coordinates::draw(bytes);
         let count = 1 + bytes.below(POSITIONS);
-        let mut positions: Vec<_> = (0..count).map(|_| coordinates.place(bytes, false)).collect();
-        // Near-ties, of what ties by itself.
+        let mut positions: Vec<_> = (0..count).map(|_| coordinates.point(bytes, false)).collect();
+        // Near-ties arise from positions that tie exactly.
         for _ in 0..bytes.below(8) {
             let (position, axis) = (bytes.below(count), bytes.below(3));
             positions[position][axis] = beside(positions[position][axis], bytes.signed() % 4);
         }
-        let len = bytes.below(1 + most.min(LARGEST));
+        let len = bytes.below(1 + max_primitives.min(MAX_PRIMITIVES));
         let element = |_| {
             let mut vertex = || bytes.byte() % u8::try_from(count).expect("few");
             match vertex() % 4 {
@@ -129,12 +129,12 @@ impl Drawn {
         Self { mode: coordinates.mode(), positions, elements, coordinates }
     }
 
-    /// A place around the scene, or anywhere; perhaps not finite.
+    /// Returns a point around the scene or anywhere, which may be not finite.
     pub fn query(&self, bytes: &mut Bytes<'_>) -> Point3<f64> {
         let kind = bytes.below(9);
         let vertex = |bytes: &mut Bytes<'_>| self.positions[bytes.below(self.positions.len())];
         match kind {
-            0 | 1 => self.coordinates.place(bytes, true),
+            0 | 1 => self.coordinates.point(bytes, true),
             2 => vertex(bytes),
             3 => vertex(bytes).map(|x| beside(x, bytes.signed() % 4)),
             4 => (vertex(bytes) * 0.5) + vertex(bytes).coords * 0.5,
@@ -149,7 +149,7 @@ impl Drawn {
         }
     }
 
-    /// The primitives one by one, whatever their coordinates.
+    /// Returns the primitives one by one, whatever their coordinates are.
     pub fn shapes(&self) -> Vec<Shape<f64>> {
         let at = |i: u32| self.positions[i as usize];
         let shape = |element: &Element| match *element {
@@ -160,7 +160,7 @@ impl Drawn {
         self.elements.iter().map(shape).collect()
     }
 
-    /// The scene; the first primitive with a coordinate that is not finite, if there is one.
+    /// Returns the scene, or the first primitive with a coordinate that is not finite.
     pub fn soup(&self) -> Result<Soup<f64>, PrimitiveId> {
         let is_finite = |i: &u32| self.positions[*i as usize].iter().all(|x| x.is_finite());
         let soup = Soup::new(self.positions.clone(), self.elements.iter().copied());
@@ -174,11 +174,11 @@ impl Drawn {
         }
     }
 
-    /// The scene as a program.
+    /// Formats the scene as Rust source.
     pub fn source(&self) -> String {
         let mut text = String::from("let soup = Soup::new(vec![\n");
         for p in &self.positions {
-            writeln!(text, "    {},", place(p)).expect("memory");
+            writeln!(text, "    {},", point_source(p)).expect("memory");
         }
         text += "], [\n";
         for element in &self.elements {
@@ -188,8 +188,8 @@ impl Drawn {
     }
 }
 
-/// A place as a program.
-pub fn place(p: &Point3<f64>) -> String {
+/// Formats a point as Rust source.
+pub fn point_source(p: &Point3<f64>) -> String {
     let coordinate = |x: f64| match x {
         _ if x.is_nan() => "f64::NAN".to_owned(),
         f64::INFINITY => "f64::INFINITY".to_owned(),
@@ -199,7 +199,7 @@ pub fn place(p: &Point3<f64>) -> String {
     format!("Point3::new({}, {}, {})", coordinate(p.x), coordinate(p.y), coordinate(p.z))
 }
 
-/// The vertices of a primitive in f64.
+/// Returns the vertices of a primitive in f64.
 pub fn vertices<T: p2m::Real>(soup: &Soup<T>, id: usize) -> Vec<[f64; 3]> {
     let shape = soup.get(PrimitiveId::new(id));
     p2m::Primitive::vertices(&shape).iter().map(|v| v.map(T::to_f64).coords.into()).collect()

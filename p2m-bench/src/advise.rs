@@ -1,32 +1,33 @@
-//! `p2m-bench advise`: what is recommended, against what would have been best.
+//! `p2m-bench advise`: compares the recommended backend with the one that would have been best.
 
 use crate::measure::Spread;
+use crate::rounds::thread_seconds;
 use crate::scene::Scene;
 use anyhow::Result;
-use cpu_time::ThreadTime;
 use nalgebra::Point3;
 use p2m_advisor::{BACKENDS, BackendEntry, BuildSettings, QueryRegion, SearchStructure, Workload, recommend};
 use p2m_core::{QueryOptions, Soup};
 use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 
-/// Queries that are timed.
+/// The number of queries that are timed.
 pub(crate) const QUERIES: usize = 20_000;
-/// Queries that are timed with exhaustive searches.
+/// The number of queries that are timed with exhaustive searches.
 const EXHAUSTIVE_QUERIES: usize = 20;
-/// How often.
+/// The number of times that the queries are timed.
 const ROUNDS: usize = 3;
-/// Jobs.
+/// The numbers of queries for which a backend is recommended.
 const JOBS: [u64; 2] = [100_000, 10_000_000];
 
-/// Seconds to build, and a query near the surface and in the box.
+/// The cost of a backend: seconds to build, and seconds of a query near the surface and in the box.
 struct Cost {
     backend: &'static BackendEntry,
     build: f64,
     query: [f64; 2],
 }
 
-/// Adds the rows of a scene; the worst ratio of a recommended job to the best one, and the largest share of advice.
+/// Adds the rows of a scene. Returns the worst ratio of a recommended job to the best one, and the largest share of a
+/// job that the advice took.
 pub(crate) fn add_rows(scene: &Scene, table: &mut Table) -> Result<[f64; 2]> {
     let soup = &scene.double;
     let sets = [QuerySet::Near, QuerySet::Box1].map(|set| set.generate(soup, QUERIES, 1));
@@ -35,20 +36,19 @@ pub(crate) fn add_rows(scene: &Scene, table: &mut Table) -> Result<[f64; 2]> {
         let count = if backend.structure == SearchStructure::Exhaustive { EXHAUSTIVE_QUERIES } else { QUERIES };
         costs.push(cost(backend, soup, &sets, count)?);
     }
-    let (mut worst, mut most) = (1.0f64, 0.0f64);
+    let (mut worst_ratio, mut largest_share) = (1.0f64, 0.0f64);
     for (k, (region, name)) in
         [(QueryRegion::NearSurface, "near"), (QueryRegion::SceneBox, "box")].into_iter().enumerate()
     {
         for queries in JOBS {
-            let start = ThreadTime::now();
-            let advice = recommend(soup, &Workload::new(queries, region))?;
-            let seconds = start.elapsed().as_secs_f64();
+            let (advice, seconds) = thread_seconds(|| recommend(soup, &Workload::new(queries, region)));
+            let advice = advice?;
             #[allow(clippy::cast_precision_loss, reason = "a number of queries")]
             let total = |cost: &Cost| cost.build + queries as f64 * cost.query[k];
             let best = costs.iter().map(total).fold(f64::INFINITY, f64::min);
             let chosen = costs.iter().find(|cost| cost.backend == advice.backend()).map_or(f64::NAN, total);
             let share = seconds / chosen;
-            (worst, most) = (worst.max(chosen / best), most.max(share));
+            (worst_ratio, largest_share) = (worst_ratio.max(chosen / best), largest_share.max(share));
             let all: Vec<String> = costs.iter().map(|c| format!("{} {:.2}", c.backend, total(c) / best)).collect();
             table.push(vec![
                 scene.name.clone(),
@@ -63,11 +63,11 @@ pub(crate) fn add_rows(scene: &Scene, table: &mut Table) -> Result<[f64; 2]> {
             ]);
         }
     }
-    Ok([worst, most])
+    Ok([worst_ratio, largest_share])
 }
 
-/// The columns.
-pub(crate) const HEAD: [&str; 9] = [
+/// The headings of the table.
+pub(crate) const HEADINGS: [&str; 9] = [
     "scene",
     "where",
     "queries",
@@ -80,17 +80,16 @@ pub(crate) const HEAD: [&str; 9] = [
 ];
 
 fn cost(backend: &'static BackendEntry, soup: &Soup<f64>, sets: &[Vec<Point3<f64>>; 2], count: usize) -> Result<Cost> {
-    let start = ThreadTime::now();
-    let index = backend.build(soup, &BuildSettings::default().with_parallel(false))?.index;
-    let build = start.elapsed().as_secs_f64();
-    let query = sets.each_ref().map(|places| {
-        let places = &places[..count];
+    let (built, build) = thread_seconds(|| backend.build(soup, &BuildSettings::default().with_parallel(false)));
+    let index = built?.index;
+    let query = sets.each_ref().map(|queries| {
+        let queries = &queries[..count];
         let mut answers = vec![None; count];
         let times: Vec<f64> = (0..ROUNDS)
             .map(|_| {
-                let start = ThreadTime::now();
-                index.closest_points_into(places, &QueryOptions::default(), &mut answers);
-                start.elapsed().as_secs_f64() / count as f64
+                let options = QueryOptions::default();
+                let ((), seconds) = thread_seconds(|| index.closest_points_into(queries, &options, &mut answers));
+                seconds / count as f64
             })
             .collect();
         Spread::of(&times).map_or(f64::NAN, |spread| spread.median)

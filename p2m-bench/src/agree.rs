@@ -1,43 +1,44 @@
-//! Whether contenders answer the same.
+//! Compares the answers of backends.
 //!
-//! Ours of one scalar have to agree bitwise, in distance and id, and are compared with the first of them. Rivals, and
-//! ours in f32, are compared in distance with our first index in f64; input rounded to f32 is part of the difference.
+//! Our backends of one scalar have to agree bitwise, in distance and id, and are compared with the first of them.
+//! External libraries, and our backends in f32, are compared in distance with our first index in f64; the rounding of
+//! the input to f32 is part of that difference.
 
-use crate::contender::{Answer, Backend, ScalarKind};
+use crate::backend::{Answer, Backend, ScalarKind};
 
-/// The answers of a contender in a round.
+/// The answers of a backend in a round.
 #[derive(Clone, Copy)]
 pub(crate) struct Answers<'a> {
-    /// Whose.
+    /// The backend that answered.
     pub(crate) backend: &'static Backend,
-    /// Places of its queries in the set, increasing.
+    /// The positions of its queries in the set, in increasing order.
     pub(crate) chosen: &'a [usize],
-    /// One answer for each.
+    /// The answers, one for each of these queries.
     pub(crate) answers: &'a [Answer],
 }
 
-/// How the answers of a contender compare.
+/// The result of comparing the answers of a backend.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Agreement {
-    /// Answers compared bitwise with another contender of ours.
+    /// The number of answers that were compared bitwise with another backend of ours.
     pub(crate) compared: usize,
-    /// Of those, how many have another distance.
+    /// The number of compared answers that have another distance.
     pub(crate) other_distance: usize,
-    /// How many have the same distance and another id.
+    /// The number of compared answers that have the same distance and another id.
     pub(crate) other_id: usize,
-    /// Queries without a (finite) answer.
+    /// The number of queries without a finite answer.
     pub(crate) failed: usize,
     /// The largest difference of a distance from the reference, in units of the scene; NaN without a reference.
     pub(crate) difference: f64,
 }
 
 impl Agreement {
-    /// Whether nothing is wrong: bitwise equal where that is promised, and all queries answered.
+    /// Returns whether compared answers are bitwise equal and all queries were answered.
     pub(crate) fn is_clean(&self) -> bool {
         self.other_distance == 0 && self.other_id == 0 && self.failed == 0
     }
 
-    /// Adds a round.
+    /// Adds the comparison of another round.
     pub(crate) fn add(&mut self, other: &Self) {
         self.compared += other.compared;
         self.other_distance += other.other_distance;
@@ -47,18 +48,18 @@ impl Agreement {
     }
 }
 
-/// Compares all contenders of a round; one result for each, in their order.
+/// Compares all backends of a round and returns one result for each, in their order.
 pub(crate) fn compare_round(round: &[Option<Answers<'_>>], total: usize) -> Vec<Agreement> {
     let first = |scalar: ScalarKind| {
-        let of_scalar = || round.iter().flatten().filter(move |a| a.backend.ours && a.backend.scalar == scalar);
-        of_scalar().find(|a| !a.backend.exhaustive).or_else(|| of_scalar().next())
+        let of_scalar = || round.iter().flatten().filter(move |a| a.backend.is_ours && a.backend.scalar == scalar);
+        of_scalar().find(|a| !a.backend.is_exhaustive).or_else(|| of_scalar().next())
     };
     let [double, single] = [ScalarKind::Double, ScalarKind::Single].map(|s| first(s).map(|a| (a, by_query(a, total))));
     let compare = |a: &Answers<'_>| {
         let mut agreement = Agreement { difference: f64::NAN, ..Agreement::default() };
         agreement.failed = a.answers.iter().filter(|answer| !answer.distance.is_finite()).count();
         let peer = if a.backend.scalar == ScalarKind::Double { &double } else { &single };
-        if let Some((_, expected)) = peer.as_ref().filter(|_| a.backend.ours) {
+        if let Some((_, expected)) = peer.as_ref().filter(|_| a.backend.is_ours) {
             bitwise(a, expected, &mut agreement);
         }
         if let Some((_, expected)) = &double {
@@ -69,16 +70,16 @@ pub(crate) fn compare_round(round: &[Option<Answers<'_>>], total: usize) -> Vec<
     round.iter().map(|answers| answers.as_ref().map(compare).unwrap_or_default()).collect()
 }
 
-/// The answers at the places of their queries in the set.
+/// Returns the answers at the positions of their queries in the set, `None` for queries that were not asked.
 fn by_query(answers: &Answers<'_>, total: usize) -> Vec<Option<Answer>> {
     let mut all = vec![None; total];
-    answers.chosen.iter().zip(answers.answers).for_each(|(&place, answer)| all[place] = Some(*answer));
+    answers.chosen.iter().zip(answers.answers).for_each(|(&position, answer)| all[position] = Some(*answer));
     all
 }
 
-/// The answers beside those of the same queries in `expected`.
+/// Pairs each answer with that of the same query in `expected`.
 fn pairs<'a>(a: &Answers<'a>, expected: &'a [Option<Answer>]) -> impl Iterator<Item = (&'a Answer, Answer)> {
-    a.answers.iter().zip(a.chosen).filter_map(|(answer, &place)| expected[place].map(|e| (answer, e)))
+    a.answers.iter().zip(a.chosen).filter_map(|(answer, &position)| expected[position].map(|e| (answer, e)))
 }
 
 fn bitwise(a: &Answers<'_>, expected: &[Option<Answer>], agreement: &mut Agreement) {
@@ -92,7 +93,7 @@ fn bitwise(a: &Answers<'_>, expected: &[Option<Answer>], agreement: &mut Agreeme
     }
 }
 
-/// Answers that failed are counted elsewhere.
+/// Returns the largest difference of distances. Queries that failed are left out, because they are counted elsewhere.
 fn largest_difference(a: &Answers<'_>, expected: &[Option<Answer>]) -> f64 {
     pairs(a, expected)
         .map(|(answer, expected)| (answer.distance - expected.distance).abs())
@@ -114,11 +115,11 @@ mod tests {
     fn each_kind_of_disagreement_is_counted_as_such() {
         let expected = [1.0, 2.0, 3.0].map(|distance| Answer { distance, id: 7 });
         let ours = [Answer { distance: 2.0, id: 6 }, Answer { distance: 3.5, id: 7 }];
-        let rival = [Answer { distance: 1.25, id: 0 }, Answer::NONE, Answer { distance: 3.0, id: 1 }];
+        let external = [Answer { distance: 1.25, id: 0 }, Answer::NONE, Answer { distance: 3.0, id: 1 }];
         let round = [
             answers("brute", &[1, 2], &ours),
             answers("aabb", &[0, 1, 2], &expected),
-            answers("parry3d", &[0, 1, 2], &rival),
+            answers("parry3d", &[0, 1, 2], &external),
             None,
         ];
         let [brute, aabb, parry, none] = compare_round(&round, 3).try_into().unwrap();

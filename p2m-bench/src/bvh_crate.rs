@@ -1,6 +1,6 @@
-//! The crate bvh as a contender. It has the tree and the search; the distance to a primitive is its user's.
+//! The crate bvh as a backend. It provides the tree and the search; its user provides the distance to a primitive.
 
-use crate::contender::{Absent, Answer, Contender};
+use crate::backend::{Answer, BenchIndex, Unavailable};
 use crate::scene::Scene;
 use bvh::aabb::{Aabb, Bounded};
 use bvh::bounding_hierarchy::BHShape;
@@ -9,13 +9,13 @@ use bvh::point_query::PointDistance;
 use nalgebra::Point3;
 use p2m_core::{PrimitiveId, PrimitiveSet};
 
-/// One to three vertices, and the place of their leaf.
+/// A primitive of one to three vertices, with the index of its leaf.
 struct Primitive {
     vertices: Vertices,
     node: usize,
 }
 
-/// Vertices of a triangle, a segment or a point.
+/// The vertices of a triangle, a segment or a point.
 enum Vertices {
     Triangle([Point3<f64>; 3]),
     Segment([Point3<f64>; 2]),
@@ -58,7 +58,7 @@ impl PointDistance<f64, 3> for Primitive {
     }
 }
 
-/// The closest point on a segment, clamped.
+/// Returns the closest point on a segment.
 fn on_segment(query: &Point3<f64>, [a, b]: &[Point3<f64>; 2]) -> Point3<f64> {
     let along = b - a;
     let (part, length) = (along.dot(&(query - a)), along.norm_squared());
@@ -71,7 +71,7 @@ fn on_segment(query: &Point3<f64>, [a, b]: &[Point3<f64>; 2]) -> Point3<f64> {
     }
 }
 
-/// The closest point on a triangle, by its regions (Ericson, Real-Time Collision Detection, 5.1.5).
+/// Returns the closest point on a triangle by its regions (Ericson, Real-Time Collision Detection, 5.1.5).
 pub(crate) fn on_triangle(query: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> Point3<f64> {
     let (ab, ac, ap) = (b - a, c - a, query - a);
     let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
@@ -104,14 +104,14 @@ pub(crate) fn on_triangle(query: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> 
     a + ab * (vb * scale) + ac * (vc * scale)
 }
 
-/// The tree and its primitives.
+/// The tree and the primitives that it refers to.
 pub(crate) struct Tree {
     tree: Bvh<f64, 3>,
     primitives: Vec<Primitive>,
 }
 
-/// Copies the primitives, as a user of the crate has to, and builds on one thread.
-pub(crate) fn tree(scene: &Scene) -> impl FnOnce() -> Result<Tree, Absent> + use<> {
+/// Copies the primitives, as a user of the crate has to, and returns a function that builds on one thread.
+pub(crate) fn tree(scene: &Scene) -> impl FnOnce() -> Result<Tree, Unavailable> + use<> {
     let soup = &scene.double;
     let vertices = |i: usize| match *soup.get(PrimitiveId::new(i)).vertices() {
         [a, b, c] => Vertices::Triangle([a, b, c]),
@@ -122,7 +122,7 @@ pub(crate) fn tree(scene: &Scene) -> impl FnOnce() -> Result<Tree, Absent> + use
     move || Ok(Tree { tree: Bvh::build(&mut primitives), primitives })
 }
 
-impl Contender for Tree {
+impl BenchIndex for Tree {
     type Scalar = f64;
 
     #[inline(always)]

@@ -1,22 +1,24 @@
-//! `p2m-bench delaunay`: Delaunay tetrahedra of the vertices of scenes and of points that make every predicate zero.
+//! `p2m-bench delaunay`: times Delaunay triangulations of the vertices of scenes and of points that make every
+//! predicate zero.
 
 use crate::measure::Spread;
 use crate::memory;
+use crate::rounds::thread_seconds;
 use crate::scene::Scene;
 use anyhow::{Context, Result};
-use cpu_time::ThreadTime;
 use p2m_interception::delaunay::{Delaunay, Work};
 use p2m_testkit::{rng, vector};
 use p2m_tradeoff::Table;
 use std::path::PathBuf;
 
-/// Bounding sites for queries in ten times the box.
-const REACH: f64 = 22.78;
+/// The distance of the bounding sites from the centre of the scene, in half diagonals, for queries in ten
+/// times the box.
+const DOMAIN_HALF_DIAGONALS: f64 = 22.78;
 
-/// Named points.
+/// Points with a name.
 type Input = (String, Vec<[f64; 3]>);
 
-/// Grids of whole and of rounded coordinates, and random points in space and on a sphere, a plane and a line.
+/// Returns grids of integer and of rounded coordinates, and random points in space and on a sphere, a plane and a line.
 fn generated() -> Vec<Input> {
     let grid = |spacing: f64| -> Vec<[f64; 3]> {
         (0..1_000_000u32).map(|i| [i % 100, i / 100 % 100, i / 10_000].map(|x| f64::from(x) * spacing)).collect()
@@ -41,7 +43,7 @@ fn generated() -> Vec<Input> {
     .into()
 }
 
-/// How many of which an insertion needs, and how many of these need more than the filter.
+/// Returns the numbers of predicates per insertion, and how many of these the filter did not decide.
 fn predicates(work: &Work, points: usize) -> [String; 3] {
     let each = |n: u64| n as f64 / points as f64;
     [
@@ -62,7 +64,7 @@ fn predicates(work: &Work, points: usize) -> [String; 3] {
     ]
 }
 
-/// Prints the table; whether all triangulations are valid.
+/// Prints the table, and returns whether all triangulations are valid.
 pub(crate) fn print(scenes: &[PathBuf], rounds: usize) -> Result<bool> {
     let mut inputs = Vec::new();
     for path in scenes {
@@ -74,24 +76,25 @@ pub(crate) fn print(scenes: &[PathBuf], rounds: usize) -> Result<bool> {
     let mut seconds = vec![Vec::new(); inputs.len()];
     for _ in 0..rounds {
         for ((_, points), seconds) in inputs.iter().zip(&mut seconds) {
-            let start = ThreadTime::now();
-            let delaunay = Delaunay::new(points, REACH)?;
-            seconds.push(start.elapsed().as_secs_f64());
-            drop(delaunay);
+            let (delaunay, elapsed) = thread_seconds(|| Delaunay::new(points, DOMAIN_HALF_DIAGONALS));
+            delaunay?;
+            seconds.push(elapsed);
         }
     }
-    let head = ["input", "points", "tetrahedra", "points/s", "least", "most", "B/point", "peak B/point", "steps"];
-    let head = head.into_iter().chain(["orientations: whole, adaptive", "spheres: whole, double, adaptive", "check"]);
-    let mut table = Table::new(head);
-    let mut good = true;
+    let headings =
+        ["input", "points", "tetrahedra", "points/s", "minimum", "maximum", "B/point", "peak B/point", "steps"];
+    let headings =
+        headings.into_iter().chain(["orientations: whole, adaptive", "spheres: whole, double, adaptive", "check"]);
+    let mut table = Table::new(headings);
+    let mut is_valid = true;
     for ((name, points), seconds) in inputs.iter().zip(&seconds) {
         let before = memory::current();
         memory::reset_peak();
-        let (delaunay, bytes) = memory::measured(|| Delaunay::new(points, REACH));
+        let (delaunay, bytes) = memory::measured(|| Delaunay::new(points, DOMAIN_HALF_DIAGONALS));
         let peak = memory::peak().saturating_sub(before);
         let delaunay = delaunay?;
         let check = delaunay.check();
-        good &= check.is_ok();
+        is_valid &= check.is_ok();
         let spread = Spread::of(seconds).context("no rounds")?;
         let speed = |seconds: f64| format!("{:.0}", points.len() as f64 / seconds);
         let each = |n: usize| format!("{:.0}", n as f64 / points.len() as f64);
@@ -101,7 +104,7 @@ pub(crate) fn print(scenes: &[PathBuf], rounds: usize) -> Result<bool> {
         row.push(check.map_or_else(|e| e.to_string(), |()| "valid".to_owned()));
         table.push(row);
     }
-    println!("\nTimes are those of {rounds} rounds in turns: median, least and most points a second.");
+    println!("\nTimes are those of {rounds} rounds in turns: median, minimum and maximum of points a second.");
     println!("Predicates are counted for each point: in all, and those that the filter left to each stage.\n\n{table}");
-    Ok(good)
+    Ok(is_valid)
 }

@@ -1,14 +1,14 @@
-//! `p2m-bench field`: distance fields on a grid, against parry3d and against the figures of the article on AABB trees.
+//! `p2m-bench field`: compares distance fields on a grid with parry3d and with the figures of an article on AABB trees.
 
-use crate::backends::{aabb_options, octree_options, p2m_options};
-use crate::contender::{Absent, Answer, Prepared};
+use crate::backend::{Answer, Prepared, Unavailable};
+use crate::external::{parry_double, parry_single};
 use crate::measure::Spread;
 use crate::memory::measured;
+use crate::our_indexes::{aabb_options, octree_options, p2m_options};
 use crate::queries::Queries;
-use crate::rivals::{parry_double, parry_single};
+use crate::rounds::{rotated, thread_seconds};
 use crate::scene::Scene;
 use anyhow::{Context as _, Result, anyhow};
-use cpu_time::ThreadTime;
 use p2m_bvh::AabbTree;
 use p2m_core::{BruteForce, BuildIndex, ClosestPoint, PrimitiveSet, Soup};
 use p2m_field::grid_candidates::CandidateLists;
@@ -18,56 +18,59 @@ use p2m_interception::{Domain, OctreeIndex, P2mIndex};
 use p2m_mixed::generate::{IcoSphere, ico_sphere};
 use p2m_tradeoff::Table;
 
-/// Layers that contenders fill in turn.
+/// The number of layers of the grid in a slab, which methods fill in turn.
 const LAYERS: usize = 16;
 
-/// Fills a part of the field; the time it takes is the caller's affair.
+/// Fills a slab of the field.
 type Fill<'a> = Box<dyn Fn(&Grid) -> Vec<f32> + 'a>;
 
-/// A contender that is built.
-struct Built<'a> {
+/// A method that is built.
+struct Method<'a> {
     name: &'static str,
     seconds: f64,
     bytes: usize,
     fill: Fill<'a>,
-    /// Of each part, in nanoseconds a point.
+    /// The time of each slab, in nanoseconds per point.
     times: Vec<f64>,
-    /// The largest difference from the first contender, in diagonals.
+    /// The largest difference from the first method, in diagonals.
     difference: f64,
 }
 
-/// Prints the table of a scene: every `stride`-th slab of the grid; whether all fields of ours are the same.
+/// Prints the table of a scene for every `stride`-th slab of the grid, and returns whether all fields of
+/// ours are equal.
 pub(crate) fn print(scene: &Scene, resolution: usize, stride: usize) -> Result<bool> {
     let bounds = scene.double.aabb();
     let grid = Grid::around(&bounds, resolution, 1.05)?;
     let [x, y, z] = grid.counts();
-    let mut all = contenders(scene, &grid)?;
-    let mut same = true;
+    let mut all = methods(scene, &grid)?;
+    let mut is_same = true;
     let slabs: Vec<usize> = (0..z).step_by(LAYERS).step_by(stride).collect();
     for (turn, first) in slabs.iter().enumerate() {
-        let part = Grid::new(grid.point([0, 0, *first]), grid.spacing(), [x, y, LAYERS.min(z - first)])?;
+        let slab = Grid::new(grid.point([0, 0, *first]), grid.spacing(), [x, y, LAYERS.min(z - first)])?;
         let count = all.len();
         let mut fields: Vec<Option<Vec<f32>>> = vec![None; count];
-        for i in (0..count).map(|i| (i + turn) % count) {
-            let start = ThreadTime::now();
-            let field = (all[i].fill)(&part);
-            all[i].times.push(start.elapsed().as_nanos() as f64 / part.len() as f64);
+        for i in rotated(count, turn) {
+            let (field, seconds) = thread_seconds(|| (all[i].fill)(&slab));
+            all[i].times.push(seconds * 1e9 / slab.len() as f64);
             fields[i] = Some(field);
         }
         let expected = fields[0].take().unwrap_or_default();
-        for (contender, field) in all.iter_mut().zip(fields).skip(1) {
+        for (method, field) in all.iter_mut().zip(fields).skip(1) {
             let Some(field) = field else { continue };
-            // Signed ones are compared by their magnitudes.
-            let differs = |(a, b): (&f32, &f32)| f64::from(a.abs()) - f64::from(b.abs());
-            // NaN of one alone is a difference, and not lost in the maximum.
-            let most =
-                expected.iter().zip(&field).map(differs).fold(0.0f64, |m, d| if d.abs() <= m { m } else { d.abs() });
-            contender.difference = contender.difference.max(most / scene.diagonal());
+            // Signed values are compared by their magnitudes. `f64::max` would drop a NaN, so a NaN of one method alone
+            // becomes an infinite difference.
+            let difference = |(a, b): (&f32, &f32)| {
+                let (a, b) = (f64::from(a.abs()), f64::from(b.abs()));
+                let difference = if a.total_cmp(&b).is_eq() { 0.0 } else { (a - b).abs() };
+                if difference.is_nan() { f64::INFINITY } else { difference }
+            };
+            let largest = expected.iter().zip(&field).map(difference).fold(0.0, f64::max);
+            method.difference = method.difference.max(largest / scene.diagonal());
         }
     }
     let of_parry = all.iter().find(|c| c.name == "parry3d").map(|c| mean(&c.times));
     let mut table = Table::new([
-        "contender",
+        "method",
         "build s",
         "MB",
         "ns a point (slabs from - to)",
@@ -76,13 +79,13 @@ pub(crate) fn print(scene: &Scene, resolution: usize, stride: usize) -> Result<b
         "difference",
     ]);
     let points = grid.len() as f64;
-    for contender in &all {
-        let Built { name, seconds, bytes, times, difference, .. } = contender;
+    for method in &all {
+        let Method { name, seconds, bytes, times, difference, .. } = method;
         let ns = mean(times);
         let spread = Spread::of(times).ok_or_else(|| anyhow!("no slab was measured"))?;
         let rate = |ns: f64| of_parry.map_or_else(|| "-".to_owned(), |parry| format!("{:.2}", parry / ns));
         let is_ours = !name.starts_with("parry");
-        same &= !is_ours || *difference == 0.0;
+        is_same &= !is_ours || *difference == 0.0;
         table.push(vec![
             (*name).to_owned(),
             format!("{seconds:.3}"),
@@ -96,43 +99,41 @@ pub(crate) fn print(scene: &Scene, resolution: usize, stride: usize) -> Result<b
     println!("\n## {}\n", scene.describe());
     println!(
         "Grid of {x} x {y} x {z} points around the 1.05-fold box ({:.1} MB of f32), {} of {} slabs of {LAYERS} layers, which \
-         contenders fill in turns; one thread, thread CPU time, means over the slabs. *With build*: as if the whole grid was \
-         filled once. *Difference*: from the first contender, in diagonals; `=` is bit for bit.\n\n{table}",
+         methods fill in turns; one thread, thread CPU time, means over the slabs. *With build*: as if the whole grid was \
+         filled once. *Difference*: from the first method, in diagonals; `=` is bit for bit.\n\n{table}",
         points * 4.0 / 1e6,
         slabs.len(),
         z.div_ceil(LAYERS),
     );
-    Ok(same)
+    Ok(is_same)
 }
 
 fn mean(times: &[f64]) -> f64 {
     times.iter().sum::<f64>() / times.len().max(1) as f64
 }
 
-/// What puts signs to the answers of a tree.
+/// Adds a sign to the distances of a tree.
 type Sided<'a> = fn(Tree<'a>, &'a Soup<f64>) -> Result<SignedDistance<'a, Tree<'a>>, SignError>;
 type Tree<'a> = AabbTree<f64, &'a Soup<f64>>;
 
-/// Something with the seconds and the bytes that it took.
+/// Returns a value with the seconds and the bytes that it took.
 fn built<B>(build: impl FnOnce() -> Result<B>) -> Result<(B, f64, usize)> {
-    let start = ThreadTime::now();
-    let (built, bytes) = measured(build);
-    let seconds = start.elapsed().as_secs_f64();
+    let ((built, bytes), seconds) = thread_seconds(|| measured(build));
     Ok((built?, seconds, bytes))
 }
 
-/// An index of ours by its build.
+/// Builds an index of ours as a method.
 fn ours<'a, I: ClosestPoint<f64> + Sync + 'a>(
     name: &'static str,
     build: impl FnOnce() -> Result<I>,
     options: FieldOptions,
-) -> Result<Built<'a>> {
+) -> Result<Method<'a>> {
     let (index, seconds, bytes) = built(build)?;
     let fill = Box::new(move |grid: &Grid| distances(&index, grid, &options, &|_| ()).expect("memory"));
-    Ok(Built { name, seconds, bytes, fill, times: Vec::new(), difference: 0.0 })
+    Ok(Method { name, seconds, bytes, fill, times: Vec::new(), difference: 0.0 })
 }
 
-fn contenders<'a>(scene: &'a Scene, grid: &Grid) -> Result<Vec<Built<'a>>> {
+fn methods<'a>(scene: &'a Scene, grid: &Grid) -> Result<Vec<Method<'a>>> {
     let soup = &scene.double;
     let [x, y, z] = grid.counts();
     let domain = p2m_core::Aabb { min: grid.origin(), max: grid.point([x - 1, y - 1, z - 1]) };
@@ -148,19 +149,19 @@ fn contenders<'a>(scene: &'a Scene, grid: &Grid) -> Result<Vec<Built<'a>>> {
     ];
     let (lists, seconds, bytes) = built(|| CandidateLists::new(soup).context("a scene out of range"))?;
     let fill = Box::new(move |grid: &Grid| distances_by_lists(&lists, grid, &hints, &|_| ()).expect("memory"));
-    all.push(Built { name: "lists", seconds, bytes, fill, times: Vec::new(), difference: 0.0 });
+    all.push(Method { name: "lists", seconds, bytes, fill, times: Vec::new(), difference: 0.0 });
     if soup.triangles().len() == soup.len() {
         if let Ok((signed, seconds, bytes)) =
             built(|| Ok(SignedDistance::new(AabbTree::build(soup, &aabb_options())?, soup)?))
         {
             let fill = Box::new(move |grid: &Grid| signed_distances(&signed, grid, &hints, &|_| ()).expect("memory"));
-            all.push(Built { name: "aabb, signed", seconds, bytes, fill, times: Vec::new(), difference: 0.0 });
+            all.push(Method { name: "aabb, signed", seconds, bytes, fill, times: Vec::new(), difference: 0.0 });
         }
-        let ways: [(&'static str, Sided<'a>); 2] = [
+        let variants: [(&'static str, Sided<'a>); 2] = [
             ("lists, signed", |tree, soup| SignedDistance::new(tree, soup)),
             ("lists, winding", |tree, soup| SignedDistance::with_winding_numbers(tree, soup, 0.01)),
         ];
-        for (name, sided) in ways {
+        for (name, sided) in variants {
             let both = built(|| {
                 let lists = CandidateLists::new(soup).context("a scene out of range")?;
                 Ok((lists, sided(AabbTree::build(soup, &aabb_options())?, soup)?))
@@ -169,20 +170,19 @@ fn contenders<'a>(scene: &'a Scene, grid: &Grid) -> Result<Vec<Built<'a>>> {
                 let fill = Box::new(move |grid: &Grid| {
                     signed_distances_by_lists(&lists, &signed, grid, &hints, &|_| ()).expect("memory")
                 });
-                all.push(Built { name, seconds, bytes, fill, times: Vec::new(), difference: 0.0 });
+                all.push(Method { name, seconds, bytes, fill, times: Vec::new(), difference: 0.0 });
             }
         }
     }
-    all.extend(rival("parry3d", parry_single(scene)));
-    all.extend(rival("parry3d-f64", parry_double(scene)));
+    all.extend(external_method("parry3d", parry_single(scene)));
+    all.extend(external_method("parry3d-f64", parry_double(scene)));
     Ok(all)
 }
 
-fn rival<'a>(name: &'static str, prepared: Result<Prepared<'a>, Absent>) -> Option<Built<'a>> {
+fn external_method<'a>(name: &'static str, prepared: Result<Prepared<'a>, Unavailable>) -> Option<Method<'a>> {
     let build = prepared.ok()?.build;
-    let start = ThreadTime::now();
-    let (ready, bytes) = measured(build);
-    let (ready, seconds) = (ready.ok()?, start.elapsed().as_secs_f64());
+    let ((index, bytes), seconds) = thread_seconds(|| measured(build));
+    let index = index.ok()?;
     #[allow(clippy::cast_possible_truncation, reason = "fields are f32")]
     let fill = Box::new(move |grid: &Grid| {
         let [x, y, z] = grid.counts();
@@ -190,29 +190,25 @@ fn rival<'a>(name: &'static str, prepared: Result<Prepared<'a>, Absent>) -> Opti
         let mut answers = vec![Answer::NONE; x];
         for (j, k) in (0..y * z).map(|row| (row % y, row / y)) {
             let row = Queries::new((0..x).map(|i| grid.point([i, j, k])).collect());
-            if ready.answer(row.all(), &mut answers).is_err() {
+            if index.answer(row.all(), &mut answers).is_err() {
                 answers.fill(Answer::NONE);
             }
             values.extend(answers.iter().map(|answer| answer.distance as f32));
         }
         values
     });
-    Some(Built { name, seconds, bytes, fill, times: Vec::new(), difference: 0.0 })
+    Some(Method { name, seconds, bytes, fill, times: Vec::new(), difference: 0.0 })
 }
 
 fn one_thread() -> FieldOptions {
     FieldOptions::default().with_parallel(false)
 }
 
-/// What the article tells, beside ours.
+/// Prints the figures of the article beside ours.
 pub(crate) fn print_article(scene: &Scene) -> Result<()> {
     let ball = ico_sphere(&IcoSphere::default().with_frequency(16))?;
     let ball = Scene::new("ico-sphere".to_owned(), ball)?;
-    let time = |run: &mut dyn FnMut()| {
-        let start = ThreadTime::now();
-        run();
-        start.elapsed().as_secs_f64()
-    };
+    let time = |run: &mut dyn FnMut()| thread_seconds(run).1;
     let mut table = Table::new(["what", "the article (cited)", "ours, s"]);
     let grid = Grid::around(&ball.double.aabb(), 45, 1.05)?;
     let brute = BruteForce::new(&ball.double)?;
@@ -225,9 +221,8 @@ pub(crate) fn print_article(scene: &Scene) -> Result<()> {
     table.push(vec!["the same with the AABB tree".to_owned(), "-".to_owned(), format!("{seconds:.3}")]);
     assert!(fields[0] == fields[1], "fields of brute force and tree differ");
     let grid = Grid::around(&scene.double.aabb(), 100, 1.05)?;
-    let start = ThreadTime::now();
-    let tree = AabbTree::build(&scene.double, &aabb_options())?;
-    let build = start.elapsed().as_secs_f64();
+    let (tree, build) = thread_seconds(|| AabbTree::build(&scene.double, &aabb_options()));
+    let tree = tree?;
     let field = time(&mut || drop(distances(&tree, &grid, &one_thread(), &|_| ())));
     let name = &scene.name;
     table.push(vec![format!("AABB tree of {name}"), "0.05 s on average (the bunny)".to_owned(), format!("{build:.3}")]);

@@ -1,12 +1,13 @@
-//! `p2m-bench kdop`: the distance figures of the manual of CGAL's k-DOP tree, redrawn.
+//! `p2m-bench kdop`: redraws the distance figures in the manual of CGAL's k-DOP tree.
 //!
-//! For each scene and number of faces: build time, nodes and leaves visited, time per query. Counters of the manual's
-//! own way (left child first, the largest slack as the bound) stand beside ours, and times that the manual quotes are
-//! marked as cited.
+//! For each scene and number of faces it prints the build time, the nodes and leaves visited, and the time per query.
+//! Counters of the manual's traversal (left child first, the largest slack as the bound) stand beside ours, and times
+//! that are quoted from the manual are marked as cited.
 
-use crate::backends::{frame, kdop_backend};
-use crate::contender::Backend;
+use crate::backend::Backend;
+use crate::backends::by_name;
 use crate::measure::{Effort, Spread, build_all, measure_set};
+use crate::our_indexes::scene_directions;
 use crate::scene::Scene;
 use anyhow::Result;
 use nalgebra::{Point3, Rotation3, Vector3};
@@ -19,23 +20,23 @@ use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 use std::f64::consts::PI;
 
-/// Angles about x and then y, in parts of pi.
+/// Rotation angles about the x axis and then the y axis, in multiples of pi.
 const ORIENTATIONS: [[f64; 2]; 7] =
     [[0.0, 0.0], [0.125, 0.0], [0.25, 0.0], [0.0, 0.125], [0.0, 0.25], [0.125, 0.125], [0.25, 0.25]];
 
 const COLUMNS: [&str; 6] = ["aabb", "kdop-6", "kdop-14", "kdop-18", "kdop-26", "kdop-scene"];
 
-/// What the manual has: seconds of building, and of 100,000 closest points of its bunny.
+/// The manual's seconds for building and for 100,000 closest-point queries of its bunny.
 const CITED: [(&str, [f64; 5]); 3] = [
     ("gear_skewed, build s", [0.0354, 0.039, 0.0426, 0.0455, 0.0493]),
     ("bunny subdivided, build s", [0.184, 0.208, 0.224, 0.236, 0.268]),
     ("bunny subdivided, 100,000 closest points s", [22.256, 21.816, 24.94, 25.588, 27.428]),
 ];
 
-/// Nodes and leaves, per query.
+/// Nodes and leaves visited per query.
 type Work = [f64; 2];
 
-/// The scene in each orientation.
+/// Returns the scene in each orientation.
 pub(crate) fn orientations(scene: &Scene) -> Result<Vec<Scene>> {
     let turned = |[x, y]: [f64; 2]| {
         let rotation = Rotation3::from_axis_angle(&Vector3::y_axis(), y * PI)
@@ -58,13 +59,13 @@ pub(crate) fn print_cited() {
     println!("\n{table}");
 }
 
-/// Prints the table of a scene; whether all trees agree.
+/// Prints the table of a scene, and returns whether all trees agree.
 pub(crate) fn print(scene: &Scene, set: QuerySet, effort: &Effort) -> bool {
-    let backends: Vec<&'static Backend> = COLUMNS.iter().map(|name| kdop_backend(name)).collect();
+    let backends: Vec<&'static Backend> = COLUMNS.iter().map(|name| by_name(name)).collect();
     let mut entries = build_all(scene, &backends, effort.builds);
     measure_set(scene, set, &mut entries, effort);
     let queries = set.generate(&scene.double, effort.queries, effort.seed);
-    let choice = frame(scene);
+    let choice = scene_directions(scene);
     let of_scene = match choice.k {
         6 => work_of_frame::<6>(scene, &queries),
         14 => work_of_frame::<14>(scene, &queries),
@@ -73,16 +74,16 @@ pub(crate) fn print(scene: &Scene, set: QuerySet, effort: &Effort) -> bool {
     };
     let work = [
         (boxes(scene, &queries), None),
-        usual::<6>(scene, &queries),
-        usual::<14>(scene, &queries),
-        usual::<18>(scene, &queries),
-        usual::<26>(scene, &queries),
+        work_of_default::<6>(scene, &queries),
+        work_of_default::<14>(scene, &queries),
+        work_of_default::<18>(scene, &queries),
+        work_of_default::<26>(scene, &queries),
         (of_scene, None),
     ];
     let mut table = Table::new(["per query", "AABB", "6-DOP", "14-DOP", "18-DOP", "26-DOP", "scene"]);
     let row = |name: &str, cells: Vec<String>| std::iter::once(name.to_owned()).chain(cells).collect::<Vec<_>>();
     let median = |values: &[f64]| Spread::of(values).map_or(f64::NAN, |s| s.median);
-    let least = |values: &[f64]| Spread::of(values).map_or(f64::NAN, |s| s.min);
+    let minimum = |values: &[f64]| Spread::of(values).map_or(f64::NAN, |s| s.min);
     table.push(row("build s", entries.iter().map(|e| format!("{:.4}", median(&e.build.seconds))).collect()));
     table.push(row("nodes of eight", work.iter().map(|(w, _)| format!("{:.2}", w[0])).collect()));
     table.push(row("packets", work.iter().map(|(w, _)| format!("{:.2}", w[1])).collect()));
@@ -97,11 +98,11 @@ pub(crate) fn print(scene: &Scene, set: QuerySet, effort: &Effort) -> bool {
         let figures = entry.sets[0].as_ref().expect("ours are never absent");
         clean &= figures.agreement.is_clean();
         times[0].push(format!("{:.0}", median(&figures.nanoseconds)));
-        times[1].push(format!("{:.0}", least(&figures.nanoseconds)));
+        times[1].push(format!("{:.0}", minimum(&figures.nanoseconds)));
     }
-    let [medians, leasts] = times;
+    let [medians, minima] = times;
     table.push(row("ns, median", medians));
-    table.push(row("ns, least", leasts));
+    table.push(row("ns, minimum", minima));
     println!("\n## {}\n\nThe scene: {choice}.\n\n{table}", scene.describe());
     clean
 }
@@ -116,14 +117,14 @@ fn boxes(scene: &Scene, queries: &[Point3<f64>]) -> Work {
     count(queries, |query, counting| tree.visit(query, counting))
 }
 
-/// Of ours for all queries, of the manual's way for one of twenty.
-fn usual<const K: usize>(scene: &Scene, queries: &[Point3<f64>]) -> (Work, Option<Work>)
+/// Returns the work of our tree over all queries, and of the manual's traversal over every twentieth query.
+fn work_of_default<const K: usize>(scene: &Scene, queries: &[Point3<f64>]) -> (Work, Option<Work>)
 where
     Directions<K>: Default,
 {
     let tree = KdopTree::<f64, _, K>::build(&scene.double, &KdopOptions::default()).expect("built before");
     let work = count(queries, |query, counting| tree.visit(query, counting));
-    let left_first = LeftFirst::of_packets(tree.tree());
+    let left_first = LeftFirst::from_packets(tree.tree());
     let some: Vec<_> = queries.iter().step_by(20).collect();
     let mut sums = [0usize; 2];
     for query in &some {
@@ -134,7 +135,7 @@ where
 }
 
 fn work_of_frame<const K: usize>(scene: &Scene, queries: &[Point3<f64>]) -> Work {
-    let directions = frame(scene).directions::<K>().expect("as many as chosen");
+    let directions = scene_directions(scene).directions::<K>().expect("as many as chosen");
     let tree = KdopTree::<f64, _, K>::build_with(&scene.double, &KdopOptions::new(directions)).expect("built before");
     count(queries, |query, counting| tree.visit(query, counting))
 }

@@ -1,70 +1,70 @@
-//! What a scene of several kinds costs: sets of one kind, and a tree for each kind.
+//! Indexes over scenes of one kind of primitive, and a tree for each kind in scenes of several kinds.
 
-use crate::backends::{aabb_options, build, id_of};
-use crate::contender::{Absent, Answer, Contender, Prepared, Ready};
+use crate::backend::{Answer, BenchIndex, BoxedIndex, Prepared, Unavailable};
+use crate::our_indexes::{aabb_options, build, id_of};
 use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_core::{BuildIndex, ClosestPoint, Indexed, PrimitiveId, PrimitiveSet, QueryOptions, Triangle};
 
-/// The AABB tree over the triangles written out, where there is nothing else.
-pub(crate) fn aabb_of_triangles(scene: &Scene) -> Result<Prepared<'_>, Absent> {
+/// Prepares the AABB tree over a vector of triangles, for scenes without other primitives.
+pub(crate) fn aabb_of_triangles(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
     let set = triangles(scene)?;
     let triangles: Vec<Triangle<f64>> = (0..set.len()).map(|i| set.get(PrimitiveId::new(i))).collect();
     Ok(Prepared { build: Box::new(|| build::<f64, AabbTree<_, _>, _>(triangles, &aabb_options())), borrowed: 0 })
 }
 
-/// The AABB tree over the scene's set of triangles, where there is nothing else.
-pub(crate) fn aabb_of_set(scene: &Scene) -> Result<Prepared<'_>, Absent> {
+/// Prepares the AABB tree over the scene's set of triangles, for scenes without other primitives.
+pub(crate) fn aabb_of_set(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
     let set = triangles(scene)?;
     let build = move || build::<f64, AabbTree<_, _>, _>(set, &aabb_options());
     Ok(Prepared { build: Box::new(build), borrowed: scene.double_bytes })
 }
 
-fn triangles(scene: &Scene) -> Result<Indexed<'_, f64, 3>, Absent> {
+fn triangles(scene: &Scene) -> Result<Indexed<'_, f64, 3>, Unavailable> {
     let set = scene.double.triangle_set();
     if set.len() < scene.len() {
-        return Err(Absent("the scene has other primitives than triangles".to_owned()));
+        return Err(Unavailable("the scene has other primitives than triangles".to_owned()));
     }
     Ok(set)
 }
 
-/// A tree of one kind, and the ids of the primitives in the scene.
-struct OfKind<'a> {
+/// A tree over the primitives of one kind, with their ids in the scene.
+struct KindTree<'a> {
     index: Box<dyn ClosestPoint<f64> + Sync + 'a>,
     ids: Vec<PrimitiveId>,
 }
 
-/// A tree for each kind that a scene has, that of the most primitives first.
-struct ByKind<'a>(Vec<OfKind<'a>>);
+/// One tree for each kind of primitive in a scene, in decreasing order of their sizes.
+struct KindTrees<'a>(Vec<KindTree<'a>>);
 
-impl<'a> ByKind<'a> {
+impl<'a> KindTrees<'a> {
     fn add<const N: usize>(
         &mut self,
         set: Indexed<'a, f64, N>,
         ids: impl Iterator<Item = PrimitiveId>,
-    ) -> Result<(), Absent>
+    ) -> Result<(), Unavailable>
     where
         Indexed<'a, f64, N>: PrimitiveSet<f64>,
     {
         if !set.is_empty() {
-            let index = AabbTree::build(set, &aabb_options()).map_err(|error| Absent(error.to_string()))?;
-            self.0.push(OfKind { index: Box::new(index), ids: ids.collect() });
+            let index = AabbTree::build(set, &aabb_options()).map_err(|error| Unavailable(error.to_string()))?;
+            self.0.push(KindTree { index: Box::new(index), ids: ids.collect() });
         }
         Ok(())
     }
 }
 
-impl Contender for ByKind<'_> {
+impl BenchIndex for KindTrees<'_> {
     type Scalar = f64;
 
-    /// Each tree is asked within what the ones before have found. Equal distances that are not equal before rounding are
-    /// not told apart, as the one tree does; no query here has any.
+    /// Queries each tree within the distance that the previous ones found. Unlike the single tree, this does not decide
+    /// between computed distances that are equal although the keys differ; no query of the harness has such a tie.
     fn query(&self, query: &Point3<f64>) -> Answer {
         let mut best = None;
-        for OfKind { index, ids } in &self.0 {
-            let reach = best.map_or(f64::INFINITY, |(distance, _)| distance);
-            let found = index.closest_point_with(query, &QueryOptions::default().with_max_distance(reach));
+        for KindTree { index, ids } in &self.0 {
+            let max_distance = best.map_or(f64::INFINITY, |(distance, _)| distance);
+            let found = index.closest_point_with(query, &QueryOptions::default().with_max_distance(max_distance));
             let found = found.map(|found| (found.distance, ids[found.primitive.index()]));
             best = match (best, found) {
                 (Some(best), Some(found)) if best <= found => Some(best),
@@ -75,16 +75,16 @@ impl Contender for ByKind<'_> {
     }
 }
 
-/// An AABB tree for each kind.
-pub(crate) fn aabb_by_kind(scene: &Scene) -> Result<Prepared<'_>, Absent> {
+/// Prepares an AABB tree for each kind of primitive.
+pub(crate) fn aabb_by_kind(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
     let soup = &scene.double;
     let build = move || {
-        let mut trees = ByKind(Vec::new());
+        let mut trees = KindTrees(Vec::new());
         trees.add(soup.triangle_set(), soup.triangle_ids())?;
         trees.add(soup.segment_set(), soup.segment_ids())?;
         trees.add(soup.point_set(), soup.point_ids())?;
         trees.0.sort_by_key(|tree| std::cmp::Reverse(tree.ids.len()));
-        Ok(Box::new(trees) as Ready<'_>)
+        Ok(Box::new(trees) as BoxedIndex<'_>)
     };
     Ok(Prepared { build: Box::new(build), borrowed: scene.double_bytes })
 }

@@ -1,88 +1,89 @@
-//! Builds and rounds of queries, contenders taking turns, in thread CPU time.
+//! Times builds and rounds of queries in thread CPU time, with the backends taking turns to begin.
 
-use crate::agree::{Agreement, compare_round};
-use crate::contender::{Absent, Answer, Backend, Ready, catch};
+use crate::agree::{Agreement, Answers, compare_round};
+use crate::backend::{Answer, Backend, BoxedIndex, Unavailable, catch};
 use crate::memory;
 use crate::queries::{Queries, spread};
+use crate::rounds::{checksum, rotated, thread_seconds};
 use crate::scene::Scene;
-use cpu_time::ThreadTime;
 use nalgebra::Point3;
 use p2m_testkit::queries::QuerySet;
 use std::hint::black_box;
 
-pub(crate) use p2m_tradeoff::{Spread, rotated};
+pub(crate) use p2m_tradeoff::Spread;
 
-/// A contender slower than this gets [`SLOW_QUERIES`].
+/// Backends that need more nanoseconds for a query than this get [`SLOW_QUERIES`] queries.
 const SLOW_NANOSECONDS: f64 = 20_000.0;
+/// The number of queries in a round of a backend that is slower than [`SLOW_NANOSECONDS`].
 const SLOW_QUERIES: usize = 20_000;
 
-/// A round of an exhaustive contender is not to take longer, in nanoseconds.
-const EXHAUSTIVE_ROUND: f64 = 1e9;
+/// The longest time that a round of an exhaustive backend may take, in nanoseconds.
+const EXHAUSTIVE_ROUND_NANOSECONDS: f64 = 1e9;
 
-/// Enough probing to tell how slow a contender is, in nanoseconds.
-const PROBE: f64 = 1e7;
+/// A probe that takes this many nanoseconds is long enough to estimate the speed of a backend.
+const PROBE_NANOSECONDS: f64 = 1e7;
 
-/// Building again stops after so many seconds.
-const BUILD_SECONDS: f64 = 10.0;
+/// An index is not built again once its builds have taken this many seconds in all.
+const MAX_BUILD_SECONDS: f64 = 10.0;
 
-/// How much is measured.
+/// The amount of work that a measurement does.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Effort {
-    /// Rounds of queries.
+    /// The number of rounds of queries.
     pub(crate) rounds: usize,
-    /// Queries a round.
+    /// The number of queries in a round.
     pub(crate) queries: usize,
-    /// Builds.
+    /// The number of times that each index is built.
     pub(crate) builds: usize,
-    /// Seed of the query sets.
+    /// The seed of the query sets.
     pub(crate) seed: u64,
 }
 
-/// What an index costs before its first query.
+/// The cost of an index before its first query.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BuildFigures {
     /// Thread CPU seconds of each build.
     pub(crate) seconds: Vec<f64>,
     /// Heap bytes that the index owns, its copies of positions and ids included.
     pub(crate) owned: usize,
-    /// Heap bytes of the scene that it borrows besides.
+    /// Heap bytes of the scene that the index borrows, which are not in `owned`.
     pub(crate) borrowed: usize,
-    /// The most heap bytes while building, those that it owns included.
+    /// The largest number of heap bytes at any time of the build, `owned` included.
     pub(crate) peak: usize,
 }
 
-/// What a contender did on a query set.
+/// The measurements of a backend on one query set.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SetFigures {
-    /// Queries a round.
+    /// The number of queries in a round.
     pub(crate) queries: usize,
-    /// Thread CPU nanoseconds per query of each round.
+    /// Thread CPU nanoseconds per query, one value for each round.
     pub(crate) nanoseconds: Vec<f64>,
-    /// Checksum of the answers of each round.
+    /// A checksum of the answers, one value for each round.
     pub(crate) checksums: Vec<u64>,
-    /// How its answers compare with the others', over all rounds.
+    /// The comparison of the answers with those of other backends, over all rounds.
     pub(crate) agreement: Agreement,
 }
 
-/// A contender in a scene.
+/// A backend in a scene, with its index and its measurements.
 pub(crate) struct Entry<'a> {
-    /// Which one.
+    /// The backend that was built.
     pub(crate) backend: &'static Backend,
-    /// The index, or why there is none.
-    pub(crate) index: Result<Ready<'a>, Absent>,
-    /// Of its builds.
+    /// The index, or the reason why there is none.
+    pub(crate) index: Result<BoxedIndex<'a>, Unavailable>,
+    /// The cost of the builds.
     pub(crate) build: BuildFigures,
-    /// Of the query sets, in their order.
-    pub(crate) sets: Vec<Result<SetFigures, Absent>>,
+    /// The measurements on the query sets, in the order in which they were measured.
+    pub(crate) sets: Vec<Result<SetFigures, Unavailable>>,
 }
 
-/// Builds all contenders `builds` times, in turns, and keeps the last index of each.
+/// Builds all backends `builds` times, in turns, and keeps the last index of each.
 pub(crate) fn build_all<'a>(scene: &'a Scene, backends: &[&'static Backend], builds: usize) -> Vec<Entry<'a>> {
     let mut entries: Vec<Entry<'a>> = backends
         .iter()
         .map(|&backend| Entry {
             backend,
-            index: Err(Absent("not built".to_owned())),
+            index: Err(Unavailable("not built".to_owned())),
             build: BuildFigures::default(),
             sets: Vec::new(),
         })
@@ -91,7 +92,7 @@ pub(crate) fn build_all<'a>(scene: &'a Scene, backends: &[&'static Backend], bui
         for at in rotated(entries.len(), round) {
             let entry = &mut entries[at];
             let failed = round > 0 && entry.index.is_err();
-            if !failed && entry.build.seconds.iter().sum::<f64>() < BUILD_SECONDS {
+            if !failed && entry.build.seconds.iter().sum::<f64>() < MAX_BUILD_SECONDS {
                 build_once(scene, entry);
             }
         }
@@ -100,37 +101,36 @@ pub(crate) fn build_all<'a>(scene: &'a Scene, backends: &[&'static Backend], bui
 }
 
 fn build_once<'a>(scene: &'a Scene, entry: &mut Entry<'a>) {
-    // The previous one goes first, untimed.
-    entry.index = Err(Absent("not built".to_owned()));
+    // The previous index is dropped before the clock starts.
+    entry.index = Err(Unavailable("not built".to_owned()));
     let before = memory::current();
     entry.index = (entry.backend.prepare)(scene).and_then(|prepared| {
         entry.build.borrowed = prepared.borrowed;
-        weigh(&mut entry.build, before, || catch(prepared.build))
+        measure_build(&mut entry.build, before, || catch(prepared.build))
     });
 }
 
-/// Builds, and adds what that costs; `before` is the memory before its input was prepared.
-pub(crate) fn weigh<V>(
+/// Builds an index and adds the cost to `figures`; `before` is the memory in use before the input was prepared.
+pub(crate) fn measure_build<V>(
     figures: &mut BuildFigures,
     before: usize,
-    build: impl FnOnce() -> Result<V, Absent>,
-) -> Result<V, Absent> {
+    build: impl FnOnce() -> Result<V, Unavailable>,
+) -> Result<V, Unavailable> {
     memory::reset_peak();
-    let start = ThreadTime::now();
-    let index = build()?;
-    let seconds = start.elapsed().as_secs_f64();
+    let (index, seconds) = thread_seconds(build);
+    let index = index?;
     figures.peak = memory::peak().saturating_sub(before);
     figures.owned = memory::current().saturating_sub(before);
     figures.seconds.push(seconds);
     Ok(index)
 }
 
-/// Measures one query set and appends its figures to every entry.
+/// Measures one query set and appends the figures to every entry.
 pub(crate) fn measure_set(scene: &Scene, set: QuerySet, entries: &mut [Entry<'_>], effort: &Effort) {
     measure(set.generate(&scene.double, effort.queries, effort.seed), entries, effort.rounds);
 }
 
-/// Measures queries of any kind.
+/// Measures the given queries and appends the figures to every entry.
 pub(crate) fn measure(queries: Vec<Point3<f64>>, entries: &mut [Entry<'_>], rounds: usize) {
     let queries = Queries::new(queries);
     let mut runs: Vec<Run> = entries.iter().map(|entry| Run::new(entry, &queries)).collect();
@@ -149,18 +149,18 @@ pub(crate) fn measure(queries: Vec<Point3<f64>>, entries: &mut [Entry<'_>], roun
     }
 }
 
-/// The state of a contender on a query set.
+/// The state of a backend while a query set is measured.
 struct Run {
-    /// The places of its queries in the set.
+    /// The positions of the backend's queries in the set.
     chosen: Vec<usize>,
     queries: Queries,
     answers: Vec<Answer>,
     figures: SetFigures,
-    failure: Option<Absent>,
+    failure: Option<Unavailable>,
 }
 
 impl Run {
-    /// Decides how many queries the contender gets.
+    /// Decides how many queries the backend gets.
     fn new(entry: &Entry<'_>, queries: &Queries) -> Self {
         let (count, failure) = match &entry.index {
             Err(absent) => (1, Some(absent.clone())),
@@ -181,60 +181,49 @@ impl Run {
             return;
         }
         self.answers.fill(Answer::NONE);
-        let start = ThreadTime::now();
-        let outcome = index.answer(black_box(self.queries.all()), &mut self.answers);
-        let elapsed = start.elapsed();
+        let queries = black_box(self.queries.all());
+        let (outcome, seconds) = thread_seconds(|| index.answer(queries, &mut self.answers));
         black_box(&self.answers);
         self.failure = outcome.err();
-        self.figures.nanoseconds.push(elapsed.as_secs_f64() * 1e9 / self.answers.len() as f64);
-        self.figures.checksums.push(checksum(&self.answers));
+        self.figures.nanoseconds.push(seconds * 1e9 / self.answers.len() as f64);
+        let answers = self.answers.iter().map(|answer| (answer.distance.to_bits(), u64::from(answer.id)));
+        self.figures.checksums.push(checksum(0, answers));
     }
 
-    fn for_comparison<'a>(&'a self, entry: &Entry<'_>) -> Option<crate::agree::Answers<'a>> {
+    fn for_comparison<'a>(&'a self, entry: &Entry<'_>) -> Option<Answers<'a>> {
         let backend = entry.backend;
-        self.failure.is_none().then_some(crate::agree::Answers {
-            backend,
-            chosen: &self.chosen,
-            answers: &self.answers,
-        })
+        self.failure.is_none().then_some(Answers { backend, chosen: &self.chosen, answers: &self.answers })
     }
 }
 
-/// Rough nanoseconds per query, from ever more queries.
-fn probe(index: &Ready<'_>, queries: &Queries) -> Result<f64, Absent> {
+/// Estimates the nanoseconds per query from a growing number of queries.
+fn probe(index: &BoxedIndex<'_>, queries: &Queries) -> Result<f64, Unavailable> {
     let sample = queries.gather(&spread(queries.len(), 1000));
-    // A set that was read in order would favour its beginning: stride through it.
+    // A prefix of the set would favour the region where the set begins, so the sample strides through it.
     let mut answers = vec![Answer::NONE; sample.len()];
     let mut count = 1;
     loop {
         let picked = sample.gather(&(0..count).map(|i| i * sample.len() / count).collect::<Vec<_>>());
-        let start = ThreadTime::now();
-        index.answer(picked.all(), &mut answers[..count])?;
-        let elapsed = start.elapsed().as_secs_f64() * 1e9;
-        if elapsed > PROBE || count == sample.len() {
-            return Ok(elapsed / count as f64);
+        let (outcome, seconds) = thread_seconds(|| index.answer(picked.all(), &mut answers[..count]));
+        outcome?;
+        let nanoseconds = seconds * 1e9;
+        if nanoseconds > PROBE_NANOSECONDS || count == sample.len() {
+            return Ok(nanoseconds / count as f64);
         }
         count = (count * 4).min(sample.len());
     }
 }
 
-/// How many queries a round a contender of that speed gets.
+/// Returns the number of queries in a round for a backend of the given speed.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is not negative")]
 fn affordable(backend: &Backend, nanoseconds: f64) -> usize {
     if nanoseconds <= SLOW_NANOSECONDS {
         usize::MAX
-    } else if backend.exhaustive {
-        SLOW_QUERIES.min((EXHAUSTIVE_ROUND / nanoseconds) as usize)
+    } else if backend.is_exhaustive {
+        SLOW_QUERIES.min((EXHAUSTIVE_ROUND_NANOSECONDS / nanoseconds) as usize)
     } else {
         SLOW_QUERIES
     }
-}
-
-/// Depends on every bit of every answer and on their order.
-fn checksum(answers: &[Answer]) -> u64 {
-    answers.iter().fold(0, |sum: u64, answer| {
-        (sum ^ answer.distance.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(23) ^ u64::from(answer.id)
-    })
 }
 
 #[cfg(test)]
@@ -244,23 +233,12 @@ mod tests {
     use p2m_core::{Element, Soup};
 
     #[test]
-    fn slow_contenders_get_fewer_queries() {
+    fn slow_backends_get_fewer_queries() {
         let [brute, aabb] = ["brute", "aabb"].map(|name| backends::ALL.iter().find(|b| b.name == name).unwrap());
         assert_eq!([affordable(aabb, 1e3), affordable(aabb, 1e6), affordable(brute, 1e6)], [usize::MAX, 20_000, 1000]);
     }
 
-    #[test]
-    fn checksums_see_order_and_ids() {
-        let answers = [Answer { distance: 1.0, id: 3 }, Answer { distance: 2.0, id: 3 }];
-        let mut other = answers;
-        other.reverse();
-        assert_ne!(checksum(&answers), checksum(&other));
-        other = answers;
-        other[0].id = 4;
-        assert_ne!(checksum(&answers), checksum(&other));
-    }
-
-    /// All contenders over a scene of these elements, measured a little.
+    /// Measures all backends over a scene of these elements with little effort.
     fn measured(elements: &[Element], check: impl FnOnce(&[Entry<'_>])) {
         let p = [[1.0, 0.0, 0.0], [2.0, 0.0, 1.0], [1.0, 3.0, 0.0], [5.0, 1.0, 2.0]].map(Point3::from).to_vec();
         let scene = Scene::new("test".into(), Soup::new(p, elements.iter().copied()).unwrap()).unwrap();
@@ -285,7 +263,7 @@ mod tests {
                     assert_eq!((set.nanoseconds.len(), set.checksums.len()), (2, 2));
                     assert_eq!(set.checksums[0], set.checksums[1]);
                     assert!(set.agreement.is_clean(), "{name} {:?}", set.agreement);
-                    assert_eq!(set.agreement.compared > 0, entry.backend.ours);
+                    assert_eq!(set.agreement.compared > 0, entry.backend.is_ours);
                     assert!(set.agreement.difference < 1e-4, "{name} {:?}", set.agreement);
                 }
             }
@@ -293,12 +271,12 @@ mod tests {
     }
 
     #[test]
-    fn a_rival_without_a_shape_is_absent_and_nothing_else_is() {
+    fn a_library_without_a_shape_is_absent_and_nothing_else_is() {
         measured(&[Element::Triangle([0, 1, 2]), Element::Point(3)], |entries| {
             for entry in entries {
                 let absent = entry.index.as_ref().err();
-                // The tree of the crate bvh asks our primitives.
-                let has_shapes = entry.backend.ours || entry.backend.name == "bvh";
+                // The tree of the crate bvh computes distances with our primitives, so it has all shapes.
+                let has_shapes = entry.backend.is_ours || entry.backend.name == "bvh";
                 let is_of_triangles = ["aabb-tri", "aabb-set"].contains(&entry.backend.name);
                 assert_eq!(absent.is_some(), !has_shapes || is_of_triangles);
                 assert!(entry.sets.iter().all(|set| set.is_err() == absent.is_some()));

@@ -1,30 +1,30 @@
-//! Heap memory, by an allocator that counts.
+//! Measures heap memory with an allocator that counts.
 //!
-//! StatsCollector costs every allocation one or two atomic additions and turns growing in place into copying, for all
-//! contenders alike. It shows in the build times of those that grow many vectors, and where all hits of a ray are asked
-//! for; other queries of none of them allocate, unless a traversal outgrows its inline stack.
+//! Counting costs every allocation one or two atomic additions and turns growth in place into copies, for all backends
+//! alike. It shows in the build times of backends that grow many vectors, and in queries for all hits of a ray. Other
+//! queries do not allocate, unless a traversal outgrows its inline stack.
 
 use peak_alloc::PeakAlloc;
 
 #[global_allocator]
 static ALLOCATOR: PeakAlloc = PeakAlloc;
 
-/// Bytes allocated now.
+/// Returns the number of bytes that are allocated now.
 pub(crate) fn current() -> usize {
     ALLOCATOR.current_usage()
 }
 
-/// Forgets all peaks up to now.
+/// Makes [`peak`] start from the bytes that are allocated now.
 pub(crate) fn reset_peak() {
     ALLOCATOR.reset_peak_usage();
 }
 
-/// The most bytes that were allocated at a time since [`reset_peak`].
+/// Returns the largest number of bytes that were allocated at a time since [`reset_peak`].
 pub(crate) fn peak() -> usize {
     ALLOCATOR.peak_usage()
 }
 
-/// What `make` returns, and the heap bytes that this holds.
+/// Returns the result of `make` and the number of heap bytes that it holds.
 pub(crate) fn measured<V>(make: impl FnOnce() -> V) -> (V, usize) {
     let before = current();
     let value = make();

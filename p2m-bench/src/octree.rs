@@ -1,8 +1,9 @@
-//! `p2m-bench octree`: what the octree's settings cost and bring: resolution, domain, threads.
+//! `p2m-bench octree`: compares the settings of the octree: resolution, domain and number of threads.
 
-use crate::backends::{OURS, octree_options, over_soup_with};
-use crate::contender::Backend;
+use crate::backend::Backend;
+use crate::backends::OURS;
 use crate::measure::{Effort, Spread, build_all, measure_set};
+use crate::our_indexes::{octree_options, over_soup_with};
 use crate::scene::Scene;
 use anyhow::{Context, Result};
 use nalgebra::{Point3, Vector3};
@@ -12,7 +13,7 @@ use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 use std::time::Instant;
 
-/// A setting.
+/// A setting of the octree under its name in the table.
 struct Setting {
     backend: Backend,
     options: fn(&Scene) -> OctreeOptions,
@@ -41,15 +42,15 @@ const SETTINGS: &[Setting] = &[
     setting!("band", |s: &Scene| octree_options(1.0).with_domain(Domain::Band(0.03 * s.diagonal()))),
 ];
 
-/// The box of the set 1x.
+/// Returns the box of the query set 1x.
 fn queried(scene: &Scene) -> Aabb<f64> {
     let bounds = scene.double.aabb();
-    let (centre, half) = (nalgebra::center(&bounds.min, &bounds.max), (bounds.max - bounds.min) * (1.05 / 2.0));
+    let (centre, half_extent) = (nalgebra::center(&bounds.min, &bounds.max), (bounds.max - bounds.min) * (1.05 / 2.0));
     let corner = |offset: Vector3<f64>| Point3::from(centre.coords + offset);
-    Aabb { min: corner(-half), max: corner(half) }
+    Aabb { min: corner(-half_extent), max: corner(half_extent) }
 }
 
-/// Prints the table of a scene; whether all indexes agree.
+/// Prints the table of a scene, and returns whether all indexes agree.
 pub(crate) fn print(scene: &Scene, sets: &[QuerySet], threads: &[usize], effort: &Effort) -> Result<bool> {
     let backends: Vec<&'static Backend> = SETTINGS.iter().map(|s| &s.backend).collect();
     let mut entries = build_all(scene, &backends, 1);

@@ -1,7 +1,7 @@
-//! What `query` prints and records.
+//! Prints and records the results of `p2m-bench query`.
 
+use crate::backend::Unavailable;
 use crate::backends::{YARDSTICK, YARDSTICK_DOUBLE};
-use crate::contender::Absent;
 use crate::measure::{BuildFigures, Entry, SetFigures, Spread};
 use crate::scene::Scene;
 use anyhow::{Context, Result, bail};
@@ -12,14 +12,17 @@ use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 
-/// Prints everything about a scene.
+/// Returns the provenance of a measurement by this program, which runs from its checkout.
+pub(crate) fn provenance(label: Option<&str>) -> Provenance {
+    Provenance::collect(label, Some(env!("CARGO_MANIFEST_DIR").as_ref()))
+}
+
+/// Prints the tables of a scene.
 pub(crate) fn print_scene(scene: &Scene, sets: &[QuerySet], entries: &[Entry<'_>], label: &str) {
     println!("\n## {} ({label})\n", scene.describe());
     println!("Cost: thread CPU time as median (min-max); n = queries a round where it is not all of them.\n");
     println!("{}", cost(scene, sets, entries));
-    println!(
-        "Speed relative to {YARDSTICK} / {YARDSTICK_DOUBLE}: its median over the contender's, above 1 is faster.\n"
-    );
+    println!("Speed relative to {YARDSTICK} / {YARDSTICK_DOUBLE}: its median over the backend's, above 1 is faster.\n");
     println!("{}", ratios(sets, entries));
     println!(
         "Agreement: `=` all answers bitwise equal among ours of the same scalar; then the largest difference of a \
@@ -35,13 +38,13 @@ fn head<const N: usize>(first: [&str; N], sets: &[QuerySet]) -> Table {
     Table::new(first.into_iter().chain(sets.iter().map(|set| set.name())))
 }
 
-/// The first cells of a row: name and scalar.
+/// Returns the first cells of a row: name and scalar.
 fn names(entry: &Entry<'_>) -> Vec<String> {
     vec![entry.backend.name.to_owned(), entry.backend.scalar.name().to_owned()]
 }
 
 fn cost(scene: &Scene, sets: &[QuerySet], entries: &[Entry<'_>]) -> Table {
-    let most = |i: usize| entries.iter().filter_map(|e| e.sets[i].as_ref().ok()).map(|s| s.queries).max();
+    let max_queries = |i: usize| entries.iter().filter_map(|e| e.sets[i].as_ref().ok()).map(|s| s.queries).max();
     let mut table = head(["", "scalar", "build s", "B/primitive", "with scene", "peak"], sets);
     for entry in entries {
         let mut row = names(entry);
@@ -54,7 +57,7 @@ fn cost(scene: &Scene, sets: &[QuerySet], entries: &[Entry<'_>]) -> Table {
         row.extend([build.owned, build.owned + build.borrowed, build.peak].map(bytes));
         for (i, set) in entry.sets.iter().enumerate() {
             row.push(figure(set).map_or("-".to_owned(), |(s, n)| {
-                let count = if Some(n) == most(i) { String::new() } else { format!(" n={n}") };
+                let count = if Some(n) == max_queries(i) { String::new() } else { format!(" n={n}") };
                 format!("{}{count}", spread(&s, |ns| format!("{ns:.0}")))
             }));
         }
@@ -65,13 +68,13 @@ fn cost(scene: &Scene, sets: &[QuerySet], entries: &[Entry<'_>]) -> Table {
 
 fn ratios(sets: &[QuerySet], entries: &[Entry<'_>]) -> Table {
     let median = |entry: &Entry<'_>, i: usize| figure(&entry.sets[i]).map(|(s, _)| s.median);
-    let of_rival = |name: &str, i: usize| entries.iter().find(|e| e.backend.name == name).and_then(|e| median(e, i));
+    let median_of = |name: &str, i: usize| entries.iter().find(|e| e.backend.name == name).and_then(|e| median(e, i));
     let mut table = head(["", "scalar"], sets);
     for entry in entries {
         let mut row = names(entry);
         for i in 0..sets.len() {
-            let ratio = |name: &str| match (of_rival(name, i), median(entry, i)) {
-                (Some(rival), Some(own)) => significant(rival / own),
+            let ratio = |name: &str| match (median_of(name, i), median(entry, i)) {
+                (Some(reference), Some(median)) => significant(reference / median),
                 _ => "-".to_owned(),
             };
             row.push(match median(entry, i) {
@@ -110,18 +113,18 @@ fn agreement(scene: &Scene, sets: &[QuerySet], entries: &[Entry<'_>]) -> Table {
     table
 }
 
-/// Why contenders are missing, and what is wrong with the answers of those that are there.
+/// Returns footnotes: why backends are missing, and which answers are wrong.
 fn notes(sets: &[QuerySet], entries: &[Entry<'_>]) -> Vec<String> {
     let mut notes = Vec::new();
     for entry in entries {
         let name = entry.backend.name;
-        if let Err(Absent(why)) = &entry.index {
+        if let Err(Unavailable(why)) = &entry.index {
             notes.push(format!("{name} is left out: {why}"));
             continue;
         }
         for (set, figures) in sets.iter().zip(&entry.sets) {
             match figures {
-                Err(Absent(why)) => notes.push(format!("{name} on {}: {why}", set.name())),
+                Err(Unavailable(why)) => notes.push(format!("{name} on {}: {why}", set.name())),
                 Ok(f) => {
                     let a = &f.agreement;
                     if !a.is_clean() {
@@ -144,8 +147,8 @@ fn notes(sets: &[QuerySet], entries: &[Entry<'_>]) -> Vec<String> {
     notes
 }
 
-/// Nanoseconds and number of queries.
-fn figure(set: &Result<SetFigures, Absent>) -> Option<(Spread, usize)> {
+/// Returns the nanoseconds and the number of queries.
+fn figure(set: &Result<SetFigures, Unavailable>) -> Option<(Spread, usize)> {
     let figures = set.as_ref().ok()?;
     Some((Spread::of(&figures.nanoseconds)?, figures.queries))
 }
@@ -158,35 +161,35 @@ fn seconds(s: f64) -> String {
     if s < 1e-3 { format!("{s:.1e}") } else { format!("{s:.4}") }
 }
 
-/// Two digits behind the point, more for small ratios.
+/// Formats a ratio with two digits after the point, and with more if it is small.
 pub(crate) fn significant(ratio: f64) -> String {
     if ratio < 0.1 { format!("{ratio:.1e}") } else { format!("{ratio:.2}") }
 }
 
-/// What a line of a record has besides scene and build.
+/// The columns of a record that differ from line to line of a scene.
 pub(crate) struct Line<'a> {
-    /// Its name.
-    pub(crate) contender: &'a str,
-    /// The name of its scalar.
+    /// The name of the backend.
+    pub(crate) backend: &'a str,
+    /// The name of the scalar.
     pub(crate) scalar: &'a str,
-    /// Of its builds.
+    /// The cost of the builds.
     pub(crate) build: &'a BuildFigures,
     /// The name of the query set.
     pub(crate) set: &'a str,
-    /// Queries a round.
+    /// The number of queries in a round.
     pub(crate) queries: usize,
-    /// Seed of the query set.
+    /// The seed of the query set.
     pub(crate) seed: u64,
-    /// Which round.
+    /// The number of the round.
     pub(crate) round: usize,
-    /// Per query.
+    /// Nanoseconds per query.
     pub(crate) nanoseconds: f64,
-    /// Of the answers.
+    /// The checksum of the answers.
     pub(crate) checksum: u64,
 }
 
-/// A file of comma-separated values, one line for each scene, contender, set and round. Lines are added to a file that
-/// exists, so that the builds of one comparison can share it.
+/// A file of comma-separated values with one line for each scene, backend, set and round. Lines are appended to a file
+/// that exists, so that the builds of one comparison can share it.
 pub(crate) struct Record {
     file: File,
 }
@@ -209,7 +212,7 @@ const COLUMNS: [&str; 14] = [
 ];
 
 impl Record {
-    /// Opens or makes the file. One that begins with anything but our columns is refused and left as it is.
+    /// Opens or creates the file. A file with other columns is an error and is left as it is.
     pub(crate) fn open(path: &Path) -> Result<Self> {
         let name = || format!("cannot open {}", path.display());
         let columns: Vec<String> = Provenance::COLUMNS.iter().chain(&COLUMNS).map(|c| (*c).to_owned()).collect();
@@ -224,7 +227,7 @@ impl Record {
         Ok(Self { file })
     }
 
-    /// Adds everything about a scene.
+    /// Adds the lines of a scene.
     pub(crate) fn add(
         &mut self,
         provenance: &Provenance,
@@ -242,7 +245,7 @@ impl Record {
                         provenance,
                         scene,
                         &Line {
-                            contender: entry.backend.name,
+                            backend: entry.backend.name,
                             scalar: entry.backend.scalar.name(),
                             build,
                             set: set.name(),
@@ -259,13 +262,13 @@ impl Record {
         Ok(())
     }
 
-    /// Adds a line.
+    /// Adds one line.
     pub(crate) fn line(&mut self, provenance: &Provenance, scene: &Scene, line: &Line<'_>) -> Result<()> {
         let build = line.build;
         let fields: [String; COLUMNS.len()] = [
             scene.name.clone(),
             scene.len().to_string(),
-            line.contender.to_owned(),
+            line.backend.to_owned(),
             line.scalar.to_owned(),
             Spread::of(&build.seconds).map(|s| format!("{:.6}", s.median)).unwrap_or_default(),
             build.owned.to_string(),

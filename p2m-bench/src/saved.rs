@@ -1,7 +1,7 @@
-//! `p2m-bench saved`: what it takes to save and load indexes, against building them.
+//! `p2m-bench saved`: compares the cost of saving and loading an index with that of building it.
 
-use crate::backends::{aabb_options, octree_options, p2m_options};
 use crate::measure::Spread;
+use crate::our_indexes::{aabb_options, octree_options, p2m_options};
 use crate::scene::Scene;
 use anyhow::Result;
 use p2m_bvh::AabbTree;
@@ -16,25 +16,26 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::time::Instant;
 
-/// Queries whose answers are compared.
+/// The number of queries whose answers are compared.
 const QUERIES: usize = 10_000;
 
-/// Prints the table of a scene; whether loaded indexes answer as those that were built.
+/// Prints the table of a scene, and returns whether loaded indexes answer as those that were built.
 pub(crate) fn print(scene: &Scene, rounds: usize) -> Result<bool> {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("index.p2m");
     let queries = QuerySet::Box1.generate(&scene.double, QUERIES, 1);
-    let whole = p2m_mixed::Scene::from(scene.double.clone());
+    let file_scene = p2m_mixed::Scene::from(scene.double.clone());
     let mut table = Table::new(HEAD);
     let mut clean = true;
-    // An index is a type for each scene that it borrows, so this is no function.
+    // The type of an index contains the lifetime of its scene, so a generic function would need one bound for each
+    // index.
     macro_rules! row {
         ($name:literal, $index:ty, $options:expr) => {{
             let start = Instant::now();
             let built = <$index>::build(&scene.double, &$options)?;
             let build = start.elapsed().as_secs_f64();
             let mut writer = Writer::default();
-            save_scene(&whole, &mut writer);
+            save_scene(&file_scene, &mut writer);
             built.save(&mut writer);
             let start = Instant::now();
             writer.write(BufWriter::new(File::create(&path)?))?;

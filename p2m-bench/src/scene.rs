@@ -8,29 +8,29 @@ use p2m_testkit::queries::diagonal;
 use p2m_testkit::scenes::narrow;
 use std::path::Path;
 
-/// A scene and what the harness has to know about it.
+/// A scene with the data about it that the harness needs.
 pub(crate) struct Scene {
-    /// The name of its file.
+    /// The name of the file.
     pub(crate) name: String,
-    /// As it was read.
+    /// The scene in f64, as it was read.
     pub(crate) double: Soup<f64>,
-    /// Rounded to f32; `None` if that overflows.
+    /// The scene rounded to f32; `None` if that overflows.
     pub(crate) single: Option<Soup<f32>>,
-    /// Heap bytes of `double`, trimmed: what an index that borrows the scene depends on.
+    /// Heap bytes of `double` without spare capacity, which count for an index that borrows the scene.
     pub(crate) double_bytes: usize,
-    /// Heap bytes of `single`, trimmed.
+    /// Heap bytes of `single` without spare capacity.
     pub(crate) single_bytes: usize,
 }
 
 impl Scene {
-    /// Reads a scene; an empty one is an error, since there is nothing to measure.
+    /// Reads a scene; an empty one is an error, because there is nothing to measure.
     pub(crate) fn read(path: &Path) -> Result<Self> {
         let soup = p2m_mixed::read_scene(path)?.soup;
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         Self::new(name, soup)
     }
 
-    /// A scene of that name.
+    /// Makes a scene of the given name.
     pub(crate) fn new(name: String, soup: Soup<f64>) -> Result<Self> {
         if soup.is_empty() {
             bail!("{name} has no primitives");
@@ -42,17 +42,17 @@ impl Scene {
         Ok(Self { name, double, single, double_bytes, single_bytes })
     }
 
-    /// The unit of differences.
+    /// Returns the diagonal of the bounding box, which is the unit of differences.
     pub(crate) fn diagonal(&self) -> f64 {
         diagonal(&self.double)
     }
 
-    /// How many primitives it has.
+    /// Returns the number of primitives.
     pub(crate) fn len(&self) -> usize {
         self.double.len()
     }
 
-    /// Its name and size in words.
+    /// Returns the name and the size in words.
     pub(crate) fn describe(&self) -> String {
         let soup = &self.double;
         format!(
@@ -65,12 +65,12 @@ impl Scene {
     }
 }
 
-/// The point in f32, to nearest.
+/// Rounds a point to f32.
 pub(crate) fn single_point(p: &Point3<f64>) -> Point3<f32> {
     Point3::new(f32::of_f64(p.x), f32::of_f64(p.y), f32::of_f64(p.z))
 }
 
-/// The soup without spare capacity, and its heap bytes.
+/// Returns the soup without spare capacity, and its heap bytes.
 fn trimmed<T: Real>(soup: &Soup<T>) -> (Soup<T>, usize) {
     memory::measured(|| soup.clone())
 }

@@ -1,8 +1,9 @@
-//! `p2m-bench splits`: what the split rules of the AABB tree cost and bring.
+//! `p2m-bench splits`: compares the split rules of the AABB tree.
 
-use crate::backends::{OURS, over_soup_with};
-use crate::contender::Backend;
+use crate::backend::Backend;
+use crate::backends::OURS;
 use crate::measure::{Effort, Spread, build_all, measure_set};
+use crate::our_indexes::over_soup_with;
 use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
@@ -11,7 +12,7 @@ use p2m_core::StatsCollector;
 use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 
-/// A rule, and the backend that is built by it.
+/// A split rule, and the backend that is built with it.
 struct Rule {
     backend: Backend,
     rule: SplitRule,
@@ -37,7 +38,7 @@ fn options(rule: SplitRule) -> AabbOptions {
     AabbOptions::default().with_parallel(false).with_rule(rule)
 }
 
-/// Prints the tables of a scene; whether all trees agree.
+/// Prints the tables of a scene, and returns whether all trees agree.
 pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> bool {
     let backends: Vec<&'static Backend> = RULES.iter().map(|r| &r.backend).collect();
     let mut entries = build_all(scene, &backends, effort.builds);
@@ -67,7 +68,7 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> bool {
     clean
 }
 
-/// Nodes visited and primitives offered per query: deterministic.
+/// Returns the nodes visited and the primitives offered per query, which are deterministic.
 fn work<S: p2m_core::PrimitiveSet<f64>>(tree: &AabbTree<f64, S>, queries: &[Point3<f64>]) -> [f64; 2] {
     let [nodes, _, primitives] = StatsCollector::of_queries(queries, |query, counting| tree.visit(query, counting));
     [nodes, primitives].map(|sum| sum as f64 / queries.len() as f64)

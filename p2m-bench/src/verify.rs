@@ -1,14 +1,15 @@
-//! Every exact backend of ours against brute force, bit for bit.
+//! `p2m-bench verify`: compares every exact backend of ours with brute force, bit for bit.
 
 use crate::agree::{Agreement, Answers, compare_round};
-use crate::contender::{Absent, Answer, Backend, Ready, ScalarKind};
+use crate::backend::{Answer, Backend, BoxedIndex, ScalarKind, Unavailable};
 use crate::queries::Queries;
 use crate::scene::Scene;
 use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 use std::thread;
 
-/// Compares `backends` with the oracle of their scalar on every set; prints counts and says whether all is equal.
+/// Compares `backends` with the oracle of their scalar on every set, prints counts, and returns whether all
+/// answers are equal.
 pub(crate) fn verify(
     scene: &Scene,
     oracles: &[&'static Backend],
@@ -24,19 +25,19 @@ pub(crate) fn verify(
         let of_scalar = |list: &[&'static Backend]| -> Vec<&'static Backend> {
             list.iter().copied().filter(|b| b.scalar == scalar).collect()
         };
-        let (oracles, contenders) = (of_scalar(oracles), of_scalar(backends));
+        let (oracles, backends) = (of_scalar(oracles), of_scalar(backends));
         let mut rows: Vec<Vec<String>> =
-            contenders.iter().map(|b| vec![b.name.to_owned(), scalar.name().to_owned()]).collect();
-        let built: Vec<_> = oracles.iter().chain(&contenders).map(|b| build(scene, b)).collect();
-        for (backend, index) in oracles.iter().chain(&contenders).zip(&built) {
-            if let Err(Absent(why)) = index {
+            backends.iter().map(|b| vec![b.name.to_owned(), scalar.name().to_owned()]).collect();
+        let built: Vec<_> = oracles.iter().chain(&backends).map(|b| build(scene, b)).collect();
+        for (backend, index) in oracles.iter().chain(&backends).zip(&built) {
+            if let Err(Unavailable(why)) = index {
                 notes.push(format!("{} is left out: {why}", backend.name));
             }
         }
         for set in sets {
             let queries = Queries::new(set.generate(&scene.double, count, seed));
             let expected = oracles.iter().zip(&built).find_map(|(b, i)| Some((*b, answer(i.as_ref().ok()?, &queries))));
-            for ((backend, index), row) in contenders.iter().zip(&built[oracles.len()..]).zip(&mut rows) {
+            for ((backend, index), row) in backends.iter().zip(&built[oracles.len()..]).zip(&mut rows) {
                 let cell = match (&expected, index) {
                     (Some((oracle, Ok(expected))), Ok(index)) => match answer(index, &queries) {
                         Ok(answers) => {
@@ -47,12 +48,12 @@ pub(crate) fn verify(
                             equal &= agreement.is_clean();
                             counts(&agreement)
                         }
-                        Err(Absent(why)) => {
+                        Err(Unavailable(why)) => {
                             equal = false;
                             why
                         }
                     },
-                    (Some((_, Err(Absent(why)))), _) => {
+                    (Some((_, Err(Unavailable(why)))), _) => {
                         equal = false;
                         format!("oracle: {why}")
                     }
@@ -68,12 +69,12 @@ pub(crate) fn verify(
     equal
 }
 
-fn build<'a>(scene: &'a Scene, backend: &Backend) -> Result<Ready<'a>, Absent> {
-    crate::contender::catch(|| ((backend.prepare)(scene)?.build)())
+fn build<'a>(scene: &'a Scene, backend: &Backend) -> Result<BoxedIndex<'a>, Unavailable> {
+    crate::backend::catch(|| ((backend.prepare)(scene)?.build)())
 }
 
-/// The answers to all queries, by all threads that the machine runs at a time.
-fn answer(index: &Ready<'_>, queries: &Queries) -> Result<Vec<Answer>, Absent> {
+/// Returns the answers to all queries, computed on all cores.
+fn answer(index: &BoxedIndex<'_>, queries: &Queries) -> Result<Vec<Answer>, Unavailable> {
     let mut answers = vec![Answer::NONE; queries.len()];
     let threads = thread::available_parallelism().map_or(1, usize::from);
     let length = queries.len().div_ceil(threads).max(1);
@@ -88,15 +89,16 @@ fn answer(index: &Ready<'_>, queries: &Queries) -> Result<Vec<Answer>, Absent> {
             .collect();
         parts
             .into_iter()
-            .try_for_each(|part| part.join().unwrap_or_else(|_| Err(Absent("a thread panicked".to_owned()))))
+            .try_for_each(|part| part.join().unwrap_or_else(|_| Err(Unavailable("a thread panicked".to_owned()))))
     })?;
     Ok(answers)
 }
 
-/// Bitwise; `compare_round` takes the contender that is not exhaustive as its reference, which is as good.
-fn compare(oracle: (&'static Backend, &[Answer]), contender: (&'static Backend, &[Answer])) -> Agreement {
+/// Compares answers bitwise. `compare_round` takes the backend that is not exhaustive as its reference, which does not
+/// change the counts.
+fn compare(oracle: (&'static Backend, &[Answer]), backend: (&'static Backend, &[Answer])) -> Agreement {
     let all: Vec<usize> = (0..oracle.1.len()).collect();
-    let round = [oracle, contender].map(|(backend, answers)| Some(Answers { backend, chosen: &all, answers }));
+    let round = [oracle, backend].map(|(backend, answers)| Some(Answers { backend, chosen: &all, answers }));
     compare_round(&round, all.len())[0]
 }
 
@@ -108,7 +110,7 @@ fn counts(a: &Agreement) -> String {
     }
 }
 
-/// The first query that is answered otherwise, to the last bit.
+/// Describes the first query whose answers differ in any bit.
 fn example(
     backend: &Backend,
     set: QuerySet,
@@ -134,15 +136,15 @@ fn example(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::backend::{BenchIndex, Prepared};
     use crate::backends;
-    use crate::contender::{Contender, Prepared};
     use nalgebra::Point3;
     use p2m_core::{Element, Soup};
 
-    /// Right but for the id.
+    /// An index whose answers are right apart from the id.
     struct Wrong;
 
-    impl Contender for Wrong {
+    impl BenchIndex for Wrong {
         type Scalar = f64;
         fn query(&self, query: &Point3<f64>) -> Answer {
             Answer { distance: query.coords.norm(), id: 1 }
@@ -152,8 +154,8 @@ mod tests {
     static WRONG: Backend = Backend {
         name: "wrong",
         scalar: ScalarKind::Double,
-        ours: true,
-        exhaustive: false,
+        is_ours: true,
+        is_exhaustive: false,
         prepare: |_| Ok(Prepared { build: Box::new(|| Ok(Box::new(Wrong))), borrowed: 0 }),
     };
 
@@ -161,10 +163,10 @@ mod tests {
     fn our_backends_pass_and_a_wrong_one_does_not() {
         let soup = Soup::new(vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0)], [Element::Point(0)]).unwrap();
         let scene = Scene::new("test".into(), soup).unwrap();
-        let (oracles, contenders): (Vec<_>, Vec<_>) =
-            backends::ALL.iter().filter(|b| b.ours).partition(|b| b.exhaustive);
+        let (oracles, backends): (Vec<_>, Vec<_>) =
+            backends::ALL.iter().filter(|b| b.is_ours).partition(|b| b.is_exhaustive);
         let run = |backends: &[&'static Backend]| verify(&scene, &oracles, backends, &QuerySet::ALL, 100, 1);
-        assert!(run(&contenders));
+        assert!(run(&backends));
         assert!(!run(&[&WRONG]));
     }
 }

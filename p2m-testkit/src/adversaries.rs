@@ -1,5 +1,5 @@
-//! Scenes that are bad for indexes: that make trees deep, lists long, cells many, Delaunay tetrahedra quadratic in number,
-//! or builds slow. Each for any number of primitives.
+//! Adversarial scenes for any number of primitives: they make trees deep, lists long, cells many, Delaunay tetrahedra
+//! quadratic in number, or builds slow.
 
 use crate::{rng, vector};
 use nalgebra::{Point3, Vector3};
@@ -7,27 +7,31 @@ use p2m_core::{Element, Point, PrimitiveSet, Segment, Shape, Soup, Triangle};
 use rand::{Rng, RngExt};
 use std::f64::consts::TAU;
 
-/// A family of scenes.
+/// A family of adversarial scenes.
 #[derive(Clone, Copy, Debug)]
 pub struct Adversary {
-    /// Its name in tables.
+    /// The name in tables.
     pub name: &'static str,
-    /// What it is, and what it makes bad.
+    /// A description of the scene and of what it makes slow or large.
     pub about: &'static str,
     make: fn(usize) -> Vec<Shape<f64>>,
 }
 
-/// All of them, in the order of the tables.
+/// All families, in the order of the tables.
 pub const ADVERSARIES: &[Adversary] = &[
     Adversary { name: "identical", about: "the same triangle again and again: nothing to split by", make: identical },
-    Adversary { name: "one place", about: "points at one place: no size at all", make: one_place },
+    Adversary { name: "one place", about: "points at one place: no size at all", make: coincident_points },
     Adversary { name: "nested", about: "triangles in a corner, over 1000 octaves: deep trees", make: nested },
     Adversary {
         name: "staircase",
         about: "segments of which each is longer than all before, over 580 octaves: every split by cost takes one off",
         make: staircase,
     },
-    Adversary { name: "fan", about: "triangles with one apex, as narrow as they are many: long lists", make: fan },
+    Adversary {
+        name: "fan",
+        about: "triangles with one apex, as narrow as they are many: long lists",
+        make: triangle_fan,
+    },
     Adversary { name: "comb", about: "long thin triangles through one point: boxes that overlap", make: comb },
     Adversary {
         name: "star",
@@ -51,7 +55,7 @@ pub const ADVERSARIES: &[Adversary] = &[
     Adversary { name: "grid", about: "points of a grid: cospherical everywhere", make: grid },
     Adversary {
         name: "needles",
-        about: "long thin triangles at random in a box: boxes that tell nothing",
+        about: "long thin triangles at random in a box: boxes that separate nothing",
         make: needles,
     },
     Adversary { name: "sheets", about: "large parallel squares on top of each other: no vertex is near", make: sheets },
@@ -72,25 +76,25 @@ pub const ADVERSARIES: &[Adversary] = &[
 ];
 
 impl Adversary {
-    /// The one of a name.
+    /// Returns the family of that name.
     #[must_use]
     pub fn named(name: &str) -> &'static Self {
         ADVERSARIES.iter().find(|adversary| adversary.name == name).expect("a name of the list")
     }
 
-    /// One with so many primitives.
+    /// Returns the scene with about `count` primitives.
     #[must_use]
     pub fn soup(&self, n: usize) -> Soup<f64> {
         let mut soup = Soup::default();
         for shape in (self.make)(n) {
-            let mut own = [0; 3];
-            for (to, p) in own.iter_mut().zip(shape.vertices()) {
+            let mut local = [0; 3];
+            for (to, p) in local.iter_mut().zip(shape.vertices()) {
                 *to = u32::try_from(soup.push_position(*p)).expect("few positions");
             }
             let element = match shape.vertices().len() {
-                1 => Element::Point(own[0]),
-                2 => Element::Segment([own[0], own[1]]),
-                _ => Element::Triangle(own),
+                1 => Element::Point(local[0]),
+                2 => Element::Segment([local[0], local[1]]),
+                _ => Element::Triangle(local),
             };
             soup.push(element).expect("finite");
         }
@@ -99,15 +103,15 @@ impl Adversary {
     }
 }
 
-/// Queries for any scene that is not empty: its middle and the origin, where these scenes are worst, then vertices, places between
-/// vertices, near these, in and around its box, and far away.
+/// Returns queries for any scene that is not empty: its middle and the origin, where these scenes are worst, then
+/// vertices, points between and near vertices, points in and around the bounding box, and points far away.
 #[must_use]
 pub fn queries(soup: &Soup<f64>, count: usize) -> Vec<Point3<f64>> {
     let random = &mut rng("adversaries", count as u64);
     let bounds = soup.aabb();
     let (middle, size) = (nalgebra::center(&bounds.min, &bounds.max), bounds.max - bounds.min);
     let vertex = |random: &mut dyn FnMut(usize) -> usize| soup.positions()[random(soup.positions().len())];
-    let some = (2..count).map(|i| {
+    let others = (2..count).map(|i| {
         let mut number = |n: usize| random.random_range(0..n);
         let (a, b) = (vertex(&mut number), vertex(&mut number));
         match i % 6 {
@@ -119,20 +123,20 @@ pub fn queries(soup: &Soup<f64>, count: usize) -> Vec<Point3<f64>> {
             _ => middle + vector(random) * (size.max() * 1e-3),
         }
     });
-    [middle, Point3::origin()].into_iter().chain(some).take(count).collect()
+    [middle, Point3::origin()].into_iter().chain(others).take(count).collect()
 }
 
-/// The part of the way that `i` of `n` is.
-fn part(i: usize, n: usize) -> f64 {
+/// Returns the fraction i / n.
+fn fraction(i: usize, n: usize) -> f64 {
     i as f64 / n as f64
 }
 
-/// 2 to the power of any number.
+/// Returns 2 to the power of `exponent`.
 fn power(exponent: f64) -> f64 {
-    let whole = exponent.floor();
+    let integer = exponent.floor();
     #[allow(clippy::cast_possible_truncation, reason = "exponents of f64")]
-    let scale = 2f64.powi(whole as i32);
-    scale * (exponent - whole).exp2()
+    let scale = 2f64.powi(integer as i32);
+    scale * (exponent - integer).exp2()
 }
 
 fn triangle([a, b, c]: [Point3<f64>; 3]) -> Shape<f64> {
@@ -143,7 +147,7 @@ fn points(places: impl Iterator<Item = Point3<f64>>) -> Vec<Shape<f64>> {
     places.map(|p| Point::new(p).into()).collect()
 }
 
-/// A direction at random.
+/// Returns a random direction.
 fn direction(random: &mut impl Rng) -> Vector3<f64> {
     loop {
         let v = vector(random);
@@ -158,28 +162,28 @@ fn identical(n: usize) -> Vec<Shape<f64>> {
     vec![triangle(corner); n]
 }
 
-fn one_place(n: usize) -> Vec<Shape<f64>> {
+fn coincident_points(n: usize) -> Vec<Shape<f64>> {
     vec![Point::new(Point3::new(0.1, 0.2, 0.3)).into(); n]
 }
 
 fn nested(n: usize) -> Vec<Shape<f64>> {
-    let of_size = |s: f64| triangle([Point3::new(s, 0.0, 0.0), Point3::new(0.0, s, 0.0), Point3::new(0.0, 0.0, s)]);
-    (0..n).map(|i| of_size(power(-1000.0 * part(i, n)))).collect()
+    let scaled = |s: f64| triangle([Point3::new(s, 0.0, 0.0), Point3::new(0.0, s, 0.0), Point3::new(0.0, 0.0, s)]);
+    (0..n).map(|i| scaled(power(-1000.0 * fraction(i, n)))).collect()
 }
 
 fn staircase(n: usize) -> Vec<Shape<f64>> {
-    let at = |i: usize| power(580.0 * part(i, n) - 290.0);
+    let at = |i: usize| power(580.0 * fraction(i, n) - 290.0);
     (0..n).map(|i| Segment::new(Point3::new(at(i), 0.0, at(i)), Point3::new(at(i + 1), 0.0, at(i))).into()).collect()
 }
 
-/// A place on a circle around the axis z.
+/// Returns a point on a circle around the z axis.
 fn on_circle(turns: f64, radius: f64, z: f64) -> Point3<f64> {
     let (sine, cosine) = (turns * TAU).sin_cos();
     Point3::new(radius * cosine, radius * sine, z)
 }
 
-fn fan(n: usize) -> Vec<Shape<f64>> {
-    let rim = |i: usize| on_circle(part(i, n), 0.5, 0.0);
+fn triangle_fan(n: usize) -> Vec<Shape<f64>> {
+    let rim = |i: usize| on_circle(fraction(i, n), 0.5, 0.0);
     (0..n).map(|i| triangle([Point3::new(0.0, 0.0, 0.3), rim(i), rim(i + 1)])).collect()
 }
 
@@ -187,8 +191,8 @@ fn comb(n: usize) -> Vec<Shape<f64>> {
     let random = &mut rng("comb", 0);
     (0..n)
         .map(|_| {
-            let (way, aside) = (direction(random), vector(random) * 1e-3);
-            triangle([Point3::from(-way), Point3::from(way), Point3::from(aside)])
+            let (end, aside) = (direction(random), vector(random) * 1e-3);
+            triangle([Point3::from(-end), Point3::from(end), Point3::from(aside)])
         })
         .collect()
 }
@@ -206,36 +210,36 @@ fn sphere(n: usize) -> Vec<Shape<f64>> {
 fn spheres(n: usize) -> Vec<Shape<f64>> {
     const SPHERES: usize = 16;
     let random = &mut rng("spheres", 0);
-    let ways: Vec<Vector3<f64>> = (0..n.div_ceil(SPHERES)).map(|_| direction(random)).collect();
-    points((0..n).map(|i| Point3::from(ways[i / SPHERES] * part(i % SPHERES + 1, SPHERES))))
+    let directions: Vec<Vector3<f64>> = (0..n.div_ceil(SPHERES)).map(|_| direction(random)).collect();
+    points((0..n).map(|i| Point3::from(directions[i / SPHERES] * fraction(i % SPHERES + 1, SPHERES))))
 }
 
-/// Place `t` from 0 to 1 on one of two lines.
+/// Returns the point at `t` from 0 to 1 on one of two skew lines.
 fn on_skew_line(first: bool, t: f64) -> Point3<f64> {
     if first { Point3::new(t - 0.5, 0.0, -0.5) } else { Point3::new(0.0, t - 0.5, 0.5) }
 }
 
 fn skew_points(n: usize) -> Vec<Shape<f64>> {
-    points((0..n).map(|i| on_skew_line(i.is_multiple_of(2), part(i / 2, n.div_ceil(2)))))
+    points((0..n).map(|i| on_skew_line(i.is_multiple_of(2), fraction(i / 2, n.div_ceil(2)))))
 }
 
 fn skew_wires(n: usize) -> Vec<Shape<f64>> {
-    let half = n.div_ceil(2);
-    let on = |i: usize, next: usize| on_skew_line(i.is_multiple_of(2), part(i / 2 + next, half));
+    let half_count = n.div_ceil(2);
+    let on = |i: usize, next: usize| on_skew_line(i.is_multiple_of(2), fraction(i / 2 + next, half_count));
     (0..n).map(|i| Segment::new(on(i, 0), on(i, 1)).into()).collect()
 }
 
 fn helices(n: usize) -> Vec<Shape<f64>> {
-    let half = n.div_ceil(2);
+    let half_count = n.div_ceil(2);
     let on = |i: usize, next: usize| {
-        let t = part(i / 2 + next, half);
+        let t = fraction(i / 2 + next, half_count);
         on_circle(t + if i.is_multiple_of(2) { 0.0 } else { 0.5 }, 1.0, t * TAU)
     };
     (0..n).map(|i| Segment::new(on(i, 0), on(i, 1)).into()).collect()
 }
 
 fn moment_curve(n: usize) -> Vec<Shape<f64>> {
-    points((0..n).map(|i| part(i + 1, n)).map(|t| Point3::new(t, t * t, t * t * t)))
+    points((0..n).map(|i| fraction(i + 1, n)).map(|t| Point3::new(t, t * t, t * t * t)))
 }
 
 fn grid(n: usize) -> Vec<Shape<f64>> {
@@ -254,7 +258,7 @@ fn needles(n: usize) -> Vec<Shape<f64>> {
 }
 
 fn sheets(n: usize) -> Vec<Shape<f64>> {
-    let at = |x: f64, y: f64, i: usize| Point3::new(x, y, part(i / 2, n));
+    let at = |x: f64, y: f64, i: usize| Point3::new(x, y, fraction(i / 2, n));
     (0..n)
         .map(|i| {
             let other = if i.is_multiple_of(2) { at(1.0, 0.0, i) } else { at(0.0, 1.0, i) };
@@ -264,7 +268,7 @@ fn sheets(n: usize) -> Vec<Shape<f64>> {
 }
 
 fn line(n: usize) -> Vec<Shape<f64>> {
-    let at = |i: usize| Point3::new(0.1, 0.3, -0.7) + Vector3::new(0.3, 0.7, 0.9) * part(i, n);
+    let at = |i: usize| Point3::new(0.1, 0.3, -0.7) + Vector3::new(0.3, 0.7, 0.9) * fraction(i, n);
     (0..n).map(|i| Segment::new(at(i), at(i + 1)).into()).collect()
 }
 
@@ -287,8 +291,8 @@ fn sizes(n: usize, huge: f64) -> Vec<Shape<f64>> {
     let random = &mut rng("sizes", 0);
     (0..n)
         .map(|i| {
-            let (place, size) = (vector(random) * huge, if i.is_multiple_of(2) { huge } else { 1.0 });
-            triangle([(); 3].map(|()| Point3::from(place + vector(random) * size)))
+            let (centre, size) = (vector(random) * huge, if i.is_multiple_of(2) { huge } else { 1.0 });
+            triangle([(); 3].map(|()| Point3::from(centre + vector(random) * size)))
         })
         .collect()
 }
@@ -298,8 +302,8 @@ fn one_over_all(n: usize) -> Vec<Shape<f64>> {
     let huge = [[-1e3, -1e3, 0.5], [1e3, -1e3, 0.5], [0.0, 1e3, 0.5]].map(Point3::from);
     let size = 1.0 / (n as f64).sqrt();
     let tiny = (1..n).map(|_| {
-        let place = vector(random).component_mul(&Vector3::new(1.0, 1.0, 0.0));
-        triangle([(); 3].map(|()| Point3::from(place + vector(random) * size)))
+        let centre = vector(random).component_mul(&Vector3::new(1.0, 1.0, 0.0));
+        triangle([(); 3].map(|()| Point3::from(centre + vector(random) * size)))
     });
     std::iter::once(triangle(huge)).chain(tiny).collect()
 }

@@ -1,14 +1,14 @@
-//! A primitive of one's own.
+//! A user-defined primitive.
 
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Aabb, Feature, Primitive, Projection};
 
-/// A solid ball: it shows no vertices.
+/// A solid ball, which has no vertices.
 #[derive(Clone, Copy, Debug)]
 pub struct Ball {
-    /// Its centre.
+    /// The centre of the ball.
     pub centre: Point3<f64>,
-    /// Its radius.
+    /// The radius of the ball.
     pub radius: f64,
 }
 

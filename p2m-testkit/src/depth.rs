@@ -1,56 +1,56 @@
-//! How much the tests do: one knob for all loops over cases.
+//! The number of cases and the amount of work of all tests, controlled by three environment variables.
 //!
-//! A loop takes its cases from [`cases`], and each case draws its random numbers from its own number (`rng(name, case)`).
-//! How much there is within a case, such as queries of a scene, comes from [`amount`]. Three environment variables turn the
-//! knob:
+//! A loop takes its cases from [`cases`], and each case draws its random numbers from its own number (`rng(name,
+//! case)`). The amount of work within a case, such as the queries of a scene, comes from [`amount`].
 //!
-//! - Without any of them a loop runs its shallow number of cases, with shallow amounts.
+//! - Without any variable a loop runs its shallow number of cases, with shallow amounts.
 //! - `P2M_DEEP=1` runs the full number of cases with full amounts, and `P2M_DEEP=20` twenty times as many cases.
-//! - `P2M_SEED=12345` runs case 12345 alone, which is how a failure is replayed:
-//!   `P2M_SEED=12345 cargo test --test all n1_n5`. A failure of the deep suite is replayed with `P2M_DEEP=1` beside it, since
-//!   amounts may differ. No loop over cases is within another one: both would run the case of that number.
+//! - `P2M_SEED=12345` runs case 12345 alone, which replays a failure: `P2M_SEED=12345 cargo test --test all n1_n5`. A
+//!   failure of the deep suite is replayed with `P2M_DEEP=1` in addition, because amounts may differ. Loops over cases
+//!   must not be nested: both would run the case of that number.
 //!
-//! The cases of a shallow loop have the same numbers, and so the same seeds, as the first ones of the full loop. A loop that
-//! panics prints the number of its case, and with which variables that case is replayed. Where `P2M_CASES` names a file, each
-//! loop appends a line to it when it is over: the place of the call of [`cases`], a tab and how many cases the loop took.
+//! The cases of a shallow loop have the same numbers, and so the same seeds, as the first cases of the full loop. A
+//! loop that panics prints the number of its case and the variables that replay it. If `P2M_CASES` names a file, each
+//! loop appends a line to it when it ends: the location of the call of [`cases`], a tab and the number of cases.
 
 use std::io::Write;
 use std::ops::Range;
 use std::panic::Location;
 
-/// The numbers of the cases that a loop runs. Each clone is a loop of its own.
+/// The numbers of the cases that a loop runs. Each clone is an independent loop.
 #[derive(Debug)]
 pub struct Cases {
     numbers: Range<u64>,
-    /// How many there are of them with `P2M_DEEP=1`.
+    /// The number of cases with `P2M_DEEP=1`.
     full: u64,
-    /// The number in `P2M_DEEP`.
+    /// The number in `P2M_DEEP`, if it is set.
     times: Option<u64>,
     is_replay: bool,
-    /// Where [`cases`] was called.
-    place: &'static Location<'static>,
-    /// How many of them a loop has taken from here.
+    /// The location of the call of [`cases`].
+    location: &'static Location<'static>,
+    /// The number of cases that the loop has taken.
     taken: usize,
-    /// The one that it has taken last; none before the loop and after it.
+    /// The case that runs now; `None` before and after the loop.
     current: Option<u64>,
 }
 
 impl Cases {
-    /// Whether only one case runs because its number is in `P2M_SEED`. Figures of many cases mean nothing then.
+    /// Returns whether a single case runs because its number is in `P2M_SEED`. Statistics of many cases
+    /// are meaningless then.
     #[must_use]
     pub fn is_replay(&self) -> bool {
         self.is_replay
     }
 
-    /// Whether `count` is more than what it has to exceed where these are the full number of cases, `in_full`, or than that in
-    /// proportion to their number. Always true of a case that is replayed.
+    /// Returns whether `count` exceeds its proportional part of `in_full`, the limit for the full number of cases.
+    /// Returns true when a single case is replayed.
     #[must_use]
     pub fn have_more_than(&self, in_full: usize, count: usize) -> bool {
         self.is_replay || self.scaled(count) > in_full as u128 * self.len() as u128
     }
 
-    /// Whether `count` is less than what it has to stay below where these are the full number of cases, `in_full`, or than that
-    /// in proportion to their number. Always true of a case that is replayed.
+    /// Returns whether `count` is below its proportional part of `in_full`, the limit for the full number of cases.
+    /// Returns true when a single case is replayed.
     #[must_use]
     pub fn have_fewer_than(&self, in_full: usize, count: usize) -> bool {
         self.is_replay || self.scaled(count) < in_full as u128 * self.len() as u128
@@ -60,19 +60,19 @@ impl Cases {
         count as u128 * u128::from(self.full)
     }
 
-    /// One more than the number of the last case.
+    /// Returns the number after that of the last case.
     #[must_use]
     pub fn end(&self) -> u64 {
         self.numbers.end
     }
 
-    /// What is said when the loop panics: which case that was, and how it is replayed. Nothing is said of cases that no loop
-    /// is over.
+    /// Returns the message for a panic of the loop: the number of the case and the variables that replay it. Returns
+    /// `None` if no loop is running.
     fn failure(&self) -> Option<String> {
-        let (case, place) = (self.current?, self.place);
+        let (case, location) = (self.current?, self.location);
         let deep = self.times.map_or_else(String::new, |times| format!("P2M_DEEP={times} "));
-        let place = format!("{}:{}", place.file(), place.line());
-        Some(format!("case {case} failed: {deep}P2M_SEED={case} replays it (cases of {place})"))
+        let location = format!("{}:{}", location.file(), location.line());
+        Some(format!("case {case} failed: {deep}P2M_SEED={case} replays it (cases of {location})"))
     }
 }
 
@@ -86,10 +86,10 @@ impl Drop for Cases {
     fn drop(&mut self) {
         if std::thread::panicking() {
             if let Some(failure) = self.failure() {
-                say(&failure);
+                print_line(&failure);
             }
         } else if self.taken > 0 {
-            record(self.place, self.taken);
+            record(self.location, self.taken);
         }
     }
 }
@@ -116,20 +116,20 @@ impl ExactSizeIterator for Cases {}
 
 /// The settings of the environment.
 struct Settings {
-    /// That of `P2M_DEEP`.
+    /// The value of `P2M_DEEP`.
     deep: Option<String>,
-    /// That of `P2M_SEED`.
+    /// The value of `P2M_SEED`.
     seed: Option<String>,
 }
 
 impl Settings {
-    /// The settings of this process.
-    fn of_the_process() -> Self {
+    /// Reads the settings of this process.
+    fn from_environment() -> Self {
         let read = |name: &str| std::env::var_os(name).map(|text| text.to_string_lossy().into_owned());
         Self { deep: read("P2M_DEEP"), seed: read("P2M_SEED") }
     }
 
-    /// How many times the full number of cases runs; none where tests are shallow.
+    /// Returns the multiple of the full number of cases that runs; `None` for shallow tests.
     fn times(&self) -> Option<u64> {
         self.deep.as_ref().map(|text| match text.parse() {
             Ok(times) if times > 0 => times,
@@ -137,7 +137,7 @@ impl Settings {
         })
     }
 
-    /// The one case that runs, if there is only one.
+    /// Returns the number of the single case that runs, if `P2M_SEED` names one.
     fn only(&self) -> Option<u64> {
         self.seed.as_ref().map(|text| {
             text.parse().unwrap_or_else(|_| panic!("P2M_SEED is the whole number of one case, not {text:?}"))
@@ -152,53 +152,55 @@ impl Settings {
             (None, Some(times)) => 0..full.saturating_mul(times),
             (None, None) => 0..shallow,
         };
-        let (is_replay, place) = (self.seed.is_some(), Location::caller());
-        Cases { numbers, full, times: self.times(), is_replay, place, taken: 0, current: None }
+        let (is_replay, location) = (self.seed.is_some(), Location::caller());
+        Cases { numbers, full, times: self.times(), is_replay, location, taken: 0, current: None }
     }
 }
 
-/// The numbers of the cases of a loop, from zero: `shallow` of them by default, `full` of them or a multiple with `P2M_DEEP`,
-/// and a single one with `P2M_SEED`.
+/// Returns the numbers of the cases of a loop, from zero: `shallow` cases by default, `full` or a multiple of it with
+/// `P2M_DEEP`, and a single one with `P2M_SEED`.
 ///
 /// # Panics
-/// If a variable of the environment is no number, or if `shallow` is more than `full`; and at the end of a loop if the file that
-/// `P2M_CASES` names cannot be written.
+/// Panics if an environment variable is not a number, if `shallow` exceeds `full`, or, at the end of the loop, if the
+/// file that `P2M_CASES` names cannot be written.
 #[must_use]
 #[track_caller]
 pub fn cases(full: u64, shallow: u64) -> Cases {
-    Settings::of_the_process().cases(full, shallow)
+    Settings::from_environment().cases(full, shallow)
 }
 
-/// `full` in the deep suite, which `P2M_DEEP` asks for, and `shallow` otherwise: how much there is of something within a case.
+/// Returns `full` in the deep suite (`P2M_DEEP`), and `shallow` otherwise. Use it for the amount of work within a case.
 #[must_use]
 pub fn amount<T>(full: T, shallow: T) -> T {
     if is_deep() { full } else { shallow }
 }
 
-/// Whether this is the deep suite, which `P2M_DEEP` asks for.
+/// Returns whether this is the deep suite (`P2M_DEEP`).
 #[must_use]
 pub fn is_deep() -> bool {
     depth() > 0
 }
 
-/// How many times the full number of cases runs, which is the number in `P2M_DEEP`; zero where tests are shallow.
+/// Returns the multiple of the full number of cases that runs, which is the number in `P2M_DEEP`, and zero
+/// for shallow tests.
 #[must_use]
 pub fn depth() -> u64 {
-    Settings::of_the_process().times().unwrap_or(0)
+    Settings::from_environment().times().unwrap_or(0)
 }
 
-/// Prints a line, which tests of this file read as well.
-fn say(line: &str) {
+/// Prints a line, which the tests of this file can read.
+fn print_line(line: &str) {
     #[cfg(test)]
     tests::heard(line);
     eprintln!("{line}");
 }
 
-/// Appends the place of a loop and its number of cases to the file that `P2M_CASES` names. A line is a single write, so that lines of several threads and programs do not mix.
-fn record(place: &Location<'_>, count: usize) {
+/// Appends the location of a loop and its number of cases to the file that `P2M_CASES` names. Each line is a single
+/// write, so that lines of several threads and programs do not mix.
+fn record(location: &Location<'_>, count: usize) {
     let Some(path) = std::env::var_os("P2M_CASES") else { return };
     let file = std::fs::OpenOptions::new().create(true).append(true).open(&path);
-    let line = format!("{}:{}\t{count}\n", place.file(), place.line());
+    let line = format!("{}:{}\t{count}\n", location.file(), location.line());
     file.and_then(|mut file| file.write_all(line.as_bytes()))
         .unwrap_or_else(|error| panic!("P2M_CASES names {}, which cannot be written: {error}", path.display()));
 }
@@ -236,28 +238,28 @@ mod tests {
     }
 
     thread_local! {
-        /// What this thread has said of loops that panicked.
-        static SAID: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
+        /// The messages that this thread printed for loops that panicked.
+        static PRINTED: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
     }
 
     pub(super) fn heard(line: &str) {
-        SAID.with_borrow_mut(|said| said.push(line.to_owned()));
+        PRINTED.with_borrow_mut(|printed| printed.push(line.to_owned()));
     }
 
-    /// How what is said begins when this panics.
-    fn said(deep: Option<&str>, seed: Option<&str>, run: impl FnOnce(Cases)) -> Vec<String> {
+    /// Returns the beginnings of the messages that `run` prints when it panics.
+    fn printed(deep: Option<&str>, seed: Option<&str>, run: impl FnOnce(Cases)) -> Vec<String> {
         let cases = settings(deep, seed).cases(60, 24);
         assert!(catch_unwind(AssertUnwindSafe(|| run(cases))).is_err(), "it should panic");
         let start =
             |line: String| line.split_once(" (cases of p2m-testkit/src/depth.rs:").map(|(start, _)| start.to_owned());
-        SAID.take().into_iter().map(|line| start(line).expect("the place is said")).collect()
+        PRINTED.take().into_iter().map(|line| start(line).expect("the location is printed")).collect()
     }
 
     #[test]
     fn loops_that_panic_say_their_case() {
         let at_17 = |case: u64| assert_ne!(case, 17, "this panic is meant");
-        let of_a_loop = |cases: Cases| {
-            // Neither those that no loop is over nor the loop that went well have anything to say.
+        let panicking_loop = |cases: Cases| {
+            // Neither cases outside of a loop nor a loop that ends well print a message.
             for case in cases.clone().take(17) {
                 at_17(case);
             }
@@ -266,21 +268,27 @@ mod tests {
                 at_17(case);
             }
         };
-        assert_eq!(said(None, None, of_a_loop), ["case 17 failed: P2M_SEED=17 replays it"]);
-        assert_eq!(said(Some("2"), None, of_a_loop), ["case 17 failed: P2M_DEEP=2 P2M_SEED=17 replays it"]);
-        assert_eq!(said(Some("1"), Some("17"), of_a_loop), ["case 17 failed: P2M_DEEP=1 P2M_SEED=17 replays it"]);
+        assert_eq!(printed(None, None, panicking_loop), ["case 17 failed: P2M_SEED=17 replays it"]);
+        assert_eq!(printed(Some("2"), None, panicking_loop), ["case 17 failed: P2M_DEEP=2 P2M_SEED=17 replays it"]);
+        assert_eq!(
+            printed(Some("1"), Some("17"), panicking_loop),
+            ["case 17 failed: P2M_DEEP=1 P2M_SEED=17 replays it"]
+        );
         let expected = ["case 17 failed: P2M_SEED=17 replays it"];
-        assert_eq!(said(None, None, |cases| cases.map(|case| (case, 1)).for_each(|(case, _)| at_17(case))), expected);
+        assert_eq!(
+            printed(None, None, |cases| cases.map(|case| (case, 1)).for_each(|(case, _)| at_17(case))),
+            expected
+        );
         let every_fourth = |cases: Cases| {
             for case in cases.skip(1).step_by(4) {
                 at_17(case);
             }
         };
-        assert_eq!(said(None, None, every_fourth), expected);
+        assert_eq!(printed(None, None, every_fourth), expected);
         let figures = |cases: Cases| {
             assert_eq!(cases.clone().sum::<u64>(), 0, "this panic is meant");
         };
-        assert!(said(None, None, figures).is_empty(), "the loop is over");
+        assert!(printed(None, None, figures).is_empty(), "the loop is over");
     }
 
     #[test]
@@ -293,7 +301,7 @@ mod tests {
             }
         };
         let expected = ["case 5 failed: P2M_SEED=5 replays it", "case 3 failed: P2M_SEED=3 replays it"];
-        assert_eq!(said(None, None, both), expected);
+        assert_eq!(printed(None, None, both), expected);
     }
 
     #[test]

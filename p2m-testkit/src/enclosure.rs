@@ -1,20 +1,21 @@
-//! Distances between two bounds, in about a microsecond: a filter in front of rational arithmetic.
+//! Lower and upper bounds of a distance, computed in about a microsecond: a filter in front of rational arithmetic.
 //!
-//! The convex hull of up to three vertices has a point of least norm, seen from the query. Any point of the hull bounds the
-//! distance from above. Any direction n bounds it from below, by the least n . a / |n| over the vertices a: the hull
-//! lies beyond that plane. Neither has to know how the point was found, so a mistake there makes the bounds wide and
-//! never wrong; this is what makes the check independent of every formula that it checks. Where the bounds are too far
-//! apart, for slivers and beside edges, [`Distance`](crate::oracle::Distance) decides.
+//! The convex hull of up to three vertices has a point of minimum norm, seen from the query. Any point of the hull
+//! bounds the distance from above. Any direction n bounds it from below by the minimum of n . a / |n| over the
+//! vertices a, because the hull lies beyond that plane. Neither bound depends on how the point was found, so a mistake
+//! in finding it makes the bounds wide but never wrong. The check is therefore independent of every formula that it
+//! checks. Where the bounds are too far apart, for slivers and beside edges, [`Distance`](crate::oracle::Distance)
+//! decides.
 //!
 //! Numbers are unevaluated sums of two f64, with operations whose relative errors are below 2^-100, on offsets from the
-//! query of which the largest component is between 1 and 2. `SLACK` is some thirty times what they can add up to.
+//! query whose largest component is between 1 and 2. `SLACK` is about thirty times the largest sum of these errors.
 
 use std::ops::{Add, Div, Mul, Sub};
 
-/// Both bounds are moved by so much, in units of the largest component of an offset.
+/// The distance by which both bounds are moved outwards, in units of the largest component of an offset.
 const SLACK: f64 = f64::from_bits((1023 - 94) << 52);
 
-/// high + low, |low| at most half a unit in the last place of `high`.
+/// The sum of `high` and `low`, where |low| is at most half a unit in the last place of `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pair {
     high: f64,
@@ -23,14 +24,14 @@ struct Pair {
 
 const ZERO: Pair = Pair { high: 0.0, low: 0.0 };
 
-/// a + b without error.
+/// Returns a + b without error.
 fn sum(a: f64, b: f64) -> Pair {
     let high = a + b;
-    let of_b = high - a;
-    Pair { high, low: (a - (high - of_b)) + (b - of_b) }
+    let b_part = high - a;
+    Pair { high, low: (a - (high - b_part)) + (b - b_part) }
 }
 
-/// The same for |a| at least |b|.
+/// Returns a + b without error, for |a| at least |b|.
 fn ordered(a: f64, b: f64) -> Pair {
     let high = a + b;
     Pair { high, low: b - (high - a) }
@@ -105,51 +106,51 @@ fn between(a: &V, b: &V) -> V {
     std::array::from_fn(|k| b[k] - a[k])
 }
 
-/// x 2^e, in steps that stay in range if the result does.
+/// Returns x 2^e, in steps that stay in range if the result does.
 pub(crate) fn scaled(x: f64, e: i32) -> f64 {
-    let half = e / 2;
-    x * 2f64.powi(half) * 2f64.powi(e - half)
+    let half_exponent = e / 2;
+    x * 2f64.powi(half_exponent) * 2f64.powi(e - half_exponent)
 }
 
-/// Bounds on the distance of a query to the convex hull of one to three vertices.
+/// Bounds on the distance from a query to the convex hull of one to three vertices.
 #[derive(Clone, Copy, Debug)]
 pub struct Enclosure {
     low: Pair,
     high: Pair,
-    /// The largest distance from the query to a vertex, but for some roundings.
-    reach: f64,
-    /// All of them are in units of 2^exponent.
+    /// The largest distance from the query to a vertex, to a few roundings.
+    max_vertex_distance: f64,
+    /// The exponent of the unit: all lengths are multiples of 2^exponent.
     exponent: i32,
 }
 
 impl Enclosure {
-    /// `None` where coordinates are close to the end of the range and others are tiny.
+    /// Returns `None` if some coordinates are close to the end of the range and others are tiny.
     ///
     /// # Panics
-    /// Without one to three vertices.
+    /// Panics unless there are one to three vertices.
     #[must_use]
     pub fn new(query: [f64; 3], vertices: &[[f64; 3]]) -> Option<Self> {
         let all = || vertices.as_flattened().iter().chain(&query);
         let largest = all().fold(0.0, |m: f64, x| m.max(x.abs()));
-        // Differences must not overflow, and what is scaled must keep its bits.
+        // Differences must not overflow, and scaled coordinates must keep their bits.
         let down = largest >= 2f64.powi(1020);
         if down && all().any(|x| *x != 0.0 && x.abs() < 2f64.powi(-900)) {
             return None;
         }
         let to = if down { -8 } else { 0 };
-        let place = |p: &[f64; 3]| if down { p.map(|x| x * 2f64.powi(-8)) } else { *p };
-        let q = place(&query);
+        let scaled_down = |p: &[f64; 3]| if down { p.map(|x| x * 2f64.powi(-8)) } else { *p };
+        let q = scaled_down(&query);
         let mut offsets = [[ZERO; 3]; 3];
         let offsets = &mut offsets[..vertices.len()];
         for (offset, vertex) in offsets.iter_mut().zip(vertices) {
-            let v = place(vertex);
+            let v = scaled_down(vertex);
             *offset = std::array::from_fn(|k| sum(v[k], -q[k]));
         }
         let size = offsets.as_flattened().iter().fold(0.0, |m: f64, x| m.max(x.high.abs()));
         if size == 0.0 {
-            return Some(Self { low: ZERO, high: ZERO, reach: 0.0, exponent: 0 });
+            return Some(Self { low: ZERO, high: ZERO, max_vertex_distance: 0.0, exponent: 0 });
         }
-        // log2 is right to far less than one; whether the largest is 0.9 or 2.1 does not matter.
+        // The error of log2 is far below one, and the largest component may as well be 0.9 or 2.1.
         #[allow(clippy::cast_possible_truncation, reason = "at most 1024")]
         let exponent = size.log2().floor() as i32;
         for x in offsets.as_flattened_mut() {
@@ -162,24 +163,25 @@ impl Enclosure {
         let mut low = ZERO;
         if length.high > 2f64.powi(-300) {
             let heights = offsets.iter().map(|a| dot(a, &direction));
-            let least = heights.reduce(|a, b| if b.is_below(a) { b } else { a }).expect("a vertex");
-            let bound = least / length - slack;
+            let minimum = heights.reduce(|a, b| if b.is_below(a) { b } else { a }).expect("a vertex");
+            let bound = minimum / length - slack;
             if ZERO.is_below(bound) {
                 low = bound;
             }
         }
-        let reach = offsets.iter().map(|a| dot(a, a).high).fold(0.0, f64::max).sqrt();
-        Some(Self { low, high, reach, exponent: exponent - to })
+        let max_vertex_distance = offsets.iter().map(|a| dot(a, a).high).fold(0.0, f64::max).sqrt();
+        Some(Self { low, high, max_vertex_distance, exponent: exponent - to })
     }
 
-    /// [`Distance::error`](crate::oracle::Distance::error), at most a thousandth above it; `None` if the bounds are too
-    /// far apart to say.
+    /// Returns [`Distance::error`](crate::oracle::Distance::error) or at most a thousandth more; `None` if the bounds
+    /// are too far apart.
     #[must_use]
     pub fn error(&self, computed: f64, bits: u32, eta: f64) -> Option<f64> {
-        self.error_per(computed, bits, eta, self.reach)
+        self.error_per(computed, bits, eta, self.max_vertex_distance)
     }
 
-    /// [`Distance::relative_error`](crate::oracle::Distance::relative_error), likewise.
+    /// Returns [`Distance::relative_error`](crate::oracle::Distance::relative_error) or at most a thousandth more;
+    /// `None` if the bounds are too far apart.
     #[must_use]
     pub fn relative_error(&self, computed: f64, bits: u32, eta: f64) -> Option<f64> {
         self.error_per(computed, bits, eta, self.low.high)
@@ -197,7 +199,7 @@ impl Enclosure {
         Some(((above.max(below) - at(eta)) / unit).max(0.0) * (1.0 + 2f64.powi(-40)))
     }
 
-    /// Whether the distance is at least `bound`; `None` if that lies between the bounds.
+    /// Returns whether the distance is at least `bound`; `None` if `bound` lies between the two bounds.
     #[must_use]
     pub fn is_at_least(&self, bound: f64) -> Option<bool> {
         let there = scaled(bound, -self.exponent);
@@ -214,14 +216,15 @@ impl Enclosure {
         }
     }
 
-    /// So many times the largest distance from the query to a vertex, within a few roundings.
+    /// Returns `factor` times the largest distance from the query to a vertex, to a few roundings.
     #[must_use]
-    pub fn of_reach(&self, factor: f64) -> f64 {
-        scaled(self.reach * factor, self.exponent)
+    pub fn times_max_vertex_distance(&self, factor: f64) -> f64 {
+        scaled(self.max_vertex_distance * factor, self.exponent)
     }
 }
 
-/// A point of the hull, about as near to the origin as any, and a direction with about the whole hull beyond it.
+/// Returns a point of the hull that is about the nearest to the origin, and a direction with about the whole hull
+/// beyond its plane.
 fn nearest(a: &[V]) -> (V, V) {
     let mut best = (dot(&a[0], &a[0]), a[0], a[0]);
     let mut offer = |point: V, direction: V| {
@@ -269,7 +272,7 @@ mod tests {
     use crate::oracle::Distance;
     use crate::rng;
 
-    /// Bounds hold, and errors are those of rational arithmetic, or a thousandth more.
+    /// Checks that the bounds hold, and that errors are those of rational arithmetic or at most a thousandth more.
     #[test]
     fn bounds_hold_and_errors_are_those_of_rationals() {
         let (mut decided, mut total, mut told) = (0, 0, 0);
@@ -280,25 +283,26 @@ mod tests {
             let exact = Distance::new(case.query, &case.vertices);
             total += 1;
             let Some(enclosure) = Enclosure::new(case.query, &case.vertices) else { continue };
-            let say = || format!("seed {seed}: {case:?} {enclosure:?}");
+            let context = || format!("seed {seed}: {case:?} {enclosure:?}");
             let [near, far] = [enclosure.low, enclosure.high].map(|x| scaled(x.high, enclosure.exponent));
-            // Roundings of the bounds to f64 are below 2^-53 of them.
+            // The bounds are rounded to f64, by a factor of at most 1 + 2^-53.
             let near = near.min(f64::MAX);
-            assert!(exact.is_at_least(near * (1.0 - f64::EPSILON) - 2.0 * f64::from_bits(1)), "{}", say());
+            assert!(exact.is_at_least(near * (1.0 - f64::EPSILON) - 2.0 * f64::from_bits(1)), "{}", context());
             let above = far * (1.0 + 4.0 * f64::EPSILON) + 4.0 * f64::from_bits(1);
-            assert!(above == f64::INFINITY || !exact.is_at_least(above), "{}", say());
-            for computed in [near, far, (near + 3.0 * enclosure.of_reach(f64::EPSILON)).min(f64::MAX)] {
+            assert!(above == f64::INFINITY || !exact.is_at_least(above), "{}", context());
+            for computed in [near, far, (near + 3.0 * enclosure.times_max_vertex_distance(f64::EPSILON)).min(f64::MAX)]
+            {
                 for (bits, eta) in [(53, f64::from_bits(1)), (24, f64::from(f32::from_bits(1)))] {
                     let Some(error) = enclosure.error(computed, bits, eta) else { continue };
                     let expected = exact.error(computed, bits, eta);
-                    assert!(error >= expected * (1.0 - 1e-5) - 1e-5, "{error}, not {expected}, {}", say());
-                    assert!(error <= expected * (1.0 + 2e-3) + 2e-3, "{error}, not {expected}, {}", say());
+                    assert!(error >= expected * (1.0 - 1e-5) - 1e-5, "{error}, not {expected}, {}", context());
+                    assert!(error <= expected * (1.0 + 2e-3) + 2e-3, "{error}, not {expected}, {}", context());
                     decided += usize::from(bits == 53 && computed == near);
                 }
                 for bound in [computed, computed.next_up(), computed.next_down()].into_iter().filter(|x| x.is_finite())
                 {
                     if let Some(is) = enclosure.is_at_least(bound) {
-                        assert_eq!(is, exact.is_at_least(bound), "{bound:e} {}", say());
+                        assert_eq!(is, exact.is_at_least(bound), "{bound:e} {}", context());
                         told += 1;
                     }
                 }

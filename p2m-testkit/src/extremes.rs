@@ -1,4 +1,4 @@
-//! Families of small scenes that break indexes and kernels, for every scale.
+//! Families of small scenes that break indexes and kernels, at every scale.
 
 use crate::families::{self, SCALES, SCALES_OF_F32, SINES};
 use crate::scenes::{self, KINDS, LAYOUTS, Layout};
@@ -11,38 +11,38 @@ type V = [f64; 3];
 /// A family of scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extreme {
-    /// Primitives from the families of isolated ones, each of a scale of its own.
+    /// Primitives from the families of isolated ones, each at its own scale.
     Isolated,
-    /// Triangles of one small sine, crossing each other.
+    /// Triangles of one small sine that cross each other.
     Slivers,
     /// Triangles with one tiny edge.
     Needles,
-    /// The same few primitives again and again, with their vertices in any order.
+    /// A few primitives, repeated many times with their vertices in any order.
     Coincident,
-    /// Everything on one line, exactly or but for rounding.
+    /// Primitives on one line, exactly or up to rounding.
     Collinear,
-    /// Vertices on a circle, asked about from its axis.
+    /// Vertices on a circle, queried from its axis.
     Cocircular,
-    /// Vertices on a sphere, asked about from its centre.
+    /// Vertices on a sphere, queried from its centre.
     Cospherical,
-    /// Sizes that differ by a million.
+    /// Primitives whose sizes differ by a factor of 10^6.
     Sizes6,
-    /// Sizes that differ by 10^12.
+    /// Primitives whose sizes differ by a factor of 10^12.
     Sizes12,
-    /// A small integer lattice.
+    /// Primitives on a small integer lattice.
     Lattice,
-    /// A million from the origin, in units of the scene.
+    /// Scenes at 10^6 times their size from the origin.
     Far6,
-    /// 10^15 from the origin: neighbouring numbers are an eighth of the scene apart.
+    /// Scenes at 10^15 times their size from the origin, where neighbouring numbers are an eighth of the size apart.
     Far15,
-    /// Coordinates that are subnormal numbers, of f64 or of f32.
+    /// Scenes whose coordinates are subnormal numbers of f64 or of f32.
     Subnormal,
-    /// Random scenes of the other tests.
+    /// Random scenes as in the other tests.
     Ordinary,
 }
 
 impl Extreme {
-    /// All of them.
+    /// All families, in the order of the tables.
     pub const ALL: [Self; 14] = [
         Self::Isolated,
         Self::Slivers,
@@ -60,7 +60,7 @@ impl Extreme {
         Self::Ordinary,
     ];
 
-    /// For tables.
+    /// Returns the name in tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -81,7 +81,8 @@ impl Extreme {
         }
     }
 
-    /// A scene of the family, of some scale where it has none of its own, and queries about it: on, near, equidistant and far.
+    /// Generates a scene of the family, at a random scale unless the family has its own, and queries on it, near it,
+    /// equidistant and far.
     pub fn generate(self, rng: &mut impl Rng, queries: usize) -> (Soup<f64>, Vec<Point3<f64>>) {
         let len = rng.random_range(1..48);
         let mut centre = [0.0; 3];
@@ -123,9 +124,9 @@ impl Extreme {
                 scales[rng.random_range(0..scales.len())]
             }
         };
-        // In two steps, and at the edge of the range rather than beyond it.
-        let (half, rest) = (2f64.powi(scale / 2), 2f64.powi(scale - scale / 2));
-        let place = |p: V| Point3::from(p.map(|x| (x * half * rest).clamp(-f64::MAX, f64::MAX)));
+        // The factor is applied in two steps, and clamped at the edge of the range.
+        let (factor, rest) = (2f64.powi(scale / 2), 2f64.powi(scale - scale / 2));
+        let moved = |p: V| Point3::from(p.map(|x| (x * factor * rest).clamp(-f64::MAX, f64::MAX)));
         let unscaled: Vec<Point3<f64>> = positions.iter().map(|p| Point3::from(*p)).collect();
         let asked = (0..queries)
             .map(|i| {
@@ -136,22 +137,22 @@ impl Extreme {
                 } else {
                     scenes::query(rng, &unscaled).coords.into()
                 };
-                place(query)
+                moved(query)
             })
             .collect();
-        let positions = positions.into_iter().map(place).collect();
+        let positions = positions.into_iter().map(moved).collect();
         (Soup::new(positions, elements).expect("finite, and indices are in range"), asked)
     }
 
-    /// Before they are moved away and scaled.
+    /// Generates the primitives before they are moved and scaled.
     fn shapes<R: Rng>(self, rng: &mut R, len: usize) -> Vec<Vec<V>> {
         let sine = SINES[rng.random_range(0..SINES.len())];
         let mut pool: Vec<Vec<V>> = Vec::new();
         let line = [direction(rng), direction(rng)];
-        // Of everything, of segments and triangles, or of triangles alone.
-        let least = rng.random_range(1..=3);
+        // Scenes have all kinds, segments and triangles, or triangles alone.
+        let min_vertices = rng.random_range(1..=3);
         let vertices = |rng: &mut R, one: &mut dyn FnMut(&mut R) -> V| -> Vec<V> {
-            (0..rng.random_range(least..=3)).map(|_| one(rng)).collect()
+            (0..rng.random_range(min_vertices..=3)).map(|_| one(rng)).collect()
         };
         (0..len)
             .map(|_| match self {
@@ -191,8 +192,8 @@ impl Extreme {
                 Self::Sizes6 | Self::Sizes12 => {
                     let octaves = if self == Self::Sizes6 { 20.0 } else { 40.0 };
                     let size = 2f64.powf(rng.random_range(-octaves..0.0));
-                    let place = direction(rng);
-                    vertices(rng, &mut |rng| std::array::from_fn(|k| place[k] + size * rng.random_range(-1.0..1.0)))
+                    let centre = direction(rng);
+                    vertices(rng, &mut |rng| std::array::from_fn(|k| centre[k] + size * rng.random_range(-1.0..1.0)))
                 }
                 _ => vertices(rng, &mut |rng| std::array::from_fn(|_| rng.random_range(-1.0..1.0))),
             })
@@ -200,7 +201,7 @@ impl Extreme {
     }
 }
 
-/// Of length one, but for rounding.
+/// Returns a random direction of length one, up to rounding.
 fn direction(rng: &mut impl Rng) -> V {
     families::unit(rng)
 }
@@ -210,7 +211,7 @@ mod tests {
     use super::*;
     use p2m_core::{Primitive, PrimitiveId, PrimitiveSet};
 
-    /// Doubled areas over the squares of the longest sides, of triangles.
+    /// Returns the doubled areas of triangles over the squares of their longest sides.
     fn sines(soup: &Soup<f64>) -> Vec<f64> {
         let of = |[a, b, c]: [Point3<f64>; 3]| {
             let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
@@ -228,34 +229,34 @@ mod tests {
                 let (soup, queries) = family.generate(&mut crate::rng(family.name(), case), 8);
                 assert!(!soup.is_empty() && queries.len() == 8);
                 let all: Vec<f64> = soup.positions().iter().flat_map(|p| p.iter().map(|x| x.abs())).collect();
-                let most = all.iter().fold(0.0, |m: f64, x| m.max(*x));
-                let least = all.iter().filter(|x| **x > 0.0).fold(f64::INFINITY, |m: f64, x| m.min(*x));
-                let ordinary = (1e-3..1e3).contains(&most);
-                seen[0] |= (0.0..f64::MIN_POSITIVE).contains(&most);
-                seen[1] |= (f64::MIN_POSITIVE..f64::from(f32::MIN_POSITIVE)).contains(&most);
-                seen[2] |= most > 1e300;
-                seen[3] |= (1e30..1e39).contains(&most);
+                let largest = all.iter().fold(0.0, |m: f64, x| m.max(*x));
+                let smallest = all.iter().filter(|x| **x > 0.0).fold(f64::INFINITY, |m: f64, x| m.min(*x));
+                let ordinary = (1e-3..1e3).contains(&largest);
+                seen[0] |= (0.0..f64::MIN_POSITIVE).contains(&largest);
+                seen[1] |= (f64::MIN_POSITIVE..f64::from(f32::MIN_POSITIVE)).contains(&largest);
+                seen[2] |= largest > 1e300;
+                seen[3] |= (1e30..1e39).contains(&largest);
                 seen[4] |= ordinary;
                 let positions = soup.positions();
                 let radii = || positions.iter().map(|p| p.coords.norm());
                 let sines = sines(&soup);
                 let holds = match family {
-                    Extreme::Subnormal => most < f64::from(f32::MIN_POSITIVE),
-                    Extreme::Far15 => (1e14..1e16).contains(&most) && most - least < 2e15,
+                    Extreme::Subnormal => largest < f64::from(f32::MIN_POSITIVE),
+                    Extreme::Far15 => (1e14..1e16).contains(&largest) && largest - smallest < 2e15,
                     Extreme::Far6 if ordinary => false,
                     Extreme::Cospherical | Extreme::Cocircular if ordinary => {
                         let flat = family == Extreme::Cospherical || positions.iter().all(|p| p.z == 0.0);
                         flat && radii().all(|r| (r - 1.0).abs() < 1e-12)
                     }
                     Extreme::Collinear if ordinary => sines.iter().all(|sine| *sine < 1e-9),
-                    // Nine of ten edges are below an eighth.
+                    // Nine of ten edges are shorter than an eighth of the longest.
                     Extreme::Needles if ordinary => {
                         sines.len() < 12 || sines.iter().filter(|sine| **sine < 0.3).count() * 3 > 2 * sines.len()
                     }
-                    // One sine of the list, or less.
+                    // All sines are one value of the list, or smaller.
                     Extreme::Slivers if ordinary => {
-                        let most = sines.iter().fold(0.0, |m: f64, s| m.max(*s));
-                        SINES.iter().any(|sine| most <= *sine + 1e-15)
+                        let largest = sines.iter().fold(0.0, |m: f64, s| m.max(*s));
+                        SINES.iter().any(|sine| largest <= *sine + 1e-15)
                     }
                     Extreme::Coincident if ordinary => {
                         let mut all: Vec<_> = positions.iter().map(|p| p.coords.map(f64::to_bits).data.0[0]).collect();
@@ -265,7 +266,7 @@ mod tests {
                     }
                     _ => true,
                 };
-                assert!(holds, "{} {case}: {least:e} to {most:e}, sines {sines:?}", family.name());
+                assert!(holds, "{} {case}: {smallest:e} to {largest:e}, sines {sines:?}", family.name());
                 let sizes: Vec<f64> = (0..soup.len())
                     .map(|i| soup.get(PrimitiveId::new(i)).aabb())
                     .map(|b| (b.max - b.min).norm())

@@ -5,29 +5,29 @@ use rand::{Rng, RngExt};
 
 type V = [f64; 3];
 
-/// What a case has been drawn from.
+/// The way in which a case was generated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Family {
-    /// Small integers.
+    /// The coordinates are small integers.
     Lattice,
-    /// Coordinates of any magnitude.
+    /// The coordinates have any magnitude.
     Wild,
-    /// Almost parallel to an axis.
+    /// Edges and faces are almost parallel to an axis.
     AlmostFlat,
-    /// Vertices and query within some units in the last place of an f32.
+    /// Vertices and query are within a few units in the last place of an f32.
     Neighbours,
-    /// A shape of a size, a place and a query.
+    /// The shape, its scale, its offset and the query position are parameters.
     Shaped {
-        /// The sine of the smallest angle; of a segment about its length.
+        /// The sine of the smallest angle; for a segment about its length.
         sine: f64,
-        /// Scaled by 2^scale.
+        /// The exponent of the scale: coordinates are multiplied by 2^scale.
         scale: i32,
-        /// How far from the origin, before scaling.
+        /// The distance from the origin before scaling.
         offset: f64,
         /// Whether one edge is tiny.
         needle: bool,
-        /// Where the query is.
-        place: &'static str,
+        /// The name of the query position.
+        query_position: &'static str,
     },
 }
 
@@ -38,9 +38,9 @@ impl std::fmt::Display for Family {
             Self::Wild => write!(f, "coordinates of any magnitude"),
             Self::AlmostFlat => write!(f, "almost parallel to an axis"),
             Self::Neighbours => write!(f, "neighbours of an f32"),
-            Self::Shaped { sine, scale, offset, needle, place } => {
+            Self::Shaped { sine, scale, offset, needle, query_position } => {
                 let needle = if *needle { "needle, " } else { "" };
-                write!(f, "{needle}sine {sine:e}, scale 2^{scale}, offset {offset:e}, query {place}")
+                write!(f, "{needle}sine {sine:e}, scale 2^{scale}, offset {offset:e}, query {query_position}")
             }
         }
     }
@@ -49,15 +49,15 @@ impl std::fmt::Display for Family {
 /// One isolated primitive and a query.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// Which family it belongs to.
+    /// The family of the case.
     pub family: Family,
-    /// The query.
+    /// The query point.
     pub query: V,
-    /// One to three vertices.
+    /// The vertices, one to three.
     pub vertices: Vec<V>,
 }
 
-/// The primitive of one to three vertices.
+/// Returns the primitive of one to three vertices.
 #[must_use]
 pub fn shape<T: Real>(vertices: &[[T; 3]]) -> Shape<T> {
     match *vertices {
@@ -68,21 +68,21 @@ pub fn shape<T: Real>(vertices: &[[T; 3]]) -> Shape<T> {
     }
 }
 
-/// Exponents of the power-of-two scales: from subnormal coordinates to the edge of overflow.
+/// Exponents of the power-of-two scales of f64, from subnormal coordinates to the edge of overflow.
 pub const SCALES: [i32; 12] = [-1070, -1000, -500, -270, -249, -240, 0, 248, 250, 500, 1000, 1020];
-/// The same for f32.
+/// Exponents of the power-of-two scales of f32, from subnormal coordinates to the edge of overflow.
 pub const SCALES_OF_F32: [i32; 12] = [-146, -140, -126, -120, -75, -63, 0, 62, 75, 100, 120, 124];
 /// Distances of the primitive from the origin, before scaling.
 pub const OFFSETS: [f64; 4] = [0.0, 1e3, 1e8, 1e15];
-/// Sines of the smallest angle.
+/// Sines of the smallest angle of a triangle.
 pub const SINES: [f64; 11] = [1.0, 1e-2, 1e-3, 1e-4, 1e-8, 1e-12, 1e-15, 2e-16, 6e-17, 1e-17, 0.0];
 
 /// The range of a scalar.
 #[derive(Clone, Copy, Debug)]
 pub struct Span {
-    /// Scales of shapes, zero being one of them.
+    /// The exponents of the scales of shapes; zero is one of them.
     pub scales: &'static [i32],
-    /// The exponents of its smallest and its largest numbers, and of what is far from both.
+    /// The exponents of the smallest and of the largest numbers of the scalar, and of numbers far from both.
     low: i32,
     high: i32,
     middle: i32,
@@ -91,14 +91,14 @@ pub struct Span {
 }
 
 impl Span {
-    /// Of f64.
+    /// The range of f64.
     pub const F64: Self =
         Self { scales: &SCALES, low: -1074, high: 1023, middle: 300, largest: f64::MAX, is_single: false };
-    /// Of f32.
+    /// The range of f32.
     pub const F32: Self =
         Self { scales: &SCALES_OF_F32, low: -149, high: 127, middle: 40, largest: f32::MAX as f64, is_single: true };
 
-    /// The nearest number of the scalar, at most the largest.
+    /// Returns the nearest number of the scalar, clamped to its range.
     #[allow(clippy::cast_possible_truncation, reason = "rounds")]
     fn rounded(&self, x: f64) -> f64 {
         let x = x.clamp(-self.largest, self.largest);
@@ -128,7 +128,7 @@ fn combine<const N: usize>(terms: [(f64, V); N]) -> V {
     std::array::from_fn(|k| terms.iter().map(|(w, v)| w * v[k]).sum())
 }
 
-/// Across the first three vertices, of any length.
+/// Returns a vector of any length that is perpendicular to the first three vertices.
 fn normal(vertices: &[V]) -> V {
     let edge = |k: usize| std::array::from_fn(|c| vertices[k][c] - vertices[0][c]);
     cross(edge(1), edge(2))
@@ -138,10 +138,10 @@ fn pick<T: Copy>(rng: &mut impl Rng, from: &[T]) -> T {
     from[rng.random_range(0..from.len())]
 }
 
-/// A triangle of size about one whose height over its longest side is about `sine` times that side.
+/// Returns a triangle of size about one whose height over its longest side is about `sine` times that side.
 pub(crate) fn triangle(rng: &mut impl Rng, sine: f64) -> [V; 3] {
     if sine == 0.0 && rng.random_bool(0.5) {
-        // Exactly collinear or with repeated vertices: small integers along one direction.
+        // Small integers along one direction make the vertices exactly collinear or equal.
         let direction: V = std::array::from_fn(|_| f64::from(rng.random_range(-3..=3)));
         return std::array::from_fn(|_| direction.map(|x| x * f64::from(rng.random_range(-2..=2))));
     }
@@ -155,25 +155,26 @@ pub(crate) fn triangle(rng: &mut impl Rng, sine: f64) -> [V; 3] {
     };
     let start = unit(rng);
     let length = 2f64.powf(rng.random_range(-1.0..1.0));
-    // Anywhere over the base, or close to one of its ends.
+    // The apex is anywhere over the base, or close to one of its ends.
     let along = if rng.random_bool(0.7) { rng.random_range(0.0..1.0) } else { 2f64.powi(-rng.random_range(1..50)) };
     let along = if rng.random_bool(0.5) { along } else { 1.0 - along };
     let height = sine * rng.random_range(0.3..0.9);
     let a = start;
     let b = combine([(1.0, start), (length, base)]);
     let c = combine([(1.0, start), (length * along, base), (length * height, up)]);
-    // Any vertex may be the apex.
+    // The order of the vertices is random, so that any of them may be the apex.
     let mut t = [a, b, c];
     t.rotate_left(rng.random_range(0..3));
     t
 }
 
-/// Small integers, and a query at integers of any size: exact ties, and far away lengths that round to ties.
+/// Generates small integers and a query at integers of any size, so that ties are exact and large lengths
+/// round to ties.
 fn lattice(rng: &mut impl Rng) -> Case {
     let count = rng.random_range(1..=3);
     let vertices: Vec<V> = (0..count).map(|_| std::array::from_fn(|_| f64::from(rng.random_range(-6..=6)))).collect();
     if count == 3 && rng.random_bool(0.5) {
-        // Exactly above a quarter point of an edge, or beyond its end.
+        // The query is exactly above a quarter point of an edge, or beyond its end.
         let (i, j) = (rng.random_range(0..3), rng.random_range(0..3));
         let quarters = f64::from(rng.random_range(-1..=5)) * 0.25;
         let base = combine([(1.0 - quarters, vertices[i]), (quarters, vertices[j])]);
@@ -181,12 +182,12 @@ fn lattice(rng: &mut impl Rng) -> Case {
         let query = combine([(1.0, base), (height, normal(&vertices))]);
         return Case { family: Family::Lattice, query, vertices };
     }
-    let far = if rng.random_bool(0.5) { rng.random_range(0..50) } else { rng.random_range(50..56) };
-    let query = std::array::from_fn(|_| (2f64.powi(far) * rng.random_range(-6.0..6.0f64)).round());
+    let exponent = if rng.random_bool(0.5) { rng.random_range(0..50) } else { rng.random_range(50..56) };
+    let query = std::array::from_fn(|_| (2f64.powi(exponent) * rng.random_range(-6.0..6.0f64)).round());
     Case { family: Family::Lattice, query, vertices }
 }
 
-/// Coordinates of any magnitude, each for itself, from a small pool so that some coincide.
+/// Generates coordinates of any magnitude, independently from a small pool, so that some coincide.
 #[must_use]
 pub fn wild(rng: &mut impl Rng) -> Case {
     wild_in(rng, &Span::F64)
@@ -211,7 +212,8 @@ fn wild_in(rng: &mut impl Rng, span: &Span) -> Case {
     Case { family: Family::Wild, query, vertices: vertices[..count].to_vec() }
 }
 
-/// Edges and faces that are almost parallel to the axes: their box is thin, and a foot easily leaves it by rounding.
+/// Generates edges and faces that are almost parallel to the axes: their box is thin, so rounding easily moves a
+/// projection out of it.
 fn almost_flat(rng: &mut impl Rng) -> Case {
     let (count, axis) = (rng.random_range(2..=3), rng.random_range(0..3));
     let level = rng.random_range(-1.0..1.0);
@@ -223,7 +225,7 @@ fn almost_flat(rng: &mut impl Rng) -> Case {
     Case { family: Family::AlmostFlat, query, vertices }
 }
 
-/// Vertices and query within a few units in the last place of one point, whose coordinates are any f32.
+/// Generates vertices and a query within a few units in the last place of one point, whose coordinates are any f32.
 fn neighbours(rng: &mut impl Rng) -> Case {
     let anchor: [f32; 3] = std::array::from_fn(|_| {
         loop {
@@ -243,12 +245,13 @@ fn neighbours(rng: &mut impl Rng) -> Case {
     Case { family: Family::Neighbours, query: near(), vertices }
 }
 
-/// Case `rng` of all families, with 1 to 3 vertices.
+/// Generates a case of any family, with one to three vertices.
 pub fn case(rng: &mut impl Rng) -> Case {
     case_in(rng, &Span::F64)
 }
 
-/// The same in the range of a scalar, all numbers being of that scalar, and not all of them zero.
+/// Generates a case of any family in the range of a scalar. All numbers are numbers of that scalar and not
+/// all are zero.
 pub fn case_in(rng: &mut impl Rng, span: &Span) -> Case {
     loop {
         let Case { family, query, vertices } = drawn(rng, span);
@@ -283,28 +286,28 @@ fn drawn(rng: &mut impl Rng, span: &Span) -> Case {
     let mut vertices: Vec<V> =
         triangle(rng, sine)[..count].iter().map(|v| combine([(1.0, *v), (1.0, shift)])).collect();
     if count == 2 && sine < 1e-3 {
-        // A short segment in place of a flat triangle.
+        // A segment becomes short instead of flat.
         vertices[1] = std::array::from_fn(|k| vertices[0][k] + sine * (vertices[1][k] - vertices[0][k]));
     }
     let needle = count == 3 && rng.random_bool(0.1);
     if needle {
-        // A needle: one edge is tiny.
+        // A needle has one tiny edge.
         let tiny = 2f64.powi(-rng.random_range(1..60));
         vertices[2] = combine([(1.0, vertices[0]), (tiny, unit(rng))]);
     }
-    let (place, mut query) = query(rng, &vertices);
+    let (query_position, mut query) = query(rng, &vertices);
     if rng.random_bool(0.2) {
-        // Few digits: components that are equal, sums that are exact, feet that are on the box.
-        let few = |v: V| v.map(|x| if x == 0.0 { x } else { (x * 2f64.powi(20)).round() * 2f64.powi(-20) });
-        vertices.iter_mut().for_each(|v| *v = few(*v));
-        query = few(query);
+        // Rounding to few digits makes components equal, sums exact, and projections lie on the box.
+        let rounded = |v: V| v.map(|x| if x == 0.0 { x } else { (x * 2f64.powi(20)).round() * 2f64.powi(-20) });
+        vertices.iter_mut().for_each(|v| *v = rounded(*v));
+        query = rounded(query);
     }
     let factor =
         |x: f64| if scale >= -500 { x * 2f64.powi(scale) } else { x * 2f64.powi(-500) * 2f64.powi(scale + 500) };
-    // Offsets times the largest scales would overflow: they stay at the edge of the range.
+    // Offsets times the largest scales would overflow, so they are clamped at the edge of the range.
     let clip = |v: V| v.map(|x| factor(x).clamp(-span.largest, span.largest));
     Case {
-        family: Family::Shaped { sine, scale, offset, needle, place },
+        family: Family::Shaped { sine, scale, offset, needle, query_position },
         query: clip(query),
         vertices: vertices.into_iter().map(clip).collect(),
     }
@@ -335,7 +338,7 @@ fn query(rng: &mut impl Rng, vertices: &[V]) -> (&'static str, V) {
                 0 => ("above the face", combine([(1.0, inside), (height, up)])),
                 1 => ("above a vertex", combine([(1.0, vertices[i]), (height, up)])),
                 _ => {
-                    // Above an edge, a little to its inner or outer side.
+                    // The query is above an edge, slightly to its inner or outer side.
                     let along: V = std::array::from_fn(|k| vertices[j][k] - vertices[i][k]);
                     let aside = 2f64.powi(-rng.random_range(20..70)) * if rng.random_bool(0.5) { 1.0 } else { -1.0 };
                     ("above an edge", combine([(1.0, on_edge), (height, up), (aside, cross(up, along))]))
@@ -348,14 +351,15 @@ fn query(rng: &mut impl Rng, vertices: &[V]) -> (&'static str, V) {
         }
         5 => ("near an edge", combine([(1.0, on_edge), (small, direction)])),
         6 => {
-            // As far from one vertex as from another, but for rounding.
+            // The query is equally far from two vertices, up to rounding.
             let middle = combine([(0.5, vertices[i]), (0.5, vertices[j])]);
             let along: V = std::array::from_fn(|k| vertices[j][k] - vertices[i][k]);
             ("equidistant", combine([(1.0, middle), (1.0, cross(along, direction))]))
         }
         7 => ("far", combine([(1.0, inside), (10f64.powi(rng.random_range(1..20)), direction)])),
         8 if n > 1 && rng.random_bool(0.5) => {
-            // Almost perpendicular above a vertex: does an edge there lead towards the query or away from it?
+            // The query is almost perpendicular above a vertex, so rounding decides whether an edge there leads towards
+            // it.
             let along: V = std::array::from_fn(|k| vertices[(i + 1) % n][k] - vertices[i][k]);
             let lean = if rng.random_bool(0.5) { small } else { -small };
             let aside = cross(along, direction);

@@ -1,8 +1,8 @@
-//! The k-DOP tree's searches as CGAL's manual has them, to compare counters with: a binary tree, the left child first;
-//! for the closest point bounds that are the largest slack of a slab, for rays an interval that every pair of slabs
-//! clips.
+//! The searches of the k-DOP tree in CGAL's manual, for a comparison of counters.
 //!
-//! Written from the manual's description, for counting only.
+//! The tree is binary and the left child is visited first. Closest-point queries bound a node by the largest slack of a
+//! slab. Rays keep an interval that every pair of slabs clips. The code follows the manual's description and is for
+//! counting only.
 
 use nalgebra::{Point3, Vector3};
 use p2m_bvh::{PacketTree, TreeNode};
@@ -13,7 +13,7 @@ use std::cell::Cell;
 /// A binary tree of k-DOPs.
 pub struct LeftFirst<const K: usize> {
     directions: Directions<K>,
-    /// Children come after their parents.
+    /// The nodes; children come after their parents.
     nodes: Vec<Node<K>>,
 }
 
@@ -27,26 +27,26 @@ enum Below {
     Primitives(Vec<PrimitiveId>),
 }
 
-/// What searches did.
+/// The work of searches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
     /// Nodes visited, leaves included.
     pub nodes: usize,
-    /// Leaves visited.
+    /// The number of leaves visited.
     pub leaves: usize,
-    /// Primitives tested.
+    /// The number of primitives tested.
     pub primitives: usize,
 }
 
-/// So much of the size of scene and origin is added to slabs that a ray clips: 2^-40, far above the 16 u that the
-/// products, the difference and the quotient err by, and below what moves a count.
-const MARGIN: f64 = 1.0 / (1u64 << 40) as f64;
+/// The margin of slabs that a ray clips, relative to the sizes of scene and origin. It is 2^-40, far above the 16 u by
+/// which the products, the difference and the quotient err, and too small to change a count.
+const RELATIVE_MARGIN: f64 = 1.0 / (1u64 << 40) as f64;
 
 impl<const K: usize> LeftFirst<K> {
-    /// The packets of a tree as leaves, its nodes of eight as binary ones: the children of each in two halves, and so
-    /// on.
+    /// Builds a tree whose leaves are the packets of another tree. Each node of eight children becomes binary nodes by
+    /// halving its children repeatedly.
     #[must_use]
-    pub fn of_packets(tree: &PacketTree<Kdop<K>>) -> Self {
+    pub fn from_packets(tree: &PacketTree<Kdop<K>>) -> Self {
         let mut result = Self { directions: *tree.directions(), nodes: Vec::new() };
         if let Some(root) = tree.root() {
             result.add(tree, &[root]);
@@ -54,10 +54,10 @@ impl<const K: usize> LeftFirst<K> {
         result
     }
 
-    /// A tree of its own, as the manual builds it: the primitives of a box are halved along its longest side until
-    /// each one is a leaf.
+    /// Builds a tree as the manual does: the primitives of a box are halved along its longest side until each one
+    /// is a leaf.
     #[must_use]
-    pub fn of_primitives<T: Real, S: PrimitiveSet<T>>(set: &S, directions: &Directions<K>) -> Self {
+    pub fn from_primitives<T: Real, S: PrimitiveSet<T>>(set: &S, directions: &Directions<K>) -> Self {
         let mut result = Self { directions: *directions, nodes: Vec::new() };
         let mut leaves: Vec<_> = (0..set.len())
             .map(|at| {
@@ -76,7 +76,7 @@ impl<const K: usize> LeftFirst<K> {
         result
     }
 
-    /// Puts a node over some leaves and returns its place.
+    /// Adds a node over some leaves and returns its index.
     fn halve(&mut self, leaves: &mut [Leaf<K>]) -> usize {
         let at = self.nodes.len();
         if let [leaf] = leaves {
@@ -97,9 +97,9 @@ impl<const K: usize> LeftFirst<K> {
         at
     }
 
-    /// Puts a node over some parts and returns its place.
-    fn add(&mut self, tree: &PacketTree<Kdop<K>>, parts: &[TreeNode<Kdop<K>>]) -> usize {
-        if let [part] = parts {
+    /// Adds a node over some subtrees and returns its index.
+    fn add(&mut self, tree: &PacketTree<Kdop<K>>, subtrees: &[TreeNode<Kdop<K>>]) -> usize {
+        if let [part] = subtrees {
             let children: Vec<_> = tree.children(part).collect();
             if let Some(ids) = tree.primitives(part) {
                 self.nodes.push(Node { volume: part.volume, below: Below::Primitives(ids.to_vec()) });
@@ -107,17 +107,17 @@ impl<const K: usize> LeftFirst<K> {
             }
             return self.add(tree, &children);
         }
-        let volume = parts.iter().fold(Kdop::empty(), |all, part| all.union(&part.volume));
+        let volume = subtrees.iter().fold(Kdop::empty(), |all, part| all.union(&part.volume));
         let at = self.nodes.len();
         self.nodes.push(Node { volume, below: Below::Primitives(Vec::new()) });
-        let (left, right) = parts.split_at(parts.len() / 2);
+        let (left, right) = subtrees.split_at(subtrees.len() / 2);
         let children = [self.add(tree, left), self.add(tree, right)];
         self.nodes[at].below = Below::Children(children);
         at
     }
 
-    /// The distance to the scene and the work of finding it. The search begins with the distance to some primitive, as
-    /// the manual's does with a hint.
+    /// Returns the distance to the scene and the work of finding it. The search begins with the distance to some
+    /// primitive, as the manual's search begins with a hint.
     pub fn distance<T: Real, S: PrimitiveSet<T>>(&self, set: &S, query: &Point3<T>) -> (f64, Work) {
         let q = query.map(T::to_f64).coords;
         let products = self.directions.normals().map(|normal| normal.dot(&q));
@@ -132,14 +132,14 @@ impl<const K: usize> LeftFirst<K> {
         (nearest.get(), work)
     }
 
-    /// Tests every primitive that the ray could meet, in the leaves whose k-DOPs it overlaps, and returns the work.
+    /// Tests every primitive that the ray may intersect, in the leaves whose k-DOPs it overlaps, and returns the work.
     pub fn along(&self, ray: &Ray, test: impl FnMut(PrimitiveId)) -> Work {
         let Some(root) = self.nodes.first() else { return Work::default() };
         let clip = Clip::new(&self.directions, ray, &root.volume);
         self.walk(|volume| clip.overlaps(volume), test)
     }
 
-    /// Tests the primitives of all leaves that are entered, the left ones first.
+    /// Tests the primitives of all leaves that `enters` accepts, the left ones first.
     fn walk(&self, enters: impl Fn(&Kdop<K>) -> bool, mut test: impl FnMut(PrimitiveId)) -> Work {
         let mut work = Work::default();
         let mut open = vec![0];
@@ -158,7 +158,7 @@ impl<const K: usize> LeftFirst<K> {
         work
     }
 
-    /// What the rays do in all.
+    /// Returns the work of several rays in all.
     pub fn along_all<'r>(&self, rays: impl IntoIterator<Item = &'r Ray>) -> Work {
         rays.into_iter().map(|ray| self.along(ray, |_| ())).fold(Work::default(), |all, work| Work {
             nodes: all.nodes + work.nodes,
@@ -168,7 +168,7 @@ impl<const K: usize> LeftFirst<K> {
     }
 }
 
-/// A primitive on its way into the tree.
+/// A primitive that is being inserted into the tree.
 struct Leaf<const K: usize> {
     id: PrimitiveId,
     low: Point3<f64>,
@@ -176,14 +176,14 @@ struct Leaf<const K: usize> {
     volume: Kdop<K>,
 }
 
-/// A ray as the slabs see it.
+/// A ray in the frame of the slabs.
 struct Clip<const K: usize> {
     range: [f64; 2],
-    /// Of each normal and the origin.
+    /// The dot products of the normals with the origin.
     starts: [f64; K],
-    /// Of each normal and the direction.
+    /// The dot products of the normals with the direction.
     speeds: [f64; K],
-    /// Added to heights.
+    /// The margin that is added to heights.
     margin: f64,
 }
 
@@ -195,21 +195,21 @@ impl<const K: usize> Clip<K> {
             range: ray.range(),
             starts: along(ray.origin().coords),
             speeds: along(ray.direction()),
-            margin: size * MARGIN + ray.radius(),
+            margin: size * RELATIVE_MARGIN + ray.radius(),
         }
     }
 
-    /// Whether there is a parameter at which the ray is between the faces of every pair.
+    /// Returns whether the ray is between the faces of every pair at a common parameter.
     fn overlaps(&self, volume: &Kdop<K>) -> bool {
         let [mut min, mut max] = self.range;
         for ((start, speed), height) in self.starts.iter().zip(&self.speeds).zip(&volume.heights) {
-            let room = height + self.margin - start;
-            // Into the half-space, out of it, or along its face.
+            let distance = height + self.margin - start;
+            // The ray enters the half-space, leaves it, or is parallel to its face.
             if *speed < 0.0 {
-                min = min.max(room / speed);
+                min = min.max(distance / speed);
             } else if *speed > 0.0 {
-                max = max.min(room / speed);
-            } else if room < 0.0 {
+                max = max.min(distance / speed);
+            } else if distance < 0.0 {
                 return false;
             }
         }
@@ -226,7 +226,7 @@ mod tests {
     fn rays_along_a_face_are_in_the_slab_or_beside_it() {
         let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point3::from);
         let set = [Triangle { vertices: corners }];
-        let tree = LeftFirst::<14>::of_primitives(&set, &Directions::default());
+        let tree = LeftFirst::<14>::from_primitives(&set, &Directions::default());
         let leaves = |y: f64, z: f64| {
             let ray = Ray::new(&Point3::new(-1.0, y, z), &Vector3::x()).expect("a ray");
             tree.along(&ray, |_| ()).leaves
@@ -237,7 +237,7 @@ mod tests {
     #[test]
     fn every_primitive_is_a_leaf_of_its_own_tree() {
         let soup = crate::scenes::skewed_gear(20);
-        let tree = LeftFirst::<6>::of_primitives(&soup, &Directions::default());
+        let tree = LeftFirst::<6>::from_primitives(&soup, &Directions::default());
         let mut leaves: Vec<_> = tree
             .nodes
             .iter()

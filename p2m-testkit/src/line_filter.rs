@@ -1,5 +1,5 @@
-//! Which primitives of a large scene a line could meet: a plain tree of boxes with generous margins, so that rational
-//! arithmetic has few to decide.
+//! Finds the primitives of a large scene that a line may intersect, with a plain tree of boxes and generous margins, so
+//! that rational arithmetic decides about few of them.
 
 use crate::ray_oracle::nearest_to;
 use p2m_core::Ray;
@@ -7,26 +7,26 @@ use std::ops::Range;
 
 type P = [f64; 3];
 
-/// How much farther than exactly a line may pass, of everything's size: thousands of roundings.
-const MARGIN: f64 = 1e-12;
+/// The margin of all comparisons, relative to the largest coordinate involved: thousands of roundings.
+const RELATIVE_MARGIN: f64 = 1e-12;
 
 /// A binary tree over the vertices of primitives.
 pub struct LineFilter<'a> {
     primitives: &'a [Vec<P>],
-    /// Ids in the order of the leaves.
+    /// The ids in the order of the leaves.
     order: Vec<usize>,
     nodes: Vec<Node>,
 }
 
 struct Node {
     centre: P,
-    half: P,
+    half_extent: P,
     ids: Range<usize>,
-    /// Of the two children; leaves have none.
+    /// The indices of the two children; leaves have none.
     children: Option<[usize; 2]>,
 }
 
-/// A line near the scene: a point of it, and its direction of size 1.
+/// A line near the scene: a point of it, and its direction with largest component 1.
 struct Line {
     point: P,
     direction: P,
@@ -42,7 +42,7 @@ fn cross(a: &P, b: &P) -> P {
 }
 
 impl<'a> LineFilter<'a> {
-    /// Of primitives of moderate coordinates.
+    /// Builds the filter over primitives of moderate coordinates.
     #[must_use]
     pub fn new(primitives: &'a [Vec<P>]) -> Self {
         let mut filter = Self { primitives, order: (0..primitives.len()).collect(), nodes: Vec::new() };
@@ -57,11 +57,11 @@ impl<'a> LineFilter<'a> {
         let min: P = std::array::from_fn(|k| vertices().fold(f64::INFINITY, |m, v| m.min(v[k])));
         let max: P = std::array::from_fn(|k| vertices().fold(f64::NEG_INFINITY, |m, v| m.max(v[k])));
         let centre = std::array::from_fn(|k| 0.5 * min[k] + 0.5 * max[k]);
-        let half: P = std::array::from_fn(|k| 0.5 * max[k] - 0.5 * min[k]);
+        let half_extent: P = std::array::from_fn(|k| 0.5 * max[k] - 0.5 * min[k]);
         let node = self.nodes.len();
-        self.nodes.push(Node { centre, half, ids: ids.clone(), children: None });
+        self.nodes.push(Node { centre, half_extent, ids: ids.clone(), children: None });
         if ids.len() > 4 {
-            let axis = (0..3).max_by(|a, b| half[*a].total_cmp(&half[*b])).expect("three");
+            let axis = (0..3).max_by(|a, b| half_extent[*a].total_cmp(&half_extent[*b])).expect("three");
             let middle = ids.len() / 2;
             let of = |i: &usize| self.primitives[*i].iter().map(|v| v[axis]).sum::<f64>();
             self.order[ids.clone()].select_nth_unstable_by(middle, |a, b| of(a).total_cmp(&of(b)));
@@ -72,12 +72,12 @@ impl<'a> LineFilter<'a> {
         node
     }
 
-    /// All primitives that the whole line of a ray could meet, and some others.
+    /// Returns all primitives that the whole line of a ray may intersect, and possibly some others.
     #[must_use]
     pub fn near(&self, ray: &Ray) -> Vec<usize> {
         let Some(root) = self.nodes.first() else { return Vec::new() };
         let direction: P = ray.direction().into();
-        // From where it passes the scene, lest the margin of a far origin hold everything.
+        // The point is where the line passes the scene; with a far origin the margin would accept everything.
         let line = Line {
             point: nearest_to(ray, root.centre),
             direction: direction.map(|x| x / size(&direction)),
@@ -86,7 +86,7 @@ impl<'a> LineFilter<'a> {
         let (mut found, mut stack) = (Vec::new(), vec![0]);
         while let Some(node) = stack.pop() {
             let node = &self.nodes[node];
-            if line.misses_box(&node.centre, &node.half) {
+            if line.misses_box(&node.centre, &node.half_extent) {
                 continue;
             }
             match node.children {
@@ -101,26 +101,27 @@ impl<'a> LineFilter<'a> {
 }
 
 impl Line {
-    /// What is across the line is seen along the edges of a box: there are three ways to look.
-    fn misses_box(&self, centre: &P, half: &P) -> bool {
+    /// Returns whether the line misses a box: projected along one of the three axes, the corners are all on one side.
+    fn misses_box(&self, centre: &P, half_extent: &P) -> bool {
         let offset = std::array::from_fn(|k| centre[k] - self.point[k]);
-        let margin = self.radius + MARGIN * (size(centre) + size(half) + size(&self.point));
+        let margin = self.radius + RELATIVE_MARGIN * (size(centre) + size(half_extent) + size(&self.point));
         let aside = cross(&offset, &self.direction);
         let d = self.direction.map(f64::abs);
         (0..3).any(|k| {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            aside[k].abs() > (half[i] + margin) * d[j] + (half[j] + margin) * d[i]
+            aside[k].abs() > (half_extent[i] + margin) * d[j] + (half_extent[j] + margin) * d[i]
         })
     }
 
-    /// Across the line, all vertices are on one side of it, seen along an edge or across one.
+    /// Returns whether the line misses the hull of the vertices: projected along or across an edge, all are
+    /// on one side.
     fn misses_hull(&self, vertices: &[P]) -> bool {
         let aside: Vec<P> =
             vertices.iter().map(|v| cross(&std::array::from_fn(|k| v[k] - self.point[k]), &self.direction)).collect();
-        // A distance across is up to three times as long there.
-        let reach = vertices.iter().map(size).fold(size(&self.point), f64::max);
+        // The projected distance may be up to three times as long as the vector.
+        let largest = vertices.iter().map(size).fold(size(&self.point), f64::max);
         let radius = if vertices.len() < 3 { self.radius } else { 0.0 };
-        let margin = 3.0 * (radius + MARGIN * reach);
+        let margin = 3.0 * (radius + RELATIVE_MARGIN * largest);
         let dot = |a: &P, b: &P| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let separates = |axis: P| {
             let slack = margin * size(&axis) * 3.0;
@@ -137,7 +138,7 @@ impl Line {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ray_oracle::{Meeting, crossing};
+    use crate::ray_oracle::{LineIntersection, crossing};
     use crate::rays::{AIMS, ray};
     use crate::scenes::{of_case, soup};
     use p2m_core::{PrimitiveId, PrimitiveSet};
@@ -158,7 +159,7 @@ mod tests {
                     ray(&mut rng, &soup, &soup.aabb(), aim).with_radius([0.0, 1e-3][seed as usize % 2]).expect("valid");
                 let near = filter.near(&ray);
                 for (i, vertices) in primitives.iter().enumerate() {
-                    let meets = Meeting::new(&ray, vertices).is_some() || crossing(&ray, vertices).is_some();
+                    let meets = LineIntersection::new(&ray, vertices).is_some() || crossing(&ray, vertices).is_some();
                     assert!(!meets || near.binary_search(&i).is_ok(), "seed {seed} {ray:?} {vertices:?}");
                     met += usize::from(meets);
                 }

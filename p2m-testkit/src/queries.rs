@@ -1,5 +1,5 @@
-//! The query sets. All are drawn in f64 from a fixed seed, each set from a stream of its own, so that leaving one out
-//! changes no other.
+//! The query sets. All are generated in f64 from a fixed seed, each set from its own random stream, so that leaving one
+//! out does not change the others.
 
 use crate::depth::Cases;
 use crate::surface::{SurfaceSampler, direction, normal};
@@ -8,39 +8,41 @@ use p2m_core::{PrimitiveSet, Ray, Soup};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// A distribution of queries. Lengths in percent are of the diagonal of the scene's box.
+/// A distribution of queries. Percentages of lengths refer to the diagonal of the scene's bounding box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum QuerySet {
-    /// uniform in the box scaled by 10 about its centre
+    /// Queries are uniform in the box scaled by 10 about its centre.
     Box10,
-    /// uniform in the box scaled by 1.05
+    /// Queries are uniform in the box scaled by 1.05.
     Box1,
-    /// a random point of the scene, offset along the normal by a normal distribution of sigma 1 %
+    /// Queries are random points of the scene, offset along the normal by a normal distribution with sigma 1 %.
     Near,
-    /// the same with sigma 0.1 %
+    /// Queries are random points of the scene, offset along the normal by a normal distribution with sigma 0.1 %.
     Nearer,
-    /// a random point of the scene
+    /// Queries are random points of the scene.
     Surface,
-    /// a regular lattice over the box of 1x, z fastest; about as many points as asked for, never more
+    /// Queries form a regular lattice over the box scaled by 1.05, z fastest, with about and at most the requested
+    /// number of points.
     Grid,
-    /// uniform on the sphere of 100 diagonals about the centre
+    /// Queries are uniform on the sphere of 100 diagonals about the centre.
     Far,
-    /// around 8 random points of the scene in random turn, normal in each coordinate with sigma 0.5 %
+    /// Queries are around 8 random points of the scene in random order, normally distributed in each coordinate with
+    /// sigma 0.5 %.
     Cluster,
 }
 
-/// How many clusters there are.
+/// The number of clusters.
 const CLUSTERS: usize = 8;
 
-/// Directions of rays are drawn from streams this far behind those of origins.
+/// The offset of the random stream of ray directions from that of the origins.
 const DIRECTIONS: u64 = 1 << 32;
 
 impl QuerySet {
-    /// All of them, in the order of the tables.
+    /// All sets, in the order of the tables.
     pub const ALL: [Self; 8] =
         [Self::Box10, Self::Box1, Self::Near, Self::Nearer, Self::Surface, Self::Grid, Self::Far, Self::Cluster];
 
-    /// Its name in tables and on the command line.
+    /// Returns the name in tables and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Box10 => "10x",
@@ -54,7 +56,7 @@ impl QuerySet {
         }
     }
 
-    /// `count` queries for a scene that is not empty (a lattice may have fewer).
+    /// Generates `count` queries for a scene that is not empty (a lattice may have fewer).
     #[must_use]
     pub fn generate(self, soup: &Soup<f64>, count: usize, seed: u64) -> Vec<Point3<f64>> {
         let scene = &Frame::new(soup);
@@ -86,14 +88,19 @@ impl QuerySet {
         }
     }
 
-    /// The queries with the numbers of these cases, of as many as there are with the last of them.
-    pub fn of_cases(self, soup: &Soup<f64>, cases: &Cases, seed: u64) -> impl Iterator<Item = Point3<f64>> + use<> {
+    /// Generates the queries whose numbers are those of the cases, out of as many as the last case requires.
+    pub fn generate_for_cases(
+        self,
+        soup: &Soup<f64>,
+        cases: &Cases,
+        seed: u64,
+    ) -> impl Iterator<Item = Point3<f64>> + use<> {
         let number = |case: u64| usize::try_from(case).expect("so many fit memory");
         let all = self.generate(soup, number(cases.end()), seed);
         cases.clone().filter_map(move |case| all.get(number(case)).copied())
     }
 
-    /// Rays from these queries, their directions of length 1 and evenly distributed on the sphere.
+    /// Generates rays from these queries, whose directions have length 1 and are evenly distributed on the sphere.
     #[must_use]
     pub fn rays(self, soup: &Soup<f64>, count: usize, seed: u64) -> Vec<Ray> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -120,19 +127,20 @@ impl std::str::FromStr for QuerySet {
     }
 }
 
-/// Points that are uniform in the box of a scene that is not empty, scaled about its centre.
+/// Generates points that are uniform in the box of a scene that is not empty, scaled about its centre.
 #[must_use]
 pub fn scaled_box(soup: &Soup<f64>, scale: f64, count: usize, seed: u64) -> Vec<Point3<f64>> {
     in_box(&Frame::new(soup), scale, count, &mut ChaCha8Rng::seed_from_u64(seed))
 }
 
-/// The diagonal of a scene's box, 1 for a scene that is one point: the unit of offsets and differences.
+/// Returns the diagonal of a scene's box, and 1 for a scene that is one point. It is the unit of
+/// offsets and differences.
 #[must_use]
 pub fn diagonal(soup: &Soup<f64>) -> f64 {
     Frame::new(soup).diagonal
 }
 
-/// A scene and the measures of its box.
+/// A scene and the dimensions of its box.
 struct Frame<'a> {
     soup: &'a Soup<f64>,
     centre: Point3<f64>,
@@ -143,7 +151,7 @@ struct Frame<'a> {
 impl<'a> Frame<'a> {
     fn new(soup: &'a Soup<f64>) -> Self {
         let bounds = soup.aabb();
-        // Halves first: sums and differences of finite numbers may not be finite.
+        // Coordinates are halved first, because sums and differences of finite numbers may overflow.
         let (min, max) = (bounds.min.coords * 0.5, bounds.max.coords * 0.5);
         let diagonal = (bounds.max - bounds.min).norm();
         let diagonal = if diagonal > 0.0 { diagonal } else { 1.0 };
@@ -152,8 +160,10 @@ impl<'a> Frame<'a> {
 }
 
 fn in_box(scene: &Frame<'_>, scale: f64, count: usize, rng: &mut ChaCha8Rng) -> Vec<Point3<f64>> {
-    let (centre, half) = (scene.centre, scene.half_sides * scale);
-    (0..count).map(|_| centre + Vector3::from_fn(|_, _| rng.random_range(-1.0..=1.0)).component_mul(&half)).collect()
+    let (centre, half_sides) = (scene.centre, scene.half_sides * scale);
+    (0..count)
+        .map(|_| centre + Vector3::from_fn(|_, _| rng.random_range(-1.0..=1.0)).component_mul(&half_sides))
+        .collect()
 }
 
 fn near(scene: &Frame<'_>, sigma: f64, count: usize, rng: &mut ChaCha8Rng) -> Vec<Point3<f64>> {
@@ -166,31 +176,32 @@ fn near(scene: &Frame<'_>, sigma: f64, count: usize, rng: &mut ChaCha8Rng) -> Ve
         .collect()
 }
 
-/// The finest lattice of equal spacing on all axes (as nearly as whole numbers allow) with at most `count` points, ends
-/// included. A side of no length takes one layer.
+/// Generates the finest lattice of equal spacing on all axes (as nearly as integers allow) with at most `count` points,
+/// ends included. A side of length zero has one layer.
 fn lattice(scene: &Frame<'_>, count: usize) -> Vec<Point3<f64>> {
-    let (centre, half) = (scene.centre, scene.half_sides * 1.05);
-    let [nx, ny, nz] = lattice_sides((half * 2.0).into(), count);
-    let place = |k: usize, i: usize, n: usize| match n {
+    let (centre, half_sides) = (scene.centre, scene.half_sides * 1.05);
+    let [nx, ny, nz] = lattice_sides((half_sides * 2.0).into(), count);
+    let coordinate = |k: usize, i: usize, n: usize| match n {
         1 => centre[k],
-        _ => centre[k] + half[k] * (2.0 * (i as f64 / (n - 1) as f64) - 1.0),
+        _ => centre[k] + half_sides[k] * (2.0 * (i as f64 / (n - 1) as f64) - 1.0),
     };
     let mut points = Vec::with_capacity(nx * ny * nz);
     for x in 0..nx {
         for y in 0..ny {
-            points.extend((0..nz).map(|z| Point3::new(place(0, x, nx), place(1, y, ny), place(2, z, nz))));
+            points
+                .extend((0..nz).map(|z| Point3::new(coordinate(0, x, nx), coordinate(1, y, ny), coordinate(2, z, nz))));
         }
     }
     points
 }
 
-/// How many points a lattice has along each side, found by bisection of its spacing.
+/// Returns the number of points of a lattice along each side, found by bisection of its spacing.
 fn lattice_sides(sides: [f64; 3], count: usize) -> [usize; 3] {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is not negative")]
     let layers = |side: f64, spacing: f64| if side > 0.0 { (side / spacing) as usize + 1 } else { 1 };
     let at = |spacing: f64| sides.map(|side| layers(side, spacing));
     let points = |spacing: f64| at(spacing).iter().fold(1usize, |all, n| all.saturating_mul(*n));
-    // Always too fine, and always coarse enough.
+    // The spacing `fine` is always too fine, and `coarse` is always coarse enough.
     let (mut fine, mut coarse) = (0.0, sides.iter().fold(0.0, |a: f64, b| a.max(*b)) * 2.0);
     for _ in 0..100 {
         let middle = 0.5 * (fine + coarse);
@@ -231,20 +242,20 @@ mod tests {
         }
     }
 
-    /// The largest coordinate of any query relative to the half sides of the box.
-    fn reach(set: QuerySet) -> f64 {
+    /// Returns the largest coordinate of any query relative to the half sides of the box.
+    fn max_relative_coordinate(set: QuerySet) -> f64 {
         let (scene, count) = (scene(), 2000);
         let frame = Frame::new(&scene);
-        let (centre, half) = (frame.centre, frame.half_sides);
+        let (centre, half_sides) = (frame.centre, frame.half_sides);
         let queries = set.generate(&scene, count, 1);
-        queries.iter().map(|q| (q - centre).component_div(&half).amax()).fold(0.0, f64::max)
+        queries.iter().map(|q| (q - centre).component_div(&half_sides).amax()).fold(0.0, f64::max)
     }
 
     #[test]
     fn boxes_are_filled_and_not_left() {
         for (set, scale) in [(QuerySet::Box10, 10.0), (QuerySet::Box1, 1.05), (QuerySet::Grid, 1.05)] {
-            let reach = reach(set);
-            assert!(reach > 0.99 * scale && reach <= scale * (1.0 + 1e-15), "{set:?} {reach}");
+            let largest = max_relative_coordinate(set);
+            assert!(largest > 0.99 * scale && largest <= scale * (1.0 + 1e-15), "{set:?} {largest}");
         }
     }
 
@@ -252,7 +263,7 @@ mod tests {
     fn distances_to_the_scene_are_as_named() {
         let scene = scene();
         let index = BruteForce::new(&scene).unwrap();
-        // Root mean square over the diagonal.
+        // The spread is the root mean square over the diagonal.
         let spread = |set: QuerySet| {
             let queries = set.generate(&scene, 4000, 1);
             let sum: f64 = queries.iter().map(|q| index.closest_point(q).unwrap().distance.powi(2)).sum();
@@ -279,7 +290,7 @@ mod tests {
             octants[(0..3).map(|k| usize::from(direction[k] > 0.0) << k).sum::<usize>()] += 1;
         }
         assert!(octants.iter().all(|count| (400..600).contains(count)), "{octants:?}");
-        // Each coordinate of a sphere is evenly distributed.
+        // Each coordinate of a uniform point of a sphere is uniformly distributed.
         let steep = rays.iter().filter(|ray| ray.direction().z.abs() > 0.5).count();
         assert!((1850..2150).contains(&steep), "{steep}");
         assert_ne!(rays[0].direction(), QuerySet::Box10.rays(&scene(), 1, 1)[0].direction());

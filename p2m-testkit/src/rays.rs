@@ -7,40 +7,40 @@ use rand::{Rng, RngExt};
 
 type P = Point3<f64>;
 
-/// How a ray is aimed at a scene.
+/// The way in which a ray is aimed at a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aim {
-    /// From one place in ten times the box to another.
+    /// The ray leads from one point in ten times the box to another.
     Random,
-    /// From a place to a vertex.
+    /// The ray leads from a point to a vertex.
     ToVertex,
-    /// From a vertex anywhere.
+    /// The ray leads from a vertex in any direction.
     FromVertex,
-    /// From a vertex to another, or from before it.
+    /// The ray leads from a vertex, or from behind it, to another vertex.
     Vertices,
-    /// From a place to a point of an edge.
+    /// The ray leads from a point to a point of an edge.
     ToEdge,
-    /// From a point of an edge, its middle more often than not.
+    /// The ray begins at a point of an edge, most often at its middle.
     FromEdge,
-    /// From a point of a face.
+    /// The ray begins at a point of a face.
     FromFace,
-    /// To a point of a face.
+    /// The ray leads to a point of a face.
     ToFace,
-    /// Along an edge, from anywhere on its line.
+    /// The ray leads along an edge, from anywhere on its line.
     AlongEdge,
-    /// In the plane of a facet.
+    /// The ray lies in the plane of a facet.
     InPlane,
-    /// Along an axis or a diagonal through a vertex: exact as far as coordinates have room.
+    /// The ray leads along an axis or a diagonal through a vertex, exactly as far as the coordinates have enough bits.
     Axis,
-    /// From small integers to small integers.
+    /// The ray leads from small integers to small integers.
     Lattice,
-    /// From next to a vertex to a point of an edge or a face there: almost in its plane.
+    /// The ray leads from next to a vertex to a point of an edge or a face there, almost in its plane.
     Graze,
-    /// From 1e6, 1e12 or 1e300 sizes away.
+    /// The ray begins 1e6, 1e12 or 1e300 sizes away.
     Far,
 }
 
-/// All of them.
+/// All ways of aiming.
 pub const AIMS: [Aim; 14] = [
     Aim::Random,
     Aim::ToVertex,
@@ -58,7 +58,7 @@ pub const AIMS: [Aim; 14] = [
     Aim::Far,
 ];
 
-/// Three vertices of a random primitive; the last ones are repeated where it has fewer.
+/// Returns three vertices of a random primitive; the last one is repeated if it has fewer.
 fn corners(rng: &mut impl Rng, soup: &Soup<f64>) -> [P; 3] {
     let primitive = soup.get(PrimitiveId::new(rng.random_range(0..soup.len())));
     let vertices = primitive.vertices();
@@ -70,26 +70,26 @@ fn small(rng: &mut impl Rng) -> f64 {
     f64::from(rng.random_range(-3..=3))
 }
 
-/// Origin and direction of a ray at a scene that is not empty. The direction may be zero.
+/// Returns the origin and the direction of a ray that is aimed at a scene that is not empty. The direction may be zero.
 fn aimed(rng: &mut impl Rng, soup: &Soup<f64>, bounds: &Aabb<f64>, aim: Aim) -> (P, Vector3<f64>) {
     let size = (bounds.max - bounds.min).amax().max(f64::MIN_POSITIVE);
     let [a, b, c] = corners(rng, soup);
-    let place = bounds.min + (bounds.max - bounds.min) * 0.5 + vector(rng) * (5.0 * size);
+    let start = bounds.min + (bounds.max - bounds.min) * 0.5 + vector(rng) * (5.0 * size);
     let weights: [f64; 2] = if rng.random() { [0.5, 0.25] } else { [rng.random(), 0.5 * rng.random::<f64>()] };
     let on_edge = a + (b - a) * weights[0];
     let on_face = a + (b - a) * (weights[0] * 0.5) + (c - a) * weights[1];
     match aim {
-        Aim::Random => (place, vector(rng) * (5.0 * size)),
-        Aim::ToVertex => (place, a - place),
+        Aim::Random => (start, vector(rng) * (5.0 * size)),
+        Aim::ToVertex => (start, a - start),
         Aim::FromVertex => (a, vector(rng)),
         Aim::Vertices => {
             let [d, ..] = corners(rng, soup);
             (a - (d - a) * small(rng), d - a)
         }
-        Aim::ToEdge => (place, on_edge - place),
+        Aim::ToEdge => (start, on_edge - start),
         Aim::FromEdge => (on_edge, vector(rng)),
         Aim::FromFace => (on_face, vector(rng)),
-        Aim::ToFace => (place, on_face - place),
+        Aim::ToFace => (start, on_face - start),
         Aim::AlongEdge => (a + (b - a) * small(rng), (b - a) * if rng.random() { -1.0 } else { 2.0 }),
         Aim::InPlane => {
             let mut inside = || (b - a) * small(rng) + (c - a) * small(rng);
@@ -97,7 +97,7 @@ fn aimed(rng: &mut impl Rng, soup: &Soup<f64>, bounds: &Aabb<f64>, aim: Aim) -> 
         }
         Aim::Axis => {
             let direction = Vector3::from_fn(|_, _| f64::from(rng.random_range(-1..=1)));
-            // Half of them along an axis.
+            // Half of these rays lead along an axis.
             let axis = Vector3::ith(rng.random_range(0..3), if rng.random() { 1.0 } else { -1.0 });
             let direction = if rng.random() { direction } else { axis };
             let through = if rng.random() { a } else { on_edge };
@@ -118,7 +118,7 @@ fn aimed(rng: &mut impl Rng, soup: &Soup<f64>, bounds: &Aabb<f64>, aim: Aim) -> 
     }
 }
 
-/// A finite number beside another, by a few units in the last place.
+/// Returns a finite number that is a few units in the last place beside another.
 fn beside(rng: &mut impl Rng, x: f64) -> f64 {
     match rng.random_range(0..3) {
         0 => x.next_up(),
@@ -127,8 +127,8 @@ fn beside(rng: &mut impl Rng, x: f64) -> f64 {
     }
 }
 
-/// A ray, half line or line or a piece of one, aimed at a scene that is not empty, of these bounds; in a third of the
-/// cases its coordinates are one unit off in the last place.
+/// Generates a ray, a half line, a line or a segment of one, aimed at a scene that is not empty and has these bounds.
+/// In a third of the cases its coordinates are one unit in the last place off.
 pub fn ray(rng: &mut impl Rng, soup: &Soup<f64>, bounds: &Aabb<f64>, aim: Aim) -> Ray {
     let (mut origin, mut direction) = aimed(rng, soup, bounds, aim);
     if rng.random_range(0..3) == 0 {
@@ -137,7 +137,7 @@ pub fn ray(rng: &mut impl Rng, soup: &Soup<f64>, bounds: &Aabb<f64>, aim: Aim) -
             direction = direction.map(|x| beside(rng, x));
         }
     }
-    // What has no length, or is too far away, goes anywhere.
+    // A direction of length zero, or a point too far away, is replaced by a random one.
     let anywhere = vector(rng);
     let ray = Ray::new(&origin, &direction).or_else(|_| Ray::new(&corners(rng, soup)[0], &anywhere)).expect("finite");
     match rng.random_range(0..4) {

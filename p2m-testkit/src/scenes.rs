@@ -1,47 +1,47 @@
-//! Random scenes and queries for tests that hold backends against each other.
+//! Random scenes and queries for tests that compare backends with each other.
 
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Element, Real, Soup};
 use rand::{Rng, RngExt};
 
-/// Which primitives a random scene has.
+/// The kinds of primitives of a random scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kinds {
-    /// Points only.
+    /// The scene has points only.
     Points,
-    /// Segments only.
+    /// The scene has segments only.
     Segments,
-    /// Triangles only.
+    /// The scene has triangles only.
     Triangles,
-    /// All three, in random order.
+    /// The scene has all three kinds in random order.
     Mixed,
 }
 
-/// All of them.
+/// All choices of kinds.
 pub const KINDS: [Kinds; 4] = [Kinds::Points, Kinds::Segments, Kinds::Triangles, Kinds::Mixed];
 
-/// How coordinates are drawn.
+/// The distribution of coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
-    /// Uniform in a cube, primitives of any size.
+    /// Primitives of any size are uniform in a cube.
     Uniform,
-    /// Small primitives strewn over a cube.
+    /// Small primitives are scattered over a cube.
     Strewn,
-    /// A small integer lattice: ties, duplicates and degenerate primitives are common.
+    /// Coordinates are small integers, so that ties, duplicates and degenerate primitives are common.
     Lattice,
-    /// A curved grid with shared vertices: most nearest features are shared.
+    /// Primitives form a curved grid with shared vertices, so that most nearest features are shared.
     Sheet,
-    /// Sizes over ten orders of magnitude.
+    /// Sizes of primitives range over ten orders of magnitude.
     Sizes,
-    /// Far from the origin.
+    /// The scene is far from the origin.
     Far,
 }
 
-/// All of them.
+/// All distributions of coordinates.
 pub const LAYOUTS: [Layout; 6] =
     [Layout::Uniform, Layout::Strewn, Layout::Lattice, Layout::Sheet, Layout::Sizes, Layout::Far];
 
-/// Positions and elements of a random scene with up to `len` primitives.
+/// Generates the positions and elements of a random scene with up to `len` primitives.
 pub fn scene(rng: &mut impl Rng, kinds: Kinds, layout: Layout, len: usize) -> (Vec<[f64; 3]>, Vec<Element>) {
     let mut positions: Vec<[f64; 3]> = Vec::new();
     let mut corners: Vec<[u32; 3]> = Vec::new();
@@ -100,15 +100,15 @@ pub fn scene(rng: &mut impl Rng, kinds: Kinds, layout: Layout, len: usize) -> (V
     (positions, elements)
 }
 
-/// The kinds and the layout of the scene of a case: any 24 cases in a row have every kind in every layout.
+/// Returns the kinds and the layout of the scene of a case. Any 24 consecutive cases have every kind in every layout.
 #[must_use]
 #[allow(clippy::cast_possible_truncation, reason = "remainders are small")]
 pub fn of_case(case: u64) -> (Kinds, Layout) {
     (KINDS[(case % 4) as usize], LAYOUTS[(case / 4 % 6) as usize])
 }
 
-/// Random scenes of every kind and layout, of sizes from none to several hundred, with their seeds.
-/// The larger ones are smaller where tests are not deep.
+/// Generates random scenes of every kind and layout, with sizes from zero to several hundred, and with their seeds.
+/// Large scenes are smaller in shallow tests.
 #[track_caller]
 pub fn random_soups(name: &'static str) -> impl Iterator<Item = (u64, Soup<f64>)> {
     crate::cases(240, 24).map(move |seed| {
@@ -119,7 +119,7 @@ pub fn random_soups(name: &'static str) -> impl Iterator<Item = (u64, Soup<f64>)
     })
 }
 
-/// The same scaled to both ends of the range of f64, with queries: those of which that leaves something finite.
+/// Generates random scenes that are scaled to both ends of the range of f64, with the queries that stay finite.
 #[track_caller]
 pub fn extreme_soups(name: &'static str) -> impl Iterator<Item = (u64, Soup<f64>, Vec<Point3<f64>>)> {
     random_soups(name).filter_map(|(seed, soup)| {
@@ -131,33 +131,34 @@ pub fn extreme_soups(name: &'static str) -> impl Iterator<Item = (u64, Soup<f64>
     })
 }
 
-/// Sixty queries around a scene, or eight where tests are not deep.
+/// Generates sixty queries around a scene, or eight in shallow tests.
 #[must_use]
 pub fn queries(seed: u64, soup: &Soup<f64>) -> Vec<Point3<f64>> {
     let mut rng = crate::rng("queries", seed);
     (0..crate::amount(60, 8)).map(|_| query(&mut rng, soup.positions())).collect()
 }
 
-/// The point, to nearest.
+/// Rounds a point to f32.
 #[must_use]
 pub fn to_f32(p: Point3<f64>) -> Point3<f32> {
     p.map(f32::of_f64)
 }
 
-/// The scene as a soup of f64.
+/// Generates a random scene as a soup of f64.
 pub fn soup(rng: &mut impl Rng, kinds: Kinds, layout: Layout, len: usize) -> Soup<f64> {
     let (positions, elements) = scene(rng, kinds, layout, len);
     Soup::new(positions.into_iter().map(Point3::from).collect(), elements).expect("random scenes are valid")
 }
 
-/// The same soup in f32; `None` if a coordinate that it uses overflows.
+/// Converts a soup to f32; `None` if a coordinate that it uses overflows.
 #[must_use]
 pub fn narrow(soup: &Soup<f64>) -> Option<Soup<f32>> {
     let positions = soup.positions().iter().map(|p| p.map(f32::of_f64)).collect();
     Soup::new(positions, soup.elements()).ok()
 }
 
-/// The sides of a gear with a fine toothing, skewed and turned: long triangles askew to each other and to the axes.
+/// Returns the sides of a gear with fine teeth, skewed and turned: long triangles that are askew to each other and
+/// to the axes.
 #[must_use]
 pub fn skewed_gear(teeth: u32) -> Soup<f64> {
     let turn = nalgebra::Rotation3::new(Vector3::new(0.4, 0.7, 0.3));
@@ -175,7 +176,8 @@ pub fn skewed_gear(teeth: u32) -> Soup<f64> {
     Soup::new(positions.collect(), elements.collect::<Vec<_>>()).expect("finite")
 }
 
-/// A query around a scene: on a position, between two, near, uniform in the box, on a half-integer lattice, or far.
+/// Generates a query around a scene: on a position, between two, near, uniform in the box, on a half-integer
+/// lattice, or far.
 pub fn query(rng: &mut impl Rng, positions: &[Point3<f64>]) -> Point3<f64> {
     if positions.is_empty() {
         return Point3::origin();

@@ -1,4 +1,4 @@
-//! Random points of a scene, by area and length.
+//! Random points of a scene, weighted by area and length.
 
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Element, PrimitiveId, PrimitiveSet, Shape, Soup};
@@ -6,19 +6,19 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 
-/// Draws points of a scene with a direction that is normal to it there.
+/// Draws points of a scene, each with a direction that is normal to the scene there.
 ///
-/// Triangles weigh their area, segments their length times (total area / total length): where there are both, each
-/// kind gets half of the draws. Points and degenerate primitives weigh nothing; if everything does, all primitives are
-/// equally likely.
+/// Triangles are weighted by area, segments by length times (total area / total length), so that each kind gets half of
+/// the draws in a scene with both. Points and degenerate primitives have weight zero. If all weights are zero, all
+/// primitives are equally likely.
 pub(crate) struct SurfaceSampler<'a> {
     soup: &'a Soup<f64>,
-    /// Sums of the weights up to and with each primitive.
+    /// The sums of the weights up to and including each primitive.
     cumulative: Vec<f64>,
 }
 
 impl<'a> SurfaceSampler<'a> {
-    /// A sampler of a scene that is not empty.
+    /// Returns a sampler of a scene that is not empty.
     pub(crate) fn new(soup: &'a Soup<f64>) -> Self {
         let measures: Vec<f64> = (0..soup.len()).map(|i| measure(&soup.get(PrimitiveId::new(i)))).collect();
         let total = |of_segments: bool| -> f64 {
@@ -39,22 +39,23 @@ impl<'a> SurfaceSampler<'a> {
                 sum
             })
             .collect();
-        // Nothing has a measure, or measures overflow.
+        // All weights are zero, or the sum overflows.
         if !(sum > 0.0 && sum.is_finite()) {
             cumulative = (1..=soup.len()).map(|i| i as f64).collect();
         }
         Self { soup, cumulative }
     }
 
-    /// The number of a random primitive.
+    /// Returns the number of a random primitive.
     pub(crate) fn primitive(&self, rng: &mut ChaCha8Rng) -> usize {
         let last = self.cumulative.len() - 1;
         let at = rng.random::<f64>() * self.cumulative[last];
         self.cumulative.partition_point(|sum| *sum <= at).min(last)
     }
 
-    /// A random point of the scene and a unit vector: the normal of a triangle, a random perpendicular of a segment,
-    /// any direction at a point. A degenerate triangle counts as its longest edge, a degenerate segment as a point.
+    /// Returns a random point of the scene and a unit vector: the normal of a triangle, a random perpendicular of a
+    /// segment, or any direction at a point. A degenerate triangle counts as its longest edge, a degenerate segment
+    /// as a point.
     pub(crate) fn draw(&self, rng: &mut ChaCha8Rng) -> (Point3<f64>, Vector3<f64>) {
         match self.soup.get(PrimitiveId::new(self.primitive(rng))) {
             Shape::Triangle(t) => {
@@ -76,13 +77,13 @@ impl<'a> SurfaceSampler<'a> {
                 let t = rng.random::<f64>();
                 (Point3::from(a.coords * (1.0 - t) + b.coords * t), perpendicular(rng, &(b - a)))
             }
-            // `Shape` may grow kinds; points are what is left.
+            // `Shape` is non-exhaustive; shapes that are no triangles or segments count as points.
             shape => (shape.vertices()[0], direction(rng)),
         }
     }
 }
 
-/// Area or length; nothing for a point.
+/// Returns the area or the length, and zero for a point.
 fn measure(shape: &Shape<f64>) -> f64 {
     match shape {
         Shape::Triangle(t) => {
@@ -94,7 +95,7 @@ fn measure(shape: &Shape<f64>) -> f64 {
     }
 }
 
-/// A random unit vector across `along`; any direction if that is zero.
+/// Returns a random unit vector perpendicular to `along`, and any direction if that is zero.
 fn perpendicular(rng: &mut ChaCha8Rng, along: &Vector3<f64>) -> Vector3<f64> {
     let Some(along) = along.try_normalize(0.0) else { return direction(rng) };
     loop {
@@ -105,7 +106,7 @@ fn perpendicular(rng: &mut ChaCha8Rng, along: &Vector3<f64>) -> Vector3<f64> {
     }
 }
 
-/// A random unit vector.
+/// Returns a random unit vector.
 pub(crate) fn direction(rng: &mut ChaCha8Rng) -> Vector3<f64> {
     loop {
         if let Some(unit) = Vector3::from_fn(|_, _| normal(rng)).try_normalize(1e-9) {
@@ -114,7 +115,7 @@ pub(crate) fn direction(rng: &mut ChaCha8Rng) -> Vector3<f64> {
     }
 }
 
-/// A number of the standard normal distribution, by the method of Box and Muller.
+/// Returns a number of the standard normal distribution, by the method of Box and Muller.
 pub(crate) fn normal(rng: &mut ChaCha8Rng) -> f64 {
     let radius = (-2.0 * (1.0 - rng.random::<f64>()).ln()).sqrt();
     radius * (TAU * rng.random::<f64>()).cos()
@@ -130,7 +131,7 @@ mod tests {
         [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [3.0, 0.0, 0.0], [0.0, 0.0, 5.0]].map(Point3::from).to_vec()
     }
 
-    /// How often each primitive is drawn.
+    /// Returns how often each primitive is drawn.
     fn counts(elements: &[Element], draws: u32) -> Vec<u32> {
         let soup = Soup::new(positions(), elements.iter().copied()).unwrap();
         let sampler = SurfaceSampler::new(&soup);
@@ -140,7 +141,7 @@ mod tests {
         counts
     }
 
-    /// Pearson's statistic of `counts` against probabilities.
+    /// Returns Pearson's statistic of `counts` against probabilities.
     fn chi_square(counts: &[u32], expected: &[f64]) -> f64 {
         let total: f64 = counts.iter().copied().map(f64::from).sum();
         counts.iter().zip(expected).map(|(c, p)| (f64::from(*c) - p * total).powi(2) / (p * total)).sum()

@@ -1,4 +1,4 @@
-//! The true distance to one primitive: by bounds if they decide, by rational arithmetic if they do not.
+//! The true distance to one primitive, by bounds if they decide, and by rational arithmetic otherwise.
 
 use crate::enclosure::Enclosure;
 use crate::oracle::Distance;
@@ -8,7 +8,7 @@ thread_local! {
     static RATIONAL: Cell<u64> = const { Cell::new(0) };
 }
 
-/// How many distances of this thread needed rational arithmetic so far.
+/// Returns the number of distances of this thread that needed rational arithmetic so far.
 #[must_use]
 pub fn rational_distances() -> u64 {
     RATIONAL.get()
@@ -24,16 +24,16 @@ pub struct Truth<'a> {
 }
 
 impl<'a> Truth<'a> {
-    /// Of finite coordinates.
+    /// Computes the bounds of the distance; coordinates have to be finite.
     ///
     /// # Panics
-    /// Without one to three vertices.
+    /// Panics unless there are one to three vertices.
     #[must_use]
     pub fn new(query: [f64; 3], vertices: &'a [[f64; 3]]) -> Self {
         Self { query, vertices, enclosure: Enclosure::new(query, vertices), exact: OnceCell::new() }
     }
 
-    /// In rational arithmetic.
+    /// Returns the distance in rational arithmetic.
     pub fn exact(&self) -> &Distance {
         self.exact.get_or_init(|| {
             RATIONAL.set(RATIONAL.get() + 1);
@@ -41,21 +41,21 @@ impl<'a> Truth<'a> {
         })
     }
 
-    /// [`Distance::error`], at most a thousandth above it.
+    /// Returns [`Distance::error`] or at most a thousandth more.
     #[must_use]
     pub fn error(&self, computed: f64, bits: u32, eta: f64) -> f64 {
         let fast = self.enclosure.and_then(|e| e.error(computed, bits, eta));
         fast.unwrap_or_else(|| self.exact().error(computed, bits, eta))
     }
 
-    /// [`Distance::relative_error`], at most a thousandth above it.
+    /// Returns [`Distance::relative_error`] or at most a thousandth more.
     #[must_use]
     pub fn relative_error(&self, computed: f64, bits: u32, eta: f64) -> f64 {
         let fast = self.enclosure.and_then(|e| e.relative_error(computed, bits, eta));
         fast.unwrap_or_else(|| self.exact().relative_error(computed, bits, eta))
     }
 
-    /// Whether the distance is at least `bound`; it is not if that is infinite or NaN.
+    /// Returns whether the distance is at least `bound`, and false if `bound` is infinite or NaN.
     #[must_use]
     pub fn is_at_least(&self, bound: f64) -> bool {
         if bound <= 0.0 {
@@ -65,9 +65,10 @@ impl<'a> Truth<'a> {
         fast.unwrap_or_else(|| self.exact().is_at_least(bound))
     }
 
-    /// So many times the largest distance from the query to a vertex, within a few roundings.
+    /// Returns `factor` times the largest distance from the query to a vertex, to a few roundings.
     #[must_use]
-    pub fn of_reach(&self, factor: f64) -> f64 {
-        self.enclosure.map_or_else(|| self.exact().of_reach(factor), |e| e.of_reach(factor))
+    pub fn times_max_vertex_distance(&self, factor: f64) -> f64 {
+        self.enclosure
+            .map_or_else(|| self.exact().times_max_vertex_distance(factor), |e| e.times_max_vertex_distance(factor))
     }
 }

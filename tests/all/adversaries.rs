@@ -1,5 +1,5 @@
-//! Scenes that are made to be bad (p2m-testkit's `adversaries`), over every backend: answers are those of brute force, and what
-//! is counted stays under its bounds. docs/adversaries.md states them; `p2m-bench adversaries` measures times and memory.
+//! Runs every backend over the adversarial scenes of p2m-testkit: answers have to equal those of brute force, and
+//! counters have to stay below the bounds of docs/adversaries.md. `p2m-bench adversaries` measures times and memory.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 
 use nalgebra::Point3;
@@ -15,46 +15,50 @@ use p2m_testkit::ball::Ball;
 use p2m_testkit::{amount, is_deep};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Primitives of a scene.
+/// Returns the number of primitives of a scene.
 fn count() -> usize {
     amount(2_000, 200)
 }
 
-/// Queries of a scene.
-fn asked() -> usize {
+/// Returns the number of queries of a scene.
+fn query_count() -> usize {
     amount(40, 6)
 }
 
-/// Nodes on the way to a packet, however the scene is.
-const DEPTH: usize = 66;
-/// Bytes of a primitive in trees.
-const TREE: usize = 160;
-/// Those of a site with its neighbours, and of its places in the grids, besides lists.
-const SITE: usize = 512;
+/// The largest number of nodes on a path to a packet, for any scene.
+const MAX_DEPTH: usize = 66;
+/// The largest number of bytes per primitive in trees.
+const MAX_TREE_BYTES_PER_PRIMITIVE: usize = 160;
+/// The largest number of bytes of a site with its neighbours and its entries in the grids, without lists.
+const MAX_BYTES_PER_SITE: usize = 512;
 
 fn answers(index: &impl ClosestPoint<f64>, queries: &[Point3<f64>]) -> Vec<Option<(u64, PrimitiveId)>> {
     queries.iter().map(|q| index.closest_point(q).map(|c| (c.distance.to_bits(), c.primitive))).collect()
 }
 
-/// Holds an index against brute force, and what its queries visit against what there is.
-fn holds<I: ClosestPoint<f64> + Inspect<f64>, V: Volume>(
+/// Compares an index with brute force, and the work of its queries with the size of the tree.
+fn check_work<I: ClosestPoint<f64> + Inspect<f64>, V: Volume>(
     name: &str,
     index: &I,
     tree: &PacketTree<V>,
     soup: &Soup<f64>,
 ) {
-    let queries = queries(soup, asked());
+    let queries = queries(soup, query_count());
     let brute = BruteForce::new(soup).expect("valid");
     for ((q, found), expected) in queries.iter().zip(answers(index, &queries)).zip(answers(&brute, &queries)) {
         assert_eq!(found, expected, "{name} {q:?}");
     }
     let visits = QueryCost::of(index, &queries);
-    // Nothing is looked at twice, but for what is evaluated early, being held to be near.
+    // No node or packet is visited twice. Only primitives may be evaluated early because they seem near.
     assert!(visits.packets.most <= tree.packets().0, "{name}: {visits:?}");
     assert!(visits.primitives.most <= soup.len() + 1, "{name}: {visits:?}");
-    assert!(tree.depth() <= DEPTH, "{name}: {}", tree.depth());
-    // Small trees have nodes that are almost empty.
-    assert!(tree.memory() <= TREE * soup.len().max(amount(64, 320)), "{name}: {} bytes of tree", tree.memory());
+    assert!(tree.depth() <= MAX_DEPTH, "{name}: {}", tree.depth());
+    // Small trees have nodes that are almost empty, so a minimum number of primitives is assumed.
+    assert!(
+        tree.memory() <= MAX_TREE_BYTES_PER_PRIMITIVE * soup.len().max(amount(64, 320)),
+        "{name}: {} bytes of tree",
+        tree.memory()
+    );
 }
 
 fn splits() -> AabbOptions {
@@ -74,14 +78,14 @@ fn every_backend(adversary: &Adversary) {
     let name = adversary.name;
     let soup = &adversary.soup(count());
     let aabb = AabbTree::build(soup, &splits()).expect("valid");
-    holds(&format!("{name}, aabb"), &aabb, aabb.tree(), soup);
+    check_work(&format!("{name}, aabb"), &aabb, aabb.tree(), soup);
     let kdop = KdopTree::<f64, _, 14>::build(soup, &KdopOptions::default().with_splits(splits())).expect("valid");
-    holds(&format!("{name}, kdop"), &kdop, kdop.tree(), soup);
+    check_work(&format!("{name}, kdop"), &kdop, kdop.tree(), soup);
 
     let options = OctreeOptions::default();
     let options = options.with_work(options.work * amount(1.0, 0.04));
     let octree = OctreeIndex::build(soup, &options).expect("valid");
-    holds(&format!("{name}, octree"), &octree, octree.partition().tree(), soup);
+    check_work(&format!("{name}, octree"), &octree, octree.partition().tree(), soup);
     let report = octree.report();
     let (bytes, work) = (options.memory * 10_000.0, options.work * 10_000.0);
     assert!(report.bytes as f64 <= bytes && report.work as f64 <= work, "{name}: {report}");
@@ -90,22 +94,26 @@ fn every_backend(adversary: &Adversary) {
 
     let options = P2mOptions::default();
     let p2m = P2mIndex::build(soup, &options).expect("valid");
-    holds(&format!("{name}, p2m"), &p2m, p2m.partition().tree(), soup);
+    check_work(&format!("{name}, p2m"), &p2m, p2m.partition().tree(), soup);
     let report = p2m.report();
     let sites = report.lists + report.trees + report.auxiliary;
     // A vertex that several packets have counts several times.
     let vertices: usize = (0..soup.len()).map(|i| p2m::Primitive::vertices(&soup.get(PrimitiveId::new(i))).len()).sum();
     assert!(sites <= 6 + 3 * vertices / 2 + soup.len(), "{name}: {report}");
-    assert!(report.bytes as f64 <= options.memory * count() as f64 + (SITE * sites) as f64, "{name}: {report}");
+    assert!(
+        report.bytes as f64 <= options.memory * count() as f64 + (MAX_BYTES_PER_SITE * sites) as f64,
+        "{name}: {report}"
+    );
     assert!(report.entries <= options.max_list_packets * report.lists, "{name}: {report}");
     assert!(p2m.list_lengths().into_iter().all(|len| len <= options.max_list_packets * 16), "{name}");
-    // Fewer primitives are not too much for it.
+    // With fewer primitives the budget is sufficient.
     if is_deep() && ["skew points", "skew wires", "helices", "moment curve"].contains(&name) {
         assert!(report.lists == 0 && report.bytes == 0, "{name}: {report}");
     }
 }
 
-/// Points on two skew lines: every pair of neighbours on one makes a tetrahedron with every pair on the other.
+/// Two skew lines of points need quadratically many tetrahedra: every pair of neighbours on one line makes a
+/// tetrahedron with every pair on the other.
 #[test]
 fn quadratic_tetrahedra_are_given_up() {
     let points = |n: usize| -> Vec<[f64; 3]> {
@@ -122,7 +130,7 @@ fn quadratic_tetrahedra_are_given_up() {
     };
     too_many(&few, count - 1);
     too_many(&few, 0);
-    // Of some millions of tetrahedra a few are made.
+    // The build stops after a few of some millions of tetrahedra.
     too_many(&points(4_000), 16 * 4_000);
     let within = Delaunay::within(&few, 300.0, 2 * count).expect("few enough");
     assert_eq!((within.tetrahedra(), within.work()), (all.tetrahedra(), all.work()));
@@ -132,9 +140,9 @@ fn quadratic_tetrahedra_are_given_up() {
 fn cells_of_vertices_that_take_too_much_are_left_to_the_tree() {
     let soup = &Adversary::named("grid").soup(count());
     let built = |options: &P2mOptions| P2mIndex::build(soup, options).expect("valid");
-    let usual = built(&P2mOptions::default());
-    assert_eq!((usual.report().lists, usual.report().trees), (count(), 0));
-    let queries = queries(soup, asked());
+    let unlimited = built(&P2mOptions::default());
+    assert_eq!((unlimited.report().lists, unlimited.report().trees), (count(), 0));
+    let queries = queries(soup, query_count());
     for (memory, work) in
         [(100.0, 1e5), (1.0, 1e5), (1e5, 100.0), (0.0, 1e5), (1e5, -1.0), (f64::NAN, 1e5), (1e5, f64::NAN)]
     {
@@ -144,17 +152,17 @@ fn cells_of_vertices_that_take_too_much_are_left_to_the_tree() {
             let index = built(&options.with_splits(splits().with_parallel(parallel)));
             let report = index.report();
             assert!(report.lists == 0 && report.bytes == 0 && report.trees >= count(), "{memory} {work}: {report}");
-            assert_eq!(answers(&index, &queries), answers(&usual, &queries));
+            assert_eq!(answers(&index, &queries), answers(&unlimited, &queries));
         }
     }
     let ample = built(&P2mOptions::default().with_memory(f64::INFINITY).with_work(f64::INFINITY));
-    assert_eq!(ample.report(), usual.report());
+    assert_eq!(ample.report(), unlimited.report());
 }
 
-/// Primitives that count how often they are asked for.
+/// A set that counts how often its primitives are accessed.
 struct Counted<'a> {
     balls: &'a [Ball],
-    asked: AtomicUsize,
+    query_count: AtomicUsize,
 }
 
 impl PrimitiveSet<f64> for Counted<'_> {
@@ -167,29 +175,30 @@ impl PrimitiveSet<f64> for Counted<'_> {
         self.balls.len()
     }
     fn get(&self, id: PrimitiveId) -> Ball {
-        self.asked.fetch_add(1, Relaxed);
+        self.query_count.fetch_add(1, Relaxed);
         self.balls[id.index()]
     }
 }
 
-/// Where everything is as near, a search for one corner of a cell looks at the whole scene: that counts as work.
+/// Where all primitives are equally near, a search for one corner of a cell visits the whole scene, and that
+/// counts as work.
 #[test]
 #[ignore = "deep: the least budget of an octree is millions of searches for corners"]
 fn corners_of_cubes_that_take_the_whole_scene_are_few() {
     let balls = vec![Ball { centre: Point3::new(0.1, 0.2, 0.3), radius: 0.5 }; 8_000];
-    let set = Counted { balls: &balls, asked: AtomicUsize::new(0) };
+    let set = Counted { balls: &balls, query_count: AtomicUsize::new(0) };
     let options = OctreeOptions::default();
     let index = OctreeIndex::build(&set, &options).expect("valid");
-    let asked = set.asked.load(Relaxed);
-    println!("{asked} times; {}", index.report());
-    // The budget, as often as it may be spent, and the tree and its last searches.
-    assert!((asked as f64) < 7.0 * options.work * 10_000.0, "{asked}");
+    let query_count = set.query_count.load(Relaxed);
+    println!("{query_count} times; {}", index.report());
+    // The limit is the budget, as often as it may be spent, plus the tree and its last searches.
+    assert!((query_count as f64) < 7.0 * options.work * 10_000.0, "{query_count}");
 }
 
-/// More primitives than ids, of which none is ever asked for.
-struct Absurd(usize);
+/// A set of more primitives than there are ids, none of which is ever accessed.
+struct TooManyPrimitives(usize);
 
-impl PrimitiveSet<f64> for Absurd {
+impl PrimitiveSet<f64> for TooManyPrimitives {
     type Primitive<'a>
         = Point<f64>
     where
@@ -205,11 +214,13 @@ impl PrimitiveSet<f64> for Absurd {
 
 #[test]
 fn more_primitives_than_ids_are_an_error_before_anything_else() {
-    fn error<'a, I: BuildIndex<f64, &'a Absurd, Error = BuildError>>(set: &'a Absurd) -> Option<BuildError> {
+    fn error<'a, I: BuildIndex<f64, &'a TooManyPrimitives, Error = BuildError>>(
+        set: &'a TooManyPrimitives,
+    ) -> Option<BuildError> {
         I::build(set, &Default::default()).err()
     }
     for len in [(1 << 30) + 1, u32::MAX as usize, 1 << 40, usize::MAX] {
-        let set = &Absurd(len);
+        let set = &TooManyPrimitives(len);
         let errors = [
             error::<BruteForce<_>>(set),
             error::<AabbTree<f64, _>>(set),

@@ -1,6 +1,6 @@
-//! Every backend against brute force, bit for bit (N3), and sets against the exact oracle (N2, N7).
+//! Compares every backend with brute force, bit for bit (N3), and sets with the exact oracle (N2, N7).
 //!
-//! One generic suite; a new backend adds a line to `backends!`.
+//! One generic suite serves all backends; a new backend adds a line to `backends!`.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -13,12 +13,13 @@ use p2m::{
 };
 use p2m_testkit::ball::Ball;
 use p2m_testkit::families::shape;
+use p2m_testkit::near_check::compared_fields;
 use p2m_testkit::scenes::{self, extreme_soups, of_case, queries, random_soups, to_f32};
 use p2m_testkit::{amount, cases, oracle::Distance, rng};
 use rand::RngExt;
 use std::fmt::Debug;
 
-/// What every exact backend is tested with, each with both scalars: scenes of all kinds.
+/// Generates tests of scenes of all kinds for an exact backend, in both scalars.
 macro_rules! on_soups {
     ($index:ident) => {
         #[test]
@@ -45,7 +46,7 @@ macro_rules! on_soups {
     };
 }
 
-/// The same for backends whose directions do not matter to the rest.
+/// Generates the same tests for k-DOP trees whose directions the rest of the suite need not vary.
 macro_rules! variants {
     ($($name:ident: $index:ident),+ $(,)?) => {
         $(mod $name {
@@ -55,7 +56,7 @@ macro_rules! variants {
     };
 }
 
-/// Runs the whole suite for every backend.
+/// Generates the whole suite for every backend.
 macro_rules! backends {
     ($($name:ident: $index:ident),+ $(,)?) => {
         $(mod $name {
@@ -91,7 +92,7 @@ macro_rules! backends {
 
             #[test]
             fn adversarial_depth_is_survived() {
-                // Centres and sizes in geometric progression.
+                // Centres and sizes are in geometric progression.
                 let points: Vec<Point<f64>> = (-1000..1000).step_by(amount(1, 9)).map(|e| Point::new(Point3::new(2f64.powi(e), -2f64.powi(e / 2), 0.0))).collect();
                 let queries: Vec<_> = points.iter().step_by(7).map(|p| p.position * 1.3).collect();
                 agrees::<f64, &[Point<f64>], $index<f64, _>>(0, &points[..], &queries);
@@ -103,7 +104,7 @@ macro_rules! backends {
                     let mut r = rng("magnitudes", seed);
                     let cases: Vec<_> = (0..amount(12, 7)).map(|_| p2m_testkit::families::wild(&mut r)).collect();
                     let shapes: Vec<Shape<f64>> = cases.iter().map(|c| shape(&c.vertices)).collect();
-                    // Queries of their own, and near a vertex of another's.
+                    // Each case is queried at its own query point and near a vertex of another case.
                     let vertex = |c: &p2m_testkit::families::Case| Point3::from(c.vertices[0].map(|x| x * (1.0 + 1e-13)));
                     let queries: Vec<Point3<f64>> = cases.iter().map(|c| Point3::from(c.query)).chain(cases.iter().map(vertex))
                         .filter(|q| q.iter().all(|x| x.is_finite())).collect();
@@ -132,7 +133,7 @@ macro_rules! backends {
     };
 }
 
-/// `BruteForce` with the type parameters that the other backends have.
+/// `BruteForce` with the type parameters of the other backends.
 type Brute<T, S> = BruteForceOf<T, S>;
 
 type Kdop6<T, S> = KdopTree<T, S, 6>;
@@ -150,7 +151,7 @@ backends! {
     p2m_index: P2mIndex,
 }
 
-// Few sets, for these take long to compile.
+// Few sets are used, because these variants take long to compile.
 variants! {
     kdop_6: Kdop6,
     kdop_18: Kdop18,
@@ -159,7 +160,7 @@ variants! {
     kdop_of_skew_directions: KdopSkew,
 }
 
-/// A k-DOP tree of a user's directions: with three that are orthogonal, or without.
+/// A k-DOP tree with user-defined directions, of which three are orthogonal or none.
 struct OwnDirections<T: Real, S, const K: usize, const ORTHOGONAL: bool>(KdopTree<T, S, K>);
 
 impl<T: Real, S: PrimitiveSet<T>, const K: usize, const O: bool> ClosestPoint<T> for OwnDirections<T, S, K, O> {
@@ -182,7 +183,7 @@ impl<T: Real, S: PrimitiveSet<T> + Sync, const K: usize, const O: bool> BuildInd
     }
 }
 
-/// Brute force takes no scalar; this gives it one, so that the suite is tested on itself.
+/// `BruteForce` has no scalar parameter; this type adds one, so that the suite is tested on itself.
 struct BruteForceOf<T, S>(BruteForce<S>, std::marker::PhantomData<T>);
 
 impl<T: Real, S: PrimitiveSet<T>> ClosestPoint<T> for BruteForceOf<T, S> {
@@ -212,7 +213,8 @@ where
     agrees_with(&brute, seed, set.len(), queries, &index);
 }
 
-/// An index of so many primitives, on everything. Not generic, as it is compiled for many.
+/// Checks an index of `len` primitives with every option. It takes trait objects, because it would otherwise be
+/// compiled for many types.
 fn agrees_with<T: Real>(
     brute: &dyn ClosestPoint<T>,
     seed: u64,
@@ -221,65 +223,65 @@ fn agrees_with<T: Real>(
     index: &dyn ClosestPoint<T>,
 ) {
     let mut rng = rng("options", seed);
-    // Everything but the certified bound, which depends on what was evaluated, is the same.
-    let without_bound = |c: Option<Closest<T>>| c.map(|c| (c.point, c.distance, c.primitive, c.feature, c.barycentric));
+    let without_bound = |c: Option<Closest<T>>| c.as_ref().map(compared_fields);
     let mut batch = vec![None; queries.len()];
     index.closest_points_into(queries, &QueryOptions::default(), &mut batch);
     for (i, q) in queries.iter().enumerate() {
         let expected = brute.closest_point(q);
-        let say = || format!("seed {seed}, query {i} {q:?}");
+        let context = || format!("seed {seed}, query {i} {q:?}");
         let found = index.closest_point(q);
-        assert_eq!(without_bound(found), without_bound(expected), "{}", say());
-        assert_eq!(found, batch[i], "{}: batch", say());
+        assert_eq!(without_bound(found), without_bound(expected), "{}", context());
+        assert_eq!(found, batch[i], "{}: batch", context());
         let (Some(found), Some(expected)) = (found, expected) else {
-            assert_eq!(len, 0, "{}", say());
+            assert_eq!(len, 0, "{}", context());
             continue;
         };
-        assert!(found.lower_bound <= found.distance, "{}", say());
-        // A hint, good or bad or out of range, changes nothing.
+        assert!(found.lower_bound <= found.distance, "{}", context());
+        // A hint, good or bad or out of range, changes no answer.
         let hint = PrimitiveId::new(rng.random_range(0..len + 1));
         let hinted = index.closest_point_with(q, &QueryOptions::default().with_hint(hint));
-        assert_eq!(without_bound(hinted), without_bound(Some(expected)), "{}: hint {hint}", say());
-        // A radius changes whether, not what.
+        assert_eq!(without_bound(hinted), without_bound(Some(expected)), "{}: hint {hint}", context());
+        // A radius decides whether there is an answer, but does not change it.
         let at = |r: T| index.closest_point_with(q, &QueryOptions::default().with_max_distance(r));
-        assert_eq!(without_bound(at(found.distance)), without_bound(Some(expected)), "{}: at its distance", say());
+        assert_eq!(without_bound(at(found.distance)), without_bound(Some(expected)), "{}: at its distance", context());
         let factor = T::of_f64(rng.random_range(0.0..2.0));
         let limited = at(found.distance * factor);
         let within = found.distance <= found.distance * factor;
-        assert_eq!(without_bound(limited), without_bound(Some(expected)).filter(|_| within), "{}: radius", say());
-        // Epsilon bounds the distance.
+        assert_eq!(without_bound(limited), without_bound(Some(expected)).filter(|_| within), "{}: radius", context());
+        // Epsilon bounds the error of the distance.
         let epsilon = [0.001, 0.1, 3.0][rng.random_range(0..3)];
         let rough =
             index.closest_point_with(q, &QueryOptions::default().with_epsilon(T::of_f64(epsilon))).expect("found");
         let (rough_distance, distance) = (rough.distance.to_f64(), expected.distance.to_f64());
         let slack = 1.0 + 8.0 * T::UNIT_ROUNDOFF;
-        assert!(rough_distance >= distance, "{}: epsilon {epsilon}", say());
+        assert!(rough_distance >= distance, "{}: epsilon {epsilon}", context());
         assert!(
             rough_distance <= distance * (1.0 + epsilon) * slack + T::SMALLEST_SUBNORMAL,
             "{}: epsilon {epsilon}: {rough_distance:e}, not {distance:e}",
-            say()
+            context()
         );
-        assert!(rough.lower_bound <= expected.distance, "{}: epsilon {epsilon}", say());
-        // With a hint and a radius as well: something is found if anything is in the radius, and it keeps the bounds.
+        assert!(rough.lower_bound <= expected.distance, "{}: epsilon {epsilon}", context());
+        // With a hint and a radius in addition, there is an answer if any primitive is within the radius, and it keeps
+        // the bounds.
         let stretch = rng.random_range(1.0..1.0 + epsilon);
         let radius = T::of_f64(expected.distance.to_f64() * stretch);
         let options = QueryOptions::default().with_epsilon(T::of_f64(epsilon)).with_max_distance(radius);
         for options in [options, options.with_hint(hint)] {
             let Some(rough) = index.closest_point_with(q, &options) else {
-                assert!(expected.distance > radius, "{}: epsilon {epsilon} within {radius:?}", say());
+                assert!(expected.distance > radius, "{}: epsilon {epsilon} within {radius:?}", context());
                 continue;
             };
             let bound = distance * (1.0 + epsilon) * slack + T::SMALLEST_SUBNORMAL;
-            assert!(rough.distance.to_f64() <= bound && rough.distance <= radius, "{}: epsilon {epsilon}", say());
-            assert!(rough.lower_bound <= expected.distance, "{}: epsilon {epsilon} and radius", say());
+            assert!(rough.distance.to_f64() <= bound && rough.distance <= radius, "{}: epsilon {epsilon}", context());
+            assert!(rough.lower_bound <= expected.distance, "{}: epsilon {epsilon} and radius", context());
         }
     }
 }
 
-/// Scenes that were once answered wrongly.
+/// Repeats scenes that were once answered wrongly.
 fn past_failures<I: BuildIndex<f64, Vec<Shape<f64>>, Error = BuildError>>() {
     let build = |set: Vec<Shape<f64>>| I::build(set, &I::Options::default()).expect("finite");
-    // Scaling down by 1e300 lost the distance of the foot, and the key fell below the bound of the box.
+    // Scaling down by 1e300 lost the distance of the projection, so the key fell below the bound of the box.
     let set = vec![shape(&[[0.0, 0.0, 1.1e-100]]), shape(&[[-1e300, 0.0, 0.0], [1e300, 0.0, 0.0]])];
     let q = Point3::new(0.0, 0.0, 1e-100);
     let expected = BruteForce::new(&set[..]).expect("finite").closest_point(&q).expect("not empty");
@@ -287,7 +289,7 @@ fn past_failures<I: BuildIndex<f64, Vec<Shape<f64>>, Error = BuildError>>() {
         build(set).closest_point(&q).map(|c| (c.primitive, c.distance)),
         Some((expected.primitive, expected.distance))
     );
-    // The certified bound of keys outside the plain range.
+    // Keys outside of the plain range once had a wrong certified bound.
     let point = [-7.528623501410492e140, -1.5628541052992638e141, 1.5027718543271175e141];
     let q = Point3::new(-7.528623501410494e140, -1.5628541052992638e141, 1.5027718543271175e141);
     let segment = [
@@ -296,7 +298,7 @@ fn past_failures<I: BuildIndex<f64, Vec<Shape<f64>>, Error = BuildError>>() {
     ];
     let found = build(vec![shape(&[point]), shape(&segment)]).closest_point(&q).expect("not empty");
     assert!(Distance::new(q.coords.into(), &segment).is_at_least(found.lower_bound), "{found:?}");
-    // Any epsilon, alone and with a radius.
+    // Any epsilon is allowed, alone and with a radius.
     let row = |from: i32| (from..from + 100).map(|i| shape(&[[f64::from(i), 0.0, 0.0]])).collect::<Vec<_>>();
     let index = build(row(7));
     for epsilon in [1.0, 1e30, 1e154, 1e200, f64::MAX, f64::INFINITY] {
@@ -308,7 +310,7 @@ fn past_failures<I: BuildIndex<f64, Vec<Shape<f64>>, Error = BuildError>>() {
         let beyond = options.with_max_distance(6.9);
         assert!(index.closest_point_with(&Point3::origin(), &beyond).is_none(), "epsilon {epsilon}");
     }
-    // A hint is looked at first: it is all that a search with unlimited epsilon needs.
+    // A search with unlimited epsilon evaluates the hint first and nothing else.
     let hinted = QueryOptions::default().with_epsilon(f64::INFINITY).with_hint(PrimitiveId::new(60));
     let found = index.closest_point_with(&Point3::origin(), &hinted).expect("not empty");
     assert!(found.primitive.index() == 60 || found.primitive.index() == 0, "{found:?}");
@@ -329,18 +331,18 @@ where
 {
     let build = |set: Vec<Shape<f64>>| I::build(set, &I::Options::default());
     let segment = |a: f64, b: f64| Shape::from(Segment::new(Point3::new(a, 0.0, 0.0), Point3::new(b, 0.0, 0.0)));
-    // Empty.
+    // An empty scene has no answer.
     let index = build(vec![]).expect("an empty scene is a scene");
     assert_eq!(index.closest_point(&Point3::origin()), None);
-    // One primitive.
+    // The scene has one primitive.
     let index = build(vec![segment(0.0, 2.0)]).expect("finite");
     let found = index.closest_point(&Point3::new(1.0, 3.0, 4.0)).expect("there is one");
     assert_eq!((found.distance, found.feature, found.barycentric), (5.0, Feature::Edge(0), [0.5, 0.5, 0.0]));
-    // Queries that are not finite.
+    // Queries that are not finite have no answer.
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         assert_eq!(index.closest_point(&Point3::new(0.0, bad, 0.0)), None);
     }
-    // Coordinates that are not finite, anywhere.
+    // Coordinates that are not finite are an error, wherever they are.
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for at in 0..3 {
             let mut set = vec![segment(0.0, 1.0), segment(1.0, 2.0), segment(2.0, 3.0)];
@@ -349,14 +351,14 @@ where
             assert_eq!(error, Some(BuildError::NonFinite { id: PrimitiveId::new(at) }), "{bad} at {at}");
         }
     }
-    // Ties: the lowest id, wherever it lies in the tree.
+    // Of equally near primitives the lowest id wins, wherever it lies in the tree.
     let set: Vec<_> = (0..100).map(|i| segment(f64::from(i % 10), f64::from(i % 10))).collect();
     let index = build(set).expect("finite");
     for i in 0..10 {
         let found = index.closest_point(&Point3::new(f64::from(i), 0.0, 1.0)).expect("not empty");
         assert_eq!(found.primitive.index(), usize::try_from(i).expect("small"));
     }
-    // The mismatch of slices is the one documented panic.
+    // Slices of different lengths are the one documented panic.
     let mut out = [None; 2];
     let short = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
         index.closest_points_into(&[Point3::origin()], &QueryOptions::default(), &mut out);
@@ -364,11 +366,11 @@ where
     assert!(short.is_err());
 }
 
-/// N2 and N7 of whole scenes, against the nearest primitive of exact arithmetic.
+/// Checks N2 and N7 of whole scenes against the nearest primitive of exact arithmetic.
 #[test]
 fn the_returned_primitive_is_nearest_within_rounding() {
     let mut wrong = 0;
-    let mut asked = 0;
+    let mut query_count = 0;
     let cases = cases(200, 48);
     for seed in cases.clone() {
         let mut rng = rng("identity", seed);
@@ -387,24 +389,26 @@ fn the_returned_primitive_is_nearest_within_rounding() {
                 .collect();
             let nearest = (0..exact.len()).min_by(|a, b| exact[*a].compare(&exact[*b])).expect("not empty");
             let returned = &exact[found.primitive.index()];
-            let say = || format!("seed {seed}, query {i}");
-            // N1 for the scene: one side by the returned primitive's M, the other by the nearest one's.
-            assert!(returned.error(found.distance, 53, 0.0) <= 4.0, "{}: N1", say());
-            assert!(exact.iter().all(|d| d.is_at_least(found.lower_bound)), "{}: N7", say());
+            let context = || format!("seed {seed}, query {i}");
+            // N1 for the scene: the returned primitive's M bounds the error on one side, the nearest one's M on the
+            // other.
+            assert!(returned.error(found.distance, 53, 0.0) <= 4.0, "{}: N1", context());
+            assert!(exact.iter().all(|d| d.is_at_least(found.lower_bound)), "{}: N7", context());
             if returned.compare(&exact[nearest]).is_gt() {
                 wrong += 1;
-                let slack = 4.0 * f64::EPSILON / 2.0 * (returned.reach() + exact[nearest].reach());
+                let slack =
+                    4.0 * f64::EPSILON / 2.0 * (returned.max_vertex_distance() + exact[nearest].max_vertex_distance());
                 let allowed = (found.distance - 2.0 * slack).max(0.0);
-                assert!(exact[nearest].is_at_least(allowed), "{}: N2", say());
+                assert!(exact[nearest].is_at_least(allowed), "{}: N2", context());
             }
-            asked += 1;
+            query_count += 1;
         }
     }
-    println!("{asked} queries, {wrong} answered with a primitive that is farther by rounding");
-    assert!(cases.is_replay() || wrong < asked / 50, "{wrong} of {asked}");
+    println!("{query_count} queries, {wrong} answered with a primitive that is farther by rounding");
+    assert!(cases.is_replay() || wrong < query_count / 50, "{wrong} of {query_count}");
 }
 
-/// Permuting, duplicating and adding far geometry does what it should.
+/// Permuting and duplicating primitives and adding far geometry change answers only as they must.
 #[test]
 fn scenes_can_be_permuted_duplicated_and_extended() {
     for seed in cases(60, 24) {
@@ -446,7 +450,7 @@ fn scenes_can_be_permuted_duplicated_and_extended() {
     }
 }
 
-/// The bound of a box never exceeds the key of what is in it: pruning without slack rests on this.
+/// The bound of a box never exceeds the key of a primitive inside of it, which pruning without slack relies on.
 #[test]
 fn box_bounds_never_exceed_the_keys_inside() {
     for seed in cases(300_000, 6_000) {

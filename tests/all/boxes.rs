@@ -1,4 +1,4 @@
-//! Box queries against exact rational arithmetic and brute force, and the leaf nearest to a point.
+//! Compares box queries with exact rational arithmetic and brute force, and tests the leaf nearest to a point.
 #![cfg(feature = "bvh")]
 #![allow(clippy::float_cmp, reason = "exact results are what is tested")]
 
@@ -16,12 +16,12 @@ fn aabb([min, max]: [[f64; 3]; 2]) -> Aabb<f64> {
     Aabb { min: Point3::from(min), max: Point3::from(max) }
 }
 
-/// Two corners in order.
+/// Sorts the coordinates of two corners.
 fn sorted(a: [f64; 3], b: [f64; 3]) -> [[f64; 3]; 2] {
     [std::array::from_fn(|k| a[k].min(b[k])), std::array::from_fn(|k| a[k].max(b[k]))]
 }
 
-/// On a lattice of a few points hulls touch boxes at faces, edges and corners all the time.
+/// On a lattice of a few points, hulls often touch boxes at faces, edges and corners.
 #[test]
 fn primitives_meet_boxes_as_exact_arithmetic_says() {
     let (mut met, mut touched, mut missed) = (0, 0, 0);
@@ -37,7 +37,7 @@ fn primitives_meet_boxes_as_exact_arithmetic_says() {
         let scale = |p: [f64; 3]| p.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
         let found = shape(&vertices.iter().map(|v| scale(*v)).collect::<Vec<_>>()).meets_box(&aabb(corners.map(scale)));
         assert_eq!(found, expected, "{vertices:?} {corners:?} at 2^{e}");
-        // Shrunk by less than the lattice could bridge: what only touched does not meet any more.
+        // The box shrinks by less than the lattice spacing, so hulls that only touched it do not intersect it any more.
         let inner = [corners[0].map(|x| x + 1e-9), corners[1].map(|x| x - 1e-9)];
         let inside = (0..3).all(|k| inner[0][k] <= inner[1][k]) && oracle::meets_box(&vertices, &inner);
         assert_eq!(shape(&vertices).meets_box(&aabb(inner)), inside, "{vertices:?} {inner:?}");
@@ -46,12 +46,12 @@ fn primitives_meet_boxes_as_exact_arithmetic_says() {
         missed += usize::from(!expected);
     }
     println!("{met} met, {touched} touched, {missed} missed");
-    let least = met.min(touched).min(missed);
-    assert!(cases.have_more_than(6000, least), "the lattice should have all three: {met} {touched} {missed}");
+    let rarest = met.min(touched).min(missed);
+    assert!(cases.have_more_than(6000, rarest), "the lattice should have all three: {met} {touched} {missed}");
 }
 
-/// A box with one corner at, and one ulp beside, the rounded point of a face or an edge: the sign hangs on the last
-/// bit.
+/// A box has one corner at the rounded point of a face or an edge, or one ulp beside it, so that the sign depends on
+/// the last bit.
 #[test]
 fn the_last_bit_decides_whether_a_corner_touches() {
     let mut both = [0; 2];
@@ -81,17 +81,17 @@ fn the_last_bit_decides_whether_a_corner_touches() {
 #[test]
 fn boxes_that_are_odd_have_stated_answers() {
     let t = shape(&[[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]]);
-    let meets = |corners| t.meets_box(&aabb(corners));
+    let intersects = |corners| t.meets_box(&aabb(corners));
     let inf = f64::INFINITY;
-    assert!(meets([[-inf; 3], [inf; 3]]));
-    assert!(meets([[2.0, 2.0, -inf], [inf, inf, inf]]) && !meets([[2.1, 2.0, -inf], [inf, inf, inf]]));
-    assert!(meets([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0]]), "a box may be a point");
-    assert!(!meets([[1.0, 1.0, 1.0], [2.0, 2.0, -1.0]]), "empty on one axis");
-    assert!(!meets([[3.0, 3.0, -1.0], [1.0, 1.0, 1.0]]), "empty, although its corners enclose the face");
+    assert!(intersects([[-inf; 3], [inf; 3]]));
+    assert!(intersects([[2.0, 2.0, -inf], [inf, inf, inf]]) && !intersects([[2.1, 2.0, -inf], [inf, inf, inf]]));
+    assert!(intersects([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0]]), "a box may be a point");
+    assert!(!intersects([[1.0, 1.0, 1.0], [2.0, 2.0, -1.0]]), "empty on one axis");
+    assert!(!intersects([[3.0, 3.0, -1.0], [1.0, 1.0, 1.0]]), "empty, although its corners enclose the face");
     for at in 0..6 {
         let mut corners = [[-1.0; 3], [1.0; 3]];
         corners[at / 3][at % 3] = f64::NAN;
-        assert!(!meets(corners), "NaN at {at}");
+        assert!(!intersects(corners), "NaN at {at}");
     }
     let empty = <AabbTree<f64, Vec<Shape<f64>>>>::build(Vec::new(), &Default::default()).unwrap();
     assert!(!empty.meets_box(&aabb([[-inf; 3], [inf; 3]])) && empty.closest_leaf(&Point3::origin()).is_none());
@@ -100,14 +100,15 @@ fn boxes_that_are_odd_have_stated_answers() {
     assert!(tree.closest_leaf(&Point3::new(f64::NAN, 0.0, 0.0)).is_none());
 }
 
-/// Boxes of all sizes and of none around and between the positions of a scene, touching them more often than not.
+/// Returns a box of any size, or of size zero, around or between the positions of a scene; most of them
+/// touch a position.
 fn random_box<R: Rng>(rng: &mut R, soup: &Soup<f64>, bounds: &Aabb<f64>) -> Aabb<f64> {
     let id = PrimitiveId::new(rng.random_range(0..soup.len()));
     let primitive = soup.get(id);
     let vertex = primitive.vertices()[rng.random_range(0..primitive.vertices().len())];
     let decades = rng.random_range(-5.0..0.5);
     let size = (bounds.max - bounds.min) * 10f64.powf(decades);
-    // On each axis the box begins at the vertex, ends there, holds it, or begins an ulp beyond it.
+    // On each axis the box begins at the vertex, ends there, contains it, or begins an ulp beyond it.
     let ends: [[f64; 2]; 3] = std::array::from_fn(|k| {
         let (v, size) = (vertex[k], size[k] * rng.random::<f64>());
         match rng.random_range(0..6) {
@@ -120,7 +121,7 @@ fn random_box<R: Rng>(rng: &mut R, soup: &Soup<f64>, bounds: &Aabb<f64>) -> Aabb
     aabb([ends.map(|e| e[0]), ends.map(|e| e[1])])
 }
 
-/// The boxes of primitives by the cells of a grid, and one around each run of them: that is looked at first.
+/// The boxes of primitives, grouped by the cells of a grid, with a box around each group that is tested first.
 struct Boxes<T: Real> {
     each: Vec<(PrimitiveId, Aabb<T>)>,
     runs: Vec<Aabb<T>>,
@@ -128,7 +129,7 @@ struct Boxes<T: Real> {
 
 impl<T: Real> Boxes<T> {
     const RUN: usize = 64;
-    /// Cells along an axis.
+    /// The number of cells along an axis.
     const CELLS: f64 = 32.0;
 
     fn new(soup: &Soup<T>) -> Self {
@@ -136,28 +137,30 @@ impl<T: Real> Boxes<T> {
         let mut each: Vec<_> = ids.map(|id| (id, soup.get(id).aabb())).collect();
         let scene = soup.aabb().to_f64();
         let size = scene.max - scene.min;
-        each.sort_by_cached_key(|(_, own)| {
-            let at = own.to_f64().min - scene.min;
-            // What is no number, in a flat scene, is 0.
+        each.sort_by_cached_key(|(_, primitive_box)| {
+            let at = primitive_box.to_f64().min - scene.min;
+            // In a flat scene the quotient is NaN, which converts to 0.
             [0, 1, 2].map(|k: usize| (at[k] / size[k] * Self::CELLS) as u32)
         });
-        let around = |run: &[(PrimitiveId, Aabb<T>)]| run.iter().fold(Aabb::empty(), |all, (_, own)| all.union(own));
-        let runs = each.chunks(Self::RUN).map(around).collect();
+        let enclosing = |run: &[(PrimitiveId, Aabb<T>)]| {
+            run.iter().fold(Aabb::empty(), |all, (_, primitive_box)| all.union(primitive_box))
+        };
+        let runs = each.chunks(Self::RUN).map(enclosing).collect();
         Self { each, runs }
     }
 
-    /// The primitives whose boxes meet `bounds`, by their ids.
-    fn meeting(&self, bounds: &Aabb<T>) -> Vec<PrimitiveId> {
+    /// Returns the ids of the primitives whose boxes intersect `bounds`.
+    fn intersecting(&self, bounds: &Aabb<T>) -> Vec<PrimitiveId> {
         let runs = self.each.chunks(Self::RUN).zip(&self.runs).filter(|(_, run)| run.meets(bounds));
-        let members = runs.flat_map(|(members, _)| members).filter(|(_, own)| own.meets(bounds));
+        let members = runs.flat_map(|(members, _)| members).filter(|(_, primitive_box)| primitive_box.meets(bounds));
         let mut found: Vec<_> = members.map(|(id, _)| *id).collect();
         found.sort_unstable();
         found
     }
 }
 
-/// Those of them that meet `bounds`.
-fn meeting<T: Real>(soup: &Soup<T>, candidates: &[PrimitiveId], bounds: &Aabb<T>) -> Vec<PrimitiveId> {
+/// Returns the candidates that intersect `bounds`.
+fn intersecting<T: Real>(soup: &Soup<T>, candidates: &[PrimitiveId], bounds: &Aabb<T>) -> Vec<PrimitiveId> {
     candidates.iter().copied().filter(|id| soup.get(*id).meets_box(bounds)).collect()
 }
 
@@ -181,7 +184,7 @@ fn trees_find_the_same_primitives_as_brute_force_in_random_scenes() {
     }
 }
 
-/// Every split rule is searched exactly; only the work differs.
+/// Every split rule leads to exact answers; only the work differs.
 #[test]
 fn split_rules_change_no_answer() {
     for case in cases(6, 6) {
@@ -208,7 +211,7 @@ fn the_nearest_leaf_is_an_upper_bound_with_a_certificate() {
         let mut rng = rng("closest leaf", case);
         let (layout, e) = (LAYOUTS[(case % 6) as usize], [0, -1000, -500, 500, 1000][(case / 6 % 5) as usize]);
         if layout == Layout::Sizes && e != 0 {
-            continue; // beyond the range of f64
+            continue; // The scale is beyond the range of f64.
         }
         let (positions, elements) = scenes::scene(&mut rng, Kinds::Mixed, layout, amount(500, 200));
         let scale = |p: Point3<f64>| p.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
@@ -234,7 +237,7 @@ fn the_nearest_leaf_is_an_upper_bound_with_a_certificate() {
         }
     }
     println!("exact {exact} times of {total}, certified above half of the truth {certified} times");
-    // Neither useless nor exact by itself.
+    // The filter is neither useless nor exact by itself.
     let is_right = exact > total / 4 && exact < total && certified > total / 4;
     assert!(cases.is_replay() || is_right, "{exact}, {certified} of {total}");
 }
@@ -260,11 +263,11 @@ fn trees_find_the_same_primitives_as_brute_force_in_every_model() {
                         for _ in 0..boxes_of_each / 2 {
                             let bounds = random_box(&mut rng, soup, &scene);
                             tree.primitives_in_box_into(&bounds, &mut found);
-                            let candidates = boxes.meeting(&bounds);
-                            assert_eq!(found, meeting(soup, &candidates, &bounds), "{name} {bounds:?}");
+                            let candidates = boxes.intersecting(&bounds);
+                            assert_eq!(found, intersecting(soup, &candidates, &bounds), "{name} {bounds:?}");
                             assert_eq!(tree.meets_box(&bounds), !found.is_empty(), "{name} {bounds:?}");
                             met += found.len();
-                            // Rational arithmetic has its say on those whose boxes meet, a few of each.
+                            // Rational arithmetic checks a few of the candidates whose boxes intersect.
                             for id in candidates.into_iter().take(2) {
                                 let primitive = soup.get(id);
                                 let vertices: Vec<[f64; 3]> =

@@ -1,7 +1,7 @@
-//! Every backend against brute force in every kind of query, on scenes that shrink: a failure is printed as the smallest
-//! scene that proptest finds, in Rust.
+//! Compares every backend with brute force in every kind of query, on scenes that proptest shrinks: a failure prints
+//! the smallest scene that it finds as Rust source.
 //!
-//! Scenes are some primitives of a large one: of each generator, or random of each kind and layout.
+//! A scene has some primitives of a large one, which comes from each generator or is random of each kind and layout.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -11,6 +11,7 @@ use p2m::{
     Aabb, AabbTree, BoxQuery, BruteForce, BuildIndex, Closest, ClosestPoint, Element, KdopTree, NearQuery, OctreeIndex,
     P2mIndex, PrimitiveId, PrimitiveSet, QueryOptions, RayQuery, Real, Soup,
 };
+use p2m_testkit::near_check::compared_fields;
 use p2m_testkit::rays::{self, AIMS};
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS, narrow};
 use proptest::prelude::*;
@@ -18,7 +19,7 @@ use proptest::test_runner::{RngSeed, TestRunner};
 use std::fmt::{self, Debug, Formatter};
 use std::sync::LazyLock;
 
-/// What scenes are made from.
+/// The large scenes from which cases take primitives.
 static SOURCES: LazyLock<Vec<Soup<f64>>> = LazyLock::new(|| {
     let generated = Kind::all().into_iter().map(|kind| kind.generate().expect("default options"));
     let random = KINDS
@@ -28,22 +29,23 @@ static SOURCES: LazyLock<Vec<Soup<f64>>> = LazyLock::new(|| {
     generated.chain(random).collect()
 });
 
-/// A scene with queries. What is printed of it compiles.
+/// A scene with queries, which prints as Rust source.
 #[derive(Clone)]
 struct Case {
     soup: Soup<f64>,
     queries: Vec<Point3<f64>>,
-    /// Draws radii, hints, boxes and rays.
+    /// The seed of radii, hints, boxes and rays.
     seed: u64,
 }
 
 impl Debug for Case {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let place = |f: &mut Formatter<'_>, p: &Point3<f64>| write!(f, "Point3::new({:?}, {:?}, {:?})", p.x, p.y, p.z);
+        let write_point =
+            |f: &mut Formatter<'_>, p: &Point3<f64>| write!(f, "Point3::new({:?}, {:?}, {:?})", p.x, p.y, p.z);
         writeln!(f, "\nlet soup = Soup::new(\n    vec![")?;
         for p in self.soup.positions() {
             write!(f, "        ")?;
-            place(f, p)?;
+            write_point(f, p)?;
             writeln!(f, ",")?;
         }
         writeln!(f, "    ],\n    [")?;
@@ -53,22 +55,22 @@ impl Debug for Case {
         writeln!(f, "    ],\n)\n.unwrap();")?;
         for query in &self.queries {
             write!(f, "let query = ")?;
-            place(f, query)?;
+            write_point(f, query)?;
             writeln!(f, ";")?;
         }
         write!(f, "let seed = {};", self.seed)
     }
 }
 
-/// Some primitives of a scene, with the vertices that they have.
+/// Returns some primitives of a scene with their vertices.
 fn part(source: &Soup<f64>, chosen: &[usize]) -> Soup<f64> {
     let mut soup = Soup::default();
     let mut numbers = std::collections::HashMap::new();
     for id in chosen {
         let element = source.element(PrimitiveId::new(id % source.len()));
         let mut number = |i: u32| {
-            let own = *numbers.entry(i).or_insert_with(|| soup.push_position(source.positions()[i as usize]));
-            u32::try_from(own).expect("few vertices")
+            let copy = *numbers.entry(i).or_insert_with(|| soup.push_position(source.positions()[i as usize]));
+            u32::try_from(copy).expect("few vertices")
         };
         let element = match element {
             Element::Triangle(t) => Element::Triangle(t.map(&mut number)),
@@ -98,21 +100,16 @@ fn case() -> impl Strategy<Value = Case> {
     })
 }
 
-/// An index that answers what all do.
+/// An index that answers the queries of all backends.
 trait Index<T: Real>: ClosestPoint<T> + NearQuery<T> {}
 impl<T: Real, I: ClosestPoint<T> + NearQuery<T>> Index<T> for I {}
 
-/// An index that answers everything.
+/// An index that answers all queries.
 trait Tree<T: Real>: Index<T> + RayQuery<T> + BoxQuery<T> {}
 impl<T: Real, I: Index<T> + RayQuery<T> + BoxQuery<T>> Tree<T> for I {}
 
-/// All but the certified bound.
-fn known<T: Real>(closest: &Closest<T>) -> impl PartialEq + Debug + use<T> {
-    (closest.primitive, closest.distance, closest.point, closest.feature, closest.barycentric)
-}
-
 fn all<T: Real>(closest: &[Closest<T>]) -> impl PartialEq + Debug + use<T> {
-    closest.iter().map(known).collect::<Vec<_>>()
+    closest.iter().map(compared_fields).collect::<Vec<_>>()
 }
 
 fn check<T: Real>(case: &Case, soup: &Soup<T>, point: impl Fn(&Point3<f64>) -> Point3<T>) -> Result<(), TestCaseError> {
@@ -130,10 +127,22 @@ fn check<T: Real>(case: &Case, soup: &Soup<T>, point: impl Fn(&Point3<f64>) -> P
         let odd = |id: PrimitiveId| (id.index() as u64 ^ case.seed).is_multiple_of(3);
         for (name, index) in indexes {
             let found = index.closest_point(&query);
-            prop_assert_eq!(found.as_ref().map(known), expected.as_ref().map(known), "{}, {:?}", name, query);
+            prop_assert_eq!(
+                found.as_ref().map(compared_fields),
+                expected.as_ref().map(compared_fields),
+                "{}, {:?}",
+                name,
+                query
+            );
             let (found, near) =
                 (index.closest_point_with(&query, &options), brute.closest_point_with(&query, &options));
-            prop_assert_eq!(found.as_ref().map(known), near.as_ref().map(known), "{}, {:?} within", name, query);
+            prop_assert_eq!(
+                found.as_ref().map(compared_fields),
+                near.as_ref().map(compared_fields),
+                "{}, {:?} within",
+                name,
+                query
+            );
             let (found, nearest) = (index.k_nearest(&query, 3, radius), brute.k_nearest(&query, 3, radius));
             prop_assert_eq!(all(&found), all(&nearest), "{}, three nearest of {:?}", name, query);
             let (found, within) = (index.all_within(&query, radius), brute.all_within(&query, radius));
@@ -141,7 +150,13 @@ fn check<T: Real>(case: &Case, soup: &Soup<T>, point: impl Fn(&Point3<f64>) -> P
             prop_assert_eq!(index.is_any_within(&query, radius), !within.is_empty(), "{}, any near {:?}", name, query);
             let among = |index: &dyn Index<T>| index.closest_point_among(&query, &options, &mut |id| odd(id));
             let (found, some) = (among(index), brute.closest_point_among(&query, &options, &mut |id| odd(id)));
-            prop_assert_eq!(found.as_ref().map(known), some.as_ref().map(known), "{}, some near {:?}", name, query);
+            prop_assert_eq!(
+                found.as_ref().map(compared_fields),
+                some.as_ref().map(compared_fields),
+                "{}, some near {:?}",
+                name,
+                query
+            );
         }
     }
     let trees: [(&str, &dyn Tree<T>); 2] = [("aabb", &tree), ("kdop", &kdop)];
@@ -174,13 +189,13 @@ fn check<T: Real>(case: &Case, soup: &Soup<T>, point: impl Fn(&Point3<f64>) -> P
     Ok(())
 }
 
-/// The same cases each time, each of them drawn by a runner of its own, whose seed is its number: `P2M_SEED` draws the same scene
-/// again, and a failure makes it smaller in the same steps.
+/// Runs a check on the same cases each time. Each case has a runner of its own whose seed is the case's number, so that
+/// `P2M_SEED` generates the same scene again, and a failure shrinks in the same steps.
 fn on_all(check: impl Fn(&Case) -> Result<(), TestCaseError>) {
     for number in p2m_testkit::cases(1000, 24) {
         let config = ProptestConfig {
             cases: 1,
-            // A failure would be made smaller in no more than four steps for each case otherwise.
+            // The default would shrink a failure in at most four steps for each case.
             max_shrink_iters: 4000,
             rng_seed: RngSeed::Fixed(number),
             failure_persistence: None,

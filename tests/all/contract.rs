@@ -1,6 +1,8 @@
-//! The accuracy contract (N1, N4, N5, N6 of `ClosestPoint`) on isolated primitives, against exact rational arithmetic.
+//! Checks the accuracy contract (N1, N4, N5, N6 of `ClosestPoint`) on isolated primitives against exact rational
+//! arithmetic.
 //!
-//! Isolated, because in a mesh the neighbours hide the errors of a kernel. A failure prints the seed of its case.
+//! The primitives are isolated, because in a mesh the neighbours hide the errors of a kernel. A failure prints the seed
+//! of its case.
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 #![allow(clippy::cast_possible_truncation, reason = "rounding to f32 is meant")]
 
@@ -8,7 +10,7 @@ use nalgebra::Point3;
 use p2m::backend::Key;
 use p2m::{BruteForce, Shape};
 use p2m::{Closest, ClosestPoint, Feature, Point, Primitive, PrimitiveSet, Projection, QueryOptions, Real};
-use p2m_testkit::contract::{self, OBSERVED};
+use p2m_testkit::contract::{self, MAX_OBSERVED_ERROR};
 use p2m_testkit::families::{self, Case, Span, shape};
 use p2m_testkit::{cases, oracle::Distance, rng};
 
@@ -24,7 +26,7 @@ fn case(name: &str, seed: u64) -> Case {
     families::case(&mut rng(name, seed))
 }
 
-/// A case in the range of f32.
+/// Generates a case in the range of f32.
 fn single_case(name: &str, seed: u64) -> (Case, [f32; 3], Vec<[f32; 3]>) {
     let case = families::case_in(&mut rng(name, seed), &Span::F32);
     let single = |v: [f64; 3]| v.map(|x| x as f32);
@@ -32,7 +34,7 @@ fn single_case(name: &str, seed: u64) -> (Case, [f32; 3], Vec<[f32; 3]>) {
     (case, query, vertices)
 }
 
-/// Fails with everything one needs to reproduce a case.
+/// Panics with the data that reproduce a case, unless the condition holds.
 macro_rules! require {
     ($condition:expr, $seed:expr, $case:expr, $($detail:tt)+) => {
         assert!($condition, "seed {}: {}\n{:?}", $seed, format_args!($($detail)+), $case);
@@ -93,7 +95,7 @@ fn n4_order_and_scale_change_no_bit_in_either_scalar() {
     assert!(compared.iter().all(|count| cases.have_more_than(45_000, *count as usize)), "{compared:?}");
 }
 
-/// Scaling by 2^e changes nothing but the exponents, as long as everything stays normal.
+/// Scaling by 2^e changes only the exponents, as long as all numbers stay normal.
 #[test]
 fn n4_scaling_by_powers_of_two_changes_no_bit() {
     let normal = |x: f64| x == 0.0 || x.is_normal();
@@ -101,7 +103,7 @@ fn n4_scaling_by_powers_of_two_changes_no_bit() {
     let cases = cases(60_000, 1_500);
     for seed in cases.clone() {
         let mut case = case("contract scaling", seed);
-        // Bring the case to scale one, whatever family it is from.
+        // The case is brought to scale one, whatever family it is from.
         let size = case.vertices.as_flattened().iter().chain(&case.query).fold(0.0, |m: f64, x| m.max(x.abs()));
         if !size.is_normal() {
             continue;
@@ -110,25 +112,38 @@ fn n4_scaling_by_powers_of_two_changes_no_bit() {
         let scale = |v: [f64; 3], e: i32| v.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
         case.query = scale(case.query, -to_one);
         case.vertices = case.vertices.iter().map(|v| scale(*v, -to_one)).collect();
-        let here = answer(case.query, &case.vertices);
+        let unscaled = answer(case.query, &case.vertices);
         for e in [-900, -510, -300, -251, -249, -40, 1, 40, 248, 252, 300, 510, 900] {
             let query = scale(case.query, e);
             let vertices: Vec<_> = case.vertices.iter().map(|v| scale(*v, e)).collect();
-            let there = answer(query, &vertices);
-            let results = there.point.iter().chain([&there.distance]).chain(&there.barycentric);
+            let scaled = answer(query, &vertices);
+            let results = scaled.point.iter().chain([&scaled.distance]).chain(&scaled.barycentric);
             let pairs =
                 query.iter().zip(&case.query).chain(vertices.as_flattened().iter().zip(case.vertices.as_flattened()));
-            let kept = pairs.into_iter().all(|(x, y)| normal(*x) && normal(*y) && (*x == 0.0) == (*y == 0.0));
-            if !kept || !results.into_iter().all(|x| normal(*x)) {
+            let stays_normal = pairs.into_iter().all(|(x, y)| normal(*x) && normal(*y) && (*x == 0.0) == (*y == 0.0));
+            if !stays_normal || !results.into_iter().all(|x| normal(*x)) {
                 continue;
             }
             compared += 1;
-            let expected = scale([here.distance, 0.0, 0.0], e)[0];
-            require!(there.distance == expected, seed, case, "2^{e}: distance {:e}, not {expected:e}", there.distance);
-            require!(there.feature == here.feature, seed, case, "2^{e}: {:?}, not {:?}", there.feature, here.feature);
-            let point: [f64; 3] = here.point.coords.into();
-            require!(there.point == scale(point, e).into(), seed, case, "2^{e}: another point");
-            require!(there.barycentric == here.barycentric, seed, case, "2^{e}: other weights");
+            let expected = scale([unscaled.distance, 0.0, 0.0], e)[0];
+            require!(
+                scaled.distance == expected,
+                seed,
+                case,
+                "2^{e}: distance {:e}, not {expected:e}",
+                scaled.distance
+            );
+            require!(
+                scaled.feature == unscaled.feature,
+                seed,
+                case,
+                "2^{e}: {:?}, not {:?}",
+                scaled.feature,
+                unscaled.feature
+            );
+            let point: [f64; 3] = unscaled.point.coords.into();
+            require!(scaled.point == scale(point, e).into(), seed, case, "2^{e}: another point");
+            require!(scaled.barycentric == unscaled.barycentric, seed, case, "2^{e}: other weights");
         }
     }
     assert!(cases.have_more_than(300_000, compared), "{compared}");
@@ -138,26 +153,26 @@ fn n4_scaling_by_powers_of_two_changes_no_bit() {
 fn n4_the_order_of_vertices_changes_no_bit() {
     for seed in cases(100_000, 3_000) {
         let case = case("contract permutation", seed);
-        let here = answer(case.query, &case.vertices);
+        let unscaled = answer(case.query, &case.vertices);
         let n = case.vertices.len();
         let permutations: &[[usize; 3]] = &[[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
         for p in permutations.iter().filter(|p| p[n..].iter().all(|i| *i >= n)) {
             let vertices: Vec<_> = p[..n].iter().map(|i| case.vertices[*i]).collect();
-            let there = answer(case.query, &vertices);
+            let scaled = answer(case.query, &vertices);
             require!(
-                there.distance == here.distance,
+                scaled.distance == unscaled.distance,
                 seed,
                 case,
                 "{p:?}: {:e}, not {:e}",
-                there.distance,
-                here.distance
+                scaled.distance,
+                unscaled.distance
             );
-            require!(there.point == here.point, seed, case, "{p:?}: {} is not {}", there.point, here.point);
+            require!(scaled.point == unscaled.point, seed, case, "{p:?}: {} is not {}", scaled.point, unscaled.point);
         }
     }
 }
 
-/// K1: values of vertices and edges are the same bits in every primitive that contains them.
+/// Checks K1: keys of vertices and edges have the same bits in every primitive that contains them.
 #[test]
 fn shared_features_have_the_same_key_in_every_primitive() {
     let mut faces = 0;
@@ -168,7 +183,7 @@ fn shared_features_have_the_same_key_in_every_primitive() {
         let triangle = project(case.query, &[a, b, c]);
         let edges = [[a, b], [b, c], [c, a]].map(|e| project(case.query, &e).key);
         let points = [a, b, c].map(|v| project(case.query, &[v]).key);
-        let least = |keys: &[Key]| *keys.iter().min().expect("three keys");
+        let min_key = |keys: &[Key]| *keys.iter().min().expect("three keys");
         let expected = match triangle.feature {
             Feature::Vertex(i) => points[usize::from(i)],
             Feature::Edge(i) => edges[usize::from(i)],
@@ -176,13 +191,13 @@ fn shared_features_have_the_same_key_in_every_primitive() {
         };
         faces += usize::from(triangle.feature == Feature::Face);
         require!(triangle.key == expected, seed, case, "key of {:?} differs", triangle.feature);
-        require!(triangle.key <= least(&edges), seed, case, "an edge is nearer");
-        require!(least(&edges) <= least(&points), seed, case, "a vertex is nearer");
+        require!(triangle.key <= min_key(&edges), seed, case, "an edge is nearer");
+        require!(min_key(&edges) <= min_key(&points), seed, case, "a vertex is nearer");
     }
     assert!(cases.have_more_than(10_000, faces), "{faces}");
 }
 
-/// Searches pass what they prune above: it may end the work, it never changes a value.
+/// Searches pass a bound for pruning to the kernel, which may stop early but never changes a value.
 #[test]
 fn a_bound_ends_the_work_only_beyond_the_key() {
     let (mut ended, mut beyond) = (0, 0);
@@ -207,7 +222,7 @@ fn a_bound_ends_the_work_only_beyond_the_key() {
         }
     }
     println!("{ended} of {beyond} ended early");
-    // The scaled lane ends nothing early, and bounds within the margin of an estimate end nothing either.
+    // The scaled path never stops early, and neither do bounds within the margin of an estimate.
     assert!(cases.is_replay() || ended > beyond / 4, "the bound saves little: {ended} of {beyond}");
 }
 
@@ -231,7 +246,7 @@ fn a_point_is_a_degenerate_segment_and_a_degenerate_triangle() {
     }
 }
 
-/// Triangles on a 3x3x3 lattice with all queries on it, in integers. The deep suite has all of these triangles.
+/// Checks triangles on a 3x3x3 lattice with all queries on it, in integers. The deep suite has all of these triangles.
 #[test]
 fn every_triangle_of_a_small_lattice_is_answered_exactly() {
     let lattice: Vec<[f64; 3]> = (0..27).map(|i| [f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9)]).collect();
@@ -245,14 +260,14 @@ fn every_triangle_of_a_small_lattice_is_answered_exactly() {
     let mut worst = 0.0f64;
     let cases = cases(3654, 240);
     for case in cases.clone() {
-        // A step without a common divisor leads to each of them, and soon to some of every kind.
+        // A step without a common divisor reaches all triangles, and a few steps reach some of every kind.
         let t = corners[(case as usize).wrapping_mul(1009) % corners.len()].map(|i| lattice[i]);
         for q in &lattice {
             let found = answer(*q, &t);
             let exact = Distance::new(*q, &t);
             worst = worst.max(exact.error(found.distance, 53, 0.0));
-            // Squares of these distances are fractions with small denominators: a wrong region would be off by
-            // a hundredth at least, so the nearest feature of exact arithmetic must have been found.
+            // Squares of these distances are fractions with small denominators. A wrong region would be off by at least
+            // a hundredth, so the nearest feature of exact arithmetic must have been found.
             let feature: Vec<[f64; 3]> = match found.feature {
                 Feature::Vertex(v) => vec![t[usize::from(v)]],
                 Feature::Edge(e) => vec![t[usize::from(e)], t[(usize::from(e) + 1) % 3]],
@@ -267,71 +282,78 @@ fn every_triangle_of_a_small_lattice_is_answered_exactly() {
             for f in lower {
                 assert!(Distance::new(*q, &f).compare(&exact).is_gt(), "{q:?} {t:?}: {f:?} holds the point");
             }
-            // Moving everything by integers, mirroring and turning it moves nothing else.
+            // Translating by integers, mirroring and rotating the case moves the point and changes nothing else.
             let moved = |v: [f64; 3]| [v[0] + 1048576.0, v[1] - 4096.0, v[2] + 3.0];
             let turned = |v: [f64; 3]| [2.0 - v[1], v[2], v[0]];
             assert_eq!(answer(moved(*q), &t.map(moved)).distance, found.distance);
             let other = answer(turned(*q), &t.map(turned)).distance;
-            assert!(exact.error(other, 53, 0.0) <= OBSERVED, "{q:?} {t:?}");
+            assert!(exact.error(other, 53, 0.0) <= MAX_OBSERVED_ERROR, "{q:?} {t:?}");
         }
     }
     println!("{} lattice queries, largest error {worst:.3} u M", 27 * cases.len());
-    assert!(worst <= OBSERVED);
+    assert!(worst <= MAX_OBSERVED_ERROR);
 }
 
-/// The examples that others got wrong, by name.
+/// Checks the examples that other libraries got wrong, by name.
 #[test]
 fn known_failures_of_other_projects_are_answered() {
-    // A unit triangle and a query at 1e-170 from its corner: squares underflow.
+    // A query at 1e-170 from the corner of a unit triangle makes squares underflow.
     let t = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let d = answer([-1e-170, -1e-170, 0.0], &t).distance;
     assert!((d / 1e-170 - 2f64.sqrt()).abs() < 1e-15, "{d:e}");
-    // Coordinates at both ends of the range: the difference overflows, the distance does not.
+    // The coordinates are at both ends of the range: the difference overflows, the distance does not.
     let ends = [[-f64::MAX, 0.0, 0.0], [f64::MAX, 0.0, 0.0]];
     let found = answer([f64::MAX, 3e300, 0.0], &ends);
     assert_eq!(found.distance, 3e300);
     let found = answer([1e307, 3e300, 0.0], &ends);
     assert!((found.distance / 3e300 - 1.0).abs() < 1e-3 || found.distance <= 4.0 * f64::EPSILON * f64::MAX);
     assert!(found.point.iter().all(|x| x.is_finite()));
-    // No representable distance: infinite, but the primitive is still the nearer one.
+    // The distance is not representable and becomes infinite, but the nearer primitive is still found.
     let far = [Point::new(Point3::new(f64::MAX, f64::MAX, f64::MAX)), Point::new(Point3::new(f64::MAX, f64::MAX, 0.0))];
     let index = BruteForce::new(far).expect("finite");
     let found = index.closest_point(&Point3::new(-f64::MAX, -f64::MAX, 0.0)).expect("not empty");
     assert_eq!((found.distance, found.primitive.index()), (f64::INFINITY, 1));
-    // A collinear triangle is its edges.
+    // A collinear triangle has the answers of its edges.
     let flat = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [3.0, 3.0, 3.0]];
     assert_eq!(answer([4.0, 3.0, 3.0], &flat).distance, 1.0);
 }
 
-/// Cases that this kernel once got wrong, and cases that would go wrong without one of its steps.
+/// Checks cases that this kernel once got wrong, and cases that would go wrong without one of its steps.
 #[test]
 fn past_failures_stay_mended() {
     let error = |q: [f64; 3], v: &[[f64; 3]]| Distance::new(q, v).error(project(q, v).key.distance(), 53, 0.0);
     let origin = [0.0; 3];
-    // Both ends of a tiny edge round to the same distance, so the nearer one is mistaken: the estimate of a foot far
-    // beyond the other must not rule out the edge that holds the answer. Once 1e14 u M.
-    assert!(error([1.0, -5.0, 0.0], &[origin, [2f64.powi(-53), 0.0, 0.0], [2.0, 0.1, 0.0]]) <= OBSERVED);
+    // Both ends of a tiny edge round to the same distance, so the wrong one seems nearer. The estimate of a projection
+    // far beyond the other end must not exclude the edge that has the answer. The error was once 1e14 u M.
+    assert!(error([1.0, -5.0, 0.0], &[origin, [2f64.powi(-53), 0.0, 0.0], [2.0, 0.1, 0.0]]) <= MAX_OBSERVED_ERROR);
     let (q, t) = (
         [1.351079888211149e16, -562949953421315.0, -5629499534213118.0],
         [[-1.0, 3.0, -4.0], [3.0, -1.0, 6.0], [2.0, -5.0, 4.0]],
     );
     assert_eq!(project(q, &t).key, project(q, &t[..2]).key);
-    // Heights of 2^-55 to 2^-50 of the longest edge: first weights are far off and must not be multiplied by long
-    // sides. Once 30 u M.
+    // Heights are 2^-55 to 2^-50 of the longest edge, so the first weights are far off and must not be multiplied by
+    // long sides. The error was once 30 u M.
     let q = [-0.015273819676656053, -0.2878166238002008, 0.28597550426703106];
     let a = [-0.037468572102620945, -0.7088830678307931, 0.7043301088604648];
-    assert!(error(q, &[a, origin, [-0.037468571763492366, -0.7088830614146825, 0.7043301024855632]]) <= OBSERVED);
+    assert!(
+        error(q, &[a, origin, [-0.037468571763492366, -0.7088830614146825, 0.7043301024855632]]) <= MAX_OBSERVED_ERROR
+    );
     let q = [0.22352065081639855, 0.14915974621314368, 0.18765167798631388];
     let a = [0.681975043702849, 0.4550954199125677, 0.5725366351082702];
-    assert!(error(q, &[origin, a, [0.6819542314761735, 0.45508153150253616, 0.5725191626767789]]) <= OBSERVED);
+    assert!(
+        error(q, &[origin, a, [0.6819542314761735, 0.45508153150253616, 0.5725191626767789]]) <= MAX_OBSERVED_ERROR
+    );
     let q = [0.032630187874821345, 0.28102950424171574, 0.37507717682698066];
     let a = [0.06945341662019783, 0.5981718314202142, 0.7983524804340297];
-    assert!(error(q, &[origin, a, [0.033614149441385084, 0.2895039338804641, 0.3863876089920929]]) <= OBSERVED);
-    // The second projection on an edge: 3.2 u M without it.
+    assert!(
+        error(q, &[origin, a, [0.033614149441385084, 0.2895039338804641, 0.3863876089920929]]) <= MAX_OBSERVED_ERROR
+    );
+    // Without the second projection on an edge the error is 3.2 u M.
     let q = [-216365.202532822, -104996.10677091136, 86085.36384840212];
     let a = [0.05437519627965304, 0.8861508897723058, -0.25455041204516715];
     assert!(error(q, &[a, [-444089.36260986526, -215505.30942860627, 176690.36866632823]]) < 3.0);
-    // Whether a weight is zero is decided at the scale of the triangle: products of four lengths underflow at 2^-249.
+    // Whether a weight is zero is decided at the scale of the triangle, because products of four lengths underflow at
+    // 2^-249.
     let q = [0.40714549371745673, -0.9133631636166474, 0.0005275355512286034];
     let t = [
         origin,
@@ -340,7 +362,7 @@ fn past_failures_stay_mended() {
     ];
     let at = |e: i32| project(q.map(|x| x * 2f64.powi(e)), &t.map(|v| v.map(|x| x * 2f64.powi(e))));
     assert_eq!((at(-249).feature, at(-249).key.distance()), (at(0).feature, at(0).key.distance() * 2f64.powi(-249)));
-    // One key for one length at the end of the plain range.
+    // A length at the end of the plain range has one key in all primitives.
     let x = [2f64.powi(400), 0.0, 0.0];
     assert_eq!(project(origin, &[x]).key, project(origin, &[x, x]).key);
 }

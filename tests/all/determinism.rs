@@ -1,8 +1,8 @@
-//! The same bits from every backend, on every instruction set, for any number of threads, and in every run.
+//! Every backend returns the same bits on every instruction set, for any number of threads, and in every run.
 //!
-//! All answers are one number, which stands here, for each backend, instruction set and number of threads: in the deep suite more
-//! than a million answers of each scalar. Scenes are made with additions, multiplications and comparisons alone, so
-//! the number does not depend on a mathematical library either.
+//! A single hash of all answers, which is a constant of this file, has to result for each backend, instruction set and
+//! number of threads. In the deep suite it covers more than a million answers of each scalar. Scenes are generated with
+//! additions, multiplications and comparisons alone, so the hash does not depend on a mathematical library either.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "rayon"))]
 
 use nalgebra::Point3;
@@ -17,13 +17,13 @@ use p2m_testkit::scenes::{self, Kinds, Layout};
 use rand::RngExt;
 use std::fmt::Debug;
 
-/// The number of all answers in f64 and in f32.
+/// Returns the hash of all answers in f64 and in f32.
 fn expected() -> [u64; 2] {
     amount([0x1ac3_5da1_fcdd_df14, 0xf722_b457_7191_f48f], [0x9f7d_d08f_cc6f_b08e, 0xf52e_95e7_6ce9_3d5a])
 }
 
-/// Kinds and layouts, with the numbers of primitives and of queries in the deep suite and elsewhere. The last scene is large enough
-/// at either depth for threads to share its primitives, its sites and its queries.
+/// Kinds and layouts, with the numbers of primitives and of queries in the deep suite and in the shallow one. At either
+/// depth the last scene is large enough for threads to share its primitives, its sites and its queries.
 const SCENES: [(Kinds, Layout, [usize; 2], [usize; 2]); 5] = [
     (Kinds::Mixed, Layout::Uniform, [300, 10_000], [50, 100]),
     (Kinds::Mixed, Layout::Strewn, [5000, 10_000], [120, 100]),
@@ -34,22 +34,22 @@ const SCENES: [(Kinds, Layout, [usize; 2], [usize; 2]); 5] = [
 
 fn scene(number: usize) -> (Soup<f64>, Vec<Point3<f64>>) {
     let (kinds, layout, full, shallow) = SCENES[number];
-    let [len, asked] = amount(full, shallow);
+    let [len, query_count] = amount(full, shallow);
     let mut rng = p2m_testkit::rng("determinism", number as u64);
     let soup = scenes::soup(&mut rng, kinds, layout, len);
     let bounds = soup.aabb();
     let (centre, size) = (bounds.min + (bounds.max - bounds.min) * 0.5, (bounds.max - bounds.min) * 0.6);
     let mut query = |i: usize| match i % 4 {
-        // On the scene, and where there are ties.
+        // Some queries are on the scene, or at positions with ties.
         0 => soup.positions()[rng.random_range(0..soup.positions().len())],
         _ => centre + size.map(|x| x * rng.random_range(-1.0..1.0)),
     };
-    let queries = (0..asked).map(&mut query).collect();
+    let queries = (0..query_count).map(&mut query).collect();
     (soup, queries)
 }
 
-/// FNV-1a of all bits of all answers, in their order, but those of the certified bound: it is lower by the error of each candidate that
-/// was evaluated, and which ones are depends on where a search began.
+/// Returns the FNV-1a hash of the bits of all answers, in their order. The certified bound is left out: it is lowered
+/// by the error of each evaluated candidate, and these depend on where a search begins.
 fn hash<T: Real>(mut hash: u64, answers: &[Option<Closest<T>>]) -> u64 {
     let mut add = |x: u64| hash = (hash ^ x).wrapping_mul(0x0100_0000_01b3);
     for answer in answers {
@@ -65,23 +65,23 @@ fn hash<T: Real>(mut hash: u64, answers: &[Option<Closest<T>>]) -> u64 {
     hash
 }
 
-/// What is asked of each index.
+/// The queries that each index answers.
 trait Answers<T: Real>: Send + Sync {
-    /// On one thread and that instruction set.
-    fn alone(&self, isa: Isa, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>>;
-    /// In batches of the current pool of threads.
-    fn together(&self, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>>;
+    /// Answers on one thread with the given instruction set.
+    fn single_threaded(&self, isa: Isa, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>>;
+    /// Answers in batches on the current thread pool.
+    fn in_batches(&self, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>>;
 }
 
 macro_rules! answers {
     ($($index:ty),+) => {
         $(impl<T: Real> Answers<T> for $index {
-            fn alone(&self, isa: Isa, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>> {
+            fn single_threaded(&self, isa: Isa, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>> {
                 let index = self.clone().with_isa(isa);
                 queries.iter().map(|query| index.closest_point(query)).collect()
             }
 
-            fn together(&self, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>> {
+            fn in_batches(&self, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>> {
                 let mut answers = vec![None; queries.len()];
                 closest_points_into(self, queries, &QueryOptions::default(), &BatchOptions::default(), &mut answers);
                 answers
@@ -101,14 +101,16 @@ where
 
 fn check<T: Real>(of: impl Fn(usize) -> (Soup<T>, Vec<Point3<T>>), expected: u64) {
     let mut hashes: Vec<(String, u64)> = Vec::new();
-    let mut add =
-        |name: String, answers: &[Option<Closest<T>>]| match hashes.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, so_far)) => *so_far = hash(*so_far, answers),
-            None => hashes.push((name, hash(0xcbf2_9ce4_8422_2325, answers))),
-        };
+    let mut add = |name: String, answers: &[Option<Closest<T>>]| match hashes
+        .iter_mut()
+        .find(|(seen_name, _)| *seen_name == name)
+    {
+        Some((_, so_far)) => *so_far = hash(*so_far, answers),
+        None => hashes.push((name, hash(0xcbf2_9ce4_8422_2325, answers))),
+    };
     for number in 0..SCENES.len() {
         let (soup, queries) = of(number);
-        // Built by different numbers of threads as well.
+        // Different numbers of threads build the index as well.
         for threads in [1, 3, 8] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
             let indexes = pool.install(|| {
@@ -120,10 +122,10 @@ fn check<T: Real>(of: impl Fn(usize) -> (Soup<T>, Vec<Point3<T>>), expected: u64
                 ]
             });
             for (name, index) in &indexes {
-                add(format!("{name}, {threads} threads"), &pool.install(|| index.together(&queries)));
+                add(format!("{name}, {threads} threads"), &pool.install(|| index.in_batches(&queries)));
                 if threads == 1 {
                     for isa in Isa::available() {
-                        add(format!("{name}, {}", isa.name()), &index.alone(isa, &queries));
+                        add(format!("{name}, {}", isa.name()), &index.single_threaded(isa, &queries));
                     }
                 }
             }
@@ -133,8 +135,8 @@ fn check<T: Real>(of: impl Fn(usize) -> (Soup<T>, Vec<Point3<T>>), expected: u64
         assert_eq!(*hash, expected, "{name}: {hash:#x}");
     }
     assert_eq!(hashes.len(), 4 * (3 + Isa::available().len()));
-    let asked: usize = SCENES.iter().map(|(_, _, full, shallow)| amount(full, shallow)[1]).sum();
-    println!("{} answers, {expected:#x}", hashes.len() * asked);
+    let query_count: usize = SCENES.iter().map(|(_, _, full, shallow)| amount(full, shallow)[1]).sum();
+    println!("{} answers, {expected:#x}", hashes.len() * query_count);
 }
 
 #[test]

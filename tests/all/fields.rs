@@ -1,4 +1,4 @@
-//! Distance fields: every value is the answer of a single query, whatever the way to it.
+//! Every value of a distance field has to be the answer of a single query, whatever method fills the field.
 
 #![cfg(all(feature = "bvh", feature = "interception", feature = "mixed"))]
 
@@ -17,7 +17,7 @@ fn knot() -> Soup<f64> {
     torus_knot(&TorusKnot::default().with_rings(60).with_sides(8)).expect("valid")
 }
 
-fn places(grid: &Grid) -> impl Iterator<Item = Point3<f64>> + '_ {
+fn samples(grid: &Grid) -> impl Iterator<Item = Point3<f64>> + '_ {
     let [x, y, _] = grid.counts();
     (0..grid.len()).map(move |n| grid.point([n % x, n / x % y, n / (x * y)]))
 }
@@ -25,17 +25,17 @@ fn places(grid: &Grid) -> impl Iterator<Item = Point3<f64>> + '_ {
 #[test]
 fn fields_are_single_answers_by_every_index_and_on_all_threads() {
     let soup = if is_deep() { knot_and_cables(&KnotAndCables::default()).expect("valid") } else { knot() };
-    // Neither a multiple of slabs nor of batches, and more than one of each: where tests are not deep, the grid reaches far above
-    // the scene for that.
+    // The size is a multiple neither of slabs nor of batches, and larger than one of each. In shallow tests the grid
+    // reaches far above the scene for that.
     let around = Grid::around(&soup.aabb(), amount(69, 13), 1.3).expect("a box");
     let high = Grid::new(around.origin(), around.spacing(), [13, 11, 19]).expect("finite");
     let grid = amount(around, high);
     let brute = BruteForce::new(&soup).expect("valid");
     let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
     let expected: Vec<f32> =
-        places(&grid).map(|place| tree.closest_point(&place).expect("not empty").distance as f32).collect();
-    for (n, place) in places(&grid).enumerate().step_by(amount(997, 97)) {
-        assert_eq!(expected[n], brute.closest_point(&place).expect("not empty").distance as f32);
+        samples(&grid).map(|sample| tree.closest_point(&sample).expect("not empty").distance as f32).collect();
+    for (n, sample) in samples(&grid).enumerate().step_by(amount(997, 97)) {
+        assert_eq!(expected[n], brute.closest_point(&sample).expect("not empty").distance as f32);
     }
     let octree = OctreeIndex::build(&soup, &Default::default()).expect("valid");
     let p2m = P2mIndex::build(&soup, &Default::default()).expect("valid");
@@ -64,7 +64,8 @@ fn fields_are_single_answers_by_every_index_and_on_all_threads() {
     }
 }
 
-/// Models of all kinds, around the whole and close to the surface, where values have few digits in common with their distance from zero.
+/// Fields of models of all kinds, around the whole model and close to its surface, where values have few digits in
+/// common with the distance from zero.
 #[test]
 fn fields_by_lists_are_those_of_a_tree_on_models() {
     for name in [
@@ -123,24 +124,24 @@ fn bands_are_cut_from_whole_fields() {
     let soup = knot();
     let grid = Grid::around(&soup.aabb(), amount(53, 21), 1.5).expect("a box");
     let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
-    let whole = distances(&tree, &grid, &FieldOptions::default(), &|_| ()).expect("memory");
+    let full_field = distances(&tree, &grid, &FieldOptions::default(), &|_| ()).expect("memory");
     let lists = CandidateLists::new(&soup).expect("plain");
     for band in [0.0, 1e-3, 0.05, 0.3, 100.0] {
-        let asked = Counted(&tree, AtomicUsize::new(0));
+        let counted = Counted(&tree, AtomicUsize::new(0));
         let options = FieldOptions::default().with_band(band);
-        let found = distances(&asked, &grid, &options, &|_| ()).expect("memory");
-        let expected: Vec<f32> = whole.iter().map(|x| x.min(band as f32)).collect();
+        let found = distances(&counted, &grid, &options, &|_| ()).expect("memory");
+        let expected: Vec<f32> = full_field.iter().map(|x| x.min(band as f32)).collect();
         assert!(found == expected, "{band}");
-        let asked = asked.1.into_inner();
-        println!("{asked} of {} points asked for a band of {band}", grid.len());
+        let counted = counted.1.into_inner();
+        println!("{counted} of {} points asked for a band of {band}", grid.len());
         if band < 0.06 {
-            assert!(asked < grid.len() / 4, "{band}: {asked} of {}", grid.len());
+            assert!(counted < grid.len() / 4, "{band}: {counted} of {}", grid.len());
         }
         assert!(distances_by_lists(&lists, &grid, &options, &|_| ()).as_ref() == Ok(&expected), "{band}");
     }
 }
 
-/// Counts what is asked.
+/// An index that counts its queries.
 struct Counted<'a, I>(&'a I, AtomicUsize);
 
 impl<I: ClosestPoint<f64>> ClosestPoint<f64> for Counted<'_, I> {
@@ -150,18 +151,18 @@ impl<I: ClosestPoint<f64>> ClosestPoint<f64> for Counted<'_, I> {
     }
 }
 
-/// Fields have the signs of single answers, with and without a band.
-fn has_signs_of_answers(soup: &Soup<f64>, signed: &SignedDistance<'_, AabbTree<f64, &Soup<f64>>>, least: usize) {
-    // Through the middle, where the sign of an open surface changes far from it.
+/// Checks that fields have the signs of single answers, with and without a band.
+fn has_signs_of_answers(soup: &Soup<f64>, signed: &SignedDistance<'_, AabbTree<f64, &Soup<f64>>>, min_inside: usize) {
+    // The grid passes through the middle, where the sign of an open surface changes far from it.
     let grid = Grid::around(&soup.aabb(), amount(47, 9), 1.2).expect("a box");
-    let value = |place: Point3<f64>, band: f64| {
-        let answer = signed.closest_point(&place).expect("not empty");
+    let value = |sample: Point3<f64>, band: f64| {
+        let answer = signed.closest_point(&sample).expect("not empty");
         answer.distance().map_or(f32::NAN, |d| d.clamp(-band, band) as f32).to_bits()
     };
     for band in [f64::INFINITY, 0.05] {
-        let expected: Vec<u32> = places(&grid).map(|place| value(place, band)).collect();
+        let expected: Vec<u32> = samples(&grid).map(|sample| value(sample, band)).collect();
         let inside = expected.iter().filter(|x| f32::from_bits(**x) < 0.0).count();
-        assert!(inside > least, "{inside}");
+        assert!(inside > min_inside, "{inside}");
         for hints in [true, false] {
             let options = FieldOptions::default().with_hints(hints).with_band(band);
             let found = signed_distances(signed, &grid, &options, &|_| ()).expect("memory");
@@ -176,35 +177,35 @@ fn has_signs_of_answers(soup: &Soup<f64>, signed: &SignedDistance<'_, AabbTree<f
 
 #[test]
 fn signs_of_fields_are_those_of_single_answers() {
-    let (soup, least) = (knot(), amount(500, 3));
+    let (soup, min_inside) = (knot(), amount(500, 3));
     let tree = |soup| AabbTree::build(soup, &Default::default()).expect("valid");
-    has_signs_of_answers(&soup, &SignedDistance::new(tree(&soup), &soup).expect("closed"), least);
+    has_signs_of_answers(&soup, &SignedDistance::new(tree(&soup), &soup).expect("closed"), min_inside);
     let winding = SignedDistance::with_winding_numbers(tree(&soup), &soup, 0.01).expect("triangles");
-    has_signs_of_answers(&soup, &winding, least);
-    // Half a ball: where it is open the sign changes far from the surface, and is undefined in between.
+    has_signs_of_answers(&soup, &winding, min_inside);
+    // The sign of half a ball changes far from the surface where it is open, and is undefined in between.
     let ball = ico_sphere(&IcoSphere::default().with_frequency(8)).expect("valid");
     let is_low = |t: &[u32; 3]| t.iter().all(|i| ball.positions()[*i as usize].x <= 0.0);
-    let half = ball.triangles().iter().filter(|t| is_low(t)).copied().collect();
-    let half = Soup::from_triangles(ball.positions().to_vec(), half).expect("valid");
-    let winding = SignedDistance::with_winding_numbers(tree(&half), &half, 0.01).expect("triangles");
-    has_signs_of_answers(&half, &winding, least);
+    let half_ball = ball.triangles().iter().filter(|t| is_low(t)).copied().collect();
+    let half_ball = Soup::from_triangles(ball.positions().to_vec(), half_ball).expect("valid");
+    let winding = SignedDistance::with_winding_numbers(tree(&half_ball), &half_ball, 0.01).expect("triangles");
+    has_signs_of_answers(&half_ball, &winding, min_inside);
 }
 
 #[test]
 fn an_empty_scene_is_infinitely_far() {
     let grid = Grid::new(Point3::origin(), 1.0, [3, 2, 2]).expect("valid");
-    let nothing: Soup<f64> = Soup::default();
-    let tree = AabbTree::build(&nothing, &Default::default()).expect("valid");
+    let empty: Soup<f64> = Soup::default();
+    let tree = AabbTree::build(&empty, &Default::default()).expect("valid");
     for band in [f64::INFINITY, 2.0] {
         let field = distances(&tree, &grid, &FieldOptions::default().with_band(band), &|_| ());
         assert_eq!(field, Ok(vec![f32::INFINITY; 12]));
-        let lists = CandidateLists::new(&nothing).expect("plain");
+        let lists = CandidateLists::new(&empty).expect("plain");
         let field = distances_by_lists(&lists, &grid, &FieldOptions::default().with_band(band), &|_| ());
         assert_eq!(field, Ok(vec![f32::INFINITY; 12]));
     }
 }
 
-/// Closed surfaces so large and so small that f32 hardly tells distances.
+/// Closed surfaces are so large or so small that f32 barely represents distances.
 #[test]
 fn signs_by_lists_are_right_where_f32_has_no_digits() {
     let cube = |side: f64| {
@@ -261,7 +262,7 @@ fn refined_cells_tile_their_cube_and_follow_the_surface() {
     let ball = ico_sphere(&IcoSphere::default().with_frequency(amount(16, 6))).expect("valid");
     let signed =
         SignedDistance::new(AabbTree::build(&ball, &Default::default()).expect("valid"), &ball).expect("closed");
-    let distance = |place: &Point3<f64>| signed.closest_point(place).and_then(|s| s.distance()).expect("defined");
+    let distance = |sample: &Point3<f64>| signed.closest_point(sample).and_then(|s| s.distance()).expect("defined");
     let mut last = 0;
     for error in amount(vec![0.1, 0.02, 0.004], vec![0.1, 0.02]) {
         let cells = refined(&ball.aabb(), &distance, &RefineOptions::new(error));
@@ -270,22 +271,22 @@ fn refined_cells_tile_their_cube_and_follow_the_surface() {
         assert!((volume / side.powi(3) - 1.0).abs() < 1e-9, "{volume}");
         assert!(cells.len() > last, "{error}: {} cells", cells.len());
         last = cells.len();
-        // Near the surface, at places where nothing was asked.
+        // The positions are near the surface, where no sample of the field is.
         let mut worst = 0.0f64;
         for cell in &cells {
             for n in 0..27 {
                 let steps = [n % 3, n / 3 % 3, n / 9].map(|s| f64::from(s) * 0.35 + 0.1);
-                let place = Point3::from([0, 1, 2].map(|k| cell.origin[k] + cell.size * steps[k]));
-                let value = distance(&place);
+                let sample = Point3::from([0, 1, 2].map(|k| cell.origin[k] + cell.size * steps[k]));
+                let value = distance(&sample);
                 if value.abs() < cell.size / 4.0 {
-                    worst = worst.max((cell.value(&place) - value).abs());
+                    worst = worst.max((cell.value(&sample) - value).abs());
                 }
             }
         }
         println!("{} cells for {error}, at most {worst:.4} off near the surface", cells.len());
         assert!(worst < 1.5 * error, "{error}: {worst}");
     }
-    // No finer than told.
+    // The refinement is not finer than requested.
     let coarse = refined(&ball.aabb(), &distance, &RefineOptions::new(1e-9).with_depth(3));
     assert!(coarse.len() <= 512 && coarse.iter().any(|cell| cell.size < 0.3));
     let far = RefineOptions::new(0.1).with_relative(0.01);
@@ -316,14 +317,14 @@ fn files_and_slices_have_every_value_in_its_place() {
     assert_eq!((&vti[start..start + 8], &vti[start + 8..start + 104]), (&96u64.to_le_bytes()[..], &raw[..]));
     assert!(write_field(&grid, &values[1..], p2m::field::FieldFormat::Raw, Vec::new()).is_err());
 
-    // One point inside, one without a number.
+    // One value is inside, and one is NaN.
     let mut values = vec![4.0f32; 24];
     values[grid.number([2, 0, 1])] = -4.0;
     values[grid.number([0, 1, 1])] = f32::NAN;
     let ([width, height], pixels) = slice(&grid, &values, 2, 1);
     assert_eq!((width, height, pixels.len()), (513, 342, 3 * 513 * 342));
     let pixel = |x: usize, y: usize| &pixels[3 * (y * width + x)..][..3];
-    assert_eq!(pixel(0, 0), [153; 3]); // above, to the left: no number
-    assert!(pixel(512, 341)[0] > 200 && pixel(512, 341)[2] < 40); // below, to the right: inside
+    assert_eq!(pixel(0, 0), [153; 3]); // The value above, to the left, is NaN.
+    assert!(pixel(512, 341)[0] > 200 && pixel(512, 341)[2] < 40); // The value below, to the right, is inside.
     assert!(pixel(0, 341)[2] > 150 && pixel(0, 341)[0] < 50);
 }

@@ -1,7 +1,9 @@
-//! What fuzz targets check, on their seeds and on what once failed (`fuzz/crashes`), without a nightly compiler.
+//! Runs the checks of the fuzz targets on their seeds and on inputs that once failed (`fuzz/crashes`), without a
+//! nightly compiler.
 //!
-//! `P2M_FUZZED=fuzz/corpus cargo test --test all fuzzed::` adds a folder with a folder for each target, such as fuzzing leaves.
-//! `P2M_BLESS=1 cargo test --test all fuzzed::seeds_are` writes the seeds of scenes and saved indexes anew.
+//! `P2M_FUZZED=fuzz/corpus cargo test --test all fuzzed::` adds a folder that has a folder for each target, such as
+//! fuzzing leaves behind. `P2M_BLESS=1 cargo test --test all fuzzed::seeds_are` writes the seeds of scenes and saved
+//! indexes anew.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 
 #[allow(unreachable_pub, reason = "a crate of its own")]
@@ -41,7 +43,7 @@ fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz").join(name)
 }
 
-/// The files of a folder, in order; none if there is no such folder.
+/// Returns the sorted files of a folder, and none if the folder does not exist.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let mut files: Vec<_> =
         std::fs::read_dir(folder).into_iter().flatten().map(|entry| entry.expect("a file").path()).collect();
@@ -78,7 +80,7 @@ fn every_seed_and_everything_that_once_failed_passes() {
     assert!(failed.is_empty(), "{failed:?}");
 }
 
-/// Each has a line in the table of its folder, and each line a file.
+/// Each crash has a line in the table of its folder, and each line has a file.
 #[test]
 fn what_once_failed_is_explained() {
     let text = std::fs::read_to_string(folder("crashes/README.md")).expect("a page");
@@ -109,8 +111,8 @@ fn seeds_reach_every_backend_and_question() {
     assert_eq!(reached.len(), 3, "{reached:?}");
 }
 
-/// Seeds for scenes are bytes at random after a head that says what is asked of which backend; those for saved indexes
-/// are some changes of whole files.
+/// Seeds of scenes are random bytes after a head that selects question and backend. Seeds of saved indexes are some
+/// changes of valid files.
 #[test]
 fn seeds_are_those_that_are_made_here() {
     let mut made = Vec::new();
@@ -121,7 +123,8 @@ fn seeds_are_those_that_are_made_here() {
     };
     for (q, question) in QUESTIONS.iter().enumerate() {
         for (m, mode) in scene::MODES.iter().enumerate() {
-            // In f64 but for the lattice of every second question; backend, instruction set, option; seed; mode.
+            // The head selects f64, except for the lattice of every second question, then backend, instruction set and
+            // option, the seed, and the mode.
             let is_single = u8::from(m == 0 && q % 2 == 1);
             let head = [q as u8, is_single, (q * 5 + m) as u8, 0, 1, m as u8 * 3, m as u8];
             random(format!("queries/{question}-{mode}"), &head, if m == 1 { 300 } else { 180 });
@@ -140,13 +143,13 @@ fn seeds_are_those_that_are_made_here() {
             }
         }
     }
-    // A point at infinity.
+    // The input has a point at infinity.
     let infinity = f64::INFINITY.to_le_bytes();
     made.push(("queries/infinity".into(), [&[0, 0, 0, 0, 0, 0, 1][..], &infinity, &[0; 45], &[1, 0, 0]].concat()));
-    // The first child of the first node is a node that is not there, or the first node.
+    // The first child of the first node becomes a node that does not exist, or the first node itself.
     made.push(("saved/child-that-is-not-there".into(), vec![1, 0, 0, 2, 7, 0, 0, 4]));
     made.push(("saved/child-of-itself".into(), vec![1, 0, 0, 2, 7, 0, 0, 0]));
-    // A file of four sections without names, and no file.
+    // The inputs are a file of four sections without names, and an empty file.
     let head = b"\x89P2M\r\n\x1a\n\x01\0\0\0\x04\0\0\0";
     made.push(("saved/made-up".into(), [&[2, 0, 0][..], head, &[0; 400]].concat()));
     made.push(("saved/nothing".into(), vec![0, 3, 0]));

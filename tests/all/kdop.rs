@@ -1,4 +1,4 @@
-//! k-DOP trees: every instruction set, moved sets, box queries, and how much work is done.
+//! Tests k-DOP trees: every instruction set, moved sets, box queries, and the work of queries.
 #![cfg(all(feature = "bvh", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -20,7 +20,7 @@ use std::ops::ControlFlow;
 
 type Tree<'a, const K: usize> = KdopTree<f64, &'a Soup<f64>, K>;
 
-/// Nodes and packets that a search of the tree visits, for all queries.
+/// Returns the nodes and packets that all queries visit.
 fn work<V: Volume>(tree: &TreeIndex<f64, &Soup<f64>, V>, queries: &[Point3<f64>]) -> [usize; 2] {
     let [nodes, packets, _] = StatsCollector::of_queries(queries, |query, counting| tree.visit(query, counting));
     [nodes, packets]
@@ -64,9 +64,9 @@ fn every_instruction_set_refitted_and_boxes_agree_with_brute_force() {
                     assert_eq!(found, expected, "case {case}: {isa} {kinds:?} {layout:?} {q}");
                     let leaf = tree.closest_leaf(&q).expect("not empty");
                     assert!(leaf.distance >= expected.expect("one").0 && leaf.lower_bound <= expected.expect("one").0);
-                    let half = Vector3::from_fn(|_, _| rng.random_range(0.0..0.2))
+                    let half_extent = Vector3::from_fn(|_, _| rng.random_range(0.0..0.2))
                         * (scene.aabb().max - scene.aabb().min).norm();
-                    let bounds = Aabb { min: q - half, max: q + half };
+                    let bounds = Aabb { min: q - half_extent, max: q + half_extent };
                     let (mut found, mut expected) = (Vec::new(), Vec::new());
                     tree.primitives_in_box_into(&bounds, &mut found);
                     brute.primitives_in_box_into(&bounds, &mut expected);
@@ -82,9 +82,9 @@ fn every_instruction_set_refitted_and_boxes_agree_with_brute_force() {
     assert_eq!(error, Err(BuildError::OtherLength { len: other.len(), expected: few.len() }));
 }
 
-/// More faces, fewer nodes and packets; and all of them fewer than boxes. `most` is what the nodes of 14, 18 and 26
-/// faces are at most of those of 6, in percent, for queries in the box.
-fn falls(soup: &Soup<f64>, most: [usize; 3]) {
+/// Checks that more faces lead to fewer nodes and packets, and that k-DOPs visit fewer than boxes. `most` is the
+/// largest percentage of the nodes of 6 faces that 14, 18 and 26 faces may visit, for queries in the box.
+fn check_work_falls(soup: &Soup<f64>, max_percent: [usize; 3]) {
     let boxes = AabbTree::build(soup, &Default::default()).expect("valid");
     let trees = (built::<6>(soup), built::<14>(soup), built::<18>(soup), built::<26>(soup));
     for set in [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface] {
@@ -93,13 +93,13 @@ fn falls(soup: &Soup<f64>, most: [usize; 3]) {
         let rows =
             [work(&trees.0, &queries), work(&trees.1, &queries), work(&trees.2, &queries), work(&trees.3, &queries)];
         println!("{set}: boxes {boxes:?}, k-DOPs {rows:?} nodes and packets");
-        // The six-DOP of the axes is the box.
+        // The 6-DOP of the axes is the box.
         let [six, fourteen, eighteen, all] = rows;
         assert!(
             six[0].abs_diff(boxes[0]) * 1000 <= boxes[0] && six[1].abs_diff(boxes[1]) * 1000 <= boxes[1],
             "{six:?} {boxes:?}"
         );
-        // The sets of 14 and of 18 directions are not part of each other: far from the scene 14 may visit less.
+        // The sets of 14 and of 18 directions are not subsets of each other, so far from the scene 14 may visit less.
         for (more, less) in [(fourteen, six), (eighteen, six), (all, fourteen), (all, eighteen)] {
             assert!(more[0] < less[0] && more[1] < less[1], "{set}: {rows:?}");
         }
@@ -107,8 +107,8 @@ fn falls(soup: &Soup<f64>, most: [usize; 3]) {
             assert!(eighteen[0] < fourteen[0] && eighteen[1] < fourteen[1], "{set}: {rows:?}");
         }
         if set == QuerySet::Box1 {
-            for (row, most) in rows[1..].iter().zip(most) {
-                assert!(row[0] * 100 <= six[0] * most, "{rows:?}");
+            for (row, max_percent) in rows[1..].iter().zip(max_percent) {
+                assert!(row[0] * 100 <= six[0] * max_percent, "{rows:?}");
             }
         }
     }
@@ -116,13 +116,14 @@ fn falls(soup: &Soup<f64>, most: [usize; 3]) {
 
 #[test]
 fn visits_fall_with_the_number_of_faces_on_a_turned_gear() {
-    falls(&scenes::skewed_gear(amount(2000, 600)), amount([70, 66, 58], [74, 70, 64]));
+    check_work_falls(&scenes::skewed_gear(amount(2000, 600)), amount([70, 66, 58], [74, 70, 64]));
     if let Some(soup) = model("gear_skewed_57k_rotated.ply") {
-        falls(&soup, [65, 66, 53]);
+        check_work_falls(&soup, [65, 66, 53]);
     }
 }
 
-/// Nearest first, with the bound of two half-spaces and over nodes of eight, against the manual's way.
+/// Compares the search that visits the nearest of eight children first, with the bound of two half-spaces, with the
+/// manual's search.
 #[test]
 fn far_fewer_nodes_are_visited_than_from_left_to_right() {
     let mut all = vec![("a skewed gear", scenes::skewed_gear(amount(2000, 600)))];
@@ -133,7 +134,7 @@ fn far_fewer_nodes_are_visited_than_from_left_to_right() {
         let queries = QuerySet::Box1.generate(&soup, amount(500, 60), 1);
         let tree = built::<14>(&soup);
         let [nodes, packets] = work(&tree, &queries);
-        let left_first = LeftFirst::of_packets(tree.tree());
+        let left_first = LeftFirst::from_packets(tree.tree());
         let mut sums = [0; 2];
         for query in &queries {
             let (distance, work) = left_first.distance(&&soup, query);
@@ -144,35 +145,39 @@ fn far_fewer_nodes_are_visited_than_from_left_to_right() {
             "{name}: {nodes} nodes and {packets} packets, left first {} nodes, of them {} leaves",
             sums[0], sums[1]
         );
-        // The nodes of left first are binary and include the leaves.
+        // The nodes of the manual's search are binary and include the leaves.
         assert!(sums[0] * 10 >= amount(40, 33) * (nodes + packets), "{name}: {} of {nodes} and {packets}", sums[0]);
         assert!(sums[1] > packets, "{name}");
     }
 }
 
-/// Of the leaves whose boxes meet a box, those are left out whose k-DOPs do not.
+/// A box query skips leaves whose boxes intersect the box if their k-DOPs do not.
 #[test]
 fn fewer_primitives_are_asked_by_box_queries_with_more_faces() {
-    fn asked<const K: usize>(soup: &Soup<f64>, boxes: &[Aabb<f64>]) -> usize
+    fn tested_primitives<const K: usize>(soup: &Soup<f64>, boxes: &[Aabb<f64>]) -> usize
     where
         Directions<K>: Default,
     {
         let tree = built::<K>(soup);
-        let asked = Cell::new(0);
+        let tested_primitives = Cell::new(0);
         for bounds in boxes {
-            let meets = |id| {
-                asked.set(asked.get() + 1);
+            let is_hit = |id| {
+                tested_primitives.set(tested_primitives.get() + 1);
                 Primitive::meets_box(&soup.get(id), bounds)
             };
-            let _ = tree.tree().visit_box(bounds, meets, &mut |_| ControlFlow::Continue(()));
+            let _ = tree.tree().visit_box(bounds, is_hit, &mut |_| ControlFlow::Continue(()));
         }
-        asked.get()
+        tested_primitives.get()
     }
     let soup = scenes::skewed_gear(amount(500, 300));
-    let half = Vector3::repeat(0.03);
+    let half_extent = Vector3::repeat(0.03);
     let queries = QuerySet::Near.generate(&soup, amount(300, 50), 1);
-    let boxes: Vec<_> = queries.iter().map(|q| Aabb { min: q - half, max: q + half }).collect();
-    let counts = [asked::<6>(&soup, &boxes), asked::<14>(&soup, &boxes), asked::<26>(&soup, &boxes)];
+    let boxes: Vec<_> = queries.iter().map(|q| Aabb { min: q - half_extent, max: q + half_extent }).collect();
+    let counts = [
+        tested_primitives::<6>(&soup, &boxes),
+        tested_primitives::<14>(&soup, &boxes),
+        tested_primitives::<26>(&soup, &boxes),
+    ];
     println!("{counts:?} primitives asked");
     assert!(counts[1] * 10 < counts[0] * 8 && counts[2] < counts[1], "{counts:?}");
 }

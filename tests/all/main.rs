@@ -1,8 +1,7 @@
-//! The tests that hold backends against each other and against the oracle, as one program: what they have in common is
-//! compiled once. `cargo test --test all signs::` runs those of one module.
+//! The tests that compare backends with each other and with the oracle, in one program so that shared code is compiled
+//! once. `cargo test --test all signs::` runs those of one module.
 //!
-//! Programs of their own beside it are `soak`, which needs an allocator of its own, and `examples`, which runs other
-//! programs.
+//! Two test programs are separate: `soak` needs its own allocator, and `examples` runs other programs.
 
 mod adversaries;
 mod agreement;

@@ -1,5 +1,5 @@
-//! Agreement with brute force, bit for bit, on real meshes: far from the origin, non-manifold, degenerate, lines,
-//! mixed. Skips, and says so, where there is no folder of models.
+//! Compares indexes with brute force, bit for bit, on real meshes: far from the origin, non-manifold, degenerate,
+//! lines, mixed. The tests are skipped, with a message, if there is no folder of models.
 
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 
@@ -13,25 +13,27 @@ use p2m_testkit::queries::QuerySet;
 use p2m_testkit::scenes::narrow;
 use p2m_testkit::{amount, depth, model_files};
 
-/// Queries of a set. All indexes are asked all of them.
+/// Returns the number of queries of a set, all of which every index answers.
 fn queries() -> usize {
     amount(200, 12)
 }
 
-/// Brute force is asked all of them where there are at most so many primitives, and every eighth where there are more: it would take
-/// most of the time of all tests.
-const MANY: usize = 20_000;
-/// Larger models have the trees in f64 alone: the other indexes would take half of the time that is left.
-fn too_many() -> usize {
+/// Brute force answers all queries of models with at most this many primitives, and every eighth query of larger ones,
+/// because it would otherwise take most of the time of all tests.
+const MAX_PRIMITIVES_FOR_ALL_QUERIES: usize = 20_000;
+/// Returns the size of the largest model that all indexes are tested on. Larger models are tested with the trees in f64
+/// alone, because the other indexes would take half of the remaining time.
+fn max_primitives_for_all_indexes() -> usize {
     amount(300_000, 5_000)
 }
 
-/// `P2M_DEEP=2 cargo test --profile deep --test all models:: -- --include-ignored` leaves nothing out.
+/// Returns whether nothing is left out: `P2M_DEEP=2 cargo test --profile deep --test all models:: --
+/// --include-ignored`.
 fn is_in_full() -> bool {
     depth() > 1
 }
 
-/// Distance bits and primitive of each answer, computed by two threads.
+/// Returns the distance bits and the primitive of each answer, computed by two threads.
 fn answers<T: Real, I: ClosestPoint<T> + Sync>(index: &I, queries: &[Point3<T>]) -> Vec<(u64, usize)> {
     let one =
         |q| index.closest_point(q).map(|c| (c.distance.to_f64().to_bits(), c.primitive.index())).expect("an answer");
@@ -45,16 +47,16 @@ fn answers<T: Real, I: ClosestPoint<T> + Sync>(index: &I, queries: &[Point3<T>])
     })
 }
 
-/// Compares trees of boxes, of k-DOPs and of the scene's own directions, the octree and the P2M index, with each other and with
-/// brute force. How many answers brute force confirmed.
+/// Compares trees of boxes, of k-DOPs and of the scene's own directions, the octree and the P2M index with each other
+/// and with brute force. Returns how many answers brute force confirmed.
 fn agrees<T: Real>(name: &str, set: QuerySet, soup: &Soup<T>, trees: &Trees<'_, T>, queries: &[Point3<T>]) -> usize {
     let boxes = answers(&trees.0, queries);
-    let every = if soup.len() > MANY && !is_in_full() { 8 } else { 1 };
-    let asked: Vec<_> = queries.iter().step_by(every).copied().collect();
-    let brute = answers(&BruteForce::new(soup).expect("valid"), &asked);
-    let of_brute: Vec<_> = boxes.iter().step_by(every).copied().collect();
+    let every = if soup.len() > MAX_PRIMITIVES_FOR_ALL_QUERIES && !is_in_full() { 8 } else { 1 };
+    let brute_queries: Vec<_> = queries.iter().step_by(every).copied().collect();
+    let brute = answers(&BruteForce::new(soup).expect("valid"), &brute_queries);
+    let box_answers: Vec<_> = boxes.iter().step_by(every).copied().collect();
     let mut pairs = vec![
-        ("brute force", &asked[..], of_brute, brute),
+        ("brute force", &brute_queries[..], box_answers, brute),
         ("k-DOPs", queries, answers(&trees.1, queries), boxes.clone()),
         ("the scene's k-DOPs", queries, answers(&trees.2, queries), boxes.clone()),
     ];
@@ -65,10 +67,10 @@ fn agrees<T: Real>(name: &str, set: QuerySet, soup: &Soup<T>, trees: &Trees<'_, 
             assert_eq!(found, expected, "{name}, {index} and boxes, {set}: {query:?}");
         }
     }
-    asked.len()
+    brute_queries.len()
 }
 
-/// Of boxes, of the usual 14 faces, and of 26 faces along a frame; an octree, and a P2M index.
+/// The indexes of a model: boxes, k-DOPs of 14 default faces and of 26 faces along a frame, an octree, and a P2M index.
 struct Trees<'a, T: Real>(
     AabbTree<T, &'a Soup<T>>,
     KdopTree<T, &'a Soup<T>, 14>,
@@ -79,14 +81,14 @@ struct Trees<'a, T: Real>(
 
 impl<'a, T: Real> Trees<'a, T> {
     fn build(soup: &'a Soup<T>, choice: &DirectionChoice) -> Self {
-        let is_small = soup.len() <= too_many() || is_in_full();
-        let own = KdopOptions::new(choice.frame_directions::<26>().expect("thirteen"));
+        let is_small = soup.len() <= max_primitives_for_all_indexes() || is_in_full();
+        let frame_options = KdopOptions::new(choice.frame_directions::<26>().expect("thirteen"));
         Self(
             AabbTree::build(soup, &Default::default()).expect("valid"),
             KdopTree::build(soup, &Default::default()).expect("valid"),
-            KdopTree::build_with(soup, &own).expect("valid"),
+            KdopTree::build_with(soup, &frame_options).expect("valid"),
             is_small.then(|| OctreeIndex::build(soup, &Default::default()).expect("valid")),
-            // Its cells are made from f64 for both scalars, and take a while.
+            // The cells are built from f64 for both scalars, and take a while.
             (size_of::<T>() == 8 && is_small).then(|| P2mIndex::build(soup, &Default::default()).expect("valid")),
         )
     }
@@ -117,16 +119,16 @@ fn trees_agree_with_brute_force_on_every_model_in_f64() {
 fn trees_agree_with_brute_force_on_every_model_in_f32() {
     for path in model_files() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
-        let wide = p2m::scene::read_scene(&path).expect("readable").soup;
-        if wide.len() > too_many() && !is_in_full() {
+        let double = p2m::scene::read_scene(&path).expect("readable").soup;
+        if double.len() > max_primitives_for_all_indexes() && !is_in_full() {
             println!("{name}: left out");
             continue;
         }
-        let soup = narrow(&wide).expect("models fit f32");
-        let trees = Trees::build(&soup, &DirectionChoice::from_scene(&wide).expect("valid"));
+        let soup = narrow(&double).expect("models fit f32");
+        let trees = Trees::build(&soup, &DirectionChoice::from_scene(&double).expect("valid"));
         for set in QuerySet::ALL {
-            // A quarter of the queries: the scalar changes the boxes, not the kernel.
-            let queries: Vec<_> = set.generate(&wide, queries() / 4, 2).iter().map(|q| q.map(f32::of_f64)).collect();
+            // A quarter of the queries suffices, because the scalar changes the boxes and not the kernel.
+            let queries: Vec<_> = set.generate(&double, queries() / 4, 2).iter().map(|q| q.map(f32::of_f64)).collect();
             agrees(&name, set, &soup, &trees, &queries);
         }
     }

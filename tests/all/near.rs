@@ -1,5 +1,5 @@
-//! The k nearest primitives, all within a distance, whether there is any, and the closest of some, on every backend
-//! against the primitives one by one.
+//! Compares near queries (k nearest, all within a distance, any within a distance, filtered nearest) of every backend
+//! with the primitives one by one.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -81,7 +81,7 @@ fn what_cannot_be_has_a_stated_answer() {
     assert!(empty.k_nearest(&at, 3, f64::INFINITY).is_empty() && !empty.is_any_within(&at, f64::INFINITY));
 }
 
-/// A lost bound or a lost end would show here.
+/// The counters detect a lost bound or a lost early exit.
 #[test]
 fn searches_end_early() {
     let soup = soup(&mut rng("near sheet", 0), Kinds::Triangles, Layout::Sheet, 20_000);
@@ -91,13 +91,13 @@ fn searches_end_early() {
     for _ in 0..200 {
         let q = p2m_testkit::scenes::query(&mut rng, soup.positions());
         let radius = index.closest_point(&q).expect("not empty").distance;
-        let mut asked = 0;
-        let mut ask = |_: PrimitiveId| {
-            asked += 1;
+        let mut calls = 0;
+        let mut count_calls = |_: PrimitiveId| {
+            calls += 1;
             true
         };
-        assert!(index.closest_point_among(&q, &QueryOptions::default(), &mut ask).is_some());
-        sums[0] += asked;
+        assert!(index.closest_point_among(&q, &QueryOptions::default(), &mut count_calls).is_some());
+        sums[0] += calls;
         sums[1] += index.k_nearest(&q, 8, f64::INFINITY).len();
         let counted = Counted(&index, std::cell::Cell::new(0));
         assert!(counted.is_any_within(&q, radius * 1.5));
@@ -107,8 +107,8 @@ fn searches_end_early() {
     }
     println!("asked {}, found {}, packets for any {}, for eight {}", sums[0], sums[1], sums[2], sums[3]);
     assert_eq!(sums[1], 1_600);
-    let most = [330, 1_600, 220, 750];
-    assert!((0..4).all(|i| sums[i] <= most[i]), "{sums:?}");
+    let limits = [330, 1_600, 220, 750];
+    assert!((0..4).all(|i| sums[i] <= limits[i]), "{sums:?}");
 }
 
 /// A tree that counts packets.

@@ -1,5 +1,5 @@
-//! The octree: domains, budgets, threads, instruction sets, progress, other collectors, and how much work is done. That
-//! its answers are those of brute force is tested in `agreement`.
+//! Tests the octree: domains, budgets, threads, instruction sets, progress, other collectors, and the work of queries.
+//! `agreement` compares its answers with brute force.
 #![cfg(feature = "interception")]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -22,12 +22,12 @@ fn built<'a>(soup: &'a Soup<f64>, options: &OctreeOptions) -> OctreeIndex<f64, &
     OctreeIndex::build(soup, options).expect("valid")
 }
 
-/// In, around and far from the box of a scene.
+/// Returns a query in, around or far from the box of a scene.
 fn query(rng: &mut impl Rng, soup: &Soup<f64>) -> Point3<f64> {
     let bounds = soup.aabb();
     let size = bounds.max - bounds.min;
-    let reach = [0.6, 0.6, 2.0, 12.0, 1e4][rng.random_range(0..5)];
-    let offset = Vector3::from_fn(|_, _| rng.random_range(-reach..reach));
+    let extent = [0.6, 0.6, 2.0, 12.0, 1e4][rng.random_range(0..5)];
+    let offset = Vector3::from_fn(|_, _| rng.random_range(-extent..extent));
     match rng.random_range(0..3) {
         0 => soup.positions()[rng.random_range(0..soup.positions().len())] + offset * (size.max() * 1e-3),
         _ => nalgebra::center(&bounds.min, &bounds.max) + offset * size.max(),
@@ -40,14 +40,14 @@ fn domains_change_the_work_and_never_the_answer() {
         let (mut rng, (kinds, layout)) = (rng("octree domains", case), of_case(case));
         let soup = scenes::soup(&mut rng, kinds, layout, amount(600, 80));
         let bounds = soup.aabb();
-        let half = (bounds.max - bounds.min) * 0.2;
-        let away = bounds.max + half;
+        let fifth = (bounds.max - bounds.min) * 0.2;
+        let away = bounds.max + fifth;
         let domains = [
             Domain::Everywhere,
-            Domain::Box(Aabb { min: bounds.min + half, max: bounds.max - half }),
-            Domain::Box(Aabb { min: away, max: away + half }),
-            Domain::Band(half.max() * 0.1),
-            // Of no use, and no harm.
+            Domain::Box(Aabb { min: bounds.min + fifth, max: bounds.max - fifth }),
+            Domain::Box(Aabb { min: away, max: away + fifth }),
+            Domain::Band(fifth.max() * 0.1),
+            // An empty domain is useless but harmless.
             Domain::Box(Aabb::empty()),
             Domain::Box(Aabb { min: [f64::NAN; 3].into(), max: away }),
             Domain::Box(Aabb { min: [-f64::MAX; 3].into(), max: [f64::MAX; 3].into() }),
@@ -91,40 +91,44 @@ fn what_is_not_asked_for_is_not_made() {
 #[test]
 fn budgets_are_kept() {
     let soup = sheet(amount(20_000, 3_000));
-    // The least budget is that of ten thousand primitives.
+    // The smallest budget is that of ten thousand primitives.
     let count = soup.len().max(10_000) as f64;
-    let usual = built(&soup, &OctreeOptions::default()).report();
-    assert!(usual.bytes as f64 <= OctreeOptions::default().memory * count && usual.lists > soup.len() / 20, "{usual}");
+    let default_report = built(&soup, &OctreeOptions::default()).report();
+    assert!(
+        default_report.bytes as f64 <= OctreeOptions::default().memory * count
+            && default_report.lists > soup.len() / 20,
+        "{default_report}"
+    );
     for memory in [amount(60.0, 20.0), 10.0, 0.001, 0.0, -1.0, f64::NAN] {
         let report = built(&soup, &OctreeOptions::default().with_memory(memory)).report();
         println!("{memory} bytes: {report}");
         assert!(report.bytes as f64 <= memory.max(0.0) * count, "{memory}: {report}");
-        assert!(report.resolution < usual.resolution);
+        assert!(report.resolution < default_report.resolution);
     }
     for work in [amount(20.0, 5.0), 2.0, 0.0] {
         let report = built(&soup, &OctreeOptions::default().with_work(work)).report();
-        assert!(report.work as f64 <= work * count && report.bytes < usual.bytes, "{work}: {report}");
+        assert!(report.work as f64 <= work * count && report.bytes < default_report.bytes, "{work}: {report}");
     }
     let fine = built(&soup, &OctreeOptions::default().with_resolution(1.0).with_memory(1e4).with_work(1e5)).report();
-    assert!(fine.bytes > usual.bytes && fine.resolution == 1.0, "{fine}");
+    assert!(fine.bytes > default_report.bytes && fine.resolution == 1.0, "{fine}");
 }
 
 #[test]
 fn cells_do_not_depend_on_the_number_of_threads() {
     let soup = sheet(amount(5_000, 2_000));
     let mut rng = rng("octree threads", 0);
-    let places: Vec<_> = (0..amount(2000, 400)).map(|_| query(&mut rng, &soup)).collect();
+    let points: Vec<_> = (0..amount(2000, 400)).map(|_| query(&mut rng, &soup)).collect();
     let cells = |parallel| {
         let splits = p2m::bvh::SplitOptions::default().with_parallel(parallel);
         let index = built(&soup, &OctreeOptions::default().with_splits(splits));
-        let lists: Vec<_> = places.iter().map(|place| index.partition().list_length(place)).collect();
+        let lists: Vec<_> = points.iter().map(|point| index.partition().list_length(point)).collect();
         (index.report(), lists)
     };
     let expected = cells(false);
     for _ in 0..3 {
         assert!(cells(true) == expected);
     }
-    assert!(expected.1.iter().flatten().count() > places.len() / 2);
+    assert!(expected.1.iter().flatten().count() > points.len() / 2);
 }
 
 #[test]
@@ -167,7 +171,7 @@ fn progress_goes_from_nothing_to_all() {
     }
 }
 
-/// All primitives within a distance.
+/// A collector of all primitives within a distance.
 struct Within(f64, Vec<PrimitiveId>);
 
 impl Collector for Within {
@@ -203,7 +207,7 @@ fn other_collectors_get_all_that_they_want() {
     assert!(sum > 500, "{sum}");
 }
 
-/// Lost bounds, lost lists or coarser cells would show here first.
+/// The counters detect lost bounds, lost lists and coarser cells.
 #[test]
 fn lookups_do_little() {
     let soup = sheet(amount(20_000, 4_000));
@@ -211,25 +215,26 @@ fn lookups_do_little() {
     let mut rng = rng("octree counters", 0);
     let bounds = soup.aabb();
     let size = bounds.max - bounds.min;
-    for (name, reach, most) in
+    for (name, extent, limits) in
         [("around", 0.52, [10, 3_400, 1_350]), ("far", 4.9, amount([250, 2_100, 1_100], [100, 2_400, 1_050]))]
     {
         let centre = nalgebra::center(&bounds.min, &bounds.max);
-        let mut place = || centre + Vector3::from_fn(|k, _| rng.random_range(-reach..reach) * size[k]);
-        let queries: Vec<_> = (0..1000).map(|_| place()).collect();
+        let mut point = || centre + Vector3::from_fn(|k, _| rng.random_range(-extent..extent) * size[k]);
+        let queries: Vec<_> = (0..1000).map(|_| point()).collect();
         let sums = StatsCollector::of_queries(&queries, |query, counting| index.visit(query, counting));
         println!("{name}: per 1000 queries {sums:?} nodes, packets, primitives");
-        assert!((0..3).all(|i| sums[i] <= most[i]), "{name}: {sums:?}");
+        assert!((0..3).all(|i| sums[i] <= limits[i]), "{name}: {sums:?}");
     }
 }
 
-/// Rounding may put a query into the cell beside its own: what ties everywhere in that cell may be the nearest here.
+/// Rounding may put a query into the cell beside its own, where a tie of the whole cell may be the nearest primitive.
 #[test]
 fn queries_beside_a_face_that_rounding_moves_across_it_lose_nothing() {
     let mut found = 0;
     for shift in [36.0f64, 36.5, 37.0] {
         let mut rng = rng("face", 0);
-        // So near to a face of cells, the plane x = 0, that a difference to the end of the domain cannot tell.
+        // The query is so near to a face of cells, the plane x = 0, that its offset from the end of the domain rounds
+        // to that of the plane.
         let a = 2f64.powf(-shift);
         let along = Vector3::new(-(2f64.powi(-5)), 0.0, 0.0);
         let vertices: Vec<_> =
@@ -237,8 +242,8 @@ fn queries_beside_a_face_that_rounding_moves_across_it_lose_nothing() {
         let mut shapes: Vec<Shape<f64>> = vertices.iter().map(|v| Point::new(*v).into()).collect();
         shapes.extend(vertices.iter().map(|v| Shape::from(Segment::new(*v, v + along))));
         shapes.extend([-0.6, 0.6].map(|x| Shape::from(Point::new(Point3::new(x, 0.0, 0.0)))));
-        let reach = 1.9 * 2f64.powf(18.2);
-        let domain = Domain::Box(Aabb { min: [-reach; 3].into(), max: [reach; 3].into() });
+        let extent = 1.9 * 2f64.powf(18.2);
+        let domain = Domain::Box(Aabb { min: [-extent; 3].into(), max: [extent; 3].into() });
         let options = OctreeOptions::default().with_domain(domain).with_resolution(2e3).with_memory(2e4).with_work(2e4);
         let index = OctreeIndex::<f64, _>::build(&shapes[..], &options).expect("valid");
         println!("{}", index.report());
@@ -259,8 +264,8 @@ fn queries_beside_a_face_that_rounding_moves_across_it_lose_nothing() {
 fn budgets_without_end_are_those_that_suffice() {
     let soup = scenes::soup(&mut rng("budgets without end", 0), Kinds::Mixed, Layout::Uniform, 300);
     let enough = built(&soup, &OctreeOptions::default().with_memory(1e4).with_work(1e4)).report();
-    let usual = built(&soup, &OctreeOptions::default()).report();
-    assert!(enough.bytes >= usual.bytes && enough.lists > 0, "{enough}\n{usual}");
+    let default_report = built(&soup, &OctreeOptions::default()).report();
+    assert!(enough.bytes >= default_report.bytes && enough.lists > 0, "{enough}\n{default_report}");
     for budget in [1e15, f64::MAX, f64::INFINITY] {
         let report = built(&soup, &OctreeOptions::default().with_memory(budget).with_work(budget)).report();
         assert_eq!(report.bytes, enough.bytes, "{budget:e}: {report}");
@@ -276,11 +281,11 @@ fn any_resolution_ends() {
             let options = OctreeOptions::default();
             let options = options.with_memory(memory);
             let report = built(&soup, &options.with_resolution(resolution)).report();
-            let usual = built(&soup, &options).report();
-            // Who asks for more has no less.
+            let default_report = built(&soup, &options).report();
+            // A larger budget does not lead to fewer cells.
             assert!(
-                resolution.is_nan() || resolution <= 1.0 || report.bytes >= usual.bytes,
-                "{resolution} {memory}: {report}\n{usual}"
+                resolution.is_nan() || resolution <= 1.0 || report.bytes >= default_report.bytes,
+                "{resolution} {memory}: {report}\n{default_report}"
             );
         }
     }

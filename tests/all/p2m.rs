@@ -1,5 +1,5 @@
-//! The P2M index: ties in lattices, symmetric shapes, slivers, instruction sets, progress, other collectors, and how much
-//! work is done. That its answers are those of brute force on random scenes is tested in `agreement`.
+//! Tests the P2M index: ties in lattices, symmetric shapes, slivers, instruction sets, progress, other collectors, and
+//! the work of queries. `agreement` compares its answers with brute force on random scenes.
 #![cfg(feature = "interception")]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -7,12 +7,12 @@ use nalgebra::{Point3, Vector3};
 use p2m::backend::StatsCollector;
 use p2m::interception::{BuildStage, Partition, Progress};
 use p2m::{
-    Aabb, BruteForce, BuildIndex, ClosestPoint, Isa, P2mIndex, P2mOptions, Point, Primitive, PrimitiveSet, Projection,
+    Aabb, BruteForce, BuildIndex, ClosestPoint, P2mIndex, P2mOptions, Point, Primitive, PrimitiveSet, Projection,
     Segment, Shape, Soup, Triangle,
 };
 use p2m_testkit::ball::Ball;
 use p2m_testkit::scenes::{self, Kinds, Layout, of_case};
-use p2m_testkit::{amount, cases, rng, vector};
+use p2m_testkit::{amount, cases, interception_check, rng, vector};
 use rand::{Rng, RngExt};
 use std::sync::Mutex;
 
@@ -20,24 +20,12 @@ fn built<S: PrimitiveSet<f64> + Sync>(set: S) -> P2mIndex<f64, S> {
     P2mIndex::build(set, &Default::default()).expect("valid")
 }
 
-/// Holds an index with every instruction set against brute force, bit for bit, one query at a time and side by side.
+/// Compares the default index of a set with brute force.
 fn agrees<S: PrimitiveSet<f64> + Sync + Copy>(name: &str, set: S, queries: &[Point3<f64>]) {
-    let brute = BruteForce::new(set).expect("valid");
-    let key = |c: p2m::Closest<f64>| (c.distance.to_bits(), c.primitive);
-    let expected: Vec<_> = queries.iter().map(|q| brute.closest_point(q).map(key)).collect();
-    let mut index = built(set);
-    for isa in Isa::available() {
-        index = index.with_isa(isa);
-        let mut side_by_side = vec![None; queries.len()];
-        index.closest_points_into(queries, &Default::default(), &mut side_by_side);
-        for ((q, other), expected) in queries.iter().zip(side_by_side).zip(&expected) {
-            assert_eq!(index.closest_point(q).map(key), *expected, "{name} {isa} {q:?}");
-            assert_eq!(other.map(key), *expected, "{name} {isa} side by side {q:?}");
-        }
-    }
+    interception_check::agrees(name, set, built(set), queries);
 }
 
-/// Near and on vertices, between them, around, far from and beyond the domain of a scene of about the size 1.
+/// Returns queries on, near and between vertices, around, far from and beyond the domain of a scene of about size 1.
 fn queries(rng: &mut impl Rng, shapes: &[Shape<f64>], count: usize) -> Vec<Point3<f64>> {
     let vertex = |rng: &mut dyn FnMut(usize) -> usize| {
         let vertices = shapes[rng(shapes.len())].vertices().to_vec();
@@ -60,7 +48,8 @@ fn queries(rng: &mut impl Rng, shapes: &[Shape<f64>], count: usize) -> Vec<Point
         .collect()
 }
 
-/// The surface of a cube of n x n squares a side, whose places are whole numbers times a step: everything ties.
+/// Returns the surface of a cube of n x n squares a side whose coordinates are multiples of a step, so that
+/// ties are everywhere.
 fn lattice(n: i32, step: f64) -> Vec<Shape<f64>> {
     let mut shapes = Vec::new();
     let at = |axis: usize, side: i32, i: i32, j: i32| {
@@ -88,7 +77,7 @@ fn ties_of_lattices_go_to_the_lowest_id() {
         let shapes = lattice(n, step);
         let mut rng = rng("p2m lattice", n as u64);
         let mut all = queries(&mut rng, &shapes, amount(800, 60));
-        // On the planes between vertices.
+        // These queries are on the planes between vertices.
         all.extend((0..amount(800, 60)).map(|_| {
             let cells = [(); 3].map(|()| f64::from(rng.random_range(-4 * n..6 * n)) * 0.5);
             Point3::from(cells.map(|x| x * step - 0.5))
@@ -101,7 +90,7 @@ fn turn(i: u32, n: u32) -> (f64, f64) {
     (f64::from(i) * std::f64::consts::TAU / f64::from(n)).sin_cos()
 }
 
-/// A sphere by rings, whose circumcentres are one.
+/// Returns a sphere by rings, whose circumcentres coincide.
 fn sphere(rings: u32, around: u32) -> Vec<Shape<f64>> {
     let at = |i: u32, j: u32| {
         let (z, r) = turn(i, 2 * rings);
@@ -123,7 +112,7 @@ fn rim(j: u32, n: u32, z: f64) -> Point3<f64> {
     Point3::new(0.5 * c, 0.5 * s, z)
 }
 
-/// A cylinder without caps, of triangles as long as it is.
+/// Returns a cylinder without caps, whose triangles are as long as the cylinder.
 fn cylinder(n: u32) -> Vec<Shape<f64>> {
     let sides = (0..n).flat_map(|j| {
         let [a, b, c, d] = [rim(j, n, -0.5), rim(j + 1, n, -0.5), rim(j + 1, n, 0.5), rim(j, n, 0.5)];
@@ -132,15 +121,15 @@ fn cylinder(n: u32) -> Vec<Shape<f64>> {
     sides.collect()
 }
 
-/// Around the middle of a sphere everything is as near: sites there keep lists short, and add none elsewhere. Long
-/// triangles get sites on themselves.
+/// All primitives of a sphere are equally near to its middle: sites there keep lists short, and no sites are added
+/// elsewhere. Long triangles get sites on themselves.
 #[test]
 fn round_shapes_have_short_lists() {
     let sphere = sphere(amount(48, 26), amount(64, 40));
     let report = built(&sphere[..]).report();
     let mean = report.primitives as f64 / report.lists as f64;
     println!("sphere: {report}");
-    // Of the vertices that are nearly one at the poles nothing is known.
+    // Vertices that nearly coincide, at the poles, have no lists of their own.
     assert!(report.trees < 100 && report.added == 0 && mean < 40.0, "{report}");
     assert!((1..100).contains(&report.auxiliary), "{report}");
     let alone = P2mIndex::build(&sphere[..], &P2mOptions::default().with_max_extra_sites(0.0)).expect("valid").report();
@@ -193,12 +182,12 @@ fn scenes_on_a_line_or_in_a_plane_and_small_ones_agree() {
         let (case, mut rng) = (seed as usize, rng("p2m flat", seed));
         let count = rng.random_range(1..40);
         let dimensions = case % 3 + 1;
-        let place = vector(&mut rng) * [0.0, 1.0, 1e6][case % 3];
+        let shift = vector(&mut rng) * [0.0, 1.0, 1e6][case % 3];
         let grid = rng.random::<bool>();
         let mut point = || {
             let mut p = vector(&mut rng) * 0.5;
             p.iter_mut().skip(dimensions).for_each(|x| *x = 0.0);
-            Point3::from(place + if grid { p.map(|x| (x * 8.0).round() / 8.0) } else { p })
+            Point3::from(shift + if grid { p.map(|x| (x * 8.0).round() / 8.0) } else { p })
         };
         let shapes: Vec<Shape<f64>> = (0..count)
             .map(|i| match (i + case) % 3 {
@@ -207,12 +196,12 @@ fn scenes_on_a_line_or_in_a_plane_and_small_ones_agree() {
                 _ => Point::new(point()).into(),
             })
             .collect();
-        let all: Vec<_> = queries(&mut rng, &shapes, amount(60, 15)).into_iter().flat_map(|q| [q, q + place]).collect();
+        let all: Vec<_> = queries(&mut rng, &shapes, amount(60, 15)).into_iter().flat_map(|q| [q, q + shift]).collect();
         agrees(&format!("case {case}"), &shapes[..], &all);
     }
 }
 
-/// Vertices that differ by less than sites can tell apart.
+/// Vertices differ by less than the distance at which sites are distinct.
 #[test]
 fn vertices_that_become_one_site_agree() {
     let tiny = 2f64.powi(-170);
@@ -230,7 +219,7 @@ fn vertices_that_become_one_site_agree() {
     agrees("snapped", &shapes[..], &all);
 }
 
-/// A triangle or a primitive that shows no vertices.
+/// A triangle, or a primitive without vertices.
 #[derive(Clone, Copy, Debug)]
 enum Mixed {
     Triangle(Triangle<f64>),
@@ -258,7 +247,7 @@ impl Primitive<f64> for Mixed {
     }
 }
 
-/// What shows no vertices may be large, far from all vertices, and the last of all.
+/// A primitive without vertices may be large, far from all vertices, and the last of all.
 #[test]
 fn primitives_of_ones_own_agree_wherever_they_are() {
     for case in cases(80, 28) {
@@ -282,8 +271,8 @@ fn primitives_of_ones_own_agree_wherever_they_are() {
     }
 }
 
-/// The kernel's rounding decides between features that are missed by less than it can tell: pruning has to leave room for
-/// slivers, and for vertices that are nearly one.
+/// The kernel's rounding decides between features whose distances differ by less than its error, so pruning needs a
+/// margin for slivers and for vertices that nearly coincide.
 #[test]
 fn slivers_and_vertices_that_are_nearly_one_agree() {
     let [a, b, c, d] = [
@@ -309,27 +298,27 @@ fn slivers_and_vertices_that_are_nearly_one_agree() {
         let v = shapes[rng.random_range(0..14)];
         let v = v.vertices()[0];
         let (a, c) = (Point3::from(vector(&mut rng)), Point3::from(vector(&mut rng)));
-        // Some units in the last place away.
+        // The vertices differ by some units in the last place.
         let b = a.map(|x| x + f64::EPSILON * 0.5 * f64::from(rng.random_range(-3..=3)));
-        let own: [Shape<f64>; 2] = if rng.random() {
+        let pair: [Shape<f64>; 2] = if rng.random() {
             [Segment::new(b, a).into(), Segment::new(a, c).into()]
         } else {
             [Segment::new(a, c).into(), Triangle::new(b, a, c).into()]
         };
-        shapes.extend(own);
+        shapes.extend(pair);
         let queries: Vec<_> = (0..20)
             .map(|_| {
-                // On the plane between both.
-                let way = a - v;
+                // The query is on the plane between both vertices.
+                let edge = a - v;
                 let aside = vector(&mut rng);
-                nalgebra::center(&a, &v) + aside - way * (aside.dot(&way) / way.norm_squared())
+                nalgebra::center(&a, &v) + aside - edge * (aside.dot(&edge) / edge.norm_squared())
             })
             .collect();
         agrees(&format!("case {case}"), &shapes[..], &queries);
     }
 }
 
-/// Beside a flat scene f64 has no room left, far enough out.
+/// Far enough beside a flat scene, offsets are below the resolution of f64.
 #[test]
 fn flat_scenes_far_out_agree() {
     for e in 10..19 {
@@ -357,7 +346,7 @@ fn soups_agree_beyond_the_domain_and_on_its_border() {
         let mut all: Vec<_> = (0..amount(100, 15))
             .map(|_| centre + vector(&mut rng) * (size * [0.6, 2.0, 5.1, 1e4][rng.random_range(0..4)]))
             .collect();
-        // Where cells meet those of the bounding sites, if anywhere.
+        // Cells border on those of the bounding sites there, if anywhere.
         all.extend((0..amount(20, 6)).map(|_| centre + vector(&mut rng).map(f64::signum) * (size * 5.0)));
         all.extend((0..amount(40, 10)).map(|_| {
             let positions = soup.positions();
@@ -392,15 +381,23 @@ fn lists_that_are_too_long_are_left_to_the_tree() {
         let options = P2mOptions::default().with_max_list_packets(longest).with_max_extra_sites(0.0);
         P2mIndex::<f64, _>::build(&soup, &options).expect("valid").report()
     };
-    let usual = report(128);
-    assert!(usual.lists > soup.len() / 3 && usual.trees == 0 && usual.entries > 2 * usual.lists, "{usual}");
+    let default_report = report(128);
+    assert!(
+        default_report.lists > soup.len() / 3
+            && default_report.trees == 0
+            && default_report.entries > 2 * default_report.lists,
+        "{default_report}"
+    );
     let short = report(12);
-    assert!(short.trees > soup.len() / 30 && short.bytes < usual.bytes && short.entries <= 12 * short.lists, "{short}");
+    assert!(
+        short.trees > soup.len() / 30 && short.bytes < default_report.bytes && short.entries <= 12 * short.lists,
+        "{short}"
+    );
     let none = report(0);
-    assert!(none.lists == 0 && none.trees == usual.lists && none.bytes == 0, "{none}");
+    assert!(none.lists == 0 && none.trees == default_report.lists && none.bytes == 0, "{none}");
 }
 
-/// Lost lists, lost bounds, lost hints or a lost way to the answer far away would show here first.
+/// The counters detect lost lists, lost bounds, lost hints and lost paths to answers far away.
 #[test]
 fn lookups_do_little() {
     let soup = sheet(amount(20_000, 4_000));
@@ -409,19 +406,20 @@ fn lookups_do_little() {
     let bounds = soup.aabb();
     let size = bounds.max - bounds.min;
     println!("{}", index.report());
-    for (name, reach, most) in
+    for (name, extent, limits) in
         [("around", 0.52, [1_750, 2_900, 1_350]), ("far", 4.9, [1_850, amount(1_500, 400), 1_100])]
     {
         let centre = nalgebra::center(&bounds.min, &bounds.max);
-        let mut place = || centre + Vector3::from_fn(|k, _| rng.random_range(-reach..reach) * size[k]);
-        let queries: Vec<_> = (0..1000).map(|_| place()).collect();
+        let mut shift = || centre + Vector3::from_fn(|k, _| rng.random_range(-extent..extent) * size[k]);
+        let queries: Vec<_> = (0..1000).map(|_| shift()).collect();
         let sums = StatsCollector::of_queries(&queries, |query, counting| index.visit(query, counting));
         println!("{name}: per 1000 queries {sums:?} nodes and sites, packets, primitives");
-        assert!((0..3).all(|i| sums[i] <= most[i]), "{name}: {sums:?}");
+        assert!((0..3).all(|i| sums[i] <= limits[i]), "{name}: {sums:?}");
     }
 }
 
-/// Cells of a town are cut by planes that are the same but for rounding: what is left of them must not grow without end.
+/// Cells of a town are cut by planes that are equal up to rounding, and the polytope that remains must not
+/// grow without end.
 #[test]
 fn a_part_of_a_flat_town_is_built_within_its_memory() {
     let Some(folder) = p2m_testkit::models() else { return };
@@ -430,7 +428,7 @@ fn a_part_of_a_flat_town_is_built_within_its_memory() {
     let middle = |shape: &Shape<f64>| nalgebra::center(&shape.aabb().min, &shape.aabb().max);
     let centre = middle(&shapes[shapes.len() / 2]);
     let mut part = shapes;
-    // The bits of numbers that are not negative are in their order.
+    // Bits of numbers that are not negative have the order of the numbers.
     part.sort_by_cached_key(|shape| (middle(shape) - centre).norm_squared().to_bits());
     for count in amount(vec![5500, 6000, 7000], vec![600]) {
         let index = built(&part[..count]);

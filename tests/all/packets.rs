@@ -1,4 +1,4 @@
-//! Packets and wide nodes: every instruction set, other collectors, moved sets, batches, and how much work is done.
+//! Tests packets and wide nodes: every instruction set, other collectors, moved sets, batches, and the work of queries.
 #![cfg(feature = "bvh")]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -12,7 +12,7 @@ use p2m_testkit::scenes::{self, Kinds, LAYOUTS, Layout, of_case};
 use p2m_testkit::{amount, cases, rng};
 use rand::{Rng, RngExt};
 
-/// Near, inside, at vertices, on a lattice, far and very far.
+/// Returns a query near, inside, at vertices, on a lattice, far or very far.
 fn query(rng: &mut impl Rng, soup: &Soup<f64>) -> Point3<f64> {
     let bounds = soup.aabb();
     let size = bounds.max - bounds.min;
@@ -45,7 +45,7 @@ fn every_instruction_set_answers_as_brute_force() {
         // Each kind in each layout comes with each scale, and the first scenes have all scales as well.
         let e = [0, -340, 310, 0, -900, 900][((case + case / 24) % 6) as usize];
         if e != 0 && layout == Layout::Sizes {
-            continue; // beyond the range of f64
+            continue; // The scale is beyond the range of f64.
         }
         let scale = |p: &Point3<f64>| p.map(|x| x * 2f64.powi(e));
         let queries: Vec<_> = queries.iter().map(scale).filter(|q| q.iter().all(|x| x.is_finite())).collect();
@@ -75,7 +75,7 @@ fn every_instruction_set_answers_as_brute_force() {
     }
 }
 
-/// Everything within a radius, but for some ids: what no shortcut for the nearest one may take away.
+/// A collector of all primitives within a radius except some ids, which no shortcut for the nearest primitive may skip.
 struct Within {
     square: f64,
     found: Vec<(PrimitiveId, u64)>,
@@ -94,7 +94,7 @@ impl Collector for Within {
 
 #[test]
 fn collectors_of_more_than_the_nearest_get_all() {
-    let (mut total, mut asked) = (0, 0);
+    let (mut total, mut searches) = (0, 0);
     let cases = cases(24, 24);
     for case in cases.clone() {
         let (mut rng, (kinds, layout)) = (rng("collectors", case), of_case(case));
@@ -113,10 +113,10 @@ fn collectors_of_more_than_the_nearest_get_all() {
             collector.found.sort();
             assert_eq!(collector.found, expected.found, "case {case}: {kinds:?} {layout:?} {q} {radius}");
             total += expected.found.len();
-            asked += 1;
+            searches += 1;
         }
     }
-    assert!(cases.have_more_than(amount(10_000, 8 * asked), total), "{total} found, {asked} times");
+    assert!(cases.have_more_than(amount(10_000, 8 * searches), total), "{total} found, {searches} times");
 }
 
 #[test]
@@ -127,7 +127,7 @@ fn a_tree_that_is_refitted_answers_as_one_that_is_built() {
         let mut tree = AabbTree::build(soup.clone(), &Default::default()).expect("valid");
         let size = (soup.aabb().max - soup.aabb().min).norm();
         for step in 0..4 {
-            // A twist, a shift by the size of the scene, and noise.
+            // The motion is a twist, a shift by the size of the scene, and noise.
             let mut moved = |p: &Point3<f64>| {
                 let noise = Vector3::from_fn(|_, _| rng.random::<f64>() - 0.5) * size * 0.01 * f64::from(step);
                 Point3::new(p.x + p.y * 0.1, p.y - p.z * 0.2, p.z + size) + noise
@@ -150,7 +150,7 @@ fn a_tree_that_is_refitted_answers_as_one_that_is_built() {
     }
 }
 
-/// Trees of few primitives and many nodes; leaves of every size.
+/// Trees of few primitives have many nodes and leaves of every size.
 #[test]
 fn trees_of_every_shape_are_built() {
     let mut rng = rng("shapes of trees", 0);
@@ -180,11 +180,11 @@ fn trees_of_every_shape_are_built() {
     }
 }
 
-/// A packet whose primitives become others of other kinds; zeros of both signs.
+/// The primitives of a packet change to other kinds, and zeros have both signs.
 #[test]
 fn refitted_packets_may_mix_kinds_and_zeros_keep_their_signs() {
     let shape = |kind: usize, i: usize| -> Shape<f64> {
-        // Every other one has the same place, with zeros of the other sign.
+        // Every second primitive has the same position, with zeros of the other sign.
         let (x, zero) = ((i / 2) as f64, if i.is_multiple_of(2) { 0.0 } else { -0.0 });
         let at = |y: f64| Point3::new(x + f64::from(i as u32 % 2) * 1e-3 * y * y, y, zero);
         match kind {
@@ -212,7 +212,7 @@ fn batches_are_single_queries() {
         let (mut rng, layout) = (rng("batches", case), LAYOUTS[(case % 6) as usize]);
         let soup = scenes::soup(&mut rng, Kinds::Mixed, layout, amount(500, 200));
         let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
-        // Threads share 512 queries or more, so that where tests are not deep one case has them in three shares.
+        // Threads take at least 512 queries each, so in shallow tests one case has enough queries for three threads.
         let count = amount(2000, if case == 0 { 1100 } else { 100 });
         let mut queries: Vec<_> = (0..count).map(|_| query(&mut rng, &soup)).collect();
         (queries[3].y, queries[70].x) = (f64::NAN, f64::INFINITY);
@@ -220,14 +220,14 @@ fn batches_are_single_queries() {
         for options in [QueryOptions::default(), near, near.with_hint(PrimitiveId::new(7)), near.with_epsilon(0.1)] {
             let expected: Vec<_> = queries.iter().map(|q| tree.closest_point_with(q, &options)).collect();
             for bits in 0..8 {
-                let way = batch::BatchOptions::default()
+                let batch_options = batch::BatchOptions::default()
                     .with_reorder(bits & 1 != 0)
                     .with_hints(bits & 2 != 0)
                     .with_parallel(bits & 4 != 0);
                 let mut out = vec![None; queries.len()];
-                batch::closest_points_into(&tree, &queries, &options, &way, &mut out);
+                batch::closest_points_into(&tree, &queries, &options, &batch_options, &mut out);
                 for (i, (found, expected)) in out.into_iter().zip(&expected).enumerate() {
-                    same(found, *expected, &format!("{layout:?} {way:?} query {i}"));
+                    same(found, *expected, &format!("{layout:?} {batch_options:?} query {i}"));
                 }
             }
         }
@@ -248,8 +248,8 @@ fn trees_do_not_depend_on_the_number_of_threads() {
     assert!(expected.len() > 2000);
 }
 
-/// Lost pruning, lost filters or a lost reach would show here first: these figures are the same on every run, and
-/// nearly so on every instruction set.
+/// The counters detect lost pruning, lost filters and lost bounds. They are the same on every run, and nearly so on
+/// every instruction set.
 #[test]
 fn searches_do_little() {
     let mut rng = rng("counters", 0);
@@ -266,7 +266,7 @@ fn searches_do_little() {
             let mut counting = StatsCollector::<f64>::new(Best::new(&QueryOptions::default()));
             tree.visit(q, &mut counting);
             sums = [sums[0] + counting.nodes, sums[1] + counting.packets, sums[2] + counting.primitives];
-            // With the answer known from the start, less is left to visit.
+            // A hint that is the answer leaves less to visit.
             let found = counting.best.finish().expect("not empty").primitive;
             let mut best = Best::<f64>::new(&QueryOptions::default());
             best.offer(found, soup.get(found).project(q));

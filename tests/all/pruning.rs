@@ -1,16 +1,14 @@
-//! What is left out of lists is never the answer, and added sites change none: where many primitives have a vertex or
-//! an edge, are the same, have vertices that are nearly one, or are as far from the middle of a round shape.
+//! Checks that primitives left out of lists are never the answer, and that added sites change no answer. In the scenes
+//! many primitives share a vertex or an edge, coincide, have vertices that nearly coincide, or are equally far from the
+//! middle of a round shape.
 #![cfg(feature = "interception")]
 
 use nalgebra::{Point3, Vector3};
-use p2m::{
-    BruteForce, BuildIndex, Closest, ClosestPoint, Element, Isa, P2mIndex, P2mOptions, P2mReport, PrimitiveSet, Real,
-    Soup,
-};
+use p2m::{BuildIndex, Element, P2mIndex, P2mOptions, P2mReport, PrimitiveSet, Real, Soup};
 use p2m_testkit::scenes::narrow;
-use p2m_testkit::{amount, cases, rng, vector};
+use p2m_testkit::{amount, cases, interception_check, rng, vector};
 
-/// Random numbers of a case of a test.
+/// The random numbers of a case of a test.
 struct Numbers(Box<dyn FnMut() -> Vector3<f64>>);
 
 impl Numbers {
@@ -19,7 +17,7 @@ impl Numbers {
         Self(Box::new(move || vector(&mut rng)))
     }
 
-    /// In the cube from -1 to 1.
+    /// Returns a vector of the cube from -1 to 1.
     fn vector(&mut self) -> Vector3<f64> {
         (self.0)()
     }
@@ -37,29 +35,18 @@ impl Numbers {
         (1..all.len()).for_each(|i| all.swap(i, self.below(i + 1)));
     }
 
-    /// In a cube of whole numbers from 0 to n.
-    fn whole(&mut self, n: usize) -> Point3<f64> {
+    /// Returns a point with integer coordinates from 0 to n.
+    fn integer_point(&mut self, n: usize) -> Point3<f64> {
         Point3::from([(); 3].map(|()| self.below(n + 1) as f64))
     }
 }
 
-/// The same distance, by its bits, and primitive as brute force, with each instruction set, one query at a time and
-/// side by side.
+/// Compares an index with brute force, and returns its report.
 fn agrees<T: Real>(name: &str, soup: &Soup<T>, options: &P2mOptions, queries: &[Point3<T>]) -> P2mReport {
-    let key = |c: Closest<T>| (c.distance.to_f64().to_bits(), c.primitive.index());
-    let brute = BruteForce::new(soup).expect("valid");
-    let expected: Vec<_> = queries.iter().map(|q| brute.closest_point(q).map(key)).collect();
-    let mut index = P2mIndex::build(soup, options).expect("valid");
-    for isa in Isa::available() {
-        index = index.with_isa(isa);
-        let mut several = vec![None; queries.len()];
-        index.closest_points_into(queries, &Default::default(), &mut several);
-        for ((q, several), expected) in queries.iter().zip(several).zip(&expected) {
-            assert_eq!(index.closest_point(q).map(key), *expected, "{name} {isa} {q:?}");
-            assert_eq!(several.map(key), *expected, "{name} {isa} side by side {q:?}");
-        }
-    }
-    index.report()
+    let index = P2mIndex::build(soup, options).expect("valid");
+    let report = index.report();
+    interception_check::agrees(name, soup, index, queries);
+    report
 }
 
 fn vertices(element: Element) -> Vec<u32> {
@@ -70,15 +57,15 @@ fn vertices(element: Element) -> Vec<u32> {
     }
 }
 
-/// On vertices and near them, on edges and near them, in the box, around, and beyond the domain.
+/// Returns queries on vertices and edges and near them, in the box, around it, and beyond the domain.
 fn queries(numbers: &mut Numbers, soup: &Soup<f64>, count: usize) -> Vec<Point3<f64>> {
     let bounds = soup.aabb();
     let (centre, size) = (nalgebra::center(&bounds.min, &bounds.max), (bounds.max - bounds.min).max());
     let elements: Vec<_> = soup.elements().collect();
     (0..count)
         .map(|i| {
-            let own = vertices(numbers.pick(&elements));
-            let [a, b] = [(); 2].map(|()| soup.positions()[numbers.pick(&own) as usize]);
+            let indices = vertices(numbers.pick(&elements));
+            let [a, b] = [(); 2].map(|()| soup.positions()[numbers.pick(&indices) as usize]);
             let on_edge = a + (b - a) * [0.5, 0.25, numbers.vector().x.abs()][numbers.below(3)];
             let little = numbers.vector() * (size * 0.5f64.powi([2, 4, 6, 12, 24, 36, 48][numbers.below(7)]));
             match i % 8 {
@@ -94,8 +81,8 @@ fn queries(numbers: &mut Numbers, soup: &Soup<f64>, count: usize) -> Vec<Point3<
         .collect()
 }
 
-/// Triangles by their corners, in a random order of ids.
-fn of_triangles(numbers: &mut Numbers, mut triangles: Vec<[Point3<f64>; 3]>) -> Soup<f64> {
+/// Returns a soup of triangles in a random order of ids.
+fn shuffled_soup(numbers: &mut Numbers, mut triangles: Vec<[Point3<f64>; 3]>) -> Soup<f64> {
     numbers.shuffle(&mut triangles);
     let elements = (0..u32::try_from(triangles.len()).expect("few")).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
     Soup::from_triangles(triangles.concat(), elements.collect()).expect("finite")
@@ -105,7 +92,8 @@ fn in_another_order<A: Copy>(numbers: &mut Numbers, [a, b, c]: [A; 3]) -> [A; 3]
     numbers.pick(&[[a, b, c], [b, c, a], [c, a, b], [a, c, b], [c, b, a], [b, a, c]])
 }
 
-/// A surface of revolution around the z axis, closed by a vertex at each end of its outline of radii and heights.
+/// A surface of revolution around the z axis, given by an outline of radii and heights and closed by a vertex
+/// at each end.
 struct Lathe {
     positions: Vec<Point3<f64>>,
     triangles: Vec<[u32; 3]>,
@@ -136,17 +124,17 @@ impl Lathe {
         Self { positions, triangles }
     }
 
-    /// A sphere of the radius 1, with 2 (rings - 1) triangles for each of those around an end.
+    /// Returns a sphere of radius 1, with 2 (rings - 1) triangles for each of the vertices around.
     fn sphere(rings: u32, around: u32) -> Self {
         let outline = (0..=rings).map(|i| {
             let (s, c) = (f64::from(i) * std::f64::consts::PI / f64::from(rings)).sin_cos();
-            // The middle is at zero.
+            // The middle ring is exactly at zero.
             [s, if 2 * i == rings { 0.0 } else { c }]
         });
         Self::new(&outline.collect::<Vec<_>>(), around)
     }
 
-    /// A cylinder of the height 1.
+    /// Returns a cylinder of height 1.
     fn cylinder(radius: f64, rings: u32, around: u32) -> Self {
         let rims = (0..rings).map(|i| [radius, 0.5 - f64::from(i) / f64::from(rings - 1)]);
         let outline: Vec<_> = [[0.0, 0.5]].into_iter().chain(rims).chain([[0.0, -0.5]]).collect();
@@ -157,13 +145,13 @@ impl Lathe {
         Soup::from_triangles(self.positions, self.triangles).expect("finite")
     }
 
-    /// The corners of all triangles.
+    /// Returns the corners of all triangles.
     fn corners(&self) -> Vec<[Point3<f64>; 3]> {
-        self.triangles.iter().map(|own| own.map(|i| self.positions[i as usize])).collect()
+        self.triangles.iter().map(|indices| indices.map(|i| self.positions[i as usize])).collect()
     }
 }
 
-/// Around the middle, where all is as near, and on the axis.
+/// Returns queries around the middle, where all primitives are equally near, and on the axis.
 fn in_the_middle(numbers: &mut Numbers, count: usize) -> Vec<Point3<f64>> {
     (0..count)
         .map(|i| {
@@ -178,7 +166,7 @@ fn in_the_middle(numbers: &mut Numbers, count: usize) -> Vec<Point3<f64>> {
         .collect()
 }
 
-/// Triangles that share an edge.
+/// Returns triangles that share an edge.
 fn book(
     numbers: &mut Numbers,
     spine: [Point3<f64>; 2],
@@ -189,15 +177,15 @@ fn book(
         let page = [spine[0], spine[1], apex(numbers)];
         pages.push(in_another_order(numbers, page));
     }
-    // Some of them twice.
+    // Some of the triangles occur twice.
     for _ in 0..numbers.below(3) {
         let page = numbers.pick(&pages);
         pages.push(in_another_order(numbers, page));
     }
-    of_triangles(numbers, pages)
+    shuffled_soup(numbers, pages)
 }
 
-/// An edge of many triangles belongs to the lowest of them, and the others are in no list for its sake.
+/// An edge of many triangles belongs to the lowest of them, and the edge puts no other triangle into a list.
 #[test]
 fn books_agree() {
     let (mut lists, mut primitives) = (0, 0);
@@ -205,12 +193,12 @@ fn books_agree() {
     for case in cases.clone() {
         let case = case as usize;
         let mut numbers = Numbers::new("books", case);
-        // Small books apart from each other, large ones through each other, or on a lattice, where everything ties.
+        // Small books are apart from each other, large ones intersect, and those on a lattice tie everywhere.
         let mut triangles = Vec::new();
         for _ in 0..amount(40, 12) {
             let size = [0.05, 0.5][case % 2];
             let book = if case.is_multiple_of(3) {
-                let from = numbers.whole(8);
+                let from = numbers.integer_point(8);
                 let to = from + numbers.pick(&[Vector3::x(), Vector3::y() * 2.0, Vector3::new(1.0, 1.0, 0.0)]);
                 book(&mut numbers, [from, to], |n| from + n.vector().map(|x| (2.0 * x).round()))
             } else {
@@ -218,22 +206,22 @@ fn books_agree() {
                 let to = from + numbers.vector() * size;
                 book(&mut numbers, [from, to], |n| from + n.vector() * size)
             };
-            triangles.extend(book.triangles().iter().map(|own| own.map(|i| book.positions()[i as usize])));
+            triangles.extend(book.triangles().iter().map(|indices| indices.map(|i| book.positions()[i as usize])));
         }
-        let soup = of_triangles(&mut numbers, triangles);
+        let soup = shuffled_soup(&mut numbers, triangles);
         let mut all = queries(&mut numbers, &soup, amount(600, 60));
-        all.extend((0..amount(200, 20)).map(|_| numbers.whole(24).map(|x| 0.5 * x - 2.0)));
+        all.extend((0..amount(200, 20)).map(|_| numbers.integer_point(24).map(|x| 0.5 * x - 2.0)));
         let report = agrees(&format!("case {case}"), &soup, &P2mOptions::default(), &all);
         lists += report.lists;
         primitives += report.primitives;
     }
     println!("{lists} lists of {primitives}");
     assert!(cases.have_more_than(amount(5_000, 1_440), lists), "{lists}");
-    // 20 each; 26 if nothing were left out for what it shares with lower ones.
+    // There are 20 for each list, and there would be 26 if shared features were not left out.
     assert!(cases.is_replay() || primitives < 23 * lists, "{primitives} in {lists}");
 }
 
-/// Of primitives that are the same the lowest answers; of a triangle, its edges and its vertices the lowest that has
+/// The lowest id answers for equal primitives, and for a triangle, its edges and its vertices the lowest id that has
 /// the nearest feature.
 #[test]
 fn duplicates_agree() {
@@ -243,15 +231,15 @@ fn duplicates_agree() {
         let case = case as usize;
         let mut numbers = Numbers::new("duplicates", case);
         let mut mesh = if case.is_multiple_of(2) { Lathe::sphere(6, 8) } else { Lathe::cylinder(0.5, 4, 4) };
-        // A lattice, or in general position.
+        // The vertices are on a lattice, or in general position.
         let noise = [0.0, 0.1][case / 2 % 2];
         mesh.positions.iter_mut().for_each(|p| *p = p.map(|x| (8.0 * x).round() / 8.0) + numbers.vector() * noise);
         let mut elements = Vec::new();
-        for own in &mesh.triangles {
+        for indices in &mesh.triangles {
             for _ in 0..=numbers.below(3) {
-                elements.push(Element::Triangle(in_another_order(&mut numbers, *own)));
+                elements.push(Element::Triangle(in_another_order(&mut numbers, *indices)));
             }
-            let [a, b, c] = in_another_order(&mut numbers, *own);
+            let [a, b, c] = in_another_order(&mut numbers, *indices);
             match numbers.below(4) {
                 0 => elements.extend([Element::Segment([a, b]), Element::Segment([b, a])]),
                 1 => elements.extend([Element::Segment([b, c]), Element::Point(c)]),
@@ -259,10 +247,10 @@ fn duplicates_agree() {
                 _ => {}
             }
         }
-        // Points around, that tie with each other on the borders of their cells and nowhere else.
+        // These points tie with each other on the borders of their cells and nowhere else.
         for _ in 0..60 {
             elements.push(Element::Point(u32::try_from(mesh.positions.len()).expect("few")));
-            mesh.positions.push(numbers.whole(8).map(|x| 0.25 * x - 1.0));
+            mesh.positions.push(numbers.integer_point(8).map(|x| 0.25 * x - 1.0));
         }
         numbers.shuffle(&mut elements);
         let soup = Soup::new(mesh.positions, elements).expect("finite");
@@ -274,11 +262,11 @@ fn duplicates_agree() {
     }
     println!("{lists} lists of {primitives}");
     assert!(cases.have_more_than(1_500, lists), "{lists}");
-    // 27 each; 44 if nothing were left out for what it shares with lower ones.
+    // There are 27 for each list, and there would be 44 if shared features were not left out.
     assert!(cases.is_replay() || primitives < 32 * lists, "{primitives} in {lists}");
 }
 
-/// Vertices that are one site, but not the same: each may be the nearest one.
+/// Different vertices share one site, and each of them may be the nearest one.
 #[test]
 fn snapped_vertices_of_round_shapes_agree() {
     let tiny = 0.5f64.powi(170);
@@ -293,9 +281,9 @@ fn snapped_vertices_of_round_shapes_agree() {
             snapped.push(*p);
         }
         assert_eq!(snapped.len(), 6 * around as usize, "six triangles have each vertex of the middle");
-        let soup = of_triangles(&mut numbers, triangles);
+        let soup = shuffled_soup(&mut numbers, triangles);
         let mut elements: Vec<_> = soup.elements().collect();
-        // Some of their vertices are points as well.
+        // Some of the vertices are points as well.
         let is_snapped = |i: &u32| soup.positions()[*i as usize].z.abs() < 0.5f64.powi(160);
         let points = (0..u32::try_from(soup.positions().len()).expect("few")).filter(is_snapped);
         elements.extend(points.step_by(7).map(Element::Point));
@@ -314,18 +302,18 @@ fn snapped_vertices_of_round_shapes_agree() {
     }
 }
 
-/// Rings of a round shape, and vertices around each.
+/// Returns the number of rings of a round shape, and the number of vertices around it.
 fn sides() -> (u32, u32) {
     amount((26, 40), (16, 20))
 }
 
-/// The vertices at the ends of a spike and of a dent.
+/// Returns the vertices at the ends of a spike and of a dent.
 fn ends() -> [usize; 2] {
     let (rings, around) = sides();
     [rings / 4 * around + 3, (rings / 2 + 1) * around + around / 2].map(|i| i as usize)
 }
 
-/// A sphere with a spike and a dent.
+/// Returns a sphere with a spike and a dent.
 fn spiked(dent: f64) -> Lathe {
     let (rings, around) = sides();
     let mut mesh = Lathe::sphere(rings, around);
@@ -335,7 +323,7 @@ fn spiked(dent: f64) -> Lathe {
     mesh
 }
 
-/// Round shapes, the last two of them much longer than wide or of triangles that are.
+/// Returns round shapes, the last two of which are much longer than wide or have triangles that are.
 fn round_shapes() -> [(&'static str, Lathe); 6] {
     let (rings, around) = sides();
     [
@@ -348,7 +336,8 @@ fn round_shapes() -> [(&'static str, Lathe); 6] {
     ]
 }
 
-/// Lists of most vertices, and added sites but for two shapes, whose balls meet little.
+/// Checks that most vertices have lists, and that sites were added except for two shapes whose empty balls
+/// intersect few primitives.
 fn has_sites_and_lists(name: &str, report: &P2mReport) {
     println!("{name}: {report}");
     let long = name == "of long triangles";
@@ -357,7 +346,7 @@ fn has_sites_and_lists(name: &str, report: &P2mReport) {
     assert_eq!(report.added > 0, long, "{name}: {report}");
 }
 
-/// A middle that is none of all, and an axis that is near.
+/// Queries are in the middle, which is equally far from all primitives, and on the axis, which is near them.
 #[test]
 fn spikes_dents_and_cylinders_agree() {
     for (name, mesh) in round_shapes() {
@@ -365,7 +354,7 @@ fn spikes_dents_and_cylinders_agree() {
         let soup = mesh.soup();
         let mut all = queries(&mut numbers, &soup, amount(600, 32));
         all.extend(in_the_middle(&mut numbers, amount(200, 12)));
-        // Beside the axis of the thin cylinder, and along the spike and the dent.
+        // These queries are beside the axis of the thin cylinder, and along the spike and the dent.
         all.extend(
             (0..amount(150, 10)).map(|_| Point3::from(numbers.vector().component_mul(&Vector3::new(0.01, 0.01, 0.6)))),
         );
@@ -389,7 +378,7 @@ fn round_shapes_in_f32_agree() {
     }
 }
 
-/// Budgets that are no numbers, none or more than there can be.
+/// Budgets are NaN, zero or more than there can be.
 #[test]
 fn odd_options_agree() {
     let mut numbers = Numbers::new("odd options", 0);

@@ -1,4 +1,4 @@
-//! How much work rays do: counters, which are deterministic.
+//! Checks the work of rays with counters, which are deterministic.
 #![cfg(all(feature = "bvh", feature = "kdop"))]
 
 use p2m::backend::{Hits, RayStatsCollector};
@@ -23,10 +23,10 @@ fn manual<const K: usize>(soup: &Soup<f64>) -> LeftFirst<K>
 where
     Directions<K>: Default,
 {
-    LeftFirst::of_primitives(&soup, &Directions::default())
+    LeftFirst::from_primitives(&soup, &Directions::default())
 }
 
-/// The manual's own way leaves out nothing that a ray meets, or it would count too little.
+/// The manual's traversal skips no primitive that a ray intersects, because its counts would otherwise be too small.
 #[test]
 fn clipping_by_slabs_leaves_no_hit_out() {
     fn check<const K: usize>(soup: &Soup<f64>, rays: &[Ray]) -> usize
@@ -56,7 +56,7 @@ fn clipping_by_slabs_leaves_no_hit_out() {
                 let [from, to] = [(); 2].map(|()| scenes::query(&mut rng, soup.positions()));
                 let mut ray = Ray::through(&from, &to).ok()?;
                 if rng.random_range(0..3) == 0 {
-                    // Along the faces of most slabs.
+                    // This ray is parallel to the faces of most slabs.
                     let mut along = ray.direction();
                     along[rng.random_range(0..3)] = 0.0;
                     ray = Ray::new(&from, &along).ok()?;
@@ -70,7 +70,7 @@ fn clipping_by_slabs_leaves_no_hit_out() {
     assert!(cases.have_more_than(amount(1000, 192), hits), "{hits}");
 }
 
-/// Nodes and packets that a search for all hits visits, for all rays.
+/// Returns the nodes and packets that searches for all hits visit, for all rays.
 fn work<V: Volume>(tree: &TreeIndex<f64, &Soup<f64>, V>, rays: &[Ray]) -> [usize; 2] {
     let [nodes, packets, _] =
         RayStatsCollector::of_rays(rays, &Hits::all(), |ray, counting| tree.visit_ray(ray, counting));
@@ -84,7 +84,7 @@ where
     KdopTree::build(soup, &Default::default()).expect("valid")
 }
 
-/// Both counters of 6, 14, 18 and 26 faces.
+/// Both counters for 6, 14, 18 and 26 faces.
 type Rows = [[usize; 2]; 4];
 
 /// The trees that are compared: of boxes, of k-DOPs, and those of the manual.
@@ -114,26 +114,26 @@ fn rows(name: &str, trees: &Trees<'_>, rays: &[Ray]) -> (Rows, Rows) {
         [theirs.0.along_all(rays), theirs.1.along_all(rays), theirs.2.along_all(rays), theirs.3.along_all(rays)]
             .map(|work| [work.nodes, work.leaves]);
     println!("{name}: boxes {boxes:?}, k-DOPs {ours:?} nodes and packets; {theirs:?} binary nodes and leaves");
-    // The six-DOP of the axes is the box.
+    // The 6-DOP of the axes is the box.
     for (six, boxes) in ours[0].iter().zip(boxes) {
         assert!(six.abs_diff(boxes) * 1000 <= boxes, "{name}: {six} {boxes}");
     }
     (ours, theirs)
 }
 
-/// More faces, less work, with either tree: as the table of the manual has it, where 56, 49 and 43 % of the nodes are
-/// left and 44, 32 and 25 % of the leaves.
-fn falls(name: &str, soup: &Soup<f64>, most: [[[usize; 2]; 3]; 2]) {
+/// Checks that more faces lead to less work with either tree, as in the manual's table, where 56, 49 and 43 % of the
+/// nodes remain and 44, 32 and 25 % of the leaves.
+fn check_work_falls(name: &str, soup: &Soup<f64>, max_percent: [[[usize; 2]; 3]; 2]) {
     let trees = Trees::build(soup);
-    // Few rays from the wider box meet anything.
+    // Few rays from the wider box hit the scene.
     for (set, count) in [(QuerySet::Box10, 20_000), (QuerySet::Box1, 2000)] {
         let (ours, theirs) = rows(&format!("{name}, {set}"), &trees, &set.rays(soup, count, 1));
-        for (rows, most) in [ours, theirs].iter().zip(most) {
+        for (rows, max_percent) in [ours, theirs].iter().zip(max_percent) {
             for counter in [0, 1] {
                 let falling = rows.windows(2).all(|pair| pair[1][counter] < pair[0][counter]);
                 assert!(falling, "{name} {set}: {rows:?}");
-                for (row, most) in rows[1..].iter().zip(most) {
-                    assert!(row[counter] * 100 <= rows[0][counter] * most[counter], "{name} {set}: {rows:?}");
+                for (row, max_percent) in rows[1..].iter().zip(max_percent) {
+                    assert!(row[counter] * 100 <= rows[0][counter] * max_percent[counter], "{name} {set}: {rows:?}");
                 }
             }
         }
@@ -142,17 +142,22 @@ fn falls(name: &str, soup: &Soup<f64>, most: [[[usize; 2]; 3]; 2]) {
 
 #[test]
 fn visits_fall_with_the_number_of_faces_on_a_turned_gear() {
-    falls(
+    check_work_falls(
         "a skewed gear",
         &scenes::skewed_gear(2000),
         [[[59, 50], [54, 44], [47, 36]], [[49, 47], [44, 41], [36, 32]]],
     );
     if let Some(soup) = model("gear_skewed_57k_rotated.ply") {
-        falls("gear_skewed_57k_rotated", &soup, [[[50, 42], [45, 35], [37, 25]], [[43, 42], [36, 34], [27, 24]]]);
+        check_work_falls(
+            "gear_skewed_57k_rotated",
+            &soup,
+            [[[50, 42], [45, 35], [37, 25]], [[43, 42], [36, 34], [27, 24]]],
+        );
     }
 }
 
-/// Lines so far away that their coordinates step by more than the scene is large miss it without a test, or come near.
+/// Lines so far away that neighbouring coordinates differ by more than the scene's size miss it without a test, or
+/// pass near it.
 #[test]
 fn lines_that_pass_far_away_cost_nothing() {
     let mut rng = rng("far away", 0);
@@ -162,7 +167,7 @@ fn lines_that_pass_far_away_cost_nothing() {
     for far in [1e12, 1e20, 1e100, 1e300] {
         let ray = |_| {
             let origin = p2m_testkit::vector(&mut rng) * far;
-            // Beside the scene by as little as the coordinates allow, or through it.
+            // The line passes beside the scene, as closely as the coordinates allow, or through it.
             let beside = origin.map(|x| if rng.random() { x.next_up() } else { x });
             Ray::new(&(soup.positions()[rng.random_range(0..soup.positions().len())] + origin), &-beside)
                 .expect("finite")

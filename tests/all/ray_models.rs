@@ -1,5 +1,5 @@
-//! Rays on real meshes: every answer against exact rational arithmetic, and closed surfaces that let nothing slip
-//! through. Skips, and says so, where there is no folder of models.
+//! Compares rays on real meshes with exact rational arithmetic, and checks that no line slips through a closed surface.
+//! The tests are skipped, with a message, if there is no folder of models.
 
 #![cfg(all(feature = "bvh", feature = "kdop", feature = "mixed"))]
 
@@ -21,7 +21,7 @@ fn read(path: &Path) -> (String, Soup<f64>) {
     (name, p2m::scene::read_scene(path).expect("readable").soup)
 }
 
-/// The sum of what each of the cases returns, on all cores.
+/// Returns the sums of the numbers that the cases return, computed on all cores.
 fn on_all_cores<const N: usize>(cases: &Cases, case: impl Fn(u64) -> [usize; N] + Sync) -> [usize; N] {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let add = |a: [usize; N], b: [usize; N]| std::array::from_fn(|k| a[k] + b[k]);
@@ -61,11 +61,11 @@ fn every_model_is_met_as_exact_arithmetic_says() {
             let [min, max] = truth.range(&mut rng);
             let mut sums = [asked, 0, 0, 0];
             for ray in [ray, ray.with_range(min, max).expect("in order")] {
-                let say = || format!("{name}, ray {i}");
-                let hits = truth.checked_hits(&boxes, &ray, &say);
+                let context = || format!("{name}, ray {i}");
+                let hits = truth.checked_hits(&boxes, &ray, &context);
                 let crossings = truth.crossings(&ray);
-                agrees(&boxes, &ray, &hits, crossings, &|| format!("{}, boxes", say()));
-                agrees(&kdops, &ray, &hits, crossings, &|| format!("{}, k-DOPs", say()));
+                agrees(&boxes, &ray, &hits, crossings, &|| format!("{}, boxes", context()));
+                agrees(&kdops, &ray, &hits, crossings, &|| format!("{}, k-DOPs", context()));
                 let along = hits.iter().filter(|hit| hit.side == Side::Along).count();
                 sums = [sums[0], sums[1] + hits.len(), sums[2] + along, sums[3] + crossings];
             }
@@ -79,7 +79,7 @@ fn every_model_is_met_as_exact_arithmetic_says() {
     }
 }
 
-/// How often a line enters and leaves.
+/// The numbers of times that lines enter and leave a surface.
 #[derive(Default)]
 struct Sides {
     front: usize,
@@ -101,10 +101,10 @@ impl<'r> RayCollector<'r> for Sides {
     }
 }
 
-/// Each edge is as often there in one direction as in the other, by the positions of its ends.
+/// Returns whether each edge occurs equally often in both directions, where vertices are identified by their positions.
 fn is_closed(soup: &Soup<f64>) -> bool {
     let mut edges: HashMap<[[u64; 3]; 2], i32> = HashMap::new();
-    // One zero.
+    // Adding 0.0 makes the two zeros equal.
     let at = |i: u32| -> [u64; 3] { soup.positions()[i as usize].map(|x| (x + 0.0).to_bits()).coords.into() };
     for element in soup.elements() {
         let Element::Triangle(corners) = element else { return false };
@@ -120,13 +120,13 @@ fn is_closed(soup: &Soup<f64>) -> bool {
     edges.values().all(|sum| *sum == 0)
 }
 
-/// A line through ten times the box; half of them exactly through a vertex, or as nearly as floats allow through a
-/// point of an edge.
+/// Returns a line through ten times the box. Half of the lines pass exactly through a vertex, or as closely as floats
+/// allow through a point of an edge.
 fn line<R: Rng>(rng: &mut R, soup: &Soup<f64>, bounds: &Aabb<f64>) -> Ray {
     let size = (bounds.max - bounds.min).amax();
     let middle = bounds.min + (bounds.max - bounds.min) * 0.5;
-    let mut place = || middle + Vector3::from_fn(|_, _| rng.random_range(-0.7..0.7)) * size;
-    let (from, to) = (place(), place());
+    let mut point = || middle + Vector3::from_fn(|_, _| rng.random_range(-0.7..0.7)) * size;
+    let (from, to) = (point(), point());
     let triangle = soup.get(PrimitiveId::new(rng.random_range(0..soup.len())));
     let [a, b]: [Point3<f64>; 2] = [triangle.vertices()[0], triangle.vertices()[1]];
     let edge = a + (b - a) * rng.random::<f64>();
@@ -146,7 +146,7 @@ fn sides<V: Volume>(tree: &TreeIndex<f64, &Soup<f64>, V>, line: &Ray) -> [usize;
     [sides.front, sides.back]
 }
 
-/// As many crossings enter as leave, whatever edges and vertices a line is aimed at.
+/// A line enters a closed surface as often as it leaves, whatever edges and vertices it is aimed at.
 #[test]
 fn closed_models_let_nothing_slip_through() {
     let cases = cases(5000, 400);

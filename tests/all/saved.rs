@@ -1,4 +1,4 @@
-//! Saved indexes: the same answers bit for bit, copied or mapped, and typed errors for everything else.
+//! Saved indexes return the same answers bit for bit, copied or mapped, and everything else is a typed error.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 
 use nalgebra::Point3;
@@ -28,7 +28,7 @@ fn queries(rng: &mut impl Rng, soup: &Soup<f64>, count: usize) -> Vec<Point3<f64
     queries
 }
 
-/// A kind of index: what it answers as it is built, its file, and what it answers as it is loaded.
+/// A type of index: its answers as built, its file, and its answers as loaded.
 struct Kind {
     name: &'static str,
     built: fn(&Soup<f64>, &[Point3<f64>]) -> Answers,
@@ -89,7 +89,7 @@ fn what_is_loaded_answers_as_what_was_saved() {
     }
 }
 
-/// A mesh that is worth cells, with names, something skipped and a position that nothing uses.
+/// Returns a mesh large enough for cells, with names, skipped records and a position that no primitive uses.
 fn scene() -> Scene {
     let mut text = String::from("usemtl red\nv 9 9 9\n");
     let (rings, sides) = (12, 16);
@@ -120,13 +120,13 @@ fn names_origins_and_what_was_skipped_come_back() {
     let mut file = Vec::new();
     p2m::scene::write_p2m(&scene, &mut file).expect("memory");
     assert_eq!(p2m::scene::read_p2m(&file[..], "scene").expect("a scene"), scene);
-    // A scene alone has no index.
+    // A file with a scene alone has no index.
     let saved = SavedFile::read(&file[..]).expect("read");
     let error = p2m::storage::kind(saved.checked().expect("whole")).expect_err("none");
     assert!(matches!(error, LoadError::Missing { .. }), "{error}");
 }
 
-/// What a program would do with a file: its answers, or why there are none.
+/// Loads a file as a program would, and returns its answers or the error.
 fn answers_of(index: &Kind, bytes: &[u8], queries: &[Point3<f64>]) -> Loaded {
     let file = SavedFile::read(bytes)?;
     let reader = file.checked()?;
@@ -146,14 +146,14 @@ fn corruptions_are_errors_or_harmless() {
             let mut rng = rng(index.name, case);
             let mut other = bytes.clone();
             match case % 6 {
-                // A bit, a byte, in the whole file or in its beginning.
+                // A bit or a byte changes, in the whole file or in its beginning.
                 0 => other[rng.random_range(0..bytes.len())] ^= 1 << rng.random_range(0..8),
                 1 => other[rng.random_range(0..bytes.len().min(2048))] ^= rng.random_range(1..=255),
                 2 => other[rng.random_range(0..64)] = rng.random(),
-                // The end is missing, or there is more.
+                // The file is truncated, or bytes are appended.
                 3 => other.truncate(rng.random_range(0..bytes.len())),
                 4 => other.extend((0..rng.random_range(1..200)).map(|_| 0)),
-                // A piece of another place.
+                // A part of the file is copied over another part.
                 _ => {
                     let len = rng.random_range(1..bytes.len() / 2);
                     let [from, to] = [0, 1].map(|_| rng.random_range(0..bytes.len() - len));
@@ -170,7 +170,7 @@ fn corruptions_are_errors_or_harmless() {
             }
         }
     }
-    // Between sections there are bytes that nobody reads, and some changes change nothing.
+    // No one reads the bytes between sections, and some changes change nothing.
     let all = cases.len() * INDEXES.len();
     assert!(cases.is_replay() || harmless < all / 10, "{harmless} of {all}");
 }
@@ -189,15 +189,15 @@ fn other_files_are_told_apart() {
     let message = error(&newer);
     assert!(matches!(message, LoadError::Version { found } if found == VERSION + 1), "{message}");
     let mut last = bytes.clone();
-    let place = last.len() - 80;
-    last[place] ^= 4;
+    let offset = last.len() - 80;
+    last[offset] ^= 4;
     assert!(matches!(error(&last), LoadError::Damaged { .. }), "{}", error(&last));
 
-    let whole = SavedFile::read(&bytes[..]).expect("read");
-    let reader = whole.checked().expect("whole");
+    let valid = SavedFile::read(&bytes[..]).expect("read");
+    let reader = valid.checked().expect("whole");
     let other = OctreeIndex::<f64, _>::load(&scene.soup, reader).expect_err("another kind");
     assert_eq!(other.to_string(), "has an index of the kind aabb, not octree");
-    // Another set: fewer primitives, another coordinate, another kind.
+    // The sets differ in the number of primitives, in a coordinate, or in a kind.
     let moved = scene.soup.triangles().iter().map(|t| t.map(|i| scene.soup.positions()[i as usize]));
     let triangles: Vec<_> = moved.map(|[a, b, c]| p2m::Triangle::new(a, b, c)).collect();
     assert!(matches!(AabbTree::<f64, _>::load(&triangles, reader), Err(LoadError::OtherSet)));
@@ -226,7 +226,7 @@ fn rays_moved_sets_and_primitives_of_ones_own_work_as_before() {
         assert_eq!(loaded.all_intersections(ray), built.all_intersections(ray));
     }
     assert!(rays.iter().filter(|ray| loaded.do_intersect(ray)).count() > 10);
-    // A loaded tree is fitted to what has moved, as a built one.
+    // A loaded tree is refitted to moved positions as a built one is.
     let moved = scene.soup.positions().iter().map(|p| p * 1.5 + vector(&mut rng) * 0.01).collect();
     let moved = Soup::new(moved, scene.soup.elements()).expect("valid");
     let queries = queries(&mut rng, &moved, 100);
@@ -254,19 +254,20 @@ fn sizes_that_are_merely_announced_are_refused() {
     const ENOUGH: u64 = 1 << 20;
     let mut file = Vec::new();
     p2m::scene::write_p2m(&Scene::from(scenes::skewed_gear(10)), &mut file).expect("memory");
-    // The number of sections and the length in the head; of each section the offset, the number and the size of elements.
+    // The header has the number of sections and the length, and each section has its offset, number and size of
+    // elements.
     let sections = u32::from_le_bytes([file[12], file[13], file[14], file[15]]) as usize;
     let places = (0..sections).flat_map(|section| [32, 40, 48].map(|field| (64 + 64 * section + field, 8)));
-    for (place, size) in [(12, 4), (16, 8)].into_iter().chain(places) {
+    for (offset, size) in [(12, 4), (16, 8)].into_iter().chain(places) {
         for number in [u64::MAX, 1 << 60, u64::from(u32::MAX)] {
             let mut other = file.clone();
-            other[place..place + size].copy_from_slice(&number.to_le_bytes()[..size]);
-            // As if it had been written so.
+            other[offset..offset + size].copy_from_slice(&number.to_le_bytes()[..size]);
+            // The checksum is corrected as if the file had been written so.
             let sum = twox_hash::XxHash3_64::oneshot(&other[64..64 + 64 * sections]);
             other[24..32].copy_from_slice(&sum.to_le_bytes());
             let load = || -> Result<Scene, LoadError> { load_scene(SavedFile::read(&other[..])?.checked()?) };
-            let taken = allocation_counter::measure(|| assert!(load().is_err(), "{number} at {place}")).bytes_max;
-            assert!(taken < ENOUGH, "{number} at {place}: {taken} bytes");
+            let taken = allocation_counter::measure(|| assert!(load().is_err(), "{number} at {offset}")).bytes_max;
+            assert!(taken < ENOUGH, "{number} at {offset}: {taken} bytes");
         }
     }
 }
@@ -288,7 +289,7 @@ fn single_precision_comes_back_as_well() {
         let query = Point3::from((vector(&mut rng) * 2.0).map(|x| x as f32));
         assert_eq!(again.closest_point(&query), index.closest_point(&query));
     }
-    // Points are no segments, wherever they are.
+    // Points are not segments, wherever they are.
     let points: Vec<Point<f32>> = wires.iter().map(|wire| Point::new(wire.vertices[0])).collect();
     assert_eq!(points.len(), PrimitiveSet::<f32>::len(&wires));
     assert!(matches!(P2mIndex::<f32, _>::load(&points, file.unchecked()), Err(LoadError::OtherSet)));

@@ -1,4 +1,4 @@
-//! Signed distances: against rays, that decide without rounding, and against surfaces of which the distance is known.
+//! Compares signed distances with rays, which decide without rounding, and with surfaces whose distance is known.
 
 #![cfg(all(feature = "bvh", feature = "interception", feature = "mixed"))]
 
@@ -16,13 +16,14 @@ fn tree(soup: &Soup<f64>) -> AabbTree<f64, &Soup<f64>> {
     AabbTree::build(soup, &Default::default()).expect("valid")
 }
 
-/// Whether a line to somewhere else than the library's crosses the surface an odd number of times behind the query.
+/// Returns whether a line to another point than the library's crosses the surface an odd number of times
+/// behind the query.
 fn is_inside(index: &impl RayQuery<f64>, query: &Point3<f64>) -> bool {
     let ray = Ray::new(query, &Vector3::new(-0.31, 0.17, -0.83)).expect("finite");
     index.crossings(&ray) % 2 == 1
 }
 
-/// What rays say, beside the surface.
+/// Returns the sign by rays, and that of a query on the surface.
 fn expected(index: &impl RayQuery<f64>, query: &Point3<f64>, closest: &Closest<f64>) -> Sign {
     let here = Ray::new(query, &Vector3::new(0.4, 0.5, -0.6)).expect("finite").with_range(0.0, 0.0).expect("one place");
     if closest.distance == 0.0 || closest.lower_bound <= 0.0 && index.do_intersect(&here) {
@@ -34,13 +35,13 @@ fn expected(index: &impl RayQuery<f64>, query: &Point3<f64>, closest: &Closest<f
     }
 }
 
-/// Signs of a closed surface are those of rays; how many were in doubt.
+/// Checks that signs of a closed surface are those of rays, and returns how many were ambiguous.
 fn agrees_with_rays(name: &str, soup: &Soup<f64>, sets: &[QuerySet], cases: &Cases) -> (usize, u64) {
     let index = tree(soup);
     let signed = SignedDistance::new(tree(soup), soup).expect("closed");
     let mut inside = 0;
     for set in sets {
-        for query in set.of_cases(soup, cases, 3) {
+        for query in set.generate_for_cases(soup, cases, 3) {
             let answer = signed.closest_point(&query).expect("not empty");
             let expected = expected(&index, &query, &answer.closest);
             assert_eq!(answer.sign, expected, "{name}, {set}, {query:?}: {:?}", answer.closest);
@@ -57,13 +58,13 @@ fn agrees_with_rays(name: &str, soup: &Soup<f64>, sets: &[QuerySet], cases: &Cas
 #[test]
 fn signs_of_closed_models_are_those_of_rays() {
     let sets = [QuerySet::Box1, QuerySet::Near];
-    // Of each model and set. `P2M_DEEP=20` makes it 10^5, which takes minutes.
+    // This is the number for each model and set. `P2M_DEEP=20` makes it 10^5, which takes minutes.
     let cases = cases(5_000, 300);
     let mut closed = 0;
     for path in model_files() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
         let soup = p2m::scene::read_scene(&path).expect("readable").soup;
-        // Too slow to find out: thousands of slivers in one plane along two axes.
+        // The lines are too slow in this model, which has thousands of slivers in one plane along two axes.
         let is_gear = name == "gear_skewed_57k.ply";
         let meets = if is_gear { SignedDistance::new(tree(&soup), &soup).map(|_| None) } else { meets_itself(&soup) };
         match meets {
@@ -73,7 +74,8 @@ fn signs_of_closed_models_are_those_of_rays() {
                 closed += 1;
                 let (inside, doubts) = agrees_with_rays(&name, &soup, &sets, &cases);
                 println!("{name}: {inside} of {} inside, {doubts} in doubt", 2 * cases.len());
-                assert!(cases.is_replay() || inside > 0 || name == "degenerate_small.obj", "{name}"); // all of its sheets are there twice
+                // All sheets of degenerate_small.obj occur twice, so nothing is inside.
+                assert!(cases.is_replay() || inside > 0 || name == "degenerate_small.obj", "{name}");
             }
         }
     }
@@ -93,7 +95,7 @@ fn generated_surfaces_have_the_signs_of_rays() {
     }
 }
 
-/// Eight corners, twelve triangles with their fronts outside.
+/// Returns a box of eight corners and twelve triangles with their fronts outside.
 fn cube(min: [f64; 3], max: [f64; 3]) -> Soup<f64> {
     let at = |i: usize| Point3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { min[k] } else { max[k] }));
     let faces: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -114,7 +116,7 @@ fn flipped(soup: &Soup<f64>) -> Soup<f64> {
     Soup::from_triangles(soup.positions().to_vec(), triangles).expect("valid")
 }
 
-/// A lattice of places around and in a scene, some of which are on its faces, edges and vertices.
+/// Returns a lattice of points around and in a scene, some of which are on its faces, edges and vertices.
 fn lattice() -> impl Iterator<Item = Point3<f64>> {
     (0..11usize.pow(3)).map(|i| Point3::from([i, i / 11, i / 121].map(|i| (i % 11) as f64 * 0.5 - 1.0)))
 }
@@ -123,7 +125,7 @@ fn lattice() -> impl Iterator<Item = Point3<f64>> {
 fn parts_may_be_inside_out_or_inside_of_others_or_touch() {
     let big = cube([0.0; 3], [3.0; 3]);
     let small = cube([1.0; 3], [2.0; 3]);
-    // At an edge, and at a corner alone: four triangles at an edge, two fans at a vertex.
+    // The boxes touch along an edge, with four triangles at it, or at a corner alone, with two fans at it.
     let at_edge = cube([3.0, 3.0, 0.0], [4.0, 4.0, 3.0]);
     let at_corner = cube([3.0; 3], [4.0; 3]);
     let unshared = |soup: &Soup<f64>| {
@@ -168,7 +170,7 @@ fn surfaces_that_meet_themselves_are_told() {
 
 #[test]
 fn far_and_tiny_queries_have_signs() {
-    // A thin plate, both sides of which are equally far from far away; and one that is open there is none.
+    // The thin plate has two sides that are equally far from a distant query; the open one is no closed surface.
     let plate = cube([0.0; 3], [1.0, 1.0, 1e-6]);
     let signed = SignedDistance::new(tree(&plate), &plate).expect("closed");
     for far in [1e3, 1e12, 1e100, 1e300] {
@@ -178,7 +180,7 @@ fn far_and_tiny_queries_have_signs() {
         }
     }
     assert_eq!(signed.closest_point(&Point3::new(0.5, 0.25, 5e-7)).expect("not empty").sign, Sign::Inside);
-    // Two tetrahedra that touch at the origin, and queries beside it nearer than squares can be.
+    // Two tetrahedra touch at the origin, and queries beside it are nearer than squares can represent.
     let up = |z: f64| [[0.0, 0.0, 0.0], [0.1, 0.0, z], [-0.1, 0.1, z], [-0.1, -0.1, z]].map(Point3::from);
     let positions: Vec<Point3<f64>> = up(1.0).into_iter().chain(up(-1.0)).collect();
     let faces = |o: u32, turn: bool| {
@@ -198,7 +200,7 @@ fn far_and_tiny_queries_have_signs() {
         let at =
             |x: f64| signed.closest_point(&Point3::new(x * scale, 0.1 * scale, 0.2 * scale)).expect("not empty").sign;
         assert_eq!((at(0.5), at(1.0), at(1.5)), (Sign::Inside, Sign::Boundary, Sign::Outside), "{scale}");
-        // That on the surface may be, but for rounding of its distance.
+        // A query on the surface may be ambiguous by the rounding of its distance.
         assert!(signed.doubts() <= 1, "{scale}");
     }
 }
@@ -237,7 +239,7 @@ fn every_backend_has_the_same_signs() {
     let octree = SignedDistance::new(octree, &soup).expect("closed");
     let p2m = P2mIndex::build(&soup, &Default::default()).expect("valid");
     let p2m = SignedDistance::new(p2m, &soup).expect("closed");
-    for query in QuerySet::Box1.of_cases(&soup, &cases(1000, 100), 5) {
+    for query in QuerySet::Box1.generate_for_cases(&soup, &cases(1000, 100), 5) {
         let known = |c: Option<p2m::field::sign::Signed>| c.map(|c| (c.distance(), c.sign, c.closest.primitive));
         let expected = known(aabb.closest_point(&query));
         assert_eq!(known(octree.closest_point(&query)), expected);
@@ -245,11 +247,12 @@ fn every_backend_has_the_same_signs() {
     }
 }
 
-/// Distances of meshes with their vertices on a surface are those of the surface, but for what the mesh is from it.
+/// Checks that distances of a mesh with its vertices on a surface are those of the surface, up to the distance
+/// between the two.
 fn is_near_analytic(name: &str, soup: &Soup<f64>, error: f64, analytic: impl Fn(&Point3<f64>) -> f64) {
     let signed = SignedDistance::new(tree(soup), soup).expect("closed");
     let winding = SignedDistance::with_winding_numbers(tree(soup), soup, 0.01).expect("triangles");
-    for query in QuerySet::Box1.of_cases(soup, &cases(2000, 60), 11) {
+    for query in QuerySet::Box1.generate_for_cases(soup, &cases(2000, 60), 11) {
         let expected = analytic(&query);
         let found = signed.closest_point(&query).and_then(|s| s.distance()).expect("defined");
         assert!((found - expected).abs() <= error, "{name}, {query}: {found} for {expected}");
@@ -261,7 +264,7 @@ fn is_near_analytic(name: &str, soup: &Soup<f64>, error: f64, analytic: impl Fn(
 #[test]
 fn distances_are_those_of_a_sphere_a_box_and_a_torus() {
     let ball = ico_sphere(&IcoSphere::default().with_frequency(24)).expect("valid");
-    // The lowest height of a face below the sphere.
+    // The error is the largest height of the sphere above a face.
     let height = ball.triangles().iter().map(|t| {
         let sum: Vector3<f64> = t.iter().map(|i| ball.positions()[*i as usize].coords).sum();
         1.0 - (sum / 3.0).norm()
@@ -289,7 +292,8 @@ fn distances_are_those_of_a_sphere_a_box_and_a_torus() {
         [[a, b, c], [a, c, d]]
     });
     let torus = Soup::from_triangles(places.collect(), triangles.collect()).expect("valid");
-    // A chord of half angle h is off its arc by r (1 - cos h): of the tube, and of the widest circle; both add up.
+    // A chord of half angle h is off its arc by r (1 - cos h), both for the tube and for the widest circle; the errors
+    // add up.
     let off = |r: f64, n: u32| r * (1.0 - (std::f64::consts::PI / f64::from(n)).cos());
     is_near_analytic("torus", &torus, off(1.0, across) + off(3.0, around), |q| {
         let from_circle = q.x.hypot(q.y) - 2.0;
@@ -302,9 +306,9 @@ fn winding_numbers_are_within_their_bound() {
     let options = TorusKnot::default();
     let options = amount(options, options.with_rings(60).with_sides(8));
     let knot = torus_knot(&options).expect("valid");
-    let half: Vec<[u32; 3]> =
+    let half_cube: Vec<[u32; 3]> =
         knot.triangles().iter().enumerate().filter(|(i, _)| i % 3 != 0).map(|(_, t)| *t).collect();
-    let holes = Soup::from_triangles(knot.positions().to_vec(), half).expect("valid");
+    let holes = Soup::from_triangles(knot.positions().to_vec(), half_cube).expect("valid");
     let mut random = rng("winding numbers", 0);
     let loose_ones = amount(2000, 500);
     let loose: Vec<Point3<f64>> =
@@ -314,7 +318,7 @@ fn winding_numbers_are_within_their_bound() {
     let far = Transform::default().scaled(1e-3).translated([1e4, -3e4, 2e4]).apply(&knot).expect("valid");
     let tiny = Transform::default().scaled(1e-140).apply(&knot).expect("valid");
     let huge = Transform::default().scaled(1e140).apply(&knot).expect("valid");
-    // A position that nothing uses says nothing about the scale.
+    // A position that no primitive uses does not affect the scale.
     let mut unused = cube([-1.0; 3], [1.0; 3]);
     unused.push_position(Point3::new(1e200, 0.0, 0.0));
     let winding = WindingNumbers::new(&unused, 0.01).expect("triangles");
@@ -329,7 +333,7 @@ fn winding_numbers_are_within_their_bound() {
             let winding = WindingNumbers::new(soup, accuracy).expect("triangles");
             let mut worst = 0.0f64;
             for set in [QuerySet::Box1, QuerySet::Near, QuerySet::Box10] {
-                for query in set.of_cases(soup, &cases, 7) {
+                for query in set.generate_for_cases(soup, &cases, 7) {
                     let (found, exact) = (winding.number(&query), winding.exact_number(&query));
                     worst = worst.max((found - exact).abs());
                 }
@@ -352,7 +356,7 @@ fn winding_numbers_of_closed_models_have_the_signs_of_rays() {
         let winding = SignedDistance::with_winding_numbers(tree(&soup), &soup, 0.01).expect("triangles");
         let index = tree(&soup);
         for set in [QuerySet::Box1, QuerySet::Near] {
-            for query in set.of_cases(&soup, &cases, 4) {
+            for query in set.generate_for_cases(&soup, &cases, 4) {
                 let found = winding.closest_point(&query).expect("not empty");
                 let expected = if is_inside(&index, &query) { Sign::Inside } else { Sign::Outside };
                 assert!(found.sign == expected || found.closest.distance == 0.0, "{name}, {query}");
@@ -364,20 +368,20 @@ fn winding_numbers_of_closed_models_have_the_signs_of_rays() {
 
 #[test]
 fn in_the_middle_of_a_hole_there_is_no_sign() {
-    // Half of a cube that is cut at x = 0 and open there: where it is cut its winding number is a half.
-    let half = cube([-1.0; 3], [1.0; 3]);
-    let open: Vec<[u32; 3]> = half
+    // The half of a cube is cut at x = 0 and open there, so its winding number is a half on that plane.
+    let half_cube = cube([-1.0; 3], [1.0; 3]);
+    let open: Vec<[u32; 3]> = half_cube
         .triangles()
         .iter()
-        .filter(|t| !t.iter().all(|i| half.positions()[*i as usize].x == 1.0))
+        .filter(|t| !t.iter().all(|i| half_cube.positions()[*i as usize].x == 1.0))
         .copied()
         .collect();
-    let positions = half.positions().iter().map(|p| Point3::new(p.x.min(0.0), p.y, p.z)).collect();
-    let half = Soup::from_triangles(positions, open).expect("valid");
-    let winding = SignedDistance::with_winding_numbers(tree(&half), &half, 0.01).expect("triangles");
+    let positions = half_cube.positions().iter().map(|p| Point3::new(p.x.min(0.0), p.y, p.z)).collect();
+    let half_cube = Soup::from_triangles(positions, open).expect("valid");
+    let winding = SignedDistance::with_winding_numbers(tree(&half_cube), &half_cube, 0.01).expect("triangles");
     let at = |x: f64| winding.closest_point(&Point3::new(x, 0.1, 0.2)).expect("not empty");
-    let number = WindingNumbers::new(&half, 0.01).expect("triangles").exact_number(&Point3::new(0.0, 0.1, 0.2));
-    // Seen from where it is cut, the half of a cube covers half of all directions.
+    let number = WindingNumbers::new(&half_cube, 0.01).expect("triangles").exact_number(&Point3::new(0.0, 0.1, 0.2));
+    // Seen from the plane of the cut, half a cube covers half of all directions.
     assert!((number - 0.5).abs() < 1e-12, "{number}");
     assert_eq!((at(0.0).sign, at(0.0).distance()), (Sign::Undefined, None));
     assert_eq!((at(-0.1).sign, at(0.1).sign), (Sign::Inside, Sign::Outside));

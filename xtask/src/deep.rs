@@ -1,4 +1,4 @@
-//! All tests with all of their cases, and the number of these.
+//! Runs all tests with all of their cases, and counts the cases.
 
 use crate::{Outcome, start};
 use std::collections::BTreeMap;
@@ -6,12 +6,12 @@ use std::path::Path;
 use std::process::Command;
 use std::{env, fs};
 
-/// Runs the deep suite, then prints how many loops over cases each file of tests ran, and how many cases these took. A loop that
-/// failed is not among them.
+/// Runs the deep suite, then prints how many loops over cases each file of tests ran, and how many cases these took. A
+/// loop that failed is not counted.
 pub(crate) fn run(filter: &[String]) -> Outcome {
     let target = env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into());
     let log = env::current_dir().map_err(|e| e.to_string())?.join(target).join("deep-cases");
-    // Tests append to it.
+    // Tests append to the file, so it starts empty.
     if let Some(folder) = log.parent() {
         fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     }
@@ -27,7 +27,7 @@ pub(crate) fn run(filter: &[String]) -> Outcome {
     outcome
 }
 
-/// Prints the sums of the lines `file:line<TAB>count`, of which each loop has written one.
+/// Prints the sums of the lines `file:line<TAB>count`, one of which each loop has written.
 fn print_counts(log: &Path) -> Outcome {
     let text = fs::read_to_string(log).map_err(|e| format!("{}: {e}", log.display()))?;
     let mut counts: BTreeMap<&str, [u64; 2]> = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! The tasks of whoever changes p2m, each as one command: `cargo xtask` lists them.
+//! The tasks for changing p2m, each as one command: `cargo xtask` lists them.
 //!
 //! A task prints the commands that it starts, so that each can be started alone. The first command that fails ends it.
 #![forbid(unsafe_code)]
@@ -9,7 +9,7 @@ mod promises;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
-/// A task, the arguments that it takes and the sentence that describes it.
+/// A task, its arguments and its description in one sentence.
 struct Task {
     name: &'static str,
     arguments: &'static str,
@@ -17,7 +17,7 @@ struct Task {
     run: fn(&[String]) -> Outcome,
 }
 
-/// Whether a task went well, or the sentence that says why it did not.
+/// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
 const TASKS: [Task; 10] = [
@@ -87,11 +87,11 @@ fn main() -> ExitCode {
         for Task { name, arguments, about, .. } in &TASKS {
             println!("  {:<30} {about}", format!("{name} {arguments}"));
         }
-        // Asking for help is no mistake.
-        let asks = name.as_deref().is_none_or(|name| ["help", "-h", "--help"].contains(&name));
-        return if asks { ExitCode::SUCCESS } else { ExitCode::from(2) };
+        // A request for help is not an error.
+        let wants_help = name.as_deref().is_none_or(|name| ["help", "-h", "--help"].contains(&name));
+        return if wants_help { ExitCode::SUCCESS } else { ExitCode::from(2) };
     };
-    // Paths of tasks are those of the workspace, wherever they are called.
+    // Paths of tasks are relative to the workspace, wherever the task is called.
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("this crate is a folder of the workspace");
     let outcome = std::env::set_current_dir(root).map_err(|e| format!("{}: {e}", root.display()));
     match outcome.and_then(|()| (task.run)(&rest)) {
@@ -103,7 +103,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// The lints of libraries and programs are all lints; tests may compare floats exactly, cast, and panic.
+/// Runs clippy: all lints for libraries and programs, while tests may compare floats exactly, cast, and panic.
 fn lint() -> Outcome {
     cargo(&["fmt", "--all", "--check"], &[])?;
     let clippy = ["clippy", "--locked", "--workspace"];
@@ -120,7 +120,7 @@ fn docs() -> Outcome {
     start(&mut command)
 }
 
-/// Runs cargo with arguments, and the rest of those of the task.
+/// Runs cargo with arguments, followed by the remaining arguments of the task.
 fn cargo(arguments: &[&str], rest: &[String]) -> Outcome {
     run("cargo", arguments, rest)
 }

@@ -1,15 +1,11 @@
-//! What the manifests promise to those who depend on p2m, checked.
+//! Checks the promises that the manifests make to users of p2m.
 
 use crate::{Outcome, cargo};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// The features of the facade that stand alone.
-const FEATURES: [&str; 11] =
-    ["advisor", "bvh", "interception", "kdop", "kiddo", "mint", "mixed", "parry", "parry-f32", "rayon", "rstar"];
-
-/// Targets for which the library is checked where their standard library is installed: 32 bits, and another processor.
+/// The targets for which the library is checked if their standard library is installed: 32 bits, and other processors.
 const TARGETS: [&str; 3] = ["i686-unknown-linux-gnu", "aarch64-unknown-linux-gnu", "wasm32-unknown-unknown"];
 
 pub(crate) fn check() -> Outcome {
@@ -17,14 +13,26 @@ pub(crate) fn check() -> Outcome {
     check_rust_version()?;
     let library = ["check", "--locked", "--package", "p2m", "--no-default-features"];
     cargo(&library, &[])?;
-    for feature in FEATURES {
-        cargo(&[&library[..], &["--features", feature]].concat(), &[])?;
+    for feature in features()? {
+        cargo(&[&library[..], &["--features", &feature]].concat(), &[])?;
     }
     cargo(&["check", "--locked", "--package", "p2m-mixed", "--features", "rstar"], &[])?;
     check_targets()
 }
 
-/// Both lock files are those of their manifests.
+/// Returns the features of the facade apart from `default`, as the manifest of the workspace lists them.
+fn features() -> Result<Vec<String>, String> {
+    let manifest = fs::read_to_string("Cargo.toml").map_err(|error| format!("Cargo.toml: {error}"))?;
+    let lines = manifest.lines().skip_while(|line| *line != "[features]").skip(1);
+    let lines = lines.take_while(|line| !line.starts_with('[')).filter(|line| !line.starts_with('#'));
+    let names: Vec<String> = lines.filter_map(|line| Some(line.split_once(" = ")?.0.to_owned())).collect();
+    if names.is_empty() {
+        return Err("Cargo.toml has no features".to_owned());
+    }
+    Ok(names.into_iter().filter(|name| name != "default").collect())
+}
+
+/// Checks that both lock files belong to their manifests.
 fn check_lock_files() -> Outcome {
     for manifest in ["Cargo.toml", "fuzz/Cargo.toml"] {
         output("cargo", &["metadata", "--locked", "--format-version", "1", "--manifest-path", manifest])?;
@@ -32,7 +40,7 @@ fn check_lock_files() -> Outcome {
     Ok(())
 }
 
-/// The promised Rust compiles all of the source, and no dependency needs a newer one.
+/// Checks that the promised version of Rust compiles all of the source, and that no dependency needs a newer one.
 ///
 /// Only a compiler of that version can tell what the source needs: lints know the versions of functions, but not those
 /// of the language.
@@ -52,7 +60,7 @@ fn check_rust_version() -> Outcome {
             return Err(format!("a dependency needs Rust {needed}, but {promised} is promised"));
         }
     }
-    // The compiler in use is the promised one, or rustup has the promised one.
+    // The promised compiler is the current one, or rustup has it.
     let current = output("rustc", &["--version"])?;
     let is_promised = |version: &str| version.split(' ').nth(1).is_some_and(|v| v.starts_with(&format!("{promised}.")));
     if is_promised(&current) {
@@ -67,7 +75,7 @@ fn check_rust_version() -> Outcome {
     Err(format!("Rust {promised} is promised, but is not installed, so nothing can check the promise"))
 }
 
-/// The numbers of a version.
+/// Returns the numbers of a version.
 fn numbers(version: &str) -> Vec<u32> {
     let mut numbers: Vec<u32> = version.split('.').map_while(|number| number.parse().ok()).collect();
     numbers.resize(3, 0);
@@ -86,7 +94,7 @@ fn check_targets() -> Outcome {
     Ok(())
 }
 
-/// The standard output of a command that succeeds.
+/// Returns the standard output of a command that succeeds.
 fn output(program: &str, arguments: &[&str]) -> Result<String, String> {
     let line = format!("{program} {}", arguments.join(" "));
     let output = Command::new(program).args(arguments).output().map_err(|e| format!("{line}: {e}"))?;

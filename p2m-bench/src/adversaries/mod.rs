@@ -1,14 +1,15 @@
-//! `p2m-bench adversaries`: scenes that are made to be bad, over every backend: what building takes, what is kept and what
-//! queries look at, held against budgets; and what becomes of rivals.
+//! `p2m-bench adversaries`: builds every backend over adversarial scenes, compares time, memory and visits with
+//! budgets, and runs external libraries over the same scenes.
 
-mod rivals;
+mod external;
 
-pub(crate) use rivals::attempt;
+pub(crate) use external::attempt;
 
-use crate::backends::{aabb_options, octree_options, p2m_options};
 use crate::memory;
+use crate::our_indexes::{aabb_options, octree_options, p2m_options};
+use crate::rounds::thread_seconds;
 use anyhow::{Context, Result};
-use cpu_time::ThreadTime;
+use external::Outcome;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_bvh::{PacketTree, Volume};
@@ -19,25 +20,24 @@ use p2m_kdop::KdopTree;
 use p2m_kdop::{Kdop, KdopOptions};
 use p2m_testkit::adversaries::{ADVERSARIES, Adversary, queries};
 use p2m_tradeoff::{Provenance, Table};
-use rivals::Outcome;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Queries of each scene.
+/// The number of queries of each scene.
 const QUERIES: usize = 300;
-/// Budgets are for at least so many primitives.
-const FEW: usize = 10_000;
-/// The page, with two places to fill.
+/// Budgets apply to scenes of at least this many primitives.
+const MIN_PRIMITIVES_FOR_BUDGET: usize = 10_000;
+/// The template of the page, with two placeholders.
 const PAGE: &str = include_str!("page.md");
 
-/// What a backend may take for each primitive.
+/// The budget of a backend, for each primitive.
 struct Budget {
     name: &'static str,
-    /// Microseconds of one thread.
+    /// Microseconds of one thread for the build.
     build: f64,
-    /// Bytes at a time while building, besides the scene,
+    /// The largest number of bytes at any time of the build, without the scene.
     peak: usize,
-    /// and afterwards.
+    /// Bytes of the finished index.
     kept: usize,
 }
 
@@ -47,26 +47,26 @@ const OCTREE: Budget = Budget { name: "octree", build: 1000.0, peak: 2048, kept:
 const P2M: Budget = Budget { name: "p2m", build: 2000.0, peak: 21_248, kept: 5632 };
 
 impl Budget {
-    /// As a row of the page's table of budgets.
+    /// Returns the row of the page's table of budgets.
     fn row(&self) -> Vec<String> {
         let Self { name, build, peak, kept } = self;
         vec![(*name).to_owned(), build.to_string(), peak.to_string(), kept.to_string()]
     }
 }
 
-/// What an index took.
-struct Taken {
-    /// Seconds of one thread.
+/// The measured cost of an index.
+struct BuildCost {
+    /// Seconds of one thread for the build.
     build: f64,
-    /// Bytes.
+    /// The largest number of bytes at any time of the build.
     peak: usize,
     kept: usize,
     depth: usize,
-    /// Whether the tree answers in place of cells.
-    way_out: String,
+    /// The reason why the tree answers instead of cells, if it does.
+    fallback: String,
 }
 
-/// One scene at work.
+/// A scene that is being measured.
 struct Trial<'a> {
     adversary: &'static Adversary,
     soup: &'a Soup<f64>,
@@ -78,9 +78,9 @@ struct Trial<'a> {
 
 impl Trial<'_> {
     /// Adds the row of an index.
-    fn row<I: ClosestPoint<f64> + Inspect<f64>>(&mut self, budget: &Budget, index: &I, taken: &Taken) {
+    fn row<I: ClosestPoint<f64> + Inspect<f64>>(&mut self, budget: &Budget, index: &I, taken: &BuildCost) {
         let count = self.soup.len();
-        let allowed = count.max(FEW);
+        let allowed = count.max(MIN_PRIMITIVES_FOR_BUDGET);
         let answers = self.queries.iter().map(|q| index.closest_point(q)).map(key);
         let is_right = answers.eq(self.expected.iter().copied());
         let within = taken.build <= budget.build * 1e-6 * allowed as f64
@@ -102,7 +102,7 @@ impl Trial<'_> {
             format!("{:.0} / {}", visits.nodes.mean, visits.nodes.most),
             format!("{:.0} / {}", visits.packets.mean, visits.packets.most),
             format!("{:.0} / {}", visits.primitives.mean, visits.primitives.most),
-            taken.way_out.clone(),
+            taken.fallback.clone(),
             match (is_right, within) {
                 (true, true) => "yes",
                 (true, false) => "EXCEEDED",
@@ -113,9 +113,9 @@ impl Trial<'_> {
     }
 }
 
-/// Adds the rows of rivals, without a budget to keep.
-fn add_rivals(adversary: &'static Adversary, count: usize, table: &mut Table) -> Result<()> {
-    for name in rivals::RIVALS {
+/// Adds the rows of external libraries, which have no budget.
+fn add_external(adversary: &'static Adversary, count: usize, table: &mut Table) -> Result<()> {
+    for name in external::LIBRARIES {
         let Outcome { build, wrong, end } = Outcome::by_this_program(name, adversary, count)?;
         let mut row = vec![String::new(); HEAD.len()];
         row[0] = adversary.name.to_owned();
@@ -137,33 +137,31 @@ fn key(closest: Option<p2m_core::Closest<f64>>) -> Option<(u64, usize)> {
     closest.map(|c| (c.distance.to_bits(), c.primitive.index()))
 }
 
-/// What building a tree takes, without what is asked for before.
-fn of_tree<V: Volume>(soup: &Soup<f64>, options: &V::Options) -> Taken {
+/// Measures the build of a tree from its first stage on.
+fn measure_tree<V: Volume>(soup: &Soup<f64>, options: &V::Options) -> BuildCost {
     let before = memory::current();
     memory::reset_peak();
-    let start = ThreadTime::now();
-    let tree = PacketTree::<V>::build(soup, options);
-    let build = start.elapsed().as_secs_f64();
+    let (tree, build) = thread_seconds(|| PacketTree::<V>::build(soup, options));
     let peak = memory::peak().saturating_sub(before);
-    Taken { build, peak, kept: tree.memory(), depth: tree.depth(), way_out: String::new() }
+    BuildCost { build, peak, kept: tree.memory(), depth: tree.depth(), fallback: String::new() }
 }
 
-/// What `build` takes from a stage on, and what it makes. What is asked for before that is not counted.
-fn since<I>(stage: BuildStage, build: impl FnOnce(&(dyn Fn(Progress) + Sync)) -> I) -> (I, f64, usize) {
+/// Measures `build` from a stage on, and returns its result with the seconds and the peak. Allocations before that
+/// stage are not counted.
+fn measure_since<I>(stage: BuildStage, build: impl FnOnce(&(dyn Fn(Progress) + Sync)) -> I) -> (I, f64, usize) {
     let before = memory::current();
     let has_begun = AtomicBool::new(false);
-    let start = ThreadTime::now();
-    let index = build(&|progress| {
+    let report = |progress: Progress| {
         if progress.stage == stage && !has_begun.swap(true, Ordering::Relaxed) {
             memory::reset_peak();
         }
-    });
-    let seconds = start.elapsed().as_secs_f64();
+    };
+    let (index, seconds) = thread_seconds(|| build(&report));
     let peak = if has_begun.into_inner() { memory::peak().saturating_sub(before) } else { 0 };
     (index, seconds, peak)
 }
 
-/// Adds the rows of a scene; whether all budgets were kept and all answers right.
+/// Adds the rows of a scene, and returns whether all budgets were kept and all answers are right.
 fn add_rows(adversary: &'static Adversary, count: usize, table: &mut Table) -> Result<bool> {
     let soup = &adversary.soup(count);
     let queries = queries(soup, QUERIES);
@@ -172,49 +170,49 @@ fn add_rows(adversary: &'static Adversary, count: usize, table: &mut Table) -> R
     let mut trial = Trial { adversary, soup, queries, expected, table, good: true };
 
     let options = aabb_options();
-    let tree = of_tree::<Aabb<f64>>(soup, &options);
+    let tree = measure_tree::<Aabb<f64>>(soup, &options);
     trial.row(&AABB, &AabbTree::build_with(soup, &options)?, &tree);
     let options = KdopOptions::default().with_splits(aabb_options());
-    let taken = of_tree::<Kdop<14>>(soup, &options);
+    let taken = measure_tree::<Kdop<14>>(soup, &options);
     trial.row(&KDOP, &KdopTree::<f64, _, 14>::build_with(soup, &options)?, &taken);
 
     let options = octree_options(1.0);
     let (index, build, peak) =
-        since(BuildStage::Tree, |progress| OctreeIndex::build_with_progress(soup, &options, progress));
+        measure_since(BuildStage::Tree, |progress| OctreeIndex::build_with_progress(soup, &options, progress));
     let index = index?;
     let report = index.report();
-    let way_out = match report.lists + report.singles {
+    let fallback = match report.lists + report.singles {
         0 => "the tree".to_owned(),
         _ if report.resolution < options.resolution => format!("resolution {:.3}", report.resolution),
         _ => "no".to_owned(),
     };
-    trial.row(&OCTREE, &index, &Taken { build, peak, kept: index.memory(), depth: report.depth, way_out });
+    trial.row(&OCTREE, &index, &BuildCost { build, peak, kept: index.memory(), depth: report.depth, fallback });
 
     let options = p2m_options();
     let (index, build, peak) =
-        since(BuildStage::Delaunay, |progress| P2mIndex::build_with_progress(soup, &options, progress));
+        measure_since(BuildStage::Delaunay, |progress| P2mIndex::build_with_progress(soup, &options, progress));
     let index = index?;
     let report = index.report();
-    let way_out = match report.lists {
+    let fallback = match report.lists {
         0 => "the tree".to_owned(),
         _ if report.trees > 0 => {
             format!("{:.1} % of cells", 100.0 * report.trees as f64 / (report.lists + report.trees) as f64)
         }
         _ => "no".to_owned(),
     };
-    // Before the first stage it is the tree's.
+    // The peak before the first stage of the cells is that of the tree.
     let peak = peak.max(tree.peak);
-    trial.row(&P2M, &index, &Taken { build, peak, kept: index.memory(), depth: tree.depth, way_out });
+    trial.row(&P2M, &index, &BuildCost { build, peak, kept: index.memory(), depth: tree.depth, fallback });
     Ok(trial.good)
 }
 
-/// Prints the page, or writes it to a file; whether all budgets were kept and all answers right.
+/// Prints the page or writes it to a file, and returns whether all budgets were kept and all answers are right.
 pub(crate) fn print(count: usize, out: Option<&Path>, provenance: &Provenance) -> Result<bool> {
     let mut table = Table::new(HEAD);
     let mut good = true;
     for adversary in ADVERSARIES {
         good &= add_rows(adversary, count, &mut table)?;
-        add_rivals(adversary, count, &mut table)?;
+        add_external(adversary, count, &mut table)?;
     }
     let mut budgets = Table::new(["backend", "build us", "bytes while building", "bytes of the index"]);
     [AABB, KDOP, OCTREE, P2M].iter().for_each(|budget| budgets.push(budget.row()));
@@ -260,7 +258,7 @@ const HEAD: [&str; 12] = [
 mod tests {
     use super::*;
 
-    /// Times and the memory of the process are those of other tests as well.
+    /// Checks the counts only, because times and the memory of the process include those of other tests.
     #[test]
     fn small_adversaries_are_answered_as_brute_force_does() {
         for adversary in ADVERSARIES {

@@ -1,9 +1,9 @@
-//! Answers of rivals about small scenes that are wrong, made as small as they can be and asked again.
+//! Answers of external libraries about small scenes that are wrong, made as small as possible and checked again.
 
-use super::rival::Kind;
-use super::tally::ROUNDING;
+use super::counts::ROUNDING;
+use super::external::Kind;
+use crate::backend::{Answer, ScalarKind, Unavailable, catch};
 use crate::backends::ALL;
-use crate::contender::{Absent, Answer, ScalarKind, catch};
 use crate::queries::Queries;
 use crate::scene::Scene;
 use nalgebra::Point3;
@@ -12,17 +12,18 @@ use p2m_testkit::oracle::Distance;
 use p2m_testkit::truth::Truth;
 use std::cmp::Ordering;
 
-/// What a rival gets wrong in some way about a scene of some primitives.
+/// A wrong answer of an external library about a scene of a few primitives.
 #[derive(Clone, Debug)]
 pub(super) struct Example {
-    pub(super) rival: &'static str,
+    pub(super) library: &'static str,
     pub(super) kind: Kind,
     pub(super) query: [f64; 3],
-    /// Of each primitive.
+    /// The vertices of each primitive.
     pub(super) vertices: Vec<Vec<[f64; 3]>>,
 }
 
-/// The error of an answer in u M, and whether it names another primitive than the nearest beyond rounding, if names are of interest.
+/// Returns the error of an answer in u M, and whether it names a primitive that is not the nearest beyond rounding, if
+/// ids are to be checked.
 pub(super) fn judged(
     query: [f64; 3],
     vertices: &[Vec<[f64; 3]>],
@@ -37,30 +38,32 @@ pub(super) fn judged(
     let error = if beyond { 0.0 } else { truth.error(answer.distance, bits, eta) };
     let named = vertices.get(answer.id as usize).filter(|_| names && answer.id as usize != nearest && !beyond);
     let wrong = named.is_some_and(|named| {
-        // As far as it may be by the rounding of both.
-        let least = truth.exact().length()[0] + truth.of_reach(ROUNDING * 2f64.powi(-bits.cast_signed()));
+        // The distance of the nearest primitive may be above the true one by the rounding of both.
+        let least =
+            truth.exact().length()[0] + truth.times_max_vertex_distance(ROUNDING * 2f64.powi(-bits.cast_signed()));
         let theirs = Truth::new(query, named);
-        theirs.is_at_least(least + theirs.of_reach(ROUNDING * 2f64.powi(-bits.cast_signed())) + eta)
+        theirs.is_at_least(least + theirs.times_max_vertex_distance(ROUNDING * 2f64.powi(-bits.cast_signed())) + eta)
     });
     (error, wrong)
 }
 
 impl Example {
-    /// Ordinary magnitudes first, then few primitives, then what is short to write.
+    /// Returns a sort key: ordinary magnitudes first, then few primitives, then short text.
     pub(super) fn plainness(&self) -> (bool, usize, usize) {
         let ordinary = |x: &f64| *x == 0.0 || (1e-30..1e30).contains(&x.abs());
         let all = self.vertices.iter().flatten().chain([&self.query]);
         (!all.flatten().all(ordinary), self.vertices.len(), self.text().len())
     }
 
-    /// As Rust source.
+    /// Formats the example as Rust source.
     pub(super) fn text(&self) -> String {
         format!("query `{:?}`, primitives `{:?}`", self.query, self.vertices)
     }
 
-    /// What the rival says now, if that is still wrong in the same way, by rational arithmetic.
+    /// Queries the library again and describes its answer, if that is still wrong in the same way
+    /// by rational arithmetic.
     pub(super) fn confirmed(&self) -> Option<String> {
-        let backend = ALL.iter().find(|backend| backend.name == self.rival).expect("a name of the list");
+        let backend = ALL.iter().find(|backend| backend.name == self.library).expect("a name of the list");
         let (mut positions, mut elements) = (Vec::new(), Vec::new());
         for vertices in &self.vertices {
             let first = u32::try_from(positions.len()).expect("few");
@@ -81,7 +84,9 @@ impl Example {
         });
         let answer = match said {
             Ok(answer) => answer,
-            Err(Absent(why)) => return (self.kind == Kind::Panic && why == "it panicked").then(|| "panics".to_owned()),
+            Err(Unavailable(why)) => {
+                return (self.kind == Kind::Panic && why == "it panicked").then(|| "panics".to_owned());
+            }
         };
         let truths: Vec<_> = self.vertices.iter().map(|v| Distance::new(self.query, v)).collect();
         let less = |a: usize, b: usize| if truths[b].compare(&truths[a]) == Ordering::Less { b } else { a };
@@ -108,7 +113,7 @@ impl Example {
         self.confirmed().is_some()
     }
 
-    /// Without the primitives that it does not take.
+    /// Removes primitives as long as the answer stays wrong.
     pub(super) fn reduced(mut self) -> Self {
         let mut at = 0;
         while at < self.vertices.len() && self.vertices.len() > 1 {

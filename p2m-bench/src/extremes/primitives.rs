@@ -1,8 +1,8 @@
-//! Isolated primitives: every clause of the contract that one primitive can break.
+//! Checks isolated primitives on every clause of the contract that one primitive can break.
 
-use super::rival::{Kind, RIVALS, Said};
-use super::tally::Tally;
-use crate::contender::{Absent, catch};
+use super::counts::Counts;
+use super::external::{CallResult, Kind, LIBRARIES};
+use crate::backend::{Unavailable, catch};
 use p2m_core::Real;
 use p2m_testkit::contract::{self, Violation};
 use p2m_testkit::families::{self, Case, Family, OFFSETS, SINES, Span};
@@ -11,57 +11,57 @@ use rand::Rng;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Cases that a thread takes at a time.
+/// The number of cases that a thread takes at a time.
 const CHUNK: u64 = 10_000;
-/// Rivals are asked about one case of so many.
-const RIVAL_EVERY: u64 = 20;
-/// The scalars of ours, and the ranges of their cases.
+/// External libraries answer one case out of this many.
+const CASES_PER_LIBRARY_CASE: u64 = 20;
+/// Our scalars, and the ranges of their cases.
 const SPANS: [(&str, Span); 2] = [("f64", Span::F64), ("f32", Span::F32)];
-/// Subjects: ours in both scalars, and rivals.
-const SUBJECTS: usize = 2 + RIVALS.len();
-/// Broken promises that are kept to be shown.
+/// The number of subjects: our kernel in both scalars, and the external libraries.
+const SUBJECTS: usize = 2 + LIBRARIES.len();
+/// The largest number of broken promises that the page shows.
 const SHOWN: usize = 20;
 
-/// The shortest case that a rival gets wrong in some way.
+/// The shortest case for which an external library is wrong in some way.
 #[derive(Clone, Debug)]
 pub(super) struct Example {
-    pub(super) rival: usize,
+    pub(super) library: usize,
     pub(super) kind: Kind,
     pub(super) query: [f64; 3],
     pub(super) vertices: Vec<[f64; 3]>,
 }
 
 impl Example {
-    /// Ordinary magnitudes first, then what is short to write.
+    /// Returns a sort key: ordinary magnitudes first, then short text.
     fn plainness(&self) -> (bool, usize) {
         let ordinary = |x: &f64| *x == 0.0 || (1e-30..1e30).contains(&x.abs());
         (!self.vertices.as_flattened().iter().chain(&self.query).all(ordinary), self.text().len())
     }
 
-    /// As Rust source.
+    /// Formats the example as Rust source.
     pub(super) fn text(&self) -> String {
         format!("{:?} {:?}", self.query, self.vertices)
     }
 }
 
-/// Everything that was found.
+/// The results of all checks.
 pub(super) struct Findings {
-    /// The names of rows, and of each the tallies of all subjects.
-    pub(super) rows: Vec<(String, [Tally; SUBJECTS])>,
-    /// Answers of ours in f64 and in f32 that were held against the truth.
+    /// The names of the rows, each with the counts of all subjects.
+    pub(super) rows: Vec<(String, [Counts; SUBJECTS])>,
+    /// The numbers of our answers in f64 and in f32 that were compared with the true distance.
     pub(super) checked: [u64; 2],
-    /// Answers compared besides to those for another order of vertices and another scale.
+    /// The number of our answers that were compared with those for another order of vertices and another scale.
     pub(super) invariant: u64,
-    /// Distances that needed rational arithmetic.
+    /// The number of distances that needed rational arithmetic.
     pub(super) rational: u64,
-    /// Promises of ours that were broken: how many, and some of them in words.
+    /// The number of promises that our kernel broke.
     pub(super) broken: u64,
     pub(super) shown: Vec<String>,
-    /// What rivals get wrong.
+    /// Wrong answers of external libraries.
     pub(super) examples: Vec<Example>,
 }
 
-/// Names of the rows; [`rows_of`] knows their places.
+/// Returns the names of the rows; [`rows_of`] knows their order.
 fn labels() -> Vec<String> {
     let mut labels: Vec<String> =
         ["lattice", "any magnitude", "almost parallel to an axis", "neighbours of an f32", "needles"]
@@ -72,11 +72,11 @@ fn labels() -> Vec<String> {
     for (scalar, span) in SPANS {
         labels.extend(span.scales.iter().map(|scale| format!("scale 2^{scale} of {scalar}")));
     }
-    labels.extend(PLACES.iter().map(|place| format!("query {place}")));
+    labels.extend(PLACES.iter().map(|position| format!("query {position}")));
     labels
 }
 
-/// Where queries are.
+/// The names of the positions of query points.
 const PLACES: [&str; 13] = [
     "on a vertex",
     "on an edge",
@@ -93,8 +93,8 @@ const PLACES: [&str; 13] = [
     "near a vertex",
 ];
 
-/// The rows to which a case of a scalar belongs: those of sines and queries have ordinary scales and places only, so that they say what they
-/// are about.
+/// Returns the rows to which a case of a scalar belongs. The rows of sines and of query positions have cases of
+/// ordinary scale and position only, so that a row shows the effect of one parameter.
 #[allow(clippy::float_cmp, reason = "drawn from the lists")]
 fn rows_of(scalar: usize, family: &Family) -> impl Iterator<Item = usize> {
     let alone = |row: usize| [Some(row), None, None, None, None, None];
@@ -103,7 +103,7 @@ fn rows_of(scalar: usize, family: &Family) -> impl Iterator<Item = usize> {
         Family::Wild => alone(1),
         Family::AlmostFlat => alone(2),
         Family::Neighbours => alone(3),
-        Family::Shaped { sine, scale, offset, needle, place } => {
+        Family::Shaped { sine, scale, offset, needle, query_position } => {
             let (scaled, moved) = (scale != 0, offset != 0.0);
             let mut first = 5;
             let mut find = |at: Option<usize>, len: usize, counts: bool| {
@@ -117,7 +117,7 @@ fn rows_of(scalar: usize, family: &Family) -> impl Iterator<Item = usize> {
                 let scales = SPANS[of].1.scales;
                 find(scales.iter().position(|s| *s == scale), scales.len(), !moved && of == scalar)
             });
-            let places = find(PLACES.iter().position(|p| *p == place), PLACES.len(), !scaled && !moved);
+            let places = find(PLACES.iter().position(|p| *p == query_position), PLACES.len(), !scaled && !moved);
             [(needle && !scaled && !moved).then_some(4), sines, offsets, double, single, places]
         }
     };
@@ -126,13 +126,13 @@ fn rows_of(scalar: usize, family: &Family) -> impl Iterator<Item = usize> {
 
 impl Findings {
     fn new() -> Self {
-        let rows = labels().into_iter().map(|label| (label, [Tally::default(); SUBJECTS])).collect();
+        let rows = labels().into_iter().map(|label| (label, [Counts::default(); SUBJECTS])).collect();
         Self { rows, checked: [0; 2], invariant: 0, rational: 0, broken: 0, shown: Vec::new(), examples: Vec::new() }
     }
 
     fn merge(&mut self, other: Self) {
-        for ((_, own), (_, others)) in self.rows.iter_mut().zip(other.rows) {
-            own.iter_mut().zip(&others).for_each(|(own, other)| own.merge(other));
+        for ((_, results), (_, others)) in self.rows.iter_mut().zip(other.rows) {
+            results.iter_mut().zip(&others).for_each(|(results, other)| results.merge(other));
         }
         self.checked = [self.checked[0] + other.checked[0], self.checked[1] + other.checked[1]];
         self.invariant += other.invariant;
@@ -145,14 +145,14 @@ impl Findings {
 
     /// Keeps the example if it is the plainest of its kind.
     fn keep(&mut self, example: Example) {
-        match self.examples.iter_mut().find(|e| (e.rival, e.kind) == (example.rival, example.kind)) {
+        match self.examples.iter_mut().find(|e| (e.library, e.kind) == (example.library, example.kind)) {
             Some(known) if example.plainness() < known.plainness() => *known = example,
             Some(_) => {}
             None => self.examples.push(example),
         }
     }
 
-    /// A case in the range of a scalar, and what ours says of it.
+    /// Generates a case in the range of a scalar and checks our answer.
     fn check(&mut self, rng: &mut impl Rng, scalar: usize) -> Case {
         let case = families::case_in(rng, &SPANS[scalar].1);
         let checked = catch(|| Ok(if scalar == 0 { judged::<f64>(rng, &case) } else { judged::<f32>(rng, &case) }));
@@ -163,7 +163,7 @@ impl Findings {
                 rows_of(scalar, &case.family).for_each(|row| self.rows[row].1[scalar].add(error));
             }
             Ok(Err(broken)) => self.blame(&case, scalar, &broken.to_string()),
-            Err(Absent(panic)) => self.blame(&case, scalar, &panic),
+            Err(Unavailable(panic)) => self.blame(&case, scalar, &panic),
         }
         case
     }
@@ -175,25 +175,25 @@ impl Findings {
         self.shown.truncate(SHOWN);
     }
 
-    /// Rivals of the scalar of a case.
-    fn rivals(&mut self, case: &Case, scalar: usize) {
-        for (i, rival) in RIVALS.iter().enumerate().filter(|(_, rival)| rival.single == (scalar == 1)) {
-            let Some(said) = rival.ask(case.query, &case.vertices) else { continue };
+    /// Checks the external libraries that have the scalar of a case.
+    fn check_libraries(&mut self, case: &Case, scalar: usize) {
+        for (i, library) in LIBRARIES.iter().enumerate().filter(|(_, library)| library.single == (scalar == 1)) {
+            let Some(result) = library.check(case.query, &case.vertices) else { continue };
             for row in rows_of(scalar, &case.family) {
-                let tally = &mut self.rows[row].1[2 + i];
-                match said {
-                    Said::Error(error) => tally.add(error),
-                    Said::Panic => tally.panicked += 1,
+                let counts = &mut self.rows[row].1[2 + i];
+                match result {
+                    CallResult::Error(error) => counts.add(error),
+                    CallResult::Panic => counts.panicked += 1,
                 }
             }
-            if let Some(kind) = said.kind() {
-                self.keep(Example { rival: i, kind, query: case.query, vertices: case.vertices.clone() });
+            if let Some(kind) = result.kind() {
+                self.keep(Example { library: i, kind, query: case.query, vertices: case.vertices.clone() });
             }
         }
     }
 }
 
-/// The error of ours, and how many other answers it was compared to.
+/// Returns the error of our answer, and the number of other answers that it was compared with.
 fn judged<T: Real>(rng: &mut impl Rng, case: &Case) -> Result<(f64, u64), Violation> {
     let of = |v: [f64; 3]| v.map(T::of_f64);
     let (query, vertices) = (of(case.query), case.vertices.iter().map(|v| of(*v)).collect::<Vec<_>>());
@@ -202,29 +202,29 @@ fn judged<T: Real>(rng: &mut impl Rng, case: &Case) -> Result<(f64, u64), Violat
     Ok((error, contract::check_invariance(rng, query, &vertices, &found)?))
 }
 
-/// Checks so many answers of ours at least, half of them in each scalar, on all threads.
+/// Checks at least `cases` answers of ours, half of them in each scalar, on all threads.
 pub(super) fn run(cases: u64, seed: u64) -> Findings {
     let all = Mutex::new(Findings::new());
     let (next, done) = (AtomicU64::new(0), AtomicU64::new(0));
     let work = || {
-        let mut own = Findings::new();
+        let mut results = Findings::new();
         let before = rational_distances();
         while done.load(Ordering::Relaxed) < cases {
             let chunk = next.fetch_add(1, Ordering::Relaxed);
             let mut rng = p2m_testkit::rng("extreme primitives", (seed << 32) + chunk);
             for i in 0..CHUNK {
                 for scalar in [0, 1] {
-                    let case = own.check(&mut rng, scalar);
-                    if i % RIVAL_EVERY == 0 {
-                        own.rivals(&case, scalar);
+                    let case = results.check(&mut rng, scalar);
+                    if i % CASES_PER_LIBRARY_CASE == 0 {
+                        results.check_libraries(&case, scalar);
                     }
                 }
             }
             let so_far = done.fetch_add(2 * CHUNK, Ordering::Relaxed);
             progress(so_far, 2 * CHUNK, cases);
         }
-        own.rational = rational_distances() - before;
-        all.lock().expect("no thread panicked").merge(own);
+        results.rational = rational_distances() - before;
+        all.lock().expect("no thread panicked").merge(results);
     };
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, Into::into) {
@@ -234,7 +234,7 @@ pub(super) fn run(cases: u64, seed: u64) -> Findings {
     all.into_inner().expect("no thread panicked")
 }
 
-/// A line for every twentieth.
+/// Prints a line after every twentieth of the work.
 fn progress(before: u64, more: u64, all: u64) {
     let part = |count: u64| count.min(all) * 20 / all.max(1);
     if part(before + more) > part(before) {

@@ -1,5 +1,5 @@
-//! The figures of the paper \[Zong2023\], of its own machine, models and rivals. What is computed from
-//! these (ratios to rivals, microseconds a face) is said on the page.
+//! The figures of the paper \[Zong2023\], measured on its own machine, models and libraries. Values that are derived
+//! from these, such as ratios and microseconds per face, are marked as such on the page.
 
 use p2m_tradeoff::Table;
 
@@ -67,15 +67,17 @@ pub(super) fn table_4() -> String {
     )
 }
 
-/// The Dragon of 1,499,852 faces: seconds to build,
+/// The number of faces of the paper's Dragon.
 pub(super) const DRAGON: f64 = 1_499_852.0;
+/// Seconds that the P2M index of the Dragon takes to build.
 pub(super) const BUILD: f64 = 137.4;
-/// the same for PQP and FCPW,
-pub(super) const RIVALS: [f64; 2] = [4.0, 1.9];
-/// microseconds of a query to locate the vertex and in all, by its Section 5.3,
+/// Seconds that the trees of PQP and FCPW take to build over the Dragon.
+pub(super) const BUILD_OF_OTHERS: [f64; 2] = [4.0, 1.9];
+/// Microseconds to locate the Voronoi cell of a query in the Dragon, by Section 5.3 of the paper.
 pub(super) const LOCATE: f64 = 2.83;
+/// Microseconds of a query of the Dragon in all, by Section 5.3 of the paper.
 pub(super) const QUERY: f64 = 2.83 + 0.39;
-/// bytes of its index,
+/// Bytes of the index of the Dragon.
 pub(super) const BYTES: f64 = 1.78e9;
-/// and the mean and the most of its lists, edges and faces in one.
+/// The mean and the maximum length of the Dragon's lists, where edges and faces count as one.
 pub(super) const LISTS: [f64; 2] = [41.0, 782.0];

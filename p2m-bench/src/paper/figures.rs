@@ -1,4 +1,4 @@
-//! Figures 10 to 17 and 20 to 22, of what was measured.
+//! Draws Figures 10 to 17 and 20 to 22 from the measurements.
 
 use super::cited;
 use super::scenes::stem;
@@ -7,9 +7,9 @@ use anyhow::Result;
 use p2m_tradeoff::plot::{Bars, Mark, Plot, Series};
 use std::path::Path;
 
-/// Contenders of plots, in the order of their colours.
+/// The backends of the plots, in the order of their colours.
 pub(super) const COMPARED: [&str; 5] = ["p2m", "aabb", "parry3d", "parry3d-f64", "octree"];
-/// The colour of what is cited.
+/// The colour of cited values.
 const CITED: usize = 6;
 const FACES: &str = "primitives";
 
@@ -17,7 +17,7 @@ fn series(name: &str, mark: Mark, colour: usize, points: impl Iterator<Item = (f
     Series { name: name.to_owned(), mark, colour, points: points.collect(), notes: Vec::new() }
 }
 
-/// A value of each study over its size.
+/// Returns a value of each study over its size.
 fn over_size<'a>(
     studies: &'a [&Study],
     value: impl Fn(&Study) -> Option<f64> + 'a,
@@ -29,7 +29,7 @@ fn cited_at(name: &str, value: f64) -> Series {
     series(&format!("{name} (cited)"), Mark::Cross, CITED, std::iter::once((cited::DRAGON, value)))
 }
 
-/// A mean and a maximum over sizes.
+/// Returns a mean and a maximum over sizes.
 fn mean_and_most(
     studies: &[&Study],
     y: &'static str,
@@ -43,7 +43,7 @@ fn mean_and_most(
     Plot { x: FACES, y, series, ..Plot::default() }
 }
 
-/// What each contender has, over sizes.
+/// Returns a value of each backend over sizes.
 fn compared(
     studies: &[&Study],
     mark: Mark,
@@ -57,29 +57,29 @@ fn compared(
 }
 
 fn build(study: &Study, name: &str) -> Option<f64> {
-    study.contender(name)?.build
+    study.backend(name)?.build
 }
 
 fn microseconds(study: &Study, name: &str) -> Option<f64> {
     Some(study.query(name)? / 1e3)
 }
 
-/// What is plotted.
+/// The studies that the plots show.
 pub(super) struct Figures<'a> {
-    /// The swept model, by size.
+    /// The model that is swept, in increasing size.
     pub(super) sweep: &'a [&'a Study],
     /// The five models of the tables.
     pub(super) five: &'a [&'a Study],
-    /// That of them with boxes and threads.
+    /// The one of the five models that has boxes and threads.
     pub(super) dragon: &'a Study,
     pub(super) boxes: &'a [f64],
     pub(super) threads: &'a [usize],
-    /// All models.
+    /// The studies of all models.
     pub(super) scattered: &'a [&'a Study],
 }
 
 impl Figures<'_> {
-    /// Writes them all into a folder, as fig10.svg and so on.
+    /// Writes all figures into a folder, as fig10.svg and so on.
     pub(super) fn write(&self, folder: &Path) -> Result<()> {
         let to = |name: &str| folder.join(format!("{name}.svg"));
         let sweep = self.sweep;
@@ -90,7 +90,7 @@ impl Figures<'_> {
         lists.write(&to("fig10"))?;
 
         let mut stages = compared(sweep, Mark::Line, "seconds to build", build);
-        let cited = [("P2M", cited::BUILD), ("PQP", cited::RIVALS[0]), ("FCPW", cited::RIVALS[1])];
+        let cited = [("P2M", cited::BUILD), ("PQP", cited::BUILD_OF_OTHERS[0]), ("FCPW", cited::BUILD_OF_OTHERS[1])];
         stages.series.extend(cited.map(|(name, seconds)| cited_at(name, seconds)));
         stages.write(&to("fig11"))?;
 
@@ -105,10 +105,10 @@ impl Figures<'_> {
         )
         .write(&to("fig12"))?;
 
-        // Rests of medians, so of very short lists it may come out below zero.
+        // The rest is a difference of medians, so it may be negative for very short lists.
         let bar = |study: &&Study| {
-            let super::study::Breakdown { locate, whole } = study.inside.breakdown;
-            (stem(&study.name).to_owned(), vec![locate, (whole - locate).max(0.0)])
+            let super::study::Breakdown { locate, total } = study.inside.breakdown;
+            (stem(&study.name).to_owned(), vec![locate, (total - locate).max(0.0)])
         };
         let cited = vec![cited::LOCATE * 1e3, (cited::QUERY - cited::LOCATE) * 1e3];
         let bars = self.five.iter().map(bar).chain([("the paper's Dragon (cited)".to_owned(), cited)]).collect();
@@ -135,13 +135,13 @@ impl Figures<'_> {
         let scattered = self.scattered;
         compared(scattered, Mark::Dot, "seconds to build", build).write(&to("fig20"))?;
         compared(scattered, Mark::Dot, "microseconds of a query", microseconds).write(&to("fig21"))?;
-        let bytes = |study: &Study, name: &str| Some(study.contender(name)?.bytes as f64 / 1e6);
+        let bytes = |study: &Study, name: &str| Some(study.backend(name)?.bytes as f64 / 1e6);
         let mut memory = compared(scattered, Mark::Dot, "megabytes, scene included", bytes);
         memory.series.push(cited_at("P2M", cited::BYTES / 1e6));
         Ok(memory.write(&to("fig22"))?)
     }
 
-    /// What each contender took for the large model, over something else than its size.
+    /// Returns a value of each backend for the large model over a parameter other than its size.
     fn over(
         &self,
         at: &[f64],
@@ -149,7 +149,7 @@ impl Figures<'_> {
         times: impl Fn(&super::study::Measured) -> &Vec<Option<f64>> + Copy,
     ) -> Plot {
         let all = COMPARED.iter().enumerate().filter_map(|(i, name)| {
-            let times = times(self.dragon.contender(name)?);
+            let times = times(self.dragon.backend(name)?);
             let points = at.iter().zip(times).filter_map(|(x, time)| Some((*x, time.as_ref()? / 1e3)));
             Some(series(name, Mark::Line, i, points))
         });

@@ -1,7 +1,8 @@
-//! `p2m-bench paper`: the evaluation of the P2M paper on our models, its tables and plots redrawn, as one page.
+//! `p2m-bench paper`: repeats the evaluation of the P2M paper on our models and redraws its tables and plots as one
+//! page.
 //!
-//! The page is [`PAGE`] with what was measured in place of `{{names}}`; plots lie in a folder beside it. Numbers of a
-//! figure or table are those of the paper.
+//! The page is [`PAGE`] with the measurements in place of `{{names}}`; plots lie in a folder beside it. Figures and
+//! tables have the numbers of the paper.
 
 mod cited;
 mod figures;
@@ -22,17 +23,17 @@ use scenes::{Models, spheres};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
-use study::{Study, Wanted};
+use study::{Study, StudyOptions};
 
-/// The page, with names of what is measured.
+/// The template of the page.
 const PAGE: &str = include_str!("page.md");
-/// Contenders of Table 3, besides those that are compared everywhere: the paper's locator, lists and list filter. The
-/// last two not for spheres: without added sites each of their lists would have all triangles.
+/// The backends of Table 3 besides those of every table: the paper's locator, lists and list filter. The last two are
+/// left out for spheres, where each list would have all triangles without added sites.
 const PAPERS: &[&str] = &[KD_TREE, "p2m-long", "p2m-long-rstar"];
 const KD_TREE: &str = "p2m-kiddo";
 
-/// Measures everything and writes paper.md, with its plots in the folder paper, into a folder. Whether answers of ours
-/// were bitwise the same everywhere.
+/// Measures everything and writes paper.md, with its plots in the folder `paper`, into a folder. Returns whether the
+/// answers of our backends were bitwise equal everywhere.
 pub(crate) fn write(models: &Path, quick: bool, out: &Path) -> Result<bool> {
     let (profile, option) = if quick { (&QUICK, " --quick") } else { (&FULL, "") };
     write_profile(profile, &format!("p2m-bench paper{option}"), Models(models.to_owned()), out)
@@ -46,7 +47,7 @@ fn write_profile(profile: &Profile, command: &str, models: Models, out: &Path) -
     let plots = out.join("paper");
     std::fs::create_dir_all(&plots).with_context(|| plots.display().to_string())?;
 
-    // What cannot be read is to be known before anything is measured.
+    // Models that cannot be read are reported before anything is measured.
     let scattered_scenes = all.models.scattered(profile)?;
     for name in profile.five {
         all.read(name, PAPERS)?;
@@ -105,7 +106,7 @@ fn write_profile(profile: &Profile, command: &str, models: Models, out: &Path) -
     let studies = || all.known.values().chain(pairs.iter().flat_map(|(_, studies)| studies));
     let agrees = studies().map(|study| study.agrees).fold(true, |all, agrees| all & agrees);
     let answers = if agrees { "All answers of ours were bitwise the same." } else { "ANSWERS OF OURS DIFFER." };
-    let provenance = crate::provenance(None);
+    let provenance = crate::report::provenance(None);
     let values = [
         ("command", command.to_owned()),
         ("machine", provenance.machine()),
@@ -135,13 +136,13 @@ fn write_profile(profile: &Profile, command: &str, models: Models, out: &Path) -
     Ok(agrees)
 }
 
-/// One, two and so on, up to what the machine has.
+/// Returns the powers of two up to the number of cores, and that number.
 fn threads() -> Vec<usize> {
     let most = std::thread::available_parallelism().map_or(1, usize::from);
     (0..usize::BITS).map(|i| 1 << i).take_while(|count| *count <= most).collect()
 }
 
-/// What was measured so far, by names of scenes: no scene is measured twice.
+/// The studies so far by names of scenes, so that no scene is measured twice.
 struct Studies<'a> {
     profile: &'a Profile,
     models: Models,
@@ -167,12 +168,12 @@ impl Studies<'_> {
         &self.known[name]
     }
 
-    /// Measures a scene, with more contenders than those that are compared everywhere.
+    /// Measures a scene, with more backends than those that are compared everywhere.
     fn study(&self, scene: &Scene, more: &[&str]) -> Result<Study> {
         let Profile { queries, rounds, builds, boxes, swept, .. } = *self.profile;
         let is_swept = scene.name == swept;
-        let wanted = Wanted {
-            contenders: &COMPARED,
+        let wanted = StudyOptions {
+            backends: &COMPARED,
             more,
             boxes: if is_swept { boxes } else { &[] },
             threads: if is_swept { &self.threads } else { &[] },
@@ -186,8 +187,8 @@ mod tests {
     use super::*;
     use profile::Resolution::{Coarsened, Own, Subdivided};
 
-    /// Everything that is generated, and a little of that.
-    const LEAST: Profile = Profile {
+    /// The smallest profile, which needs generated models only.
+    const MINIMAL: Profile = Profile {
         scope: "A test.",
         queries: 200,
         rounds: 2,
@@ -203,7 +204,7 @@ mod tests {
         torn: "torus knot",
         mixed: None,
         scattered: Some(&["cylinder"]),
-        least: 0,
+        min_primitives: 0,
     };
 
     #[test]
@@ -211,7 +212,7 @@ mod tests {
     fn the_page_and_all_of_its_plots_are_written() {
         let folder = tempfile::tempdir().unwrap();
         let models = Models(std::path::PathBuf::from("nowhere"));
-        assert!(write_profile(&LEAST, "a test", models, folder.path()).unwrap());
+        assert!(write_profile(&MINIMAL, "a test", models, folder.path()).unwrap());
         let page = std::fs::read_to_string(folder.path().join("paper.md")).unwrap();
         assert!(page.contains("`a test`") && page.contains("bitwise the same") && !page.contains("{{"));
         for row in

@@ -1,8 +1,9 @@
-//! A page with names in double braces, and what they stand for.
+//! Fills the placeholders of a page.
 
 use anyhow::{Result, bail};
 
-/// The page with `{{name}}` replaced by the value of each name; every name has to have one, and be there.
+/// Replaces each `{{name}}` of the page by its value. A placeholder without a value, or a value without a placeholder,
+/// is an error.
 pub(super) fn filled(page: &str, values: &[(&str, String)]) -> Result<String> {
     let mut out = page.to_owned();
     for (name, value) in values {

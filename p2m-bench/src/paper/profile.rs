@@ -1,49 +1,49 @@
-//! How much is measured: all of it in well under an hour, or a little of everything in minutes.
+//! The amount of work: all measurements in well under an hour, or a few of each kind in minutes.
 
 /// A resolution of the model that is swept.
 #[derive(Clone, Copy)]
 pub(super) enum Resolution {
-    /// With vertices gathered until about so many triangles are left.
+    /// Vertices are merged until about this many triangles are left.
     Coarsened(usize),
-    /// As it is.
+    /// The model is used as it is.
     Own,
-    /// Coarsened to about so many, each of which then becomes four, displaced a little.
+    /// The model is coarsened to about this many triangles, each of which is divided into four and displaced a little.
     Subdivided(usize),
 }
 
-/// What is measured, of which models.
+/// The measurements and models of the page.
 pub(super) struct Profile {
-    /// What there is to say about it at the head of the page.
+    /// The text about the scope at the head of the page.
     pub(super) scope: &'static str,
     pub(super) queries: usize,
     pub(super) rounds: usize,
     pub(super) builds: usize,
-    /// In place of the five models of Tables 1 to 3 and Figure 13.
+    /// The models in place of the five of Tables 1 to 3 and Figure 13.
     pub(super) five: &'static [&'static str],
-    /// In place of the Dragon of Figures 10 to 12 and 14 to 17.
+    /// The model in place of the Dragon of Figures 10 to 12 and 14 to 17.
     pub(super) swept: &'static str,
     pub(super) resolutions: &'static [Resolution],
-    /// Boxes of queries of Figure 16, by how much they are larger than that of the scene.
+    /// The boxes of queries of Figure 16, as multiples of that of the scene.
     pub(super) boxes: &'static [f64],
-    /// Models with long lists, of Table 3.
+    /// The models with long lists of Table 3.
     pub(super) long: &'static [&'static str],
-    /// Triangles of the spheres of Table 3.
+    /// The number of triangles of the spheres of Table 3.
     pub(super) sphere: u32,
-    /// Models of Table 4, and triangles of each triangulation.
+    /// The models of Table 4.
     pub(super) pairs: &'static [&'static str],
     pub(super) pair_size: usize,
     /// The model that is torn apart.
     pub(super) torn: &'static str,
     /// The scene of triangles and segments.
     pub(super) mixed: Option<&'static str>,
-    /// Models of Figures 20 to 22, of more primitives than `least`; all without names.
+    /// The models of Figures 20 to 22; an empty list stands for all models with at least `min_primitives` primitives.
     pub(super) scattered: Option<&'static [&'static str]>,
-    pub(super) least: usize,
+    pub(super) min_primitives: usize,
 }
 
 use Resolution::{Coarsened, Own, Subdivided};
 
-/// What docs/paper.md has.
+/// The measurements of docs/paper.md.
 pub(super) const FULL: Profile = Profile {
     scope: "What is said about tables and plots is said of this page.",
     queries: 100_000,
@@ -69,10 +69,10 @@ pub(super) const FULL: Profile = Profile {
     torn: "camel.off",
     mixed: Some("mixed_armadillo_camel_wireframe.obj"),
     scattered: None,
-    least: 1000,
+    min_primitives: 1000,
 };
 
-/// The same tables and plots in less time, with less in them.
+/// A profile with all tables and plots but fewer and smaller scenes.
 pub(super) const QUICK: Profile = Profile {
     scope: "**A quick look**: few models, little ones; what is said below is said of the full page, docs/paper.md.",
     queries: 20_000,
@@ -89,5 +89,5 @@ pub(super) const QUICK: Profile = Profile {
     torn: "camel.off",
     mixed: None,
     scattered: Some(&["camel.off", "bunny.obj", "track_lines.obj", "thingi10k_1514499_slivers.stl"]),
-    least: 0,
+    min_primitives: 0,
 };

@@ -1,4 +1,4 @@
-//! The scenes: models of a folder, and what is made of them.
+//! The scenes of the page: models of a folder, and scenes that are derived from them.
 
 use super::profile::{Profile, Resolution};
 use super::surfaces::{coarsened, fanned};
@@ -11,16 +11,16 @@ use p2m_mixed::generate::{
 };
 use std::path::{Path, PathBuf};
 
-/// By how much of an edge subdivision displaces its middle.
+/// The displacement of the middle of an edge in a subdivision, relative to the length of the edge.
 const AMPLITUDE: f64 = 0.02;
-/// Triangles of a triangulation of Table 4 for each of the surface.
+/// The number of triangles in a triangulation of Table 4 for each triangle of the surface.
 const PARTS: u32 = 16;
 
 /// A folder of models.
 pub(super) struct Models(pub(super) PathBuf);
 
 impl Models {
-    /// Says which models are missing, before anything is measured.
+    /// Returns an error that names the missing models, before anything is measured.
     pub(super) fn check(&self, profile: &Profile) -> Result<()> {
         let single = [profile.swept, profile.torn].into_iter().chain(profile.mixed);
         let lists = [profile.five, profile.long, profile.pairs, profile.scattered.unwrap_or_default()];
@@ -32,7 +32,7 @@ impl Models {
         bail!("{} has no {}", self.0.display(), missing.join(", "))
     }
 
-    /// The model of that name.
+    /// Reads the model of that name.
     pub(super) fn read(&self, name: &str) -> Result<Scene> {
         let made = match name {
             "torus knot" => torus_knot(&TorusKnot::default().with_rings(250).with_sides(15))?,
@@ -42,7 +42,7 @@ impl Models {
         Scene::new(name.to_owned(), made)
     }
 
-    /// The model at a resolution.
+    /// Reads the model at a resolution.
     pub(super) fn at(&self, name: &str, resolution: Resolution) -> Result<Scene> {
         let model = self.read(name)?;
         let soup = match resolution {
@@ -56,7 +56,7 @@ impl Models {
         Scene::new(format!("{} at {}", stem(name), soup.len()), soup)
     }
 
-    /// One surface in bad triangles and in good ones, as many of both, about as many as wanted.
+    /// Returns one surface in bad and in good triangles, about `wanted` of each and equally many.
     pub(super) fn pair(&self, name: &str, wanted: usize) -> Result<[Scene; 2]> {
         let surface = coarsened(&self.read(name)?.double, wanted / PARTS as usize);
         let good = subdivide(&surface, &Subdivide::default().with_levels(PARTS.ilog(4)))?;
@@ -65,7 +65,7 @@ impl Models {
         Ok([Scene::new(format!("{name}, bad"), bad)?, Scene::new(format!("{name}, good"), good)?])
     }
 
-    /// A surface as it is, and torn in two ways.
+    /// Returns a surface as it is, and torn in two ways.
     pub(super) fn torn(&self, name: &str) -> Result<[Scene; 3]> {
         let own = self.read(name)?.double;
         let (apart, across) = (gapped(&own, 0.5)?, penetrating(&own, 5.0)?);
@@ -74,17 +74,17 @@ impl Models {
         Ok([a?, b?, c?])
     }
 
-    /// The scenes of Figures 20 to 22.
+    /// Returns the scenes of Figures 20 to 22.
     pub(super) fn scattered(&self, profile: &Profile) -> Result<Vec<Scene>> {
         let names: Vec<String> = match profile.scattered {
             Some(names) => names.iter().map(|name| (*name).to_owned()).collect(),
             None => self.all()?,
         };
         let scenes: Result<Vec<Scene>> = names.iter().map(|name| self.read(name)).collect();
-        Ok(scenes?.into_iter().filter(|scene| scene.len() >= profile.least).collect())
+        Ok(scenes?.into_iter().filter(|scene| scene.len() >= profile.min_primitives).collect())
     }
 
-    /// The names of all scenes of the folder, in order.
+    /// Returns the sorted names of all scenes in the folder.
     fn all(&self) -> Result<Vec<String>> {
         let folder = std::fs::read_dir(&self.0).with_context(|| self.0.display().to_string())?;
         let mut names = Vec::new();
@@ -99,17 +99,17 @@ impl Models {
     }
 }
 
-/// Whether it is generated.
+/// Returns whether a scene of that name is generated.
 fn is_made(name: &str) -> bool {
     Path::new(name).extension().is_none()
 }
 
-/// A name without its extension.
+/// Returns a name without its extension.
 pub(super) fn stem(name: &str) -> &str {
     Path::new(name).file_stem().and_then(|stem| stem.to_str()).unwrap_or(name)
 }
 
-/// Spheres of about so many triangles: of meridians and parallels, and of an icosahedron.
+/// Returns spheres of about `triangles` triangles: one of meridians and parallels, and a subdivided icosahedron.
 pub(super) fn spheres(triangles: u32) -> Result<[Scene; 2]> {
     let meridians = (triangles / 2).isqrt();
     let lines = sphere(&Sphere::default().with_meridians(meridians).with_bands(meridians + 1))?;

@@ -1,9 +1,11 @@
-//! What is measured in a scene: the P2M index from inside, and contenders in turns.
+//! Measures a scene: the P2M index from inside, and all backends in turns.
 
-use crate::backends::{self, p2m_options};
-use crate::contender::{Absent, Answer, Backend};
-use crate::measure::{self, Effort, Entry, SetFigures, Spread, rotated};
+use crate::backend::{Answer, Backend, Unavailable};
+use crate::backends;
+use crate::measure::{self, Effort, Entry, SetFigures, Spread};
+use crate::our_indexes::p2m_options;
 use crate::queries::Queries;
+use crate::rounds::{rotated, thread_seconds};
 use crate::scene::Scene;
 use anyhow::Result;
 use cpu_time::ThreadTime;
@@ -16,108 +18,108 @@ use rayon::prelude::*;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// What to measure besides builds and queries in the box of ten times the size.
+/// The measurements of a study besides builds and queries in the box of ten times the size.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Wanted<'a> {
-    /// Names of contenders.
-    pub(super) contenders: &'a [&'a str],
-    /// Of those that are built once, and asked in the box of ten times the size alone.
+pub(super) struct StudyOptions<'a> {
+    /// The names of the backends.
+    pub(super) backends: &'a [&'a str],
+    /// The names of backends that are built once and queried in the box of ten times the size alone.
     pub(super) more: &'a [&'a str],
-    /// Factors by which boxes of queries are larger than that of the scene.
+    /// The factors by which boxes of queries are larger than that of the scene.
     pub(super) boxes: &'a [f64],
-    /// Numbers of threads.
+    /// The numbers of threads.
     pub(super) threads: &'a [usize],
 }
 
-/// What was measured.
+/// The measurements of a scene.
 pub(super) struct Study {
     pub(super) name: String,
     pub(super) primitives: usize,
-    pub(super) inside: Inside,
-    pub(super) contenders: Vec<Measured>,
-    /// Whether answers of ours were bitwise the same.
+    pub(super) inside: IndexInternals,
+    pub(super) backends: Vec<Measured>,
+    /// Whether the answers of our backends were bitwise equal.
     pub(super) agrees: bool,
 }
 
-/// The P2M index from inside.
-pub(super) struct Inside {
+/// The measurements of the P2M index from inside.
+pub(super) struct IndexInternals {
     pub(super) report: P2mReport,
     pub(super) lists: Option<ListStats>,
-    /// In the box of ten times the size.
+    /// The work of queries in the box of ten times the size.
     pub(super) visits: QueryCost,
-    /// Seconds of stages.
+    /// The seconds of each stage of the build.
     pub(super) stages: Vec<(BuildStage, f64)>,
     pub(super) parts: Vec<(&'static str, usize)>,
     pub(super) breakdown: Breakdown,
 }
 
-/// Nanoseconds of a query.
+/// The nanoseconds of the parts of a query.
 #[derive(Clone, Copy)]
 pub(super) struct Breakdown {
-    /// To find the cell.
+    /// Nanoseconds to find the cell.
     pub(super) locate: f64,
-    /// In all.
-    pub(super) whole: f64,
+    /// Nanoseconds of the query in all.
+    pub(super) total: f64,
 }
 
-/// A contender.
+/// The measurements of a backend.
 pub(super) struct Measured {
     pub(super) name: &'static str,
-    /// Seconds, in the median.
+    /// The median of the build times, in seconds.
     pub(super) build: Option<f64>,
-    /// With the scene that it borrows.
+    /// The bytes of the index and of the scene that it borrows.
     pub(super) bytes: usize,
     /// Nanoseconds of a query in the box of ten times the size.
     pub(super) query: Option<Spread>,
-    /// The same, in the median, for the boxes
+    /// The median nanoseconds of a query, for each box.
     pub(super) boxes: Vec<Option<f64>>,
-    /// and for numbers of threads, of wall time.
+    /// The median nanoseconds of a query by the wall clock, for each number of threads.
     pub(super) threads: Vec<Option<f64>>,
-    /// Why there is nothing of all that.
-    pub(super) absent: Option<Absent>,
+    /// The reason why the backend was not measured.
+    pub(super) absent: Option<Unavailable>,
 }
 
 impl Study {
-    /// Measures a scene, and says so on the standard error.
-    pub(super) fn of(scene: &Scene, wanted: Wanted<'_>, effort: &Effort) -> Result<Self> {
+    /// Measures a scene, with a note on the standard error.
+    pub(super) fn of(scene: &Scene, options: StudyOptions<'_>, effort: &Effort) -> Result<Self> {
         let start = Instant::now();
         let soup = &scene.double;
         let far = QuerySet::Box10.generate(soup, effort.queries, effort.seed);
-        let inside = Inside::of(soup, &far, effort.rounds)?;
+        let inside = IndexInternals::of(soup, &far, effort.rounds)?;
         let named = |names: &[&str]| -> Vec<&'static Backend> {
             backends::ALL.iter().filter(|backend| names.contains(&backend.name)).collect()
         };
-        let mut entries = measure::build_all(scene, &named(wanted.contenders), effort.builds);
+        let mut entries = measure::build_all(scene, &named(options.backends), effort.builds);
         let count = entries.len();
-        entries.extend(measure::build_all(scene, &named(wanted.more), 1));
+        entries.extend(measure::build_all(scene, &named(options.more), 1));
         measure::measure(far, &mut entries, effort.rounds);
         let usual = &mut entries[..count];
-        for scale in wanted.boxes {
+        for scale in options.boxes {
             measure::measure(scaled_box(soup, *scale, effort.queries, effort.seed), usual, effort.rounds);
         }
-        let mut threads = threads(soup, usual, wanted.threads, effort)?;
+        let mut threads = threads(soup, usual, options.threads, effort)?;
         threads.resize(entries.len(), Vec::new());
-        let contenders: Vec<Measured> =
+        let backends: Vec<Measured> =
             entries.iter().zip(threads).map(|(entry, threads)| Measured::of(entry, threads)).collect();
-        // One of ours that is absent does not agree.
-        let is_clean = |set: &Result<SetFigures, Absent>| set.as_ref().is_ok_and(|set| set.agreement.is_clean());
-        let agrees = entries.iter().filter(|entry| entry.backend.ours).all(|entry| entry.sets.iter().all(is_clean));
+        // A backend of ours without an answer does not agree.
+        let is_clean = |set: &Result<SetFigures, Unavailable>| set.as_ref().is_ok_and(|set| set.agreement.is_clean());
+        let agrees = entries.iter().filter(|entry| entry.backend.is_ours).all(|entry| entry.sets.iter().all(is_clean));
         eprintln!("{} primitives of {} in {:.1?}", soup.len(), scene.name, start.elapsed());
-        Ok(Self { name: scene.name.clone(), primitives: soup.len(), inside, contenders, agrees })
+        Ok(Self { name: scene.name.clone(), primitives: soup.len(), inside, backends, agrees })
     }
 
-    /// A contender that was measured, if it could be.
-    pub(super) fn contender(&self, name: &str) -> Option<&Measured> {
-        self.contenders.iter().find(|measured| measured.name == name && measured.absent.is_none())
+    /// Returns the measurements of a backend, unless it is absent.
+    pub(super) fn backend(&self, name: &str) -> Option<&Measured> {
+        self.backends.iter().find(|measured| measured.name == name && measured.absent.is_none())
     }
 
-    /// Its median nanoseconds for a query in the box of ten times the size.
+    /// Returns the median nanoseconds of a backend for a query in the box of ten times the size.
     pub(super) fn query(&self, name: &str) -> Option<f64> {
-        self.contender(name)?.query.map(|spread| spread.median)
+        self.backend(name)?.query.map(|spread| spread.median)
     }
 }
 
-impl Inside {
+impl IndexInternals {
     fn of(soup: &Soup<f64>, queries: &[Point3<f64>], rounds: usize) -> Result<Self> {
         let times = StageTimes::new(|| ThreadTime::now().as_duration());
         let index = P2mIndex::<f64, _>::build_with_progress(soup, &p2m_options(), &|told| {
@@ -136,25 +138,26 @@ impl Inside {
 }
 
 impl Breakdown {
-    /// Locating alone and whole queries in turns.
+    /// Times the location alone and whole queries in turns.
     fn of(index: &P2mIndex<f64, &Soup<f64>>, queries: &[Point3<f64>], rounds: usize) -> Self {
-        let (mut locate, mut whole) = (Vec::new(), Vec::new());
+        let (mut locate, mut total) = (Vec::new(), Vec::new());
         for _ in 0..rounds {
             locate.push(nanoseconds(queries, |query| index.partition().site_of(query)));
-            whole.push(nanoseconds(queries, |query| index.closest_point(query)));
+            total.push(nanoseconds(queries, |query| index.closest_point(query)));
         }
-        let [locate, whole] = [locate, whole].map(|times| Spread::of(&times).map_or(f64::NAN, |spread| spread.median));
-        Self { locate, whole }
+        let [locate, total] = [locate, total].map(|times| Spread::of(&times).map_or(f64::NAN, |spread| spread.median));
+        Self { locate, total }
     }
 }
 
-/// Thread CPU time per query.
+/// Returns thread CPU nanoseconds per query.
 fn nanoseconds<R>(queries: &[Point3<f64>], answer: impl Fn(&Point3<f64>) -> R) -> f64 {
-    let start = ThreadTime::now();
-    for query in queries {
-        black_box(answer(black_box(query)));
-    }
-    start.elapsed().as_secs_f64() * 1e9 / queries.len().max(1) as f64
+    let ((), seconds) = thread_seconds(|| {
+        for query in queries {
+            black_box(answer(black_box(query)));
+        }
+    });
+    seconds * 1e9 / queries.len().max(1) as f64
 }
 
 impl Measured {
@@ -173,15 +176,15 @@ impl Measured {
     }
 }
 
-/// Of each contender the nanoseconds of wall time per query with each number of threads, contenders in turns.
+/// Returns the nanoseconds of wall time per query of each backend with each number of threads, measured in turns.
 fn threads(
     soup: &Soup<f64>,
     entries: &[Entry<'_>],
     counts: &[usize],
     effort: &Effort,
 ) -> Result<Vec<Vec<Option<f64>>>> {
-    /// Queries that a thread takes at a time.
-    const SHARE: usize = 1024;
+    /// The number of queries that a thread takes at a time.
+    const QUERIES_PER_TASK: usize = 1024;
     let queries = Queries::new(QuerySet::Box10.generate(soup, effort.queries, effort.seed));
     let mut medians = vec![Vec::new(); entries.len()];
     for count in counts {
@@ -192,12 +195,12 @@ fn threads(
                 let Ok(index) = &entries[at].index else { continue };
                 let mut answers = vec![Answer::NONE; queries.len()];
                 let start = Instant::now();
-                let share = |(i, answers): (usize, &mut [Answer])| {
-                    index.answer(queries.slice(i * SHARE..i * SHARE + answers.len()), answers)
+                let task = |(i, answers): (usize, &mut [Answer])| {
+                    index.answer(queries.slice(i * QUERIES_PER_TASK..i * QUERIES_PER_TASK + answers.len()), answers)
                 };
-                let done: Result<(), Absent> =
-                    pool.install(|| answers.par_chunks_mut(SHARE).enumerate().try_for_each(share));
-                if done.is_ok() {
+                let outcome: Result<(), Unavailable> =
+                    pool.install(|| answers.par_chunks_mut(QUERIES_PER_TASK).enumerate().try_for_each(task));
+                if outcome.is_ok() {
                     times[at].push(start.elapsed().as_secs_f64() * 1e9 / queries.len().max(1) as f64);
                 }
                 black_box(&answers);

@@ -1,4 +1,4 @@
-//! Tables 1 to 4 and those of Section 5.5, of what was measured.
+//! Formats Tables 1 to 4 and those of Section 5.5 from the measurements.
 
 use super::scenes::stem;
 use super::study::Study;
@@ -6,15 +6,15 @@ use super::surfaces::quality;
 use crate::scene::Scene;
 use p2m_tradeoff::Table;
 
-/// A contender's query in microseconds, with the least and the greatest of all rounds.
+/// Returns the time of a backend's query in microseconds, with the minimum and maximum of all rounds.
 fn query(study: &Study, name: &str) -> String {
-    study.contender(name).and_then(|measured| measured.query).map_or("-".to_owned(), |spread| {
+    study.backend(name).and_then(|measured| measured.query).map_or("-".to_owned(), |spread| {
         let [median, min, max] = [spread.median, spread.min, spread.max].map(|ns| format!("{:.2}", ns / 1e3));
         format!("{median} ({min}-{max})")
     })
 }
 
-/// How many times as fast one is as another.
+/// Returns the ratio of the query times of two backends.
 fn ratio(study: &Study, slower: &str, faster: &str) -> String {
     match (study.query(slower), study.query(faster)) {
         (Some(slower), Some(faster)) => format!("{:.2}", slower / faster),
@@ -22,7 +22,7 @@ fn ratio(study: &Study, slower: &str, faster: &str) -> String {
     }
 }
 
-/// Lists of P2M: ours are of whole triangles.
+/// Formats the lists of the P2M index; a list of ours has whole triangles.
 pub(super) fn lists(studies: &[&Study]) -> String {
     let mut table = Table::new([
         "ours",
@@ -54,7 +54,7 @@ pub(super) fn lists(studies: &[&Study]) -> String {
     table.to_string()
 }
 
-/// Stages of building the P2M index.
+/// Formats the stages of building the P2M index.
 pub(super) fn stages(studies: &[&Study]) -> String {
     let names = ["tree", "delaunay", "balls", "lists", "locator"];
     let head = ["ours, ms"].into_iter().chain(names).chain(["all", "us a primitive"]);
@@ -72,7 +72,7 @@ pub(super) fn stages(studies: &[&Study]) -> String {
     table.to_string()
 }
 
-/// Table 3: contenders, and what the paper's list filter gains.
+/// Formats Table 3: the backends, and the gain of the paper's list filter.
 pub(super) fn queries(studies: &[&Study]) -> String {
     let mut table = Table::new([
         "ours, us a query",
@@ -98,7 +98,7 @@ pub(super) fn queries(studies: &[&Study]) -> String {
     table.to_string()
 }
 
-/// Table 4: pairs of triangulations, bad and good.
+/// Formats Table 4: pairs of bad and good triangulations.
 pub(super) fn triangulations(pairs: &[([Scene; 2], [Study; 2])]) -> String {
     let mut table = Table::new([
         "ours, us a query",
@@ -124,7 +124,7 @@ pub(super) fn triangulations(pairs: &[([Scene; 2], [Study; 2])]) -> String {
     table.to_string()
 }
 
-/// Scenes of other kinds, with their lists.
+/// Formats scenes of other kinds with their lists.
 pub(super) fn others(studies: &[&Study]) -> String {
     let mut table = Table::new([
         "ours, us a query",
@@ -147,7 +147,7 @@ pub(super) fn others(studies: &[&Study]) -> String {
     table.to_string()
 }
 
-/// The parts of the P2M index in memory.
+/// Formats the parts of the P2M index in memory.
 pub(super) fn memory(studies: &[&Study]) -> String {
     let names = ["sites", "locator", "lists", "tree"];
     let head = ["ours"].into_iter().chain(names).chain(["MB", "bytes a primitive"]);
@@ -163,11 +163,11 @@ pub(super) fn memory(studies: &[&Study]) -> String {
     table.to_string()
 }
 
-/// Why contenders are missing.
+/// Returns the reasons why backends are missing.
 pub(super) fn notes<'a>(studies: impl Iterator<Item = &'a Study>) -> String {
     let mut lines: Vec<String> = Vec::new();
     for study in studies {
-        for measured in &study.contenders {
+        for measured in &study.backends {
             if let Some(absent) = &measured.absent {
                 let line = format!("- {}, {}: {}\n", stem(&study.name), measured.name, absent.0);
                 if !lines.contains(&line) {
@@ -176,5 +176,5 @@ pub(super) fn notes<'a>(studies: impl Iterator<Item = &'a Study>) -> String {
             }
         }
     }
-    if lines.is_empty() { "- Every contender could be measured everywhere.\n".to_owned() } else { lines.concat() }
+    if lines.is_empty() { "- Every backend could be measured everywhere.\n".to_owned() } else { lines.concat() }
 }

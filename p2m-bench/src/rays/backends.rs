@@ -1,9 +1,9 @@
-//! Who answers rays.
+//! The list of backends that cast rays.
 
-use super::caster::{Backend, Index, Ours};
-use super::rivals::{parry_double, parry_single};
-use crate::backends::{aabb_options, instruction_set};
-use crate::contender::{Absent, Prepared};
+use super::backend::{OurCaster, RayBackend, RayIndex};
+use super::external::{parry_double, parry_single};
+use crate::backend::{Prepared, Unavailable};
+use crate::our_indexes::{aabb_options, instruction_set};
 use crate::scene::Scene;
 use anyhow::{Result, anyhow};
 use p2m_bvh::AabbTree;
@@ -12,32 +12,36 @@ use p2m_core::{Aabb, BruteForce, BuildIndex, Isa, Soup};
 use p2m_kdop::KdopOptions;
 use p2m_kdop::{Directions, Kdop};
 
-/// Every contender, in the order of the tables.
-pub(crate) const ALL: &[Backend] = &[
-    Backend { name: "aabb", prepare: |s| prepare::<Aabb<f64>>(s, aabb_options(), None), ..OURS },
-    Backend { name: "aabb-avx512", prepare: |s| prepare::<Aabb<f64>>(s, aabb_options(), Some("avx512")), ..OURS },
-    Backend { name: "aabb-avx2", prepare: |s| prepare::<Aabb<f64>>(s, aabb_options(), Some("avx2")), ..OURS },
-    Backend { name: "aabb-portable", prepare: |s| prepare::<Aabb<f64>>(s, aabb_options(), Some("portable")), ..OURS },
-    Backend { name: "kdop-6", prepare: |s| prepare::<Kdop<6>>(s, kdop_options(), None), ..OURS },
-    Backend { name: "kdop-14", prepare: |s| prepare::<Kdop<14>>(s, kdop_options(), None), ..OURS },
-    Backend { name: "kdop-18", prepare: |s| prepare::<Kdop<18>>(s, kdop_options(), None), ..OURS },
-    Backend { name: "kdop-26", prepare: |s| prepare::<Kdop<26>>(s, kdop_options(), None), ..OURS },
-    Backend { name: YARDSTICK, scalar: "f32", prepare: |s| parry_single(s, true) },
-    Backend { name: YARDSTICK_PARAMETER, scalar: "f32", prepare: |s| parry_single(s, false) },
-    Backend { name: "parry3d-f64", prepare: |s| parry_double(s, true), ..OURS },
+/// Every backend, in the order of the tables.
+pub(crate) const ALL: &[RayBackend] = &[
+    RayBackend { name: "aabb", prepare: |s| prepare::<Aabb<f64>>(s, aabb_options(), None), ..OURS },
+    RayBackend { name: "aabb-avx512", prepare: |s| prepare::<Aabb<f64>>(s, aabb_options(), Some("avx512")), ..OURS },
+    RayBackend { name: "aabb-avx2", prepare: |s| prepare::<Aabb<f64>>(s, aabb_options(), Some("avx2")), ..OURS },
+    RayBackend {
+        name: "aabb-portable",
+        prepare: |s| prepare::<Aabb<f64>>(s, aabb_options(), Some("portable")),
+        ..OURS
+    },
+    RayBackend { name: "kdop-6", prepare: |s| prepare::<Kdop<6>>(s, kdop_options(), None), ..OURS },
+    RayBackend { name: "kdop-14", prepare: |s| prepare::<Kdop<14>>(s, kdop_options(), None), ..OURS },
+    RayBackend { name: "kdop-18", prepare: |s| prepare::<Kdop<18>>(s, kdop_options(), None), ..OURS },
+    RayBackend { name: "kdop-26", prepare: |s| prepare::<Kdop<26>>(s, kdop_options(), None), ..OURS },
+    RayBackend { name: YARDSTICK, scalar: "f32", prepare: |s| parry_single(s, true) },
+    RayBackend { name: YARDSTICK_PARAMETER, scalar: "f32", prepare: |s| parry_single(s, false) },
+    RayBackend { name: "parry3d-f64", prepare: |s| parry_double(s, true), ..OURS },
 ];
 
-/// The rival that ratios refer to: it tells triangle, parameter and normal.
+/// The external library that ratios refer to; it returns the triangle, the parameter and the normal.
 pub(crate) const YARDSTICK: &str = "parry3d";
 
-/// The same rival where it tells the parameter only, to which ratios are given as well.
+/// The external library where it returns the parameter alone, to which ratios are given as well.
 pub(crate) const YARDSTICK_PARAMETER: &str = "parry3d-parameter";
 
-/// What entries have in common.
-const OURS: Backend =
-    Backend { name: "", scalar: "f64", prepare: |_| Err(Absent("an entry without a contender".to_owned())) };
+/// The fields that entries have in common.
+const OURS: RayBackend =
+    RayBackend { name: "", scalar: "f64", prepare: |_| Err(Unavailable("an entry without a competitor".to_owned())) };
 
-/// The usual directions, on one thread.
+/// Returns options for default directions on one thread.
 fn kdop_options<const K: usize>() -> KdopOptions<K>
 where
     Directions<K>: Default,
@@ -45,36 +49,36 @@ where
     KdopOptions::default().with_splits(aabb_options())
 }
 
-/// A tree that borrows the scene, with the instruction set of that name or the best one.
+/// Prepares a tree that borrows the scene, with the instruction set of that name or the best one.
 fn prepare<'a, V: Volume + 'a>(
     scene: &'a Scene,
     options: V::Options,
     isa: Option<&str>,
-) -> Result<Prepared<'a, Index<'a>>, Absent> {
+) -> Result<Prepared<'a, RayIndex<'a>>, Unavailable> {
     let isa = instruction_set(isa)?;
     let build = move || {
         let tree = TreeIndex::<f64, &Soup<f64>, V>::build_with(&scene.double, &options);
-        Ok(Index::Ours(Box::new(tree.map_err(|error| Absent(error.to_string()))?.with_isa(isa))))
+        Ok(RayIndex::Ours(Box::new(tree.map_err(|error| Unavailable(error.to_string()))?.with_isa(isa))))
     };
     Ok(Prepared { build: Box::new(build), borrowed: scene.double_bytes })
 }
 
-/// Looks at everything.
-pub(crate) fn brute(scene: &Scene) -> Result<Box<dyn Ours + '_>> {
+/// Builds brute force over a scene.
+pub(crate) fn brute(scene: &Scene) -> Result<Box<dyn OurCaster + '_>> {
     Ok(Box::new(BruteForce::new(&scene.double)?))
 }
 
-/// Every tree with every instruction set of this processor, by their names.
-pub(crate) fn all_trees(scene: &Scene) -> Result<Vec<(String, Box<dyn Ours + '_>)>> {
+/// Builds every tree with every instruction set of this processor, and returns them with their names.
+pub(crate) fn all_trees(scene: &Scene) -> Result<Vec<(String, Box<dyn OurCaster + '_>)>> {
     fn with_each<'a, V: Volume + 'a>(
         name: &str,
         tree: &TreeIndex<f64, &'a Soup<f64>, V>,
-    ) -> impl Iterator<Item = (String, Box<dyn Ours + 'a>)>
+    ) -> impl Iterator<Item = (String, Box<dyn OurCaster + 'a>)>
     where
         TreeIndex<f64, &'a Soup<f64>, V>: Clone,
     {
         let with =
-            move |isa| (format!("{name} with {isa}"), Box::new(tree.clone().with_isa(isa)) as Box<dyn Ours + 'a>);
+            move |isa| (format!("{name} with {isa}"), Box::new(tree.clone().with_isa(isa)) as Box<dyn OurCaster + 'a>);
         Isa::available().into_iter().map(with)
     }
     let soup = &scene.double;
@@ -87,7 +91,7 @@ pub(crate) fn all_trees(scene: &Scene) -> Result<Vec<(String, Box<dyn Ours + '_>
     Ok(all)
 }
 
-/// An entry by its name.
-pub(crate) fn by_name(name: &str) -> Result<&'static Backend> {
-    ALL.iter().find(|backend| backend.name == name).ok_or_else(|| anyhow!("there is no contender {name}"))
+/// Returns the backend of that name.
+pub(crate) fn by_name(name: &str) -> Result<&'static RayBackend> {
+    ALL.iter().find(|backend| backend.name == name).ok_or_else(|| anyhow!("there is no competitor {name}"))
 }

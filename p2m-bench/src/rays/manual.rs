@@ -1,9 +1,9 @@
-//! The tables of rays in the manual: nodes and leaves visited, seconds of four functions.
+//! Redraws the ray tables of the manual: nodes and leaves visited, and seconds of four functions.
 
+use super::backend::{Function, RayIndex};
 use super::backends::by_name;
-use super::caster::{Function, Index};
-use super::measure::{Contender, Figures, first_part, measure, verify};
-use crate::contender::catch;
+use super::measure::{Competitor, Figures, first_chunk, measure, verify};
+use crate::backend::catch;
 use crate::measure::{Effort, Spread};
 use crate::scene::Scene;
 use anyhow::{Result, anyhow};
@@ -16,15 +16,15 @@ use p2m_tradeoff::Table;
 const COLUMNS: [&str; 5] = ["aabb", "kdop-6", "kdop-14", "kdop-18", "kdop-26"];
 const HEAD: [&str; 5] = ["AABB", "6-DOP", "14-DOP", "18-DOP", "26-DOP"];
 
-/// Rays for each primitive, as many as the manual has.
+/// The number of rays for each primitive, which is that of the manual.
 pub(crate) const RAYS_EACH: usize = 20;
 
 /// The manual's numbers of rays, on the gear of 56,700 and on the bunny of 265,088 triangles.
 const CITED_RAYS: [f64; 2] = [1_134_000.0, 5_301_760.0];
-/// Of the gear turned by pi / 4 about both axes, for all intersections.
+/// The manual's nodes visited by all intersections with the gear turned by pi / 4 about both axes.
 const CITED_NODES: [f64; 5] = [675_121_081.0, 675_121_081.0, 380_445_767.0, 328_388_685.0, 292_286_940.0];
 const CITED_LEAVES: [f64; 5] = [168_794_139.0, 168_794_139.0, 73_849_181.0, 53_532_425.0, 42_911_934.0];
-/// Seconds for all rays, in the order of [`Function::ALL`].
+/// The manual's seconds for all rays, in the order of [`Function::ALL`].
 const CITED_SECONDS: [(&str, [[f64; 5]; 4]); 2] = [
     (
         "gear",
@@ -65,20 +65,20 @@ pub(crate) fn print_cited() {
     println!("\n{table}");
 }
 
-/// Prints the table of a scene; whether all trees agree.
+/// Prints the table of a scene, and returns whether all trees agree.
 pub(crate) fn print(scene: &Scene, set: QuerySet, effort: &Effort) -> Result<bool> {
-    let build = |name: &&str| -> Result<Index<'_>> {
+    let build = |name: &&str| -> Result<RayIndex<'_>> {
         let index = (by_name(name)?.prepare)(scene).and_then(|prepared| catch(prepared.build));
         index.map_err(|absent| anyhow!("{name}: {}", absent.0))
     };
     let indexes = COLUMNS.iter().map(build).collect::<Result<Vec<_>>>()?;
-    let rays = first_part(scene, set, effort);
+    let rays = first_chunk(scene, set, effort);
     println!("\n## {}, {} rays from {set}\n", scene.describe(), effort.queries);
     let agreement = verify(scene, &rays)?;
     let mut table = Table::new(std::iter::once("per ray, all intersections").chain(HEAD));
     let works = indexes.iter().filter_map(|index| match index {
-        Index::Ours(index) => Some(index.work(&rays.ours).map(|sum| sum as f64 / rays.len() as f64)),
-        Index::Rival(_) => None,
+        RayIndex::Ours(index) => Some(index.work(&rays.ours).map(|sum| sum as f64 / rays.len() as f64)),
+        RayIndex::External(_) => None,
     });
     let works: Vec<_> = works.collect();
     for (at, name) in ["nodes of eight", "packets", "primitives tested exactly"].into_iter().enumerate() {
@@ -91,15 +91,16 @@ pub(crate) fn print(scene: &Scene, set: QuerySet, effort: &Effort) -> Result<boo
         left_first::<18>(scene, &some),
         left_first::<26>(scene, &some),
     ];
-    for (at, name) in ["binary nodes, the manual's way", "leaves, the manual's way"].into_iter().enumerate() {
+    for (at, name) in ["binary nodes, the manual's traversal", "leaves, the manual's traversal"].into_iter().enumerate()
+    {
         let cells = left_first.iter().map(|work| format!("{:.1}", work[at]));
-        // Boxes are the polytopes of six faces.
+        // A box is the polytope of six faces, so the first value stands in both columns.
         table.push(row(name, cells.clone().take(1).chain(cells)));
     }
     println!("{table}");
-    let ask = |function| indexes.iter().map(move |index| Contender { index, function });
-    let contenders: Vec<_> = Function::ALL.into_iter().flat_map(ask).collect();
-    let figures = measure(scene, set, &contenders, effort);
+    let with_all_trees = |function| indexes.iter().map(move |index| Competitor { index, function });
+    let competitors: Vec<_> = Function::ALL.into_iter().flat_map(with_all_trees).collect();
+    let figures = measure(scene, set, &competitors, effort);
     let mut table = Table::new(std::iter::once("s, all rays").chain(HEAD));
     for (function, figures) in Function::ALL.iter().zip(figures.chunks(COLUMNS.len())) {
         table.push(row(
@@ -120,12 +121,12 @@ pub(crate) fn print(scene: &Scene, set: QuerySet, effort: &Effort) -> Result<boo
     Ok(clean && agreement.is_ok())
 }
 
-/// Nodes and leaves per ray.
+/// Returns the nodes and leaves that the manual's traversal visits per ray.
 fn left_first<const K: usize>(scene: &Scene, rays: &[&Ray]) -> [f64; 2]
 where
     Directions<K>: Default,
 {
-    let tree = LeftFirst::<K>::of_primitives(&scene.double, &Directions::default());
+    let tree = LeftFirst::<K>::from_primitives(&scene.double, &Directions::default());
     let work = tree.along_all(rays.iter().copied());
     [work.nodes, work.leaves].map(|sum| sum as f64 / rays.len() as f64)
 }

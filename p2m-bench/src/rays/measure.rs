@@ -1,53 +1,53 @@
-//! Rounds of rays, contenders taking turns, in thread CPU time, and how their answers compare.
+//! Times rounds of rays in thread CPU time, with the backends taking turns to begin, and compares the answers.
 
+use super::backend::{Function, OurCaster, Outcome, RayIndex, Rays};
 use super::backends::{all_trees, brute};
-use super::caster::{Function, Index, Ours, Outcome, Rays};
-use crate::contender::{Absent, catch};
-use crate::measure::{Effort, rotated};
+use crate::backend::{Unavailable, catch};
+use crate::measure::Effort;
+use crate::rounds::{checksum, rotated, thread_seconds};
 use crate::scene::Scene;
 use anyhow::Result;
-use cpu_time::ThreadTime;
 use p2m_core::Ray;
 use p2m_testkit::queries::QuerySet;
 use std::hint::black_box;
 
-/// Rays are drawn and answered in parts of so many, each from a seed of its own: millions need not be kept.
-const PART: usize = 100_000;
+/// Rays are generated and answered in chunks of this size, each from its own seed, so that millions need not be kept.
+const RAYS_PER_CHUNK: usize = 100_000;
 
-/// So many rays are compared to the last bit with every instruction set,
-const COMPARED: usize = 10_000;
-/// and so many with brute force.
-const COMPARED_BRUTE: usize = 200;
+/// The number of rays that are compared to the last bit with every instruction set.
+const MAX_COMPARED: usize = 10_000;
+/// The number of rays that are compared to the last bit with brute force.
+const MAX_COMPARED_WITH_BRUTE: usize = 200;
 
-/// What of a parameter is rounding where input is, in f32, relative to the parameter and the diagonal of the box: a
-/// thousand units of the last place.
+/// The largest difference of parameters that rounding of the input to f32 explains, relative to the parameter and the
+/// diagonal of the box: a thousand units of the last place.
 pub(crate) const ROUNDING: f64 = 1000.0 / (1u32 << 24) as f64;
 
-/// Somebody who is asked something.
-pub(crate) struct Contender<'a> {
-    /// Who.
-    pub(crate) index: &'a Index<'a>,
-    /// What.
+/// An index together with the function that it is measured with.
+pub(crate) struct Competitor<'a> {
+    /// The index that answers.
+    pub(crate) index: &'a RayIndex<'a>,
+    /// The function that is measured.
     pub(crate) function: Function,
 }
 
-/// How the answers of a contender differ from those of the first one of ours that was asked the same.
+/// The differences between the answers of a competitor and those of our first competitor with the same function.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Differences {
-    /// Rays compared.
+    /// The number of rays that were compared.
     pub(crate) compared: usize,
-    /// Rays of which only the other one found a hit.
+    /// The number of rays for which only the reference found a hit.
     pub(crate) missed: usize,
-    /// Rays of which only this one did.
+    /// The number of rays for which only this competitor found a hit.
     pub(crate) added: usize,
-    /// Ours: other hits than the other one, in whatever bit. Rivals: parameters that differ by more than rounding.
+    /// The number of rays with other hits: in any bit for our indexes, by more than rounding for external libraries.
     pub(crate) other: usize,
-    /// The largest difference of a parameter, relative to itself and the diagonal of the box.
+    /// The largest difference of a parameter, relative to the parameter and the diagonal of the box.
     pub(crate) largest: f64,
 }
 
 impl Differences {
-    /// Whether there are none.
+    /// Returns whether there are no differences.
     pub(crate) fn is_clean(&self) -> bool {
         self.missed + self.added + self.other == 0
     }
@@ -69,112 +69,110 @@ impl Differences {
     }
 }
 
-/// What a contender did.
+/// The measurements of a competitor.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Figures {
-    /// Rays a round.
+    /// The number of rays in a round.
     pub(crate) rays: usize,
-    /// Thread CPU seconds for all rays, of each round.
+    /// Thread CPU seconds for all rays, one value for each round.
     pub(crate) seconds: Vec<f64>,
-    /// Checksum of the answers of each round.
+    /// A checksum of the answers, one value for each round.
     pub(crate) checksums: Vec<u64>,
-    /// Hits of a round.
+    /// The number of hits in a round.
     pub(crate) hits: usize,
-    /// Over all rounds.
+    /// The differences over all rounds.
     pub(crate) differences: Differences,
-    /// Why it did not go on.
-    pub(crate) failure: Option<Absent>,
+    /// The reason why the competitor stopped early.
+    pub(crate) failure: Option<Unavailable>,
 }
 
-/// The rays of each part.
-fn parts(scene: &Scene, set: QuerySet, effort: &Effort) -> impl Iterator<Item = Rays> {
+/// Returns the rays of each chunk.
+fn chunks(scene: &Scene, set: QuerySet, effort: &Effort) -> impl Iterator<Item = Rays> {
     let Effort { queries, seed, .. } = *effort;
-    (0..queries.div_ceil(PART).max(1)).map(move |part| {
-        let count = PART.min(queries - part * PART);
-        Rays::new(set.rays(&scene.double, count, seed.wrapping_add(part as u64)))
+    (0..queries.div_ceil(RAYS_PER_CHUNK).max(1)).map(move |chunk| {
+        let count = RAYS_PER_CHUNK.min(queries - chunk * RAYS_PER_CHUNK);
+        Rays::new(set.rays(&scene.double, count, seed.wrapping_add(chunk as u64)))
     })
 }
 
-/// The rays of the first part.
-pub(crate) fn first_part(scene: &Scene, set: QuerySet, effort: &Effort) -> Rays {
-    parts(scene, set, effort).next().expect("at least one")
+/// Returns the rays of the first chunk.
+pub(crate) fn first_chunk(scene: &Scene, set: QuerySet, effort: &Effort) -> Rays {
+    chunks(scene, set, effort).next().expect("at least one")
 }
 
-/// Asks all contenders, who begin a part in turn.
-pub(crate) fn measure(scene: &Scene, set: QuerySet, contenders: &[Contender<'_>], effort: &Effort) -> Vec<Figures> {
-    let mut all = vec![Figures::default(); contenders.len()];
+/// Measures all competitors, which take turns to begin a chunk.
+pub(crate) fn measure(scene: &Scene, set: QuerySet, competitors: &[Competitor<'_>], effort: &Effort) -> Vec<Figures> {
+    let mut all = vec![Figures::default(); competitors.len()];
     for round in 0..effort.rounds {
         for figures in &mut all {
             (figures.rays, figures.hits) = (0, 0);
             figures.seconds.push(0.0);
             figures.checksums.push(0);
         }
-        for (part, rays) in parts(scene, set, effort).enumerate() {
-            let mut outcomes = vec![Vec::new(); contenders.len()];
-            for at in rotated(contenders.len(), round + part) {
+        for (chunk, rays) in chunks(scene, set, effort).enumerate() {
+            let mut outcomes = vec![Vec::new(); competitors.len()];
+            for at in rotated(competitors.len(), round + chunk) {
                 if all[at].failure.is_none() {
-                    outcomes[at] = ask(&contenders[at], &rays, &mut all[at]);
+                    outcomes[at] = answer_chunk(&competitors[at], &rays, &mut all[at]);
                 }
             }
-            compare(scene, contenders, &outcomes, &mut all);
+            compare(scene, competitors, &outcomes, &mut all);
         }
     }
     all
 }
 
-/// Asks one of them and adds to its last round.
-fn ask(contender: &Contender<'_>, rays: &Rays, figures: &mut Figures) -> Vec<Outcome> {
+/// Lets one competitor answer a chunk, and adds the cost to its last round.
+fn answer_chunk(competitor: &Competitor<'_>, rays: &Rays, figures: &mut Figures) -> Vec<Outcome> {
     let mut outcomes = vec![Outcome::NONE; rays.len()];
-    let start = ThreadTime::now();
-    let end = catch(|| {
-        match contender.index {
-            Index::Ours(index) => index.answer(contender.function, black_box(rays), &mut outcomes),
-            Index::Rival(index) => index.first(black_box(rays), &mut outcomes),
-        }
-        Ok(())
+    let (outcome, elapsed) = thread_seconds(|| {
+        catch(|| {
+            match competitor.index {
+                RayIndex::Ours(index) => index.answer(competitor.function, black_box(rays), &mut outcomes),
+                RayIndex::External(index) => index.first(black_box(rays), &mut outcomes),
+            }
+            Ok(())
+        })
     });
-    let elapsed = start.elapsed().as_secs_f64();
     black_box(&outcomes);
-    figures.failure = end.err();
+    figures.failure = outcome.err();
     figures.rays += rays.len();
     figures.hits += outcomes.iter().map(|outcome| outcome.hits).sum::<usize>();
     if let (Some(seconds), Some(sum)) = (figures.seconds.last_mut(), figures.checksums.last_mut()) {
         *seconds += elapsed;
-        *sum = outcomes.iter().fold(*sum, |sum, outcome| {
-            let bits = outcome.parameter.to_bits() ^ outcome.hits as u64;
-            (sum ^ bits).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(23) ^ outcome.id as u64
-        });
+        let answers = outcomes.iter().map(|o| (o.parameter.to_bits() ^ o.hits as u64, o.id as u64));
+        *sum = checksum(*sum, answers);
     }
     outcomes
 }
 
-fn compare(scene: &Scene, contenders: &[Contender<'_>], outcomes: &[Vec<Outcome>], all: &mut [Figures]) {
-    let is_ours = |contender: &Contender<'_>| matches!(contender.index, Index::Ours(_));
+fn compare(scene: &Scene, competitors: &[Competitor<'_>], outcomes: &[Vec<Outcome>], all: &mut [Figures]) {
+    let is_ours = |competitor: &Competitor<'_>| matches!(competitor.index, RayIndex::Ours(_));
     let diagonal = scene.diagonal();
-    for ((contender, own), figures) in contenders.iter().zip(outcomes).zip(all) {
-        let same = |(other, _): &(&Contender<'_>, _)| is_ours(other) && other.function == contender.function;
-        if let Some((_, expected)) = contenders.iter().zip(outcomes).find(same) {
-            for (outcome, expected) in own.iter().zip(expected) {
-                figures.differences.add(outcome, expected, is_ours(contender), diagonal);
+    for ((competitor, own_outcomes), figures) in competitors.iter().zip(outcomes).zip(all) {
+        let same = |(other, _): &(&Competitor<'_>, _)| is_ours(other) && other.function == competitor.function;
+        if let Some((_, expected)) = competitors.iter().zip(outcomes).find(same) {
+            for (outcome, expected) in own_outcomes.iter().zip(expected) {
+                figures.differences.add(outcome, expected, is_ours(competitor), diagonal);
             }
         }
     }
 }
 
-/// Compares first and all hits of every tree with every instruction set to the last bit, on some of the rays; says how
-/// many rays were compared, or names a tree and a ray that differ.
+/// Compares the first hit and all hits of every tree with every instruction set to the last bit, on a sample of the
+/// rays. Returns how many rays were compared, or names a tree and a ray that differ.
 pub(crate) fn verify(scene: &Scene, rays: &Rays) -> Result<std::result::Result<String, String>> {
-    Ok(verify_trees(&*brute(scene)?, &all_trees(scene)?, &rays.ours[..rays.len().min(COMPARED)]))
+    Ok(verify_trees(&*brute(scene)?, &all_trees(scene)?, &rays.ours[..rays.len().min(MAX_COMPARED)]))
 }
 
 fn verify_trees(
-    brute: &dyn Ours,
-    trees: &[(String, Box<dyn Ours + '_>)],
+    brute: &dyn OurCaster,
+    trees: &[(String, Box<dyn OurCaster + '_>)],
     rays: &[Ray],
 ) -> std::result::Result<String, String> {
-    let few = &rays[..rays.len().min(COMPARED_BRUTE)];
-    let mut expected: Vec<_> = few.iter().map(|ray| brute.hits(ray)).collect();
-    expected.extend(trees.first().iter().flat_map(|(_, tree)| rays[few.len()..].iter().map(|ray| tree.hits(ray))));
+    let sample = &rays[..rays.len().min(MAX_COMPARED_WITH_BRUTE)];
+    let mut expected: Vec<_> = sample.iter().map(|ray| brute.hits(ray)).collect();
+    expected.extend(trees.first().iter().flat_map(|(_, tree)| rays[sample.len()..].iter().map(|ray| tree.hits(ray))));
     for (name, tree) in trees {
         for (ray, expected) in rays.iter().zip(&expected) {
             let found = tree.hits(ray);
@@ -187,7 +185,7 @@ fn verify_trees(
         "First and all hits of {} rays are the same bits in {} trees, those of {} rays also by brute force.",
         rays.len(),
         trees.len(),
-        few.len()
+        sample.len()
     ))
 }
 
@@ -195,11 +193,11 @@ fn verify_trees(
 mod tests {
     use super::super::backends::ALL;
     use super::*;
-    use crate::contender::Prepared;
+    use crate::backend::Prepared;
     use nalgebra::Point3;
     use p2m_core::{BruteForce, Element, Hit, RayQuery, Soup};
 
-    /// Right but for the parameters.
+    /// An index whose answers are right apart from the parameters.
     struct Wrong<'a>(BruteForce<&'a Soup<f64>>);
 
     impl Wrong<'_> {
@@ -209,7 +207,7 @@ mod tests {
         }
     }
 
-    impl Ours for Wrong<'_> {
+    impl OurCaster for Wrong<'_> {
         fn answer(&self, _: Function, rays: &Rays, outcomes: &mut [Outcome]) {
             for (ray, outcome) in rays.ours.iter().zip(outcomes) {
                 *outcome = self.0.first_intersection(ray).map(Self::moved).map_or(Outcome::NONE, |hit| Outcome {
@@ -260,28 +258,28 @@ mod tests {
     }
 
     #[test]
-    fn parts_are_all_rays_and_different_ones() {
+    fn chunks_are_all_rays_and_different_ones() {
         let scene = scene(&TRIANGLES);
-        let effort = Effort { queries: 2 * PART + 10, ..EFFORT };
-        let parts: Vec<_> = parts(&scene, QuerySet::Box1, &effort).collect();
-        assert_eq!(parts.iter().map(Rays::len).collect::<Vec<_>>(), [PART, PART, 10]);
-        assert_ne!(parts[0].ours[..10], parts[1].ours[..10]);
-        assert_eq!(first_part(&scene, QuerySet::Box1, &effort).ours, parts[0].ours);
+        let effort = Effort { queries: 2 * RAYS_PER_CHUNK + 10, ..EFFORT };
+        let chunks: Vec<_> = chunks(&scene, QuerySet::Box1, &effort).collect();
+        assert_eq!(chunks.iter().map(Rays::len).collect::<Vec<_>>(), [RAYS_PER_CHUNK, RAYS_PER_CHUNK, 10]);
+        assert_ne!(chunks[0].ours[..10], chunks[1].ours[..10]);
+        assert_eq!(first_chunk(&scene, QuerySet::Box1, &effort).ours, chunks[0].ours);
     }
 
-    /// All contenders over a scene of these elements, asked for the first hit; those that are absent are left out.
+    /// Measures the first hit of all backends over a scene of these elements; absent backends are left out.
     fn measured(elements: &[Element], check: impl Fn(&str, bool, &Figures)) {
         let scene = scene(elements);
-        let built = |backend: &super::super::caster::Backend| {
+        let built = |backend: &super::super::backend::RayBackend| {
             let Prepared { build, .. } = (backend.prepare)(&scene).ok()?;
             Some((backend.name, build().unwrap()))
         };
         let indexes: Vec<_> = ALL.iter().filter_map(built).collect();
-        let contenders: Vec<_> =
-            indexes.iter().map(|(_, index)| Contender { index, function: Function::First }).collect();
-        let figures = measure(&scene, QuerySet::Box1, &contenders, &EFFORT);
+        let competitors: Vec<_> =
+            indexes.iter().map(|(_, index)| Competitor { index, function: Function::First }).collect();
+        let figures = measure(&scene, QuerySet::Box1, &competitors, &EFFORT);
         for ((name, index), figures) in indexes.iter().zip(&figures) {
-            check(name, matches!(index, Index::Ours(_)), figures);
+            check(name, matches!(index, RayIndex::Ours(_)), figures);
         }
     }
 
@@ -297,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn rivals_are_absent_where_there_is_more() {
+    fn libraries_are_absent_where_there_is_more() {
         measured(&[TRIANGLES[0], Element::Segment([2, 3])], |name, ours, figures| {
             assert!(ours && figures.differences.is_clean(), "{name}");
         });
@@ -308,19 +306,19 @@ mod tests {
         let scene = scene(&TRIANGLES);
         let wrong = || Wrong(BruteForce::new(&scene.double).unwrap());
         let indexes = [
-            Index::Ours(brute(&scene).unwrap()),
-            Index::Ours(all_trees(&scene).unwrap().remove(0).1),
-            Index::Ours(Box::new(wrong())),
+            RayIndex::Ours(brute(&scene).unwrap()),
+            RayIndex::Ours(all_trees(&scene).unwrap().remove(0).1),
+            RayIndex::Ours(Box::new(wrong())),
         ];
         for function in Function::ALL {
-            let contenders: Vec<_> = indexes.iter().map(|index| Contender { index, function }).collect();
-            let figures = measure(&scene, QuerySet::Box1, &contenders, &EFFORT);
+            let competitors: Vec<_> = indexes.iter().map(|index| Competitor { index, function }).collect();
+            let figures = measure(&scene, QuerySet::Box1, &competitors, &EFFORT);
             assert!(figures[..2].iter().all(|figures| figures.differences.is_clean()), "{function:?}");
             assert!(!figures[2].differences.is_clean(), "{function:?}");
         }
-        let rays = first_part(&scene, QuerySet::Box1, &EFFORT);
+        let rays = first_chunk(&scene, QuerySet::Box1, &EFFORT);
         assert!(verify(&scene, &rays).unwrap().is_ok());
-        let trees: [(String, Box<dyn Ours + '_>); 1] = [("wrong".into(), Box::new(wrong()))];
+        let trees: [(String, Box<dyn OurCaster + '_>); 1] = [("wrong".into(), Box::new(wrong()))];
         assert!(verify_trees(&*brute(&scene).unwrap(), &trees, &rays.ours).is_err());
     }
 }

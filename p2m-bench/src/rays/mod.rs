@@ -1,12 +1,12 @@
-//! `p2m-bench ray`: rays against parry, and the figures of rays in the manual of CGAL's k-DOP tree, redrawn.
+//! `p2m-bench ray`: compares ray casting with parry, and redraws the ray figures in the manual of CGAL's k-DOP tree.
 //!
-//! Rays begin at a query set and go in directions that are evenly distributed on the sphere.
+//! Rays begin at the points of a query set and have directions that are evenly distributed on the sphere.
 
+mod backend;
 mod backends;
-mod caster;
+mod external;
 pub(crate) mod manual;
 mod measure;
-mod rivals;
 pub(crate) mod versus;
 
 pub(crate) use backends::ALL;

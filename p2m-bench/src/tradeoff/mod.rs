@@ -1,4 +1,5 @@
-//! `p2m-bench report`: speed against accuracy of all backends and settings, as one page with its plots and a record.
+//! `p2m-bench report`: compares speed with accuracy for all backends and settings, and writes a page, plots and a
+//! record.
 
 mod indexes;
 mod profile;
@@ -16,29 +17,29 @@ use profile::{FULL, Profile, QUICK, SETS, about};
 use std::path::Path;
 use std::time::Instant;
 
-/// Of all query sets.
+/// The seed of all query sets.
 const SEED: u64 = 1;
 
-/// Measures everything and writes report.html, report.csv and the folder report into a folder. Whether all promises were
-/// kept.
+/// Measures everything and writes report.html, report.csv and the folder `report` into a folder. Returns whether all
+/// promises were kept.
 pub(crate) fn write(models: &Path, quick: bool, out: &Path, provenance: &Provenance) -> Result<bool> {
     let (profile, option) = if quick { (&QUICK, " --quick") } else { (&FULL, "") };
-    // Folders are nobody's concern.
+    // The command on the page has no folders, because they are those of one machine.
     let provenance = Provenance { command: format!("p2m-bench report{option}"), ..provenance.clone() };
     write_profile(profile, models, out, &provenance)
 }
 
 fn write_profile(profile: &Profile, models: &Path, out: &Path, provenance: &Provenance) -> Result<bool> {
     let start = Instant::now();
-    // What cannot be read is to be known before anything is measured.
-    let scenes = profile.scenes.iter().map(|place| place.read(models)).collect::<Result<Vec<Scene>>>()?;
+    // Scenes that cannot be read are reported before anything is measured.
+    let scenes = profile.scenes.iter().map(|source| source.read(models)).collect::<Result<Vec<Scene>>>()?;
     let folder = out.join("report");
     std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
     let clock = clock_nanoseconds();
     let mut sweeps = sweeps::sizes(profile, SEED)?;
     let mut figures = Vec::new();
-    for (scene, place) in scenes.iter().zip(profile.scenes) {
-        let (measured, threads) = measure_scene(scene, place.about, profile, figures.is_empty())?;
+    for (scene, source) in scenes.iter().zip(profile.scenes) {
+        let (measured, threads) = measure_scene(scene, source.about, profile, figures.is_empty())?;
         figures.push(measured);
         sweeps.extend(threads);
     }
@@ -79,7 +80,7 @@ fn write_profile(profile: &Profile, models: &Path, out: &Path, provenance: &Prov
     Ok(broken == 0)
 }
 
-/// Everything about a scene, which is printed as well; with threads if wanted.
+/// Measures a scene, with threads if wanted, and prints the results.
 fn measure_scene(
     scene: &Scene,
     special: &str,
@@ -118,7 +119,7 @@ mod tests {
     #[test]
     #[ignore = "deep: the page measures every setting of every backend"]
     fn page_record_and_plots_are_written() {
-        let least = Profile {
+        let minimal = Profile {
             scenes: &QUICK.scenes[2..],
             queries: 100,
             builds: 1,
@@ -128,7 +129,8 @@ mod tests {
         };
         let folder = tempfile::tempdir().unwrap();
         let kept =
-            write_profile(&least, Path::new("nowhere"), folder.path(), &crate::provenance(Some("test"))).unwrap();
+            write_profile(&minimal, Path::new("nowhere"), folder.path(), &crate::report::provenance(Some("test")))
+                .unwrap();
         assert!(kept);
         let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
         for word in ["knot and cables", "Threads", "Time per query over size", "0 of "] {

@@ -1,4 +1,4 @@
-//! Which scenes are measured, and how much.
+//! The scenes and the amount of work of the page.
 
 use crate::scene::Scene;
 use anyhow::Result;
@@ -9,45 +9,45 @@ use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Effort;
 use std::path::Path;
 
-/// A scene, and what is special about it.
-pub(super) struct Place {
-    /// The name of a file among the models, or of what is generated.
+/// The source of a scene, and a remark about it.
+pub(super) struct SceneSource {
+    /// The name of a file among the models, or of a generated scene.
     name: &'static str,
-    /// In place of a file that is not there, what is generated.
+    /// The generated scene that stands in for a missing file.
     otherwise: &'static str,
-    /// For the page.
+    /// The remark on the page.
     pub(super) about: &'static str,
 }
 
-/// What is measured.
+/// The measurements of the page.
 pub(super) struct Profile {
-    /// Scenes; the first is asked by several threads as well.
-    pub(super) scenes: &'static [Place],
-    /// Queries of a set.
+    /// The scenes; the first one is queried by several threads as well.
+    pub(super) scenes: &'static [SceneSource],
+    /// The number of queries in a set.
     pub(super) queries: usize,
-    /// Builds of each index.
+    /// The number of times that each index is built.
     pub(super) builds: usize,
-    /// Rounds of queries.
+    /// The rounds of queries.
     pub(super) effort: Effort,
-    /// Numbers of triangles of the torus knot that is swept.
+    /// The numbers of triangles of the torus knot that is swept.
     pub(super) sizes: &'static [u32],
-    /// Queries of a batch on several threads.
+    /// The number of queries in a batch on several threads.
     pub(super) batch: usize,
 }
 
-/// The sets of queries.
+/// The query sets of the page.
 pub(super) const SETS: [QuerySet; 4] = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface];
 
-/// What a set is, in a sentence.
+/// Describes a query set in a sentence.
 pub(super) fn about(set: QuerySet) -> &'static str {
     match set {
         QuerySet::Box10 => "Uniform in the box of the scene scaled by 10: mostly far away.",
         QuerySet::Box1 => "Uniform in the box of the scene scaled by 1.05: as on a grid around it.",
         QuerySet::Near => {
-            "Random places of the scene, moved off it along the normal by 1 % of the diagonal of its box (the standard deviation of a normal distribution)."
+            "Random points of the scene, moved off it along the normal by 1 % of the diagonal of its box (the standard deviation of a normal distribution)."
         }
         QuerySet::Surface => {
-            "Random places of the scene itself: distances are nothing but roundings, and errors to be read in u M."
+            "Random points of the scene itself: distances are roundings only, and errors are given in u M."
         }
         _ => "A set of the harness.",
     }
@@ -58,35 +58,38 @@ const TORUS: &str = "torus knot";
 const SIZES: &str = "mixed sizes";
 const GEAR: &str = "skewed gear, turned";
 
-const DRAGON: Place =
-    Place { name: "dragon_100k.obj", otherwise: TORUS, about: "A scanned figure: small triangles of even size." };
-const WIREFRAME: Place = Place {
+const DRAGON: SceneSource =
+    SceneSource { name: "dragon_100k.obj", otherwise: TORUS, about: "A scanned figure: small triangles of even size." };
+const WIREFRAME: SceneSource = SceneSource {
     name: "mixed_armadillo_camel_wireframe.obj",
     otherwise: SIZES,
     about: "Triangles and segments in one scene: a scanned figure, and the edges of another one.",
 };
-const CARRIED: Place =
-    Place { name: KNOT, otherwise: KNOT, about: "Generated: a tube of triangles with cables of segments around it." };
+const CARRIED: SceneSource = SceneSource {
+    name: KNOT,
+    otherwise: KNOT,
+    about: "Generated: a tube of triangles with cables of segments around it.",
+};
 
-/// What the whole page has, which is docs/report.html unless another folder is named.
+/// The measurements of the whole page, which is docs/report.html unless another folder is named.
 pub(super) const FULL: Profile = Profile {
     scenes: &[
         DRAGON,
-        Place { name: "dragon_871k.ply", otherwise: TORUS, about: "The same figure in full resolution." },
+        SceneSource { name: "dragon_871k.ply", otherwise: TORUS, about: "The same figure in full resolution." },
         WIREFRAME,
         CARRIED,
-        Place {
+        SceneSource {
             name: "gear_skewed_57k_rotated.ply",
             otherwise: GEAR,
             about: "Long, thin triangles that lie askew: hard for boxes along the axes.",
         },
-        Place {
+        SceneSource {
             name: "thingi10k_1514499_slivers.stl",
             otherwise: GEAR,
             about: "A part from a printing site: most of its triangles are slivers.",
         },
-        Place { name: "political_borders_lines.obj", otherwise: SIZES, about: "Segments alone." },
-        Place {
+        SceneSource { name: "political_borders_lines.obj", otherwise: SIZES, about: "Segments alone." },
+        SceneSource {
             name: "rotterdam_city_far_from_origin.obj",
             otherwise: TORUS,
             about: "A city hundreds of kilometres from the origin of its coordinates.",
@@ -99,7 +102,7 @@ pub(super) const FULL: Profile = Profile {
     batch: 1_000_000,
 };
 
-/// The same page in less time, with less in it.
+/// A profile of the whole page with fewer scenes and queries.
 pub(super) const QUICK: Profile = Profile {
     scenes: &[DRAGON, WIREFRAME, CARRIED],
     queries: 15_000,
@@ -109,15 +112,15 @@ pub(super) const QUICK: Profile = Profile {
     batch: 100_000,
 };
 
-impl Place {
-    /// The scene: of the models if it is there.
+impl SceneSource {
+    /// Reads the scene from the models, or generates its replacement if the file is missing.
     pub(super) fn read(&self, models: &Path) -> Result<Scene> {
         let path = models.join(self.name);
         if path.is_file() { Scene::read(&path) } else { generated(self.otherwise) }
     }
 }
 
-/// A scene that is made.
+/// Generates the scene of that name.
 fn generated(name: &str) -> Result<Scene> {
     let soup = match name {
         TORUS => torus_knot(&TorusKnot::default())?,
@@ -128,9 +131,9 @@ fn generated(name: &str) -> Result<Scene> {
     Scene::new(name.to_owned(), soup)
 }
 
-/// A torus knot of about so many triangles, with even ones.
+/// Generates a torus knot of about `triangles` triangles of even shape.
 pub(super) fn knot_of(triangles: u32) -> Result<Scene> {
-    // The usual knot has rings and sides in the ratio of 16 to 1 or so, and two triangles for each of both.
+    // The default knot has about 16 times as many rings as sides, and two triangles for each ring and side.
     let sides = (triangles / 32).isqrt().max(3);
     let soup = torus_knot(&TorusKnot::default().with_rings(triangles / 2 / sides).with_sides(sides))?;
     Scene::new(format!("torus knot of {}", soup.triangles().len()), soup)
@@ -142,8 +145,8 @@ mod tests {
 
     #[test]
     fn without_models_there_are_scenes_all_the_same() {
-        let read = |place: &Place| place.read(Path::new("nowhere")).unwrap();
-        let names: Vec<String> = QUICK.scenes.iter().map(|place| read(place).name).collect();
+        let read = |source: &SceneSource| source.read(Path::new("nowhere")).unwrap();
+        let names: Vec<String> = QUICK.scenes.iter().map(|source| read(source).name).collect();
         assert_eq!(names, [TORUS, SIZES, KNOT]);
         assert!(SETS.iter().all(|set| about(*set).len() > 20));
     }

@@ -1,4 +1,4 @@
-//! How times grow with size, and what more threads are worth.
+//! Measures how times grow with size, and the speed-up of several threads.
 
 use super::indexes::{Index, build_all, entrants};
 use super::profile::{Profile, knot_of};
@@ -10,10 +10,10 @@ use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::page::Sweep;
 use p2m_tradeoff::{Spread, measure, rotated};
 
-/// Queries in the box of the scene.
+/// The query set of the sweeps, in the box of the scene.
 const SET: QuerySet = QuerySet::Box1;
 
-/// Time per query, to build, and memory over the number of triangles.
+/// Measures the time per query, the build time and the memory over the number of triangles.
 pub(super) fn sizes(profile: &Profile, seed: u64) -> Result<Vec<Sweep>> {
     let abouts = [
         ("Time per query over size", "ns per query", "Default settings, one thread."),
@@ -22,7 +22,7 @@ pub(super) fn sizes(profile: &Profile, seed: u64) -> Result<Vec<Sweep>> {
     ];
     let mut sweeps = abouts.map(|(title, measured, about)| Sweep {
         title: title.to_owned(),
-        about: format!("A generated torus knot in several resolutions, asked about places in its box. {about}"),
+        about: format!("A generated torus knot in several resolutions, queried in its box. {about}"),
         axes: ["triangles", measured],
         lines: Vec::new(),
     });
@@ -34,7 +34,7 @@ pub(super) fn sizes(profile: &Profile, seed: u64) -> Result<Vec<Sweep>> {
         let curves = measure(&entrants(&indexes, true), &Queries::new(queries), &truths, &profile.effort, &|_| ());
         for curve in &curves {
             let point = &curve.points[0];
-            // Less than a byte for each primitive is nothing that grows with them.
+            // Memory below one byte per primitive does not grow with the scene and is left out.
             let bytes = point.build.bytes_each.filter(|bytes| *bytes >= 1.0);
             let figures = [Some(point.nanoseconds.median), Some(point.build.seconds), bytes];
             for (sweep, figure) in sweeps.iter_mut().zip(figures) {
@@ -47,23 +47,23 @@ pub(super) fn sizes(profile: &Profile, seed: u64) -> Result<Vec<Sweep>> {
     Ok(sweeps.into())
 }
 
-/// Time of batches on several threads, by the wall clock.
+/// Measures the wall time of batches on several threads.
 pub(super) fn threads(scene: &Scene, indexes: &[Index<'_>], profile: &Profile, seed: u64) -> Result<Sweep> {
     let queries = Queries::new(SET.generate(&scene.double, profile.batch, seed));
     let count = queries.len();
     let mut sweep = Sweep {
         title: "Threads".to_owned(),
         about: format!(
-            "{}: batches of {count} places in its box (p2m_core::batch, default options: reordered, with hints), wall time, medians of {} \
-             rounds in turns. Brute force and rivals have no batches here.",
+            "{}: batches of {count} queries in its box (p2m_core::batch, default options: reordered, with hints), wall time, medians of {} \
+             rounds in turns. Brute force and other libraries have no batches here.",
             scene.name, profile.effort.rounds
         ),
         axes: ["threads", "ns per query, wall time"],
         lines: Vec::new(),
     };
-    let ours: Vec<_> = indexes.iter().filter(|index| index.candidate.varied).collect();
-    let most = std::thread::available_parallelism().map_or(1, usize::from);
-    for threads in (0..usize::BITS).map(|i| 1 << i).take_while(|threads: &usize| *threads <= most) {
+    let ours: Vec<_> = indexes.iter().filter(|index| index.candidate.has_settings).collect();
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    for threads in (0..usize::BITS).map(|i| 1 << i).take_while(|threads: &usize| *threads <= cores) {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
         let mut times = vec![Vec::new(); ours.len()];
         for round in 0..profile.effort.rounds {

@@ -1,4 +1,4 @@
-//! What is true of queries, by rational arithmetic.
+//! Computes true distances by rational arithmetic.
 
 use crate::scene::Scene;
 use nalgebra::Point3;
@@ -8,11 +8,11 @@ use p2m_testkit::oracle::Distance;
 use p2m_tradeoff::Truth;
 use rayon::prelude::*;
 
-/// What the page says about it.
+/// The remark of the page about true distances.
 pub(super) const ABOUT: &str =
     "The truth is computed in rational arithmetic, without rounding, for the primitive that is nearest for certain.";
 
-/// The true distances of queries, on all cores.
+/// Returns the true distances of queries, computed on all cores.
 #[allow(clippy::cast_possible_truncation, reason = "ids are below 2^30")]
 pub(super) fn truths(scene: &Scene, queries: &[Point3<f64>]) -> Vec<Truth> {
     let tree = AabbTree::build(&scene.double, &Default::default()).expect("a scene is finite");
@@ -23,7 +23,7 @@ pub(super) fn truths(scene: &Scene, queries: &[Point3<f64>]) -> Vec<Truth> {
         let vertices: Vec<[f64; 3]> = shape.vertices().iter().map(|vertex| vertex.coords.into()).collect();
         let exact = Distance::new(query.coords.into(), &vertices);
         let [distance, rest] = exact.length();
-        Truth { distance, rest, reach: exact.reach(), id: id.index() as u32 }
+        Truth { distance, rest, reach: exact.max_vertex_distance(), id: id.index() as u32 }
     };
     queries.par_iter().map(truth).collect()
 }

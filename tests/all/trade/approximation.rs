@@ -1,5 +1,5 @@
-//! What approximate answers promise, for every backend, option and scalar: the error that was asked for, a lower bound that
-//! is not above the distance, and the exact answer wherever the option leaves nothing to give up.
+//! Checks the promises of approximate answers for every backend, option and scalar: the requested error, a lower bound
+//! that does not exceed the distance, and the exact answer wherever the option allows no error.
 //!
 //! `P2M_DEEP=200 cargo test --profile deep --test all approximate` checks more than ten million answers.
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
@@ -11,23 +11,19 @@ use p2m::{
     AabbTree, BruteForce, BuildIndex, CertifiedQuery, Closest, ClosestPoint, KdopTree, OctreeIndex, P2mIndex,
     Primitive, PrimitiveSet, QueryOptions, Real, Soup,
 };
+use p2m_testkit::near_check::compared_fields;
 use p2m_testkit::oracle::Distance;
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS, narrow};
 use p2m_testkit::{amount, cases};
 use rand::{Rng, RngExt};
 use std::sync::Mutex;
 
-/// Scales of scenes, of which the last two are none of f32.
+/// The exponents of the scales of scenes; the last two exceed the range of f32.
 const EXPONENTS: [i32; 3] = [0, -350, 450];
 
 /// An index with counters.
 trait Index<T: Real>: ClosestPoint<T> + Inspect<T> + Sync {}
 impl<T: Real, I: ClosestPoint<T> + Inspect<T> + Sync> Index<T> for I {}
-
-/// All but the certified bound.
-fn known<T: Real>(c: &Closest<T>) -> impl PartialEq + std::fmt::Debug + use<T> {
-    (c.primitive, c.distance, c.point, c.feature, c.barycentric)
-}
 
 struct Case<'a, T: Real> {
     soup: &'a Soup<T>,
@@ -35,21 +31,26 @@ struct Case<'a, T: Real> {
     index: &'a dyn Index<T>,
     query: Point3<T>,
     exact: Closest<T>,
-    /// The same for certain.
+    /// The exact answer to the same query.
     truth: Closest<T>,
-    /// How many lower bounds were so close that only rational arithmetic could tell.
+    /// The number of lower bounds so close that only rational arithmetic could decide.
     compared: &'a mut usize,
     checked: &'a mut usize,
 }
 
 impl<T: Real> Case<'_, T> {
-    /// What holds for every answer.
-    fn ask(&mut self, options: &QueryOptions<T>) -> Closest<T> {
+    /// Queries the index and checks the promises of every answer.
+    fn checked_answer(&mut self, options: &QueryOptions<T>) -> Closest<T> {
         let found = self.index.closest_point_with(&self.query, options).expect("there is something");
-        let say = || format!("{}, {options:?} at {:?}: {found:?}, not {:?}", self.name, self.query, self.exact);
-        assert!(found.lower_bound <= self.exact.distance && found.distance >= self.exact.distance, "{}", say());
-        let own = self.soup.get(found.primitive).project(&self.query);
-        assert_eq!(T::of_f64(own.key.distance()), found.distance, "{}: the distance of another primitive", say());
+        let context = || format!("{}, {options:?} at {:?}: {found:?}, not {:?}", self.name, self.query, self.exact);
+        assert!(found.lower_bound <= self.exact.distance && found.distance >= self.exact.distance, "{}", context());
+        let projection = self.soup.get(found.primitive).project(&self.query);
+        assert_eq!(
+            T::of_f64(projection.key.distance()),
+            found.distance,
+            "{}: the distance of another primitive",
+            context()
+        );
         *self.checked += 1;
         if found.lower_bound > self.truth.lower_bound {
             *self.compared += 1;
@@ -57,37 +58,41 @@ impl<T: Real> Case<'_, T> {
                 .map(|v| v.map(|x| x.to_f64()).coords.into())
                 .collect();
             let distance = Distance::new(self.query.map(|x| x.to_f64()).coords.into(), &vertices);
-            assert!(distance.is_at_least(found.lower_bound.to_f64()), "{}: the bound is too large", say());
+            assert!(distance.is_at_least(found.lower_bound.to_f64()), "{}: the bound is too large", context());
         }
         found
     }
 
     fn check(&mut self) {
-        let usual = QueryOptions::default();
+        let defaults = QueryOptions::default();
         let exact = self.exact;
         let u = T::UNIT_ROUNDOFF;
         let (distance, rounding) = (exact.distance.to_f64(), (exact.distance - exact.lower_bound).to_f64());
         for epsilon in [1e-9, 0.001, 0.03, 0.3, 3.0] {
-            let found = self.ask(&usual.with_epsilon(T::of_f64(epsilon)));
-            let most = (1.0 + epsilon) * (1.0 + 8.0 * u);
+            let found = self.checked_answer(&defaults.with_epsilon(T::of_f64(epsilon)));
+            let max_distance = (1.0 + epsilon) * (1.0 + 8.0 * u);
             let reached = found.distance.to_f64();
             assert!(
-                reached <= distance * most + T::SMALLEST_SUBNORMAL,
+                reached <= distance * max_distance + T::SMALLEST_SUBNORMAL,
                 "{}: {epsilon}: {found:?}, {exact:?}",
                 self.name
             );
-            // And the bound says so, but for the roundings of candidates.
-            let told = (found.lower_bound.to_f64() + 4.0 * rounding) * most * (1.0 + 8.0 * u);
-            assert!(reached <= told + T::SMALLEST_SUBNORMAL, "{}: {epsilon}: bound of {found:?}, {exact:?}", self.name);
+            // The lower bound proves it, up to the roundings of candidates.
+            let proved = (found.lower_bound.to_f64() + 4.0 * rounding) * max_distance * (1.0 + 8.0 * u);
+            assert!(
+                reached <= proved + T::SMALLEST_SUBNORMAL,
+                "{}: {epsilon}: bound of {found:?}, {exact:?}",
+                self.name
+            );
         }
         for budget in [0, 1, 3, 10, 100] {
-            self.ask(&usual.with_max_visits(budget));
+            self.checked_answer(&defaults.with_max_visits(budget));
         }
-        let found = self.ask(&usual.with_max_visits(u32::MAX - 1));
-        assert_eq!(known(&found), known(&exact), "{}: a budget for everything", self.name);
-        // Within a radius that leaves nothing to give up, what is found is the nearest.
-        let options = usual.with_epsilon(T::of_f64(0.5));
-        let found = self.ask(&options.with_max_distance(exact.distance));
+        let found = self.checked_answer(&defaults.with_max_visits(u32::MAX - 1));
+        assert_eq!(compared_fields(&found), compared_fields(&exact), "{}: a budget for everything", self.name);
+        // Within a radius that allows no error, the answer is the nearest primitive.
+        let options = defaults.with_epsilon(T::of_f64(0.5));
+        let found = self.checked_answer(&options.with_max_distance(exact.distance));
         assert!(found.distance == exact.distance, "{}: {found:?}, {exact:?}", self.name);
         let short = exact.distance.to_f64() * 0.99;
         if short < distance {
@@ -107,11 +112,11 @@ fn check_scene<T: Real>(soup: &Soup<T>, queries: &[Point3<T>], counts: &mut [usi
     for query in queries {
         let Some(exact) = tree.closest_point(query) else { continue };
         let truth = tree.certified_closest_point(query, &Default::default()).expect("vertices").expect("found");
-        // Brute force takes what it is asked for as leave, not as order.
+        // Brute force may ignore options that allow an error.
         if soup.len() < 1000 {
             let rough = QueryOptions::default().with_max_visits(0).with_epsilon(T::of_f64(1.0));
-            let found = brute.closest_point_with(query, &rough).map(|c| known(&c));
-            assert_eq!(found, Some(known(&exact)), "brute force at {query:?}");
+            let found = brute.closest_point_with(query, &rough).map(|c| compared_fields(&c));
+            assert_eq!(found, Some(compared_fields(&exact)), "brute force at {query:?}");
         }
         for (name, index) in indexes {
             let [checked, compared] = counts;
@@ -120,7 +125,7 @@ fn check_scene<T: Real>(soup: &Soup<T>, queries: &[Point3<T>], counts: &mut [usi
     }
 }
 
-/// The first primitives of scenes of all kinds.
+/// Returns the first primitives of scenes of all kinds.
 fn sources() -> Vec<Soup<f64>> {
     let generated = Kind::all().into_iter().map(|kind| kind.generate().expect("default options"));
     let random = KINDS
@@ -131,12 +136,12 @@ fn sources() -> Vec<Soup<f64>> {
     let first = |soup: Soup<f64>| {
         Soup::new(soup.positions().to_vec(), soup.elements().take(largest)).expect("of a valid scene")
     };
-    // So many slivers beside each other that more are candidates than can wait.
+    // In this scene more slivers are candidates than the search can keep pending.
     let gear = std::iter::once(scenes::skewed_gear(amount(1500, 100)));
     generated.chain(random).map(first).chain(gear).collect()
 }
 
-/// Counts of answers checked and of bounds that rational arithmetic had to tell, in f64 and in f32.
+/// Returns the numbers of answers checked and of bounds that rational arithmetic had to decide, in f64 and in f32.
 fn check_scale(soup: &Soup<f64>, exponent: i32, rng: &mut impl Rng) -> [[usize; 2]; 2] {
     let [mut double, mut single] = [[0; 2]; 2];
     let scale = |p: &Point3<f64>| p.map(|x| x * 2f64.powi(exponent));
@@ -151,9 +156,9 @@ fn check_scale(soup: &Soup<f64>, exponent: i32, rng: &mut impl Rng) -> [[usize; 
     [double, single]
 }
 
-/// The choice out of `choices` for a case of one of `count` sources, which take turns: each source comes to each choice in so
-/// many rounds, and begins with another one than the source before.
-fn of_source(case: u64, count: u64, choices: u64) -> usize {
+/// Returns the choice out of `choices` for a case of one of `count` sources, which take turns. After `choices` rounds
+/// each source has had each choice, and each source begins with another choice than the previous one.
+fn choice_of_source(case: u64, count: u64, choices: u64) -> usize {
     ((case % count + case / count) % choices) as usize
 }
 
@@ -161,13 +166,13 @@ fn of_source(case: u64, count: u64, choices: u64) -> usize {
 fn approximate_answers_keep_what_they_promise() {
     let sources = sources();
     let count = sources.len() as u64;
-    // Every source at every scale, or at one of them where tests are not deep.
+    // The deep suite has every source at every scale, and the shallow one at one of them.
     let cases = cases(EXPONENTS.len() as u64 * count, count);
     let counts = Mutex::new([[0; 2]; 2]);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let work = |first| {
         for case in cases.clone().skip(first).step_by(threads) {
-            let (soup, exponent) = (&sources[(case % count) as usize], EXPONENTS[of_source(case, count, 3)]);
+            let (soup, exponent) = (&sources[(case % count) as usize], EXPONENTS[choice_of_source(case, count, 3)]);
             let [double, single] = check_scale(soup, exponent, &mut p2m_testkit::rng("approximation", case + 1));
             let mut counts = counts.lock().expect("no check failed");
             for (sum, count) in counts.as_flattened_mut().iter_mut().zip([double, single].as_flattened()) {
@@ -182,12 +187,12 @@ fn approximate_answers_keep_what_they_promise() {
     });
     let [double, single] = counts.into_inner().expect("no check failed");
     println!("answers, and lower bounds that rational arithmetic had to tell: {double:?} in f64, {single:?} in f32");
-    // Twelve answers a query of each of four backends.
+    // Each query has twelve answers of each of four backends.
     assert!(cases.have_more_than(amount(39_999, 140 * sources.len()), double[0] + single[0]), "{double:?}, {single:?}");
 }
 
-/// Where more primitives are candidates than can wait, some are evaluated before the search is over: what it holds after
-/// that has to be evaluated all the same.
+/// If there are more candidates than can be pending, some are evaluated before the search ends, and the incumbent of
+/// that evaluation is only a bound for the rest.
 #[test]
 fn slivers_side_by_side_keep_epsilon() {
     let soup = scenes::skewed_gear(amount(3000, 800));
@@ -198,14 +203,14 @@ fn slivers_side_by_side_keep_epsilon() {
         let exact = tree.closest_point(&query).expect("found");
         for epsilon in [0.001, 0.01] {
             let found = tree.closest_point_with(&query, &QueryOptions::default().with_epsilon(epsilon)).expect("found");
-            let most = exact.distance * (1.0 + epsilon) * (1.0 + f64::EPSILON);
-            assert!(found.distance <= most, "case {case}: {epsilon} at {query:?}: {found:?}, {exact:?}");
+            let max_distance = exact.distance * (1.0 + epsilon) * (1.0 + f64::EPSILON);
+            assert!(found.distance <= max_distance, "case {case}: {epsilon} at {query:?}: {found:?}, {exact:?}");
             assert!(found.lower_bound <= exact.distance, "case {case}: {epsilon} at {query:?}: {found:?}, {exact:?}");
         }
     }
 }
 
-/// A budget is kept, but for the way to a first answer, and more of it is never worse.
+/// A budget is kept, except for the path to a first answer, and a larger budget never gives a worse answer.
 #[test]
 fn budgets_are_kept_and_pay() {
     let options = p2m::scene::generate::TorusKnot::default();
@@ -227,7 +232,7 @@ fn budgets_are_kept_and_pay() {
                 let mut counting = StatsCollector::new(Best::new(&options));
                 index.inspect(query, &mut counting);
                 let visits = counting.nodes + counting.packets;
-                // A path from the root to a packet, or the sites on the way to a cell.
+                // The path leads from the root to a packet, or over the sites to a cell.
                 assert!(visits <= budget as usize + 20, "{name}: {visits} visits for {budget}");
                 least = [least[0].min(visits), least[1].min(counting.primitives)];
                 let found = counting.best.finish().expect("found");
@@ -241,7 +246,7 @@ fn budgets_are_kept_and_pay() {
     }
 }
 
-/// The exact answer of a cell that has one primitive says so, whatever was asked for.
+/// The exact answer of a cell that has one primitive is certified as exact, whatever the options are.
 #[test]
 fn what_is_certain_leaves_nothing_open() {
     let mut rng = p2m_testkit::rng("certain cells", 0);

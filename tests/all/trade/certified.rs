@@ -1,7 +1,7 @@
-//! Certified answers of every backend against exact rational arithmetic, on scenes of which many primitives are as near as
-//! makes no difference to rounding.
+//! Compares certified answers of every backend with exact rational arithmetic, on scenes with many primitives whose
+//! distances are equal up to rounding.
 //!
-//! `P2M_DEEP=100 cargo test --profile deep --test all near_ties` asks 150,000 queries of each backend.
+//! `P2M_DEEP=100 cargo test --profile deep --test all near_ties` runs 150,000 queries on each backend.
 
 use nalgebra::{Point3, Vector3};
 use p2m::{
@@ -14,7 +14,7 @@ use p2m_testkit::{amount, cases};
 use rand::{Rng, RngExt};
 use std::cmp::Ordering;
 
-/// An index that answers with and without proof.
+/// An index that answers with and without certification.
 trait Index<T: Real>: ClosestPoint<T> + CertifiedQuery<T> {}
 impl<T: Real, I: ClosestPoint<T> + CertifiedQuery<T>> Index<T> for I {}
 
@@ -23,20 +23,21 @@ fn vertices<T: Real>(soup: &Soup<T>, id: usize) -> Vec<[f64; 3]> {
     shape.vertices().iter().map(|v| v.map(|x| x.to_f64()).coords.into()).collect()
 }
 
-/// The nearest primitive, exactly, the lowest id of several.
+/// Returns the exactly nearest primitive, the lowest id of several.
 fn nearest<T: Real>(soup: &Soup<T>, query: [f64; 3]) -> (usize, Distance) {
     let all = (0..soup.len()).map(|id| (id, Distance::new(query, &vertices(soup, id))));
     all.reduce(|a, b| if b.1.compare(&a.1) == Ordering::Less { b } else { a }).expect("not empty")
 }
 
-/// Whether a distance is within one unit in the last place of the true one.
+/// Returns whether a distance is within one unit in the last place of the true one.
 fn is_within_a_unit<T: Real>(true_one: &Distance, distance: T) -> bool {
     let unit = distance.to_f64() * 2.0 * T::UNIT_ROUNDOFF + T::SMALLEST_SUBNORMAL;
     let (low, high) = (distance.to_f64() - unit, distance.to_f64() + unit);
     true_one.is_at_least(low.max(0.0)) && !true_one.is_at_least(high.next_up())
 }
 
-/// How many answers without proof named another primitive.
+/// Checks certified answers, and returns how many queries there were and how many answers without certification
+/// named another primitive.
 fn check<T: Real>(soup: &Soup<T>, queries: &[Point3<T>]) -> [usize; 2] {
     let brute = BruteForce::new(soup).expect("valid");
     let tree = AabbTree::build(soup, &Default::default()).expect("valid");
@@ -47,14 +48,14 @@ fn check<T: Real>(soup: &Soup<T>, queries: &[Point3<T>]) -> [usize; 2] {
         [("brute", &brute), ("aabb", &tree), ("kdop", &kdop), ("octree", &octree), ("p2m", &p2m)];
     let mut counts = [0; 2];
     for query in queries {
-        let place: [f64; 3] = query.map(|x| x.to_f64()).coords.into();
-        let (id, distance) = nearest(soup, place);
+        let query_point: [f64; 3] = query.map(|x| x.to_f64()).coords.into();
+        let (id, distance) = nearest(soup, query_point);
         for (name, index) in indexes {
             let found = index.certified_closest_point(query, &Default::default()).expect("vertices").expect("found");
-            let say = || format!("{name}, {query:?}: {found:?}, not {id}");
-            assert_eq!(found.primitive.index(), id, "{}", say());
-            assert!(is_within_a_unit(&distance, found.distance), "{}: off by more than a unit", say());
-            assert!(distance.is_at_least(found.lower_bound.to_f64()), "{}: the bound is too large", say());
+            let context = || format!("{name}, {query:?}: {found:?}, not {id}");
+            assert_eq!(found.primitive.index(), id, "{}", context());
+            assert!(is_within_a_unit(&distance, found.distance), "{}: off by more than a unit", context());
+            assert!(distance.is_at_least(found.lower_bound.to_f64()), "{}: the bound is too large", context());
             let usual = index.closest_point(query).expect("found");
             counts[0] += 1;
             counts[1] += usize::from(usual.primitive.index() != id);
@@ -66,12 +67,12 @@ fn check<T: Real>(soup: &Soup<T>, queries: &[Point3<T>]) -> [usize; 2] {
             };
             let beyond = |r: f64| T::of_f64(r).to_f64().max(r);
             if !distance.is_at_least(reported) {
-                assert!(within(reported), "{}: radius", say());
+                assert!(within(reported), "{}: radius", context());
             }
             if distance.is_at_least(reported.next_up()) {
-                assert!(!within(reported), "{}: radius", say());
+                assert!(!within(reported), "{}: radius", context());
             }
-            assert!(within(beyond(reported * (1.0 + 8.0 * T::UNIT_ROUNDOFF) + T::SMALLEST_SUBNORMAL)), "{}", say());
+            assert!(within(beyond(reported * (1.0 + 8.0 * T::UNIT_ROUNDOFF) + T::SMALLEST_SUBNORMAL)), "{}", context());
         }
     }
     counts
@@ -86,8 +87,8 @@ fn unit(rng: &mut impl Rng) -> Vector3<f64> {
     }
 }
 
-/// A scene of which `close` primitives of all kinds are `radius` from a place but for rounding, some of them twice, and
-/// others are farther.
+/// Returns a scene of which `close` primitives of all kinds are at distance `radius` from the query up to rounding,
+/// some of them twice, and `far` others are farther.
 fn almost_tied(rng: &mut impl Rng, query: Point3<f64>, radius: f64, close: usize, far: usize) -> Soup<f64> {
     let mut soup = Soup::default();
     let mut add = |rng: &mut dyn Rng, at: f64, size: f64| {
@@ -122,16 +123,16 @@ fn near_ties_are_decided_rightly_by_every_backend() {
     for case in cases.clone() {
         let (round, mut rng) = (case as usize, p2m_testkit::rng("certified near ties", case));
         let scale = 2f64.powi([0, 0, 0, -30, 200, -480][round % 6]);
-        let place = Point3::from([0; 3].map(|_| rng.random_range(-1.0..1.0) * scale));
+        let query_point = Point3::from([0; 3].map(|_| rng.random_range(-1.0..1.0) * scale));
         let offset = [0.0, 0.0, 1e3][round % 3] * scale;
-        let place = place.map(|x| x + offset);
+        let query_point = query_point.map(|x| x + offset);
         let radius = scale * 2f64.powi(rng.random_range(-8..3));
-        let soup = almost_tied(&mut rng, place, radius, 4, round % 60);
-        let [all, other] = check(&soup, &[place]);
+        let soup = almost_tied(&mut rng, query_point, radius, 4, round % 60);
+        let [all, other] = check(&soup, &[query_point]);
         counts = [counts[0] + all, counts[1] + other];
     }
     println!("of {} answers without proof {} named a primitive that is not nearest", counts[0], counts[1]);
-    // What is tested is worth it.
+    // Certification makes a difference in enough of the cases.
     assert!(cases.is_replay() || counts[1] * 10 > counts[0], "{counts:?}");
 }
 
@@ -165,7 +166,7 @@ fn what_cannot_be_certified_is_told() {
     let query = Point3::new(3.0, 0.0, 0.0);
     let error = CertifyError::NoVertices { id: PrimitiveId::new(0) };
     assert_eq!(tree.certified_closest_point(&query, &Default::default()), Err(error));
-    // What has no answer has none: far beyond the radius, no place at all, nothing to find.
+    // There is no answer far beyond the radius, for a query that is not finite, and in an empty scene.
     let near = QueryOptions::default().with_max_distance(1.0);
     assert_eq!(tree.certified_closest_point(&query, &near), Ok(None));
     let nowhere = Point3::new(f64::NAN, 0.0, 0.0);

@@ -1,4 +1,4 @@
-//! Speed against accuracy: what answers promise that are less than exact, and those that are more.
+//! Checks the promises of answers that are less accurate than exact ones, and of those that are certified.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 
 mod approximation;

@@ -1,16 +1,16 @@
-//! parry3d in both scalars: the first hit of a ray with a `TriMesh`, which is hollow.
+//! The library parry3d in both scalars, queried for the first hit of a ray with a `TriMesh`, which is hollow.
 //!
-//! It promises nothing about rays through edges, and a parameter of f32 is as good as its rounding.
+//! It promises nothing about rays through edges, and a parameter of f32 is as accurate as its rounding.
 
 pub(super) use double::prepare as parry_double;
 pub(super) use single::prepare as parry_single;
 
-/// The two crates of parry have the same names for different types.
+/// Generates the adapter for one of the two crates of parry, which have the same names for different types.
 macro_rules! parry {
     ($module:ident, $parry:ident, $scalar:ty, $rays:ident) => {
         mod $module {
-            use crate::contender::{Absent, Prepared, Scalar};
-            use crate::rays::caster::{Caster, Index, Outcome, Rays};
+            use crate::backend::{Prepared, Scalar, Unavailable};
+            use crate::rays::backend::{ExternalCaster, Outcome, RayIndex, Rays};
             use crate::scene::Scene;
             use $parry::math::Vector;
             use $parry::query::{Ray, RayCast};
@@ -18,11 +18,11 @@ macro_rules! parry {
 
             struct Parry {
                 mesh: TriMesh,
-                /// Whether it is asked for triangle and normal as well.
+                /// Whether triangle and normal are requested as well.
                 normal: bool,
             }
 
-            impl Caster for Parry {
+            impl ExternalCaster for Parry {
                 fn first(&self, rays: &Rays, outcomes: &mut [Outcome]) {
                     let of = |(o, d): &(nalgebra::Point3<$scalar>, nalgebra::Vector3<$scalar>)| {
                         Ray::new(Vector::new(o.x, o.y, o.z), Vector::new(d.x, d.y, d.z))
@@ -46,16 +46,19 @@ macro_rules! parry {
             }
 
             /// Copies the positions, as a user of parry has to.
-            pub(in crate::rays) fn prepare(scene: &Scene, normal: bool) -> Result<Prepared<'_, Index<'_>>, Absent> {
+            pub(in crate::rays) fn prepare(
+                scene: &Scene,
+                normal: bool,
+            ) -> Result<Prepared<'_, RayIndex<'_>>, Unavailable> {
                 let (soup, _) = <$scalar as Scalar>::soup(scene)?;
                 if !soup.points().is_empty() || !soup.segments().is_empty() {
-                    return Err(Absent("its rays meet triangles only".to_owned()));
+                    return Err(Unavailable("its rays meet triangles only".to_owned()));
                 }
                 let positions = soup.positions().iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
                 let triangles = soup.triangles().to_vec();
                 let build = move || {
-                    let mesh = TriMesh::new(positions, triangles).map_err(|error| Absent(error.to_string()))?;
-                    Ok(Index::Rival(Box::new(Parry { mesh, normal })))
+                    let mesh = TriMesh::new(positions, triangles).map_err(|error| Unavailable(error.to_string()))?;
+                    Ok(RayIndex::External(Box::new(Parry { mesh, normal })))
                 };
                 Ok(Prepared { build: Box::new(build), borrowed: 0 })
             }

@@ -1,27 +1,27 @@
-//! What a subject got wrong in a family of cases.
+//! Counts of wrong answers of a subject in a family of cases.
 
-/// Errors above so many u M are no roundings: twice what is proved for ours.
+/// Errors above this multiple of u M are no roundings: it is twice the bound that is proved for our kernel.
 pub(crate) const ROUNDING: f64 = 16.0;
 
-/// Of one subject and one family.
+/// The counts of one subject in one family.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Tally {
-    /// Answers that were looked at.
+pub(super) struct Counts {
+    /// The number of answers that were checked.
     pub(super) cases: u64,
-    /// Of those that are numbers, the largest error in u M.
+    /// The largest finite error, in u M.
     pub(super) worst: f64,
-    /// Errors above [`ROUNDING`].
+    /// The number of errors above [`ROUNDING`].
     pub(super) beyond: u64,
-    /// NaN, infinity for what is in range, or no answer.
+    /// The number of answers that are NaN, infinite for a distance in range, or missing.
     pub(super) failed: u64,
-    /// Panics.
+    /// The number of panics.
     pub(super) panicked: u64,
-    /// Another primitive than the nearest, beyond rounding.
+    /// The number of primitives that are not the nearest, beyond rounding.
     pub(super) wrong_ids: u64,
 }
 
-impl Tally {
-    /// An answer whose error that is; infinite if it is no number.
+impl Counts {
+    /// Adds an answer with its error, which is infinite if the answer is not a number.
     pub(super) fn add(&mut self, error: f64) {
         self.cases += 1;
         if error.is_finite() {
@@ -32,7 +32,7 @@ impl Tally {
         }
     }
 
-    /// Both together.
+    /// Adds the counts of `other`.
     pub(super) fn merge(&mut self, other: &Self) {
         let Self { cases, worst, beyond, failed, panicked, wrong_ids } = other;
         self.cases += cases;
@@ -43,7 +43,7 @@ impl Tally {
         self.wrong_ids += wrong_ids;
     }
 
-    /// Its cell of a table: the largest error, and what else went wrong in parts of all.
+    /// Formats the cell of a table: the largest error, and the fraction of answers that are wrong in other ways.
     pub(super) fn cell(&self) -> String {
         if self.cases + self.panicked == 0 {
             return "-".to_owned();

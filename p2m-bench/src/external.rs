@@ -1,8 +1,8 @@
-//! parry3d in both scalars.
+//! The library parry3d in both scalars, queried for closest points.
 //!
-//! Triangles are a `TriMesh`, segments a `Polyline`; in mixed scenes the polyline is asked within the distance of the
-//! mesh's answer. parry has no shape for a set of points. Every query is
-//! `project_local_point_and_get_location(query, false)`, and the distance is that of the projected point.
+//! Triangles are a `TriMesh`, segments a `Polyline`. In mixed scenes the polyline is queried within the distance of the
+//! mesh's answer. parry has no shape for a set of points. Every query is `project_local_point_and_get_location(query,
+//! false)`, and the distance is that of the projected point.
 
 use nalgebra::Point3;
 use p2m_core::{Real, Soup};
@@ -10,26 +10,26 @@ use p2m_core::{Real, Soup};
 pub(crate) use double::{prepare as parry_double, shapes as double};
 pub(crate) use single::{prepare as parry_single, shapes as single};
 
-/// The two crates of parry have the same names for different types.
+/// Generates the adapter for one of the two crates of parry, which have the same names for different types.
 macro_rules! parry {
     ($(#[$about:meta])* $module:ident, $parry:ident, $scalar:ty) => {
         $(#[$about])*
         mod $module {
             use super::used_positions;
-            use crate::contender::{Absent, Answer, Contender, Prepared, Ready, Scalar};
+            use crate::backend::{Unavailable, Answer, BenchIndex, Prepared, BoxedIndex, Scalar};
             use crate::scene::Scene;
             use nalgebra::Point3;
             use $parry::math::Vector;
             use $parry::query::PointQueryWithLocation;
             use $parry::shape::{Polyline, TriMesh};
 
-            /// One of the two, or both.
+            /// The shapes of a scene: a mesh, a polyline, or both.
             pub(crate) struct Parry {
                 mesh: Option<TriMesh>,
                 lines: Option<Polyline>,
             }
 
-            impl Contender for Parry {
+            impl BenchIndex for Parry {
                 type Scalar = $scalar;
 
                 #[inline(always)]
@@ -48,7 +48,7 @@ macro_rules! parry {
                         };
                         found.map(|(projection, (id, _))| ((projection.point - q).length(), id))
                     });
-                    // Whatever the lines answer is nearer than the mesh.
+                    // An answer of the polyline is nearer than the mesh, because it was searched within that distance.
                     match of_lines.or(of_mesh) {
                         Some((distance, id)) => Answer { distance: distance.into(), id },
                         None => Answer::NONE,
@@ -56,17 +56,17 @@ macro_rules! parry {
                 }
             }
 
-            /// The contender of the list.
-            pub(crate) fn prepare<'a>(scene: &'a Scene) -> Result<Prepared<'a>, Absent> {
+            /// Prepares the backend of the list.
+            pub(crate) fn prepare<'a>(scene: &'a Scene) -> Result<Prepared<'a>, Unavailable> {
                 let build = shapes(scene)?;
-                Ok(Prepared { build: Box::new(move || Ok(Box::new(build()?) as Ready<'a>)), borrowed: 0 })
+                Ok(Prepared { build: Box::new(move || Ok(Box::new(build()?) as BoxedIndex<'a>)), borrowed: 0 })
             }
 
-            /// Copies the positions, as a user of parry has to; what it returns builds the shapes.
-            pub(crate) fn shapes(scene: &Scene) -> Result<impl FnOnce() -> Result<Parry, Absent> + use<>, Absent> {
+            /// Copies the positions, as a user of parry has to, and returns a function that builds the shapes.
+            pub(crate) fn shapes(scene: &Scene) -> Result<impl FnOnce() -> Result<Parry, Unavailable> + use<>, Unavailable> {
                 let (soup, _) = <$scalar as Scalar>::soup(scene)?;
                 if !soup.points().is_empty() {
-                    return Err(Absent("no shape for points".to_owned()));
+                    return Err(Unavailable("no shape for points".to_owned()));
                 }
                 let vectors = |points: Vec<Point3<$scalar>>| -> Vec<Vector> {
                     points.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect()
@@ -74,12 +74,12 @@ macro_rules! parry {
                 let (triangle_positions, triangles) = used_positions(soup, soup.triangles());
                 let (segment_positions, segments) = used_positions(soup, soup.segments());
                 let (triangle_positions, segment_positions) = (vectors(triangle_positions), vectors(segment_positions));
-                let build = move || -> Result<Parry, Absent> {
-                    // parry refuses an empty mesh.
+                let build = move || -> Result<Parry, Unavailable> {
+                    // parry does not accept an empty mesh.
                     let mesh = (!triangles.is_empty())
                         .then(|| TriMesh::new(triangle_positions, triangles))
                         .transpose()
-                        .map_err(|error| Absent(error.to_string()))?;
+                        .map_err(|error| Unavailable(error.to_string()))?;
                     let lines = (!segments.is_empty()).then(|| Polyline::new(segment_positions, Some(segments)));
                     Ok(Parry { mesh, lines })
                 };
@@ -90,16 +90,16 @@ macro_rules! parry {
 }
 
 parry!(
-    /// The yardstick.
+    /// The adapter for parry3d, which ratios refer to.
     single, parry3d, f32
 );
 parry!(
-    /// Its twin in double precision.
+    /// The adapter for parry3d-f64.
     double, parry3d_f64, f64
 );
 
-/// The positions that `elements` use, in their order, and the elements renumbered: each shape of parry owns its
-/// positions and should not own the other's.
+/// Returns the positions that `elements` use, in their order, and the renumbered elements. Each shape of parry owns its
+/// positions and should not own those of the other shape.
 #[allow(clippy::cast_possible_truncation, reason = "no more positions than were numbered by u32")]
 fn used_positions<T: Real, const N: usize>(soup: &Soup<T>, elements: &[[u32; N]]) -> (Vec<Point3<T>>, Vec<[u32; N]>) {
     let mut used = vec![false; soup.positions().len()];

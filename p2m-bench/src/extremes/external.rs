@@ -1,33 +1,33 @@
-//! What rivals answer about one primitive.
+//! Answers of external libraries about one primitive.
 
-use super::tally::ROUNDING;
+use super::counts::ROUNDING;
 use crate::bvh_crate::on_triangle;
 use nalgebra::Point3;
 use p2m_testkit::truth::Truth;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// A function of a rival.
-pub(super) struct Rival {
-    /// For tables.
+/// A distance function of an external library.
+pub(super) struct Library {
+    /// The name in tables.
     pub(super) name: &'static str,
-    /// What is called.
+    /// The function that is called.
     pub(super) about: &'static str,
-    /// Whether it computes in f32.
+    /// Whether the library computes in f32.
     pub(super) single: bool,
-    /// The distance of a query to a segment or a triangle.
+    /// Returns the distance from a query to a segment or a triangle.
     distance: fn([f64; 3], &[[f64; 3]]) -> f64,
 }
 
-/// All.
-pub(super) const RIVALS: [Rival; 3] = [
-    Rival {
+/// All external libraries.
+pub(super) const LIBRARIES: [Library; 3] = [
+    Library {
         name: "parry3d-f64",
         about: "parry3d-f64 0.31, `project_local_point` of `Triangle` and `Segment`",
         single: false,
         distance: parry_double,
     },
-    Rival { name: "parry3d", about: "parry3d 0.31, the same in f32", single: true, distance: parry_single },
-    Rival {
+    Library { name: "parry3d", about: "parry3d 0.31, the same in f32", single: true, distance: parry_single },
+    Library {
         name: "Ericson",
         about: "the closest point on a triangle of Real-Time Collision Detection, 5.1.5, in f64, as many libraries have it; it is what the \
                 crate bvh 0.13 is given here",
@@ -36,29 +36,29 @@ pub(super) const RIVALS: [Rival; 3] = [
     },
 ];
 
-/// What it said.
-pub(super) enum Said {
-    /// An error in u M; infinite for what is no number.
+/// The result of a call.
+pub(super) enum CallResult {
+    /// The error in u M; infinite if the answer is not a finite number.
     Error(f64),
-    /// It panicked.
+    /// The call panicked.
     Panic,
 }
 
-/// What is wrong with an answer of a rival.
+/// The way in which an answer is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Kind {
-    /// No answer.
+    /// There was no answer.
     Panic,
-    /// NaN, or infinity for what is in range.
+    /// The answer was NaN, or infinity for a distance in range.
     NotANumber,
-    /// Beyond any rounding.
+    /// The error was larger than any rounding.
     Wrong,
-    /// Another primitive than the nearest, beyond any rounding.
+    /// The primitive was not the nearest, by more than any rounding.
     WrongPrimitive,
 }
 
 impl Kind {
-    /// Of an error in u M, which is infinite for what is no number, if it is so large that nobody can doubt it.
+    /// Classifies an error in u M (infinite if the answer is not a number), if it is far above any rounding.
     pub(super) fn of_error(error: f64) -> Option<Self> {
         match error {
             e if !e.is_finite() => Some(Self::NotANumber),
@@ -68,8 +68,8 @@ impl Kind {
     }
 }
 
-impl Said {
-    /// What is wrong with it, if something is.
+impl CallResult {
+    /// Classifies the result, if it is wrong.
     pub(super) fn kind(&self) -> Option<Kind> {
         match self {
             Self::Panic => Some(Kind::Panic),
@@ -78,29 +78,29 @@ impl Said {
     }
 }
 
-impl Rival {
-    /// What it says of a case in its scalar; `None` if it has no such primitive.
-    pub(super) fn ask(&self, query: [f64; 3], vertices: &[[f64; 3]]) -> Option<Said> {
+impl Library {
+    /// Checks the answer to a case in the scalar of the library; `None` if it has no such primitive.
+    pub(super) fn check(&self, query: [f64; 3], vertices: &[[f64; 3]]) -> Option<CallResult> {
         if vertices.len() < 2 || self.name == "Ericson" && vertices.len() < 3 {
             return None;
         }
         let Ok(distance) = catch_unwind(AssertUnwindSafe(|| (self.distance)(query, vertices))) else {
-            return Some(Said::Panic);
+            return Some(CallResult::Panic);
         };
         let truth = Truth::new(query, vertices);
         let (bits, eta) = if self.single { (24, f64::from(f32::from_bits(1))) } else { (53, f64::from_bits(1)) };
         let limit = if self.single { f64::from(f32::MAX) } else { f64::MAX };
         let beyond = distance == f64::INFINITY && truth.is_at_least(limit);
-        Some(Said::Error(if beyond { 0.0 } else { truth.error(distance, bits, eta) }))
+        Some(CallResult::Error(if beyond { 0.0 } else { truth.error(distance, bits, eta) }))
     }
 
-    /// The distance that it computes.
+    /// Returns the distance that the library computes.
     pub(super) fn distance(&self, query: [f64; 3], vertices: &[[f64; 3]]) -> f64 {
         (self.distance)(query, vertices)
     }
 }
 
-/// The two crates of parry have the same names for different types.
+/// Generates the adapter for one of the two crates of parry, which have the same names for different types.
 macro_rules! parry {
     ($name:ident, $parry:ident, $scalar:ty) => {
         #[allow(clippy::cast_possible_truncation, reason = "to the scalar of the crate; f32 is rounded to before")]

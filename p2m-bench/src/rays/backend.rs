@@ -1,30 +1,30 @@
-//! What is asked of a ray, and who answers.
+//! The interface between the harness and a backend that casts rays.
 
-use crate::contender::{Absent, Prepared};
+use crate::backend::{Prepared, Unavailable};
 use crate::scene::{Scene, single_point};
 use nalgebra::{Point3, Vector3};
 use p2m_bvh::{TreeIndex, Volume};
 use p2m_core::{BruteForce, Hit, Hits, PrimitiveSet, Ray, RayQuery, RayStatsCollector};
 use std::hint::black_box;
 
-/// What is asked.
+/// A function of rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Function {
-    /// Whether there is a hit.
+    /// Returns whether there is a hit.
     DoIntersect,
-    /// Some hit.
+    /// Returns some hit.
     Any,
-    /// The first one.
+    /// Returns the first hit.
     First,
-    /// All of them.
+    /// Returns all hits.
     All,
 }
 
 impl Function {
-    /// In the order of the manual.
+    /// All functions, in the order of the manual.
     pub(crate) const ALL: [Self; 4] = [Self::DoIntersect, Self::Any, Self::First, Self::All];
 
-    /// Its name there.
+    /// Returns the name of the function in the manual.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::DoIntersect => "do_intersect",
@@ -35,25 +35,25 @@ impl Function {
     }
 }
 
-/// Rays as every contender wants them.
+/// Rays in the representation of each backend.
 pub(crate) struct Rays {
-    /// Ours.
+    /// The rays of our indexes.
     pub(crate) ours: Vec<Ray>,
-    /// Origins and directions in f64,
+    /// Origins and directions in f64.
     pub(crate) double: Vec<(Point3<f64>, Vector3<f64>)>,
-    /// and rounded to f32.
+    /// Origins and directions rounded to f32.
     pub(crate) single: Vec<(Point3<f32>, Vector3<f32>)>,
 }
 
 impl Rays {
-    /// Rounds once for all.
+    /// Converts the rays, which is not timed.
     pub(crate) fn new(ours: Vec<Ray>) -> Self {
         let double: Vec<_> = ours.iter().map(|ray| (ray.origin(), ray.direction())).collect();
         let single = double.iter().map(|(o, d)| (single_point(o), single_point(&Point3::from(*d)).coords)).collect();
         Self { ours, double, single }
     }
 
-    /// How many there are.
+    /// Returns the number of rays.
     pub(crate) fn len(&self) -> usize {
         self.ours.len()
     }
@@ -62,20 +62,20 @@ impl Rays {
 /// The answer to a ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outcome {
-    /// How many hits were found.
+    /// The number of hits that were found.
     pub(crate) hits: usize,
-    /// The parameter of the one that was asked for, or of the first one; NaN if none is told.
+    /// The parameter of the requested hit or of the first one; NaN if the function returns none.
     pub(crate) parameter: f64,
-    /// Its primitive.
+    /// The id of the primitive that was hit.
     pub(crate) id: usize,
 }
 
 impl Outcome {
-    /// No hit.
+    /// The outcome of a ray without a hit.
     pub(crate) const NONE: Self = Self { hits: 0, parameter: f64::NAN, id: usize::MAX };
 
     fn of(hits: usize, first: Option<&Hit>) -> Self {
-        // Nothing that a hit holds is to be left out of the work; weights and point are computed when asked for.
+        // `black_box` keeps the compiler from leaving out a part of the hit; weights and point are computed on request.
         let first = black_box(first);
         first.map_or(Self { hits, ..Self::NONE }, |hit| Self {
             hits,
@@ -84,29 +84,29 @@ impl Outcome {
         })
     }
 
-    /// Whether both are the same bits.
+    /// Returns whether both outcomes have the same bits.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         self.hits == other.hits && self.parameter.to_bits() == other.parameter.to_bits() && self.id == other.id
     }
 }
 
-/// Answers rays one by one, in their order, with the first hit of each.
-pub(crate) trait Caster {
-    /// The loop over all rays, compiled for each contender.
+/// An external library that returns the first hit of each ray, one by one, in their order.
+pub(crate) trait ExternalCaster {
+    /// Answers all rays; the loop is compiled for each backend.
     fn first(&self, rays: &Rays, outcomes: &mut [Outcome]);
 }
 
 /// An index of ours.
-pub(crate) trait Ours {
-    /// The loop over all rays.
+pub(crate) trait OurCaster {
+    /// Answers all rays with one function.
     fn answer(&self, function: Function, rays: &Rays, outcomes: &mut [Outcome]);
-    /// The first hit and all of them, to the last bit.
+    /// Returns the first hit and all hits with all their bits.
     fn hits(&self, ray: &Ray) -> (Option<Hit>, Vec<Hit>);
-    /// Nodes and packets visited and primitives tested in searches for all hits.
+    /// Returns the nodes visited, packets visited and primitives tested in searches for all hits.
     fn work(&self, rays: &[Ray]) -> [usize; 3];
 }
 
-/// Any index over f64.
+/// Answers all rays with any index in f64.
 fn answer<I: RayQuery<f64>>(index: &I, function: Function, rays: &Rays, outcomes: &mut [Outcome]) {
     let pairs = rays.ours.iter().zip(outcomes);
     match function {
@@ -115,7 +115,7 @@ fn answer<I: RayQuery<f64>>(index: &I, function: Function, rays: &Rays, outcomes
         }),
         Function::Any => pairs.for_each(|(ray, outcome)| {
             let hit = index.any_intersection(ray);
-            // Which one is up to the backend.
+            // Backends may return different hits here, so only the number is recorded.
             *outcome = Outcome { hits: Outcome::of(usize::from(hit.is_some()), hit.as_ref()).hits, ..Outcome::NONE };
         }),
         Function::First => pairs.for_each(|(ray, outcome)| {
@@ -129,7 +129,7 @@ fn answer<I: RayQuery<f64>>(index: &I, function: Function, rays: &Rays, outcomes
     }
 }
 
-impl<S: PrimitiveSet<f64>, V: Volume> Ours for TreeIndex<f64, S, V> {
+impl<S: PrimitiveSet<f64>, V: Volume> OurCaster for TreeIndex<f64, S, V> {
     fn answer(&self, function: Function, rays: &Rays, outcomes: &mut [Outcome]) {
         answer(self, function, rays, outcomes);
     }
@@ -141,7 +141,7 @@ impl<S: PrimitiveSet<f64>, V: Volume> Ours for TreeIndex<f64, S, V> {
     }
 }
 
-impl<S: PrimitiveSet<f64>> Ours for BruteForce<S> {
+impl<S: PrimitiveSet<f64>> OurCaster for BruteForce<S> {
     fn answer(&self, function: Function, rays: &Rays, outcomes: &mut [Outcome]) {
         answer(self, function, rays, outcomes);
     }
@@ -154,19 +154,19 @@ impl<S: PrimitiveSet<f64>> Ours for BruteForce<S> {
 }
 
 /// An index that is ready for rays.
-pub(crate) enum Index<'a> {
-    /// It keeps the contract of `RayQuery`.
-    Ours(Box<dyn Ours + 'a>),
-    /// It does not.
-    Rival(Box<dyn Caster + 'a>),
+pub(crate) enum RayIndex<'a> {
+    /// An index that keeps the contract of `RayQuery`.
+    Ours(Box<dyn OurCaster + 'a>),
+    /// An external library, which promises no more than its documentation.
+    External(Box<dyn ExternalCaster + 'a>),
 }
 
-/// An entry of the list of contenders.
-pub(crate) struct Backend {
-    /// Its name in tables and on the command line.
+/// A backend in the list of backends that cast rays.
+pub(crate) struct RayBackend {
+    /// The name in tables and on the command line.
     pub(crate) name: &'static str,
-    /// Its scalar.
+    /// The name of the scalar.
     pub(crate) scalar: &'static str,
-    /// Makes it ready to be built over a scene.
-    pub(crate) prepare: for<'a> fn(&'a Scene) -> Result<Prepared<'a, Index<'a>>, Absent>,
+    /// Prepares a scene for the build.
+    pub(crate) prepare: for<'a> fn(&'a Scene) -> Result<Prepared<'a, RayIndex<'a>>, Unavailable>,
 }

@@ -1,38 +1,38 @@
-//! Rivals over adversaries, each in a process of its own: stacks that overflow, builds without end and memory without bound
-//! end that process and are a row of the table.
+//! Runs external libraries over adversarial scenes, each in a process of its own. A stack overflow, an endless build or
+//! unbounded memory ends that process alone and becomes a row of the table.
 
-use crate::contender::{Absent, Answer, catch};
-use crate::extremes::tally::ROUNDING;
+use crate::backend::{Answer, Unavailable, catch};
+use crate::extremes::counts::ROUNDING;
 use crate::memory;
 use crate::queries::Queries;
+use crate::rounds::thread_seconds;
 use crate::scene::Scene;
 use anyhow::{Context, Result, bail};
-use cpu_time::ThreadTime;
 use p2m_core::{BruteForce, ClosestPoint, PrimitiveSet};
 use p2m_testkit::adversaries::{Adversary, queries};
 use p2m_testkit::truth::Truth;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-/// Who is asked, by names of the list of contenders.
-pub(super) const RIVALS: [&str; 2] = ["parry3d-f64", "bvh"];
-/// How long a process may take for a scene of 20,000 primitives; more have more.
-pub(super) const PATIENCE: Duration = Duration::from_secs(60);
-/// Bytes that a process may hold, where the system tells.
-const MEMORY: u64 = 4 << 30;
+/// The names of the external libraries in the list of backends.
+pub(super) const LIBRARIES: [&str; 2] = ["parry3d-f64", "bvh"];
+/// The time limit of a process for a scene of 20,000 primitives; it grows with the number of primitives.
+pub(super) const TIME_LIMIT: Duration = Duration::from_secs(60);
+/// The largest number of bytes that a process may hold, where the system reports it.
+const MAX_RESIDENT_BYTES: u64 = 4 << 30;
 
-/// Builds a rival over an adversary and asks it, and prints what came of it in words that [`Outcome::read`] reads.
+/// Builds a backend over an adversarial scene, queries it, and prints the outcome in the format that
+/// [`Outcome::read`] reads.
 pub(crate) fn attempt(name: &str, adversary: &str, count: usize) -> Result<()> {
-    let backend = crate::backends::ALL.iter().find(|b| b.name == name).context("a contender of the list")?;
+    let backend = crate::backends::ALL.iter().find(|b| b.name == name).context("a backend of the list")?;
     let scene = Scene::new(adversary.to_owned(), Adversary::named(adversary).soup(count))?;
     let queries = queries(&scene.double, super::QUERIES);
     let before = memory::current();
     let taken = catch(|| {
         let prepared = (backend.prepare)(&scene)?;
         memory::reset_peak();
-        let start = ThreadTime::now();
-        let index = (prepared.build)()?;
-        let seconds = start.elapsed().as_secs_f64();
+        let (index, seconds) = thread_seconds(prepared.build);
+        let index = index?;
         println!("build {seconds} {} {}", memory::peak() - before, memory::current() - before);
         let mut answers = vec![Answer::NONE; queries.len()];
         index.answer(Queries::new(queries.clone()).all(), &mut answers)?;
@@ -46,29 +46,29 @@ pub(crate) fn attempt(name: &str, adversary: &str, count: usize) -> Result<()> {
                 let nearest = brute.closest_point(*query).expect("there are primitives").primitive;
                 let vertices: Vec<[f64; 3]> = soup.get(nearest).vertices().iter().map(|v| v.coords.into()).collect();
                 let error = Truth::new(query.coords.into(), &vertices).error(answer.distance, 53, f64::from_bits(1));
-                // What is no number is infinitely wrong.
+                // An error that is not a number counts as infinite.
                 error > ROUNDING
             });
             println!("wrong {}", wrong.count());
         }
-        Err(Absent(why)) => println!("absent {why}"),
+        Err(Unavailable(why)) => println!("absent {why}"),
     }
     Ok(())
 }
 
-/// What came of it.
+/// The outcome of a process.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Outcome {
-    /// Seconds, bytes at a time while building, bytes of the index.
+    /// Seconds, the largest number of bytes at any time of the build, and the bytes of the index.
     pub(super) build: Option<(f64, usize, usize)>,
-    /// Answers that are off by more than rounding.
+    /// The number of answers that are wrong by more than rounding.
     pub(super) wrong: Option<usize>,
-    /// Why there is no more.
+    /// The reason why the process ended early.
     pub(super) end: Option<String>,
 }
 
 impl Outcome {
-    /// From what [`attempt`] printed.
+    /// Parses the text that [`attempt`] printed.
     fn read(printed: &str) -> Result<Self> {
         let mut outcome = Self::default();
         for line in printed.lines() {
@@ -86,34 +86,34 @@ impl Outcome {
         Ok(outcome)
     }
 
-    /// What a program says that is started for it, within limits.
-    fn of(command: &mut Command, patience: Duration) -> Result<Self> {
+    /// Runs a command within the limits and parses its output.
+    fn of(command: &mut Command, time_limit: Duration) -> Result<Self> {
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).stdin(Stdio::null()).spawn()?;
-        let end = wait(&mut child, patience)?;
+        let end = wait(&mut child, time_limit)?;
         let printed = std::io::read_to_string(child.stdout.take().context("it was piped")?)?;
         let outcome = Self::read(&printed)?;
         Ok(Self { end: outcome.end.clone().or(end), ..outcome })
     }
 
-    /// The same scene and rival as [`attempt`], by this program.
+    /// Runs [`attempt`] in a new process of this program.
     pub(super) fn by_this_program(name: &str, adversary: &Adversary, count: usize) -> Result<Self> {
         let mut command = Command::new(std::env::current_exe()?);
         command.args(["rival", name, adversary.name, &count.to_string()]);
-        Self::of(&mut command, PATIENCE * u32::try_from(count.div_ceil(20_000))?)
+        Self::of(&mut command, TIME_LIMIT * u32::try_from(count.div_ceil(20_000))?)
     }
 }
 
-/// Waits for the end; `None` if it was a good one. A process that takes too much is killed.
-fn wait(child: &mut Child, patience: Duration) -> Result<Option<String>> {
+/// Waits for the end of a process and returns the reason of a bad end. A process that exceeds a limit is killed.
+fn wait(child: &mut Child, time_limit: Duration) -> Result<Option<String>> {
     let start = Instant::now();
     loop {
         if let Some(status) = child.try_wait()? {
             return Ok((!status.success()).then(|| in_words(status)));
         }
-        let excess = if start.elapsed() > patience {
-            Some(format!("no end in {} s", patience.as_secs()))
-        } else if resident(child.id()).is_some_and(|bytes| bytes > MEMORY) {
-            Some(format!("more than {} GiB", MEMORY >> 30))
+        let excess = if start.elapsed() > time_limit {
+            Some(format!("no end in {} s", time_limit.as_secs()))
+        } else if resident(child.id()).is_some_and(|bytes| bytes > MAX_RESIDENT_BYTES) {
+            Some(format!("more than {} GiB", MAX_RESIDENT_BYTES >> 30))
         } else {
             None
         };
@@ -130,7 +130,7 @@ fn wait(child: &mut Child, patience: Duration) -> Result<Option<String>> {
 fn in_words(status: ExitStatus) -> String {
     use std::os::unix::process::ExitStatusExt;
     match status.signal() {
-        // What Rust ends with when a stack overflows or no memory is left.
+        // Rust aborts with this signal when a stack overflows or no memory is left.
         Some(6) => "aborts: its stack overflows, or memory".to_owned(),
         Some(signal) => format!("ends by signal {signal}"),
         None => status.to_string(),
@@ -142,7 +142,7 @@ fn in_words(status: ExitStatus) -> String {
     status.to_string()
 }
 
-/// Bytes of a process in memory, where the system tells as Linux does.
+/// Returns the resident bytes of a process, on systems that report them as Linux does.
 fn resident(process: u32) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
@@ -153,8 +153,8 @@ fn resident(process: u32) -> Option<u64> {
 mod tests {
     use super::*;
 
-    fn shell(script: &str, patience: Duration) -> Result<Outcome> {
-        Outcome::of(Command::new("sh").args(["-c", script]), patience)
+    fn shell(script: &str, time_limit: Duration) -> Result<Outcome> {
+        Outcome::of(Command::new("sh").args(["-c", script]), time_limit)
     }
 
     #[test]
@@ -163,7 +163,7 @@ mod tests {
         let long = Duration::from_secs(60);
         let good = shell("echo build 0.5 100 50; echo wrong 3", long).unwrap();
         assert_eq!(good, Outcome { build: Some((0.5, 100, 50)), wrong: Some(3), end: None });
-        let end = |script, patience| shell(script, patience).unwrap().end;
+        let end = |script, time_limit| shell(script, time_limit).unwrap().end;
         assert_eq!(end("echo absent it panicked", long).as_deref(), Some("it panicked"));
         assert_eq!(end("kill -ABRT $$", long).as_deref(), Some("aborts: its stack overflows, or memory"));
         assert_eq!(end("kill -SEGV $$", long).as_deref(), Some("ends by signal 11"));

@@ -1,0 +1,346 @@
+//! The command line of `p2m-bench`: its commands and their arguments.
+
+use crate::backend::ScalarKind;
+use crate::{backends, rays};
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser, Subcommand};
+use p2m_testkit::queries::QuerySet;
+use std::path::PathBuf;
+
+/// Measures p2m and other libraries.
+#[derive(Parser)]
+#[command(after_help = "\
+The default release build is portable. For the native rows of other libraries:\n  \
+RUSTFLAGS=\"-C target-cpu=native\" cargo run --release -p p2m-bench -- query ...\n\
+Both can add to the same --csv file; its column `label` names the build.\n\
+Times are thread CPU times; pin the process as well: taskset -c 1 p2m-bench query ...")]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// Build time, memory, time per query and agreement of all backends
+    Query(QueryArguments),
+    /// Compares our exact backends with brute force, bit for bit, in f64 and f32; fails on any difference
+    Verify(VerifyArguments),
+    /// Compares split rules of the AABB tree: build, nodes and primitives visited, time per query
+    Splits(SplitsArguments),
+    /// Redraws the figures of the k-DOP tree's manual: build, nodes and leaves visited, time per query
+    Kdop(KdopArguments),
+    /// Times rays: the figures of the k-DOP tree's manual, or the first hit against other libraries; fails if ours
+    /// differ
+    Ray(RayArguments),
+    /// Repeats the evaluation of the P2M paper on our models: writes paper.md with tables and plots; fails if ours
+    /// differ
+    Paper(PaperArguments),
+    /// Compares speed with accuracy for all backends and settings: writes report.html, its plots and report.csv
+    Report(ReportArguments),
+    /// Checks the accuracy contract where other libraries fail: writes extremes.md; fails if ours break it
+    Extremes(ExtremesArguments),
+    /// Compares two records of `report`: times that changed beyond noise, and errors that changed
+    Compare(CompareArguments),
+    /// Compares the backend that is recommended for 10^5 and 10^7 queries with the best one
+    Advise(AdviseArguments),
+    /// Times distance fields on a grid, against other libraries and the figures of an article; fails if ours differ
+    Field(FieldArguments),
+    /// Builds over adversarial scenes: writes adversaries.md; fails if a budget is exceeded or an answer is wrong
+    Adversaries(AdversariesArguments),
+    /// Runs one external library over one adversarial scene, for `adversaries`
+    #[command(hide = true)]
+    Rival(RivalArguments),
+    /// Compares saving and loading indexes with building them
+    Saved(SavedArguments),
+    /// Compares settings of the octree: resolution, domain, threads
+    Octree(BatchArguments),
+    /// Times Delaunay triangulations of scenes, grids, a sphere, a plane and a line; fails if any is not valid
+    Delaunay(DelaunayArguments),
+    /// Times batches on the AABB tree by order, hints and threads, in wall time
+    Batch(BatchArguments),
+}
+
+/// The arguments that `query` and `verify` share.
+#[derive(Args)]
+pub(crate) struct Common {
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Query sets
+    #[arg(long, value_delimiter = ',', default_values_t = QuerySet::ALL)]
+    pub(crate) sets: Vec<QuerySet>,
+    /// Scalars of backends
+    #[arg(long, value_enum, value_delimiter = ',', default_values_t = [ScalarKind::Single, ScalarKind::Double])]
+    pub(crate) scalar: Vec<ScalarKind>,
+    /// Seed of the query sets
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Args)]
+pub(crate) struct QueryArguments {
+    #[command(flatten)]
+    pub(crate) common: Common,
+    /// Backends
+    #[arg(long, value_delimiter = ',', default_value = backends::DEFAULT, value_parser = backend_names())]
+    pub(crate) backends: Vec<String>,
+    /// Rounds; another backend begins in each
+    #[arg(long, default_value_t = 5)]
+    pub(crate) rounds: usize,
+    /// Queries in a round; backends slower than 20 us a query get at most 20,000, brute force as many as take a second
+    #[arg(long, default_value_t = 200_000)]
+    pub(crate) queries: usize,
+    /// Number of times that each index is built
+    #[arg(long, default_value_t = 5)]
+    pub(crate) builds: usize,
+    /// Record to create or to append to, as comma-separated values; a file with other columns is an error
+    #[arg(long)]
+    pub(crate) csv: Option<PathBuf>,
+    /// Name of this build in tables and record [default: native with AVX2 at compile time, else portable]
+    #[arg(long)]
+    pub(crate) label: Option<String>,
+}
+
+#[derive(Args)]
+pub(crate) struct VerifyArguments {
+    #[command(flatten)]
+    pub(crate) common: Common,
+    /// Backends [default: all exact ones of ours]
+    #[arg(long, value_delimiter = ',', value_parser = backend_names())]
+    pub(crate) backends: Vec<String>,
+    /// Queries of each set
+    #[arg(long, default_value_t = 5000)]
+    pub(crate) queries: usize,
+}
+
+#[derive(Args)]
+pub(crate) struct SplitsArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Query sets
+    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface])]
+    pub(crate) sets: Vec<QuerySet>,
+    /// Rounds; another rule begins in each
+    #[arg(long, default_value_t = 5)]
+    pub(crate) rounds: usize,
+    /// Queries in a round
+    #[arg(long, default_value_t = 50_000)]
+    pub(crate) queries: usize,
+    /// Seed of the query sets
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Args)]
+pub(crate) struct KdopArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Measure each scene in seven orientations
+    #[arg(long)]
+    pub(crate) turned: bool,
+    /// Query set
+    #[arg(long, default_value_t = QuerySet::Box1)]
+    pub(crate) set: QuerySet,
+    /// Rounds; another tree begins in each
+    #[arg(long, default_value_t = 5)]
+    pub(crate) rounds: usize,
+    /// Queries in a round
+    #[arg(long, default_value_t = 100_000)]
+    pub(crate) queries: usize,
+    /// Seed of the query set
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Args)]
+pub(crate) struct RayArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Measure each scene in seven orientations
+    #[arg(long)]
+    pub(crate) turned: bool,
+    /// Measure the first hit against other libraries instead of the manual's tables
+    #[arg(long)]
+    pub(crate) rivals: bool,
+    /// Measure the first hit with these backends only
+    #[arg(long, value_delimiter = ',', value_parser = ray_names())]
+    pub(crate) backends: Vec<String>,
+    /// Query sets at which rays begin [default: 1x for the manual's tables, 10x and 1x against other libraries]
+    #[arg(long, value_delimiter = ',')]
+    pub(crate) sets: Vec<QuerySet>,
+    /// Rays in a round [default: 20 per primitive for the manual's tables, 200,000 against other libraries]
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) rays: Option<u64>,
+    /// Rounds; another backend begins in each
+    #[arg(long, default_value_t = 5)]
+    pub(crate) rounds: usize,
+    /// Seed of the rays
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Record of times against other libraries to create or to append to, as comma-separated values
+    #[arg(long)]
+    pub(crate) csv: Option<PathBuf>,
+    /// Name of this build in tables and record [default: native with AVX2 at compile time, else portable]
+    #[arg(long)]
+    pub(crate) label: Option<String>,
+}
+
+#[derive(Args)]
+pub(crate) struct BatchArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Query sets
+    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface])]
+    pub(crate) sets: Vec<QuerySet>,
+    /// Numbers of threads
+    #[arg(long, value_delimiter = ',', default_values_t = [1, 2])]
+    pub(crate) threads: Vec<usize>,
+    /// Rounds; another backend begins in each
+    #[arg(long, default_value_t = 5)]
+    pub(crate) rounds: usize,
+    /// Queries in a round
+    #[arg(long, default_value_t = 1_000_000)]
+    pub(crate) queries: usize,
+    /// Seed of the query sets
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Args)]
+pub(crate) struct DelaunayArguments {
+    /// Files of scenes, whose vertices are triangulated in addition to generated points
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Rounds over all inputs
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) rounds: usize,
+}
+
+#[derive(Args)]
+pub(crate) struct PaperArguments {
+    /// The folder of models [default: that of the variable P2M_MODELS, or ../shared/models]
+    #[arg(long)]
+    pub(crate) models: Option<PathBuf>,
+    /// Measure less of everything, in minutes
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// The folder for paper.md and the folder paper of its plots [default: docs, and target/paper with --quick]
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct ReportArguments {
+    /// The folder of models [default: that of the variable P2M_MODELS, or ../shared/models]; generated scenes replace
+    /// missing models
+    #[arg(long)]
+    pub(crate) models: Option<PathBuf>,
+    /// Measure three scenes with fewer queries, in two minutes
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// The folder for report.html, report.csv and the folder report of plots [default: docs, and target/report with --quick]
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+    /// Name of this build in page and record [default: native with AVX2 at compile time, else portable]
+    #[arg(long)]
+    pub(crate) label: Option<String>,
+}
+
+#[derive(Args)]
+pub(crate) struct ExtremesArguments {
+    /// Answers about isolated primitives that are checked
+    #[arg(long, default_value_t = 1_000_000)]
+    pub(crate) cases: u64,
+    /// Scenes of each family, which every backend queries
+    #[arg(long, default_value_t = 4)]
+    pub(crate) scenes: u64,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Write the page here instead of printing it
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct CompareArguments {
+    /// The earlier record
+    pub(crate) first: PathBuf,
+    /// The later record
+    pub(crate) second: PathBuf,
+}
+
+#[derive(Args)]
+pub(crate) struct SavedArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Number of times that each index is loaded
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) rounds: usize,
+}
+
+#[derive(Args)]
+pub(crate) struct AdversariesArguments {
+    /// Primitives of each scene
+    #[arg(long, default_value_t = 20_000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) primitives: usize,
+    /// The page to write [default: the standard output]
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct RivalArguments {
+    /// Name of the backend
+    pub(crate) backend: String,
+    /// Name of the scene
+    pub(crate) adversary: String,
+    /// Primitives of the scene
+    pub(crate) primitives: usize,
+}
+
+#[derive(Args)]
+pub(crate) struct AdviseArguments {
+    /// Files of scenes; those of less than 1,000 primitives are left out
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct FieldArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Points along the longest side of the grid
+    #[arg(long, default_value_t = 256, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(2..=2048))]
+    pub(crate) resolution: usize,
+    /// Fill every n-th slab of sixteen layers only
+    #[arg(long, default_value_t = 1, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) stride: usize,
+    /// Print only the figures of the article beside ours
+    #[arg(long)]
+    pub(crate) article: bool,
+}
+
+fn backend_names() -> PossibleValuesParser {
+    backends::ALL.iter().map(|backend| backend.name).collect::<Vec<_>>().into()
+}
+
+fn ray_names() -> PossibleValuesParser {
+    rays::ALL.iter().map(|backend| backend.name).collect::<Vec<_>>().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+}

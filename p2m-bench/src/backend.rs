@@ -1,0 +1,139 @@
+//! The interface between the harness and a backend: an index that is built over a scene and answers queries.
+
+use crate::queries::QuerySlice;
+use crate::scene::Scene;
+use nalgebra::Point3;
+use p2m_core::Soup;
+use p2m_tradeoff::queries::Scalar as _;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// The answer to a query.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Answer {
+    /// The distance; NaN if there was no answer.
+    pub(crate) distance: f64,
+    /// The id of the primitive in the scene for our indexes. An external library numbers its own shape, and that number
+    /// enters the checksum only.
+    pub(crate) id: u32,
+}
+
+impl Answer {
+    /// The value that stands for a query without an answer.
+    pub(crate) const NONE: Self = Self { distance: f64::NAN, id: u32::MAX };
+
+    /// Returns whether there was no answer, which differs from an answer whose distance is NaN.
+    pub(crate) fn is_none(&self) -> bool {
+        self.distance.is_nan() && self.id == u32::MAX
+    }
+
+    /// Returns whether the distances of both answers have the same bits.
+    pub(crate) fn same_distance(&self, other: &Self) -> bool {
+        self.distance.to_bits() == other.distance.to_bits()
+    }
+}
+
+/// An index over a scene that the harness can query. A new backend implements this trait, and [`ErasedIndex`] follows.
+pub(crate) trait BenchIndex: Sync {
+    /// The scalar of the queries.
+    type Scalar: Scalar;
+    /// Answers one query with default options and without a hint.
+    fn query(&self, query: &Point3<Self::Scalar>) -> Answer;
+    /// Answers several queries in their order, one by one unless the backend has batches of its own.
+    #[inline(always)]
+    fn queries(&self, queries: &[Point3<Self::Scalar>], answers: &mut [Answer]) {
+        for (query, answer) in queries.iter().zip(answers) {
+            *answer = self.query(query);
+        }
+    }
+}
+
+/// A [`BenchIndex`] with its scalar erased. The loop over queries is compiled for each backend, so a query costs no
+/// dynamic call beyond its own.
+pub(crate) trait ErasedIndex: Sync {
+    /// Answers queries in their order, and turns a panic into an error.
+    fn answer(&self, queries: QuerySlice<'_>, answers: &mut [Answer]) -> Result<(), Unavailable>;
+}
+
+impl<C: BenchIndex> ErasedIndex for C {
+    fn answer(&self, queries: QuerySlice<'_>, answers: &mut [Answer]) -> Result<(), Unavailable> {
+        catch(|| {
+            self.queries(C::Scalar::of(queries), answers);
+            Ok(())
+        })
+    }
+}
+
+/// A scalar, with access to the scene in that scalar.
+pub(crate) trait Scalar: p2m_tradeoff::queries::Scalar {
+    /// Returns the scene in this scalar and its heap bytes, or an error if the scene overflows the scalar.
+    fn soup(scene: &Scene) -> Result<(&Soup<Self>, usize), Unavailable>;
+}
+
+impl Scalar for f64 {
+    fn soup(scene: &Scene) -> Result<(&Soup<f64>, usize), Unavailable> {
+        Ok((&scene.double, scene.double_bytes))
+    }
+}
+
+impl Scalar for f32 {
+    fn soup(scene: &Scene) -> Result<(&Soup<f32>, usize), Unavailable> {
+        let soup = scene.single.as_ref().ok_or_else(|| Unavailable("the scene overflows f32".to_owned()))?;
+        Ok((soup, scene.single_bytes))
+    }
+}
+
+/// The scalar of a backend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum ScalarKind {
+    /// The IEEE 754 type binary32.
+    #[value(name = "f32")]
+    Single,
+    /// The IEEE 754 type binary64.
+    #[value(name = "f64")]
+    Double,
+}
+
+impl ScalarKind {
+    /// Returns the name of the type in Rust.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Single => "f32",
+            Self::Double => "f64",
+        }
+    }
+}
+
+/// The reason why a backend is not measured, which becomes a footnote of the table.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Unavailable(pub(crate) String);
+
+/// An index of any backend that is ready for queries.
+pub(crate) type BoxedIndex<'a> = Box<dyn ErasedIndex + 'a>;
+
+/// A backend before it is built. Copies and conversions of the scene were made already and are not timed, but they
+/// count as memory of the index.
+pub(crate) struct Prepared<'a, V = BoxedIndex<'a>> {
+    /// Builds the index; this call is timed.
+    pub(crate) build: Box<dyn FnOnce() -> Result<V, Unavailable> + 'a>,
+    /// Heap bytes of the scene that the index keeps borrowing.
+    pub(crate) borrowed: usize,
+}
+
+/// A backend in the list of backends.
+pub(crate) struct Backend {
+    /// The name in tables and on the command line.
+    pub(crate) name: &'static str,
+    /// The scalar of queries and answers.
+    pub(crate) scalar: ScalarKind,
+    /// Whether the backend keeps the contract of `ClosestPoint`, so that its answers are compared bitwise.
+    pub(crate) is_ours: bool,
+    /// Whether the backend visits every primitive, so that it gets few queries and is the oracle of `verify`.
+    pub(crate) is_exhaustive: bool,
+    /// Prepares a scene for the build.
+    pub(crate) prepare: for<'a> fn(&'a Scene) -> Result<Prepared<'a>, Unavailable>,
+}
+
+/// Runs foreign code and turns its panics into errors.
+pub(crate) fn catch<V>(run: impl FnOnce() -> Result<V, Unavailable>) -> Result<V, Unavailable> {
+    catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|_| Err(Unavailable("it panicked".to_owned())))
+}

@@ -1,0 +1,301 @@
+//! The commands of `p2m-bench`: each reads its scenes, runs the measurement and prints the result.
+
+use crate::arguments::{
+    AdversariesArguments, AdviseArguments, BatchArguments, Command, Common, CompareArguments, DelaunayArguments,
+    ExtremesArguments, FieldArguments, KdopArguments, PaperArguments, QueryArguments, RayArguments, ReportArguments,
+    RivalArguments, SavedArguments, SplitsArguments, VerifyArguments,
+};
+use crate::backend::Backend;
+use crate::measure::Effort;
+use crate::report::provenance;
+use crate::scene::Scene;
+use crate::{
+    adversaries, advise, backends, batch, delaunay, extremes, field, kdop, measure, octree, paper, rays, report, saved,
+    splits, tradeoff, verify,
+};
+use anyhow::{Context, Result};
+use p2m_testkit::queries::QuerySet;
+use p2m_tradeoff::Table;
+use std::path::PathBuf;
+
+/// Runs a command, and returns whether it found what it has to find.
+pub(crate) fn run(command: Command) -> Result<bool> {
+    match command {
+        Command::Query(arguments) => query(&arguments),
+        Command::Verify(arguments) => verify(&arguments),
+        Command::Splits(arguments) => compare_splits(&arguments),
+        Command::Kdop(arguments) => compare_kdops(&arguments),
+        Command::Ray(arguments) => cast_rays(&arguments),
+        Command::Octree(arguments) => compare_octrees(&arguments),
+        Command::Delaunay(arguments) => triangulate(&arguments),
+        Command::Batch(arguments) => time_batches(&arguments),
+        Command::Advise(arguments) => check_advice(&arguments),
+        Command::Field(arguments) => fill_fields(&arguments),
+        Command::Adversaries(arguments) => run_adversaries(&arguments),
+        Command::Rival(arguments) => run_external(&arguments),
+        Command::Saved(arguments) => compare_saved(&arguments),
+        Command::Report(arguments) => write_report(&arguments),
+        Command::Extremes(arguments) => write_extremes(&arguments),
+        Command::Compare(arguments) => compare_records(&arguments),
+        Command::Paper(arguments) => write_paper(&arguments),
+    }
+}
+
+/// Returns the backends that `is_wanted` accepts and that have one of the scalars, in the order of the list.
+fn select(common: &Common, is_wanted: impl Fn(&Backend) -> bool) -> Vec<&'static Backend> {
+    backends::ALL.iter().filter(|b| common.scalar.contains(&b.scalar) && is_wanted(b)).collect()
+}
+
+/// Measures backends, and returns whether ours agree. Answers of external libraries are left to the reader
+/// of the table.
+fn query(arguments: &QueryArguments) -> Result<bool> {
+    let common = &arguments.common;
+    let selected = select(common, |b| arguments.backends.iter().any(|name| name == b.name));
+    let provenance = provenance(arguments.label.as_deref());
+    let effort =
+        Effort { rounds: arguments.rounds, queries: arguments.queries, builds: arguments.builds, seed: common.seed };
+    let mut record = arguments.csv.as_deref().map(report::Record::open).transpose()?;
+    println!("{provenance}");
+    println!(
+        "One thread, thread CPU time, {} rounds in turns, {} queries a round, seed {}.",
+        effort.rounds, effort.queries, effort.seed
+    );
+    let mut is_good = true;
+    for path in &common.scenes {
+        let scene = Scene::read(path)?;
+        let mut entries = measure::build_all(&scene, &selected, effort.builds);
+        for set in &common.sets {
+            measure::measure_set(&scene, *set, &mut entries, &effort);
+        }
+        report::print_scene(&scene, &common.sets, &entries, &provenance.label);
+        if let Some(record) = &mut record {
+            record.add(&provenance, &scene, &common.sets, &entries, effort.seed)?;
+        }
+        is_good &= entries
+            .iter()
+            .filter(|entry| entry.backend.is_ours)
+            .all(|entry| entry.sets.iter().flatten().all(|set| set.agreement.is_clean()));
+    }
+    Ok(is_good)
+}
+
+/// Writes the page about the paper, and returns whether the answers of our backends are bitwise equal.
+fn write_paper(arguments: &PaperArguments) -> Result<bool> {
+    let PaperArguments { models, quick, out } = arguments;
+    let models = models.clone().unwrap_or_else(default_models);
+    let out = out.clone().unwrap_or_else(|| PathBuf::from(if *quick { "target/paper" } else { "docs" }));
+    paper::write(&models, *quick, &out)
+}
+
+/// Returns the default folder of models.
+fn default_models() -> PathBuf {
+    std::env::var_os("P2M_MODELS").map_or_else(|| PathBuf::from("../shared/models"), PathBuf::from)
+}
+
+/// Writes the report, and returns whether all promises were kept.
+fn write_report(arguments: &ReportArguments) -> Result<bool> {
+    let ReportArguments { models, quick, out, label } = arguments;
+    let models = models.clone().unwrap_or_else(default_models);
+    let out = out.clone().unwrap_or_else(|| PathBuf::from(if *quick { "target/report" } else { "docs" }));
+    tradeoff::write(&models, *quick, &out, &provenance(label.as_deref()))
+}
+
+/// Writes the page about extreme input, and returns whether our backends kept all promises.
+fn write_extremes(arguments: &ExtremesArguments) -> Result<bool> {
+    let &ExtremesArguments { cases, scenes, seed, ref out } = arguments;
+    extremes::write(&extremes::Amount { cases, scenes, seed }, out.as_deref(), &provenance(None))
+}
+
+/// Prints a table of differences. Only records that cannot be compared are an error.
+fn compare_records(arguments: &CompareArguments) -> Result<bool> {
+    let read = |path: &PathBuf| -> Result<Vec<p2m_tradeoff::record::Line>> {
+        let name = || path.display().to_string();
+        let text = std::fs::read_to_string(path).with_context(name)?;
+        p2m_tradeoff::record::read_record(&text).with_context(name)
+    };
+    let (first, second) = (read(&arguments.first)?, read(&arguments.second)?);
+    print!("{}", p2m_tradeoff::compare::compare(&first, &second)?);
+    Ok(true)
+}
+
+/// Writes the page about adversarial scenes, and returns whether all budgets were kept and all answers are right.
+fn run_adversaries(arguments: &AdversariesArguments) -> Result<bool> {
+    adversaries::print(arguments.primitives, arguments.out.as_deref(), &provenance(None))
+}
+
+/// Runs an external library over one scene, and prints the outcome for the process that started this one.
+fn run_external(arguments: &RivalArguments) -> Result<bool> {
+    adversaries::attempt(&arguments.backend, &arguments.adversary, arguments.primitives)?;
+    Ok(true)
+}
+
+/// Prints a table that compares recommended backends with the best ones. It always succeeds.
+fn check_advice(arguments: &AdviseArguments) -> Result<bool> {
+    println!("{}", provenance(None));
+    let mut table = Table::new(advise::HEADINGS);
+    let mut worst = [1.0f64, 0.0];
+    for path in &arguments.scenes {
+        let scene = Scene::read(path)?;
+        if scene.len() >= 1000 {
+            let [ratio, share] = advise::add_rows(&scene, &mut table)?;
+            worst = [worst[0].max(ratio), worst[1].max(share)];
+        }
+    }
+    println!(
+        "One thread, thread CPU time; totals are building and all queries, from {} of them. At worst {:.2} times the best, and \
+         {:.1} % of the job for advice.\n\n{table}",
+        advise::QUERIES,
+        worst[0],
+        100.0 * worst[1]
+    );
+    Ok(true)
+}
+
+/// Times distance fields, and returns whether ours are equal.
+fn fill_fields(arguments: &FieldArguments) -> Result<bool> {
+    println!("{}", provenance(None));
+    let mut is_good = true;
+    for path in &arguments.scenes {
+        let scene = Scene::read(path)?;
+        if arguments.article {
+            field::print_article(&scene)?;
+        } else {
+            is_good &= field::print(&scene, arguments.resolution, arguments.stride)?;
+        }
+    }
+    Ok(is_good)
+}
+
+/// Times saved indexes, and returns whether they answer as those that were built.
+fn compare_saved(arguments: &SavedArguments) -> Result<bool> {
+    println!("{}", provenance(None));
+    let mut is_good = true;
+    for path in &arguments.scenes {
+        is_good &= saved::print(&Scene::read(path)?, arguments.rounds)?;
+    }
+    Ok(is_good)
+}
+
+/// Compares settings of the octree, and returns whether all octrees agree.
+fn compare_octrees(arguments: &BatchArguments) -> Result<bool> {
+    let BatchArguments { scenes, sets, threads, rounds, queries, seed } = arguments;
+    let effort = Effort { rounds: *rounds, queries: *queries, builds: 3, seed: *seed };
+    println!("{}", provenance(None));
+    println!("{rounds} rounds in turns, {queries} queries a round, seed {seed}.");
+    let mut is_good = true;
+    for path in scenes {
+        is_good &= octree::print(&Scene::read(path)?, sets, threads, &effort)?;
+    }
+    Ok(is_good)
+}
+
+/// Times Delaunay triangulations, and returns whether all are valid.
+fn triangulate(arguments: &DelaunayArguments) -> Result<bool> {
+    println!("{}", provenance(None));
+    println!("One thread, thread CPU time.");
+    delaunay::print(&arguments.scenes, arguments.rounds)
+}
+
+/// Times batches, and returns whether all agree with single queries.
+fn time_batches(arguments: &BatchArguments) -> Result<bool> {
+    let BatchArguments { scenes, sets, threads, rounds, queries, seed } = arguments;
+    println!("{}", provenance(None));
+    println!("Wall time, {rounds} rounds in turns, batches of {queries}, seed {seed}.");
+    let mut is_good = true;
+    for path in scenes {
+        is_good &= batch::print(&Scene::read(path)?, sets, *queries, threads, *rounds, *seed)?;
+    }
+    println!(
+        "{}",
+        if is_good { "All answers are those of single queries." } else { "DIFFERENCES from single queries." }
+    );
+    Ok(is_good)
+}
+
+/// Compares k-DOP trees, and returns whether all trees agree.
+fn compare_kdops(arguments: &KdopArguments) -> Result<bool> {
+    let KdopArguments { scenes, turned, set, rounds, queries, seed } = arguments;
+    let effort = Effort { rounds: *rounds, queries: *queries, builds: *rounds, seed: *seed };
+    println!("{}", provenance(None));
+    println!("One thread, thread CPU time, {rounds} rounds in turns, {queries} queries of {set} a round, seed {seed}.");
+    kdop::print_cited();
+    let mut is_good = true;
+    for path in scenes {
+        let scene = Scene::read(path)?;
+        let all = if *turned { kdop::orientations(&scene)? } else { vec![scene] };
+        for scene in &all {
+            is_good &= kdop::print(scene, *set, &effort);
+        }
+    }
+    Ok(is_good)
+}
+
+/// Times rays, and returns whether all trees agree.
+fn cast_rays(arguments: &RayArguments) -> Result<bool> {
+    let RayArguments { scenes, turned, rivals: with_external, backends, sets, rays, rounds, seed, csv, label } =
+        arguments;
+    let against_external = *with_external || !backends.is_empty();
+    let provenance = provenance(label.as_deref());
+    let mut record = csv.as_deref().map(report::Record::open).transpose()?;
+    println!("{provenance}");
+    println!("One thread, thread CPU time, {rounds} rounds in turns, seed {seed}.");
+    let default_sets: &[QuerySet] =
+        if against_external { &[QuerySet::Box10, QuerySet::Box1] } else { &[QuerySet::Box1] };
+    let sets = if sets.is_empty() { default_sets } else { sets };
+    if !against_external {
+        rays::manual::print_cited();
+    }
+    let mut is_good = true;
+    for path in scenes {
+        let scene = Scene::read(path)?;
+        let all = if *turned { kdop::orientations(&scene)? } else { vec![scene] };
+        for scene in &all {
+            let count = rays.map_or(
+                Ok(if against_external { 200_000 } else { rays::manual::RAYS_EACH * scene.len() }),
+                usize::try_from,
+            )?;
+            let effort = Effort { rounds: *rounds, queries: count, builds: 1, seed: *seed };
+            if against_external {
+                is_good &= rays::versus::print(scene, sets, backends, &effort, &provenance, record.as_mut())?;
+            } else {
+                for set in sets {
+                    is_good &= rays::manual::print(scene, *set, &effort)?;
+                }
+            }
+        }
+    }
+    Ok(is_good)
+}
+
+/// Compares split rules, and returns whether all trees agree.
+fn compare_splits(arguments: &SplitsArguments) -> Result<bool> {
+    let SplitsArguments { scenes, sets, rounds, queries, seed } = arguments;
+    let effort = Effort { rounds: *rounds, queries: *queries, builds: *rounds, seed: *seed };
+    println!("{}", provenance(None));
+    println!("One thread, thread CPU time, {rounds} rounds in turns, {queries} queries a round, seed {seed}.");
+    let mut is_good = true;
+    for path in scenes {
+        is_good &= splits::print(&Scene::read(path)?, sets, &effort);
+    }
+    Ok(is_good)
+}
+
+/// Compares our exact backends with brute force, and returns whether all answers are equal.
+fn verify(arguments: &VerifyArguments) -> Result<bool> {
+    let common = &arguments.common;
+    let oracles = select(common, |b| b.is_ours && b.is_exhaustive);
+    let named = |b: &Backend| arguments.backends.is_empty() || arguments.backends.iter().any(|name| name == b.name);
+    let backends = select(common, |b| b.is_ours && !b.is_exhaustive && named(b));
+    println!("{}", provenance(None));
+    println!(
+        "{} queries of each set, seed {}: how many answers equal those of brute force.",
+        arguments.queries, common.seed
+    );
+    let mut is_equal = true;
+    for path in &common.scenes {
+        let scene = Scene::read(path)?;
+        is_equal &= verify::verify(&scene, &oracles, &backends, &common.sets, arguments.queries, common.seed);
+    }
+    println!("\n{}", if is_equal { "All equal." } else { "DIFFERENCES, see above." });
+    Ok(is_equal)
+}

@@ -1,0 +1,26 @@
+//! The parts that all measuring loops of this program share: competitors take turns ([`rotated`]), time is the CPU time
+//! of one thread ([`thread_seconds`]), and answers enter a checksum.
+//!
+//! Competitors that take turns see the same temperature and load of the machine, so their ratios are more stable than
+//! their times. Another one begins in every round, because the first one after a pause is slower.
+
+pub(crate) use p2m_tradeoff::{rotated, thread_seconds};
+
+/// Returns a checksum of answers, each given by the bits of its number and the id of its primitive. It depends on every
+/// bit and on the order of the answers. `start` is the checksum of the answers before these, or 0.
+pub(crate) fn checksum(start: u64, answers: impl Iterator<Item = (u64, u64)>) -> u64 {
+    answers.fold(start, |sum, (bits, id)| (sum ^ bits).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(23) ^ id)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn checksums_see_order_and_ids() {
+        let sum = |answers: &[(u64, u64)]| checksum(0, answers.iter().copied());
+        assert_ne!(sum(&[(1, 3), (2, 3)]), sum(&[(2, 3), (1, 3)]));
+        assert_ne!(sum(&[(1, 3), (2, 3)]), sum(&[(1, 4), (2, 3)]));
+        assert_eq!(sum(&[(1, 3), (2, 3)]), checksum(sum(&[(1, 3)]), [(2, 3)].into_iter()));
+    }
+}

@@ -1,0 +1,194 @@
+//! The queries that are counted: each set of queries on each index of a scene.
+
+use nalgebra::Point3;
+use p2m::backend::{Best, Hits, RayStatsCollector, StatsCollector};
+use p2m::scene::generate::{IcoSphere, Subdivide, ico_sphere, subdivide};
+use p2m::storage::{SavedFile, Writer};
+use p2m::{AabbTree, BuildIndex, ClosestPoint, Inspect, Isa, KdopTree, OctreeIndex, P2mIndex, Ray, Soup};
+use p2m_testkit::counted_queries::{self, QueryMode};
+use p2m_testkit::queries::QuerySet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+/// The number of queries of each set. A count divided by 200 has at most three decimals, so the table has all of them.
+pub(crate) const QUERIES: usize = 200;
+/// The seed of all queries.
+pub(crate) const SEED: u64 = 1;
+/// The scenes, in the order of the table.
+pub(crate) const SCENES: [&str; 2] = ["knot_and_cables", "scan"];
+/// The query sets of closest points.
+pub(crate) const SETS: [QuerySet; 4] = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface];
+/// The number of counters of a query: nodes, packets and primitives.
+pub(crate) const COUNTERS: usize = 3;
+
+/// Returns a rough lump of 11,520 triangles, which is noisy like a scan and the same on every platform.
+fn scan() -> Soup<f64> {
+    let lump = ico_sphere(&IcoSphere::default().with_frequency(3)).expect("valid options");
+    subdivide(&lump, &Subdivide::default().with_levels(3).with_amplitude(0.15)).expect("valid options")
+}
+
+/// Returns the scene of that name.
+pub(crate) fn scene(name: &str) -> Soup<f64> {
+    let carried = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(format!("{name}.obj"));
+    if name == "scan" { scan() } else { p2m::scene::read_scene(&carried).expect("a carried scene").soup }
+}
+
+/// Rounds to f32, which removes the last bits, in which logarithms and cosines differ between platforms.
+fn rounded(x: f64) -> f64 {
+    f64::from(x as f32)
+}
+
+fn points(set: QuerySet, soup: &Soup<f64>) -> Vec<Point3<f64>> {
+    let points = set.generate(soup, QUERIES, SEED);
+    if set == QuerySet::Near { points.into_iter().map(|point| point.map(rounded)).collect() } else { points }
+}
+
+fn rays(soup: &Soup<f64>) -> Vec<Ray> {
+    let rays = QuerySet::Box1.rays(soup, QUERIES, SEED).into_iter();
+    rays.map(|ray| Ray::new(&ray.origin(), &ray.direction().map(rounded)).expect("finite, and not zero")).collect()
+}
+
+/// The nodes, packets and primitives of all queries of a set.
+pub(crate) type Counts = [usize; COUNTERS];
+
+/// The queries of one set on one index.
+pub(crate) struct Task<'a> {
+    pub(crate) backend: &'static str,
+    pub(crate) set: &'static str,
+    /// Runs the queries as a user does.
+    pub(crate) run: Box<dyn Fn() + 'a>,
+    /// Runs the queries with counters.
+    pub(crate) count: Box<dyn Fn() -> Counts + 'a>,
+}
+
+/// An index that counts the nodes, packets and primitives of its searches. It answers the queries of a batch one by
+/// one, so interleaved searches are not counted.
+struct Counted<'a, I> {
+    index: &'a I,
+    soup: &'a Soup<f64>,
+    counts: Mutex<Counts>,
+}
+
+impl<I: Inspect<f64>> ClosestPoint<f64> for Counted<'_, I> {
+    fn search(&self, query: &Point3<f64>, best: &mut Best<f64>) {
+        best.offer_hint(self.soup, query);
+        let mut counting = StatsCollector::new(best.clone());
+        self.index.inspect(query, &mut counting);
+        let found = [counting.nodes, counting.packets, counting.primitives];
+        self.counts.lock().expect("one thread").iter_mut().zip(found).for_each(|(sum, count)| *sum += count);
+        *best = counting.best;
+    }
+}
+
+/// Returns the queries of all sets of closest points, for an index that counts and the same index as a trait object.
+fn point_tasks<'a, I: Inspect<f64> + Sync>(
+    backend: &'static str,
+    index: &'a I,
+    object: &'a counted_queries::Index<'a>,
+    soup: &'a Soup<f64>,
+    mode: QueryMode,
+) -> impl Iterator<Item = Task<'a>> {
+    SETS.into_iter().map(move |set| {
+        let queries = points(set, soup);
+        let same_queries = queries.clone();
+        let run = move || counted_queries::run_queries(object, mode, &queries);
+        let count = move || {
+            let counted = Counted { index, soup, counts: Mutex::default() };
+            counted_queries::run_queries(&counted, mode, &same_queries);
+            counted.counts.into_inner().expect("one thread")
+        };
+        Task { backend, set: set.name(), run: Box::new(run), count: Box::new(count) }
+    })
+}
+
+/// Returns the rays from the scene's box, whose first hits are searched for.
+fn ray_task<'a>(
+    backend: &'static str,
+    object: &'a dyn counted_queries::Tree,
+    rays: &'a [Ray],
+    visit: impl Fn(&'a Ray, &mut RayStatsCollector<Hits<'a>>) + 'a,
+) -> Task<'a> {
+    let run = move || counted_queries::run_rays(object, rays);
+    let count = move || RayStatsCollector::of_rays(rays, &Hits::first(), &visit);
+    Task { backend, set: "rays", run: Box::new(run), count: Box::new(count) }
+}
+
+/// One scene with all indexes that are measured.
+#[derive(Clone)]
+pub(crate) struct Indexes<'a> {
+    soup: &'a Soup<f64>,
+    rays: Vec<Ray>,
+    aabb: AabbTree<f64, &'a Soup<f64>>,
+    kdop: KdopTree<f64, &'a Soup<f64>, 14>,
+    octree: OctreeIndex<f64, &'a Soup<f64>>,
+    p2m: P2mIndex<f64, &'a Soup<f64>>,
+}
+
+/// Returns the path of the file of an index.
+fn file(folder: &Path, scene: &str, backend: &str) -> PathBuf {
+    folder.join(format!("{scene}-{backend}.p2m"))
+}
+
+impl<'a> Indexes<'a> {
+    pub(crate) fn build(soup: &'a Soup<f64>) -> Self {
+        Self {
+            soup,
+            rays: rays(soup),
+            aabb: AabbTree::build(soup, &Default::default()).expect("valid"),
+            kdop: KdopTree::build(soup, &Default::default()).expect("valid"),
+            octree: OctreeIndex::build(soup, &Default::default()).expect("valid"),
+            p2m: P2mIndex::build(soup, &Default::default()).expect("valid"),
+        }
+    }
+
+    pub(crate) fn save(&self, folder: &Path, scene: &str) {
+        let write = |backend: &str, writer: &Writer<'_>| {
+            let file = fs::File::create(file(folder, scene, backend)).expect("a folder to write to");
+            writer.write(std::io::BufWriter::new(file)).expect("room on the disk");
+        };
+        let mut writers: [Writer<'_>; 4] = Default::default();
+        self.aabb.save(&mut writers[0]);
+        self.kdop.save(&mut writers[1]);
+        self.octree.save(&mut writers[2]);
+        self.p2m.save(&mut writers[3]);
+        ["aabb", "kdop", "octree", "p2m"].iter().zip(&writers).for_each(|(backend, writer)| write(backend, writer));
+    }
+
+    pub(crate) fn load(soup: &'a Soup<f64>, folder: &Path, scene: &str) -> Self {
+        // The files are not verified, because that takes long under valgrind.
+        let open = |backend: &str| SavedFile::open(&file(folder, scene, backend)).expect("written by this program");
+        Self {
+            soup,
+            rays: rays(soup),
+            aabb: AabbTree::load(soup, open("aabb").unchecked()).expect("written by this program"),
+            kdop: KdopTree::load(soup, open("kdop").unchecked()).expect("written by this program"),
+            octree: OctreeIndex::load(soup, open("octree").unchecked()).expect("written by this program"),
+            p2m: P2mIndex::load(soup, open("p2m").unchecked()).expect("written by this program"),
+        }
+    }
+
+    pub(crate) fn with_isa(self, isa: Isa) -> Self {
+        let Self { aabb, kdop, octree, p2m, .. } = self;
+        let (aabb, kdop) = (aabb.with_isa(isa), kdop.with_isa(isa));
+        Self { aabb, kdop, octree: octree.with_isa(isa), p2m: p2m.with_isa(isa), ..self }
+    }
+
+    /// Returns all queries, in the order of the table.
+    pub(crate) fn tasks(&self) -> Vec<Task<'_>> {
+        let Self { soup, rays, aabb, kdop, octree, p2m } = self;
+        let (aabb_object, kdop_object) = (counted_queries::aabb_tree(aabb), counted_queries::kdop_tree(kdop));
+        let (octree_object, p2m_object) = (counted_queries::octree(octree), counted_queries::p2m(p2m));
+        // Hints help trees, and interleaving helps cells.
+        point_tasks("aabb", aabb, aabb_object, soup, QueryMode::Single)
+            .chain([ray_task("aabb", aabb_object, rays, |ray, counting| aabb.visit_ray(ray, counting))])
+            .chain(point_tasks("aabb batch", aabb, aabb_object, soup, QueryMode::Hints))
+            .chain(point_tasks("kdop-14", kdop, kdop_object, soup, QueryMode::Single))
+            .chain([ray_task("kdop-14", kdop_object, rays, |ray, counting| kdop.visit_ray(ray, counting))])
+            .chain(point_tasks("octree", octree, octree_object, soup, QueryMode::Single))
+            .chain(point_tasks("octree batch", octree, octree_object, soup, QueryMode::Several))
+            .chain(point_tasks("p2m", p2m, p2m_object, soup, QueryMode::Single))
+            .chain(point_tasks("p2m batch", p2m, p2m_object, soup, QueryMode::Several))
+            .collect()
+    }
+}
