@@ -43,8 +43,8 @@
 //! | the same proved: the nearest primitive of the real numbers, the distance rounded once | [`CertifiedQuery`] | every index |
 //! | the same for many places, on all cores | [`batch`] | every index |
 //! | the k nearest, all within a distance, any, the closest of some | [`NearQuery`] | every index |
-//! | what a ray meets | [`RayQuery`] | trees and brute force |
-//! | what meets a box | [`BoxQuery`] | trees and brute force |
+//! | what a ray intersects | [`RayQuery`] | trees and brute force |
+//! | what intersects a box | [`BoxQuery`] | trees and brute force |
 //! | what a query costs | [`Inspect`] | every index |
 //!
 //! # Which index

@@ -47,13 +47,14 @@ fn check_agreement<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>, expecte
         assert_eq!(hinted.as_ref().map(compared_fields), Some(expected.0), "{}: hint {id}", context());
     }
     // A radius decides whether there is an answer and does not change it; it is inclusive.
-    let beside = [expected.1, expected.1 * T::of_f64(1.5), T::of_f64_below(expected.1.to_f64() * (1.0 - 1e-7))];
+    let beside =
+        [expected.1, expected.1 * T::round_from_f64(1.5), T::round_down_from_f64(expected.1.to_f64() * (1.0 - 1e-7))];
     for radius in beside {
         let limited = query_with(&default.with_max_distance(radius).with_hint(PrimitiveId::new(0)));
         let within = Some(expected.0).filter(|_| expected.1 <= radius);
         assert_eq!(limited.as_ref().map(compared_fields), within, "{}: radius {radius:?}", context());
     }
-    for radius in [T::of_f64(-1.0), T::of_f64(f64::NAN)] {
+    for radius in [T::round_from_f64(-1.0), T::round_from_f64(f64::NAN)] {
         assert_eq!(query_with(&default.with_max_distance(radius)), None, "{}: radius {radius:?}", context());
     }
 }

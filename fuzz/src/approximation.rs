@@ -20,7 +20,7 @@ fn checked_answer<T: Real>(
     assert!(found.distance >= exact.distance && found.lower_bound <= exact.distance, "{}", context());
     let projection = subject.soup.get(found.primitive).project(query);
     assert_eq!(
-        T::of_f64(projection.key.distance()),
+        T::round_from_f64(projection.key.distance()),
         found.distance,
         "{}: the distance of another primitive",
         context()
@@ -44,7 +44,7 @@ pub fn check<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>, exact: &Close
     let distance = exact.distance.to_f64();
     let seed = subject.seed as usize;
     let epsilon = [1e-9, 0.001, 0.03, 0.3, 3.0, 1e30][seed % 6];
-    let found = checked_answer(subject, query, exact, &default.with_epsilon(T::of_f64(epsilon)));
+    let found = checked_answer(subject, query, exact, &default.with_epsilon(T::round_from_f64(epsilon)));
     let max_distance = distance * ((1.0 + epsilon) * (1.0 + 8.0 * T::UNIT_ROUNDOFF)) + T::SMALLEST_SUBNORMAL;
     assert!(found.distance.to_f64() <= max_distance, "{}: epsilon {epsilon}: {found:?}", context());
     let hint = PrimitiveId::new(seed % (subject.soup.len() + 1));
@@ -52,10 +52,10 @@ pub fn check<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>, exact: &Close
     let found = checked_answer(subject, query, exact, &default.with_max_visits(u32::MAX - 1));
     assert_eq!(compared_fields(&found), compared_fields(exact), "{}: a budget for everything: {found:?}", context());
     // One radius contains a primitive and the other one does not.
-    let rough = default.with_epsilon(T::of_f64(epsilon));
+    let rough = default.with_epsilon(T::round_from_f64(epsilon));
     let found = checked_answer(subject, query, exact, &rough.with_max_distance(exact.distance).with_hint(hint));
     assert_eq!(found.distance, exact.distance, "{}: {found:?}", context());
-    let short = T::of_f64_below(distance * (1.0 - 1e-6));
+    let short = T::round_down_from_f64(distance * (1.0 - 1e-6));
     if short < exact.distance {
         let options = rough.with_max_distance(short).with_max_visits(5);
         assert_eq!(subject.index.closest_point_with(query, &options), None, "{}: beyond {short:?}", context());

@@ -4,7 +4,7 @@ use super::backends::Tree;
 use super::scene::vertices;
 use nalgebra::Point3;
 use p2m::{Aabb, PrimitiveId, PrimitiveSet, Real, Soup};
-use p2m_testkit::oracle::{Distance, meets_box};
+use p2m_testkit::oracle::{Distance, intersects_box};
 
 /// Checks boxes that are spanned by pairs of queries.
 pub fn check<T: Real>(soup: &Soup<T>, tree: &dyn Tree<T>, name: &str, queries: &[Point3<T>]) {
@@ -14,11 +14,11 @@ pub fn check<T: Real>(soup: &Soup<T>, tree: &dyn Tree<T>, name: &str, queries: &
         let mut found = Vec::new();
         tree.primitives_in_box_into(&bounds, &mut found);
         if corners.as_flattened().iter().all(|x| x.is_finite()) {
-            let is_hit = |id: &usize| meets_box(&vertices(soup, *id), &corners);
+            let is_hit = |id: &usize| intersects_box(&vertices(soup, *id), &corners);
             let expected: Vec<_> = (0..soup.len()).filter(is_hit).map(PrimitiveId::new).collect();
             assert_eq!(found, expected, "{name}: {bounds:?}");
         }
-        assert_eq!(tree.meets_box(&bounds), !found.is_empty(), "{name}: {bounds:?}");
+        assert_eq!(tree.intersects_box(&bounds), !found.is_empty(), "{name}: {bounds:?}");
         let Some(leaf) = tree.closest_leaf(a) else {
             assert!(soup.is_empty() || !a.iter().all(|x| x.is_finite()), "{name}: {a:?}");
             continue;

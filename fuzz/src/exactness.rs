@@ -73,7 +73,7 @@ pub fn check_certified<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>) {
     let answer = (compared_fields(&found), found.lower_bound);
     let unit = distance * 2.0 * T::UNIT_ROUNDOFF + T::SMALLEST_SUBNORMAL;
     for radius in [distance, distance - unit, distance + 2.0 * unit, distance * 0.5] {
-        let radius = T::of_f64(radius);
+        let radius = T::round_from_f64(radius);
         let found =
             certify(&QueryOptions::default().with_max_distance(radius)).map(|c| (compared_fields(&c), c.lower_bound));
         let r = radius.to_f64();

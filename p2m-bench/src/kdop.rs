@@ -108,7 +108,7 @@ pub(crate) fn print(scene: &Scene, set: QuerySet, effort: &Effort) -> bool {
 }
 
 fn count(queries: &[Point3<f64>], visit: impl Fn(&Point3<f64>, &mut StatsCollector<f64>)) -> Work {
-    let [nodes, packets, _] = StatsCollector::of_queries(queries, visit);
+    let [nodes, packets, _] = StatsCollector::count_queries(queries, visit);
     [nodes, packets].map(|sum| sum as f64 / queries.len() as f64)
 }
 

@@ -67,7 +67,7 @@ impl Scene {
 
 /// Rounds a point to f32.
 pub(crate) fn single_point(p: &Point3<f64>) -> Point3<f32> {
-    Point3::new(f32::of_f64(p.x), f32::of_f64(p.y), f32::of_f64(p.z))
+    Point3::new(f32::round_from_f64(p.x), f32::round_from_f64(p.y), f32::round_from_f64(p.z))
 }
 
 /// Returns the soup without spare capacity, and its heap bytes.

@@ -70,6 +70,6 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> bool {
 
 /// Returns the nodes visited and the primitives offered per query, which are deterministic.
 fn work<S: p2m_core::PrimitiveSet<f64>>(tree: &AabbTree<f64, S>, queries: &[Point3<f64>]) -> [f64; 2] {
-    let [nodes, _, primitives] = StatsCollector::of_queries(queries, |query, counting| tree.visit(query, counting));
+    let [nodes, _, primitives] = StatsCollector::count_queries(queries, |query, counting| tree.visit(query, counting));
     [nodes, primitives].map(|sum| sum as f64 / queries.len() as f64)
 }

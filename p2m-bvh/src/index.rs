@@ -176,7 +176,7 @@ where
 
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> BoxQuery<T> for TreeIndex<T, S, V> {
     fn visit_box(&self, bounds: &Aabb<T>, visit: &mut dyn FnMut(PrimitiveId) -> ControlFlow<()>) -> ControlFlow<()> {
-        self.tree.visit_box(&bounds.to_f64(), |id| self.set.get(id).meets_box(bounds), visit)
+        self.tree.visit_box(&bounds.to_f64(), |id| self.set.get(id).intersects_box(bounds), visit)
     }
 }
 

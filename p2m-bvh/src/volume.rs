@@ -31,7 +31,7 @@ impl Volume for Aabb<f64> {
     }
 
     fn may_intersect_box(&self, (): &(), bounds: &Aabb<f64>) -> bool {
-        self.meets(bounds)
+        self.intersects(bounds)
     }
 }
 

@@ -18,7 +18,7 @@ use nalgebra::Point3;
 use p2m_advisor::{Index, IndexDetails, SearchStructure};
 use p2m_core::{Aabb, PrimitiveSet, Soup};
 use p2m_field::FieldFormat;
-use p2m_field::grid_candidates::{CandidateLists, LARGEST};
+use p2m_field::grid_candidates::{CandidateLists, MAX_COORDINATE};
 use p2m_field::sign::{SignError, SignedDistance};
 use p2m_field::{
     FieldOptions, Grid, RefineOptions, distances, distances_by_lists, refined, signed_distances,
@@ -291,7 +291,7 @@ fn candidate_lists<'a>(streams: &Streams, soup: &'a Soup<f64>, grid: &Grid) -> O
     if grid.len() < soup.len() {
         return None;
     }
-    let is_in_range = |point: &Point3<f64>| point.iter().all(|x| x.abs() <= LARGEST);
+    let is_in_range = |point: &Point3<f64>| point.iter().all(|x| x.abs() <= MAX_COORDINATE);
     let is_in_range = is_in_range(&grid.origin()) && is_in_range(&last);
     let _progress = Progress::start(streams, "sorting primitives", None, Unit::None);
     CandidateLists::new(soup).filter(|_| is_in_range)

@@ -29,7 +29,7 @@ fn help() -> String {
     format!(
         "\
 A ray has an origin and a direction of any length but zero: its points are origin + t direction with the parameter t from \
---min to --max. Whether it meets a primitive is decided without rounding, so nothing slips through between two \
+--min to --max. Whether it intersects a primitive is decided without rounding, so nothing slips through between two \
 triangles with a common edge, and every backend gives the same table, but for `any`. A hit on a common edge is one of both \
 triangles, and as a crossing it counts once.
 
@@ -38,7 +38,7 @@ intersects, count and crossings it has one more, called hit (0 or 1), count or c
 parameter,x,y,z,primitive,side,w0,w1,w2: the parameter t and the point of the hit, the number of the primitive from 0, the \
 side of the triangle that is met (front, back, or along for one in its plane, and for segments and points), and the weights \
 of the primitive's vertices. With --mode first and any each ray has one line, where the last nine are empty if it \
-meets nothing; with --mode all it has a line for each of its hits, by parameter and then by primitive. Of a scene with named \
+intersects nothing; with --mode all it has a line for each of its hits, by parameter and then by primitive. Of a scene with named \
 objects hits have one column more, object: the name of that of the primitive, empty where it is in none. Numbers are the \
 shortest that read back the same. A summary goes to the standard error.
 

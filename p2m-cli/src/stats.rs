@@ -110,9 +110,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let region = Region::around(&scene.soup, args.box_scale);
     let random: Vec<_> = Queries::random(region, args.queries, args.seed).collect();
     let stats = IndexStats {
-        lists: ListStats::of(&*index),
-        in_box: QueryCost::of(&*index, &random),
-        on_scene: QueryCost::of(&*index, &centroid_sample(&scene.soup, args.queries)),
+        lists: ListStats::from_index(&*index),
+        in_box: QueryCost::measure(&*index, &random),
+        on_scene: QueryCost::measure(&*index, &centroid_sample(&scene.soup, args.queries)),
         random_queries: random.len() as u64,
         memory: index.parts(),
         stages,
@@ -209,7 +209,7 @@ fn centroid_sample(soup: &Soup<f64>, count: u64) -> Vec<Point3<f64>> {
 /// Returns the number by which a primitive is coloured: the length of the list at its centroid, or for trees the number
 /// of packets that a query there filters.
 fn query_cost(index: &dyn Index, centroid: &Point3<f64>) -> f64 {
-    let packets = || StatsCollector::of_query(centroid, |query, collector| index.inspect(query, collector))[1];
+    let packets = || StatsCollector::count_query(centroid, |query, collector| index.inspect(query, collector))[1];
     index.list_length(centroid).unwrap_or_else(packets) as f64
 }
 

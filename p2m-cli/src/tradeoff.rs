@@ -18,7 +18,7 @@ use p2m_tradeoff::page::Page;
 use p2m_tradeoff::queries::Queries;
 use p2m_tradeoff::settings::{Ask, SETTINGS, Setting};
 use p2m_tradeoff::{
-    Asked, AskedForProof, Build, Effort, Entrant, Provenance, SceneFigures, SetFigures, Subject, Truth,
+    Build, Competitor, Effort, Provenance, SceneFigures, SetFigures, Subject, Truth, WithCertificate, WithOptions,
     clock_nanoseconds, measure, record::record, text, thread_seconds,
 };
 use std::io::Write as _;
@@ -114,8 +114,8 @@ impl<'a> MeasuredIndex<'a> {
     /// Returns the index as a subject of the measurement with this setting.
     fn with_setting(&self, setting: &Setting) -> Box<dyn Subject + '_> {
         match setting.ask {
-            Ask::Certified => Box::new(AskedForProof::new(&*self.index)),
-            _ => Box::new(Asked::new(&*self.index, setting.options::<f64>())),
+            Ask::Certified => Box::new(WithCertificate::new(&*self.index)),
+            _ => Box::new(WithOptions::new(&*self.index, setting.options::<f64>())),
         }
     }
 }
@@ -222,10 +222,10 @@ impl Args {
         }
         drop(progress);
         let truths = truths(soup, &queries)?;
-        let entrants: Vec<Entrant<'_>> = indexes
+        let entrants: Vec<Competitor<'_>> = indexes
             .iter()
             .flat_map(|index| {
-                SETTINGS.iter().map(move |setting| Entrant {
+                SETTINGS.iter().map(move |setting| Competitor {
                     backend: index.backend.name.to_owned(),
                     setting: setting.name.to_owned(),
                     promise: setting.promise(),

@@ -26,7 +26,7 @@ impl<T: Real> Aabb<T> {
     /// Returns the smallest box around `points`. A NaN coordinate makes the box NaN on that axis.
     #[inline(always)]
     #[must_use]
-    pub fn of_points(points: &[Point3<T>]) -> Self {
+    pub fn from_points(points: &[Point3<T>]) -> Self {
         points.iter().fold(Self::empty(), |b, p| b.union(&Self { min: *p, max: *p }))
     }
 
@@ -86,7 +86,7 @@ impl<T: Real> Aabb<T> {
 
     /// Returns whether two closed boxes have a point in common.
     #[must_use]
-    pub fn meets(&self, other: &Self) -> bool {
+    pub fn intersects(&self, other: &Self) -> bool {
         (0..3).all(|k| self.min[k] <= other.max[k] && other.min[k] <= self.max[k])
     }
 
@@ -138,7 +138,7 @@ mod tests {
                 for at in 0..3 {
                     let mut points = [Point3::new(1.0, 2.0, 3.0), Point3::new(-1.0, 0.0, 5.0), Point3::origin()];
                     points[at][axis] = bad;
-                    assert!(!Aabb::of_points(&points).is_finite(), "{bad} on axis {axis} of point {at}");
+                    assert!(!Aabb::from_points(&points).is_finite(), "{bad} on axis {axis} of point {at}");
                 }
             }
         }
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn the_bound_is_zero_inside_and_the_distance_outside() {
-        let b = Aabb::of_points(&[Point3::new(0.0, 0.0, 0.0), Point3::new(1.0, 2.0, 3.0)]);
+        let b = Aabb::from_points(&[Point3::new(0.0, 0.0, 0.0), Point3::new(1.0, 2.0, 3.0)]);
         assert_eq!(b.lower_bound(&Point3::new(0.5, 2.0, 0.0)), 0.0);
         assert_eq!(b.lower_bound(&Point3::new(-3.0, 6.0, 1.0)), 25.0);
         assert_eq!(b.clamp(Point3::new(-3.0, 6.0, 1.0)), Point3::new(0.0, 2.0, 1.0));

@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 ///
 /// - **Exact**: the box and the primitives are closed sets, so a primitive that touches a face, an edge or a corner of
 ///   the box intersects it, and one at the smallest representable distance does not. This is decided without rounding
-///   ([`Primitive::meets_box`]) for all finite scenes, so all backends find the same primitives.
+///   ([`Primitive::intersects_box`]) for all finite scenes, so all backends find the same primitives.
 /// - **Any box**: a box without extent is a rectangle, a segment or a point. Sides may lie at infinity. An empty box
 ///   (`min > max` on some axis) and one with a NaN coordinate intersect nothing.
 /// - **Interior**: a triangle or segment that passes through the box without a vertex in it intersects the box. A
@@ -25,8 +25,8 @@ use std::ops::ControlFlow;
 /// let index = BruteForce::new(&scene).unwrap();
 /// let block = |x: f64| Aabb { min: Point3::new(x, x, -1.0), max: Point3::new(9.0, 9.0, 1.0) };
 /// // The box touches the triangle at one point of its longest edge.
-/// assert!(index.meets_box(&block(2.0)));
-/// assert!(!index.meets_box(&block(2.0 + 4.0 * f64::EPSILON)));
+/// assert!(index.intersects_box(&block(2.0)));
+/// assert!(!index.intersects_box(&block(2.0 + 4.0 * f64::EPSILON)));
 /// ```
 ///
 /// # References
@@ -41,7 +41,7 @@ pub trait BoxQuery<T: Real> {
     fn visit_box(&self, bounds: &Aabb<T>, visit: &mut dyn FnMut(PrimitiveId) -> ControlFlow<()>) -> ControlFlow<()>;
 
     /// Returns whether any primitive intersects the box.
-    fn meets_box(&self, bounds: &Aabb<T>) -> bool {
+    fn intersects_box(&self, bounds: &Aabb<T>) -> bool {
         self.visit_box(bounds, &mut |_| ControlFlow::Break(())).is_break()
     }
 
@@ -60,7 +60,7 @@ impl<T: Real, S: PrimitiveSet<T>> BoxQuery<T> for BruteForce<S> {
     fn visit_box(&self, bounds: &Aabb<T>, visit: &mut dyn FnMut(PrimitiveId) -> ControlFlow<()>) -> ControlFlow<()> {
         (0..self.set().len())
             .map(PrimitiveId::new)
-            .filter(|id| self.set().get(*id).meets_box(bounds))
+            .filter(|id| self.set().get(*id).intersects_box(bounds))
             .try_for_each(visit)
     }
 }

@@ -105,7 +105,7 @@ pub fn bounds(points: impl IntoIterator<Item = V3>) -> [V3; 2] {
 
 /// Sorts the indices of points along the curve through their box. Equal points become neighbours, in the order
 /// of their indices.
-pub fn along_the_curve(points: &[V3], indices: &mut [u32]) {
+pub fn sort_along_curve(points: &[V3], indices: &mut [u32]) {
     let [low, high] = bounds(indices.iter().map(|&i| points[i as usize]));
     let side = sub(high, low).into_iter().fold(0.0, larger);
     if side == 0.0 || indices.is_empty() {
@@ -131,7 +131,7 @@ pub fn along_the_curve(points: &[V3], indices: &mut [u32]) {
     let mut start = 0;
     for run in keys.chunk_by(|a, b| a.0 == b.0) {
         if run.len() > 1 {
-            along_the_curve(points, &mut indices[start..start + run.len()]);
+            sort_along_curve(points, &mut indices[start..start + run.len()]);
         }
         start += run.len();
     }
@@ -194,7 +194,7 @@ mod tests {
         };
         let points: Vec<V3> = (0..120).map(at).collect();
         let mut numbers: Vec<u32> = (0..120).collect();
-        along_the_curve(&points, &mut numbers);
+        sort_along_curve(&points, &mut numbers);
         let runs: Vec<&[u32]> = numbers.chunk_by(|a, b| points[*a as usize] == points[*b as usize]).collect();
         assert_eq!(runs.len(), 12);
         assert!(runs.iter().all(|run| run.is_sorted() && run.len() == 10));

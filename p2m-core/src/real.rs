@@ -27,11 +27,11 @@ pub trait Real: RealField + Copy + Default + sealed::Sealed {
     /// Converts to f64, exactly.
     fn to_f64(self) -> f64;
     /// Rounds to the nearest number of this type, ties to even.
-    fn of_f64(value: f64) -> Self;
-    /// Returns the largest f64 that [`of_f64`](Self::of_f64) rounds to this number. NaN stays NaN.
+    fn round_from_f64(value: f64) -> Self;
+    /// Returns the largest f64 that [`round_from_f64`](Self::round_from_f64) rounds to this number. NaN stays NaN.
     fn to_f64_above(self) -> f64;
     /// Returns the largest number of this type that is at most `value`. NaN stays NaN.
-    fn of_f64_below(value: f64) -> Self;
+    fn round_down_from_f64(value: f64) -> Self;
 }
 
 impl Real for f64 {
@@ -44,7 +44,7 @@ impl Real for f64 {
         self
     }
     #[inline(always)]
-    fn of_f64(value: f64) -> Self {
+    fn round_from_f64(value: f64) -> Self {
         value
     }
     #[inline(always)]
@@ -52,7 +52,7 @@ impl Real for f64 {
         self
     }
     #[inline(always)]
-    fn of_f64_below(value: f64) -> Self {
+    fn round_down_from_f64(value: f64) -> Self {
         value
     }
 }
@@ -68,7 +68,7 @@ impl Real for f32 {
     }
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounding to nearest is what this function promises")]
-    fn of_f64(value: f64) -> Self {
+    fn round_from_f64(value: f64) -> Self {
         value as f32
     }
     fn to_f64_above(self) -> f64 {
@@ -78,10 +78,10 @@ impl Real for f32 {
         // Numbers round as if 2^128 came after the largest one.
         let next = if self < Self::MAX { f64::from(self.next_up()) } else { 2.0 * 2f64.powi(127) };
         let middle = (f64::from(self) + next) / 2.0;
-        if Self::of_f64(middle) <= self { middle } else { middle.next_down() }
+        if Self::round_from_f64(middle) <= self { middle } else { middle.next_down() }
     }
-    fn of_f64_below(value: f64) -> Self {
-        let nearest = Self::of_f64(value);
+    fn round_down_from_f64(value: f64) -> Self {
+        let nearest = Self::round_from_f64(value);
         if f64::from(nearest) > value { nearest.next_down() } else { nearest }
     }
 }
@@ -95,7 +95,7 @@ pub fn to_f64_array<T: Real>(point: &Point3<T>) -> [f64; 3] {
 /// Rounds an array of f64 to the nearest coordinates of a scene.
 #[inline(always)]
 pub fn from_f64_array<T: Real>(point: [f64; 3]) -> Point3<T> {
-    Point3::new(T::of_f64(point[0]), T::of_f64(point[1]), T::of_f64(point[2]))
+    Point3::new(T::round_from_f64(point[0]), T::round_from_f64(point[1]), T::round_from_f64(point[2]))
 }
 
 #[cfg(test)]
@@ -114,17 +114,17 @@ mod tests {
     fn what_rounds_to_a_number_ends_where_it_says() {
         for x in [0.0, f32::from_bits(1), f32::from_bits(2), 1.0, 1.0f32.next_up(), 3.7e-12, 1e30, f32::MAX, -1.0] {
             let above = x.to_f64_above();
-            assert_eq!((f32::of_f64(above), f32::of_f64(above.next_up())), (x, x.next_up()));
+            assert_eq!((f32::round_from_f64(above), f32::round_from_f64(above.next_up())), (x, x.next_up()));
         }
         assert!(f32::INFINITY.to_f64_above() == f64::INFINITY && f32::NAN.to_f64_above().is_nan());
     }
 
     #[test]
     fn rounding_down_never_rises() {
-        assert_eq!(f32::of_f64_below(1.0), 1.0);
-        assert_eq!(f32::of_f64_below(1.0 + 1e-9), 1.0);
-        assert_eq!(f32::of_f64_below(1.0 - 1e-9), 1.0f32.next_down());
-        assert_eq!(f32::of_f64_below(1e300), f32::MAX);
-        assert_eq!(f32::of_f64_below(1e-300), 0.0);
+        assert_eq!(f32::round_down_from_f64(1.0), 1.0);
+        assert_eq!(f32::round_down_from_f64(1.0 + 1e-9), 1.0);
+        assert_eq!(f32::round_down_from_f64(1.0 - 1e-9), 1.0f32.next_down());
+        assert_eq!(f32::round_down_from_f64(1e300), f32::MAX);
+        assert_eq!(f32::round_down_from_f64(1e-300), 0.0);
     }
 }

@@ -46,7 +46,7 @@ impl ListStats {
     ///
     /// # Complexity
     /// It takes O(n log n) for n lists.
-    pub fn of<T: Real>(index: &(impl Inspect<T> + ?Sized)) -> Option<Self> {
+    pub fn from_index<T: Real>(index: &(impl Inspect<T> + ?Sized)) -> Option<Self> {
         let mut lengths = index.list_lengths();
         lengths.sort_unstable();
         let (count, most) = (lengths.len(), *lengths.last()?);
@@ -85,10 +85,10 @@ pub struct QueryCost {
 
 impl QueryCost {
     /// Measures some queries. All numbers are zero without queries.
-    pub fn of<T: Real>(index: &(impl Inspect<T> + ?Sized), queries: &[Point3<T>]) -> Self {
+    pub fn measure<T: Real>(index: &(impl Inspect<T> + ?Sized), queries: &[Point3<T>]) -> Self {
         let mut stats = [Stat::default(); 3];
         for query in queries {
-            let counts = StatsCollector::of_query(query, |query, collector| index.inspect(query, collector));
+            let counts = StatsCollector::count_query(query, |query, collector| index.inspect(query, collector));
             for (stat, count) in stats.iter_mut().zip(counts) {
                 *stat = Stat { mean: stat.mean + count as f64, most: stat.most.max(count) };
             }
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn percentiles_are_lengths_that_as_many_lists_do_not_exceed() {
-        let lists = ListStats::of(&TestLists).expect("lists");
+        let lists = ListStats::from_index(&TestLists).expect("lists");
         assert_eq!((lists.count, lists.most, lists.mean), (200, 200, 100.5));
         assert_eq!([lists.median, lists.percent_90, lists.percent_99], [100, 180, 198]);
     }
@@ -138,15 +138,15 @@ mod tests {
     #[test]
     fn visits_are_means_over_the_queries() {
         let at = |x: f64| Point3::new(x, 0.0, 0.0);
-        let cost = QueryCost::of(&TestLists, &[at(3.0), at(5.0), at(-1.0), at(-2.0)]);
+        let cost = QueryCost::measure(&TestLists, &[at(3.0), at(5.0), at(-1.0), at(-2.0)]);
         let stat = |mean, most| Stat { mean, most };
         assert_eq!([cost.nodes, cost.packets, cost.primitives], [stat(1.0, 1), stat(2.0, 5), stat(2.0, 5)]);
         assert_eq!([cost.list, cost.without_list], [4.0, 0.5]);
-        let nothing = QueryCost::of(&TestLists, &[]);
+        let nothing = QueryCost::measure(&TestLists, &[]);
         assert_eq!((nothing.nodes, nothing.list, nothing.without_list), (Stat::default(), 0.0, 0.0));
         let points = [at(1.0), at(2.0), at(3.0)].map(Point::new);
-        let brute = QueryCost::of(&BruteForce::new(points).expect("valid"), &[at(0.0), at(9.0)]);
+        let brute = QueryCost::measure(&BruteForce::new(points).expect("valid"), &[at(0.0), at(9.0)]);
         assert_eq!((brute.nodes, brute.primitives, brute.without_list), (Stat::default(), stat(3.0, 3), 1.0));
-        assert_eq!(ListStats::of(&BruteForce::new(points).expect("valid")), None);
+        assert_eq!(ListStats::from_index(&BruteForce::new(points).expect("valid")), None);
     }
 }

@@ -24,20 +24,20 @@ impl<T: Real> StatsCollector<T> {
     }
 
     /// Returns the numbers of nodes, packets and primitives of a query with default options, searched by `visit`.
-    pub fn of_query(query: &Point3<T>, visit: impl FnOnce(&Point3<T>, &mut Self)) -> [usize; 3] {
+    pub fn count_query(query: &Point3<T>, visit: impl FnOnce(&Point3<T>, &mut Self)) -> [usize; 3] {
         let mut stats = Self::new(Best::new(&QueryOptions::default()));
         visit(query, &mut stats);
         [stats.nodes, stats.packets, stats.primitives]
     }
 
-    /// Returns the sums of [`of_query`](Self::of_query) over several queries.
-    pub fn of_queries<'a>(
+    /// Returns the sums of [`count_query`](Self::count_query) over several queries.
+    pub fn count_queries<'a>(
         queries: impl IntoIterator<Item = &'a Point3<T>>,
         visit: impl Fn(&Point3<T>, &mut Self),
     ) -> [usize; 3] {
         let mut sums = [0; 3];
         for query in queries {
-            let counts = Self::of_query(query, &visit);
+            let counts = Self::count_query(query, &visit);
             sums = [0, 1, 2].map(|i| sums[i] + counts[i]);
         }
         sums

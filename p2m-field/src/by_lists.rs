@@ -13,7 +13,7 @@
 //! numbers of open surfaces vary little far from the boundary, so blocks there have one sign as well.
 
 use crate::grid::{Grid, GridError};
-use crate::grid_candidates::{CandidateLists, Candidates, Detail, LARGEST};
+use crate::grid_candidates::{CandidateLists, Candidates, Detail, MAX_COORDINATE};
 use crate::layers::Layers;
 use crate::options::{FieldOptions, signed_value};
 use crate::sign::{Sign, SignedDistance};
@@ -143,7 +143,7 @@ impl<'a, S: PrimitiveSet<f64> + Sync + ?Sized> Sampler<'a, S> {
         let axis = |k: usize| -> Vec<f64> { (0..grid.counts()[k]).map(|i| grid.point([i; 3])[k]).collect() };
         let axes = [axis(0), axis(1), axis(2)];
         let largest = axes.iter().flatten().fold(0.0f64, |a, x| a.max(x.abs()));
-        if largest > LARGEST {
+        if largest > MAX_COORDINATE {
             return Err(GridError::Range);
         }
         // The distance of neighbours differs from the spacing where the rounding of coordinates is not small beside it.

@@ -241,7 +241,7 @@ pub struct P2mReport {
     /// The number of packets that were examined for lists: those that intersect a ball at a corner of the cell.
     pub candidates: usize,
     /// The largest number of packets that were examined for one list.
-    pub most_candidates: usize,
+    pub max_candidates: usize,
     /// The number of packets in all lists.
     pub entries: usize,
     /// The number of primitives in all lists.
@@ -262,13 +262,13 @@ impl From<P2mReport> for [u64; 11] {
             auxiliary,
             trees,
             candidates,
-            most_candidates,
+            max_candidates,
             entries,
             primitives,
             bytes,
             tree_bytes,
         } = report;
-        [lists, filtered, added, auxiliary, trees, candidates, most_candidates, entries, primitives, bytes, tree_bytes]
+        [lists, filtered, added, auxiliary, trees, candidates, max_candidates, entries, primitives, bytes, tree_bytes]
             .map(|n| n as u64)
     }
 }
@@ -283,7 +283,7 @@ impl From<[u64; 11]> for P2mReport {
             auxiliary,
             trees,
             candidates,
-            most_candidates,
+            max_candidates,
             entries,
             primitives,
             bytes,
@@ -296,7 +296,7 @@ impl From<[u64; 11]> for P2mReport {
             auxiliary,
             trees,
             candidates,
-            most_candidates,
+            max_candidates,
             entries,
             primitives,
             bytes,

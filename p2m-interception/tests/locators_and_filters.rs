@@ -7,7 +7,7 @@ use p2m_interception::{
     BuildListFilter, BuildLocator, KdTreeLocator, ListFilter, Locator, LocatorSites, P2mIndex, P2mOptions, Region,
     RegionTree,
 };
-use p2m_testkit::scenes::{self, of_case};
+use p2m_testkit::scenes::{self, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng, vector};
 use std::sync::Arc;
 
@@ -79,7 +79,7 @@ fn answers(index: &impl ClosestPoint<f64>, queries: &[Point3<f64>]) -> [Answers;
 
 /// Returns the number of packets that all queries visit.
 fn packets(index: &Index<'_>, queries: &[Point3<f64>]) -> usize {
-    StatsCollector::of_queries(queries, |query, counting| index.visit(query, counting))[1]
+    StatsCollector::count_queries(queries, |query, counting| index.visit(query, counting))[1]
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn every_filter_leaves_the_answer() {
     let (mut with_filter, mut all, mut fewer) = (0, 0, 0);
     let cases = cases(24, 24);
     for case in cases.clone() {
-        let (mut rng, (kinds, layout)) = (rng("filters", case), of_case(case));
+        let (mut rng, (kinds, layout)) = (rng("filters", case), kinds_and_layout(case));
         let soup = scenes::soup(&mut rng, kinds, layout, amount(300, 60));
         let mut queries: Vec<_> =
             (0..amount(150, 20)).map(|i| Point3::from(vector(&mut rng) * [1.0, 4.0, 9.0][i % 3])).collect();
@@ -117,7 +117,7 @@ fn every_locator_leads_to_the_answer() {
     let mut lists = 0;
     let cases = cases(24, 24);
     for case in cases.clone() {
-        let (mut rng, (kinds, layout)) = (rng("locators", case), of_case(case));
+        let (mut rng, (kinds, layout)) = (rng("locators", case), kinds_and_layout(case));
         let soup = scenes::soup(&mut rng, kinds, layout, amount(300, 60));
         let mut queries: Vec<_> =
             (0..amount(150, 20)).map(|i| Point3::from(vector(&mut rng) * [1.0, 20.0, 1e9][i % 3])).collect();

@@ -85,8 +85,8 @@ mod tests {
             for i in 0..200 {
                 let t = f64::from(i) * 0.37;
                 let points = [Point3::new(t.sin(), t.cos(), 0.3), Point3::new(-t.sin(), (2.0 * t).cos(), 1.0)];
-                let bounds = table.enclosing_box(&Kdop::of_points(&directions, &points).heights);
-                let around = Aabb::of_points(&points);
+                let bounds = table.enclosing_box(&Kdop::from_points(&directions, &points).heights);
+                let around = Aabb::from_points(&points);
                 assert!(bounds.contains(&around), "{bounds:?} for {around:?}");
             }
         }
@@ -97,8 +97,8 @@ mod tests {
         let nearly = Directions::<6>::new(&nearly).expect("three");
         assert!(nearly.starts_orthogonal());
         let check = |directions: &Directions<6>, points: &[Point3<f64>]| {
-            let bounds = DirectionTable::new(directions).enclosing_box(&Kdop::of_points(directions, points).heights);
-            assert!(points.iter().all(|p| bounds.contains(&Aabb::of_points(&[*p]))), "{directions:?} {points:?}");
+            let bounds = DirectionTable::new(directions).enclosing_box(&Kdop::from_points(directions, points).heights);
+            assert!(points.iter().all(|p| bounds.contains(&Aabb::from_points(&[*p]))), "{directions:?} {points:?}");
         };
         for sign in [-1.0, 1.0] {
             check(&nearly, &[Point3::new(sign, 0.0, 0.0)]);
@@ -117,8 +117,8 @@ mod tests {
         // With the axes as directions, the box is that of the points.
         let points = [Point3::new(0.5, -1.0, 0.25), Point3::new(1.0, 2.0, 0.75)];
         let table = DirectionTable::new(&Directions::<14>::default());
-        let bounds = table.enclosing_box(&Kdop::of_points(&table.directions, &points).heights);
-        let expected = Aabb::of_points(&points);
+        let bounds = table.enclosing_box(&Kdop::from_points(&table.directions, &points).heights);
+        let expected = Aabb::from_points(&points);
         assert!((bounds.max - expected.max).amax() < 1e-10 && (bounds.min - expected.min).amax() < 1e-10);
     }
 }

@@ -30,7 +30,7 @@ impl<const K: usize> Kdop<K> {
 
     /// The smallest k-DOP around some points, rounded outwards by at most 2^-49 of their distance from the origin.
     #[must_use]
-    pub fn of_points<T: Real>(directions: &Directions<K>, points: &[Point3<T>]) -> Self {
+    pub fn from_points<T: Real>(directions: &Directions<K>, points: &[Point3<T>]) -> Self {
         let mut result = Self::empty();
         for point in points {
             let x = Vector3::from(p2m_core::engine::real::to_f64_array(point));
@@ -44,7 +44,7 @@ impl<const K: usize> Kdop<K> {
     /// The smallest k-DOP around a box, rounded outwards by at most 2^-49 of the distance of its corners
     /// from the origin.
     #[must_use]
-    pub fn of_box(directions: &Directions<K>, bounds: &Aabb<f64>) -> Self {
+    pub fn from_box(directions: &Directions<K>, bounds: &Aabb<f64>) -> Self {
         if bounds.is_empty() {
             return Self::empty();
         }
@@ -69,7 +69,7 @@ impl<const K: usize> Kdop<K> {
     /// considered: compare the box with one around the k-DOP for that.
     #[must_use]
     pub fn may_intersect_box(&self, directions: &Directions<K>, bounds: &Aabb<f64>) -> bool {
-        !bounds.is_empty() && self.may_intersect(&Self::of_box(directions, bounds))
+        !bounds.is_empty() && self.may_intersect(&Self::from_box(directions, bounds))
     }
 
     /// Whether another k-DOP of the same directions lies in this one.
@@ -147,7 +147,7 @@ mod tests {
                 x = n.cross(&x);
             }
             x *= scale;
-            let kdop = Kdop::of_points(&directions, &[Point3::from(x)]);
+            let kdop = Kdop::from_points(&directions, &[Point3::from(x)]);
             for (n, h) in directions.normals().iter().zip(&kdop.heights) {
                 assert!(is_product_at_most((*n).into(), x.into(), *h), "{n} {x} {h:e}");
                 assert!(h - n.dot(&x) <= x.norm() * 2f64.powi(-48) + 2.0 * f64::MIN_POSITIVE, "{n} {x} {h:e}");
@@ -160,8 +160,8 @@ mod tests {
         let directions = Directions::<14>::default();
         let normals = directions.normals();
         for (i, normal) in normals.iter().enumerate() {
-            let below = Kdop::of_points(&directions, &[Point3::from(*normal), Point3::from(normal * 2.0)]);
-            let above = Kdop::of_points(&directions, &[Point3::from(normal * 3.0)]);
+            let below = Kdop::from_points(&directions, &[Point3::from(*normal), Point3::from(normal * 2.0)]);
+            let above = Kdop::from_points(&directions, &[Point3::from(normal * 3.0)]);
             assert!(!below.may_intersect(&above) && !above.may_intersect(&below), "apart along {normal}");
             // These two volumes are separated along this normal alone.
             let mut other = below;
@@ -179,40 +179,40 @@ mod tests {
         let m = f64::MAX;
         for corner in [[-m, -m, -m], [m, m, m], [0.7 * m, -0.7 * m, 0.7 * m], [-0.7 * m, -0.7 * m, 0.0], [m, -m, 0.0]] {
             let point = Point3::from(corner);
-            let kdop = Kdop::of_points(&directions, &[point]);
+            let kdop = Kdop::from_points(&directions, &[point]);
             assert!(kdop.heights.iter().all(|h| *h > f64::NEG_INFINITY), "{kdop:?}");
             assert!(!kdop.is_empty() && kdop.contains_point(&directions, &point), "{kdop:?}");
             assert!(kdop.may_intersect(&kdop) && kdop.may_intersect_box(&directions, &Aabb { min: point, max: point }));
             let all = Aabb { min: Point3::new(-m, -m, -m), max: Point3::new(m, m, m) };
-            assert!(kdop.may_intersect_box(&directions, &all) && Kdop::of_box(&directions, &all).contains(&kdop));
+            assert!(kdop.may_intersect_box(&directions, &all) && Kdop::from_box(&directions, &all).contains(&kdop));
         }
     }
 
     #[test]
     fn a_box_is_the_six_dop_of_its_corners() {
         let corners = [Point3::new(0.1, -2.0, 3.0), Point3::new(1.5, 7.0, 3.25)];
-        let six = Kdop::of_points(&Directions::<6>::default(), &corners);
+        let six = Kdop::from_points(&Directions::<6>::default(), &corners);
         assert_eq!(six.heights, [1.5, -0.1, 7.0, 2.0, 3.25, -3.0]);
-        assert_eq!(six, Kdop::of_box(&Directions::default(), &Aabb::of_points(&corners)));
-        let half = Aabb { max: Point3::new(0.0, f64::INFINITY, 0.0), ..Aabb::of_points(&corners) };
-        assert!(Kdop::of_box(&Directions::<6>::default(), &half).is_empty());
+        assert_eq!(six, Kdop::from_box(&Directions::default(), &Aabb::from_points(&corners)));
+        let half = Aabb { max: Point3::new(0.0, f64::INFINITY, 0.0), ..Aabb::from_points(&corners) };
+        assert!(Kdop::from_box(&Directions::<6>::default(), &half).is_empty());
     }
 
     #[test]
     fn kdops_contain_their_points_and_cut_off_corners() {
         let directions = Directions::<26>::default();
         let points = [Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0), Point3::new(0.0, 0.0, 1.0)];
-        let kdop = Kdop::of_points(&directions, &points);
+        let kdop = Kdop::from_points(&directions, &points);
         assert!(points.iter().all(|p| kdop.contains_point(&directions, p)) && !kdop.is_empty());
         assert!(!kdop.contains_point(&directions, &Point3::new(0.9, 0.9, 0.9)));
-        assert!(!kdop.may_intersect(&Kdop::of_points(&directions, &[Point3::new(0.9, 0.9, 0.9)])));
-        assert!(kdop.may_intersect(&Kdop::of_points(&directions, &[Point3::new(0.25, 0.5, 0.25)])));
+        assert!(!kdop.may_intersect(&Kdop::from_points(&directions, &[Point3::new(0.9, 0.9, 0.9)])));
+        assert!(kdop.may_intersect(&Kdop::from_points(&directions, &[Point3::new(0.25, 0.5, 0.25)])));
         assert!(!kdop.may_intersect(&Kdop::empty()) && Kdop::<26>::empty().is_empty());
         let corner = |x: f64| Aabb { min: Point3::new(x, x, x), max: Point3::new(9.0, f64::INFINITY, 9.0) };
         assert!(
             kdop.may_intersect_box(&directions, &corner(0.3)) && !kdop.may_intersect_box(&directions, &corner(0.4))
         );
-        assert!(kdop.contains(&Kdop::of_points(&directions, &points[..2])));
+        assert!(kdop.contains(&Kdop::from_points(&directions, &points[..2])));
         assert!(kdop.union(&Kdop::empty()) == kdop);
     }
 }

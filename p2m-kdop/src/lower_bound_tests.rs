@@ -91,10 +91,10 @@ fn compare<const K: usize>(directions: &Directions<K>, nodes: &Cases, name: &str
                 let v = vector(&mut rng);
                 Point3::from(centre + (v - flat * (v.dot(&flat) * [0.0, 0.9, 1.0][rng.random_range(0..3)])) * size)
             });
-            boxes[slot] = Aabb::of_points(&corners);
+            boxes[slot] = Aabb::from_points(&corners);
             let member = Member::from_primitive(&Triangle { vertices: corners });
             node.set_bounds(slot, &KdopNode::enclose(&table, &frame, &[member], &boxes[slot]));
-            exact[slot] = Kdop::of_points(directions, &corners);
+            exact[slot] = Kdop::from_points(directions, &corners);
         }
         for _ in 0..8 {
             let slot = rng.random_range(0..WIDTH - 1);

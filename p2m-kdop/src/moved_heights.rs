@@ -126,11 +126,11 @@ mod tests {
             let mut vector = || Vector3::from_fn(|_, _| rng.random_range(-3.0..3.0));
             let motion = Isometry3::new(vector(), vector());
             let points: Vec<_> = (0..5).map(|_| Point3::from(vector())).collect();
-            let around = MovedHeights::new(&from, &motion, &to).around(&Kdop::of_points(&from, &points));
+            let around = MovedHeights::new(&from, &motion, &to).around(&Kdop::from_points(&from, &points));
             let moved: Vec<_> = points.iter().map(|p| motion * p).collect();
-            let exact = Kdop::of_points(&to, &moved);
+            let exact = Kdop::from_points(&to, &moved);
             assert!(around.contains(&exact), "{around:?} {exact:?}");
-            let kdop = Kdop::of_points(&from, &points);
+            let kdop = Kdop::from_points(&from, &points);
             let same = MovedHeights::new(&from, &Isometry3::identity(), &from).around(&kdop);
             assert!(same.heights.iter().zip(&kdop.heights).all(|(a, b)| a >= b && a - b < 1e-12), "{same:?} {kdop:?}");
         }

@@ -182,7 +182,7 @@ mod tests {
     /// Returns the frame around some points, and their heights in it.
     fn enclosed<const K: usize>(table: &DirectionTable<K>, points: &[Point3<f64>]) -> (Frame, [f32; K]) {
         let members: Vec<_> = points.iter().map(|p| Member::from_primitive(&p2m_core::Point::new(*p))).collect();
-        let bounds = Aabb::of_points(points);
+        let bounds = Aabb::from_points(points);
         let frame = Frame::around(&bounds);
         (frame, KdopNode::enclose(table, &frame, &members, &bounds))
     }
@@ -223,7 +223,7 @@ mod tests {
                 for corner in 0..8 {
                     let size = (points[0] - points[1]).amax();
                     let other = p + Vector3::from_fn(|k, _| if corner >> k & 1 == 0 { -size } else { size });
-                    let around = Aabb::of_points(&[*p, other]);
+                    let around = Aabb::from_points(&[*p, other]);
                     assert!(KdopNode::may_intersect_box(&heights, &table, &frame, &around), "{p} {around:?}");
                 }
             }

@@ -96,7 +96,7 @@ mod tests {
     use crate::Directions;
     use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
     use p2m_core::{Aabb, BuildIndex, Point, Primitive, PrimitiveSet, Soup};
-    use p2m_testkit::scenes::{self, KINDS, LAYOUTS, of_case};
+    use p2m_testkit::scenes::{self, KINDS, LAYOUTS, kinds_and_layout};
     use p2m_testkit::{cases, rng};
     use rand::RngExt;
 
@@ -236,7 +236,7 @@ mod tests {
     #[test]
     fn no_pair_that_touches_is_lost() {
         for case in cases(120, 48) {
-            let (mut rng, (kinds, layout)) = (rng("overlap", case), of_case(case));
+            let (mut rng, (kinds, layout)) = (rng("overlap", case), kinds_and_layout(case));
             // In every other two dozen cases the scene is turned as well.
             let turned = if case / 24 % 2 == 1 { 1.0 } else { 0.0 };
             let [a, b]: [Soup<f64>; 2] = [(); 2].map(|()| scenes::soup(&mut rng, kinds, layout, 150));

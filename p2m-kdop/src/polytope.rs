@@ -223,7 +223,7 @@ mod tests {
 
     /// Checks Euler's formula, that each edge has two faces, and that corners lie within all heights and attain them.
     fn check<const K: usize>(points: &[Point3<f64>], directions: &Directions<K>) -> Polytope {
-        let kdop = Kdop::of_points(directions, points);
+        let kdop = Kdop::from_points(directions, points);
         let p = Polytope::new(&kdop, directions);
         let edges: usize = p.faces.iter().map(Vec::len).sum();
         assert_eq!(edges, 2 * p.edges().count(), "{p:?}");
@@ -273,7 +273,7 @@ mod tests {
         let directions = Directions::<14>::default();
         assert_eq!(Polytope::new(&Kdop::empty(), &directions), Polytope::default());
         for far in [f64::MAX, 0.7 * f64::MAX, 1e305] {
-            let large = Kdop::of_points(&directions, &[Point3::new(far, far, far), Point3::new(-far, 0.0, far)]);
+            let large = Kdop::from_points(&directions, &[Point3::new(far, far, far), Point3::new(-far, 0.0, far)]);
             assert_eq!(Polytope::new(&large, &directions), Polytope::default());
         }
         check(&[Point3::new(1e300, 1e300, -1e300), Point3::origin()], &directions);
@@ -297,9 +297,9 @@ mod tests {
             }
             let Ok(directions) = Directions::<14>::new(&directions) else { continue };
             let points = [(); 6].map(|()| Point3::from(vector()));
-            let kdop = Kdop::of_points(&directions, &points);
+            let kdop = Kdop::from_points(&directions, &points);
             let polytope = check(&points, &directions);
-            let bounds = Aabb::of_points(&polytope.corners);
+            let bounds = Aabb::from_points(&polytope.corners);
             let size = (bounds.max - bounds.min).max() * 0.5;
             for (normal, height) in directions.normals().iter().zip(&kdop.heights) {
                 let beyond = polytope.corners.iter().map(|c| normal.dot(&c.coords)).fold(f64::MIN, f64::max) - height;
@@ -311,7 +311,7 @@ mod tests {
     #[test]
     fn files_have_all_polytopes() {
         let directions = Directions::<6>::default();
-        let unit = Kdop::of_points(&directions, &[Point3::origin(), Point3::new(1.0, 1.0, 1.0)]);
+        let unit = Kdop::from_points(&directions, &[Point3::origin(), Point3::new(1.0, 1.0, 1.0)]);
         let one = Polytope::new(&unit, &directions);
         let mut out = Vec::new();
         write_polytopes_ply(&mut out, &[(one.clone(), 0), (one, 3)], "level").expect("memory");

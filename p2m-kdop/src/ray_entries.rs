@@ -63,7 +63,7 @@ fn compare<N: WideNode>(shared: &N::Shared, name: &str, cases: &Cases) -> [usize
             let ray = Ray::new(&Point3::from(target - direction * distance), &direction).expect("valid");
             let ray = if rng.random() { ray.line() } else { ray };
             let parameter = |triangle: &Triangle<f64>| {
-                Crossing::of(triangle, &ray, f64::INFINITY, false).map(|crossing| crossing.parameter())
+                Crossing::from_primitive(triangle, &ray, f64::INFINITY, false).map(|crossing| crossing.parameter())
             };
             let hits: Vec<Option<f64>> = triangles.iter().map(parameter).collect();
             let line = FrameLine::line_of(&frame, &ray, 0.0);

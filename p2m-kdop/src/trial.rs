@@ -90,6 +90,6 @@ fn query_time<const K: usize>(
     let options = KdopOptions::new(frame_and_diagonals::<K>(frame).expect("as many directions"));
     let tree = KdopTree::<f64, _, K>::build_with(shapes, &options).expect("a scene that has been checked");
     let finite = queries.iter().filter(|q| q.iter().all(|x| x.is_finite()));
-    let [nodes, packets, _] = StatsCollector::of_queries(finite, |query, counting| tree.visit(query, counting));
+    let [nodes, packets, _] = StatsCollector::count_queries(finite, |query, counting| tree.visit(query, counting));
     NS_PER_QUERY + (ns_per_node * nodes as f64 + NS_PER_PACKET * packets as f64) / queries.len().max(1) as f64
 }

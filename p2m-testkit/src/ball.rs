@@ -15,7 +15,7 @@ pub struct Ball {
 impl Primitive<f64> for Ball {
     fn aabb(&self) -> Aabb<f64> {
         let r = Vector3::repeat(self.radius);
-        Aabb::of_points(&[self.centre - r, self.centre + r])
+        Aabb::from_points(&[self.centre - r, self.centre + r])
     }
     fn project(&self, query: &Point3<f64>) -> Projection {
         let v = query - self.centre;

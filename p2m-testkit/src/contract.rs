@@ -173,7 +173,7 @@ pub fn check_invariance<T: Real>(
         return Ok(compared);
     }
     let results = |c: &Closest<T>| [c.distance, c.point.x, c.point.y, c.point.z].map(Real::to_f64);
-    let scaled = |v: [T; 3]| v.map(|x| T::of_f64(scale(x.to_f64())));
+    let scaled = |v: [T; 3]| v.map(|x| T::round_from_f64(scale(x.to_f64())));
     let other = answer(scaled(query), &vertices.iter().map(|v| scaled(*v)).collect::<Vec<_>>());
     // Results that become zero by underflow, or infinite, need not be preserved. The smallest normal number is excluded
     // as well, because a subnormal number may have been rounded to it.

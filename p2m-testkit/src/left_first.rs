@@ -64,8 +64,8 @@ impl<const K: usize> LeftFirst<K> {
                 let primitive = set.get(PrimitiveId::new(at));
                 let bounds = primitive.aabb().to_f64();
                 let volume = match primitive.vertices() {
-                    [] => Kdop::of_box(directions, &bounds),
-                    vertices => Kdop::of_points(directions, vertices),
+                    [] => Kdop::from_box(directions, &bounds),
+                    vertices => Kdop::from_points(directions, vertices),
                 };
                 Leaf { id: PrimitiveId::new(at), low: bounds.min, high: bounds.max, volume }
             })

@@ -140,7 +140,7 @@ mod tests {
     use super::*;
     use crate::ray_oracle::{LineIntersection, crossing};
     use crate::rays::{AIMS, ray};
-    use crate::scenes::{of_case, soup};
+    use crate::scenes::{kinds_and_layout, soup};
     use p2m_core::{PrimitiveId, PrimitiveSet};
 
     #[test]
@@ -148,7 +148,7 @@ mod tests {
         let (mut kept, mut met, mut all) = (0, 0, 0);
         let cases = crate::cases(48, 24);
         for seed in cases.clone() {
-            let (mut rng, (kinds, layout)) = (crate::rng("line filter", seed), of_case(seed));
+            let (mut rng, (kinds, layout)) = (crate::rng("line filter", seed), kinds_and_layout(seed));
             let soup = soup(&mut rng, kinds, layout, 100);
             let primitives: Vec<Vec<P>> = (0..soup.len())
                 .map(|i| soup.get(PrimitiveId::new(i)).vertices().iter().map(|v| v.coords.into()).collect())
@@ -159,9 +159,10 @@ mod tests {
                     ray(&mut rng, &soup, &soup.aabb(), aim).with_radius([0.0, 1e-3][seed as usize % 2]).expect("valid");
                 let near = filter.near(&ray);
                 for (i, vertices) in primitives.iter().enumerate() {
-                    let meets = LineIntersection::new(&ray, vertices).is_some() || crossing(&ray, vertices).is_some();
-                    assert!(!meets || near.binary_search(&i).is_ok(), "seed {seed} {ray:?} {vertices:?}");
-                    met += usize::from(meets);
+                    let intersects =
+                        LineIntersection::new(&ray, vertices).is_some() || crossing(&ray, vertices).is_some();
+                    assert!(!intersects || near.binary_search(&i).is_ok(), "seed {seed} {ray:?} {vertices:?}");
+                    met += usize::from(intersects);
                 }
                 kept += near.len();
                 all += primitives.len();

@@ -28,8 +28,14 @@ pub fn compared_fields<T: Real>(closest: &Closest<T>) -> ComparedFields<T> {
 }
 
 fn expected<T: Real>((id, projection): &(PrimitiveId, Projection)) -> ComparedFields<T> {
-    let point = projection.point.map(T::of_f64);
-    (*id, T::of_f64(projection.key.distance()), point, projection.feature, projection.barycentric.map(T::of_f64))
+    let point = projection.point.map(T::round_from_f64);
+    (
+        *id,
+        T::round_from_f64(projection.key.distance()),
+        point,
+        projection.feature,
+        projection.barycentric.map(T::round_from_f64),
+    )
 }
 
 /// Checks that an index over a soup answers every method of [`NearQuery`] as its primitives do one by one,
@@ -58,8 +64,8 @@ pub fn agrees<T: Real>(
                 // The lower bound is the own distance minus its error, up to a few roundings; it is finite if the
                 // distance is.
                 let exact_bound = projection.key.distance().min(f64::MAX) - projection.error;
-                let min_bound =
-                    T::of_f64(exact_bound * (1.0 - 32.0 * T::UNIT_ROUNDOFF)) - T::of_f64(4.0 * T::SMALLEST_SUBNORMAL);
+                let min_bound = T::round_from_f64(exact_bound * (1.0 - 32.0 * T::UNIT_ROUNDOFF))
+                    - T::round_from_f64(4.0 * T::SMALLEST_SUBNORMAL);
                 let bound = closest.lower_bound;
                 assert!(
                     bound <= closest.distance && bound.to_f64() <= exact_bound.max(0.0),
@@ -74,9 +80,10 @@ pub fn agrees<T: Real>(
 
         // The radius is the distance of some primitive, or slightly different.
         let reference = all.get(rng.random_range(0..all.len().clamp(1, 40)));
-        let radius = reference.map_or(T::one(), |(_, p)| T::of_f64(p.key.distance()));
-        let radius = [radius, radius * T::of_f64(0.99), radius * T::of_f64(1.01)][rng.random_range(0..3)];
-        let count = all.iter().take_while(|(_, p)| T::of_f64(p.key.distance()) <= radius).count();
+        let radius = reference.map_or(T::one(), |(_, p)| T::round_from_f64(p.key.distance()));
+        let radius =
+            [radius, radius * T::round_from_f64(0.99), radius * T::round_from_f64(1.01)][rng.random_range(0..3)];
+        let count = all.iter().take_while(|(_, p)| T::round_from_f64(p.key.distance()) <= radius).count();
         let within = index.all_within(q, radius);
         exactly(&all[..count], &within);
         exactly(&all[..count.min(k)], &index.k_nearest(q, k, radius));

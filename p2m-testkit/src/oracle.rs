@@ -228,7 +228,7 @@ impl Distance {
 ///
 /// The hull is clipped by the six half-spaces, one after the other, in homogeneous coordinates.
 #[must_use]
-pub fn meets_box(vertices: &[[f64; 3]], corners: &[[f64; 3]; 2]) -> bool {
+pub fn intersects_box(vertices: &[[f64; 3]], corners: &[[f64; 3]; 2]) -> bool {
     let unit = vertices.iter().chain(corners).flatten().map(|x| lowest_bit(*x)).min().expect("coordinates");
     let mut hull: Vec<[IBig; 4]> =
         vertices.iter().map(|v| std::array::from_fn(|k| if k < 3 { integer(v[k], unit) } else { IBig::ONE })).collect();
@@ -302,11 +302,13 @@ mod tests {
     #[test]
     fn hulls_meet_boxes_in_closed_forms() {
         let block = |x: f64| [[x, x, -1.0], [9.0, 9.0, 1.0]];
-        assert!(meets_box(&T, &block(2.0)) && !meets_box(&T, &block(2.0 + 4.0 * f64::EPSILON)));
-        assert!(meets_box(&T, &[[0.5, 0.5, -1.0], [0.6, 0.6, 1.0]]), "through the face");
-        assert!(!meets_box(&T, &[[0.5, 0.5, 0.1], [0.6, 0.6, 1.0]]), "above the face");
-        assert!(meets_box(&T[1..], &[[1.0, 3.0, 0.0], [1.0, 3.0, 0.0]]) && !meets_box(&T[1..], &block(2.1)));
-        assert!(meets_box(&T[..1], &[[-1.0; 3], [0.0; 3]]) && !meets_box(&T[..1], &[[-1.0; 3], [-1e-300; 3]]));
+        assert!(intersects_box(&T, &block(2.0)) && !intersects_box(&T, &block(2.0 + 4.0 * f64::EPSILON)));
+        assert!(intersects_box(&T, &[[0.5, 0.5, -1.0], [0.6, 0.6, 1.0]]), "through the face");
+        assert!(!intersects_box(&T, &[[0.5, 0.5, 0.1], [0.6, 0.6, 1.0]]), "above the face");
+        assert!(intersects_box(&T[1..], &[[1.0, 3.0, 0.0], [1.0, 3.0, 0.0]]) && !intersects_box(&T[1..], &block(2.1)));
+        assert!(
+            intersects_box(&T[..1], &[[-1.0; 3], [0.0; 3]]) && !intersects_box(&T[..1], &[[-1.0; 3], [-1e-300; 3]])
+        );
     }
 
     #[test]

@@ -103,7 +103,7 @@ pub fn scene(rng: &mut impl Rng, kinds: Kinds, layout: Layout, len: usize) -> (V
 /// Returns the kinds and the layout of the scene of a case. Any 24 consecutive cases have every kind in every layout.
 #[must_use]
 #[allow(clippy::cast_possible_truncation, reason = "remainders are small")]
-pub fn of_case(case: u64) -> (Kinds, Layout) {
+pub fn kinds_and_layout(case: u64) -> (Kinds, Layout) {
     (KINDS[(case % 4) as usize], LAYOUTS[(case / 4 % 6) as usize])
 }
 
@@ -113,7 +113,7 @@ pub fn of_case(case: u64) -> (Kinds, Layout) {
 pub fn random_soups(name: &'static str) -> impl Iterator<Item = (u64, Soup<f64>)> {
     crate::cases(240, 24).map(move |seed| {
         let mut rng = crate::rng(name, seed);
-        let (kinds, layout) = of_case(seed);
+        let (kinds, layout) = kinds_and_layout(seed);
         let len = [0, 1, 2, 5, 30, crate::amount(300, 60), crate::amount(700, 150)][rng.random_range(0..7)];
         (seed, soup(&mut rng, kinds, layout, len))
     })
@@ -141,7 +141,7 @@ pub fn queries(seed: u64, soup: &Soup<f64>) -> Vec<Point3<f64>> {
 /// Rounds a point to f32.
 #[must_use]
 pub fn to_f32(p: Point3<f64>) -> Point3<f32> {
-    p.map(f32::of_f64)
+    p.map(f32::round_from_f64)
 }
 
 /// Generates a random scene as a soup of f64.
@@ -153,7 +153,7 @@ pub fn soup(rng: &mut impl Rng, kinds: Kinds, layout: Layout, len: usize) -> Sou
 /// Converts a soup to f32; `None` if a coordinate that it uses overflows.
 #[must_use]
 pub fn narrow(soup: &Soup<f64>) -> Option<Soup<f32>> {
-    let positions = soup.positions().iter().map(|p| p.map(f32::of_f64)).collect();
+    let positions = soup.positions().iter().map(|p| p.map(f32::round_from_f64)).collect();
     Soup::new(positions, soup.elements()).ok()
 }
 

@@ -41,11 +41,11 @@ impl<T: Scalar> From<Option<Closest<T>>> for Answer {
 }
 
 /// A backend that answers one query at a time. It is a [`Subject`] as well.
-pub trait Respond: Sync {
+pub trait AnswerQuery: Sync {
     /// The scalar of the queries.
     type Scalar: Scalar;
     /// Answers one query.
-    fn respond(&self, query: &Point3<Self::Scalar>) -> Answer;
+    fn answer_query(&self, query: &Point3<Self::Scalar>) -> Answer;
 }
 
 /// A backend whose scalar is erased. The loop over queries is compiled for each backend.
@@ -64,17 +64,17 @@ pub trait Subject: Sync {
     fn answer_timed(&self, queries: QuerySlice<'_>, answers: &mut [Answer], nanoseconds: &mut [u64]);
 }
 
-impl<R: Respond> Subject for R {
+impl<R: AnswerQuery> Subject for R {
     fn answer(&self, queries: QuerySlice<'_>, answers: &mut [Answer]) {
         for (query, answer) in R::Scalar::of(queries).iter().zip(answers) {
-            *answer = self.respond(query);
+            *answer = self.answer_query(query);
         }
     }
 
     fn answer_timed(&self, queries: QuerySlice<'_>, answers: &mut [Answer], nanoseconds: &mut [u64]) {
         for ((query, answer), nanoseconds) in R::Scalar::of(queries).iter().zip(answers).zip(nanoseconds) {
             let start = Instant::now();
-            *answer = self.respond(query);
+            *answer = self.answer_query(query);
             *nanoseconds = elapsed_nanoseconds(start);
         }
     }
@@ -96,47 +96,47 @@ pub fn clock_nanoseconds() -> f64 {
 
 /// An index that answers with these options.
 #[derive(Clone, Copy, Debug)]
-pub struct Asked<T: Scalar, I> {
+pub struct WithOptions<T: Scalar, I> {
     index: I,
     options: QueryOptions<T>,
 }
 
-impl<T: Scalar, I: ClosestPoint<T> + Sync> Asked<T, I> {
+impl<T: Scalar, I: ClosestPoint<T> + Sync> WithOptions<T, I> {
     /// Makes a backend of an index, which is often borrowed because several settings use the same one.
     pub fn new(index: I, options: QueryOptions<T>) -> Self {
         Self { index, options }
     }
 }
 
-impl<T: Scalar, I: ClosestPoint<T> + Sync> Respond for Asked<T, I> {
+impl<T: Scalar, I: ClosestPoint<T> + Sync> AnswerQuery for WithOptions<T, I> {
     type Scalar = T;
 
     #[inline(always)]
-    fn respond(&self, query: &Point3<T>) -> Answer {
+    fn answer_query(&self, query: &Point3<T>) -> Answer {
         self.index.closest_point_with(query, &self.options).into()
     }
 }
 
 /// An index that returns certified answers.
 #[derive(Clone, Copy, Debug)]
-pub struct AskedForProof<T: Scalar, I> {
+pub struct WithCertificate<T: Scalar, I> {
     index: I,
     options: QueryOptions<T>,
 }
 
-impl<T: Scalar, I> AskedForProof<T, I> {
+impl<T: Scalar, I> WithCertificate<T, I> {
     /// Makes a backend of an index, which is often borrowed because several settings use the same one.
     pub fn new(index: I) -> Self {
         Self { index, options: QueryOptions::default() }
     }
 }
 
-impl<T: Scalar, I: CertifiedQuery<T> + Sync + ?Sized> Respond for AskedForProof<T, &I> {
+impl<T: Scalar, I: CertifiedQuery<T> + Sync + ?Sized> AnswerQuery for WithCertificate<T, &I> {
     type Scalar = T;
 
     /// Returns no answer where there is no certificate.
     #[inline(always)]
-    fn respond(&self, query: &Point3<T>) -> Answer {
+    fn answer_query(&self, query: &Point3<T>) -> Answer {
         self.index.certified_closest_point(query, &self.options).ok().flatten().into()
     }
 }

@@ -10,17 +10,17 @@
 //! use p2m_core::{BruteForce, Point};
 //! use p2m_tradeoff::queries::Queries;
 //! use p2m_tradeoff::settings::SETTINGS;
-//! use p2m_tradeoff::{Asked, Build, Effort, Entrant, Truth, measure};
+//! use p2m_tradeoff::{WithOptions, Build, Effort, Competitor, Truth, measure};
 //!
 //! let sites = [Point::new(Point3::new(0.0, 0.0, 0.0)), Point::new(Point3::new(4.0, 0.0, 0.0))];
 //! let index = BruteForce::new(&sites).unwrap();
-//! let entrants: Vec<Entrant<'_>> = SETTINGS[..2]
+//! let entrants: Vec<Competitor<'_>> = SETTINGS[..2]
 //!     .iter()
-//!     .map(|setting| Entrant {
+//!     .map(|setting| Competitor {
 //!         backend: "brute".to_owned(),
 //!         setting: setting.name.to_owned(),
 //!         promise: setting.promise(),
-//!         subject: Box::new(Asked::new(&index, setting.options::<f64>())),
+//!         subject: Box::new(WithOptions::new(&index, setting.options::<f64>())),
 //!         build: Build::default(),
 //!     })
 //!     .collect();
@@ -51,13 +51,13 @@ pub mod settings;
 mod table;
 pub mod text;
 
-pub use backend::{Answer, Asked, AskedForProof, Respond, Subject, clock_nanoseconds};
+pub use backend::{Answer, AnswerQuery, Subject, WithCertificate, WithOptions, clock_nanoseconds};
 pub use break_even::{JobCost, break_even, cheapest, default_costs};
 pub use csv::{csv_line, csv_records};
 pub use curve::{Build, Curve, Latency, Point, SceneFigures, SetFigures};
 pub use error::{PlotError, RecordError};
 pub use errors::{ErrorQuantiles, Errors, Truth};
-pub use measure::{Effort, Entrant, measure, rotated, thread_seconds};
+pub use measure::{Competitor, Effort, measure, rotated, thread_seconds};
 pub use provenance::Provenance;
 pub use quantiles::{RunningStats, Spread, percentile};
 pub use table::Table;

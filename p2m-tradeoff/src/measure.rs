@@ -14,7 +14,7 @@ use std::hint::black_box;
 const CALIBRATION_NANOSECONDS: f64 = 2e6;
 
 /// A backend with a setting that takes part in a measurement.
-pub struct Entrant<'a> {
+pub struct Competitor<'a> {
     /// The name of the backend. Points of the same name become one curve.
     pub backend: String,
     /// The name of the setting.
@@ -43,7 +43,7 @@ pub struct Effort {
 /// If there is not one truth for each query, or if a backend panics.
 #[must_use]
 pub fn measure(
-    entrants: &[Entrant<'_>],
+    entrants: &[Competitor<'_>],
     queries: &Queries,
     truths: &[Truth],
     effort: &Effort,
@@ -101,7 +101,7 @@ struct Run {
 }
 
 impl Run {
-    fn new(entrant: &Entrant<'_>, queries: &Queries, effort: &Effort) -> Self {
+    fn new(entrant: &Competitor<'_>, queries: &Queries, effort: &Effort) -> Self {
         let chosen = spread(queries.len(), affordable_queries(calibrate(&*entrant.subject, queries), effort.seconds));
         let answers = vec![Answer::NONE; chosen.len()];
         let single_nanoseconds = vec![0; chosen.len()];
@@ -109,7 +109,7 @@ impl Run {
     }
 
     /// Runs a round and returns the nanoseconds per query.
-    fn run_round(&mut self, entrant: &Entrant<'_>) -> f64 {
+    fn run_round(&mut self, entrant: &Competitor<'_>) -> f64 {
         self.answers.fill(Answer::NONE);
         let start = ThreadTime::now();
         entrant.subject.answer(black_box(self.queries.all()), &mut self.answers);
@@ -119,13 +119,13 @@ impl Run {
     }
 
     /// Times single queries.
-    fn time_single_queries(&mut self, entrant: &Entrant<'_>) {
+    fn time_single_queries(&mut self, entrant: &Competitor<'_>) {
         entrant.subject.answer_timed(black_box(self.queries.all()), &mut self.answers, &mut self.single_nanoseconds);
         black_box(&self.answers);
     }
 
     /// Returns the results, if there were queries and rounds.
-    fn into_point(self, entrant: &Entrant<'_>, truths: &[Truth]) -> Option<Point> {
+    fn into_point(self, entrant: &Competitor<'_>, truths: &[Truth]) -> Option<Point> {
         let truths: Vec<Truth> = self.chosen.iter().map(|&i| truths[i]).collect();
         Some(Point {
             setting: entrant.setting.clone(),
@@ -166,7 +166,7 @@ fn affordable_queries(nanoseconds: f64, seconds: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::backend::Asked;
+    use crate::backend::WithOptions;
     use crate::settings::SETTINGS;
     use nalgebra::Point3;
     use p2m_core::{BruteForce, ClosestPoint, Point as Site};
@@ -198,14 +198,14 @@ mod tests {
             Truth { distance: c.distance, rest: 0.0, reach: c.distance, id }
         };
         let truths: Vec<Truth> = double.iter().map(truth).collect();
-        let entrants: Vec<Entrant<'_>> = ["a", "b"]
+        let entrants: Vec<Competitor<'_>> = ["a", "b"]
             .iter()
             .flat_map(|name| SETTINGS.iter().map(move |s| (name, s)))
-            .map(|(name, setting)| Entrant {
+            .map(|(name, setting)| Competitor {
                 backend: (*name).to_owned(),
                 setting: setting.name.to_owned(),
                 promise: setting.promise(),
-                subject: Box::new(Asked::new(&index, setting.options::<f64>())),
+                subject: Box::new(WithOptions::new(&index, setting.options::<f64>())),
                 build: Build::default(),
             })
             .collect();

@@ -23,7 +23,7 @@ impl Queries {
     /// Stores queries in f64, and rounds them to f32.
     #[must_use]
     pub fn new(double: Vec<Point3<f64>>) -> Self {
-        let single = double.iter().map(|p| p.map(f32::of_f64)).collect();
+        let single = double.iter().map(|p| p.map(f32::round_from_f64)).collect();
         Self { double, single }
     }
 
@@ -88,7 +88,7 @@ impl Scalar for f32 {
 /// Rounds a scene to f32. Returns `None` if a coordinate of a primitive overflows.
 #[must_use]
 pub fn rounded(soup: &Soup<f64>) -> Option<Soup<f32>> {
-    let positions = soup.positions().iter().map(|p| p.map(f32::of_f64)).collect();
+    let positions = soup.positions().iter().map(|p| p.map(f32::round_from_f64)).collect();
     Soup::new(positions, soup.elements()).ok()
 }
 

@@ -71,7 +71,7 @@ impl Setting {
         match self.ask {
             Ask::Exact | Ask::Certified => defaults,
             Ask::Budget(visits) => defaults.with_max_visits(visits),
-            Ask::Epsilon(epsilon) => defaults.with_epsilon(T::of_f64(epsilon)),
+            Ask::Epsilon(epsilon) => defaults.with_epsilon(T::round_from_f64(epsilon)),
         }
     }
 

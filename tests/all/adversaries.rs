@@ -48,7 +48,7 @@ fn check_work<I: ClosestPoint<f64> + Inspect<f64>, V: Volume>(
     for ((q, found), expected) in queries.iter().zip(answers(index, &queries)).zip(answers(&brute, &queries)) {
         assert_eq!(found, expected, "{name} {q:?}");
     }
-    let visits = QueryCost::of(index, &queries);
+    let visits = QueryCost::measure(index, &queries);
     // No node or packet is visited twice. Only primitives may be evaluated early because they seem near.
     assert!(visits.packets.most <= tree.packets().0, "{name}: {visits:?}");
     assert!(visits.primitives.most <= soup.len() + 1, "{name}: {visits:?}");

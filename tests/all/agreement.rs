@@ -14,7 +14,7 @@ use p2m::{
 use p2m_testkit::ball::Ball;
 use p2m_testkit::families::shape;
 use p2m_testkit::near_check::compared_fields;
-use p2m_testkit::scenes::{self, extreme_soups, of_case, queries, random_soups, to_f32};
+use p2m_testkit::scenes::{self, extreme_soups, kinds_and_layout, queries, random_soups, to_f32};
 use p2m_testkit::{amount, cases, oracle::Distance, rng};
 use rand::RngExt;
 use std::fmt::Debug;
@@ -244,14 +244,15 @@ fn agrees_with<T: Real>(
         // A radius decides whether there is an answer, but does not change it.
         let at = |r: T| index.closest_point_with(q, &QueryOptions::default().with_max_distance(r));
         assert_eq!(without_bound(at(found.distance)), without_bound(Some(expected)), "{}: at its distance", context());
-        let factor = T::of_f64(rng.random_range(0.0..2.0));
+        let factor = T::round_from_f64(rng.random_range(0.0..2.0));
         let limited = at(found.distance * factor);
         let within = found.distance <= found.distance * factor;
         assert_eq!(without_bound(limited), without_bound(Some(expected)).filter(|_| within), "{}: radius", context());
         // Epsilon bounds the error of the distance.
         let epsilon = [0.001, 0.1, 3.0][rng.random_range(0..3)];
-        let rough =
-            index.closest_point_with(q, &QueryOptions::default().with_epsilon(T::of_f64(epsilon))).expect("found");
+        let rough = index
+            .closest_point_with(q, &QueryOptions::default().with_epsilon(T::round_from_f64(epsilon)))
+            .expect("found");
         let (rough_distance, distance) = (rough.distance.to_f64(), expected.distance.to_f64());
         let slack = 1.0 + 8.0 * T::UNIT_ROUNDOFF;
         assert!(rough_distance >= distance, "{}: epsilon {epsilon}", context());
@@ -264,8 +265,8 @@ fn agrees_with<T: Real>(
         // With a hint and a radius in addition, there is an answer if any primitive is within the radius, and it keeps
         // the bounds.
         let stretch = rng.random_range(1.0..1.0 + epsilon);
-        let radius = T::of_f64(expected.distance.to_f64() * stretch);
-        let options = QueryOptions::default().with_epsilon(T::of_f64(epsilon)).with_max_distance(radius);
+        let radius = T::round_from_f64(expected.distance.to_f64() * stretch);
+        let options = QueryOptions::default().with_epsilon(T::round_from_f64(epsilon)).with_max_distance(radius);
         for options in [options, options.with_hint(hint)] {
             let Some(rough) = index.closest_point_with(q, &options) else {
                 assert!(expected.distance > radius, "{}: epsilon {epsilon} within {radius:?}", context());
@@ -374,7 +375,7 @@ fn the_returned_primitive_is_nearest_within_rounding() {
     let cases = cases(200, 48);
     for seed in cases.clone() {
         let mut rng = rng("identity", seed);
-        let (kinds, layout) = of_case(seed);
+        let (kinds, layout) = kinds_and_layout(seed);
         let soup = scenes::soup(&mut rng, kinds, layout, 25);
         let index = AabbTree::build(&soup, &Default::default()).expect("valid");
         for i in 0..20 {
@@ -413,7 +414,7 @@ fn the_returned_primitive_is_nearest_within_rounding() {
 fn scenes_can_be_permuted_duplicated_and_extended() {
     for seed in cases(60, 24) {
         let mut rng = rng("metamorphic", seed);
-        let (kinds, layout) = of_case(seed);
+        let (kinds, layout) = kinds_and_layout(seed);
         let soup = scenes::soup(&mut rng, kinds, layout, 80);
         let elements: Vec<_> = soup.elements().collect();
         let mut order: Vec<usize> = (0..elements.len()).collect();

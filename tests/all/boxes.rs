@@ -8,7 +8,7 @@ use p2m::{
     Real, Shape, Soup, SplitRule,
 };
 use p2m_testkit::families::shape;
-use p2m_testkit::scenes::{self, Kinds, LAYOUTS, Layout, of_case};
+use p2m_testkit::scenes::{self, Kinds, LAYOUTS, Layout, kinds_and_layout};
 use p2m_testkit::{amount, cases, oracle, rng};
 use rand::{Rng, RngExt};
 
@@ -32,15 +32,16 @@ fn primitives_meet_boxes_as_exact_arithmetic_says() {
         let mut lattice = || std::array::from_fn(|_| f64::from(rng.random_range(-side..=side)));
         let vertices: Vec<[f64; 3]> = (0..case % 3 + 1).map(|_| lattice()).collect();
         let corners = sorted(lattice(), lattice());
-        let expected = oracle::meets_box(&vertices, &corners);
+        let expected = oracle::intersects_box(&vertices, &corners);
         let e = [0, -1074, -600, -301, 290, 700, 1020][(case / 3 % 7) as usize];
         let scale = |p: [f64; 3]| p.map(|x| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2));
-        let found = shape(&vertices.iter().map(|v| scale(*v)).collect::<Vec<_>>()).meets_box(&aabb(corners.map(scale)));
+        let found =
+            shape(&vertices.iter().map(|v| scale(*v)).collect::<Vec<_>>()).intersects_box(&aabb(corners.map(scale)));
         assert_eq!(found, expected, "{vertices:?} {corners:?} at 2^{e}");
         // The box shrinks by less than the lattice spacing, so hulls that only touched it do not intersect it any more.
         let inner = [corners[0].map(|x| x + 1e-9), corners[1].map(|x| x - 1e-9)];
-        let inside = (0..3).all(|k| inner[0][k] <= inner[1][k]) && oracle::meets_box(&vertices, &inner);
-        assert_eq!(shape(&vertices).meets_box(&aabb(inner)), inside, "{vertices:?} {inner:?}");
+        let inside = (0..3).all(|k| inner[0][k] <= inner[1][k]) && oracle::intersects_box(&vertices, &inner);
+        assert_eq!(shape(&vertices).intersects_box(&aabb(inner)), inside, "{vertices:?} {inner:?}");
         met += usize::from(inside);
         touched += usize::from(expected && !inside);
         missed += usize::from(!expected);
@@ -71,9 +72,9 @@ fn the_last_bit_decides_whether_a_corner_touches() {
             corner[k] = if rng.random() { corner[k].next_up() } else { corner[k].next_down() };
         }
         let corners = sorted(corner, far);
-        let expected = oracle::meets_box(&vertices, &corners);
+        let expected = oracle::intersects_box(&vertices, &corners);
         both[usize::from(expected)] += 1;
-        assert_eq!(shape(&vertices).meets_box(&aabb(corners)), expected, "{vertices:?} {corners:?}");
+        assert_eq!(shape(&vertices).intersects_box(&aabb(corners)), expected, "{vertices:?} {corners:?}");
     }
     assert!(cases.have_more_than(4000, both[0].min(both[1])), "{both:?}");
 }
@@ -81,7 +82,7 @@ fn the_last_bit_decides_whether_a_corner_touches() {
 #[test]
 fn boxes_that_are_odd_have_stated_answers() {
     let t = shape(&[[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]]);
-    let intersects = |corners| t.meets_box(&aabb(corners));
+    let intersects = |corners| t.intersects_box(&aabb(corners));
     let inf = f64::INFINITY;
     assert!(intersects([[-inf; 3], [inf; 3]]));
     assert!(intersects([[2.0, 2.0, -inf], [inf, inf, inf]]) && !intersects([[2.1, 2.0, -inf], [inf, inf, inf]]));
@@ -94,9 +95,9 @@ fn boxes_that_are_odd_have_stated_answers() {
         assert!(!intersects(corners), "NaN at {at}");
     }
     let empty = <AabbTree<f64, Vec<Shape<f64>>>>::build(Vec::new(), &Default::default()).unwrap();
-    assert!(!empty.meets_box(&aabb([[-inf; 3], [inf; 3]])) && empty.closest_leaf(&Point3::origin()).is_none());
+    assert!(!empty.intersects_box(&aabb([[-inf; 3], [inf; 3]])) && empty.closest_leaf(&Point3::origin()).is_none());
     let tree = AabbTree::build([t], &Default::default()).unwrap();
-    assert!(tree.meets_box(&aabb([[-inf; 3], [inf; 3]])) && !tree.meets_box(&aabb([[1.0; 3], [-1.0; 3]])));
+    assert!(tree.intersects_box(&aabb([[-inf; 3], [inf; 3]])) && !tree.intersects_box(&aabb([[1.0; 3], [-1.0; 3]])));
     assert!(tree.closest_leaf(&Point3::new(f64::NAN, 0.0, 0.0)).is_none());
 }
 
@@ -151,8 +152,9 @@ impl<T: Real> Boxes<T> {
 
     /// Returns the ids of the primitives whose boxes intersect `bounds`.
     fn intersecting(&self, bounds: &Aabb<T>) -> Vec<PrimitiveId> {
-        let runs = self.each.chunks(Self::RUN).zip(&self.runs).filter(|(_, run)| run.meets(bounds));
-        let members = runs.flat_map(|(members, _)| members).filter(|(_, primitive_box)| primitive_box.meets(bounds));
+        let runs = self.each.chunks(Self::RUN).zip(&self.runs).filter(|(_, run)| run.intersects(bounds));
+        let members =
+            runs.flat_map(|(members, _)| members).filter(|(_, primitive_box)| primitive_box.intersects(bounds));
         let mut found: Vec<_> = members.map(|(id, _)| *id).collect();
         found.sort_unstable();
         found
@@ -161,7 +163,7 @@ impl<T: Real> Boxes<T> {
 
 /// Returns the candidates that intersect `bounds`.
 fn intersecting<T: Real>(soup: &Soup<T>, candidates: &[PrimitiveId], bounds: &Aabb<T>) -> Vec<PrimitiveId> {
-    candidates.iter().copied().filter(|id| soup.get(*id).meets_box(bounds)).collect()
+    candidates.iter().copied().filter(|id| soup.get(*id).intersects_box(bounds)).collect()
 }
 
 #[test]
@@ -169,7 +171,7 @@ fn trees_find_the_same_primitives_as_brute_force_in_random_scenes() {
     let rules = [SplitRule::Sah, SplitRule::AdaptiveSah, SplitRule::Median];
     for case in cases(72, 72) {
         let mut rng = rng("boxes in scenes", case);
-        let ((kinds, layout), rule) = (of_case(case), rules[(case / 24 % 3) as usize]);
+        let ((kinds, layout), rule) = (kinds_and_layout(case), rules[(case / 24 % 3) as usize]);
         let soup = scenes::soup(&mut rng, kinds, layout, amount(300, 120));
         let tree = AabbTree::build(&soup, &p2m::AabbOptions::default().with_rule(rule)).unwrap();
         let brute = BruteForce::new(&soup).unwrap();
@@ -179,7 +181,7 @@ fn trees_find_the_same_primitives_as_brute_force_in_random_scenes() {
             tree.primitives_in_box_into(&bounds, &mut found);
             brute.primitives_in_box_into(&bounds, &mut expected);
             assert_eq!(found, expected, "case {case}: {kinds:?} {layout:?} {rule:?} {bounds:?}");
-            assert_eq!(tree.meets_box(&bounds), !expected.is_empty());
+            assert_eq!(tree.intersects_box(&bounds), !expected.is_empty());
         }
     }
 }
@@ -265,7 +267,7 @@ fn trees_find_the_same_primitives_as_brute_force_in_every_model() {
                             tree.primitives_in_box_into(&bounds, &mut found);
                             let candidates = boxes.intersecting(&bounds);
                             assert_eq!(found, intersecting(soup, &candidates, &bounds), "{name} {bounds:?}");
-                            assert_eq!(tree.meets_box(&bounds), !found.is_empty(), "{name} {bounds:?}");
+                            assert_eq!(tree.intersects_box(&bounds), !found.is_empty(), "{name} {bounds:?}");
                             met += found.len();
                             // Rational arithmetic checks a few of the candidates whose boxes intersect.
                             for id in candidates.into_iter().take(2) {
@@ -275,7 +277,7 @@ fn trees_find_the_same_primitives_as_brute_force_in_every_model() {
                                 let corners = [bounds.min.coords.into(), bounds.max.coords.into()];
                                 assert_eq!(
                                     found.binary_search(&id).is_ok(),
-                                    oracle::meets_box(&vertices, &corners),
+                                    oracle::intersects_box(&vertices, &corners),
                                     "{name} {id} {bounds:?}"
                                 );
                                 checked += 1;

@@ -121,7 +121,7 @@ fn check<T: Real>(case: &Case, soup: &Soup<T>, point: impl Fn(&Point3<f64>) -> P
     let indexes: [(&str, &dyn Index<T>); 4] = [("aabb", &tree), ("kdop", &kdop), ("octree", &octree), ("p2m", &p2m)];
     for query in case.queries.iter().map(&point) {
         let expected = brute.closest_point(&query);
-        let radius = expected.map_or(T::one(), |c| c.distance) * T::of_f64(1.0 + (case.seed % 3) as f64 * 0.3);
+        let radius = expected.map_or(T::one(), |c| c.distance) * T::round_from_f64(1.0 + (case.seed % 3) as f64 * 0.3);
         let hint = PrimitiveId::new(case.seed as usize % (soup.len() + 1));
         let options = QueryOptions::default().with_max_distance(radius).with_hint(hint);
         let odd = |id: PrimitiveId| (id.index() as u64 ^ case.seed).is_multiple_of(3);

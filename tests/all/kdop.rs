@@ -12,7 +12,7 @@ use p2m::{
 };
 use p2m_testkit::left_first::LeftFirst;
 use p2m_testkit::queries::QuerySet;
-use p2m_testkit::scenes::{self, KINDS, LAYOUTS, of_case};
+use p2m_testkit::scenes::{self, KINDS, LAYOUTS, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng};
 use rand::RngExt;
 use std::cell::Cell;
@@ -22,7 +22,7 @@ type Tree<'a, const K: usize> = KdopTree<f64, &'a Soup<f64>, K>;
 
 /// Returns the nodes and packets that all queries visit.
 fn work<V: Volume>(tree: &TreeIndex<f64, &Soup<f64>, V>, queries: &[Point3<f64>]) -> [usize; 2] {
-    let [nodes, packets, _] = StatsCollector::of_queries(queries, |query, counting| tree.visit(query, counting));
+    let [nodes, packets, _] = StatsCollector::count_queries(queries, |query, counting| tree.visit(query, counting));
     [nodes, packets]
 }
 
@@ -44,7 +44,7 @@ where
 #[test]
 fn every_instruction_set_refitted_and_boxes_agree_with_brute_force() {
     for case in cases(24, 24) {
-        let (mut rng, (kinds, layout)) = (rng("kdop", case), of_case(case));
+        let (mut rng, (kinds, layout)) = (rng("kdop", case), kinds_and_layout(case));
         let soup = scenes::soup(&mut rng, kinds, layout, amount(300, 80));
         let turn = Rotation3::new(Vector3::new(0.2, 0.4, 0.7));
         let moved: Vec<_> = soup.positions().iter().map(|p| turn * p * 3.0).collect();
@@ -163,7 +163,7 @@ fn fewer_primitives_are_asked_by_box_queries_with_more_faces() {
         for bounds in boxes {
             let is_hit = |id| {
                 tested_primitives.set(tested_primitives.get() + 1);
-                Primitive::meets_box(&soup.get(id), bounds)
+                Primitive::intersects_box(&soup.get(id), bounds)
             };
             let _ = tree.tree().visit_box(bounds, is_hit, &mut |_| ControlFlow::Continue(()));
         }

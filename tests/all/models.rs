@@ -128,7 +128,8 @@ fn trees_agree_with_brute_force_on_every_model_in_f32() {
         let trees = Trees::build(&soup, &DirectionChoice::from_scene(&double).expect("valid"));
         for set in QuerySet::ALL {
             // A quarter of the queries suffices, because the scalar changes the boxes and not the kernel.
-            let queries: Vec<_> = set.generate(&double, queries() / 4, 2).iter().map(|q| q.map(f32::of_f64)).collect();
+            let queries: Vec<_> =
+                set.generate(&double, queries() / 4, 2).iter().map(|q| q.map(f32::round_from_f64)).collect();
             agrees(&name, set, &soup, &trees, &queries);
         }
     }

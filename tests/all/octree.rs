@@ -9,7 +9,7 @@ use p2m::{
     Aabb, BruteForce, BuildIndex, ClosestPoint, Domain, Isa, OctreeIndex, OctreeOptions, Point, PrimitiveId,
     PrimitiveSet, Projection, Segment, Shape, Soup,
 };
-use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout, of_case};
+use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng};
 use rand::{Rng, RngExt};
 use std::sync::Mutex;
@@ -37,7 +37,7 @@ fn query(rng: &mut impl Rng, soup: &Soup<f64>) -> Point3<f64> {
 #[test]
 fn domains_change_the_work_and_never_the_answer() {
     for case in cases(24, 24) {
-        let (mut rng, (kinds, layout)) = (rng("octree domains", case), of_case(case));
+        let (mut rng, (kinds, layout)) = (rng("octree domains", case), kinds_and_layout(case));
         let soup = scenes::soup(&mut rng, kinds, layout, amount(600, 80));
         let bounds = soup.aabb();
         let fifth = (bounds.max - bounds.min) * 0.2;
@@ -221,7 +221,7 @@ fn lookups_do_little() {
         let centre = nalgebra::center(&bounds.min, &bounds.max);
         let mut point = || centre + Vector3::from_fn(|k, _| rng.random_range(-extent..extent) * size[k]);
         let queries: Vec<_> = (0..1000).map(|_| point()).collect();
-        let sums = StatsCollector::of_queries(&queries, |query, counting| index.visit(query, counting));
+        let sums = StatsCollector::count_queries(&queries, |query, counting| index.visit(query, counting));
         println!("{name}: per 1000 queries {sums:?} nodes, packets, primitives");
         assert!((0..3).all(|i| sums[i] <= limits[i]), "{name}: {sums:?}");
     }

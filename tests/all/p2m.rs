@@ -11,7 +11,7 @@ use p2m::{
     Segment, Shape, Soup, Triangle,
 };
 use p2m_testkit::ball::Ball;
-use p2m_testkit::scenes::{self, Kinds, Layout, of_case};
+use p2m_testkit::scenes::{self, Kinds, Layout, kinds_and_layout};
 use p2m_testkit::{amount, cases, interception_check, rng, vector};
 use rand::{Rng, RngExt};
 use std::sync::Mutex;
@@ -339,7 +339,7 @@ fn sheet(len: usize) -> Soup<f64> {
 #[test]
 fn soups_agree_beyond_the_domain_and_on_its_border() {
     for case in cases(24, 24) {
-        let (mut rng, (kinds, layout)) = (rng("p2m soups", case), of_case(case));
+        let (mut rng, (kinds, layout)) = (rng("p2m soups", case), kinds_and_layout(case));
         let soup = scenes::soup(&mut rng, kinds, layout, amount(400, 50));
         let bounds = soup.aabb();
         let (centre, size) = (nalgebra::center(&bounds.min, &bounds.max), (bounds.max - bounds.min).max());
@@ -412,7 +412,7 @@ fn lookups_do_little() {
         let centre = nalgebra::center(&bounds.min, &bounds.max);
         let mut shift = || centre + Vector3::from_fn(|k, _| rng.random_range(-extent..extent) * size[k]);
         let queries: Vec<_> = (0..1000).map(|_| shift()).collect();
-        let sums = StatsCollector::of_queries(&queries, |query, counting| index.visit(query, counting));
+        let sums = StatsCollector::count_queries(&queries, |query, counting| index.visit(query, counting));
         println!("{name}: per 1000 queries {sums:?} nodes and sites, packets, primitives");
         assert!((0..3).all(|i| sums[i] <= limits[i]), "{name}: {sums:?}");
     }

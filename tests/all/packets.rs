@@ -8,7 +8,7 @@ use p2m::{
     AabbOptions, AabbTree, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Isa, Point, Primitive,
     PrimitiveId, PrimitiveSet, Projection, QueryOptions, Real, Segment, Shape, Soup, Triangle, batch,
 };
-use p2m_testkit::scenes::{self, Kinds, LAYOUTS, Layout, of_case};
+use p2m_testkit::scenes::{self, Kinds, LAYOUTS, Layout, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng};
 use rand::{Rng, RngExt};
 
@@ -39,7 +39,7 @@ fn same<T: Real>(a: Option<Closest<T>>, b: Option<Closest<T>>, what: &str) {
 fn every_instruction_set_answers_as_brute_force() {
     println!("{:?}", Isa::available());
     for case in cases(144, 48) {
-        let (mut rng, (kinds, layout)) = (rng("instruction sets", case), of_case(case));
+        let (mut rng, (kinds, layout)) = (rng("instruction sets", case), kinds_and_layout(case));
         let soup = scenes::soup(&mut rng, kinds, layout, amount(400, 90));
         let queries: Vec<_> = (0..amount(100, 8)).map(|_| query(&mut rng, &soup)).collect();
         // Each kind in each layout comes with each scale, and the first scenes have all scales as well.
@@ -97,7 +97,7 @@ fn collectors_of_more_than_the_nearest_get_all() {
     let (mut total, mut searches) = (0, 0);
     let cases = cases(24, 24);
     for case in cases.clone() {
-        let (mut rng, (kinds, layout)) = (rng("collectors", case), of_case(case));
+        let (mut rng, (kinds, layout)) = (rng("collectors", case), kinds_and_layout(case));
         let soup = scenes::soup(&mut rng, kinds, layout, amount(400, 150));
         let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
         for _ in 0..amount(50, 6) {

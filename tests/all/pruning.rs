@@ -372,7 +372,7 @@ fn round_shapes_in_f32_agree() {
         let wide = mesh.soup();
         let mut all = queries(&mut numbers, &wide, amount(450, 32));
         all.extend(in_the_middle(&mut numbers, amount(200, 20)));
-        let all: Vec<Point3<f32>> = all.iter().map(|q| q.map(f32::of_f64)).collect();
+        let all: Vec<Point3<f32>> = all.iter().map(|q| q.map(f32::round_from_f64)).collect();
         let soup = narrow(&wide).expect("small");
         has_sites_and_lists(name, &agrees(name, &soup, &P2mOptions::default(), &all));
     }

@@ -7,7 +7,7 @@ use p2m::kdop::Directions;
 use p2m::{AabbTree, BruteForce, BuildIndex, KdopTree, Ray, RayQuery, Soup};
 use p2m_testkit::left_first::LeftFirst;
 use p2m_testkit::queries::QuerySet;
-use p2m_testkit::scenes::{self, KINDS, LAYOUTS, of_case};
+use p2m_testkit::scenes::{self, KINDS, LAYOUTS, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng};
 use rand::RngExt;
 
@@ -49,7 +49,7 @@ fn clipping_by_slabs_leaves_no_hit_out() {
     let mut hits = 0;
     let cases = cases(24, 24);
     for case in cases.clone() {
-        let (mut rng, (kinds, layout)) = (rng("clipping by slabs", case), of_case(case));
+        let (mut rng, (kinds, layout)) = (rng("clipping by slabs", case), kinds_and_layout(case));
         let soup = scenes::soup(&mut rng, kinds, layout, 100);
         let rays: Vec<_> = (0..amount(60, 12))
             .filter_map(|_| {
@@ -73,7 +73,7 @@ fn clipping_by_slabs_leaves_no_hit_out() {
 /// Returns the nodes and packets that searches for all hits visit, for all rays.
 fn work<V: Volume>(tree: &TreeIndex<f64, &Soup<f64>, V>, rays: &[Ray]) -> [usize; 2] {
     let [nodes, packets, _] =
-        RayStatsCollector::of_rays(rays, &Hits::all(), |ray, counting| tree.visit_ray(ray, counting));
+        RayStatsCollector::count_rays(rays, &Hits::all(), |ray, counting| tree.visit_ray(ray, counting));
     [nodes, packets]
 }
 

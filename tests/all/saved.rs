@@ -9,7 +9,7 @@ use p2m::{
     RayQuery, Segment, Soup,
 };
 use p2m_testkit::ball::Ball;
-use p2m_testkit::scenes::{self, of_case};
+use p2m_testkit::scenes::{self, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng, vector};
 use rand::{Rng, RngExt};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -67,7 +67,7 @@ const INDEXES: [Kind; 6] = kinds! {
 fn what_is_loaded_answers_as_what_was_saved() {
     let folder = tempfile::tempdir().expect("a folder");
     for case in cases(96, 24) {
-        let (mut rng, (kinds, layout)) = (rng("saved", case), of_case(case));
+        let (mut rng, (kinds, layout)) = (rng("saved", case), kinds_and_layout(case));
         // Every 24 cases have all sizes, and 96 have each in every layout.
         let count = [0, 1, 17, amount(400, 60)][((case / 4 + case / 24) % 4) as usize];
         let scene = Scene::from(scenes::soup(&mut rng, kinds, layout, count));

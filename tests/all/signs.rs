@@ -3,7 +3,7 @@
 #![cfg(all(feature = "bvh", feature = "interception", feature = "mixed"))]
 
 use nalgebra::{Point3, Vector3};
-use p2m::field::sign::{Sign, SignError, SignedDistance, WindingNumbers, meets_itself};
+use p2m::field::sign::{Sign, SignError, SignedDistance, WindingNumbers, find_self_intersection};
 use p2m::scene::generate::{IcoSphere, SkewedGear, TorusKnot, Transform, ico_sphere, skewed_gear, torus_knot};
 use p2m::{
     AabbTree, BruteForce, BuildIndex, Closest, Element, OctreeIndex, P2mIndex, PrimitiveSet, Ray, RayQuery, Soup,
@@ -52,7 +52,7 @@ fn agrees_with_rays(name: &str, soup: &Soup<f64>, sets: &[QuerySet], cases: &Cas
             inside += usize::from(expected == Sign::Inside);
         }
     }
-    (inside, signed.doubts())
+    (inside, signed.ambiguous_count())
 }
 
 #[test]
@@ -66,14 +66,15 @@ fn signs_of_closed_models_are_those_of_rays() {
         let soup = p2m::scene::read_scene(&path).expect("readable").soup;
         // The lines are too slow in this model, which has thousands of slivers in one plane along two axes.
         let is_gear = name == "gear_skewed_57k.ply";
-        let meets = if is_gear { SignedDistance::new(tree(&soup), &soup).map(|_| None) } else { meets_itself(&soup) };
-        match meets {
+        let intersects =
+            if is_gear { SignedDistance::new(tree(&soup), &soup).map(|_| None) } else { find_self_intersection(&soup) };
+        match intersects {
             Err(error) => println!("{name}: {error}"),
             Ok(Some([one, other])) => println!("{name}: {one} and {other} meet"),
             Ok(None) => {
                 closed += 1;
-                let (inside, doubts) = agrees_with_rays(&name, &soup, &sets, &cases);
-                println!("{name}: {inside} of {} inside, {doubts} in doubt", 2 * cases.len());
+                let (inside, ambiguous_count) = agrees_with_rays(&name, &soup, &sets, &cases);
+                println!("{name}: {inside} of {} inside, {ambiguous_count} in doubt", 2 * cases.len());
                 // All sheets of degenerate_small.obj occur twice, so nothing is inside.
                 assert!(cases.is_replay() || inside > 0 || name == "degenerate_small.obj", "{name}");
             }
@@ -88,9 +89,9 @@ fn generated_surfaces_have_the_signs_of_rays() {
     let gear = skewed_gear(&SkewedGear::default()).expect("valid");
     let cases = cases(3000, 200);
     for (name, soup) in [("knot", knot), ("gear", gear)] {
-        let (inside, doubts) =
+        let (inside, ambiguous_count) =
             agrees_with_rays(name, &soup, &[QuerySet::Box1, QuerySet::Near, QuerySet::Surface], &cases);
-        println!("{name}: {inside} of {} inside, {doubts} in doubt", 3 * cases.len());
+        println!("{name}: {inside} of {} inside, {ambiguous_count} in doubt", 3 * cases.len());
         assert!(cases.have_more_than(1000, inside), "{name}");
     }
 }
@@ -160,12 +161,17 @@ fn parts_may_be_inside_out_or_inside_of_others_or_touch() {
 #[test]
 fn surfaces_that_meet_themselves_are_told() {
     let whole = cube([0.0; 3], [2.0; 3]);
-    assert_eq!(meets_itself(&whole), Ok(None));
-    assert_eq!(meets_itself(&joined(&[whole.clone(), cube([0.5; 3], [1.5; 3])])), Ok(None));
-    let pair = meets_itself(&joined(&[whole.clone(), cube([1.0; 3], [3.0; 3])])).expect("closed").expect("they meet");
+    assert_eq!(find_self_intersection(&whole), Ok(None));
+    assert_eq!(find_self_intersection(&joined(&[whole.clone(), cube([0.5; 3], [1.5; 3])])), Ok(None));
+    let pair = find_self_intersection(&joined(&[whole.clone(), cube([1.0; 3], [3.0; 3])]))
+        .expect("closed")
+        .expect("they meet");
     assert!(pair[0].index() < 12 && pair[1].index() >= 12, "{pair:?}");
     let beside = cube([2.0, 0.5, 0.5], [3.0, 1.5, 1.5]);
-    assert!(meets_itself(&joined(&[whole, beside])).expect("closed").is_some(), "a part of a face touches another one");
+    assert!(
+        find_self_intersection(&joined(&[whole, beside])).expect("closed").is_some(),
+        "a part of a face touches another one"
+    );
 }
 
 #[test]
@@ -201,7 +207,7 @@ fn far_and_tiny_queries_have_signs() {
             |x: f64| signed.closest_point(&Point3::new(x * scale, 0.1 * scale, 0.2 * scale)).expect("not empty").sign;
         assert_eq!((at(0.5), at(1.0), at(1.5)), (Sign::Inside, Sign::Boundary, Sign::Outside), "{scale}");
         // A query on the surface may be ambiguous by the rounding of its distance.
-        assert!(signed.doubts() <= 1, "{scale}");
+        assert!(signed.ambiguous_count() <= 1, "{scale}");
     }
 }
 
@@ -362,7 +368,7 @@ fn winding_numbers_of_closed_models_have_the_signs_of_rays() {
                 assert!(found.sign == expected || found.closest.distance == 0.0, "{name}, {query}");
             }
         }
-        println!("{name}: {} of {} in doubt", winding.doubts(), 2 * cases.len());
+        println!("{name}: {} of {} in doubt", winding.ambiguous_count(), 2 * cases.len());
     }
 }
 

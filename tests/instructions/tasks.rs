@@ -110,7 +110,7 @@ fn ray_task<'a>(
     visit: impl Fn(&'a Ray, &mut RayStatsCollector<Hits<'a>>) + 'a,
 ) -> Task<'a> {
     let run = move || counted_queries::run_rays(object, rays);
-    let count = move || RayStatsCollector::of_rays(rays, &Hits::first(), &visit);
+    let count = move || RayStatsCollector::count_rays(rays, &Hits::first(), &visit);
     Task { backend, set: "rays", run: Box::new(run), count: Box::new(count) }
 }
 

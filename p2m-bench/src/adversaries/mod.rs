@@ -87,7 +87,7 @@ impl Trial<'_> {
             && taken.peak <= budget.peak * allowed
             && taken.kept <= budget.kept * allowed;
         self.good &= is_right && within;
-        let visits = QueryCost::of(index, &self.queries);
+        let visits = QueryCost::measure(index, &self.queries);
         let lengths = index.list_lengths();
         let longest = lengths.iter().max().map_or_else(String::new, usize::to_string);
         let each = |bytes: usize| (bytes / count).to_string();

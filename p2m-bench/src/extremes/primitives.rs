@@ -195,7 +195,7 @@ impl Findings {
 
 /// Returns the error of our answer, and the number of other answers that it was compared with.
 fn judged<T: Real>(rng: &mut impl Rng, case: &Case) -> Result<(f64, u64), Violation> {
-    let of = |v: [f64; 3]| v.map(T::of_f64);
+    let of = |v: [f64; 3]| v.map(T::round_from_f64);
     let (query, vertices) = (of(case.query), case.vertices.iter().map(|v| of(*v)).collect::<Vec<_>>());
     let found = contract::answer(query, &vertices);
     let error = contract::check(case.query, &case.vertices, &found)?;

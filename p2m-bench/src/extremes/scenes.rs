@@ -210,7 +210,7 @@ fn check(row: usize, name: &str, soup: Soup<f64>, queries: Vec<Point3<f64>>, fin
     let scene = Scene::new(name.to_owned(), soup).expect("it has primitives");
     // Queries that overflow f32 are left out in f32.
     let queries: Vec<_> = match scene.single {
-        Some(_) => queries.into_iter().filter(|q| q.iter().all(|x| f32::of_f64(*x).is_finite())).collect(),
+        Some(_) => queries.into_iter().filter(|q| q.iter().all(|x| f32::round_from_f64(*x).is_finite())).collect(),
         None => queries,
     };
     let queries = Queries::new(queries);

@@ -101,7 +101,7 @@ impl Figures<'_> {
                 let report = &s.inside.report;
                 Some(report.candidates as f64 / (report.lists + report.trees).max(1) as f64)
             },
-            |s| Some(s.inside.report.most_candidates as f64),
+            |s| Some(s.inside.report.max_candidates as f64),
         )
         .write(&to("fig12"))?;
 

@@ -128,8 +128,8 @@ impl IndexInternals {
         let stages = times.finish().into_iter().map(|(stage, time)| (stage, time.as_secs_f64())).collect();
         Ok(Self {
             report: index.report(),
-            lists: ListStats::of(&index),
-            visits: QueryCost::of(&index, queries),
+            lists: ListStats::from_index(&index),
+            visits: QueryCost::measure(&index, queries),
             stages,
             parts: p2m_core::Inspect::parts(&index),
             breakdown: Breakdown::of(&index, queries, rounds),
@@ -142,7 +142,7 @@ impl Breakdown {
     fn of(index: &P2mIndex<f64, &Soup<f64>>, queries: &[Point3<f64>], rounds: usize) -> Self {
         let (mut locate, mut total) = (Vec::new(), Vec::new());
         for _ in 0..rounds {
-            locate.push(nanoseconds(queries, |query| index.partition().site_of(query)));
+            locate.push(nanoseconds(queries, |query| index.partition().locate_site(query)));
             total.push(nanoseconds(queries, |query| index.closest_point(query)));
         }
         let [locate, total] = [locate, total].map(|times| Spread::of(&times).map_or(f64::NAN, |spread| spread.median));

@@ -137,7 +137,7 @@ impl<S: PrimitiveSet<f64>, V: Volume> OurCaster for TreeIndex<f64, S, V> {
         (self.first_intersection(ray), self.all_intersections(ray))
     }
     fn work(&self, rays: &[Ray]) -> [usize; 3] {
-        RayStatsCollector::of_rays(rays, &Hits::all(), |ray, counting| self.visit_ray(ray, counting))
+        RayStatsCollector::count_rays(rays, &Hits::all(), |ray, counting| self.visit_ray(ray, counting))
     }
 }
 

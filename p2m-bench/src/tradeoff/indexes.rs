@@ -15,7 +15,7 @@ use p2m_interception::{OctreeIndex, P2mIndex};
 use p2m_kdop::{KdopOptions, KdopTree};
 use p2m_tradeoff::queries::QuerySlice;
 use p2m_tradeoff::settings::{Ask, DEFAULT, Promise, SETTINGS, Setting};
-use p2m_tradeoff::{Answer, Asked, AskedForProof, Build, Entrant, Respond, Spread, Subject};
+use p2m_tradeoff::{Answer, AnswerQuery, Build, Competitor, Spread, Subject, WithCertificate, WithOptions};
 use std::time::Instant;
 
 /// An index is not built again once its builds have taken this many seconds in all.
@@ -35,8 +35,8 @@ struct Ours<I>(I);
 impl<I: ClosestPoint<f64> + CertifiedQuery<f64> + Sync> Built for Ours<I> {
     fn subject(&self, setting: &Setting) -> Box<dyn Subject + '_> {
         match setting.ask {
-            Ask::Certified => Box::new(AskedForProof::new(&self.0)),
-            _ => Box::new(Asked::new(&self.0, setting.options::<f64>())),
+            Ask::Certified => Box::new(WithCertificate::new(&self.0)),
+            _ => Box::new(WithOptions::new(&self.0, setting.options::<f64>())),
         }
     }
 
@@ -58,11 +58,11 @@ struct External<C>(C);
 /// An external library as a subject of the measurement.
 struct ExternalSubject<'a, C>(&'a C);
 
-impl<C: BenchIndex> Respond for ExternalSubject<'_, C> {
+impl<C: BenchIndex> AnswerQuery for ExternalSubject<'_, C> {
     type Scalar = C::Scalar;
 
     #[inline(always)]
-    fn respond(&self, query: &Point3<C::Scalar>) -> Answer {
+    fn answer_query(&self, query: &Point3<C::Scalar>) -> Answer {
         Answer::of_distance(self.0.query(query).distance)
     }
 }
@@ -213,13 +213,13 @@ fn build(scene: &Scene, prepare: PrepareFn, builds: usize) -> Result<(Box<dyn Bu
 }
 
 /// Returns every setting of every index, or the default setting alone.
-pub(super) fn entrants<'a>(indexes: &'a [Index<'_>], default_only: bool) -> Vec<Entrant<'a>> {
+pub(super) fn entrants<'a>(indexes: &'a [Index<'_>], default_only: bool) -> Vec<Competitor<'a>> {
     let mut entrants = Vec::new();
     for index in indexes {
         let candidate = index.candidate;
         for setting in SETTINGS.iter().filter(|setting| **setting == DEFAULT || candidate.has_settings && !default_only)
         {
-            entrants.push(Entrant {
+            entrants.push(Competitor {
                 backend: candidate.name.to_owned(),
                 setting: setting.name.to_owned(),
                 promise: if candidate.is_ours { setting.promise() } else { Promise::Nothing },

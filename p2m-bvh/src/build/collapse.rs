@@ -169,7 +169,7 @@ mod tests {
     fn binary(random: &mut impl Rng, packets: Range<usize>, nodes: &mut Vec<BinaryNode>) -> usize {
         let at = nodes.len();
         let corner = |i: usize| Point3::new(i as f64, (i * i % 7) as f64, (i % 3) as f64);
-        let bounds = packets.clone().map(|i| Aabb::of_points(&[corner(i), corner(i + 1)]));
+        let bounds = packets.clone().map(|i| Aabb::from_points(&[corner(i), corner(i + 1)]));
         let bounds = bounds.fold(Aabb::empty(), |a, b| a.union(&b));
         nodes.push(BinaryNode { bounds, content: Content::Packet(packets.start) });
         if packets.len() > 1 {

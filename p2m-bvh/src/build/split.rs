@@ -204,7 +204,7 @@ mod tests {
     }
 
     fn point(x: f64, y: f64, z: f64) -> Aabb<f64> {
-        Aabb::of_points(&[Point3::new(x, y, z)])
+        Aabb::from_points(&[Point3::new(x, y, z)])
     }
 
     #[test]

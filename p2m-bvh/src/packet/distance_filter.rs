@@ -276,7 +276,7 @@ mod tests {
             .map(|lane| if lane == LANES / 2 { at(0.0, 1000.0) } else { at(30_000.0 + lane as f64, 0.0) })
             .collect();
         let ids: Vec<PrimitiveId> = (0..LANES).map(PrimitiveId::new).collect();
-        let bounds = shapes.aabb().union(&Aabb::of_points(&[Point3::origin(), Point3::from([40_000.0; 3])]));
+        let bounds = shapes.aabb().union(&Aabb::from_points(&[Point3::origin(), Point3::from([40_000.0; 3])]));
         let (packet, _) = Packet::new(&ids, &members(&shapes), Kind::Triangle, &bounds, 0.0);
         for tiny in [1e-10, 1e-22, 1e-24, 1e-30, 1e-40, 0.0] {
             let local = packet.local(&[-tiny, 1000.0, 1000.0]).expect("near");

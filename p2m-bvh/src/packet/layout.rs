@@ -122,17 +122,17 @@ impl Packet {
         // Each kind has a call of its own, so that the projection stays in registers and is not copied.
         match self.kind() {
             Kind::Triangle => {
-                if let Some(projection) = Projection::of_near_triangle(query, &[*a, *b, *c], square) {
+                if let Some(projection) = Projection::onto_near_triangle(query, &[*a, *b, *c], square) {
                     collector.offer(id, projection);
                 }
             }
             Kind::Segment => {
-                if let Some(projection) = Projection::of_segment(query, &[*a, *b], square) {
+                if let Some(projection) = Projection::onto_segment(query, &[*a, *b], square) {
                     collector.offer(id, projection);
                 }
             }
             Kind::Point => {
-                if let Some(projection) = Projection::of_point(query, &[*a], square) {
+                if let Some(projection) = Projection::onto_point(query, &[*a], square) {
                     collector.offer(id, projection);
                 }
             }

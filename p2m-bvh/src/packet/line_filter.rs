@@ -331,7 +331,9 @@ mod tests {
                     RayLine::from_ray(&ray, radius)
                 };
                 let (from, to) = (line.length_below(ray.range()[0]), line.length_above(ray.range()[1]));
-                let hit = |lane: &usize| Crossing::of(&soup.get(ids[*lane]), &ray, f64::INFINITY, false).is_some();
+                let hit = |lane: &usize| {
+                    Crossing::from_primitive(&soup.get(ids[*lane]), &ray, f64::INFINITY, false).is_some()
+                };
                 let hits = (0..16).filter(hit).fold(0, |lanes, lane| lanes | 1 << lane);
                 for isa in Isa::available() {
                     let passed = isa.run(FilteredLanes(&packet, &line, [from, to]));

@@ -44,7 +44,7 @@ impl<V: VolumeNodes> PacketTree<V> {
                 let child_box = V::Node::scene_box(&child_bounds, &self.shared, &self.frame);
                 let is_inside = is_inside || bounds.contains(&child_box);
                 if is_inside
-                    || (bounds.meets(&child_box)
+                    || (bounds.intersects(&child_box)
                         && V::Node::may_intersect_box(&child_bounds, &self.shared, &self.frame, bounds))
                 {
                     stack[len] = (node.children()[slot], is_inside);

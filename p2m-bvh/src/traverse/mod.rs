@@ -12,7 +12,7 @@ pub(crate) mod search_state;
 use crate::tree::node_ref::{NodeRef, WIDTH};
 use crate::tree::wide_node::{VolumeNodes, WideNode};
 use crate::tree::{MAX_DEPTH, PacketTree};
-use p2m_core::engine::simd::{EightLanes, InstructionSet, Lanes, lane_of_key, number_of_key};
+use p2m_core::engine::simd::{EightLanes, InstructionSet, Lanes, lane_of_key, value_of_key};
 use std::ops::ControlFlow;
 
 /// The capacity of a stack: at most `WIDTH - 1` pending siblings per level, and `WIDTH` further entries because
@@ -73,7 +73,7 @@ fn traverse_with_stack<I: InstructionSet, V: VolumeNodes, W: Visitor<V>, const L
     let mut bound = 0.0;
     loop {
         if visitor.may_stop() {
-            let pending = keys[..top].iter().map(|key| number_of_key(*key));
+            let pending = keys[..top].iter().map(|key| value_of_key(*key));
             return visitor.record_skipped(pending.fold(bound, f32::min));
         }
         if at.is_packet() {
@@ -93,7 +93,7 @@ fn traverse_with_stack<I: InstructionSet, V: VolumeNodes, W: Visitor<V>, const L
             tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(2).min(LEN - 1)])]);
             if count > 0 {
                 top += count - 1;
-                bound = number_of_key(keys[top]);
+                bound = value_of_key(keys[top]);
                 at = node.children()[lane_of_key(keys[top])];
                 continue;
             }
@@ -104,7 +104,7 @@ fn traverse_with_stack<I: InstructionSet, V: VolumeNodes, W: Visitor<V>, const L
             }
             top -= 1;
             let key = keys[top];
-            bound = number_of_key(key);
+            bound = value_of_key(key);
             if bound <= visitor.limit() {
                 at = tree.nodes[NodeRef(parents[top]).number()].children()[lane_of_key(key)];
                 break;

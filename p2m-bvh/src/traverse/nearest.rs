@@ -78,7 +78,7 @@ impl<V: VolumeNodes, C: Collector> SimdKernel for Search<'_, V, C> {
         state.hold(self.held, self.reach);
         let mut visitor = NearestVisitor { state, shared: &tree.shared, local };
         traverse::<I, V, _>(tree, &mut visitor);
-        visitor.state.evaluate_waiting();
+        visitor.state.evaluate_pending();
     }
 }
 

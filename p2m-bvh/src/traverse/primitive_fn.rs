@@ -31,5 +31,5 @@ pub(crate) fn intersection<'r, T: Real, S: PrimitiveSet<T> + ?Sized>(
     ray: &'r Ray,
     only_crossings: bool,
 ) -> impl Fn(PrimitiveId, f64) -> Option<Crossing<'r>> {
-    move |id, limit| Crossing::of(&set.get(id), ray, limit, only_crossings)
+    move |id, limit| Crossing::from_primitive(&set.get(id), ray, limit, only_crossings)
 }

@@ -106,7 +106,7 @@ impl<'r, C: RayCollector<'r>> ExactTests<'_, 'r, C> {
             (self.intersect)(id, limit)
         } else {
             let vertices = indices.map(|index| self.leaves.vertices[index]);
-            Crossing::of_vertices(self.ray, &vertices[..count], limit, self.only_crossings)
+            Crossing::from_vertices(self.ray, &vertices[..count], limit, self.only_crossings)
         };
         match crossing {
             Some(crossing) => self.hits.offer(id, &crossing),

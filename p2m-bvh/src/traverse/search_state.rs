@@ -202,7 +202,7 @@ impl<'a, C: Collector> SearchState<'a, C> {
             self.push_pending(candidate(self.lower_bound(packet, &local, squares[lane]), lane));
         }
         if !self.collector.is_single_nearest() {
-            self.evaluate_waiting();
+            self.evaluate_pending();
         }
     }
 
@@ -240,7 +240,7 @@ impl<'a, C: Collector> SearchState<'a, C> {
     #[inline(always)]
     fn push_pending(&mut self, candidate: Candidate) {
         if self.pending_len == MAX_PENDING {
-            self.evaluate_waiting();
+            self.evaluate_pending();
         }
         self.pending[self.pending_len] = candidate;
         self.pending_len += 1;
@@ -248,7 +248,7 @@ impl<'a, C: Collector> SearchState<'a, C> {
 
     /// Evaluates the pending candidates that are still within the limit, the one with the least bound first.
     #[inline(always)]
-    pub fn evaluate_waiting(&mut self) {
+    pub fn evaluate_pending(&mut self) {
         (self.finish)(self);
     }
 }

@@ -43,7 +43,7 @@ fn the_boxes_of_a_level_hold_the_scene() {
     // The root is followed by its children. Boxes are rounded outwards by 2^-22 of the scene's size at most.
     let slack = (bounds.max - bounds.min).max() * 2f64.powi(-22);
     for drawn in [&picture.positions()[..24], &picture.positions()[24..]] {
-        let all = p2m_core::Aabb::of_points(drawn);
+        let all = p2m_core::Aabb::from_points(drawn);
         assert!(all.contains(&bounds) && (bounds.min - all.min).max() < slack && (all.max - bounds.max).max() < slack);
     }
     assert_eq!(picture.segments().len() % 12, 0);
@@ -62,7 +62,7 @@ fn polytopes_of_the_k_dop_tree_hold_the_scene_and_fit_closer() {
         // The reason is printed if the directions were derived from the scene.
         assert_eq!(lines[1..].iter().filter(|line| line.starts_with("k-DOPs: ")).count(), usize::from(k == "scene"));
         let picture = p2m_mixed::read_scene(&out).unwrap().soup;
-        let all = p2m_core::Aabb::of_points(picture.positions());
+        let all = p2m_core::Aabb::from_points(picture.positions());
         assert!(all.contains(&p2m_core::PrimitiveSet::aabb(&scene)), "{k}");
         // The mean distance from corners of polytopes to the scene is smaller if they fit more closely.
         let index = p2m_bvh::AabbTree::<f64, _>::build_with(&scene, &Default::default()).unwrap();

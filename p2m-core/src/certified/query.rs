@@ -92,8 +92,8 @@ pub trait CertifiedQuery<T: Real>: NearQuery<T> {
         }
         let one = &found[decision.winner];
         Ok(Some(Closest {
-            distance: T::of_f64(decision.distance),
-            lower_bound: T::of_f64_below(decision.lower),
+            distance: T::round_from_f64(decision.distance),
+            lower_bound: T::round_down_from_f64(decision.lower),
             ..crate::query::answer::answer(one.id, &one.projection, 0.0)
         }))
     }

@@ -20,9 +20,9 @@ use std::cmp::Ordering::{self, Equal, Greater, Less};
 /// Returns whether the convex hull of one to three finite vertices has a point in a closed box. It is `false` for a box
 /// that is empty or has a NaN coordinate.
 pub(super) fn intersects_box<T: Real, const N: usize>(vertices: &[Point3<T>; N], bounds: &Aabb<T>) -> bool {
-    let hull_bounds = Aabb::of_points(vertices);
+    let hull_bounds = Aabb::from_points(vertices);
     // A box that is empty on one axis may still overlap the box of the primitive on all axes.
-    if bounds.is_empty() || !bounds.meets(&hull_bounds) {
+    if bounds.is_empty() || !bounds.intersects(&hull_bounds) {
         return false;
     }
     let is_in_box = |p: &Point3<T>| bounds.contains(&Aabb { min: *p, max: *p });

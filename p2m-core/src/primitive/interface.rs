@@ -26,7 +26,7 @@ use nalgebra::Point3;
 /// impl Primitive<f64> for Ball {
 ///     fn aabb(&self) -> Aabb<f64> {
 ///         let r = nalgebra::Vector3::repeat(self.radius);
-///         Aabb::of_points(&[self.centre - r, self.centre + r])
+///         Aabb::from_points(&[self.centre - r, self.centre + r])
 ///     }
 ///     fn project(&self, query: &Point3<f64>) -> Projection {
 ///         let v = query - self.centre;
@@ -71,8 +71,8 @@ pub trait Primitive<T: Real> {
     ///
     /// It is exact for the primitives of this project. The default tests the box of the primitive, which finds at least
     /// all primitives that have a point in the box.
-    fn meets_box(&self, bounds: &Aabb<T>) -> bool {
-        !bounds.is_empty() && bounds.meets(&self.aabb())
+    fn intersects_box(&self, bounds: &Aabb<T>) -> bool {
+        !bounds.is_empty() && bounds.intersects(&self.aabb())
     }
 
     /// Returns the hit of a ray on a primitive that has no [`vertices`](Self::vertices).
@@ -108,8 +108,8 @@ impl<T: Real, P: Primitive<T>> Primitive<T> for &P {
     fn vertices(&self) -> &[Point3<T>] {
         (*self).vertices()
     }
-    fn meets_box(&self, bounds: &Aabb<T>) -> bool {
-        (*self).meets_box(bounds)
+    fn intersects_box(&self, bounds: &Aabb<T>) -> bool {
+        (*self).intersects_box(bounds)
     }
     fn intersect_ray(&self, ray: &Ray) -> Option<RayHit> {
         (*self).intersect_ray(ray)

@@ -25,7 +25,7 @@ impl<T: Real> Point<T> {
 impl<T: Real> Primitive<T> for Point<T> {
     #[inline(always)]
     fn aabb(&self) -> Aabb<T> {
-        Aabb::of_points(&[self.position])
+        Aabb::from_points(&[self.position])
     }
 
     /// Returns the point itself.
@@ -39,14 +39,14 @@ impl<T: Real> Primitive<T> for Point<T> {
 
     #[inline(always)]
     fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
-        Projection::of_point(to_f64_array(query), &[to_f64_array(&self.position)], square)
+        Projection::onto_point(to_f64_array(query), &[to_f64_array(&self.position)], square)
     }
     #[inline(always)]
     fn vertices(&self) -> &[Point3<T>] {
         std::slice::from_ref(&self.position)
     }
 
-    fn meets_box(&self, bounds: &Aabb<T>) -> bool {
+    fn intersects_box(&self, bounds: &Aabb<T>) -> bool {
         box_intersection::intersects_box(std::array::from_ref(&self.position), bounds)
     }
 }

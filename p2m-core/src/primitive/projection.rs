@@ -54,28 +54,28 @@ impl Projection {
     /// key certainly exceeds `square`.
     #[inline(always)]
     #[doc(hidden)]
-    pub fn of_near_triangle(query: [f64; 3], vertices: &[[f64; 3]; 3], square: f64) -> Option<Self> {
+    pub fn onto_near_triangle(query: [f64; 3], vertices: &[[f64; 3]; 3], square: f64) -> Option<Self> {
         Some(Self::from_nearest(&plain_kernel::near_triangle(query, *vertices, square)?, query, vertices))
     }
 
     /// Projects onto a triangle. It returns `None` if the key certainly exceeds `square`.
     #[inline(always)]
     #[doc(hidden)]
-    pub fn of_triangle(query: [f64; 3], vertices: &[[f64; 3]; 3], square: f64) -> Option<Self> {
+    pub fn onto_triangle(query: [f64; 3], vertices: &[[f64; 3]; 3], square: f64) -> Option<Self> {
         Some(Self::from_nearest(&plain_kernel::triangle(query, *vertices, square)?, query, vertices))
     }
 
     /// Projects onto a segment. It returns `None` if the key certainly exceeds `square`.
     #[inline(always)]
     #[doc(hidden)]
-    pub fn of_segment(query: [f64; 3], vertices: &[[f64; 3]; 2], square: f64) -> Option<Self> {
+    pub fn onto_segment(query: [f64; 3], vertices: &[[f64; 3]; 2], square: f64) -> Option<Self> {
         Some(Self::from_nearest(&plain_kernel::segment(query, *vertices, square)?, query, vertices))
     }
 
     /// Projects onto a point. It returns `None` if the key certainly exceeds `square`.
     #[inline(always)]
     #[doc(hidden)]
-    pub fn of_point(query: [f64; 3], vertex: &[[f64; 3]; 1], square: f64) -> Option<Self> {
+    pub fn onto_point(query: [f64; 3], vertex: &[[f64; 3]; 1], square: f64) -> Option<Self> {
         Some(Self::from_nearest(&plain_kernel::point(query, vertex[0], square)?, query, vertex))
     }
 

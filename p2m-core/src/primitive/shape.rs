@@ -65,11 +65,11 @@ impl<T: Real> Primitive<T> for Shape<T> {
         Self::vertices(self)
     }
 
-    fn meets_box(&self, bounds: &Aabb<T>) -> bool {
+    fn intersects_box(&self, bounds: &Aabb<T>) -> bool {
         match self {
-            Self::Point(p) => p.meets_box(bounds),
-            Self::Segment(s) => s.meets_box(bounds),
-            Self::Triangle(t) => t.meets_box(bounds),
+            Self::Point(p) => p.intersects_box(bounds),
+            Self::Segment(s) => s.intersects_box(bounds),
+            Self::Triangle(t) => t.intersects_box(bounds),
         }
     }
 }

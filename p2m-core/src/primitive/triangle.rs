@@ -25,7 +25,7 @@ impl<T: Real> Triangle<T> {
 impl<T: Real> Primitive<T> for Triangle<T> {
     #[inline(always)]
     fn aabb(&self) -> Aabb<T> {
-        Aabb::of_points(&self.vertices)
+        Aabb::from_points(&self.vertices)
     }
 
     #[inline(always)]
@@ -35,14 +35,14 @@ impl<T: Real> Primitive<T> for Triangle<T> {
 
     #[inline(always)]
     fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
-        Projection::of_triangle(to_f64_array(query), &self.vertices.each_ref().map(to_f64_array), square)
+        Projection::onto_triangle(to_f64_array(query), &self.vertices.each_ref().map(to_f64_array), square)
     }
     #[inline(always)]
     fn vertices(&self) -> &[Point3<T>] {
         &self.vertices
     }
 
-    fn meets_box(&self, bounds: &Aabb<T>) -> bool {
+    fn intersects_box(&self, bounds: &Aabb<T>) -> bool {
         box_intersection::intersects_box(&self.vertices, bounds)
     }
 }

@@ -21,10 +21,10 @@ pub(crate) fn answer<T: Real>(primitive: PrimitiveId, p: &Projection, bound: f64
     let bound = bound * ROUND_DOWN - 2.0 * f64::from_bits(1);
     Closest {
         point: from_f64_array(p.point.coords.into()),
-        distance: T::of_f64(p.key.distance()),
-        lower_bound: if bound > 0.0 { T::of_f64_below(bound) } else { T::zero() },
+        distance: T::round_from_f64(p.key.distance()),
+        lower_bound: if bound > 0.0 { T::round_down_from_f64(bound) } else { T::zero() },
         primitive,
         feature: p.feature,
-        barycentric: p.barycentric.map(T::of_f64),
+        barycentric: p.barycentric.map(T::round_from_f64),
     }
 }

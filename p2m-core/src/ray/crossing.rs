@@ -29,20 +29,25 @@ impl<'a> Crossing<'a> {
     /// if the parameter is out of the range of the ray or certainly exceeds `limit`. `only_crossings` is
     /// that of [`RayCollector`](super::RayCollector).
     #[must_use]
-    pub fn of<T: Real>(primitive: &impl Primitive<T>, ray: &'a Ray, limit: f64, only_crossings: bool) -> Option<Self> {
+    pub fn from_primitive<T: Real>(
+        primitive: &impl Primitive<T>,
+        ray: &'a Ray,
+        limit: f64,
+        only_crossings: bool,
+    ) -> Option<Self> {
         match primitive.vertices() {
-            [] => Self::of_hit(ray, primitive.intersect_ray(ray).filter(|_| !only_crossings)?),
-            [a] => Self::of_vertices(ray, &[to_f64_array(a)], limit, only_crossings),
-            [a, b] => Self::of_vertices(ray, &[to_f64_array(a), to_f64_array(b)], limit, only_crossings),
+            [] => Self::from_hit(ray, primitive.intersect_ray(ray).filter(|_| !only_crossings)?),
+            [a] => Self::from_vertices(ray, &[to_f64_array(a)], limit, only_crossings),
+            [a, b] => Self::from_vertices(ray, &[to_f64_array(a), to_f64_array(b)], limit, only_crossings),
             [a, b, c, ..] => {
-                Self::of_vertices(ray, &[to_f64_array(a), to_f64_array(b), to_f64_array(c)], limit, only_crossings)
+                Self::from_vertices(ray, &[to_f64_array(a), to_f64_array(b), to_f64_array(c)], limit, only_crossings)
             }
         }
     }
 
     /// Returns the hit that a primitive of your own answered, if it is in the range of the ray.
     #[must_use]
-    pub fn of_hit(ray: &'a Ray, hit: RayHit) -> Option<Self> {
+    pub fn from_hit(ray: &'a Ray, hit: RayHit) -> Option<Self> {
         // The sum turns -0 into 0.
         let t = hit.parameter + 0.0;
         let hit = RayHit { parameter: t, ..hit };
@@ -50,9 +55,9 @@ impl<'a> Crossing<'a> {
     }
 
     /// Returns the hit on a primitive of this project, given its vertices. `limit` and `only_crossings` are
-    /// those of [`of`](Self::of).
+    /// those of [`of`](Self::from_primitive).
     #[inline(always)]
-    pub fn of_vertices(ray: &'a Ray, vertices: &[V3], limit: f64, only_crossings: bool) -> Option<Self> {
+    pub fn from_vertices(ray: &'a Ray, vertices: &[V3], limit: f64, only_crossings: bool) -> Option<Self> {
         match vertices {
             [a, b, c] => Self::from_triangle(ray, [*a, *b, *c], limit, only_crossings),
             _ if only_crossings => None,
@@ -72,7 +77,7 @@ impl<'a> Crossing<'a> {
     fn from_line_hit(ray: &'a Ray, vertices: &[V3], hit: &LineHit) -> Option<Self> {
         let LineHit { parameter, weights } = *hit;
         let point = weighted_sum(vertices, &weights);
-        Self::of_hit(ray, RayHit { parameter, side: Side::Along, barycentric: weights, point })
+        Self::from_hit(ray, RayHit { parameter, side: Side::Along, barycentric: weights, point })
     }
 
     /// Returns the hit on a triangle. It is also `None` if its parameter certainly exceeds `limit`.

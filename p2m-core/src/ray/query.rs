@@ -113,7 +113,7 @@ impl<T: Real, S: PrimitiveSet<T>> RayQuery<T> for BruteForce<S> {
     fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>) {
         let only_crossings = hits.only_crossings();
         let _ = (0..self.set().len()).map(PrimitiveId::new).try_for_each(|id| {
-            match Crossing::of(&self.set().get(id), ray, hits.limit(), only_crossings) {
+            match Crossing::from_primitive(&self.set().get(id), ray, hits.limit(), only_crossings) {
                 Some(crossing) => hits.offer(id, &crossing),
                 None => ControlFlow::Continue(()),
             }

@@ -18,7 +18,7 @@ use std::ops::ControlFlow;
 /// let tree = AabbTree::build(&points, &Default::default()).unwrap();
 /// let rays = [Ray::new(&Point3::new(-1.0, 0.0, 0.0), &Vector3::x()).unwrap()];
 /// let [_nodes, _packets, primitives] =
-///     RayStatsCollector::of_rays(&rays, &Hits::all(), |ray, stats| tree.visit_ray(ray, stats));
+///     RayStatsCollector::count_rays(&rays, &Hits::all(), |ray, stats| tree.visit_ray(ray, stats));
 /// assert_eq!(primitives, 3);
 /// ```
 #[derive(Clone, Debug)]
@@ -42,7 +42,7 @@ impl<C> RayStatsCollector<C> {
 
     /// Returns the numbers of nodes, packets and primitives of some rays in total. Each ray is searched by `visit` with
     /// a copy of `collector`.
-    pub fn of_rays<'r>(
+    pub fn count_rays<'r>(
         rays: impl IntoIterator<Item = &'r Ray>,
         collector: &C,
         visit: impl Fn(&'r Ray, &mut Self),

@@ -48,7 +48,7 @@ pub trait EightLanes: Lanes {
     /// keys to 0, and returns the number of lanes written. No lane may be negative.
     ///
     /// A key consists of the bits of the value with the lowest four replaced by 8 + lane. So keys are ordered as their
-    /// values are, and [`number_of_key`] is at most 15 units in the last place too small.
+    /// values are, and [`value_of_key`] is at most 15 units in the last place too small.
     fn sorted_keys(self, limit: f32, keys: &mut [u32; 8]) -> usize;
 }
 
@@ -80,7 +80,7 @@ pub trait Doubles: Copy {
 
 /// Returns a lower bound on the value that a key was made of.
 #[inline(always)]
-pub fn number_of_key(key: u32) -> f32 {
+pub fn value_of_key(key: u32) -> f32 {
     f32::from_bits(key & !15)
 }
 

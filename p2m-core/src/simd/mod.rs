@@ -12,7 +12,7 @@ mod lanes;
 mod portable;
 
 pub use isa::{Isa, prefetch, prefetch_lines};
-pub use lanes::{Doubles, EightLanes, InstructionSet, Lanes, SimdKernel, lane_of_key, number_of_key};
+pub use lanes::{Doubles, EightLanes, InstructionSet, Lanes, SimdKernel, lane_of_key, value_of_key};
 pub use portable::Portable;
 
 #[cfg(test)]
@@ -183,7 +183,7 @@ mod tests {
     #[test]
     fn keys_give_back_lane_and_a_lower_bound() {
         let key = 1.5f32.to_bits() & !15 | 8 | 5;
-        assert_eq!((lane_of_key(key), number_of_key(key)), (5, 1.5));
-        assert!(number_of_key((1.5f32.next_up()).to_bits() & !15 | 15) <= 1.5f32.next_up());
+        assert_eq!((lane_of_key(key), value_of_key(key)), (5, 1.5));
+        assert!(value_of_key((1.5f32.next_up()).to_bits() & !15 | 15) <= 1.5f32.next_up());
     }
 }

@@ -1,6 +1,6 @@
 //! The candidates of one box.
 
-use super::error_bounds::LARGEST;
+use super::error_bounds::MAX_COORDINATE;
 use super::groups::EntryId;
 use p2m_core::Aabb;
 
@@ -45,7 +45,7 @@ impl Candidates {
 
     /// Returns whether a box is contained in the box of the candidates and within the range of lists.
     pub(crate) fn covers(&self, part: &Aabb<f64>) -> bool {
-        let is_in_range = part.min.iter().chain(part.max.iter()).all(|x| x.abs() <= LARGEST);
+        let is_in_range = part.min.iter().chain(part.max.iter()).all(|x| x.abs() <= MAX_COORDINATE);
         !part.is_empty() && is_in_range && self.bounds.is_none_or(|bounds| bounds.contains(part))
     }
 }

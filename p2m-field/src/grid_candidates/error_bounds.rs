@@ -9,4 +9,4 @@ pub(crate) const INSIDE_MARGIN_PER_REACH: f64 = 1.0 / (1u64 << 46) as f64;
 /// The error of a computed distance that underflow of squares adds: 2^-400.
 pub(crate) const UNDERFLOW_ERROR: f64 = power_of_two(-400);
 /// The largest magnitude of a coordinate, of the scene or of a box, for which candidate lists are defined: 2^250.
-pub const LARGEST: f64 = power_of_two(250);
+pub const MAX_COORDINATE: f64 = power_of_two(250);

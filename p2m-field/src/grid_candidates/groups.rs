@@ -5,7 +5,7 @@
 
 use super::local_primitive::LocalPrimitive;
 use nalgebra::Point3;
-use p2m_core::engine::curve::along_the_curve;
+use p2m_core::engine::curve::sort_along_curve;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 use p2m_core::{Aabb, Primitive, PrimitiveId, PrimitiveSet};
 
@@ -92,7 +92,7 @@ impl Groups {
             })
             .collect();
         let mut order: Vec<u32> = ids().map(PrimitiveId::number).collect();
-        along_the_curve(&centres, &mut order);
+        sort_along_curve(&centres, &mut order);
         drop(centres);
         let ids: Vec<PrimitiveId> = order.into_iter().map(|i| PrimitiveId::new(i as usize)).collect();
         let mut primitives = Vec::new();

@@ -58,7 +58,7 @@ mod narrow;
 mod squared_distances;
 
 pub use candidates::{Candidates, Detail};
-pub use error_bounds::LARGEST;
+pub use error_bounds::MAX_COORDINATE;
 
 use evaluate::Evaluate;
 use groups::Groups;
@@ -79,14 +79,14 @@ impl<'a, S: PrimitiveSet<f64> + ?Sized> CandidateLists<'a, S> {
     /// Prepares the candidate lists of a set.
     ///
     /// Returns `None` if a primitive is not the convex hull of its [`vertices`](Primitive::vertices), if a coordinate
-    /// is not finite or exceeds [`LARGEST`], or if memory does not suffice.
+    /// is not finite or exceeds [`MAX_COORDINATE`], or if memory does not suffice.
     ///
     /// # Complexity
     /// O(n log n) time; 238 bytes for each primitive.
     #[must_use]
     pub fn new(set: &'a S) -> Option<Self> {
         let Aabb { min, max } = set.aabb();
-        let is_plain = set.is_empty() || min.iter().chain(max.iter()).all(|x| x.abs() <= LARGEST);
+        let is_plain = set.is_empty() || min.iter().chain(max.iter()).all(|x| x.abs() <= MAX_COORDINATE);
         // Boxes may ignore NaN, so the coordinates are checked as well, as they are for an index.
         if !is_plain || check_set(set).is_err() {
             return None;
@@ -122,7 +122,7 @@ impl<'a, S: PrimitiveSet<f64> + ?Sized> CandidateLists<'a, S> {
     /// Returns the candidates of a part of a box, found among those of the box.
     ///
     /// # Panics
-    /// If the part is empty, not contained in the box of `candidates`, or has coordinates above [`LARGEST`]. Candidates
+    /// If the part is empty, not contained in the box of `candidates`, or has coordinates above [`MAX_COORDINATE`]. Candidates
     /// of other lists may cause a panic or a wrong result.
     ///
     /// # Complexity

@@ -70,7 +70,7 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
     ///
     /// # Accuracy
     /// Signs are those of an exact count of crossings under two conditions. The surface does not intersect itself,
-    /// which [`meets_itself`] checks; otherwise the sign is that of the nearest part, which differs where that part is
+    /// which [`find_self_intersection`] checks; otherwise the sign is that of the nearest part, which differs where that part is
     /// inside of others. And no two sheets of the surface are closer to each other than the error of a distance, which
     /// is 16 u M if the farthest vertex of the closest triangle has the distance M. This is cited \[Baerentzen2005\]
     /// for distances without rounding, and observed on all models that are closed and do not intersect themselves
@@ -152,10 +152,10 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
 
     /// Returns the number of queries so far whose sign was ambiguous, so that rays or the sum of all
     /// triangles decided it.
-    pub fn doubts(&self) -> u64 {
+    pub fn ambiguous_count(&self) -> u64 {
         match &self.rule {
-            SignRule::Closed(normals) => normals.doubts(),
-            SignRule::Winding(winding) => winding.doubts(),
+            SignRule::Closed(normals) => normals.ambiguous_count(),
+            SignRule::Winding(winding) => winding.ambiguous_count(),
         }
     }
 }
@@ -175,7 +175,7 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
 /// # Complexity
 /// One ray for each edge. A ray takes a few microseconds, or milliseconds where thousands of long slivers lie in one
 /// plane along two axes.
-pub fn meets_itself(soup: &Soup<f64>) -> Result<Option<[PrimitiveId; 2]>, SignError> {
+pub fn find_self_intersection(soup: &Soup<f64>) -> Result<Option<[PrimitiveId; 2]>, SignError> {
     let topology = Topology::new(soup)?;
     let rays = RayTree::build(soup, &Default::default())?;
     Ok(topology.find_self_intersection(soup, &rays).map(|pair| pair.map(PrimitiveId::new)))

@@ -41,7 +41,7 @@ pub(crate) struct Pseudonormals<'a> {
     fronts: Vec<Front>,
     rays: RayTree<'a>,
     bounds: Aabb<f64>,
-    doubts: AtomicU64,
+    ambiguous_count: AtomicU64,
 }
 
 /// The side of the surface that the front of a triangle is on.
@@ -75,10 +75,10 @@ impl<'a> Pseudonormals<'a> {
             *normal = [0.0; 3];
         }
         let fronts = vec![Front::Unknown; soup.triangles().len()];
-        let doubts = AtomicU64::new(0);
+        let ambiguous_count = AtomicU64::new(0);
         let bounds = soup.aabb();
         let vertex_ids = welder.vertex_ids;
-        let mut normals = Self { soup, neighbours, vertex_ids, vertex_normals, fronts, rays, bounds, doubts };
+        let mut normals = Self { soup, neighbours, vertex_ids, vertex_normals, fronts, rays, bounds, ambiguous_count };
         normals.find_fronts(&components, index);
         Ok(normals)
     }
@@ -137,7 +137,7 @@ impl<'a> Pseudonormals<'a> {
             (Front::Outside, Some(is_in_front)) => is_in_front,
             (Front::Inside, Some(is_in_front)) => !is_in_front,
             _ => {
-                self.doubts.fetch_add(1, Ordering::Relaxed);
+                self.ambiguous_count.fetch_add(1, Ordering::Relaxed);
                 if closest.lower_bound <= 0.0 && self.is_on_surface(query) {
                     return Sign::Boundary;
                 }
@@ -147,8 +147,8 @@ impl<'a> Pseudonormals<'a> {
         if is_outside { Sign::Outside } else { Sign::Inside }
     }
 
-    pub(super) fn doubts(&self) -> u64 {
-        self.doubts.load(Ordering::Relaxed)
+    pub(super) fn ambiguous_count(&self) -> u64 {
+        self.ambiguous_count.load(Ordering::Relaxed)
     }
 
     /// Returns whether the query is in front of the surface at its closest point, or `None` if that is ambiguous.

@@ -48,7 +48,7 @@ pub struct WindingNumbers<'a> {
     order: Vec<u32>,
     /// The nodes in depth-first order. The first child of a node follows it.
     nodes: Vec<Node>,
-    doubts: AtomicU64,
+    ambiguous_count: AtomicU64,
 }
 
 /// A group of triangles that a dipole approximates from far away.
@@ -101,7 +101,7 @@ impl<'a> WindingNumbers<'a> {
         let exponent = if largest > 0.0 { (largest.log2() as i32).clamp(-1000, 1000) } else { 0 };
         let boundary = Boundary::new(soup)?;
         let count = u32::try_from(soup.triangles().len()).unwrap_or(u32::MAX);
-        let (order, nodes, doubts) = ((0..count).collect(), Vec::new(), AtomicU64::new(0));
+        let (order, nodes, ambiguous_count) = ((0..count).collect(), Vec::new(), AtomicU64::new(0));
         let [rough_distance_factor, shared_distance_factor] =
             [ROUGH_ACCURACY, SHARED_SIGN_ACCURACY].map(|a| (accuracy / a).sqrt().sqrt().min(1.0) * (1.0 + 1e-12));
         let mut numbers = Self {
@@ -113,7 +113,7 @@ impl<'a> WindingNumbers<'a> {
             shared_distance_factor,
             order,
             nodes,
-            doubts,
+            ambiguous_count,
         };
         if count > 0 {
             let area: f64 = (0..count).map(|t| length(numbers.triangle(t).normal)).sum();
@@ -248,7 +248,7 @@ impl<'a> WindingNumbers<'a> {
             above_half = self.number(query).abs() - 0.5;
         }
         if above_half.abs() <= self.accuracy + ROUNDING_ERROR {
-            self.doubts.fetch_add(1, Ordering::Relaxed);
+            self.ambiguous_count.fetch_add(1, Ordering::Relaxed);
             above_half = self.exact_number(query).abs() - 0.5;
         }
         if above_half > ROUNDING_ERROR {
@@ -280,8 +280,8 @@ impl<'a> WindingNumbers<'a> {
         self.boundary.is_empty()
     }
 
-    pub(super) fn doubts(&self) -> u64 {
-        self.doubts.load(Ordering::Relaxed)
+    pub(super) fn ambiguous_count(&self) -> u64 {
+        self.ambiguous_count.load(Ordering::Relaxed)
     }
 }
 

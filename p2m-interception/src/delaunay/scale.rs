@@ -4,7 +4,7 @@
 #![allow(clippy::float_cmp, reason = "points are the same site if they are equal")]
 
 use crate::delaunay::tetrahedron::BOUNDING;
-use p2m_core::engine::curve::{along_the_curve, bounds};
+use p2m_core::engine::curve::{bounds, sort_along_curve};
 use p2m_core::engine::staged::RANGE;
 use p2m_core::engine::vector::power_of_two;
 use p2m_core::engine::vector::{V3, exponent, larger, largest, scale_by_power};
@@ -27,7 +27,7 @@ pub(crate) fn sites_of(points: &[V3], reach: f64) -> ScaledSites {
     let unit = if largest == 0.0 { 0 } else { exponent(largest) };
     let scaled: Vec<V3> = points.iter().map(|p| p.map(|x| scale(x, unit))).collect();
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
-    along_the_curve(&scaled, &mut order);
+    sort_along_curve(&scaled, &mut order);
     let mut sites = Vec::with_capacity(BOUNDING + points.len());
     sites.extend(bounding_sites(&scaled, reach));
     let mut site_of = vec![0; points.len()];

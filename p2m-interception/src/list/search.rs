@@ -3,7 +3,7 @@
 use crate::list::block::{BLOCK_WIDTH, Block, BlockQuery};
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::nearest::SearchState;
-use p2m_core::engine::simd::{EightLanes, InstructionSet, Lanes, lane_of_key, number_of_key};
+use p2m_core::engine::simd::{EightLanes, InstructionSet, Lanes, lane_of_key, value_of_key};
 use p2m_core::{Collector, PrimitiveId};
 
 /// Returns the primitives of a list in ascending order.
@@ -69,9 +69,9 @@ pub(crate) fn search_list<I: InstructionSet, C: Collector>(
             left -= 1;
             let key = keys[left];
             let lane = lane_of_key(key);
-            if lane < usize::from(block.len) && number_of_key(key) <= state.limit() {
+            if lane < usize::from(block.len) && value_of_key(key) <= state.limit() {
                 if state.may_stop() {
-                    state.record_skipped(number_of_key(key));
+                    state.record_skipped(value_of_key(key));
                     break;
                 }
                 state.packet::<I>(block.packets[lane] as usize, u32::from(block.lanes[lane]));

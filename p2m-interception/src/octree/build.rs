@@ -72,7 +72,7 @@ impl Refinement<'_> {
     fn may_have_queries(&self, cube: &Cube) -> bool {
         match self.domain {
             Domain::Everywhere => true,
-            Domain::Box(bounds) => bounds.meets(&cube.bounds()),
+            Domain::Box(bounds) => bounds.intersects(&cube.bounds()),
             Domain::Band(width) => {
                 // From any point of the cell the scene is at least as far as from a corner, minus the diagonal.
                 let diagonal = cube.side * 1.733;
@@ -92,7 +92,7 @@ impl Refinement<'_> {
             mass += part.map(|x| x.max(0.0)).product::<f64>() * density;
         }
         for (bounds, packets) in near {
-            if bounds.meets(&cell_bounds) {
+            if bounds.intersects(&cell_bounds) {
                 let size = (bounds.max - bounds.min).max();
                 // If a box is larger than the cell, only a part of its surface lies in the cell.
                 let part = if size > cube.side { (cube.side / size).powi(2) } else { 1.0 };

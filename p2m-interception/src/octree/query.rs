@@ -120,12 +120,12 @@ impl<C: Collector> SimdKernel for SearchCell<'_, C> {
         let mut state = SearchState::new(tree, self.query, f64::INFINITY, self.collector, self.evaluate, self.finish);
         if self.code >> KIND_SHIFT == KIND_SINGLE {
             state.add(number / LANES, number % LANES);
-            return state.evaluate_waiting();
+            return state.evaluate_pending();
         }
         // The second block is prefetched as well, because the list may have more than one.
         prefetch_lines(octree.blocks.as_ptr().wrapping_add(number), 2 * size_of::<Block>());
         let (first, rest) = (&octree.blocks[number], &octree.blocks[number + 1..]);
         search::search_list::<I, C>(tree, first, rest, &self.block_query, &mut state);
-        state.evaluate_waiting();
+        state.evaluate_pending();
     }
 }

@@ -89,7 +89,7 @@ impl CellContext<'_> {
             }
             report.entries += chunk.entries;
             report.candidates += chunk.candidates;
-            report.most_candidates = report.most_candidates.max(chunk.most_candidates);
+            report.max_candidates = report.max_candidates.max(chunk.max_candidates);
             report.primitives += chunk.primitives;
         });
         neighbours.sites = filled_sites.into();
@@ -111,7 +111,7 @@ impl CellContext<'_> {
             entries: 0,
             primitives: 0,
             candidates: 0,
-            most_candidates: 0,
+            max_candidates: 0,
         };
         let mut cell = CellBuilder::default();
         for site in sites {
@@ -125,7 +125,7 @@ impl CellContext<'_> {
             } else if site >= BOUNDING && !tetrahedra.iter().any(|t| corners.all[*t as usize].is_crowded) {
                 cell.begin(self, corners, site, tetrahedra);
                 chunk.candidates += cell.packets.len();
-                chunk.most_candidates = chunk.most_candidates.max(cell.packets.len());
+                chunk.max_candidates = chunk.max_candidates.max(cell.packets.len());
                 let is_short = cell.packets.len() <= self.limits.max_list_packets;
                 let entries = if is_short { cell.list_entries(self, adjacency, frames) } else { Vec::new() };
                 if !entries.is_empty() {
@@ -162,7 +162,7 @@ struct ChunkResult {
     /// The number of packets that were examined for the lists.
     candidates: usize,
     /// The largest number of packets that were examined for one list.
-    most_candidates: usize,
+    max_candidates: usize,
 }
 
 /// The result of one cell.

@@ -258,7 +258,7 @@ impl Partition for Voronoi {
     }
 
     fn list(&self, point: &Point3<f64>) -> Option<Vec<PrimitiveId>> {
-        let site = self.site_of(point).filter(|site| self.neighbours.sites[*site].has_list())?;
+        let site = self.locate_site(point).filter(|site| self.neighbours.sites[*site].has_list())?;
         Some(search::list_primitives(&self.tree, self.blocks_of(site)))
     }
 

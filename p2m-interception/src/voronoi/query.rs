@@ -73,7 +73,7 @@ impl Voronoi {
     /// Returns the number of the site whose cell contains a query point, which is the first step of every query. It is
     /// `None` outside of the domain, and if the tree answers everything.
     #[must_use]
-    pub fn site_of(&self, query: &Point3<f64>) -> Option<usize> {
+    pub fn locate_site(&self, query: &Point3<f64>) -> Option<usize> {
         let position = self.to_site_units(&to_f64_array(query))?;
         let start = self.locator.as_ref()?.start(&position)?;
         Some(self.tree.isa().run(LocateSite { neighbours: &self.neighbours, start, position }))
@@ -191,12 +191,12 @@ impl<C: Collector> SimdKernel for SearchCell<'_, C> {
         let mut state = SearchState::new(tree, query, upper_bound, collector, evaluate, finish);
         if let Some((packet, lane)) = known_answer {
             state.add(packet, lane);
-            return state.evaluate_waiting();
+            return state.evaluate_pending();
         }
         state.hold(held, upper_bound);
         let (first, rest) = (&index.blocks[located.site], &index.blocks[site.list as usize..]);
         search::search_list::<I, C>(tree, first, rest, &block_query(tree, &query), &mut state);
-        state.evaluate_waiting();
+        state.evaluate_pending();
     }
 }
 
@@ -226,7 +226,7 @@ impl<C: Collector> SimdKernel for SearchFilteredList<'_, C> {
         for (packet, lanes) in ListFilters::packets(filter, &query) {
             state.packet::<I>(packet as usize, u32::from(lanes));
         }
-        state.evaluate_waiting();
+        state.evaluate_pending();
     }
 }
 

@@ -9,7 +9,7 @@ use p2m::{
 };
 use p2m_testkit::ray_check::{Truth, agrees};
 use p2m_testkit::rays::{AIMS, ray};
-use p2m_testkit::scenes::{self, of_case};
+use p2m_testkit::scenes::{self, kinds_and_layout};
 use p2m_testkit::{Cases, amount, rng};
 use rand::{Rng, RngExt};
 use std::ops::ControlFlow;
@@ -183,7 +183,7 @@ pub(super) fn on_random_scenes(
 ) {
     for seed in cases {
         let mut rng = rng(name, seed);
-        let (kinds, layout) = of_case(seed);
+        let (kinds, layout) = kinds_and_layout(seed);
         let size = sizes[rng.random_range(0..sizes.len())];
         let soup = scenes::soup(&mut rng, kinds, layout, size);
         let rays = if soup.len() == 0 {

@@ -62,7 +62,7 @@ fn primitives_of_ones_own_are_hit_where_they_say() {
         let mut expected: Vec<Hit> = Vec::new();
         for (id, ball) in balls.iter().enumerate() {
             let Some(answer) = ball.intersect_ray(&ray) else { continue };
-            expected.push(Crossing::of_hit(&ray, answer).expect("in the range").hit(PrimitiveId::new(id)));
+            expected.push(Crossing::from_hit(&ray, answer).expect("in the range").hit(PrimitiveId::new(id)));
         }
         expected.sort_by(|a, b| a.parameter.total_cmp(&b.parameter).then(a.primitive.cmp(&b.primitive)));
         for (name, index) in &backends {

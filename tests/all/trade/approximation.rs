@@ -46,7 +46,7 @@ impl<T: Real> Case<'_, T> {
         assert!(found.lower_bound <= self.exact.distance && found.distance >= self.exact.distance, "{}", context());
         let projection = self.soup.get(found.primitive).project(&self.query);
         assert_eq!(
-            T::of_f64(projection.key.distance()),
+            T::round_from_f64(projection.key.distance()),
             found.distance,
             "{}: the distance of another primitive",
             context()
@@ -69,7 +69,7 @@ impl<T: Real> Case<'_, T> {
         let u = T::UNIT_ROUNDOFF;
         let (distance, rounding) = (exact.distance.to_f64(), (exact.distance - exact.lower_bound).to_f64());
         for epsilon in [1e-9, 0.001, 0.03, 0.3, 3.0] {
-            let found = self.checked_answer(&defaults.with_epsilon(T::of_f64(epsilon)));
+            let found = self.checked_answer(&defaults.with_epsilon(T::round_from_f64(epsilon)));
             let max_distance = (1.0 + epsilon) * (1.0 + 8.0 * u);
             let reached = found.distance.to_f64();
             assert!(
@@ -91,12 +91,12 @@ impl<T: Real> Case<'_, T> {
         let found = self.checked_answer(&defaults.with_max_visits(u32::MAX - 1));
         assert_eq!(compared_fields(&found), compared_fields(&exact), "{}: a budget for everything", self.name);
         // Within a radius that allows no error, the answer is the nearest primitive.
-        let options = defaults.with_epsilon(T::of_f64(0.5));
+        let options = defaults.with_epsilon(T::round_from_f64(0.5));
         let found = self.checked_answer(&options.with_max_distance(exact.distance));
         assert!(found.distance == exact.distance, "{}: {found:?}, {exact:?}", self.name);
         let short = exact.distance.to_f64() * 0.99;
         if short < distance {
-            let options = options.with_max_distance(T::of_f64(short)).with_max_visits(5);
+            let options = options.with_max_distance(T::round_from_f64(short)).with_max_visits(5);
             assert_eq!(self.index.closest_point_with(&self.query, &options), None, "{}: beyond the radius", self.name);
         }
     }
@@ -114,7 +114,7 @@ fn check_scene<T: Real>(soup: &Soup<T>, queries: &[Point3<T>], counts: &mut [usi
         let truth = tree.certified_closest_point(query, &Default::default()).expect("vertices").expect("found");
         // Brute force may ignore options that allow an error.
         if soup.len() < 1000 {
-            let rough = QueryOptions::default().with_max_visits(0).with_epsilon(T::of_f64(1.0));
+            let rough = QueryOptions::default().with_max_visits(0).with_epsilon(T::round_from_f64(1.0));
             let found = brute.closest_point_with(query, &rough).map(|c| compared_fields(&c));
             assert_eq!(found, Some(compared_fields(&exact)), "brute force at {query:?}");
         }

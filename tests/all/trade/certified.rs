@@ -9,7 +9,7 @@ use p2m::{
     P2mIndex, PrimitiveSet, QueryOptions, Real, Soup,
 };
 use p2m_testkit::oracle::Distance;
-use p2m_testkit::scenes::{self, narrow, of_case};
+use p2m_testkit::scenes::{self, kinds_and_layout, narrow};
 use p2m_testkit::{amount, cases};
 use rand::{Rng, RngExt};
 use std::cmp::Ordering;
@@ -62,10 +62,10 @@ fn check<T: Real>(soup: &Soup<T>, queries: &[Point3<T>]) -> [usize; 2] {
             // A radius is compared without rounding.
             let reported = found.distance.to_f64();
             let within = |r: f64| {
-                let options = QueryOptions::default().with_max_distance(T::of_f64(r));
+                let options = QueryOptions::default().with_max_distance(T::round_from_f64(r));
                 index.certified_closest_point(query, &options).expect("vertices").is_some()
             };
-            let beyond = |r: f64| T::of_f64(r).to_f64().max(r);
+            let beyond = |r: f64| T::round_from_f64(r).to_f64().max(r);
             if !distance.is_at_least(reported) {
                 assert!(within(reported), "{}: radius", context());
             }
@@ -139,7 +139,7 @@ fn near_ties_are_decided_rightly_by_every_backend() {
 #[test]
 fn ordinary_scenes_of_both_scalars_are_certified() {
     for case in cases(24, 24) {
-        let (mut rng, (kinds, layout)) = (p2m_testkit::rng("certified", case), of_case(case));
+        let (mut rng, (kinds, layout)) = (p2m_testkit::rng("certified", case), kinds_and_layout(case));
         let soup = scenes::soup(&mut rng, kinds, layout, amount(60, 20));
         let places: Vec<_> = (0..amount(6, 2)).map(|_| scenes::query(&mut rng, soup.positions())).collect();
         check(&soup, &places);
