@@ -75,12 +75,15 @@ pub struct Fraction {
 
 impl Fraction {
     /// Compares two fractions.
-    pub fn cmp(&self, other: &Self) -> Ordering {
+    pub fn compare(&self, other: &Self) -> Ordering {
         (&self.numerator * &other.denominator).cmp(&(&other.numerator * &self.denominator))
     }
 
     /// Returns the fraction times 2^exponent, rounded to the nearest f64, ties to even. It is infinite beyond the range
     /// of f64, and never -0.
+    ///
+    /// # Panics
+    /// If a number has 2^63 bits or more.
     pub fn round(&self, exponent: i32) -> f64 {
         let negative = sign(&self.numerator) == Ordering::Less;
         let numerator = (&self.numerator).unsigned_abs();

@@ -134,7 +134,7 @@ impl<const K: usize> WideNode for KdopNode<K> {
 
     #[inline(always)]
     fn entries<L: Lanes>(&self, ray: &[SlabRay; K]) -> L {
-        let mut interval = RayInterval::new();
+        let mut interval = RayInterval::complete();
         for (slab, heights) in ray.iter().zip(self.heights.chunks_exact(2)) {
             interval.clip(slab, L::splat(0.0).sub(L::load(&heights[1])), L::load(&heights[0]));
         }

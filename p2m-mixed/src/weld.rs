@@ -55,6 +55,9 @@ impl VertexWelder {
     }
 
     /// Counts the connected components of the scene: parts that share no vertex with each other.
+    ///
+    /// # Panics
+    /// If the scene is another one than that of [`VertexWelder::new`], and has more positions.
     pub fn count_components(&self, soup: &Soup<f64>) -> usize {
         let mut sets = UnionFind::new(self.vertex_count);
         for t in soup.triangles() {

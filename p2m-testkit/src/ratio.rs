@@ -97,6 +97,7 @@ impl Ratio {
 }
 
 /// Returns the midpoint of a finite x >= 0 and the next larger f64, or 2^1024.
+#[allow(clippy::float_cmp, reason = "exactly the largest number is meant")]
 fn middle(x: f64) -> Ratio {
     let next =
         if x == f64::MAX { Ratio::from(2f64.powi(1023)) + Ratio::from(2f64.powi(1023)) } else { x.next_up().into() };

@@ -89,7 +89,7 @@ impl WideNode for BoxNode {
 
     #[inline(always)]
     fn entries<L: Lanes>(&self, ray: &[SlabRay; 3]) -> L {
-        let mut interval = RayInterval::new();
+        let mut interval = RayInterval::complete();
         for (slab, (min, max)) in ray.iter().zip(self.min.iter().zip(&self.max)) {
             interval.clip(slab, L::load(min), L::load(max));
         }

@@ -49,7 +49,7 @@ pub struct RayInterval<L> {
 impl<L: Lanes> RayInterval<L> {
     /// The interval of the complete ray.
     #[inline(always)]
-    pub fn new() -> Self {
+    pub fn complete() -> Self {
         Self { near: L::splat(0.0), far: L::splat(f32::INFINITY) }
     }
 

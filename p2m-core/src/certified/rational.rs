@@ -47,9 +47,9 @@ impl Square {
             denominator: square.fraction.denominator.clone(),
         };
         match self.unit.cmp(&other.unit) {
-            Ordering::Equal => self.fraction.cmp(&other.fraction),
-            Ordering::Less => self.fraction.cmp(&lift(other)),
-            Ordering::Greater => lift(self).cmp(&other.fraction),
+            Ordering::Equal => self.fraction.compare(&other.fraction),
+            Ordering::Less => self.fraction.compare(&lift(other)),
+            Ordering::Greater => lift(self).compare(&other.fraction),
         }
     }
 

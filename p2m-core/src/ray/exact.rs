@@ -99,8 +99,8 @@ impl Exact {
                 None => Span { ends: [from, to] },
                 Some(Span { ends: [first, last] }) => Span {
                     ends: [
-                        if from.0.cmp(&first.0) == Ordering::Less { from } else { first },
-                        if to.0.cmp(&last.0) == Ordering::Greater { to } else { last },
+                        if from.0.compare(&first.0) == Ordering::Less { from } else { first },
+                        if to.0.compare(&last.0) == Ordering::Greater { to } else { last },
                     ],
                 },
             });

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 /// The locator of an index. The grid has a variant of its own, so that calls of the default locator are direct.
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant, reason = "an index has one locator, and a box would be one more address to read")]
 pub(crate) enum AnyLocator {
     /// The default locator.
     Grid(GridLocator),

@@ -79,6 +79,9 @@ impl Header {
 }
 
 /// Returns a header of an NPY file of version 1.0, padded to a multiple of 64 bytes as NumPy does.
+///
+/// # Panics
+/// If the header is longer than 2^16 - 1 bytes.
 pub fn npy_header(descr: &str, shape: &str, is_fortran: bool) -> Vec<u8> {
     let order = if is_fortran { "True" } else { "False" };
     let mut description = format!("{{'descr': {descr}, 'fortran_order': {order}, 'shape': {shape}, }}");
