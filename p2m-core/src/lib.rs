@@ -84,15 +84,15 @@ pub mod engine {
         pub use crate::curve::*;
     }
     /// Double-double arithmetic.
-    pub mod double {
+    pub mod double_double {
         pub use crate::kernel::double_double::*;
     }
     /// Exact arithmetic with big integers.
-    pub mod integers {
+    pub mod exact {
         pub use crate::exact::*;
     }
     /// Products of vectors in any arithmetic.
-    pub mod number {
+    pub mod arithmetic {
         pub use crate::kernel::arithmetic::*;
     }
     /// The collector that searches are compiled for.
@@ -112,7 +112,7 @@ pub mod engine {
         pub use crate::simd::*;
     }
     /// Signs of determinants in stages of growing precision.
-    pub mod staged {
+    pub mod adaptive {
         pub use crate::predicates::adaptive::*;
     }
     /// Vectors of three f64.

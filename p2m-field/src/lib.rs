@@ -9,7 +9,7 @@
 //!   \[Baerentzen2005\], or by generalised winding numbers for any triangles \[Jacobson2013\], which a tree of dipoles
 //!   approximates within a bound \[Barill2018\].
 //! - **Output**: [`write_field`] writes NPY, VTI or raw values, [`write_cells`] writes the cells of an octree, and
-//!   [`slice`] draws a layer of a grid.
+//!   [`slice()`] draws a layer of a grid.
 //!
 //! ```
 //! use p2m_core::BruteForce;

@@ -23,8 +23,8 @@
 #![allow(clippy::inline_always, reason = "or it is compiled without the instruction set")]
 
 use crate::delaunay::tetrahedron::{FACES, IN_CAVITY, NO_NEIGHBOUR, NOT_IN_CAVITY, Tetrahedron, Work, index_in};
+use p2m_core::engine::adaptive::{PredicateStage, orientation_exact, orientation_filter, sphere_exact, sphere_filter};
 use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel, prefetch};
-use p2m_core::engine::staged::{PredicateStage, orientation_exact, orientation_filter, sphere_exact, sphere_filter};
 use p2m_core::engine::vector::{V3, sub};
 use std::cmp::Ordering;
 

@@ -4,8 +4,8 @@
 #![allow(clippy::float_cmp, reason = "points are the same site if they are equal")]
 
 use crate::delaunay::tetrahedron::BOUNDING;
+use p2m_core::engine::adaptive::RANGE;
 use p2m_core::engine::curve::{bounds, sort_along_curve};
-use p2m_core::engine::staged::RANGE;
 use p2m_core::engine::vector::power_of_two;
 use p2m_core::engine::vector::{V3, exponent, larger, largest, scale_by_power};
 

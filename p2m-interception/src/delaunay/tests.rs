@@ -2,7 +2,7 @@
 
 use super::*;
 use dashu_int::IBig;
-use p2m_core::engine::integers::{self, common_exponent, difference};
+use p2m_core::engine::exact::{self, common_exponent, difference};
 use p2m_core::predicates::{insphere, orientation_3d};
 use p2m_testkit::{amount, cases, rng};
 use rand::{Rng, RngExt};
@@ -35,7 +35,7 @@ fn valid_by_definition(points: &[[f64; 3]]) {
     let exponent = common_exponent(sites.as_flattened());
     let volume = |[a, b, c, d]: [[f64; 3]; 4]| {
         let [b, c, d] = [b, c, d].map(|p| difference(p, a, exponent));
-        integers::dot(&integers::cross(&b, &c), &d)
+        exact::dot(&exact::cross(&b, &c), &d)
     };
     let mut sum = IBig::ZERO;
     let mut faces = BTreeMap::new();

@@ -4,8 +4,8 @@
 //! `(|A|^2 B x C + |B|^2 C x A + |C|^2 A x B) / (2 A . B x C)` from the first point. It is computed in f64, and in double-double arithmetic if the
 //! error is too large because the tetrahedron is thin. The error is bounded in either case.
 
-use p2m_core::engine::double::{self, Double};
-use p2m_core::engine::number::{Number, cross, dot};
+use p2m_core::engine::arithmetic::{Number, cross, dot};
+use p2m_core::engine::double_double::{self, Double};
 use p2m_core::engine::vector::V3;
 use p2m_core::engine::vector::power_of_two;
 
@@ -56,7 +56,7 @@ pub(crate) fn circumcentre(points: &[V3; 4]) -> Option<Circumcentre> {
     }
     let offsets = rest.map(|p| std::array::from_fn(|k| Double::difference(p[k], o[k])));
     let (numerator, half) = quotient(offsets);
-    finish(o, (numerator.map(Double::round), half.round()), &sizes, double::ROUNDING)
+    finish(o, (numerator.map(Double::round), half.round()), &sizes, double_double::ROUNDING)
 }
 
 /// Divides, and bounds the error. The result is `None` if the denominator may be 0.
@@ -82,7 +82,7 @@ fn finish(o: &V3, (numerator, half): (V3, f64), sizes: &(V3, f64), rounding: f64
 mod tests {
     use super::*;
     use dashu_int::IBig;
-    use p2m_core::engine::integers::{self, common_exponent, difference};
+    use p2m_core::engine::exact::{self, common_exponent, difference};
     use p2m_core::predicates::orientation_3d;
     use rand::{Rng, RngExt};
     use std::cmp::Ordering;
@@ -94,13 +94,13 @@ mod tests {
         let [o, rest @ ..] = points;
         let [a, b, c] = rest.map(|p| difference(p, *o, exponent));
         let x = difference(found.position, *o, exponent);
-        let error = integers::integer(found.error, exponent);
-        let (bc, ca, ab) = (integers::cross(&b, &c), integers::cross(&c, &a), integers::cross(&a, &b));
-        let (aa, bb, cc) = (integers::dot(&a, &a), integers::dot(&b, &b), integers::dot(&c, &c));
-        let half = integers::dot(&a, &bc);
+        let error = exact::integer(found.error, exponent);
+        let (bc, ca, ab) = (exact::cross(&b, &c), exact::cross(&c, &a), exact::cross(&a, &b));
+        let (aa, bb, cc) = (exact::dot(&a, &a), exact::dot(&b, &b), exact::dot(&c, &c));
+        let half = exact::dot(&a, &bc);
         let off: [IBig; 3] =
             std::array::from_fn(|k| &half * &x[k] * IBig::from(2) - (&aa * &bc[k] + &bb * &ca[k] + &cc * &ab[k]));
-        integers::dot(&off, &off) <= &half * &half * &error * &error * IBig::from(4)
+        exact::dot(&off, &off) <= &half * &half * &error * &error * IBig::from(4)
     }
 
     fn point(rng: &mut impl Rng) -> V3 {

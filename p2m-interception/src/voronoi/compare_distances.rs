@@ -4,9 +4,9 @@
 //! exceed its error bound, it is computed in double-double arithmetic, where the differences are exact, and finally in
 //! integers.
 
-use p2m_core::engine::double::{self, Double};
-use p2m_core::engine::integers::{self, common_exponent, integer};
-use p2m_core::engine::number::dot;
+use p2m_core::engine::arithmetic::dot;
+use p2m_core::engine::double_double::{self, Double};
+use p2m_core::engine::exact::{self, common_exponent, integer};
 use p2m_core::engine::vector::V3;
 use std::cmp::Ordering;
 
@@ -31,14 +31,14 @@ pub(crate) fn compare(q: &V3, v: &V3, w: &V3) -> Ordering {
     let offset: [Double; 3] = std::array::from_fn(|k| Double::difference(w[k], v[k]));
     let sum: [Double; 3] = std::array::from_fn(|k| Double::difference(q[k], v[k]) + Double::difference(q[k], w[k]));
     let s = dot(offset, sum).round();
-    if s.abs() > double::ROUNDING * size {
+    if s.abs() > double_double::ROUNDING * size {
         return s.total_cmp(&0.0);
     }
     let exponent = common_exponent([*q, *v, *w].as_flattened());
     let [q, v, w] = [q, v, w].map(|p| p.map(|x| integer(x, exponent)));
     let offset = std::array::from_fn(|k| &w[k] - &v[k]);
     let sum = std::array::from_fn(|k| &q[k] + &q[k] - &v[k] - &w[k]);
-    integers::sign(&integers::dot(&offset, &sum))
+    exact::sign(&exact::dot(&offset, &sum))
 }
 
 #[cfg(test)]
@@ -68,8 +68,8 @@ mod tests {
             }
             let square = |p: &V3| -> IBig {
                 let exponent = common_exponent([q, *p, [2f64.powi(-200); 3]].as_flattened());
-                let d = integers::difference(q, *p, exponent);
-                integers::dot(&d, &d)
+                let d = exact::difference(q, *p, exponent);
+                exact::dot(&d, &d)
             };
             let expected = square(&v).cmp(&square(&w));
             assert_eq!(compare(&q, &v, &w), expected, "{q:?} {v:?} {w:?}");

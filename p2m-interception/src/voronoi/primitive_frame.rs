@@ -2,7 +2,7 @@
 
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::LANES;
-use p2m_core::engine::number::cross;
+use p2m_core::engine::arithmetic::cross;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 
 /// The directions and proportions of a primitive that the tests need.

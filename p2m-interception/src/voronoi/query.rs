@@ -16,10 +16,10 @@ use p2m_bvh::PacketTree;
 use p2m_bvh::engine::nearest::{EvaluateFn, Search, SearchState, finish, finish_nearest};
 use p2m_bvh::engine::packet::LANES;
 use p2m_bvh::engine::volume::Rounded;
+use p2m_core::engine::adaptive::RANGE;
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::simd::{InstructionSet, SimdKernel, prefetch_lines};
-use p2m_core::engine::staged::RANGE;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 use p2m_core::{Aabb, Collector, Near};
 
