@@ -9,8 +9,8 @@
 //! primitives, queries by a growth for each doubling of the scene ([`CostModel`]).
 //!
 //! Some backends are not measured. An index that takes longer to build than a tree takes for the whole job cannot win.
-//! The cells of a scene of slivers fall back to a tree. Cells of vertices that take long for a few hundred primitives
-//! take long for all.
+//! The P2M index is left out for scenes of slivers, where most of its cells would fall back to the tree, and if it takes
+//! long to build for a sample of a few hundred primitives.
 //!
 //! The time for samples is a small part of the expected time of the job. Backends with similar results are measured
 //! again on a larger sample. If there is no time for the smallest sample, the figures of docs/paper.md decide.

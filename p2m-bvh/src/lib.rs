@@ -43,7 +43,7 @@ use p2m_core::Aabb;
 /// The options of an [`AabbTree`], which are those of its splits.
 pub type AabbOptions = SplitOptions;
 
-/// An AABB tree over a set of primitives, which it owns.
+/// An AABB tree over a set of primitives, which it stores by value or as a reference.
 ///
 /// The type is an alias of [`TreeIndex`], whose methods are:
 ///

@@ -18,8 +18,11 @@ pub trait Volume: CompiledSearches {
     /// The directions of the faces, from the data that all volumes of a tree share.
     fn directions(shared: &Self::Shared) -> &Self::Directions;
 
-    /// Whether the volume may have a point in common with a box. The result is never `false` if it has one.
-    fn may_intersect_box(&self, directions: &Self::Directions, bounds: &Aabb<f64>) -> bool;
+    /// The volume around a box.
+    fn around_box(directions: &Self::Directions, bounds: &Aabb<f64>) -> Self;
+
+    /// Whether two volumes may have a point in common. The result is never `false` if they have one.
+    fn may_intersect(&self, other: &Self) -> bool;
 }
 
 impl Volume for Aabb<f64> {
@@ -30,8 +33,12 @@ impl Volume for Aabb<f64> {
         &()
     }
 
-    fn may_intersect_box(&self, (): &(), bounds: &Aabb<f64>) -> bool {
-        self.intersects(bounds)
+    fn around_box((): &(), bounds: &Aabb<f64>) -> Self {
+        *bounds
+    }
+
+    fn may_intersect(&self, other: &Self) -> bool {
+        self.intersects(other)
     }
 }
 

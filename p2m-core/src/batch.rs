@@ -9,7 +9,7 @@ use crate::real::to_f64_array;
 use crate::{Aabb, Closest, ClosestPoint, QueryOptions, Real};
 use nalgebra::Point3;
 
-/// Options of a batch. Answers do not depend on them.
+/// Options of a batch. They affect its speed alone, apart from the last bits of lower bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct BatchOptions {
@@ -58,7 +58,8 @@ const QUERIES_PER_CHUNK: usize = 1 << 9;
 ///
 /// Distance, primitive, point, feature and weights are those of [`ClosestPoint::closest_point_with`] for each query.
 /// The certified lower bound may differ in its last bits, since it depends on the primitives that a search has
-/// evaluated. Approximate answers would depend on hints, so these are then not used, nor if `options` have a hint.
+/// evaluated. Hints between queries are not used for approximate options, whose answers would depend on them, nor if
+/// `options` has a hint of its own.
 ///
 /// ```
 /// use p2m_core::{BruteForce, Point, batch};

@@ -8,8 +8,8 @@ use nalgebra::Point3;
 /// # Contract
 ///
 /// In short, no query fails or panics, and every exact index gives the same distance and primitive. Distances are
-/// Euclidean, without sign, and in the unit of the coordinates. For a scene in f64, in metres, and a kilometre wide,
-/// they are exact to 1e-12 metres (8 * 2^-53 * 1000 m) for queries in its box.
+/// Euclidean, without sign, and in the unit of the coordinates. For a scene in f64 whose box
+/// has a diagonal of one kilometre, the error is at most 8 * 2^-53 * 1000 m, less than 1e-12 m, for queries in the box.
 ///
 /// Let u be [`Real::UNIT_ROUNDOFF`], eta the smallest subnormal, d the true distance, d^ the computed one, and M(t) the
 /// largest distance from the query to a vertex of primitive t. The *key* ([`Key`](crate::Key)) is the number by which
@@ -29,7 +29,8 @@ use nalgebra::Point3;
 /// - **N5 point**: a vertex is returned verbatim. Any other point lies in the box of the primitive, and within
 ///   4 u |q| + 8 u M of the primitive.
 /// - **N6 totality**: the answer is `None` for an empty set, if nothing lies within the inclusive radius, and for a
-///   query that is not finite. No query panics. A degenerate primitive is the set that its vertices span.
+///   query that is not finite. No query panics. A degenerate primitive is the convex hull of its vertices: a segment or
+///   a point.
 /// - **N7 approximation**: `lower_bound` <= d for all options. With epsilon, d^ <= (1 + epsilon) d up to the
 ///   error of N1.
 ///

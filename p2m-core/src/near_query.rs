@@ -34,7 +34,7 @@ use std::ops::ControlFlow;
 /// # Complexity
 /// Trees take expected O(log n + k log k) for k answers. [`closest_point_among`](Self::closest_point_among) takes as
 /// long as a query for all primitives that are nearer than the accepted one. Brute force takes O(n). The interception
-/// indexes use their trees, since their lists contain the nearest primitive alone.
+/// indexes use their trees, since a list is only certain to contain the nearest primitive, not the second nearest.
 pub trait NearQuery<T: Real> {
     /// Offers to `near` every primitive that could be part of the answer, each at most once. `query` is finite.
     fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>);

@@ -2,10 +2,11 @@
 //!
 //! # Theory
 //!
-//! A *partition* divides the domain of queries into convex cells. Each cell has *dominators*: points y of the scene, so
-//! that |q - y| is an upper bound of the answer for every q in the cell. The *interception list* of the cell holds
-//! every primitive that can beat all dominators somewhere in the cell. A query *locates* its cell and searches the
-//! list, without backtracking \[Zong2023\].
+//! A *partition* divides the domain of queries into convex cells. A few points of the scene
+//! near a cell are its *dominators*: the distance to any of them is an upper bound of the answer for every query in the
+//! cell, and a primitive that is farther than one dominator throughout the cell is left out of the list of the cell.
+//! This *interception list* has every primitive that is nearest somewhere in the cell, and perhaps some more. A query
+//! *locates* its cell and tests the list, without backtracking \[Zong2023\].
 //!
 //! The *corner test* decides which primitives are in a list. It compares distances at the corners of a cell only, and
 //! holds for any convex cell (docs/proofs/octree.md). How cells are made and located is the task of the [`Partition`]:

@@ -1,8 +1,8 @@
 //! k-DOP tree: bounding volumes of K slab directions.
 //!
 //! The tree is that of p2m-bvh (nodes with eight children over packets of sixteen primitives, with the same splits),
-//! but its bounding volumes are [k-DOPs](Kdop) instead of boxes. They fit primitives more closely that do not lie along
-//! the axes, so a query visits fewer nodes and packets. In return each node takes more arithmetic and memory.
+//! but its bounding volumes are [k-DOPs](Kdop) instead of boxes. They fit primitives that are oblique to the axes more
+//! closely, so a query visits fewer nodes and packets. In return each node takes more arithmetic and memory.
 //! docs/kdop.md compares the two on several scenes.
 //!
 //! K is fixed at compile time and counts both signs of a direction, so `KdopTree<f64, _, 14>` has seven slabs.

@@ -25,8 +25,12 @@ impl<const K: usize> Volume for Kdop<K> {
         &table.directions
     }
 
-    fn may_intersect_box(&self, directions: &Directions<K>, bounds: &Aabb<f64>) -> bool {
-        Kdop::may_intersect_box(self, directions, bounds)
+    fn around_box(directions: &Directions<K>, bounds: &Aabb<f64>) -> Self {
+        Kdop::from_box(directions, bounds)
+    }
+
+    fn may_intersect(&self, other: &Self) -> bool {
+        Kdop::may_intersect(self, other)
     }
 }
 

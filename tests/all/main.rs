@@ -19,6 +19,7 @@ mod p2m;
 mod packets;
 mod paper_route;
 mod pruning;
+mod ray_collectors;
 mod ray_counters;
 mod ray_models;
 mod rays;

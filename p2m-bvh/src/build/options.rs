@@ -16,6 +16,11 @@ pub enum SplitRule {
     Median,
 }
 
+impl SplitRule {
+    /// All rules, the default one first.
+    pub const ALL: [Self; 3] = [Self::Sah, Self::AdaptiveSah, Self::Median];
+}
+
 /// Options of splitting a set. Most programs need only `rule` and `parallel`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]

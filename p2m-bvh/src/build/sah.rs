@@ -87,8 +87,8 @@ pub(crate) fn best_split(
     centres: &GrowingBox,
     options: &SplitOptions,
 ) -> Option<SplitPlane> {
-    let (rule, block) = (options.rule, options.block.max(1));
-    if rule == SplitRule::Median {
+    let block = options.block.max(1);
+    if options.rule == SplitRule::Median {
         return None;
     }
     let measure = AreaMeasure::new(bounds)?;
@@ -98,15 +98,21 @@ pub(crate) fn best_split(
         (Some(a), Some(b)) => Some(if b.cost < a.cost { b } else { a }),
         (a, b) => a.or(b),
     };
-    if rule == SplitRule::AdaptiveSah {
-        let mut best = cheapest_border(primitives, on_axis(bounds.longest_axis()), &measure, node_area, block)?;
-        for _ in 0..RESAMPLINGS {
-            let finer = cheapest_border(primitives, best.binning.refined_at(best.bin), &measure, node_area, block);
-            best = cheaper(Some(best), finer)?;
+    match options.rule {
+        SplitRule::Median => None,
+        SplitRule::Sah => {
+            let borders = (0..3).map(|axis| cheapest_border(primitives, on_axis(axis), &measure, node_area, block));
+            borders.fold(None, cheaper)
         }
-        return Some(best);
+        SplitRule::AdaptiveSah => {
+            let mut best = cheapest_border(primitives, on_axis(bounds.longest_axis()), &measure, node_area, block)?;
+            for _ in 0..RESAMPLINGS {
+                let finer = cheapest_border(primitives, best.binning.refined_at(best.bin), &measure, node_area, block);
+                best = cheaper(Some(best), finer)?;
+            }
+            Some(best)
+        }
     }
-    (0..3).map(|axis| cheapest_border(primitives, on_axis(axis), &measure, node_area, block)).fold(None, cheaper)
 }
 
 /// The cheapest border between two bins that has primitives on both sides.

@@ -90,9 +90,13 @@ impl<V: Volume> PacketTree<V> {
         bounds: &Aabb<f64>,
         mut visit: impl FnMut(&[PrimitiveId]) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
+        if bounds.is_empty() {
+            return ControlFlow::Continue(());
+        }
+        let around = V::around_box(self.directions(), bounds);
         let mut pending: Vec<_> = self.root().into_iter().collect();
         while let Some(node) = pending.pop() {
-            if bounds.is_empty() || !node.volume.may_intersect_box(self.directions(), bounds) {
+            if !node.volume.may_intersect(&around) {
                 continue;
             }
             match self.primitives(&node) {

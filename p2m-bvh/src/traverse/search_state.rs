@@ -97,7 +97,7 @@ impl<'a, C: Collector> SearchState<'a, C> {
     /// Whether an approximate search may stop.
     #[inline(always)]
     pub fn may_stop(&self) -> bool {
-        self.is_approximate && self.collector.may_stop(self.incumbent.is_some())
+        self.is_approximate && self.collector.may_stop(self.incumbent_distance() < f64::INFINITY)
     }
 
     /// Reports to the collector that everything with at least this bound, a square in the frame of the

@@ -149,8 +149,8 @@ impl Collector for BestF64 {
 
     #[inline(always)]
     fn may_stop(&self, has_incumbent: bool) -> bool {
-        // A search without any candidate goes on, however many visits it took.
-        self.visits_left == 0 && (has_incumbent || self.best.is_some())
+        // A search without a candidate at a finite distance goes on, however many visits it took.
+        self.visits_left == 0 && (has_incumbent || self.key.distance() < f64::INFINITY)
     }
 
     #[inline(always)]

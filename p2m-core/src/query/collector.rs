@@ -2,7 +2,8 @@
 
 use crate::{PrimitiveId, Projection};
 
-/// A collector of candidates: it decides which lower bounds a search may prune, and takes the candidates.
+/// A collector of candidates: it tells a search up to which lower bound a part of the scene still matters, and takes the
+/// candidates.
 ///
 /// [`Best`](crate::Best) keeps the single closest candidate. [`Near`](crate::Near) answers the other questions about
 /// near primitives by the same traversals.
@@ -48,8 +49,8 @@ pub trait Collector {
         false
     }
 
-    /// Returns the limit of [`prune_above`](Self::prune_above) given an incumbent with a key of at most `square`: a
-    /// primitive that the search will certainly offer, unless it offers one that is as near.
+    /// Returns the limit of [`prune_above`](Self::prune_above) given an incumbent with a key of at most `square`: the
+    /// search is certain to offer that primitive, or one that is at least as near.
     ///
     /// An approximate collector may prune more than by [`prune_given_upper_bound`](Self::prune_given_upper_bound),
     /// which is the default.

@@ -55,7 +55,7 @@ impl<'a> Crossing<'a> {
     }
 
     /// Returns the hit on a primitive of this project, given its vertices. `limit` and `only_crossings` are
-    /// those of [`of`](Self::from_primitive).
+    /// those of [`from_primitive`](Self::from_primitive).
     #[inline(always)]
     pub fn from_vertices(ray: &'a Ray, vertices: &[V3], limit: f64, only_crossings: bool) -> Option<Self> {
         match vertices {

@@ -27,10 +27,10 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct KdTreeLocator {
     /// The tree. It is `None` if `kiddo` cannot build one.
-    /// The number of the first site.
     tree: Option<ImmutableKdTree<f64, 3>>,
-    /// The memory of the tree in bytes.
+    /// The number of the first site.
     first: usize,
+    /// The memory of the tree in bytes.
     bytes: usize,
 }
 

@@ -354,7 +354,7 @@ fn polygons_that_cross_themselves_keep_their_outline() {
         }
     }
     let others = cases.len() - fans;
-    assert!(cases.have_more_than(999, fans) && cases.have_more_than(1000, others), "{fans}");
+    assert!(cases.have_more_than(1000, fans) && cases.have_more_than(1000, others), "{fans}");
 }
 
 #[test]
