@@ -88,9 +88,6 @@ pub(crate) fn best_split(
     options: &SplitOptions,
 ) -> Option<SplitPlane> {
     let block = options.block.max(1);
-    if options.rule == SplitRule::Median {
-        return None;
-    }
     let measure = AreaMeasure::new(bounds)?;
     let node_area = measure.half_area(bounds);
     let on_axis = |axis: usize| Binning::new(axis, centres.min[axis], centres.max[axis]);

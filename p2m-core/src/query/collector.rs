@@ -2,8 +2,7 @@
 
 use crate::{PrimitiveId, Projection};
 
-/// A collector of candidates: it tells a search up to which lower bound a part of the scene still matters, and takes the
-/// candidates.
+/// A collector takes the candidates of a search, and tells the search which parts of the scene it may skip.
 ///
 /// [`Best`](crate::Best) keeps the single closest candidate. [`Near`](crate::Near) answers the other questions about
 /// near primitives by the same traversals.

@@ -1,8 +1,8 @@
 //! The partition of space into Voronoi cells \[Zong2023\].
 //!
 //! The sites are the vertices of the scene and some added points ([`sites`]). In its cell a site is nearer than all
-//! other sites. A site that is a point of the scene is the dominator of its cell; in the cells of other, auxiliary sites
-//! the tree answers. A cell is the convex hull of the circumcentres of its Delaunay tetrahedra.
+//! other sites. A site that is a point of the scene dominates its own cell. The tree answers in the cells of the other,
+//! auxiliary sites. A cell is the convex hull of the circumcentres of its Delaunay tetrahedra.
 //! By the corner test, a primitive can be the answer in the cell only if it intersects one of the circumscribed balls.
 //! So one ball query for each tetrahedron serves the lists of four cells. (The paper grows each list by flooding, and
 //! clips the cells.) Six artificial sites far outside make all cells bounded.
