@@ -78,7 +78,7 @@ pub(crate) fn print(scene: &Scene, rounds: usize) -> Result<bool> {
     println!("\n## {}\n", scene.describe());
     println!(
         "Wall time, medians of {rounds} rounds; building and writing once, building on one thread but for k-DOPs. *Start* \
-         is mapping the file and taking scene and index from it, *checks* the sums of all sections, which are looked at \
+         is reading the file and taking scene and index from it, *checks* verifies the checksums of all sections \
          before that. {}\n\n{table}",
         if clean { "All answers are those of the index that was built." } else { "ANSWERS DIFFER." }
     );

@@ -8,7 +8,7 @@ use nalgebra::Point3;
 use p2m_core::Ray;
 use p2m_core::storage::{LoadError, Reader, SavedFile};
 use p2m_mixed::{Format, PointFormat, ReadError, Scene, load_scene};
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
@@ -88,18 +88,13 @@ pub(crate) fn read_scene_and_index(
     if format != Format::P2m {
         return Ok((p2m_mixed::read_scene_from(open(streams, path)?, format, &name(path))?, None));
     }
-    // Pipes and devices cannot be mapped.
-    let is_file = fs::metadata(path).is_ok_and(|metadata| metadata.is_file()) && !is_standard(path);
-    let mut stream = if is_file { None } else { Some(open(streams, path)?) };
-    let progress = is_file.then(|| Progress::start(streams, &format!("checking {}", name(path)), None, Unit::None));
-    let mut load = || -> Result<_, LoadError> {
-        let file = stream.as_mut().map_or_else(|| SavedFile::open(path), SavedFile::read)?;
+    let stream = open(streams, path)?;
+    let load = || -> Result<_, LoadError> {
+        let file = SavedFile::read(stream)?;
         let reader = file.checked()?;
         Ok((load_scene(reader)?, Some(reader.clone())))
     };
-    let loaded = load().with_context(|| name(path))?;
-    drop(progress);
-    Ok(loaded)
+    load().with_context(|| name(path))
 }
 
 /// Reads a scene.

@@ -1,7 +1,7 @@
 //! Ids of primitives.
 
 /// The index of a primitive in its set, from 0, in the order in which the primitives were given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, bytemuck::Pod, bytemuck::Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct PrimitiveId(u32);
 

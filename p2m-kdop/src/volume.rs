@@ -14,7 +14,7 @@ use p2m_bvh::engine::volume::{CompiledSearches, TreeOptions, VolumeNodes};
 use p2m_bvh::{PacketTree, SplitOptions, Volume};
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::vector::V3;
-use p2m_core::storage::{LoadError, Reader, Writer};
+use p2m_core::storage::{LoadError, Reader, Writer, require};
 use p2m_core::{Aabb, Hits, Near, Ray};
 
 impl<const K: usize> Volume for Kdop<K> {
@@ -53,10 +53,13 @@ impl<const K: usize> VolumeNodes for Kdop<K> {
     }
     fn load_shared(reader: &Reader) -> Result<DirectionTable<K>, LoadError> {
         let numbers = reader.array::<f64>(DIRECTIONS_SECTION)?;
-        let normals: Vec<Vector3<f64>> = numbers.chunks_exact(3).map(Vector3::from_column_slice).collect();
-        let directions = Directions::from_normals(&normals, reader.one::<u8>(ORTHOGONAL_SECTION)? != 0);
+        let is_orthogonal = reader.one::<u8>(ORTHOGONAL_SECTION)?;
+        require(is_orthogonal <= 1, ORTHOGONAL_SECTION, "the number is neither 0 nor 1")?;
+        let (normals, rest) = numbers.as_chunks::<3>();
+        let normals: Vec<Vector3<f64>> = normals.iter().copied().map(Vector3::from).collect();
+        let directions = Directions::from_normals(&normals, is_orthogonal == 1).filter(|_| rest.is_empty());
         let directions =
-            directions.ok_or_else(|| LoadError::Inconsistent { section: DIRECTIONS_SECTION.to_owned() })?;
+            directions.ok_or_else(|| LoadError::inconsistent(DIRECTIONS_SECTION, "they bound no polytope"))?;
         Ok(DirectionTable::new(&directions))
     }
 }

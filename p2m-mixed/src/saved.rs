@@ -2,7 +2,7 @@
 
 use crate::{FileLocation, Object, ReadError, Reason, Scene, Skipped};
 use nalgebra::Point3;
-use p2m_core::storage::{LoadError, Reader, SavedFile, Writer};
+use p2m_core::storage::{LoadError, Reader, SavedFile, Writer, require};
 use p2m_core::{Element, Soup};
 use std::io::{self, BufRead, Write};
 
@@ -54,7 +54,6 @@ pub fn save_scene(scene: &Scene, writer: &mut Writer<'_>) {
 /// [`LoadError::Missing`] if the file has no scene, and [`LoadError::Inconsistent`] if its sections
 /// contradict each other.
 pub fn load_scene(reader: &Reader) -> Result<Scene, LoadError> {
-    let inconsistent = |section: &str| LoadError::Inconsistent { section: section.to_owned() };
     let numbers: Vec<f64> = reader.copy(POSITIONS)?;
     let positions: Vec<Point3<f64>> = numbers.chunks_exact(3).map(|p| Point3::new(p[0], p[1], p[2])).collect();
     let (kinds, indices): (Vec<u8>, Vec<u32>) = (reader.copy(KINDS)?, reader.copy(INDICES)?);
@@ -64,19 +63,21 @@ pub fn load_scene(reader: &Reader) -> Result<Scene, LoadError> {
     let mut elements = Vec::with_capacity(count);
     for i in 0..count {
         let kind = usize::from(kinds.get(i).copied().unwrap_or(3));
-        let (own, others) = rest.split_at_checked(kind).ok_or_else(|| inconsistent(INDICES))?;
+        let own = rest.split_at_checked(kind);
+        let (own, others) = own.ok_or_else(|| LoadError::inconsistent(INDICES, "there are too few"))?;
         rest = others;
         elements.push(match *own {
             [a] => Element::Point(a),
             [a, b] => Element::Segment([a, b]),
             [a, b, c] => Element::Triangle([a, b, c]),
-            _ => return Err(inconsistent(KINDS)),
+            _ => return Err(LoadError::inconsistent(KINDS, "a primitive has no vertex or more than three")),
         });
     }
-    if !rest.is_empty() || !numbers.len().is_multiple_of(3) || sources.len() != count {
-        return Err(inconsistent(INDICES));
-    }
-    let soup = Soup::new(positions, elements).map_err(|_| inconsistent(POSITIONS))?;
+    require(rest.is_empty(), INDICES, "there are too many")?;
+    require(numbers.len().is_multiple_of(3), POSITIONS, "a coordinate is missing")?;
+    require(sources.len() == count, SOURCES, "there is not one for each primitive")?;
+    let invalid = "a coordinate is not finite, or an index has no position";
+    let soup = Soup::new(positions, elements).map_err(|_| LoadError::inconsistent(POSITIONS, invalid))?;
     let texts: Vec<u8> = reader.copy(TEXTS)?;
     let mut texts = &texts[..];
     let mut text = |len: u64| -> Option<String> {
@@ -87,15 +88,15 @@ pub fn load_scene(reader: &Reader) -> Result<Scene, LoadError> {
     let mut objects = Vec::new();
     for object in reader.copy::<u64>(OBJECTS)?.chunks_exact(3) {
         let ids = [object[1], object[2]].map(usize::try_from);
-        let ([Ok(start), Ok(end)], Some(name)) = (ids, text(object[0])) else { return Err(inconsistent(OBJECTS)) };
-        if start > end || end > count {
-            return Err(inconsistent(OBJECTS));
-        }
+        let ([Ok(start), Ok(end)], Some(name)) = (ids, text(object[0])) else {
+            return Err(LoadError::inconsistent(OBJECTS, "a name is missing"));
+        };
+        require(start <= end && end <= count, OBJECTS, "an object has ids that do not exist")?;
         objects.push(Object { name, ids: start..end });
     }
     let mut skipped = Vec::new();
     for own in reader.copy::<u64>(SKIPPED)?.chunks_exact(3) {
-        let what = text(own[0]).ok_or_else(|| inconsistent(SKIPPED))?;
+        let what = text(own[0]).ok_or_else(|| LoadError::inconsistent(SKIPPED, "a name is missing"))?;
         skipped.push(Skipped { what, count: own[1], is_plural: own[2] != 0 });
     }
     Ok(Scene { soup, sources, objects, skipped })

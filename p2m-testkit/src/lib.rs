@@ -26,6 +26,7 @@ mod ratio;
 pub mod ray_check;
 pub mod ray_oracle;
 pub mod rays;
+pub mod saved_file;
 pub mod scenes;
 mod surface;
 pub mod truth;

@@ -8,6 +8,7 @@ mod agreement;
 mod boxes;
 mod consistency;
 mod contract;
+mod crafted_files;
 mod determinism;
 mod fields;
 mod fuzzed;

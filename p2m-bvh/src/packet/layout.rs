@@ -5,6 +5,7 @@ use nalgebra::Point3;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::simd::prefetch;
 use p2m_core::engine::vector::{V3, power_of_two};
+use p2m_core::storage::as_ids;
 use p2m_core::{Aabb, Collector, PrimitiveId, Projection};
 
 /// The number of lanes of a packet, which is the largest number of its primitives.
@@ -18,7 +19,8 @@ pub const LANES: usize = 16;
 pub struct Packet {
     /// Coordinate k of vertex v is in row 3 v + k. A box is stored as two vertices, its lower and its upper corner.
     pub(super) rows: [[u16; LANES]; 9],
-    ids: [PrimitiveId; LANES],
+    /// The numbers of the ids. Unlike an id, a number may be any that a file has.
+    ids: [u32; LANES],
     /// `corners[v][lane]` is the index of vertex v of that lane among the exact vertices of the packet.
     corners: [[u8; LANES]; 3],
     /// The index of the first exact vertex of the packet among the exact vertices of the tree.
@@ -77,7 +79,7 @@ impl Packet {
             origin: min,
             unit,
             per_unit: if unit > 0.0 { unit.recip() } else { 0.0 },
-            ids: [ids[0]; LANES],
+            ids: [ids[0].number(); LANES],
             corners: [[0; LANES]; 3],
             vertex_offset: 0,
             len: u8::try_from(ids.len()).expect("at most sixteen"),
@@ -88,7 +90,7 @@ impl Packet {
         for lane in 0..LANES {
             let index = if lane < ids.len() { lane } else { 0 };
             let primitive = &primitives[index];
-            packet.ids[lane] = ids[index];
+            packet.ids[lane] = ids[index].number();
             if kind == Kind::Box {
                 packet.quantize(lane, 0, to_f64_array(&primitive.bounds.min), f64::floor);
                 packet.quantize(lane, 1, to_f64_array(&primitive.bounds.max), f64::ceil);
@@ -117,7 +119,7 @@ impl Packet {
     /// evaluate such a primitive.
     #[inline(always)]
     pub fn offer<C: Collector>(&self, lane: usize, vertices: &[V3], query: V3, square: f64, collector: &mut C) {
-        let id = self.ids[lane];
+        let id = as_ids(&self.ids)[lane];
         let [a, b, c] = self.corners(lane).map(|index| &vertices[index]);
         // Each kind has a call of its own, so that the projection stays in registers and is not copied.
         match self.kind() {
@@ -203,7 +205,7 @@ impl Packet {
     /// The ids of the primitives, lane by lane.
     #[inline(always)]
     pub fn ids(&self) -> &[PrimitiveId] {
-        &self.ids[..usize::from(self.len)]
+        &as_ids(&self.ids)[..usize::from(self.len)]
     }
 
     /// A mask with one bit for each lane in use.
@@ -217,6 +219,23 @@ impl Packet {
     #[inline(always)]
     pub fn has_vertices(&self) -> bool {
         self.kind() != Kind::Box
+    }
+
+    /// Whether the fields of a packet from a file are within their ranges, if its exact vertices are those from
+    /// `first` to `end`. The ids are not checked.
+    pub(crate) fn has_valid_fields(&self, first: u32, end: u32) -> bool {
+        let has_frame = USABLE_UNITS.contains(&self.unit) && self.per_unit.to_bits() == self.unit.recip().to_bits();
+        let has_no_frame = self.unit == 0.0 && self.per_unit == 0.0;
+        let vertices = self.vertices_of(0).1;
+        let count = end.saturating_sub(first);
+        self.len >= 1
+            && usize::from(self.len) <= LANES
+            && self.kind <= Kind::Box as u8
+            && (has_frame || has_no_frame)
+            && self.origin.iter().all(|x| x.is_finite())
+            && self.vertex_offset == first
+            && self.corners[..vertices].as_flattened().iter().all(|corner| u32::from(*corner) < count)
+            && self.corners[vertices..].as_flattened().iter().all(|corner| *corner == 0)
     }
 
     /// Whether the primitives are triangles.

@@ -12,6 +12,7 @@ pub(crate) mod node_ref;
 pub(crate) mod ray_slab;
 pub(crate) mod rounded;
 mod saved;
+mod validate;
 pub(crate) mod view;
 pub(crate) mod wide_node;
 

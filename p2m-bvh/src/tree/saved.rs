@@ -1,14 +1,19 @@
 //! Trees in saved files.
 
+use crate::packet::Packet;
 use crate::tree::frame::Frame;
 use crate::tree::frame_line::half_extent;
 use crate::tree::node_ref::{NodeRef, WIDTH};
+use crate::tree::validate::{CHILDREN, PACKETS, VERTEX_OFFSETS, VERTICES, check_leaves, check_references};
 use crate::tree::wide_node::{VolumeNodes, WideNode};
 use crate::tree::{Leaves, PacketTree};
 use bytemuck::{Pod, Zeroable};
 use nalgebra::Point3;
-use p2m_core::storage::{LoadError, Reader, Saved, Writer};
+use p2m_core::storage::{Array, LoadError, Reader, Saved, Writer, require};
 use p2m_core::{Aabb, Isa};
+
+/// The section with the bounds of the nodes.
+const BOUNDS: &str = "tree/bounds";
 
 /// The fields of a tree that are not arrays, as the section `tree` has them.
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -51,46 +56,28 @@ impl<V: VolumeNodes> Saved for PacketTree<V> {
         let nodes = || self.nodes.iter().chain([&last]);
         let rows: Vec<[f32; WIDTH]> = nodes().flat_map(WideNode::rows).collect();
         let children: Vec<u32> = nodes().flat_map(|node| node.children().map(|child| child.0)).collect();
-        writer.put_copy("tree/bounds", &rows);
-        writer.put_copy("tree/children", &children);
-        writer.put("tree/packets", &self.leaves.packets);
-        writer.put("tree/vertices", &self.leaves.vertices);
-        writer.put("tree/first-vertices", &self.leaves.vertex_offsets);
+        writer.put_copy(BOUNDS, &rows);
+        writer.put_copy(CHILDREN, &children);
+        writer.put(PACKETS, &self.leaves.packets);
+        writer.put(VERTICES, &self.leaves.vertices);
+        writer.put(VERTEX_OFFSETS, &self.leaves.vertex_offsets);
     }
 
-    fn load(reader: &Reader) -> Result<Self, LoadError> {
-        let inconsistent = |section: &str| LoadError::Inconsistent { section: section.to_owned() };
+    fn load(reader: &Reader, primitives: usize) -> Result<Self, LoadError> {
         let header: Header = reader.one("tree")?;
-        let rows = reader.array::<[f32; WIDTH]>("tree/bounds")?;
-        let children = reader.array::<u32>("tree/children")?;
-        let rows = rows.chunks_exact(V::Node::ROWS);
-        let mut nodes: Vec<V::Node> = rows
-            .zip(children.chunks_exact(WIDTH))
-            .map(|(rows, references)| V::Node::from_rows(rows, std::array::from_fn(|i| NodeRef(references[i]))))
-            .collect();
-        let root_bounds = nodes.pop().ok_or_else(|| inconsistent("tree/bounds"))?.bounds(0);
-        if (nodes.len() + 1) * WIDTH != children.len() {
-            return Err(inconsistent("tree/children"));
-        }
-        let leaves = Leaves {
-            packets: reader.array("tree/packets")?,
-            vertices: reader.array("tree/vertices")?,
-            vertex_offsets: reader.array("tree/first-vertices")?,
-            has_non_triangles: header.has_non_triangles != 0,
-        };
-        if leaves.vertex_offsets.len() != leaves.packets.len() + 1 {
-            return Err(inconsistent("tree/first-vertices"));
-        }
-        let (Ok(depth), Ok(len)) = (usize::try_from(header.depth), usize::try_from(header.len)) else {
-            return Err(inconsistent("tree"));
-        };
+        require(usize::try_from(header.len) == Ok(primitives), "tree", "the number of primitives is wrong")?;
+        let leaves = load_leaves(reader)?;
+        check_leaves(&leaves, primitives)?;
+        let mut nodes = load_nodes::<V>(reader)?;
+        // The bounds of the whole scene are those of an additional node.
+        let last = nodes.pop();
+        let root_bounds = last.ok_or_else(|| LoadError::inconsistent(CHILDREN, "there is no node"))?.bounds(0);
         let [min, max] = header.bounds.map(Point3::from);
         let bounds = Aabb { min, max };
         let frame = Frame::around(&bounds);
-        if frame_numbers(&frame).map(f64::to_bits) != header.frame.map(f64::to_bits) {
-            return Err(inconsistent("tree"));
-        }
-        Ok(Self {
+        let is_frame = frame_numbers(&frame).map(f64::to_bits) == header.frame.map(f64::to_bits);
+        require(is_frame, "tree", "the frame is not that of the bounds")?;
+        let mut tree = Self {
             isa: Isa::best(),
             shared: V::load_shared(reader)?,
             frame,
@@ -98,10 +85,39 @@ impl<V: VolumeNodes> Saved for PacketTree<V> {
             half_extent: half_extent(&frame, &bounds),
             root_bounds,
             root: NodeRef(header.root),
-            depth,
+            depth: 0,
             nodes,
             leaves,
-            len,
-        })
+            len: primitives,
+        };
+        tree.depth = check_references(&tree)?;
+        Ok(tree)
     }
+}
+
+/// Loads the nodes, with the additional one that has the bounds of the scene.
+fn load_nodes<V: VolumeNodes>(reader: &Reader) -> Result<Vec<V::Node>, LoadError> {
+    let rows = reader.array::<[f32; WIDTH]>(BOUNDS)?;
+    let children = reader.array::<u32>(CHILDREN)?;
+    require(children.len() % WIDTH == 0, CHILDREN, "there are not eight of each node")?;
+    require(rows.len() == children.len() / WIDTH * V::Node::ROWS, BOUNDS, "there are not those of all nodes")?;
+    require(rows.as_flattened().iter().all(|x| !x.is_nan()), BOUNDS, "a number is NaN")?;
+    let load = |(rows, references): (&[[f32; WIDTH]], &[u32])| {
+        let children: [NodeRef; WIDTH] = std::array::from_fn(|slot| NodeRef(references[slot]));
+        let mut node = V::Node::from_rows(rows, children);
+        // A search visits a slot for its bounds alone.
+        (0..WIDTH)
+            .filter(|slot| children[*slot] == NodeRef::NONE)
+            .for_each(|slot| node.set_bounds(slot, &V::Node::EMPTY));
+        node
+    };
+    Ok(rows.chunks_exact(V::Node::ROWS).zip(children.chunks_exact(WIDTH)).map(load).collect())
+}
+
+/// Loads the packets and their exact vertices.
+fn load_leaves(reader: &Reader) -> Result<Leaves, LoadError> {
+    let packets: Array<Packet> = reader.array(PACKETS)?;
+    let has_non_triangles = packets.iter().any(|packet| !packet.has_triangles());
+    let (vertices, vertex_offsets) = (reader.array(VERTICES)?, reader.array(VERTEX_OFFSETS)?);
+    Ok(Leaves { packets, vertices, vertex_offsets, has_non_triangles })
 }

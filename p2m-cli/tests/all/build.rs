@@ -81,9 +81,9 @@ fn damaged_files_and_wrong_usage_are_refused() {
     bytes[half] ^= 1;
     let damaged = write(&folder, "damaged.p2m", &bytes);
     let message = failure(&["query", &damaged, "--random", "1"], 1);
-    assert!(message.contains("damaged.p2m: is damaged: the sum of "), "{message}");
+    assert!(message.contains("damaged.p2m: is damaged: the checksum of "), "{message}");
     let message = failure(&["info", &damaged], 1);
-    assert!(message.contains("damaged.p2m: is damaged: the sum of "), "{message}");
+    assert!(message.contains("damaged.p2m: is damaged: the checksum of "), "{message}");
     assert_eq!(message.matches("is damaged").count(), 1, "{message}");
     let folder_name = path(&folder, "folder.p2m");
     fs::create_dir(&folder_name).unwrap();

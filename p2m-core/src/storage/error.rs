@@ -27,7 +27,7 @@ pub enum LoadError {
         expected: u64,
     },
     /// The checksum of a section is wrong, so the section was damaged after it was written.
-    #[error("is damaged: the sum of {section} is wrong")]
+    #[error("is damaged: the checksum of {section} is wrong")]
     Damaged {
         /// The name of the section, or a description of the table.
         section: String,
@@ -38,11 +38,13 @@ pub enum LoadError {
         /// The name of the section.
         section: String,
     },
-    /// The content of a section contradicts that of other sections.
-    #[error("{section} does not fit the rest")]
+    /// The content of a section contradicts itself or that of other sections, so no program of this project wrote it.
+    #[error("has contradictory contents: in {section}, {reason}")]
     Inconsistent {
         /// The name of the section.
         section: String,
+        /// What is wrong, as a clause.
+        reason: &'static str,
     },
     /// The file has an index of another kind.
     #[error("has an index of the kind {found}, not {expected}")]
@@ -58,4 +60,20 @@ pub enum LoadError {
     /// The processor is not little-endian, so it cannot use the numbers of a file.
     #[error("cannot be used on a processor that is not little-endian")]
     BigEndian,
+}
+
+impl LoadError {
+    /// Returns the error of a section whose content contradicts itself or that of other sections.
+    #[must_use]
+    pub fn inconsistent(section: &str, reason: &'static str) -> Self {
+        Self::Inconsistent { section: section.to_owned(), reason }
+    }
+}
+
+/// Returns [`LoadError::Inconsistent`] unless a condition holds that every section of this name satisfies.
+///
+/// # Errors
+/// It returns [`LoadError::Inconsistent`] if the condition is false.
+pub fn require(condition: bool, section: &str, reason: &'static str) -> Result<(), LoadError> {
+    if condition { Ok(()) } else { Err(LoadError::inconsistent(section, reason)) }
 }

@@ -2,6 +2,7 @@
 
 use super::error::LoadError;
 use super::reader::Reader;
+use super::section::Header;
 use bytemuck::Zeroable;
 use memmap2::Mmap;
 use std::fs::File;
@@ -18,6 +19,11 @@ pub struct SavedFile(Reader);
 #[repr(C, align(64))]
 struct CacheLine([u8; 64]);
 
+/// The number of bytes of a cache line.
+const LINE_BYTES: usize = size_of::<CacheLine>();
+/// The number of cache lines, 256 KiB in all, for which the first room is made beyond the header.
+const FIRST_LINES: usize = 1 << 12;
+
 /// Bytes that begin at a cache line.
 struct AlignedBytes {
     lines: Vec<CacheLine>,
@@ -31,42 +37,56 @@ impl AsRef<[u8]> for AlignedBytes {
 }
 
 impl SavedFile {
-    /// Maps a file into memory: pages are read on first use, and processes that map the same file share them.
+    /// Reads the file at a path into memory.
     ///
-    /// The file must not be modified while the mapping, or an index that was loaded from it, is in use. Otherwise
-    /// answers may change, and truncation ends the program. To replace a file, write a new one and rename it, as
-    /// `p2m build` does.
+    /// # Errors
+    /// It returns the errors of [`read`](Self::read), and [`LoadError::Io`] if the file cannot be opened.
+    pub fn open(path: &Path) -> Result<Self, LoadError> {
+        Self::read(File::open(path)?)
+    }
+
+    /// Maps the file at a path into memory: pages are read on first use, and processes that map the same file share
+    /// them.
+    ///
+    /// # Safety
+    /// Nobody may change or truncate the file while the mapping, or an index that was loaded from it, is in use. A
+    /// change is a data race, whatever was checked before, and truncation ends the program. To replace a file, write a
+    /// new one and rename it, as `p2m build` does.
     ///
     /// # Errors
     /// It returns the errors of [`read`](Self::read), and [`LoadError::Io`] if the file cannot be opened or mapped.
-    #[allow(unsafe_code, reason = "a file may change while it is mapped; documented")]
-    pub fn open(path: &Path) -> Result<Self, LoadError> {
+    #[allow(unsafe_code, reason = "a file may change while it is mapped; the caller has to prevent that")]
+    pub unsafe fn map(path: &Path) -> Result<Self, LoadError> {
         let file = File::open(path)?;
-        // SAFETY: the mapping is only read. The caller has to ensure that nobody modifies the file meanwhile.
+        // SAFETY: the mapping is only read, and the caller ensures that nobody modifies the file meanwhile.
         let map = unsafe { Mmap::map(&file)? };
         Ok(Self(Reader::new(Arc::new(map))?))
     }
 
-    /// Reads a file into memory.
+    /// Reads a file into memory: the header, and then as many bytes as the header announces. What does not begin with a
+    /// header of the right version is refused before more of it is read.
     ///
     /// # Errors
     /// It returns [`LoadError::Io`] if reading fails, [`LoadError::Foreign`], [`LoadError::Version`] or
     /// [`LoadError::Length`] for a wrong header, and [`LoadError::Damaged`] for a wrong table.
     pub fn read(mut reader: impl Read) -> Result<Self, LoadError> {
-        let mut lines = Vec::new();
-        let mut len = 0;
-        loop {
-            if len == lines.len() * 64 {
-                lines.resize(lines.len() * 2 + 1024, CacheLine::zeroed());
-            }
-            match reader.read(&mut bytemuck::cast_slice_mut(&mut lines)[len..]) {
-                Ok(0) => break,
-                Ok(more) => len += more,
-                Err(error) if error.kind() == ErrorKind::Interrupted => {}
-                Err(error) => return Err(error.into()),
-            }
+        let mut lines = vec![CacheLine::zeroed()];
+        let mut len = read_until_full(&mut reader, bytemuck::cast_slice_mut(&mut lines))?;
+        let expected = Header::check(&bytemuck::cast_slice(&lines)[..len])?.length;
+        // The length may be wrong, so memory only grows with what was read.
+        while (len as u64) < expected && len == size_of_val(&lines[..]) {
+            let wanted = usize::try_from(expected.div_ceil(LINE_BYTES as u64)).unwrap_or(usize::MAX);
+            let room = wanted.min(lines.len() * 2 + FIRST_LINES);
+            lines.reserve_exact(room - lines.len());
+            lines.resize(room, CacheLine::zeroed());
+            len += read_until_full(&mut reader, &mut bytemuck::cast_slice_mut(&mut lines)[len..])?;
         }
-        lines.truncate(len.div_ceil(size_of::<CacheLine>()));
+        // A file that is longer than announced is refused after one more byte.
+        let mut one = [0];
+        if len as u64 >= expected && read_until_full(&mut reader, &mut one)? > 0 {
+            return Err(LoadError::Length { found: expected.saturating_add(1), expected });
+        }
+        lines.truncate(len.div_ceil(LINE_BYTES));
         lines.shrink_to_fit();
         Ok(Self(Reader::new(Arc::new(AlignedBytes { lines, len }))?))
     }
@@ -83,10 +103,24 @@ impl SavedFile {
         Ok(&self.0)
     }
 
-    /// Returns the sections without verifying their checksums, for a file that was checked before. Damaged sections
-    /// give wrong answers or panics.
+    /// Returns the sections without verifying their checksums, for a file that was checked before. What loads from
+    /// damaged sections neither panics nor searches without end, but its answers may be wrong.
     #[must_use]
     pub fn unchecked(&self) -> &Reader {
         &self.0
     }
+}
+
+/// Reads until a buffer is full or the input ends, and returns the number of bytes that were read.
+fn read_until_full(reader: &mut impl Read, buffer: &mut [u8]) -> std::io::Result<usize> {
+    let mut len = 0;
+    while len < buffer.len() {
+        match reader.read(&mut buffer[len..]) {
+            Ok(0) => break,
+            Ok(more) => len += more,
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(len)
 }

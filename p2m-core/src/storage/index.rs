@@ -17,12 +17,16 @@ pub trait Saved: Sized {
     /// Adds the sections of the index to a file.
     fn save<'a>(&'a self, writer: &mut Writer<'a>);
 
-    /// Makes the index of the sections of a file, without copying large arrays.
+    /// Makes the index of the sections of a file, without copying large arrays. The index is over a set of `primitives`
+    /// primitives.
+    ///
+    /// A file may come from anybody, so an implementation validates everything that a search relies on in order not to
+    /// panic and not to go on without end.
     ///
     /// # Errors
     /// It returns [`LoadError::Missing`] for a section that is missing, and [`LoadError::Inconsistent`] for sections
-    /// that contradict each other.
-    fn load(reader: &Reader) -> Result<Self, LoadError>;
+    /// that contradict themselves or each other.
+    fn load(reader: &Reader, primitives: usize) -> Result<Self, LoadError>;
 }
 
 /// The section with the kind of the index, in UTF-8.
@@ -55,7 +59,7 @@ pub fn load<T: Real, S: PrimitiveSet<T> + ?Sized, I: Saved>(set: &S, reader: &Re
     if reader.one::<[u64; 2]>(SET)? != [set.len() as u64, fingerprint(set)] {
         return Err(LoadError::OtherSet);
     }
-    I::load(reader)
+    I::load(reader, set.len())
 }
 
 /// Returns the kind of the index in a file, as [`Saved::kind`] gives it.

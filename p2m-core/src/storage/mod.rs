@@ -23,12 +23,15 @@
 //! | 8 | bytes of an element |
 //! | 8 | XXH3 checksum of the section |
 //!
-//! All numbers are little-endian. Sections begin at multiples of 64 bytes, so an index uses its large arrays where they
-//! are in the file, and only small arrays are copied. [`SavedFile::open`] maps a file, so that processes share its
-//! memory; [`SavedFile::read`] copies it. [`SavedFile::checked`] verifies all checksums.
+//! All numbers are little-endian. Sections begin at multiples of 64 bytes, one after the other with zeros between them,
+//! so an index uses its large arrays where they are in the file, and only small arrays are copied. [`SavedFile::open`]
+//! and [`SavedFile::read`] copy a file into memory. [`SavedFile::map`] maps it, so that processes share its memory; it
+//! is unsafe because another process may change the file. [`SavedFile::checked`] verifies all checksums.
 //!
-//! Checksums detect damage, not malice: a file that was made on purpose can give wrong answers, panic, or search
-//! without end. Loading is memory-safe for all bytes, unless a mapped file is modified.
+//! Checksums detect damage, not malice. Loading an index therefore validates everything that a search relies on: all
+//! numbers are in range, children come after their parents, each part is used once, and every walk ends. A file that
+//! was made on purpose can still give wrong answers, for example by wrong bounds, but its index neither panics nor
+//! searches without end.
 //!
 //! ```
 //! use nalgebra::Point3;
@@ -56,14 +59,17 @@
 mod array;
 mod error;
 mod file;
+mod ids;
 mod index;
 mod reader;
 mod section;
 mod writer;
 
 pub use array::Array;
-pub use error::LoadError;
+pub use error::{LoadError, require};
 pub use file::SavedFile;
+#[doc(hidden)]
+pub use ids::as_ids;
 pub use index::{Saved, kind, load, save};
 pub use reader::Reader;
 pub use section::VERSION;

@@ -2,7 +2,7 @@
 
 use super::array::{Array, FileBytes};
 use super::error::LoadError;
-use super::section::{Entry, Header, MAGIC, VERSION, checksum};
+use super::section::{ALIGNMENT, Entry, Header, checksum};
 use bytemuck::AnyBitPattern;
 
 /// The sections of a file in memory, by their names.
@@ -20,16 +20,7 @@ impl Reader {
         }
         let bytes = (*file).as_ref();
         let found = bytes.len() as u64;
-        let header = bytes.get(..size_of::<Header>()).map(bytemuck::pod_read_unaligned::<Header>);
-        let start = &bytes[..bytes.len().min(MAGIC.len())];
-        let header = match header {
-            _ if start != MAGIC => return Err(LoadError::Foreign),
-            None => return Err(LoadError::Length { found, expected: size_of::<Header>() as u64 }),
-            Some(header) => header,
-        };
-        if header.version != VERSION {
-            return Err(LoadError::Version { found: header.version });
-        }
+        let header = Header::check(bytes)?;
         if header.length != found {
             return Err(LoadError::Length { found, expected: header.length });
         }
@@ -42,6 +33,10 @@ impl Reader {
         let table: Vec<Entry> = table.chunks_exact(size_of::<Entry>()).map(bytemuck::pod_read_unaligned).collect();
         if table.iter().any(|entry| entry.range(found).is_none()) {
             return Err(damaged());
+        }
+        let gaps = gaps(&table, bytes.len()).ok_or_else(damaged)?;
+        if gaps.into_iter().any(|gap| bytes[gap].iter().any(|byte| *byte != 0)) {
+            return Err(LoadError::Damaged { section: "the padding between sections".to_owned() });
         }
         Ok(Self { file, table })
     }
@@ -96,7 +91,20 @@ impl Reader {
     pub fn one<T: AnyBitPattern>(&self, name: &str) -> Result<T, LoadError> {
         match *self.array::<T>(name)? {
             [one] => Ok(one),
-            _ => Err(LoadError::Inconsistent { section: name.to_owned() }),
+            _ => Err(LoadError::inconsistent(name, "there is more or less than one element")),
         }
     }
+}
+
+/// Returns the bytes that belong to no section. It is `None` if the sections are not in the order of the file, overlap,
+/// or leave more than a cache line unused.
+fn gaps(table: &[Entry], length: usize) -> Option<Vec<std::ops::Range<usize>>> {
+    let mut end = size_of::<Header>() + size_of_val(table);
+    let starts = table.iter().map(|entry| entry.range(length as u64)).chain([Some(length..length)]);
+    let gap = |range: Option<std::ops::Range<usize>>| {
+        let range = range?;
+        let gap = std::mem::replace(&mut end, range.end)..range.start;
+        (gap.start <= gap.end && gap.end - gap.start < ALIGNMENT).then_some(gap)
+    };
+    starts.map(gap).collect()
 }

@@ -14,6 +14,7 @@
 //! The numbers are stored as bytes that are rounded outwards. All lengths are in the frame of the scene.
 //! docs/proofs/octree.md has the proofs.
 
+use p2m_bvh::engine::packet::Packet;
 use p2m_bvh::engine::volume::Rounded;
 use p2m_core::engine::simd::Lanes;
 use p2m_core::engine::vector::V3;
@@ -54,6 +55,8 @@ pub(crate) enum BoundKind {
 
 /// The level of a block that has boxes.
 const LEVEL_OF_BOXES: u8 = u8::MAX;
+/// The exponents of the units of bytes. Their powers of two are normal numbers of f32.
+const EXPONENTS: std::ops::RangeInclusive<i8> = -100..=100;
 /// The unit of reference points. With 16 bits they reach to 4, where the frame of a scene ends.
 const REFERENCE_UNIT: f64 = 1.0 / 8192.0;
 
@@ -243,6 +246,19 @@ impl Block {
 }
 
 impl Block {
+    /// Returns whether the fields of a block from a file are within their ranges, over these packets. It does not check
+    /// the number of blocks that follow.
+    pub(crate) fn has_valid_fields(&self, packets: &[Packet]) -> bool {
+        let is_entry = |(number, lanes): (&u32, &u16)| {
+            packets.get(*number as usize).is_some_and(|packet| u32::from(*lanes) & !packet.lanes() == 0)
+        };
+        (1..=BLOCK_WIDTH).contains(&usize::from(self.len))
+            && (self.level <= MAX_LEVEL || self.level == LEVEL_OF_BOXES)
+            && EXPONENTS.contains(&self.exponent)
+            && self.base.is_finite()
+            && self.packets.iter().zip(&self.lanes).all(is_entry)
+    }
+
     /// Returns the number of primitives in the block.
     pub(crate) fn primitive_count(&self) -> usize {
         self.lanes[..usize::from(self.len)].iter().map(|lanes| lanes.count_ones() as usize).sum()

@@ -13,6 +13,7 @@ pub(crate) mod domain;
 pub(crate) mod query;
 pub(crate) mod refinement;
 pub(crate) mod saved;
+mod validate;
 
 use crate::list::block::{Block, MAX_LEVEL};
 use crate::list::search;

@@ -1,10 +1,17 @@
 //! Saving an octree and loading it.
 
-use crate::octree::Octree;
+use crate::octree::{Octree, validate};
 use crate::options::OctreeReport;
 use p2m_bvh::PacketTree;
 use p2m_core::engine::vector::V3;
-use p2m_core::storage::{LoadError, Reader, Saved, Writer};
+use p2m_core::storage::{LoadError, Reader, Saved, Writer, require};
+
+/// The section with the fields that are not arrays.
+pub(super) const OCTREE: &str = "octree";
+/// The section with the rows of codes.
+pub(super) const CODES: &str = "octree/codes";
+/// The section with the blocks of all lists.
+pub(super) const LISTS: &str = "octree/lists";
 
 /// The fields of an octree that are not arrays. The layout is that of the section `octree` of the file.
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -50,21 +57,25 @@ impl Saved for Octree {
             root,
             unused: 0,
         };
-        writer.put_copy("octree", &[header]);
-        writer.put("octree/codes", &self.rows);
-        writer.put("octree/lists", &self.blocks);
+        writer.put_copy(OCTREE, &[header]);
+        writer.put(CODES, &self.rows);
+        writer.put(LISTS, &self.blocks);
         self.tree.save(writer);
     }
 
     #[allow(clippy::cast_possible_truncation, reason = "numbers to report")]
-    fn load(reader: &Reader) -> Result<Self, LoadError> {
-        let header: Header = reader.one("octree")?;
+    fn load(reader: &Reader, primitives: usize) -> Result<Self, LoadError> {
+        let header: Header = reader.one(OCTREE)?;
         let Header { lists, singles, trees, entries, depth, bytes, tree_bytes, .. } = header;
         let [lists, singles, trees, entries, depth, bytes, tree_bytes] =
             [lists, singles, trees, entries, depth, bytes, tree_bytes].map(|n| n as usize);
         let Header { low, cells_per_length, resolution, work, root, .. } = header;
         let report = OctreeReport { lists, singles, trees, entries, depth, bytes, tree_bytes, work, resolution };
-        let (rows, blocks) = (reader.array("octree/codes")?, reader.array("octree/lists")?);
-        Ok(Self { tree: PacketTree::load(reader)?, low, cells_per_length, root, rows, blocks, report })
+        require(header.unused == 0, OCTREE, "a number that has no use is not 0")?;
+        let (rows, blocks) = (reader.array(CODES)?, reader.array(LISTS)?);
+        let tree = PacketTree::load(reader, primitives)?;
+        let octree = Self { tree, low, cells_per_length, root, rows, blocks, report };
+        validate::check(&octree)?;
+        Ok(octree)
     }
 }

@@ -8,7 +8,7 @@ use crate::voronoi::locator::LocatorSites;
 use crate::voronoi::neighbours::NeighbourTable;
 use p2m_core::engine::simd::{InstructionSet, SimdKernel, prefetch};
 use p2m_core::engine::vector::V3;
-use p2m_core::storage::{Array, LoadError, Reader, Writer};
+use p2m_core::storage::{Array, LoadError, Reader, Writer, require};
 
 /// A grid of cells, each with a site.
 #[derive(Clone, Debug)]
@@ -139,19 +139,25 @@ impl Grid {
         writer.put_copy(&format!("{name}/counts"), &[self.counts.map(|n| n as u64)]);
     }
 
-    /// Loads a grid from a file.
-    fn load(name: &str, reader: &Reader) -> Result<Self, LoadError> {
+    /// Loads a grid over some sites from a file.
+    fn load(name: &str, reader: &Reader, sites: usize) -> Result<Self, LoadError> {
         let [x, y, z, cells_per_length] = reader.one(&format!("{name}/place"))?;
         let counts = reader.one::<[u64; 3]>(&format!("{name}/counts"))?;
         let cells: Array<u32> = reader.array(&format!("{name}/cells"))?;
-        let is_consistent =
-            counts.iter().try_fold(1u64, |product, n| product.checked_mul(*n)) == Some(cells.len() as u64);
-        if !is_consistent {
-            return Err(LoadError::Inconsistent { section: name.to_owned() });
-        }
+        let product = counts.iter().try_fold(1u64, |product, n| product.checked_mul(*n));
+        require(product == Some(cells.len() as u64), name, "there are not as many cells as the counts say")?;
         #[allow(clippy::cast_possible_truncation, reason = "there are as many cells in memory")]
         let counts = counts.map(|n| n as usize);
-        Ok(Self { low: [x, y, z], cells_per_length, counts, cells, fine: reader.array(&format!("{name}/finer"))? })
+        let grid =
+            Self { low: [x, y, z], cells_per_length, counts, cells, fine: reader.array(&format!("{name}/finer"))? };
+        let is_cell = |cell: &u32| {
+            let limit = if cell & REFINED_FLAG == 0 { sites } else { grid.fine.len() };
+            ((cell & !REFINED_FLAG) as usize) < limit
+        };
+        require(grid.cells.iter().all(is_cell), name, "a cell has no site")?;
+        let is_site = |site: &u32| (*site as usize) < sites;
+        require(grid.fine.as_flattened().iter().all(is_site), name, "a finer cell has no site")?;
+        Ok(grid)
     }
 }
 
@@ -168,9 +174,9 @@ impl GridLocator {
         self.far.save_copy("hints/far", writer);
     }
 
-    /// Loads a locator from a file.
-    pub(crate) fn load(reader: &Reader) -> Result<Self, LoadError> {
-        Ok(Self { near: Grid::load("hints/near", reader)?, far: Grid::load("hints/far", reader)? })
+    /// Loads a locator over some sites from a file.
+    pub(crate) fn load(reader: &Reader, sites: usize) -> Result<Self, LoadError> {
+        Ok(Self { near: Grid::load("hints/near", reader, sites)?, far: Grid::load("hints/far", reader, sites)? })
     }
 }
 

@@ -38,6 +38,7 @@ pub(crate) mod region_tree;
 pub(crate) mod saved;
 pub(crate) mod site;
 pub(crate) mod sites;
+mod validate;
 
 pub use list_filter::{BuildListFilter, ListFilter, Region};
 pub use locator::{BuildLocator, Locator, LocatorSites};

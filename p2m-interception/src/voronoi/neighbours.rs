@@ -13,11 +13,16 @@ use crate::voronoi::neighbour_block::{
 use crate::voronoi::site::{FarHalfSpace, Site};
 use p2m_core::engine::simd::{InstructionSet, Lanes, prefetch_lines};
 use p2m_core::engine::vector::{V3, norm_squared, sub};
-use p2m_core::storage::{Array, LoadError, Reader, Writer};
+use p2m_core::storage::{Array, LoadError, Reader, Writer, require};
 use std::cmp::Ordering;
 
 /// The number of blocks of each site that are found by its number alone, without reading the site.
 const INLINE_BLOCKS: usize = 2;
+
+/// The section with the blocks of neighbours.
+const NEIGHBOURS: &str = "voronoi/neighbours";
+/// The section with the numbers of the neighbours.
+const NUMBERS: &str = "voronoi/neighbours/names";
 
 /// The sites with their neighbours.
 #[derive(Clone, Debug, Default)]
@@ -110,6 +115,9 @@ impl NeighbourTable {
     }
 
     /// Walks from a site to the site nearest to `query`. `on_site` is called with each site before it is read.
+    ///
+    /// A walk never visits a site twice, since each step leads to a nearer one. So only a table from a file with wrong
+    /// offsets can stop it by the number of steps.
     #[inline(always)]
     pub(crate) fn walk<I: InstructionSet>(
         &self,
@@ -118,7 +126,7 @@ impl NeighbourTable {
         mut on_site: impl FnMut(usize),
     ) -> LocatedSite {
         let mut at = from;
-        loop {
+        for _ in 0..self.sites.len() {
             self.prefetch(at);
             on_site(at);
             let (next, is_certainly_nearest) = self.step::<I>(at, query);
@@ -127,6 +135,7 @@ impl NeighbourTable {
             }
             at = next;
         }
+        LocatedSite { site: at, is_certainly_nearest: false }
     }
 
     /// Prefetches the memory that a step from a site reads.
@@ -190,8 +199,8 @@ impl NeighbourTable {
     /// Adds the table to a file.
     pub(crate) fn save<'a>(&'a self, writer: &mut Writer<'a>) {
         writer.put("voronoi/sites", &self.sites);
-        writer.put("voronoi/neighbours", &self.blocks);
-        writer.put("voronoi/neighbours/names", &self.site_numbers);
+        writer.put(NEIGHBOURS, &self.blocks);
+        writer.put(NUMBERS, &self.site_numbers);
         writer.put_copy("voronoi/neighbours/slack", &[self.slack]);
     }
 
@@ -199,17 +208,21 @@ impl NeighbourTable {
     pub(crate) fn load(reader: &Reader) -> Result<Self, LoadError> {
         let table = Self {
             sites: reader.array("voronoi/sites")?,
-            blocks: reader.array("voronoi/neighbours")?,
-            site_numbers: reader.array("voronoi/neighbours/names")?,
+            blocks: reader.array(NEIGHBOURS)?,
+            site_numbers: reader.array(NUMBERS)?,
             slack: reader.one("voronoi/neighbours/slack")?,
         };
-        let is_consistent =
-            table.site_numbers.len() == table.blocks.len() && table.blocks.len() >= INLINE_BLOCKS * table.sites.len();
-        if is_consistent {
-            Ok(table)
-        } else {
-            Err(LoadError::Inconsistent { section: "voronoi/neighbours".to_owned() })
-        }
+        let (sites, blocks) = (table.sites.len(), table.blocks.len());
+        require(table.site_numbers.len() == blocks, NUMBERS, "there are not those of all blocks")?;
+        require(blocks >= INLINE_BLOCKS * sites, NEIGHBOURS, "there are not those of all sites")?;
+        let has_blocks = |site: &Site| {
+            let further = (site.block_count as usize).saturating_sub(INLINE_BLOCKS);
+            further == 0 || site.first_further_block as usize + further <= blocks
+        };
+        require(table.sites.iter().all(has_blocks), NEIGHBOURS, "a block does not exist")?;
+        let is_site = |site: &u32| (*site as usize) < sites;
+        require(table.site_numbers.as_flattened().iter().all(is_site), NUMBERS, "a site does not exist")?;
+        Ok(table)
     }
 
     /// Returns the heap memory in bytes.

@@ -269,7 +269,10 @@ impl SimdKernel for SearchSeveral<'_> {
                 walking |= 1 << i;
             }
         }
-        while walking != 0 {
+        // Only a table from a file with wrong offsets has walks of more steps than there are sites.
+        let mut steps = 0;
+        while walking != 0 && steps < index.neighbours.sites.len() {
+            steps += 1;
             let mut rest = walking;
             while rest != 0 {
                 let i = rest.trailing_zeros() as usize;

@@ -1,14 +1,20 @@
 //! Saving a P2M index and loading it.
 
-use crate::list::block::Block;
-use crate::voronoi::Voronoi;
 use crate::voronoi::any_locator::AnyLocator;
 use crate::voronoi::grid_locator::GridLocator;
 use crate::voronoi::list_filter::ListFilters;
 use crate::voronoi::neighbours::NeighbourTable;
+use crate::voronoi::{Voronoi, validate};
 use p2m_bvh::PacketTree;
 use p2m_core::engine::vector::V3;
-use p2m_core::storage::{Array, LoadError, Reader, Saved, Writer};
+use p2m_core::storage::{LoadError, Reader, Saved, Writer, require};
+
+/// The section with the fields that are not arrays.
+pub(super) const VORONOI: &str = "voronoi";
+/// The section with the blocks of all lists.
+pub(super) const LISTS: &str = "voronoi/lists";
+/// The section with the anchors.
+pub(super) const ANCHORS: &str = "voronoi/anchors";
 
 /// The fields of a P2M index that are not arrays. The layout is that of the section `voronoi` of the file.
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -34,9 +40,9 @@ impl Saved for Voronoi {
         let has_cells = u64::from(self.locator.is_some());
         let Self { per_unit, unit, slack, low, high, .. } = *self;
         let header = Header { per_unit, unit, slack, low, high, report: self.report.into(), has_cells };
-        writer.put_copy("voronoi", &[header]);
-        writer.put("voronoi/lists", &self.blocks);
-        writer.put("voronoi/anchors", &self.anchors);
+        writer.put_copy(VORONOI, &[header]);
+        writer.put(LISTS, &self.blocks);
+        writer.put(ANCHORS, &self.anchors);
         self.neighbours.save(writer);
         match &self.locator {
             Some(AnyLocator::Grid(grid)) => grid.save(writer),
@@ -46,16 +52,17 @@ impl Saved for Voronoi {
         self.tree.save(writer);
     }
 
-    fn load(reader: &Reader) -> Result<Self, LoadError> {
-        let Header { per_unit, unit, slack, low, high, report, has_cells } = reader.one("voronoi")?;
-        let locator = if has_cells == 0 { None } else { Some(AnyLocator::Grid(GridLocator::load(reader)?)) };
+    fn load(reader: &Reader, primitives: usize) -> Result<Self, LoadError> {
+        let Header { per_unit, unit, slack, low, high, report, has_cells } = reader.one(VORONOI)?;
+        require(has_cells <= 1, VORONOI, "the number that says whether there are cells is neither 0 nor 1")?;
         let neighbours = NeighbourTable::load(reader)?;
-        let blocks: Array<Block> = reader.array("voronoi/lists")?;
-        if blocks.len() < neighbours.sites.len() {
-            return Err(LoadError::Inconsistent { section: "voronoi/lists".to_owned() });
-        }
-        Ok(Self {
-            tree: PacketTree::load(reader)?,
+        let site_count = neighbours.sites.len();
+        let locator = match has_cells {
+            0 => None,
+            _ => Some(AnyLocator::Grid(GridLocator::load(reader, site_count)?)),
+        };
+        let index = Self {
+            tree: PacketTree::load(reader, primitives)?,
             per_unit,
             unit,
             slack,
@@ -63,10 +70,12 @@ impl Saved for Voronoi {
             high,
             neighbours,
             locator,
-            blocks,
+            blocks: reader.array(LISTS)?,
             filters: ListFilters::default(),
-            anchors: reader.array("voronoi/anchors")?,
+            anchors: reader.array(ANCHORS)?,
             report: report.into(),
-        })
+        };
+        validate::check(&index)?;
+        Ok(index)
     }
 }

@@ -1,0 +1,14 @@
+//! Ids of primitives among the plain numbers of a file.
+
+use crate::PrimitiveId;
+
+/// Returns numbers of a file as ids. The caller has checked that all of them are below the number of primitives;
+/// [`PrimitiveId`] has no other way from a number that does not check it.
+#[inline(always)]
+#[must_use]
+#[allow(unsafe_code, reason = "a slice of transparent wrappers")]
+pub fn as_ids(numbers: &[u32]) -> &[PrimitiveId] {
+    // SAFETY: `PrimitiveId` is a transparent wrapper of a u32, so the layouts are equal. Every u32 is a valid value of
+    // the type; no unsafe code relies on the range of ids.
+    unsafe { std::slice::from_raw_parts(numbers.as_ptr().cast(), numbers.len()) }
+}

@@ -1,0 +1,52 @@
+//! Validation of the P2M index of a saved file.
+//!
+//! The checks take one pass over the sites, the neighbours, the blocks and the cells of the locator. They cover what
+//! locating a query and searching its list rely on in order to end without a panic. They do not cover bounds,
+//! half-spaces and lists that lack a primitive, which can only make answers wrong. A walk ends whatever the offsets of
+//! neighbours are, because it is stopped after as many steps as there are sites.
+
+use crate::voronoi::Voronoi;
+use crate::voronoi::saved::{ANCHORS, LISTS, VORONOI};
+use crate::voronoi::site::{AUXILIARY_SITE, FALLBACK, Site};
+use p2m_bvh::engine::packet::LANES;
+use p2m_core::storage::{LoadError, require};
+
+/// The section with the sites.
+const SITES: &str = "voronoi/sites";
+
+/// Checks the sites, the lists and the numbers of the domain.
+pub(super) fn check(index: &Voronoi) -> Result<(), LoadError> {
+    let numbers = [[index.per_unit, index.unit, index.slack], index.low, index.high];
+    require(numbers.as_flattened().iter().all(|x| x.is_finite()), VORONOI, "a number is not finite")?;
+    require(index.anchors.as_flattened().iter().all(|x| x.is_finite()), ANCHORS, "a coordinate is not finite")?;
+    let (sites, blocks) = (&index.neighbours.sites, &index.blocks);
+    require(blocks.len() >= sites.len(), LISTS, "there are fewer than sites")?;
+    for (site, first) in sites.iter().zip(blocks.iter()) {
+        check_site(index, site)?;
+        if site.has_list() {
+            let end = site.list as usize + usize::from(first.following);
+            require(end <= blocks.len(), LISTS, "a list exceeds the section")?;
+            require(first.has_valid_fields(&index.tree.leaves.packets), LISTS, "a number is out of range")?;
+        }
+    }
+    let mut others = blocks[sites.len()..].iter();
+    let are_valid = others.all(|block| block.has_valid_fields(&index.tree.leaves.packets));
+    require(are_valid, LISTS, "a number is out of range")
+}
+
+/// Checks the position and the owner of a site.
+fn check_site(index: &Voronoi, site: &Site) -> Result<(), LoadError> {
+    require(site.position.iter().all(|x| x.is_finite()), SITES, "a coordinate is not finite")?;
+    let has_far_half_space = site.far_half_space.height < f32::INFINITY;
+    if site.list == AUXILIARY_SITE {
+        return require((site.owner as usize) < index.anchors.len(), SITES, "an anchor does not exist")
+            .and_then(|()| require(!has_far_half_space, SITES, "an auxiliary site has a half-space"));
+    }
+    require(site.list != FALLBACK || !has_far_half_space, SITES, "a site without a list has a half-space")?;
+    let Some((packet, lane)) = site.known_primitive() else {
+        return require(!has_far_half_space, SITES, "a site without a primitive has a half-space");
+    };
+    let packet = index.tree.leaves.packets.get(packet);
+    let is_lane = packet.is_some_and(|packet| lane % LANES < packet.ids().len());
+    require(is_lane, SITES, "a primitive does not exist")
+}
