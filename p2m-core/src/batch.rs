@@ -17,16 +17,17 @@ pub struct BatchOptions {
     /// coherent already, such as those of a scan or a grid.
     pub reorder: bool,
     /// Whether the primitive of the previous answer is evaluated first, which makes trees faster. Without hints an
-    /// index may interleave several queries, which makes the P2M index faster.
-    pub hints: bool,
+    /// index may interleave several queries, which makes the P2M index faster. If it is `None`,
+    /// [`ClosestPoint::gains_from_hints`] decides.
+    pub hints: Option<bool>,
     /// Whether all threads of the current pool are used. Without the feature `rayon` one thread is used.
     pub parallel: bool,
 }
 
 impl Default for BatchOptions {
-    /// Returns options with reordering, hints and all threads.
+    /// Returns options with reordering, all threads, and hints if the index gains from them.
     fn default() -> Self {
-        Self { reorder: true, hints: true, parallel: true }
+        Self { reorder: true, hints: None, parallel: true }
     }
 }
 
@@ -39,7 +40,7 @@ impl BatchOptions {
     /// Sets whether the primitive of the previous answer is evaluated first.
     #[must_use]
     pub fn with_hints(self, hints: bool) -> Self {
-        Self { hints, ..self }
+        Self { hints: Some(hints), ..self }
     }
     /// Sets whether all threads are used.
     #[must_use]
@@ -85,7 +86,8 @@ pub fn closest_points_into<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(
     out: &mut [Option<Closest<T>>],
 ) {
     assert_eq!(queries.len(), out.len(), "one answer for each query");
-    let hints = batch.hints && options.hint.is_none() && !options.is_approximate();
+    let hints =
+        batch.hints.unwrap_or_else(|| index.gains_from_hints()) && options.hint.is_none() && !options.is_approximate();
     let runner = BatchRunner { index, options, hints };
     if !batch.reorder {
         return runner.answer(queries, batch.parallel, out);

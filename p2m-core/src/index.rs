@@ -68,6 +68,13 @@ pub trait ClosestPoint<T: Real> {
         self.closest_point_with(query, &QueryOptions::default())
     }
 
+    /// Returns whether a query near another one is faster with the primitive of that answer as its hint. Batches and
+    /// fields then pass one, unless their options say otherwise. Trees gain from hints; an index that locates the cell
+    /// of a query, or that evaluates everything, loses the time of evaluating them. The default is `true`.
+    fn gains_from_hints(&self) -> bool {
+        true
+    }
+
     /// Answers `queries` into `out`, in their order and on the current thread.
     ///
     /// [`batch::closest_points_into`](crate::batch::closest_points_into) reorders queries and uses all threads.
@@ -90,6 +97,10 @@ impl<T: Real, I: ClosestPoint<T> + ?Sized> ClosestPoint<T> for &I {
 
     fn closest_point_with(&self, query: &Point3<T>, options: &QueryOptions<T>) -> Option<Closest<T>> {
         (**self).closest_point_with(query, options)
+    }
+
+    fn gains_from_hints(&self) -> bool {
+        (**self).gains_from_hints()
     }
 
     fn closest_points_into(&self, queries: &[Point3<T>], options: &QueryOptions<T>, out: &mut [Option<Closest<T>>]) {

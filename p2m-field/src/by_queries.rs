@@ -139,7 +139,7 @@ impl<I: ClosestPoint<f64> + Sync + ?Sized> Sampler<'_, I> {
         for (n, query) in queries[..count].iter_mut().enumerate() {
             *query = self.grid.point([i + n, j, k]);
         }
-        if self.options.hints {
+        if self.options.hints.unwrap_or_else(|| self.index.gains_from_hints()) {
             for (query, answer) in queries[..count].iter().zip(&mut answers) {
                 *answer = self.index.closest_point_with(query, options);
                 options.hint = answer.map(|answer: Closest<f64>| answer.primitive);

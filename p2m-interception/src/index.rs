@@ -188,23 +188,33 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> ClosestPoint<T> for Interception
 
     fn closest_points_into(&self, queries: &[Point3<T>], options: &QueryOptions<T>, out: &mut [Option<Closest<T>>]) {
         assert_eq!(queries.len(), out.len(), "one answer for each query");
-        for (queries, out) in queries.chunks(QUERIES_SIDE_BY_SIDE).zip(out.chunks_mut(QUERIES_SIDE_BY_SIDE)) {
-            let full_group: Option<&[Point3<T>; QUERIES_SIDE_BY_SIDE]> = queries.try_into().ok();
-            let are_finite = |queries: &[Point3<T>; QUERIES_SIDE_BY_SIDE]| {
-                queries.iter().flat_map(|q| q.iter()).all(|x| x.is_finite())
-            };
-            if let Some(queries) = full_group.filter(|queries| are_finite(queries)) {
-                let mut best = queries.each_ref().map(|query| {
-                    let mut best = Best::new(options);
-                    best.offer_hint(&self.set, query);
-                    best
-                });
-                self.partition.search_several(&self.set, queries, &mut best);
-                out.iter_mut().zip(best).for_each(|(to, best)| *to = best.finish());
-            } else {
-                queries.iter().zip(out).for_each(|(query, to)| *to = self.closest_point_with(query, options));
+        // Queries that are not finite have no answer, and the others are gathered into full groups without them.
+        out.fill(None);
+        let mut finite = (0..queries.len()).filter(|i| queries[*i].iter().all(|x| x.is_finite()));
+        let mut group = [0; QUERIES_SIDE_BY_SIDE];
+        loop {
+            let mut count = 0;
+            for (slot, number) in group.iter_mut().zip(&mut finite) {
+                *slot = number;
+                count += 1;
             }
+            if count < QUERIES_SIDE_BY_SIDE {
+                group[..count].iter().for_each(|i| out[*i] = self.closest_point_with(&queries[*i], options));
+                return;
+            }
+            let several = group.map(|i| queries[i]);
+            let mut best = several.each_ref().map(|query| {
+                let mut best = Best::new(options);
+                best.offer_hint(&self.set, query);
+                best
+            });
+            self.partition.search_several(&self.set, &several, &mut best);
+            group.into_iter().zip(best).for_each(|(i, best)| out[i] = best.finish());
         }
+    }
+
+    fn gains_from_hints(&self) -> bool {
+        false
     }
 }
 

@@ -441,3 +441,30 @@ fn a_part_of_a_flat_town_is_built_within_its_memory() {
         }
     }
 }
+
+/// Queries that are not finite have no answer, wherever they stand, and the others are answered side by side without
+/// them.
+#[test]
+fn a_batch_with_queries_that_are_not_finite_answers_the_others() {
+    let soup = scenes::skewed_gear(20);
+    let index = built(&soup);
+    assert!(index.report().lists > 100, "{:?}", index.report());
+    for case in cases(200, 40) {
+        let mut rng = rng("not-finite", case);
+        let len = rng.random_range(0..70);
+        let queries: Vec<Point3<f64>> = (0..len)
+            .map(|_| {
+                let mut query = Point3::from(vector(&mut rng) * 3.0);
+                if rng.random_range(0..4) < case % 4 {
+                    query[rng.random_range(0..3)] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY][case as usize % 3];
+                }
+                query
+            })
+            .collect();
+        let expected: Vec<_> = queries.iter().map(|query| index.closest_point(query)).collect();
+        // What stood in the slice before is no answer.
+        let mut found = vec![index.closest_point(&Point3::origin()); len];
+        index.closest_points_into(&queries, &Default::default(), &mut found);
+        assert_eq!(found, expected, "case {case}");
+    }
+}
