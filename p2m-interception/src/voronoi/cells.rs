@@ -25,6 +25,11 @@ use crate::voronoi::site::{AUXILIARY_SITE, FALLBACK, FarHalfSpace};
 use std::ops::Range;
 use std::sync::Arc;
 
+/// The number of neighbours, edges of primitives included, above which a site is a *hub*. The table has no neighbours
+/// of a hub, so a walk ends there, and the tree answers in its cell. Otherwise a query in the cell of a site that all
+/// others surround would test all of them: at this number, that takes about as long as the search of a tree.
+const MAX_NEIGHBOURS: usize = 1024;
+
 /// The sites with their lists.
 pub(crate) struct VoronoiLists {
     /// The sites, their neighbours, and where their lists are.
@@ -46,8 +51,13 @@ impl CellContext<'_> {
             (0..).zip(tetrahedra).flat_map(|(number, tetrahedron)| tetrahedron.iter().map(move |v| (*v, number))),
         );
         let adjacency = EdgeAdjacency::from_tree(self.tree, &self.sites.delaunay);
+        let is_hub =
+            |site: usize| incident_tetrahedra.get(site).len() / 2 + adjacency.edges.get(site).len() > MAX_NEIGHBOURS;
         let slack = self.limits.slack / self.sites.delaunay.unit();
         let mut neighbours = NeighbourTable::new(sites, BOUNDING, slack, |site, all, edges| {
+            if is_hub(site) {
+                return;
+            }
             let neighbours = incident_tetrahedra.get(site).iter().flat_map(|t| tetrahedra[*t as usize]);
             all.extend(neighbours.filter(|v| *v as usize >= BOUNDING && *v as usize != site));
             edges.extend_from_slice(adjacency.edges.get(site));
@@ -59,7 +69,7 @@ impl CellContext<'_> {
         let mut filled_sites = neighbours.sites.edit(std::mem::take);
         report.added = self.sites.added;
         let frames = PrimitiveFrames::from_tree(self.tree);
-        let work = |chunk| self.build_chunk(chunk, &incident_tetrahedra, &adjacency, &frames);
+        let work = |chunk| self.build_chunk(chunk, &is_hub, &incident_tetrahedra, &adjacency, &frames);
         let budget = self.limits.budget;
         map_chunks_in_order(sites.len(), self.limits.parallel, work, |chunk: ChunkResult| {
             if !budget.fits::<Block>(blocks.len() + chunk.blocks.len()) {
@@ -100,6 +110,7 @@ impl CellContext<'_> {
     fn build_chunk(
         &self,
         sites: Range<usize>,
+        is_hub: &(impl Fn(usize) -> bool + Sync),
         incident_tetrahedra: &IncidenceLists,
         adjacency: &EdgeAdjacency,
         frames: &PrimitiveFrames,
@@ -122,7 +133,10 @@ impl CellContext<'_> {
             let mut result = CellResult { site, list: CellList::Tree, far_half_space: None, filter: None };
             if let Some(anchor) = self.sites.anchor_of(site) {
                 result.list = CellList::Auxiliary(u32::try_from(anchor).expect("numbers of 32 bits"));
-            } else if site >= BOUNDING && !tetrahedra.iter().any(|t| corners.all[*t as usize].is_crowded) {
+            } else if site >= BOUNDING
+                && !is_hub(site)
+                && !tetrahedra.iter().any(|t| corners.all[*t as usize].is_crowded)
+            {
                 cell.begin(self, corners, site, tetrahedra);
                 chunk.candidates += cell.packets.len();
                 chunk.max_candidates = chunk.max_candidates.max(cell.packets.len());
@@ -185,4 +199,32 @@ enum CellList {
     Auxiliary(u32),
     /// A list answers. The field is the range of its blocks in the chunk.
     Blocks(Range<usize>),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::P2mIndex;
+    use crate::voronoi::neighbour_block::NEIGHBOURS_PER_BLOCK;
+    use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Soup};
+    use p2m_testkit::{adversaries, amount, rng, vector};
+    use rand::RngExt;
+
+    /// All segments of the star begin at one site, which is a hub if there are enough of them.
+    #[test]
+    fn a_hub_has_no_neighbours_and_the_tree_answers_in_its_cell() {
+        for (count, is_hub) in [(400, false), (1_400, true)] {
+            let soup = adversaries::Adversary::named("star").soup(count);
+            let index = P2mIndex::<f64, &Soup<f64>>::build(&soup, &Default::default()).expect("valid");
+            let sites = &index.partition().neighbours.sites;
+            let most = sites.iter().map(|site| site.block_count as usize * NEIGHBOURS_PER_BLOCK).max().expect("sites");
+            assert!(most < MAX_NEIGHBOURS + NEIGHBOURS_PER_BLOCK && (most >= count) != is_hub, "{count}: {most}");
+            let (brute, mut rng) = (BruteForce::new(&soup).expect("valid"), rng("hub", count as u64));
+            for _ in 0..amount(2_000, 200) {
+                let query = nalgebra::Point3::from(vector(&mut rng) * rng.random_range(0.0..3.0));
+                let [found, expected] = [index.closest_point(&query), brute.closest_point(&query)];
+                assert_eq!(found.map(|c| (c.distance, c.primitive)), expected.map(|c| (c.distance, c.primitive)));
+            }
+        }
+    }
 }

@@ -243,7 +243,9 @@ impl SimdKernel for FillGrid<'_> {
         let mut cells = grid.cells.to_vec();
         let mut all_fine = Vec::new();
         let to_u32 = |n: usize| u32::try_from(n).expect("numbers of 32 bits");
-        let mut site = first;
+        // A walk cannot leave a hub, so none begins at one.
+        let is_hub = |site: &usize| neighbours.sites[*site].block_count == 0;
+        let mut start = (first..neighbours.sites.len()).find(|site| !is_hub(site)).unwrap_or(first);
         for z in 0..nz {
             for j in 0..ny {
                 let y = if z % 2 == 1 { ny - 1 - j } else { j };
@@ -258,20 +260,22 @@ impl SimdKernel for FillGrid<'_> {
                         neighbours.walk::<I>(from, &point, |_| ()).site
                     };
                     let has_several_sites = cells[cell] > 1;
-                    site = nearest(site, [0.5; 3]);
+                    let site = nearest(start, [0.5; 3]);
+                    start = if is_hub(&site) { start } else { site };
                     cells[cell] = to_u32(site);
                     if has_several_sites {
                         let mut fine = [0; FINE_CELLS_PER_SIDE * FINE_CELLS_PER_SIDE * FINE_CELLS_PER_SIDE];
-                        let mut fine_site = site;
+                        let mut fine_start = start;
                         for (n, to) in fine.iter_mut().enumerate() {
                             let fraction = [
                                 n % FINE_CELLS_PER_SIDE,
                                 n / FINE_CELLS_PER_SIDE % FINE_CELLS_PER_SIDE,
                                 n / FINE_CELLS_PER_SIDE / FINE_CELLS_PER_SIDE,
                             ];
-                            fine_site =
-                                nearest(fine_site, fraction.map(|x| (x as f64 + 0.5) / FINE_CELLS_PER_SIDE as f64));
-                            *to = to_u32(fine_site);
+                            let site =
+                                nearest(fine_start, fraction.map(|x| (x as f64 + 0.5) / FINE_CELLS_PER_SIDE as f64));
+                            fine_start = if is_hub(&site) { fine_start } else { site };
+                            *to = to_u32(site);
                         }
                         cells[cell] = to_u32(all_fine.len()) | REFINED_FLAG;
                         all_fine.push(fine);
