@@ -48,7 +48,6 @@ mod overlap;
 mod polytope;
 #[cfg(test)]
 mod ray_entries;
-mod trial;
 mod volume;
 
 pub use direction_choice::DirectionChoice;
