@@ -10,11 +10,10 @@ use p2m_core::{Element, Soup};
 /// ```
 /// use p2m_mixed::generate::{MixedSizes, mixed_sizes};
 ///
-/// let soup = mixed_sizes(&MixedSizes::default().with_points(10).with_decades(3.0)).unwrap();
+/// let soup = mixed_sizes(&MixedSizes { points: 10, decades: 3.0, ..Default::default() }).unwrap();
 /// assert_eq!((soup.triangles().len(), soup.segments().len(), soup.points().len()), (6000, 3000, 10));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct MixedSizes {
     /// The number of triangles.
     pub triangles: u32,
@@ -31,34 +30,6 @@ pub struct MixedSizes {
 impl Default for MixedSizes {
     fn default() -> Self {
         Self { triangles: 6000, segments: 3000, points: 1000, decades: 6.0, seed: 1 }
-    }
-}
-
-impl MixedSizes {
-    /// Sets the number of triangles.
-    #[must_use]
-    pub fn with_triangles(self, triangles: u32) -> Self {
-        Self { triangles, ..self }
-    }
-    /// Sets the number of segments.
-    #[must_use]
-    pub fn with_segments(self, segments: u32) -> Self {
-        Self { segments, ..self }
-    }
-    /// Sets the number of points.
-    #[must_use]
-    pub fn with_points(self, points: u32) -> Self {
-        Self { points, ..self }
-    }
-    /// Sets the orders of magnitude between the smallest and the largest size.
-    #[must_use]
-    pub fn with_decades(self, decades: f64) -> Self {
-        Self { decades, ..self }
-    }
-    /// Sets the seed of the random numbers.
-    #[must_use]
-    pub fn with_seed(self, seed: u64) -> Self {
-        Self { seed, ..self }
     }
 }
 

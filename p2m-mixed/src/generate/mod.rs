@@ -9,7 +9,7 @@
 //!
 //! let gear = Kind::from_name("skewed-gear").unwrap().generate().unwrap();
 //! let gear = Transform::default().rotated_x(45.0).rotated_y(45.0).apply(&gear).unwrap();
-//! let rough = subdivide(&gear, &Subdivide::default().with_levels(2).with_amplitude(0.1)).unwrap();
+//! let rough = subdivide(&gear, &Subdivide { levels: 2, amplitude: 0.1, ..Default::default() }).unwrap();
 //! assert_eq!(rough.triangles().len(), 16 * 56_696);
 //! let burr = penetrating(&gear, 1.5).unwrap();
 //! assert_eq!(burr.positions().len(), 3 * 56_696);
