@@ -1,7 +1,7 @@
 //! Triangles, segments and points of sizes over several orders of magnitude, distributed in a cube.
 
 use super::error::{GenerateError, capacity};
-use super::portable::{Random, power_of_a_tenth};
+use super::portable::Random;
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Element, Soup};
 
@@ -60,7 +60,7 @@ pub fn mixed_sizes(options: &MixedSizes) -> Result<Soup<f64>, GenerateError> {
     let [mut triangles, mut segments, mut points] = kinds;
     while triangles + segments + points > 0 {
         let centre = Point3::from(Vector3::from_fn(|_, _| 2.0 * random.unit() - 1.0));
-        let size = LARGEST_SIZE * power_of_a_tenth(decades * random.unit());
+        let size = LARGEST_SIZE * libm::exp10(-decades * random.unit());
         // Kinds are drawn without replacement, so the numbers of the options are met.
         let draw = random.below(triangles + segments + points);
         if draw < triangles {
