@@ -66,7 +66,7 @@ fn main() -> anyhow::Result<()> {
         [surface(a)?, surface(b)?]
     } else {
         anyhow::ensure!(names.is_empty(), "two scenes, or none");
-        let sphere = ico_sphere(&IcoSphere::default().with_frequency(20))?;
+        let sphere = ico_sphere(&IcoSphere { frequency: 20 })?;
         let moved = sphere.positions().iter().map(|p| p + Vector3::new(0.3, 0.0, 0.4)).collect();
         let other = Soup::new(moved, sphere.elements())?;
         [sphere, other]

@@ -8,7 +8,7 @@ use super::answers::{self, QUESTIONS};
 use super::backends::{index, tree};
 use super::boxes;
 use super::bytes::Bytes;
-use super::scene::{SceneDraft, point_source};
+use super::scene::SceneDraft;
 use super::subject::Subject;
 use nalgebra::Point3;
 use p2m::{AabbTree, BruteForce, BuildError, BuildIndex, Real, Soup};
@@ -45,12 +45,11 @@ impl<'a> Input<'a> {
     }
 }
 
-/// Formats an input as Rust source.
+/// Formats the question, the scene and the queries of an input.
 #[must_use]
-pub fn source(input: &[u8]) -> String {
-    let input = Input::new(input);
-    let queries: String = input.queries.iter().map(|query| format!("\nlet query = {};", point_source(query))).collect();
-    format!("// {}\n{}{queries}", QUESTIONS[input.question], input.draft.source())
+pub fn describe(input: &[u8]) -> String {
+    let Input { question, draft, queries, .. } = Input::new(input);
+    format!("question {}\n{}\nqueries {queries:?}", QUESTIONS[question], draft.describe())
 }
 
 /// Runs the check of an input.

@@ -57,11 +57,11 @@ fn draw_ray(bytes: &mut Bytes<'_>, draft: &SceneDraft) -> Result<Ray, RayError> 
     Ok(if bytes.below(2) == 0 { ray } else { ray.line() })
 }
 
-/// Formats the scene and the rays of an input as Rust source.
+/// Formats the scene and the rays of an input.
 #[must_use]
-pub fn source(input: &[u8]) -> String {
+pub fn describe(input: &[u8]) -> String {
     let Input { draft, rays, .. } = Input::new(input);
-    rays.iter().fold(draft.source(), |text, ray| format!("{text}\n// {ray:?}"))
+    format!("{}\nrays {rays:?}", draft.describe())
 }
 
 /// Runs the check of an input, and returns the backend and the number of rays.

@@ -3,7 +3,6 @@
 use super::bytes::Bytes;
 use nalgebra::Point3;
 use p2m::{Element, Point, PrimitiveId, PrimitiveSet, Segment, Shape, Soup, Triangle};
-use std::fmt::Write;
 
 /// The largest number of primitives of a scene.
 const MAX_PRIMITIVES: usize = 40;
@@ -174,29 +173,10 @@ impl SceneDraft {
         }
     }
 
-    /// Formats the scene as Rust source.
-    pub fn source(&self) -> String {
-        let mut text = String::from("let soup = Soup::new(vec![\n");
-        for p in &self.positions {
-            writeln!(text, "    {},", point_source(p)).expect("memory");
-        }
-        text += "], [\n";
-        for element in &self.elements {
-            writeln!(text, "    Element::{element:?},").expect("memory");
-        }
-        text + "]);"
+    /// Formats the positions and the elements of the scene.
+    pub fn describe(&self) -> String {
+        format!("positions {:?}\nelements {:?}", self.positions, self.elements)
     }
-}
-
-/// Formats a point as Rust source.
-pub fn point_source(p: &Point3<f64>) -> String {
-    let coordinate = |x: f64| match x {
-        _ if x.is_nan() => "f64::NAN".to_owned(),
-        f64::INFINITY => "f64::INFINITY".to_owned(),
-        f64::NEG_INFINITY => "f64::NEG_INFINITY".to_owned(),
-        _ => format!("{x:?}"),
-    };
-    format!("Point3::new({}, {}, {})", coordinate(p.x), coordinate(p.y), coordinate(p.z))
 }
 
 /// Returns the vertices of a primitive in f64.

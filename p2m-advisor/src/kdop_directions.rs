@@ -26,7 +26,7 @@ pub enum KdopDirections {
     Eighteen,
     /// The faces of boxes, and ten pairs that cut off their corners and edges.
     TwentySix,
-    /// The number of faces that the scene is worth, along the axes or rotated with the scene.
+    /// Fourteen faces along the axes or along a frame of the scene's own.
     Scene,
 }
 
@@ -57,18 +57,17 @@ pub trait KdopVisitor<'a> {
 }
 
 impl KdopDirections {
-    /// All values, in order of the number of faces; the choice by the scene is the last one.
+    /// All values: the axes in order of the number of faces, and the choice by the scene last.
     pub const ALL: [Self; 5] = [Self::Six, Self::Fourteen, Self::Eighteen, Self::TwentySix, Self::Scene];
 
-    /// The number of faces, or `None` if it depends on the scene.
+    /// The number of faces.
     #[must_use]
-    pub const fn faces(self) -> Option<usize> {
+    pub const fn faces(self) -> usize {
         match self {
-            Self::Six => Some(6),
-            Self::Fourteen => Some(14),
-            Self::Eighteen => Some(18),
-            Self::TwentySix => Some(26),
-            Self::Scene => None,
+            Self::Six => 6,
+            Self::Fourteen | Self::Scene => 14,
+            Self::Eighteen => 18,
+            Self::TwentySix => 26,
         }
     }
 
@@ -82,7 +81,7 @@ impl KdopDirections {
         let faces = kind.strip_prefix(KIND_PREFIX)?.parse().ok().filter(|faces| FACE_COUNTS.contains(faces))?;
         let is_from_scene = reader.has(REASON_SECTION);
         let fits = requested.is_none_or(|directions| {
-            if is_from_scene { directions == Self::Scene } else { directions.faces() == Some(faces) }
+            is_from_scene == (directions == Self::Scene) && (is_from_scene || directions.faces() == faces)
         });
         fits.then_some(faces)
     }
@@ -118,14 +117,14 @@ impl KdopDirections {
         visitor: V,
     ) -> Result<(V::Output, ChosenDirections), BuildError> {
         let choice = (self == Self::Scene).then(|| DirectionChoice::from_scene(soup)).transpose()?;
-        let faces = self.faces().unwrap_or_else(|| choice.as_ref().map_or(6, |choice| choice.k));
-        let output = match faces {
+        let output = match self.faces() {
             6 => build_tree::<6, _>(soup, splits, choice.as_ref(), visitor),
             14 => build_tree::<14, _>(soup, splits, choice.as_ref(), visitor),
             18 => build_tree::<18, _>(soup, splits, choice.as_ref(), visitor),
             _ => build_tree::<26, _>(soup, splits, choice.as_ref(), visitor),
         }?;
-        Ok((output, ChosenDirections { faces, reason: choice.map(|choice| choice.to_string()) }))
+        let faces = self.faces();
+        Ok((output, ChosenDirections { faces, reason: choice.map(|choice| format!("{faces} {choice}")) }))
     }
 }
 
@@ -138,7 +137,7 @@ fn build_tree<'a, const K: usize, V: KdopVisitor<'a>>(
 where
     Directions<K>: Default,
 {
-    let directions = choice.map(|choice| choice.directions::<K>().expect("the choice has K faces"));
+    let directions = choice.map(|choice| choice.directions::<K>().expect("a choice has directions of every K here"));
     let options = KdopOptions::new(directions.unwrap_or_default()).with_splits(splits);
     KdopTree::build_with(soup, &options).map(|tree| visitor.visit(tree))
 }

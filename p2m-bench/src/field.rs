@@ -206,7 +206,7 @@ fn one_thread() -> FieldOptions {
 
 /// Prints the figures of the article beside ours.
 pub(crate) fn print_article(scene: &Scene) -> Result<()> {
-    let ball = ico_sphere(&IcoSphere::default().with_frequency(16))?;
+    let ball = ico_sphere(&IcoSphere { frequency: 16 })?;
     let ball = Scene::new("ico-sphere".to_owned(), ball)?;
     let time = |run: &mut dyn FnMut()| thread_seconds(run).1;
     let mut table = Table::new(["what", "the article (cited)", "ours, s"]);

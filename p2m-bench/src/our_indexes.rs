@@ -183,15 +183,9 @@ where
     over_soup_with::<T, KdopTree<T, _, K>>(scene, KdopOptions::default().with_splits(aabb_options()))
 }
 
-/// Prepares the k-DOP tree with the directions that the scene calls for; choosing them is not timed.
+/// Prepares the k-DOP tree with 14 directions that the scene calls for; choosing them is not timed.
 pub(crate) fn kdop_of_scene(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
-    let choice = scene_directions(scene);
-    match choice.k {
-        6 => kdop_with::<6>(scene, choice.directions()),
-        14 => kdop_with::<14>(scene, choice.directions()),
-        18 => kdop_with::<18>(scene, choice.directions()),
-        _ => kdop_with::<26>(scene, choice.directions()),
-    }
+    kdop_with::<14>(scene, scene_directions(scene).directions())
 }
 
 /// Prepares the tree of the crate bvh, with a distance function of our own.

@@ -226,62 +226,45 @@ impl Command {
     fn parts(&self) -> (Kind, Value, &Destination) {
         match *self {
             Self::KnotAndCables { rings, sides, cables, cable_segments, ref destination } => {
-                let options = KnotAndCables::default()
-                    .with_rings(rings)
-                    .with_sides(sides)
-                    .with_cables(cables)
-                    .with_cable_segments(cable_segments);
+                let options = KnotAndCables { rings, sides, cables, cable_segments };
                 let json =
                     json!({ "rings": rings, "sides": sides, "cables": cables, "cable_segments": cable_segments });
                 (Kind::KnotAndCables(options), json, destination)
             }
             Self::TorusKnot { p, q, rings, sides, tube_radius, ref destination } => {
-                let options = TorusKnot::default()
-                    .with_windings(p, q)
-                    .with_rings(rings)
-                    .with_sides(sides)
-                    .with_tube_radius(tube_radius);
+                let options = TorusKnot { p, q, rings, sides, tube_radius };
                 let json = json!({ "p": p, "q": q, "rings": rings, "sides": sides, "tube_radius": tube_radius });
                 (Kind::TorusKnot(options), json, destination)
             }
             Self::SkewedGear { teeth, points, ref destination } => {
-                let options = SkewedGear::default().with_teeth(teeth).with_points(points);
+                let options = SkewedGear { teeth, points };
                 (Kind::SkewedGear(options), json!({ "teeth": teeth, "points": points }), destination)
             }
             Self::Sphere { meridians, bands, ref destination } => {
-                let options = Sphere::default().with_meridians(meridians).with_bands(bands);
+                let options = Sphere { meridians, bands };
                 (Kind::Sphere(options), json!({ "meridians": meridians, "bands": bands }), destination)
             }
             Self::IcoSphere { frequency, ref destination } => {
-                let options = IcoSphere::default().with_frequency(frequency);
+                let options = IcoSphere { frequency };
                 (Kind::IcoSphere(options), json!({ "frequency": frequency }), destination)
             }
             Self::Cone { sides, bands, cap_bands, ref destination } => {
-                let options = Cone::default().with_sides(sides).with_bands(bands).with_cap_bands(cap_bands);
+                let options = Cone { sides, bands, cap_bands };
                 let json = json!({ "sides": sides, "bands": bands, "cap_bands": cap_bands });
                 (Kind::Cone(options), json, destination)
             }
             Self::Cylinder { sides, bands, cap_bands, ref destination } => {
-                let options = Cylinder::default().with_sides(sides).with_bands(bands).with_cap_bands(cap_bands);
+                let options = Cylinder { sides, bands, cap_bands };
                 let json = json!({ "sides": sides, "bands": bands, "cap_bands": cap_bands });
                 (Kind::Cylinder(options), json, destination)
             }
             Self::CableBundle { strands, segments, twists, radius, ref destination } => {
-                let options = CableBundle::default()
-                    .with_strands(strands)
-                    .with_segments(segments)
-                    .with_twists(twists)
-                    .with_radius(radius);
+                let options = CableBundle { strands, segments, twists, radius };
                 let json = json!({ "strands": strands, "segments": segments, "twists": twists, "radius": radius });
                 (Kind::CableBundle(options), json, destination)
             }
             Self::MixedSizes { triangles, segments, points, decades, seed, ref destination } => {
-                let options = MixedSizes::default()
-                    .with_triangles(triangles)
-                    .with_segments(segments)
-                    .with_points(points)
-                    .with_decades(decades)
-                    .with_seed(seed);
+                let options = MixedSizes { triangles, segments, points, decades, seed };
                 let json = json!({
                     "triangles": triangles, "segments": segments, "points": points, "decades": decades, "seed": seed
                 });

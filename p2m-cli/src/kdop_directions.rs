@@ -29,10 +29,9 @@ impl ValueEnum for KdopFaces {
             KdopDirections::Fourteen => ("14", "Boxes with their corners cut off"),
             KdopDirections::Eighteen => ("18", "Boxes with their edges cut off"),
             KdopDirections::TwentySix => ("26", "Boxes with their corners and edges cut off"),
-            KdopDirections::Scene => (
-                "scene",
-                "As many faces as the scene is worth, along the axes or rotated with it: the summary says which and why",
-            ),
+            KdopDirections::Scene => {
+                ("scene", "14 faces, along the axes or rotated with the scene: the summary says which and why")
+            }
         };
         Some(PossibleValue::new(name).help(help))
     }

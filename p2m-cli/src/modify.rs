@@ -67,10 +67,7 @@ impl Modifiers {
     fn changed(&self, streams: &Streams, mut scene: Scene) -> Result<Scene, GenerateError> {
         if let Some(levels) = self.subdivide {
             let _progress = Progress::start(streams, "subdividing", None, Unit::None);
-            let options = Subdivide::default()
-                .with_levels(levels)
-                .with_amplitude(self.displace.unwrap_or(0.0))
-                .with_seed(self.displace_seed);
+            let options = Subdivide { levels, amplitude: self.displace.unwrap_or(0.0), seed: self.displace_seed };
             let objects = subdivided_objects(&scene, levels);
             let soup = subdivide(&scene.soup, &options)?;
             scene = with_soup(&scene, soup, objects);

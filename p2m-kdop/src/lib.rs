@@ -38,8 +38,6 @@ mod direction_table;
 mod directions;
 mod kdop;
 mod lower_bound;
-#[cfg(test)]
-mod lower_bound_tests;
 mod moved_heights;
 mod node;
 mod options;
@@ -47,8 +45,7 @@ mod orientation;
 mod overlap;
 mod polytope;
 #[cfg(test)]
-mod ray_entries;
-mod trial;
+mod tests;
 mod volume;
 
 pub use direction_choice::DirectionChoice;

@@ -14,7 +14,7 @@ use p2m_testkit::{amount, is_deep};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn knot() -> Soup<f64> {
-    torus_knot(&TorusKnot::default().with_rings(60).with_sides(8)).expect("valid")
+    torus_knot(&TorusKnot { rings: 60, sides: 8, ..Default::default() }).expect("valid")
 }
 
 fn samples(grid: &Grid) -> impl Iterator<Item = Point3<f64>> + '_ {
@@ -183,7 +183,7 @@ fn signs_of_fields_are_those_of_single_answers() {
     let winding = SignedDistance::with_winding_numbers(tree(&soup), &soup, 0.01).expect("triangles");
     has_signs_of_answers(&soup, &winding, min_inside);
     // The sign of half a ball changes far from the surface where it is open, and is undefined in between.
-    let ball = ico_sphere(&IcoSphere::default().with_frequency(8)).expect("valid");
+    let ball = ico_sphere(&IcoSphere { frequency: 8 }).expect("valid");
     let is_low = |t: &[u32; 3]| t.iter().all(|i| ball.positions()[*i as usize].x <= 0.0);
     let half_ball = ball.triangles().iter().filter(|t| is_low(t)).copied().collect();
     let half_ball = Soup::from_triangles(ball.positions().to_vec(), half_ball).expect("valid");
@@ -259,7 +259,7 @@ fn grids_of_any_shape_are_filled() {
 
 #[test]
 fn refined_cells_tile_their_cube_and_follow_the_surface() {
-    let ball = ico_sphere(&IcoSphere::default().with_frequency(amount(16, 6))).expect("valid");
+    let ball = ico_sphere(&IcoSphere { frequency: amount(16, 6) }).expect("valid");
     let signed =
         SignedDistance::new(AabbTree::build(&ball, &Default::default()).expect("valid"), &ball).expect("closed");
     let distance = |sample: &Point3<f64>| signed.closest_point(sample).and_then(|s| s.distance()).expect("defined");

@@ -66,12 +66,12 @@ fn every_seed_and_everything_that_once_failed_passes() {
             let input = std::fs::read(&file).expect("readable");
             count += 1;
             if catch_unwind(AssertUnwindSafe(|| check(&input))).is_err() {
-                let source = match target {
-                    "queries" => queries::source(&input),
-                    "rays" => rays::source(&input),
+                let content = match target {
+                    "queries" => queries::describe(&input),
+                    "rays" => rays::describe(&input),
                     _ => String::new(),
                 };
-                eprintln!("{} fails\n{source}", file.display());
+                eprintln!("{} fails\n{content}", file.display());
                 failed.push(file);
             }
         }

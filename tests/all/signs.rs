@@ -239,7 +239,7 @@ fn what_is_no_closed_surface_is_refused() {
 
 #[test]
 fn every_backend_has_the_same_signs() {
-    let soup = torus_knot(&TorusKnot::default().with_rings(60).with_sides(8)).expect("valid");
+    let soup = torus_knot(&TorusKnot { rings: 60, sides: 8, ..Default::default() }).expect("valid");
     let aabb = SignedDistance::new(tree(&soup), &soup).expect("closed");
     let octree = OctreeIndex::build(&soup, &Default::default()).expect("valid");
     let octree = SignedDistance::new(octree, &soup).expect("closed");
@@ -269,7 +269,7 @@ fn is_near_analytic(name: &str, soup: &Soup<f64>, error: f64, analytic: impl Fn(
 
 #[test]
 fn distances_are_those_of_a_sphere_a_box_and_a_torus() {
-    let ball = ico_sphere(&IcoSphere::default().with_frequency(24)).expect("valid");
+    let ball = ico_sphere(&IcoSphere { frequency: 24 }).expect("valid");
     // The error is the largest height of the sphere above a face.
     let height = ball.triangles().iter().map(|t| {
         let sum: Vector3<f64> = t.iter().map(|i| ball.positions()[*i as usize].coords).sum();
@@ -310,7 +310,7 @@ fn distances_are_those_of_a_sphere_a_box_and_a_torus() {
 #[test]
 fn winding_numbers_are_within_their_bound() {
     let options = TorusKnot::default();
-    let options = amount(options, options.with_rings(60).with_sides(8));
+    let options = amount(options, TorusKnot { rings: 60, sides: 8, ..options });
     let knot = torus_knot(&options).expect("valid");
     let half_cube: Vec<[u32; 3]> =
         knot.triangles().iter().enumerate().filter(|(i, _)| i % 3 != 0).map(|(_, t)| *t).collect();

@@ -24,8 +24,8 @@ pub(crate) const COUNTERS: usize = 3;
 
 /// Returns a rough lump of 11,520 triangles, which is noisy like a scan and the same on every platform.
 fn scan() -> Soup<f64> {
-    let lump = ico_sphere(&IcoSphere::default().with_frequency(3)).expect("valid options");
-    subdivide(&lump, &Subdivide::default().with_levels(3).with_amplitude(0.15)).expect("valid options")
+    let lump = ico_sphere(&IcoSphere { frequency: 3 }).expect("valid options");
+    subdivide(&lump, &Subdivide { levels: 3, amplitude: 0.15, ..Default::default() }).expect("valid options")
 }
 
 /// Returns the scene of that name.

@@ -35,8 +35,8 @@ impl Models {
     /// Reads the model of that name.
     pub(super) fn read(&self, name: &str) -> Result<Scene> {
         let made = match name {
-            "torus knot" => torus_knot(&TorusKnot::default().with_rings(250).with_sides(15))?,
-            "cylinder" => cylinder(&Cylinder::default().with_sides(75).with_bands(25).with_cap_bands(12))?,
+            "torus knot" => torus_knot(&TorusKnot { rings: 250, sides: 15, ..Default::default() })?,
+            "cylinder" => cylinder(&Cylinder { sides: 75, bands: 25, cap_bands: 12 })?,
             _ => return Scene::read(&self.0.join(name)),
         };
         Scene::new(name.to_owned(), made)
@@ -49,7 +49,7 @@ impl Models {
             Resolution::Own => return Ok(model),
             Resolution::Coarsened(wanted) => coarsened(&model.double, wanted),
             Resolution::Subdivided(wanted) => {
-                let options = Subdivide::default().with_amplitude(AMPLITUDE);
+                let options = Subdivide { amplitude: AMPLITUDE, ..Default::default() };
                 subdivide(&coarsened(&model.double, wanted), &options)?
             }
         };
@@ -59,7 +59,7 @@ impl Models {
     /// Returns one surface in bad and in good triangles, about `wanted` of each and equally many.
     pub(super) fn pair(&self, name: &str, wanted: usize) -> Result<[Scene; 2]> {
         let surface = coarsened(&self.read(name)?.double, wanted / PARTS as usize);
-        let good = subdivide(&surface, &Subdivide::default().with_levels(PARTS.ilog(4)))?;
+        let good = subdivide(&surface, &Subdivide { levels: PARTS.ilog(4), ..Default::default() })?;
         let bad = fanned(&surface, PARTS);
         let name = stem(name);
         Ok([Scene::new(format!("{name}, bad"), bad)?, Scene::new(format!("{name}, good"), good)?])
@@ -112,8 +112,8 @@ pub(super) fn stem(name: &str) -> &str {
 /// Returns spheres of about `triangles` triangles: one of meridians and parallels, and a subdivided icosahedron.
 pub(super) fn spheres(triangles: u32) -> Result<[Scene; 2]> {
     let meridians = (triangles / 2).isqrt();
-    let lines = sphere(&Sphere::default().with_meridians(meridians).with_bands(meridians + 1))?;
-    let even = ico_sphere(&IcoSphere::default().with_frequency((triangles / 20).isqrt()))?;
+    let lines = sphere(&Sphere { meridians, bands: meridians + 1 })?;
+    let even = ico_sphere(&IcoSphere { frequency: (triangles / 20).isqrt() })?;
     Ok([Scene::new("sphere of meridians".to_owned(), lines)?, Scene::new("sphere of an icosahedron".to_owned(), even)?])
 }
 

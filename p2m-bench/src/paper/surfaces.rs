@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn coarse_surfaces_have_about_as_many_triangles_and_lie_where_they_did() {
-        let sphere = ico_sphere(&IcoSphere::default().with_frequency(amount(40, 12))).unwrap();
+        let sphere = ico_sphere(&IcoSphere { frequency: amount(40, 12) }).unwrap();
         assert_eq!(sphere.len(), amount(32_000, 2_880));
         for wanted in amount(vec![500, 4_000, 16_000], vec![300, 1_000]) {
             let coarse = coarsened(&sphere, wanted);
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn fans_are_the_same_surface_in_bad_triangles() {
-        let sphere = ico_sphere(&IcoSphere::default().with_frequency(4)).unwrap();
+        let sphere = ico_sphere(&IcoSphere { frequency: 4 }).unwrap();
         let fans = fanned(&sphere, 16);
         assert_eq!(fans.len(), 16 * sphere.len());
         assert!((area(&fans) / area(&sphere) - 1.0).abs() < 1e-12);

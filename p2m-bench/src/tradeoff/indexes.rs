@@ -239,7 +239,7 @@ mod tests {
 
     #[test]
     fn every_backend_is_built_and_queried() {
-        let soup = knot_and_cables(&KnotAndCables::default().with_rings(30)).unwrap();
+        let soup = knot_and_cables(&KnotAndCables { rings: 30, ..Default::default() }).unwrap();
         let scene = Scene::new("knot".to_owned(), soup).unwrap();
         let (indexes, notes) = build_all(&scene, 1);
         assert_eq!((indexes.len(), notes.len()), (ALL.len(), 0), "{notes:?}");

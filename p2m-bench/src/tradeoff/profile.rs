@@ -135,7 +135,7 @@ fn generated(name: &str) -> Result<Scene> {
 pub(super) fn knot_of(triangles: u32) -> Result<Scene> {
     // The default knot has about 16 times as many rings as sides, and two triangles for each ring and side.
     let sides = (triangles / 32).isqrt().max(3);
-    let soup = torus_knot(&TorusKnot::default().with_rings(triangles / 2 / sides).with_sides(sides))?;
+    let soup = torus_knot(&TorusKnot { rings: triangles / 2 / sides, sides, ..Default::default() })?;
     Scene::new(format!("torus knot of {}", soup.triangles().len()), soup)
 }
 

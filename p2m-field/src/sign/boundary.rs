@@ -89,7 +89,7 @@ mod tests {
     fn winding_numbers_change_by_at_most_the_bound_of_the_boundary() {
         let knot = torus_knot(&TorusKnot::default()).expect("valid");
         assert!(Boundary::new(&knot).expect("valid").is_empty());
-        let ball = ico_sphere(&IcoSphere::default().with_frequency(8)).expect("valid");
+        let ball = ico_sphere(&IcoSphere { frequency: 8 }).expect("valid");
         let low = |t: &[u32; 3]| t.iter().all(|i| ball.positions()[*i as usize].x <= 0.0);
         let half = ball.triangles().iter().filter(|t| low(t)).copied().collect();
         let half = Soup::from_triangles(ball.positions().to_vec(), half).expect("valid");

@@ -10,11 +10,10 @@ use p2m_core::{Element, Soup};
 /// ```
 /// use p2m_mixed::generate::{CableBundle, cable_bundle};
 ///
-/// let bundle = cable_bundle(&CableBundle::default().with_strands(7).with_segments(100)).unwrap();
+/// let bundle = cable_bundle(&CableBundle { strands: 7, segments: 100, ..Default::default() }).unwrap();
 /// assert_eq!((bundle.positions().len(), bundle.segments().len()), (707, 700));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct CableBundle {
     /// The number of strands, at least 1.
     pub strands: u32,
@@ -29,29 +28,6 @@ pub struct CableBundle {
 impl Default for CableBundle {
     fn default() -> Self {
         Self { strands: 64, segments: 256, twists: 12.0, radius: 0.3 }
-    }
-}
-
-impl CableBundle {
-    /// Sets the number of strands.
-    #[must_use]
-    pub fn with_strands(self, strands: u32) -> Self {
-        Self { strands, ..self }
-    }
-    /// Sets the number of segments in a strand.
-    #[must_use]
-    pub fn with_segments(self, segments: u32) -> Self {
-        Self { segments, ..self }
-    }
-    /// Sets the number of turns of the bundle about itself.
-    #[must_use]
-    pub fn with_twists(self, twists: f64) -> Self {
-        Self { twists, ..self }
-    }
-    /// Sets the radius of the bundle.
-    #[must_use]
-    pub fn with_radius(self, radius: f64) -> Self {
-        Self { radius, ..self }
     }
 }
 

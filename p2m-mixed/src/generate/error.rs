@@ -7,7 +7,7 @@ use p2m_core::{BuildError, PrimitiveId};
 /// ```
 /// use p2m_mixed::generate::{GenerateError, TorusKnot, torus_knot};
 ///
-/// let error = torus_knot(&TorusKnot::default().with_rings(2)).unwrap_err();
+/// let error = torus_knot(&TorusKnot { rings: 2, ..Default::default() }).unwrap_err();
 /// assert_eq!(error, GenerateError::TooFew { option: "rings", value: 2, least: 3 });
 /// assert_eq!(error.to_string(), "rings is 2, but must be at least 3");
 /// ```

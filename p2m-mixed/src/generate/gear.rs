@@ -11,13 +11,12 @@ use p2m_core::{Element, Soup};
 /// ```
 /// use p2m_mixed::generate::{SkewedGear, Transform, skewed_gear};
 ///
-/// let gear = skewed_gear(&SkewedGear::default().with_points(37)).unwrap();
+/// let gear = skewed_gear(&SkewedGear { points: 37, ..Default::default() }).unwrap();
 /// assert_eq!((gear.positions().len(), gear.triangles().len()), (19 * 37 * 4, 19 * 37 * 8));
 /// let turned = Transform::default().rotated_x(45.0).rotated_y(45.0).apply(&gear).unwrap();
 /// assert_eq!(turned.triangles(), gear.triangles());
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct SkewedGear {
     /// The number of teeth, at least 3.
     pub teeth: u32,
@@ -28,19 +27,6 @@ pub struct SkewedGear {
 impl Default for SkewedGear {
     fn default() -> Self {
         Self { teeth: 19, points: 373 }
-    }
-}
-
-impl SkewedGear {
-    /// Sets the number of teeth.
-    #[must_use]
-    pub fn with_teeth(self, teeth: u32) -> Self {
-        Self { teeth, ..self }
-    }
-    /// Sets the number of points of the outline for each tooth.
-    #[must_use]
-    pub fn with_points(self, points: u32) -> Self {
-        Self { points, ..self }
     }
 }
 

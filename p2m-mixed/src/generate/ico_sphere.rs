@@ -10,11 +10,10 @@ use p2m_core::Soup;
 /// use p2m_mixed::generate::{IcoSphere, ico_sphere};
 ///
 /// // Two rounds of midpoint subdivision of the icosahedron.
-/// let ball = ico_sphere(&IcoSphere::default().with_frequency(4)).unwrap();
+/// let ball = ico_sphere(&IcoSphere { frequency: 4 }).unwrap();
 /// assert_eq!((ball.positions().len(), ball.triangles().len()), (162, 320));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct IcoSphere {
     /// The number of parts that each edge of the icosahedron is divided into, at least 1.
     pub frequency: u32,
@@ -23,14 +22,6 @@ pub struct IcoSphere {
 impl Default for IcoSphere {
     fn default() -> Self {
         Self { frequency: 24 }
-    }
-}
-
-impl IcoSphere {
-    /// Sets the number of parts that each edge of the icosahedron is divided into.
-    #[must_use]
-    pub fn with_frequency(self, frequency: u32) -> Self {
-        Self { frequency }
     }
 }
 

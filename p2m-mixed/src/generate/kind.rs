@@ -15,7 +15,7 @@ use p2m_core::Soup;
 ///     println!("{:16} {}", kind.name(), kind.description());
 /// }
 /// assert_eq!(Kind::from_name("sphere"), Some(Kind::Sphere(Sphere::default())));
-/// assert_eq!(Kind::Sphere(Sphere::default().with_bands(40)).generate().unwrap().triangles().len(), 6240);
+/// assert_eq!(Kind::Sphere(Sphere { bands: 40, ..Default::default() }).generate().unwrap().triangles().len(), 6240);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]

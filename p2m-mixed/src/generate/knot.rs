@@ -15,11 +15,10 @@ const MINOR_RADIUS: f64 = 0.8;
 /// ```
 /// use p2m_mixed::generate::{TorusKnot, torus_knot};
 ///
-/// let knot = torus_knot(&TorusKnot::default().with_windings(3, 5).with_tube_radius(0.2)).unwrap();
+/// let knot = torus_knot(&TorusKnot { p: 3, q: 5, tube_radius: 0.2, ..Default::default() }).unwrap();
 /// assert_eq!((knot.positions().len(), knot.triangles().len()), (6000, 12_000));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct TorusKnot {
     /// The number of turns of the knot around the axis of its torus.
     pub p: u32,
@@ -37,29 +36,6 @@ pub struct TorusKnot {
 impl Default for TorusKnot {
     fn default() -> Self {
         Self { p: 2, q: 3, rings: 300, sides: 20, tube_radius: 0.3 }
-    }
-}
-
-impl TorusKnot {
-    /// Sets the turns `p` around the axis of the torus and `q` around its tube.
-    #[must_use]
-    pub fn with_windings(self, p: u32, q: u32) -> Self {
-        Self { p, q, ..self }
-    }
-    /// Sets the number of rings.
-    #[must_use]
-    pub fn with_rings(self, rings: u32) -> Self {
-        Self { rings, ..self }
-    }
-    /// Sets the number of vertices in a ring.
-    #[must_use]
-    pub fn with_sides(self, sides: u32) -> Self {
-        Self { sides, ..self }
-    }
-    /// Sets the radius of the tube.
-    #[must_use]
-    pub fn with_tube_radius(self, tube_radius: f64) -> Self {
-        Self { tube_radius, ..self }
     }
 }
 

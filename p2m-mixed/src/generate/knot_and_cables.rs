@@ -11,11 +11,10 @@ use p2m_core::{BuildError, Element, Soup};
 /// ```
 /// use p2m_mixed::generate::{KnotAndCables, knot_and_cables};
 ///
-/// let scene = knot_and_cables(&KnotAndCables::default().with_cables(2)).unwrap();
+/// let scene = knot_and_cables(&KnotAndCables { cables: 2, ..Default::default() }).unwrap();
 /// assert_eq!((scene.triangles().len(), scene.segments().len()), (3600, 192));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct KnotAndCables {
     /// The number of rings along the knot, at least 3.
     pub rings: u32,
@@ -30,29 +29,6 @@ pub struct KnotAndCables {
 impl Default for KnotAndCables {
     fn default() -> Self {
         Self { rings: 150, sides: 12, cables: 5, cable_segments: 96 }
-    }
-}
-
-impl KnotAndCables {
-    /// Sets the number of rings.
-    #[must_use]
-    pub fn with_rings(self, rings: u32) -> Self {
-        Self { rings, ..self }
-    }
-    /// Sets the number of vertices in a ring.
-    #[must_use]
-    pub fn with_sides(self, sides: u32) -> Self {
-        Self { sides, ..self }
-    }
-    /// Sets the number of cables.
-    #[must_use]
-    pub fn with_cables(self, cables: u32) -> Self {
-        Self { cables, ..self }
-    }
-    /// Sets the number of segments in a cable.
-    #[must_use]
-    pub fn with_cable_segments(self, cable_segments: u32) -> Self {
-        Self { cable_segments, ..self }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Triangles, segments and points of sizes over several orders of magnitude, distributed in a cube.
 
 use super::error::{GenerateError, capacity};
-use super::portable::{Random, power_of_a_tenth};
+use super::portable::Random;
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Element, Soup};
 
@@ -10,11 +10,10 @@ use p2m_core::{Element, Soup};
 /// ```
 /// use p2m_mixed::generate::{MixedSizes, mixed_sizes};
 ///
-/// let soup = mixed_sizes(&MixedSizes::default().with_points(10).with_decades(3.0)).unwrap();
+/// let soup = mixed_sizes(&MixedSizes { points: 10, decades: 3.0, ..Default::default() }).unwrap();
 /// assert_eq!((soup.triangles().len(), soup.segments().len(), soup.points().len()), (6000, 3000, 10));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct MixedSizes {
     /// The number of triangles.
     pub triangles: u32,
@@ -31,34 +30,6 @@ pub struct MixedSizes {
 impl Default for MixedSizes {
     fn default() -> Self {
         Self { triangles: 6000, segments: 3000, points: 1000, decades: 6.0, seed: 1 }
-    }
-}
-
-impl MixedSizes {
-    /// Sets the number of triangles.
-    #[must_use]
-    pub fn with_triangles(self, triangles: u32) -> Self {
-        Self { triangles, ..self }
-    }
-    /// Sets the number of segments.
-    #[must_use]
-    pub fn with_segments(self, segments: u32) -> Self {
-        Self { segments, ..self }
-    }
-    /// Sets the number of points.
-    #[must_use]
-    pub fn with_points(self, points: u32) -> Self {
-        Self { points, ..self }
-    }
-    /// Sets the orders of magnitude between the smallest and the largest size.
-    #[must_use]
-    pub fn with_decades(self, decades: f64) -> Self {
-        Self { decades, ..self }
-    }
-    /// Sets the seed of the random numbers.
-    #[must_use]
-    pub fn with_seed(self, seed: u64) -> Self {
-        Self { seed, ..self }
     }
 }
 
@@ -89,7 +60,7 @@ pub fn mixed_sizes(options: &MixedSizes) -> Result<Soup<f64>, GenerateError> {
     let [mut triangles, mut segments, mut points] = kinds;
     while triangles + segments + points > 0 {
         let centre = Point3::from(Vector3::from_fn(|_, _| 2.0 * random.unit() - 1.0));
-        let size = LARGEST_SIZE * power_of_a_tenth(decades * random.unit());
+        let size = LARGEST_SIZE * libm::exp10(-decades * random.unit());
         // Kinds are drawn without replacement, so the numbers of the options are met.
         let draw = random.below(triangles + segments + points);
         if draw < triangles {

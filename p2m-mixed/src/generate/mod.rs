@@ -2,14 +2,14 @@
 //!
 //! Each kind of scene has a function and a struct of options, and [`Kind`] lists them by name. [`Transform`],
 //! [`subdivide`], [`gapped`] and [`penetrating`] change any scene. Scenes are the same on every platform, bit for bit:
-//! the module has its own sines and random numbers, and tests compare each kind with a checksum.
+//! sines are those of the crate libm and random numbers those of ChaCha, and tests compare each kind with a checksum.
 //!
 //! ```
 //! use p2m_mixed::generate::{Kind, Subdivide, Transform, penetrating, subdivide};
 //!
 //! let gear = Kind::from_name("skewed-gear").unwrap().generate().unwrap();
 //! let gear = Transform::default().rotated_x(45.0).rotated_y(45.0).apply(&gear).unwrap();
-//! let rough = subdivide(&gear, &Subdivide::default().with_levels(2).with_amplitude(0.1)).unwrap();
+//! let rough = subdivide(&gear, &Subdivide { levels: 2, amplitude: 0.1, ..Default::default() }).unwrap();
 //! assert_eq!(rough.triangles().len(), 16 * 56_696);
 //! let burr = penetrating(&gear, 1.5).unwrap();
 //! assert_eq!(burr.positions().len(), 3 * 56_696);

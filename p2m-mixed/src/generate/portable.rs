@@ -1,13 +1,13 @@
-//! Sine, cosine, powers of ten and random numbers that are the same on every platform, bit for bit.
+//! Angles and random numbers that are the same on every platform, bit for bit.
 //!
-//! The mathematical libraries of platforms differ in their rounding. The functions here consist of additions,
-//! multiplications, divisions and square roots of f64 in a fixed order, which IEEE 754 determines to the last bit.
-//! `powi` and `mul_add` are not used. The error is a few units in the last place.
+//! The mathematical libraries of platforms differ in their rounding. Sines and cosines are therefore those of the crate
+//! libm, which consist of additions, multiplications and divisions of f64 in a fixed order. `powi` and `mul_add` are
+//! not used.
 
 use nalgebra::{Matrix3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, LN_2, LOG2_10};
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
 
 /// Sine and cosine of an angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +42,8 @@ impl SinCos {
     /// Returns sine and cosine in an octant. `rest` is the distance to the nearest axis in eighths of a turn, from
     /// 0 to 1.
     fn of_octant(octant: u64, rest: f64) -> Self {
-        let (s, c) = Self::near_zero(rest);
+        // The diagonal is a case of its own, so that both numbers are equal there.
+        let (s, c) = if rest < 1.0 { libm::sincos(rest * FRAC_PI_4) } else { (FRAC_1_SQRT_2, FRAC_1_SQRT_2) };
         let (sin, cos) = match octant {
             0 => (s, c),
             1 => (c, s),
@@ -56,24 +57,6 @@ impl SinCos {
         // The sum of -0 and 0 is 0.
         Self { sin: sin + 0.0, cos: cos + 0.0 }
     }
-
-    /// Returns sine and cosine by Taylor series, for eighths of a turn from 0 to 1. The remainder is below 1e-17.
-    fn near_zero(eighths: f64) -> (f64, f64) {
-        if eighths >= 1.0 {
-            return (FRAC_1_SQRT_2, FRAC_1_SQRT_2);
-        }
-        let x = eighths * FRAC_PI_4;
-        let y = x * x;
-        let series = |first: u32| {
-            let mut sum = 1.0;
-            for n in (1..=8).rev() {
-                let k = f64::from(2 * n + first);
-                sum = 1.0 - sum * y / (k * (k - 1.0));
-            }
-            sum
-        };
-        (x * series(1), series(0))
-    }
 }
 
 /// Returns the rotation by an angle in degrees about axis 0, 1 or 2, counter-clockwise if the axis points
@@ -85,21 +68,6 @@ pub(super) fn rotation(axis: usize, degrees: f64) -> Matrix3<f64> {
     (matrix[(a, a)], matrix[(a, b)]) = (cos, 0.0 - sin);
     (matrix[(b, a)], matrix[(b, b)]) = (sin, cos);
     matrix
-}
-
-/// Returns 10^-decades, for decades from 0 to 300.
-pub(super) fn power_of_a_tenth(decades: f64) -> f64 {
-    let bits = decades * LOG2_10;
-    let whole = bits.floor();
-    let x = (bits - whole) * LN_2;
-    // This is the series of e^-x for x below 0.7, whose remainder is below 1e-18.
-    let mut sum = 1.0;
-    for n in (1..=17).rev() {
-        sum = 1.0 - sum * x / f64::from(n);
-    }
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number from 0 to 997")]
-    let exponent = 1023 - whole as u64;
-    sum * f64::from_bits(exponent << 52)
 }
 
 /// Returns the upper 53 bits as a number from 0 inclusive to 1 exclusive.
@@ -211,13 +179,12 @@ mod tests {
     fn powers_of_a_tenth() {
         for decades in 0..=300 {
             let expected: f64 = format!("1e-{decades}").parse().unwrap();
-            let value = power_of_a_tenth(f64::from(decades));
-            // LOG2_10 is rounded, and so is its product with the decades.
+            let value = libm::exp10(-f64::from(decades));
             let bound = f64::from(decades + 1) * 5.0 * f64::EPSILON;
             assert!((value / expected - 1.0).abs() <= bound, "{decades}: {value}");
         }
-        assert_eq!(power_of_a_tenth(0.0), 1.0);
-        assert!((power_of_a_tenth(0.5) / 0.1f64.sqrt() - 1.0).abs() <= 5.0 * f64::EPSILON);
+        assert_eq!(libm::exp10(0.0), 1.0);
+        assert!((libm::exp10(-0.5) / 0.1f64.sqrt() - 1.0).abs() <= 5.0 * f64::EPSILON);
     }
 
     #[test]

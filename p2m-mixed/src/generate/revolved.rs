@@ -10,11 +10,10 @@ use p2m_core::Soup;
 /// ```
 /// use p2m_mixed::generate::{Sphere, sphere};
 ///
-/// let ball = sphere(&Sphere::default().with_meridians(24).with_bands(10)).unwrap();
+/// let ball = sphere(&Sphere { meridians: 24, bands: 10 }).unwrap();
 /// assert_eq!((ball.positions().len(), ball.triangles().len()), (24 * 9 + 2, 2 * 24 * 9));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Sphere {
     /// The number of vertices of each parallel, at least 3.
     pub meridians: u32,
@@ -28,29 +27,15 @@ impl Default for Sphere {
     }
 }
 
-impl Sphere {
-    /// Sets the number of meridians.
-    #[must_use]
-    pub fn with_meridians(self, meridians: u32) -> Self {
-        Self { meridians, ..self }
-    }
-    /// Sets the number of bands.
-    #[must_use]
-    pub fn with_bands(self, bands: u32) -> Self {
-        Self { bands, ..self }
-    }
-}
-
 /// Options of [`cone`]. The default makes 12,400 triangles.
 ///
 /// ```
 /// use p2m_mixed::generate::{Cone, cone};
 ///
-/// let cone = cone(&Cone::default().with_sides(6).with_bands(1).with_cap_bands(1)).unwrap();
+/// let cone = cone(&Cone { sides: 6, bands: 1, cap_bands: 1 }).unwrap();
 /// assert_eq!((cone.positions().len(), cone.triangles().len()), (8, 12));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Cone {
     /// The number of vertices around the axis, at least 3.
     pub sides: u32,
@@ -66,34 +51,15 @@ impl Default for Cone {
     }
 }
 
-impl Cone {
-    /// Sets the number of vertices around.
-    #[must_use]
-    pub fn with_sides(self, sides: u32) -> Self {
-        Self { sides, ..self }
-    }
-    /// Sets the number of bands of the slope.
-    #[must_use]
-    pub fn with_bands(self, bands: u32) -> Self {
-        Self { bands, ..self }
-    }
-    /// Sets the number of rings of triangles of the base.
-    #[must_use]
-    pub fn with_cap_bands(self, cap_bands: u32) -> Self {
-        Self { cap_bands, ..self }
-    }
-}
-
 /// Options of [`cylinder`]. The default makes 12,200 triangles.
 ///
 /// ```
 /// use p2m_mixed::generate::{Cylinder, cylinder};
 ///
-/// let can = cylinder(&Cylinder::default().with_sides(6).with_bands(1).with_cap_bands(1)).unwrap();
+/// let can = cylinder(&Cylinder { sides: 6, bands: 1, cap_bands: 1 }).unwrap();
 /// assert_eq!((can.positions().len(), can.triangles().len()), (14, 24));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Cylinder {
     /// The number of vertices around the axis, at least 3.
     pub sides: u32,
@@ -106,24 +72,6 @@ pub struct Cylinder {
 impl Default for Cylinder {
     fn default() -> Self {
         Self { sides: 100, bands: 32, cap_bands: 15 }
-    }
-}
-
-impl Cylinder {
-    /// Sets the number of vertices around.
-    #[must_use]
-    pub fn with_sides(self, sides: u32) -> Self {
-        Self { sides, ..self }
-    }
-    /// Sets the number of bands of the wall.
-    #[must_use]
-    pub fn with_bands(self, bands: u32) -> Self {
-        Self { bands, ..self }
-    }
-    /// Sets the number of rings of triangles of each cap.
-    #[must_use]
-    pub fn with_cap_bands(self, cap_bands: u32) -> Self {
-        Self { cap_bands, ..self }
     }
 }
 

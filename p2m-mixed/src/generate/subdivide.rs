@@ -13,12 +13,11 @@ use p2m_core::{BuildError, Element, Soup};
 /// ```
 /// use p2m_mixed::generate::{IcoSphere, Subdivide, ico_sphere, subdivide};
 ///
-/// let ball = ico_sphere(&IcoSphere::default().with_frequency(1)).unwrap();
-/// let rough = subdivide(&ball, &Subdivide::default().with_levels(3).with_amplitude(0.1)).unwrap();
+/// let ball = ico_sphere(&IcoSphere { frequency: 1 }).unwrap();
+/// let rough = subdivide(&ball, &Subdivide { levels: 3, amplitude: 0.1, ..Default::default() }).unwrap();
 /// assert_eq!((rough.positions().len(), rough.triangles().len()), (642, 20 * 64));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct Subdivide {
     /// The number of times that each triangle becomes four and each segment two.
     pub levels: u32,
@@ -32,24 +31,6 @@ pub struct Subdivide {
 impl Default for Subdivide {
     fn default() -> Self {
         Self { levels: 1, amplitude: 0.0, seed: 1 }
-    }
-}
-
-impl Subdivide {
-    /// Sets the number of levels.
-    #[must_use]
-    pub fn with_levels(self, levels: u32) -> Self {
-        Self { levels, ..self }
-    }
-    /// Sets the largest displacement as a fraction of the length of the edge.
-    #[must_use]
-    pub fn with_amplitude(self, amplitude: f64) -> Self {
-        Self { amplitude, ..self }
-    }
-    /// Sets the seed of the random numbers.
-    #[must_use]
-    pub fn with_seed(self, seed: u64) -> Self {
-        Self { seed, ..self }
     }
 }
 

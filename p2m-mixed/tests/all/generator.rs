@@ -19,7 +19,7 @@ fn the_committed_scene_is_what_the_generator_makes() {
 #[test]
 fn the_tube_is_closed_and_oriented_outwards() {
     for (rings, sides) in [(3, 3), (40, 5), (150, 12)] {
-        let options = KnotAndCables::default().with_rings(rings).with_sides(sides).with_cables(0);
+        let options = KnotAndCables { rings, sides, cables: 0, ..Default::default() };
         let soup = knot_and_cables(&options).unwrap();
         assert_eq!(soup.triangles().len(), 2 * (rings * sides) as usize);
         let mut edges = HashMap::new();
@@ -39,7 +39,7 @@ fn the_tube_is_closed_and_oriented_outwards() {
 
 #[test]
 fn cables_are_polylines_apart_from_the_tube() {
-    let options = KnotAndCables::default().with_rings(3).with_sides(3).with_cables(4).with_cable_segments(10);
+    let options = KnotAndCables { rings: 3, sides: 3, cables: 4, cable_segments: 10 };
     let soup = knot_and_cables(&options).unwrap();
     let segments: Vec<_> =
         soup.elements().filter_map(|e| if let Element::Segment(s) = e { Some(s) } else { None }).collect();
@@ -48,5 +48,5 @@ fn cables_are_polylines_apart_from_the_tube() {
         assert!(cable.windows(2).all(|pair| pair[0][1] == pair[1][0]));
     }
     assert!(soup.positions().iter().flat_map(|p| p.iter()).all(|x| x.abs() < 4.0));
-    assert!(knot_and_cables(&KnotAndCables::default().with_rings(1 << 20).with_sides(1 << 20)).is_err());
+    assert!(knot_and_cables(&KnotAndCables { rings: 1 << 20, sides: 1 << 20, ..Default::default() }).is_err());
 }

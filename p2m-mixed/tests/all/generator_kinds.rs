@@ -30,14 +30,14 @@ fn each_kind_is_the_same_as_ever() {
     let checksums = Kind::all().map(|kind| (kind.name(), checksum(&kind.generate().unwrap())));
     let expected = [
         ("knot-and-cables", 0x8921_74f1_6f8b_6b57),
-        ("torus-knot", 0xa83b_52da_06aa_4635),
-        ("skewed-gear", 0x5f56_6617_8718_284c),
-        ("sphere", 0x39c2_0579_b47f_6fc5),
+        ("torus-knot", 0xeb93_ff82_5b77_6d45),
+        ("skewed-gear", 0x01a9_c204_168b_cd33),
+        ("sphere", 0x433b_2f68_0f02_5c05),
         ("ico-sphere", 0x9661_7bf3_e6d3_d539),
-        ("cone", 0xf6a7_af30_7b22_9ec6),
-        ("cylinder", 0x6b50_5345_d58c_7007),
-        ("cable-bundle", 0xff12_fa68_1672_351a),
-        ("mixed-sizes", 0x7b96_ce3d_6415_6e13),
+        ("cone", 0xab8d_47a1_f527_b9c6),
+        ("cylinder", 0xbae2_d097_8132_ef67),
+        ("cable-bundle", 0xe11e_8f09_144d_f9e9),
+        ("mixed-sizes", 0x131e_b872_ddb9_df80),
     ];
     assert_eq!(checksums, expected, "{checksums:#x?}");
 }
@@ -56,8 +56,7 @@ fn torus_knots_are_closed_tubes() {
     for (p, q, rings, sides) in
         [(2, 3, 300, 20), (3, 2, 301, 7), (1, 0, 50, 3), (0, 1, 50, 4), (1, 1, 60, 5), (5, 8, 900, 6)]
     {
-        let options =
-            TorusKnot::default().with_windings(p, q).with_rings(rings).with_sides(sides).with_tube_radius(0.1);
+        let options = TorusKnot { p, q, rings, sides, tube_radius: 0.1 };
         let knot = torus_knot(&options).unwrap();
         assert_closed(&knot, 0, 2 * rings * sides);
         // Without self-intersection, the volume is that of the cross-section times the length of the centre line.
@@ -75,15 +74,15 @@ fn torus_knots_are_closed_tubes() {
         assert!(relative.abs() < angle, "({p}, {q}): {relative}");
     }
     for (rings, sides) in [(3, 3), (4, 3)] {
-        let knot = torus_knot(&TorusKnot::default().with_rings(rings).with_sides(sides)).unwrap();
+        let knot = torus_knot(&TorusKnot { rings, sides, ..Default::default() }).unwrap();
         assert_eq!((assert_watertight(&knot), knot.triangles().len()), (0, 2 * (rings * sides) as usize));
     }
 }
 
 #[test]
 fn the_torus_knot_is_that_of_the_scene_with_cables_before_rounding() {
-    let knot = torus_knot(&TorusKnot::default().with_rings(150).with_sides(12)).unwrap();
-    let rounded = knot_and_cables(&KnotAndCables::default().with_cables(0)).unwrap();
+    let knot = torus_knot(&TorusKnot { rings: 150, sides: 12, ..Default::default() }).unwrap();
+    let rounded = knot_and_cables(&KnotAndCables { cables: 0, ..Default::default() }).unwrap();
     assert_eq!(knot.triangles(), rounded.triangles());
     for (p, q) in knot.positions().iter().zip(rounded.positions()) {
         assert!((p - q).amax() <= 0.5e-5 + 4.0 * f64::EPSILON, "{p} {q}");
@@ -93,7 +92,7 @@ fn the_torus_knot_is_that_of_the_scene_with_cables_before_rounding() {
 #[test]
 fn gears_are_closed_and_have_a_bore() {
     for (teeth, points) in [(19, 373), (3, 4), (24, 5), (40, 60)] {
-        let gear = skewed_gear(&SkewedGear::default().with_teeth(teeth).with_points(points)).unwrap();
+        let gear = skewed_gear(&SkewedGear { teeth, points }).unwrap();
         assert_closed(&gear, 0, 8 * teeth * points);
         assert_eq!(gear.positions().len(), 4 * (teeth * points) as usize);
         assert!(gear.positions().iter().all(|p| p.z == 0.0 || p.z == 24.0), "faces are planar");
@@ -135,7 +134,7 @@ fn assert_volume(soup: &Soup<f64>, expected: f64) {
 #[test]
 fn spheres_are_closed_and_round() {
     for (meridians, bands) in [(80, 79), (3, 2), (4, 3), (7, 40), (200, 5)] {
-        let ball = sphere(&Sphere::default().with_meridians(meridians).with_bands(bands)).unwrap();
+        let ball = sphere(&Sphere { meridians, bands }).unwrap();
         assert_closed(&ball, 2, 2 * meridians * (bands - 1));
         assert!(ball.positions().iter().all(|p| (p.coords.norm() - 1.0).abs() <= 4.0 * f64::EPSILON));
         let latitude = |i| PI * f64::from(i) / f64::from(bands);
@@ -148,12 +147,12 @@ fn spheres_are_closed_and_round() {
 #[test]
 fn cones_and_cylinders_are_closed_with_their_caps() {
     for (sides, bands, cap_bands) in [(100, 43, 20), (3, 1, 1), (5, 1, 4), (8, 6, 1)] {
-        let options = Cone::default().with_sides(sides).with_bands(bands).with_cap_bands(cap_bands);
+        let options = Cone { sides, bands, cap_bands };
         let solid = cone(&options).unwrap();
         assert_closed(&solid, 2, sides * (2 * bands + 2 * cap_bands - 2));
         assert_volume(&solid, polygon(sides) * 2.0 / 3.0);
 
-        let options = Cylinder::default().with_sides(sides).with_bands(bands).with_cap_bands(cap_bands);
+        let options = Cylinder { sides, bands, cap_bands };
         let solid = cylinder(&options).unwrap();
         assert_closed(&solid, 2, sides * (2 * bands + 4 * cap_bands - 2));
         assert_volume(&solid, polygon(sides) * 2.0);
@@ -164,7 +163,7 @@ fn cones_and_cylinders_are_closed_with_their_caps() {
 fn ico_spheres_are_closed_round_and_even() {
     let mut missing = Vec::new();
     for frequency in [1, 2, 3, 4, 5, 8, 16, 24] {
-        let ball = ico_sphere(&IcoSphere::default().with_frequency(frequency)).unwrap();
+        let ball = ico_sphere(&IcoSphere { frequency }).unwrap();
         assert_closed(&ball, 2, 20 * frequency * frequency);
         assert_eq!(ball.positions().len(), (10 * frequency * frequency + 2) as usize);
         assert!(ball.positions().iter().all(|p| (p.coords.norm() - 1.0).abs() <= 4.0 * f64::EPSILON));
@@ -183,7 +182,7 @@ fn ico_spheres_are_closed_round_and_even() {
 #[test]
 fn bundles_are_polylines() {
     for (strands, segments) in [(64, 256), (1, 1), (3, 50)] {
-        let options = CableBundle::default().with_strands(strands).with_segments(segments);
+        let options = CableBundle { strands, segments, ..Default::default() };
         let bundle = cable_bundle(&options).unwrap();
         assert_eq!(bundle.len(), (strands * segments) as usize);
         assert_eq!(bundle.segments().len(), bundle.len());
@@ -201,9 +200,9 @@ fn bundles_are_polylines() {
 
 #[test]
 fn strands_stay_within_the_radius_of_the_first_one() {
-    let options = CableBundle::default().with_strands(20).with_segments(40).with_radius(0.25);
+    let options = CableBundle { strands: 20, segments: 40, radius: 0.25, ..Default::default() };
     let bundle = cable_bundle(&options).unwrap();
-    let straight = cable_bundle(&options.with_twists(0.0)).unwrap();
+    let straight = cable_bundle(&CableBundle { twists: 0.0, ..options }).unwrap();
     let (mut far, mut turned) = (0.0f64, 0);
     for step in 0..=40 {
         let centre: nalgebra::Vector3<f64> =
@@ -228,7 +227,7 @@ fn segment_sizes(soup: &Soup<f64>) -> Vec<f64> {
 
 #[test]
 fn sizes_have_a_uniform_logarithm() {
-    let options = MixedSizes::default().with_segments(12_000);
+    let options = MixedSizes { segments: 12_000, ..Default::default() };
     let soup = mixed_sizes(&options).unwrap();
     let mut decades = [0; 6];
     for size in segment_sizes(&soup) {
@@ -241,18 +240,14 @@ fn sizes_have_a_uniform_logarithm() {
         let [a, b, c] = corners(&soup, [a, b, c]);
         assert!((b - a).norm().max((c - a).norm()).max((c - b).norm()) <= 1.0);
     }
-    let equal = segment_sizes(&mixed_sizes(&options.with_decades(0.0)).unwrap());
+    let equal = segment_sizes(&mixed_sizes(&MixedSizes { decades: 0.0, ..options }).unwrap());
     assert!(equal.iter().all(|size| (size - 0.5).abs() < 1e-15), "without decades, all have the same size");
 }
 
 #[test]
 fn kinds_are_mixed_in_random_order_and_counts_are_exact() {
     for (triangles, segments, points) in [(6000, 3000, 1000), (0, 5, 0), (1, 0, 70), (0, 0, 0)] {
-        let options = MixedSizes::default()
-            .with_triangles(triangles)
-            .with_segments(segments)
-            .with_points(points)
-            .with_decades(12.0);
+        let options = MixedSizes { triangles, segments, points, decades: 12.0, ..Default::default() };
         let soup = mixed_sizes(&options).unwrap();
         let counts = [soup.triangles().len(), soup.segments().len(), soup.points().len()];
         assert_eq!(counts, [triangles, segments, points].map(|n| n as usize));
@@ -273,7 +268,7 @@ fn kinds_are_mixed_in_random_order_and_counts_are_exact() {
         let count = soup.points().iter().filter(inside).count();
         assert!((90..160).contains(&count), "octant {octant}: {count} of 1000 points");
     }
-    assert_ne!(checksum(&soup), checksum(&mixed_sizes(&MixedSizes::default().with_seed(2)).unwrap()));
+    assert_ne!(checksum(&soup), checksum(&mixed_sizes(&MixedSizes { seed: 2, ..Default::default() }).unwrap()));
 }
 
 #[test]
@@ -281,21 +276,21 @@ fn options_out_of_range_are_errors() {
     fn few(option: &'static str, value: u32, least: u32) -> Result<Soup<f64>, GenerateError> {
         Err(GenerateError::TooFew { option, value, least })
     }
-    assert_eq!(torus_knot(&TorusKnot::default().with_rings(2)), few("rings", 2, 3));
-    assert_eq!(torus_knot(&TorusKnot::default().with_sides(2)), few("sides", 2, 3));
-    assert_eq!(skewed_gear(&SkewedGear::default().with_teeth(2)), few("teeth", 2, 3));
-    assert_eq!(skewed_gear(&SkewedGear::default().with_points(3)), few("points", 3, 4));
-    assert_eq!(sphere(&Sphere::default().with_meridians(2)), few("meridians", 2, 3));
-    assert_eq!(sphere(&Sphere::default().with_bands(1)), few("bands", 1, 2));
-    assert_eq!(cone(&Cone::default().with_sides(2)), few("sides", 2, 3));
-    assert_eq!(cone(&Cone::default().with_bands(0)), few("bands", 0, 1));
-    assert_eq!(cylinder(&Cylinder::default().with_cap_bands(0)), few("cap bands", 0, 1));
-    assert_eq!(ico_sphere(&IcoSphere::default().with_frequency(0)), few("frequency", 0, 1));
-    assert_eq!(cable_bundle(&CableBundle::default().with_strands(0)), few("strands", 0, 1));
-    assert_eq!(cable_bundle(&CableBundle::default().with_segments(0)), few("segments", 0, 1));
+    assert_eq!(torus_knot(&TorusKnot { rings: 2, ..Default::default() }), few("rings", 2, 3));
+    assert_eq!(torus_knot(&TorusKnot { sides: 2, ..Default::default() }), few("sides", 2, 3));
+    assert_eq!(skewed_gear(&SkewedGear { teeth: 2, ..Default::default() }), few("teeth", 2, 3));
+    assert_eq!(skewed_gear(&SkewedGear { points: 3, ..Default::default() }), few("points", 3, 4));
+    assert_eq!(sphere(&Sphere { meridians: 2, ..Default::default() }), few("meridians", 2, 3));
+    assert_eq!(sphere(&Sphere { bands: 1, ..Default::default() }), few("bands", 1, 2));
+    assert_eq!(cone(&Cone { sides: 2, ..Default::default() }), few("sides", 2, 3));
+    assert_eq!(cone(&Cone { bands: 0, ..Default::default() }), few("bands", 0, 1));
+    assert_eq!(cylinder(&Cylinder { cap_bands: 0, ..Default::default() }), few("cap bands", 0, 1));
+    assert_eq!(ico_sphere(&IcoSphere { frequency: 0 }), few("frequency", 0, 1));
+    assert_eq!(cable_bundle(&CableBundle { strands: 0, ..Default::default() }), few("strands", 0, 1));
+    assert_eq!(cable_bundle(&CableBundle { segments: 0, ..Default::default() }), few("segments", 0, 1));
 
     for (p, q) in [(2, 4), (0, 0), (0, 2), (3, 0), (15, 9)] {
-        let knot = torus_knot(&TorusKnot::default().with_windings(p, q));
+        let knot = torus_knot(&TorusKnot { p, q, ..Default::default() });
         assert_eq!(knot, Err(GenerateError::CommonDivisor { p, q }));
     }
     let range = |result: Result<Soup<f64>, GenerateError>| match result {
@@ -303,10 +298,10 @@ fn options_out_of_range_are_errors() {
         other => panic!("{other:?}"),
     };
     for bad in [f64::NAN, f64::INFINITY, -1e4] {
-        assert_eq!(range(torus_knot(&TorusKnot::default().with_tube_radius(bad))), "tube radius");
-        assert_eq!(range(cable_bundle(&CableBundle::default().with_twists(bad))), "twists");
-        assert_eq!(range(cable_bundle(&CableBundle::default().with_radius(bad))), "radius");
-        assert_eq!(range(mixed_sizes(&MixedSizes::default().with_decades(bad))), "decades");
+        assert_eq!(range(torus_knot(&TorusKnot { tube_radius: bad, ..Default::default() })), "tube radius");
+        assert_eq!(range(cable_bundle(&CableBundle { twists: bad, ..Default::default() })), "twists");
+        assert_eq!(range(cable_bundle(&CableBundle { radius: bad, ..Default::default() })), "radius");
+        assert_eq!(range(mixed_sizes(&MixedSizes { decades: bad, ..Default::default() })), "decades");
     }
 }
 
@@ -314,15 +309,15 @@ fn options_out_of_range_are_errors() {
 fn more_primitives_than_ids_are_errors_before_anything_is_made() {
     const MAX: u32 = u32::MAX;
     let kinds = [
-        Kind::KnotAndCables(KnotAndCables::default().with_rings(MAX).with_sides(MAX).with_cables(MAX)),
-        Kind::TorusKnot(TorusKnot::default().with_rings(MAX).with_sides(MAX)),
-        Kind::SkewedGear(SkewedGear::default().with_teeth(MAX).with_points(MAX)),
-        Kind::Sphere(Sphere::default().with_meridians(MAX).with_bands(MAX)),
-        Kind::Cone(Cone::default().with_sides(MAX).with_bands(MAX).with_cap_bands(MAX)),
-        Kind::Cylinder(Cylinder::default().with_sides(MAX).with_bands(MAX).with_cap_bands(MAX)),
-        Kind::IcoSphere(IcoSphere::default().with_frequency(MAX)),
-        Kind::CableBundle(CableBundle::default().with_strands(MAX).with_segments(MAX)),
-        Kind::MixedSizes(MixedSizes::default().with_triangles(MAX).with_segments(MAX).with_points(MAX)),
+        Kind::KnotAndCables(KnotAndCables { rings: MAX, sides: MAX, cables: MAX, ..Default::default() }),
+        Kind::TorusKnot(TorusKnot { rings: MAX, sides: MAX, ..Default::default() }),
+        Kind::SkewedGear(SkewedGear { teeth: MAX, points: MAX }),
+        Kind::Sphere(Sphere { meridians: MAX, bands: MAX }),
+        Kind::Cone(Cone { sides: MAX, bands: MAX, cap_bands: MAX }),
+        Kind::Cylinder(Cylinder { sides: MAX, bands: MAX, cap_bands: MAX }),
+        Kind::IcoSphere(IcoSphere { frequency: MAX }),
+        Kind::CableBundle(CableBundle { strands: MAX, segments: MAX, ..Default::default() }),
+        Kind::MixedSizes(MixedSizes { triangles: MAX, segments: MAX, points: MAX, ..Default::default() }),
     ];
     for kind in kinds {
         let result = kind.generate();

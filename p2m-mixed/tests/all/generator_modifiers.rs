@@ -12,7 +12,7 @@ use p2m_mixed::generate::{
 use std::collections::HashMap;
 
 fn ball(frequency: u32) -> Soup<f64> {
-    ico_sphere(&IcoSphere::default().with_frequency(frequency)).unwrap()
+    ico_sphere(&IcoSphere { frequency }).unwrap()
 }
 
 fn vertices(soup: &Soup<f64>, element: &Element) -> Vec<Point3<f64>> {
@@ -45,8 +45,9 @@ fn torn(soup: &Soup<f64>) -> Soup<f64> {
 
 #[test]
 fn each_change_is_the_same_as_ever() {
-    let scene = knot_and_cables(&KnotAndCables::default().with_rings(20).with_sides(5).with_cable_segments(7)).unwrap();
-    let options = Subdivide::default().with_levels(2).with_amplitude(0.2);
+    let scene =
+        knot_and_cables(&KnotAndCables { rings: 20, sides: 5, cable_segments: 7, ..Default::default() }).unwrap();
+    let options = Subdivide { levels: 2, amplitude: 0.2, ..Default::default() };
     let turned = Transform::default().rotated_x(45.0).rotated_y(45.0).rotated_z(-100.0).scaled(0.3);
     let checksums = [
         ("gapped", checksum(&gapped(&scene, 0.8).unwrap())),
@@ -99,7 +100,7 @@ fn is_below(triangle: &[Point3<f64>; 3], other: &[Point3<f64>; 3]) -> bool {
 
 #[test]
 fn gapped_triangles_of_a_convex_mesh_are_apart() {
-    let meshes = [ball(4), sphere(&Sphere::default().with_meridians(12).with_bands(9)).unwrap()];
+    let meshes = [ball(4), sphere(&Sphere { meridians: 12, bands: 9 }).unwrap()];
     for mesh in meshes {
         let touching = |soup: &Soup<f64>| {
             let all: Vec<_> = soup.triangles().iter().map(|&t| corners(soup, t)).collect();
@@ -127,7 +128,7 @@ fn separated_in_space(s: &[Point3<f64>; 3], t: &[Point3<f64>; 3]) -> bool {
 
 #[test]
 fn gapped_triangles_of_a_planar_mesh_are_apart() {
-    let can = cylinder(&Cylinder::default().with_sides(12).with_bands(1).with_cap_bands(4)).unwrap();
+    let can = cylinder(&Cylinder { sides: 12, bands: 1, cap_bands: 4 }).unwrap();
     let lid = |soup: &Soup<f64>| -> Vec<[[f64; 2]; 3]> {
         let all = soup.triangles().iter().map(|&t| corners(soup, t));
         all.filter(|t| t.iter().all(|p| p.z == 1.0)).map(|t| t.map(|p| [p.x, p.y])).collect()
@@ -192,7 +193,7 @@ fn penetrating_triangles_cross_all_their_neighbours() {
     assert_eq!(crossing(&torn(&mesh)), 0, "they touch, but do not cross");
 
     // Where a mesh is nearly planar, the predicates are not certain for all pairs.
-    let mesh = torus_knot(&TorusKnot::default().with_rings(60).with_sides(8)).unwrap();
+    let mesh = torus_knot(&TorusKnot { rings: 60, sides: 8, ..Default::default() }).unwrap();
     let pairs = neighbours(&mesh);
     let soup = penetrating(&mesh, 2.0).unwrap();
     let at = |i: usize| corners(&soup, soup.triangles()[i]);
@@ -216,12 +217,12 @@ fn factors_out_of_range_are_errors() {
 fn subdivision_keeps_meshes_closed() {
     let meshes = [
         (ball(2), 2),
-        (torus_knot(&TorusKnot::default().with_rings(30).with_sides(5)).unwrap(), 0),
-        (skewed_gear(&SkewedGear::default().with_points(4)).unwrap(), 0),
+        (torus_knot(&TorusKnot { rings: 30, sides: 5, ..Default::default() }).unwrap(), 0),
+        (skewed_gear(&SkewedGear { points: 4, ..Default::default() }).unwrap(), 0),
     ];
     for (mesh, characteristic) in meshes {
         for (levels, amplitude) in [(0, 0.3), (1, 0.0), (2, 0.1), (p2m_testkit::amount(4, 3), 0.05)] {
-            let options = Subdivide::default().with_levels(levels).with_amplitude(amplitude);
+            let options = Subdivide { levels, amplitude, ..Default::default() };
             let fine = subdivide(&mesh, &options).unwrap();
             assert_eq!(fine.triangles().len(), mesh.triangles().len() << (2 * levels));
             assert_eq!(assert_watertight(&fine), characteristic);
@@ -256,7 +257,7 @@ fn parts_follow_their_primitive_and_share_what_it_shares() {
 fn middles_move_by_up_to_the_amplitude_and_reach_far_into_it() {
     let amplitude = 0.25;
     let mesh = ball(6);
-    let fine = subdivide(&mesh, &Subdivide::default().with_amplitude(amplitude)).unwrap();
+    let fine = subdivide(&mesh, &Subdivide { amplitude, ..Default::default() }).unwrap();
     let plain = subdivide(&mesh, &Subdivide::default()).unwrap();
     let mut moved = Vec::new();
     for (i, &parent) in mesh.triangles().iter().enumerate() {
@@ -279,7 +280,8 @@ fn middles_move_by_up_to_the_amplitude_and_reach_far_into_it() {
 
 #[test]
 fn the_order_of_the_primitives_changes_no_position() {
-    let scene = knot_and_cables(&KnotAndCables::default().with_rings(24).with_sides(6).with_cable_segments(9)).unwrap();
+    let scene =
+        knot_and_cables(&KnotAndCables { rings: 24, sides: 6, cable_segments: 9, ..Default::default() }).unwrap();
     let mut elements: Vec<Element> = scene.elements().collect();
     elements.reverse();
     elements.rotate_left(77);
@@ -293,7 +295,7 @@ fn the_order_of_the_primitives_changes_no_position() {
         }
     }
     let shuffled = Soup::new(scene.positions().to_vec(), elements).unwrap();
-    let options = Subdivide::default().with_levels(3).with_amplitude(0.2);
+    let options = Subdivide { levels: 3, amplitude: 0.2, ..Default::default() };
     let [one, two] = [&scene, &shuffled].map(|soup| subdivide(soup, &options).unwrap());
     assert_eq!(one.positions(), two.positions());
     let sorted = |soup: &Soup<f64>| {
@@ -303,13 +305,13 @@ fn the_order_of_the_primitives_changes_no_position() {
         all
     };
     assert_eq!(sorted(&one), sorted(&two));
-    assert_ne!(one.positions(), subdivide(&scene, &options.with_seed(2)).unwrap().positions());
+    assert_ne!(one.positions(), subdivide(&scene, &Subdivide { seed: 2, ..options }).unwrap().positions());
 }
 
 #[test]
 fn triangles_without_shared_vertices_stay_joined() {
     let mesh = ball(3);
-    let options = Subdivide::default().with_levels(3).with_amplitude(0.2);
+    let options = Subdivide { levels: 3, amplitude: 0.2, ..Default::default() };
     let [shared, apart] = [mesh.clone(), torn(&mesh)].map(|soup| subdivide(&soup, &options).unwrap());
     assert!(apart.positions().len() > shared.positions().len());
     assert_eq!(geometry(&shared), geometry(&apart));
@@ -317,8 +319,8 @@ fn triangles_without_shared_vertices_stay_joined() {
 
 #[test]
 fn cables_stay_polylines() {
-    let bundle = cable_bundle(&CableBundle::default().with_strands(3).with_segments(5)).unwrap();
-    let fine = subdivide(&bundle, &Subdivide::default().with_levels(4).with_amplitude(0.3)).unwrap();
+    let bundle = cable_bundle(&CableBundle { strands: 3, segments: 5, ..Default::default() }).unwrap();
+    let fine = subdivide(&bundle, &Subdivide { levels: 4, amplitude: 0.3, ..Default::default() }).unwrap();
     assert_eq!(fine.segments().len(), 3 * 5 * 16);
     for strand in fine.segments().chunks(5 * 16) {
         assert!(strand.windows(2).all(|pair| pair[0][1] == pair[1][0]));
@@ -330,21 +332,21 @@ fn cables_stay_polylines() {
 fn scenes_of_any_scale_are_displaced_alike() {
     for scale in [1e-300, 1e-160, 1e200, 1e307] {
         let mesh = Transform::default().scaled(scale).apply(&ball(2)).unwrap();
-        let fine = subdivide(&mesh, &Subdivide::default().with_amplitude(0.25)).unwrap();
+        let fine = subdivide(&mesh, &Subdivide { amplitude: 0.25, ..Default::default() }).unwrap();
         let plain = subdivide(&mesh, &Subdivide::default()).unwrap();
         let moves = fine.positions().iter().zip(plain.positions()).map(|(p, q)| (p - q).amax() / scale);
         let longest = moves.fold(0.0, f64::max);
         assert!((0.1..0.2).contains(&longest), "{scale}: {longest}");
     }
     let origin = Soup::from_triangles(vec![Point3::new(1.0, 2.0, 3.0); 3], vec![[0, 1, 2]]).unwrap();
-    let parts = subdivide(&origin, &Subdivide::default().with_amplitude(0.5)).unwrap();
+    let parts = subdivide(&origin, &Subdivide { amplitude: 0.5, ..Default::default() }).unwrap();
     assert!(parts.positions().iter().all(|p| *p == Point3::new(1.0, 2.0, 3.0)), "no edge, no displacement");
 }
 
 #[test]
 fn subdivisions_with_too_many_primitives_are_errors() {
     let too_many = |scene: &Soup<f64>, levels| {
-        let result = subdivide(scene, &Subdivide::default().with_levels(levels));
+        let result = subdivide(scene, &Subdivide { levels, ..Default::default() });
         matches!(result, Err(GenerateError::Build(BuildError::TooMany { .. })))
     };
     let segment = Soup::new(vec![Point3::origin(); 2], [Element::Segment([0, 1])]).unwrap();
@@ -353,11 +355,11 @@ fn subdivisions_with_too_many_primitives_are_errors() {
     }
     assert!(too_many(&ball(1), 13));
     for bad in [-0.1, 0.6, f64::NAN] {
-        let result = subdivide(&segment, &Subdivide::default().with_amplitude(bad));
+        let result = subdivide(&segment, &Subdivide { amplitude: bad, ..Default::default() });
         assert!(matches!(result, Err(GenerateError::OutOfRange { option: "amplitude", .. })), "{bad}");
     }
-    let points = mixed_sizes(&MixedSizes::default().with_triangles(0).with_segments(0).with_points(5)).unwrap();
-    assert_eq!(subdivide(&points, &Subdivide::default().with_levels(u32::MAX)).unwrap(), points);
+    let points = mixed_sizes(&MixedSizes { triangles: 0, segments: 0, points: 5, ..Default::default() }).unwrap();
+    assert_eq!(subdivide(&points, &Subdivide { levels: u32::MAX, ..Default::default() }).unwrap(), points);
 }
 
 #[test]
@@ -377,7 +379,7 @@ fn steps_of_a_transform_follow_each_other() {
 
 #[test]
 fn rotations_keep_shapes() {
-    let gear = skewed_gear(&SkewedGear::default().with_points(20)).unwrap();
+    let gear = skewed_gear(&SkewedGear { points: 20, ..Default::default() }).unwrap();
     let turned = Transform::default().rotated_x(45.0).rotated_y(45.0).apply(&gear).unwrap();
     assert_eq!(turned.triangles(), gear.triangles());
     assert!((volume(&turned) / volume(&gear) - 1.0).abs() < 1e4 * f64::EPSILON);

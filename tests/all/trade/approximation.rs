@@ -214,7 +214,7 @@ fn slivers_side_by_side_keep_epsilon() {
 #[test]
 fn budgets_are_kept_and_pay() {
     let options = p2m::scene::generate::TorusKnot::default();
-    let options = amount(options, options.with_rings(60).with_sides(8));
+    let options = amount(options, p2m::scene::generate::TorusKnot { rings: 60, sides: 8, ..options });
     let soup = p2m::scene::generate::torus_knot(&options).expect("valid options");
     let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
     let octree = OctreeIndex::build(&soup, &Default::default()).expect("valid");
