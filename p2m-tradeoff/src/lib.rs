@@ -32,7 +32,6 @@
 #![forbid(unsafe_code)]
 
 mod backend;
-mod break_even;
 pub mod compare;
 mod csv;
 mod curve;
@@ -52,7 +51,6 @@ mod table;
 pub mod text;
 
 pub use backend::{Answer, AnswerQuery, Subject, WithCertificate, WithOptions, clock_nanoseconds};
-pub use break_even::{JobCost, break_even, cheapest, default_costs};
 pub use csv::{csv_line, csv_records};
 pub use curve::{Build, Curve, Latency, Point, SceneFigures, SetFigures};
 pub use error::{PlotError, RecordError};

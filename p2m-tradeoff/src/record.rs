@@ -86,7 +86,7 @@ pub fn record(provenance: &Provenance, scenes: &[SceneFigures], seed: u64, clock
                         p999,
                         max,
                         number(point.build.seconds),
-                        point.build.bytes_each.map_or_else(String::new, number),
+                        point.build.bytes_per_primitive.map_or_else(String::new, number),
                         provenance.command.clone(),
                     ];
                     let fields: Vec<String> = provenance.fields().into_iter().chain(fields).collect();
