@@ -1,24 +1,4 @@
-//! The errors of plots and records.
-
-/// The reason why a plot was not drawn.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum PlotError {
-    /// The plot has no point that its axes can show.
-    #[error("a plot without points")]
-    Empty,
-    /// The drawing library failed with this message.
-    #[error("cannot draw: {0}")]
-    Draw(String),
-    /// The file cannot be written.
-    #[error("{}: {error}", path.display())]
-    Write {
-        /// The path of the file.
-        path: std::path::PathBuf,
-        /// The error of the system.
-        error: std::io::Error,
-    },
-}
+//! The errors of records.
 
 /// The reason why a file of records cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
