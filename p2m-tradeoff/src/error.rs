@@ -4,25 +4,15 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// A quoted field does not end.
-    #[error("not comma-separated values")]
-    Syntax,
+    /// The file is not a table of comma-separated values, for this reason.
+    #[error("not comma-separated values: {0}")]
+    Syntax(String),
     /// The file has no records.
     #[error("no records")]
     Empty,
     /// A column is missing.
     #[error("no column {0}")]
     Column(&'static str),
-    /// A line has more or fewer fields than there are columns.
-    #[error("line {line} has {fields} fields in place of {columns}")]
-    Fields {
-        /// The number of the line; the head has number 1.
-        line: usize,
-        /// The number of fields of the line.
-        fields: usize,
-        /// The number of columns of the head.
-        columns: usize,
-    },
     /// A field is not a number.
     #[error("line {line}: {column} is not a number")]
     Number {

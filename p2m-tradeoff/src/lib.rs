@@ -33,7 +33,6 @@
 
 mod backend;
 pub mod compare;
-mod csv;
 mod curve;
 mod error;
 mod errors;
@@ -50,11 +49,11 @@ mod table;
 pub mod text;
 
 pub use backend::{Answer, AnswerQuery, Subject, WithCertificate, WithOptions, clock_nanoseconds};
-pub use csv::{csv_line, csv_records};
 pub use curve::{Build, Curve, Latency, Point, SceneFigures, SetFigures};
 pub use error::RecordError;
 pub use errors::{ErrorQuantiles, Errors, Truth};
 pub use measure::{Competitor, Effort, measure, rotated, thread_seconds};
 pub use provenance::Provenance;
 pub use quantiles::{RunningStats, Spread, percentile};
+pub use record::csv_line;
 pub use table::Table;
