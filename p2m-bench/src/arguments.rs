@@ -35,7 +35,7 @@ pub(crate) enum Command {
     /// Repeats the evaluation of the P2M paper on our models: writes paper.md with tables and plots; fails if ours
     /// differ
     Paper(PaperArguments),
-    /// Compares speed with accuracy for all backends and settings: writes report.html, its plots and report.csv
+    /// Compares speed with accuracy for all backends and settings: writes report.html and report.csv
     Report(ReportArguments),
     /// Checks the accuracy contract where other libraries fail: writes extremes.md; fails if ours break it
     Extremes(ExtremesArguments),
@@ -241,7 +241,7 @@ pub(crate) struct ReportArguments {
     /// Measure three scenes with fewer queries, in two minutes
     #[arg(long)]
     pub(crate) quick: bool,
-    /// The folder for report.html, report.csv and the folder report of plots [default: docs, and target/report with --quick]
+    /// The folder for report.html and report.csv [default: docs, and target/report with --quick]
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
     /// Name of this build in page and record [default: native with AVX2 at compile time, else portable]

@@ -30,6 +30,7 @@ mod memory;
 mod octree;
 mod our_indexes;
 mod paper;
+mod plot;
 mod rays;
 mod report;
 mod rounds;

@@ -108,7 +108,7 @@ impl<'a> MeasuredIndex<'a> {
     fn build(backend: Backend, soup: &'a Soup<f64>) -> anyhow::Result<Self> {
         let settings = BuildSettings::default().with_parallel(false);
         let (built, seconds) = thread_seconds(|| backend.build(soup, &settings));
-        Ok(Self { backend, index: built?.index, cost: Build { seconds, bytes_each: None } })
+        Ok(Self { backend, index: built?.index, cost: Build { seconds, bytes_per_primitive: None } })
     }
 
     /// Returns the index as a subject of the measurement with this setting.

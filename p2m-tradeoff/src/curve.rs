@@ -4,18 +4,19 @@
 use crate::errors::Errors;
 use crate::quantiles::{Spread, percentile};
 use crate::settings::DEFAULT;
+use serde::Serialize;
 
 /// The cost of an index before its first query.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Build {
     /// The time to build it on one thread, in seconds.
     pub seconds: f64,
     /// The heap memory besides the scene, in bytes for each primitive; `None` if it was not measured.
-    pub bytes_each: Option<f64>,
+    pub bytes_per_primitive: Option<f64>,
 }
 
 /// Percentiles of the wall time of single queries, in nanoseconds. The time to read the clock is included.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Latency {
     /// The median time.
     pub p50: u64,
@@ -40,7 +41,7 @@ impl Latency {
 }
 
 /// The results of one setting of one backend.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Point {
     /// The name of the setting.
     pub setting: String,
@@ -59,7 +60,7 @@ pub struct Point {
 }
 
 /// The results of one backend.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Curve {
     /// The name of the backend.
     pub name: String,
@@ -76,7 +77,7 @@ impl Curve {
 }
 
 /// The results for one set of queries.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SetFigures {
     /// The name of the set.
     pub name: String,
@@ -87,7 +88,7 @@ pub struct SetFigures {
 }
 
 /// The results for one scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SceneFigures {
     /// The name of the scene.
     pub name: String,

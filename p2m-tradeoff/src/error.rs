@@ -1,48 +1,18 @@
-//! The errors of plots and records.
-
-/// The reason why a plot was not drawn.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum PlotError {
-    /// The plot has no point that its axes can show.
-    #[error("a plot without points")]
-    Empty,
-    /// The drawing library failed with this message.
-    #[error("cannot draw: {0}")]
-    Draw(String),
-    /// The file cannot be written.
-    #[error("{}: {error}", path.display())]
-    Write {
-        /// The path of the file.
-        path: std::path::PathBuf,
-        /// The error of the system.
-        error: std::io::Error,
-    },
-}
+//! The errors of records.
 
 /// The reason why a file of records cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// A quoted field does not end.
-    #[error("not comma-separated values")]
-    Syntax,
+    /// The file is not a table of comma-separated values, for this reason.
+    #[error("not comma-separated values: {0}")]
+    Syntax(String),
     /// The file has no records.
     #[error("no records")]
     Empty,
     /// A column is missing.
     #[error("no column {0}")]
     Column(&'static str),
-    /// A line has more or fewer fields than there are columns.
-    #[error("line {line} has {fields} fields in place of {columns}")]
-    Fields {
-        /// The number of the line; the head has number 1.
-        line: usize,
-        /// The number of fields of the line.
-        fields: usize,
-        /// The number of columns of the head.
-        columns: usize,
-    },
     /// A field is not a number.
     #[error("line {line}: {column} is not a number")]
     Number {

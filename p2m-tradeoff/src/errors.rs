@@ -4,6 +4,7 @@ use crate::backend::Answer;
 use crate::quantiles::percentile;
 use crate::settings::Promise;
 use p2m_core::Real;
+use serde::Serialize;
 
 /// The true answer to a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +32,7 @@ impl Truth {
 }
 
 /// The largest error and the 99.9th percentile of errors; NaN if there are none.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ErrorQuantiles {
     /// The largest error.
     pub max: f64,
@@ -50,7 +51,7 @@ impl ErrorQuantiles {
 }
 
 /// The errors of the answers to some queries.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Errors {
     /// The number of answers that were compared.
     pub compared: usize,

@@ -33,7 +33,7 @@ pub(crate) fn point(setting: &str, ns: f64, error: f64, seconds: f64) -> Point {
         nanoseconds: Spread { median: ns, min: ns * 0.95, max: ns * 1.1 },
         errors,
         latency: Some(Latency { p50: 100, p90: 200, p99: 400, p999: 800, max: 1600 }),
-        build: Build { seconds, bytes_each: Some(65.5) },
+        build: Build { seconds, bytes_per_primitive: Some(65.5) },
     }
 }
 

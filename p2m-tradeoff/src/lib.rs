@@ -32,9 +32,7 @@
 #![forbid(unsafe_code)]
 
 mod backend;
-mod break_even;
 pub mod compare;
-mod csv;
 mod curve;
 mod error;
 mod errors;
@@ -42,7 +40,6 @@ mod errors;
 mod fixtures;
 mod measure;
 pub mod page;
-pub mod plot;
 mod provenance;
 mod quantiles;
 pub mod queries;
@@ -52,12 +49,11 @@ mod table;
 pub mod text;
 
 pub use backend::{Answer, AnswerQuery, Subject, WithCertificate, WithOptions, clock_nanoseconds};
-pub use break_even::{JobCost, break_even, cheapest, default_costs};
-pub use csv::{csv_line, csv_records};
 pub use curve::{Build, Curve, Latency, Point, SceneFigures, SetFigures};
-pub use error::{PlotError, RecordError};
+pub use error::RecordError;
 pub use errors::{ErrorQuantiles, Errors, Truth};
 pub use measure::{Competitor, Effort, measure, rotated, thread_seconds};
 pub use provenance::Provenance;
 pub use quantiles::{RunningStats, Spread, percentile};
+pub use record::csv_line;
 pub use table::Table;

@@ -1,10 +1,11 @@
 //! The origin of figures: machine, compiler, flags, commit and command.
 
+use serde::Serialize;
 use std::path::Path;
 use std::process::Command;
 
 /// The origin of figures, which every table and every line of a record states.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Provenance {
     /// The name of the build: `portable` or `native` unless the user names it.
     pub label: String,

@@ -1,9 +1,10 @@
 //! Medians, percentiles and running statistics of measured numbers.
 
+use serde::Serialize;
 use std::fmt;
 
 /// The median, the minimum and the maximum of some measurements.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
     /// The median; for an even number of values the mean of the two in the middle.
     pub median: f64,

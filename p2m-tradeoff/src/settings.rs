@@ -5,6 +5,7 @@
 
 use p2m_core::kernel::ERROR_CONSTANT;
 use p2m_core::{QueryOptions, Real};
+use serde::Serialize;
 
 /// The kind of answer that a query requests.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,13 +21,14 @@ pub enum Ask {
 }
 
 /// A setting of accuracy.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Setting {
     /// The name in tables, plots and records.
     pub name: &'static str,
     /// A phrase that explains the setting to readers of a page.
     pub about: &'static str,
     /// The kind of answer.
+    #[serde(skip)]
     pub ask: Ask,
 }
 

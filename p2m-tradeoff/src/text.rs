@@ -45,7 +45,7 @@ pub fn table(set: &SetFigures) -> Table {
                 latency(|l| l.p50, 2),
                 latency(|l| l.p999, MIN_QUERIES_FOR_P999),
                 seconds(point.build.seconds),
-                bytes(point.build.bytes_each),
+                bytes(point.build.bytes_per_primitive),
                 failures(&point.errors),
             ]);
         }
@@ -54,14 +54,12 @@ pub fn table(set: &SetFigures) -> Table {
 }
 
 /// Returns the speed relative to that of the default setting of the backend, in words.
-#[must_use]
-pub fn speedup(curve: &Curve, nanoseconds: f64) -> String {
+fn speedup(curve: &Curve, nanoseconds: f64) -> String {
     curve.usual().map_or("-".to_owned(), |default| format!("{:.2}x", default.nanoseconds.median / nanoseconds))
 }
 
 /// Returns the failures of answers in words; an empty string if there are none.
-#[must_use]
-pub fn failures(errors: &Errors) -> String {
+fn failures(errors: &Errors) -> String {
     let count = |count: usize, what: &str| (count > 0).then(|| format!("{count} of {} {what}", errors.compared));
     let all = [
         count(errors.unanswered, "unanswered"),
@@ -72,8 +70,7 @@ pub fn failures(errors: &Errors) -> String {
 }
 
 /// Formats an error with one decimal.
-#[must_use]
-pub fn error(value: f64) -> String {
+fn error(value: f64) -> String {
     match value {
         x if x.is_nan() => "-".to_owned(),
         x if x <= 0.0 => "0".to_owned(),
@@ -83,8 +80,7 @@ pub fn error(value: f64) -> String {
 }
 
 /// Formats seconds with three digits.
-#[must_use]
-pub fn seconds(value: f64) -> String {
+fn seconds(value: f64) -> String {
     match value {
         x if x < 1e-3 => format!("{x:.1e}"),
         x if x < 10.0 => format!("{x:.3}"),
@@ -93,21 +89,8 @@ pub fn seconds(value: f64) -> String {
 }
 
 /// Formats bytes for each primitive, if they were measured.
-#[must_use]
-pub fn bytes(value: Option<f64>) -> String {
+fn bytes(value: Option<f64>) -> String {
     value.map_or("-".to_owned(), |bytes| format!("{bytes:.0}"))
-}
-
-/// Formats a count in words, such as 12.3 thousand or 1.2 million.
-#[must_use]
-pub fn count(value: f64) -> String {
-    match value {
-        x if x < 1e3 => format!("{x:.0}"),
-        x if x < 1e5 => format!("{:.1} thousand", x / 1e3),
-        x if x < 1e6 => format!("{:.0} thousand", x / 1e3),
-        x if x < 1e9 => format!("{:.1} million", x / 1e6),
-        x => format!("{:.0} million", x / 1e6),
-    }
 }
 
 #[cfg(test)]
@@ -136,6 +119,5 @@ mod tests {
     fn numbers_are_short() {
         assert_eq!([0.0, 0.5, 12.34, 1e-16, 4e15, f64::NAN].map(error), ["0", "0.5", "12.3", "1.0e-16", "4.0e15", "-"]);
         assert_eq!([1e-4, 0.5, 12.0].map(seconds), ["1.0e-4", "0.500", "12.0"]);
-        assert_eq!([12.0, 12_345.0, 2e6, 3e9].map(count), ["12", "12.3 thousand", "2.0 million", "3000 million"]);
     }
 }

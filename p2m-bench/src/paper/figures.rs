@@ -3,8 +3,8 @@
 use super::cited;
 use super::scenes::stem;
 use super::study::Study;
+use crate::plot::{Bars, Mark, Plot, Series};
 use anyhow::Result;
-use p2m_tradeoff::plot::{Bars, Mark, Plot, Series};
 use std::path::Path;
 
 /// The backends of the plots, in the order of their colours.
@@ -14,7 +14,7 @@ const CITED: usize = 6;
 const FACES: &str = "primitives";
 
 fn series(name: &str, mark: Mark, colour: usize, points: impl Iterator<Item = (f64, f64)>) -> Series {
-    Series { name: name.to_owned(), mark, colour, points: points.collect(), notes: Vec::new() }
+    Series { name: name.to_owned(), mark, colour, points: points.collect() }
 }
 
 /// Returns a value of each study over its size.
@@ -40,7 +40,7 @@ fn mean_and_most(
         series("mean", Mark::Line, 0, over_size(studies, mean)),
         series("most", Mark::Dashes, 1, over_size(studies, most)),
     ];
-    Plot { x: FACES, y, series, ..Plot::default() }
+    Plot { x: FACES, y, series }
 }
 
 /// Returns a value of each backend over sizes.
@@ -53,7 +53,7 @@ fn compared(
     let all = COMPARED.iter().enumerate();
     let series = all.map(|(i, name)| series(name, mark, i, over_size(studies, move |study| value(study, name))));
     let series = series.filter(|series| !series.points.is_empty()).collect();
-    Plot { x: FACES, y, series, ..Plot::default() }
+    Plot { x: FACES, y, series }
 }
 
 fn build(study: &Study, name: &str) -> Option<f64> {
@@ -138,7 +138,7 @@ impl Figures<'_> {
         let bytes = |study: &Study, name: &str| Some(study.backend(name)?.bytes as f64 / 1e6);
         let mut memory = compared(scattered, Mark::Dot, "megabytes, scene included", bytes);
         memory.series.push(cited_at("P2M", cited::BYTES / 1e6));
-        Ok(memory.write(&to("fig22"))?)
+        memory.write(&to("fig22"))
     }
 
     /// Returns a value of each backend for the large model over a parameter other than its size.
@@ -153,6 +153,6 @@ impl Figures<'_> {
             let points = at.iter().zip(times).filter_map(|(x, time)| Some((*x, time.as_ref()? / 1e3)));
             Some(series(name, Mark::Line, i, points))
         });
-        Plot { x, y: "microseconds of a query", series: all.collect(), ..Plot::default() }
+        Plot { x, y: "microseconds of a query", series: all.collect() }
     }
 }

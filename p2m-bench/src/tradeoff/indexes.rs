@@ -207,7 +207,10 @@ fn build(scene: &Scene, prepare: PrepareFn, builds: usize) -> Result<(Box<dyn Bu
         let built = measure_build(&mut figures, before, || catch(prepared.build))?;
         if figures.seconds.len() >= builds || figures.seconds.iter().sum::<f64>() > MAX_BUILD_SECONDS {
             let seconds = Spread::of(&figures.seconds).map_or(0.0, |spread| spread.median);
-            return Ok((built, Build { seconds, bytes_each: Some(figures.owned as f64 / scene.len() as f64) }));
+            return Ok((
+                built,
+                Build { seconds, bytes_per_primitive: Some(figures.owned as f64 / scene.len() as f64) },
+            ));
         }
     }
 }
@@ -248,6 +251,6 @@ mod tests {
         let queries = Queries::new(vec![Point3::new(1.0, 2.0, 3.0); 100]);
         assert_eq!(indexes.iter().filter_map(|index| index.built.batch(queries.all())).count(), 5);
         // The number of bytes is not asserted, because other tests of this program allocate and free at the same time.
-        assert!(indexes.iter().all(|index| index.build.seconds > 0.0 && index.build.bytes_each.is_some()));
+        assert!(indexes.iter().all(|index| index.build.seconds > 0.0 && index.build.bytes_per_primitive.is_some()));
     }
 }

@@ -35,7 +35,7 @@ pub(super) fn sizes(profile: &Profile, seed: u64) -> Result<Vec<Sweep>> {
         for curve in &curves {
             let point = &curve.points[0];
             // Memory below one byte per primitive does not grow with the scene and is left out.
-            let bytes = point.build.bytes_each.filter(|bytes| *bytes >= 1.0);
+            let bytes = point.build.bytes_per_primitive.filter(|bytes| *bytes >= 1.0);
             let figures = [Some(point.nanoseconds.median), Some(point.build.seconds), bytes];
             for (sweep, figure) in sweeps.iter_mut().zip(figures) {
                 if let Some(figure) = figure {

@@ -2,78 +2,204 @@
 
 use super::*;
 use crate::fixtures;
+use serde_json::Value;
+use std::io::Write as _;
+use std::process::{Command, Stdio};
 
 fn page() -> String {
     let provenance = fixtures::provenance();
-    let lines = vec![("aabb".to_owned(), vec![(1.0, 10.0), (2.0, 6.5)]), ("p2m".to_owned(), vec![(2.0, 3.0)])];
+    let lines = vec![("aabb".to_owned(), vec![(1.0, 10.0), (2.0, 6.5)]), ("p2m".to_owned(), vec![(2.0, 3e-5)])];
     let sweep = Sweep { title: "Threads".to_owned(), about: "Batches.".to_owned(), axes: ["threads", "ns"], lines };
     let page = Page {
         provenance: &provenance,
-        effort: "Five rounds & <more>.",
+        effort: "Five rounds & </script> {{data}}.",
         truth: "Nobody knows.",
         clock: 25.4,
         scenes: &[fixtures::scene()],
         sweeps: &[sweep],
-        backends: &[("aabb", "a tree")],
+        backends: &[("aabb", "a `tree`")],
     };
-    assert_eq!(
-        page.plots().unwrap().iter().map(|plot| plot.0.as_str()).collect::<Vec<_>>(),
-        ["a--scene---of-two-1x.svg", "threads.svg"]
-    );
     page.html().unwrap()
 }
 
-/// The tags of a page that are not closed, or not in their order.
-fn unclosed(page: &str) -> Vec<String> {
-    const VOID: [&str; 2] = ["meta", "!DOCTYPE"];
-    let mut open: Vec<String> = Vec::new();
-    for tag in page.split('<').skip(1) {
-        let (tag, _) = tag.split_once('>').expect("a tag ends");
-        let name = tag.split([' ', '\n']).next().unwrap();
-        match name.strip_prefix('/') {
-            Some(name) => assert_eq!(open.pop().as_deref(), Some(name), "closed in another order"),
-            None if tag.ends_with('/') || VOID.contains(&name) => {}
-            None => open.push(name.to_owned()),
+/// The text between the tags of the element with these attributes.
+fn element<'a>(page: &'a str, start: &str, end: &str) -> &'a str {
+    page.split_once(start).unwrap().1.split_once(end).unwrap().0
+}
+
+#[test]
+fn the_template_has_each_placeholder_once_and_nothing_is_from_elsewhere() {
+    for placeholder in ["{{script}}", "{{data}}", "{{tables}}"] {
+        assert_eq!(TEMPLATE.matches(placeholder).count(), 1, "{placeholder}");
+    }
+    assert_eq!(TEMPLATE.matches("{{").count(), 3);
+    assert!(!SCRIPT.contains("</script") && !SCRIPT.contains("{{"));
+    for foreign in ["http:", "https:", "src=", "<link", "url(", "@import", "import("] {
+        assert!(!page().contains(foreign), "{foreign}");
+    }
+    assert_eq!(page().matches("</script>").count(), 2);
+}
+
+#[test]
+fn the_data_have_every_measurement() {
+    let page = page();
+    let data: Value = serde_json::from_str(element(&page, "id=\"data\">", "</script>")).unwrap();
+    let scene = fixtures::scene();
+    assert_eq!(data["effort"], "Five rounds & </script> {{data}}.");
+    assert_eq!((&data["clock"], &data["exact_limit"]), (&25.4.into(), &16.0.into()));
+    assert_eq!(data["settings"].as_array().unwrap().len(), SETTINGS.len());
+    assert_eq!(
+        (&data["settings"][0]["name"], &data["sweeps"][0]["lines"][1][1][0][1]),
+        (&"default".into(), &3e-5.into())
+    );
+    for (curve, json) in scene.sets[0].curves.iter().zip(data["scenes"][0]["sets"][0]["curves"].as_array().unwrap()) {
+        assert_eq!(json["name"], curve.name.as_str());
+        let points = json["points"].as_array().unwrap();
+        assert_eq!(points.len(), curve.points.len());
+        for (point, json) in curve.points.iter().zip(points) {
+            assert_eq!((json["setting"].as_str(), json["queries"].as_u64()), (Some(&*point.setting), Some(100)));
+            assert_eq!(json["nanoseconds"]["median"], point.nanoseconds.median);
+            assert_eq!(json["errors"]["scaled"]["max"], point.errors.scaled.max);
+            assert_eq!((&json["latency"]["max"], &json["build"]["bytes_per_primitive"]), (&1600.into(), &65.5.into()));
         }
     }
-    open
 }
 
 #[test]
-fn every_tag_is_closed_and_nothing_is_from_elsewhere() {
+fn a_reader_without_a_script_has_the_tables() {
     let page = page();
-    assert_eq!(unclosed(&page), Vec::<String>::new());
-    for foreign in ["http:", "https:", "src=", "<script", "<link", "url(", "@import"] {
-        assert!(!page.contains(foreign), "{foreign}");
-    }
-    assert!(page.contains("Five rounds &amp; &lt;more&gt;."));
-    assert!(page.contains("<code>portable</code>"), "{page}");
+    let tables = element(&page, "<noscript>", "</noscript>");
+    assert!(tables.contains("a \"scene\", of two, 1x") && tables.contains("epsilon 0.1"), "{tables}");
+}
+
+/// Runs the script of the page with a document that keeps what is written into it. Each test of the script is an
+/// expression, whose value is printed. Returns nothing where `node` is not installed.
+fn run_script(page: &str, expressions: &[&str]) -> Option<Vec<String>> {
+    let data = element(page, "id=\"data\">", "</script>");
+    let document = "const elements = {};
+        globalThis.document = {
+          addEventListener() {},
+          getElementById: (id) => (elements[id] ??= { value: \"0\", checked: true, innerHTML: \"\", textContent: \"\" }),
+        };
+        const html = (id) => elements[id].innerHTML || elements[id].textContent;";
+    let printed = expressions.iter().map(|expression| format!("console.log({expression});\n"));
+    let program = format!(
+        "{document}\ndocument.getElementById(\"data\").textContent = {};\n{}\n{}",
+        serde_json::to_string(data).unwrap(),
+        SCRIPT,
+        printed.collect::<String>()
+    );
+    let mut node = Command::new("node")
+        .arg("-")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .ok()?;
+    node.stdin.take().unwrap().write_all(program.as_bytes()).unwrap();
+    let output = node.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Some(String::from_utf8(output.stdout).unwrap().lines().map(str::to_owned).collect())
 }
 
 #[test]
-fn every_point_and_every_note_is_there() {
-    let page = page();
+fn the_script_draws_every_point_and_every_note() {
+    let all = "Object.keys(elements).map(html).join(' ').replaceAll('\\n', ' ')";
+    let Some(lines) = run_script(&page(), &[all, "html('plot').match(/class=\"dot\"/g).length", "html('advice')"])
+    else {
+        return;
+    };
+    let [all, marks, advice] = lines.try_into().unwrap();
     for word in [
-        "epsilon 0.1",
-        "aabb, epsilon 0.1: 500 ns",
+        "a \"scene\", of two: speed against error of queries \"1x\"",
+        "aabb, epsilon 0.1: 500 ns, largest relative error 5.0e-2",
         "&lt;no&gt; reason",
         "<td>66</td>",
-        "25 ns here",
-        "p2m from 5.4 million",
-        "exact",
+        "<code>portable</code>",
+        "a &lt;processor&gt;, fast",
+        "Five rounds &amp; &lt;/script&gt;",
+        "<dt>aabb</dt><dd>a <code>tree</code></dd>",
+        "exact</text>",
+        "5.4 million",
+        "<td>10.0</td>",
+        "<td>3.0e-5</td>",
+        "0 of 300 answers",
     ] {
-        assert!(page.contains(word), "{word}");
+        assert!(all.contains(word), "{word}: {all}");
     }
-    // Four of errors, latencies, totals; and the sweep.
-    assert_eq!(page.matches("<svg").count(), 7);
-    assert!(page.contains("<td>10.0</td>"), "{page}");
+    assert_eq!(marks, "3");
+    assert_eq!(
+        advice,
+        "Without an error beyond rounding, <code>p2m</code> is fastest (100 ns a query), and the cheapest with its build \
+         is <code>aabb</code>, then <code>p2m</code> from 5.4 million queries on; no setting with errors of up to 1 % is \
+         faster beyond noise."
+    );
 }
 
 #[test]
-fn tables_have_a_row_for_each_given_value() {
-    let lines = vec![("a".to_owned(), vec![(1.0, 10.0), (2.0, 600.0)]), ("b".to_owned(), vec![(2.0, 1e-5)])];
-    let sweep = Sweep { title: String::new(), about: String::new(), axes: ["threads", "ns"], lines };
-    let (head, rows) = sweep_table(&sweep);
-    assert_eq!(head, ["threads", "a", "b"]);
-    assert_eq!(rows, [["1", "10.0", "-"], ["2", "600", "1.0e-5"]]);
+fn the_best_are_by_what_was_measured() {
+    let best = |change: &str| {
+        format!(
+            "(() => {{ const set = structuredClone(data.scenes[0].sets[0]); {change};
+               return NEEDS.map((need) => describe(fastest(set.curves, need.isMet))).join('; '); }})()"
+        )
+    };
+    let job = "JOBS.map(([n]) => costs(data.scenes[0].sets[0].curves).sort((a, b) => total(a, n) - total(b, n))[0].name).join()";
+    let without_cells = "set.curves.pop(); const rough = set.curves[0].points[1]";
+    let Some(lines) = run_script(
+        &page(),
+        &[
+            &best(""),
+            &best(without_cells),
+            &best(&format!("{without_cells}; rough.nanoseconds.max = 960")),
+            &best(&format!("{without_cells}; rough.errors.unanswered = 1")),
+            job,
+        ],
+    ) else {
+        return;
+    };
+    assert_eq!(lines[0], "p2m, 100 ns; p2m, 100 ns; p2m, 100 ns");
+    // Without cells, a tenth is worth an epsilon, and a hundredth is not.
+    assert_eq!(lines[1], "aabb, 1001 ns; aabb, 1001 ns; aabb epsilon 0.1, 500 ns, error 5.0e-2");
+    // An epsilon that is hardly faster is not.
+    assert_eq!(lines[2], "aabb, 1001 ns; aabb, 1001 ns; aabb, 1001 ns");
+    assert_eq!(lines[3], lines[2]);
+    // Ten thousand queries do not pay for cells, a hundred millions do.
+    assert_eq!(lines[4], "aabb,aabb,p2m");
+}
+
+#[test]
+fn totals_are_equal_where_it_breaks_even_and_turns_are_those_of_the_least_totals() {
+    let costs = "const [brute, tree, cells, bad] = [[0, 1e-3], [0.1, 1e-6], [5, 2e-7], [6, 2e-6]]
+                   .map(([build, query], i) => ({ name: i, build, query })); const all = [bad, cells, brute, tree];";
+    let run = |expression: &str| format!("(() => {{ {costs} return {expression}; }})()");
+    let least =
+        "[0, 50, 90, 110, 1e5, 6e6, 7e6, 1e9].every((n) => cheapest(all).filter((turn) => turn.from <= n).at(-1).cost
+                 === [...all].sort((a, b) => total(a, n) - total(b, n))[0])";
+    let Some(lines) = run_script(
+        &page(),
+        &[
+            &run("Math.abs(total(tree, breakEven(tree, cells)) / total(cells, breakEven(tree, cells)) - 1) < 1e-12"),
+            &run("[breakEven(cells, tree), breakEven(bad, tree), breakEven(tree, tree)].join()"),
+            &run("cheapest(all).map((turn) => turn.cost.name).join()"),
+            &run(least),
+            &run("cheapest([]).length"),
+            "[ticks(1, 20), ticks(1e-16, 2).length, tickLabel(25000), tickLabel(1.4e6), tickLabel(0.5), tickLabel(2e9), error(8.34e12)].join(' ')",
+            "[12, 12345, 2e6, 3e9].map(count).join()",
+        ],
+    ) else {
+        return;
+    };
+    assert_eq!(
+        lines,
+        [
+            "true",
+            ",0,0",
+            "0,1,2",
+            "true",
+            "0",
+            "1,2,5,10,20 9 25k 1.4M 0.5 2e9 8.3e12",
+            "12,12.3 thousand,2.0 million,3000 million"
+        ]
+    );
 }

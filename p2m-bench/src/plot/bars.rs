@@ -1,55 +1,40 @@
 //! Stacked bars.
 
-use super::{FONT, LEGEND_ROW_HEIGHT, LEGEND_WIDTH, SIZE, colour, failed, label, legend_text};
-use crate::error::PlotError;
+use super::{FONT, LEGEND_ROW_HEIGHT, LEGEND_WIDTH, SIZE, colour, label, legend_text};
+use anyhow::{Context, Result};
 use plotters::prelude::*;
 use std::path::Path;
 
 /// Horizontal stacked bars, one below the other, all in the same unit.
 #[derive(Clone, Debug)]
-pub struct Bars {
+pub(crate) struct Bars {
     /// The name of the axis.
-    pub x: &'static str,
+    pub(crate) x: &'static str,
     /// The names of the parts.
-    pub parts: Vec<&'static str>,
+    pub(crate) parts: Vec<&'static str>,
     /// The names of the bars, and the sizes of their parts.
-    pub bars: Vec<(String, Vec<f64>)>,
+    pub(crate) bars: Vec<(String, Vec<f64>)>,
 }
 
 impl Bars {
-    /// Writes the picture.
-    ///
-    /// # Errors
-    /// [`PlotError`]
-    ///
-    /// # Panics
-    /// If a bar has fewer parts than there are names.
-    pub fn write(&self, path: &Path) -> Result<(), PlotError> {
-        let text = self.svg()?;
-        std::fs::write(path, text).map_err(|error| PlotError::Write { path: path.to_owned(), error })
+    /// Writes the picture. It panics if a bar has fewer parts than there are names.
+    pub(crate) fn write(&self, path: &Path) -> Result<()> {
+        std::fs::write(path, self.svg()?).with_context(|| path.display().to_string())
     }
 
     /// Returns the picture as the text of an SVG file.
-    ///
-    /// # Errors
-    /// [`PlotError::Draw`]
-    ///
-    /// # Panics
-    /// If a bar has fewer parts than there are names.
-    pub fn svg(&self) -> Result<String, PlotError> {
+    fn svg(&self) -> Result<String> {
         let most = self.bars.iter().map(|bar| bar.1.iter().sum::<f64>()).fold(f64::MIN_POSITIVE, f64::max);
         let count = self.bars.len();
         let mut svg = String::new();
-        let area = SVGBackend::with_string(&mut svg, (SIZE.0, 90 + 34 * u32::try_from(count).map_err(failed)?))
-            .into_drawing_area();
-        area.fill(&WHITE).map_err(failed)?;
+        let area = SVGBackend::with_string(&mut svg, (SIZE.0, 90 + 34 * u32::try_from(count)?)).into_drawing_area();
+        area.fill(&WHITE)?;
         let (left, names) = area.split_horizontally(SIZE.0 - LEGEND_WIDTH);
         let mut chart = ChartBuilder::on(&left)
             .margin(12)
             .x_label_area_size(44)
             .y_label_area_size(190)
-            .build_cartesian_2d(0.0..most * 1.05, (0..count.saturating_sub(1)).into_segmented())
-            .map_err(failed)?;
+            .build_cartesian_2d(0.0..most * 1.05, (0..count.saturating_sub(1)).into_segmented())?;
         let name = |at: &SegmentValue<usize>| match at {
             // The axis runs upwards, and bars are listed downwards.
             SegmentValue::CenterOf(i) => self.bars.iter().rev().nth(*i).map_or(String::new(), |bar| bar.0.clone()),
@@ -65,8 +50,7 @@ impl Bars {
             .y_label_formatter(&name)
             .x_label_formatter(&|value| label(*value))
             .label_style(FONT)
-            .draw()
-            .map_err(failed)?;
+            .draw()?;
         for part in 0..self.parts.len() {
             let colour = colour(part);
             let boxes = self.bars.iter().enumerate().map(|(i, (_, sizes))| {
@@ -78,15 +62,15 @@ impl Bars {
                 bar.set_margin(6, 6, 0, 0);
                 bar
             });
-            chart.draw_series(boxes).map_err(failed)?;
+            chart.draw_series(boxes)?;
         }
         for ((part, name), row) in self.parts.iter().enumerate().zip(1..) {
             let y = LEGEND_ROW_HEIGHT * row;
             let mark = Rectangle::new([(6, y - 5), (18, y + 5)], colour(part).filled());
-            names.draw(&mark).map_err(failed)?;
-            names.draw(&legend_text(name, y)).map_err(failed)?;
+            names.draw(&mark)?;
+            names.draw(&legend_text(name, y))?;
         }
-        area.present().map_err(failed)?;
+        area.present()?;
         drop((chart, names, left, area));
         Ok(svg)
     }
