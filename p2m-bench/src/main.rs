@@ -17,6 +17,7 @@ mod arguments;
 mod backend;
 mod backends;
 mod batch;
+mod blocks;
 mod bvh_crate;
 mod commands;
 mod delaunay;

@@ -1,7 +1,7 @@
 //! Checks isolated primitives on every clause of the contract that one primitive can break.
 
 use super::counts::Counts;
-use super::external::{CallResult, Kind, LIBRARIES};
+use super::external::{CallResult, LIBRARIES};
 use crate::backend::{Unavailable, catch};
 use p2m_core::Real;
 use p2m_testkit::contract::{self, Violation};
@@ -22,28 +22,6 @@ const SUBJECTS: usize = 2 + LIBRARIES.len();
 /// The largest number of broken promises that the page shows.
 const SHOWN: usize = 20;
 
-/// The shortest case for which an external library is wrong in some way.
-#[derive(Clone, Debug)]
-pub(super) struct Example {
-    pub(super) library: usize,
-    pub(super) kind: Kind,
-    pub(super) query: [f64; 3],
-    pub(super) vertices: Vec<[f64; 3]>,
-}
-
-impl Example {
-    /// Returns a sort key: ordinary magnitudes first, then short text.
-    fn plainness(&self) -> (bool, usize) {
-        let ordinary = |x: &f64| *x == 0.0 || (1e-30..1e30).contains(&x.abs());
-        (!self.vertices.as_flattened().iter().chain(&self.query).all(ordinary), self.text().len())
-    }
-
-    /// Formats the example as Rust source.
-    pub(super) fn text(&self) -> String {
-        format!("{:?} {:?}", self.query, self.vertices)
-    }
-}
-
 /// The results of all checks.
 pub(super) struct Findings {
     /// The names of the rows, each with the counts of all subjects.
@@ -57,8 +35,6 @@ pub(super) struct Findings {
     /// The number of promises that our kernel broke.
     pub(super) broken: u64,
     pub(super) shown: Vec<String>,
-    /// Wrong answers of external libraries.
-    pub(super) examples: Vec<Example>,
 }
 
 /// Returns the names of the rows; [`rows_of`] knows their order.
@@ -127,7 +103,7 @@ fn rows_of(scalar: usize, family: &Family) -> impl Iterator<Item = usize> {
 impl Findings {
     fn new() -> Self {
         let rows = labels().into_iter().map(|label| (label, [Counts::default(); SUBJECTS])).collect();
-        Self { rows, checked: [0; 2], invariant: 0, rational: 0, broken: 0, shown: Vec::new(), examples: Vec::new() }
+        Self { rows, checked: [0; 2], invariant: 0, rational: 0, broken: 0, shown: Vec::new() }
     }
 
     fn merge(&mut self, other: Self) {
@@ -140,16 +116,6 @@ impl Findings {
         self.broken += other.broken;
         self.shown.extend(other.shown);
         self.shown.truncate(SHOWN);
-        other.examples.into_iter().for_each(|example| self.keep(example));
-    }
-
-    /// Keeps the example if it is the plainest of its kind.
-    fn keep(&mut self, example: Example) {
-        match self.examples.iter_mut().find(|e| (e.library, e.kind) == (example.library, example.kind)) {
-            Some(known) if example.plainness() < known.plainness() => *known = example,
-            Some(_) => {}
-            None => self.examples.push(example),
-        }
     }
 
     /// Generates a case in the range of a scalar and checks our answer.
@@ -185,9 +151,6 @@ impl Findings {
                     CallResult::Error(error) => counts.add(error),
                     CallResult::Panic => counts.panicked += 1,
                 }
-            }
-            if let Some(kind) = result.kind() {
-                self.keep(Example { library: i, kind, query: case.query, vertices: case.vertices.clone() });
             }
         }
     }

@@ -1,8 +1,6 @@
 //! Checks small scenes of hard families with every backend, both scalars and external libraries.
 
-use super::counts::Counts;
-use super::example::{Example, judged};
-use super::external::Kind;
+use super::counts::{Counts, ROUNDING};
 use crate::backend::{Answer, Backend, BoxedIndex, ScalarKind, Unavailable};
 use crate::backends::ALL;
 use crate::queries::Queries;
@@ -47,8 +45,6 @@ pub(super) struct Findings {
     pub(super) absent: Vec<(String, u64)>,
     /// For each family: the number of scenes in f64, and of those in which the octree and the P2M index have cells.
     pub(super) cells: Vec<[u64; 3]>,
-    /// Wrong answers of external libraries, each kind in the smallest of the scenes.
-    pub(super) examples: Vec<Example>,
 }
 
 impl Findings {
@@ -70,17 +66,7 @@ impl Findings {
         for (results, others) in self.cells.iter_mut().zip(other.cells) {
             *results = std::array::from_fn(|k| results[k] + others[k]);
         }
-        other.examples.into_iter().for_each(|example| self.keep(example));
         other.absent.into_iter().for_each(|(why, count)| self.leave_out(why, count));
-    }
-
-    /// Keeps the example if it is the plainest of its kind.
-    fn keep(&mut self, example: Example) {
-        match self.examples.iter_mut().find(|e| (e.library, e.kind) == (example.library, example.kind)) {
-            Some(known) if example.plainness() < known.plainness() => *known = example,
-            Some(_) => {}
-            None => self.examples.push(example),
-        }
     }
 
     fn leave_out(&mut self, why: String, count: u64) {
@@ -142,7 +128,7 @@ impl Side {
             }
             errors.push(error);
             for truth in &truths {
-                // No primitive may be nearer by more than its results rounding.
+                // No primitive may be nearer by more than the rounding of its distance.
                 let error = truth
                     .times_max_vertex_distance(ERROR_CONSTANT * 2f64.powi(-bits.cast_signed()) * (1.0 + 1e-9))
                     + eta;
@@ -161,14 +147,24 @@ impl Side {
     }
 
     /// Returns the error of an external library's answer in u M, and whether it names a primitive that is not the
-    /// nearest beyond rounding. The reference is our nearest primitive, which is right apart from its results rounding.
-    fn judge(&self, at: usize, answer: &Answer, names: bool) -> (f64, bool) {
-        let nearest = self.answers[at].id as usize;
-        judged(self.queries[at], &self.vertices, nearest, answer, names, (self.bits, self.eta))
-    }
-
-    fn example(&self, backend: &'static Backend, kind: Kind, at: usize) -> Example {
-        Example { library: backend.name, kind, query: self.queries[at], vertices: self.vertices.clone() }
+    /// nearest beyond rounding, if ids are to be checked. The reference is our nearest primitive, which is right apart
+    /// from its rounding.
+    fn judge(&self, at: usize, answer: &Answer, has_ids: bool) -> (f64, bool) {
+        let Self { bits, eta, ref vertices, .. } = *self;
+        let (query, nearest) = (self.queries[at], self.answers[at].id as usize);
+        let truth = Truth::new(query, &vertices[nearest]);
+        let limit = if bits == 24 { f64::from(f32::MAX) } else { f64::MAX };
+        let beyond = answer.distance == f64::INFINITY && truth.is_at_least(limit);
+        let error = if beyond { 0.0 } else { truth.error(answer.distance, bits, eta) };
+        let named = vertices.get(answer.id as usize).filter(|_| has_ids && answer.id as usize != nearest && !beyond);
+        let wrong = named.is_some_and(|named| {
+            // The distance of the nearest primitive may be above the true one by the rounding of both.
+            let rounding = ROUNDING * 2f64.powi(-bits.cast_signed());
+            let least = truth.exact().length()[0] + truth.times_max_vertex_distance(rounding);
+            let theirs = Truth::new(query, named);
+            theirs.is_at_least(least + theirs.times_max_vertex_distance(rounding) + eta)
+        });
+        (error, wrong)
     }
 }
 
@@ -247,16 +243,12 @@ fn check(row: usize, name: &str, soup: Soup<f64>, queries: Vec<Point3<f64>>, fin
         match answers {
             Ok(answers) if backend.is_ours => hold(row, column, backend, side, &answers, name, findings),
             Ok(answers) => {
-                let names = triangles_only && backend.name.starts_with("parry3d");
+                let has_ids = triangles_only && backend.name.starts_with("parry3d");
                 for (at, answer) in answers.iter().enumerate() {
-                    let (error, wrong) = side.judge(at, answer, names);
+                    let (error, wrong) = side.judge(at, answer, has_ids);
                     let counts = &mut findings.rows[row][column];
                     counts.add(error);
                     counts.wrong_ids += u64::from(wrong);
-                    let wrong = wrong.then_some(Kind::WrongPrimitive);
-                    for kind in Kind::of_error(error).into_iter().chain(wrong) {
-                        findings.keep(side.example(backend, kind, at));
-                    }
                 }
             }
             Err(Unavailable(why)) if backend.is_ours && !why.starts_with("this processor") => {
@@ -264,11 +256,6 @@ fn check(row: usize, name: &str, soup: Soup<f64>, queries: Vec<Point3<f64>>, fin
             }
             Err(Unavailable(why)) if why == "it panicked" => {
                 findings.rows[row][column].panicked += side.queries.len() as u64;
-                // The batch panicked, so queries run one by one to find which of them does.
-                let one = (0..side.queries.len()).map(|at| side.example(backend, Kind::Panic, at));
-                if let Some(example) = one.into_iter().find(Example::is_confirmed) {
-                    findings.keep(example);
-                }
                 findings.leave_out(format!("`{}` panics", backend.name), 1);
             }
             Err(Unavailable(why)) => findings.leave_out(format!("`{}`: {why}", backend.name), 1),
