@@ -2,10 +2,11 @@
 
 use super::counts::{Counts, ROUNDING};
 use crate::backend::{Answer, Backend, BoxedIndex, ScalarKind, Unavailable};
-use crate::backends::ALL;
+use crate::backends::{ALL, YARDSTICK};
 use crate::queries::Queries;
 use crate::scene::Scene;
 use nalgebra::Point3;
+use p2m_advisor::BackendEntry;
 use p2m_core::kernel::ERROR_CONSTANT;
 use p2m_core::{BruteForce, BuildIndex, ClosestPoint, PrimitiveId, PrimitiveSet, Real, Soup};
 use p2m_interception::{OctreeIndex, P2mIndex};
@@ -14,17 +15,31 @@ use p2m_testkit::truth::{Truth, rational_distances};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The names of the backends that are checked.
-const NAMES: &str = "brute,aabb,aabb-avx2,aabb-portable,kdop-6,kdop-14,kdop-18,kdop-26,octree,octree-portable,p2m,p2m-avx2,p2m-kiddo,p2m-batch,\
-                     rstar,parry-tree,brute-f32,aabb-f32,kdop-14-f32,octree-f32,p2m-f32,parry3d,parry3d-f64,bvh";
+/// The names of the settings and external libraries that are checked besides all registered backends.
+const SETTINGS: [&str; 13] = [
+    "aabb-avx2",
+    "aabb-portable",
+    "kdop-6",
+    "kdop-18",
+    "kdop-26",
+    "octree-portable",
+    "p2m-avx2",
+    "p2m-kiddo",
+    "p2m-batch",
+    "rstar",
+    "parry-tree",
+    "parry3d-f64",
+    "bvh",
+];
 /// The number of queries of a scene.
 const QUERIES: usize = 64;
 /// The largest number of broken promises that the page shows.
 const SHOWN: usize = 20;
 
-/// Returns the backends of the list that this processor can run.
+/// Returns the backends that are checked, in the order of the list of all.
 pub(super) fn subjects() -> Vec<&'static Backend> {
-    NAMES.split(',').map(|name| ALL.iter().find(|b| b.name == name).expect("a name of the list")).collect()
+    let is_registered = |backend: &Backend| BackendEntry::find(backend.name.trim_end_matches("-f32")).is_some();
+    ALL.iter().filter(|b| is_registered(b) || b.name == YARDSTICK || SETTINGS.contains(&b.name)).collect()
 }
 
 /// The results of all checks.
@@ -233,7 +248,7 @@ fn check(row: usize, name: &str, soup: Soup<f64>, queries: Vec<Point3<f64>>, fin
             ScalarKind::Single => single.as_ref(),
         };
         let Some(side) = side else { continue };
-        let built = crate::backend::catch(|| ((backend.prepare)(&scene)?.build)());
+        let built = backend.build(&scene);
         let answers = built.and_then(|index| {
             if backend.is_ours && answers(&index, &bad)?.iter().any(|answer| !answer.is_none()) {
                 findings.blame(|| format!("N6, {} of {name}: an answer to what is no place", backend.name));
