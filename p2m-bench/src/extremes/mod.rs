@@ -6,6 +6,7 @@ mod examples;
 mod external;
 mod primitives;
 mod scenes;
+mod threads;
 
 pub(crate) use counts::ROUNDING;
 

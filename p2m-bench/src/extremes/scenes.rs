@@ -1,6 +1,7 @@
 //! Checks small scenes of hard families with every backend, both scalars and external libraries.
 
 use super::counts::{Counts, ROUNDING};
+use super::threads;
 use crate::backend::{Answer, Backend, BoxedIndex, ScalarKind, Unavailable};
 use crate::backends::{ALL, YARDSTICK};
 use crate::queries::Queries;
@@ -11,9 +12,8 @@ use p2m_core::kernel::ERROR_CONSTANT;
 use p2m_core::{BruteForce, BuildIndex, ClosestPoint, PrimitiveId, PrimitiveSet, Real, Soup};
 use p2m_interception::{OctreeIndex, P2mIndex};
 use p2m_testkit::extremes::Extreme;
-use p2m_testkit::truth::{Truth, rational_distances};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
+use p2m_testkit::truth::Truth;
+use std::collections::BTreeMap;
 
 /// The names of the settings and external libraries that are checked besides all registered backends.
 const SETTINGS: [&str; 13] = [
@@ -33,7 +33,7 @@ const SETTINGS: [&str; 13] = [
 ];
 /// The number of queries of a scene.
 const QUERIES: usize = 64;
-/// The largest number of broken promises that the page shows.
+/// The largest number of broken promises that are shown.
 const SHOWN: usize = 20;
 
 /// Returns the backends that are checked, in the order of the list of all.
@@ -57,24 +57,24 @@ pub(super) struct Findings {
     pub(super) broken: u64,
     pub(super) shown: Vec<String>,
     /// The reasons why subjects were left out, with the number of scenes.
-    pub(super) absent: Vec<(String, u64)>,
+    pub(super) absent: BTreeMap<String, u64>,
     /// For each family: the number of scenes in f64, and of those in which the octree and the P2M index have cells.
     pub(super) cells: Vec<[u64; 3]>,
 }
 
-impl Findings {
+impl threads::Findings for Findings {
     fn new() -> Self {
         let rows = vec![vec![Counts::default(); subjects().len()]; Extreme::ALL.len()];
         Self { rows, cells: vec![[0; 3]; Extreme::ALL.len()], ..Self::default() }
     }
 
-    fn merge(&mut self, other: Self) {
+    fn merge(&mut self, other: Self, rational: u64) {
         for (results, others) in self.rows.iter_mut().zip(other.rows) {
             results.iter_mut().zip(&others).for_each(|(results, other)| results.merge(other));
         }
         self.checked += other.checked;
         self.queries += other.queries;
-        self.rational += other.rational;
+        self.rational += rational;
         self.broken += other.broken;
         self.shown.extend(other.shown);
         self.shown.truncate(SHOWN);
@@ -83,12 +83,11 @@ impl Findings {
         }
         other.absent.into_iter().for_each(|(why, count)| self.leave_out(why, count));
     }
+}
 
+impl Findings {
     fn leave_out(&mut self, why: String, count: u64) {
-        match self.absent.iter_mut().find(|(known, _)| *known == why) {
-            Some((_, so_far)) => *so_far += count,
-            None => self.absent.push((why, count)),
-        }
+        *self.absent.entry(why).or_default() += count;
     }
 
     fn blame(&mut self, what: impl FnOnce() -> String) {
@@ -185,35 +184,13 @@ impl Side {
 
 /// Checks every subject on `scenes` scenes of each family, on all threads.
 pub(super) fn run(scenes: u64, seed: u64) -> Findings {
-    let all = Mutex::new(Findings::new());
-    let next = AtomicU64::new(0);
-    let jobs = scenes * Extreme::ALL.len() as u64;
-    let work = || {
-        let mut results = Findings::new();
-        let before = rational_distances();
-        loop {
-            let job = next.fetch_add(1, Ordering::Relaxed);
-            if job >= jobs {
-                break;
-            }
-            let row = usize::try_from(job % Extreme::ALL.len() as u64).expect("few families");
-            let family = Extreme::ALL[row];
-            let case = (seed << 32) + job / Extreme::ALL.len() as u64;
-            let (soup, queries) = family.generate(&mut p2m_testkit::rng(family.name(), case), QUERIES);
-            check(row, &format!("{} {case}", family.name()), soup, queries, &mut results);
-            if (job + 1) * 20 / jobs > job * 20 / jobs {
-                eprintln!("{} % of {jobs} scenes", (job + 1) * 20 / jobs * 5);
-            }
-        }
-        results.rational = rational_distances() - before;
-        all.lock().expect("no thread panicked").merge(results);
-    };
-    std::thread::scope(|scope| {
-        for _ in 0..std::thread::available_parallelism().map_or(1, Into::into) {
-            scope.spawn(work);
-        }
-    });
-    all.into_inner().expect("no thread panicked")
+    let families = Extreme::ALL.len() as u64;
+    threads::run("scenes", scenes * families, |job, results| {
+        let row = usize::try_from(job % families).expect("few families");
+        let (family, case) = (Extreme::ALL[row], (seed << 32) + job / families);
+        let (soup, queries) = family.generate(&mut p2m_testkit::rng(family.name(), case), QUERIES);
+        check(row, &format!("{} {case}", family.name()), soup, queries, results);
+    })
 }
 
 fn check(row: usize, name: &str, soup: Soup<f64>, queries: Vec<Point3<f64>>, findings: &mut Findings) {
