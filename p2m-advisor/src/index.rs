@@ -3,13 +3,13 @@
 use crate::kdop_directions::{ChosenDirections, KdopDirections};
 use p2m_bvh::{SplitOptions, TreeIndex, Volume};
 use p2m_core::storage::{Saved, Writer};
-use p2m_core::{BoxQuery, BruteForce, CertifiedQuery, ClosestPoint, Inspect, RayQuery, Soup};
+use p2m_core::{BoxQuery, BruteForce, CertifiedQuery, ClosestPoint, Inspect, RayQuery, Real, Soup};
 use p2m_interception::{InterceptionIndex, OctreeReport, P2mReport, Partition, Progress};
 
 /// An index of any backend over a scene that it borrows.
 ///
 /// Every index answers closest-point, near and certified queries and reports its costs. Rays and boxes are optional.
-pub trait Index: ClosestPoint<f64> + CertifiedQuery<f64> + Inspect<f64> + Send + Sync {
+pub trait Index<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + Inspect<T> + Send + Sync {
     /// Adds the index to a file, without its scene. Indexes of backends that are not
     /// [saveable](crate::registry::BackendEntry::is_saveable) add nothing.
     fn save<'s>(&'s self, writer: &mut Writer<'s>);
@@ -18,33 +18,33 @@ pub trait Index: ClosestPoint<f64> + CertifiedQuery<f64> + Inspect<f64> + Send +
     fn memory_bytes(&self) -> usize;
 
     /// Returns the index as one that rays can be cast at, if it is one.
-    fn as_ray_query(&self) -> Option<&(dyn RayQuery<f64> + Sync)> {
+    fn as_ray_query(&self) -> Option<&(dyn RayQuery<T> + Sync)> {
         None
     }
 
     /// Returns the index as one that boxes can be queried with, if it is one.
-    fn as_box_query(&self) -> Option<&(dyn BoxQuery<f64> + Sync)> {
+    fn as_box_query(&self) -> Option<&(dyn BoxQuery<T> + Sync)> {
         None
     }
 }
 
-impl Index for BruteForce<&Soup<f64>> {
+impl<T: Real> Index<T> for BruteForce<&Soup<T>> {
     fn save<'s>(&'s self, _: &mut Writer<'s>) {}
 
     fn memory_bytes(&self) -> usize {
         0
     }
 
-    fn as_ray_query(&self) -> Option<&(dyn RayQuery<f64> + Sync)> {
+    fn as_ray_query(&self) -> Option<&(dyn RayQuery<T> + Sync)> {
         Some(self)
     }
 
-    fn as_box_query(&self) -> Option<&(dyn BoxQuery<f64> + Sync)> {
+    fn as_box_query(&self) -> Option<&(dyn BoxQuery<T> + Sync)> {
         Some(self)
     }
 }
 
-impl<V: Volume> Index for TreeIndex<f64, &Soup<f64>, V> {
+impl<T: Real, V: Volume> Index<T> for TreeIndex<T, &Soup<T>, V> {
     fn save<'s>(&'s self, writer: &mut Writer<'s>) {
         self.save(writer);
     }
@@ -53,16 +53,16 @@ impl<V: Volume> Index for TreeIndex<f64, &Soup<f64>, V> {
         self.memory()
     }
 
-    fn as_ray_query(&self) -> Option<&(dyn RayQuery<f64> + Sync)> {
+    fn as_ray_query(&self) -> Option<&(dyn RayQuery<T> + Sync)> {
         Some(self)
     }
 
-    fn as_box_query(&self) -> Option<&(dyn BoxQuery<f64> + Sync)> {
+    fn as_box_query(&self) -> Option<&(dyn BoxQuery<T> + Sync)> {
         Some(self)
     }
 }
 
-impl<P: Partition + Saved + Send + Sync> Index for InterceptionIndex<f64, &Soup<f64>, P> {
+impl<T: Real, P: Partition + Saved + Send + Sync> Index<T> for InterceptionIndex<T, &Soup<T>, P> {
     fn save<'s>(&'s self, writer: &mut Writer<'s>) {
         self.save(writer);
     }
@@ -73,11 +73,18 @@ impl<P: Partition + Saved + Send + Sync> Index for InterceptionIndex<f64, &Soup<
 }
 
 /// An index that was built or loaded, with the details that reports have about it.
-pub struct BuiltIndex<'a> {
+pub struct BuiltIndex<'a, T: Real = f64> {
     /// The index itself.
-    pub index: Box<dyn Index + 'a>,
+    pub index: Box<dyn Index<T> + 'a>,
     /// The details of its backend.
     pub details: IndexDetails,
+}
+
+impl<'a, T: Real> BuiltIndex<'a, T> {
+    /// Puts an index behind the pointer.
+    pub(crate) fn new(index: impl Index<T> + 'a, details: IndexDetails) -> Self {
+        Self { index: Box::new(index), details }
+    }
 }
 
 impl BuiltIndex<'_> {

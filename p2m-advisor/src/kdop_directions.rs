@@ -5,7 +5,7 @@
 
 use p2m_bvh::SplitOptions;
 use p2m_core::storage::{self, LoadError, Reader, Writer};
-use p2m_core::{BuildError, Soup};
+use p2m_core::{BuildError, Real, Soup};
 use p2m_kdop::{DirectionChoice, Directions, KdopOptions, KdopTree};
 
 /// The prefix of the kinds of k-DOP trees in saved files.
@@ -49,11 +49,11 @@ impl ChosenDirections {
 }
 
 /// A function of a k-DOP tree that is compiled once for each K.
-pub trait KdopVisitor<'a> {
+pub trait KdopVisitor<'a, T: Real = f64> {
     /// The result of the visit.
     type Output;
     /// Receives the tree.
-    fn visit<const K: usize>(self, tree: KdopTree<f64, &'a Soup<f64>, K>) -> Self::Output;
+    fn visit<const K: usize>(self, tree: KdopTree<T, &'a Soup<T>, K>) -> Self::Output;
 }
 
 impl KdopDirections {
@@ -110,26 +110,26 @@ impl KdopDirections {
     ///
     /// # Errors
     /// The errors of [`TreeIndex::build_with`](p2m_bvh::TreeIndex::build_with).
-    pub fn build<'a, V: KdopVisitor<'a>>(
+    pub fn build<'a, T: Real, V: KdopVisitor<'a, T>>(
         self,
-        soup: &'a Soup<f64>,
+        soup: &'a Soup<T>,
         splits: SplitOptions,
         visitor: V,
     ) -> Result<(V::Output, ChosenDirections), BuildError> {
         let choice = (self == Self::Scene).then(|| DirectionChoice::from_scene(soup)).transpose()?;
         let output = match self.faces() {
-            6 => build_tree::<6, _>(soup, splits, choice.as_ref(), visitor),
-            14 => build_tree::<14, _>(soup, splits, choice.as_ref(), visitor),
-            18 => build_tree::<18, _>(soup, splits, choice.as_ref(), visitor),
-            _ => build_tree::<26, _>(soup, splits, choice.as_ref(), visitor),
+            6 => build_tree::<6, _, _>(soup, splits, choice.as_ref(), visitor),
+            14 => build_tree::<14, _, _>(soup, splits, choice.as_ref(), visitor),
+            18 => build_tree::<18, _, _>(soup, splits, choice.as_ref(), visitor),
+            _ => build_tree::<26, _, _>(soup, splits, choice.as_ref(), visitor),
         }?;
         let faces = self.faces();
         Ok((output, ChosenDirections { faces, reason: choice.map(|choice| format!("{faces} {choice}")) }))
     }
 }
 
-fn build_tree<'a, const K: usize, V: KdopVisitor<'a>>(
-    soup: &'a Soup<f64>,
+fn build_tree<'a, const K: usize, T: Real, V: KdopVisitor<'a, T>>(
+    soup: &'a Soup<T>,
     splits: SplitOptions,
     choice: Option<&DirectionChoice>,
     visitor: V,

@@ -1,21 +1,20 @@
 //! The registry of backends: one table that the program `p2m` and the advisor read.
 //!
 //! A new backend joins both with one entry of [`BACKENDS`] and, if its index has a type of its own, with an
-//! implementation of [`Index`] for that type. The values of `--backend`, the files of `p2m build` and the estimates of
-//! `p2m advise` all come from that entry.
+//! implementation of [`Index`] for that type beside the entry. The values of `--backend`, the files of `p2m build`, the
+//! estimates of `p2m advise`, the list of `p2m-bench` and the tests of agreement all come from that entry.
 //!
-//! Indexes are behind one pointer, [`Box<dyn Index>`](Index), with f64 as the scalar and a borrowed [`Soup`] as the
-//! set. The pointer costs one indirect call for each query, or for each batch of queries. In rounds of `p2m tradeoff`
-//! it makes no measurable difference to queries of 700 to 1000 ns, so no command needs the types behind it. The
-//! searches below that call are compiled for each index. Code that needs another scalar or another set uses the types
-//! of the index crates instead.
+//! Indexes are behind one pointer, [`Box<dyn Index>`](Index), with a borrowed [`Soup`] as the set. The pointer costs one
+//! indirect call for each query, or for each batch of queries. In rounds of `p2m tradeoff` it makes no measurable
+//! difference to queries of 700 to 1000 ns, so no command needs the types behind it. The searches below that call are
+//! compiled for each index. Code that needs another set uses the types of the index crates instead.
 
 use crate::cost_model::CostModel;
 use crate::index::{BuildSettings, BuiltIndex, Index, IndexDetails};
 use crate::kdop_directions::{KdopDirections, KdopVisitor};
 use p2m_bvh::AabbTree;
 use p2m_core::storage::{self, LoadError, Reader, Saved};
-use p2m_core::{BruteForce, BuildError, BuildIndex, Soup};
+use p2m_core::{BruteForce, BuildError, BuildIndex, Real, Soup};
 use p2m_interception::{Octree, OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, Voronoi};
 use p2m_kdop::KdopTree;
 use std::fmt;
@@ -43,7 +42,7 @@ impl SearchStructure {
 }
 
 /// A function that builds an index over a scene.
-type BuildFn = for<'a> fn(&'a Soup<f64>, &BuildSettings<'_>) -> Result<BuiltIndex<'a>, BuildError>;
+type BuildFn<T> = for<'a> fn(&'a Soup<T>, &BuildSettings<'_>) -> Result<BuiltIndex<'a, T>, BuildError>;
 /// A function that loads an index from a file with its scene.
 type LoadFn = for<'a> fn(&'a Soup<f64>, &Reader) -> Result<BuiltIndex<'a>, LoadError>;
 
@@ -71,7 +70,8 @@ pub struct BackendEntry {
     pub has_kdop_directions: bool,
     /// The expected cost.
     pub cost: CostModel,
-    build: BuildFn,
+    build: BuildFn<f64>,
+    build_f32: BuildFn<f32>,
     saved: Option<SavedFormat>,
 }
 
@@ -94,7 +94,8 @@ pub static BACKENDS: &[BackendEntry] = &[
             sliver_query_factor: 1.0,
             sample_correction: 1.0,
         },
-        build: |soup, _| Ok(built(BruteForce::build(soup, &())?, IndexDetails::None)),
+        build: build_brute,
+        build_f32: build_brute,
         saved: None,
     },
     BackendEntry {
@@ -114,10 +115,11 @@ pub static BACKENDS: &[BackendEntry] = &[
             sliver_query_factor: 1.0,
             sample_correction: 1.0,
         },
-        build: |soup, settings| Ok(built(AabbTree::build(soup, &settings.splits())?, IndexDetails::None)),
+        build: build_aabb,
+        build_f32: build_aabb,
         saved: Some(SavedFormat {
             is_in: |reader, _| has_kind(reader, "aabb"),
-            load: |soup, reader| Ok(built(AabbTree::load(soup, reader)?, IndexDetails::None)),
+            load: |soup, reader| Ok(BuiltIndex::new(AabbTree::load(soup, reader)?, IndexDetails::None)),
         }),
     },
     BackendEntry {
@@ -137,11 +139,8 @@ pub static BACKENDS: &[BackendEntry] = &[
             sliver_query_factor: 0.75,
             sample_correction: 1.08,
         },
-        build: |soup, settings| {
-            let directions = settings.kdop_directions.unwrap_or(KdopDirections::Fourteen);
-            let (index, directions) = directions.build(soup, settings.splits(), BoxTree)?;
-            Ok(BuiltIndex { index, details: IndexDetails::Kdop(directions) })
-        },
+        build: build_kdop,
+        build_f32: build_kdop,
         saved: Some(SavedFormat {
             is_in: |reader, directions| KdopDirections::saved_faces(directions, reader).is_some(),
             load: |soup, reader| {
@@ -168,21 +167,14 @@ pub static BACKENDS: &[BackendEntry] = &[
             sliver_query_factor: 1.0,
             sample_correction: 1.0,
         },
-        build: |soup, settings| {
-            let options = OctreeOptions::default().with_splits(settings.splits());
-            let (memory, work) = (options.memory, options.work);
-            let scale = settings.octree_budget_scale;
-            let options = options.with_memory(memory * scale).with_work(work * scale);
-            let index = OctreeIndex::build_with_progress(soup, &options, settings.progress)?;
-            let report = index.report();
-            Ok(built(index, IndexDetails::Octree(report)))
-        },
+        build: build_octree,
+        build_f32: build_octree,
         saved: Some(SavedFormat {
             is_in: |reader, _| has_kind(reader, &Octree::kind()),
             load: |soup, reader| {
                 let index = OctreeIndex::load(soup, reader)?;
                 let report = index.report();
-                Ok(built(index, IndexDetails::Octree(report)))
+                Ok(BuiltIndex::new(index, IndexDetails::Octree(report)))
             },
         }),
     },
@@ -203,25 +195,51 @@ pub static BACKENDS: &[BackendEntry] = &[
             sliver_query_factor: 1.0,
             sample_correction: 1.0,
         },
-        build: |soup, settings| {
-            let options = P2mOptions::default().with_splits(settings.splits());
-            let index = P2mIndex::build_with_progress(soup, &options, settings.progress)?;
-            let report = index.report();
-            Ok(built(index, IndexDetails::P2m(report)))
-        },
+        build: build_p2m,
+        build_f32: build_p2m,
         saved: Some(SavedFormat {
             is_in: |reader, _| has_kind(reader, &Voronoi::kind()),
             load: |soup, reader| {
                 let index = P2mIndex::load(soup, reader)?;
                 let report = index.report();
-                Ok(built(index, IndexDetails::P2m(report)))
+                Ok(BuiltIndex::new(index, IndexDetails::P2m(report)))
             },
         }),
     },
 ];
 
-fn built<'a>(index: impl Index + 'a, details: IndexDetails) -> BuiltIndex<'a> {
-    BuiltIndex { index: Box::new(index), details }
+/// The result of building an index in the scalar `T`.
+type Built<'a, T> = Result<BuiltIndex<'a, T>, BuildError>;
+
+fn build_brute<'a, T: Real>(soup: &'a Soup<T>, _: &BuildSettings<'_>) -> Built<'a, T> {
+    Ok(BuiltIndex::new(BruteForce::build(soup, &())?, IndexDetails::None))
+}
+
+fn build_aabb<'a, T: Real>(soup: &'a Soup<T>, settings: &BuildSettings<'_>) -> Built<'a, T> {
+    Ok(BuiltIndex::new(AabbTree::build(soup, &settings.splits())?, IndexDetails::None))
+}
+
+fn build_kdop<'a, T: Real>(soup: &'a Soup<T>, settings: &BuildSettings<'_>) -> Built<'a, T> {
+    let directions = settings.kdop_directions.unwrap_or(KdopDirections::Fourteen);
+    let (index, directions) = directions.build(soup, settings.splits(), BoxTree)?;
+    Ok(BuiltIndex { index, details: IndexDetails::Kdop(directions) })
+}
+
+fn build_octree<'a, T: Real>(soup: &'a Soup<T>, settings: &BuildSettings<'_>) -> Built<'a, T> {
+    let options = OctreeOptions::default().with_splits(settings.splits());
+    let (memory, work) = (options.memory, options.work);
+    let scale = settings.octree_budget_scale;
+    let options = options.with_memory(memory * scale).with_work(work * scale);
+    let index = OctreeIndex::build_with_progress(soup, &options, settings.progress)?;
+    let report = index.report();
+    Ok(BuiltIndex::new(index, IndexDetails::Octree(report)))
+}
+
+fn build_p2m<'a, T: Real>(soup: &'a Soup<T>, settings: &BuildSettings<'_>) -> Built<'a, T> {
+    let options = P2mOptions::default().with_splits(settings.splits());
+    let index = P2mIndex::build_with_progress(soup, &options, settings.progress)?;
+    let report = index.report();
+    Ok(BuiltIndex::new(index, IndexDetails::P2m(report)))
 }
 
 fn has_kind(reader: &Reader, kind: &str) -> bool {
@@ -231,9 +249,9 @@ fn has_kind(reader: &Reader, kind: &str) -> bool {
 /// Erases the number of faces of a k-DOP tree.
 struct BoxTree;
 
-impl<'a> KdopVisitor<'a> for BoxTree {
-    type Output = Box<dyn Index + 'a>;
-    fn visit<const K: usize>(self, tree: KdopTree<f64, &'a Soup<f64>, K>) -> Self::Output {
+impl<'a, T: Real> KdopVisitor<'a, T> for BoxTree {
+    type Output = Box<dyn Index<T> + 'a>;
+    fn visit<const K: usize>(self, tree: KdopTree<T, &'a Soup<T>, K>) -> Self::Output {
         Box::new(tree)
     }
 }
@@ -279,6 +297,18 @@ impl BackendEntry {
     /// [`BuildError`] for a scene with coordinates that are not finite, or with too many primitives.
     pub fn build<'a>(&self, soup: &'a Soup<f64>, settings: &BuildSettings<'_>) -> Result<BuiltIndex<'a>, BuildError> {
         (self.build)(soup, settings)
+    }
+
+    /// Builds an index over a scene in f32, with the errors of [`BackendEntry::build`].
+    ///
+    /// # Errors
+    /// [`BuildError`] for a scene with coordinates that are not finite, or with too many primitives.
+    pub fn build_f32<'a>(
+        &self,
+        soup: &'a Soup<f32>,
+        settings: &BuildSettings<'_>,
+    ) -> Result<BuiltIndex<'a, f32>, BuildError> {
+        (self.build_f32)(soup, settings)
     }
 
     /// Loads the index of a saved file over the scene that it was built over.
@@ -331,7 +361,7 @@ mod tests {
             let answer = built.index.closest_point(&query);
             assert!(answer.is_some());
             assert_eq!(built.index.as_ray_query().is_some(), backend.casts_rays, "{backend}");
-            assert_eq!(built.index.memory_bytes() > 0, backend.is_saveable(), "{backend}");
+            assert_eq!(built.index.memory_bytes() > 0, backend.structure != SearchStructure::Exhaustive, "{backend}");
             assert_eq!(matches!(built.details, IndexDetails::Kdop(_)), backend.has_kdop_directions, "{backend}");
             let mut file = Vec::new();
             let mut writer = Writer::default();

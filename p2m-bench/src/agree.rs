@@ -10,7 +10,7 @@ use crate::backend::{Answer, Backend, ScalarKind};
 #[derive(Clone, Copy)]
 pub(crate) struct Answers<'a> {
     /// The backend that answered.
-    pub(crate) backend: &'static Backend,
+    pub(crate) backend: &'a Backend,
     /// The positions of its queries in the set, in increasing order.
     pub(crate) chosen: &'a [usize],
     /// The answers, one for each of these queries.

@@ -1,6 +1,7 @@
 //! The command line of `p2m-bench`: its commands and their arguments.
 
 use crate::backend::ScalarKind;
+use crate::measure::Effort;
 use crate::{backends, rays};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
@@ -32,12 +33,11 @@ pub(crate) enum Command {
     /// Times rays: the figures of the k-DOP tree's manual, or the first hit against other libraries; fails if ours
     /// differ
     Ray(RayArguments),
-    /// Repeats the evaluation of the P2M paper on our models: writes paper.md with tables and plots; fails if ours
-    /// differ
+    /// Repeats the evaluation of the P2M paper on our models, for docs/paper.md: prints tables and draws plots; fails if ours differ
     Paper(PaperArguments),
     /// Compares speed with accuracy for all backends and settings: writes report.html and report.csv
     Report(ReportArguments),
-    /// Checks the accuracy contract where other libraries fail: writes extremes.md; fails if ours break it
+    /// Checks the accuracy contract where other libraries fail, for docs/extremes.md; fails if ours break it
     Extremes(ExtremesArguments),
     /// Compares two records of `report`: times that changed beyond noise, and errors that changed
     Compare(CompareArguments),
@@ -45,7 +45,7 @@ pub(crate) enum Command {
     Advise(AdviseArguments),
     /// Times distance fields on a grid, against other libraries and the figures of an article; fails if ours differ
     Field(FieldArguments),
-    /// Builds over adversarial scenes: writes adversaries.md; fails if a budget is exceeded or an answer is wrong
+    /// Builds over adversarial scenes, for docs/adversaries.md; fails if a budget is exceeded or an answer is wrong
     Adversaries(AdversariesArguments),
     /// Runs one external library over one adversarial scene, for `adversaries`
     #[command(hide = true)]
@@ -113,45 +113,57 @@ pub(crate) struct VerifyArguments {
     pub(crate) queries: usize,
 }
 
+/// The arguments of the commands that measure in rounds.
 #[derive(Args)]
-pub(crate) struct SplitsArguments {
+pub(crate) struct Rounds {
     /// Files of scenes
     #[arg(required = true)]
     pub(crate) scenes: Vec<PathBuf>,
-    /// Query sets
-    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface])]
-    pub(crate) sets: Vec<QuerySet>,
-    /// Rounds; another rule begins in each
-    #[arg(long, default_value_t = 5)]
+    /// Rounds; another backend begins in each
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
     pub(crate) rounds: usize,
-    /// Queries in a round
-    #[arg(long, default_value_t = 50_000)]
-    pub(crate) queries: usize,
+    /// Queries in a round [default: 50,000 for splits, 100,000 for kdop, 1,000,000 for octree and batch]
+    #[arg(long)]
+    pub(crate) queries: Option<usize>,
     /// Seed of the query sets
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
 }
 
+impl Rounds {
+    /// Returns the effort with a number of queries that the user may change.
+    pub(crate) fn effort(&self, default_queries: usize) -> Effort {
+        let &Self { rounds, queries, seed, .. } = self;
+        Effort { rounds, queries: queries.unwrap_or(default_queries), builds: rounds, seed }
+    }
+}
+
+/// The query sets of settings that are compared.
+#[derive(Args)]
+pub(crate) struct Sets {
+    /// Query sets
+    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface])]
+    pub(crate) sets: Vec<QuerySet>,
+}
+
+#[derive(Args)]
+pub(crate) struct SplitsArguments {
+    #[command(flatten)]
+    pub(crate) rounds: Rounds,
+    #[command(flatten)]
+    pub(crate) sets: Sets,
+}
+
 #[derive(Args)]
 pub(crate) struct KdopArguments {
-    /// Files of scenes
-    #[arg(required = true)]
-    pub(crate) scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) rounds: Rounds,
     /// Measure each scene in seven orientations
     #[arg(long)]
     pub(crate) turned: bool,
     /// Query set
     #[arg(long, default_value_t = QuerySet::Box1)]
     pub(crate) set: QuerySet,
-    /// Rounds; another tree begins in each
-    #[arg(long, default_value_t = 5)]
-    pub(crate) rounds: usize,
-    /// Queries in a round
-    #[arg(long, default_value_t = 100_000)]
-    pub(crate) queries: usize,
-    /// Seed of the query set
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
 }
 
 #[derive(Args)]
@@ -190,24 +202,13 @@ pub(crate) struct RayArguments {
 
 #[derive(Args)]
 pub(crate) struct BatchArguments {
-    /// Files of scenes
-    #[arg(required = true)]
-    pub(crate) scenes: Vec<PathBuf>,
-    /// Query sets
-    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface])]
-    pub(crate) sets: Vec<QuerySet>,
+    #[command(flatten)]
+    pub(crate) rounds: Rounds,
+    #[command(flatten)]
+    pub(crate) sets: Sets,
     /// Numbers of threads
     #[arg(long, value_delimiter = ',', default_values_t = [1, 2])]
     pub(crate) threads: Vec<usize>,
-    /// Rounds; another backend begins in each
-    #[arg(long, default_value_t = 5)]
-    pub(crate) rounds: usize,
-    /// Queries in a round
-    #[arg(long, default_value_t = 1_000_000)]
-    pub(crate) queries: usize,
-    /// Seed of the query sets
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
 }
 
 #[derive(Args)]
@@ -219,6 +220,14 @@ pub(crate) struct DelaunayArguments {
     pub(crate) rounds: usize,
 }
 
+/// The document that gets the tables of a command.
+#[derive(Args)]
+pub(crate) struct Document {
+    /// The document whose blocks of this command are replaced [default: print the blocks]
+    #[arg(long, value_name = "DOCUMENT")]
+    pub(crate) write: Option<PathBuf>,
+}
+
 #[derive(Args)]
 pub(crate) struct PaperArguments {
     /// The folder of models [default: that of the variable P2M_MODELS, or ../shared/models]
@@ -227,9 +236,11 @@ pub(crate) struct PaperArguments {
     /// Measure less of everything, in minutes
     #[arg(long)]
     pub(crate) quick: bool,
-    /// The folder for paper.md and the folder paper of its plots [default: docs, and target/paper with --quick]
+    /// The folder for plots [default: that of the document's name beside it, or target/paper]
     #[arg(long)]
-    pub(crate) out: Option<PathBuf>,
+    pub(crate) plots: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) document: Document,
 }
 
 #[derive(Args)]
@@ -260,9 +271,8 @@ pub(crate) struct ExtremesArguments {
     /// Seed of all random numbers
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Write the page here instead of printing it
-    #[arg(long)]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) document: Document,
 }
 
 #[derive(Args)]
@@ -288,9 +298,8 @@ pub(crate) struct AdversariesArguments {
     /// Primitives of each scene
     #[arg(long, default_value_t = 20_000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
     pub(crate) primitives: usize,
-    /// The page to write [default: the standard output]
-    #[arg(long)]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) document: Document,
 }
 
 #[derive(Args)]

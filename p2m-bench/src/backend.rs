@@ -130,7 +130,26 @@ pub(crate) struct Backend {
     /// Whether the backend visits every primitive, so that it gets few queries and is the oracle of `verify`.
     pub(crate) is_exhaustive: bool,
     /// Prepares a scene for the build.
-    pub(crate) prepare: for<'a> fn(&'a Scene) -> Result<Prepared<'a>, Unavailable>,
+    pub(crate) prepare: Prepare,
+}
+
+/// A function that copies and converts a scene as far as a build needs it.
+type Prepare = Box<dyn for<'a> Fn(&'a Scene) -> Result<Prepared<'a>, Unavailable> + Send + Sync>;
+
+impl Backend {
+    /// Makes a backend of ours in f64 that does not visit every primitive.
+    pub(crate) fn new(
+        name: &'static str,
+        prepare: impl for<'a> Fn(&'a Scene) -> Result<Prepared<'a>, Unavailable> + Send + Sync + 'static,
+    ) -> Self {
+        let scalar = ScalarKind::Double;
+        Self { name, scalar, is_ours: true, is_exhaustive: false, prepare: Box::new(prepare) }
+    }
+
+    /// Builds the index, and turns a panic into an error.
+    pub(crate) fn build<'a>(&self, scene: &'a Scene) -> Result<BoxedIndex<'a>, Unavailable> {
+        catch(|| ((self.prepare)(scene)?.build)())
+    }
 }
 
 /// Runs foreign code and turns its panics into errors.

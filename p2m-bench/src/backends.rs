@@ -1,62 +1,81 @@
-//! The list of all backends. A new backend is one entry of [`ALL`].
+//! The list of all backends: those of the registry of p2m-advisor, settings of them, and external libraries.
 
-use crate::backend::{Backend, ScalarKind, Unavailable};
+use crate::backend::{Backend, ScalarKind};
+use crate::bvh_crate::prepare as bvh;
 use crate::external::{parry_double, parry_single};
 use crate::kinds::{aabb_by_kind, aabb_of_set, aabb_of_triangles};
 use crate::our_indexes::{
-    aabb, bvh, kdop, kdop_of_scene, kdop_with, long_lists, octree, over_soup, p2m, p2m_in_batches, p2m_options,
-    p2m_with, scene_directions,
+    aabb, kdop, kdop_in_frame, kdop_of_scene, long_lists, octree, over_soup_with, p2m, p2m_in_batches, p2m_options,
+    registered,
 };
-use p2m_core::BruteForce;
+use p2m_advisor::{BACKENDS, BackendEntry, SearchStructure};
 use p2m_interception::{KdTreeLocator, RegionTree};
 use p2m_mixed::adapters::{ParryIndex, RstarIndex};
+use std::sync::LazyLock;
 
 /// Every backend, in the order of the tables.
-pub(crate) const ALL: &[Backend] = &[
-    Backend { name: "brute", is_exhaustive: true, prepare: |s| over_soup::<f64, BruteForce<_>>(s), ..OURS },
-    Backend { name: "aabb", prepare: |s| aabb::<f64>(s, None), ..OURS },
-    Backend { name: "aabb-avx512", prepare: |s| aabb::<f64>(s, Some("avx512")), ..OURS },
-    Backend { name: "aabb-avx2", prepare: |s| aabb::<f64>(s, Some("avx2")), ..OURS },
-    Backend { name: "aabb-portable", prepare: |s| aabb::<f64>(s, Some("portable")), ..OURS },
-    Backend { name: "aabb-tri", prepare: aabb_of_triangles, ..OURS },
-    Backend { name: "aabb-set", prepare: aabb_of_set, ..OURS },
-    Backend { name: "aabb-by-kind", prepare: aabb_by_kind, ..OURS },
-    Backend { name: "octree", prepare: |s| octree::<f64>(s, None, 1.0), ..OURS },
-    Backend { name: "octree-avx2", prepare: |s| octree::<f64>(s, Some("avx2"), 1.0), ..OURS },
-    Backend { name: "octree-portable", prepare: |s| octree::<f64>(s, Some("portable"), 1.0), ..OURS },
-    Backend { name: "octree-coarse", prepare: |s| octree::<f64>(s, None, 0.1), ..OURS },
-    Backend { name: "octree-fine", prepare: |s| octree::<f64>(s, None, 10.0), ..OURS },
-    Backend { name: "p2m", prepare: |s| p2m::<f64>(s, None), ..OURS },
-    Backend { name: "p2m-avx2", prepare: |s| p2m::<f64>(s, Some("avx2")), ..OURS },
-    Backend { name: "p2m-kiddo", prepare: |s| p2m_with(s, p2m_options().with_locator(KdTreeLocator::build)), ..OURS },
-    Backend { name: "p2m-rstar", prepare: |s| p2m_with(s, p2m_options().with_list_filter(RegionTree::build)), ..OURS },
-    Backend { name: "p2m-long", prepare: |s| p2m_with(s, long_lists()), ..OURS },
-    Backend {
-        name: "p2m-long-rstar",
-        prepare: |s| p2m_with(s, long_lists().with_list_filter(RegionTree::build)),
-        ..OURS
-    },
-    Backend { name: "p2m-batch", prepare: p2m_in_batches, ..OURS },
-    Backend { name: "rstar", prepare: |s| over_soup::<f64, RstarIndex<_, _>>(s), ..OURS },
-    Backend { name: "parry-tree", prepare: |s| over_soup::<f64, ParryIndex<_, _>>(s), ..OURS },
-    Backend { name: "kdop-6", prepare: kdop::<f64, 6>, ..OURS },
-    Backend { name: "kdop-14", prepare: kdop::<f64, 14>, ..OURS },
-    Backend { name: "kdop-18", prepare: kdop::<f64, 18>, ..OURS },
-    Backend { name: "kdop-26", prepare: kdop::<f64, 26>, ..OURS },
-    Backend { name: "kdop-scene", prepare: kdop_of_scene, ..OURS },
-    Backend { name: "kdop-frame-6", prepare: |s| kdop_with::<6>(s, scene_directions(s).frame_directions()), ..OURS },
-    Backend { name: "kdop-frame-14", prepare: |s| kdop_with::<14>(s, scene_directions(s).frame_directions()), ..OURS },
-    Backend { name: "kdop-frame-18", prepare: |s| kdop_with::<18>(s, scene_directions(s).frame_directions()), ..OURS },
-    Backend { name: "kdop-frame-26", prepare: |s| kdop_with::<26>(s, scene_directions(s).frame_directions()), ..OURS },
-    Backend { name: "brute-f32", is_exhaustive: true, prepare: |s| over_soup::<f32, BruteForce<_>>(s), ..OURS_SINGLE },
-    Backend { name: "octree-f32", prepare: |s| octree::<f32>(s, None, 1.0), ..OURS_SINGLE },
-    Backend { name: "aabb-f32", prepare: |s| aabb::<f32>(s, None), ..OURS_SINGLE },
-    Backend { name: "kdop-14-f32", prepare: kdop::<f32, 14>, ..OURS_SINGLE },
-    Backend { name: "p2m-f32", prepare: |s| p2m::<f32>(s, None), ..OURS_SINGLE },
-    Backend { name: YARDSTICK, scalar: ScalarKind::Single, prepare: parry_single, ..EXTERNAL },
-    Backend { name: YARDSTICK_DOUBLE, prepare: parry_double, ..EXTERNAL },
-    Backend { name: "bvh", prepare: bvh, ..EXTERNAL },
-];
+pub(crate) static ALL: LazyLock<Vec<Backend>> = LazyLock::new(|| {
+    let in_f32 = BACKENDS.iter().map(|entry| of_registry(entry, ScalarKind::Single));
+    BACKENDS
+        .iter()
+        .map(|entry| of_registry(entry, ScalarKind::Double))
+        .chain(settings())
+        .chain(in_f32)
+        .chain(external())
+        .collect()
+});
+
+/// Makes the backend of an entry of the registry in a scalar. The names of those in f32 end in `-f32`.
+fn of_registry(entry: &'static BackendEntry, scalar: ScalarKind) -> Backend {
+    let name = match scalar {
+        ScalarKind::Double => entry.name,
+        ScalarKind::Single => format!("{}-f32", entry.name).leak(),
+    };
+    let is_exhaustive = entry.structure == SearchStructure::Exhaustive;
+    Backend { scalar, is_exhaustive, ..Backend::new(name, move |scene| registered(entry, scene, scalar)) }
+}
+
+/// Returns our indexes with other settings than those of the registry, and our indexes of other crates' trees.
+fn settings() -> Vec<Backend> {
+    vec![
+        Backend::new("aabb-avx512", |s| aabb(s, Some("avx512"))),
+        Backend::new("aabb-avx2", |s| aabb(s, Some("avx2"))),
+        Backend::new("aabb-portable", |s| aabb(s, Some("portable"))),
+        Backend::new("aabb-tri", aabb_of_triangles),
+        Backend::new("aabb-set", aabb_of_set),
+        Backend::new("aabb-by-kind", aabb_by_kind),
+        Backend::new("octree-avx2", |s| octree(s, Some("avx2"), 1.0)),
+        Backend::new("octree-portable", |s| octree(s, Some("portable"), 1.0)),
+        Backend::new("octree-coarse", |s| octree(s, None, 0.1)),
+        Backend::new("octree-fine", |s| octree(s, None, 10.0)),
+        Backend::new("p2m-avx2", |s| p2m(s, Some("avx2"), p2m_options())),
+        Backend::new("p2m-kiddo", |s| p2m(s, None, p2m_options().with_locator(KdTreeLocator::build))),
+        Backend::new("p2m-rstar", |s| p2m(s, None, p2m_options().with_list_filter(RegionTree::build))),
+        Backend::new("p2m-long", |s| p2m(s, None, long_lists())),
+        Backend::new("p2m-long-rstar", |s| p2m(s, None, long_lists().with_list_filter(RegionTree::build))),
+        Backend::new("p2m-batch", p2m_in_batches),
+        Backend::new("rstar", |s| over_soup_with::<RstarIndex<_, _>>(s, ())),
+        Backend::new("parry-tree", |s| over_soup_with::<ParryIndex<_, _>>(s, ())),
+        Backend::new("kdop-6", kdop::<6>),
+        Backend::new("kdop-14", kdop::<14>),
+        Backend::new("kdop-18", kdop::<18>),
+        Backend::new("kdop-26", kdop::<26>),
+        Backend::new("kdop-scene", kdop_of_scene),
+        Backend::new("kdop-frame-6", kdop_in_frame::<6>),
+        Backend::new("kdop-frame-14", kdop_in_frame::<14>),
+        Backend::new("kdop-frame-18", kdop_in_frame::<18>),
+        Backend::new("kdop-frame-26", kdop_in_frame::<26>),
+    ]
+}
+
+/// Returns external libraries.
+fn external() -> [Backend; 3] {
+    [
+        Backend { is_ours: false, scalar: ScalarKind::Single, ..Backend::new(YARDSTICK, parry_single) },
+        Backend { is_ours: false, ..Backend::new(YARDSTICK_DOUBLE, parry_double) },
+        Backend { is_ours: false, ..Backend::new("bvh", bvh) },
+    ]
+}
 
 /// The backends that `query` measures by default.
 pub(crate) const DEFAULT: &str = "brute,aabb,aabb-tri,aabb-f32,parry3d,parry3d-f64";
@@ -66,17 +85,6 @@ pub(crate) const YARDSTICK: &str = "parry3d";
 
 /// The external library in f64, to which ratios are given as well.
 pub(crate) const YARDSTICK_DOUBLE: &str = "parry3d-f64";
-
-/// The fields that the entries of our backends in f64 have in common.
-pub(crate) const OURS: Backend = Backend {
-    name: "",
-    scalar: ScalarKind::Double,
-    is_ours: true,
-    is_exhaustive: false,
-    prepare: |_| Err(Unavailable("an entry without a backend".to_owned())),
-};
-const OURS_SINGLE: Backend = Backend { scalar: ScalarKind::Single, ..OURS };
-const EXTERNAL: Backend = Backend { is_ours: false, ..OURS };
 
 /// Returns the backend of that name from the list.
 pub(crate) fn by_name(name: &str) -> &'static Backend {

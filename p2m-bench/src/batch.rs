@@ -1,5 +1,6 @@
 //! `p2m-bench batch`: times batches of queries by order, hints and number of threads.
 
+use crate::measure::{Effort, Spread};
 use crate::scene::Scene;
 use anyhow::{Context, Result};
 use nalgebra::Point3;
@@ -11,14 +12,7 @@ use p2m_tradeoff::Table;
 use std::time::Instant;
 
 /// Prints wall times of batches over a scene, and returns whether all answers equal those of single queries.
-pub(crate) fn print(
-    scene: &Scene,
-    sets: &[QuerySet],
-    queries: usize,
-    threads: &[usize],
-    rounds: usize,
-    seed: u64,
-) -> Result<bool> {
+pub(crate) fn print(scene: &Scene, sets: &[QuerySet], threads: &[usize], effort: &Effort) -> Result<bool> {
     let tree = AabbTree::build(&scene.double, &Default::default()).context("the scene was checked when it was read")?;
     let mut head = vec!["set".to_owned(), "one by one".to_owned()];
     for n in threads {
@@ -29,14 +23,14 @@ pub(crate) fn print(
     let strategies = [(false, false), (true, false), (true, true)];
     let mut equal = true;
     for set in sets {
-        let queries = set.generate(&scene.double, queries, seed);
+        let queries = set.generate(&scene.double, effort.queries, effort.seed);
         let mut out: Vec<Option<Closest<f64>>> = vec![None; queries.len()];
         let single = |out: &mut [Option<Closest<f64>>]| tree.closest_points_into(&queries, &Default::default(), out);
         single(&mut out);
         let expected: Vec<_> = out.iter().map(answer).collect();
         // Each strategy has a row of times, so that strategies take turns.
         let mut times = vec![Vec::new(); 1 + strategies.len() * threads.len()];
-        for _ in 0..rounds {
+        for _ in 0..effort.rounds {
             let start = Instant::now();
             single(&mut out);
             times[0].push(start.elapsed().as_secs_f64());
@@ -52,13 +46,8 @@ pub(crate) fn print(
                 }
             }
         }
-        let medians: Vec<f64> = times
-            .iter_mut()
-            .map(|times| {
-                times.sort_by(f64::total_cmp);
-                times[times.len() / 2]
-            })
-            .collect();
+        let medians: Vec<f64> =
+            times.iter().map(|times| Spread::of(times).map_or(f64::NAN, |spread| spread.median)).collect();
         let mut row = vec![set.name().to_owned()];
         row.extend(medians.iter().map(|s| format!("{:.0}", s * 1e9 / queries.len() as f64)));
         // The speed-up is that of the last strategy, from the first to the last number of threads.

@@ -1,6 +1,6 @@
 //! The crate bvh as a backend. It provides the tree and the search; its user provides the distance to a primitive.
 
-use crate::backend::{Answer, BenchIndex, Unavailable};
+use crate::backend::{Answer, BenchIndex, BoxedIndex, Prepared, Unavailable};
 use crate::scene::Scene;
 use bvh::aabb::{Aabb, Bounded};
 use bvh::bounding_hierarchy::BHShape;
@@ -120,6 +120,12 @@ pub(crate) fn tree(scene: &Scene) -> impl FnOnce() -> Result<Tree, Unavailable> 
     };
     let mut primitives: Vec<_> = (0..soup.len()).map(|i| Primitive { vertices: vertices(i), node: 0 }).collect();
     move || Ok(Tree { tree: Bvh::build(&mut primitives), primitives })
+}
+
+/// Prepares the backend of the list.
+pub(crate) fn prepare(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
+    let build = tree(scene);
+    Ok(Prepared { build: Box::new(move || Ok(Box::new(build()?) as BoxedIndex<'_>)), borrowed: 0 })
 }
 
 impl BenchIndex for Tree {

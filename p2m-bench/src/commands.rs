@@ -35,9 +35,9 @@ pub(crate) fn run(command: Command) -> Result<bool> {
         Command::Rival(arguments) => run_external(&arguments),
         Command::Saved(arguments) => compare_saved(&arguments),
         Command::Report(arguments) => write_report(&arguments),
-        Command::Extremes(arguments) => write_extremes(&arguments),
+        Command::Extremes(arguments) => check_extremes(&arguments),
         Command::Compare(arguments) => compare_records(&arguments),
-        Command::Paper(arguments) => write_paper(&arguments),
+        Command::Paper(arguments) => repeat_paper(&arguments),
     }
 }
 
@@ -79,12 +79,13 @@ fn query(arguments: &QueryArguments) -> Result<bool> {
     Ok(is_good)
 }
 
-/// Writes the page about the paper, and returns whether the answers of our backends are bitwise equal.
-fn write_paper(arguments: &PaperArguments) -> Result<bool> {
-    let PaperArguments { models, quick, out } = arguments;
+/// Repeats the evaluation of the paper, and returns whether the answers of our backends are bitwise equal.
+fn repeat_paper(arguments: &PaperArguments) -> Result<bool> {
+    let PaperArguments { models, quick, plots, document } = arguments;
     let models = models.clone().unwrap_or_else(default_models);
-    let out = out.clone().unwrap_or_else(|| PathBuf::from(if *quick { "target/paper" } else { "docs" }));
-    paper::write(&models, *quick, &out)
+    let beside = document.write.as_ref().map(|document| document.with_extension(""));
+    let plots = plots.clone().or(beside).unwrap_or_else(|| PathBuf::from("target/paper"));
+    paper::run(&models, *quick, document.write.as_deref(), &plots)
 }
 
 /// Returns the default folder of models.
@@ -100,10 +101,10 @@ fn write_report(arguments: &ReportArguments) -> Result<bool> {
     tradeoff::write(&models, *quick, &out, &provenance(label.as_deref()))
 }
 
-/// Writes the page about extreme input, and returns whether our backends kept all promises.
-fn write_extremes(arguments: &ExtremesArguments) -> Result<bool> {
-    let &ExtremesArguments { cases, scenes, seed, ref out } = arguments;
-    extremes::write(&extremes::Amount { cases, scenes, seed }, out.as_deref(), &provenance(None))
+/// Checks extreme input, and returns whether our backends kept all promises.
+fn check_extremes(arguments: &ExtremesArguments) -> Result<bool> {
+    let &ExtremesArguments { cases, scenes, seed, ref document } = arguments;
+    extremes::run(&extremes::Amount { cases, scenes, seed }, document.write.as_deref(), &provenance(None))
 }
 
 /// Prints a table of differences. Only records that cannot be compared are an error.
@@ -118,9 +119,9 @@ fn compare_records(arguments: &CompareArguments) -> Result<bool> {
     Ok(true)
 }
 
-/// Writes the page about adversarial scenes, and returns whether all budgets were kept and all answers are right.
+/// Builds over adversarial scenes, and returns whether all budgets were kept and all answers are right.
 fn run_adversaries(arguments: &AdversariesArguments) -> Result<bool> {
-    adversaries::print(arguments.primitives, arguments.out.as_deref(), &provenance(None))
+    adversaries::run(arguments.primitives, arguments.document.write.as_deref(), &provenance(None))
 }
 
 /// Runs an external library over one scene, and prints the outcome for the process that started this one.
@@ -151,42 +152,38 @@ fn check_advice(arguments: &AdviseArguments) -> Result<bool> {
     Ok(true)
 }
 
+/// Prints the origin of figures and a line about the measurement, measures scenes one by one, and returns whether all
+/// are good.
+fn all_good(scenes: &[PathBuf], about: &str, mut measure: impl FnMut(Scene) -> Result<bool>) -> Result<bool> {
+    println!("{}\n{about}", provenance(None));
+    scenes.iter().try_fold(true, |is_good, path| Ok(measure(Scene::read(path)?)? && is_good))
+}
+
+/// Describes a measurement in rounds.
+fn in_rounds(time: &str, effort: &Effort) -> String {
+    let Effort { rounds, queries, seed, .. } = effort;
+    format!("{time}, {rounds} rounds in turns, {queries} queries a round, seed {seed}.")
+}
+
 /// Times distance fields, and returns whether ours are equal.
 fn fill_fields(arguments: &FieldArguments) -> Result<bool> {
-    println!("{}", provenance(None));
-    let mut is_good = true;
-    for path in &arguments.scenes {
-        let scene = Scene::read(path)?;
-        if arguments.article {
-            field::print_article(&scene)?;
-        } else {
-            is_good &= field::print(&scene, arguments.resolution, arguments.stride)?;
-        }
-    }
-    Ok(is_good)
+    all_good(&arguments.scenes, "", |scene| match arguments.article {
+        true => field::print_article(&scene).map(|()| true),
+        false => field::print(&scene, arguments.resolution, arguments.stride),
+    })
 }
 
 /// Times saved indexes, and returns whether they answer as those that were built.
 fn compare_saved(arguments: &SavedArguments) -> Result<bool> {
-    println!("{}", provenance(None));
-    let mut is_good = true;
-    for path in &arguments.scenes {
-        is_good &= saved::print(&Scene::read(path)?, arguments.rounds)?;
-    }
-    Ok(is_good)
+    all_good(&arguments.scenes, "", |scene| saved::print(&scene, arguments.rounds))
 }
 
 /// Compares settings of the octree, and returns whether all octrees agree.
 fn compare_octrees(arguments: &BatchArguments) -> Result<bool> {
-    let BatchArguments { scenes, sets, threads, rounds, queries, seed } = arguments;
-    let effort = Effort { rounds: *rounds, queries: *queries, builds: 3, seed: *seed };
-    println!("{}", provenance(None));
-    println!("{rounds} rounds in turns, {queries} queries a round, seed {seed}.");
-    let mut is_good = true;
-    for path in scenes {
-        is_good &= octree::print(&Scene::read(path)?, sets, threads, &effort)?;
-    }
-    Ok(is_good)
+    let BatchArguments { rounds, sets, threads } = arguments;
+    let effort = Effort { builds: 3, ..rounds.effort(1_000_000) };
+    let about = in_rounds("Thread CPU time unless a column says otherwise", &effort);
+    all_good(&rounds.scenes, &about, |scene| octree::print(&scene, &sets.sets, threads, &effort))
 }
 
 /// Times Delaunay triangulations, and returns whether all are valid.
@@ -198,13 +195,10 @@ fn triangulate(arguments: &DelaunayArguments) -> Result<bool> {
 
 /// Times batches, and returns whether all agree with single queries.
 fn time_batches(arguments: &BatchArguments) -> Result<bool> {
-    let BatchArguments { scenes, sets, threads, rounds, queries, seed } = arguments;
-    println!("{}", provenance(None));
-    println!("Wall time, {rounds} rounds in turns, batches of {queries}, seed {seed}.");
-    let mut is_good = true;
-    for path in scenes {
-        is_good &= batch::print(&Scene::read(path)?, sets, *queries, threads, *rounds, *seed)?;
-    }
+    let BatchArguments { rounds, sets, threads } = arguments;
+    let effort = rounds.effort(1_000_000);
+    let about = in_rounds("Wall time", &effort);
+    let is_good = all_good(&rounds.scenes, &about, |scene| batch::print(&scene, &sets.sets, threads, &effort))?;
     println!(
         "{}",
         if is_good { "All answers are those of single queries." } else { "DIFFERENCES from single queries." }
@@ -212,22 +206,22 @@ fn time_batches(arguments: &BatchArguments) -> Result<bool> {
     Ok(is_good)
 }
 
+/// Returns the scene alone, or in seven orientations.
+fn orientations(scene: Scene, turned: bool) -> Result<Vec<Scene>> {
+    if turned { kdop::orientations(&scene) } else { Ok(vec![scene]) }
+}
+
 /// Compares k-DOP trees, and returns whether all trees agree.
 fn compare_kdops(arguments: &KdopArguments) -> Result<bool> {
-    let KdopArguments { scenes, turned, set, rounds, queries, seed } = arguments;
-    let effort = Effort { rounds: *rounds, queries: *queries, builds: *rounds, seed: *seed };
-    println!("{}", provenance(None));
-    println!("One thread, thread CPU time, {rounds} rounds in turns, {queries} queries of {set} a round, seed {seed}.");
-    kdop::print_cited();
-    let mut is_good = true;
-    for path in scenes {
-        let scene = Scene::read(path)?;
-        let all = if *turned { kdop::orientations(&scene)? } else { vec![scene] };
-        for scene in &all {
+    let KdopArguments { rounds, turned, set } = arguments;
+    let effort = rounds.effort(100_000);
+    all_good(&rounds.scenes, &in_rounds(&format!("One thread, thread CPU time, set {set}"), &effort), |scene| {
+        let mut is_good = true;
+        for scene in &orientations(scene, *turned)? {
             is_good &= kdop::print(scene, *set, &effort);
         }
-    }
-    Ok(is_good)
+        Ok(is_good)
+    })
 }
 
 /// Times rays, and returns whether all trees agree.
@@ -247,9 +241,7 @@ fn cast_rays(arguments: &RayArguments) -> Result<bool> {
     }
     let mut is_good = true;
     for path in scenes {
-        let scene = Scene::read(path)?;
-        let all = if *turned { kdop::orientations(&scene)? } else { vec![scene] };
-        for scene in &all {
+        for scene in &orientations(Scene::read(path)?, *turned)? {
             let count = rays.map_or(
                 Ok(if against_external { 200_000 } else { rays::manual::RAYS_EACH * scene.len() }),
                 usize::try_from,
@@ -269,15 +261,10 @@ fn cast_rays(arguments: &RayArguments) -> Result<bool> {
 
 /// Compares split rules, and returns whether all trees agree.
 fn compare_splits(arguments: &SplitsArguments) -> Result<bool> {
-    let SplitsArguments { scenes, sets, rounds, queries, seed } = arguments;
-    let effort = Effort { rounds: *rounds, queries: *queries, builds: *rounds, seed: *seed };
-    println!("{}", provenance(None));
-    println!("One thread, thread CPU time, {rounds} rounds in turns, {queries} queries a round, seed {seed}.");
-    let mut is_good = true;
-    for path in scenes {
-        is_good &= splits::print(&Scene::read(path)?, sets, &effort);
-    }
-    Ok(is_good)
+    let SplitsArguments { rounds, sets } = arguments;
+    let effort = rounds.effort(50_000);
+    let about = in_rounds("One thread, thread CPU time", &effort);
+    all_good(&rounds.scenes, &about, |scene| Ok(splits::print(&scene, &sets.sets, &effort)))
 }
 
 /// Compares our exact backends with brute force, and returns whether all answers are equal.

@@ -1,8 +1,7 @@
 //! `p2m-bench kdop`: redraws the distance figures in the manual of CGAL's k-DOP tree.
 //!
 //! For each scene and number of faces it prints the build time, the nodes and leaves visited, and the time per query.
-//! Counters of the manual's traversal (left child first, the largest slack as the bound) stand beside ours, and times
-//! that are quoted from the manual are marked as cited.
+//! Counters of the manual's traversal (left child first, the largest slack as the bound) stand beside ours.
 
 use crate::backend::Backend;
 use crate::backends::by_name;
@@ -25,13 +24,6 @@ const ORIENTATIONS: [[f64; 2]; 7] =
 
 const COLUMNS: [&str; 6] = ["aabb", "kdop-6", "kdop-14", "kdop-18", "kdop-26", "kdop-scene"];
 
-/// The manual's seconds for building and for 100,000 closest-point queries of its bunny.
-const CITED: [(&str, [f64; 5]); 3] = [
-    ("gear_skewed, build s", [0.0354, 0.039, 0.0426, 0.0455, 0.0493]),
-    ("bunny subdivided, build s", [0.184, 0.208, 0.224, 0.236, 0.268]),
-    ("bunny subdivided, 100,000 closest points s", [22.256, 21.816, 24.94, 25.588, 27.428]),
-];
-
 /// Nodes and leaves visited per query.
 type Work = [f64; 2];
 
@@ -47,15 +39,6 @@ pub(crate) fn orientations(scene: &Scene) -> Result<Vec<Scene>> {
         )
     };
     ORIENTATIONS.into_iter().map(turned).collect()
-}
-
-/// Prints the table of the manual's own figures.
-pub(crate) fn print_cited() {
-    let mut table = Table::new(["cited from the manual", "AABB", "6-DOP", "14-DOP", "18-DOP", "26-DOP"]);
-    for (name, figures) in CITED {
-        table.push(std::iter::once(name.to_owned()).chain(figures.map(|x| x.to_string())).collect());
-    }
-    println!("\n{table}");
 }
 
 /// Prints the table of a scene, and returns whether all trees agree.

@@ -1,7 +1,7 @@
 //! Indexes over scenes of one kind of primitive, and a tree for each kind in scenes of several kinds.
 
 use crate::backend::{Answer, BenchIndex, BoxedIndex, Prepared, Unavailable};
-use crate::our_indexes::{aabb_options, build, id_of};
+use crate::our_indexes::{aabb_options, id_of, over_set};
 use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
@@ -11,14 +11,13 @@ use p2m_core::{BuildIndex, ClosestPoint, Indexed, PrimitiveId, PrimitiveSet, Que
 pub(crate) fn aabb_of_triangles(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
     let set = triangles(scene)?;
     let triangles: Vec<Triangle<f64>> = (0..set.len()).map(|i| set.get(PrimitiveId::new(i))).collect();
-    Ok(Prepared { build: Box::new(|| build::<f64, AabbTree<_, _>, _>(triangles, &aabb_options())), borrowed: 0 })
+    over_set(triangles, 0, |set| AabbTree::build(set, &aabb_options()))
 }
 
 /// Prepares the AABB tree over the scene's set of triangles, for scenes without other primitives.
 pub(crate) fn aabb_of_set(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
     let set = triangles(scene)?;
-    let build = move || build::<f64, AabbTree<_, _>, _>(set, &aabb_options());
-    Ok(Prepared { build: Box::new(build), borrowed: scene.double_bytes })
+    over_set(set, scene.double_bytes, |set| AabbTree::build(set, &aabb_options()))
 }
 
 fn triangles(scene: &Scene) -> Result<Indexed<'_, f64, 3>, Unavailable> {

@@ -17,6 +17,7 @@ mod arguments;
 mod backend;
 mod backends;
 mod batch;
+mod blocks;
 mod bvh_crate;
 mod commands;
 mod delaunay;
@@ -47,4 +48,17 @@ use std::process::ExitCode;
 fn main() -> anyhow::Result<ExitCode> {
     let is_good = commands::run(arguments::Cli::parse().command)?;
     Ok(if is_good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    #[test]
+    fn documents_have_the_blocks_of_their_commands() {
+        let document = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs").join(name);
+        crate::paper::BLOCKS.check(Some(&document("paper.md"))).unwrap();
+        crate::extremes::BLOCKS.check(Some(&document("extremes.md"))).unwrap();
+        crate::adversaries::BLOCKS.check(Some(&document("adversaries.md"))).unwrap();
+    }
 }

@@ -68,7 +68,7 @@ pub(crate) struct SetFigures {
 /// A backend in a scene, with its index and its measurements.
 pub(crate) struct Entry<'a> {
     /// The backend that was built.
-    pub(crate) backend: &'static Backend,
+    pub(crate) backend: &'a Backend,
     /// The index, or the reason why there is none.
     pub(crate) index: Result<BoxedIndex<'a>, Unavailable>,
     /// The cost of the builds.
@@ -78,7 +78,7 @@ pub(crate) struct Entry<'a> {
 }
 
 /// Builds all backends `builds` times, in turns, and keeps the last index of each.
-pub(crate) fn build_all<'a>(scene: &'a Scene, backends: &[&'static Backend], builds: usize) -> Vec<Entry<'a>> {
+pub(crate) fn build_all<'a>(scene: &'a Scene, backends: &[&'a Backend], builds: usize) -> Vec<Entry<'a>> {
     let mut entries: Vec<Entry<'a>> = backends
         .iter()
         .map(|&backend| Entry {
@@ -190,7 +190,7 @@ impl Run {
         self.figures.checksums.push(checksum(0, answers));
     }
 
-    fn for_comparison<'a>(&'a self, entry: &Entry<'_>) -> Option<Answers<'a>> {
+    fn for_comparison<'a>(&'a self, entry: &'a Entry<'_>) -> Option<Answers<'a>> {
         let backend = entry.backend;
         self.failure.is_none().then_some(Answers { backend, chosen: &self.chosen, answers: &self.answers })
     }

@@ -1,7 +1,6 @@
 //! `p2m-bench octree`: compares the settings of the octree: resolution, domain and number of threads.
 
 use crate::backend::Backend;
-use crate::backends::OURS;
 use crate::measure::{Effort, Spread, build_all, measure_set};
 use crate::our_indexes::{octree_options, over_soup_with};
 use crate::scene::Scene;
@@ -13,33 +12,18 @@ use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 use std::time::Instant;
 
-/// A setting of the octree under its name in the table.
-struct Setting {
-    backend: Backend,
-    options: fn(&Scene) -> OctreeOptions,
-}
+/// The options of a setting for a scene.
+type Options = fn(&Scene) -> OctreeOptions;
 
-macro_rules! setting {
-    ($name:literal, $options:expr) => {
-        Setting {
-            backend: Backend {
-                name: $name,
-                prepare: |s| over_soup_with::<f64, OctreeIndex<_, _>>(s, $options(s)),
-                ..OURS
-            },
-            options: $options,
-        }
-    };
-}
-
-const SETTINGS: &[Setting] = &[
-    setting!("usual", |_: &Scene| octree_options(1.0)),
-    setting!("a hundredth", |_: &Scene| octree_options(0.01)),
-    setting!("a tenth", |_: &Scene| octree_options(0.1)),
-    setting!("threefold", |_: &Scene| octree_options(3.0)),
-    setting!("tenfold", |_: &Scene| octree_options(10.0)),
-    setting!("box", |s: &Scene| octree_options(1.0).with_domain(Domain::Box(queried(s)))),
-    setting!("band", |s: &Scene| octree_options(1.0).with_domain(Domain::Band(0.03 * s.diagonal()))),
+/// The settings under their names in the table.
+const SETTINGS: [(&str, Options); 7] = [
+    ("usual", |_| octree_options(1.0)),
+    ("a hundredth", |_| octree_options(0.01)),
+    ("a tenth", |_| octree_options(0.1)),
+    ("threefold", |_| octree_options(3.0)),
+    ("tenfold", |_| octree_options(10.0)),
+    ("box", |scene| octree_options(1.0).with_domain(Domain::Box(queried(scene)))),
+    ("band", |scene| octree_options(1.0).with_domain(Domain::Band(0.03 * scene.diagonal()))),
 ];
 
 /// Returns the box of the query set 1x.
@@ -52,8 +36,9 @@ fn queried(scene: &Scene) -> Aabb<f64> {
 
 /// Prints the table of a scene, and returns whether all indexes agree.
 pub(crate) fn print(scene: &Scene, sets: &[QuerySet], threads: &[usize], effort: &Effort) -> Result<bool> {
-    let backends: Vec<&'static Backend> = SETTINGS.iter().map(|s| &s.backend).collect();
-    let mut entries = build_all(scene, &backends, 1);
+    let backends =
+        SETTINGS.map(|(name, options)| Backend::new(name, move |s| over_soup_with::<OctreeIndex<_, _>>(s, options(s))));
+    let mut entries = build_all(scene, &backends.each_ref(), 1);
     for set in sets {
         measure_set(scene, *set, &mut entries, effort);
     }
@@ -62,10 +47,10 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], threads: &[usize], effort:
     let head = std::iter::once("setting".to_owned()).chain(build_columns).chain(fixed);
     let mut table = Table::new(head.chain(sets.iter().map(ToString::to_string)));
     let mut clean = true;
-    for (setting, entry) in SETTINGS.iter().zip(&entries) {
-        let mut options = (setting.options)(scene);
+    for ((name, options), entry) in SETTINGS.iter().zip(&entries) {
+        let mut options = options(scene);
         options.splits.parallel = true;
-        let mut row = vec![setting.backend.name.to_owned()];
+        let mut row = vec![(*name).to_owned()];
         let mut report = None;
         for &count in threads {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build()?;

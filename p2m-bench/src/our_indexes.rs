@@ -1,19 +1,31 @@
 //! Builds our indexes for the harness: a function for each index and setting of the list of backends.
 
-use crate::backend::{Answer, BenchIndex, BoxedIndex, Prepared, Scalar, Unavailable};
-use crate::bvh_crate;
+use crate::backend::{Answer, BenchIndex, BoxedIndex, Prepared, Scalar, ScalarKind, Unavailable};
 use crate::scene::Scene;
 use nalgebra::Point3;
+use p2m_advisor::{BackendEntry, BuildSettings, BuiltIndex, Index};
 use p2m_bvh::{AabbOptions, AabbTree};
-use p2m_core::{BuildIndex, Closest, ClosestPoint, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Soup};
-use p2m_interception::{InterceptionIndex, Octree, OctreeOptions, P2mOptions, Partition, Voronoi};
+use p2m_core::{BuildError, BuildIndex, Closest, ClosestPoint, Isa, PrimitiveId, QueryOptions, Soup};
+use p2m_interception::{OctreeIndex, OctreeOptions, P2mIndex, P2mOptions};
 use p2m_kdop::{DirectionChoice, Directions, DirectionsError, KdopOptions, KdopTree};
-use std::marker::PhantomData;
+use std::fmt::Display;
 
 /// An index of ours that is queried through the trait [`ClosestPoint`], one query at a time.
-struct OneByOne<T, I>(I, PhantomData<fn() -> T>);
+struct OneByOne<I>(I);
 
-impl<T: Scalar, I: ClosestPoint<T> + Sync> BenchIndex for OneByOne<T, I> {
+impl<I: ClosestPoint<f64> + Sync> BenchIndex for OneByOne<I> {
+    type Scalar = f64;
+
+    #[inline(always)]
+    fn query(&self, query: &Point3<f64>) -> Answer {
+        answer(self.0.closest_point(query))
+    }
+}
+
+/// An index of the registry, which is queried through a pointer.
+struct Registered<'a, T: Scalar>(Box<dyn Index<T> + 'a>);
+
+impl<T: Scalar> BenchIndex for Registered<'_, T> {
     type Scalar = T;
 
     #[inline(always)]
@@ -23,19 +35,19 @@ impl<T: Scalar, I: ClosestPoint<T> + Sync> BenchIndex for OneByOne<T, I> {
 }
 
 /// An index of ours that is queried through the trait [`ClosestPoint`], several queries at a time.
-struct InBatches<T, I>(I, PhantomData<fn() -> T>);
+struct InBatches<I>(I);
 
 /// The number of queries in a batch of [`InBatches`].
 const QUERIES_PER_BATCH: usize = 256;
 
-impl<T: Scalar, I: ClosestPoint<T> + Sync> BenchIndex for InBatches<T, I> {
-    type Scalar = T;
+impl<I: ClosestPoint<f64> + Sync> BenchIndex for InBatches<I> {
+    type Scalar = f64;
 
-    fn query(&self, query: &Point3<T>) -> Answer {
+    fn query(&self, query: &Point3<f64>) -> Answer {
         answer(self.0.closest_point(query))
     }
 
-    fn queries(&self, queries: &[Point3<T>], answers: &mut [Answer]) {
+    fn queries(&self, queries: &[Point3<f64>], answers: &mut [Answer]) {
         let mut closest = [None; QUERIES_PER_BATCH];
         for (queries, answers) in queries.chunks(QUERIES_PER_BATCH).zip(answers.chunks_mut(QUERIES_PER_BATCH)) {
             let closest = &mut closest[..queries.len()];
@@ -55,34 +67,66 @@ pub(crate) fn id_of(primitive: PrimitiveId) -> u32 {
     primitive.index() as u32
 }
 
-/// Builds an index over a set.
-pub(crate) fn build<'a, T, I, S>(set: S, options: &I::Options) -> Result<BoxedIndex<'a>, Unavailable>
+/// Prepares an index over a set that borrows so many bytes of the scene.
+pub(crate) fn over_set<'a, S, I, E>(
+    set: S,
+    borrowed: usize,
+    build: impl FnOnce(S) -> Result<I, E> + 'a,
+) -> Result<Prepared<'a>, Unavailable>
 where
-    T: Scalar,
-    S: PrimitiveSet<T>,
-    I: BuildIndex<T, S> + Sync + 'a,
+    S: 'a,
+    I: ClosestPoint<f64> + Sync + 'a,
+    E: Display,
 {
-    let index = I::build(set, options).map_err(|error| Unavailable(error.to_string()))?;
-    Ok(Box::new(OneByOne(index, PhantomData::<fn() -> T>)))
+    let build = move || {
+        let index = build(set).map_err(|error| Unavailable(error.to_string()))?;
+        Ok(Box::new(OneByOne(index)) as BoxedIndex<'a>)
+    };
+    Ok(Prepared { build: Box::new(build), borrowed })
 }
 
-/// Prepares an index with default options that borrows the scene as it is.
-pub(crate) fn over_soup<'a, T, I>(scene: &'a Scene) -> Result<Prepared<'a>, Unavailable>
+/// Prepares an index that borrows the scene as it is.
+fn over_scene<'a, I, E>(
+    scene: &'a Scene,
+    build: impl FnOnce(&'a Soup<f64>) -> Result<I, E> + 'a,
+) -> Result<Prepared<'a>, Unavailable>
 where
-    T: Scalar,
-    I: BuildIndex<T, &'a Soup<T>> + Sync + 'a,
+    I: ClosestPoint<f64> + Sync + 'a,
+    E: Display,
 {
-    over_soup_with::<T, I>(scene, I::Options::default())
+    over_set(&scene.double, scene.double_bytes, build)
 }
 
 /// Prepares an index with the given options that borrows the scene as it is.
-pub(crate) fn over_soup_with<'a, T, I>(scene: &'a Scene, options: I::Options) -> Result<Prepared<'a>, Unavailable>
+pub(crate) fn over_soup_with<'a, I>(scene: &'a Scene, options: I::Options) -> Result<Prepared<'a>, Unavailable>
 where
-    T: Scalar,
-    I: BuildIndex<T, &'a Soup<T>> + Sync + 'a,
+    I: BuildIndex<f64, &'a Soup<f64>, Error: Display> + Sync + 'a,
 {
-    let (soup, borrowed) = T::soup(scene)?;
-    Ok(Prepared { build: Box::new(move || build::<T, I, _>(soup, &options)), borrowed })
+    over_scene(scene, move |soup| I::build(soup, &options))
+}
+
+/// Prepares the index of an entry of the registry in a scalar, which is built on one thread, because thread CPU time is
+/// measured.
+pub(crate) fn registered<'a>(
+    entry: &'static BackendEntry,
+    scene: &'a Scene,
+    scalar: ScalarKind,
+) -> Result<Prepared<'a>, Unavailable> {
+    fn ready<'a, T: Scalar>(built: Result<BuiltIndex<'a, T>, BuildError>) -> Result<BoxedIndex<'a>, Unavailable> {
+        let built = built.map_err(|error| Unavailable(error.to_string()))?;
+        Ok(Box::new(Registered(built.index)))
+    }
+    let settings = BuildSettings::default().with_parallel(false);
+    match scalar {
+        ScalarKind::Double => {
+            let (soup, borrowed) = f64::soup(scene)?;
+            Ok(Prepared { build: Box::new(move || ready(entry.build(soup, &settings))), borrowed })
+        }
+        ScalarKind::Single => {
+            let (soup, borrowed) = f32::soup(scene)?;
+            Ok(Prepared { build: Box::new(move || ready(entry.build_f32(soup, &settings))), borrowed })
+        }
+    }
 }
 
 /// Returns options that build on one thread, because thread CPU time is measured.
@@ -113,74 +157,45 @@ pub(crate) fn p2m_options() -> P2mOptions {
     P2mOptions::default().with_splits(aabb_options())
 }
 
-/// Prepares an interception index with the instruction set of that name or the best one.
-fn interception<'a, T, P>(scene: &'a Scene, isa: Option<&str>, options: P::Options) -> Result<Prepared<'a>, Unavailable>
-where
-    T: Scalar,
-    P: Partition<Options: 'a> + Sync + 'a,
-{
-    let isa = instruction_set(isa)?;
-    let (soup, borrowed) = T::soup(scene)?;
-    let build = move || {
-        let index = InterceptionIndex::<T, _, P>::build(soup, &options);
-        let index = index.map_err(|error| Unavailable(error.to_string()))?;
-        Ok(Box::new(OneByOne(index.with_isa(isa), PhantomData::<fn() -> T>)) as BoxedIndex<'a>)
-    };
-    Ok(Prepared { build: Box::new(build), borrowed })
-}
-
-/// Prepares the octree with an instruction set and a multiple of the default resolution.
-pub(crate) fn octree<'a, T: Scalar>(
-    scene: &'a Scene,
-    isa: Option<&str>,
-    factor: f64,
-) -> Result<Prepared<'a>, Unavailable> {
-    interception::<T, Octree>(scene, isa, octree_options(factor))
-}
-
-/// Prepares the P2M index with an instruction set.
-pub(crate) fn p2m<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'a>, Unavailable> {
-    interception::<T, Voronoi>(scene, isa, p2m_options())
-}
-
-/// Prepares the P2M index with the given options.
-pub(crate) fn p2m_with(scene: &Scene, options: P2mOptions) -> Result<Prepared<'_>, Unavailable> {
-    interception::<f64, Voronoi>(scene, None, options)
-}
-
 /// Returns options as in the paper: no site is added, and lists may be long.
 pub(crate) fn long_lists() -> P2mOptions {
     p2m_options().with_max_list_packets(2048).with_max_extra_sites(0.0).with_memory(1e5).with_work(1e6)
+}
+
+/// Prepares the octree with an instruction set and a multiple of the default resolution.
+pub(crate) fn octree<'a>(scene: &'a Scene, isa: Option<&str>, factor: f64) -> Result<Prepared<'a>, Unavailable> {
+    let isa = instruction_set(isa)?;
+    over_scene(scene, move |soup| Ok::<_, BuildError>(OctreeIndex::build(soup, &octree_options(factor))?.with_isa(isa)))
+}
+
+/// Prepares the P2M index with an instruction set and the given options.
+pub(crate) fn p2m<'a>(scene: &'a Scene, isa: Option<&str>, options: P2mOptions) -> Result<Prepared<'a>, Unavailable> {
+    let isa = instruction_set(isa)?;
+    over_scene(scene, move |soup| Ok::<_, BuildError>(P2mIndex::build(soup, &options)?.with_isa(isa)))
 }
 
 /// Prepares the P2M index for batches of queries.
 pub(crate) fn p2m_in_batches(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
     let (soup, borrowed) = f64::soup(scene)?;
     let build = move || {
-        let index = InterceptionIndex::<f64, _, Voronoi>::build(soup, &p2m_options());
-        let index = index.map_err(|error| Unavailable(error.to_string()))?;
-        Ok(Box::new(InBatches(index, PhantomData::<fn() -> f64>)) as BoxedIndex<'_>)
+        let index = P2mIndex::build(soup, &p2m_options()).map_err(|error| Unavailable(error.to_string()))?;
+        Ok(Box::new(InBatches(index)) as BoxedIndex<'_>)
     };
     Ok(Prepared { build: Box::new(build), borrowed })
 }
 
-/// Prepares the AABB tree with the instruction set of that name or the best one.
-pub(crate) fn aabb<'a, T: Scalar>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'a>, Unavailable> {
+/// Prepares the AABB tree with the instruction set of that name.
+pub(crate) fn aabb<'a>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'a>, Unavailable> {
     let isa = instruction_set(isa)?;
-    let (soup, borrowed) = T::soup(scene)?;
-    let build = move || {
-        let tree = AabbTree::build(soup, &aabb_options()).map_err(|error| Unavailable(error.to_string()))?;
-        Ok(Box::new(OneByOne(tree.with_isa(isa), PhantomData::<fn() -> T>)) as BoxedIndex<'a>)
-    };
-    Ok(Prepared { build: Box::new(build), borrowed })
+    over_scene(scene, move |soup| Ok::<_, BuildError>(AabbTree::build(soup, &aabb_options())?.with_isa(isa)))
 }
 
 /// Prepares the k-DOP tree with default directions.
-pub(crate) fn kdop<T: Scalar, const K: usize>(scene: &Scene) -> Result<Prepared<'_>, Unavailable>
+pub(crate) fn kdop<const K: usize>(scene: &Scene) -> Result<Prepared<'_>, Unavailable>
 where
     Directions<K>: Default,
 {
-    over_soup_with::<T, KdopTree<T, _, K>>(scene, KdopOptions::default().with_splits(aabb_options()))
+    kdop_with::<K>(scene, Ok(Directions::default()))
 }
 
 /// Prepares the k-DOP tree with 14 directions that the scene calls for; choosing them is not timed.
@@ -188,25 +203,18 @@ pub(crate) fn kdop_of_scene(scene: &Scene) -> Result<Prepared<'_>, Unavailable> 
     kdop_with::<14>(scene, scene_directions(scene).directions())
 }
 
-/// Prepares the tree of the crate bvh, with a distance function of our own.
-pub(crate) fn bvh(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
-    let build = bvh_crate::tree(scene);
-    Ok(Prepared { build: Box::new(move || Ok(Box::new(build()?) as BoxedIndex<'_>)), borrowed: 0 })
+/// Prepares the k-DOP tree with K directions in the frame that the scene calls for.
+pub(crate) fn kdop_in_frame<const K: usize>(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
+    kdop_with::<K>(scene, scene_directions(scene).frame_directions())
 }
 
-/// Prepares the k-DOP tree with the given directions.
-pub(crate) fn kdop_with<const K: usize>(
+fn kdop_with<const K: usize>(
     scene: &Scene,
     directions: Result<Directions<K>, DirectionsError>,
 ) -> Result<Prepared<'_>, Unavailable> {
     let directions = directions.map_err(|error| Unavailable(error.to_string()))?;
-    let (soup, borrowed) = f64::soup(scene)?;
     let options = KdopOptions::new(directions).with_splits(aabb_options());
-    let build = move || {
-        let tree = KdopTree::build_with(soup, &options).map_err(|error| Unavailable(error.to_string()))?;
-        Ok(Box::new(OneByOne(tree, PhantomData::<fn() -> f64>)) as BoxedIndex<'_>)
-    };
-    Ok(Prepared { build: Box::new(build), borrowed })
+    over_scene(scene, move |soup| KdopTree::build_with(soup, &options))
 }
 
 /// Returns the directions that the scene calls for.

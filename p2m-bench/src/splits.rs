@@ -1,7 +1,6 @@
 //! `p2m-bench splits`: compares the split rules of the AABB tree.
 
 use crate::backend::Backend;
-use crate::backends::OURS;
 use crate::measure::{Effort, Spread, build_all, measure_set};
 use crate::our_indexes::over_soup_with;
 use crate::scene::Scene;
@@ -12,27 +11,8 @@ use p2m_core::StatsCollector;
 use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 
-/// A split rule, and the backend that is built with it.
-struct Rule {
-    backend: Backend,
-    rule: SplitRule,
-}
-
-macro_rules! rule {
-    ($name:literal, $rule:expr) => {
-        Rule {
-            backend: Backend {
-                name: $name,
-                prepare: |s| over_soup_with::<f64, AabbTree<_, _>>(s, options($rule)),
-                ..OURS
-            },
-            rule: $rule,
-        }
-    };
-}
-
-const RULES: &[Rule] =
-    &[rule!("sah", SplitRule::Sah), rule!("adaptive-sah", SplitRule::AdaptiveSah), rule!("median", SplitRule::Median)];
+const RULES: [(&str, SplitRule); 3] =
+    [("sah", SplitRule::Sah), ("adaptive-sah", SplitRule::AdaptiveSah), ("median", SplitRule::Median)];
 
 fn options(rule: SplitRule) -> AabbOptions {
     AabbOptions::default().with_parallel(false).with_rule(rule)
@@ -40,15 +20,16 @@ fn options(rule: SplitRule) -> AabbOptions {
 
 /// Prints the tables of a scene, and returns whether all trees agree.
 pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> bool {
-    let backends: Vec<&'static Backend> = RULES.iter().map(|r| &r.backend).collect();
-    let mut entries = build_all(scene, &backends, effort.builds);
+    let backends =
+        RULES.map(|(name, rule)| Backend::new(name, move |s| over_soup_with::<AabbTree<_, _>>(s, options(rule))));
+    let mut entries = build_all(scene, &backends.each_ref(), effort.builds);
     for set in sets {
         measure_set(scene, *set, &mut entries, effort);
     }
     let mut table = Table::new(["split", "build s", "nodes", "depth"].into_iter().chain(sets.iter().map(|s| s.name())));
     let mut clean = true;
-    for (rule, entry) in RULES.iter().zip(&entries) {
-        let tree = AabbTree::build(&scene.double, &options(rule.rule)).expect("built before");
+    for ((_, rule), entry) in RULES.iter().zip(&entries) {
+        let tree = AabbTree::build(&scene.double, &options(*rule)).expect("built before");
         let (nodes, depth) = tree.tree().parts().fold((0, 0), |(n, deepest), part| (n + 1, part.depth.max(deepest)));
         let seconds = Spread::of(&entry.build.seconds).map_or(f64::NAN, |s| s.median);
         let mut row =

@@ -12,8 +12,8 @@ use std::thread;
 /// answers are equal.
 pub(crate) fn verify(
     scene: &Scene,
-    oracles: &[&'static Backend],
-    backends: &[&'static Backend],
+    oracles: &[&Backend],
+    backends: &[&Backend],
     sets: &[QuerySet],
     count: usize,
     seed: u64,
@@ -22,13 +22,11 @@ pub(crate) fn verify(
     let mut table = Table::new(["", "scalar"].into_iter().chain(sets.iter().map(|set| set.name())));
     let (mut equal, mut notes) = (true, Vec::new());
     for scalar in [ScalarKind::Double, ScalarKind::Single] {
-        let of_scalar = |list: &[&'static Backend]| -> Vec<&'static Backend> {
-            list.iter().copied().filter(|b| b.scalar == scalar).collect()
-        };
-        let (oracles, backends) = (of_scalar(oracles), of_scalar(backends));
+        let [oracles, backends] = [oracles, backends]
+            .map(|list| list.iter().copied().filter(|b| b.scalar == scalar).collect::<Vec<&Backend>>());
         let mut rows: Vec<Vec<String>> =
             backends.iter().map(|b| vec![b.name.to_owned(), scalar.name().to_owned()]).collect();
-        let built: Vec<_> = oracles.iter().chain(&backends).map(|b| build(scene, b)).collect();
+        let built: Vec<_> = oracles.iter().chain(&backends).map(|b| b.build(scene)).collect();
         for (backend, index) in oracles.iter().chain(&backends).zip(&built) {
             if let Err(Unavailable(why)) = index {
                 notes.push(format!("{} is left out: {why}", backend.name));
@@ -69,10 +67,6 @@ pub(crate) fn verify(
     equal
 }
 
-fn build<'a>(scene: &'a Scene, backend: &Backend) -> Result<BoxedIndex<'a>, Unavailable> {
-    crate::backend::catch(|| ((backend.prepare)(scene)?.build)())
-}
-
 /// Returns the answers to all queries, computed on all cores.
 fn answer(index: &BoxedIndex<'_>, queries: &Queries) -> Result<Vec<Answer>, Unavailable> {
     let mut answers = vec![Answer::NONE; queries.len()];
@@ -96,7 +90,7 @@ fn answer(index: &BoxedIndex<'_>, queries: &Queries) -> Result<Vec<Answer>, Unav
 
 /// Compares answers bitwise. `compare_round` takes the backend that is not exhaustive as its reference, which does not
 /// change the counts.
-fn compare(oracle: (&'static Backend, &[Answer]), backend: (&'static Backend, &[Answer])) -> Agreement {
+fn compare(oracle: (&Backend, &[Answer]), backend: (&Backend, &[Answer])) -> Agreement {
     let all: Vec<usize> = (0..oracle.1.len()).collect();
     let round = [oracle, backend].map(|(backend, answers)| Some(Answers { backend, chosen: &all, answers }));
     compare_round(&round, all.len())[0]
@@ -151,22 +145,15 @@ mod tests {
         }
     }
 
-    static WRONG: Backend = Backend {
-        name: "wrong",
-        scalar: ScalarKind::Double,
-        is_ours: true,
-        is_exhaustive: false,
-        prepare: |_| Ok(Prepared { build: Box::new(|| Ok(Box::new(Wrong))), borrowed: 0 }),
-    };
-
     #[test]
     fn our_backends_pass_and_a_wrong_one_does_not() {
         let soup = Soup::new(vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0)], [Element::Point(0)]).unwrap();
         let scene = Scene::new("test".into(), soup).unwrap();
         let (oracles, backends): (Vec<_>, Vec<_>) =
             backends::ALL.iter().filter(|b| b.is_ours).partition(|b| b.is_exhaustive);
-        let run = |backends: &[&'static Backend]| verify(&scene, &oracles, backends, &QuerySet::ALL, 100, 1);
+        let run = |backends: &[_]| verify(&scene, &oracles, backends, &QuerySet::ALL, 100, 1);
         assert!(run(&backends));
-        assert!(!run(&[&WRONG]));
+        let wrong = Backend::new("wrong", |_| Ok(Prepared { build: Box::new(|| Ok(Box::new(Wrong))), borrowed: 0 }));
+        assert!(!run(&[&wrong]));
     }
 }

@@ -159,6 +159,27 @@ fn cells_of_vertices_that_take_too_much_are_left_to_the_tree() {
     assert_eq!(ample.report(), unlimited.report());
 }
 
+/// Budgets that nothing exceeds change no answer, with added sites and with lists as long as they get.
+#[test]
+fn indexes_with_unlimited_budgets_answer_as_brute_force() {
+    for name in ["grid", "sphere", "spheres", "sheets", "plane", "needles", "one over all", "two clouds"] {
+        let soup = &Adversary::named(name).soup(amount(1_000, 200));
+        let queries = queries(soup, query_count());
+        let expected = answers(&BruteForce::new(soup).expect("valid"), &queries);
+        let unlimited = f64::INFINITY;
+        let options = OctreeOptions::default().with_memory(unlimited).with_work(unlimited);
+        let octree = OctreeIndex::build(soup, &options).expect("valid");
+        assert_eq!(answers(&octree, &queries), expected, "{name}: {}", octree.report());
+        let options = P2mOptions::default().with_memory(unlimited).with_work(unlimited);
+        let long_lists = options.with_max_list_packets(2048).with_max_extra_sites(0.0);
+        for options in [options, long_lists] {
+            let p2m = P2mIndex::build(soup, &options).expect("valid");
+            assert_eq!(answers(&p2m, &queries), expected, "{name}: {}", p2m.report());
+            assert!(name != "grid" || p2m.report().lists == soup.len(), "{}", p2m.report());
+        }
+    }
+}
+
 /// A set that counts how often its primitives are accessed.
 struct Counted<'a> {
     balls: &'a [Ball],

@@ -1,6 +1,7 @@
 //! Compares every backend with brute force, bit for bit (N3), and sets with the exact oracle (N2, N7).
 //!
-//! One generic suite serves all backends; a new backend adds a line to `backends!`.
+//! One generic suite serves all backends with sets of many types. `registry.rs` compares every backend of the registry
+//! over scenes.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -19,7 +20,7 @@ use p2m_testkit::{amount, cases, oracle::Distance, rng};
 use rand::RngExt;
 use std::fmt::Debug;
 
-/// Generates tests of scenes of all kinds for an exact backend, in both scalars.
+/// Generates tests of scenes of all kinds for an index that is not in the registry, in both scalars.
 macro_rules! on_soups {
     ($index:ident) => {
         #[test]
@@ -46,7 +47,7 @@ macro_rules! on_soups {
     };
 }
 
-/// Generates the same tests for k-DOP trees whose directions the rest of the suite need not vary.
+/// Generates these tests for k-DOP trees whose directions the rest of the suite need not vary.
 macro_rules! variants {
     ($($name:ident: $index:ident),+ $(,)?) => {
         $(mod $name {
@@ -56,12 +57,11 @@ macro_rules! variants {
     };
 }
 
-/// Generates the whole suite for every backend.
+/// Generates tests with sets of many types for a backend.
 macro_rules! backends {
     ($($name:ident: $index:ident),+ $(,)?) => {
         $(mod $name {
             use super::*;
-            on_soups!($index);
 
             #[test]
             fn agrees_on_homogeneous_slices() {
@@ -215,7 +215,7 @@ where
 
 /// Checks an index of `len` primitives with every option. It takes trait objects, because it would otherwise be
 /// compiled for many types.
-fn agrees_with<T: Real>(
+pub(crate) fn agrees_with<T: Real>(
     brute: &dyn ClosestPoint<T>,
     seed: u64,
     len: usize,

@@ -24,6 +24,7 @@ mod ray_collectors;
 mod ray_counters;
 mod ray_models;
 mod rays;
+mod registry;
 mod saved;
 mod signs;
 mod trade;

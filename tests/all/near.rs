@@ -1,67 +1,13 @@
-//! Compares near queries (k nearest, all within a distance, any within a distance, filtered nearest) of every backend
-//! with the primitives one by one.
+//! Tests near queries: answers that are stated, and counters. `registry.rs` compares the answers of every backend (k
+//! nearest, all within a distance, any within a distance, filtered nearest) with the primitives one by one.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::Point3;
 use p2m::backend::Near;
-use p2m::{
-    AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopTree, NearQuery, OctreeIndex, P2mIndex, PrimitiveId,
-    PrimitiveSet, Projection, QueryOptions, Real, Soup,
-};
-use p2m_testkit::scenes::{Kinds, Layout, extreme_soups, narrow, queries, random_soups, soup, to_f32};
-use p2m_testkit::{near_check, rng};
-use std::fmt::Debug;
-
-type Kdop14<T, S> = KdopTree<T, S, 14>;
-
-macro_rules! backends {
-    ($($name:ident: $index:ident),+ $(,)?) => {
-        $(mod $name {
-            use super::*;
-
-            #[test]
-            fn agrees_on_random_scenes_in_f64() {
-                for (seed, soup) in random_soups("near f64") {
-                    agrees::<f64, $index<f64, _>>(seed, &soup, &queries(seed, &soup));
-                }
-            }
-
-            #[test]
-            fn agrees_on_random_scenes_in_f32() {
-                for (seed, soup) in random_soups("near f32") {
-                    let queries: Vec<_> = queries(seed, &soup).into_iter().map(to_f32).collect();
-                    agrees::<f32, $index<f32, _>>(seed, &narrow(&soup).expect("fits f32"), &queries);
-                }
-            }
-
-            #[test]
-            fn agrees_at_extreme_scales() {
-                for (seed, soup, queries) in extreme_soups("near scales") {
-                    agrees::<f64, $index<f64, _>>(seed, &soup, &queries);
-                }
-            }
-        })+
-    };
-}
-
-backends! {
-    aabb: AabbTree,
-    kdop_14: Kdop14,
-    octree: OctreeIndex,
-    p2m_index: P2mIndex,
-}
-
-fn agrees<'a, T: Real, I: NearQuery<T> + BuildIndex<T, &'a Soup<T>>>(
-    seed: u64,
-    soup: &'a Soup<T>,
-    queries: &[Point3<T>],
-) where
-    I::Error: Debug,
-{
-    near_check::agrees(seed, soup, queries, &I::build(soup, &I::Options::default()).expect("valid scene"));
-    near_check::agrees(seed, soup, &queries[..queries.len().min(5)], &BruteForce::new(soup).expect("valid scene"));
-}
+use p2m::{AabbTree, BuildIndex, ClosestPoint, NearQuery, PrimitiveId, PrimitiveSet, Projection, QueryOptions, Soup};
+use p2m_testkit::rng;
+use p2m_testkit::scenes::{Kinds, Layout, soup};
 
 #[test]
 fn what_cannot_be_has_a_stated_answer() {

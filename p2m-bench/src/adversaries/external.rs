@@ -2,7 +2,7 @@
 //! unbounded memory ends that process alone and becomes a row of the table.
 
 use crate::backend::{Answer, Unavailable, catch};
-use crate::extremes::counts::ROUNDING;
+use crate::extremes::ROUNDING;
 use crate::memory;
 use crate::queries::Queries;
 use crate::rounds::thread_seconds;
@@ -14,6 +14,8 @@ use p2m_testkit::truth::Truth;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
+/// The number of queries of each scene.
+pub(super) const QUERIES: usize = 300;
 /// The names of the external libraries in the list of backends.
 pub(super) const LIBRARIES: [&str; 2] = ["parry3d-f64", "bvh"];
 /// The time limit of a process for a scene of 20,000 primitives; it grows with the number of primitives.
@@ -26,7 +28,7 @@ const MAX_RESIDENT_BYTES: u64 = 4 << 30;
 pub(crate) fn attempt(name: &str, adversary: &str, count: usize) -> Result<()> {
     let backend = crate::backends::ALL.iter().find(|b| b.name == name).context("a backend of the list")?;
     let scene = Scene::new(adversary.to_owned(), Adversary::named(adversary).soup(count))?;
-    let queries = queries(&scene.double, super::QUERIES);
+    let queries = queries(&scene.double, QUERIES);
     let before = memory::current();
     let taken = catch(|| {
         let prepared = (backend.prepare)(&scene)?;

@@ -1,15 +1,16 @@
 //! `p2m-bench adversaries`: builds every backend over adversarial scenes, compares time, memory and visits with
-//! budgets, and runs external libraries over the same scenes.
+//! budgets, and runs external libraries over the same scenes, for the tables of docs/adversaries.md.
 
 mod external;
 
 pub(crate) use external::attempt;
 
+use crate::blocks::Blocks;
 use crate::memory;
 use crate::our_indexes::{aabb_options, octree_options, p2m_options};
 use crate::rounds::thread_seconds;
 use anyhow::{Context, Result};
-use external::Outcome;
+use external::{Outcome, QUERIES};
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_bvh::{PacketTree, Volume};
@@ -23,12 +24,11 @@ use p2m_tradeoff::{Provenance, Table};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The number of queries of each scene.
-const QUERIES: usize = 300;
+/// The blocks of docs/adversaries.md.
+pub(crate) const BLOCKS: Blocks<4> =
+    Blocks { command: "adversaries", names: ["provenance", "budgets", "scenes", "figures"] };
 /// Budgets apply to scenes of at least this many primitives.
 const MIN_PRIMITIVES_FOR_BUDGET: usize = 10_000;
-/// The template of the page, with two placeholders.
-const PAGE: &str = include_str!("page.md");
 
 /// The budget of a backend, for each primitive.
 struct Budget {
@@ -47,7 +47,7 @@ const OCTREE: Budget = Budget { name: "octree", build: 1000.0, peak: 2048, kept:
 const P2M: Budget = Budget { name: "p2m", build: 2000.0, peak: 21_248, kept: 5632 };
 
 impl Budget {
-    /// Returns the row of the page's table of budgets.
+    /// Returns the row of the table of budgets.
     fn row(&self) -> Vec<String> {
         let Self { name, build, peak, kept } = self;
         vec![(*name).to_owned(), build.to_string(), peak.to_string(), kept.to_string()]
@@ -206,8 +206,9 @@ fn add_rows(adversary: &'static Adversary, count: usize, table: &mut Table) -> R
     Ok(trial.good)
 }
 
-/// Prints the page or writes it to a file, and returns whether all budgets were kept and all answers are right.
-pub(crate) fn print(count: usize, out: Option<&Path>, provenance: &Provenance) -> Result<bool> {
+/// Publishes the blocks, and returns whether all budgets were kept and all answers are right.
+pub(crate) fn run(count: usize, document: Option<&Path>, provenance: &Provenance) -> Result<bool> {
+    BLOCKS.check(document)?;
     let mut table = Table::new(HEAD);
     let mut good = true;
     for adversary in ADVERSARIES {
@@ -218,23 +219,12 @@ pub(crate) fn print(count: usize, out: Option<&Path>, provenance: &Provenance) -
     [AABB, KDOP, OCTREE, P2M].iter().for_each(|budget| budgets.push(budget.row()));
     let mut scenes = Table::new(["scene", "what it is"]);
     ADVERSARIES.iter().for_each(|a| scenes.push(vec![a.name.to_owned(), a.about.to_owned()]));
-    let page = PAGE
-        .replace("{{provenance}}", provenance.to_string().trim_end())
-        .replace("{{count}}", &count.to_string())
-        .replace("{{budgets}}", budgets.to_string().trim_end())
-        .replace("{{scenes}}", scenes.to_string().trim_end())
-        .replace("{{table}}", table.to_string().trim_end());
-    match out {
-        Some(path) => std::fs::write(path, page).with_context(|| path.display().to_string())?,
-        None => print!("{page}"),
-    }
+    let tables = [budgets, scenes, table].map(|table| table.to_string());
+    let [budgets, scenes, figures] = tables;
+    BLOCKS.publish(document, &[provenance.to_string(), budgets, scenes, figures])?;
     println!(
         "{}",
-        if good {
-            "All budgets are kept, and all answers those of brute force."
-        } else {
-            "EXCEEDED or WRONG, see above."
-        }
+        if good { "All budgets are kept, and all answers are right." } else { "EXCEEDED or WRONG, see above." }
     );
     Ok(good)
 }

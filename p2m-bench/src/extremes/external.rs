@@ -1,6 +1,5 @@
 //! Answers of external libraries about one primitive.
 
-use super::counts::ROUNDING;
 use crate::bvh_crate::on_triangle;
 use nalgebra::Point3;
 use p2m_testkit::truth::Truth;
@@ -10,8 +9,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 pub(super) struct Library {
     /// The name in tables.
     pub(super) name: &'static str,
-    /// The function that is called.
-    pub(super) about: &'static str,
     /// Whether the library computes in f32.
     pub(super) single: bool,
     /// Returns the distance from a query to a segment or a triangle.
@@ -20,20 +17,9 @@ pub(super) struct Library {
 
 /// All external libraries.
 pub(super) const LIBRARIES: [Library; 3] = [
-    Library {
-        name: "parry3d-f64",
-        about: "parry3d-f64 0.31, `project_local_point` of `Triangle` and `Segment`",
-        single: false,
-        distance: parry_double,
-    },
-    Library { name: "parry3d", about: "parry3d 0.31, the same in f32", single: true, distance: parry_single },
-    Library {
-        name: "Ericson",
-        about: "the closest point on a triangle of Real-Time Collision Detection, 5.1.5, in f64, as many libraries have it; it is what the \
-                crate bvh 0.13 is given here",
-        single: false,
-        distance: ericson,
-    },
+    Library { name: "parry3d-f64", single: false, distance: parry_double },
+    Library { name: "parry3d", single: true, distance: parry_single },
+    Library { name: "Ericson", single: false, distance: ericson },
 ];
 
 /// The result of a call.
@@ -42,40 +28,6 @@ pub(super) enum CallResult {
     Error(f64),
     /// The call panicked.
     Panic,
-}
-
-/// The way in which an answer is wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Kind {
-    /// There was no answer.
-    Panic,
-    /// The answer was NaN, or infinity for a distance in range.
-    NotANumber,
-    /// The error was larger than any rounding.
-    Wrong,
-    /// The primitive was not the nearest, by more than any rounding.
-    WrongPrimitive,
-}
-
-impl Kind {
-    /// Classifies an error in u M (infinite if the answer is not a number), if it is far above any rounding.
-    pub(super) fn of_error(error: f64) -> Option<Self> {
-        match error {
-            e if !e.is_finite() => Some(Self::NotANumber),
-            e if e > 1e3 * ROUNDING => Some(Self::Wrong),
-            _ => None,
-        }
-    }
-}
-
-impl CallResult {
-    /// Classifies the result, if it is wrong.
-    pub(super) fn kind(&self) -> Option<Kind> {
-        match self {
-            Self::Panic => Some(Kind::Panic),
-            Self::Error(error) => Kind::of_error(*error),
-        }
-    }
 }
 
 impl Library {
@@ -92,11 +44,6 @@ impl Library {
         let limit = if self.single { f64::from(f32::MAX) } else { f64::MAX };
         let beyond = distance == f64::INFINITY && truth.is_at_least(limit);
         Some(CallResult::Error(if beyond { 0.0 } else { truth.error(distance, bits, eta) }))
-    }
-
-    /// Returns the distance that the library computes.
-    pub(super) fn distance(&self, query: [f64; 3], vertices: &[[f64; 3]]) -> f64 {
-        (self.distance)(query, vertices)
     }
 }
 
@@ -122,6 +69,8 @@ macro_rules! parry {
 parry!(parry_double, parry3d_f64, f64);
 parry!(parry_single, parry3d, f32);
 
+/// Returns the distance to the closest point on a triangle of Real-Time Collision Detection, 5.1.5, which many libraries
+/// use and which the crate bvh gets here.
 fn ericson(query: [f64; 3], vertices: &[[f64; 3]]) -> f64 {
     let &[a, b, c] = vertices else { unreachable!("triangles") };
     let query = Point3::from(query);

@@ -1,17 +1,15 @@
 //! Checks isolated primitives on every clause of the contract that one primitive can break.
 
 use super::counts::Counts;
-use super::external::{CallResult, Kind, LIBRARIES};
+use super::external::{CallResult, LIBRARIES};
+use super::threads;
 use crate::backend::{Unavailable, catch};
 use p2m_core::Real;
 use p2m_testkit::contract::{self, Violation};
 use p2m_testkit::families::{self, Case, Family, OFFSETS, SINES, Span};
-use p2m_testkit::truth::rational_distances;
 use rand::Rng;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The number of cases that a thread takes at a time.
+/// The number of cases of a scalar that a thread takes at a time.
 const CHUNK: u64 = 10_000;
 /// External libraries answer one case out of this many.
 const CASES_PER_LIBRARY_CASE: u64 = 20;
@@ -19,30 +17,8 @@ const CASES_PER_LIBRARY_CASE: u64 = 20;
 const SPANS: [(&str, Span); 2] = [("f64", Span::F64), ("f32", Span::F32)];
 /// The number of subjects: our kernel in both scalars, and the external libraries.
 const SUBJECTS: usize = 2 + LIBRARIES.len();
-/// The largest number of broken promises that the page shows.
+/// The largest number of broken promises that are shown.
 const SHOWN: usize = 20;
-
-/// The shortest case for which an external library is wrong in some way.
-#[derive(Clone, Debug)]
-pub(super) struct Example {
-    pub(super) library: usize,
-    pub(super) kind: Kind,
-    pub(super) query: [f64; 3],
-    pub(super) vertices: Vec<[f64; 3]>,
-}
-
-impl Example {
-    /// Returns a sort key: ordinary magnitudes first, then short text.
-    fn plainness(&self) -> (bool, usize) {
-        let ordinary = |x: &f64| *x == 0.0 || (1e-30..1e30).contains(&x.abs());
-        (!self.vertices.as_flattened().iter().chain(&self.query).all(ordinary), self.text().len())
-    }
-
-    /// Formats the example as Rust source.
-    pub(super) fn text(&self) -> String {
-        format!("{:?} {:?}", self.query, self.vertices)
-    }
-}
 
 /// The results of all checks.
 pub(super) struct Findings {
@@ -57,8 +33,6 @@ pub(super) struct Findings {
     /// The number of promises that our kernel broke.
     pub(super) broken: u64,
     pub(super) shown: Vec<String>,
-    /// Wrong answers of external libraries.
-    pub(super) examples: Vec<Example>,
 }
 
 /// Returns the names of the rows; [`rows_of`] knows their order.
@@ -124,34 +98,26 @@ fn rows_of(scalar: usize, family: &Family) -> impl Iterator<Item = usize> {
     rows.into_iter().flatten()
 }
 
-impl Findings {
+impl threads::Findings for Findings {
     fn new() -> Self {
         let rows = labels().into_iter().map(|label| (label, [Counts::default(); SUBJECTS])).collect();
-        Self { rows, checked: [0; 2], invariant: 0, rational: 0, broken: 0, shown: Vec::new(), examples: Vec::new() }
+        Self { rows, checked: [0; 2], invariant: 0, rational: 0, broken: 0, shown: Vec::new() }
     }
 
-    fn merge(&mut self, other: Self) {
+    fn merge(&mut self, other: Self, rational: u64) {
         for ((_, results), (_, others)) in self.rows.iter_mut().zip(other.rows) {
             results.iter_mut().zip(&others).for_each(|(results, other)| results.merge(other));
         }
         self.checked = [self.checked[0] + other.checked[0], self.checked[1] + other.checked[1]];
         self.invariant += other.invariant;
-        self.rational += other.rational;
+        self.rational += rational;
         self.broken += other.broken;
         self.shown.extend(other.shown);
         self.shown.truncate(SHOWN);
-        other.examples.into_iter().for_each(|example| self.keep(example));
     }
+}
 
-    /// Keeps the example if it is the plainest of its kind.
-    fn keep(&mut self, example: Example) {
-        match self.examples.iter_mut().find(|e| (e.library, e.kind) == (example.library, example.kind)) {
-            Some(known) if example.plainness() < known.plainness() => *known = example,
-            Some(_) => {}
-            None => self.examples.push(example),
-        }
-    }
-
+impl Findings {
     /// Generates a case in the range of a scalar and checks our answer.
     fn check(&mut self, rng: &mut impl Rng, scalar: usize) -> Case {
         let case = families::case_in(rng, &SPANS[scalar].1);
@@ -186,9 +152,6 @@ impl Findings {
                     CallResult::Panic => counts.panicked += 1,
                 }
             }
-            if let Some(kind) = result.kind() {
-                self.keep(Example { library: i, kind, query: case.query, vertices: case.vertices.clone() });
-            }
         }
     }
 }
@@ -204,40 +167,15 @@ fn judged<T: Real>(rng: &mut impl Rng, case: &Case) -> Result<(f64, u64), Violat
 
 /// Checks at least `cases` answers of ours, half of them in each scalar, on all threads.
 pub(super) fn run(cases: u64, seed: u64) -> Findings {
-    let all = Mutex::new(Findings::new());
-    let (next, done) = (AtomicU64::new(0), AtomicU64::new(0));
-    let work = || {
-        let mut results = Findings::new();
-        let before = rational_distances();
-        while done.load(Ordering::Relaxed) < cases {
-            let chunk = next.fetch_add(1, Ordering::Relaxed);
-            let mut rng = p2m_testkit::rng("extreme primitives", (seed << 32) + chunk);
-            for i in 0..CHUNK {
-                for scalar in [0, 1] {
-                    let case = results.check(&mut rng, scalar);
-                    if i % CASES_PER_LIBRARY_CASE == 0 {
-                        results.check_libraries(&case, scalar);
-                    }
+    threads::run("answers about primitives", cases.div_ceil(2 * CHUNK), |chunk, results: &mut Findings| {
+        let mut rng = p2m_testkit::rng("extreme primitives", (seed << 32) + chunk);
+        for i in 0..CHUNK {
+            for scalar in [0, 1] {
+                let case = results.check(&mut rng, scalar);
+                if i % CASES_PER_LIBRARY_CASE == 0 {
+                    results.check_libraries(&case, scalar);
                 }
             }
-            let so_far = done.fetch_add(2 * CHUNK, Ordering::Relaxed);
-            progress(so_far, 2 * CHUNK, cases);
         }
-        results.rational = rational_distances() - before;
-        all.lock().expect("no thread panicked").merge(results);
-    };
-    std::thread::scope(|scope| {
-        for _ in 0..std::thread::available_parallelism().map_or(1, Into::into) {
-            scope.spawn(work);
-        }
-    });
-    all.into_inner().expect("no thread panicked")
-}
-
-/// Prints a line after every twentieth of the work.
-fn progress(before: u64, more: u64, all: u64) {
-    let part = |count: u64| count.min(all) * 20 / all.max(1);
-    if part(before + more) > part(before) {
-        eprintln!("{} % of {all} answers about primitives", part(before + more) * 5);
-    }
+    })
 }

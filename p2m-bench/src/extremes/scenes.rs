@@ -1,32 +1,45 @@
 //! Checks small scenes of hard families with every backend, both scalars and external libraries.
 
-use super::counts::Counts;
-use super::example::{Example, judged};
-use super::external::Kind;
+use super::counts::{Counts, ROUNDING};
+use super::threads;
 use crate::backend::{Answer, Backend, BoxedIndex, ScalarKind, Unavailable};
-use crate::backends::ALL;
+use crate::backends::{ALL, YARDSTICK};
 use crate::queries::Queries;
 use crate::scene::Scene;
 use nalgebra::Point3;
+use p2m_advisor::BackendEntry;
 use p2m_core::kernel::ERROR_CONSTANT;
 use p2m_core::{BruteForce, BuildIndex, ClosestPoint, PrimitiveId, PrimitiveSet, Real, Soup};
 use p2m_interception::{OctreeIndex, P2mIndex};
 use p2m_testkit::extremes::Extreme;
-use p2m_testkit::truth::{Truth, rational_distances};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
+use p2m_testkit::truth::Truth;
+use std::collections::BTreeMap;
 
-/// The names of the backends that are checked.
-const NAMES: &str = "brute,aabb,aabb-avx2,aabb-portable,kdop-6,kdop-14,kdop-18,kdop-26,octree,octree-portable,p2m,p2m-avx2,p2m-kiddo,p2m-batch,\
-                     rstar,parry-tree,brute-f32,aabb-f32,kdop-14-f32,octree-f32,p2m-f32,parry3d,parry3d-f64,bvh";
+/// The names of the settings and external libraries that are checked besides all registered backends.
+const SETTINGS: [&str; 13] = [
+    "aabb-avx2",
+    "aabb-portable",
+    "kdop-6",
+    "kdop-18",
+    "kdop-26",
+    "octree-portable",
+    "p2m-avx2",
+    "p2m-kiddo",
+    "p2m-batch",
+    "rstar",
+    "parry-tree",
+    "parry3d-f64",
+    "bvh",
+];
 /// The number of queries of a scene.
 const QUERIES: usize = 64;
-/// The largest number of broken promises that the page shows.
+/// The largest number of broken promises that are shown.
 const SHOWN: usize = 20;
 
-/// Returns the backends of the list that this processor can run.
+/// Returns the backends that are checked, in the order of the list of all.
 pub(super) fn subjects() -> Vec<&'static Backend> {
-    NAMES.split(',').map(|name| ALL.iter().find(|b| b.name == name).expect("a name of the list")).collect()
+    let is_registered = |backend: &Backend| BackendEntry::find(backend.name.trim_end_matches("-f32")).is_some();
+    ALL.iter().filter(|b| is_registered(b) || b.name == YARDSTICK || SETTINGS.contains(&b.name)).collect()
 }
 
 /// The results of all checks.
@@ -44,50 +57,37 @@ pub(super) struct Findings {
     pub(super) broken: u64,
     pub(super) shown: Vec<String>,
     /// The reasons why subjects were left out, with the number of scenes.
-    pub(super) absent: Vec<(String, u64)>,
+    pub(super) absent: BTreeMap<String, u64>,
     /// For each family: the number of scenes in f64, and of those in which the octree and the P2M index have cells.
     pub(super) cells: Vec<[u64; 3]>,
-    /// Wrong answers of external libraries, each kind in the smallest of the scenes.
-    pub(super) examples: Vec<Example>,
 }
 
-impl Findings {
+impl threads::Findings for Findings {
     fn new() -> Self {
         let rows = vec![vec![Counts::default(); subjects().len()]; Extreme::ALL.len()];
         Self { rows, cells: vec![[0; 3]; Extreme::ALL.len()], ..Self::default() }
     }
 
-    fn merge(&mut self, other: Self) {
+    fn merge(&mut self, other: Self, rational: u64) {
         for (results, others) in self.rows.iter_mut().zip(other.rows) {
             results.iter_mut().zip(&others).for_each(|(results, other)| results.merge(other));
         }
         self.checked += other.checked;
         self.queries += other.queries;
-        self.rational += other.rational;
+        self.rational += rational;
         self.broken += other.broken;
         self.shown.extend(other.shown);
         self.shown.truncate(SHOWN);
         for (results, others) in self.cells.iter_mut().zip(other.cells) {
             *results = std::array::from_fn(|k| results[k] + others[k]);
         }
-        other.examples.into_iter().for_each(|example| self.keep(example));
         other.absent.into_iter().for_each(|(why, count)| self.leave_out(why, count));
     }
+}
 
-    /// Keeps the example if it is the plainest of its kind.
-    fn keep(&mut self, example: Example) {
-        match self.examples.iter_mut().find(|e| (e.library, e.kind) == (example.library, example.kind)) {
-            Some(known) if example.plainness() < known.plainness() => *known = example,
-            Some(_) => {}
-            None => self.examples.push(example),
-        }
-    }
-
+impl Findings {
     fn leave_out(&mut self, why: String, count: u64) {
-        match self.absent.iter_mut().find(|(known, _)| *known == why) {
-            Some((_, so_far)) => *so_far += count,
-            None => self.absent.push((why, count)),
-        }
+        *self.absent.entry(why).or_default() += count;
     }
 
     fn blame(&mut self, what: impl FnOnce() -> String) {
@@ -142,7 +142,7 @@ impl Side {
             }
             errors.push(error);
             for truth in &truths {
-                // No primitive may be nearer by more than its results rounding.
+                // No primitive may be nearer by more than the rounding of its distance.
                 let error = truth
                     .times_max_vertex_distance(ERROR_CONSTANT * 2f64.powi(-bits.cast_signed()) * (1.0 + 1e-9))
                     + eta;
@@ -161,48 +161,36 @@ impl Side {
     }
 
     /// Returns the error of an external library's answer in u M, and whether it names a primitive that is not the
-    /// nearest beyond rounding. The reference is our nearest primitive, which is right apart from its results rounding.
-    fn judge(&self, at: usize, answer: &Answer, names: bool) -> (f64, bool) {
-        let nearest = self.answers[at].id as usize;
-        judged(self.queries[at], &self.vertices, nearest, answer, names, (self.bits, self.eta))
-    }
-
-    fn example(&self, backend: &'static Backend, kind: Kind, at: usize) -> Example {
-        Example { library: backend.name, kind, query: self.queries[at], vertices: self.vertices.clone() }
+    /// nearest beyond rounding, if ids are to be checked. The reference is our nearest primitive, which is right apart
+    /// from its rounding.
+    fn judge(&self, at: usize, answer: &Answer, has_ids: bool) -> (f64, bool) {
+        let Self { bits, eta, ref vertices, .. } = *self;
+        let (query, nearest) = (self.queries[at], self.answers[at].id as usize);
+        let truth = Truth::new(query, &vertices[nearest]);
+        let limit = if bits == 24 { f64::from(f32::MAX) } else { f64::MAX };
+        let beyond = answer.distance == f64::INFINITY && truth.is_at_least(limit);
+        let error = if beyond { 0.0 } else { truth.error(answer.distance, bits, eta) };
+        let named = vertices.get(answer.id as usize).filter(|_| has_ids && answer.id as usize != nearest && !beyond);
+        let wrong = named.is_some_and(|named| {
+            // The distance of the nearest primitive may be above the true one by the rounding of both.
+            let rounding = ROUNDING * 2f64.powi(-bits.cast_signed());
+            let least = truth.exact().length()[0] + truth.times_max_vertex_distance(rounding);
+            let theirs = Truth::new(query, named);
+            theirs.is_at_least(least + theirs.times_max_vertex_distance(rounding) + eta)
+        });
+        (error, wrong)
     }
 }
 
 /// Checks every subject on `scenes` scenes of each family, on all threads.
 pub(super) fn run(scenes: u64, seed: u64) -> Findings {
-    let all = Mutex::new(Findings::new());
-    let next = AtomicU64::new(0);
-    let jobs = scenes * Extreme::ALL.len() as u64;
-    let work = || {
-        let mut results = Findings::new();
-        let before = rational_distances();
-        loop {
-            let job = next.fetch_add(1, Ordering::Relaxed);
-            if job >= jobs {
-                break;
-            }
-            let row = usize::try_from(job % Extreme::ALL.len() as u64).expect("few families");
-            let family = Extreme::ALL[row];
-            let case = (seed << 32) + job / Extreme::ALL.len() as u64;
-            let (soup, queries) = family.generate(&mut p2m_testkit::rng(family.name(), case), QUERIES);
-            check(row, &format!("{} {case}", family.name()), soup, queries, &mut results);
-            if (job + 1) * 20 / jobs > job * 20 / jobs {
-                eprintln!("{} % of {jobs} scenes", (job + 1) * 20 / jobs * 5);
-            }
-        }
-        results.rational = rational_distances() - before;
-        all.lock().expect("no thread panicked").merge(results);
-    };
-    std::thread::scope(|scope| {
-        for _ in 0..std::thread::available_parallelism().map_or(1, Into::into) {
-            scope.spawn(work);
-        }
-    });
-    all.into_inner().expect("no thread panicked")
+    let families = Extreme::ALL.len() as u64;
+    threads::run("scenes", scenes * families, |job, results| {
+        let row = usize::try_from(job % families).expect("few families");
+        let (family, case) = (Extreme::ALL[row], (seed << 32) + job / families);
+        let (soup, queries) = family.generate(&mut p2m_testkit::rng(family.name(), case), QUERIES);
+        check(row, &format!("{} {case}", family.name()), soup, queries, results);
+    })
 }
 
 fn check(row: usize, name: &str, soup: Soup<f64>, queries: Vec<Point3<f64>>, findings: &mut Findings) {
@@ -237,7 +225,7 @@ fn check(row: usize, name: &str, soup: Soup<f64>, queries: Vec<Point3<f64>>, fin
             ScalarKind::Single => single.as_ref(),
         };
         let Some(side) = side else { continue };
-        let built = crate::backend::catch(|| ((backend.prepare)(&scene)?.build)());
+        let built = backend.build(&scene);
         let answers = built.and_then(|index| {
             if backend.is_ours && answers(&index, &bad)?.iter().any(|answer| !answer.is_none()) {
                 findings.blame(|| format!("N6, {} of {name}: an answer to what is no place", backend.name));
@@ -247,16 +235,12 @@ fn check(row: usize, name: &str, soup: Soup<f64>, queries: Vec<Point3<f64>>, fin
         match answers {
             Ok(answers) if backend.is_ours => hold(row, column, backend, side, &answers, name, findings),
             Ok(answers) => {
-                let names = triangles_only && backend.name.starts_with("parry3d");
+                let has_ids = triangles_only && backend.name.starts_with("parry3d");
                 for (at, answer) in answers.iter().enumerate() {
-                    let (error, wrong) = side.judge(at, answer, names);
+                    let (error, wrong) = side.judge(at, answer, has_ids);
                     let counts = &mut findings.rows[row][column];
                     counts.add(error);
                     counts.wrong_ids += u64::from(wrong);
-                    let wrong = wrong.then_some(Kind::WrongPrimitive);
-                    for kind in Kind::of_error(error).into_iter().chain(wrong) {
-                        findings.keep(side.example(backend, kind, at));
-                    }
                 }
             }
             Err(Unavailable(why)) if backend.is_ours && !why.starts_with("this processor") => {
@@ -264,11 +248,6 @@ fn check(row: usize, name: &str, soup: Soup<f64>, queries: Vec<Point3<f64>>, fin
             }
             Err(Unavailable(why)) if why == "it panicked" => {
                 findings.rows[row][column].panicked += side.queries.len() as u64;
-                // The batch panicked, so queries run one by one to find which of them does.
-                let one = (0..side.queries.len()).map(|at| side.example(backend, Kind::Panic, at));
-                if let Some(example) = one.into_iter().find(Example::is_confirmed) {
-                    findings.keep(example);
-                }
                 findings.leave_out(format!("`{}` panics", backend.name), 1);
             }
             Err(Unavailable(why)) => findings.leave_out(format!("`{}`: {why}", backend.name), 1),

@@ -1,23 +1,19 @@
-//! `p2m-bench paper`: repeats the evaluation of the P2M paper on our models and redraws its tables and plots as one
-//! page.
+//! `p2m-bench paper`: repeats the evaluation of the P2M paper on our models, for the tables and plots of docs/paper.md.
 //!
-//! The page is [`PAGE`] with the measurements in place of `{{names}}`; plots lie in a folder beside it. Figures and
-//! tables have the numbers of the paper.
+//! Figures and tables have the numbers of the paper.
 
-mod cited;
 mod figures;
-mod page;
 mod profile;
 mod scenes;
 mod study;
 mod surfaces;
 mod tables;
 
+use crate::blocks::Blocks;
 use crate::measure::Effort;
 use crate::scene::Scene;
 use anyhow::{Context, Result};
 use figures::{COMPARED, Figures};
-use page::filled;
 use profile::{FULL, Profile, QUICK};
 use scenes::{Models, spheres};
 use std::collections::BTreeMap;
@@ -25,27 +21,32 @@ use std::path::Path;
 use std::time::Instant;
 use study::{Study, StudyOptions};
 
-/// The template of the page.
-const PAGE: &str = include_str!("page.md");
+/// The blocks of docs/paper.md.
+pub(crate) const BLOCKS: Blocks<8> = Blocks {
+    command: "paper",
+    names: ["provenance", "lists", "stages", "queries", "triangulations", "torn and mixed", "memory", "not measured"],
+};
 /// The backends of Table 3 besides those of every table: the paper's locator, lists and list filter. The last two are
 /// left out for spheres, where each list would have all triangles without added sites.
 const PAPERS: &[&str] = &[KD_TREE, "p2m-long", "p2m-long-rstar"];
 const KD_TREE: &str = "p2m-kiddo";
 
-/// Measures everything and writes paper.md, with its plots in the folder `paper`, into a folder. Returns whether the
-/// answers of our backends were bitwise equal everywhere.
-pub(crate) fn write(models: &Path, quick: bool, out: &Path) -> Result<bool> {
-    let (profile, option) = if quick { (&QUICK, " --quick") } else { (&FULL, "") };
-    write_profile(profile, &format!("p2m-bench paper{option}"), Models(models.to_owned()), out)
+/// Measures everything, publishes the blocks, and draws the plots into a folder. Returns whether the answers of our
+/// backends were bitwise equal everywhere.
+pub(crate) fn run(models: &Path, quick: bool, document: Option<&Path>, plots: &Path) -> Result<bool> {
+    BLOCKS.check(document)?;
+    let (contents, agrees) = measure(if quick { &QUICK } else { &FULL }, Models(models.to_owned()), plots)?;
+    BLOCKS.publish(document, &contents)?;
+    Ok(agrees)
 }
 
-fn write_profile(profile: &Profile, command: &str, models: Models, out: &Path) -> Result<bool> {
+/// Draws the plots into a folder, and returns the contents of the blocks and whether all answers of ours were equal.
+fn measure(profile: &Profile, models: Models, plots: &Path) -> Result<([String; 8], bool)> {
     let start = Instant::now();
     models.check(profile)?;
     let threads = threads();
     let mut all = Studies { profile, models, threads, known: BTreeMap::new() };
-    let plots = out.join("paper");
-    std::fs::create_dir_all(&plots).with_context(|| plots.display().to_string())?;
+    std::fs::create_dir_all(plots).with_context(|| plots.display().to_string())?;
 
     // Models that cannot be read are reported before anything is measured.
     let scattered_scenes = all.models.scattered(profile)?;
@@ -101,39 +102,29 @@ fn write_profile(profile: &Profile, command: &str, models: Models, out: &Path) -
         threads: &all.threads,
         scattered: &scattered,
     };
-    figures.write(&plots)?;
+    figures.write(plots)?;
 
     let studies = || all.known.values().chain(pairs.iter().flat_map(|(_, studies)| studies));
     let agrees = studies().map(|study| study.agrees).fold(true, |all, agrees| all & agrees);
-    let answers = if agrees { "All answers of ours were bitwise the same." } else { "ANSWERS OF OURS DIFFER." };
-    let provenance = crate::report::provenance(None);
-    let values = [
-        ("command", command.to_owned()),
-        ("machine", provenance.machine()),
-        ("date", provenance.date.clone()),
-        ("took", format!("{:.0} minutes", (start.elapsed().as_secs_f64() / 60.0).ceil())),
-        ("queries", profile.queries.to_string()),
-        ("rounds", profile.rounds.to_string()),
-        ("answers", answers.to_owned()),
-        ("scope", profile.scope.to_owned()),
-        ("threads", all.threads.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")),
-        ("swept", scenes::stem(profile.swept).to_owned()),
-        ("table 1", tables::lists(&ten)),
-        ("table 1 cited", cited::table_1()),
-        ("table 2", tables::stages(&ten)),
-        ("table 2 cited", cited::table_2()),
-        ("table 3", tables::queries(&ten)),
-        ("table 3 cited", cited::table_3()),
-        ("table 4", tables::triangulations(&pairs)),
-        ("table 4 cited", cited::table_4()),
-        ("torn and mixed", tables::others(&others)),
-        ("memory", tables::memory(&ten)),
-        ("notes", tables::notes(studies())),
+    let provenance = format!(
+        "{}\n{:.0} minutes; {} queries for each scene, {} rounds. {}",
+        crate::report::provenance(None),
+        (start.elapsed().as_secs_f64() / 60.0).ceil(),
+        profile.queries,
+        profile.rounds,
+        if agrees { "All answers of ours were bitwise the same." } else { "ANSWERS OF OURS DIFFER." }
+    );
+    let contents = [
+        provenance,
+        tables::lists(&ten),
+        tables::stages(&ten),
+        tables::queries(&ten),
+        tables::triangulations(&pairs),
+        tables::others(&others),
+        tables::memory(&ten),
+        tables::notes(studies()),
     ];
-    let page = out.join("paper.md");
-    std::fs::write(&page, filled(PAGE, &values)?).with_context(|| page.display().to_string())?;
-    println!("{} and its plots, in {:.0?}. {answers}", page.display(), start.elapsed());
-    Ok(agrees)
+    Ok((contents, agrees))
 }
 
 /// Returns the powers of two up to the number of cores, and that number.
@@ -189,7 +180,6 @@ mod tests {
 
     /// The smallest profile, which needs generated models only.
     const MINIMAL: Profile = Profile {
-        scope: "A test.",
         queries: 200,
         rounds: 2,
         builds: 1,
@@ -208,24 +198,24 @@ mod tests {
     };
 
     #[test]
-    #[ignore = "deep: the page measures each of its scenes with every index"]
-    fn the_page_and_all_of_its_plots_are_written() {
+    #[ignore = "deep: each of the scenes is measured with every index"]
+    fn all_tables_and_plots_are_made() {
         let folder = tempfile::tempdir().unwrap();
-        let models = Models(std::path::PathBuf::from("nowhere"));
-        assert!(write_profile(&MINIMAL, "a test", models, folder.path()).unwrap());
-        let page = std::fs::read_to_string(folder.path().join("paper.md")).unwrap();
-        assert!(page.contains("`a test`") && page.contains("bitwise the same") && !page.contains("{{"));
+        let (contents, agrees) = measure(&MINIMAL, Models("nowhere".into()), folder.path()).unwrap();
+        assert!(agrees && contents[0].contains("bitwise the same"));
+        let page = contents.concat();
         for row in
             ["| torus knot ", "| cylinder ", "| sphere of meridians ", "| cylinder, bad ", "| torus knot, gapped "]
         {
             assert!(page.contains(row), "{row}: {page}");
         }
-        let plots: Vec<&str> = page.split("](paper/").skip(1).map(|rest| rest.split(')').next().unwrap()).collect();
-        assert_eq!(plots.len(), 11);
         // Spheres have no long lists, and nothing else is left out.
         assert_eq!(page.matches(" - |").count(), 6, "{page}");
+        let plots = include_str!("../../../docs/paper.md").split("](paper/").skip(1);
+        let plots: Vec<&str> = plots.map(|rest| rest.split(')').next().unwrap()).collect();
+        assert_eq!(plots.len(), 11);
         for plot in plots {
-            assert!(folder.path().join("paper").join(plot).is_file(), "{plot}");
+            assert!(folder.path().join(plot).is_file(), "{plot}");
         }
     }
 }

@@ -13,8 +13,6 @@ pub(super) enum Resolution {
 
 /// The measurements and models of the page.
 pub(super) struct Profile {
-    /// The text about the scope at the head of the page.
-    pub(super) scope: &'static str,
     pub(super) queries: usize,
     pub(super) rounds: usize,
     pub(super) builds: usize,
@@ -45,7 +43,6 @@ use Resolution::{Coarsened, Own, Subdivided};
 
 /// The measurements of docs/paper.md.
 pub(super) const FULL: Profile = Profile {
-    scope: "What is said about tables and plots is said of this page.",
     queries: 100_000,
     rounds: 5,
     builds: 3,
@@ -74,7 +71,6 @@ pub(super) const FULL: Profile = Profile {
 
 /// A profile with all tables and plots but fewer and smaller scenes.
 pub(super) const QUICK: Profile = Profile {
-    scope: "**A quick look**: few models, little ones; what is said below is said of the full page, docs/paper.md.",
     queries: 20_000,
     rounds: 5,
     builds: 1,
