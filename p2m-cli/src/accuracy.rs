@@ -1,8 +1,10 @@
 //! The arguments about the accuracy of answers: two that trade accuracy for speed, and one that certifies answers.
 
+use crate::answering::answer_each;
 use crate::usage::finite_not_negative;
 use nalgebra::Point3;
-use p2m_core::{CertifiedQuery, ClosestPoint, QueryOptions};
+use p2m_core::batch::{self, BatchOptions};
+use p2m_core::{CertifiedQuery, Closest, ClosestPoint, QueryOptions};
 use serde_json::{Value, json};
 
 #[derive(clap::Args)]
@@ -34,21 +36,23 @@ impl Accuracy {
             .with_max_visits(self.max_visits.unwrap_or(defaults.max_visits))
     }
 
-    /// Answers queries, certified or not.
-    pub(crate) fn answer<I: ClosestPoint<f64> + CertifiedQuery<f64> + ?Sized>(
+    /// Answers queries, certified or not, on all threads of the current pool. An answer does not depend on the other
+    /// queries, because none is a hint for another one.
+    pub(crate) fn answer<I: ClosestPoint<f64> + CertifiedQuery<f64> + Sync + ?Sized>(
         &self,
         index: &I,
         queries: &[Point3<f64>],
         options: &QueryOptions<f64>,
-        answers: &mut [Option<p2m_core::Closest<f64>>],
-    ) {
-        if !self.certified {
-            return index.closest_points_into(queries, options, answers);
+    ) -> Vec<Option<Closest<f64>>> {
+        if self.certified {
+            return answer_each(queries, |query| {
+                index.certified_closest_point(query, options).expect("primitives of scenes have vertices")
+            });
         }
-        for (query, answer) in queries.iter().zip(answers) {
-            let certified = index.certified_closest_point(query, options);
-            *answer = certified.expect("primitives of scenes have vertices");
-        }
+        let mut answers = vec![None; queries.len()];
+        let batch = BatchOptions::default().with_hints(false);
+        batch::closest_points_into(index, queries, options, &batch, &mut answers);
+        answers
     }
 
     /// Returns the part of a report about accuracy.

@@ -6,6 +6,7 @@
 
 mod accuracy;
 mod advise;
+mod answering;
 mod backend;
 mod boxes;
 mod build;

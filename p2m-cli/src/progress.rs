@@ -1,7 +1,7 @@
 //! Progress bars of long runs. They appear on the standard error after a second, if it is a terminal.
 
 use crate::streams::Streams;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
@@ -48,7 +48,7 @@ impl Progress {
             }
             let bar = ProgressBar::with_draw_target(total, ProgressDrawTarget::stderr());
             if let Ok(style) = ProgressStyle::with_template(&template(total, unit)) {
-                bar.set_style(style.tick_chars("-\\|/ "));
+                bar.set_style(style.tick_chars("-\\|/ ").with_key("left", write_time_left));
             }
             bar.set_message(what);
             while stopped.recv_timeout(REFRESH_INTERVAL) == Err(RecvTimeoutError::Timeout) {
@@ -83,12 +83,20 @@ impl Drop for Progress {
     }
 }
 
+/// Writes the estimate of the time that is left. Before any work is done there is none.
+fn write_time_left(state: &ProgressState, text: &mut dyn std::fmt::Write) {
+    if state.pos() > 0 {
+        // A bar without the estimate is complete as well.
+        let _ = write!(text, ", {:#} left", HumanDuration(state.eta()));
+    }
+}
+
 fn template(total: Option<u64>, unit: Unit) -> String {
     let count = match (unit, total) {
-        (Unit::Bytes, Some(_)) => "{wide_bar} {bytes}/{total_bytes}, {eta} left",
+        (Unit::Bytes, Some(_)) => "{wide_bar} {bytes}/{total_bytes}{left}",
         (Unit::Bytes, None) => "{bytes}",
-        (Unit::Items(name), _) => &format!("{{wide_bar}} {{human_pos}}/{{human_len}} {name}, {{eta}} left"),
-        (Unit::Percent, _) => "{wide_bar} {pos} %, {eta} left",
+        (Unit::Items(name), _) => &format!("{{wide_bar}} {{human_pos}}/{{human_len}} {name}{{left}}"),
+        (Unit::Percent, _) => "{wide_bar} {pos} %{left}",
         (Unit::None, _) => "{elapsed}",
     };
     let spinner = if total.is_none() { "{spinner} " } else { "" };

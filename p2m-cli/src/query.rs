@@ -1,12 +1,13 @@
 //! `p2m query`: closest points as a table.
 
 use crate::accuracy::Accuracy;
+use crate::answering::{QueryStream, Steps, answer_all};
 use crate::backend::{BackendChoice, PreparedIndex, SceneSource, backend_choices};
 use crate::input::{self, SceneArgs, point_format, read_points, read_scene_and_index};
 use crate::json;
 use crate::kdop_directions::requested;
 use crate::output::Output;
-use crate::query_args::{QueryArgs, QueryStream, answer_all};
+use crate::query_args::QueryArgs;
 use crate::sampling::{Queries, Region};
 use crate::streams::Streams;
 use crate::summary::{AnswerSummary, IndexSummary, RunSummary};
@@ -141,12 +142,18 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let mut summary = AnswerSummary::default();
     let write = || -> io::Result<Duration> {
         let mut writer = AnswerWriter::with_objects(&mut output, out_format, queries.len(), &scene.objects)?;
-        let queries = QueryStream { name: "queries", count: queries.len(), iter: queries };
-        let answer = |queries: &[_], answers: &mut [_]| accuracy.answer(&*index, queries, &options, answers);
-        let time = answer_all(streams, &pool, queries, answer, |query, answer| {
-            summary.add(answer.as_ref());
-            writer.write(query, answer.as_ref())
-        })?;
+        let (queries, encoder) =
+            (QueryStream { name: "queries", count: queries.len(), iter: queries }, writer.encoder());
+        let steps = Steps {
+            answer: |queries: &[_]| accuracy.answer(&*index, queries, &options),
+            encode: |_, query: &_, answer: &Option<_>, out: &mut _| {
+                encoder.encode(query, answer.as_ref(), f64::NAN, out);
+                1
+            },
+            take: |_: &_, answer: &Option<_>| summary.add(answer.as_ref()),
+            write: |count, records: &[u8]| writer.write_encoded(count, records),
+        };
+        let time = answer_all(streams, &pool, queries, steps)?;
         writer.finish()?;
         Ok(time)
     };

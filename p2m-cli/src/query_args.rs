@@ -1,19 +1,15 @@
-//! The arguments that `query` and `ray` share, and the loop that answers queries in chunks on all threads.
+//! The arguments that `query` and `ray` share.
 
 use crate::input::{SceneArgs, is_standard, or_option};
 use crate::kdop_directions::KdopFaces;
 use crate::output::Output;
-use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
 use crate::usage::{one_of, usage};
 use anyhow::anyhow;
 use p2m_mixed::AnswerFormat;
 use rayon::ThreadPool;
-use rayon::prelude::*;
 use serde_json::{Value, json};
-use std::io;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 #[derive(clap::Args)]
 pub(crate) struct QueryArgs {
@@ -89,56 +85,4 @@ pub(crate) fn pool(threads: Option<u16>) -> anyhow::Result<ThreadPool> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     // The error is kept as text, because its source repeats it.
     pool.map_err(|e| anyhow!("cannot start threads: {e}"))
-}
-
-/// The number of queries that are answered before their answers are written. It keeps all threads busy and
-/// fits into memory.
-const QUERIES_PER_CHUNK: usize = 1 << 14;
-/// The number of queries that one thread takes at a time. It is small because a brute-force query of a large
-/// scene takes milliseconds.
-const QUERIES_PER_TASK: usize = 32;
-
-/// A stream of points or rays to query with.
-pub(crate) struct QueryStream<I> {
-    /// The name of the queries in messages, in the plural.
-    pub(crate) name: &'static str,
-    /// The number of queries that `iter` returns.
-    pub(crate) count: u64,
-    pub(crate) iter: I,
-}
-
-/// Answers queries chunk by chunk on all threads, and passes each query with its answer to `take`, in order. Returns
-/// the time that the answers took.
-pub(crate) fn answer_all<Q: Sync, A: Clone + Default + Send>(
-    streams: &Streams,
-    pool: &ThreadPool,
-    mut queries: QueryStream<impl Iterator<Item = Q>>,
-    answer: impl Fn(&[Q], &mut [A]) + Sync,
-    mut take: impl FnMut(&Q, &A) -> io::Result<()>,
-) -> io::Result<Duration> {
-    let progress = Progress::start(streams, "answering", Some(queries.count), Unit::Items(queries.name));
-    let mut time = Duration::ZERO;
-    let (mut chunk, mut answers) = (Vec::new(), Vec::new());
-    loop {
-        chunk.clear();
-        chunk.extend(queries.iter.by_ref().take(QUERIES_PER_CHUNK));
-        if chunk.is_empty() {
-            return Ok(time);
-        }
-        answers.clear();
-        answers.resize(chunk.len(), A::default());
-        let start = Instant::now();
-        pool.install(|| {
-            chunk.par_chunks(QUERIES_PER_TASK).zip(answers.par_chunks_mut(QUERIES_PER_TASK)).for_each(
-                |(queries, answers)| {
-                    answer(queries, answers);
-                    progress.add(queries.len() as u64);
-                },
-            );
-        });
-        time += start.elapsed();
-        for (query, answer) in chunk.iter().zip(&answers) {
-            take(query, answer)?;
-        }
-    }
 }

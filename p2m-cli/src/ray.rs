@@ -1,11 +1,12 @@
 //! `p2m ray`: the hits of rays as a table.
 
+use crate::answering::{QueryStream, Steps, answer_all, answer_each};
 use crate::backend::{Backend, PreparedIndex, SceneSource, backends, saved_or_default};
 use crate::input::{self, SceneArgs, point_format, read_rays, read_scene_and_index};
 use crate::json;
 use crate::kdop_directions::requested;
 use crate::output::Output;
-use crate::query_args::{QueryArgs, QueryStream, answer_all};
+use crate::query_args::QueryArgs;
 use crate::ray_summary::RaySummary;
 use crate::sampling::{Region, random_rays};
 use crate::streams::Streams;
@@ -298,18 +299,24 @@ impl Task<'_, '_> {
         count: impl Fn(&RayIndex<'_>, &Ray) -> u64 + Sync,
     ) -> io::Result<(Duration, RaySummary)> {
         let mut writer = NumberWriter::new(self.output, self.format, name, self.rays.count)?;
-        let time = answer_all(self.streams, self.pool, self.rays, one_by_one(self.index, count), |ray, &count| {
-            writer.write(summary.rays(), ray, count)?;
-            summary.add(count);
-            Ok(())
-        })?;
+        let (encoder, index) = (writer.encoder(), self.index);
+        let steps = Steps {
+            answer: |rays: &[_]| answer_each(rays, |ray| count(index, ray)),
+            encode: |number, ray: &_, count: &u64, out: &mut _| {
+                encoder.encode(number, ray, *count, out);
+                1
+            },
+            take: |_: &_, count: &u64| summary.add(*count),
+            write: |count, records: &[u8]| writer.write_encoded(count, records),
+        };
+        let time = answer_all(self.streams, self.pool, self.rays, steps)?;
         writer.finish()?;
         Ok((time, summary))
     }
 
     /// Writes the hits of each ray, which `slice` takes from its answer. `records` is the number of records if each ray
     /// has exactly one; otherwise each hit has one.
-    fn hits<A: Clone + Default + Send>(
+    fn hits<A: Send + Sync>(
         self,
         records: Option<u64>,
         mut summary: RaySummary,
@@ -317,23 +324,23 @@ impl Task<'_, '_> {
         slice: fn(&A) -> &[Hit],
     ) -> io::Result<(Duration, RaySummary)> {
         let mut writer = HitWriter::with_objects(self.output, self.format, records, self.objects)?;
-        let time = answer_all(self.streams, self.pool, self.rays, one_by_one(self.index, intersect), |ray, answer| {
-            let (number, hits) = (summary.rays(), slice(answer));
-            summary.add_hits(hits);
-            if hits.is_empty() && records.is_some() {
-                writer.write(number, ray, None)?;
-            }
-            hits.iter().try_for_each(|hit| writer.write(number, ray, Some(hit)))
-        })?;
+        let (encoder, index) = (writer.encoder(), self.index);
+        let steps = Steps {
+            answer: |rays: &[_]| answer_each(rays, |ray| intersect(index, ray)),
+            encode: |number, ray: &_, answer: &A, out: &mut _| {
+                let hits = slice(answer);
+                if hits.is_empty() && records.is_some() {
+                    encoder.encode(number, ray, None, out);
+                    return 1;
+                }
+                hits.iter().for_each(|hit| encoder.encode(number, ray, Some(hit), out));
+                hits.len() as u64
+            },
+            take: |_: &_, answer: &A| summary.add_hits(slice(answer)),
+            write: |count, records: &[u8]| writer.write_encoded(count, records),
+        };
+        let time = answer_all(self.streams, self.pool, self.rays, steps)?;
         writer.finish()?;
         Ok((time, summary))
     }
-}
-
-/// Returns a function that answers rays one by one.
-fn one_by_one<A>(
-    index: &RayIndex<'_>,
-    answer_one: impl Fn(&RayIndex<'_>, &Ray) -> A + Sync,
-) -> impl Fn(&[Ray], &mut [A]) + Sync {
-    move |rays, answers| rays.iter().zip(answers).for_each(|(ray, answer)| *answer = answer_one(index, ray))
 }

@@ -56,7 +56,7 @@ mod vector;
 mod weld;
 mod write;
 
-pub use answers::{AnswerWriter, HitWriter, NumberWriter};
+pub use answers::{AnswerColumn, AnswerEncoder, AnswerWriter, HitEncoder, HitWriter, NumberEncoder, NumberWriter};
 pub use camera::Camera;
 pub use error::{FileLocation, HeaderProblem, ReadError, Reason};
 pub use format::{AnswerFormat, Format, PointFormat, UnknownFormat};

@@ -60,8 +60,13 @@ pub struct Object {
 
 /// Returns the object that a primitive belongs to. Objects have to be in ascending order.
 pub(crate) fn object_of(objects: &[Object], id: PrimitiveId) -> Option<&Object> {
-    let next = objects.partition_point(|object| object.ids.start <= id.index());
-    objects[..next].last().filter(|object| object.ids.contains(&id.index()))
+    object_number(objects, id).map(|number| &objects[number])
+}
+
+/// Returns the number of the object that a primitive belongs to.
+pub(crate) fn object_number(objects: &[Object], id: PrimitiveId) -> Option<usize> {
+    let number = objects.partition_point(|object| object.ids.start <= id.index()).checked_sub(1)?;
+    objects[number].ids.contains(&id.index()).then_some(number)
 }
 
 /// A kind of records in a file that are not part of the scene. It displays as an item of a list: `2 x usemtl`.

@@ -1,17 +1,18 @@
 //! Writers of answers to queries.
 
+mod columns;
 mod names;
 mod rays;
 mod records;
 
-pub use rays::{HitWriter, NumberWriter};
+pub use columns::{AnswerColumn, AnswerEncoder};
+pub use rays::{HitEncoder, HitWriter, NumberEncoder, NumberWriter};
 pub use records::npy_header;
 
 use crate::{AnswerFormat, Object};
 use nalgebra::Point3;
-use names::Names;
-use p2m_core::{Closest, Feature};
-use records::{Fields, Header, Records};
+use p2m_core::Closest;
+use records::Records;
 use std::io::{self, Write};
 
 /// Writes answers one by one, in any [`AnswerFormat`].
@@ -48,8 +49,10 @@ use std::io::{self, Write};
 ///
 /// # PLY
 /// The file is a point cloud of the queries, binary and little-endian. Each `vertex` has the properties `double` `x`,
-/// `y`, `z` (the query), `cx`, `cy`, `cz` (the closest point) and `distance`, `int` `primitive`, `char` `feature_kind`
+/// `y`, `z` (the query), `cx`, `cy`, `cz` (the closest point) and `distance`, `int` `primitive`, `short` `feature_kind`
 /// and `feature_number`, as above. Viewers can colour it by distance.
+///
+/// These are the columns by default. [`with_columns`](Self::with_columns) chooses among all of [`AnswerColumn`].
 ///
 /// ```
 /// use p2m_core::{BruteForce, ClosestPoint, Point};
@@ -68,14 +71,9 @@ use std::io::{self, Write};
 #[derive(Debug)]
 pub struct AnswerWriter<W: Write> {
     records: Records<W>,
-    format: AnswerFormat,
-    names: Names,
+    encoder: AnswerEncoder,
+    record: Vec<u8>,
 }
-
-/// The size of a record of an array.
-const RECORD_BYTES: usize = 96;
-/// The size of a vertex of a PLY file.
-const VERTEX_BYTES: usize = 62;
 
 impl<W: Write> AnswerWriter<W> {
     /// Starts a file of `count` answers.
@@ -89,69 +87,46 @@ impl<W: Write> AnswerWriter<W> {
     /// Starts a file of `count` answers with the names of objects.
     ///
     /// The objects are [`Scene::objects`](crate::Scene::objects). A CSV table has a column of names if there are any;
-    /// arrays and point clouds have no names.
+    /// arrays and point clouds have none by default.
     ///
     /// # Errors
     /// Errors of `writer`.
     pub fn with_objects(writer: W, format: AnswerFormat, count: u64, objects: &[Object]) -> io::Result<Self> {
-        let names = Names::new(objects);
-        let header = match format {
-            AnswerFormat::Csv => Header::Line(names.header("qx,qy,qz,x,y,z,distance,primitive,feature")),
-            AnswerFormat::Npy => Header::Npy(
-                "('query', '<f8', (3,)), ('point', '<f8', (3,)), ('distance', '<f8'), ('lower_bound', '<f8'), \
-                ('barycentric', '<f8', (3,)), ('primitive', '<i4'), ('feature_kind', '<i2'), ('feature_number', '<i2')"
-                    .to_owned(),
-            ),
-            AnswerFormat::Ply => {
-                let doubles = ["x", "y", "z", "cx", "cy", "cz", "distance"].map(|name| ("double", name));
-                let others = [("int", "primitive"), ("char", "feature_kind"), ("char", "feature_number")];
-                Header::Ply(doubles.into_iter().chain(others).collect())
-            }
-        };
-        Ok(Self { records: Records::new(writer, header, Some(count))?, format, names })
+        let columns = AnswerColumn::defaults(format, !objects.is_empty());
+        Self::with_columns(writer, AnswerEncoder::new(format, objects, &columns), Some(count))
     }
 
-    /// Writes the answer to a query.
+    /// Starts a file of `count` answers with the columns of an encoder. Without a count, NPY and PLY files are kept in
+    /// memory until they are finished, because their header has the number of records.
+    ///
+    /// # Errors
+    /// Errors of `writer`.
+    pub fn with_columns(writer: W, encoder: AnswerEncoder, count: Option<u64>) -> io::Result<Self> {
+        Ok(Self { records: Records::new(writer, encoder.header(), count)?, encoder, record: Vec::new() })
+    }
+
+    /// Returns the encoder of the records of this file.
+    #[must_use]
+    pub fn encoder(&self) -> AnswerEncoder {
+        self.encoder.clone()
+    }
+
+    /// Writes the answer to a query. The column of signed distances, if there is one, has NaN.
     ///
     /// # Errors
     /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more answers than announced.
     pub fn write(&mut self, query: &Point3<f64>, answer: Option<&Closest<f64>>) -> io::Result<()> {
-        let out = self.records.next()?;
-        match self.format {
-            AnswerFormat::Csv => {
-                row(out, query, answer)?;
-                self.names.end_line(out, answer.map(|a| a.primitive))
-            }
-            AnswerFormat::Npy => {
-                let mut record = Fields::<RECORD_BYTES>::default();
-                record.numbers(query.coords.as_ref());
-                match answer {
-                    None => record.numbers(&[f64::NAN; 8]),
-                    Some(a) => {
-                        record.numbers(a.point.coords.as_ref());
-                        record.numbers(&[a.distance, a.lower_bound]);
-                        record.numbers(&a.barycentric);
-                    }
-                }
-                record.add(primitive(answer).to_le_bytes());
-                feature(answer).into_iter().for_each(|x| record.add(i16::from(x).to_le_bytes()));
-                out.write_all(&record.bytes)
-            }
-            AnswerFormat::Ply => {
-                let mut vertex = Fields::<VERTEX_BYTES>::default();
-                vertex.numbers(query.coords.as_ref());
-                match answer {
-                    None => vertex.numbers(&[f64::NAN; 4]),
-                    Some(a) => {
-                        vertex.numbers(a.point.coords.as_ref());
-                        vertex.numbers(&[a.distance]);
-                    }
-                }
-                vertex.add(primitive(answer).to_le_bytes());
-                feature(answer).into_iter().for_each(|x| vertex.add(x.to_le_bytes()));
-                out.write_all(&vertex.bytes)
-            }
-        }
+        self.record.clear();
+        self.encoder.encode(query, answer, f64::NAN, &mut self.record);
+        self.records.append(1, &self.record)
+    }
+
+    /// Writes `count` records that the [`encoder`](Self::encoder) has encoded.
+    ///
+    /// # Errors
+    /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more answers than announced.
+    pub fn write_encoded(&mut self, count: u64, records: &[u8]) -> io::Result<()> {
+        self.records.append(count, records)
     }
 
     /// Ends the file and returns the flushed writer.
@@ -160,32 +135,5 @@ impl<W: Write> AnswerWriter<W> {
     /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for fewer answers than announced.
     pub fn finish(self) -> io::Result<W> {
         self.records.finish()
-    }
-}
-
-/// Writes the columns of an answer. `{:?}` writes the shortest number that reads back the same, with an exponent if it
-/// is far from 1.
-fn row(out: &mut dyn Write, query: &Point3<f64>, answer: Option<&Closest<f64>>) -> io::Result<()> {
-    write!(out, "{:?},{:?},{:?},", query.x, query.y, query.z)?;
-    match answer {
-        None => write!(out, ",,,,,"),
-        Some(Closest { point, distance, primitive, feature, .. }) => {
-            write!(out, "{:?},{:?},{:?},{distance:?},{primitive},{feature}", point.x, point.y, point.z)
-        }
-    }
-}
-
-/// Returns the id of the primitive, which is below 2^30, or -1 if there is no answer.
-fn primitive(answer: Option<&Closest<f64>>) -> i32 {
-    answer.and_then(|a| i32::try_from(a.primitive.index()).ok()).unwrap_or(-1)
-}
-
-/// Returns the kind and the number of the feature, or -1 twice if there is no answer.
-fn feature(answer: Option<&Closest<f64>>) -> [i8; 2] {
-    match answer.map(|a| a.feature) {
-        None => [-1, -1],
-        Some(Feature::Vertex(i)) => [0, i.cast_signed()], // at most 2
-        Some(Feature::Edge(i)) => [1, i.cast_signed()],
-        Some(Feature::Face) => [2, 0],
     }
 }

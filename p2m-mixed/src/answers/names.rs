@@ -1,16 +1,16 @@
 //! The column with the names of objects in tables.
 
-use crate::scene::{Object, object_of};
+use crate::scene::{Object, object_number, object_of};
 use p2m_core::PrimitiveId;
-use std::io::{self, Write};
+use std::sync::Arc;
 
 /// The objects of a scene. If there are none, tables have no column of names.
-#[derive(Debug, Default)]
-pub(super) struct Names(Vec<Object>);
+#[derive(Clone, Debug, Default)]
+pub(super) struct Names(Arc<[Object]>);
 
 impl Names {
     pub(super) fn new(objects: &[Object]) -> Self {
-        Self(objects.to_vec())
+        Self(objects.into())
     }
 
     /// Returns the header of a table with these columns, followed by the column of names.
@@ -18,15 +18,30 @@ impl Names {
         if self.0.is_empty() { columns.to_owned() } else { format!("{columns},object") }
     }
 
-    /// Ends the line of an answer with the name of the object that the primitive belongs to.
-    pub(super) fn end_line(&self, out: &mut dyn Write, primitive: Option<PrimitiveId>) -> io::Result<()> {
-        if self.0.is_empty() {
-            return writeln!(out);
+    /// Returns whether there are no objects.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Writes the name of the object that the primitive belongs to, if there is one.
+    pub(super) fn write(&self, out: &mut Vec<u8>, primitive: Option<PrimitiveId>) {
+        if let Some(object) = primitive.and_then(|id| object_of(&self.0, id)) {
+            out.extend(field(&object.name).as_bytes());
         }
-        match primitive.and_then(|id| object_of(&self.0, id)) {
-            None => writeln!(out, ","),
-            Some(object) => writeln!(out, ",{}", field(&object.name)),
+    }
+
+    /// Returns the number of the object that the primitive belongs to.
+    pub(super) fn number(&self, primitive: PrimitiveId) -> Option<usize> {
+        object_number(&self.0, primitive)
+    }
+
+    /// Ends the line of a table, with a column of names if there are objects.
+    pub(super) fn end_line(&self, out: &mut Vec<u8>, primitive: Option<PrimitiveId>) {
+        if !self.is_empty() {
+            out.push(b',');
+            self.write(out, primitive);
         }
+        out.push(b'\n');
     }
 }
 

@@ -1,7 +1,7 @@
 //! Writers of hits and numbers for rays.
 
 use super::names::Names;
-use super::records::{Fields, Header, Records};
+use super::records::{Header, Records, put_columns, put_numbers, put_text};
 use crate::{AnswerFormat, Object};
 use p2m_core::{Hit, Ray, Side};
 use std::io::{self, Write};
@@ -55,6 +55,13 @@ use std::io::{self, Write};
 #[derive(Debug)]
 pub struct HitWriter<W: Write> {
     records: Records<W>,
+    encoder: HitEncoder,
+    record: Vec<u8>,
+}
+
+/// Encodes hits as the records of a [`HitWriter`], for programs that encode on several threads.
+#[derive(Clone, Debug)]
+pub struct HitEncoder {
     format: AnswerFormat,
     names: Names,
 }
@@ -83,13 +90,15 @@ pub struct HitWriter<W: Write> {
 #[derive(Debug)]
 pub struct NumberWriter<W: Write> {
     records: Records<W>,
-    format: AnswerFormat,
+    encoder: NumberEncoder,
+    record: Vec<u8>,
 }
 
-/// The size of the record of a hit.
-const HIT_BYTES: usize = 120;
-/// The size of the record of a number.
-const NUMBER_BYTES: usize = 64;
+/// Encodes numbers as the records of a [`NumberWriter`], for programs that encode on several threads.
+#[derive(Clone, Copy, Debug)]
+pub struct NumberEncoder {
+    format: AnswerFormat,
+}
 
 impl<W: Write> HitWriter<W> {
     /// Starts a file of `count` records. Without a count, NPY and PLY files are kept in memory until they are finished,
@@ -121,7 +130,22 @@ impl<W: Write> HitWriter<W> {
                 ply_header(doubles.into_iter().chain([("int", "primitive"), ("int", "side")]))
             }
         };
-        Ok(Self { records: Records::new(writer, header, count)?, format, names })
+        let records = Records::new(writer, header, count)?;
+        Ok(Self { records, encoder: HitEncoder { format, names }, record: Vec::new() })
+    }
+
+    /// Returns the encoder of the records of this file.
+    #[must_use]
+    pub fn encoder(&self) -> HitEncoder {
+        self.encoder.clone()
+    }
+
+    /// Writes `count` records that the [`encoder`](Self::encoder) has encoded.
+    ///
+    /// # Errors
+    /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more records than announced.
+    pub fn write_encoded(&mut self, count: u64, records: &[u8]) -> io::Result<()> {
+        self.records.append(count, records)
     }
 
     /// Writes a hit of a ray, or a record without a hit. `number` is the number of the ray.
@@ -129,42 +153,9 @@ impl<W: Write> HitWriter<W> {
     /// # Errors
     /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more records than announced.
     pub fn write(&mut self, number: u64, ray: &Ray, hit: Option<&Hit>) -> io::Result<()> {
-        let out = self.records.next()?;
-        if self.format == AnswerFormat::Csv {
-            row(out, number, ray)?;
-            let Some(hit) = hit else {
-                write!(out, ",,,,,,,,")?;
-                return self.names.end_line(out, None);
-            };
-            let (parameter, primitive) = (hit.parameter, hit.primitive);
-            let side = match hit.side {
-                Side::Front => "front",
-                Side::Back => "back",
-                Side::Along => "along",
-            };
-            let ([x, y, z], [a, b, c]): ([f64; 3], _) = (hit.point().coords.into(), hit.barycentric());
-            write!(out, "{parameter:?},{x:?},{y:?},{z:?},{primitive},{side},{a:?},{b:?},{c:?}")?;
-            return self.names.end_line(out, Some(primitive));
-        }
-        let mut record = record::<HIT_BYTES>(self.format, number, ray);
-        match hit {
-            None => record.numbers(&[f64::NAN; 7]),
-            Some(hit) => {
-                record.numbers(&[hit.parameter]);
-                record.numbers(hit.point().coords.as_ref());
-                record.numbers(&hit.barycentric());
-            }
-        }
-        let primitive = hit.and_then(|hit| i32::try_from(hit.primitive.index()).ok()); // ids end at 2^30
-        record.add(primitive.unwrap_or(-1).to_le_bytes());
-        let side: i32 = match hit.map(|hit| hit.side) {
-            None => -1,
-            Some(Side::Front) => 0,
-            Some(Side::Back) => 1,
-            Some(Side::Along) => 2,
-        };
-        record.add(side.to_le_bytes());
-        out.write_all(&record.bytes)
+        self.record.clear();
+        self.encoder.encode(number, ray, hit, &mut self.record);
+        self.records.append(1, &self.record)
     }
 
     /// Ends the file and returns the flushed writer.
@@ -173,6 +164,48 @@ impl<W: Write> HitWriter<W> {
     /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for fewer records than announced.
     pub fn finish(self) -> io::Result<W> {
         self.records.finish()
+    }
+}
+
+impl HitEncoder {
+    /// Appends the record of a hit of a ray, or of a ray without a hit. `number` is the number of the ray.
+    pub fn encode(&self, number: u64, ray: &Ray, hit: Option<&Hit>, out: &mut Vec<u8>) {
+        put_ray(self.format, number, ray, out);
+        if self.format == AnswerFormat::Csv {
+            let Some(hit) = hit else {
+                out.extend_from_slice(b",,,,,,,,");
+                return self.names.end_line(out, None);
+            };
+            let side: &[u8] = match hit.side {
+                Side::Front => b",front,",
+                Side::Back => b",back,",
+                Side::Along => b",along,",
+            };
+            let ([x, y, z], [a, b, c]): ([f64; 3], _) = (hit.point().coords.into(), hit.barycentric());
+            put_columns(out, &[hit.parameter, x, y, z]);
+            out.extend_from_slice(hit.primitive.to_string().as_bytes());
+            out.extend_from_slice(side);
+            put_columns(out, &[a, b]);
+            put_text(out, c);
+            return self.names.end_line(out, Some(hit.primitive));
+        }
+        match hit {
+            None => put_numbers(out, &[f64::NAN; 7]),
+            Some(hit) => {
+                put_numbers(out, &[hit.parameter]);
+                put_numbers(out, hit.point().coords.as_ref());
+                put_numbers(out, &hit.barycentric());
+            }
+        }
+        let primitive = hit.and_then(|hit| i32::try_from(hit.primitive.index()).ok()); // ids end at 2^30
+        out.extend(primitive.unwrap_or(-1).to_le_bytes());
+        let side: i32 = match hit.map(|hit| hit.side) {
+            None => -1,
+            Some(Side::Front) => 0,
+            Some(Side::Back) => 1,
+            Some(Side::Along) => 2,
+        };
+        out.extend(side.to_le_bytes());
     }
 }
 
@@ -187,7 +220,22 @@ impl<W: Write> NumberWriter<W> {
             AnswerFormat::Npy => npy_header(&format!("('{name}', '<i8')")),
             AnswerFormat::Ply => ply_header([("double", name)].into_iter()),
         };
-        Ok(Self { records: Records::new(writer, header, Some(count))?, format })
+        let records = Records::new(writer, header, Some(count))?;
+        Ok(Self { records, encoder: NumberEncoder { format }, record: Vec::new() })
+    }
+
+    /// Returns the encoder of the records of this file.
+    #[must_use]
+    pub fn encoder(&self) -> NumberEncoder {
+        self.encoder
+    }
+
+    /// Writes `count` records that the [`encoder`](Self::encoder) has encoded.
+    ///
+    /// # Errors
+    /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more numbers than announced.
+    pub fn write_encoded(&mut self, count: u64, records: &[u8]) -> io::Result<()> {
+        self.records.append(count, records)
     }
 
     /// Writes a value for a ray. `number` is the number of the ray.
@@ -195,14 +243,9 @@ impl<W: Write> NumberWriter<W> {
     /// # Errors
     /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more numbers than announced.
     pub fn write(&mut self, number: u64, ray: &Ray, value: u64) -> io::Result<()> {
-        let out = self.records.next()?;
-        if self.format == AnswerFormat::Csv {
-            row(out, number, ray)?;
-            return writeln!(out, "{value}");
-        }
-        let mut record = record::<NUMBER_BYTES>(self.format, number, ray);
-        record.add(integer_bytes(self.format, value));
-        out.write_all(&record.bytes)
+        self.record.clear();
+        self.encoder.encode(number, ray, value, &mut self.record);
+        self.records.append(1, &self.record)
     }
 
     /// Ends the file and returns the flushed writer.
@@ -211,6 +254,17 @@ impl<W: Write> NumberWriter<W> {
     /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for fewer numbers than announced.
     pub fn finish(self) -> io::Result<W> {
         self.records.finish()
+    }
+}
+
+impl NumberEncoder {
+    /// Appends the record of a value for a ray. `number` is the number of the ray.
+    pub fn encode(&self, number: u64, ray: &Ray, value: u64, out: &mut Vec<u8>) {
+        put_ray(self.format, number, ray, out);
+        match self.format {
+            AnswerFormat::Csv => out.extend_from_slice(format!("{value}\n").as_bytes()),
+            _ => out.extend(integer_bytes(self.format, value)),
+        }
     }
 }
 
@@ -230,19 +284,17 @@ fn ply_header(properties: impl Iterator<Item = (&'static str, &'static str)>) ->
     Header::Ply(ray.into_iter().chain(properties).collect())
 }
 
-/// Writes the columns of a ray. `{:?}` writes the shortest number that reads back the same.
-fn row(out: &mut dyn Write, number: u64, ray: &Ray) -> io::Result<()> {
-    let (o, d) = (ray.origin(), ray.direction());
-    write!(out, "{number},{:?},{:?},{:?},{:?},{:?},{:?},", o.x, o.y, o.z, d.x, d.y, d.z)
-}
-
-/// Makes a record and fills in the fields of a ray.
-fn record<const N: usize>(format: AnswerFormat, number: u64, ray: &Ray) -> Fields<N> {
-    let mut record = Fields::default();
-    record.numbers(ray.origin().coords.as_ref());
-    record.numbers(ray.direction().as_ref());
-    record.add(integer_bytes(format, number));
-    record
+/// Appends the columns of a ray to a line, or its fields to a record.
+fn put_ray(format: AnswerFormat, number: u64, ray: &Ray, out: &mut Vec<u8>) {
+    let (origin, direction) = (ray.origin(), ray.direction());
+    if format == AnswerFormat::Csv {
+        out.extend_from_slice(format!("{number},").as_bytes());
+        put_columns(out, origin.coords.as_ref());
+        return put_columns(out, direction.as_ref());
+    }
+    put_numbers(out, origin.coords.as_ref());
+    put_numbers(out, direction.as_ref());
+    out.extend(integer_bytes(format, number));
 }
 
 /// Returns the bytes of an integer. PLY has no integers of 64 bits, so it gets a `double`.

@@ -33,14 +33,18 @@ impl<W: Write> Records<W> {
         Ok(Self { writer, header, count, written: 0, buffered: Vec::new() })
     }
 
-    /// Returns the writer of the next record.
-    pub(super) fn next(&mut self) -> io::Result<&mut dyn Write> {
-        if let Some(count) = self.count.filter(|count| *count == self.written) {
-            let message = format!("there are more answers than the {count} announced");
+    /// Writes `count` encoded records.
+    pub(super) fn append(&mut self, count: u64, bytes: &[u8]) -> io::Result<()> {
+        self.written = self.written.saturating_add(count);
+        if let Some(announced) = self.count.filter(|announced| *announced < self.written) {
+            let message = format!("there are more answers than the {announced} announced");
             return Err(io::Error::new(ErrorKind::InvalidInput, message));
         }
-        self.written += 1;
-        Ok(if self.is_buffered() { &mut self.buffered } else { &mut self.writer })
+        if self.is_buffered() {
+            self.buffered.extend_from_slice(bytes);
+            return Ok(());
+        }
+        self.writer.write_all(bytes)
     }
 
     fn is_buffered(&self) -> bool {
@@ -97,25 +101,59 @@ pub fn npy_header(descr: &str, shape: &str, is_fortran: bool) -> Vec<u8> {
     header
 }
 
-/// A record of N bytes that is filled field by field.
-pub(super) struct Fields<const N: usize> {
-    pub(super) bytes: [u8; N],
-    end: usize,
+/// Appends numbers to a record, little-endian.
+pub(super) fn put_numbers(out: &mut Vec<u8>, numbers: &[f64]) {
+    numbers.iter().for_each(|x| out.extend(x.to_le_bytes()));
 }
 
-impl<const N: usize> Default for Fields<N> {
-    fn default() -> Self {
-        Self { bytes: [0; N], end: 0 }
+/// Appends a number to a line of text: the shortest that reads back the same, with an exponent if it is far from 1.
+pub(super) fn put_text(out: &mut Vec<u8>, x: f64) {
+    let mut buffer = zmij::Buffer::new();
+    match buffer.format(x).split_once('+') {
+        None => out.extend_from_slice(buffer.format(x).as_bytes()),
+        // An exponent has no plus sign, as in Rust.
+        Some((digits, exponent)) => {
+            out.extend_from_slice(digits.as_bytes());
+            out.extend_from_slice(exponent.as_bytes());
+        }
     }
 }
 
-impl<const N: usize> Fields<N> {
-    pub(super) fn add<const M: usize>(&mut self, bytes: [u8; M]) {
-        self.bytes[self.end..self.end + M].copy_from_slice(&bytes);
-        self.end += M;
+/// Appends numbers to a line of text, with a comma after each.
+pub(super) fn put_columns(out: &mut Vec<u8>, numbers: &[f64]) {
+    for x in numbers {
+        put_text(out, *x);
+        out.push(b',');
     }
+}
 
-    pub(super) fn numbers(&mut self, numbers: &[f64]) {
-        numbers.iter().for_each(|x| self.add(x.to_le_bytes()));
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_text_are_short_and_read_back_the_same() {
+        let text = |x: f64| {
+            let mut out = Vec::new();
+            put_text(&mut out, x);
+            String::from_utf8(out).unwrap()
+        };
+        for (x, expected) in [
+            (0.5, "0.5"),
+            (3.0, "3.0"),
+            (-0.0, "-0.0"),
+            (1e300, "1e300"),
+            (-1.5e16, "-1.5e16"),
+            (1e-300, "1e-300"),
+            (f64::NAN, "NaN"),
+            (f64::NEG_INFINITY, "-inf"),
+        ] {
+            assert_eq!(text(x), expected);
+        }
+        for case in p2m_testkit::cases(100_000, 1000) {
+            let x = f64::from_bits(rand::RngExt::random(&mut p2m_testkit::rng("text", case)));
+            let found: f64 = text(x).parse().unwrap();
+            assert!(found.to_bits() == x.to_bits() || (found.is_nan() && x.is_nan()), "{x:?}");
+        }
     }
 }

@@ -1,0 +1,133 @@
+//! The loop that answers queries block by block on all threads, and writes the records of their answers.
+//!
+//! While the threads answer and encode one block, the calling thread writes the records of the block before it and makes
+//! the queries of the block after it. So neither the file nor the source of the queries keeps the threads waiting.
+
+use crate::progress::{Progress, Unit};
+use crate::streams::Streams;
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use std::io;
+use std::time::{Duration, Instant};
+
+/// The least number of queries of a block for each thread. It is small because a query by brute force can take
+/// milliseconds.
+const MIN_BLOCK_PER_THREAD: usize = 32;
+/// The largest number of queries of a block. The records of two blocks are in memory at a time.
+const MAX_BLOCK: usize = 1 << 16;
+/// Blocks grow until they take this time, so that progress is shown often enough.
+const BLOCK_TIME: Duration = Duration::from_millis(100);
+/// The number of answers that one thread encodes at a time.
+const ANSWERS_PER_TASK: usize = 1 << 11;
+
+/// A stream of points or rays to query with.
+pub(crate) struct QueryStream<I> {
+    /// The name of the queries in messages, in the plural.
+    pub(crate) name: &'static str,
+    /// The number of queries that `iter` returns.
+    pub(crate) count: u64,
+    pub(crate) iter: I,
+}
+
+/// The records of some answers.
+struct Encoded {
+    records: u64,
+    bytes: Vec<u8>,
+}
+
+/// A block of queries with their answers.
+struct Block<Q, A> {
+    queries: Vec<Q>,
+    answers: Vec<A>,
+    encoded: Vec<Encoded>,
+}
+
+/// The functions that turn queries into records.
+pub(crate) struct Steps<Answer, Encode, Take, WriteRecords> {
+    /// Answers some queries on all threads of the current pool.
+    pub(crate) answer: Answer,
+    /// Appends the records of a query, given its number and its answer, and returns how many there are.
+    pub(crate) encode: Encode,
+    /// Takes each query with its answer, in order, for a summary.
+    pub(crate) take: Take,
+    /// Writes some records, in order.
+    pub(crate) write: WriteRecords,
+}
+
+/// Answers queries on all threads of a pool and writes the records of their answers in order. Returns the time that the
+/// answers took.
+pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
+    streams: &Streams,
+    pool: &ThreadPool,
+    mut queries: QueryStream<impl Iterator<Item = Q>>,
+    steps: Steps<
+        impl Fn(&[Q]) -> Vec<A> + Sync,
+        impl Fn(u64, &Q, &A, &mut Vec<u8>) -> u64 + Sync,
+        impl FnMut(&Q, &A),
+        impl FnMut(u64, &[u8]) -> io::Result<()>,
+    >,
+) -> io::Result<Duration> {
+    let Steps { answer, encode, mut take, mut write } = steps;
+    let progress = Progress::start(streams, "answering", Some(queries.count), Unit::Items(queries.name));
+    let min_block = MIN_BLOCK_PER_THREAD * pool.current_num_threads();
+    let (mut time, mut first, mut size) = (Duration::ZERO, 0, min_block);
+    let mut finished: Option<Block<Q, A>> = None;
+    let mut pending: Vec<Q> = queries.iter.by_ref().take(size).collect();
+    loop {
+        let (block, elapsed, next, written) = pool.in_place_scope(|scope| {
+            let (send, receive) = std::sync::mpsc::sync_channel(1);
+            let (answer, encode) = (&answer, &encode);
+            let block = std::mem::take(&mut pending);
+            let is_last = block.is_empty();
+            scope.spawn(move |_| {
+                let start = Instant::now();
+                let answers = answer(&block);
+                let elapsed = start.elapsed();
+                let encoded = encode_all(first, &block, &answers, encode);
+                // The receiver waits, so sending does not fail.
+                let _ = send.send((Block { queries: block, answers, encoded }, elapsed));
+            });
+            let mut write_finished = |block: Block<Q, A>| {
+                block.queries.iter().zip(&block.answers).for_each(|(query, answer)| take(query, answer));
+                block.encoded.iter().try_for_each(|part| write(part.records, &part.bytes))
+            };
+            let written = finished.take().map_or(Ok(()), &mut write_finished);
+            let next: Vec<Q> = if is_last { Vec::new() } else { queries.iter.by_ref().take(size).collect() };
+            let (block, elapsed) = receive.recv().expect("a task that has been spawned");
+            (block, elapsed, next, written)
+        });
+        written?;
+        if block.queries.is_empty() {
+            return Ok(time);
+        }
+        time += elapsed;
+        first += block.queries.len() as u64;
+        progress.add(block.queries.len() as u64);
+        size = if elapsed < BLOCK_TIME { MAX_BLOCK.min(2 * size) } else { min_block.max(size / 2) };
+        (finished, pending) = (Some(block), next);
+    }
+}
+
+/// Encodes the answers of a block, whose first query has this number.
+fn encode_all<Q: Sync, A: Sync>(
+    first: u64,
+    queries: &[Q],
+    answers: &[A],
+    encode: &(impl Fn(u64, &Q, &A, &mut Vec<u8>) -> u64 + Sync),
+) -> Vec<Encoded> {
+    let parts = queries.par_chunks(ANSWERS_PER_TASK).zip(answers.par_chunks(ANSWERS_PER_TASK)).enumerate();
+    let encode_part = |(part, (queries, answers)): (usize, (&[Q], &[A]))| {
+        let first = first + (part * ANSWERS_PER_TASK) as u64;
+        let (mut records, mut bytes) = (0, Vec::new());
+        for (number, (query, answer)) in (first..).zip(queries.iter().zip(answers)) {
+            records += encode(number, query, answer, &mut bytes);
+        }
+        Encoded { records, bytes }
+    };
+    parts.map(encode_part).collect()
+}
+
+/// Answers queries one by one on all threads of the current pool.
+pub(crate) fn answer_each<Q: Sync, A: Send>(queries: &[Q], answer: impl Fn(&Q) -> A + Sync) -> Vec<A> {
+    queries.par_iter().map(&answer).collect()
+}
