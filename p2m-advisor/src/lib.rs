@@ -9,11 +9,11 @@
 //! primitives, queries by a growth for each doubling of the scene ([`CostModel`]).
 //!
 //! Some backends are not measured. An index that takes longer to build than a tree takes for the whole job cannot win.
-//! The P2M index is left out for scenes of slivers, where most of its cells would fall back to the tree, and if it takes
-//! long to build for a sample of a few hundred primitives.
+//! Indexes with cells are left out for scenes of slivers, where most cells would fall back to the tree.
 //!
-//! The time for samples is a small part of the expected time of the job. Backends with similar results are measured
-//! again on a larger sample. If there is no time for the smallest sample, the figures of docs/paper.md decide.
+//! All indexes that may win are built over a sample of 300 primitives, and those that may still win over a sample that
+//! is as large as a small part of the expected time of the job permits. If there is no time for the smallest sample,
+//! the figures of docs/paper.md decide.
 //!
 //! Estimates are for one thread. They depend on the machine and its load, so the advice may differ from run to run
 //! where two backends are about equally good.

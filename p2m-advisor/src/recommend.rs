@@ -9,17 +9,10 @@ use nalgebra::Point3;
 use p2m_core::{BuildError, Closest, PrimitiveSet, QueryOptions, Soup};
 use std::time::Instant;
 
-/// The part of the expected time of the job that the first sample may take.
-const FIRST_SAMPLE_TIME_SHARE: f64 = 0.011;
-/// The part of the expected time of the job that the first sample may take if trees alone may win. They take about as
-/// long as expected.
-const TREE_SAMPLE_TIME_SHARE: f64 = 0.027;
-/// The part of the expected time of the job that both samples may take together.
-const BOTH_SAMPLES_TIME_SHARE: f64 = 0.021;
+/// The part of the expected time of the job that advice may take.
+const TIME_SHARE: f64 = 0.015;
 /// The part of the time for a sample that its queries may take.
 const QUERY_TIME_DIVISOR: f64 = 3.0;
-/// Backends within this factor of the best total time are measured on the second sample.
-const CONTENDER_TIME_FACTOR: f64 = 1.6;
 /// Backends whose build takes longer than this factor of the total time of the AABB tree are not measured. It is
 /// larger than 1 because estimates without measurements are rough.
 const MAX_BUILD_PER_TREE_TOTAL: f64 = 2.0;
@@ -31,20 +24,12 @@ const MAX_SAMPLE_PRIMITIVES: usize = 65_536;
 const MIN_SAMPLE_QUERIES: usize = 64;
 /// The largest number of queries that are timed.
 const MAX_SAMPLE_QUERIES: usize = 512;
-/// The second sample has at least this many times the primitives of the first one.
-const SECOND_SAMPLE_GROWTH: usize = 2;
+/// The larger sample has at least this many times the primitives of the smallest one.
+const MIN_SAMPLE_GROWTH: usize = 2;
 /// The time that taking a sample needs for each primitive of the scene, in seconds.
 const SAMPLING_SECONDS_PER_PRIMITIVE: f64 = 30e-9;
-/// The number of primitives of the subsample over which cells of vertices are built as a test.
-const CELL_TEST_PRIMITIVES: usize = 300;
-/// The usual time to build cells of vertices over that subsample, in seconds for each of its primitives.
-const CELL_TEST_SECONDS_PER_PRIMITIVE: f64 = 50e-6;
-/// Cells of vertices are not measured further if the test takes longer than the usual time by this factor.
-const MAX_CELL_TEST_TIME_FACTOR: f64 = 1.2;
-/// The time to build cells of vertices for each primitive of the scene, relative to that of the test.
-const CELL_BUILD_PER_CELL_TEST: f64 = 1.5;
-/// The largest growth of the build time for each primitive when the number of primitives doubles.
-const MAX_BUILD_GROWTH_PER_DOUBLING: f64 = 1.3;
+/// The time to build for each primitive of the larger sample, relative to that of the smallest one, at most.
+const MAX_BUILD_GROWTH: f64 = 2.0;
 /// The octree has budgets for this many primitives at least.
 const MIN_OCTREE_BUDGET_PRIMITIVES: f64 = 10_000.0;
 
@@ -72,26 +57,10 @@ const MIN_OCTREE_BUDGET_PRIMITIVES: f64 = 10_000.0;
 pub fn recommend(soup: &Soup<f64>, workload: &Workload<'_>) -> Result<Advice, BuildError> {
     let start = Instant::now();
     let mut comparison = Comparison::new(soup, workload);
-    comparison.test_cells_of_vertices()?;
-    let mut spent_seconds = start.elapsed().as_secs_f64();
-    for round in [Round::First, Round::Second] {
-        if !comparison.measure_sample(round, spent_seconds)? {
-            break;
-        }
-        spent_seconds = start.elapsed().as_secs_f64();
-    }
+    comparison.measure_samples(&start)?;
     comparison.finish_estimates();
     let Comparison { estimates, sample_primitives, .. } = comparison;
     Ok(Advice::rank(estimates, workload.max_bytes, start.elapsed().as_secs_f64(), sample_primitives))
-}
-
-/// The samples that backends may be measured on.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Round {
-    /// A small sample for every backend that may win.
-    First,
-    /// A larger sample for the backends that are close to the best one.
-    Second,
 }
 
 /// The state of a recommendation.
@@ -104,8 +73,8 @@ struct Comparison<'a> {
     has_slivers: bool,
     /// The estimates, in the order of [`BACKENDS`].
     estimates: Vec<Estimate>,
-    /// The time to build each backend over the next sample, in seconds for each of its primitives.
-    build_seconds_per_primitive: Vec<f64>,
+    /// The expected time to build each backend over the next sample, in seconds for each of its primitives.
+    sample_build_seconds: Vec<f64>,
     /// The number of primitives of the last sample, or 0.
     sample_primitives: usize,
     /// The largest number of seconds for a build of a backend that is measured.
@@ -126,14 +95,15 @@ impl<'a> Comparison<'a> {
             }
         }
         let max_build_seconds = MAX_BUILD_PER_TREE_TOTAL * tree.seconds_for(workload.queries as f64);
+        let sample_build_seconds = estimates.iter().map(|e| e.build_seconds / primitives).collect();
         Self {
             soup,
             workload,
             primitives,
             is_near,
             has_slivers,
-            build_seconds_per_primitive: Vec::new(),
             estimates,
+            sample_build_seconds,
             sample_primitives: 0,
             max_build_seconds,
         }
@@ -153,49 +123,35 @@ impl<'a> Comparison<'a> {
         is_tree(estimate) || !is_exhaustive && !self.has_slivers && estimate.build_seconds < self.max_build_seconds
     }
 
-    /// Builds cells of vertices over a small subsample, and corrects their estimate by the time that this takes.
+    /// Measures the backends that may win on the smallest sample, and those that may still win on one as large as time
+    /// permits.
     ///
-    /// Some scenes have a hundred times the usual build time, and long lists. Queries near the surface do not need the
-    /// test, because the samples for them show it.
-    fn test_cells_of_vertices(&mut self) -> Result<(), BuildError> {
-        let cells = self.estimates.iter().position(|e| e.backend.structure == SearchStructure::VertexCells);
-        if let Some(cells) = cells.filter(|cells| !self.is_near && self.may_win(&self.estimates[*cells]))
-            && self.soup.len() > CELL_TEST_PRIMITIVES
-        {
-            let subset = subsample(self.soup, CELL_TEST_PRIMITIVES)?;
-            let measured = measure(self.estimates[cells].backend, &subset, &[])?;
-            let per_primitive = measured.build_seconds / CELL_TEST_PRIMITIVES as f64;
-            let tree_query_seconds = tree_estimate(&self.estimates).query_seconds;
-            let estimate = &mut self.estimates[cells];
-            if per_primitive > MAX_CELL_TEST_TIME_FACTOR * CELL_TEST_SECONDS_PER_PRIMITIVE {
-                estimate.build_seconds = per_primitive * self.primitives;
-                estimate.query_seconds = tree_query_seconds;
-            } else {
-                estimate.build_seconds = CELL_BUILD_PER_CELL_TEST * per_primitive * self.primitives;
+    /// Some scenes have a hundred times the usual time to build cells of vertices. The smallest sample shows that before
+    /// a larger one would take too long.
+    fn measure_samples(&mut self, start: &Instant) -> Result<(), BuildError> {
+        for is_first in [true, false] {
+            let affordable = self.affordable_sample(start.elapsed().as_secs_f64());
+            let Some((contenders, size, query_count)) = affordable else { return Ok(()) };
+            let size = if is_first { MIN_SAMPLE_PRIMITIVES.min(size) } else { size };
+            let sample =
+                if self.is_near { neighbourhood_sample(self.soup, size)? } else { subsample(self.soup, size)? };
+            self.sample_primitives = sample.len();
+            let queries = sample_queries(self.soup, &sample, self.workload.region, query_count);
+            for i in contenders {
+                let measured = measure(self.estimates[i].backend, &sample, &queries)?;
+                self.scale(i, &measured, &sample);
             }
         }
-        self.build_seconds_per_primitive = self.estimates.iter().map(|e| e.build_seconds / self.primitives).collect();
         Ok(())
     }
 
-    /// Measures the backends that may win on a sample that is as large as time permits. Returns false if there is not
-    /// enough time for a useful sample, or nothing left to decide.
-    fn measure_sample(&mut self, round: Round, spent_seconds: f64) -> Result<bool, BuildError> {
+    /// Returns the backends that may win, the number of primitives of the largest sample that there is time for, and
+    /// the number of queries; `None` if that sample would be too small.
+    fn affordable_sample(&self, spent_seconds: f64) -> Option<(Vec<usize>, usize, usize)> {
         let best = self.estimates.iter().map(|e| self.total_seconds(e)).fold(f64::INFINITY, f64::min);
-        let (time_share, max_total_seconds) = match round {
-            Round::First if self.estimates.iter().all(|e| !self.may_win(e) || is_tree(e)) => {
-                (TREE_SAMPLE_TIME_SHARE, f64::INFINITY)
-            }
-            Round::First => (FIRST_SAMPLE_TIME_SHARE, f64::INFINITY),
-            Round::Second => (BOTH_SAMPLES_TIME_SHARE, CONTENDER_TIME_FACTOR * best),
-        };
-        let seconds = (best * time_share).min(self.workload.max_time.as_secs_f64()) - spent_seconds;
-        let contends = |e: &Estimate| self.may_win(e) && self.total_seconds(e) <= max_total_seconds;
-        let contenders: Vec<usize> = (0..self.estimates.len()).filter(|i| contends(&self.estimates[*i])).collect();
-        if round == Round::Second && contenders.len() < 2 {
-            return Ok(false);
-        }
-        let build_seconds_per_primitive: f64 = contenders.iter().map(|i| self.build_seconds_per_primitive[*i]).sum();
+        let seconds = (best * TIME_SHARE).min(self.workload.max_time.as_secs_f64()) - spent_seconds;
+        let contenders: Vec<usize> = (0..self.estimates.len()).filter(|i| self.may_win(&self.estimates[*i])).collect();
+        let build_seconds: f64 = contenders.iter().map(|i| self.sample_build_seconds[*i]).sum();
         // All queries are timed twice.
         let seconds_per_query: f64 = contenders.iter().map(|i| 2.0 * self.estimates[*i].query_seconds).sum();
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
@@ -204,19 +160,10 @@ impl<'a> Comparison<'a> {
         let query_seconds = query_count as f64 * seconds_per_query;
         let sampling_seconds = 2.0 * SAMPLING_SECONDS_PER_PRIMITIVE * self.primitives;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-        let affordable = ((seconds - query_seconds - sampling_seconds) / build_seconds_per_primitive) as usize;
+        let affordable = ((seconds - query_seconds - sampling_seconds) / build_seconds) as usize;
         let size = affordable.min(MAX_SAMPLE_PRIMITIVES).min(self.soup.len());
-        if size < (SECOND_SAMPLE_GROWTH * self.sample_primitives).max(MIN_SAMPLE_PRIMITIVES) {
-            return Ok(false);
-        }
-        let sample = if self.is_near { neighbourhood_sample(self.soup, size)? } else { subsample(self.soup, size)? };
-        self.sample_primitives = sample.len();
-        let queries = sample_queries(self.soup, &sample, self.workload.region, query_count);
-        for i in contenders {
-            let measured = measure(self.estimates[i].backend, &sample, &queries)?;
-            self.scale(i, &measured, &sample);
-        }
-        Ok(true)
+        let is_useful = size >= (MIN_SAMPLE_GROWTH * self.sample_primitives).max(MIN_SAMPLE_PRIMITIVES);
+        is_useful.then_some((contenders, size, query_count))
     }
 
     /// Replaces the estimate of a backend by what was measured on a sample, scaled to the whole scene.
@@ -242,8 +189,7 @@ impl<'a> Comparison<'a> {
         estimate.query_seconds = measured.query_seconds * growth;
         estimate.bytes = measured.bytes * size_factor;
         estimate.is_measured = true;
-        self.build_seconds_per_primitive[i] =
-            MAX_BUILD_GROWTH_PER_DOUBLING * measured.build_seconds / sample_primitives;
+        self.sample_build_seconds[i] = MAX_BUILD_GROWTH * measured.build_seconds / sample_primitives;
     }
 
     /// Computes the total times. Cells of slivers fall back to a tree, which determines the time of their queries.
