@@ -2,7 +2,7 @@
 //! for each setting.
 
 use crate::errors::Errors;
-use crate::quantiles::{Spread, percentile};
+use crate::quantiles::{MedianRange, percentile};
 use crate::settings::DEFAULT;
 use serde::Serialize;
 
@@ -50,7 +50,7 @@ pub struct Point {
     /// The number of rounds.
     pub rounds: usize,
     /// The thread CPU time per query in nanoseconds, over the rounds.
-    pub nanoseconds: Spread,
+    pub nanoseconds: MedianRange,
     /// The errors of the answers.
     pub errors: Errors,
     /// The times of single queries.
@@ -71,7 +71,7 @@ pub struct Curve {
 impl Curve {
     /// Returns the point of the default setting, or else the first one.
     #[must_use]
-    pub fn usual(&self) -> Option<&Point> {
+    pub fn default_point(&self) -> Option<&Point> {
         self.points.iter().find(|point| point.setting == DEFAULT.name).or(self.points.first())
     }
 }

@@ -5,7 +5,7 @@ use std::fmt;
 
 /// The median, the minimum and the maximum of some measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Spread {
+pub struct MedianRange {
     /// The median; for an even number of values the mean of the two in the middle.
     pub median: f64,
     /// The smallest value.
@@ -14,7 +14,7 @@ pub struct Spread {
     pub max: f64,
 }
 
-impl Spread {
+impl MedianRange {
     /// Computes the quantiles of values in any order. Returns `None` if there are none.
     #[must_use]
     pub fn of(values: &[f64]) -> Option<Self> {
@@ -112,11 +112,11 @@ mod tests {
 
     #[test]
     fn medians_are_right() {
-        let of = |values: &[f64]| Spread::of(values);
+        let of = |values: &[f64]| MedianRange::of(values);
         assert_eq!(of(&[]), None);
-        assert_eq!(of(&[3.0]), Some(Spread { median: 3.0, min: 3.0, max: 3.0 }));
-        assert_eq!(of(&[5.0, 1.0, 2.0]), Some(Spread { median: 2.0, min: 1.0, max: 5.0 }));
-        assert_eq!(of(&[4.0, 1.0, 2.0, 9.0]), Some(Spread { median: 3.0, min: 1.0, max: 9.0 }));
+        assert_eq!(of(&[3.0]), Some(MedianRange { median: 3.0, min: 3.0, max: 3.0 }));
+        assert_eq!(of(&[5.0, 1.0, 2.0]), Some(MedianRange { median: 2.0, min: 1.0, max: 5.0 }));
+        assert_eq!(of(&[4.0, 1.0, 2.0, 9.0]), Some(MedianRange { median: 3.0, min: 1.0, max: 9.0 }));
     }
 
     #[test]
