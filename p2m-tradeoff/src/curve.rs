@@ -2,8 +2,9 @@
 //! for each setting.
 
 use crate::errors::Errors;
-use crate::quantiles::{MedianRange, percentile};
+use crate::quantiles::MedianRange;
 use crate::settings::DEFAULT;
+use p2m_core::engine::stats::percentile;
 use serde::Serialize;
 
 /// The cost of an index before its first query.

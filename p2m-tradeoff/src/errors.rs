@@ -1,9 +1,9 @@
 //! The errors of answers.
 
 use crate::backend::Answer;
-use crate::quantiles::percentile;
 use crate::settings::Promise;
 use p2m_core::Real;
+use p2m_core::engine::stats::percentile;
 use serde::Serialize;
 
 /// The true answer to a query.

@@ -49,6 +49,6 @@ pub use error::RecordError;
 pub use errors::{ErrorQuantiles, Errors, Truth};
 pub use measure::{Competitor, Effort, measure};
 pub use provenance::Provenance;
-pub use quantiles::{MedianRange, RunningStats, percentile};
+pub use quantiles::{MedianRange, RunningStats};
 pub use record::csv_line;
 pub use table::Table;
