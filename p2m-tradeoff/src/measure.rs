@@ -54,8 +54,8 @@ pub struct Effort {
     pub seconds: f64,
 }
 
-/// Measures all competitors with `queries`, and compares their answers with `truths`. Calls `progress` with the fraction
-/// of the work that is done, from 0 to 1.
+/// Measures all competitors with `queries`, and compares their answers with `truths`. Calls `progress` with the
+/// fraction of the work that is done, from 0 to 1.
 ///
 /// # Panics
 /// If there is not one truth for each query, or if a backend panics.

@@ -1,4 +1,5 @@
-//! The loop of all measurements: competitors answer the same questions in turns, and the CPU time of the thread is taken.
+//! The loop of all measurements: competitors answer the same questions in turns, and the CPU time of the thread is
+//! taken.
 //!
 //! Competitors that take turns see the same temperature and load of the machine, so their ratios are more stable than
 //! their times. Another one begins in every round ([`rotated`]), because the first one after a pause is slower.

@@ -1,7 +1,7 @@
 //! The list of all settings of accuracy.
 //!
-//! A new way to trade accuracy for speed needs a variant of [`Accuracy`], a line of [`SETTINGS`] and an arm of each method
-//! of this module.
+//! A new way to trade accuracy for speed needs a variant of [`Accuracy`], a line of [`SETTINGS`] and an arm of each
+//! method of this module.
 
 use p2m_core::kernel::ERROR_CONSTANT;
 use p2m_core::{QueryOptions, Real};
