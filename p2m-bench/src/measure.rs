@@ -3,14 +3,13 @@
 use crate::agree::{Agreement, Answers, compare_round};
 use crate::backend::{Answer, Backend, BoxedIndex, Unavailable, catch};
 use crate::memory;
-use crate::queries::{Queries, spread};
-use crate::rounds::{checksum, rotated, thread_seconds};
+use crate::queries::{Queries, QuerySlice};
+use crate::rounds::{Rounds, checksum, rotated, thread_seconds};
 use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_testkit::queries::QuerySet;
-use std::hint::black_box;
 
-pub(crate) use p2m_tradeoff::Spread;
+pub(crate) use p2m_tradeoff::MedianRange as Spread;
 
 /// Backends that need more nanoseconds for a query than this get [`SLOW_QUERIES`] queries.
 const SLOW_NANOSECONDS: f64 = 20_000.0;
@@ -19,9 +18,6 @@ const SLOW_QUERIES: usize = 20_000;
 
 /// The longest time that a round of an exhaustive backend may take, in nanoseconds.
 const EXHAUSTIVE_ROUND_NANOSECONDS: f64 = 1e9;
-
-/// A probe that takes this many nanoseconds is long enough to estimate the speed of a backend.
-const PROBE_NANOSECONDS: f64 = 1e7;
 
 /// An index is not built again once its builds have taken this many seconds in all.
 const MAX_BUILD_SECONDS: f64 = 10.0;
@@ -133,84 +129,35 @@ pub(crate) fn measure_set(scene: &Scene, set: QuerySet, entries: &mut [Entry<'_>
 /// Measures the given queries and appends the figures to every entry.
 pub(crate) fn measure(queries: Vec<Point3<f64>>, entries: &mut [Entry<'_>], rounds: usize) {
     let queries = Queries::new(queries);
-    let mut runs: Vec<Run> = entries.iter().map(|entry| Run::new(entry, &queries)).collect();
+    let rounds_of = |entry: &Entry<'_>| {
+        Rounds::new(&queries, Answer::NONE, |q, a| entry.answer(q, a), |ns| affordable(entry.backend, ns))
+    };
+    let mut all: Vec<Rounds<Answer, Unavailable>> = entries.iter().map(rounds_of).collect();
+    let mut figures = vec![SetFigures::default(); all.len()];
     for round in 0..rounds {
         for at in rotated(entries.len(), round) {
-            runs[at].round(&entries[at]);
+            all[at].run(|queries, answers| entries[at].answer(queries, answers));
         }
-        let answers: Vec<_> = entries.iter().zip(&runs).map(|(e, run)| run.for_comparison(e)).collect();
-        let agreements = compare_round(&answers, queries.len());
-        for (run, agreement) in runs.iter_mut().zip(agreements) {
-            run.figures.agreement.add(&agreement);
+        let answers = entries.iter().zip(&all).map(|(entry, Rounds { chosen, answers, failure, .. })| {
+            failure.is_none().then_some(Answers { backend: entry.backend, chosen, answers })
+        });
+        let agreements = compare_round(&answers.collect::<Vec<_>>(), queries.len());
+        for ((figures, rounds), agreement) in figures.iter_mut().zip(&all).zip(agreements) {
+            let answers = rounds.answers.iter().map(|answer| (answer.distance.to_bits(), u64::from(answer.id)));
+            figures.checksums.push(checksum(0, answers));
+            figures.agreement.add(&agreement);
         }
     }
-    for (entry, run) in entries.iter_mut().zip(runs) {
-        entry.sets.push(run.failure.map_or(Ok(run.figures), Err));
+    for ((entry, rounds), figures) in entries.iter_mut().zip(all).zip(figures) {
+        let Rounds { chosen, nanoseconds, failure, .. } = rounds;
+        let figures = SetFigures { queries: chosen.len(), nanoseconds, ..figures };
+        entry.sets.push(failure.map_or(Ok(figures), Err));
     }
 }
 
-/// The state of a backend while a query set is measured.
-struct Run {
-    /// The positions of the backend's queries in the set.
-    chosen: Vec<usize>,
-    queries: Queries,
-    answers: Vec<Answer>,
-    figures: SetFigures,
-    failure: Option<Unavailable>,
-}
-
-impl Run {
-    /// Decides how many queries the backend gets.
-    fn new(entry: &Entry<'_>, queries: &Queries) -> Self {
-        let (count, failure) = match &entry.index {
-            Err(absent) => (1, Some(absent.clone())),
-            Ok(index) => match probe(index, queries) {
-                Err(absent) => (1, Some(absent)),
-                Ok(nanoseconds) => (affordable(entry.backend, nanoseconds), None),
-            },
-        };
-        let chosen = spread(queries.len(), count);
-        let answers = vec![Answer::NONE; chosen.len()];
-        let figures = SetFigures { queries: chosen.len(), ..SetFigures::default() };
-        Self { queries: queries.gather(&chosen), chosen, answers, figures, failure }
-    }
-
-    fn round(&mut self, entry: &Entry<'_>) {
-        let Ok(index) = &entry.index else { return };
-        if self.failure.is_some() {
-            return;
-        }
-        self.answers.fill(Answer::NONE);
-        let queries = black_box(self.queries.all());
-        let (outcome, seconds) = thread_seconds(|| index.answer(queries, &mut self.answers));
-        black_box(&self.answers);
-        self.failure = outcome.err();
-        self.figures.nanoseconds.push(seconds * 1e9 / self.answers.len() as f64);
-        let answers = self.answers.iter().map(|answer| (answer.distance.to_bits(), u64::from(answer.id)));
-        self.figures.checksums.push(checksum(0, answers));
-    }
-
-    fn for_comparison<'a>(&'a self, entry: &'a Entry<'_>) -> Option<Answers<'a>> {
-        let backend = entry.backend;
-        self.failure.is_none().then_some(Answers { backend, chosen: &self.chosen, answers: &self.answers })
-    }
-}
-
-/// Estimates the nanoseconds per query from a growing number of queries.
-fn probe(index: &BoxedIndex<'_>, queries: &Queries) -> Result<f64, Unavailable> {
-    let sample = queries.gather(&spread(queries.len(), 1000));
-    // A prefix of the set would favour the region where the set begins, so the sample strides through it.
-    let mut answers = vec![Answer::NONE; sample.len()];
-    let mut count = 1;
-    loop {
-        let picked = sample.gather(&(0..count).map(|i| i * sample.len() / count).collect::<Vec<_>>());
-        let (outcome, seconds) = thread_seconds(|| index.answer(picked.all(), &mut answers[..count]));
-        outcome?;
-        let nanoseconds = seconds * 1e9;
-        if nanoseconds > PROBE_NANOSECONDS || count == sample.len() {
-            return Ok(nanoseconds / count as f64);
-        }
-        count = (count * 4).min(sample.len());
+impl Entry<'_> {
+    fn answer(&self, queries: QuerySlice<'_>, answers: &mut [Answer]) -> Result<(), Unavailable> {
+        self.index.as_ref().map_err(Clone::clone)?.answer(queries, answers)
     }
 }
 

@@ -1,10 +1,6 @@
-//! The parts that all measuring loops of this program share: competitors take turns ([`rotated`]), time is the CPU time
-//! of one thread ([`thread_seconds`]), and answers enter a checksum.
-//!
-//! Competitors that take turns see the same temperature and load of the machine, so their ratios are more stable than
-//! their times. Another one begins in every round, because the first one after a pause is slower.
+//! What all measuring loops of this program share: the rounds of p2m-tradeoff, and a checksum of answers.
 
-pub(crate) use p2m_tradeoff::{rotated, thread_seconds};
+pub(crate) use p2m_tradeoff::rounds::{Rounds, rotated, thread_seconds, time_answers};
 
 /// Returns a checksum of answers, each given by the bits of its number and the id of its primitive. It depends on every
 /// bit and on the order of the answers. `start` is the checksum of the answers before these, or 0.

@@ -229,7 +229,7 @@ struct IndexStats {
 
 impl IndexStats {
     fn json(&self) -> Value {
-        let stat = |stat: &Stat| json!({ "mean": stat.mean, "max": stat.most });
+        let stat = |stat: &Stat| json!({ "mean": stat.mean, "max": stat.max });
         let query_cost = |cost: &QueryCost| {
             json!({
                 "nodes": stat(&cost.nodes),
@@ -244,9 +244,9 @@ impl IndexStats {
                 "count": lists.count,
                 "mean": lists.mean,
                 "median": lists.median,
-                "percentile_90": lists.percent_90,
-                "percentile_99": lists.percent_99,
-                "max": lists.most,
+                "percentile_90": lists.p90,
+                "percentile_99": lists.p99,
+                "max": lists.max,
             })
         });
         let memory: serde_json::Map<_, _> =
@@ -268,11 +268,11 @@ impl fmt::Display for IndexStats {
     #[allow(clippy::cast_precision_loss, reason = "bytes for people to read")]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(lists) = &self.lists {
-            let ListStats { count, mean, median, percent_90, percent_99, most, .. } = lists;
+            let ListStats { count, mean, median, p90, p99, max, .. } = lists;
             writeln!(
                 f,
-                "lists    {}: {mean:.1} primitives on average; half up to {median}, 90 % up to {percent_90}, 99 % up to \
-                 {percent_99}, all up to {most}",
+                "lists    {}: {mean:.1} primitives on average; half up to {median}, 90 % up to {p90}, 99 % up to \
+                 {p99}, all up to {max}",
                 Count(*count as u64)
             )?;
             let QueryCost { list, without_list, .. } = self.in_box;
@@ -287,7 +287,7 @@ impl fmt::Display for IndexStats {
             writeln!(
                 f,
                 "queries  {region}: {:.2} nodes, {:.2} packets, {:.2} primitives each; at most {}, {}, {}",
-                nodes.mean, packets.mean, primitives.mean, nodes.most, packets.most, primitives.most
+                nodes.mean, packets.mean, primitives.mean, nodes.max, packets.max, primitives.max
             )?;
         }
         if !self.stages.is_empty() {

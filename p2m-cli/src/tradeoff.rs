@@ -16,10 +16,11 @@ use p2m_core::{BuildIndex, CertifiedQuery, PrimitiveSet, Soup};
 use p2m_mixed::{PointFormat, Scene};
 use p2m_tradeoff::page::Page;
 use p2m_tradeoff::queries::Queries;
-use p2m_tradeoff::settings::{Ask, SETTINGS, Setting};
+use p2m_tradeoff::rounds::thread_seconds;
+use p2m_tradeoff::settings::SETTINGS;
 use p2m_tradeoff::{
-    Build, Competitor, Effort, Provenance, SceneFigures, SetFigures, Subject, Truth, WithCertificate, WithOptions,
-    clock_nanoseconds, measure, record::record, text, thread_seconds,
+    Build, Competitor, Effort, Provenance, SceneFigures, SetFigures, Truth, clock_nanoseconds, measure, record::record,
+    text,
 };
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -109,14 +110,6 @@ impl<'a> MeasuredIndex<'a> {
         let settings = BuildSettings::default().with_parallel(false);
         let (built, seconds) = thread_seconds(|| backend.build(soup, &settings));
         Ok(Self { backend, index: built?.index, cost: Build { seconds, bytes_per_primitive: None } })
-    }
-
-    /// Returns the index as a subject of the measurement with this setting.
-    fn with_setting(&self, setting: &Setting) -> Box<dyn Subject + '_> {
-        match setting.ask {
-            Ask::Certified => Box::new(WithCertificate::new(&*self.index)),
-            _ => Box::new(WithOptions::new(&*self.index, setting.options::<f64>())),
-        }
     }
 }
 
@@ -222,23 +215,18 @@ impl Args {
         }
         drop(progress);
         let truths = truths(soup, &queries)?;
-        let entrants: Vec<Competitor<'_>> = indexes
+        let competitors: Vec<Competitor<'_>> = indexes
             .iter()
             .flat_map(|index| {
-                SETTINGS.iter().map(move |setting| Competitor {
-                    backend: index.backend.name.to_owned(),
-                    setting: setting.name.to_owned(),
-                    promise: setting.promise(),
-                    subject: index.with_setting(setting),
-                    build: index.cost,
-                })
+                let name = index.backend.name;
+                SETTINGS.iter().map(move |setting| Competitor::new(name, &*index.index, setting, index.cost))
             })
             .collect();
         let progress = Progress::start(streams, "measuring", Some(100), Unit::Percent);
         let effort = Effort { rounds: self.rounds, seconds: self.round_seconds };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 100")]
         let show_progress = |part: f64| progress.advance_to((part * 100.0) as u64);
-        let curves = measure(&entrants, &Queries::new(queries), &truths, &effort, &show_progress);
+        let curves = measure(&competitors, &Queries::new(queries), &truths, &effort, &show_progress);
         drop(progress);
         let contents = format!(
             "{} triangles, {} segments, {} points.",
@@ -270,8 +258,13 @@ fn truths(soup: &Soup<f64>, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Truth
         let closest = tree.certified_closest_point(query, &Default::default())?;
         let closest = closest.context("the scene is not empty, and queries are finite")?;
         let shape = soup.get(closest.primitive);
-        let reach = shape.vertices().iter().map(|vertex| (vertex - query).norm()).fold(0.0, f64::max);
-        Ok(Truth { distance: closest.distance, rest: 0.0, reach, id: closest.primitive.index() as u32 })
+        let max_vertex_distance = shape.vertices().iter().map(|vertex| (vertex - query).norm()).fold(0.0, f64::max);
+        Ok(Truth {
+            distance: closest.distance,
+            residual: 0.0,
+            max_vertex_distance,
+            id: closest.primitive.index() as u32,
+        })
     };
     queries.iter().map(truth).collect()
 }

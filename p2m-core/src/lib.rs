@@ -111,6 +111,10 @@ pub mod engine {
     pub mod simd {
         pub use crate::simd::*;
     }
+    /// Percentiles of sorted values.
+    pub mod stats {
+        pub use crate::stats::percentile;
+    }
     /// Signs of determinants in stages of growing precision.
     pub mod adaptive {
         pub use crate::predicates::adaptive::*;

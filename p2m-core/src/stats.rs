@@ -34,11 +34,11 @@ pub struct ListStats {
     /// The median length.
     pub median: usize,
     /// The 90th percentile of the lengths.
-    pub percent_90: usize,
+    pub p90: usize,
     /// The 99th percentile of the lengths.
-    pub percent_99: usize,
+    pub p99: usize,
     /// The maximum length.
-    pub most: usize,
+    pub max: usize,
 }
 
 impl ListStats {
@@ -49,12 +49,26 @@ impl ListStats {
     pub fn from_index<T: Real>(index: &(impl Inspect<T> + ?Sized)) -> Option<Self> {
         let mut lengths = index.list_lengths();
         lengths.sort_unstable();
-        let (count, most) = (lengths.len(), *lengths.last()?);
-        // A percentile is the least length that n of 100 lists do not exceed.
-        let percentile = |n: usize| lengths[(count * n).div_ceil(100).max(1) - 1];
+        let (count, max) = (lengths.len(), *lengths.last()?);
+        let percentile = |n| percentile(&lengths, n, 100);
         let mean = lengths.iter().sum::<usize>() as f64 / count as f64;
-        Some(Self { count, mean, median: percentile(50), percent_90: percentile(90), percent_99: percentile(99), most })
+        Some(Self { count, mean, median: percentile(50)?, p90: percentile(90)?, p99: percentile(99)?, max })
     }
+}
+
+/// Returns the nearest-rank percentile of increasing values: the smallest value such that at least the fraction
+/// `numerator / denominator` of all values is not larger. Returns `None` if there are no values.
+///
+/// ```
+/// use p2m_core::engine::stats::percentile;
+///
+/// let sorted: Vec<u64> = (1..=2000).collect();
+/// assert_eq!(percentile(&sorted, 999, 1000), Some(1998));
+/// ```
+#[must_use]
+pub fn percentile<V: Copy>(sorted: &[V], numerator: usize, denominator: usize) -> Option<V> {
+    let rank = (sorted.len() * numerator).div_ceil(denominator).max(1);
+    sorted.get(rank.min(sorted.len()).checked_sub(1)?).copied()
 }
 
 /// The mean and the maximum of a count over some queries.
@@ -63,7 +77,7 @@ pub struct Stat {
     /// The mean over the queries, which is 0 without queries.
     pub mean: f64,
     /// The maximum over the queries.
-    pub most: usize,
+    pub max: usize,
 }
 
 /// The mean and maximum work of some queries.
@@ -90,7 +104,7 @@ impl QueryCost {
         for query in queries {
             let counts = StatsCollector::count_query(query, |query, collector| index.inspect(query, collector));
             for (stat, count) in stats.iter_mut().zip(counts) {
-                *stat = Stat { mean: stat.mean + count as f64, most: stat.most.max(count) };
+                *stat = Stat { mean: stat.mean + count as f64, max: stat.max.max(count) };
             }
         }
         let lengths: Vec<usize> = queries.iter().filter_map(|query| index.list_length(query)).collect();
@@ -131,15 +145,27 @@ mod tests {
     #[test]
     fn percentiles_are_lengths_that_as_many_lists_do_not_exceed() {
         let lists = ListStats::from_index(&TestLists).expect("lists");
-        assert_eq!((lists.count, lists.most, lists.mean), (200, 200, 100.5));
-        assert_eq!([lists.median, lists.percent_90, lists.percent_99], [100, 180, 198]);
+        assert_eq!((lists.count, lists.max, lists.mean), (200, 200, 100.5));
+        assert_eq!([lists.median, lists.p90, lists.p99], [100, 180, 198]);
+    }
+
+    #[test]
+    fn percentiles_are_of_the_nearest_rank() {
+        let five = [10, 20, 30, 40, 50];
+        let of = |parts| percentile(&five, parts, 100);
+        assert_eq!([of(0), of(20), of(21), of(50), of(99), of(100)], [10, 10, 20, 30, 50, 50].map(Some));
+        assert_eq!(percentile::<u32>(&[], 50, 100), None);
+        // One in a thousand is above, and no more.
+        let many: Vec<usize> = (0..3000).collect();
+        let at = percentile(&many, 999, 1000).unwrap();
+        assert_eq!(many.iter().filter(|value| **value > at).count(), 3);
     }
 
     #[test]
     fn visits_are_means_over_the_queries() {
         let at = |x: f64| Point3::new(x, 0.0, 0.0);
         let cost = QueryCost::measure(&TestLists, &[at(3.0), at(5.0), at(-1.0), at(-2.0)]);
-        let stat = |mean, most| Stat { mean, most };
+        let stat = |mean, max| Stat { mean, max };
         assert_eq!([cost.nodes, cost.packets, cost.primitives], [stat(1.0, 1), stat(2.0, 5), stat(2.0, 5)]);
         assert_eq!([cost.list, cost.without_list], [4.0, 0.5]);
         let nothing = QueryCost::measure(&TestLists, &[]);

@@ -2,6 +2,7 @@
 //! call but those of the backend.
 
 use crate::queries::{QuerySlice, Scalar};
+use crate::settings::{Accuracy, Setting};
 use nalgebra::Point3;
 use p2m_core::{CertifiedQuery, Closest, ClosestPoint, QueryOptions};
 use std::time::Instant;
@@ -28,19 +29,19 @@ impl Answer {
     }
 }
 
-impl<T: Scalar> From<Option<Closest<T>>> for Answer {
+impl From<Option<Closest<f64>>> for Answer {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "ids are below 2^30")]
-    fn from(closest: Option<Closest<T>>) -> Self {
+    fn from(closest: Option<Closest<f64>>) -> Self {
         closest.map_or(Self::NONE, |c| Self {
-            distance: c.distance.to_f64(),
-            lower_bound: c.lower_bound.to_f64(),
+            distance: c.distance,
+            lower_bound: c.lower_bound,
             id: c.primitive.index() as u32,
         })
     }
 }
 
-/// A backend that answers one query at a time. It is a [`Subject`] as well.
+/// A backend that answers one query at a time. It is a [`AnswerQueries`] as well.
 pub trait AnswerQuery: Sync {
     /// The scalar of the queries.
     type Scalar: Scalar;
@@ -49,7 +50,7 @@ pub trait AnswerQuery: Sync {
 }
 
 /// A backend whose scalar is erased. The loop over queries is compiled for each backend.
-pub trait Subject: Sync {
+pub trait AnswerQueries: Sync {
     /// Answers queries in their order.
     ///
     /// # Panics
@@ -64,7 +65,7 @@ pub trait Subject: Sync {
     fn answer_timed(&self, queries: QuerySlice<'_>, answers: &mut [Answer], nanoseconds: &mut [u64]);
 }
 
-impl<R: AnswerQuery> Subject for R {
+impl<R: AnswerQuery> AnswerQueries for R {
     fn answer(&self, queries: QuerySlice<'_>, answers: &mut [Answer]) {
         for (query, answer) in R::Scalar::of(queries).iter().zip(answers) {
             *answer = self.answer_query(query);
@@ -94,49 +95,41 @@ pub fn clock_nanoseconds() -> f64 {
     all[READINGS / 2] as f64
 }
 
-/// An index that answers with these options.
-#[derive(Clone, Copy, Debug)]
-pub struct WithOptions<T: Scalar, I> {
-    index: I,
-    options: QueryOptions<T>,
-}
-
-impl<T: Scalar, I: ClosestPoint<T> + Sync> WithOptions<T, I> {
-    /// Makes a backend of an index, which is often borrowed because several settings use the same one.
-    pub fn new(index: I, options: QueryOptions<T>) -> Self {
-        Self { index, options }
+/// Makes an index answer with a setting. The index is borrowed, because several settings use the same one.
+pub(crate) fn with_setting<'a, I>(index: &'a I, setting: &Setting) -> Box<dyn AnswerQueries + 'a>
+where
+    I: ClosestPoint<f64> + CertifiedQuery<f64> + Sync + ?Sized,
+{
+    match setting.accuracy {
+        Accuracy::Certified => Box::new(WithCertificate(index)),
+        _ => Box::new(WithOptions { index, options: setting.options() }),
     }
 }
 
-impl<T: Scalar, I: ClosestPoint<T> + Sync> AnswerQuery for WithOptions<T, I> {
-    type Scalar = T;
+/// An index that answers with these options.
+struct WithOptions<'a, I: ?Sized> {
+    index: &'a I,
+    options: QueryOptions<f64>,
+}
+
+impl<I: ClosestPoint<f64> + Sync + ?Sized> AnswerQuery for WithOptions<'_, I> {
+    type Scalar = f64;
 
     #[inline(always)]
-    fn answer_query(&self, query: &Point3<T>) -> Answer {
+    fn answer_query(&self, query: &Point3<f64>) -> Answer {
         self.index.closest_point_with(query, &self.options).into()
     }
 }
 
 /// An index that returns certified answers.
-#[derive(Clone, Copy, Debug)]
-pub struct WithCertificate<T: Scalar, I> {
-    index: I,
-    options: QueryOptions<T>,
-}
+struct WithCertificate<'a, I: ?Sized>(&'a I);
 
-impl<T: Scalar, I> WithCertificate<T, I> {
-    /// Makes a backend of an index, which is often borrowed because several settings use the same one.
-    pub fn new(index: I) -> Self {
-        Self { index, options: QueryOptions::default() }
-    }
-}
-
-impl<T: Scalar, I: CertifiedQuery<T> + Sync + ?Sized> AnswerQuery for WithCertificate<T, &I> {
-    type Scalar = T;
+impl<I: CertifiedQuery<f64> + Sync + ?Sized> AnswerQuery for WithCertificate<'_, I> {
+    type Scalar = f64;
 
     /// Returns no answer where there is no certificate.
     #[inline(always)]
-    fn answer_query(&self, query: &Point3<T>) -> Answer {
-        self.index.certified_closest_point(query, &self.options).ok().flatten().into()
+    fn answer_query(&self, query: &Point3<f64>) -> Answer {
+        self.0.certified_closest_point(query, &QueryOptions::default()).ok().flatten().into()
     }
 }

@@ -2,8 +2,9 @@
 //! for each setting.
 
 use crate::errors::Errors;
-use crate::quantiles::{Spread, percentile};
+use crate::quantiles::MedianRange;
 use crate::settings::DEFAULT;
+use p2m_core::engine::stats::percentile;
 use serde::Serialize;
 
 /// The cost of an index before its first query.
@@ -50,7 +51,7 @@ pub struct Point {
     /// The number of rounds.
     pub rounds: usize,
     /// The thread CPU time per query in nanoseconds, over the rounds.
-    pub nanoseconds: Spread,
+    pub nanoseconds: MedianRange,
     /// The errors of the answers.
     pub errors: Errors,
     /// The times of single queries.
@@ -71,7 +72,7 @@ pub struct Curve {
 impl Curve {
     /// Returns the point of the default setting, or else the first one.
     #[must_use]
-    pub fn usual(&self) -> Option<&Point> {
+    pub fn default_point(&self) -> Option<&Point> {
         self.points.iter().find(|point| point.setting == DEFAULT.name).or(self.points.first())
     }
 }

@@ -1,9 +1,9 @@
 //! The errors of answers.
 
 use crate::backend::Answer;
-use crate::quantiles::percentile;
 use crate::settings::Promise;
 use p2m_core::Real;
+use p2m_core::engine::stats::percentile;
 use serde::Serialize;
 
 /// The true answer to a query.
@@ -12,9 +12,9 @@ pub struct Truth {
     /// The true distance, rounded.
     pub distance: f64,
     /// The true distance minus the rounded one, as far as it is known; 0 if rounding errors are not compared.
-    pub rest: f64,
+    pub residual: f64,
     /// M: the largest distance from the query to a vertex of the nearest primitive.
-    pub reach: f64,
+    pub max_vertex_distance: f64,
     /// The id of the nearest primitive, the lowest one among equally near primitives.
     pub id: u32,
 }
@@ -22,12 +22,12 @@ pub struct Truth {
 impl Truth {
     /// The error of a distance.
     fn error(&self, distance: f64) -> f64 {
-        ((distance - self.distance) - self.rest).abs()
+        ((distance - self.distance) - self.residual).abs()
     }
 
     /// The unit of scaled errors, u M.
     fn unit(&self) -> f64 {
-        f64::UNIT_ROUNDOFF * self.reach
+        f64::UNIT_ROUNDOFF * self.max_vertex_distance
     }
 }
 
@@ -79,8 +79,8 @@ impl Errors {
         let error = |(answer, truth): &(&Answer, &Truth)| truth.error(answer.distance);
         let named = pairs().any(|(answer, _)| answer.id != u32::MAX);
         let bounded = || pairs().filter(|(answer, _)| !answer.lower_bound.is_nan());
-        // The sum of the rounded distance and its rest is exact.
-        let above = |(answer, truth): &(&Answer, &Truth)| (answer.lower_bound - truth.distance) - truth.rest > 0.0;
+        // The sum of the rounded distance and its residual is exact.
+        let above = |(answer, truth): &(&Answer, &Truth)| (answer.lower_bound - truth.distance) - truth.residual > 0.0;
         let gap = |(answer, _): (&Answer, &Truth)| {
             if answer.distance > 0.0 { (answer.distance - answer.lower_bound) / answer.distance } else { 0.0 }
         };
@@ -108,7 +108,7 @@ fn in_units(error: f64, unit: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const TRUTH: Truth = Truth { distance: 1.0, rest: 0.0, reach: 2.0, id: 7 };
+    const TRUTH: Truth = Truth { distance: 1.0, residual: 0.0, max_vertex_distance: 2.0, id: 7 };
     const U: f64 = f64::EPSILON / 2.0;
 
     fn answer(distance: f64, lower_bound: f64, id: u32) -> Answer {
@@ -130,10 +130,10 @@ mod tests {
 
     #[test]
     fn what_the_true_distance_has_beyond_rounding_counts() {
-        let truth = Truth { rest: 0.25 * U, ..TRUTH };
+        let truth = Truth { residual: 0.25 * U, ..TRUTH };
         let errors = Errors::of(&[answer(1.0, 1.0, 7)], &[truth], Promise::Within(0.0));
         assert_eq!((errors.scaled.max, errors.bounds_above_truth), (0.125, 0));
-        let below = Truth { rest: -0.25 * U, ..TRUTH };
+        let below = Truth { residual: -0.25 * U, ..TRUTH };
         assert_eq!(Errors::of(&[answer(1.0, 1.0, 7)], &[below], Promise::Nothing).bounds_above_truth, 1);
     }
 
@@ -144,7 +144,7 @@ mod tests {
         assert!(errors.relative.max.is_nan() && errors.gap.is_nan() && errors.other_ids.is_none());
         assert_eq!(errors.scaled.max, 1.0);
         // A query that lies on a point: no error, in a unit of nothing.
-        let point = Truth { reach: 0.0, ..truth };
+        let point = Truth { max_vertex_distance: 0.0, ..truth };
         assert_eq!(Errors::of(&[Answer::of_distance(0.0)], &[point], Promise::Nothing).scaled.max, 0.0);
     }
 }

@@ -3,7 +3,7 @@
 use crate::curve::{Build, Curve, Latency, Point, SceneFigures, SetFigures};
 use crate::errors::{ErrorQuantiles, Errors};
 use crate::provenance::Provenance;
-use crate::quantiles::Spread;
+use crate::quantiles::MedianRange;
 
 /// Returns a provenance with characters that files have to escape.
 pub(crate) fn provenance() -> Provenance {
@@ -30,7 +30,7 @@ pub(crate) fn point(setting: &str, ns: f64, error: f64, seconds: f64) -> Point {
         setting: setting.to_owned(),
         queries: 100,
         rounds: 5,
-        nanoseconds: Spread { median: ns, min: ns * 0.95, max: ns * 1.1 },
+        nanoseconds: MedianRange { median: ns, min: ns * 0.95, max: ns * 1.1 },
         errors,
         latency: Some(Latency { p50: 100, p90: 200, p99: 400, p999: 800, max: 1600 }),
         build: Build { seconds, bytes_per_primitive: Some(65.5) },

@@ -10,23 +10,17 @@
 //! use p2m_core::{BruteForce, Point};
 //! use p2m_tradeoff::queries::Queries;
 //! use p2m_tradeoff::settings::SETTINGS;
-//! use p2m_tradeoff::{WithOptions, Build, Effort, Competitor, Truth, measure};
+//! use p2m_tradeoff::{Build, Competitor, Effort, Truth, measure};
 //!
 //! let sites = [Point::new(Point3::new(0.0, 0.0, 0.0)), Point::new(Point3::new(4.0, 0.0, 0.0))];
 //! let index = BruteForce::new(&sites).unwrap();
-//! let entrants: Vec<Competitor<'_>> = SETTINGS[..2]
+//! let competitors: Vec<Competitor<'_>> = SETTINGS[..2]
 //!     .iter()
-//!     .map(|setting| Competitor {
-//!         backend: "brute".to_owned(),
-//!         setting: setting.name.to_owned(),
-//!         promise: setting.promise(),
-//!         subject: Box::new(WithOptions::new(&index, setting.options::<f64>())),
-//!         build: Build::default(),
-//!     })
+//!     .map(|setting| Competitor::new("brute", &index, setting, Build::default()))
 //!     .collect();
 //! let queries = Queries::new(vec![Point3::new(0.0, 3.0, 0.0)]);
-//! let truths = [Truth { distance: 3.0, rest: 0.0, reach: 3.0, id: 0 }];
-//! let curves = measure(&entrants, &queries, &truths, &Effort { rounds: 5, seconds: 0.1 }, &|_| ());
+//! let truths = [Truth { distance: 3.0, residual: 0.0, max_vertex_distance: 3.0, id: 0 }];
+//! let curves = measure(&competitors, &queries, &truths, &Effort { rounds: 5, seconds: 0.1 }, &|_| ());
 //! assert_eq!(curves[0].points[0].errors.scaled.max, 0.0);
 //! ```
 #![forbid(unsafe_code)]
@@ -44,16 +38,17 @@ mod provenance;
 mod quantiles;
 pub mod queries;
 pub mod record;
+pub mod rounds;
 pub mod settings;
 mod table;
 pub mod text;
 
-pub use backend::{Answer, AnswerQuery, Subject, WithCertificate, WithOptions, clock_nanoseconds};
+pub use backend::{Answer, AnswerQueries, AnswerQuery, clock_nanoseconds};
 pub use curve::{Build, Curve, Latency, Point, SceneFigures, SetFigures};
 pub use error::RecordError;
 pub use errors::{ErrorQuantiles, Errors, Truth};
-pub use measure::{Competitor, Effort, measure, rotated, thread_seconds};
+pub use measure::{Competitor, Effort, measure};
 pub use provenance::Provenance;
-pub use quantiles::{RunningStats, Spread, percentile};
+pub use quantiles::{MedianRange, RunningStats};
 pub use record::csv_line;
 pub use table::Table;

@@ -1,17 +1,14 @@
-//! Measures rounds of queries in thread CPU time. Backends take turns, so that drift of the machine affects all of them
-//! alike. Answers are compared outside of the measured time.
+//! Measures competitors, and compares their answers with the truth outside of the measured time.
 
-use crate::backend::{Answer, Subject};
+use crate::backend::{Answer, AnswerQueries, with_setting};
 use crate::curve::{Build, Curve, Latency, Point};
 use crate::errors::{Errors, Truth};
-use crate::quantiles::Spread;
-use crate::queries::{Queries, spread};
-use crate::settings::Promise;
-use cpu_time::ThreadTime;
-use std::hint::black_box;
-
-/// The duration of a calibration run, in nanoseconds.
-const CALIBRATION_NANOSECONDS: f64 = 2e6;
+use crate::quantiles::MedianRange;
+use crate::queries::{Queries, QuerySlice};
+use crate::rounds::{Rounds, rotated};
+use crate::settings::{Promise, Setting};
+use p2m_core::{CertifiedQuery, ClosestPoint};
+use std::convert::Infallible;
 
 /// A backend with a setting that takes part in a measurement.
 pub struct Competitor<'a> {
@@ -21,10 +18,31 @@ pub struct Competitor<'a> {
     pub setting: String,
     /// The accuracy that its answers promise.
     pub promise: Promise,
-    /// The backend itself.
-    pub subject: Box<dyn Subject + 'a>,
+    /// The index that answers.
+    pub index: Box<dyn AnswerQueries + 'a>,
     /// The cost of its index.
     pub build: Build,
+}
+
+impl<'a> Competitor<'a> {
+    /// Makes a competitor of an index and a setting.
+    pub fn new<I>(backend: &str, index: &'a I, setting: &Setting, build: Build) -> Self
+    where
+        I: ClosestPoint<f64> + CertifiedQuery<f64> + Sync + ?Sized,
+    {
+        Self {
+            backend: backend.to_owned(),
+            setting: setting.name.to_owned(),
+            promise: setting.promise(),
+            index: with_setting(index, setting),
+            build,
+        }
+    }
+
+    fn answer(&self, queries: QuerySlice<'_>, answers: &mut [Answer]) -> Result<(), Infallible> {
+        self.index.answer(queries, answers);
+        Ok(())
+    }
 }
 
 /// The amount of work of a measurement.
@@ -36,123 +54,58 @@ pub struct Effort {
     pub seconds: f64,
 }
 
-/// Measures all entrants with `queries`, and compares their answers with `truths`. Calls `progress` with the fraction
-/// of the work that is done, from 0 to 1.
+/// Measures all competitors with `queries`, and compares their answers with `truths`. Calls `progress` with the
+/// fraction of the work that is done, from 0 to 1.
 ///
 /// # Panics
 /// If there is not one truth for each query, or if a backend panics.
 #[must_use]
 pub fn measure(
-    entrants: &[Competitor<'_>],
+    competitors: &[Competitor<'_>],
     queries: &Queries,
     truths: &[Truth],
     effort: &Effort,
     progress: &dyn Fn(f64),
 ) -> Vec<Curve> {
     assert_eq!(queries.len(), truths.len(), "one truth for each query");
-    let mut runs: Vec<Run> = entrants.iter().map(|entrant| Run::new(entrant, queries, effort)).collect();
+    let affordable = |nanoseconds| affordable_queries(nanoseconds, effort.seconds);
+    let rounds_of = |c: &Competitor<'_>| Rounds::new(queries, Answer::NONE, |q, a| c.answer(q, a), affordable);
+    let mut all: Vec<Rounds<Answer, Infallible>> = competitors.iter().map(rounds_of).collect();
+    let mut latencies = vec![None; all.len()];
     // The first round is not counted, because it loads indexes into the caches. The last one times single queries.
-    let steps = (effort.rounds + 2) * runs.len();
+    let steps = (effort.rounds + 2) * all.len();
     for round in 0..effort.rounds + 2 {
-        for (step, at) in rotated(runs.len(), round).enumerate() {
-            let (run, entrant) = (&mut runs[at], &entrants[at]);
+        for (step, at) in rotated(all.len(), round).enumerate() {
+            let (rounds, competitor) = (&mut all[at], &competitors[at]);
             if round <= effort.rounds {
-                let nanoseconds = run.run_round(entrant);
-                run.nanoseconds.extend((round > 0).then_some(nanoseconds));
+                rounds.run(|queries, answers| competitor.answer(queries, answers));
             } else {
-                run.time_single_queries(entrant);
+                let mut nanoseconds = vec![0; rounds.answers.len()];
+                competitor.index.answer_timed(rounds.queries.all(), &mut rounds.answers, &mut nanoseconds);
+                latencies[at] = Latency::of(nanoseconds);
             }
-            progress((round * runs.len() + step + 1) as f64 / steps as f64);
+            progress((round * all.len() + step + 1) as f64 / steps as f64);
         }
     }
     let mut curves: Vec<Curve> = Vec::new();
-    for (entrant, run) in entrants.iter().zip(runs) {
-        let Some(point) = run.into_point(entrant, truths) else { continue };
-        match curves.iter_mut().find(|curve| curve.name == entrant.backend) {
+    for ((competitor, rounds), latency) in competitors.iter().zip(all).zip(latencies) {
+        let Some(nanoseconds) = MedianRange::of(&rounds.nanoseconds[1..]) else { continue };
+        let truths: Vec<Truth> = rounds.chosen.iter().map(|&i| truths[i]).collect();
+        let point = Point {
+            setting: competitor.setting.clone(),
+            queries: rounds.chosen.len(),
+            rounds: effort.rounds,
+            nanoseconds,
+            errors: Errors::of(&rounds.answers, &truths, competitor.promise),
+            latency,
+            build: competitor.build,
+        };
+        match curves.iter_mut().find(|curve| curve.name == competitor.backend) {
             Some(curve) => curve.points.push(point),
-            None => curves.push(Curve { name: entrant.backend.clone(), points: vec![point] }),
+            None => curves.push(Curve { name: competitor.backend.clone(), points: vec![point] }),
         }
     }
     curves
-}
-
-/// Returns the result of `work` and the CPU time that this thread spent on it, in seconds.
-pub fn thread_seconds<V>(work: impl FnOnce() -> V) -> (V, f64) {
-    let start = ThreadTime::now();
-    let value = work();
-    (value, start.elapsed().as_secs_f64())
-}
-
-/// Returns the numbers below `n` in their cyclic order, beginning with another one in every round.
-pub fn rotated(n: usize, round: usize) -> impl Iterator<Item = usize> {
-    (0..n).map(move |i| (i + round) % n)
-}
-
-/// The state of the measurement of an entrant.
-struct Run {
-    /// The indices of its queries among all queries.
-    chosen: Vec<usize>,
-    queries: Queries,
-    answers: Vec<Answer>,
-    /// The mean time of a query in each round, in nanoseconds.
-    nanoseconds: Vec<f64>,
-    /// The time of each single query, in nanoseconds.
-    single_nanoseconds: Vec<u64>,
-}
-
-impl Run {
-    fn new(entrant: &Competitor<'_>, queries: &Queries, effort: &Effort) -> Self {
-        let chosen = spread(queries.len(), affordable_queries(calibrate(&*entrant.subject, queries), effort.seconds));
-        let answers = vec![Answer::NONE; chosen.len()];
-        let single_nanoseconds = vec![0; chosen.len()];
-        Self { queries: queries.gather(&chosen), chosen, answers, nanoseconds: Vec::new(), single_nanoseconds }
-    }
-
-    /// Runs a round and returns the nanoseconds per query.
-    fn run_round(&mut self, entrant: &Competitor<'_>) -> f64 {
-        self.answers.fill(Answer::NONE);
-        let start = ThreadTime::now();
-        entrant.subject.answer(black_box(self.queries.all()), &mut self.answers);
-        let elapsed = start.elapsed();
-        black_box(&self.answers);
-        elapsed.as_secs_f64() * 1e9 / self.answers.len() as f64
-    }
-
-    /// Times single queries.
-    fn time_single_queries(&mut self, entrant: &Competitor<'_>) {
-        entrant.subject.answer_timed(black_box(self.queries.all()), &mut self.answers, &mut self.single_nanoseconds);
-        black_box(&self.answers);
-    }
-
-    /// Returns the results, if there were queries and rounds.
-    fn into_point(self, entrant: &Competitor<'_>, truths: &[Truth]) -> Option<Point> {
-        let truths: Vec<Truth> = self.chosen.iter().map(|&i| truths[i]).collect();
-        Some(Point {
-            setting: entrant.setting.clone(),
-            queries: self.chosen.len(),
-            rounds: self.nanoseconds.len(),
-            nanoseconds: Spread::of(&self.nanoseconds)?,
-            errors: Errors::of(&self.answers, &truths, entrant.promise),
-            latency: Latency::of(self.single_nanoseconds),
-            build: entrant.build,
-        })
-    }
-}
-
-/// Estimates the nanoseconds per query, with more and more queries until the run is long enough.
-fn calibrate(subject: &dyn Subject, queries: &Queries) -> f64 {
-    let mut count = 1;
-    loop {
-        let picked = queries.gather(&spread(queries.len(), count));
-        let mut answers = vec![Answer::NONE; picked.len()];
-        let start = ThreadTime::now();
-        subject.answer(picked.all(), &mut answers);
-        let elapsed = start.elapsed().as_secs_f64() * 1e9;
-        if elapsed > CALIBRATION_NANOSECONDS || count >= queries.len() {
-            return elapsed / picked.len().max(1) as f64;
-        }
-        count *= 8;
-    }
 }
 
 /// Returns the number of queries of this duration that fit into the time. It is rounded down to a power of two, which
@@ -166,21 +119,12 @@ fn affordable_queries(nanoseconds: f64, seconds: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::backend::WithOptions;
     use crate::settings::SETTINGS;
     use nalgebra::Point3;
     use p2m_core::{BruteForce, ClosestPoint, Point as Site};
 
     #[test]
-    fn every_entrant_begins_once() {
-        let first: Vec<_> = (0..3).map(|round| rotated(3, round).next()).collect();
-        assert_eq!(first, [Some(0), Some(1), Some(2)]);
-        assert_eq!(rotated(3, 4).collect::<Vec<_>>(), [1, 2, 0]);
-        assert_eq!(rotated(0, 1).count(), 0);
-    }
-
-    #[test]
-    fn slow_entrants_get_fewer_queries() {
+    fn slow_competitors_get_fewer_queries() {
         assert_eq!(
             [affordable_queries(1e3, 0.1), affordable_queries(1e9, 0.1), affordable_queries(0.0, 1e-9)],
             [65_536, 0, 1]
@@ -195,23 +139,17 @@ mod tests {
         let truth = |q: &Point3<f64>| {
             let c = index.closest_point(q).unwrap();
             let id = u32::try_from(c.primitive.index()).unwrap();
-            Truth { distance: c.distance, rest: 0.0, reach: c.distance, id }
+            Truth { distance: c.distance, residual: 0.0, max_vertex_distance: c.distance, id }
         };
         let truths: Vec<Truth> = double.iter().map(truth).collect();
-        let entrants: Vec<Competitor<'_>> = ["a", "b"]
+        let competitors: Vec<Competitor<'_>> = ["a", "b"]
             .iter()
             .flat_map(|name| SETTINGS.iter().map(move |s| (name, s)))
-            .map(|(name, setting)| Competitor {
-                backend: (*name).to_owned(),
-                setting: setting.name.to_owned(),
-                promise: setting.promise(),
-                subject: Box::new(WithOptions::new(&index, setting.options::<f64>())),
-                build: Build::default(),
-            })
+            .map(|(name, setting)| Competitor::new(name, &index, setting, Build::default()))
             .collect();
         let seen = std::cell::Cell::new(0.0);
         let effort = Effort { rounds: 3, seconds: 1.0 };
-        let curves = measure(&entrants, &Queries::new(double), &truths, &effort, &|part| {
+        let curves = measure(&competitors, &Queries::new(double), &truths, &effort, &|part| {
             assert!(part > seen.replace(part));
         });
         assert!((seen.get() - 1.0).abs() < 1e-12);
@@ -221,6 +159,6 @@ mod tests {
             assert_eq!((point.errors.bounds_above_truth, point.errors.broken, point.errors.unanswered), (0, 0, 0));
             assert!(point.nanoseconds.min > 0.0 && point.latency.is_some());
         }
-        assert_eq!(curves[0].usual().unwrap().errors.relative.max, 0.0);
+        assert_eq!(curves[0].default_point().unwrap().errors.relative.max, 0.0);
     }
 }

@@ -1,11 +1,11 @@
-//! Medians, percentiles and running statistics of measured numbers.
+//! Medians and running statistics of measured numbers.
 
 use serde::Serialize;
 use std::fmt;
 
 /// The median, the minimum and the maximum of some measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Spread {
+pub struct MedianRange {
     /// The median; for an even number of values the mean of the two in the middle.
     pub median: f64,
     /// The smallest value.
@@ -14,7 +14,7 @@ pub struct Spread {
     pub max: f64,
 }
 
-impl Spread {
+impl MedianRange {
     /// Computes the quantiles of values in any order. Returns `None` if there are none.
     #[must_use]
     pub fn of(values: &[f64]) -> Option<Self> {
@@ -24,21 +24,6 @@ impl Spread {
         let n = sorted.len();
         Some(Self { median: (sorted[(n - 1) / 2] + sorted[n / 2]) / 2.0, min, max })
     }
-}
-
-/// Returns the nearest-rank percentile of increasing values: the smallest value such that at least the fraction
-/// `numerator / denominator` of all values is not larger. Returns `None` if there are no values.
-///
-/// ```
-/// use p2m_tradeoff::percentile;
-///
-/// let sorted: Vec<u64> = (1..=2000).collect();
-/// assert_eq!(percentile(&sorted, 999, 1000), Some(1998));
-/// ```
-#[must_use]
-pub fn percentile<V: Copy>(sorted: &[V], numerator: usize, denominator: usize) -> Option<V> {
-    let rank = (sorted.len() * numerator).div_ceil(denominator).max(1);
-    sorted.get(rank.min(sorted.len()).checked_sub(1)?).copied()
 }
 
 /// The factor 2^-64, which keeps the scaled sum of [`RunningStats`] in the range of f64.
@@ -112,22 +97,10 @@ mod tests {
 
     #[test]
     fn medians_are_right() {
-        let of = |values: &[f64]| Spread::of(values);
+        let of = |values: &[f64]| MedianRange::of(values);
         assert_eq!(of(&[]), None);
-        assert_eq!(of(&[3.0]), Some(Spread { median: 3.0, min: 3.0, max: 3.0 }));
-        assert_eq!(of(&[5.0, 1.0, 2.0]), Some(Spread { median: 2.0, min: 1.0, max: 5.0 }));
-        assert_eq!(of(&[4.0, 1.0, 2.0, 9.0]), Some(Spread { median: 3.0, min: 1.0, max: 9.0 }));
-    }
-
-    #[test]
-    fn percentiles_are_of_the_nearest_rank() {
-        let five = [10, 20, 30, 40, 50];
-        let of = |parts| percentile(&five, parts, 100);
-        assert_eq!([of(0), of(20), of(21), of(50), of(99), of(100)], [10, 10, 20, 30, 50, 50].map(Some));
-        assert_eq!(percentile::<u32>(&[], 50, 100), None);
-        // One in a thousand is above, and no more.
-        let many: Vec<usize> = (0..3000).collect();
-        let at = percentile(&many, 999, 1000).unwrap();
-        assert_eq!(many.iter().filter(|value| **value > at).count(), 3);
+        assert_eq!(of(&[3.0]), Some(MedianRange { median: 3.0, min: 3.0, max: 3.0 }));
+        assert_eq!(of(&[5.0, 1.0, 2.0]), Some(MedianRange { median: 2.0, min: 1.0, max: 5.0 }));
+        assert_eq!(of(&[4.0, 1.0, 2.0, 9.0]), Some(MedianRange { median: 3.0, min: 1.0, max: 9.0 }));
     }
 }

@@ -96,7 +96,7 @@ pub fn rounded(soup: &Soup<f64>) -> Option<Soup<f32>> {
 /// consecutive numbers, evenly spaced, so that a slow backend gets the same mixture of queries as the others, and on a
 /// lattice the same order.
 #[must_use]
-pub fn spread(total: usize, count: usize) -> Vec<usize> {
+pub fn sample_indices(total: usize, count: usize) -> Vec<usize> {
     if count >= total {
         return (0..total).collect();
     }
@@ -110,15 +110,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_spread_is_increasing_and_within_bounds() {
+    fn a_sample_is_increasing_and_within_bounds() {
         for total in [1, 2, 49, 50, 51, 99, 101, 1000, 1037] {
             for count in [0, 1, 2, 49, 50, 73, 99, 100, 999, 2000] {
-                let chosen = spread(total, count);
+                let chosen = sample_indices(total, count);
                 assert!(chosen.windows(2).all(|w| w[0] < w[1]), "{total} {count}");
                 assert!(chosen.last().is_some_and(|last| *last < total));
                 assert!(chosen.len() <= count.max(1) && 2 * chosen.len() >= count.min(total));
             }
         }
-        assert_eq!(spread(200_000, 20_000).len(), 20_000);
+        assert_eq!(sample_indices(200_000, 20_000).len(), 20_000);
     }
 }

@@ -1,7 +1,7 @@
 //! The list of all settings of accuracy.
 //!
-//! A new way to trade accuracy for speed needs a variant of [`Ask`], a line of [`SETTINGS`] and an arm of each method
-//! of this module.
+//! A new way to trade accuracy for speed needs a variant of [`Accuracy`], a line of [`SETTINGS`] and an arm of each
+//! method of this module.
 
 use p2m_core::kernel::ERROR_CONSTANT;
 use p2m_core::{QueryOptions, Real};
@@ -9,7 +9,7 @@ use serde::Serialize;
 
 /// The kind of answer that a query requests.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ask {
+pub enum Accuracy {
     /// The closest point up to rounding errors.
     Exact,
     /// The certified nearest primitive, with its distance rounded once.
@@ -17,7 +17,7 @@ pub enum Ask {
     /// A point whose distance exceeds the least one by this relative error at most.
     Epsilon(f64),
     /// The best point that this number of visits of nodes and packets finds.
-    Budget(u32),
+    MaxVisits(u32),
 }
 
 /// A setting of accuracy.
@@ -29,12 +29,15 @@ pub struct Setting {
     pub about: &'static str,
     /// The kind of answer.
     #[serde(skip)]
-    pub ask: Ask,
+    pub accuracy: Accuracy,
 }
 
 /// The setting of a call without options, which the other settings are compared with.
-pub const DEFAULT: Setting =
-    Setting { name: "default", about: "f64, no options: the closest point, up to rounding errors", ask: Ask::Exact };
+pub const DEFAULT: Setting = Setting {
+    name: "default",
+    about: "f64, no options: the closest point, up to rounding errors",
+    accuracy: Accuracy::Exact,
+};
 
 /// All settings, the default one first.
 pub const SETTINGS: &[Setting] = &[
@@ -42,7 +45,7 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         name: "certified",
         about: "`certified_closest_point`: the certified nearest primitive, with its distance within half a unit in the last place",
-        ask: Ask::Certified,
+        accuracy: Accuracy::Certified,
     },
     within("epsilon 0.001", 0.001, "`QueryOptions::with_epsilon(0.001)`: at most 0.1 % farther than the closest point"),
     within("epsilon 0.01", 0.01, "`QueryOptions::with_epsilon(0.01)`: at most 1 % farther"),
@@ -51,18 +54,18 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         name: "budget 0",
         about: "`QueryOptions::with_max_visits(0)`: the first primitive that is found; for `octree` and `p2m` the one that the cell itself has",
-        ask: Ask::Budget(0),
+        accuracy: Accuracy::MaxVisits(0),
     },
     Setting {
         name: "budget 16",
         about: "`QueryOptions::with_max_visits(16)`: the best of sixteen visits of nodes and packets",
-        ask: Ask::Budget(16),
+        accuracy: Accuracy::MaxVisits(16),
     },
 ];
 
 /// A setting with an epsilon.
 const fn within(name: &'static str, epsilon: f64, about: &'static str) -> Setting {
-    Setting { name, about, ask: Ask::Epsilon(epsilon) }
+    Setting { name, about, accuracy: Accuracy::Epsilon(epsilon) }
 }
 
 impl Setting {
@@ -70,21 +73,21 @@ impl Setting {
     #[must_use]
     pub fn options<T: Real>(&self) -> QueryOptions<T> {
         let defaults = QueryOptions::default();
-        match self.ask {
-            Ask::Exact | Ask::Certified => defaults,
-            Ask::Budget(visits) => defaults.with_max_visits(visits),
-            Ask::Epsilon(epsilon) => defaults.with_epsilon(T::round_from_f64(epsilon)),
+        match self.accuracy {
+            Accuracy::Exact | Accuracy::Certified => defaults,
+            Accuracy::MaxVisits(visits) => defaults.with_max_visits(visits),
+            Accuracy::Epsilon(epsilon) => defaults.with_epsilon(T::round_from_f64(epsilon)),
         }
     }
 
     /// Returns the accuracy that answers promise.
     #[must_use]
     pub fn promise(&self) -> Promise {
-        match self.ask {
-            Ask::Exact => Promise::Within(0.0),
-            Ask::Certified => Promise::OneUlp,
-            Ask::Epsilon(epsilon) => Promise::Within(epsilon),
-            Ask::Budget(_) => Promise::Nothing,
+        match self.accuracy {
+            Accuracy::Exact => Promise::Within(0.0),
+            Accuracy::Certified => Promise::OneUlp,
+            Accuracy::Epsilon(epsilon) => Promise::Within(epsilon),
+            Accuracy::MaxVisits(_) => Promise::Nothing,
         }
     }
 }
@@ -132,7 +135,7 @@ mod tests {
             let options: QueryOptions<f64> = setting.options();
             match setting.promise() {
                 Promise::Nothing => assert!(options.max_visits < u32::MAX, "{}", setting.name),
-                Promise::OneUlp => assert_eq!(setting.ask, Ask::Certified),
+                Promise::OneUlp => assert_eq!(setting.accuracy, Accuracy::Certified),
                 Promise::Within(part) => assert!((part - options.epsilon).abs() <= 0.0, "{}", setting.name),
             }
         }

@@ -55,7 +55,7 @@ pub fn table(set: &SetFigures) -> Table {
 
 /// Returns the speed relative to that of the default setting of the backend, in words.
 fn speedup(curve: &Curve, nanoseconds: f64) -> String {
-    curve.usual().map_or("-".to_owned(), |default| format!("{:.2}x", default.nanoseconds.median / nanoseconds))
+    curve.default_point().map_or("-".to_owned(), |default| format!("{:.2}x", default.nanoseconds.median / nanoseconds))
 }
 
 /// Returns the failures of answers in words; an empty string if there are none.

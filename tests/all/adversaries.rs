@@ -50,8 +50,8 @@ fn check_work<I: ClosestPoint<f64> + Inspect<f64>, V: Volume>(
     }
     let visits = QueryCost::measure(index, &queries);
     // No node or packet is visited twice. Only primitives may be evaluated early because they seem near.
-    assert!(visits.packets.most <= tree.packets().0, "{name}: {visits:?}");
-    assert!(visits.primitives.most <= soup.len() + 1, "{name}: {visits:?}");
+    assert!(visits.packets.max <= tree.packets().0, "{name}: {visits:?}");
+    assert!(visits.primitives.max <= soup.len() + 1, "{name}: {visits:?}");
     assert!(tree.depth() <= MAX_DEPTH, "{name}: {}", tree.depth());
     // Small trees have nodes that are almost empty, so a minimum number of primitives is assumed.
     assert!(

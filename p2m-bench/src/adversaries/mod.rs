@@ -99,9 +99,9 @@ impl Trial<'_> {
             each(taken.kept),
             taken.depth.to_string(),
             longest,
-            format!("{:.0} / {}", visits.nodes.mean, visits.nodes.most),
-            format!("{:.0} / {}", visits.packets.mean, visits.packets.most),
-            format!("{:.0} / {}", visits.primitives.mean, visits.primitives.most),
+            format!("{:.0} / {}", visits.nodes.mean, visits.nodes.max),
+            format!("{:.0} / {}", visits.packets.mean, visits.packets.max),
+            format!("{:.0} / {}", visits.primitives.mean, visits.primitives.max),
             taken.fallback.clone(),
             match (is_right, within) {
                 (true, true) => "yes",

@@ -102,7 +102,7 @@ impl Figures<'_> {
         let sweep = self.sweep;
         let lists = |value: fn(&p2m_core::ListStats) -> f64| move |s: &Study| s.inside.lists.as_ref().map(value);
         let mut lists =
-            mean_and_most(sweep, "primitives of a list", lists(|lists| lists.mean), lists(|lists| lists.most as f64));
+            mean_and_most(sweep, "primitives of a list", lists(|lists| lists.mean), lists(|lists| lists.max as f64));
         lists.series.extend(["mean", "most"].into_iter().zip(cited::LISTS).map(|(name, value)| cited_at(name, value)));
         lists.write(&to("fig10"))?;
 
@@ -140,7 +140,7 @@ impl Figures<'_> {
             sweep,
             "sites on the way to the cell, and nodes",
             |s| Some(s.inside.visits.nodes.mean),
-            |s| Some(s.inside.visits.nodes.most as f64),
+            |s| Some(s.inside.visits.nodes.max as f64),
         )
         .write(&to("fig15"))?;
 

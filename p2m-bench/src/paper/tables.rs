@@ -40,12 +40,12 @@ pub(super) fn lists(studies: &[&Study]) -> String {
         let visits = &inside.visits;
         let mut row = vec![name, study.primitives.to_string()];
         row.extend(match &inside.lists {
-            Some(lists) => [format!("{:.1}", lists.mean), format!("{:.1}", visits.list), lists.most.to_string()],
+            Some(lists) => [format!("{:.1}", lists.mean), format!("{:.1}", visits.list), lists.max.to_string()],
             None => ["-", "-", "-"].map(str::to_owned),
         });
         row.extend([
             format!("{:.2}", visits.primitives.mean),
-            visits.primitives.most.to_string(),
+            visits.primitives.max.to_string(),
             format!("{:.2}", visits.packets.mean),
             format!("{:.1} %", 100.0 * visits.without_list),
         ]);

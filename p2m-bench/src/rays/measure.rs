@@ -4,12 +4,11 @@ use super::backend::{Function, OurCaster, Outcome, RayIndex, Rays};
 use super::backends::{all_trees, brute};
 use crate::backend::{Unavailable, catch};
 use crate::measure::Effort;
-use crate::rounds::{checksum, rotated, thread_seconds};
+use crate::rounds::{checksum, rotated, time_answers};
 use crate::scene::Scene;
 use anyhow::Result;
 use p2m_core::Ray;
 use p2m_testkit::queries::QuerySet;
-use std::hint::black_box;
 
 /// Rays are generated and answered in chunks of this size, each from its own seed, so that millions need not be kept.
 const RAYS_PER_CHUNK: usize = 100_000;
@@ -125,22 +124,24 @@ pub(crate) fn measure(scene: &Scene, set: QuerySet, competitors: &[Competitor<'_
 /// Lets one competitor answer a chunk, and adds the cost to its last round.
 fn answer_chunk(competitor: &Competitor<'_>, rays: &Rays, figures: &mut Figures) -> Vec<Outcome> {
     let mut outcomes = vec![Outcome::NONE; rays.len()];
-    let (outcome, elapsed) = thread_seconds(|| {
+    let answer = |rays: &Rays, outcomes: &mut [Outcome]| {
         catch(|| {
             match competitor.index {
-                RayIndex::Ours(index) => index.answer(competitor.function, black_box(rays), &mut outcomes),
-                RayIndex::External(index) => index.first(black_box(rays), &mut outcomes),
+                RayIndex::Ours(index) => index.answer(competitor.function, rays, outcomes),
+                RayIndex::External(index) => index.first(rays, outcomes),
             }
             Ok(())
         })
-    });
-    black_box(&outcomes);
+    };
+    let outcome = time_answers(rays, &mut outcomes, answer);
+    if let (Ok(seconds), Some(sum)) = (&outcome, figures.seconds.last_mut()) {
+        *sum += seconds;
+    }
     figures.failure = outcome.err();
     figures.rays += rays.len();
     figures.hits += outcomes.iter().map(|outcome| outcome.hits).sum::<usize>();
-    if let (Some(seconds), Some(sum)) = (figures.seconds.last_mut(), figures.checksums.last_mut()) {
-        *seconds += elapsed;
-        let answers = outcomes.iter().map(|o| (o.parameter.to_bits() ^ o.hits as u64, o.id as u64));
+    let answers = outcomes.iter().map(|o| (o.parameter.to_bits() ^ o.hits as u64, o.id as u64));
+    if let Some(sum) = figures.checksums.last_mut() {
         *sum = checksum(*sum, answers);
     }
     outcomes

@@ -14,8 +14,8 @@ use p2m_core::{BruteForce, BuildIndex, CertifiedQuery, ClosestPoint, QueryOption
 use p2m_interception::{OctreeIndex, P2mIndex};
 use p2m_kdop::{KdopOptions, KdopTree};
 use p2m_tradeoff::queries::QuerySlice;
-use p2m_tradeoff::settings::{Ask, DEFAULT, Promise, SETTINGS, Setting};
-use p2m_tradeoff::{Answer, AnswerQuery, Build, Competitor, Spread, Subject, WithCertificate, WithOptions};
+use p2m_tradeoff::settings::{Promise, SETTINGS, Setting};
+use p2m_tradeoff::{Answer, AnswerQuery, Build, Competitor, MedianRange};
 use std::time::Instant;
 
 /// An index is not built again once its builds have taken this many seconds in all.
@@ -23,8 +23,8 @@ const MAX_BUILD_SECONDS: f64 = 10.0;
 
 /// An index that was built.
 pub(super) trait Built: Sync {
-    /// Returns a subject that answers queries with a setting.
-    fn subject(&self, setting: &Setting) -> Box<dyn Subject + '_>;
+    /// Returns a competitor that answers queries with a setting.
+    fn competitor(&self, name: &str, setting: &Setting, build: Build) -> Competitor<'_>;
     /// Returns the wall seconds of a batch on the threads of the current pool; `None` for external libraries.
     fn batch(&self, queries: QuerySlice<'_>) -> Option<f64>;
 }
@@ -33,11 +33,8 @@ pub(super) trait Built: Sync {
 struct Ours<I>(I);
 
 impl<I: ClosestPoint<f64> + CertifiedQuery<f64> + Sync> Built for Ours<I> {
-    fn subject(&self, setting: &Setting) -> Box<dyn Subject + '_> {
-        match setting.ask {
-            Ask::Certified => Box::new(WithCertificate::new(&self.0)),
-            _ => Box::new(WithOptions::new(&self.0, setting.options::<f64>())),
-        }
+    fn competitor(&self, name: &str, setting: &Setting, build: Build) -> Competitor<'_> {
+        Competitor::new(name, &self.0, setting, build)
     }
 
     fn batch(&self, queries: QuerySlice<'_>) -> Option<f64> {
@@ -55,10 +52,10 @@ fn seconds_of_batch(index: &(impl ClosestPoint<f64> + Sync), queries: QuerySlice
 /// An external library, which has no settings.
 struct External<C>(C);
 
-/// An external library as a subject of the measurement.
-struct ExternalSubject<'a, C>(&'a C);
+/// An external library that answers one query at a time.
+struct OneByOne<'a, C>(&'a C);
 
-impl<C: BenchIndex> AnswerQuery for ExternalSubject<'_, C> {
+impl<C: BenchIndex> AnswerQuery for OneByOne<'_, C> {
     type Scalar = C::Scalar;
 
     #[inline(always)]
@@ -68,8 +65,9 @@ impl<C: BenchIndex> AnswerQuery for ExternalSubject<'_, C> {
 }
 
 impl<C: BenchIndex> Built for External<C> {
-    fn subject(&self, _: &Setting) -> Box<dyn Subject + '_> {
-        Box::new(ExternalSubject(&self.0))
+    fn competitor(&self, name: &str, setting: &Setting, build: Build) -> Competitor<'_> {
+        let (backend, setting) = (name.to_owned(), setting.name.to_owned());
+        Competitor { backend, setting, promise: Promise::Nothing, index: Box::new(OneByOne(&self.0)), build }
     }
 
     fn batch(&self, _: QuerySlice<'_>) -> Option<f64> {
@@ -91,8 +89,6 @@ pub(super) struct Candidate {
     pub(super) about: &'static str,
     /// Prepares the scene: in f64 for our backends, in its own scalar for an external library.
     prepare: PrepareFn,
-    /// Whether the backend is ours, so that its answers promise something.
-    is_ours: bool,
     /// Whether the backend has settings.
     pub(super) has_settings: bool,
 }
@@ -103,49 +99,42 @@ pub(super) const ALL: &[Candidate] = &[
         name: "aabb",
         about: "our tree of boxes (`AabbTree`); quick to build, answers every kind of question",
         prepare: |s| ours::<AabbTree<_, _>>(s, aabb_options()),
-        is_ours: true,
         has_settings: true,
     },
     Candidate {
         name: "kdop",
         about: "our tree of polytopes with 14 faces (`KdopTree`), which fit closer what does not lie along the axes",
         prepare: |s| ours::<KdopTree<_, _, 14>>(s, KdopOptions::default().with_splits(aabb_options())),
-        is_ours: true,
         has_settings: true,
     },
     Candidate {
         name: "octree",
         about: "our cubes with lists of what can be nearest in them (`OctreeIndex`)",
         prepare: |s| ours::<OctreeIndex<_, _>>(s, octree_options(1.0)),
-        is_ours: true,
         has_settings: true,
     },
     Candidate {
         name: "p2m",
         about: "our cells of the vertices with lists of what can be nearest in them (`P2mIndex`), one query at a time",
         prepare: |s| ours::<P2mIndex<_, _>>(s, p2m_options()),
-        is_ours: true,
         has_settings: true,
     },
     Candidate {
         name: "brute",
         about: "every primitive, every time (`BruteForce`)",
         prepare: |s| ours::<BruteForce<_>>(s, ()),
-        is_ours: true,
         has_settings: false,
     },
     Candidate {
         name: "parry3d",
         about: "the crate parry3d 0.31, in f32: `TriMesh` and `Polyline`, the latter within the answer of the former",
         prepare: |s| external_index(external::single(s)?),
-        is_ours: false,
         has_settings: false,
     },
     Candidate {
         name: "parry3d-f64",
         about: "the same in f64",
         prepare: |s| external_index(external::double(s)?),
-        is_ours: false,
         has_settings: false,
     },
     Candidate {
@@ -153,7 +142,6 @@ pub(super) const ALL: &[Candidate] = &[
         about: "the crate bvh 0.13 in f64, `Bvh::nearest_to`; it leaves the distance to a primitive to its user: here it is the \
                 closest point on a triangle of Ericson's Real-Time Collision Detection, 5.1.5",
         prepare: |s| external_index(bvh_crate::tree(s)),
-        is_ours: false,
         has_settings: false,
     },
 ];
@@ -206,7 +194,7 @@ fn build(scene: &Scene, prepare: PrepareFn, builds: usize) -> Result<(Box<dyn Bu
         let prepared = prepare(scene)?;
         let built = measure_build(&mut figures, before, || catch(prepared.build))?;
         if figures.seconds.len() >= builds || figures.seconds.iter().sum::<f64>() > MAX_BUILD_SECONDS {
-            let seconds = Spread::of(&figures.seconds).map_or(0.0, |spread| spread.median);
+            let seconds = MedianRange::of(&figures.seconds).map_or(0.0, |seconds| seconds.median);
             return Ok((
                 built,
                 Build { seconds, bytes_per_primitive: Some(figures.owned as f64 / scene.len() as f64) },
@@ -216,22 +204,13 @@ fn build(scene: &Scene, prepare: PrepareFn, builds: usize) -> Result<(Box<dyn Bu
 }
 
 /// Returns every setting of every index, or the default setting alone.
-pub(super) fn entrants<'a>(indexes: &'a [Index<'_>], default_only: bool) -> Vec<Competitor<'a>> {
-    let mut entrants = Vec::new();
-    for index in indexes {
-        let candidate = index.candidate;
-        for setting in SETTINGS.iter().filter(|setting| **setting == DEFAULT || candidate.has_settings && !default_only)
-        {
-            entrants.push(Competitor {
-                backend: candidate.name.to_owned(),
-                setting: setting.name.to_owned(),
-                promise: if candidate.is_ours { setting.promise() } else { Promise::Nothing },
-                subject: index.built.subject(setting),
-                build: index.build,
-            });
-        }
-    }
-    entrants
+pub(super) fn competitors<'a>(indexes: &'a [Index<'_>], default_only: bool) -> Vec<Competitor<'a>> {
+    let settings = |index: &Index<'_>| {
+        let count = if index.candidate.has_settings && !default_only { SETTINGS.len() } else { 1 };
+        &SETTINGS[..count]
+    };
+    let of = |index: &'a Index<'_>, setting| index.built.competitor(index.candidate.name, setting, index.build);
+    indexes.iter().flat_map(|index| settings(index).iter().map(move |setting| of(index, setting))).collect()
 }
 
 #[cfg(test)]
@@ -246,8 +225,8 @@ mod tests {
         let scene = Scene::new("knot".to_owned(), soup).unwrap();
         let (indexes, notes) = build_all(&scene, 1);
         assert_eq!((indexes.len(), notes.len()), (ALL.len(), 0), "{notes:?}");
-        assert_eq!(entrants(&indexes, false).len(), 4 * SETTINGS.len() + 4);
-        assert_eq!(entrants(&indexes, true).len(), ALL.len());
+        assert_eq!(competitors(&indexes, false).len(), 4 * SETTINGS.len() + 4);
+        assert_eq!(competitors(&indexes, true).len(), ALL.len());
         let queries = Queries::new(vec![Point3::new(1.0, 2.0, 3.0); 100]);
         assert_eq!(indexes.iter().filter_map(|index| index.built.batch(queries.all())).count(), 5);
         // The number of bytes is not asserted, because other tests of this program allocate and free at the same time.

@@ -8,7 +8,7 @@ mod truth;
 use crate::queries::Queries;
 use crate::scene::Scene;
 use anyhow::{Context, Result};
-use indexes::{ALL, build_all, entrants};
+use indexes::{ALL, build_all, competitors};
 use p2m_tradeoff::page::{Page, Sweep};
 use p2m_tradeoff::record::record;
 use p2m_tradeoff::{Provenance, SceneFigures, SetFigures, clock_nanoseconds, measure, text};
@@ -87,8 +87,8 @@ fn measure_scene(
     for set in SETS {
         let queries = set.generate(&scene.double, profile.queries, SEED);
         let truths = truth::truths(scene, &queries);
-        let entrants = entrants(&indexes, false);
-        let curves = measure(&entrants, &Queries::new(queries), &truths, &profile.effort, &|_| ());
+        let competitors = competitors(&indexes, false);
+        let curves = measure(&competitors, &Queries::new(queries), &truths, &profile.effort, &|_| ());
         let figures = SetFigures { name: set.name().to_owned(), about: about(set).to_owned(), curves };
         println!("\n## {}, {set}\n\n{}", scene.name, text::table(&figures));
         sets.push(figures);

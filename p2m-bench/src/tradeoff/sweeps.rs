@@ -1,6 +1,6 @@
 //! Measures how times grow with size, and the speed-up of several threads.
 
-use super::indexes::{Index, build_all, entrants};
+use super::indexes::{Index, build_all, competitors};
 use super::profile::{Profile, knot_of};
 use super::truth::truths;
 use crate::queries::Queries;
@@ -8,7 +8,8 @@ use crate::scene::Scene;
 use anyhow::Result;
 use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::page::Sweep;
-use p2m_tradeoff::{Spread, measure, rotated};
+use p2m_tradeoff::rounds::rotated;
+use p2m_tradeoff::{MedianRange, measure};
 
 /// The query set of the sweeps, in the box of the scene.
 const SET: QuerySet = QuerySet::Box1;
@@ -31,7 +32,7 @@ pub(super) fn sizes(profile: &Profile, seed: u64) -> Result<Vec<Sweep>> {
         let queries = SET.generate(&scene.double, profile.queries, seed);
         let truths = truths(&scene, &queries);
         let (indexes, _) = build_all(&scene, profile.builds);
-        let curves = measure(&entrants(&indexes, true), &Queries::new(queries), &truths, &profile.effort, &|_| ());
+        let curves = measure(&competitors(&indexes, true), &Queries::new(queries), &truths, &profile.effort, &|_| ());
         for curve in &curves {
             let point = &curve.points[0];
             // Memory below one byte per primitive does not grow with the scene and is left out.
@@ -72,8 +73,8 @@ pub(super) fn threads(scene: &Scene, indexes: &[Index<'_>], profile: &Profile, s
             }
         }
         for (index, times) in ours.iter().zip(times) {
-            if let Some(spread) = Spread::of(&times) {
-                add(&mut sweep, index.candidate.name, (threads as f64, spread.median * 1e9 / count as f64));
+            if let Some(seconds) = MedianRange::of(&times) {
+                add(&mut sweep, index.candidate.name, (threads as f64, seconds.median * 1e9 / count as f64));
             }
         }
     }

@@ -22,8 +22,8 @@ pub(super) fn truths(scene: &Scene, queries: &[Point3<f64>]) -> Vec<Truth> {
         let shape = scene.double.get(id);
         let vertices: Vec<[f64; 3]> = shape.vertices().iter().map(|vertex| vertex.coords.into()).collect();
         let exact = Distance::new(query.coords.into(), &vertices);
-        let [distance, rest] = exact.length();
-        Truth { distance, rest, reach: exact.max_vertex_distance(), id: id.index() as u32 }
+        let [distance, residual] = exact.length();
+        Truth { distance, residual, max_vertex_distance: exact.max_vertex_distance(), id: id.index() as u32 }
     };
     queries.par_iter().map(truth).collect()
 }
@@ -40,6 +40,10 @@ mod tests {
         let scene = Scene::new("two".to_owned(), soup).unwrap();
         let truth = truths(&scene, &[Point3::new(1.0, 1.0, 0.0)])[0];
         assert_eq!((truth.id, truth.distance), (1, std::f64::consts::SQRT_2));
-        assert!(truth.rest < -9e-17 && truth.rest > -1e-16 && (truth.reach - 2f64.sqrt()).abs() < 1e-15);
+        assert!(
+            truth.residual < -9e-17
+                && truth.residual > -1e-16
+                && (truth.max_vertex_distance - 2f64.sqrt()).abs() < 1e-15
+        );
     }
 }

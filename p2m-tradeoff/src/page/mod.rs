@@ -1,7 +1,7 @@
 //! All results as one HTML page, which needs no other file and no network.
 //!
-//! The page is a template with a script, and this module puts the results into it as JSON. The script draws the plots and
-//! the tables in the browser.
+//! The page is a template with a script, and this module puts the results into it as JSON. The script draws the plots
+//! and the tables in the browser.
 
 use crate::curve::SceneFigures;
 use crate::provenance::Provenance;
@@ -69,7 +69,8 @@ impl Page<'_> {
         let sets = self.scenes.iter().flat_map(|scene| scene.sets.iter().map(move |set| (scene, set)));
         let tables: String =
             sets.map(|(scene, set)| format!("{}, {}\n\n{}\n", scene.name, set.name, text::table(set))).collect();
-        // The template has its placeholders in the reverse order, so that each is found before any name that looks like it.
+        // The template has its placeholders in the reverse order, so that each is found before any name that looks
+        // like it.
         let page = TEMPLATE.replacen("{{script}}", SCRIPT, 1).replacen("{{data}}", &json, 1);
         Ok(page.replacen("{{tables}}", &escaped(&tables), 1))
     }

@@ -26,7 +26,7 @@ function plot(xName, yName, series) {
   const [width, height, left, right, top, bottom] = [860, 460, 70, 846, 14, 410];
   const shown = series.map((line) => ({ ...line, points: line.points.filter((p) => !isNone(p.x) && p.y > 0) }));
   const all = shown.flatMap((line) => line.points);
-  if (all.length === 0) return "<p>There is nothing to draw for this choice.</p>";
+  if (all.length === 0) return "<p>There is nothing to draw. Choose another kind of error, or show more indexes.</p>";
   const range = (values) => (values.length ? [Math.min(...values) / 1.3, Math.max(...values) * 1.3] : [0.1, 1]);
   const hasZero = all.some((p) => p.x <= 0);
   const xs = range(all.map((p) => p.x).filter((x) => x > 0));
