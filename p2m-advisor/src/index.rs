@@ -11,7 +11,7 @@ use p2m_interception::{InterceptionIndex, OctreeReport, P2mReport, Partition, Pr
 /// Every index answers closest-point, near and certified queries and reports its costs. Rays and boxes are optional.
 pub trait Index<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + Inspect<T> + Send + Sync {
     /// Adds the index to a file, without its scene. Indexes of backends that are not
-    /// [saveable](crate::registry::BackendEntry::is_saveable) add nothing.
+    /// [saveable](crate::BackendEntry::is_saveable) add nothing.
     fn save<'s>(&'s self, writer: &mut Writer<'s>);
 
     /// Returns the heap memory that the index owns besides its scene, in bytes.
@@ -124,7 +124,7 @@ pub struct BuildSettings<'p> {
     /// too large for a small sample of a scene.
     pub octree_budget_scale: f64,
     /// A function that is called with the progress of the build, by backends that
-    /// [report it](crate::registry::BackendEntry::reports_progress).
+    /// [report it](crate::BackendEntry::reports_progress).
     pub progress: &'p (dyn Fn(Progress) + Sync),
 }
 

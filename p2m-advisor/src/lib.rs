@@ -19,6 +19,7 @@
 //! where two backends are about equally good.
 #![forbid(unsafe_code)]
 
+mod backend_entry;
 mod cost_model;
 mod estimate;
 mod index;
@@ -28,10 +29,11 @@ mod registry;
 mod sample;
 mod workload;
 
+pub use backend_entry::{BackendEntry, SearchStructure};
 pub use cost_model::CostModel;
 pub use estimate::{Advice, Estimate};
 pub use index::{BuildSettings, BuiltIndex, Index, IndexDetails};
 pub use kdop_directions::{ChosenDirections, KdopDirections, KdopVisitor};
 pub use recommend::recommend;
-pub use registry::{BACKENDS, BackendEntry, SearchStructure};
+pub use registry::BACKENDS;
 pub use workload::{QueryRegion, Workload};

@@ -1,8 +1,9 @@
 //! The recommendation: which backends are measured on which samples, and how the results are scaled to the scene.
 
+use crate::backend_entry::{BackendEntry, SearchStructure};
 use crate::estimate::{Advice, Estimate};
 use crate::index::BuildSettings;
-use crate::registry::{BACKENDS, BackendEntry, SearchStructure};
+use crate::registry::BACKENDS;
 use crate::sample::{is_mostly_slivers, is_near_surface, neighbourhood_sample, sample_queries, subsample};
 use crate::workload::Workload;
 use nalgebra::Point3;

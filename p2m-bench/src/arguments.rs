@@ -33,7 +33,7 @@ pub(crate) enum Command {
     /// Times rays: the figures of the k-DOP tree's manual, or the first hit against other libraries; fails if ours
     /// differ
     Ray(RayArguments),
-    /// Repeats the evaluation of the P2M paper on our models, for docs/paper.md: prints tables and draws plots; fails if ours differ
+    /// Repeats the evaluation of the P2M paper, for docs/paper.md: prints tables and draws plots; fails if ours differ
     Paper(PaperArguments),
     /// Compares speed with accuracy for all backends and settings: writes report.html and report.csv
     Report(ReportArguments),
