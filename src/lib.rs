@@ -59,8 +59,9 @@
 //! | [`P2mIndex`] | the same with the cells of the vertices: fastest far away, for still more memory | `interception` |
 //! | [`KdopTree`] | trees of polytopes of K faces: closer to what does not lie along the axes | `kdop` |
 //!
-//! Write functions over `I: ClosestPoint<T>` to leave the choice to the caller, or take `&dyn ClosestPoint<T>`. The page
-//! "Which type do I need" (module `guide`, docs/guide.md) has an example for every choice of scene, index and question.
+//! Write functions over `I: ClosestPoint<T>` to leave the choice to the caller, or take `&dyn ClosestPoint<T>`. The
+//! page "Which type do I need" (module `guide`, docs/guide.md) has an example for every choice of scene, index and
+//! question.
 //!
 //! # Cargo features
 //!
@@ -88,8 +89,8 @@ pub use p2m_advisor as advisor;
 pub use p2m_bvh as bvh;
 #[cfg(feature = "bvh")]
 pub use p2m_bvh::{AabbOptions, AabbTree, SplitOptions, SplitRule};
-/// The parts of an index of your own, and of what examines others: collectors, the kernel, predicates. This is the crate
-/// `p2m-core` as a whole.
+/// The parts of an index of your own, and of what examines others: collectors, the kernel, predicates. This is the
+/// crate `p2m-core` as a whole.
 pub use p2m_core as backend;
 pub use p2m_core::{
     Aabb, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestLeaf,

@@ -15,7 +15,7 @@ pub enum SearchStructure {
     Exhaustive,
     /// A tree of bounding volumes over the primitives.
     Tree,
-    /// Cells of space with lists of the primitives that can be nearest in them.
+    /// Cells of space, each with a list of primitives near it or of those that can be nearest in it.
     SpaceCells,
     /// Cells of vertices with lists of the primitives that can be nearest in them.
     VertexCells,

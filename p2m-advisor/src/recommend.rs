@@ -127,8 +127,8 @@ impl<'a> Comparison<'a> {
     /// Measures the backends that may win on the smallest sample, and those that may still win on one as large as time
     /// permits.
     ///
-    /// Some scenes have a hundred times the usual time to build cells of vertices. The smallest sample shows that before
-    /// a larger one would take too long.
+    /// Some scenes have a hundred times the usual time to build cells of vertices. The smallest sample shows that
+    /// before a larger one would take too long.
     fn measure_samples(&mut self, start: &Instant) -> Result<(), BuildError> {
         for is_first in [true, false] {
             let affordable = self.affordable_sample(start.elapsed().as_secs_f64());

@@ -1,11 +1,12 @@
-//! The registry of backends: one table that the program `p2m` and the advisor read.
+//! The registry of backends: one table that the program `p2m`, the advisor, measurements and tests read.
 //!
-//! A new backend joins both with one entry of [`BACKENDS`] and, if its index has a type of its own, with an
-//! implementation of [`Index`] for that type beside the entry. The values of `--backend`, the files of `p2m build`, the
-//! estimates of `p2m advise`, the list of `p2m-bench` and the tests of agreement all come from that entry.
+//! A new backend joins them with one entry of [`BACKENDS`] and, if its index has a type of its own, with an
+//! implementation of [`Index`] for that type, as the module `index` has for the others. The values of `--backend`, the
+//! files of `p2m build`, the estimates of `p2m advise`, the list of `p2m-bench` and the tests of agreement all come
+//! from that entry.
 //!
-//! Indexes are behind one pointer, [`Box<dyn Index>`](Index), with a borrowed [`Soup`] as the set. The pointer costs one
-//! indirect call for each query, or for each batch of queries. In rounds of `p2m tradeoff` it makes no measurable
+//! Indexes are behind one pointer, [`Box<dyn Index>`](Index), with a borrowed [`Soup`] as the set. The pointer costs
+//! one indirect call for each query, or for each batch of queries. In rounds of `p2m tradeoff` it makes no measurable
 //! difference to queries of 700 to 1000 ns, so no command needs the types behind it. The searches below that call are
 //! compiled for each index. Code that needs another set uses the types of the index crates instead.
 

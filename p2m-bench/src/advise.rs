@@ -1,6 +1,6 @@
 //! `p2m-bench advise`: compares the recommended backend with the one that would have been best.
 
-use crate::measure::Spread;
+use crate::measure::MedianRange;
 use crate::rounds::thread_seconds;
 use crate::scene::Scene;
 use anyhow::Result;
@@ -92,7 +92,7 @@ fn cost(backend: &'static BackendEntry, soup: &Soup<f64>, sets: &[Vec<Point3<f64
                 seconds / count as f64
             })
             .collect();
-        Spread::of(&times).map_or(f64::NAN, |spread| spread.median)
+        MedianRange::of(&times).map_or(f64::NAN, |spread| spread.median)
     });
     Ok(Cost { backend, build, query })
 }

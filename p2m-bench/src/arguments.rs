@@ -58,6 +58,8 @@ pub(crate) enum Command {
     Delaunay(DelaunayArguments),
     /// Times batches on the AABB tree by order, hints and threads, in wall time
     Batch(BatchArguments),
+    /// Compares the program, from the first query to the complete file, with one batch of the library, in wall time
+    Program(ProgramArguments),
 }
 
 /// The arguments that `query` and `verify` share.
@@ -209,6 +211,15 @@ pub(crate) struct BatchArguments {
     /// Numbers of threads
     #[arg(long, value_delimiter = ',', default_values_t = [1, 2])]
     pub(crate) threads: Vec<usize>,
+}
+
+#[derive(Args)]
+pub(crate) struct ProgramArguments {
+    #[command(flatten)]
+    pub(crate) rounds: Rounds,
+    /// Number of threads
+    #[arg(long, default_value_t = 2)]
+    pub(crate) threads: usize,
 }
 
 #[derive(Args)]

@@ -1,6 +1,6 @@
 //! `p2m-bench batch`: times batches of queries by order, hints and number of threads.
 
-use crate::measure::{Effort, Spread};
+use crate::measure::{Effort, MedianRange};
 use crate::scene::Scene;
 use anyhow::{Context, Result};
 use nalgebra::Point3;
@@ -47,7 +47,7 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], threads: &[usize], effort:
             }
         }
         let medians: Vec<f64> =
-            times.iter().map(|times| Spread::of(times).map_or(f64::NAN, |spread| spread.median)).collect();
+            times.iter().map(|times| MedianRange::of(times).map_or(f64::NAN, |spread| spread.median)).collect();
         let mut row = vec![set.name().to_owned()];
         row.extend(medians.iter().map(|s| format!("{:.0}", s * 1e9 / queries.len() as f64)));
         // The speed-up is that of the last strategy, from the first to the last number of threads.

@@ -2,16 +2,16 @@
 
 use crate::arguments::{
     AdversariesArguments, AdviseArguments, BatchArguments, Command, Common, CompareArguments, DelaunayArguments,
-    ExtremesArguments, FieldArguments, KdopArguments, PaperArguments, QueryArguments, RayArguments, ReportArguments,
-    RivalArguments, SavedArguments, SplitsArguments, VerifyArguments,
+    ExtremesArguments, FieldArguments, KdopArguments, PaperArguments, ProgramArguments, QueryArguments, RayArguments,
+    ReportArguments, RivalArguments, SavedArguments, SplitsArguments, VerifyArguments,
 };
 use crate::backend::Backend;
 use crate::measure::Effort;
 use crate::report::provenance;
 use crate::scene::Scene;
 use crate::{
-    adversaries, advise, backends, batch, delaunay, extremes, field, kdop, measure, octree, paper, rays, report, saved,
-    splits, tradeoff, verify,
+    adversaries, advise, backends, batch, delaunay, extremes, field, kdop, measure, octree, paper, program, rays,
+    report, saved, splits, tradeoff, verify,
 };
 use anyhow::{Context, Result};
 use p2m_testkit::queries::QuerySet;
@@ -29,6 +29,7 @@ pub(crate) fn run(command: Command) -> Result<bool> {
         Command::Octree(arguments) => compare_octrees(&arguments),
         Command::Delaunay(arguments) => triangulate(&arguments),
         Command::Batch(arguments) => time_batches(&arguments),
+        Command::Program(arguments) => time_program(&arguments),
         Command::Advise(arguments) => check_advice(&arguments),
         Command::Field(arguments) => fill_fields(&arguments),
         Command::Adversaries(arguments) => run_adversaries(&arguments),
@@ -204,6 +205,17 @@ fn time_batches(arguments: &BatchArguments) -> Result<bool> {
         if is_good { "All answers are those of single queries." } else { "DIFFERENCES from single queries." }
     );
     Ok(is_good)
+}
+
+/// Times the program beside its library. It always succeeds.
+fn time_program(arguments: &ProgramArguments) -> Result<bool> {
+    let ProgramArguments { rounds, threads } = arguments;
+    let effort = rounds.effort(2_000_000);
+    println!("{}\n{}", provenance(None), in_rounds("Wall time", &effort));
+    for path in &rounds.scenes {
+        program::print(&Scene::read(path)?, path, *threads, &effort)?;
+    }
+    Ok(true)
 }
 
 /// Returns the scene alone, or in seven orientations.

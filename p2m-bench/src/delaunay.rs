@@ -1,7 +1,7 @@
 //! `p2m-bench delaunay`: times Delaunay triangulations of the vertices of scenes and of points that make every
 //! predicate zero.
 
-use crate::measure::Spread;
+use crate::measure::MedianRange;
 use crate::memory;
 use crate::rounds::thread_seconds;
 use crate::scene::Scene;
@@ -95,7 +95,7 @@ pub(crate) fn print(scenes: &[PathBuf], rounds: usize) -> Result<bool> {
         let delaunay = delaunay?;
         let check = delaunay.check();
         is_valid &= check.is_ok();
-        let spread = Spread::of(seconds).context("no rounds")?;
+        let spread = MedianRange::of(seconds).context("no rounds")?;
         let speed = |seconds: f64| format!("{:.0}", points.len() as f64 / seconds);
         let each = |n: usize| format!("{:.0}", n as f64 / points.len() as f64);
         let mut row = vec![name.clone(), points.len().to_string(), delaunay.tetrahedra().len().to_string()];

@@ -2,7 +2,7 @@
 
 use crate::backend::{Answer, Prepared, Unavailable};
 use crate::external::{parry_double, parry_single};
-use crate::measure::Spread;
+use crate::measure::MedianRange;
 use crate::memory::measured;
 use crate::our_indexes::{aabb_options, octree_options, p2m_options};
 use crate::queries::Queries;
@@ -82,7 +82,7 @@ pub(crate) fn print(scene: &Scene, resolution: usize, stride: usize) -> Result<b
     for method in &all {
         let Method { name, seconds, bytes, times, difference, .. } = method;
         let ns = mean(times);
-        let spread = Spread::of(times).ok_or_else(|| anyhow!("no slab was measured"))?;
+        let spread = MedianRange::of(times).ok_or_else(|| anyhow!("no slab was measured"))?;
         let rate = |ns: f64| of_parry.map_or_else(|| "-".to_owned(), |parry| format!("{:.2}", parry / ns));
         let is_ours = !name.starts_with("parry");
         is_same &= !is_ours || *difference == 0.0;

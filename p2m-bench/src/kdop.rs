@@ -5,7 +5,7 @@
 
 use crate::backend::Backend;
 use crate::backends::by_name;
-use crate::measure::{Effort, Spread, build_all, measure_set};
+use crate::measure::{Effort, MedianRange, build_all, measure_set};
 use crate::our_indexes::scene_directions;
 use crate::scene::Scene;
 use anyhow::Result;
@@ -58,8 +58,8 @@ pub(crate) fn print(scene: &Scene, set: QuerySet, effort: &Effort) -> bool {
     ];
     let mut table = Table::new(["per query", "AABB", "6-DOP", "14-DOP", "18-DOP", "26-DOP", "scene"]);
     let row = |name: &str, cells: Vec<String>| std::iter::once(name.to_owned()).chain(cells).collect::<Vec<_>>();
-    let median = |values: &[f64]| Spread::of(values).map_or(f64::NAN, |s| s.median);
-    let minimum = |values: &[f64]| Spread::of(values).map_or(f64::NAN, |s| s.min);
+    let median = |values: &[f64]| MedianRange::of(values).map_or(f64::NAN, |s| s.median);
+    let minimum = |values: &[f64]| MedianRange::of(values).map_or(f64::NAN, |s| s.min);
     table.push(row("build s", entries.iter().map(|e| format!("{:.4}", median(&e.build.seconds))).collect()));
     table.push(row("nodes of eight", work.iter().map(|(w, _)| format!("{:.2}", w[0])).collect()));
     table.push(row("packets", work.iter().map(|(w, _)| format!("{:.2}", w[1])).collect()));

@@ -32,6 +32,7 @@ mod octree;
 mod our_indexes;
 mod paper;
 mod plot;
+mod program;
 mod rays;
 mod report;
 mod rounds;

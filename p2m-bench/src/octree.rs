@@ -1,7 +1,7 @@
 //! `p2m-bench octree`: compares the settings of the octree: resolution, domain and number of threads.
 
 use crate::backend::Backend;
-use crate::measure::{Effort, Spread, build_all, measure_set};
+use crate::measure::{Effort, MedianRange, build_all, measure_set};
 use crate::our_indexes::{octree_options, over_soup_with};
 use crate::scene::Scene;
 use anyhow::{Context, Result};
@@ -61,7 +61,7 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], threads: &[usize], effort:
                 seconds.push(start.elapsed().as_secs_f64());
                 report = Some(index.context("the scene was checked when it was read")?.report());
             }
-            row.push(format!("{:.3}", Spread::of(&seconds).map_or(f64::NAN, |s| s.median)));
+            row.push(format!("{:.3}", MedianRange::of(&seconds).map_or(f64::NAN, |s| s.median)));
         }
         let report = report.context("no threads to build with")?;
         row.push(format!("{:.4}", report.resolution));
@@ -70,7 +70,7 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], threads: &[usize], effort:
         for figures in &entry.sets {
             let figures = figures.as_ref().ok().context("ours are never absent")?;
             clean &= figures.agreement.is_clean();
-            row.push(format!("{:.0}", Spread::of(&figures.nanoseconds).map_or(f64::NAN, |s| s.median)));
+            row.push(format!("{:.0}", MedianRange::of(&figures.nanoseconds).map_or(f64::NAN, |s| s.median)));
         }
         table.push(row);
     }

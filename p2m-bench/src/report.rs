@@ -2,7 +2,7 @@
 
 use crate::backend::Unavailable;
 use crate::backends::{YARDSTICK, YARDSTICK_DOUBLE};
-use crate::measure::{BuildFigures, Entry, SetFigures, Spread};
+use crate::measure::{BuildFigures, Entry, MedianRange, SetFigures};
 use crate::scene::Scene;
 use anyhow::{Context, Result, bail};
 use p2m_testkit::queries::QuerySet;
@@ -52,7 +52,7 @@ fn cost(scene: &Scene, sets: &[QuerySet], entries: &[Entry<'_>]) -> Table {
             Ok(_) => format!("{:.1}", bytes as f64 / scene.len() as f64),
             Err(_) => "-".to_owned(),
         };
-        row.push(Spread::of(&entry.build.seconds).map_or("-".to_owned(), |s| spread(&s, seconds)));
+        row.push(MedianRange::of(&entry.build.seconds).map_or("-".to_owned(), |s| spread(&s, seconds)));
         let build = &entry.build;
         row.extend([build.owned, build.owned + build.borrowed, build.peak].map(bytes));
         for (i, set) in entry.sets.iter().enumerate() {
@@ -148,12 +148,12 @@ fn notes(sets: &[QuerySet], entries: &[Entry<'_>]) -> Vec<String> {
 }
 
 /// Returns the nanoseconds and the number of queries.
-fn figure(set: &Result<SetFigures, Unavailable>) -> Option<(Spread, usize)> {
+fn figure(set: &Result<SetFigures, Unavailable>) -> Option<(MedianRange, usize)> {
     let figures = set.as_ref().ok()?;
-    Some((Spread::of(&figures.nanoseconds)?, figures.queries))
+    Some((MedianRange::of(&figures.nanoseconds)?, figures.queries))
 }
 
-fn spread(s: &Spread, format: impl Fn(f64) -> String) -> String {
+fn spread(s: &MedianRange, format: impl Fn(f64) -> String) -> String {
     format!("{} ({}-{})", format(s.median), format(s.min), format(s.max))
 }
 
@@ -270,7 +270,7 @@ impl Record {
             scene.len().to_string(),
             line.backend.to_owned(),
             line.scalar.to_owned(),
-            Spread::of(&build.seconds).map(|s| format!("{:.6}", s.median)).unwrap_or_default(),
+            MedianRange::of(&build.seconds).map(|s| format!("{:.6}", s.median)).unwrap_or_default(),
             build.owned.to_string(),
             build.borrowed.to_string(),
             build.peak.to_string(),

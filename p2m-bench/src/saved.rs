@@ -1,6 +1,6 @@
 //! `p2m-bench saved`: compares the cost of saving and loading an index with that of building it.
 
-use crate::measure::Spread;
+use crate::measure::MedianRange;
 use crate::scene::Scene;
 use anyhow::Result;
 use p2m_advisor::{BACKENDS, BuildSettings};
@@ -51,7 +51,7 @@ pub(crate) fn print(scene: &Scene, rounds: usize) -> Result<bool> {
             }
         }
         let [start, of_scene, check] =
-            [&starts, &scenes, &checks].map(|all| Spread::of(all).map_or(f64::NAN, |s| s.median));
+            [&starts, &scenes, &checks].map(|all| MedianRange::of(all).map_or(f64::NAN, |s| s.median));
         table.push(vec![
             backend.name.to_owned(),
             format!("{build:.3}"),

@@ -4,6 +4,7 @@ use crate::input::{SceneArgs, point_format, read_points, read_scene};
 use crate::json;
 use crate::output::Output;
 use crate::streams::Streams;
+use crate::threads::ThreadArgs;
 use crate::usage::{not_negative, one_of, positive, whole_number};
 use anyhow::Context;
 use clap::ArgGroup;
@@ -67,6 +68,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "S", value_parser = not_negative, allow_negative_numbers = true)]
     time: Option<f64>,
 
+    #[command(flatten)]
+    threads: ThreadArgs,
+
     /// Report as one JSON object
     #[arg(long)]
     json: bool,
@@ -74,7 +78,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
-    let scene = read_scene(streams, &args.scene.path, format)?;
+    let scene = read_scene(streams, &args.scene, format)?;
     let points = args
         .points
         .as_ref()
@@ -94,7 +98,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if let Some(time) = args.time {
         workload = workload.with_max_time(Duration::try_from_secs_f64(time).unwrap_or(Duration::MAX));
     }
-    let advice = recommend(&scene.soup, &workload).with_context(|| args.scene.name())?;
+    let pool = args.threads.pool()?;
+    let advice = pool.install(|| recommend(&scene.soup, &workload)).with_context(|| args.scene.name())?;
     if args.json {
         let estimates: Vec<Value> = advice.estimates.iter().map(estimate_json).collect();
         let report = json!({
@@ -105,6 +110,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             "backend": advice.backend().name,
             "estimates": estimates,
             "sample_primitives": advice.sample_primitives,
+            "threads": pool.current_num_threads(),
             "seconds": { "advice": advice.seconds },
         });
         return json::print(streams, &report);

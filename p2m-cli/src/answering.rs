@@ -1,10 +1,12 @@
 //! The loop that answers queries block by block on all threads, and writes the records of their answers.
 //!
-//! While the threads answer and encode one block, the calling thread writes the records of the block before it and makes
-//! the queries of the block after it. So neither the file nor the source of the queries keeps the threads waiting.
+//! While the threads answer and encode one block, the calling thread writes the records of the block before it and
+//! makes the queries of the block after it. So neither the file nor the source of the queries keeps the threads
+//! waiting.
 
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
+use indicatif::{DecimalBytes, HumanCount, HumanDuration};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::io;
@@ -100,11 +102,33 @@ pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
         if block.queries.is_empty() {
             return Ok(time);
         }
+        if first == 0 {
+            announce(streams, &queries, &block, elapsed);
+        }
         time += elapsed;
         first += block.queries.len() as u64;
         progress.add(block.queries.len() as u64);
         size = if elapsed < BLOCK_TIME { MAX_BLOCK.min(2 * size) } else { min_block.max(size / 2) };
         (finished, pending) = (Some(block), next);
+    }
+}
+
+/// The number of bytes of answers, 10 GB, above which a run is announced.
+const ANNOUNCED_BYTES: f64 = 1e10;
+/// The number of seconds of answering above which a run is announced.
+const ANNOUNCED_SECONDS: f64 = 600.0;
+
+/// Says how large the answers will be and how long they will take, by those of the first block, if that is much.
+#[allow(clippy::cast_precision_loss, reason = "estimates for people to read")]
+fn announce<Q, A, I>(streams: &Streams, queries: &QueryStream<I>, block: &Block<Q, A>, elapsed: Duration) {
+    let scale = queries.count as f64 / block.queries.len() as f64;
+    let bytes = block.encoded.iter().map(|part| part.bytes.len()).sum::<usize>() as f64 * scale;
+    let seconds = elapsed.as_secs_f64() * scale;
+    if bytes > ANNOUNCED_BYTES || seconds > ANNOUNCED_SECONDS {
+        let (count, name) = (HumanCount(queries.count), queries.name);
+        let bytes = DecimalBytes(bytes as u64);
+        let time = HumanDuration(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
+        streams.print_summary(format_args!("note     {count} {name}: about {bytes} of answers, in about {time}\n"));
     }
 }
 

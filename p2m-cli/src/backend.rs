@@ -7,6 +7,7 @@ use p2m_advisor::{BACKENDS, BackendEntry, BuildSettings, BuiltIndex, KdopDirecti
 use p2m_core::Soup;
 use p2m_core::storage::Reader;
 use p2m_interception::{BuildStage, StageTimes};
+use rayon::ThreadPool;
 use std::time::{Duration, Instant};
 
 /// A backend of the registry.
@@ -58,11 +59,12 @@ impl BackendChoice {
         saved: Option<&Reader>,
         soup: &Soup<f64>,
         workload: &Workload<'_>,
+        pool: &ThreadPool,
     ) -> anyhow::Result<Backend> {
         match choice {
             Some(Self::Named(backend)) => Ok(backend),
             None => Ok(saved_or_default(saved)),
-            Some(Self::Auto) => Ok(recommend(soup, workload)?.backend()),
+            Some(Self::Auto) => Ok(pool.install(|| recommend(soup, workload))?.backend()),
         }
     }
 }
@@ -90,12 +92,18 @@ pub(crate) struct SceneSource<'a> {
 }
 
 impl<'a> SceneSource<'a> {
-    /// Loads the index of the backend from the file, or builds it if the file has none that fits.
-    pub(crate) fn prepare(self, streams: &Streams, backend: Backend) -> anyhow::Result<PreparedIndex<'a>> {
+    /// Loads the index of the backend from the file, or builds it with the threads of a pool if the file has none that
+    /// fits.
+    pub(crate) fn prepare(
+        self,
+        streams: &Streams,
+        backend: Backend,
+        pool: &ThreadPool,
+    ) -> anyhow::Result<PreparedIndex<'a>> {
         if let Some(reader) = self.saved.filter(|reader| backend.is_in(reader, self.kdop_directions)) {
             let _progress = Progress::start(streams, "loading the index", None, Unit::None);
             return Ok(PreparedIndex {
-                built: backend.load(self.soup, reader)?,
+                built: pool.install(|| backend.load(self.soup, reader))?,
                 is_loaded: true,
                 stages: Stages::new(),
             });
@@ -110,10 +118,10 @@ impl<'a> SceneSource<'a> {
                 times.tell(progress);
                 bar.advance_to((progress.part * 100.0) as u64);
             };
-            backend.build(self.soup, &settings.with_progress(&report))?
+            pool.install(|| backend.build(self.soup, &settings.with_progress(&report)))?
         } else {
             let _progress = Progress::start(streams, "building the index", None, Unit::None);
-            backend.build(self.soup, &settings)?
+            pool.install(|| backend.build(self.soup, &settings))?
         };
         Ok(PreparedIndex { built, is_loaded: false, stages: times.finish() })
     }

@@ -6,6 +6,7 @@ use crate::kdop_directions::KdopFaces;
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
+use crate::threads::ThreadArgs;
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use nalgebra::Point3;
@@ -16,7 +17,6 @@ use p2m_kdop::{KdopTree, Polytope};
 use p2m_mixed::picture::{Panel, View, box_edges, write_picture_ply, write_svg};
 use p2m_mixed::statistics::figure::Count;
 use serde_json::json;
-use std::io::Write;
 use std::path::PathBuf;
 
 fn help() -> String {
@@ -63,6 +63,9 @@ pub(crate) struct Args {
     /// Which axis points up in an SVG picture
     #[arg(long, value_enum, default_value_t = Up::Z)]
     up: Up,
+
+    #[command(flatten)]
+    threads: ThreadArgs,
 
     /// Report as one JSON object on the standard output, instead of the titles on the standard error
     #[arg(long)]
@@ -120,17 +123,18 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     };
     Output::refuse_inputs(&args.out, &[&args.scene.path])?;
     let format = args.scene.format()?;
-    let scene = read_scene(streams, &args.scene.path, format)?;
+    let scene = read_scene(streams, &args.scene, format)?;
     let progress = Progress::start(streams, "building", None, Unit::None);
     let levels = usize::from(args.levels);
-    let drawn = match args.k {
+    let pool = args.threads.pool()?;
+    let drawn = pool.install(|| match args.k {
         None => AabbTree::build(&scene.soup, &Default::default())
             .map(|tree| panels(tree.tree(), levels, ["box", "boxes"], |bounds| box_edges(bounds).collect()))
             .map(|panels| (panels, None)),
         Some(KdopFaces(directions)) => directions
             .build(&scene.soup, SplitOptions::default(), PolytopePanels { levels })
             .map(|(panels, directions)| (panels, Some(directions))),
-    };
+    });
     let (drawn, directions) = drawn.with_context(|| args.scene.name())?;
     let reason = directions.as_ref().and_then(|directions| directions.reason.as_ref());
     drop(progress);
@@ -158,10 +162,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         });
         return json::print(streams, &report);
     }
-    // The picture is complete, so an error of writing the titles is ignored.
-    let _ = panels.iter().try_for_each(|panel| writeln!(streams.stderr(), "{}", panel.title));
+    panels.iter().for_each(|panel| streams.print_summary(format_args!("{}\n", panel.title)));
     if let Some(reason) = reason {
-        let _ = writeln!(streams.stderr(), "k-DOPs: {reason}");
+        streams.print_summary(format_args!("k-DOPs: {reason}\n"));
     }
     Ok(())
 }

@@ -12,7 +12,6 @@ use anyhow::Context;
 use p2m_core::storage::Writer;
 use p2m_mixed::{Format, save_scene};
 use serde_json::json;
-use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -65,15 +64,17 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     Output::refuse_terminal(streams, &args.out, Format::P2m.name())?;
     let format = scene_args.format()?;
     let start = Instant::now();
-    let scene = read_scene(streams, &scene_args.path, format)?;
+    let scene = read_scene(streams, scene_args, format)?;
     let read_time = start.elapsed();
     // The file is opened before the work, which would be lost if its name were wrong.
     let mut output = Output::open(streams, Some(&args.out))?;
 
+    let pool = args.index_args.threads.pool()?;
     let start = Instant::now();
-    let (backend, kdop_directions) = args.index_args.choice(None, &scene.soup, DEFAULT_QUERY_COUNT)?;
+    let (backend, kdop_directions) = args.index_args.choice(None, &scene.soup, DEFAULT_QUERY_COUNT, &pool)?;
     let source = SceneSource { soup: &scene.soup, kdop_directions, saved: None };
-    let PreparedIndex { built, is_loaded, .. } = source.prepare(streams, backend).with_context(|| scene_args.name())?;
+    let PreparedIndex { built, is_loaded, .. } =
+        source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
     let build_time = start.elapsed();
 
     let start = Instant::now();
@@ -91,6 +92,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let out = args.out.display();
     if args.json {
         let end = json!({
+            "threads": pool.current_num_threads(),
             "cells": index.cells(),
             "seconds": {
                 "read": read_time.as_secs_f64(),
@@ -102,8 +104,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         return json::print(streams, &json::joined([index.json("build"), end]));
     }
     let mut text = String::new();
-    // Writing to a string does not fail. The file is complete, so an error of writing the summary is ignored.
+    // Writing to a string does not fail.
     let _ = index.write(&mut text, None);
-    let _ = writeln!(streams.stderr(), "{text}written  {out}, {bytes} bytes in {write_time:.3?}");
+    streams.print_summary(format_args!("{text}written  {out}, {bytes} bytes in {write_time:.3?}\n"));
     Ok(())
 }

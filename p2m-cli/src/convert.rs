@@ -13,7 +13,6 @@ use p2m_mixed::statistics::Counts;
 use p2m_mixed::statistics::figure::{Count, Figure};
 use p2m_mixed::{Format, Scene, WriteError, stl_rounding, write_scene};
 use serde_json::{Value, json};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Write a scene in another format, or changed
@@ -70,7 +69,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let target = Target::new(streams, &args.to_file, args.to, None)?;
     target.check_report(args.json)?;
     Output::refuse_inputs(&args.to_file, &[&args.from_file])?;
-    let (read, saved) = read_scene_and_index(streams, &args.from_file, from)?;
+    let (read, saved) = read_scene_and_index(streams, &args.from_file, from, false)?;
     let has_index = saved.is_some_and(|reader| p2m_core::storage::kind(&reader).is_ok());
     let before = Counts::of(&read.soup);
     let polygons = count_cut_polygons(&read);
@@ -99,8 +98,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         text += &format!("skipped  {}\n", list.join(", "));
     }
     text += &written.text();
-    // The file is complete, so an error of writing the summary is ignored.
-    let _ = write!(streams.stderr(), "{text}");
+    streams.print_summary(format_args!("{text}"));
     Ok(())
 }
 

@@ -8,24 +8,23 @@ use crate::json;
 use crate::output::Output;
 use crate::picture::write_png;
 use crate::progress::{Progress, Unit};
-use crate::query_args::pool;
+use crate::sign_rule::SignRule;
 use crate::streams::Streams;
 use crate::summary::IndexSummary;
 use crate::usage::{not_negative, one_of, positive, usage};
 use anyhow::{Context, anyhow};
-use clap::ValueEnum;
 use nalgebra::Point3;
-use p2m_advisor::{Index, IndexDetails, SearchStructure};
+use p2m_advisor::{Index, IndexDetails};
 use p2m_core::{Aabb, PrimitiveSet, Soup};
 use p2m_field::FieldFormat;
 use p2m_field::grid_candidates::{CandidateLists, MAX_COORDINATE};
-use p2m_field::sign::{SignError, SignedDistance};
+use p2m_field::sign::SignedDistance;
 use p2m_field::{
     FieldOptions, Grid, RefineOptions, distances, distances_by_lists, refined, signed_distances,
     signed_distances_by_lists, slice, write_cells, write_field,
 };
+use rayon::ThreadPool;
 use serde_json::json;
-use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -79,7 +78,7 @@ pub(crate) struct Args {
 
     /// An octree instead of a grid, cut where the surface is while the interpolated distance is off by more than this,
     /// in the middle of a cell, of its faces or its edges
-    #[arg(long, value_name = "ERROR", value_parser = positive, allow_negative_numbers = true, conflicts_with_all = ["resolution", "slice", "out_format", "threads"])]
+    #[arg(long, value_name = "ERROR", value_parser = positive, allow_negative_numbers = true, conflicts_with_all = ["resolution", "slice", "out_format"])]
     refine: Option<f64>,
 
     /// The largest number of times that a cell is cut
@@ -98,28 +97,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     slice: Option<PathBuf>,
 
-    /// How many threads to use, up to 1024; all cores by default
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
-    threads: Option<u16>,
-
     /// Report as one JSON object on the standard output, instead of a summary on the standard error
     #[arg(long)]
     json: bool,
 }
-
-/// A rule that decides which points are inside.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum SignRule {
-    /// As a closed surface if it is one, otherwise by winding numbers
-    Auto,
-    /// As a closed surface, or not at all
-    Closed,
-    /// By winding numbers
-    Winding,
-}
-
-/// The largest error of winding numbers.
-const WINDING_NUMBER_ERROR: f64 = 0.01;
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let scene_args = &args.index_args.scene;
@@ -134,10 +115,16 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         if slice == &args.out || is_standard(slice) {
             return Err(usage("--slice needs a file of its own"));
         }
+        if !slice.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+            return Err(usage(format!(
+                "--slice {}: the picture is a PNG file, so its name ends in .png",
+                slice.display()
+            )));
+        }
     }
     let format = scene_args.format()?;
     let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format)?;
+    let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format, scene_args.map)?;
     let read_time = start.elapsed();
     let soup = &scene.soup;
     let grid =
@@ -146,38 +133,36 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let mut output = Output::open(streams, Some(&args.out))?;
     let picture = args.slice.as_ref().map(|path| Output::open(streams, Some(path))).transpose()?;
 
-    let pool = pool(args.threads)?;
+    let pool = args.index_args.threads.pool()?;
     let start = Instant::now();
     let has_lists = args.index_args.is_unspecified() && args.refine.is_none();
-    let lists = if has_lists { candidate_lists(streams, soup, &grid) } else { None };
+    let lists = if has_lists { candidate_lists(streams, soup, &grid, &pool) } else { None };
     let mut backend_name = LISTS_NAME;
     let (mut details, mut is_loaded) = (IndexDetails::None, false);
-    let mut uses_hints = true;
     let mut index = None;
     if lists.is_none() || args.signed.is_some() {
         let (backend, kdop_directions) = match lists {
             // With lists the index decides signs alone.
             Some(_) => (saved_or_default(saved.as_ref()), None),
-            None => args.index_args.choice(saved.as_ref(), soup, grid.len() as u64)?,
+            None => args.index_args.choice(saved.as_ref(), soup, grid.len() as u64, &pool)?,
         };
         let source = SceneSource { soup, kdop_directions, saved: saved.as_ref() };
-        let prepared = source.prepare(streams, backend).with_context(|| scene_args.name())?;
+        let prepared = source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
         if lists.is_none() {
             backend_name = backend.name;
         }
-        // Trees gain from hints, cells from several queries at a time.
-        uses_hints = backend.structure == SearchStructure::Tree;
         (details, is_loaded) = (prepared.built.details, prepared.is_loaded);
         index = Some(prepared.built.index);
     }
     let index = match (&index, args.signed) {
         (Some(index), Some(rule)) => {
-            Some(rule.signed_index(streams, &**index, soup).with_context(|| scene_args.name())?)
+            let (signed, rule) = rule.prepare(streams, &**index, soup).with_context(|| scene_args.name())?;
+            Some(FieldIndex::Signed(signed, rule))
         }
         (Some(index), None) => Some(FieldIndex::Unsigned(&**index)),
         (None, _) => None,
     };
-    let source = DistanceSource { lists, index, uses_hints };
+    let source = DistanceSource { lists, index };
     let build_time = start.elapsed();
 
     let start = Instant::now();
@@ -224,10 +209,10 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         return json::print(streams, &json::joined([index.json("field"), report.json(), end]));
     }
     let mut text = String::new();
-    // Writing to a string does not fail. The file is complete, so an error of writing the summary is ignored.
+    // Writing to a string does not fail.
     let _ = index.write(&mut text, None);
     let _ = report.write(&mut text);
-    let _ = writeln!(streams.stderr(), "{text}written  {}, {bytes} bytes", args.out.display());
+    streams.print_summary(format_args!("{text}written  {}, {bytes} bytes\n", args.out.display()));
     Ok(())
 }
 
@@ -255,7 +240,7 @@ impl Args {
             let cells = refined(&bounds, &distance, &RefineOptions::new(error).with_depth(self.depth));
             return Ok(ComputedField::Cells(cells));
         }
-        let mut options = FieldOptions::default().with_hints(source.uses_hints);
+        let mut options = FieldOptions::default();
         if let Some(band) = self.band {
             options = options.with_band(band);
         }
@@ -277,8 +262,6 @@ impl Args {
 struct DistanceSource<'a> {
     lists: Option<CandidateLists<'a, Soup<f64>>>,
     index: Option<FieldIndex<'a>>,
-    /// Whether each query passes its answer as a hint to the next one.
-    uses_hints: bool,
 }
 
 /// The name of lists in reports, in place of that of a backend.
@@ -286,7 +269,12 @@ const LISTS_NAME: &str = "lists";
 
 /// Returns lists of candidates, unless the grid is too coarse for them to pay, coordinates are out of their range, or
 /// memory is short.
-fn candidate_lists<'a>(streams: &Streams, soup: &'a Soup<f64>, grid: &Grid) -> Option<CandidateLists<'a, Soup<f64>>> {
+fn candidate_lists<'a>(
+    streams: &Streams,
+    soup: &'a Soup<f64>,
+    grid: &Grid,
+    pool: &ThreadPool,
+) -> Option<CandidateLists<'a, Soup<f64>>> {
     let last = grid.point(grid.counts().map(|n| n - 1));
     if grid.len() < soup.len() {
         return None;
@@ -294,7 +282,7 @@ fn candidate_lists<'a>(streams: &Streams, soup: &'a Soup<f64>, grid: &Grid) -> O
     let is_in_range = |point: &Point3<f64>| point.iter().all(|x| x.abs() <= MAX_COORDINATE);
     let is_in_range = is_in_range(&grid.origin()) && is_in_range(&last);
     let _progress = Progress::start(streams, "sorting primitives", None, Unit::None);
-    CandidateLists::new(soup).filter(|_| is_in_range)
+    pool.install(|| CandidateLists::new(soup)).filter(|_| is_in_range)
 }
 
 /// An index with or without signs.
@@ -302,27 +290,6 @@ enum FieldIndex<'a> {
     Unsigned(&'a dyn Index),
     /// The signs, and the name of the rule that decides them.
     Signed(SignedDistance<'a, &'a dyn Index>, &'static str),
-}
-
-impl SignRule {
-    /// Prepares signs for the index.
-    fn signed_index<'a>(
-        self,
-        streams: &Streams,
-        index: &'a dyn Index,
-        soup: &'a Soup<f64>,
-    ) -> Result<FieldIndex<'a>, SignError> {
-        let _progress = Progress::start(streams, "looking for inside and outside", None, Unit::None);
-        if self != Self::Winding {
-            match SignedDistance::new(index, soup) {
-                Ok(signed) => return Ok(FieldIndex::Signed(signed, "closed")),
-                Err(SignError::Open { .. } | SignError::NotOriented { .. }) if self == Self::Auto => {}
-                Err(error) => return Err(error),
-            }
-        }
-        let signed = SignedDistance::with_winding_numbers(index, soup, WINDING_NUMBER_ERROR)?;
-        Ok(FieldIndex::Signed(signed, "winding"))
-    }
 }
 
 impl FieldIndex<'_> {

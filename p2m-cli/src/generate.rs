@@ -13,7 +13,6 @@ use p2m_mixed::generate::{
 };
 use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
-use std::io::Write;
 use std::path::PathBuf;
 
 /// Make a scene from nothing, the same on every machine
@@ -295,8 +294,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         return json::print(streams, &report);
     }
     if !is_standard(&destination.out) {
-        // The file is complete, so an error of writing the summary is ignored.
-        let _ = write!(streams.stderr(), "made     {}\n{}", kind.description(), written.text());
+        streams.print_summary(format_args!("made     {}\n{}", kind.description(), written.text()));
     }
     Ok(())
 }

@@ -3,9 +3,11 @@
 use crate::backend::{Backend, BackendChoice, backend_choices};
 use crate::input::SceneArgs;
 use crate::kdop_directions::{KdopFaces, requested};
+use crate::threads::ThreadArgs;
 use p2m_advisor::{KdopDirections, QueryRegion, Workload};
 use p2m_core::Soup;
 use p2m_core::storage::Reader;
+use rayon::ThreadPool;
 
 #[derive(clap::Args)]
 pub(crate) struct IndexArgs {
@@ -19,6 +21,9 @@ pub(crate) struct IndexArgs {
     /// How many faces the polytopes of --backend kdop have [default: 14]
     #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
     k: Option<KdopFaces>,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
 }
 
 /// The number of queries that `--backend auto` chooses an index for if the command does not say how many there are.
@@ -58,9 +63,10 @@ impl IndexArgs {
         saved: Option<&Reader>,
         soup: &Soup<f64>,
         queries: u64,
+        pool: &ThreadPool,
     ) -> anyhow::Result<(Backend, Option<KdopDirections>)> {
         let workload = Workload::new(queries, QueryRegion::SceneBox);
-        let backend = BackendChoice::resolve(self.backend, saved, soup, &workload)?;
+        let backend = BackendChoice::resolve(self.backend, saved, soup, &workload, pool)?;
         Ok((backend, requested(backend.has_kdop_directions, self.k)?))
     }
 }

@@ -44,7 +44,7 @@ Examples:
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
-    let (scene, saved) = read_scene_and_index(streams, &args.scene.path, format)?;
+    let (scene, saved) = read_scene_and_index(streams, &args.scene.path, format, args.scene.map)?;
     let index = saved.and_then(|reader| p2m_core::storage::kind(&reader).ok());
     let progress = Progress::start(streams, "counting", None, Unit::None);
     let statistics = Statistics::of(&scene.soup);

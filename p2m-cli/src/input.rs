@@ -3,11 +3,13 @@
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
 use crate::usage::{one_of, usage};
-use anyhow::{Context, anyhow};
+use anyhow::{Context, anyhow, bail};
+use flate2::bufread::MultiGzDecoder;
 use nalgebra::Point3;
 use p2m_core::Ray;
 use p2m_core::storage::{LoadError, Reader, SavedFile};
 use p2m_mixed::{Format, PointFormat, ReadError, Scene, load_scene};
+use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -20,13 +22,20 @@ pub(crate) const STANDARD: &str = "-";
 /// A scene to read.
 #[derive(clap::Args)]
 pub(crate) struct SceneArgs {
-    /// Scene: an OBJ, PLY, STL or OFF file, or an index that `p2m build` saved; `-` is the standard input
+    /// Scene: an OBJ, PLY, STL or OFF file, or an index that `p2m build` saved; `-` is the standard input. What gzip or
+    /// zstd has compressed is decompressed
     #[arg(value_name = "SCENE")]
     pub(crate) path: PathBuf,
 
     /// The format of the scene, if its extension does not name it
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     format: Option<Format>,
+
+    /// Map a saved index into memory instead of reading it, so that it takes no time and processes share it.
+    ///
+    /// Nobody may change or truncate the file while the command runs: what then happens is undefined.
+    #[arg(long)]
+    pub(crate) map: bool,
 }
 
 impl SceneArgs {
@@ -56,7 +65,7 @@ pub(crate) fn scene_format(path: &Path, given: Option<Format>, option: &str) -> 
     match given {
         Some(format) => Ok(format),
         None if is_standard(path) => Err(unnamed(option, Format::NAMES)),
-        None => Format::from_path(path).map_err(|e| or_option(&e, option)),
+        None => Format::from_path(&uncompressed_name(path)?).map_err(|e| or_option(&e, option)),
     }
 }
 
@@ -65,8 +74,17 @@ pub(crate) fn point_format(path: &Path, given: Option<PointFormat>, option: &str
     match given {
         Some(format) => Ok(format),
         None if is_standard(path) => Err(unnamed(option, PointFormat::NAMES)),
-        None => PointFormat::from_path(path).map_err(|e| or_option(&e, option)),
+        None => PointFormat::from_path(&uncompressed_name(path)?).map_err(|e| or_option(&e, option)),
     }
+}
+
+/// Returns the name of a file without the extension of a compression. A directory has no format, and is refused.
+fn uncompressed_name(path: &Path) -> anyhow::Result<PathBuf> {
+    if path.is_dir() {
+        bail!("{}: cannot be read: is a directory", path.display());
+    }
+    let is_compressed = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz") || e.eq_ignore_ascii_case("zst"));
+    Ok(if is_compressed { path.with_extension("") } else { path.to_owned() })
 }
 
 /// The error that the standard input has no format.
@@ -79,27 +97,44 @@ pub(crate) fn or_option(error: &ReadError, option: &str) -> anyhow::Error {
     anyhow!("{error}, or name the format with {option}")
 }
 
-/// Reads a scene. Of a saved index it returns the reader of the index as well.
+/// Reads a scene. Of a saved index, which is mapped if `is_mapped` is set, it returns the reader of the index as well.
 pub(crate) fn read_scene_and_index(
     streams: &Streams,
     path: &Path,
     format: Format,
+    is_mapped: bool,
 ) -> anyhow::Result<(Scene, Option<Reader>)> {
-    if format != Format::P2m {
-        return Ok((p2m_mixed::read_scene_from(open(streams, path)?, format, &name(path))?, None));
+    if is_mapped && (format != Format::P2m || !path.is_file()) {
+        return Err(usage("--map needs the file of a saved index"));
     }
-    let stream = open(streams, path)?;
-    let load = || -> Result<_, LoadError> {
-        let file = SavedFile::read(stream)?;
+    if format != Format::P2m {
+        return Ok((read_plain_scene(streams, path, format)?, None));
+    }
+    let load = |file: SavedFile| -> Result<_, LoadError> {
         let reader = file.checked()?;
         Ok((load_scene(reader)?, Some(reader.clone())))
     };
-    load().with_context(|| name(path))
+    let file = if is_mapped { map(path) } else { SavedFile::read(open(streams, path)?) };
+    file.and_then(load).with_context(|| name(path))
+}
+
+/// Maps the file of a saved index.
+fn map(path: &Path) -> Result<SavedFile, LoadError> {
+    // SAFETY: `--map` says that the user has to keep the file unchanged.
+    #[allow(unsafe_code, reason = "the user asked for it and was told what it needs")]
+    unsafe {
+        SavedFile::map(path)
+    }
 }
 
 /// Reads a scene.
-pub(crate) fn read_scene(streams: &Streams, path: &Path, format: Format) -> anyhow::Result<Scene> {
-    Ok(read_scene_and_index(streams, path, format)?.0)
+pub(crate) fn read_scene(streams: &Streams, args: &SceneArgs, format: Format) -> anyhow::Result<Scene> {
+    Ok(read_scene_and_index(streams, &args.path, format, args.map)?.0)
+}
+
+/// Reads a scene from a file without an index.
+fn read_plain_scene(streams: &Streams, path: &Path, format: Format) -> anyhow::Result<Scene> {
+    Ok(p2m_mixed::read_scene_from(open(streams, path)?, format, &name(path))?)
 }
 
 /// Reads the points of a file.
@@ -112,8 +147,61 @@ pub(crate) fn read_rays(streams: &Streams, path: &Path, format: PointFormat) -> 
     Ok(p2m_mixed::read_rays_from(open(streams, path)?, format, &name(path))?)
 }
 
+/// Opens a file, shows the progress of reading, and decompresses what gzip or zstd has compressed.
+fn open<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<Box<dyn BufRead + 'a>> {
+    let mut raw = open_raw(streams, path)?;
+    let start = raw.fill_buf().with_context(|| format!("{}: cannot be read", name(path)))?;
+    if start.starts_with(&GZIP_MAGIC) {
+        return Ok(Box::new(BufReader::with_capacity(BUFFER_BYTES, MultiGzDecoder::new(raw))));
+    }
+    if start.starts_with(&ZSTD_MAGIC) {
+        return Ok(Box::new(BufReader::with_capacity(BUFFER_BYTES, ZstdReader::new(raw))));
+    }
+    Ok(Box::new(raw))
+}
+
+/// The first bytes of what gzip has compressed.
+const GZIP_MAGIC: [u8; 3] = [0x1f, 0x8b, 8];
+/// The first bytes of what zstd has compressed.
+const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
+
+/// A reader of zstd, frame by frame.
+struct ZstdReader<'a> {
+    /// The source, while no frame is open.
+    source: Option<ProgressReader<'a>>,
+    frame: Option<StreamingDecoder<ProgressReader<'a>, FrameDecoder>>,
+}
+
+impl<'a> ZstdReader<'a> {
+    fn new(source: ProgressReader<'a>) -> Self {
+        Self { source: Some(source), frame: None }
+    }
+}
+
+impl Read for ZstdReader<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        loop {
+            if let Some(mut source) = self.source.take() {
+                if source.fill_buf()?.is_empty() {
+                    self.source = Some(source);
+                    return Ok(0);
+                }
+                let frame = StreamingDecoder::new(source)
+                    .map_err(|e| io::Error::new(io::ErrorKind::InvalidData, e.to_string()))?;
+                self.frame = Some(frame);
+            }
+            let Some(frame) = &mut self.frame else { return Ok(0) };
+            let count = frame.read(buffer)?;
+            if count > 0 || buffer.is_empty() {
+                return Ok(count);
+            }
+            self.source = self.frame.take().map(StreamingDecoder::into_inner);
+        }
+    }
+}
+
 /// Opens a file and shows the progress of reading.
-fn open<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<ProgressReader<'a>> {
+fn open_raw<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<ProgressReader<'a>> {
     let name = name(path);
     let what = format!("reading {name}");
     if is_standard(path) {

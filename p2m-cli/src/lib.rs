@@ -2,7 +2,7 @@
 //!
 //! `p2m` reads a scene, computes closest points or hits of rays, and writes a table; `p2m --help` lists all commands.
 
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 mod accuracy;
 mod advise;
@@ -30,9 +30,11 @@ mod ray;
 mod ray_summary;
 mod sampling;
 mod shell;
+mod sign_rule;
 mod stats;
 mod streams;
 mod summary;
+mod threads;
 mod tradeoff;
 mod usage;
 
@@ -47,6 +49,10 @@ use std::io::{self, Write};
 #[derive(Parser)]
 #[command(name = "p2m", version, after_help = EXAMPLES)]
 struct Cli {
+    /// Print no summary, no note and no progress on the standard error; errors are printed
+    #[arg(long, short, global = true)]
+    quiet: bool,
+
     #[command(subcommand)]
     command: Command,
 }
@@ -126,7 +132,10 @@ impl Command {
 pub fn run(streams: &Streams, arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let matches = streams.fit(Cli::command()).try_get_matches_from(arguments);
     let command = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
-        Ok(cli) => cli.command,
+        Ok(cli) => {
+            streams.set_quiet(cli.quiet);
+            cli.command
+        }
         Err(error) => {
             // An error of writing the message cannot be reported anywhere.
             let _ = streams.show(&error);

@@ -163,7 +163,11 @@ impl Sink<'_> {
         // The error of a temporary file names that file, which means nothing to the user.
         let temporary = builder.tempfile_in(directory).map_err(|e| {
             let folder = directory.display();
-            io::Error::new(e.kind(), format!("no file can be made in the folder '{folder}': {}", e.kind()))
+            let reason = match e.kind() {
+                io::ErrorKind::NotFound => "the folder does not exist".to_owned(),
+                kind => kind.to_string(),
+            };
+            io::Error::new(e.kind(), format!("no file can be made in the folder '{folder}': {reason}"))
         })?;
         // The parts are used separately, because errors of the whole name the temporary file as well.
         let (temporary, path) = temporary.into_parts();

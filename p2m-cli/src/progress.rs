@@ -37,7 +37,7 @@ impl Progress {
     pub(crate) fn start(streams: &Streams, what: &str, total: Option<u64>, unit: Unit) -> Self {
         let done = Arc::new(AtomicU64::new(0));
         // On a terminal that cannot move its cursor the bar hides itself.
-        if !streams.is_stderr_terminal() {
+        if !streams.shows_progress() {
             return Self { done, drawing: None };
         }
         let (stop, stopped) = mpsc::channel();

@@ -1,7 +1,7 @@
 //! `p2m query`: closest points as a table.
 
 use crate::accuracy::Accuracy;
-use crate::answering::{QueryStream, Steps, answer_all};
+use crate::answering::{QueryStream, Steps, answer_all, answer_each};
 use crate::backend::{BackendChoice, PreparedIndex, SceneSource, backend_choices};
 use crate::input::{self, SceneArgs, point_format, read_points, read_scene_and_index};
 use crate::json;
@@ -9,16 +9,19 @@ use crate::kdop_directions::requested;
 use crate::output::Output;
 use crate::query_args::QueryArgs;
 use crate::sampling::{Queries, Region};
+use crate::sign_rule::SignRule;
 use crate::streams::Streams;
 use crate::summary::{AnswerSummary, IndexSummary, RunSummary};
-use crate::usage::{not_negative, one_of, positive, whole_number};
+use crate::usage::{not_negative, one_of, positive, usage, whole_number};
 use anyhow::Context;
 use clap::ArgGroup;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use nalgebra::Point3;
-use p2m_advisor::{BuiltIndex, QueryRegion, Workload};
-use p2m_mixed::{AnswerWriter, PointFormat, Scene};
+use p2m_advisor::{BuiltIndex, Index, QueryRegion, Workload};
+use p2m_core::Closest;
+use p2m_mixed::{AnswerColumn, AnswerEncoder, AnswerFormat, AnswerRecord, AnswerWriter, PointFormat, Scene};
 use serde_json::{Value, json};
-use std::io::{self, Write};
+use std::io;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -28,7 +31,8 @@ fn help() -> String {
         "\
 The table has the columns qx,qy,qz,x,y,z,distance,primitive,feature: the query, its closest point in the scene, their \
 distance, the number of the primitive from 0 and the part of it that holds the point. The last six are empty where \
-there is no answer. Of a scene with named objects there is one column more, object: the name of that of the primitive, \
+there is no answer; --columns chooses others, and --signed adds signed_distance. With --k-nearest or --within each answer has \
+a row, with the number of its query from 0 in the column number. Of a scene with named objects there is one column more, object: the name of that of the primitive, \
 empty where it is in none. Numbers are the shortest that read back the same. A summary goes to the standard error.
 
 Primitives are numbered in the order of the file. Polygons are cut into triangles, and it is the triangles that count.
@@ -40,7 +44,10 @@ Answers as NPY are an array of NumPy with the fields query, point, distance, low
 feature_kind (0 a vertex, 1 an edge, 2 the face) and feature_number; as PLY a cloud of the queries that viewers can colour \
 by distance. Where there is no answer, numbers are NaN and -1.
 
-No distance is smaller than the true one but for rounding. With --epsilon or --max-visits it may be larger, by what the line `error` of the summary says at most: every answer has a lower bound that is certain (lower_bound in NPY).
+No distance is smaller than the true one but for rounding. With --epsilon or --max-visits it may be larger, by at most what the line `accuracy` of the summary says: every answer has a \
+lower bound that is certain (lower_bound in NPY). Of primitives whose distances round to the same number the answer is the \
+one with the lowest number, although another one may be nearer by less than that rounding; --certified answers with the \
+one that is exactly the nearest, and of equal ones with the lowest number.
 
 Points from a CSV file are taken from its columns qx, qy, qz, or else x, y, z (also like 'X [m]'), or else Points:0, \
 Points:1, Points:2, or else from the first three columns; so the table itself is a file of the same queries. XYZ and TXT \
@@ -55,6 +62,8 @@ and 130 after Ctrl-C.
 Examples:
   p2m query bunny.obj --points scan.xyz --max-distance 0.5 --out answers.csv
   p2m query scene.ply --random 100000 --seed 7 --box-scale 1.5 --backend aabb > answers.csv
+  p2m query bunny.obj --points scan.csv.gz --signed --columns query,signed,primitive --out sides.csv
+  p2m query scene.obj --points scan.xyz --k-nearest 3 --out three.csv
   p2m query scene.obj --grid 64 --out field.npy --json
   p2m query city.obj --points scan.xyz --epsilon 0.01 --out rough.npy
   p2m query turned.stl --random 100000 --backend kdop --k scene --out answers.csv
@@ -106,6 +115,23 @@ pub(crate) struct Args {
     #[arg(long, value_parser = backend_choices())]
     backend: Option<BackendChoice>,
 
+    /// Answer with the N nearest primitives of each query, nearest first, one row each
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true, conflicts_with_all = ["within", "certified", "epsilon", "max_visits"])]
+    k_nearest: Option<u32>,
+
+    /// Answer with all primitives within this distance of each query, nearest first, one row each
+    #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true, conflicts_with_all = ["max_distance", "certified", "epsilon", "max_visits"])]
+    within: Option<f64>,
+
+    /// Add a column of distances that are negative inside; needs a scene of triangles [possible values of RULE: auto,
+    /// closed, winding]
+    #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum, conflicts_with_all = ["k_nearest", "within"])]
+    signed: Option<SignRule>,
+
+    /// The columns of the answers, separated by commas, in the order in which they are to be
+    #[arg(long, value_name = "COLUMNS", value_delimiter = ',', value_parser = columns())]
+    columns: Vec<AnswerColumn>,
+
     #[command(flatten)]
     query_args: QueryArgs,
 
@@ -116,44 +142,69 @@ pub(crate) struct Args {
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let (scene_args, query_args) = (&args.scene, &args.query_args);
     query_args.check(scene_args, args.points.as_deref(), "points")?;
+    args.check()?;
     let (format, out_format) = (scene_args.format()?, query_args.format(streams)?);
     let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format)?;
+    let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format, scene_args.map)?;
     let (queries, sample) = queries(streams, args, &scene)?;
     let read_time = start.elapsed();
     // The file is opened before the work, which would be lost if its name were wrong.
     let mut output = Output::open(streams, Some(&query_args.out))?;
 
+    let pool = query_args.threads.pool()?;
     let start = Instant::now();
     let saved = saved.as_ref();
     let region = sample.as_deref().map_or(QueryRegion::SceneBox, QueryRegion::Like);
     let workload = Workload::new(queries.len(), region);
-    let backend = BackendChoice::resolve(args.backend, saved, &scene.soup, &workload);
+    let backend = BackendChoice::resolve(args.backend, saved, &scene.soup, &workload, &pool);
     let backend = backend.with_context(|| scene_args.name())?;
     let kdop_directions = requested(backend.has_kdop_directions, query_args.k)?;
     let source = SceneSource { soup: &scene.soup, kdop_directions, saved };
     let PreparedIndex { built: BuiltIndex { index, details }, is_loaded, .. } =
-        source.prepare(streams, backend).with_context(|| scene_args.name())?;
+        source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
     let build_time = start.elapsed();
 
-    let pool = query_args.pool()?;
-    let accuracy = &args.accuracy;
-    let options = accuracy.options(args.max_distance);
+    let signed = args.signed.map(|rule| rule.prepare(streams, &*index, &scene.soup)).transpose();
+    let signed = signed.with_context(|| scene_args.name())?.map(|(signed, _)| signed);
     let mut summary = AnswerSummary::default();
     let write = || -> io::Result<Duration> {
-        let mut writer = AnswerWriter::with_objects(&mut output, out_format, queries.len(), &scene.objects)?;
-        let (queries, encoder) =
-            (QueryStream { name: "queries", count: queries.len(), iter: queries }, writer.encoder());
-        let steps = Steps {
-            answer: |queries: &[_]| accuracy.answer(&*index, queries, &options),
-            encode: |_, query: &_, answer: &Option<_>, out: &mut _| {
-                encoder.encode(query, answer.as_ref(), f64::NAN, out);
-                1
-            },
-            take: |_: &_, answer: &Option<_>| summary.add(answer.as_ref()),
-            write: |count, records: &[u8]| writer.write_encoded(count, records),
+        let encoder = AnswerEncoder::new(out_format, &scene.objects, &args.columns(out_format, &scene));
+        // Only with one answer for each query it is known before how many there are.
+        let count = Some(queries.len()).filter(|_| !args.has_many_answers());
+        let mut writer = AnswerWriter::with_columns(&mut output, encoder.clone(), count)?;
+        let queries = QueryStream { name: "queries", count: queries.len(), iter: queries };
+        let write = |count, records: &[u8]| writer.write_encoded(count, records);
+        let time = if args.has_many_answers() {
+            let steps = Steps {
+                answer: |queries: &[_]| answer_each(queries, |query| args.near(&*index, query)),
+                encode: |number, query: &_, answers: &Vec<_>, out: &mut _| {
+                    for answer in answers {
+                        let record = AnswerRecord { number, query, answer: Some(answer), signed_distance: f64::NAN };
+                        encoder.encode(&record, out);
+                    }
+                    answers.len() as u64
+                },
+                take: |_: &_, answers: &Vec<_>| summary.add_all(answers),
+                write,
+            };
+            answer_all(streams, &pool, queries, steps)?
+        } else {
+            let (accuracy, options) = (&args.accuracy, args.accuracy.options(args.max_distance));
+            let steps = Steps {
+                answer: |queries: &[_]| accuracy.answer(&*index, queries, &options),
+                encode: |number, query: &_, answer: &Option<_>, out: &mut _| {
+                    let (answer, signed) = (answer.as_ref(), signed.as_ref());
+                    let signed_distance =
+                        signed.zip(answer).and_then(|(signed, answer)| signed.with_sign(query, *answer).distance());
+                    let signed_distance = signed_distance.unwrap_or(f64::NAN);
+                    encoder.encode(&AnswerRecord { number, query, answer, signed_distance }, out);
+                    1
+                },
+                take: |_: &_, answer: &Option<_>| summary.add(answer.as_ref()),
+                write,
+            };
+            answer_all(streams, &pool, queries, steps)?
         };
-        let time = answer_all(streams, &pool, queries, steps)?;
         writer.finish()?;
         Ok(time)
     };
@@ -166,12 +217,64 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let run = RunSummary { index, threads, query_time };
     if query_args.json {
         let max_distance = args.max_distance.map_or(Value::Null, json::number);
-        let report = summary.json(&run.index.cells(), &max_distance, &accuracy.json(), &source_json(args));
+        let report = summary.json(&run.index.cells(), &max_distance, &args.accuracy.json(), &source_json(args));
         return json::print(streams, &run.json("query", report, &query_args.output_json(out_format, bytes)));
     }
-    // The answers are complete, so an error of writing the summary is ignored.
-    let _ = write!(streams.stderr(), "{}{summary}", run.text("queries", "query", summary.queries()));
+    streams.print_summary(format_args!("{}{summary}", run.text("queries", "query", summary.queries())));
     Ok(())
+}
+
+/// Returns a parser of the names of columns.
+fn columns() -> impl TypedValueParser<Value = AnswerColumn> {
+    let find = |name: String| AnswerColumn::ALL.into_iter().find(|column| column.name() == name);
+    PossibleValuesParser::new(AnswerColumn::ALL.map(AnswerColumn::name))
+        .map(move |name| find(name).expect("the parser accepts the names of columns alone"))
+}
+
+impl Args {
+    /// Returns whether a query may have more than one answer.
+    fn has_many_answers(&self) -> bool {
+        self.k_nearest.is_some() || self.within.is_some()
+    }
+
+    /// Returns the answers to a query with many.
+    fn near(&self, index: &dyn Index, query: &Point3<f64>) -> Vec<Closest<f64>> {
+        match self.within {
+            Some(radius) => index.all_within(query, radius),
+            None => {
+                let k = self.k_nearest.map_or(1, |k| k as usize);
+                index.k_nearest(query, k, self.max_distance.unwrap_or(f64::INFINITY))
+            }
+        }
+    }
+
+    /// Returns the columns that the arguments name, or else those of the format, with the numbers of queries if these
+    /// may have many answers.
+    fn columns(&self, format: AnswerFormat, scene: &Scene) -> Vec<AnswerColumn> {
+        if !self.columns.is_empty() {
+            return self.columns.clone();
+        }
+        let mut columns = AnswerColumn::defaults(format, !scene.objects.is_empty());
+        if self.has_many_answers() {
+            columns.insert(0, AnswerColumn::Number);
+        }
+        if self.signed.is_some() {
+            let distance = columns.iter().position(|column| *column == AnswerColumn::Distance);
+            columns.insert(distance.map_or(columns.len(), |at| at + 1), AnswerColumn::Signed);
+        }
+        columns
+    }
+
+    /// Refuses combinations of arguments that contradict each other.
+    fn check(&self) -> anyhow::Result<()> {
+        if self.columns.contains(&AnswerColumn::Signed) && self.signed.is_none() {
+            return Err(usage("the column signed needs --signed"));
+        }
+        match (1..self.columns.len()).find(|i| self.columns[..*i].contains(&self.columns[*i])) {
+            Some(twice) => Err(usage(format!("the column {} is named twice", self.columns[twice].name()))),
+            None => Ok(()),
+        }
+    }
 }
 
 /// Returns the queries and, if they come from a file, a sample of them.

@@ -4,10 +4,9 @@ use crate::input::{SceneArgs, is_standard, or_option};
 use crate::kdop_directions::KdopFaces;
 use crate::output::Output;
 use crate::streams::Streams;
+use crate::threads::ThreadArgs;
 use crate::usage::{one_of, usage};
-use anyhow::anyhow;
 use p2m_mixed::AnswerFormat;
-use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -33,9 +32,8 @@ pub(crate) struct QueryArgs {
     #[arg(long)]
     pub(crate) json: bool,
 
-    /// How many threads to use, up to 1024; all cores by default
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
-    threads: Option<u16>,
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
 }
 
 impl QueryArgs {
@@ -67,22 +65,8 @@ impl QueryArgs {
         Ok(format)
     }
 
-    /// Starts the threads.
-    pub(crate) fn pool(&self) -> anyhow::Result<ThreadPool> {
-        pool(self.threads)
-    }
-
     /// Returns the part of a report about the file of the answers.
     pub(crate) fn output_json(&self, format: AnswerFormat, bytes: u64) -> Value {
         json!({ "file": self.out.display().to_string(), "format": format.name(), "bytes": bytes })
     }
-}
-
-/// Starts this number of threads, or as many as there are cores.
-pub(crate) fn pool(threads: Option<u16>) -> anyhow::Result<ThreadPool> {
-    // For rayon 0 stands for the number of cores.
-    let threads = threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    // The error is kept as text, because its source repeats it.
-    pool.map_err(|e| anyhow!("cannot start threads: {e}"))
 }

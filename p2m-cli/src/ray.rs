@@ -21,7 +21,7 @@ use p2m_core::{Hit, Ray, RayError, RayQuery};
 use p2m_mixed::{AnswerFormat, HitWriter, NumberWriter, Object, PointFormat, Scene};
 use rayon::ThreadPool;
 use serde_json::{Value, json};
-use std::io::{self, Write};
+use std::io;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -166,22 +166,22 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     along_x.map_err(|error| usage(format!("{error} (--min, --max)")))?;
     let (format, out_format) = (scene_args.format()?, query_args.format(streams)?);
     let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format)?;
+    let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format, scene_args.map)?;
     let rays = rays(streams, args, &scene)?;
     let read_time = start.elapsed();
     // The file is opened before the work, which would be lost if its name were wrong.
     let mut output = Output::open(streams, Some(&query_args.out))?;
 
+    let pool = query_args.threads.pool()?;
     let start = Instant::now();
     let saved = saved.as_ref();
     let backend = args.backend.unwrap_or_else(|| ray_backend(saved));
     let kdop_directions = requested(backend.has_kdop_directions, query_args.k)?;
     let source = SceneSource { soup: &scene.soup, kdop_directions, saved };
     let PreparedIndex { built: BuiltIndex { index, details }, is_loaded, .. } =
-        source.prepare(streams, backend).with_context(|| scene_args.name())?;
+        source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
     let build_time = start.elapsed();
 
-    let pool = query_args.pool()?;
     let index = index.as_ray_query().context("the backend casts no rays")?;
     let (output_file, objects) = (&mut output, scene.objects.as_slice());
     let task = Task { streams, index, pool: &pool, rays, output: output_file, format: out_format, objects };
@@ -196,8 +196,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let report = args.report(summary.json());
         return json::print(streams, &run.json("ray", report, &query_args.output_json(out_format, bytes)));
     }
-    // The answers are complete, so an error of writing the summary is ignored.
-    let _ = write!(streams.stderr(), "{}{summary}", run.text("rays", "ray", summary.rays()));
+    streams.print_summary(format_args!("{}{summary}", run.text("rays", "ray", summary.rays())));
     Ok(())
 }
 

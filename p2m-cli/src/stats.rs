@@ -94,16 +94,17 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
     let format = scene_args.format()?;
     let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format)?;
+    let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format, scene_args.map)?;
     let read_time = start.elapsed();
     let picture = args.out.as_ref().map(|out| Output::open(streams, Some(out))).transpose()?;
 
+    let pool = args.index_args.threads.pool()?;
     let start = Instant::now();
     let saved = saved.as_ref();
-    let (backend, kdop_directions) = args.index_args.choice(saved, &scene.soup, DEFAULT_QUERY_COUNT)?;
+    let (backend, kdop_directions) = args.index_args.choice(saved, &scene.soup, DEFAULT_QUERY_COUNT, &pool)?;
     let source = SceneSource { soup: &scene.soup, kdop_directions, saved };
     let PreparedIndex { built: BuiltIndex { index, details }, is_loaded, stages } =
-        source.prepare(streams, backend).with_context(|| scene_args.name())?;
+        source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
     let build_time = start.elapsed();
 
     let progress = Progress::start(streams, "querying", None, Unit::None);

@@ -1,6 +1,7 @@
 //! The standard streams of a run.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
+use std::fmt;
 use std::io::{self, IsTerminal, Read, Write};
 
 /// The standard input, output and error of a run.
@@ -10,6 +11,8 @@ pub struct Streams {
     stderr: RefCell<Box<dyn Write>>,
     /// Whether these are the streams of the process, which may be terminals.
     is_process: bool,
+    /// Whether summaries and progress are left out.
+    is_quiet: Cell<bool>,
 }
 
 impl Streams {
@@ -26,6 +29,7 @@ impl Streams {
             stdout: RefCell::new(Box::new(stdout)),
             stderr: RefCell::new(Box::new(stderr)),
             is_process: false,
+            is_quiet: Cell::new(false),
         }
     }
 
@@ -41,12 +45,25 @@ impl Streams {
         Stream(&self.stderr)
     }
 
-    pub(crate) fn is_stdout_terminal(&self) -> bool {
-        self.is_process && io::stdout().is_terminal()
+    /// Sets whether summaries and progress are left out.
+    pub(crate) fn set_quiet(&self, is_quiet: bool) {
+        self.is_quiet.set(is_quiet);
     }
 
-    pub(crate) fn is_stderr_terminal(&self) -> bool {
-        self.is_process && io::stderr().is_terminal()
+    /// Writes a summary to the standard error. Results are complete by then, so an error of writing it is ignored.
+    pub(crate) fn print_summary(&self, text: fmt::Arguments<'_>) {
+        if !self.is_quiet.get() {
+            let _ = self.stderr().write_fmt(text);
+        }
+    }
+
+    /// Returns whether progress is shown.
+    pub(crate) fn shows_progress(&self) -> bool {
+        !self.is_quiet.get() && self.is_process && io::stderr().is_terminal()
+    }
+
+    pub(crate) fn is_stdout_terminal(&self) -> bool {
+        self.is_process && io::stdout().is_terminal()
     }
 
     /// Gives help a fixed width, unless it is for the process, whose terminal sets the width.

@@ -153,15 +153,24 @@ impl RunSummary<'_> {
 #[derive(Debug, Default)]
 pub(crate) struct AnswerSummary {
     queries: u64,
+    /// The number of queries without an answer.
+    unanswered: u64,
     distances: RunningStats,
     /// The upper bounds of the errors of the distances.
     errors: RunningStats,
 }
 
 impl AnswerSummary {
+    /// Adds a query with one answer or none.
     pub(crate) fn add(&mut self, answer: Option<&Closest<f64>>) {
+        self.add_all(answer.map_or(&[], std::slice::from_ref));
+    }
+
+    /// Adds a query with any number of answers.
+    pub(crate) fn add_all(&mut self, answers: &[Closest<f64>]) {
         self.queries += 1;
-        if let Some(closest) = answer {
+        self.unanswered += u64::from(answers.is_empty());
+        for closest in answers {
             self.distances.add(closest.distance);
             self.errors.add(closest.distance - closest.lower_bound);
         }
@@ -173,15 +182,15 @@ impl AnswerSummary {
 
     /// Returns the part of a report about queries that came from `source`.
     pub(crate) fn json(&self, cells: &Value, max_distance: &Value, accuracy: &Value, source: &Value) -> Value {
-        let answered = self.distances.count();
         json!({
             "cells": cells,
             "max_distance": max_distance,
             "accuracy": accuracy,
             "source": source,
             "queries": self.queries,
-            "answered": answered,
-            "unanswered": self.queries - answered,
+            "answered": self.queries - self.unanswered,
+            "unanswered": self.unanswered,
+            "answers": self.distances.count(),
             "distance": stats(&self.distances),
             "error": stats(&self.errors),
         })
@@ -190,11 +199,16 @@ impl AnswerSummary {
 
 impl fmt::Display for AnswerSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let answered = self.distances.count();
-        writeln!(f, "answers  {answered}, without answer {}", self.queries - answered)?;
-        if answered > 0 {
+        let answers = self.distances.count();
+        writeln!(f, "answers  {answers}, without answer {}", self.unanswered)?;
+        if answers > 0 {
             writeln!(f, "distance {}", self.distances)?;
-            writeln!(f, "error    max {:?}, mean {:?}, at most", self.errors.max(), self.errors.mean())?;
+            writeln!(
+                f,
+                "accuracy distances are too large by at most {:?}, on average by at most {:?}",
+                self.errors.max(),
+                self.errors.mean()
+            )?;
         }
         Ok(())
     }

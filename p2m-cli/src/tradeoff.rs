@@ -126,7 +126,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if args.html.is_some() && args.html == args.csv {
         bail!("--html and --csv name the same file");
     }
-    let scene = read_scene(streams, &args.scene.path, args.scene.format()?)?;
+    let scene = read_scene(streams, &args.scene, args.scene.format()?)?;
     if scene.soup.is_empty() {
         bail!("{}: there is nothing in it", args.scene.name());
     }

@@ -3,6 +3,8 @@
 use crate::format::FieldFormat;
 use crate::grid::Grid;
 use crate::refined::Cell;
+use base64::engine::general_purpose::STANDARD;
+use base64::write::EncoderWriter;
 use p2m_mixed::engine::npy_header;
 use std::io::{self, Write};
 
@@ -11,7 +13,7 @@ use std::io::{self, Write};
 /// - **NPY**: an array of NumPy of type `<f4` and shape (x, y, z) in Fortran order. `field[i, j, k]` is the value at
 ///   `Grid::point([i, j, k])`.
 /// - **VTI**: an ImageData of VTK with origin and spacing, which ParaView reads. The values are the point data
-///   `distance`.
+///   `distance`, in base64, so that the file is XML.
 /// - **Raw**: the values alone as little-endian f32, with x running fastest.
 ///
 /// ```
@@ -34,8 +36,11 @@ pub fn write_field(grid: &Grid, values: &[f32], format: FieldFormat, mut writer:
     }
     let [x, y, z] = grid.counts();
     match format {
-        FieldFormat::Npy => writer.write_all(&npy_header("'<f4'", &format!("({x}, {y}, {z})"), true))?,
-        FieldFormat::Raw => {}
+        FieldFormat::Npy => {
+            writer.write_all(&npy_header("'<f4'", &format!("({x}, {y}, {z})"), true))?;
+            write_values(values, &mut writer)?;
+        }
+        FieldFormat::Raw => write_values(values, &mut writer)?,
         FieldFormat::Vti => {
             let extent = format!("0 {} 0 {} 0 {}", x - 1, y - 1, z - 1);
             let (origin, spacing) = (grid.origin(), grid.spacing());
@@ -45,22 +50,30 @@ pub fn write_field(grid: &Grid, values: &[f32], format: FieldFormat, mut writer:
                  header_type=\"UInt64\">\n<ImageData WholeExtent=\"{extent}\" Origin=\"{:?} {:?} {:?}\" \
                  Spacing=\"{spacing:?} {spacing:?} {spacing:?}\">\n<Piece Extent=\"{extent}\">\n\
                  <PointData Scalars=\"distance\">\n<DataArray type=\"Float32\" Name=\"distance\" format=\"appended\" \
-                 offset=\"0\"/>\n</PointData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_",
+                 offset=\"0\"/>\n</PointData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"base64\">\n_",
                 origin.x, origin.y, origin.z
             )?;
-            writer.write_all(&(4 * values.len() as u64).to_le_bytes())?;
+            // The number of bytes and the values are encoded together.
+            let mut encoder = EncoderWriter::new(&mut writer, &STANDARD);
+            encoder.write_all(&(4 * values.len() as u64).to_le_bytes())?;
+            write_values(values, &mut encoder)?;
+            encoder.finish()?;
+            drop(encoder);
+            writer.write_all(b"\n</AppendedData>\n</VTKFile>\n")?;
         }
     }
+    writer.flush()
+}
+
+/// Writes values as little-endian f32.
+fn write_values(values: &[f32], mut writer: impl Write) -> io::Result<()> {
     let mut bytes = Vec::with_capacity(4 * CHUNK_VALUES);
     for values in values.chunks(CHUNK_VALUES) {
         bytes.clear();
         bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
         writer.write_all(&bytes)?;
     }
-    if format == FieldFormat::Vti {
-        writer.write_all(b"\n</AppendedData>\n</VTKFile>\n")?;
-    }
-    writer.flush()
+    Ok(())
 }
 
 /// The number of values in one call of the writer.

@@ -1,9 +1,10 @@
 //! Lower bounds on the distances to eight k-DOPs.
 //!
-//! A child is at least as far away as the intersection of two half-spaces. The first one contains the box of the first
-//! three directions and is orthogonal to the vector to the nearest point of that box; the second one lies behind a face
-//! of another direction. The distance to this intersection is computed for every other direction, and the largest one
-//! is the bound. docs/proofs/kdop.md derives it and bounds its rounding.
+//! A child is at least as far away as the intersection of two half-spaces. If the first three directions are
+//! orthogonal, the first half-space contains their box and is orthogonal to the vector to the nearest point of that
+//! box; otherwise it lies behind the face with the widest gap. The second one lies behind a face of another direction.
+//! The distance to this intersection is computed for every other direction, and the largest one is the bound.
+//! docs/proofs/kdop.md derives it and bounds its rounding.
 
 use crate::direction_table::DirectionTable;
 use p2m_bvh::engine::node::WIDTH;

@@ -23,8 +23,8 @@ impl Scene {
     /// let mut scene = Scene::default();
     /// scene.add("ball", &Transform::default().translated([9.0, 0.0, 0.0]).apply(&ball).unwrap())?;
     /// scene.add_triangles("floor", &[[-5.0, -5.0, -1.0], [5.0, -5.0, -1.0], [0.0, 9.0, -1.0]], &[[0, 1, 2]])?;
-    /// scene.add_polyline("wire", &[Point3::new(0.0, 0.0, 3.0), Point3::new(1.0, 0.0, 3.0), Point3::new(1.0, 2.0, 3.0)])?;
-    /// scene.add_points("", &[[0.0, 0.0, 9.0]])?;
+    /// scene.add_polyline("wire", &[Point3::new(0.0, 0.0, 3.0), Point3::new(1.0, 0.0, 3.0), Point3::new(1.0, 2.0,
+    /// 3.0)])?; scene.add_points("", &[[0.0, 0.0, 9.0]])?;
     ///
     /// let answer = BruteForce::new(&scene.soup)?.closest_point(&Point3::new(1.0, 1.0, 2.0)).unwrap();
     /// assert_eq!(scene.object_of(answer.primitive).unwrap().name, "wire");

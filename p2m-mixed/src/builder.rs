@@ -1,7 +1,7 @@
 //! The scene that a reader builds, statement by statement.
 
 use crate::Reason;
-use crate::polygon::Triangulator;
+use crate::polygon::{CHECK_REPEATS_ABOVE_CORNERS, MAX_CORNER_SQUARES, Triangulator};
 use crate::scene::{Object, Scene, Skipped};
 use crate::text::{quote, trim};
 use nalgebra::Point3;
@@ -107,6 +107,8 @@ pub(crate) struct SceneBuilder {
     objects: ObjectRuns,
     corners: Vec<Point3<f64>>,
     triangulator: Triangulator,
+    /// The sum of the squares of the numbers of vertices of large polygons so far.
+    corner_squares: u64,
 }
 
 impl SceneBuilder {
@@ -137,6 +139,12 @@ impl SceneBuilder {
     pub(crate) fn push_polygon(&mut self, vertices: &[u32], source: usize) -> Result<(), Reason> {
         if let &[a, b, c] = vertices {
             return self.push(Element::Triangle([a, b, c]), source);
+        }
+        if vertices.len() > CHECK_REPEATS_ABOVE_CORNERS {
+            self.corner_squares += (vertices.len() as u64).pow(2);
+            if self.corner_squares > MAX_CORNER_SQUARES {
+                return Err(Reason::PolygonsTooLarge { limit: MAX_CORNER_SQUARES });
+            }
         }
         self.corners.clear();
         self.corners.extend(vertices.iter().map(|&v| self.soup.positions()[v as usize]));

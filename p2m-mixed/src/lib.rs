@@ -56,7 +56,9 @@ mod vector;
 mod weld;
 mod write;
 
-pub use answers::{AnswerColumn, AnswerEncoder, AnswerWriter, HitEncoder, HitWriter, NumberEncoder, NumberWriter};
+pub use answers::{
+    AnswerColumn, AnswerEncoder, AnswerRecord, AnswerWriter, HitEncoder, HitWriter, NumberEncoder, NumberWriter,
+};
 pub use camera::Camera;
 pub use error::{FileLocation, HeaderProblem, ReadError, Reason};
 pub use format::{AnswerFormat, Format, PointFormat, UnknownFormat};

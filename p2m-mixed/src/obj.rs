@@ -7,19 +7,20 @@ use crate::{FileLocation, ReadError, Reason, Scene};
 use nalgebra::Point3;
 use p2m_core::Element;
 use std::io::BufRead;
+use std::ops::Range;
 
 /// Reads an OBJ file. `name` is the name of the file in messages.
 ///
 /// The statements with geometry are:
 ///
 /// - `v` is a vertex of three coordinates. Weights or colours after them are ignored, but have to be numbers.
-/// - `f` (or its old name `fo`) is a polygon of any shape.
+/// - `f` (or its old name `fo`) is a polygon of any shape. One of two vertices is a polyline.
 /// - `l` is a polyline, whose n vertices make n - 1 segments.
 /// - `p` is a list of points.
 ///
 /// A reference to a vertex may be `a`, `a/b`, `a//c` or `a/b/c`, where `a` counts vertices from 1, or backwards from
-/// -1. It has to refer to a vertex that is defined before. All other statements, free-form curves and surfaces
-/// included, are counted in [`Scene::skipped`] by keyword.
+/// -1. A positive reference may be to a vertex that is defined later. All other statements, free-form curves and
+/// surfaces included, are counted in [`Scene::skipped`] by keyword.
 ///
 /// A file without `f`, `l` and `p` is a point cloud, and each of its vertices is a point. If it has statements of
 /// free-form geometry (`cstype`, `curv`, `surf`, ...), its vertices are control points, and the scene is empty.
@@ -38,23 +39,49 @@ use std::io::BufRead;
 ///
 /// # Errors
 /// [`ReadError`] with the line for invalid numbers, indices that are out of range or refer to a vertex that is not
-/// finite, statements with too few vertices, faces with more than [`MAX_CORNERS`] vertices, and errors of `reader`. A
-/// file without vertices that has statements unknown to OBJ returns [`Reason::NoVertex`].
+/// finite, statements with too few vertices, faces with more than [`MAX_CORNERS`] vertices,
+/// [`Reason::PolygonsTooLarge`], and errors of `reader`. A file without bytes, and one without vertices that has
+/// statements unknown to OBJ, returns [`Reason::NoVertex`].
 pub fn read_obj(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     let mut lines = LineReader::new(reader, 0);
     let mut parser = Parser::default();
+    let mut is_empty = true;
     loop {
         match lines.read_continued() {
-            Ok(true) => {}
+            Ok(true) => is_empty = false,
             Ok(false) => break,
             Err(e) => return Err(ReadError::new(name, FileLocation::Line(lines.line()), Reason::Io(e))),
         }
         let mut tokens = Tokens::new(lines.bytes());
+        parser.line = lines.line();
         parser
             .statement(&mut tokens)
             .map_err(|reason| ReadError::new(name, FileLocation::Line(lines.line() + tokens.line_offset()), reason))?;
     }
+    if is_empty {
+        return Err(ReadError::new(name, FileLocation::File, Reason::NoVertex));
+    }
+    parser.add_deferred().map_err(|(line, reason)| ReadError::new(name, FileLocation::Line(line), reason))?;
     parser.finish().map_err(|reason| ReadError::new(name, FileLocation::File, reason))
+}
+
+/// A statement that makes primitives of its vertices.
+#[derive(Clone, Copy)]
+enum Shape {
+    Polygon,
+    Polyline,
+    Points,
+}
+
+/// A statement that is deferred to the end of the file, because it or one before it refers to a vertex that was not
+/// defined yet. So primitives stay in the order of the file.
+enum Deferred {
+    /// The shape, its line, and the range of its vertices in [`Parser::deferred_vertices`].
+    Shape(Shape, u64, Range<usize>),
+    /// The name of an object that starts here.
+    Object(Vec<u8>),
+    /// What was grouped so far belongs to no object.
+    ClearObjects,
 }
 
 #[derive(Default)]
@@ -74,6 +101,12 @@ struct Parser {
     has_objects: bool,
     /// The vertices of the current statement.
     vertices: Vec<u32>,
+    /// The first line of the current statement.
+    line: u64,
+    /// The line of the first reference of the statement to a vertex that is not defined yet.
+    forward_line: Option<u64>,
+    deferred: Vec<Deferred>,
+    deferred_vertices: Vec<u32>,
 }
 
 impl Parser {
@@ -83,36 +116,31 @@ impl Parser {
         match keyword {
             b"v" => self.vertex(tokens),
             b"f" | b"fo" => {
-                self.vertices(tokens, 3)?;
+                self.vertices(tokens, 2)?;
                 let found = self.vertices.len();
                 if found > MAX_CORNERS {
                     return Err(Reason::ElementTooLarge { count: found as u64, limit: MAX_CORNERS as u64 });
                 }
-                self.builder.push_polygon(&self.vertices, self.faces)?;
-                self.faces += 1;
-                Ok(())
+                self.shape(if found == 2 { Shape::Polyline } else { Shape::Polygon })
             }
             b"l" => {
                 self.vertices(tokens, 2)?;
-                for ends in self.vertices.windows(2) {
-                    self.builder.push(Element::Segment([ends[0], ends[1]]), self.lines)?;
-                }
-                self.lines += 1;
-                Ok(())
+                self.shape(Shape::Polyline)
             }
             b"p" => {
                 self.vertices(tokens, 1)?;
-                for &vertex in &self.vertices {
-                    self.builder.push(Element::Point(vertex), self.points)?;
-                }
-                self.points += 1;
-                Ok(())
+                self.shape(Shape::Points)
             }
             b"o" | b"g" => {
                 // Whether the statement counts as skipped is known only at the end of the file.
                 self.builder.skipped.add(keyword, 1);
                 if keyword == b"o" && !self.has_objects {
-                    self.builder.clear_objects(); // removes groups
+                    // The groups so far are removed.
+                    if self.deferred.is_empty() {
+                        self.builder.clear_objects();
+                    } else {
+                        self.deferred.push(Deferred::ClearObjects);
+                    }
                     self.has_objects = true;
                 }
                 if keyword == b"o" || !self.has_objects {
@@ -131,13 +159,74 @@ impl Parser {
     }
 
     fn object(&mut self, name: &[u8]) {
-        if name.contains(&b'\n') {
-            // The statement extends over several lines.
-            let name: Vec<u8> = name.iter().map(|&b| if b == b'\n' { b' ' } else { b }).collect();
+        // A statement that extends over several lines contains their ends.
+        let name: Vec<u8> = name.iter().map(|&b| if b == b'\n' { b' ' } else { b }).collect();
+        if self.deferred.is_empty() {
             self.builder.start_object(&name);
         } else {
-            self.builder.start_object(name);
+            self.deferred.push(Deferred::Object(name));
         }
+    }
+
+    /// Adds the primitives of the current statement, or defers it.
+    fn shape(&mut self, shape: Shape) -> Result<(), Reason> {
+        let line = self.forward_line.take();
+        if line.is_none() && self.deferred.is_empty() {
+            let vertices = std::mem::take(&mut self.vertices);
+            let added = self.add(shape, &vertices);
+            self.vertices = vertices;
+            return added;
+        }
+        let start = self.deferred_vertices.len();
+        self.deferred_vertices.extend_from_slice(&self.vertices);
+        self.deferred.push(Deferred::Shape(shape, line.unwrap_or(self.line), start..self.deferred_vertices.len()));
+        Ok(())
+    }
+
+    /// Adds the primitives of a statement whose vertices are defined.
+    fn add(&mut self, shape: Shape, vertices: &[u32]) -> Result<(), Reason> {
+        if let Some(vertex) = vertices.iter().find(|vertex| !self.builder.is_finite(**vertex)) {
+            return Err(Reason::NonFiniteVertex { index: u64::from(*vertex) + 1 });
+        }
+        match shape {
+            Shape::Polygon => {
+                self.builder.push_polygon(vertices, self.faces)?;
+                self.faces += 1;
+            }
+            Shape::Polyline => {
+                for ends in vertices.windows(2) {
+                    self.builder.push(Element::Segment([ends[0], ends[1]]), self.lines)?;
+                }
+                self.lines += 1;
+            }
+            Shape::Points => {
+                for &vertex in vertices {
+                    self.builder.push(Element::Point(vertex), self.points)?;
+                }
+                self.points += 1;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds what was deferred. The error has the line of its statement.
+    fn add_deferred(&mut self) -> Result<(), (u64, Reason)> {
+        let (deferred, vertices) = (std::mem::take(&mut self.deferred), std::mem::take(&mut self.deferred_vertices));
+        let count = self.builder.positions().len() as u64;
+        for statement in deferred {
+            match statement {
+                Deferred::Object(name) => self.builder.start_object(&name),
+                Deferred::ClearObjects => self.builder.clear_objects(),
+                Deferred::Shape(shape, line, range) => {
+                    let vertices = &vertices[range];
+                    if let Some(vertex) = vertices.iter().find(|vertex| u64::from(**vertex) >= count) {
+                        return Err((line, Reason::IndexOutOfRange { index: i64::from(*vertex) + 1, count }));
+                    }
+                    self.add(shape, vertices).map_err(|reason| (line, reason))?;
+                }
+            }
+        }
+        Ok(())
     }
 
     fn finish(mut self) -> Result<Scene, Reason> {
@@ -172,7 +261,9 @@ impl Parser {
         self.vertices.clear();
         while let Some(token) = tokens.next() {
             let vertex = vertex_of(token, self.builder.positions().len())?;
-            if !self.builder.is_finite(vertex) {
+            if vertex as usize >= self.builder.positions().len() {
+                self.forward_line.get_or_insert(self.line + tokens.line_offset());
+            } else if !self.builder.is_finite(vertex) {
                 return Err(Reason::NonFiniteVertex { index: u64::from(vertex) + 1 });
             }
             self.vertices.push(vertex);
@@ -236,8 +327,8 @@ fn is_known(keyword: &[u8]) -> bool {
     )
 }
 
-/// Returns the index, counted from 0, of the vertex that a reference like `7/1/2` refers to. `count` is the number of
-/// vertices so far.
+/// Returns the index, counted from 0, of the vertex that a reference like `7/1/2` refers to, which may be defined
+/// later. `count` is the number of vertices so far.
 fn vertex_of(token: &[u8], count: usize) -> Result<u32, Reason> {
     let bad = || Reason::BadNumber { text: quote(token) };
     let mut parts = token.split(|&b| b == b'/');
@@ -254,7 +345,7 @@ fn vertex_of(token: &[u8], count: usize) -> Result<u32, Reason> {
     let count = count as u64;
     let vertex = match index {
         0 => return Err(Reason::IndexZero),
-        1.. => Some(index.unsigned_abs() - 1).filter(|&i| i < count),
+        1.. => Some(index.unsigned_abs() - 1),
         _ => count.checked_sub(index.unsigned_abs()),
     };
     vertex.and_then(|i| u32::try_from(i).ok()).ok_or(Reason::IndexOutOfRange { index, count })

@@ -8,8 +8,13 @@ use p2m_core::kernel::power_of_two;
 /// quadratic for simple concave polygons (observed: two to three seconds for a spiral of this size).
 pub const MAX_CORNERS: usize = 1 << 15;
 
+/// The largest sum of the squares of the numbers of vertices over all polygons of a file with more than 256 vertices:
+/// 2^34, that of sixteen polygons of [`MAX_CORNERS`]. It bounds the time of triangulation (observed: about half a
+/// minute).
+pub(crate) const MAX_CORNER_SQUARES: u64 = 1 << 34;
+
 /// Polygons of more corners are checked for repeated corners before they are triangulated.
-const CHECK_REPEATS_ABOVE_CORNERS: usize = 256;
+pub(crate) const CHECK_REPEATS_ABOVE_CORNERS: usize = 256;
 
 /// Divides polygons into triangles, and reuses its buffers for the next polygon.
 ///

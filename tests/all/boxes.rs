@@ -169,7 +169,8 @@ fn intersecting<T: Real>(soup: &Soup<T>, candidates: &[PrimitiveId], bounds: &Aa
 #[test]
 fn trees_find_the_same_primitives_as_brute_force_in_random_scenes() {
     let rules = SplitRule::ALL;
-    for case in cases(72, 72) {
+    let count = 24 * rules.len() as u64;
+    for case in cases(count, count) {
         let mut rng = rng("boxes in scenes", case);
         let ((kinds, layout), rule) = (kinds_and_layout(case), rules[(case / 24) as usize % rules.len()]);
         let soup = scenes::soup(&mut rng, kinds, layout, amount(300, 120));

@@ -2,6 +2,7 @@
 
 #![cfg(all(feature = "bvh", feature = "interception", feature = "mixed"))]
 
+use base64::Engine as _;
 use nalgebra::Point3;
 use p2m::field::sign::SignedDistance;
 use p2m::field::{
@@ -313,8 +314,11 @@ fn files_and_slices_have_every_value_in_its_place() {
     let vti = file(p2m::field::FieldFormat::Vti);
     let text = String::from_utf8_lossy(&vti);
     assert!(text.contains("WholeExtent=\"0 2 0 1 0 3\" Origin=\"1.0 2.0 3.0\" Spacing=\"0.25 0.25 0.25\""), "{text}");
-    let start = vti.windows(2).position(|w| w == b"\n_").expect("the data") + 2;
-    assert_eq!((&vti[start..start + 8], &vti[start + 8..start + 104]), (&96u64.to_le_bytes()[..], &raw[..]));
+    // The number of bytes and the values are encoded together.
+    let start = text.find("\n_").expect("the data") + 2;
+    let end = start + text[start..].find('\n').expect("a line");
+    let data = base64::engine::general_purpose::STANDARD.decode(&text[start..end]).expect("base64");
+    assert_eq!((&data[..8], &data[8..]), (&96u64.to_le_bytes()[..], &raw[..]));
     assert!(write_field(&grid, &values[1..], p2m::field::FieldFormat::Raw, Vec::new()).is_err());
 
     // One value is inside, and one is NaN.

@@ -69,8 +69,8 @@ macro_rules! parry {
 parry!(parry_double, parry3d_f64, f64);
 parry!(parry_single, parry3d, f32);
 
-/// Returns the distance to the closest point on a triangle of Real-Time Collision Detection, 5.1.5, which many libraries
-/// use and which the crate bvh gets here.
+/// Returns the distance to the closest point on a triangle of Real-Time Collision Detection, 5.1.5, which many
+/// libraries use and which the crate bvh gets here.
 fn ericson(query: [f64; 3], vertices: &[[f64; 3]]) -> f64 {
     let &[a, b, c] = vertices else { unreachable!("triangles") };
     let query = Point3::from(query);

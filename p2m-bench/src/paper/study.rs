@@ -2,7 +2,7 @@
 
 use crate::backend::{Answer, Backend, Unavailable};
 use crate::backends;
-use crate::measure::{self, Effort, Entry, SetFigures, Spread};
+use crate::measure::{self, Effort, Entry, MedianRange, SetFigures};
 use crate::our_indexes::p2m_options;
 use crate::queries::Queries;
 use crate::rounds::{rotated, thread_seconds};
@@ -70,7 +70,7 @@ pub(super) struct Measured {
     /// The bytes of the index and of the scene that it borrows.
     pub(super) bytes: usize,
     /// Nanoseconds of a query in the box of ten times the size.
-    pub(super) query: Option<Spread>,
+    pub(super) query: Option<MedianRange>,
     /// The median nanoseconds of a query, for each box.
     pub(super) boxes: Vec<Option<f64>>,
     /// The median nanoseconds of a query by the wall clock, for each number of threads.
@@ -145,7 +145,8 @@ impl Breakdown {
             locate.push(nanoseconds(queries, |query| index.partition().locate_site(query)));
             total.push(nanoseconds(queries, |query| index.closest_point(query)));
         }
-        let [locate, total] = [locate, total].map(|times| Spread::of(&times).map_or(f64::NAN, |spread| spread.median));
+        let [locate, total] =
+            [locate, total].map(|times| MedianRange::of(&times).map_or(f64::NAN, |spread| spread.median));
         Self { locate, total }
     }
 }
@@ -162,11 +163,11 @@ fn nanoseconds<R>(queries: &[Point3<f64>], answer: impl Fn(&Point3<f64>) -> R) -
 
 impl Measured {
     fn of(entry: &Entry<'_>, threads: Vec<Option<f64>>) -> Self {
-        let medians: Vec<Option<Spread>> =
-            entry.sets.iter().map(|set| Spread::of(&set.as_ref().ok()?.nanoseconds)).collect();
+        let medians: Vec<Option<MedianRange>> =
+            entry.sets.iter().map(|set| MedianRange::of(&set.as_ref().ok()?.nanoseconds)).collect();
         Self {
             name: entry.backend.name,
-            build: Spread::of(&entry.build.seconds).map(|spread| spread.median),
+            build: MedianRange::of(&entry.build.seconds).map(|spread| spread.median),
             bytes: entry.build.owned + entry.build.borrowed,
             query: medians.first().copied().flatten(),
             boxes: medians.iter().skip(1).map(|spread| spread.map(|spread| spread.median)).collect(),
@@ -207,7 +208,7 @@ fn threads(
             }
         }
         for (medians, times) in medians.iter_mut().zip(times) {
-            medians.push(Spread::of(&times).map(|spread| spread.median));
+            medians.push(MedianRange::of(&times).map(|spread| spread.median));
         }
     }
     Ok(medians)

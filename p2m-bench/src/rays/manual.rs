@@ -4,7 +4,7 @@ use super::backend::{Function, RayIndex};
 use super::backends::by_name;
 use super::measure::{Competitor, Figures, first_chunk, measure, verify};
 use crate::backend::catch;
-use crate::measure::{Effort, Spread};
+use crate::measure::{Effort, MedianRange};
 use crate::scene::Scene;
 use anyhow::{Result, anyhow};
 use p2m_core::Ray;
@@ -105,7 +105,7 @@ pub(crate) fn print(scene: &Scene, set: QuerySet, effort: &Effort) -> Result<boo
     for (function, figures) in Function::ALL.iter().zip(figures.chunks(COLUMNS.len())) {
         table.push(row(
             function.name(),
-            figures.iter().map(|f| Spread::of(&f.seconds).map_or("-".to_owned(), |s| format!("{:.3}", s.median))),
+            figures.iter().map(|f| MedianRange::of(&f.seconds).map_or("-".to_owned(), |s| format!("{:.3}", s.median))),
         ));
     }
     println!("{table}");

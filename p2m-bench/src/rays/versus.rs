@@ -4,7 +4,7 @@ use super::backend::{Function, RayBackend, RayIndex};
 use super::backends::{ALL, YARDSTICK, YARDSTICK_PARAMETER};
 use super::measure::{Competitor, Differences, Figures, ROUNDING, first_chunk, measure, verify};
 use crate::backend::{Unavailable, catch};
-use crate::measure::{BuildFigures, Effort, Spread, measure_build};
+use crate::measure::{BuildFigures, Effort, MedianRange, measure_build};
 use crate::memory;
 use crate::report::{Line, Record, significant};
 use crate::scene::Scene;
@@ -86,12 +86,12 @@ fn is_clean(figures: &Figures) -> bool {
 fn reference_medians(entries: &[Entry<'_>], all: &[Figures]) -> [Option<f64>; 2] {
     [YARDSTICK, YARDSTICK_PARAMETER].map(|name| {
         let (_, figures) = entries.iter().zip(all).find(|(entry, _)| entry.backend.name == name)?;
-        Some(Spread::of(&figures.seconds)?.median)
+        Some(MedianRange::of(&figures.seconds)?.median)
     })
 }
 
 fn cell(figures: &Figures, references: [Option<f64>; 2]) -> String {
-    let Some(spread) = Spread::of(&figures.seconds).filter(|_| figures.failure.is_none()) else {
+    let Some(spread) = MedianRange::of(&figures.seconds).filter(|_| figures.failure.is_none()) else {
         return "-".to_owned();
     };
     let [median, minimum] = [spread.median, spread.min].map(|s| s * 1e9 / figures.rays as f64);

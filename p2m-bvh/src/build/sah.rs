@@ -1,4 +1,4 @@
-//! The surface-area heuristic: the cost of a split, and the split that costs least.
+//! The border of each split rule, and the surface-area heuristic: the cost of a split, and the split that costs least.
 
 use crate::build::options::{SplitOptions, SplitRule};
 use crate::build::primitive::{BuildPrimitive, GrowingBox};

@@ -1,8 +1,9 @@
 //! Top-down splits.
 //!
 //! A node is split in two by the [`SplitRule`](crate::SplitRule) of the options, unless testing all its primitives is
-//! cheaper. If boxes or their centres do not separate the primitives (because these are identical, or because their
-//! extent overflows), each child gets half of them in their order. Below half of [`MAX_SPLIT_DEPTH`] every node is
+//! cheaper by the cost of that rule. If the rule returns no border (it is the rule of medians, or boxes and their
+//! centres do not separate the primitives, or their extent overflows), each child gets half of them in the order of
+//! their centres along the longest axis. Below half of [`MAX_SPLIT_DEPTH`] every node is
 //! split like that, so that no input makes the tree deep.
 
 use crate::build::options::SplitOptions;

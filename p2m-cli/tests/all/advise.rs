@@ -60,7 +60,7 @@ fn an_automatic_backend_gives_the_same_answers() {
     let out = path(&folder, "f.raw");
     let report = json(&["field", SCENE, "--resolution", "8", "--backend", "auto", "--out", &out, "--json"]);
     assert!(p2m_advisor::BackendEntry::find(report["backend"].as_str().unwrap()).is_some(), "{report}");
-    let empty = write(&folder, "empty.obj", "");
+    let empty = write(&folder, "empty.obj", "# nothing\n");
     assert_eq!(json(&["advise", &empty, "--queries", "5", "--near", "--json"])["backend"], "brute");
     let saved = path(&folder, "s.p2m");
     let report = json(&["build", SCENE, "--backend", "auto", "--out", &saved, "--json"]);

@@ -14,6 +14,7 @@ mod interrupt;
 mod json;
 mod program;
 mod query;
+mod query_options;
 mod ray;
 mod shell;
 mod stats;

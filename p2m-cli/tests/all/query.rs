@@ -309,6 +309,7 @@ fn the_json_summary_agrees_with_the_table() {
         "queries": 200,
         "answered": answered,
         "unanswered": 200 - answered,
+        "answers": answered,
         "distance": {
             "min": distances.iter().fold(f64::INFINITY, |a, &b| a.min(b)),
             "max": distances.iter().fold(0.0f64, |a, &b| a.max(b)),

@@ -123,7 +123,7 @@ fn saved_indexes_have_statistics_and_wrong_usage_is_refused() {
     assert!(failure(&["stats", SCENE, "--k", "6"], 2).contains("--k is for --backend kdop"));
     assert!(failure(&["stats", &file, "--k", "6"], 2).contains("--k is for --backend kdop"));
     assert!(table(&["stats", SCENE, "--backend", "kdop", "--k", "6"]).contains("backend  kdop, 6 faces"));
-    let empty = crate::common::write(&folder, "empty.obj", "");
+    let empty = crate::common::write(&folder, "empty.obj", "# nothing\n");
     let text = table(&["stats", &empty, "--backend", "p2m"]);
     assert!(text.contains("the scene is empty"), "{text}");
 }

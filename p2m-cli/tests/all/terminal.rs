@@ -32,9 +32,12 @@ fn long_work_shows_a_bar_on_a_terminal_only() {
     assert!(shown.contains("answering") && words.len() > 3, "{shown:?}");
     let shown = on_terminal(&format!("{LONG_RUN} 2>/dev/null"), &[]).unwrap();
     assert_eq!(shown, "");
-    // There is no bar, but after an interruption the prompt of the shell is on a line of its own.
-    let shown = on_terminal(LONG_RUN, &[("TERM", "dumb")]).unwrap();
+    let shown = on_terminal(&format!("{LONG_RUN} --quiet"), &[]).unwrap();
     assert_eq!(shown, "\r\n");
+    // There is no bar, but a note, and after an interruption the prompt of the shell is on a line of its own.
+    let shown = on_terminal(LONG_RUN, &[("TERM", "dumb")]).unwrap();
+    let note = shown.strip_prefix("note     100,000,000 queries: about 14").unwrap_or_else(|| panic!("{shown:?}"));
+    assert!(note.ends_with("\r\n\r\n") && note.lines().count() == 2, "{shown:?}");
 }
 
 #[test]

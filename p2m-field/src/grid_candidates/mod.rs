@@ -122,8 +122,8 @@ impl<'a, S: PrimitiveSet<f64> + ?Sized> CandidateLists<'a, S> {
     /// Returns the candidates of a part of a box, found among those of the box.
     ///
     /// # Panics
-    /// If the part is empty, not contained in the box of `candidates`, or has coordinates above [`MAX_COORDINATE`]. Candidates
-    /// of other lists may cause a panic or a wrong result.
+    /// If the part is empty, not contained in the box of `candidates`, or has coordinates above [`MAX_COORDINATE`].
+    /// Candidates of other lists may cause a panic or a wrong result.
     ///
     /// # Complexity
     /// O(k) for k candidates.

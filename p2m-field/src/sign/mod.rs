@@ -70,11 +70,11 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
     ///
     /// # Accuracy
     /// Signs are those of an exact count of crossings under two conditions. The surface does not intersect itself,
-    /// which [`find_self_intersection`] checks; otherwise the sign is that of the nearest part, which differs where that part is
-    /// inside of others. And no two sheets of the surface are closer to each other than the error of a distance, which
-    /// is 16 u M if the farthest vertex of the closest triangle has the distance M. This is cited \[Baerentzen2005\]
-    /// for distances without rounding, and observed on all models that are closed and do not intersect themselves
-    /// (`cargo test --test all signs::`).
+    /// which [`find_self_intersection`] checks; otherwise the sign is that of the nearest part, which differs where
+    /// that part is inside of others. And no two sheets of the surface are closer to each other than the error of a
+    /// distance, which is 16 u M if the farthest vertex of the closest triangle has the distance M. This is cited
+    /// \[Baerentzen2005\] for distances without rounding, and observed on all models that are closed and do not
+    /// intersect themselves (`cargo test --test all signs::`).
     ///
     /// # Errors
     /// [`SignError::OtherKinds`], [`SignError::Open`], [`SignError::NotOriented`] and [`SignError::Build`].
@@ -117,6 +117,11 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
     pub fn closest_point_with(&self, query: &Point3<f64>, options: &QueryOptions<f64>) -> Option<Signed> {
         let closest = self.index.closest_point_with(query, options)?;
         Some(Signed { closest, sign: self.rule.sign(query, &closest) })
+    }
+
+    /// Returns the answer to a query whose closest point is known, with its sign.
+    pub fn with_sign(&self, query: &Point3<f64>, closest: Closest<f64>) -> Signed {
+        Signed { closest, sign: self.sign(query, &closest) }
     }
 
     /// Returns the sign of a query by its closest point.

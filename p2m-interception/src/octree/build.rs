@@ -2,16 +2,19 @@
 //!
 //! A cell starts with the candidates that its parent could not exclude. As long as there are many, they are nodes of
 //! the tree, which are opened and tested by their boxes (a *coarse* cell). Once few packets are left, the filters of
-//! these packets are computed at the corners (a *fine* cell). A fine cell that is split needs the filters at 19 new
+//! these packets are computed at the corners (a *fine* cell). A fine cell that is split needs the filters at 18 new
 //! lattice points for its eight children. The nearest points of the scene to these lattice points become new
 //! dominators.
 //!
 //! # Which cells are split
 //!
-//! A split costs memory and saves time where queries are. The share of the queries that a cell gets is its *mass*. It
-//! is estimated from a mixture of queries that are uniform in the domain, uniform in smaller boxes around the scene,
-//! and on the surface. The cost of a list is the number of its packets that the bounds of its blocks let pass at the
-//! centre of the cell, plus its blocks. A cell is split if its mass times its cost exceeds a threshold.
+//! A split costs memory and saves time where queries are. The weight of the queries that a cell gets is its
+//! *mass*. It is the sum over several kinds of queries, uniform in the domain, uniform in smaller boxes around the
+//! scene, and on the surface, of the part of each kind times its weight, so masses need not add up to 1. The cost of
+//! the list of a fine cell is a time: that of the packets which the bounds of its blocks let pass at the centre of the
+//! cell, and that of its blocks, both beyond the first one. A coarse cell has a fixed cost, that of a search of the
+//! tree instead of a list. A cell is split if its mass times the part of its cost that a split saves exceeds a
+//! threshold.
 //!
 //! Whether a budget is exceeded does not depend on the order in which cells are made. A refinement that exceeds one is
 //! stopped at once, and another one with a higher threshold follows. So the result is the same on any number of
@@ -42,7 +45,8 @@ const NS_SAVED_BY_LIST: f64 = 300.0;
 const COST_SAVED_BY_SPLIT: f64 = 0.5;
 /// The memory of the codes of a split at most. Eight rows with two levels stand for at least five splits.
 const CODE_BYTES_PER_SPLIT: u64 = (8 * size_of::<Row>()).div_ceil(5) as u64;
-/// The time that a split has to save each query, in nanoseconds, in a cell that has the mass of one packet.
+/// The time that a split has to save, in nanoseconds times mass, where the mass of a cell is measured in that of one
+/// packet.
 const MIN_NS_SAVED_BY_SPLIT: f64 = 100.0;
 
 impl Refinement<'_> {

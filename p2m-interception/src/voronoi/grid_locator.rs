@@ -1,7 +1,6 @@
 //! The default locator: a grid whose cells store the site nearest to their centre.
 //!
-//! One grid lies around the scene. Its cells with several sites are divided into 64 finer cells. A coarser grid
-//! covers
+//! One grid lies around the scene. Its cells with several sites are divided into 64 finer cells. A coarser grid covers
 //! the whole domain.
 
 use crate::voronoi::locator::LocatorSites;

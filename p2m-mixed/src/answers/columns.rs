@@ -1,7 +1,7 @@
 //! The columns of answers, and their encoding as records of any format.
 
 use super::names::Names;
-use super::records::{Header, put_columns, put_numbers, put_text};
+use super::records::{Header, integer_bytes, put_columns, put_integer, put_numbers, put_text};
 use crate::{AnswerFormat, Object};
 use nalgebra::Point3;
 use p2m_core::{Closest, Feature};
@@ -10,6 +10,7 @@ use p2m_core::{Closest, Feature};
 ///
 /// | column | CSV | NPY | PLY |
 /// |---|---|---|---|
+/// | `number` | `number` | `number`, `<i8` | `double` `number` |
 /// | `query` | `qx,qy,qz` | `query`, `<f8`, shape `(3,)` | `double` `x`, `y`, `z` |
 /// | `point` | `x,y,z` | `point`, `<f8`, shape `(3,)` | `double` `cx`, `cy`, `cz` |
 /// | `distance` | `distance` | `distance`, `<f8` | `double` `distance` |
@@ -17,13 +18,15 @@ use p2m_core::{Closest, Feature};
 /// | `lower_bound` | `lower_bound` | `lower_bound`, `<f8` | `double` `lower_bound` |
 /// | `barycentric` | `w0,w1,w2` | `barycentric`, `<f8`, shape `(3,)` | `double` `w0`, `w1`, `w2` |
 /// | `primitive` | `primitive` | `primitive`, `<i4` | `int` `primitive` |
-/// | `feature` | `feature` | `feature_kind`, `feature_number`, `<i2` | `short` `feature_kind`, `feature_number` |
+/// | `feature` | `feature` | `feature_kind`, `feature_number`, `<i2` | `int` `feature_kind`, `feature_number` |
 /// | `object` | `object`, the name | `object`, `<i4`, the number from 0 | `int` `object`, the number from 0 |
 ///
 /// Without an answer, fields of CSV are empty, and numbers of NPY and PLY are NaN or -1; the query is always there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AnswerColumn {
+    /// The number of the query, from 0.
+    Number,
     /// The query point.
     Query,
     /// The closest point.
@@ -47,7 +50,8 @@ pub enum AnswerColumn {
 
 impl AnswerColumn {
     /// All columns, in the order in which files have them by default.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
+        Self::Number,
         Self::Query,
         Self::Point,
         Self::Distance,
@@ -63,6 +67,7 @@ impl AnswerColumn {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Number => "number",
             Self::Query => "query",
             Self::Point => "point",
             Self::Distance => "distance",
@@ -82,7 +87,7 @@ impl AnswerColumn {
             Self::Query | Self::Point | Self::Distance | Self::Primitive | Self::Feature => true,
             Self::LowerBound | Self::Barycentric => format == AnswerFormat::Npy,
             Self::Object => format == AnswerFormat::Csv && has_objects,
-            Self::Signed => false,
+            Self::Number | Self::Signed => false,
         };
         Self::ALL.into_iter().filter(is_default).collect()
     }
@@ -90,6 +95,7 @@ impl AnswerColumn {
     /// Returns the names of the columns of text that it consists of.
     const fn text_names(self) -> &'static [&'static str] {
         match self {
+            Self::Number => &["number"],
             Self::Query => &["qx", "qy", "qz"],
             Self::Point => &["x", "y", "z"],
             Self::Distance => &["distance"],
@@ -105,6 +111,7 @@ impl AnswerColumn {
     /// Returns the fields of an array that it consists of, as NumPy describes them.
     const fn array_fields(self) -> &'static str {
         match self {
+            Self::Number => "('number', '<i8')",
             Self::Query => "('query', '<f8', (3,))",
             Self::Point => "('point', '<f8', (3,))",
             Self::Distance => "('distance', '<f8')",
@@ -123,10 +130,25 @@ impl AnswerColumn {
             Self::Query => ("double", &["x", "y", "z"]),
             Self::Point => ("double", &["cx", "cy", "cz"]),
             Self::Primitive | Self::Object => ("int", self.text_names()),
-            Self::Feature => ("short", &["feature_kind", "feature_number"]),
-            Self::Distance | Self::Signed | Self::LowerBound | Self::Barycentric => ("double", self.text_names()),
+            Self::Feature => ("int", &["feature_kind", "feature_number"]),
+            Self::Number | Self::Distance | Self::Signed | Self::LowerBound | Self::Barycentric => {
+                ("double", self.text_names())
+            }
         }
     }
+}
+
+/// A query with one answer, or none.
+#[derive(Clone, Copy, Debug)]
+pub struct AnswerRecord<'a> {
+    /// The number of the query, from 0.
+    pub number: u64,
+    /// The query point.
+    pub query: &'a Point3<f64>,
+    /// The answer.
+    pub answer: Option<&'a Closest<f64>>,
+    /// The distance with the sign of the side. Only the column [`AnswerColumn::Signed`] has it.
+    pub signed_distance: f64,
 }
 
 /// Encodes answers as the records of an [`AnswerWriter`](crate::AnswerWriter), for programs that encode on several
@@ -171,86 +193,70 @@ impl AnswerEncoder {
         }
     }
 
-    /// Appends the record of the answer to a query. `signed_distance` is the content of the column of that name.
-    pub fn encode(&self, query: &Point3<f64>, answer: Option<&Closest<f64>>, signed_distance: f64, out: &mut Vec<u8>) {
-        let is_text = self.format == AnswerFormat::Csv;
+    /// Appends a record.
+    pub fn encode(&self, record: &AnswerRecord<'_>, out: &mut Vec<u8>) {
+        if self.format != AnswerFormat::Csv {
+            return self.columns.iter().for_each(|column| self.put_bytes(*column, record, out));
+        }
         for (number, column) in self.columns.iter().enumerate() {
-            if is_text {
-                if number > 0 {
-                    out.push(b',');
-                }
-                self.put_text(*column, query, answer, signed_distance, out);
-            } else {
-                self.put_bytes(*column, query, answer, signed_distance, out);
+            if number > 0 {
+                out.push(b',');
             }
+            self.put_text(*column, record, out);
         }
-        if is_text {
-            out.push(b'\n');
-        }
+        out.push(b'\n');
     }
 
     /// Appends a column to a line of text, without a comma after it.
-    fn put_text(
-        &self,
-        column: AnswerColumn,
-        query: &Point3<f64>,
-        answer: Option<&Closest<f64>>,
-        signed_distance: f64,
-        out: &mut Vec<u8>,
-    ) {
+    fn put_text(&self, column: AnswerColumn, record: &AnswerRecord<'_>, out: &mut Vec<u8>) {
         let three = |out: &mut Vec<u8>, [x, y, z]: [f64; 3]| {
             put_columns(out, &[x, y]);
             put_text(out, z);
         };
-        let answer = match (column, answer) {
-            (AnswerColumn::Query, _) => return three(out, query.coords.into()),
-            (_, None) => return (1..column.text_names().len()).for_each(|_| out.push(b',')),
-            (_, Some(answer)) => answer,
-        };
-        match column {
-            AnswerColumn::Query | AnswerColumn::Point => three(out, answer.point.coords.into()),
-            AnswerColumn::Distance => put_text(out, answer.distance),
-            AnswerColumn::Signed => put_text(out, signed_distance),
-            AnswerColumn::LowerBound => put_text(out, answer.lower_bound),
-            AnswerColumn::Barycentric => three(out, answer.barycentric),
-            AnswerColumn::Primitive => {
-                out.extend_from_slice(itoa::Buffer::new().format(answer.primitive.index()).as_bytes())
-            }
-            AnswerColumn::Feature => out.extend_from_slice(feature_name(answer.feature)),
-            AnswerColumn::Object => self.names.write(out, Some(answer.primitive)),
+        match (column, record.answer) {
+            (AnswerColumn::Number, _) => put_integer(out, record.number),
+            (AnswerColumn::Query, _) => three(out, record.query.coords.into()),
+            (_, None) => (1..column.text_names().len()).for_each(|_| out.push(b',')),
+            (AnswerColumn::Point, Some(answer)) => three(out, answer.point.coords.into()),
+            (AnswerColumn::Distance, Some(answer)) => put_text(out, answer.distance),
+            (AnswerColumn::Signed, Some(_)) => put_text(out, record.signed_distance),
+            (AnswerColumn::LowerBound, Some(answer)) => put_text(out, answer.lower_bound),
+            (AnswerColumn::Barycentric, Some(answer)) => three(out, answer.barycentric),
+            (AnswerColumn::Primitive, Some(answer)) => put_integer(out, answer.primitive.index() as u64),
+            (AnswerColumn::Feature, Some(answer)) => out.extend_from_slice(feature_name(answer.feature)),
+            (AnswerColumn::Object, Some(answer)) => self.names.write(out, Some(answer.primitive)),
         }
     }
 
     /// Appends a column to a binary record.
-    fn put_bytes(
-        &self,
-        column: AnswerColumn,
-        query: &Point3<f64>,
-        answer: Option<&Closest<f64>>,
-        signed_distance: f64,
-        out: &mut Vec<u8>,
-    ) {
-        let nan = [f64::NAN; 3];
+    fn put_bytes(&self, column: AnswerColumn, record: &AnswerRecord<'_>, out: &mut Vec<u8>) {
+        let (answer, nan) = (record.answer, [f64::NAN; 3]);
         match column {
-            AnswerColumn::Query => put_numbers(out, query.coords.as_ref()),
+            AnswerColumn::Number => out.extend(integer_bytes(self.format, record.number)),
+            AnswerColumn::Query => put_numbers(out, record.query.coords.as_ref()),
             AnswerColumn::Point => put_numbers(out, answer.map_or(&nan, |a| a.point.coords.as_ref())),
             AnswerColumn::Distance => put_numbers(out, &[answer.map_or(f64::NAN, |a| a.distance)]),
-            AnswerColumn::Signed => put_numbers(out, &[answer.map_or(f64::NAN, |_| signed_distance)]),
+            AnswerColumn::Signed => put_numbers(out, &[answer.map_or(f64::NAN, |_| record.signed_distance)]),
             AnswerColumn::LowerBound => put_numbers(out, &[answer.map_or(f64::NAN, |a| a.lower_bound)]),
             AnswerColumn::Barycentric => put_numbers(out, answer.map_or(&nan, |a| &a.barycentric)),
-            AnswerColumn::Primitive => out.extend(integer(answer.map(|a| a.primitive.index())).to_le_bytes()),
+            AnswerColumn::Primitive => out.extend(index(answer.map(|a| a.primitive.index())).to_le_bytes()),
             AnswerColumn::Feature => {
-                feature_numbers(answer.map(|a| a.feature)).into_iter().for_each(|x| out.extend(x.to_le_bytes()));
+                for number in feature_numbers(answer.map(|a| a.feature)) {
+                    match self.format {
+                        AnswerFormat::Ply => out.extend(i32::from(number).to_le_bytes()),
+                        _ => out.extend(number.to_le_bytes()),
+                    }
+                }
             }
             AnswerColumn::Object => {
-                out.extend(integer(answer.and_then(|a| self.names.number(a.primitive))).to_le_bytes());
+                out.extend(index(answer.and_then(|a| self.names.number(a.primitive))).to_le_bytes());
             }
         }
     }
 }
 
 /// Returns a number below 2^30, or -1 if there is none.
-fn integer(number: Option<usize>) -> i32 {
+fn index(number: Option<usize>) -> i32 {
     number.and_then(|number| i32::try_from(number).ok()).unwrap_or(-1)
 }
 

@@ -5,7 +5,7 @@ mod names;
 mod rays;
 mod records;
 
-pub use columns::{AnswerColumn, AnswerEncoder};
+pub use columns::{AnswerColumn, AnswerEncoder, AnswerRecord};
 pub use rays::{HitEncoder, HitWriter, NumberEncoder, NumberWriter};
 pub use records::npy_header;
 
@@ -44,13 +44,14 @@ use std::io::{self, Write};
 ///
 /// ```python
 /// numpy.dtype([('query', '<f8', (3,)), ('point', '<f8', (3,)), ('distance', '<f8'), ('lower_bound', '<f8'),
-///              ('barycentric', '<f8', (3,)), ('primitive', '<i4'), ('feature_kind', '<i2'), ('feature_number', '<i2')])
+///              ('barycentric', '<f8', (3,)), ('primitive', '<i4'), ('feature_kind', '<i2'), ('feature_number',
+/// '<i2')])
 /// ```
 ///
 /// # PLY
 /// The file is a point cloud of the queries, binary and little-endian. Each `vertex` has the properties `double` `x`,
-/// `y`, `z` (the query), `cx`, `cy`, `cz` (the closest point) and `distance`, `int` `primitive`, `short` `feature_kind`
-/// and `feature_number`, as above. Viewers can colour it by distance.
+/// `y`, `z` (the query), `cx`, `cy`, `cz` (the closest point) and `distance`, `int` `primitive`, `feature_kind` and
+/// `feature_number`, as above. Viewers can colour it by distance.
 ///
 /// These are the columns by default. [`with_columns`](Self::with_columns) chooses among all of [`AnswerColumn`].
 ///
@@ -111,13 +112,15 @@ impl<W: Write> AnswerWriter<W> {
         self.encoder.clone()
     }
 
-    /// Writes the answer to a query. The column of signed distances, if there is one, has NaN.
+    /// Writes the answer to a query. It is the next number in the column of numbers, if there is one, and NaN in that
+    /// of signed distances.
     ///
     /// # Errors
     /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more answers than announced.
     pub fn write(&mut self, query: &Point3<f64>, answer: Option<&Closest<f64>>) -> io::Result<()> {
         self.record.clear();
-        self.encoder.encode(query, answer, f64::NAN, &mut self.record);
+        let record = AnswerRecord { number: self.records.count(), query, answer, signed_distance: f64::NAN };
+        self.encoder.encode(&record, &mut self.record);
         self.records.append(1, &self.record)
     }
 

@@ -1,7 +1,7 @@
 //! Writers of hits and numbers for rays.
 
 use super::names::Names;
-use super::records::{Header, Records, put_columns, put_numbers, put_text};
+use super::records::{Header, Records, integer_bytes, put_columns, put_integer, put_numbers, put_text};
 use crate::{AnswerFormat, Object};
 use p2m_core::{Hit, Ray, Side};
 use std::io::{self, Write};
@@ -183,7 +183,7 @@ impl HitEncoder {
             };
             let ([x, y, z], [a, b, c]): ([f64; 3], _) = (hit.point().coords.into(), hit.barycentric());
             put_columns(out, &[hit.parameter, x, y, z]);
-            out.extend_from_slice(hit.primitive.to_string().as_bytes());
+            put_integer(out, hit.primitive.index() as u64);
             out.extend_from_slice(side);
             put_columns(out, &[a, b]);
             put_text(out, c);
@@ -262,7 +262,10 @@ impl NumberEncoder {
     pub fn encode(&self, number: u64, ray: &Ray, value: u64, out: &mut Vec<u8>) {
         put_ray(self.format, number, ray, out);
         match self.format {
-            AnswerFormat::Csv => out.extend_from_slice(format!("{value}\n").as_bytes()),
+            AnswerFormat::Csv => {
+                put_integer(out, value);
+                out.push(b'\n');
+            }
             _ => out.extend(integer_bytes(self.format, value)),
         }
     }
@@ -288,17 +291,12 @@ fn ply_header(properties: impl Iterator<Item = (&'static str, &'static str)>) ->
 fn put_ray(format: AnswerFormat, number: u64, ray: &Ray, out: &mut Vec<u8>) {
     let (origin, direction) = (ray.origin(), ray.direction());
     if format == AnswerFormat::Csv {
-        out.extend_from_slice(format!("{number},").as_bytes());
+        put_integer(out, number);
+        out.push(b',');
         put_columns(out, origin.coords.as_ref());
         return put_columns(out, direction.as_ref());
     }
     put_numbers(out, origin.coords.as_ref());
     put_numbers(out, direction.as_ref());
     out.extend(integer_bytes(format, number));
-}
-
-/// Returns the bytes of an integer. PLY has no integers of 64 bits, so it gets a `double`.
-#[allow(clippy::cast_precision_loss, reason = "there are fewer than 2^53 rays")]
-fn integer_bytes(format: AnswerFormat, number: u64) -> [u8; 8] {
-    if format == AnswerFormat::Ply { (number as f64).to_le_bytes() } else { number.to_le_bytes() }
 }

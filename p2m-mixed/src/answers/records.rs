@@ -1,5 +1,6 @@
 //! Files of a header and records, whose number may be part of the header.
 
+use crate::AnswerFormat;
 use std::io::{self, ErrorKind, Write};
 
 /// Writes a header and records.
@@ -45,6 +46,11 @@ impl<W: Write> Records<W> {
             return Ok(());
         }
         self.writer.write_all(bytes)
+    }
+
+    /// Returns the number of records so far.
+    pub(super) fn count(&self) -> u64 {
+        self.written
     }
 
     fn is_buffered(&self) -> bool {
@@ -119,12 +125,23 @@ pub(super) fn put_text(out: &mut Vec<u8>, x: f64) {
     }
 }
 
+/// Appends an integer to a line of text.
+pub(super) fn put_integer(out: &mut Vec<u8>, number: u64) {
+    out.extend_from_slice(itoa::Buffer::new().format(number).as_bytes());
+}
+
 /// Appends numbers to a line of text, with a comma after each.
 pub(super) fn put_columns(out: &mut Vec<u8>, numbers: &[f64]) {
     for x in numbers {
         put_text(out, *x);
         out.push(b',');
     }
+}
+
+/// Returns the bytes of an integer. PLY has no integers of 64 bits, so it gets a `double`.
+#[allow(clippy::cast_precision_loss, reason = "there are fewer than 2^53 rays")]
+pub(super) fn integer_bytes(format: AnswerFormat, number: u64) -> [u8; 8] {
+    if format == AnswerFormat::Ply { (number as f64).to_le_bytes() } else { number.to_le_bytes() }
 }
 
 #[cfg(test)]

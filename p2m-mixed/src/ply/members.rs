@@ -181,7 +181,10 @@ impl Members {
     /// Adds the primitives of a member to the scene.
     fn add(&mut self, form: Form, vertices: &[u32], number: usize) -> Result<(), Reason> {
         match form {
-            Form::Polygon => self.builder.push_polygon(vertices, number),
+            Form::Polygon => match *vertices {
+                [a, b] => self.builder.push(Element::Segment([a, b]), number),
+                _ => self.builder.push_polygon(vertices, number),
+            },
             Form::Segment => self.builder.push(Element::Segment([vertices[0], vertices[1]]), number),
             Form::Point => self.builder.push(Element::Point(vertices[0]), number),
             Form::Strip => {
@@ -213,8 +216,10 @@ impl Members {
     fn list<R: BufRead>(&mut self, data: &mut Data<'_, R>, list: List, form: Form) -> Result<(), ReadError> {
         let count = data.count(list.count)?;
         let is_face = form == Form::Polygon;
-        if is_face && count < 3 {
-            return Err(data.error(Reason::TooFewVertices { found: count, needed: 3 }));
+        // Some programs write segments as faces of two vertices. With ids each face is a triangle.
+        let needed = if self.ids.is_some() { 3 } else { 2 };
+        if is_face && count < needed {
+            return Err(data.error(Reason::TooFewVertices { found: count, needed }));
         }
         let limit = match self.ids {
             Some(_) => 3, // an id belongs to one triangle

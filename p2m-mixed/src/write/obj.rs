@@ -13,7 +13,8 @@ use std::io::Write;
 /// Numbers have the fewest digits that read back as the same number. [`read_obj`](crate::read_obj) returns the same
 /// soup and objects, with these exceptions:
 ///
-/// - The positions of a scene without primitives are not written, because they would be read as a point cloud.
+/// - The positions of a scene without primitives are not written, because they would be read as a point cloud. The file
+///   is a comment then.
 /// - A position that is not finite, which no primitive uses, is written as the origin.
 /// - Line ends in names become blanks, and blanks around names are lost.
 ///
@@ -21,7 +22,10 @@ use std::io::Write;
 /// Errors of `writer`.
 pub fn write_obj(scene: &Scene, mut writer: impl Write) -> Result<(), WriteError> {
     let soup = &scene.soup;
-    if soup.len() > 0 {
+    if soup.is_empty() {
+        // A file without bytes would be no OBJ file.
+        writeln!(writer, "# an empty scene")?;
+    } else {
         for p in soup.positions().iter().map(finite_or_origin) {
             writeln!(writer, "v {:?} {:?} {:?}", p.x, p.y, p.z)?;
         }

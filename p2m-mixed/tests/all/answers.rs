@@ -131,17 +131,16 @@ fn a_cloud_has_the_documented_properties() {
     let file = write(&answers, AnswerFormat::Ply);
     let header = "ply\nformat binary_little_endian 1.0\nelement vertex 8\nproperty double x\nproperty double y\n\
         property double z\nproperty double cx\nproperty double cy\nproperty double cz\nproperty double distance\n\
-        property int primitive\nproperty short feature_kind\nproperty short feature_number\nend_header\n";
+        property int primitive\nproperty int feature_kind\nproperty int feature_number\nend_header\n";
     assert!(file.starts_with(header.as_bytes()));
-    for ((query, answer), vertex) in answers.iter().zip(file[header.len()..].chunks(64)) {
+    for ((query, answer), vertex) in answers.iter().zip(file[header.len()..].chunks(68)) {
         let a = answer.as_ref();
         let point = a.map_or([f64::NAN; 3], |a| a.point.coords.into());
         let numbers = [query.x, query.y, query.z].into_iter().chain(point).chain([a.map_or(f64::NAN, |a| a.distance)]);
         let found: Vec<u64> = (0..7).map(|i| f64_at(vertex, 8 * i)).collect();
         assert_eq!(found, numbers.map(f64::to_bits).collect::<Vec<_>>());
         assert_eq!(i32_at(vertex, 56), a.map_or(-1, |a| a.primitive.index() as i32));
-        let number = |at: usize| i16::from_le_bytes([vertex[at], vertex[at + 1]]);
-        assert_eq!((number(60), number(62)), feature(a));
+        assert_eq!([60, 64].map(|at| i32_at(vertex, at)), [feature(a).0, feature(a).1].map(i32::from));
     }
     // The vertices of the file are the queries.
     let scene = read_scene_from(&file[..], Format::Ply, "a").unwrap();

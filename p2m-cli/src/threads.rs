@@ -1,0 +1,22 @@
+//! The threads of a run.
+
+use anyhow::anyhow;
+use rayon::ThreadPool;
+
+#[derive(clap::Args)]
+pub(crate) struct ThreadArgs {
+    /// How many threads to use for all work, building and advice included, up to 1024; all cores by default
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
+    threads: Option<u16>,
+}
+
+impl ThreadArgs {
+    /// Starts the threads. One more thread only reads, writes and waits.
+    pub(crate) fn pool(&self) -> anyhow::Result<ThreadPool> {
+        // For rayon 0 stands for the number of cores.
+        let threads = self.threads.map_or(0, usize::from);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        // The error is kept as text, because its source repeats it.
+        pool.map_err(|e| anyhow!("cannot start threads: {e}"))
+    }
+}
