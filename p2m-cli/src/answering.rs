@@ -119,7 +119,7 @@ const ANNOUNCED_BYTES: f64 = 1e10;
 const ANNOUNCED_SECONDS: f64 = 600.0;
 
 /// Says how large the answers will be and how long they will take, by those of the first block, if that is much.
-#[allow(clippy::cast_precision_loss, reason = "estimates for people to read")]
+#[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "estimates")]
 fn announce<Q, A, I>(streams: &Streams, queries: &QueryStream<I>, block: &Block<Q, A>, elapsed: Duration) {
     let scale = queries.count as f64 / block.queries.len() as f64;
     let bytes = block.encoded.iter().map(|part| part.bytes.len()).sum::<usize>() as f64 * scale;

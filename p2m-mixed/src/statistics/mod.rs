@@ -32,8 +32,8 @@ pub const THIN_ASPECT: f64 = 10.0;
 /// let statistics = Statistics::of(&scene.soup);
 /// assert_eq!((statistics.primitives.triangles, statistics.shapes.zero_area), (2, 1));
 /// assert_eq!(statistics.sizes.edge.map(|e| (e.min, e.max)), Some((3.0, 6.0)));
-/// assert_eq!(statistics.notes()[0].to_string(), "1 triangle has no area: it counts as the segment or point that it
-/// covers");
+/// let note = "1 triangle has no area: it counts as the segment or point that it covers";
+/// assert_eq!(statistics.notes()[0].to_string(), note);
 /// # Ok::<(), p2m_mixed::ReadError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
