@@ -3,6 +3,7 @@
 use crate::answering::answer_each;
 use crate::usage::finite_not_negative;
 use nalgebra::Point3;
+use p2m_advisor::Index;
 use p2m_core::batch::{self, BatchOptions};
 use p2m_core::{CertifiedQuery, Closest, ClosestPoint, QueryOptions};
 use serde_json::{Value, json};
@@ -36,8 +37,13 @@ impl Accuracy {
             .with_max_visits(self.max_visits.unwrap_or(defaults.max_visits))
     }
 
-    /// Answers queries, certified or not, on all threads of the current pool. An answer does not depend on the other
-    /// queries, because none is a hint for another one.
+    /// Returns whether the lower bound of an answer may depend on the other queries of its block, as it does if one answer
+    /// is the hint for the next query.
+    pub(crate) fn depends_on_block(&self, index: &dyn Index) -> bool {
+        !self.certified && index.gains_from_hints()
+    }
+
+    /// Answers queries, certified or not, on all threads of the current pool.
     pub(crate) fn answer<I: ClosestPoint<f64> + CertifiedQuery<f64> + Sync + ?Sized>(
         &self,
         index: &I,
@@ -50,8 +56,7 @@ impl Accuracy {
             });
         }
         let mut answers = vec![None; queries.len()];
-        let batch = BatchOptions::default().with_hints(false);
-        batch::closest_points_into(index, queries, options, &batch, &mut answers);
+        batch::closest_points_into(index, queries, options, &BatchOptions::default(), &mut answers);
         answers
     }
 

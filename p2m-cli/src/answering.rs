@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 /// milliseconds.
 const MIN_BLOCK_PER_THREAD: usize = 32;
 /// The largest number of queries of a block. The records of two blocks are in memory at a time.
-const MAX_BLOCK: usize = 1 << 16;
+const MAX_BLOCK: usize = 1 << 14;
 /// Blocks grow until they take this time, so that progress is shown often enough.
 const BLOCK_TIME: Duration = Duration::from_millis(100);
 /// The number of answers that one thread encodes at a time.
@@ -46,6 +46,9 @@ struct Block<Q, A> {
 
 /// The functions that turn queries into records.
 pub(crate) struct Steps<Answer, Encode, Take, WriteRecords> {
+    /// Whether an answer may depend on the other queries of its block. The sizes of blocks then depend neither on time nor
+    /// on the number of threads, so that a run can be repeated bit for bit.
+    pub(crate) depends_on_block: bool,
     /// Answers some queries on all threads of the current pool.
     pub(crate) answer: Answer,
     /// Appends the records of a query, given its number and its answer, and returns how many there are.
@@ -69,9 +72,9 @@ pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
         impl FnMut(u64, &[u8]) -> io::Result<()>,
     >,
 ) -> io::Result<Duration> {
-    let Steps { answer, encode, mut take, mut write } = steps;
+    let Steps { depends_on_block, answer, encode, mut take, mut write } = steps;
     let progress = Progress::start(streams, "answering", Some(queries.count), Unit::Items(queries.name));
-    let min_block = MIN_BLOCK_PER_THREAD * pool.current_num_threads();
+    let min_block = if depends_on_block { MAX_BLOCK } else { MIN_BLOCK_PER_THREAD * pool.current_num_threads() };
     let (mut time, mut first, mut size) = (Duration::ZERO, 0, min_block);
     let mut finished: Option<Block<Q, A>> = None;
     let mut pending: Vec<Q> = queries.iter.by_ref().take(size).collect();
@@ -145,6 +148,10 @@ fn encode_all<Q: Sync, A: Sync>(
         let (mut records, mut bytes) = (0, Vec::new());
         for (number, (query, answer)) in (first..).zip(queries.iter().zip(answers)) {
             records += encode(number, query, answer, &mut bytes);
+            if number == first {
+                // The other records are about as long as the first one.
+                bytes.reserve(bytes.len() * (queries.len() - 1) * 5 / 4);
+            }
         }
         Encoded { records, bytes }
     };

@@ -22,7 +22,7 @@ use std::io::{self, Write};
 ///
 /// # CSV
 /// The columns `qx,qy,qz,x,y,z,distance,primitive,feature` are the query, the closest point, its distance, the id of
-/// the primitive, and the feature of the primitive that has the point, as [`Feature`] displays it. Numbers have the
+/// the primitive, and the feature of the primitive that has the point, as [`Feature`](p2m_core::Feature) displays it. Numbers have the
 /// fewest digits that read back as the same number. The last six columns are empty if there is no answer. With
 /// [objects](Self::with_objects) there is a column `object` with the name of the object that the primitive belongs to,
 /// which is empty if it belongs to none.

@@ -115,12 +115,13 @@ pub(super) fn put_numbers(out: &mut Vec<u8>, numbers: &[f64]) {
 /// Appends a number to a line of text: the shortest that reads back the same, with an exponent if it is far from 1.
 pub(super) fn put_text(out: &mut Vec<u8>, x: f64) {
     let mut buffer = zmij::Buffer::new();
-    match buffer.format(x).split_once('+') {
-        None => out.extend_from_slice(buffer.format(x).as_bytes()),
-        // An exponent has no plus sign, as in Rust.
-        Some((digits, exponent)) => {
-            out.extend_from_slice(digits.as_bytes());
-            out.extend_from_slice(exponent.as_bytes());
+    let text = buffer.format(x).as_bytes();
+    // An exponent has no plus sign, as in Rust. Only numbers from 1e16 on have a sign there.
+    match if x.abs() < 1e16 { None } else { text.iter().position(|byte| *byte == b'+') } {
+        None => out.extend_from_slice(text),
+        Some(plus) => {
+            out.extend_from_slice(&text[..plus]);
+            out.extend_from_slice(&text[plus + 1..]);
         }
     }
 }
