@@ -234,8 +234,8 @@ impl Packet {
             && (has_frame || has_no_frame)
             && self.origin.iter().all(|x| x.is_finite())
             && self.vertex_offset == first
-            && self.corners[..vertices].as_flattened().iter().all(|corner| u32::from(*corner) < count)
-            && self.corners[vertices..].as_flattened().iter().all(|corner| *corner == 0)
+            && (vertices == 0 || u32::from(largest(&self.corners[..vertices])) < count)
+            && largest(&self.corners[vertices..]) == 0
     }
 
     /// Whether the primitives are triangles.
@@ -254,6 +254,11 @@ impl Packet {
     pub fn per_unit(&self) -> f64 {
         self.per_unit
     }
+}
+
+/// The largest number in some rows; 0 if there are none. It has no early end, so it is computed in lanes.
+fn largest(rows: &[[u8; LANES]]) -> u8 {
+    rows.iter().flatten().fold(0, |largest, number| largest.max(*number))
 }
 
 /// Returns the index of a vertex in a list of at most 48, and appends the vertex if it is not there yet. Two vertices

@@ -130,6 +130,14 @@ impl<V: VolumeNodes> PacketTree<V> {
             + self.leaves.vertex_offsets.memory()
     }
 
+    /// A mask of the lanes in use for each packet.
+    #[doc(hidden)]
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation, reason = "a packet has sixteen lanes")]
+    pub fn lane_masks(&self) -> Vec<u16> {
+        self.leaves.packets.iter().map(|packet| packet.lanes() as u16).collect()
+    }
+
     /// The number of packets, and the number of their lanes in use.
     #[must_use]
     pub fn packets(&self) -> (usize, usize) {

@@ -69,11 +69,3 @@ impl LoadError {
         Self::Inconsistent { section: section.to_owned(), reason }
     }
 }
-
-/// Returns [`LoadError::Inconsistent`] unless a condition holds that every section of this name satisfies.
-///
-/// # Errors
-/// It returns [`LoadError::Inconsistent`] if the condition is false.
-pub fn require(condition: bool, section: &str, reason: &'static str) -> Result<(), LoadError> {
-    if condition { Ok(()) } else { Err(LoadError::inconsistent(section, reason)) }
-}

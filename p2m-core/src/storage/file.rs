@@ -21,8 +21,8 @@ struct CacheLine([u8; 64]);
 
 /// The number of bytes of a cache line.
 const LINE_BYTES: usize = size_of::<CacheLine>();
-/// The number of cache lines, 256 KiB in all, for which the first room is made beyond the header.
-const FIRST_LINES: usize = 1 << 12;
+/// The number of cache lines, 16 KiB in all, for which the first room is made beyond the header of a file of unknown length.
+const FIRST_LINES: usize = 1 << 8;
 
 /// Bytes that begin at a cache line.
 struct AlignedBytes {
@@ -42,7 +42,9 @@ impl SavedFile {
     /// # Errors
     /// It returns the errors of [`read`](Self::read), and [`LoadError::Io`] if the file cannot be opened.
     pub fn open(path: &Path) -> Result<Self, LoadError> {
-        Self::read(File::open(path)?)
+        let file = File::open(path)?;
+        let available = file.metadata()?.len();
+        Self::read_available(file, available)
     }
 
     /// Maps the file at a path into memory: pages are read on first use, and processes that map the same file share
@@ -69,14 +71,20 @@ impl SavedFile {
     /// # Errors
     /// It returns [`LoadError::Io`] if reading fails, [`LoadError::Foreign`], [`LoadError::Version`] or
     /// [`LoadError::Length`] for a wrong header, and [`LoadError::Damaged`] for a wrong table.
-    pub fn read(mut reader: impl Read) -> Result<Self, LoadError> {
+    pub fn read(reader: impl Read) -> Result<Self, LoadError> {
+        Self::read_available(reader, 0)
+    }
+
+    /// Reads a file into memory, of which so many bytes are certainly available.
+    fn read_available(mut reader: impl Read, available: u64) -> Result<Self, LoadError> {
         let mut lines = vec![CacheLine::zeroed()];
         let mut len = read_until_full(&mut reader, bytemuck::cast_slice_mut(&mut lines))?;
         let expected = Header::check(&bytemuck::cast_slice(&lines)[..len])?.length;
         // The length may be wrong, so memory only grows with what was read.
         while (len as u64) < expected && len == size_of_val(&lines[..]) {
             let wanted = usize::try_from(expected.div_ceil(LINE_BYTES as u64)).unwrap_or(usize::MAX);
-            let room = wanted.min(lines.len() * 2 + FIRST_LINES);
+            let is_there = expected <= available;
+            let room = if is_there { wanted } else { wanted.min(lines.len() * 2 + FIRST_LINES) };
             lines.reserve_exact(room - lines.len());
             lines.resize(room, CacheLine::zeroed());
             len += read_until_full(&mut reader, &mut bytemuck::cast_slice_mut(&mut lines)[len..])?;

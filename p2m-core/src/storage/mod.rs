@@ -63,14 +63,16 @@ mod ids;
 mod index;
 mod reader;
 mod section;
+mod validate;
 mod writer;
 
 pub use array::Array;
-pub use error::{LoadError, require};
+pub use error::LoadError;
 pub use file::SavedFile;
 #[doc(hidden)]
 pub use ids::as_ids;
 pub use index::{Saved, kind, load, save};
 pub use reader::Reader;
 pub use section::VERSION;
+pub use validate::{all_chunks, require};
 pub use writer::Writer;

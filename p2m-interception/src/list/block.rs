@@ -14,7 +14,6 @@
 //! The numbers are stored as bytes that are rounded outwards. All lengths are in the frame of the scene.
 //! docs/proofs/octree.md has the proofs.
 
-use p2m_bvh::engine::packet::Packet;
 use p2m_bvh::engine::volume::Rounded;
 use p2m_core::engine::simd::Lanes;
 use p2m_core::engine::vector::V3;
@@ -246,17 +245,16 @@ impl Block {
 }
 
 impl Block {
-    /// Returns whether the fields of a block from a file are within their ranges, over these packets. It does not check
-    /// the number of blocks that follow.
-    pub(crate) fn has_valid_fields(&self, packets: &[Packet]) -> bool {
-        let is_entry = |(number, lanes): (&u32, &u16)| {
-            packets.get(*number as usize).is_some_and(|packet| u32::from(*lanes) & !packet.lanes() == 0)
-        };
+    /// Returns whether the fields of a block from a file are within their ranges, over packets with these
+    /// [lanes in use](p2m_bvh::PacketTree::lane_masks). It does not check the number of blocks that follow.
+    pub(crate) fn has_valid_fields(&self, lane_masks: &[u16]) -> bool {
+        let is_entry =
+            |(number, lanes): (&u32, &u16)| lane_masks.get(*number as usize).is_some_and(|mask| lanes & !mask == 0);
         (1..=BLOCK_WIDTH).contains(&usize::from(self.len))
             && (self.level <= MAX_LEVEL || self.level == LEVEL_OF_BOXES)
             && EXPONENTS.contains(&self.exponent)
             && self.base.is_finite()
-            && self.packets.iter().zip(&self.lanes).all(is_entry)
+            && self.packets.iter().zip(&self.lanes).fold(true, |is_valid, entry| is_valid & is_entry(entry))
     }
 
     /// Returns the number of primitives in the block.

@@ -4,11 +4,11 @@
 //! on in order to end without a panic. They do not cover bounds and lists that lack a primitive, which can only make
 //! answers wrong.
 
-use crate::list::block::MAX_LEVEL;
+use crate::list::block::{Block, MAX_LEVEL};
 use crate::octree::Octree;
 use crate::octree::code::{CellCode, FALLBACK_CODE, KIND_ONE_LEVEL, KIND_SHIFT};
 use crate::octree::saved::{CODES, LISTS, OCTREE};
-use p2m_core::storage::{LoadError, require};
+use p2m_core::storage::{LoadError, all_chunks, require};
 
 /// Checks the codes, the blocks and the report of an octree.
 pub(super) fn check(octree: &Octree) -> Result<(), LoadError> {
@@ -17,38 +17,44 @@ pub(super) fn check(octree: &Octree) -> Result<(), LoadError> {
     let cells = [report.singles, report.lists, report.trees];
     let codes = octree.rows.len().saturating_mul(8).saturating_add(1);
     require(cells.iter().all(|count| *count <= codes), OCTREE, "the report has more cells than there are codes")?;
-    check_blocks(octree)?;
-    check_codes(octree)
+    let lane_masks = octree.tree.lane_masks();
+    check_blocks(octree, &lane_masks)?;
+    check_codes(octree, &lane_masks)
 }
 
 /// Checks the blocks. The lists have to lie one after the other.
-fn check_blocks(octree: &Octree) -> Result<(), LoadError> {
-    let packets = &octree.tree.leaves.packets;
-    let mut following = 0;
-    for block in octree.blocks.iter() {
-        require(block.has_valid_fields(packets), LISTS, "a number is out of range")?;
-        require(following == 0 || block.following == following - 1, LISTS, "a list overlaps another one")?;
-        following = block.following;
-    }
-    require(following == 0, LISTS, "the last list has no end")
+fn check_blocks(octree: &Octree, lane_masks: &[u16]) -> Result<(), LoadError> {
+    let blocks = &octree.blocks;
+    let are_valid = |_, chunk: &[Block]| chunk.iter().all(|block| block.has_valid_fields(lane_masks));
+    require(all_chunks(blocks, are_valid), LISTS, "a number is out of range")?;
+    let ends = blocks.windows(2).all(|pair| pair[0].following == 0 || pair[1].following == pair[0].following - 1);
+    require(ends, LISTS, "a list overlaps another one")?;
+    require(blocks.last().is_none_or(|last| last.following == 0), LISTS, "the last list has no end")
 }
 
 /// Checks the codes. A code that leads to an earlier row is refused, because locating a query would not end; so is one
 /// that leads below the last level, because a position has no more bits.
-fn check_codes(octree: &Octree) -> Result<(), LoadError> {
+fn check_codes(octree: &Octree, lane_masks: &[u16]) -> Result<(), LoadError> {
     // The level of the cubes whose codes are in each row; 0 if no code leads to the row yet.
     let mut levels = vec![0; octree.rows.len()];
-    check_code(octree, octree.root, 0, 0, &mut levels)?;
+    check_code(octree, lane_masks, octree.root, 0, 0, &mut levels)?;
     for (number, row) in octree.rows.iter().enumerate() {
         let level = levels[number];
         require(level > 0, CODES, "a row comes before the code that leads to it, or there is no such code")?;
-        row.0.iter().try_for_each(|code| check_code(octree, *code, level, number + 1, &mut levels))?;
+        row.0.iter().try_for_each(|code| check_code(octree, lane_masks, *code, level, number + 1, &mut levels))?;
     }
     Ok(())
 }
 
 /// Checks the code of a cube of a level. It may lead to rows from `first_row` on that no other code leads to.
-fn check_code(octree: &Octree, code: u32, level: u8, first_row: usize, levels: &mut [u8]) -> Result<(), LoadError> {
+fn check_code(
+    octree: &Octree,
+    lane_masks: &[u16],
+    code: u32,
+    level: u8,
+    first_row: usize,
+    levels: &mut [u8],
+) -> Result<(), LoadError> {
     let is_one_level = code >> KIND_SHIFT == KIND_ONE_LEVEL;
     match CellCode::decode(code) {
         CellCode::Rows => {
@@ -65,8 +71,7 @@ fn check_code(octree: &Octree, code: u32, level: u8, first_row: usize, levels: &
         }
         CellCode::List(first) => require(first < octree.blocks.len(), CODES, "a list does not exist"),
         CellCode::Single(packet, lane) => {
-            let packet = octree.tree.leaves.packets.get(packet);
-            let is_lane = packet.is_some_and(|packet| lane < packet.ids().len());
+            let is_lane = lane_masks.get(packet).is_some_and(|mask| mask >> lane & 1 == 1);
             require(is_lane, CODES, "a primitive does not exist")
         }
         CellCode::Tree => require(code == FALLBACK_CODE, CODES, "a code has no meaning"),

@@ -5,11 +5,11 @@
 //! half-spaces and lists that lack a primitive, which can only make answers wrong. A walk ends whatever the offsets of
 //! neighbours are, because it is stopped after as many steps as there are sites.
 
+use crate::list::block::Block;
 use crate::voronoi::Voronoi;
 use crate::voronoi::saved::{ANCHORS, LISTS, VORONOI};
 use crate::voronoi::site::{AUXILIARY_SITE, FALLBACK, Site};
-use p2m_bvh::engine::packet::LANES;
-use p2m_core::storage::{LoadError, require};
+use p2m_core::storage::{LoadError, all_chunks, require};
 
 /// The section with the sites.
 const SITES: &str = "voronoi/sites";
@@ -21,21 +21,21 @@ pub(super) fn check(index: &Voronoi) -> Result<(), LoadError> {
     require(index.anchors.as_flattened().iter().all(|x| x.is_finite()), ANCHORS, "a coordinate is not finite")?;
     let (sites, blocks) = (&index.neighbours.sites, &index.blocks);
     require(blocks.len() >= sites.len(), LISTS, "there are fewer than sites")?;
+    let lane_masks = &index.tree.lane_masks();
     for (site, first) in sites.iter().zip(blocks.iter()) {
-        check_site(index, site)?;
+        check_site(index, lane_masks, site)?;
         if site.has_list() {
             let end = site.list as usize + usize::from(first.following);
             require(end <= blocks.len(), LISTS, "a list exceeds the section")?;
-            require(first.has_valid_fields(&index.tree.leaves.packets), LISTS, "a number is out of range")?;
+            require(first.has_valid_fields(lane_masks), LISTS, "a number is out of range")?;
         }
     }
-    let mut others = blocks[sites.len()..].iter();
-    let are_valid = others.all(|block| block.has_valid_fields(&index.tree.leaves.packets));
-    require(are_valid, LISTS, "a number is out of range")
+    let are_valid = |_, chunk: &[Block]| chunk.iter().all(|block| block.has_valid_fields(lane_masks));
+    require(all_chunks(&blocks[sites.len()..], are_valid), LISTS, "a number is out of range")
 }
 
 /// Checks the position and the owner of a site.
-fn check_site(index: &Voronoi, site: &Site) -> Result<(), LoadError> {
+fn check_site(index: &Voronoi, lane_masks: &[u16], site: &Site) -> Result<(), LoadError> {
     require(site.position.iter().all(|x| x.is_finite()), SITES, "a coordinate is not finite")?;
     let has_far_half_space = site.far_half_space.height < f32::INFINITY;
     if site.list == AUXILIARY_SITE {
@@ -46,7 +46,6 @@ fn check_site(index: &Voronoi, site: &Site) -> Result<(), LoadError> {
     let Some((packet, lane)) = site.known_primitive() else {
         return require(!has_far_half_space, SITES, "a site without a primitive has a half-space");
     };
-    let packet = index.tree.leaves.packets.get(packet);
-    let is_lane = packet.is_some_and(|packet| lane % LANES < packet.ids().len());
+    let is_lane = lane_masks.get(packet).is_some_and(|mask| mask >> lane & 1 == 1);
     require(is_lane, SITES, "a primitive does not exist")
 }
