@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 
 mod deep;
+mod memory;
 mod promises;
 
 use std::path::Path;
@@ -20,7 +21,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 10] = [
+const TASKS: [Task; 11] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -63,6 +64,12 @@ const TASKS: [Task; 10] = [
         arguments: "[SECONDS] [TARGET]..",
         about: "Fuzz each target for so many seconds, 60 by default",
         run: |rest| run("fuzz/run", if rest.is_empty() { &["60"] } else { &[] }, rest),
+    },
+    Task {
+        name: "memory",
+        arguments: "",
+        about: "Run the tests of vector kernels and of saved files under valgrind, where it is installed",
+        run: |_| memory::run(),
     },
     Task {
         name: "measure",
