@@ -12,7 +12,8 @@ use nalgebra::Point3;
 use p2m::scene::{Scene, load_scene, read_p2m, save_scene, write_p2m};
 use p2m::storage::{LoadError, Reader, SavedFile, Writer};
 use p2m::{
-    AabbTree, BuildIndex, ClosestPoint, Element, KdopTree, OctreeIndex, P2mIndex, PrimitiveId, QueryOptions, Soup,
+    AabbTree, BuildIndex, CertifiedQuery, ClosestPoint, Element, Inspect, KdopTree, NearQuery, OctreeIndex, P2mIndex,
+    PrimitiveId, QueryOptions, Soup,
 };
 use p2m_testkit::saved_file::{HEADER_BYTES, correct_checksums, entries, section};
 use std::sync::LazyLock;
@@ -34,7 +35,12 @@ pub enum Reached {
     Answered,
 }
 
-type LoadResult<'a> = Result<Box<dyn ClosestPoint<f64> + 'a>, LoadError>;
+/// An index that answers all kinds of queries that every index has.
+trait LoadedIndex: ClosestPoint<f64> + NearQuery<f64> + CertifiedQuery<f64> + Inspect<f64> {}
+
+impl<I: ClosestPoint<f64> + NearQuery<f64> + CertifiedQuery<f64> + Inspect<f64>> LoadedIndex for I {}
+
+type LoadResult<'a> = Result<Box<dyn LoadedIndex + 'a>, LoadError>;
 
 /// A type of index, with functions that write its file and load it.
 struct Kind {
@@ -114,7 +120,7 @@ fn query_points(soup: &Soup<f64>) -> Vec<Point3<f64>> {
 }
 
 /// Loads the index of a file over the scene of the file, and passes both to `use_it`.
-fn loaded<R>(bytes: &[u8], use_it: impl FnOnce(&Soup<f64>, &dyn ClosestPoint<f64>) -> R) -> Result<R, LoadError> {
+fn loaded<R>(bytes: &[u8], use_it: impl FnOnce(&Soup<f64>, &dyn LoadedIndex) -> R) -> Result<R, LoadError> {
     let missing = |section: &str| LoadError::Missing { section: section.to_owned() };
     let mut scene = None;
     let limit = MEMORY_PER_BYTE * bytes.len();
@@ -147,7 +153,20 @@ fn answers_of(bytes: &[u8]) -> Result<Answers, LoadError> {
 /// Loads a file that passes for a valid one, and checks that its searches end.
 fn check_modified(bytes: &[u8]) -> Reached {
     let start = ThreadTime::now();
-    let read = answers_of(bytes);
+    let read = loaded(bytes, |soup, index| {
+        index.list_lengths();
+        for point in &query_points(soup) {
+            index.closest_point(point);
+            index.closest_point_with(point, &QueryOptions::default().with_max_visits(1));
+            index.k_nearest(point, 3, f64::INFINITY);
+            index.all_within(point, 2.0);
+            // Only primitives without vertices have no certified answers.
+            let _ = index.certified_closest_point(point, &QueryOptions::default());
+            index.list_length(point);
+        }
+        let points = [query_points(soup), query_points(soup), query_points(soup)].concat();
+        index.closest_points_into(&points, &QueryOptions::default(), &mut vec![None; points.len()]);
+    });
     assert!(start.elapsed() < MAX_TIME, "queries without end");
     let scene = memory::at_most(MEMORY_PER_BYTE * bytes.len(), || read_p2m(bytes, "fuzz"));
     if let Ok(scene) = scene {

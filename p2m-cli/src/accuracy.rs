@@ -37,8 +37,8 @@ impl Accuracy {
             .with_max_visits(self.max_visits.unwrap_or(defaults.max_visits))
     }
 
-    /// Returns whether the lower bound of an answer may depend on the other queries of its block, as it does if one answer
-    /// is the hint for the next query.
+    /// Returns whether the lower bound of an answer may depend on the other queries of its block, as it does if one
+    /// answer is the hint for the next query.
     pub(crate) fn depends_on_block(&self, index: &dyn Index) -> bool {
         !self.certified && index.gains_from_hints()
     }

@@ -12,13 +12,12 @@ use rayon::prelude::*;
 use std::io;
 use std::time::{Duration, Instant};
 
-/// The least number of queries of a block for each thread. It is small because a query by brute force can take
-/// milliseconds.
-const MIN_BLOCK_PER_THREAD: usize = 32;
 /// The largest number of queries of a block. The records of two blocks are in memory at a time.
 const MAX_BLOCK: usize = 1 << 14;
 /// Blocks grow until they take this time, so that progress is shown often enough.
 const BLOCK_TIME: Duration = Duration::from_millis(100);
+/// Blocks grow until their records take this many bytes.
+const MAX_BLOCK_BYTES: usize = 1 << 25;
 /// The number of answers that one thread encodes at a time.
 const ANSWERS_PER_TASK: usize = 1 << 11;
 
@@ -46,8 +45,8 @@ struct Block<Q, A> {
 
 /// The functions that turn queries into records.
 pub(crate) struct Steps<Answer, Encode, Take, WriteRecords> {
-    /// Whether an answer may depend on the other queries of its block. The sizes of blocks then depend neither on time nor
-    /// on the number of threads, so that a run can be repeated bit for bit.
+    /// Whether an answer may depend on the other queries of its block. The sizes of blocks then depend neither on time
+    /// nor on the number of threads, so that a run can be repeated bit for bit.
     pub(crate) depends_on_block: bool,
     /// Answers some queries on all threads of the current pool.
     pub(crate) answer: Answer,
@@ -74,7 +73,8 @@ pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
 ) -> io::Result<Duration> {
     let Steps { depends_on_block, answer, encode, mut take, mut write } = steps;
     let progress = Progress::start(streams, "answering", Some(queries.count), Unit::Items(queries.name));
-    let min_block = if depends_on_block { MAX_BLOCK } else { MIN_BLOCK_PER_THREAD * pool.current_num_threads() };
+    // A query by brute force can take milliseconds, and one with many answers much memory.
+    let min_block = if depends_on_block { MAX_BLOCK } else { pool.current_num_threads() };
     let (mut time, mut first, mut size) = (Duration::ZERO, 0, min_block);
     let mut finished: Option<Block<Q, A>> = None;
     let mut pending: Vec<Q> = queries.iter.by_ref().take(size).collect();
@@ -111,7 +111,9 @@ pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
         time += elapsed;
         first += block.queries.len() as u64;
         progress.add(block.queries.len() as u64);
-        size = if elapsed < BLOCK_TIME { MAX_BLOCK.min(2 * size) } else { min_block.max(size / 2) };
+        let bytes = block.encoded.iter().map(|part| part.bytes.len()).sum::<usize>();
+        let is_small = elapsed < BLOCK_TIME && bytes < MAX_BLOCK_BYTES;
+        size = if is_small { MAX_BLOCK.min(2 * size) } else { min_block.max(size / 2) };
         (finished, pending) = (Some(block), next);
     }
 }

@@ -3,13 +3,13 @@
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
 use crate::usage::{one_of, usage};
+use crate::zstd::{ZstdReader, is_zstd};
 use anyhow::{Context, anyhow, bail};
 use flate2::bufread::MultiGzDecoder;
 use nalgebra::Point3;
 use p2m_core::Ray;
 use p2m_core::storage::{LoadError, Reader, SavedFile};
 use p2m_mixed::{Format, PointFormat, ReadError, Scene, load_scene};
-use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -22,8 +22,8 @@ pub(crate) const STANDARD: &str = "-";
 /// A scene to read.
 #[derive(clap::Args)]
 pub(crate) struct SceneArgs {
-    /// Scene: an OBJ, PLY, STL or OFF file, or an index that `p2m build` saved; `-` is the standard input. What gzip or
-    /// zstd has compressed is decompressed
+    /// Scene: an OBJ, PLY, STL or OFF file, or an index that `p2m build` saved; `-` is the standard input. Files that gzip
+    /// or zstd has compressed are decompressed
     #[arg(value_name = "SCENE")]
     pub(crate) path: PathBuf,
 
@@ -31,7 +31,7 @@ pub(crate) struct SceneArgs {
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     format: Option<Format>,
 
-    /// Map a saved index into memory instead of reading it, so that it takes no time and processes share it.
+    /// Map a saved index into memory instead of copying it, so that processes share it.
     ///
     /// Nobody may change or truncate the file while the command runs: what then happens is undefined.
     #[arg(long)]
@@ -83,8 +83,12 @@ fn uncompressed_name(path: &Path) -> anyhow::Result<PathBuf> {
     if path.is_dir() {
         bail!("{}: cannot be read: is a directory", path.display());
     }
-    let is_compressed = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz") || e.eq_ignore_ascii_case("zst"));
-    Ok(if is_compressed { path.with_extension("") } else { path.to_owned() })
+    Ok(if is_compressed(path) { path.with_extension("") } else { path.to_owned() })
+}
+
+/// Returns whether a name has the extension of a compression.
+fn is_compressed(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz") || e.eq_ignore_ascii_case("zst"))
 }
 
 /// The error that the standard input has no format.
@@ -104,8 +108,8 @@ pub(crate) fn read_scene_and_index(
     format: Format,
     is_mapped: bool,
 ) -> anyhow::Result<(Scene, Option<Reader>)> {
-    if is_mapped && (format != Format::P2m || !path.is_file()) {
-        return Err(usage("--map needs the file of a saved index"));
+    if is_mapped && (format != Format::P2m || !path.is_file() || is_compressed(path)) {
+        return Err(usage("--map needs the file of a saved index, which is not compressed"));
     }
     if format != Format::P2m {
         return Ok((read_plain_scene(streams, path, format)?, None));
@@ -154,7 +158,7 @@ fn open<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<Box<dyn BufRead
     if start.starts_with(&GZIP_MAGIC) {
         return Ok(Box::new(BufReader::with_capacity(BUFFER_BYTES, MultiGzDecoder::new(raw))));
     }
-    if start.starts_with(&ZSTD_MAGIC) {
+    if is_zstd(start) {
         return Ok(Box::new(BufReader::with_capacity(BUFFER_BYTES, ZstdReader::new(raw))));
     }
     Ok(Box::new(raw))
@@ -162,44 +166,6 @@ fn open<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<Box<dyn BufRead
 
 /// The first bytes of what gzip has compressed.
 const GZIP_MAGIC: [u8; 3] = [0x1f, 0x8b, 8];
-/// The first bytes of what zstd has compressed.
-const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
-
-/// A reader of zstd, frame by frame.
-struct ZstdReader<'a> {
-    /// The source, while no frame is open.
-    source: Option<ProgressReader<'a>>,
-    frame: Option<StreamingDecoder<ProgressReader<'a>, FrameDecoder>>,
-}
-
-impl<'a> ZstdReader<'a> {
-    fn new(source: ProgressReader<'a>) -> Self {
-        Self { source: Some(source), frame: None }
-    }
-}
-
-impl Read for ZstdReader<'_> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        loop {
-            if let Some(mut source) = self.source.take() {
-                if source.fill_buf()?.is_empty() {
-                    self.source = Some(source);
-                    return Ok(0);
-                }
-                let frame = StreamingDecoder::new(source)
-                    .map_err(|e| io::Error::new(io::ErrorKind::InvalidData, e.to_string()))?;
-                self.frame = Some(frame);
-            }
-            let Some(frame) = &mut self.frame else { return Ok(0) };
-            let count = frame.read(buffer)?;
-            if count > 0 || buffer.is_empty() {
-                return Ok(count);
-            }
-            self.source = self.frame.take().map(StreamingDecoder::into_inner);
-        }
-    }
-}
-
 /// Opens a file and shows the progress of reading.
 fn open_raw<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<ProgressReader<'a>> {
     let name = name(path);

@@ -37,6 +37,7 @@ mod summary;
 mod threads;
 mod tradeoff;
 mod usage;
+mod zstd;
 
 pub use interrupt::listen;
 pub use streams::Streams;

@@ -32,8 +32,8 @@ fn help() -> String {
 The table has the columns qx,qy,qz,x,y,z,distance,primitive,feature: the query, its closest point in the scene, their \
 distance, the number of the primitive from 0 and the part of it that holds the point. The last six are empty where \
 there is no answer; --columns chooses others, and --signed adds signed_distance. With --k-nearest or --within each answer has \
-a row, with the number of its query from 0 in the column number. Of a scene with named objects there is one column more, object: the name of that of the primitive, \
-empty where it is in none. Numbers are the shortest that read back the same. A summary goes to the standard error.
+a row, with the number of its query from 0 in the column number; as NPY and PLY they are kept in memory until all are known. Of a scene with named objects there is one column more, object: the name of the object of the primitive, \
+empty if it belongs to none. Numbers are the shortest that read back the same. A summary goes to the standard error.
 
 Primitives are numbered in the order of the file. Polygons are cut into triangles, and it is the triangles that count.
 
@@ -128,7 +128,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum, conflicts_with_all = ["k_nearest", "within"])]
     signed: Option<SignRule>,
 
-    /// The columns of the answers, separated by commas, in the order in which they are to be
+    /// The columns of the answers in this order, separated by commas
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',', value_parser = columns())]
     columns: Vec<AnswerColumn>,
 

@@ -188,6 +188,11 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> ClosestPoint<T> for Interception
 
     fn closest_points_into(&self, queries: &[Point3<T>], options: &QueryOptions<T>, out: &mut [Option<Closest<T>>]) {
         assert_eq!(queries.len(), out.len(), "one answer for each query");
+        if options.is_approximate() {
+            // Searches side by side do not count the sites that they visit, which the options may limit.
+            queries.iter().zip(out).for_each(|(query, to)| *to = self.closest_point_with(query, options));
+            return;
+        }
         // Queries that are not finite have no answer, and the others are gathered into full groups without them.
         out.fill(None);
         let mut finite = (0..queries.len()).filter(|i| queries[*i].iter().all(|x| x.is_finite()));

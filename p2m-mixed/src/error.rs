@@ -7,7 +7,7 @@ use std::fmt;
 ///
 /// ```
 /// let error = p2m_mixed::read_obj("v 0 0 0\np 2\n".as_bytes(), "two.obj").unwrap_err();
-/// assert_eq!(error.to_string(), "two.obj:2: vertex index 2 is out of range, the file has 1 vertices");
+/// assert_eq!(error.to_string(), "two.obj:2: vertex index 2 is out of range, 1 vertices were found");
 /// assert!(matches!(error.reason, p2m_mixed::Reason::IndexOutOfRange { index: 2, count: 1 }));
 /// ```
 ///
@@ -120,9 +120,9 @@ pub enum Reason {
     #[error("no vertex in it, is this an OBJ file?")]
     NoVertex,
     /// The large polygons of a file would take too long to be triangulated.
-    #[error("the squares of the numbers of vertices of all polygons above 256 add up to more than {limit}")]
+    #[error("its large polygons would take too long to triangulate: divide those of more than 256 vertices")]
     PolygonsTooLarge {
-        /// The largest sum.
+        /// The largest sum of the squares of the numbers of vertices of polygons with more than 256 of them.
         limit: u64,
     },
     /// A word is not the expected keyword.
@@ -159,11 +159,11 @@ pub enum Reason {
     IndexZero,
     /// An OBJ file does not have the vertex with this index before this line. Indices count from 1, or backwards from
     /// -1.
-    #[error("vertex index {index} is out of range, the file has {count} vertices")]
+    #[error("vertex index {index} is out of range, {count} vertices were found")]
     IndexOutOfRange {
         /// The index in the file.
         index: i64,
-        /// The number of vertices of the file, or for a negative index those before this line.
+        /// The number of vertices of the file; for an index that is negative or above 2^32 that of those before this line.
         count: u64,
     },
     /// A PLY or OFF file does not have the vertex with this index. Indices count from 0.

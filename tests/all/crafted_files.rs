@@ -134,7 +134,12 @@ fn p2m_indexes_that_lie_are_refused() {
     let listed = site(|site| site[15] < 1 << 30);
     assert_refused("p2m", "voronoi/sites", put(listed + 60, 1 << 30), "exceeds the section");
     assert_refused("p2m", "voronoi/sites", put(listed + 56, 1 << 30), "a primitive does not exist");
+    assert_refused("p2m", "voronoi/sites", put(listed + 60, 0), "exceeds the section");
     assert_refused("p2m", "voronoi/sites", put(listed + 32, 1 << 30), "a block does not exist");
+    assert_refused("p2m", "voronoi/sites", put(listed + 28, 0), "a block belongs to another site");
+    assert_refused("p2m", "voronoi/neighbours", byte(56, 1), "has no use");
+    assert_refused("aabb", "tree/packets", byte(406, 1), "out of range");
+    assert_refused("octree", "octree/lists", byte(126, 1), "out of range");
     assert_refused("p2m", "voronoi/sites", put(listed + 4, NAN_HIGH_BITS), "not finite");
     assert_refused("p2m", "voronoi/sites", put(listed + 60, u32::MAX - 1), "anchor");
     assert_refused("p2m", "voronoi/neighbours/names", put(0, 1 << 30), "a site does not exist");
@@ -168,7 +173,7 @@ fn unused_bytes_are_refused() {
         let mut other = bytes.clone();
         other[at] = 1;
         let error = answers_of(index("aabb"), &other, &[]).expect_err("refused");
-        assert_eq!(error.to_string(), "is damaged: the checksum of the header is wrong");
+        assert_eq!(error.to_string(), "has contradictory contents: in the header, unused bytes are not zero");
     }
 }
 

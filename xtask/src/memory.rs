@@ -16,7 +16,9 @@ pub(crate) fn run() -> Outcome {
         return Ok(());
     }
     let mut units = under_valgrind();
-    CRATES.iter().for_each(|name| drop(units.args(["--package", name])));
+    CRATES.iter().for_each(|name| {
+        units.args(["--package", name]);
+    });
     start(units.args(["--lib", "--", "--skip", SKIPPED]))?;
     start(under_valgrind().args(["--package", "p2m", "--test", "all", "--", "saved::", "crafted_files::"]))
 }

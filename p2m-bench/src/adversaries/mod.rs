@@ -2,6 +2,7 @@
 //! budgets, and runs external libraries over the same scenes, for the tables of docs/adversaries.md.
 
 mod external;
+mod polygons;
 
 pub(crate) use external::attempt;
 
@@ -25,8 +26,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The blocks of docs/adversaries.md.
-pub(crate) const BLOCKS: Blocks<4> =
-    Blocks { command: "adversaries", names: ["provenance", "budgets", "scenes", "figures"] };
+pub(crate) const BLOCKS: Blocks<5> =
+    Blocks { command: "adversaries", names: ["provenance", "budgets", "scenes", "figures", "polygons"] };
 /// Budgets apply to scenes of at least this many primitives.
 const MIN_PRIMITIVES_FOR_BUDGET: usize = 10_000;
 
@@ -221,7 +222,9 @@ pub(crate) fn run(count: usize, document: Option<&Path>, provenance: &Provenance
     ADVERSARIES.iter().for_each(|a| scenes.push(vec![a.name.to_owned(), a.about.to_owned()]));
     let tables = [budgets, scenes, table].map(|table| table.to_string());
     let [budgets, scenes, figures] = tables;
-    BLOCKS.publish(document, &[provenance.to_string(), budgets, scenes, figures])?;
+    let (polygons, are_polygons_good) = polygons::table();
+    good &= are_polygons_good;
+    BLOCKS.publish(document, &[provenance.to_string(), budgets, scenes, figures, polygons.to_string()])?;
     println!(
         "{}",
         if good { "All budgets are kept, and all answers are right." } else { "EXCEEDED or WRONG, see above." }

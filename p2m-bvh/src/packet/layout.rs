@@ -234,6 +234,7 @@ impl Packet {
             && (has_frame || has_no_frame)
             && self.origin.iter().all(|x| x.is_finite())
             && self.vertex_offset == first
+            && self.unused == [0; 2]
             && (vertices == 0 || u32::from(largest(&self.corners[..vertices])) < count)
             && largest(&self.corners[vertices..]) == 0
     }

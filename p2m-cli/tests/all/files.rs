@@ -66,7 +66,7 @@ fn what_cannot_be_done_is_code_1_and_leaves_nothing() {
     let out = path(&folder, "out.csv");
     let query = |scene: &str| failure(&["query", scene, "--random", "9", "--out", &out], 1);
     assert!(query(&missing).contains("missing.obj: cannot be read: "));
-    assert!(query(&corrupt).contains("corrupt.obj:2: vertex index 2 is out of range, the file has 1 vertices"));
+    assert!(query(&corrupt).contains("corrupt.obj:2: vertex index 2 is out of range, 1 vertices were found"));
     assert!(query(&ply).contains("short.ply:9: unexpected end of file"));
     assert!(query(&unknown).contains("scene.step: unknown extension 'step', expected one of obj, ply"));
     let message = failure(&["query", SCENE, "--points", &points, "--out", &out], 1);

@@ -149,8 +149,31 @@ fn compressed_files_are_read_in_every_format() {
             assert_eq!(table(&["query", &scene, "--points", &queries]), expected_here, "{extension} {suffix}");
             let cut = write(&folder, &format!("cut.{extension}.{suffix}"), &compressed[..compressed.len() - 9]);
             failure(&["query", &cut, "--points", &plain], 1);
+            // A bit that changes in the middle is found by the checksum, if nothing else finds it.
+            let mut flipped = compressed.clone();
+            for bit in 0..8 {
+                flipped[compressed.len() / 3] = compressed[compressed.len() / 3] ^ (1 << bit);
+                let flipped = write(&folder, &format!("flipped.{extension}.{suffix}"), &flipped);
+                failure(&["query", &flipped, "--points", &plain], 1);
+            }
         }
     }
+}
+
+#[test]
+fn frames_of_zstd_that_have_no_data_are_skipped() {
+    let folder = TempDir::new().unwrap();
+    let skippable = [&[0x53, 0x2a, 0x4d, 0x18, 3, 0, 0, 0][..], b"abc"].concat();
+    let (first, second) = (zstd(b"v 0 0 0\nv 1 0 0\n"), zstd(b"p 1\np 2\n"));
+    let scene = [&skippable[..], &first, &skippable, &skippable, &second, &skippable].concat();
+    let points = write(&folder, "q.csv", "x,y,z\n1,0,1\n");
+    let query =
+        |name: &str, bytes: &[u8]| ["query", &write(&folder, name, bytes), "--points", &points].map(str::to_owned);
+    let arguments = query("s.obj.zst", &scene);
+    let answers = table(&arguments.each_ref().map(String::as_str));
+    assert!(answers.ends_with("\n1.0,0.0,1.0,1.0,0.0,0.0,1.0,1,vertex0\n"), "{answers}");
+    let arguments = query("cut.obj.zst", &scene[..scene.len() - 1]);
+    failure(&arguments.each_ref().map(String::as_str), 1);
 }
 
 #[test]

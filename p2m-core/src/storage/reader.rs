@@ -36,7 +36,7 @@ impl Reader {
         }
         let gaps = gaps(&table, bytes.len()).ok_or_else(damaged)?;
         if gaps.into_iter().any(|gap| bytes[gap].iter().any(|byte| *byte != 0)) {
-            return Err(LoadError::Damaged { section: "the padding between sections".to_owned() });
+            return Err(LoadError::inconsistent("the gaps between sections", "unused bytes are not zero"));
         }
         Ok(Self { file, table })
     }

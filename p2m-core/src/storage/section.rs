@@ -41,7 +41,7 @@ impl Header {
             return Err(LoadError::Version { found: header.version });
         }
         if header.unused != [0; 4] {
-            return Err(LoadError::Damaged { section: "the header".to_owned() });
+            return Err(LoadError::inconsistent("the header", "unused bytes are not zero"));
         }
         Ok(header)
     }

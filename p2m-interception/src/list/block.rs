@@ -254,6 +254,7 @@ impl Block {
             && (self.level <= MAX_LEVEL || self.level == LEVEL_OF_BOXES)
             && EXPONENTS.contains(&self.exponent)
             && self.base.is_finite()
+            && self.unused == [0; 2]
             && self.packets.iter().zip(&self.lanes).fold(true, |is_valid, entry| is_valid & is_entry(entry))
     }
 

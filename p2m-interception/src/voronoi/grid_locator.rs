@@ -143,6 +143,7 @@ impl Grid {
         let [x, y, z, cells_per_length] = reader.one(&format!("{name}/place"))?;
         let counts = reader.one::<[u64; 3]>(&format!("{name}/counts"))?;
         let cells: Array<u32> = reader.array(&format!("{name}/cells"))?;
+        require(!counts.contains(&0), name, "there are no cells")?;
         let product = counts.iter().try_fold(1u64, |product, n| product.checked_mul(*n));
         require(product == Some(cells.len() as u64), name, "there are not as many cells as the counts say")?;
         #[allow(clippy::cast_possible_truncation, reason = "there are as many cells in memory")]

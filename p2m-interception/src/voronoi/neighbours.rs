@@ -116,8 +116,8 @@ impl NeighbourTable {
 
     /// Walks from a site to the site nearest to `query`. `on_site` is called with each site before it is read.
     ///
-    /// A walk never visits a site twice, since each step leads to a nearer one. So only a table from a file with wrong
-    /// offsets can stop it by the number of steps.
+    /// A walk never visits a site twice, since each step leads to a nearer one, so it reads no block twice. Only a table
+    /// from a file with wrong offsets can stop it by the [limit](Self::max_walk_work) on its work.
     #[inline(always)]
     pub(crate) fn walk<I: InstructionSet>(
         &self,
@@ -126,16 +126,32 @@ impl NeighbourTable {
         mut on_site: impl FnMut(usize),
     ) -> LocatedSite {
         let mut at = from;
-        for _ in 0..self.sites.len() {
+        let mut work_left = self.max_walk_work();
+        loop {
             self.prefetch(at);
             on_site(at);
             let (next, is_certainly_nearest) = self.step::<I>(at, query);
             if next == at {
                 return LocatedSite { site: at, is_certainly_nearest };
             }
+            work_left = work_left.saturating_sub(self.step_work(at));
+            if work_left == 0 {
+                return LocatedSite { site: at, is_certainly_nearest: false };
+            }
             at = next;
         }
-        LocatedSite { site: at, is_certainly_nearest: false }
+    }
+
+    /// Returns the largest work of a walk: that of a walk over all sites, and one more.
+    #[inline(always)]
+    pub(crate) fn max_walk_work(&self) -> usize {
+        self.blocks.len() + 1
+    }
+
+    /// Returns the work of a step from a site, which is at most the number of blocks that belong to it.
+    #[inline(always)]
+    pub(crate) fn step_work(&self, at: usize) -> usize {
+        (self.sites[at].block_count as usize).max(1)
     }
 
     /// Prefetches the memory that a step from a site reads.
@@ -215,11 +231,17 @@ impl NeighbourTable {
         let (sites, blocks) = (table.sites.len(), table.blocks.len());
         require(table.site_numbers.len() == blocks, NUMBERS, "there are not those of all blocks")?;
         require(blocks >= INLINE_BLOCKS * sites, NEIGHBOURS, "there are not those of all sites")?;
-        let has_blocks = |site: &Site| {
+        // The further blocks of all sites lie one after the other, so that no block belongs to two sites.
+        let mut end = INLINE_BLOCKS * sites;
+        for site in table.sites.iter() {
             let further = (site.block_count as usize).saturating_sub(INLINE_BLOCKS);
-            further == 0 || site.first_further_block as usize + further <= blocks
-        };
-        require(table.sites.iter().all(has_blocks), NEIGHBOURS, "a block does not exist")?;
+            require(site.first_further_block as usize == end, NEIGHBOURS, "a block belongs to another site")?;
+            require(further <= blocks - end, NEIGHBOURS, "a block does not exist")?;
+            end += further;
+        }
+        require(end == blocks, NEIGHBOURS, "a block belongs to no site")?;
+        let is_unused = |block: &NeighbourBlock| block.unused == [0; 2];
+        require(table.blocks.iter().all(is_unused), NEIGHBOURS, "a number that has no use is not 0")?;
         // A fold without an early end is computed in lanes.
         let last = table.site_numbers.as_flattened().iter().fold(0, |last: u32, site| last.max(*site)) as usize;
         require(table.site_numbers.is_empty() || last < sites, NUMBERS, "a site does not exist")?;

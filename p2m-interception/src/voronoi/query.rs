@@ -269,10 +269,9 @@ impl SimdKernel for SearchSeveral<'_> {
                 walking |= 1 << i;
             }
         }
-        // Only a table from a file with wrong offsets has walks of more steps than there are sites.
-        let mut steps = 0;
-        while walking != 0 && steps < index.neighbours.sites.len() {
-            steps += 1;
+        // Only a table from a file with wrong offsets has walks that take more work.
+        let mut work_left = QUERIES_SIDE_BY_SIDE * index.neighbours.max_walk_work();
+        while walking != 0 && work_left > 0 {
             let mut rest = walking;
             while rest != 0 {
                 let i = rest.trailing_zeros() as usize;
@@ -284,6 +283,7 @@ impl SimdKernel for SearchSeveral<'_> {
                         walking &= !(1 << i);
                         index.prefetch_answer(located, position);
                     } else {
+                        work_left = work_left.saturating_sub(index.neighbours.step_work(located.site));
                         located.site = next;
                         index.neighbours.prefetch(next);
                     }

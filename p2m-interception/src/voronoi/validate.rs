@@ -3,7 +3,7 @@
 //! The checks take one pass over the sites, the neighbours, the blocks and the cells of the locator. They cover what
 //! locating a query and searching its list rely on in order to end without a panic. They do not cover bounds,
 //! half-spaces and lists that lack a primitive, which can only make answers wrong. A walk ends whatever the offsets of
-//! neighbours are, because it is stopped after as many steps as there are sites.
+//! neighbours are, because it is stopped after it has read as many blocks of neighbours as there are.
 
 use crate::list::block::Block;
 use crate::voronoi::Voronoi;
@@ -25,13 +25,14 @@ pub(super) fn check(index: &Voronoi) -> Result<(), LoadError> {
     for (site, first) in sites.iter().zip(blocks.iter()) {
         check_site(index, lane_masks, site)?;
         if site.has_list() {
-            let end = site.list as usize + usize::from(first.following);
-            require(end <= blocks.len(), LISTS, "a list exceeds the section")?;
-            require(first.has_valid_fields(lane_masks), LISTS, "a number is out of range")?;
+            // The first block of a list has the number of its site, and the others come after those of all sites.
+            let start = site.list as usize;
+            let end = start + usize::from(first.following);
+            require(start >= sites.len() && end <= blocks.len(), LISTS, "a list exceeds the section")?;
         }
     }
     let are_valid = |_, chunk: &[Block]| chunk.iter().all(|block| block.has_valid_fields(lane_masks));
-    require(all_chunks(&blocks[sites.len()..], are_valid), LISTS, "a number is out of range")
+    require(all_chunks(blocks, are_valid), LISTS, "a number is out of range")
 }
 
 /// Checks the position and the owner of a site.

@@ -251,7 +251,7 @@ fn messages_read_well() {
     let message = |text: &str| obj(text).unwrap_err().to_string();
     assert_eq!(
         message(&format!("{FOUR}f 1 2 99\n")),
-        "t.obj:5: vertex index 99 is out of range, the file has 4 vertices"
+        "t.obj:5: vertex index 99 is out of range, 4 vertices were found"
     );
     assert_eq!(message("f 0 1 2"), "t.obj:1: vertex index 0, but vertices are numbered from 1");
     assert_eq!(
