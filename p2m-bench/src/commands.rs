@@ -207,7 +207,7 @@ fn time_batches(arguments: &BatchArguments) -> Result<bool> {
     Ok(is_good)
 }
 
-/// Times the program beside its library. It always succeeds.
+/// Times the program beside its library. No result counts as bad.
 fn time_program(arguments: &ProgramArguments) -> Result<bool> {
     let ProgramArguments { rounds, threads } = arguments;
     let effort = rounds.effort(2_000_000);

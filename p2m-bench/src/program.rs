@@ -19,7 +19,7 @@ const BACKENDS: [&str; 2] = ["aabb", "octree"];
 /// The formats of the answers.
 const FORMATS: [&str; 3] = ["npy", "ply", "csv"];
 
-/// A buffer that the run of the program writes and this program reads.
+/// A buffer that `p2m query` writes to and `p2m-bench` reads.
 #[derive(Clone, Default)]
 struct Shared(Arc<Mutex<Vec<u8>>>);
 
@@ -33,12 +33,13 @@ impl Write for Shared {
     }
 }
 
-/// Prints wall times for a scene in a file. It always succeeds.
+/// Prints wall times for a scene in a file. It fails only if the program does.
 pub(crate) fn print(scene: &Scene, path: &Path, threads: usize, effort: &Effort) -> Result<()> {
     let folder = tempfile::tempdir()?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let queries = QuerySet::Box1.generate(&scene.double, effort.queries, effort.seed);
-    let mut table = Table::new(["backend", "answers", "program ns", "library ns", "program / library"]);
+    let mut table =
+        Table::new(["backend", "answers", "program, ns per query", "library, ns per query", "program / library"]);
     for name in BACKENDS {
         let backend = BackendEntry::find(name).context("a backend of the registry")?;
         let built = pool.install(|| backend.build(&scene.double, &BuildSettings::default()))?;

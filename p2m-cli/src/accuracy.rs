@@ -21,8 +21,7 @@ pub(crate) struct Accuracy {
     #[arg(long, alias = "budget", value_name = "N", value_parser = clap::value_parser!(u32), allow_negative_numbers = true, conflicts_with = "certified")]
     max_visits: Option<u32>,
 
-    /// Prove every answer: the nearest primitive of the real numbers that coordinates are, and the distance rounded
-    /// once
+    /// Prove every answer: the primitive that is nearest in exact arithmetic, and its distance, rounded once
     #[arg(long)]
     certified: bool,
 }

@@ -1,8 +1,8 @@
 //! The loop that answers queries block by block on all threads, and writes the records of their answers.
 //!
 //! While the threads answer and encode one block, the calling thread writes the records of the block before it and
-//! makes the queries of the block after it. So neither the file nor the source of the queries keeps the threads
-//! waiting.
+//! makes the queries of the block after it. So the threads wait for the file or the
+//! source of the queries only if these are slower than answering.
 
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
@@ -14,9 +14,10 @@ use std::time::{Duration, Instant};
 
 /// The largest number of queries of a block. The records of two blocks are in memory at a time.
 const MAX_BLOCK: usize = 1 << 14;
-/// Blocks grow until they take this time, so that progress is shown often enough.
+/// The time of a block. Shorter ones are followed by larger blocks and longer ones by smaller, so that progress is
+/// shown often enough.
 const BLOCK_TIME: Duration = Duration::from_millis(100);
-/// Blocks grow until their records take this many bytes.
+/// The number of bytes of the records of a block, above which the next block is smaller.
 const MAX_BLOCK_BYTES: usize = 1 << 25;
 /// The number of answers that one thread encodes at a time.
 const ANSWERS_PER_TASK: usize = 1 << 11;
@@ -123,7 +124,7 @@ const ANNOUNCED_BYTES: f64 = 1e10;
 /// The number of seconds of answering above which a run is announced.
 const ANNOUNCED_SECONDS: f64 = 600.0;
 
-/// Says how large the answers will be and how long they will take, by those of the first block, if that is much.
+/// Estimates the size and the time of all answers from the first block, and announces them above the limits.
 #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "estimates")]
 fn announce<Q, A, I>(streams: &Streams, queries: &QueryStream<I>, block: &Block<Q, A>, elapsed: Duration) {
     let scale = queries.count as f64 / block.queries.len() as f64;

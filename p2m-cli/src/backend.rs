@@ -33,7 +33,8 @@ pub(crate) fn backends(fits: fn(&BackendEntry) -> bool) -> impl TypedValueParser
 
 /// A parser of the names of all backends and of `auto`.
 pub(crate) fn backend_choices() -> impl TypedValueParser<Value = BackendChoice> {
-    let auto = PossibleValue::new(AUTO).help("The one that `p2m advise` recommends for so many queries");
+    let auto = PossibleValue::new(AUTO)
+        .help("The one that `p2m advise` recommends for the queries of the command, or for ten million in the box");
     let values = BACKENDS.iter().map(possible_value).chain([auto]);
     PossibleValuesParser::new(values)
         .map(|name| if name == AUTO { BackendChoice::Auto } else { BackendChoice::Named(named(&name)) })

@@ -21,9 +21,9 @@ fn help() -> String {
 The file has the scene, too, so every command takes it in place of one. A command that searches by another backend, or with \
 another --k, builds its own index from that scene.
 
-Files are for the version of their format, and for processors that are little-endian. They are checked before use: what is \
-damaged or cut off is refused. While a command uses a file it must not be changed; this one replaces a file at once, \
-which harms nobody.
+A file can be read by programs with the same version of the format, on little-endian processors. It is checked before use: \
+what is damaged, cut off or contradictory is refused. Only with --map must nobody change the file while a command uses it. \
+This command writes a new file and renames it, so a command that has mapped the old one is not disturbed.
 
 {}
 

@@ -68,7 +68,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "S", default_value_t = 1.2, value_parser = positive, allow_negative_numbers = true)]
     box_scale: f64,
 
-    /// Negative distances inside; needs a scene of triangles [possible values of RULE: auto, closed, winding]
+    /// Negative distances inside; needs a scene of triangles [possible values of RULE: auto, closed, winding; default:
+    /// auto]
     #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum)]
     signed: Option<SignRule>,
 

@@ -14,7 +14,7 @@ pub(crate) struct IndexArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// Which index [default: aabb, or for `stats` that of a saved file]
+    /// Which index [default: that of a saved file if the command searches it, else aabb]
     #[arg(long, value_parser = backend_choices())]
     backend: Option<BackendChoice>,
 

@@ -22,8 +22,8 @@ pub(crate) const STANDARD: &str = "-";
 /// A scene to read.
 #[derive(clap::Args)]
 pub(crate) struct SceneArgs {
-    /// Scene: an OBJ, PLY, STL or OFF file, or an index that `p2m build` saved; `-` is the standard input. Files that gzip
-    /// or zstd has compressed are decompressed
+    /// Scene: an OBJ, PLY, STL or OFF file, or an index that `p2m build` saved; `-` is the standard input. Files that
+    /// gzip or zstd has compressed are decompressed
     #[arg(value_name = "SCENE")]
     pub(crate) path: PathBuf,
 
@@ -31,7 +31,7 @@ pub(crate) struct SceneArgs {
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     format: Option<Format>,
 
-    /// Map a saved index into memory instead of copying it, so that processes share it.
+    /// Map a saved index into memory instead of copying it, so that processes share it. It is checked as well.
     ///
     /// Nobody may change or truncate the file while the command runs: what then happens is undefined.
     #[arg(long)]

@@ -45,9 +45,9 @@ feature_kind (0 a vertex, 1 an edge, 2 the face) and feature_number; as PLY a cl
 by distance. Where there is no answer, numbers are NaN and -1.
 
 No distance is smaller than the true one but for rounding. With --epsilon or --max-visits it may be larger, by at most what the line `accuracy` of the summary says: every answer has a \
-lower bound that is certain (lower_bound in NPY). Of primitives whose distances round to the same number the answer is the \
-one with the lowest number, although another one may be nearer by less than that rounding; --certified answers with the \
-one that is exactly the nearest, and of equal ones with the lowest number.
+lower bound that is certain (lower_bound in NPY). Of primitives whose distances are equal after rounding, the answer is \
+the one that comes first in the file, although another one may be nearer by less than that rounding; --certified answers \
+with the one that is exactly the nearest, and of equal ones with the first.
 
 Points from a CSV file are taken from its columns qx, qy, qz, or else x, y, z (also like 'X [m]'), or else Points:0, \
 Points:1, Points:2, or else from the first three columns; so the table itself is a file of the same queries. XYZ and TXT \

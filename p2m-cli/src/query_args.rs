@@ -19,8 +19,8 @@ pub(crate) struct QueryArgs {
     /// Where to write the answers; `-` is the standard output.
     ///
     /// The file appears under this name when it is complete, and does not if the run is interrupted (one that is ended
-    /// by SIGKILL leaves a file `.p2m-*` beside it). A link is followed, one to nothing is refused, and so is the
-    /// name of an input.
+    /// by SIGKILL leaves a file `.p2m-*` beside it). A symbolic link is followed; a dangling one is refused,
+    /// and so is a file that is also an input.
     #[arg(long, value_name = "FILE", default_value = "-")]
     pub(crate) out: PathBuf,
 

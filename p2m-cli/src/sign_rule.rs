@@ -12,7 +12,7 @@ use p2m_field::sign::{SignError, SignedDistance};
 pub(crate) enum SignRule {
     /// As a closed surface if it is one, otherwise by winding numbers
     Auto,
-    /// As a closed surface, or not at all
+    /// By the normals of a closed surface; a surface that is not closed is an error
     Closed,
     /// By winding numbers
     Winding,

@@ -74,7 +74,7 @@ const QUERIES_PER_CHUNK: usize = 1 << 9;
 /// ```
 ///
 /// # Panics
-/// It panics if the slices differ in length, and for more than 2^32 - 1 queries to reorder.
+/// It panics if the slices differ in length, and for more than 2^32 queries to reorder.
 ///
 /// # Complexity
 /// Sorting n queries takes O(n log n) time and 16 bytes a query, besides the queries themselves.
@@ -149,7 +149,7 @@ fn sorted_along_curve<T: Real>(queries: &[Point3<T>], parallel: bool) -> Vec<(u6
         let cell = |k: usize| (((q[k] * 0.5 - min[k] * 0.5) * scale[k]) as u32).min((1 << BITS_PER_AXIS) - 1);
         curve::position([cell(0), cell(1), cell(2)], BITS_PER_AXIS)
     };
-    let position = |i: usize| u32::try_from(i).expect("fewer than 2^32 queries");
+    let position = |i: usize| u32::try_from(i).expect("at most 2^32 queries");
     let mut order: Vec<(u64, u32)> = queries.iter().enumerate().map(|(i, q)| (key(q), position(i))).collect();
     #[cfg(feature = "rayon")]
     if parallel {

@@ -67,13 +67,13 @@ pub(super) fn check_references<V: VolumeNodes>(tree: &PacketTree<V>) -> Result<u
 pub(super) fn check_leaves(leaves: &Leaves, primitives: usize) -> Result<(), LoadError> {
     let Leaves { packets, vertices, vertex_offsets, .. } = leaves;
     require(primitives <= PrimitiveId::MAX_COUNT, PACKETS, "there are too many primitives")?;
-    require(vertex_offsets.len() == packets.len() + 1, VERTEX_OFFSETS, "there is not one for each packet")?;
+    require(vertex_offsets.len() == packets.len() + 1, VERTEX_OFFSETS, "there is not one offset for each packet")?;
     let (first, last) = (vertex_offsets[0] as usize, vertex_offsets[packets.len()] as usize);
-    require(first == 0 && last == vertices.len(), VERTEX_OFFSETS, "they are not those of all vertices")?;
+    require(first == 0 && last == vertices.len(), VERTEX_OFFSETS, "the offsets do not cover all vertices")?;
     let are_finite = |chunk: &[[f64; 3]]| chunk.as_flattened().iter().fold(true, |all, x| all & x.is_finite());
     require(all_chunks(vertices, |_, chunk| are_finite(chunk)), VERTICES, "a coordinate is not finite")?;
     let is_ascending = vertex_offsets.windows(2).fold(true, |all, pair| all & (pair[0] <= pair[1]));
-    require(is_ascending, VERTEX_OFFSETS, "they are not in ascending order")?;
+    require(is_ascending, VERTEX_OFFSETS, "the offsets are not in ascending order")?;
     let is_valid = |first: usize, chunk: &[Packet]| {
         let offsets = vertex_offsets[first..].windows(2);
         chunk.iter().zip(offsets).all(|(packet, offsets)| packet.has_valid_fields(offsets[0], offsets[1]))

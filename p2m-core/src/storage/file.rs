@@ -21,7 +21,7 @@ struct CacheLine([u8; 64]);
 
 /// The number of bytes of a cache line.
 const LINE_BYTES: usize = size_of::<CacheLine>();
-/// The number of cache lines, 16 KiB in all, for which the first room is made beyond the header of a file of unknown length.
+/// The least number of cache lines, 16 KiB in all, by which the buffer for a file of unknown length grows.
 const FIRST_LINES: usize = 1 << 8;
 
 /// Bytes that begin at a cache line.
@@ -75,7 +75,7 @@ impl SavedFile {
         Self::read_available(reader, 0)
     }
 
-    /// Reads a file into memory, of which so many bytes are certainly available.
+    /// Reads a file of which at least `available` bytes are known to exist.
     fn read_available(mut reader: impl Read, available: u64) -> Result<Self, LoadError> {
         let mut lines = vec![CacheLine::zeroed()];
         let mut len = read_until_full(&mut reader, bytemuck::cast_slice_mut(&mut lines))?;
@@ -111,8 +111,8 @@ impl SavedFile {
         Ok(&self.0)
     }
 
-    /// Returns the sections without verifying their checksums, for a file that was checked before. What loads from
-    /// damaged sections neither panics nor searches without end, but its answers may be wrong.
+    /// Returns the sections without verifying their checksums, for a file that was checked before. An index that is
+    /// loaded from damaged sections neither panics nor searches without end, but its answers may be wrong.
     #[must_use]
     pub fn unchecked(&self) -> &Reader {
         &self.0

@@ -28,8 +28,9 @@
 //! and [`SavedFile::read`] copy a file into memory. [`SavedFile::map`] maps it, so that processes share its memory; it
 //! is unsafe because another process may change the file. [`SavedFile::checked`] verifies all checksums.
 //!
-//! Checksums detect damage, not malice. Loading an index therefore validates everything that a search relies on: all
-//! numbers are in range, children come after their parents, each part is used once, and every walk ends. A file that
+//! Checksums detect damage, not malice. Loading an index therefore validates what a search relies on in order to end
+//! without a panic: numbers are in range, children come after their parents, nodes and packets are used once, and every
+//! walk ends. A file that
 //! was made on purpose can still give wrong answers, for example by wrong bounds, but its index neither panics nor
 //! searches without end.
 //!

@@ -1,15 +1,15 @@
 //! The lists of all Voronoi cells.
 //!
 //! The corner test excludes a primitive t that cannot beat the site v anywhere in its cell. The values of its function
-//! F(q) = d(q, t)^2 - (|q - v| + s)^2 at the corners restrict the places where t can beat v. Take an edge of the cell
-//! with F <= 0 at one end and F > 0 at the other. F is concave, so it lies above its chord, and t cannot beat v beyond
-//! the zero of the chord. Therefore t can be the answer only in the convex hull of the corners where F <= 0 and of
-//! these zeros, which is the *region* of t (docs/proofs/p2m.md).
+//! F(q) = d(q, t)^2 - (|q - v| + s)^2 at the corners, where s is the slack of the corner test, restrict the places
+//! where t can beat v. Take an edge of the cell with F <= 0 at one end and F > 0 at the other. F is concave, so it lies
+//! above its chord, and t cannot beat v beyond the zero of the chord. Therefore t can be the answer only in the convex
+//! hull of the corners where F <= 0 and of these zeros, which is the *region* of t (docs/proofs/p2m.md).
 //!
 //! A feature of t is *relevant* only if it can be nearest somewhere in the region
-//! ([`feature_relevance`](crate::voronoi::feature_relevance)). If all relevant features of t belong to a primitive
-//! with a lower id as well, t is never the answer. The other primitive is as near, by the same bits, and the lower id
-//! wins.
+//! ([`feature_relevance`](crate::voronoi::feature_relevance)). If each relevant feature of t also belongs to
+//! some primitive with a lower id, t is never the answer: the owner of the nearest feature is as near, by the same
+//! bits, and its lower id wins.
 
 use crate::delaunay::BOUNDING;
 use crate::list::block::{Block, BoundKind, Entry};

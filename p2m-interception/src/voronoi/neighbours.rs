@@ -50,8 +50,7 @@ pub(crate) struct LocatedSite {
 
 impl NeighbourTable {
     /// Builds the table. `list_neighbours` appends the Delaunay neighbours of a site to its first list, and the sites
-    /// at the
-    /// other ends of edges of primitives to its second. Sites below `first` have no neighbours.
+    /// at the other ends of edges of primitives to its second. Sites below `first` have no neighbours.
     #[allow(clippy::cast_possible_truncation, reason = "rounded down")]
     pub(crate) fn new(
         positions: &[V3],
@@ -116,8 +115,8 @@ impl NeighbourTable {
 
     /// Walks from a site to the site nearest to `query`. `on_site` is called with each site before it is read.
     ///
-    /// A walk never visits a site twice, since each step leads to a nearer one, so it reads no block twice. Only a table
-    /// from a file with wrong offsets can stop it by the [limit](Self::max_walk_work) on its work.
+    /// A walk never visits a site twice, since each step leads to a nearer one, so it reads no block twice. Only a
+    /// table from a file with wrong offsets can stop it by the [limit](Self::max_walk_work) on its work.
     #[inline(always)]
     pub(crate) fn walk<I: InstructionSet>(
         &self,
@@ -229,8 +228,8 @@ impl NeighbourTable {
             slack: reader.one("voronoi/neighbours/slack")?,
         };
         let (sites, blocks) = (table.sites.len(), table.blocks.len());
-        require(table.site_numbers.len() == blocks, NUMBERS, "there are not those of all blocks")?;
-        require(blocks >= INLINE_BLOCKS * sites, NEIGHBOURS, "there are not those of all sites")?;
+        require(table.site_numbers.len() == blocks, NUMBERS, "there are not the numbers of all blocks")?;
+        require(blocks >= INLINE_BLOCKS * sites, NEIGHBOURS, "there are not the blocks of all sites")?;
         // The further blocks of all sites lie one after the other, so that no block belongs to two sites.
         let mut end = INLINE_BLOCKS * sites;
         for site in table.sites.iter() {

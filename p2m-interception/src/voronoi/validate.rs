@@ -20,7 +20,7 @@ pub(super) fn check(index: &Voronoi) -> Result<(), LoadError> {
     require(numbers.as_flattened().iter().all(|x| x.is_finite()), VORONOI, "a number is not finite")?;
     require(index.anchors.as_flattened().iter().all(|x| x.is_finite()), ANCHORS, "a coordinate is not finite")?;
     let (sites, blocks) = (&index.neighbours.sites, &index.blocks);
-    require(blocks.len() >= sites.len(), LISTS, "there are fewer than sites")?;
+    require(blocks.len() >= sites.len(), LISTS, "there are fewer blocks than sites")?;
     let lane_masks = &index.tree.lane_masks();
     for (site, first) in sites.iter().zip(blocks.iter()) {
         check_site(index, lane_masks, site)?;

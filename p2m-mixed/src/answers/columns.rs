@@ -21,7 +21,8 @@ use p2m_core::{Closest, Feature};
 /// | `feature` | `feature` | `feature_kind`, `feature_number`, `<i2` | `int` `feature_kind`, `feature_number` |
 /// | `object` | `object`, the name | `object`, `<i4`, the number from 0 | `int` `object`, the number from 0 |
 ///
-/// Without an answer, fields of CSV are empty, and numbers of NPY and PLY are NaN or -1; the query is always there.
+/// Without an answer, fields of CSV are empty, and numbers of NPY and PLY are NaN or -1; the query and its number are
+/// always there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AnswerColumn {

@@ -22,10 +22,10 @@ use std::io::{self, Write};
 ///
 /// # CSV
 /// The columns `qx,qy,qz,x,y,z,distance,primitive,feature` are the query, the closest point, its distance, the id of
-/// the primitive, and the feature of the primitive that has the point, as [`Feature`](p2m_core::Feature) displays it. Numbers have the
-/// fewest digits that read back as the same number. The last six columns are empty if there is no answer. With
-/// [objects](Self::with_objects) there is a column `object` with the name of the object that the primitive belongs to,
-/// which is empty if it belongs to none.
+/// the primitive, and the feature of the primitive that has the point, as [`Feature`](p2m_core::Feature) displays it.
+/// Numbers have the fewest digits that read back as the same number. The last six columns are empty if there is no
+/// answer. With [objects](Self::with_objects) there is a column `object` with the name of the object that the primitive
+/// belongs to, which is empty if it belongs to none.
 ///
 /// # NPY
 /// The file is a structured array of shape `(count,)`, little-endian and without gaps. A record has 96 bytes, and every
@@ -112,8 +112,8 @@ impl<W: Write> AnswerWriter<W> {
         self.encoder.clone()
     }
 
-    /// Writes the answer to a query. It is the next number in the column of numbers, if there is one, and NaN in that
-    /// of signed distances.
+    /// Writes the answer to a query. The column `number`, if there is one, has the number of answers so far, and
+    /// `signed_distance` has NaN.
     ///
     /// # Errors
     /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more answers than announced.

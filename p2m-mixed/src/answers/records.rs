@@ -116,7 +116,7 @@ pub(super) fn put_numbers(out: &mut Vec<u8>, numbers: &[f64]) {
 pub(super) fn put_text(out: &mut Vec<u8>, x: f64) {
     let mut buffer = zmij::Buffer::new();
     let text = buffer.format(x).as_bytes();
-    // An exponent has no plus sign, as in Rust. Only numbers from 1e16 on have a sign there.
+    // Rust writes exponents without a plus sign, and zmij with one, which only numbers from 1e16 on get.
     match if x.abs() < 1e16 { None } else { text.iter().position(|byte| *byte == b'+') } {
         None => out.extend_from_slice(text),
         Some(plus) => {
