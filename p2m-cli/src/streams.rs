@@ -53,7 +53,8 @@ impl Streams {
     /// Writes a summary to the standard error. Results are complete by then, so an error of writing it is ignored.
     pub(crate) fn print_summary(&self, text: fmt::Arguments<'_>) {
         if !self.is_quiet.get() {
-            let _ = self.stderr().write_fmt(text);
+            // The text is written at once, so that an interruption does not cut it.
+            let _ = self.stderr().write_all(fmt::format(text).as_bytes());
         }
     }
 

@@ -56,7 +56,7 @@ fn an_interrupted_run_leaves_what_was_there_before() {
         }
         let folder = TempDir::new().unwrap();
         write(&folder, "answers.csv", "old");
-        let child = start(folder.path(), &mut long(name, folder.path()));
+        let child = start(folder.path(), long(name, folder.path()).arg("--quiet"));
         assert_eq!(names(folder.path()).len(), 2);
         send(signal, &child);
         let output = child.wait_with_output().unwrap();
