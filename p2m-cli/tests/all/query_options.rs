@@ -187,6 +187,18 @@ fn saved_indexes_are_mapped_on_request() {
     assert!(message.contains("--map needs the file of a saved index"), "{message}");
 }
 
+/// A saved index that answers no rays is not used without a word.
+#[test]
+fn rays_over_a_saved_index_without_rays_are_noted() {
+    let folder = TempDir::new().unwrap();
+    let index = path(&folder, "index.p2m");
+    assert_eq!(p2m(&["build", SCENE, "--backend", "octree", "--out", &index]).code, 0);
+    let summary = |scene: &str| text(&p2m(&["ray", scene, "--random", "5"]).stderr);
+    let note = "note     the saved index (octree) answers no rays: aabb is built\n";
+    assert!(summary(&index).starts_with(note), "{}", summary(&index));
+    assert!(!summary(SCENE).contains("note"));
+}
+
 #[test]
 fn directories_and_missing_folders_are_named() {
     let folder = TempDir::new().unwrap();

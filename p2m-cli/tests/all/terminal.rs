@@ -30,6 +30,8 @@ fn long_work_shows_a_bar_on_a_terminal_only() {
     // The bar moves.
     let words: BTreeSet<_> = shown.split_whitespace().filter(|word| word.ends_with("/100,000,000")).collect();
     assert!(shown.contains("answering") && words.len() > 3, "{shown:?}");
+    // Before the first answer there is no estimate of the time.
+    assert!(!shown.contains(" 0/100,000,000 queries, "), "{shown:?}");
     let shown = on_terminal(&format!("{LONG_RUN} 2>/dev/null"), &[]).unwrap();
     assert_eq!(shown, "");
     let shown = on_terminal(&format!("{LONG_RUN} --quiet"), &[]).unwrap();
