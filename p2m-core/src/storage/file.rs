@@ -1,8 +1,7 @@
 //! Saved files in memory.
 
 use super::error::LoadError;
-use super::reader::Reader;
-use super::section::Header;
+use super::reader::{Reader, check_header};
 use bytemuck::Zeroable;
 use memmap2::Mmap;
 use std::fs::File;
@@ -79,7 +78,7 @@ impl SavedFile {
     fn read_available(mut reader: impl Read, available: u64) -> Result<Self, LoadError> {
         let mut lines = vec![CacheLine::zeroed()];
         let mut len = read_until_full(&mut reader, bytemuck::cast_slice_mut(&mut lines))?;
-        let expected = Header::check(&bytemuck::cast_slice(&lines)[..len])?.length;
+        let expected = check_header(&bytemuck::cast_slice(&lines)[..len])?.length;
         // The length may be wrong, so memory only grows with what was read.
         while (len as u64) < expected && len == size_of_val(&lines[..]) {
             let wanted = usize::try_from(expected.div_ceil(LINE_BYTES as u64)).unwrap_or(usize::MAX);

@@ -2,7 +2,7 @@
 
 use super::array::{Array, FileBytes};
 use super::error::LoadError;
-use super::section::{ALIGNMENT, Entry, Header, checksum};
+use super::section::{ALIGNMENT, Entry, Header, MAGIC, VERSION, checksum};
 use bytemuck::AnyBitPattern;
 
 /// The sections of a file in memory, by their names.
@@ -20,7 +20,7 @@ impl Reader {
         }
         let bytes = (*file).as_ref();
         let found = bytes.len() as u64;
-        let header = Header::check(bytes)?;
+        let header = check_header(bytes)?;
         if header.length != found {
             return Err(LoadError::Length { found, expected: header.length });
         }
@@ -94,6 +94,22 @@ impl Reader {
             _ => Err(LoadError::inconsistent(name, "there is more or less than one element")),
         }
     }
+}
+
+/// Returns the header at the beginning of a file.
+pub(super) fn check_header(bytes: &[u8]) -> Result<Header, LoadError> {
+    if !bytes.starts_with(&MAGIC) {
+        return Err(LoadError::Foreign);
+    }
+    let short = LoadError::Length { found: bytes.len() as u64, expected: size_of::<Header>() as u64 };
+    let header: Header = bytes.get(..size_of::<Header>()).map(bytemuck::pod_read_unaligned).ok_or(short)?;
+    if header.version != VERSION {
+        return Err(LoadError::Version { found: header.version });
+    }
+    if header.unused != [0; 4] {
+        return Err(LoadError::inconsistent("the header", "unused bytes are not zero"));
+    }
+    Ok(header)
 }
 
 /// Returns the bytes that belong to no section. It is `None` if the sections are not in the order of the file, overlap,

@@ -1,6 +1,5 @@
 //! The header of a file and the entries of its table of sections.
 
-use super::error::LoadError;
 use bytemuck::{Pod, Zeroable};
 use twox_hash::XxHash3_64;
 
@@ -27,24 +26,6 @@ pub(super) struct Header {
     pub(super) checksum: u64,
     /// Zero, so that a later version can use it.
     pub(super) unused: [u64; 4],
-}
-
-impl Header {
-    /// Returns the header at the beginning of a file.
-    pub(super) fn check(bytes: &[u8]) -> Result<Self, LoadError> {
-        if !bytes.starts_with(&MAGIC) {
-            return Err(LoadError::Foreign);
-        }
-        let short = LoadError::Length { found: bytes.len() as u64, expected: size_of::<Self>() as u64 };
-        let header: Self = bytes.get(..size_of::<Self>()).map(bytemuck::pod_read_unaligned).ok_or(short)?;
-        if header.version != VERSION {
-            return Err(LoadError::Version { found: header.version });
-        }
-        if header.unused != [0; 4] {
-            return Err(LoadError::inconsistent("the header", "unused bytes are not zero"));
-        }
-        Ok(header)
-    }
 }
 
 const _: () = assert!(size_of::<Header>() == ALIGNMENT);

@@ -1,17 +1,11 @@
 //! Saving an octree and loading it.
 
-use crate::octree::{Octree, validate};
+use crate::octree::Octree;
+use crate::octree::validate::{CODES, LISTS, OCTREE, check};
 use crate::options::OctreeReport;
 use p2m_bvh::PacketTree;
 use p2m_core::engine::vector::V3;
 use p2m_core::storage::{LoadError, Reader, Saved, Writer, require};
-
-/// The section with the fields that are not arrays.
-pub(super) const OCTREE: &str = "octree";
-/// The section with the rows of codes.
-pub(super) const CODES: &str = "octree/codes";
-/// The section with the blocks of all lists.
-pub(super) const LISTS: &str = "octree/lists";
 
 /// The fields of an octree that are not arrays. The layout is that of the section `octree` of the file.
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -75,7 +69,7 @@ impl Saved for Octree {
         let (rows, blocks) = (reader.array(CODES)?, reader.array(LISTS)?);
         let tree = PacketTree::load(reader, primitives)?;
         let octree = Self { tree, low, cells_per_length, root, rows, blocks, report };
-        validate::check(&octree)?;
+        check(&octree)?;
         Ok(octree)
     }
 }

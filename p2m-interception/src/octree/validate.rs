@@ -7,7 +7,6 @@
 use crate::list::block::{Block, MAX_LEVEL};
 use crate::octree::Octree;
 use crate::octree::code::{CellCode, FALLBACK_CODE, KIND_ONE_LEVEL, KIND_SHIFT};
-use crate::octree::saved::{CODES, LISTS, OCTREE};
 use p2m_core::storage::{LoadError, all_chunks, require};
 
 /// Checks the codes, the blocks and the report of an octree.
@@ -45,6 +44,13 @@ fn check_codes(octree: &Octree, lane_masks: &[u16]) -> Result<(), LoadError> {
     }
     Ok(())
 }
+
+/// The section with the fields that are not arrays.
+pub(super) const OCTREE: &str = "octree";
+/// The section with the rows of codes.
+pub(super) const CODES: &str = "octree/codes";
+/// The section with the blocks of all lists.
+pub(super) const LISTS: &str = "octree/lists";
 
 /// Checks the code of a cube of a level. It may lead to rows from `first_row` on that no other code leads to.
 fn check_code(

@@ -1,20 +1,14 @@
 //! Saving a P2M index and loading it.
 
+use crate::voronoi::Voronoi;
 use crate::voronoi::any_locator::AnyLocator;
 use crate::voronoi::grid_locator::GridLocator;
 use crate::voronoi::list_filter::ListFilters;
 use crate::voronoi::neighbours::NeighbourTable;
-use crate::voronoi::{Voronoi, validate};
+use crate::voronoi::validate::{ANCHORS, LISTS, VORONOI, check};
 use p2m_bvh::PacketTree;
 use p2m_core::engine::vector::V3;
 use p2m_core::storage::{LoadError, Reader, Saved, Writer, require};
-
-/// The section with the fields that are not arrays.
-pub(super) const VORONOI: &str = "voronoi";
-/// The section with the blocks of all lists.
-pub(super) const LISTS: &str = "voronoi/lists";
-/// The section with the anchors.
-pub(super) const ANCHORS: &str = "voronoi/anchors";
 
 /// The fields of a P2M index that are not arrays. The layout is that of the section `voronoi` of the file.
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -75,7 +69,7 @@ impl Saved for Voronoi {
             anchors: reader.array(ANCHORS)?,
             report: report.into(),
         };
-        validate::check(&index)?;
+        check(&index)?;
         Ok(index)
     }
 }

@@ -7,9 +7,15 @@
 
 use crate::list::block::Block;
 use crate::voronoi::Voronoi;
-use crate::voronoi::saved::{ANCHORS, LISTS, VORONOI};
 use crate::voronoi::site::{AUXILIARY_SITE, FALLBACK, Site};
 use p2m_core::storage::{LoadError, all_chunks, require};
+
+/// The section with the fields that are not arrays.
+pub(super) const VORONOI: &str = "voronoi";
+/// The section with the blocks of all lists.
+pub(super) const LISTS: &str = "voronoi/lists";
+/// The section with the anchors.
+pub(super) const ANCHORS: &str = "voronoi/anchors";
 
 /// The section with the sites.
 const SITES: &str = "voronoi/sites";
