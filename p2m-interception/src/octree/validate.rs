@@ -26,8 +26,12 @@ fn check_blocks(octree: &Octree, lane_masks: &[u16]) -> Result<(), LoadError> {
     let blocks = &octree.blocks;
     let are_valid = |_, chunk: &[Block]| chunk.iter().all(|block| block.has_valid_fields(lane_masks));
     require(all_chunks(blocks, are_valid), LISTS, "a number is out of range")?;
-    let ends = blocks.windows(2).all(|pair| pair[0].following == 0 || pair[1].following == pair[0].following - 1);
-    require(ends, LISTS, "a list overlaps another one")?;
+    // The blocks of a list count down to its last one. A chunk is compared with the block before it as well.
+    let count_down = |first: usize, chunk: &[Block]| {
+        let pairs = blocks[first.saturating_sub(1)..first + chunk.len()].windows(2);
+        pairs.into_iter().all(|pair| pair[0].following == 0 || pair[1].following == pair[0].following - 1)
+    };
+    require(all_chunks(blocks, count_down), LISTS, "a list overlaps another one")?;
     require(blocks.last().is_none_or(|last| last.following == 0), LISTS, "the last list has no end")
 }
 

@@ -13,7 +13,7 @@ use crate::voronoi::neighbour_block::{
 use crate::voronoi::site::{FarHalfSpace, Site};
 use p2m_core::engine::simd::{InstructionSet, Lanes, prefetch_lines};
 use p2m_core::engine::vector::{V3, norm_squared, sub};
-use p2m_core::storage::{Array, LoadError, Reader, Writer, require};
+use p2m_core::storage::{Array, LoadError, Reader, Writer, all_chunks, require};
 use std::cmp::Ordering;
 
 /// The number of blocks of each site that are found by its number alone, without reading the site.
@@ -239,11 +239,14 @@ impl NeighbourTable {
             end += further;
         }
         require(end == blocks, NEIGHBOURS, "a block belongs to no site")?;
-        let is_unused = |block: &NeighbourBlock| block.unused == [0; 2];
-        require(table.blocks.iter().all(is_unused), NEIGHBOURS, "a number that has no use is not 0")?;
+        let are_unused = |_, chunk: &[NeighbourBlock]| chunk.iter().all(|block| block.unused == [0; 2]);
+        require(all_chunks(&table.blocks, are_unused), NEIGHBOURS, "a number that has no use is not 0")?;
         // A fold without an early end is computed in lanes.
-        let last = table.site_numbers.as_flattened().iter().fold(0, |last: u32, site| last.max(*site)) as usize;
-        require(table.site_numbers.is_empty() || last < sites, NUMBERS, "a site does not exist")?;
+        let are_sites = |_, chunk: &[[u32; NEIGHBOURS_PER_BLOCK]]| {
+            chunk.is_empty()
+                || (chunk.as_flattened().iter().fold(0, |last: u32, site| last.max(*site)) as usize) < sites
+        };
+        require(all_chunks(&table.site_numbers, are_sites), NUMBERS, "a site does not exist")?;
         Ok(table)
     }
 
