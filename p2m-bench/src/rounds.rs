@@ -1,4 +1,4 @@
-//! What all measuring loops of this program share: the rounds of p2m-tradeoff, and a checksum of answers.
+//! The parts that all measuring loops of this program share: the rounds of p2m-tradeoff, and a checksum of answers.
 
 pub(crate) use p2m_tradeoff::rounds::{Rounds, rotated, thread_seconds, time_answers};
 

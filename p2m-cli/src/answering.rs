@@ -44,6 +44,13 @@ struct Block<Q, A> {
     encoded: Vec<Encoded>,
 }
 
+impl<Q, A> Block<Q, A> {
+    /// Returns the number of bytes of all records.
+    fn bytes(&self) -> usize {
+        self.encoded.iter().map(|part| part.bytes.len()).sum()
+    }
+}
+
 /// The functions that turn queries into records.
 pub(crate) struct Steps<Answer, Encode, Take, WriteRecords> {
     /// Whether an answer may depend on the other queries of its block. The sizes of blocks then depend neither on time
@@ -79,44 +86,39 @@ pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
     let (mut time, mut first, mut size) = (Duration::ZERO, 0, min_block);
     let mut finished: Option<Block<Q, A>> = None;
     let mut pending: Vec<Q> = queries.iter.by_ref().take(size).collect();
-    loop {
-        let (block, elapsed, next, written) = pool.in_place_scope(|scope| {
-            let (send, receive) = std::sync::mpsc::sync_channel(1);
-            let (answer, encode) = (&answer, &encode);
-            let block = std::mem::take(&mut pending);
-            let is_last = block.is_empty();
-            scope.spawn(move |_| {
+    let mut write_block = |block: Block<Q, A>| {
+        block.queries.iter().zip(&block.answers).for_each(|(query, answer)| take(query, answer));
+        block.encoded.iter().try_for_each(|part| write(part.records, &part.bytes))
+    };
+    while !pending.is_empty() {
+        let mut answered = None;
+        let (written, next) = pool.in_place_scope(|scope| {
+            let (block, answered) = (std::mem::take(&mut pending), &mut answered);
+            scope.spawn(|_| {
                 let start = Instant::now();
                 let answers = answer(&block);
                 let elapsed = start.elapsed();
-                let encoded = encode_all(first, &block, &answers, encode);
-                // The receiver waits, so sending does not fail.
-                let _ = send.send((Block { queries: block, answers, encoded }, elapsed));
+                let encoded = encode_all(first, &block, &answers, &encode);
+                *answered = Some((Block { queries: block, answers, encoded }, elapsed));
             });
-            let mut write_finished = |block: Block<Q, A>| {
-                block.queries.iter().zip(&block.answers).for_each(|(query, answer)| take(query, answer));
-                block.encoded.iter().try_for_each(|part| write(part.records, &part.bytes))
-            };
-            let written = finished.take().map_or(Ok(()), &mut write_finished);
-            let next: Vec<Q> = if is_last { Vec::new() } else { queries.iter.by_ref().take(size).collect() };
-            let (block, elapsed) = receive.recv().expect("a task that has been spawned");
-            (block, elapsed, next, written)
+            let written = finished.take().map_or(Ok(()), &mut write_block);
+            (written, queries.iter.by_ref().take(size).collect())
         });
         written?;
-        if block.queries.is_empty() {
-            return Ok(time);
-        }
+        let (block, elapsed) = answered.expect("the scope ends after its task");
+        let (count, bytes) = (block.queries.len() as u64, block.bytes());
         if first == 0 {
-            announce(streams, &queries, &block, elapsed);
+            announce(streams, &queries, count, bytes, elapsed);
         }
         time += elapsed;
-        first += block.queries.len() as u64;
-        progress.add(block.queries.len() as u64);
-        let bytes = block.encoded.iter().map(|part| part.bytes.len()).sum::<usize>();
+        first += count;
+        progress.add(count);
         let is_small = elapsed < BLOCK_TIME && bytes < MAX_BLOCK_BYTES;
         size = if is_small { MAX_BLOCK.min(2 * size) } else { min_block.max(size / 2) };
         (finished, pending) = (Some(block), next);
     }
+    finished.map_or(Ok(()), write_block)?;
+    Ok(time)
 }
 
 /// The number of bytes of answers, 10 GB, above which a run is announced.
@@ -124,11 +126,12 @@ const ANNOUNCED_BYTES: f64 = 1e10;
 /// The number of seconds of answering above which a run is announced.
 const ANNOUNCED_SECONDS: f64 = 600.0;
 
-/// Estimates the size and the time of all answers from the first block, and announces them above the limits.
+/// Estimates the size and the time of all answers from the first block, which has this number of queries and of bytes,
+/// and announces them above the limits.
 #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "estimates")]
-fn announce<Q, A, I>(streams: &Streams, queries: &QueryStream<I>, block: &Block<Q, A>, elapsed: Duration) {
-    let scale = queries.count as f64 / block.queries.len() as f64;
-    let bytes = block.encoded.iter().map(|part| part.bytes.len()).sum::<usize>() as f64 * scale;
+fn announce<I>(streams: &Streams, queries: &QueryStream<I>, count: u64, bytes: usize, elapsed: Duration) {
+    let scale = queries.count as f64 / count as f64;
+    let bytes = bytes as f64 * scale;
     let seconds = elapsed.as_secs_f64() * scale;
     if bytes > ANNOUNCED_BYTES || seconds > ANNOUNCED_SECONDS {
         let (count, name) = (HumanCount(queries.count), queries.name);

@@ -166,6 +166,7 @@ fn open<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<Box<dyn BufRead
 
 /// The first bytes of what gzip has compressed.
 const GZIP_MAGIC: [u8; 3] = [0x1f, 0x8b, 8];
+
 /// Opens a file and shows the progress of reading.
 fn open_raw<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<ProgressReader<'a>> {
     let name = name(path);

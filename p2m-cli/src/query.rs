@@ -171,7 +171,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let encoder = AnswerEncoder::new(out_format, &scene.objects, &args.columns(out_format, &scene));
         // Only with one answer for each query it is known before how many there are.
         let count = Some(queries.len()).filter(|_| !args.has_many_answers());
-        let mut writer = AnswerWriter::with_columns(&mut output, encoder.clone(), count)?;
+        let mut writer = AnswerWriter::with_columns(&mut output, encoder, count)?;
+        let encoder = writer.encoder();
         let queries = QueryStream { name: "queries", count: queries.len(), iter: queries };
         let write = |count, records: &[u8]| writer.write_encoded(count, records);
         let time = if args.has_many_answers() {

@@ -80,7 +80,7 @@ enum Deferred {
     Shape(Shape, u64, Range<usize>),
     /// The name of an object that starts here.
     Object(Vec<u8>),
-    /// What was grouped so far belongs to no object.
+    /// All objects so far, which come from statements `g`, are removed, because the file has statements `o`.
     ClearObjects,
 }
 

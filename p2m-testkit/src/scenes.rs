@@ -195,3 +195,22 @@ pub fn query(rng: &mut impl Rng, positions: &[Point3<f64>]) -> Point3<f64> {
         _ => a + (b - a) * rng.random_range(0.0..1.0) + noise * 0.5,
     }
 }
+
+/// Returns a square spiral of this number of arms, with a width of 1 and gaps of 1.
+#[must_use]
+pub fn square_spiral(arms: i64) -> Vec<[i64; 2]> {
+    const DIRECTIONS: [[i64; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
+    let longest = arms + 2;
+    let (mut at, mut outer, mut inner) = ([0, 0], vec![[0, 0]], vec![[0, 1]]);
+    for arm in 0..arms {
+        let length = longest - 2 * ((arm.max(1) - 1) / 2);
+        let [dx, dy] = DIRECTIONS[usize::try_from(arm % 4).expect("not negative")];
+        at = [at[0] + length * dx, at[1] + length * dy];
+        outer.push(at);
+        // The corner is to the left of this arm and, if there is one, of the next.
+        let [left_x, left_y] = if arm + 1 < arms { [-dy - dx, dx - dy] } else { [-dy, dx] };
+        inner.push([at[0] + left_x, at[1] + left_y]);
+    }
+    outer.extend(inner.into_iter().rev());
+    outer
+}

@@ -2,33 +2,16 @@
 
 use crate::rounds::thread_seconds;
 use p2m_mixed::{MAX_CORNERS, Reason, read_obj};
+use p2m_testkit::scenes::square_spiral;
 use p2m_tradeoff::Table;
 use std::fmt::Write as _;
 
 /// The numbers of polygons in the files. The last file exceeds the budget.
 const COUNTS: [usize; 3] = [1, 16, 17];
 
-/// Returns the corners of a square spiral of a width of 1 and gaps of 1.
-fn spiral(corners: usize) -> Vec<[i64; 2]> {
-    const DIRECTIONS: [[i64; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
-    let arms = corners / 2 - 1;
-    let (mut at, mut outer, mut inner) = ([0, 0], vec![[0, 0]], vec![[0, 1]]);
-    for arm in 0..arms {
-        let length = (arms + 2 - 2 * ((arm.max(1) - 1) / 2)) as i64;
-        let [dx, dy] = DIRECTIONS[arm % 4];
-        at = [at[0] + length * dx, at[1] + length * dy];
-        outer.push(at);
-        // The corner is to the left of this arm and, if there is one, of the next.
-        let [left_x, left_y] = if arm + 1 < arms { [-dy - dx, dx - dy] } else { [-dy, dx] };
-        inner.push([at[0] + left_x, at[1] + left_y]);
-    }
-    outer.extend(inner.into_iter().rev());
-    outer
-}
-
 /// Returns the table of files, and whether each was read or refused as it should be.
 pub(crate) fn table() -> (Table, bool) {
-    let corners = spiral(MAX_CORNERS);
+    let corners = square_spiral(MAX_CORNERS as i64 / 2 - 1);
     let mut vertices = String::new();
     // Writing to a string does not fail.
     for [x, y] in &corners {

@@ -4,12 +4,11 @@
 //! order to end without a panic: all numbers are in range, each node and each packet is used once, and the depth is one
 //! for which stacks have room. They do not cover bounds, which can only make answers wrong.
 
-use crate::packet::Packet;
 use crate::tree::node_ref::NodeRef;
 use crate::tree::wide_node::{VolumeNodes, WideNode};
 use crate::tree::{Leaves, MAX_DEPTH, PacketTree};
 use p2m_core::PrimitiveId;
-use p2m_core::storage::{LoadError, all_chunks, require};
+use p2m_core::storage::{LoadError, check_chunks, require};
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -70,18 +69,20 @@ pub(super) fn check_leaves(leaves: &Leaves, primitives: usize) -> Result<(), Loa
     require(vertex_offsets.len() == packets.len() + 1, VERTEX_OFFSETS, "there is not one offset for each packet")?;
     let (first, last) = (vertex_offsets[0] as usize, vertex_offsets[packets.len()] as usize);
     require(first == 0 && last == vertices.len(), VERTEX_OFFSETS, "the offsets do not cover all vertices")?;
-    let are_finite = |chunk: &[[f64; 3]]| chunk.as_flattened().iter().fold(true, |all, x| all & x.is_finite());
-    require(all_chunks(vertices, |_, chunk| are_finite(chunk)), VERTICES, "a coordinate is not finite")?;
-    let is_ascending = vertex_offsets.windows(2).fold(true, |all, pair| all & (pair[0] <= pair[1]));
-    require(is_ascending, VERTEX_OFFSETS, "the offsets are not in ascending order")?;
-    let is_valid = |first: usize, chunk: &[Packet]| {
-        let offsets = vertex_offsets[first..].windows(2);
-        chunk.iter().zip(offsets).all(|(packet, offsets)| packet.has_valid_fields(offsets[0], offsets[1]))
-    };
-    require(all_chunks(packets, is_valid), PACKETS, "a number is out of range")?;
+    check_chunks(vertices, |_, chunk| {
+        // A fold without an early end is computed in lanes.
+        let are_finite = chunk.as_flattened().iter().fold(true, |all, x| all & x.is_finite());
+        require(are_finite, VERTICES, "a coordinate is not finite")
+    })?;
     let is_id_used: Vec<AtomicBool> = std::iter::repeat_with(AtomicBool::default).take(primitives).collect();
     let is_new = |id: &PrimitiveId| is_id_used.get(id.index()).is_some_and(|is_used| !is_used.swap(true, Relaxed));
-    let are_new = |_, chunk: &[Packet]| chunk.iter().flat_map(Packet::ids).all(is_new);
-    require(all_chunks(packets, are_new), PACKETS, "an id is wrong")?;
+    check_chunks(packets, |first, chunk| {
+        for (packet, offsets) in chunk.iter().zip(vertex_offsets[first..].windows(2)) {
+            require(offsets[0] <= offsets[1], VERTEX_OFFSETS, "the offsets are not in ascending order")?;
+            require(packet.has_valid_fields(offsets[0], offsets[1]), PACKETS, "a number is out of range")?;
+            require(packet.ids().iter().all(is_new), PACKETS, "an id is wrong")?;
+        }
+        Ok(())
+    })?;
     require(is_id_used.into_iter().all(AtomicBool::into_inner), PACKETS, "a primitive is missing")
 }

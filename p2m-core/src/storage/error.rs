@@ -43,7 +43,7 @@ pub enum LoadError {
     Inconsistent {
         /// The name of the section.
         section: String,
-        /// What is wrong, as a clause.
+        /// A clause that says what is wrong.
         reason: &'static str,
     },
     /// The file has an index of another kind.

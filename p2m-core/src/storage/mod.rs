@@ -75,5 +75,5 @@ pub use ids::as_ids;
 pub use index::{Saved, kind, load, save};
 pub use reader::Reader;
 pub use section::VERSION;
-pub use validate::{all_chunks, require};
+pub use validate::{check_chunks, require};
 pub use writer::Writer;

@@ -13,15 +13,21 @@ pub fn require(condition: bool, section: &str, reason: &'static str) -> Result<(
 /// The number of elements that one thread checks at a time.
 const ELEMENTS_PER_CHUNK: usize = 1 << 12;
 
-/// Returns whether a condition holds for all chunks of some elements, each of which is given with the index of its
-/// first element. With the feature `rayon`, all threads check chunks.
-pub fn all_chunks<T: Sync>(elements: &[T], holds: impl Fn(usize, &[T]) -> bool + Sync) -> bool {
-    let holds = |(number, chunk): (usize, &[T])| holds(number * ELEMENTS_PER_CHUNK, chunk);
+/// Checks some elements chunk by chunk, each of which is given with the index of its first element. With the feature
+/// `rayon`, all threads check chunks, and any of several errors is returned.
+///
+/// # Errors
+/// It returns an error of `check`.
+pub fn check_chunks<T: Sync>(
+    elements: &[T],
+    check: impl Fn(usize, &[T]) -> Result<(), LoadError> + Sync,
+) -> Result<(), LoadError> {
+    let check = |(number, chunk): (usize, &[T])| check(number * ELEMENTS_PER_CHUNK, chunk);
     #[cfg(feature = "rayon")]
     {
         use rayon::prelude::*;
-        elements.par_chunks(ELEMENTS_PER_CHUNK).enumerate().all(holds)
+        elements.par_chunks(ELEMENTS_PER_CHUNK).enumerate().try_for_each(check)
     }
     #[cfg(not(feature = "rayon"))]
-    elements.chunks(ELEMENTS_PER_CHUNK).enumerate().all(holds)
+    elements.chunks(ELEMENTS_PER_CHUNK).enumerate().try_for_each(check)
 }

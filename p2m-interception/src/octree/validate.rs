@@ -4,10 +4,17 @@
 //! on in order to end without a panic. They do not cover bounds and lists that lack a primitive, which can only make
 //! answers wrong.
 
-use crate::list::block::{Block, MAX_LEVEL};
+use crate::list::block::MAX_LEVEL;
 use crate::octree::Octree;
 use crate::octree::code::{CellCode, FALLBACK_CODE, KIND_ONE_LEVEL, KIND_SHIFT};
-use p2m_core::storage::{LoadError, all_chunks, require};
+use p2m_core::storage::{LoadError, check_chunks, require};
+
+/// The section with the fields that are not arrays.
+pub(super) const OCTREE: &str = "octree";
+/// The section with the rows of codes.
+pub(super) const CODES: &str = "octree/codes";
+/// The section with the blocks of all lists.
+pub(super) const LISTS: &str = "octree/lists";
 
 /// Checks the codes, the blocks and the report of an octree.
 pub(super) fn check(octree: &Octree) -> Result<(), LoadError> {
@@ -24,14 +31,15 @@ pub(super) fn check(octree: &Octree) -> Result<(), LoadError> {
 /// Checks the blocks. The lists have to lie one after the other.
 fn check_blocks(octree: &Octree, lane_masks: &[u16]) -> Result<(), LoadError> {
     let blocks = &octree.blocks;
-    let are_valid = |_, chunk: &[Block]| chunk.iter().all(|block| block.has_valid_fields(lane_masks));
-    require(all_chunks(blocks, are_valid), LISTS, "a number is out of range")?;
-    // The blocks of a list count down to its last one. A chunk is compared with the block before it as well.
-    let count_down = |first: usize, chunk: &[Block]| {
-        let pairs = blocks[first.saturating_sub(1)..first + chunk.len()].windows(2);
-        pairs.into_iter().all(|pair| pair[0].following == 0 || pair[1].following == pair[0].following - 1)
-    };
-    require(all_chunks(blocks, count_down), LISTS, "a list overlaps another one")?;
+    check_chunks(blocks, |first, chunk| {
+        for (block, number) in chunk.iter().zip(first..) {
+            require(block.has_valid_fields(lane_masks), LISTS, "a number is out of range")?;
+            // The blocks of a list count down to its last one.
+            let left = number.checked_sub(1).map_or(0, |before| blocks[before].following);
+            require(left == 0 || block.following == left - 1, LISTS, "a list overlaps another one")?;
+        }
+        Ok(())
+    })?;
     require(blocks.last().is_none_or(|last| last.following == 0), LISTS, "the last list has no end")
 }
 
@@ -48,13 +56,6 @@ fn check_codes(octree: &Octree, lane_masks: &[u16]) -> Result<(), LoadError> {
     }
     Ok(())
 }
-
-/// The section with the fields that are not arrays.
-pub(super) const OCTREE: &str = "octree";
-/// The section with the rows of codes.
-pub(super) const CODES: &str = "octree/codes";
-/// The section with the blocks of all lists.
-pub(super) const LISTS: &str = "octree/lists";
 
 /// Checks the code of a cube of a level. It may lead to rows from `first_row` on that no other code leads to.
 fn check_code(

@@ -13,12 +13,14 @@ use crate::voronoi::neighbour_block::{
 use crate::voronoi::site::{FarHalfSpace, Site};
 use p2m_core::engine::simd::{InstructionSet, Lanes, prefetch_lines};
 use p2m_core::engine::vector::{V3, norm_squared, sub};
-use p2m_core::storage::{Array, LoadError, Reader, Writer, all_chunks, require};
+use p2m_core::storage::{Array, LoadError, Reader, Writer, check_chunks, require};
 use std::cmp::Ordering;
 
 /// The number of blocks of each site that are found by its number alone, without reading the site.
 const INLINE_BLOCKS: usize = 2;
 
+/// The section with the sites.
+pub(crate) const SITES: &str = "voronoi/sites";
 /// The section with the blocks of neighbours.
 const NEIGHBOURS: &str = "voronoi/neighbours";
 /// The section with the numbers of the neighbours.
@@ -213,7 +215,7 @@ impl NeighbourTable {
 
     /// Adds the table to a file.
     pub(crate) fn save<'a>(&'a self, writer: &mut Writer<'a>) {
-        writer.put("voronoi/sites", &self.sites);
+        writer.put(SITES, &self.sites);
         writer.put(NEIGHBOURS, &self.blocks);
         writer.put(NUMBERS, &self.site_numbers);
         writer.put_copy("voronoi/neighbours/slack", &[self.slack]);
@@ -222,7 +224,7 @@ impl NeighbourTable {
     /// Loads the table from a file.
     pub(crate) fn load(reader: &Reader) -> Result<Self, LoadError> {
         let table = Self {
-            sites: reader.array("voronoi/sites")?,
+            sites: reader.array(SITES)?,
             blocks: reader.array(NEIGHBOURS)?,
             site_numbers: reader.array(NUMBERS)?,
             slack: reader.one("voronoi/neighbours/slack")?,
@@ -239,14 +241,15 @@ impl NeighbourTable {
             end += further;
         }
         require(end == blocks, NEIGHBOURS, "a block belongs to no site")?;
-        let are_unused = |_, chunk: &[NeighbourBlock]| chunk.iter().all(|block| block.unused == [0; 2]);
-        require(all_chunks(&table.blocks, are_unused), NEIGHBOURS, "a number that has no use is not 0")?;
-        // A fold without an early end is computed in lanes.
-        let are_sites = |_, chunk: &[[u32; NEIGHBOURS_PER_BLOCK]]| {
-            chunk.is_empty()
-                || (chunk.as_flattened().iter().fold(0, |last: u32, site| last.max(*site)) as usize) < sites
-        };
-        require(all_chunks(&table.site_numbers, are_sites), NUMBERS, "a site does not exist")?;
+        check_chunks(&table.blocks, |_, chunk| {
+            let are_unused = chunk.iter().all(|block| block.unused == [0; 2]);
+            require(are_unused, NEIGHBOURS, "a number that has no use is not 0")
+        })?;
+        check_chunks(&table.site_numbers, |_, chunk| {
+            // A fold without an early end is computed in lanes.
+            let last = chunk.as_flattened().iter().fold(0, |last: u32, site| last.max(*site));
+            require((last as usize) < sites, NUMBERS, "a site does not exist")
+        })?;
         Ok(table)
     }
 

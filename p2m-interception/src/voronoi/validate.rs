@@ -5,10 +5,10 @@
 //! half-spaces and lists that lack a primitive, which can only make answers wrong. A walk ends whatever the offsets of
 //! neighbours are, because it is stopped after it has read as many blocks of neighbours as there are.
 
-use crate::list::block::Block;
 use crate::voronoi::Voronoi;
+use crate::voronoi::neighbours::SITES;
 use crate::voronoi::site::{AUXILIARY_SITE, FALLBACK, Site};
-use p2m_core::storage::{LoadError, all_chunks, require};
+use p2m_core::storage::{LoadError, check_chunks, require};
 
 /// The section with the fields that are not arrays.
 pub(super) const VORONOI: &str = "voronoi";
@@ -16,9 +16,6 @@ pub(super) const VORONOI: &str = "voronoi";
 pub(super) const LISTS: &str = "voronoi/lists";
 /// The section with the anchors.
 pub(super) const ANCHORS: &str = "voronoi/anchors";
-
-/// The section with the sites.
-const SITES: &str = "voronoi/sites";
 
 /// Checks the sites, the lists and the numbers of the domain.
 pub(super) fn check(index: &Voronoi) -> Result<(), LoadError> {
@@ -37,8 +34,10 @@ pub(super) fn check(index: &Voronoi) -> Result<(), LoadError> {
             require(start >= sites.len() && end <= blocks.len(), LISTS, "a list exceeds the section")?;
         }
     }
-    let are_valid = |_, chunk: &[Block]| chunk.iter().all(|block| block.has_valid_fields(lane_masks));
-    require(all_chunks(blocks, are_valid), LISTS, "a number is out of range")
+    check_chunks(blocks, |_, chunk| {
+        let are_valid = chunk.iter().all(|block| block.has_valid_fields(lane_masks));
+        require(are_valid, LISTS, "a number is out of range")
+    })
 }
 
 /// Checks the position and the owner of a site.

@@ -168,12 +168,6 @@ impl AnswerEncoder {
         Self { format, columns: columns.to_vec(), names: Names::new(objects) }
     }
 
-    /// Returns whether records have a column.
-    #[must_use]
-    pub fn has(&self, column: AnswerColumn) -> bool {
-        self.columns.contains(&column)
-    }
-
     /// Returns the header of a file.
     pub(super) fn header(&self) -> Header {
         let columns = self.columns.iter();

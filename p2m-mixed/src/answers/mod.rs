@@ -73,7 +73,6 @@ use std::io::{self, Write};
 pub struct AnswerWriter<W: Write> {
     records: Records<W>,
     encoder: AnswerEncoder,
-    record: Vec<u8>,
 }
 
 impl<W: Write> AnswerWriter<W> {
@@ -103,7 +102,7 @@ impl<W: Write> AnswerWriter<W> {
     /// # Errors
     /// Errors of `writer`.
     pub fn with_columns(writer: W, encoder: AnswerEncoder, count: Option<u64>) -> io::Result<Self> {
-        Ok(Self { records: Records::new(writer, encoder.header(), count)?, encoder, record: Vec::new() })
+        Ok(Self { records: Records::new(writer, encoder.header(), count)?, encoder })
     }
 
     /// Returns the encoder of the records of this file.
@@ -118,10 +117,8 @@ impl<W: Write> AnswerWriter<W> {
     /// # Errors
     /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more answers than announced.
     pub fn write(&mut self, query: &Point3<f64>, answer: Option<&Closest<f64>>) -> io::Result<()> {
-        self.record.clear();
         let record = AnswerRecord { number: self.records.count(), query, answer, signed_distance: f64::NAN };
-        self.encoder.encode(&record, &mut self.record);
-        self.records.append(1, &self.record)
+        self.records.write(|out| self.encoder.encode(&record, out))
     }
 
     /// Writes `count` records that the [`encoder`](Self::encoder) has encoded.

@@ -56,7 +56,6 @@ use std::io::{self, Write};
 pub struct HitWriter<W: Write> {
     records: Records<W>,
     encoder: HitEncoder,
-    record: Vec<u8>,
 }
 
 /// Encodes hits as the records of a [`HitWriter`], for programs that encode on several threads.
@@ -91,7 +90,6 @@ pub struct HitEncoder {
 pub struct NumberWriter<W: Write> {
     records: Records<W>,
     encoder: NumberEncoder,
-    record: Vec<u8>,
 }
 
 /// Encodes numbers as the records of a [`NumberWriter`], for programs that encode on several threads.
@@ -131,7 +129,7 @@ impl<W: Write> HitWriter<W> {
             }
         };
         let records = Records::new(writer, header, count)?;
-        Ok(Self { records, encoder: HitEncoder { format, names }, record: Vec::new() })
+        Ok(Self { records, encoder: HitEncoder { format, names } })
     }
 
     /// Returns the encoder of the records of this file.
@@ -153,9 +151,7 @@ impl<W: Write> HitWriter<W> {
     /// # Errors
     /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more records than announced.
     pub fn write(&mut self, number: u64, ray: &Ray, hit: Option<&Hit>) -> io::Result<()> {
-        self.record.clear();
-        self.encoder.encode(number, ray, hit, &mut self.record);
-        self.records.append(1, &self.record)
+        self.records.write(|out| self.encoder.encode(number, ray, hit, out))
     }
 
     /// Ends the file and returns the flushed writer.
@@ -221,7 +217,7 @@ impl<W: Write> NumberWriter<W> {
             AnswerFormat::Ply => ply_header([("double", name)].into_iter()),
         };
         let records = Records::new(writer, header, Some(count))?;
-        Ok(Self { records, encoder: NumberEncoder { format }, record: Vec::new() })
+        Ok(Self { records, encoder: NumberEncoder { format } })
     }
 
     /// Returns the encoder of the records of this file.
@@ -243,9 +239,7 @@ impl<W: Write> NumberWriter<W> {
     /// # Errors
     /// Errors of the writer, and [`InvalidInput`](io::ErrorKind::InvalidInput) for more numbers than announced.
     pub fn write(&mut self, number: u64, ray: &Ray, value: u64) -> io::Result<()> {
-        self.record.clear();
-        self.encoder.encode(number, ray, value, &mut self.record);
-        self.records.append(1, &self.record)
+        self.records.write(|out| self.encoder.encode(number, ray, value, out))
     }
 
     /// Ends the file and returns the flushed writer.

@@ -13,6 +13,8 @@ pub(super) struct Records<W> {
     written: u64,
     /// All records, if the header needs their number and it was not announced.
     buffered: Vec<u8>,
+    /// The room in which a record is encoded before it is written.
+    record: Vec<u8>,
 }
 
 /// The header before the records.
@@ -31,7 +33,17 @@ impl<W: Write> Records<W> {
         if count.is_some() || matches!(header, Header::Line(_)) {
             writer.write_all(&header.bytes(count.unwrap_or(0)))?;
         }
-        Ok(Self { writer, header, count, written: 0, buffered: Vec::new() })
+        Ok(Self { writer, header, count, written: 0, buffered: Vec::new(), record: Vec::new() })
+    }
+
+    /// Encodes a record and writes it.
+    pub(super) fn write(&mut self, encode: impl FnOnce(&mut Vec<u8>)) -> io::Result<()> {
+        let mut record = std::mem::take(&mut self.record);
+        record.clear();
+        encode(&mut record);
+        let written = self.append(1, &record);
+        self.record = record;
+        written
     }
 
     /// Writes `count` encoded records.

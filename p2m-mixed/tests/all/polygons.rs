@@ -3,6 +3,7 @@
 use crate::common::obj;
 use nalgebra::Point3;
 use p2m_core::Element;
+use p2m_testkit::scenes::square_spiral;
 use p2m_testkit::{cases, rng};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -149,26 +150,8 @@ fn concave_polygons() {
     }
     check_all_ways(&teeth);
     for arms in 2..12 {
-        check_all_ways(&spiral(arms));
+        check_all_ways(&square_spiral(arms));
     }
-}
-
-/// Returns a square spiral of this number of arms, with a width of 1 and gaps of 1.
-fn spiral(arms: i64) -> Vec<P> {
-    const DIRECTIONS: [P; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
-    let longest = arms + 2;
-    let (mut at, mut outer, mut inner) = ([0, 0], vec![[0, 0]], vec![[0, 1]]);
-    for arm in 0..arms {
-        let length = longest - 2 * ((arm.max(1) - 1) / 2);
-        let [dx, dy] = DIRECTIONS[usize::try_from(arm % 4).unwrap()];
-        at = [at[0] + length * dx, at[1] + length * dy];
-        outer.push(at);
-        // The corner is to the left of this arm and, if there is one, of the next.
-        let [left_x, left_y] = if arm + 1 < arms { [-dy - dx, dx - dy] } else { [-dy, dx] };
-        inner.push([at[0] + left_x, at[1] + left_y]);
-    }
-    outer.extend(inner.into_iter().rev());
-    outer
 }
 
 /// Returns whether two closed segments share a point.
@@ -241,7 +224,7 @@ fn random_simple_polygons() {
 #[test]
 fn long_polygons() {
     // Above 80 corners the ear cutter uses another search.
-    for polygon in [spiral(60), spiral(61)] {
+    for polygon in [square_spiral(60), square_spiral(61)] {
         assert_eq!(conflict(&polygon), None);
         check(&polygon, &cut3(&lift(&polygon, 1, 2)));
     }
