@@ -10,7 +10,7 @@ use nalgebra::Point3;
 use p2m_core::Ray;
 use p2m_core::storage::{LoadError, Reader, SavedFile};
 use p2m_mixed::{Format, PointFormat, ReadError, Scene, load_scene};
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
@@ -108,7 +108,9 @@ pub(crate) fn read_scene_and_index(
     format: Format,
     is_mapped: bool,
 ) -> anyhow::Result<(Scene, Option<Reader>)> {
-    if is_mapped && (format != Format::P2m || !path.is_file() || is_compressed(path)) {
+    // A file that is missing is an error of mapping it.
+    let is_no_file = is_standard(path) || (path.exists() && !path.is_file());
+    if is_mapped && (format != Format::P2m || is_no_file || is_compressed(path)) {
         return Err(usage("--map needs the file of a saved index, which is not compressed"));
     }
     if format != Format::P2m {
@@ -118,8 +120,13 @@ pub(crate) fn read_scene_and_index(
         let reader = file.checked()?;
         Ok((load_scene(reader)?, Some(reader.clone())))
     };
-    let file = if is_mapped { map(path) } else { SavedFile::read(open(streams, path)?) };
+    let file = if is_mapped { map(path) } else { SavedFile::read_with_length(open(streams, path)?, length(path)) };
     file.and_then(load).with_context(|| name(path))
+}
+
+/// Returns the length of a file in bytes, or 0 where it is not known, as for a pipe.
+fn length(path: &Path) -> u64 {
+    path.metadata().ok().filter(Metadata::is_file).map_or(0, |metadata| metadata.len())
 }
 
 /// Maps the file of a saved index.

@@ -185,6 +185,8 @@ fn saved_indexes_are_mapped_on_request() {
     assert_eq!(run(&["--map"]), run(&[]));
     let message = failure(&["query", SCENE, "--random", "5", "--map"], 2);
     assert!(message.contains("--map needs the file of a saved index"), "{message}");
+    let message = failure(&["query", &path(&folder, "none.p2m"), "--random", "5", "--map"], 1);
+    assert!(message.contains("none.p2m: cannot be read"), "{message}");
 }
 
 /// A saved index that answers no rays is not used without a word.

@@ -42,8 +42,8 @@ impl SavedFile {
     /// It returns the errors of [`read`](Self::read), and [`LoadError::Io`] if the file cannot be opened.
     pub fn open(path: &Path) -> Result<Self, LoadError> {
         let file = File::open(path)?;
-        let available = file.metadata()?.len();
-        Self::read_available(file, available)
+        let length = file.metadata()?.len();
+        Self::read_with_length(file, length)
     }
 
     /// Maps the file at a path into memory: pages are read on first use, and processes that map the same file share
@@ -71,18 +71,23 @@ impl SavedFile {
     /// It returns [`LoadError::Io`] if reading fails, [`LoadError::Foreign`], [`LoadError::Version`] or
     /// [`LoadError::Length`] for a wrong header, and [`LoadError::Damaged`] for a wrong table.
     pub fn read(reader: impl Read) -> Result<Self, LoadError> {
-        Self::read_available(reader, 0)
+        Self::read_with_length(reader, 0)
     }
 
-    /// Reads a file of which at least `available` bytes are known to exist.
-    fn read_available(mut reader: impl Read, available: u64) -> Result<Self, LoadError> {
+    /// Reads a file into memory as [`read`](Self::read) does. A file that announces at most `length` bytes gets its
+    /// memory at once, which is several times faster than a buffer that grows. The length is that of the file on disk,
+    /// for instance, and may be wrong.
+    ///
+    /// # Errors
+    /// It returns the errors of [`read`](Self::read).
+    pub fn read_with_length(mut reader: impl Read, length: u64) -> Result<Self, LoadError> {
         let mut lines = vec![CacheLine::zeroed()];
         let mut len = read_until_full(&mut reader, bytemuck::cast_slice_mut(&mut lines))?;
         let expected = check_header(&bytemuck::cast_slice(&lines)[..len])?.length;
-        // The length may be wrong, so memory only grows with what was read.
+        // The announced length may be wrong, so beyond `length` memory only grows with what was read.
         while (len as u64) < expected && len == size_of_val(&lines[..]) {
             let wanted = usize::try_from(expected.div_ceil(LINE_BYTES as u64)).unwrap_or(usize::MAX);
-            let is_there = expected <= available;
+            let is_there = expected <= length;
             let room = if is_there { wanted } else { wanted.min(lines.len() * 2 + FIRST_LINES) };
             lines.reserve_exact(room - lines.len());
             lines.resize(room, CacheLine::zeroed());
