@@ -12,7 +12,8 @@ pub(super) const COMPARED: [&str; 5] = ["p2m", "aabb", "parry3d", "parry3d-f64",
 const CITED: usize = 6;
 const FACES: &str = "primitives";
 
-/// The figures that the paper \[Zong2023\] gives for its Dragon, measured on its own machine and with its own libraries.
+/// The figures that the paper \[Zong2023\] gives for its Dragon, measured on its own machine and with its own
+/// libraries.
 mod cited {
     /// The number of faces.
     pub(super) const DRAGON: f64 = 1_499_852.0;

@@ -17,8 +17,8 @@ pub struct Closest<T: Real> {
     /// The distance of the closest point, computed from the offset before that is rounded to `point`.
     pub distance: T,
     /// A certified lower bound on the true distance of the scene. For exact answers it is `distance` less
-    /// its error bound. It is zero where that error exceeds the range of f64, as it does for coordinates near the end of
-    /// that range.
+    /// its error bound. It is zero where that error exceeds the range of f64, as it does for coordinates near the end
+    /// of that range.
     pub lower_bound: T,
     /// The primitive that contains the closest point; of several with equal keys it is the one with the lowest id.
     pub primitive: PrimitiveId,

@@ -1,8 +1,9 @@
 //! The spheres through four points, whose centres are the corners of Voronoi cells.
 //!
 //! Let A, B, C be the offsets from the first point to the others. The circumcentre lies at
-//! `(|A|^2 B x C + |B|^2 C x A + |C|^2 A x B) / (2 A . B x C)` from the first point. It is computed in f64, and in double-double arithmetic if the
-//! error is too large because the tetrahedron is thin. The error is bounded in either case.
+//! `(|A|^2 B x C + |B|^2 C x A + |C|^2 A x B) / (2 A . B x C)` from the first point. It is computed in f64, and in
+//! double-double arithmetic if the error is too large because the tetrahedron is thin. The error is bounded in either
+//! case.
 
 use p2m_core::engine::arithmetic::{Number, cross, dot};
 use p2m_core::engine::double_double::{self, Double};
