@@ -75,7 +75,7 @@ pub fn check_batches<T: Real>(subject: &Subject<'_, T>, queries: &[Point3<T>]) {
         let mut out = vec![None; queries.len()];
         subject.index.closest_points_into(&queries, &options, &mut out);
         same(&out, "in a row");
-        let batch = BatchOptions::default().with_parallel(false).with_hints(subject.seed.is_multiple_of(2));
+        let batch = BatchOptions::default().with_parallel(false);
         batch::closest_points_into(subject.index, &queries, &options, &batch, &mut out);
         same(&out, "along a curve");
     }

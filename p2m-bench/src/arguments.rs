@@ -56,7 +56,7 @@ pub(crate) enum Command {
     Octree(BatchArguments),
     /// Times Delaunay triangulations of scenes, grids, a sphere, a plane and a line; fails if any is not valid
     Delaunay(DelaunayArguments),
-    /// Times batches on the AABB tree by order, hints and threads, in wall time
+    /// Times batches on the AABB tree by order and threads, in wall time
     Batch(BatchArguments),
     /// Compares the program, from the first query to the complete file, with one batch of the library, in wall time
     Program(ProgramArguments),

@@ -5,8 +5,8 @@ use crate::bvh_crate::prepare as bvh;
 use crate::external::{parry_double, parry_single};
 use crate::kinds::{aabb_by_kind, aabb_of_set, aabb_of_triangles};
 use crate::our_indexes::{
-    aabb, kdop, kdop_in_frame, kdop_of_scene, long_lists, octree, over_soup_with, p2m, p2m_in_batches, p2m_options,
-    registered,
+    aabb, aabb_in_batch, kdop, kdop_in_batch, kdop_in_frame, kdop_of_scene, long_lists, octree, octree_in_batch,
+    over_soup_with, p2m, p2m_in_batch, p2m_options, registered,
 };
 use p2m_advisor::{BACKENDS, BackendEntry, SearchStructure};
 use p2m_interception::{KdTreeLocator, RegionTree};
@@ -53,7 +53,16 @@ fn settings() -> Vec<Backend> {
         Backend::new("p2m-rstar", |s| p2m(s, None, p2m_options().with_list_filter(RegionTree::build))),
         Backend::new("p2m-long", |s| p2m(s, None, long_lists())),
         Backend::new("p2m-long-rstar", |s| p2m(s, None, long_lists().with_list_filter(RegionTree::build))),
-        Backend::new("p2m-batch", p2m_in_batches),
+        Backend::new("aabb-batch", |s| aabb_in_batch(s, None)),
+        Backend::new("aabb-batch-avx2", |s| aabb_in_batch(s, Some("avx2"))),
+        Backend::new("aabb-batch-portable", |s| aabb_in_batch(s, Some("portable"))),
+        Backend::new("kdop-batch", kdop_in_batch),
+        Backend::new("octree-batch", |s| octree_in_batch(s, None)),
+        Backend::new("octree-batch-avx2", |s| octree_in_batch(s, Some("avx2"))),
+        Backend::new("octree-batch-portable", |s| octree_in_batch(s, Some("portable"))),
+        Backend::new("p2m-batch", |s| p2m_in_batch(s, None)),
+        Backend::new("p2m-batch-avx2", |s| p2m_in_batch(s, Some("avx2"))),
+        Backend::new("p2m-batch-portable", |s| p2m_in_batch(s, Some("portable"))),
         Backend::new("rstar", |s| over_soup_with::<RstarIndex<_, _>>(s, ())),
         Backend::new("parry-tree", |s| over_soup_with::<ParryIndex<_, _>>(s, ())),
         Backend::new("kdop-6", kdop::<6>),

@@ -1,4 +1,4 @@
-//! `p2m-bench batch`: times batches of queries by order, hints and number of threads.
+//! `p2m-bench batch`: times batches of queries by order and number of threads.
 
 use crate::measure::{Effort, MedianRange};
 use crate::scene::Scene;
@@ -16,11 +16,11 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], threads: &[usize], effort:
     let tree = AabbTree::build(&scene.double, &Default::default()).context("the scene was checked when it was read")?;
     let mut head = vec!["set".to_owned(), "one by one".to_owned()];
     for n in threads {
-        head.extend(["in order", "curve", "curve, hints"].map(|strategy| format!("{strategy}, {n} thr")));
+        head.extend(["in order", "curve"].map(|strategy| format!("{strategy}, {n} thr")));
     }
     head.push("speed-up".to_owned());
     let mut table = Table::new(head);
-    let strategies = [(false, false), (true, false), (true, true)];
+    let strategies = [false, true];
     let mut equal = true;
     for set in sets {
         let queries = set.generate(&scene.double, effort.queries, effort.seed);
@@ -36,8 +36,8 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], threads: &[usize], effort:
             times[0].push(start.elapsed().as_secs_f64());
             for (t, &count) in threads.iter().enumerate() {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build()?;
-                for (w, (reorder, hints)) in strategies.iter().enumerate() {
-                    let options = BatchOptions::default().with_reorder(*reorder).with_hints(*hints);
+                for (w, reorder) in strategies.iter().enumerate() {
+                    let options = BatchOptions::default().with_reorder(*reorder);
                     out.fill(None);
                     let start = Instant::now();
                     pool.install(|| closest_points_into(&tree, &queries, &Default::default(), &options, &mut out));

@@ -137,24 +137,23 @@ fn methods<'a>(scene: &'a Scene, grid: &Grid) -> Result<Vec<Method<'a>>> {
     let soup = &scene.double;
     let [x, y, z] = grid.counts();
     let domain = p2m_core::Aabb { min: grid.origin(), max: grid.point([x - 1, y - 1, z - 1]) };
-    let (hints, several) = (one_thread(), one_thread().with_hints(false));
+    let options = one_thread();
     let octree = octree_options(1.0).with_domain(Domain::Box(domain));
     let fine = octree_options(10.0).with_domain(Domain::Box(domain));
     let mut all = vec![
-        ours("aabb", || Ok(AabbTree::build(soup, &aabb_options())?), hints)?,
-        ours("octree", || Ok(OctreeIndex::build(soup, &octree)?), several)?,
-        ours("octree-fine", || Ok(OctreeIndex::build(soup, &fine)?), several)?,
-        ours("p2m", || Ok(P2mIndex::build(soup, &p2m_options())?), hints)?,
-        ours("p2m, side by side", || Ok(P2mIndex::build(soup, &p2m_options())?), several)?,
+        ours("aabb", || Ok(AabbTree::build(soup, &aabb_options())?), options)?,
+        ours("octree", || Ok(OctreeIndex::build(soup, &octree)?), options)?,
+        ours("octree-fine", || Ok(OctreeIndex::build(soup, &fine)?), options)?,
+        ours("p2m", || Ok(P2mIndex::build(soup, &p2m_options())?), options)?,
     ];
     let (lists, seconds, bytes) = built(|| CandidateLists::new(soup).context("a scene out of range"))?;
-    let fill = Box::new(move |grid: &Grid| distances_by_lists(&lists, grid, &hints, &|_| ()).expect("memory"));
+    let fill = Box::new(move |grid: &Grid| distances_by_lists(&lists, grid, &options, &|_| ()).expect("memory"));
     all.push(Method { name: "lists", seconds, bytes, fill, times: Vec::new(), difference: 0.0 });
     if soup.triangles().len() == soup.len() {
         if let Ok((signed, seconds, bytes)) =
             built(|| Ok(SignedDistance::new(AabbTree::build(soup, &aabb_options())?, soup)?))
         {
-            let fill = Box::new(move |grid: &Grid| signed_distances(&signed, grid, &hints, &|_| ()).expect("memory"));
+            let fill = Box::new(move |grid: &Grid| signed_distances(&signed, grid, &options, &|_| ()).expect("memory"));
             all.push(Method { name: "aabb, signed", seconds, bytes, fill, times: Vec::new(), difference: 0.0 });
         }
         let variants: [(&'static str, Sided<'a>); 2] = [
@@ -168,7 +167,7 @@ fn methods<'a>(scene: &'a Scene, grid: &Grid) -> Result<Vec<Method<'a>>> {
             });
             if let Ok(((lists, signed), seconds, bytes)) = both {
                 let fill = Box::new(move |grid: &Grid| {
-                    signed_distances_by_lists(&lists, &signed, grid, &hints, &|_| ()).expect("memory")
+                    signed_distances_by_lists(&lists, &signed, grid, &options, &|_| ()).expect("memory")
                 });
                 all.push(Method { name, seconds, bytes, fill, times: Vec::new(), difference: 0.0 });
             }

@@ -5,6 +5,7 @@ use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_advisor::{BackendEntry, BuildSettings, BuiltIndex, Index};
 use p2m_bvh::{AabbOptions, AabbTree};
+use p2m_core::batch::{self, BatchOptions, ClosestColumns};
 use p2m_core::{BuildError, BuildIndex, Closest, ClosestPoint, Isa, PrimitiveId, QueryOptions, Soup};
 use p2m_interception::{OctreeIndex, OctreeOptions, P2mIndex, P2mOptions};
 use p2m_kdop::{DirectionChoice, Directions, DirectionsError, KdopOptions, KdopTree};
@@ -34,13 +35,10 @@ impl<T: Scalar> BenchIndex for Registered<'_, T> {
     }
 }
 
-/// An index of ours that is queried through the trait [`ClosestPoint`], several queries at a time.
-struct InBatches<I>(I);
+/// An index of ours that answers all queries of a round by one batch call on one thread, ordering included.
+struct InOneBatch<I>(I);
 
-/// The number of queries in a batch of [`InBatches`].
-const QUERIES_PER_BATCH: usize = 256;
-
-impl<I: ClosestPoint<f64> + Sync> BenchIndex for InBatches<I> {
+impl<I: ClosestPoint<f64> + Sync> BenchIndex for InOneBatch<I> {
     type Scalar = f64;
 
     fn query(&self, query: &Point3<f64>) -> Answer {
@@ -48,11 +46,13 @@ impl<I: ClosestPoint<f64> + Sync> BenchIndex for InBatches<I> {
     }
 
     fn queries(&self, queries: &[Point3<f64>], answers: &mut [Answer]) {
-        let mut closest = [None; QUERIES_PER_BATCH];
-        for (queries, answers) in queries.chunks(QUERIES_PER_BATCH).zip(answers.chunks_mut(QUERIES_PER_BATCH)) {
-            let closest = &mut closest[..queries.len()];
-            self.0.closest_points_into(queries, &QueryOptions::default(), closest);
-            answers.iter_mut().zip(closest).for_each(|(to, closest)| *to = answer(*closest));
+        let (mut distance, mut primitive) = (vec![0.0; queries.len()], vec![0; queries.len()]);
+        let columns = ClosestColumns::default().with_distance(&mut distance).with_primitive(&mut primitive);
+        let one_thread = BatchOptions::default().with_parallel(false);
+        batch::closest_columns_into(&self.0, queries, &QueryOptions::default(), &one_thread, columns);
+        for ((answer, distance), id) in answers.iter_mut().zip(distance).zip(primitive) {
+            let is_none = id == ClosestColumns::<f64>::NO_PRIMITIVE;
+            *answer = if is_none { Answer::NONE } else { Answer { distance, id } };
         }
     }
 }
@@ -174,14 +174,45 @@ pub(crate) fn p2m<'a>(scene: &'a Scene, isa: Option<&str>, options: P2mOptions) 
     over_scene(scene, move |soup| Ok::<_, BuildError>(P2mIndex::build(soup, &options)?.with_isa(isa)))
 }
 
-/// Prepares the P2M index for batches of queries.
-pub(crate) fn p2m_in_batches(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
+/// Prepares an index that answers all queries by one batch call.
+fn in_one_batch<'a, I, E>(
+    scene: &'a Scene,
+    build: impl FnOnce(&'a Soup<f64>) -> Result<I, E> + 'a,
+) -> Result<Prepared<'a>, Unavailable>
+where
+    I: ClosestPoint<f64> + Sync + 'a,
+    E: Display,
+{
     let (soup, borrowed) = f64::soup(scene)?;
     let build = move || {
-        let index = P2mIndex::build(soup, &p2m_options()).map_err(|error| Unavailable(error.to_string()))?;
-        Ok(Box::new(InBatches(index)) as BoxedIndex<'_>)
+        let index = build(soup).map_err(|error| Unavailable(error.to_string()))?;
+        Ok(Box::new(InOneBatch(index)) as BoxedIndex<'a>)
     };
     Ok(Prepared { build: Box::new(build), borrowed })
+}
+
+/// Prepares the AABB tree with the instruction set of that name for one batch call.
+pub(crate) fn aabb_in_batch<'a>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'a>, Unavailable> {
+    let isa = instruction_set(isa)?;
+    in_one_batch(scene, move |soup| Ok::<_, BuildError>(AabbTree::build(soup, &aabb_options())?.with_isa(isa)))
+}
+
+/// Prepares the k-DOP tree with 14 default directions for one batch call.
+pub(crate) fn kdop_in_batch(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
+    let options = KdopOptions::new(Directions::<14>::default()).with_splits(aabb_options());
+    in_one_batch(scene, move |soup| KdopTree::build_with(soup, &options))
+}
+
+/// Prepares the octree with the instruction set of that name for one batch call.
+pub(crate) fn octree_in_batch<'a>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'a>, Unavailable> {
+    let isa = instruction_set(isa)?;
+    in_one_batch(scene, move |soup| Ok::<_, BuildError>(OctreeIndex::build(soup, &octree_options(1.0))?.with_isa(isa)))
+}
+
+/// Prepares the P2M index with the instruction set of that name for one batch call.
+pub(crate) fn p2m_in_batch<'a>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'a>, Unavailable> {
+    let isa = instruction_set(isa)?;
+    in_one_batch(scene, move |soup| Ok::<_, BuildError>(P2mIndex::build(soup, &p2m_options())?.with_isa(isa)))
 }
 
 /// Prepares the AABB tree with the instruction set of that name.

@@ -1,12 +1,16 @@
 //! A tree together with its set, which is the index that users build and query.
 
+use crate::traverse::groups::answer_in_groups;
+use crate::traverse::walkers::Walkers;
 use crate::{PacketTree, Volume};
+
 use nalgebra::Point3;
+use p2m_core::engine::answer_one_by_one;
 use p2m_core::storage::{self, LoadError, Reader, Writer};
 use p2m_core::{
-    Aabb, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Collector, Hits,
-    Inspect, Isa, Near, NearQuery, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector, RayQuery,
-    Real, Shape, StatsCollector, check_set, shape_of,
+    Aabb, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Collector, Found,
+    Hits, Inspect, Isa, Near, NearQuery, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector,
+    RayQuery, Real, Shape, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
@@ -147,6 +151,22 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestPoint<T> for TreeIndex<T, S,
     fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
         best.offer_hint(&self.set, query);
         self.tree.search_nearest(&self.set, query, best);
+    }
+
+    fn answer_queries(
+        &self,
+        queries: &[Point3<T>],
+        options: &QueryOptions<T>,
+        answered: &mut dyn FnMut(usize, Found<'_, T>),
+    ) {
+        match Walkers::new(&self.tree) {
+            Some(mut walkers) if !options.is_approximate() => {
+                answer_in_groups(&self.tree, &self.set, queries, options, answered, |count, several| {
+                    V::nearest_of_several(&self.tree, &mut walkers, several, count);
+                });
+            }
+            _ => answer_one_by_one(self, queries, options, answered),
+        }
     }
 }
 

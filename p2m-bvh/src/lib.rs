@@ -72,6 +72,12 @@ pub mod engine {
         pub use crate::traverse::primitive_fn::EvaluateFn;
         pub use crate::traverse::search_state::SearchState;
     }
+    /// Several searches that take turns.
+    pub mod several {
+        pub use crate::traverse::groups::answer_in_groups;
+        pub use crate::traverse::several::{PacketVisit, SEARCHES, Several};
+        pub use crate::traverse::walkers::Walkers;
+    }
     /// Nodes and their frame.
     pub mod node {
         pub use crate::tree::aabb_node::BoxNode;

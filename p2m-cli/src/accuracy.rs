@@ -3,7 +3,6 @@
 use crate::answering::answer_each;
 use crate::usage::finite_not_negative;
 use nalgebra::Point3;
-use p2m_advisor::Index;
 use p2m_core::batch::{self, BatchOptions};
 use p2m_core::{CertifiedQuery, Closest, ClosestPoint, QueryOptions};
 use serde_json::{Value, json};
@@ -34,12 +33,6 @@ impl Accuracy {
             .with_max_distance(max_distance.unwrap_or(defaults.max_distance))
             .with_epsilon(self.epsilon.unwrap_or(defaults.epsilon))
             .with_max_visits(self.max_visits.unwrap_or(defaults.max_visits))
-    }
-
-    /// Returns whether the lower bound of an answer may depend on the other queries of its block, as it does if one
-    /// answer is the hint for the next query.
-    pub(crate) fn depends_on_block(&self, index: &dyn Index) -> bool {
-        !self.certified && index.gains_from_hints()
     }
 
     /// Answers queries, certified or not, on all threads of the current pool.

@@ -53,9 +53,6 @@ impl<Q, A> Block<Q, A> {
 
 /// The functions that turn queries into records.
 pub(crate) struct Steps<Answer, Encode, Take, WriteRecords> {
-    /// Whether an answer may depend on the other queries of its block. The sizes of blocks then depend neither on time
-    /// nor on the number of threads, so that a run can be repeated bit for bit.
-    pub(crate) depends_on_block: bool,
     /// Answers some queries on all threads of the current pool.
     pub(crate) answer: Answer,
     /// Appends the records of a query, given its number and its answer, and returns how many there are.
@@ -79,10 +76,10 @@ pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
         impl FnMut(u64, &[u8]) -> io::Result<()>,
     >,
 ) -> io::Result<Duration> {
-    let Steps { depends_on_block, answer, encode, mut take, mut write } = steps;
+    let Steps { answer, encode, mut take, mut write } = steps;
     let progress = Progress::start(streams, "answering", Some(queries.count), Unit::Items(queries.name));
     // A query by brute force can take milliseconds, and one with many answers much memory.
-    let min_block = if depends_on_block { MAX_BLOCK } else { pool.current_num_threads() };
+    let min_block = pool.current_num_threads();
     let (mut time, mut first, mut size) = (Duration::ZERO, 0, min_block);
     let mut finished: Option<Block<Q, A>> = None;
     let mut pending: Vec<Q> = queries.iter.by_ref().take(size).collect();

@@ -177,7 +177,6 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let write = |count, records: &[u8]| writer.write_encoded(count, records);
         let time = if args.has_many_answers() {
             let steps = Steps {
-                depends_on_block: false,
                 answer: |queries: &[_]| answer_each(queries, |query| args.near(&*index, query)),
                 encode: |number, query: &_, answers: &Vec<_>, out: &mut _| {
                     for answer in answers {
@@ -193,7 +192,6 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         } else {
             let (accuracy, options) = (&args.accuracy, args.accuracy.options(args.max_distance));
             let steps = Steps {
-                depends_on_block: accuracy.depends_on_block(&*index),
                 answer: |queries: &[_]| accuracy.answer(&*index, queries, &options),
                 encode: |number, query: &_, answer: &Option<_>, out: &mut _| {
                     let (answer, signed) = (answer.as_ref(), signed.as_ref());

@@ -303,7 +303,6 @@ impl Task<'_, '_> {
         let mut writer = NumberWriter::new(self.output, self.format, name, self.rays.count)?;
         let (encoder, index) = (writer.encoder(), self.index);
         let steps = Steps {
-            depends_on_block: false,
             answer: |rays: &[_]| answer_each(rays, |ray| count(index, ray)),
             encode: |number, ray: &_, count: &u64, out: &mut _| {
                 encoder.encode(number, ray, *count, out);
@@ -329,7 +328,6 @@ impl Task<'_, '_> {
         let mut writer = HitWriter::with_objects(self.output, self.format, records, self.objects)?;
         let (encoder, index) = (writer.encoder(), self.index);
         let steps = Steps {
-            depends_on_block: false,
             answer: |rays: &[_]| answer_each(rays, |ray| intersect(index, ray)),
             encode: |number, ray: &_, answer: &A, out: &mut _| {
                 let hits = slice(answer);

@@ -41,10 +41,6 @@ impl<T: Real, S: PrimitiveSet<T>> ClosestPoint<T> for BruteForce<S> {
             best.offer(id, self.set.get(id).project(query));
         }
     }
-
-    fn gains_from_hints(&self) -> bool {
-        false
-    }
 }
 
 impl<T: Real, S: PrimitiveSet<T>> NearQuery<T> for BruteForce<S> {

@@ -1,6 +1,6 @@
 //! The traits that backends implement: queries for the closest point, and building.
 
-use crate::{Best, Closest, PrimitiveSet, QueryOptions, Real};
+use crate::{Best, Closest, Found, PrimitiveSet, QueryOptions, Real};
 use nalgebra::Point3;
 
 /// Queries for the closest point of a scene. A backend writes one method, [`search`](Self::search).
@@ -68,11 +68,19 @@ pub trait ClosestPoint<T: Real> {
         self.closest_point_with(query, &QueryOptions::default())
     }
 
-    /// Returns whether a query near another one is faster with the primitive of that answer as its hint. Batches and
-    /// fields then pass one, unless their options say otherwise. Trees gain from hints; an index that locates the cell
-    /// of a query, or that evaluates everything, loses the time of evaluating them. The default is `true`.
-    fn gains_from_hints(&self) -> bool {
-        true
+    /// Answers queries on the current thread, in any order: calls `answered` once for each with its position and its
+    /// answer.
+    ///
+    /// Backends that answer several queries at once override it. Distance, primitive, point, feature and weights are
+    /// those of [`closest_point_with`](Self::closest_point_with), and so is the answer to approximate options. The
+    /// certified lower bound may differ in its last bits, since it depends on the primitives that a search evaluates.
+    fn answer_queries(
+        &self,
+        queries: &[Point3<T>],
+        options: &QueryOptions<T>,
+        answered: &mut dyn FnMut(usize, Found<'_, T>),
+    ) {
+        answer_one_by_one(self, queries, options, answered);
     }
 
     /// Answers `queries` into `out`, in their order and on the current thread.
@@ -83,9 +91,25 @@ pub trait ClosestPoint<T: Real> {
     /// It panics if the slices differ in length.
     fn closest_points_into(&self, queries: &[Point3<T>], options: &QueryOptions<T>, out: &mut [Option<Closest<T>>]) {
         assert_eq!(queries.len(), out.len(), "one answer for each query");
-        for (query, answer) in queries.iter().zip(out) {
-            *answer = self.closest_point_with(query, options);
+        self.answer_queries(queries, options, &mut |i, found| out[i] = found.closest());
+    }
+}
+
+/// Answers queries as [`ClosestPoint::answer_queries`] does by default.
+#[doc(hidden)]
+pub fn answer_one_by_one<T: Real, I: ClosestPoint<T> + ?Sized>(
+    index: &I,
+    queries: &[Point3<T>],
+    options: &QueryOptions<T>,
+    answered: &mut dyn FnMut(usize, Found<'_, T>),
+) {
+    let template = Best::new(options);
+    for (i, query) in queries.iter().enumerate() {
+        let mut best = template.clone();
+        if query.iter().all(|x| x.is_finite()) {
+            index.search(query, &mut best);
         }
+        answered(i, best.found());
     }
 }
 
@@ -99,12 +123,13 @@ impl<T: Real, I: ClosestPoint<T> + ?Sized> ClosestPoint<T> for &I {
         (**self).closest_point_with(query, options)
     }
 
-    fn gains_from_hints(&self) -> bool {
-        (**self).gains_from_hints()
-    }
-
-    fn closest_points_into(&self, queries: &[Point3<T>], options: &QueryOptions<T>, out: &mut [Option<Closest<T>>]) {
-        (**self).closest_points_into(queries, options, out);
+    fn answer_queries(
+        &self,
+        queries: &[Point3<T>],
+        options: &QueryOptions<T>,
+        answered: &mut dyn FnMut(usize, Found<'_, T>),
+    ) {
+        (**self).answer_queries(queries, options, answered);
     }
 }
 

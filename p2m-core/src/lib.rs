@@ -66,7 +66,7 @@ pub use kernel::Key;
 pub use near_query::{Near, NearQuery};
 pub use primitive::{Feature, Point, Primitive, Projection, Segment, Shape, Triangle};
 pub use primitive_id::PrimitiveId;
-pub use query::{Best, Closest, Collector, QueryOptions};
+pub use query::{Best, Closest, Collector, Found, QueryOptions};
 pub use ray::{Crossing, Hit, Hits, Ray, RayCollector, RayError, RayHit, RayQuery, RayStatsCollector, Side};
 pub use real::Real;
 pub use set::{PrimitiveSet, check_set};
@@ -79,6 +79,8 @@ pub use stats_collector::StatsCollector;
 /// in any release.
 #[doc(hidden)]
 pub mod engine {
+    pub use crate::index::answer_one_by_one;
+
     /// Orders along a Hilbert curve.
     pub mod curve {
         pub use crate::curve::*;
@@ -123,8 +125,8 @@ pub mod engine {
     pub mod vector {
         pub use crate::kernel::vector::*;
     }
-    /// Detection of triangles whose nearest point is certainly a vertex.
-    pub mod vertices {
-        pub use crate::kernel::vertices::*;
+    /// The kernel for eight primitives side by side.
+    pub mod side_by_side {
+        pub use crate::kernel::side_by_side::*;
     }
 }

@@ -24,7 +24,6 @@ use p2m_core::{Aabb, ClosestPoint, PrimitiveSet};
 ///
 /// The values are those of [`distances`](crate::distances), bit for bit. Lists are the fastest way to a field whose
 /// blocks of 64 points are not much larger than the primitives, or are farther from the primitives than they are wide.
-/// The option `hints` is ignored.
 ///
 /// # Errors
 /// [`GridError::Memory`] if the values do not fit into memory, and [`GridError::Range`] for coordinates above 2^250.

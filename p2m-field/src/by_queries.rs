@@ -116,7 +116,6 @@ impl<I: ClosestPoint<f64> + Sync + ?Sized> Sampler<'_, I> {
     fn rows(&self, first: usize, values: &mut [f32]) {
         let [x, y, _] = self.grid.counts();
         let layers = values.len() / (x * y);
-        let mut options = QueryOptions::default();
         for strip in (0..y).step_by(SLAB_LAYERS) {
             for i in (0..x).step_by(BATCH_POINTS) {
                 for k in 0..layers {
@@ -124,7 +123,7 @@ impl<I: ClosestPoint<f64> + Sync + ?Sized> Sampler<'_, I> {
                         let count = BATCH_POINTS.min(x - i);
                         let start = (k * y + j) * x + i;
                         let out = &mut values[start..start + count];
-                        self.batch([i, j, first + k], out, &mut options);
+                        self.batch([i, j, first + k], out);
                     }
                 }
             }
@@ -132,21 +131,14 @@ impl<I: ClosestPoint<f64> + Sync + ?Sized> Sampler<'_, I> {
     }
 
     /// Computes at most [`BATCH_POINTS`] consecutive points of a row.
-    fn batch(&self, [i, j, k]: [usize; 3], out: &mut [f32], options: &mut QueryOptions<f64>) {
+    fn batch(&self, [i, j, k]: [usize; 3], out: &mut [f32]) {
         let mut queries = [Point3::origin(); BATCH_POINTS];
         let mut answers = [None; BATCH_POINTS];
         let count = out.len();
         for (n, query) in queries[..count].iter_mut().enumerate() {
             *query = self.grid.point([i + n, j, k]);
         }
-        if self.options.hints.unwrap_or_else(|| self.index.gains_from_hints()) {
-            for (query, answer) in queries[..count].iter().zip(&mut answers) {
-                *answer = self.index.closest_point_with(query, options);
-                options.hint = answer.map(|answer: Closest<f64>| answer.primitive);
-            }
-        } else {
-            self.index.closest_points_into(&queries[..count], options, &mut answers[..count]);
-        }
+        self.index.closest_points_into(&queries[..count], &QueryOptions::default(), &mut answers[..count]);
         for ((query, answer), value) in queries.iter().zip(&answers).zip(out) {
             *value = self.value(query, answer.as_ref());
         }

@@ -9,10 +9,6 @@ pub struct FieldOptions {
     /// The largest distance that is computed, in units of the scene. Beyond it the field has this value, with the
     /// correct sign. The default is infinite.
     pub band: f64,
-    /// Whether the closest primitive of a point is the hint for the next point. Hints do not change the
-    /// field. Fields by lists ignore this option. The default is `None`:
-    /// [`ClosestPoint::gains_from_hints`](p2m_core::ClosestPoint::gains_from_hints) decides.
-    pub hints: Option<bool>,
     /// Whether all threads of the current pool are used, which does not change the field. Without the feature `rayon`
     /// one thread computes the field in any case. The default is `true`.
     pub parallel: bool,
@@ -20,7 +16,7 @@ pub struct FieldOptions {
 
 impl Default for FieldOptions {
     fn default() -> Self {
-        Self { band: f64::INFINITY, hints: None, parallel: true }
+        Self { band: f64::INFINITY, parallel: true }
     }
 }
 
@@ -29,11 +25,6 @@ impl FieldOptions {
     #[must_use]
     pub fn with_band(self, band: f64) -> Self {
         Self { band, ..self }
-    }
-    /// Sets whether the closest primitive of a point is the hint for the next point.
-    #[must_use]
-    pub fn with_hints(self, hints: bool) -> Self {
-        Self { hints: Some(hints), ..self }
     }
     /// Sets whether all threads of the current pool are used.
     #[must_use]

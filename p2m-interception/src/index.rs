@@ -1,13 +1,16 @@
 //! The index: a partition together with the set that it was built over.
 
+use crate::list::several::Lists;
 use crate::octree::Octree;
-use crate::partition::{Partition, QUERIES_SIDE_BY_SIDE};
+use crate::partition::Partition;
 use crate::progress::Progress;
 use crate::voronoi::Voronoi;
 use nalgebra::Point3;
+use p2m_bvh::engine::several::answer_in_groups;
+use p2m_core::engine::answer_one_by_one;
 use p2m_core::storage::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{
-    Best, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestPoint, Collector, Inspect, Isa, Near, NearQuery,
+    Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Found, Inspect, Isa, Near, NearQuery,
     PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
@@ -186,40 +189,20 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> ClosestPoint<T> for Interception
         self.partition.search_nearest(&self.set, query, best);
     }
 
-    fn closest_points_into(&self, queries: &[Point3<T>], options: &QueryOptions<T>, out: &mut [Option<Closest<T>>]) {
-        assert_eq!(queries.len(), out.len(), "one answer for each query");
+    fn answer_queries(
+        &self,
+        queries: &[Point3<T>],
+        options: &QueryOptions<T>,
+        answered: &mut dyn FnMut(usize, Found<'_, T>),
+    ) {
         if options.is_approximate() {
-            // Searches side by side do not count the sites that they visit, which the options may limit.
-            queries.iter().zip(out).for_each(|(query, to)| *to = self.closest_point_with(query, options));
-            return;
+            // Searches that take turns do not count the sites that they visit, which the options may limit.
+            return answer_one_by_one(self, queries, options, answered);
         }
-        // Queries that are not finite have no answer, and the others are gathered into full groups without them.
-        out.fill(None);
-        let mut finite = (0..queries.len()).filter(|i| queries[*i].iter().all(|x| x.is_finite()));
-        let mut group = [0; QUERIES_SIDE_BY_SIDE];
-        loop {
-            let mut count = 0;
-            for (slot, number) in group.iter_mut().zip(&mut finite) {
-                *slot = number;
-                count += 1;
-            }
-            if count < QUERIES_SIDE_BY_SIDE {
-                group[..count].iter().for_each(|i| out[*i] = self.closest_point_with(&queries[*i], options));
-                return;
-            }
-            let several = group.map(|i| queries[i]);
-            let mut best = several.each_ref().map(|query| {
-                let mut best = Best::new(options);
-                best.offer_hint(&self.set, query);
-                best
-            });
-            self.partition.search_several(&self.set, &several, &mut best);
-            group.into_iter().zip(best).for_each(|(i, best)| out[i] = best.finish());
-        }
-    }
-
-    fn gains_from_hints(&self) -> bool {
-        false
+        let (partition, mut lists) = (&self.partition, Lists::new());
+        answer_in_groups(partition.tree(), &self.set, queries, options, answered, |count, several| {
+            partition.search_several(count, several, &mut lists);
+        });
     }
 }
 

@@ -53,7 +53,7 @@ mod voronoi;
 pub use index::{InterceptionIndex, OctreeIndex, P2mIndex};
 pub use octree::Octree;
 pub use options::{Domain, OctreeOptions, OctreeReport, P2mOptions, P2mReport};
-pub use partition::{Partition, QUERIES_SIDE_BY_SIDE};
+pub use partition::Partition;
 pub use progress::{BuildStage, Progress, StageTimes};
 #[cfg(feature = "kiddo")]
 pub use voronoi::kd_tree_locator::KdTreeLocator;

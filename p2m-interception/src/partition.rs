@@ -1,14 +1,16 @@
 //! The interface of a partition of space into cells with interception lists.
 
+use crate::list::several::Lists;
 use crate::progress::Progress;
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::evaluation;
 use p2m_bvh::engine::nearest::{EvaluateFn, SearchState, finish};
+use p2m_bvh::engine::several::Several;
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
-use p2m_core::{Best, Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
+use p2m_core::{Aabb, Best, Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
 
 /// A partition with its lists, over a set of primitives that it does not store. Every method that takes a set has to
 /// be given the set that the partition was built over.
@@ -45,18 +47,6 @@ pub trait Partition: CellQuery + Sized {
         self.query_near(to_f64_array(query), near, &evaluation(set, query));
     }
 
-    /// Answers several nearest-primitive queries, possibly side by side. All queries have to be finite.
-    fn search_several<T: Real, S: PrimitiveSet<T>>(
-        &self,
-        set: &S,
-        queries: &[Point3<T>; QUERIES_SIDE_BY_SIDE],
-        best: &mut [Best<T>; QUERIES_SIDE_BY_SIDE],
-    ) {
-        let evaluations = queries.each_ref().map(|query| evaluation(set, query));
-        let evaluates = evaluations.each_ref().map(|evaluate| evaluate as EvaluateFn<'_, BestF64>);
-        self.query_several(&queries.each_ref().map(to_f64_array), best.each_mut().map(Best::minimum), evaluates);
-    }
-
     /// Returns the primitives in the list of the cell that contains a point, in ascending order. A search in the cell
     /// evaluates only these. The result is `None` if the tree answers.
     fn list(&self, point: &Point3<f64>) -> Option<Vec<PrimitiveId>>;
@@ -83,9 +73,6 @@ pub trait Partition: CellQuery + Sized {
     fn with_isa(self, isa: Isa) -> Self;
 }
 
-/// The number of queries that are answered side by side.
-pub const QUERIES_SIDE_BY_SIDE: usize = 16;
-
 /// The search of a query's cell. Its methods are not generic over the set, so that most of them are compiled once,
 /// in this crate.
 pub(crate) trait CellQuery {
@@ -105,15 +92,7 @@ pub(crate) trait CellQuery {
     /// Offers the primitives that a [`Near`] may need.
     fn query_near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>);
 
-    /// Offers the primitives that may be the nearest to each of several queries.
-    fn query_several(
-        &self,
-        queries: &[V3; QUERIES_SIDE_BY_SIDE],
-        minimums: [&mut BestF64; QUERIES_SIDE_BY_SIDE],
-        evaluates: [EvaluateFn<'_, BestF64>; QUERIES_SIDE_BY_SIDE],
-    ) {
-        for ((query, minimum), evaluate) in queries.iter().zip(minimums).zip(evaluates) {
-            self.query_nearest(*query, minimum, evaluate);
-        }
-    }
+    /// Searches for the primitives that may be the nearest to each of several queries: those of the first `count`
+    /// searches of `several`, which take turns.
+    fn search_several(&self, count: usize, several: &mut Several<'_, Aabb<f64>>, lists: &mut Lists);
 }

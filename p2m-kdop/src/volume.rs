@@ -10,6 +10,7 @@ use crate::{Directions, Kdop, KdopOptions};
 use nalgebra::Vector3;
 use p2m_bvh::engine::nearest::{EvaluateFn, finish, finish_nearest};
 use p2m_bvh::engine::ray::IntersectFn;
+use p2m_bvh::engine::several::{Several, Walkers};
 use p2m_bvh::engine::volume::{CompiledSearches, TreeOptions, VolumeNodes};
 use p2m_bvh::{PacketTree, SplitOptions, Volume};
 use p2m_core::engine::query::BestF64;
@@ -68,6 +69,16 @@ impl<const K: usize> CompiledSearches for Kdop<K> {
     #[inline(never)]
     fn nearest(tree: &PacketTree<Self>, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
         tree.run(query, minimum, evaluate, finish_nearest);
+    }
+
+    #[inline(never)]
+    fn nearest_of_several(
+        tree: &PacketTree<Self>,
+        walkers: &mut Walkers<Self>,
+        several: &mut Several<'_, Self>,
+        count: usize,
+    ) {
+        walkers.search(tree, several, count);
     }
 
     #[inline(never)]

@@ -51,9 +51,7 @@ pub fn p2m<'a>(index: &'a P2mIndex<f64, &'a Soup<f64>>) -> &'a Index<'a> {
 pub enum QueryMode {
     /// Queries run one after the other.
     Single,
-    /// Queries form a reordered batch on one thread, where each query gets the previous answer as a hint.
-    Hints,
-    /// Queries form a reordered batch on one thread, where an index may interleave several queries.
+    /// Queries form a reordered batch on one thread, where several queries take turns.
     Several,
 }
 
@@ -64,7 +62,7 @@ pub fn run_queries(index: &Index<'_>, mode: QueryMode, queries: &[Point3<f64>]) 
             black_box(index.closest_point(query));
         });
     }
-    let options = BatchOptions::default().with_parallel(false).with_hints(mode == QueryMode::Hints);
+    let options = BatchOptions::default().with_parallel(false);
     let mut answers = vec![None; queries.len()];
     batch::closest_points_into(index, queries, &QueryOptions::default(), &options, &mut answers);
     black_box(answers);

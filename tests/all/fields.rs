@@ -40,9 +40,9 @@ fn fields_are_single_answers_by_every_index_and_on_all_threads() {
     }
     let octree = OctreeIndex::build(&soup, &Default::default()).expect("valid");
     let p2m = P2mIndex::build(&soup, &Default::default()).expect("valid");
-    for hints in [true, false] {
+    {
         for parallel in [true, false] {
-            let options = FieldOptions::default().with_hints(hints).with_parallel(parallel);
+            let options = FieldOptions::default().with_parallel(parallel);
             let done = AtomicUsize::new(0);
             let progress = |points| {
                 done.fetch_add(points, Ordering::Relaxed);
@@ -164,11 +164,8 @@ fn has_signs_of_answers(soup: &Soup<f64>, signed: &SignedDistance<'_, AabbTree<f
         let expected: Vec<u32> = samples(&grid).map(|sample| value(sample, band)).collect();
         let inside = expected.iter().filter(|x| f32::from_bits(**x) < 0.0).count();
         assert!(inside > min_inside, "{inside}");
-        for hints in [true, false] {
-            let options = FieldOptions::default().with_hints(hints).with_band(band);
-            let found = signed_distances(signed, &grid, &options, &|_| ()).expect("memory");
-            assert!(found.iter().map(|x| x.to_bits()).eq(expected.iter().copied()), "{band} {hints}");
-        }
+        let found = signed_distances(signed, &grid, &FieldOptions::default().with_band(band), &|_| ()).expect("memory");
+        assert!(found.iter().map(|x| x.to_bits()).eq(expected.iter().copied()), "{band}");
         let lists = CandidateLists::new(soup).expect("plain");
         let options = FieldOptions::default().with_band(band);
         let found = signed_distances_by_lists(&lists, signed, &grid, &options, &|_| ()).expect("memory");

@@ -5,6 +5,7 @@
 
 mod adversaries;
 mod agreement;
+mod batches;
 mod boxes;
 mod consistency;
 mod contract;

@@ -182,7 +182,7 @@ impl<'a> Indexes<'a> {
         // Hints help trees, and interleaving helps cells.
         point_tasks("aabb", aabb, aabb_object, soup, QueryMode::Single)
             .chain([ray_task("aabb", aabb_object, rays, |ray, counting| aabb.visit_ray(ray, counting))])
-            .chain(point_tasks("aabb batch", aabb, aabb_object, soup, QueryMode::Hints))
+            .chain(point_tasks("aabb batch", aabb, aabb_object, soup, QueryMode::Several))
             .chain(point_tasks("kdop-14", kdop, kdop_object, soup, QueryMode::Single))
             .chain([ray_task("kdop-14", kdop_object, rays, |ray, counting| kdop.visit_ray(ray, counting))])
             .chain(point_tasks("octree", octree, octree_object, soup, QueryMode::Single))

@@ -55,7 +55,7 @@ pub(super) fn threads(scene: &Scene, indexes: &[Index<'_>], profile: &Profile, s
     let mut sweep = Sweep {
         title: "Threads".to_owned(),
         about: format!(
-            "{}: batches of {count} queries in its box (p2m_core::batch, default options: reordered, with hints), wall time, medians of {} \
+            "{}: batches of {count} queries in its box (p2m_core::batch, default options: reordered), wall time, medians of {} \
              rounds in turns. Brute force and other libraries have no batches here.",
             scene.name, profile.effort.rounds
         ),

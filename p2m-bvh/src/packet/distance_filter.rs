@@ -18,9 +18,10 @@
 
 use super::layout::{LANES, Packet};
 use super::member::Kind;
-use super::squared_distance::{V3, edge, is_beyond_plane, triangle};
-use p2m_core::engine::simd::{InstructionSet, Lanes};
+use super::squared_distance::{Triangles, V3, square_from_edge};
+use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Lanes};
 use p2m_core::engine::vector::power_of_two;
+use std::ops::Range;
 
 /// If the query point is more units of the frame away than this, the filter lets every primitive pass.
 const MAX_QUERY_UNITS: f64 = power_of_two(40);
@@ -65,32 +66,79 @@ impl Packet {
     /// exceed that of `limit`, a distance in the frame, may be infinite instead.
     #[inline(always)]
     pub fn squares<I: InstructionSet>(&self, local: &Local, limit: f32, squares: &mut [f32; LANES]) {
-        let q = V3::splat(local.query);
-        let towards = self.towards(&local.query);
         let mut at = 0;
         while at < LANES {
-            let result = match self.kind() {
-                Kind::Triangle => {
-                    let vertices = [self.vertex(0, at), self.vertex(1, at), self.vertex(2, at)];
-                    let offsets = [vertices[0].sub(&q), vertices[1].sub(&q), vertices[2].sub(&q)];
-                    if is_beyond_plane::<I::Wide>(&offsets, towards, limit) {
-                        I::Wide::splat(f32::INFINITY)
-                    } else {
-                        triangle::<I::Wide>(offsets, vertices, local.margin_squared)
+            let found = if self.is_beyond::<I::Wide>(at, &local.query, limit) {
+                I::Wide::splat(f32::INFINITY)
+            } else {
+                self.prepare(at).squares(&V3::splat(local.query), local.margin_squared)
+            };
+            found.store(&mut squares[at..]);
+            at += I::Wide::LEN;
+        }
+    }
+
+    /// Computes the squared distances of several query points, those in the given places of `locals`. What depends on
+    /// the packet alone is computed once. Squares that certainly exceed those of `limits`, distances in the frame, may
+    /// be infinite instead.
+    #[inline(always)]
+    pub fn squares_of_several<I: InstructionSet>(
+        &self,
+        locals: &Locals,
+        places: Range<usize>,
+        limits: impl Fn(usize) -> f32,
+        squares: &mut [[f32; LANES]; PLACES],
+    ) {
+        // Where the lanes hold a whole packet, distances cost less than the branch.
+        let tests_planes = I::Wide::LEN < LANES;
+        let [x, y, z] = &locals.query;
+        let query = |i: usize| [x[i % PLACES], y[i % PLACES], z[i % PLACES]];
+        let mut at = 0;
+        while at < LANES {
+            let mut near = 0u32;
+            for i in places.start..places.end {
+                let is_beyond = tests_planes && self.is_beyond::<I::Wide>(at, &query(i), limits(i));
+                near |= u32::from(!is_beyond) << i;
+                I::Wide::splat(f32::INFINITY).store(&mut squares[i % PLACES][at..]);
+            }
+            if near != 0 {
+                let primitives: Primitives<I::Wide> = self.prepare(at);
+                for i in places.start..places.end {
+                    if near >> i & 1 == 1 {
+                        let margin = locals.margin_squared[i % PLACES];
+                        primitives.squares(&V3::splat(query(i)), margin).store(&mut squares[i % PLACES][at..]);
                     }
                 }
-                Kind::Segment => {
-                    let (a, b) = (self.vertex(0, at), self.vertex(1, at));
-                    edge(&a.sub(&q), &b.sub(&a)).0
-                }
-                Kind::Point => self.vertex(0, at).sub(&q).square(),
-                Kind::Box => {
-                    let (below, above) = (self.vertex(0, at).sub(&q), q.sub(&self.vertex(1, at)));
-                    below.max(&above).max(&V3::splat([0.0; 3])).square()
-                }
-            };
-            result.store(&mut squares[at..]);
+            }
             at += I::Wide::LEN;
+        }
+    }
+
+    /// Returns whether the triangles in the lanes from `at` on are certainly farther from a query point than `limit`. It
+    /// is false for other primitives.
+    #[inline(always)]
+    fn is_beyond<L: Lanes>(&self, at: usize, query: &[f32; 3], limit: f32) -> bool {
+        let is_of_triangles = self.kind() == Kind::Triangle;
+        is_of_triangles && {
+            let vertices = [self.vertex(0, at), self.vertex(1, at), self.vertex(2, at)];
+            Triangles::<L>::are_beyond_plane(&vertices, &V3::splat(*query), self.towards(query), limit)
+        }
+    }
+
+    /// Prepares the primitives of the lanes from `at` on.
+    #[inline(always)]
+    fn prepare<L: Lanes>(&self, at: usize) -> Primitives<L> {
+        match self.kind() {
+            Kind::Triangle => {
+                Primitives::Triangles(Triangles::new([self.vertex(0, at), self.vertex(1, at), self.vertex(2, at)]))
+            }
+            Kind::Segment => {
+                let a: V3<L> = self.vertex(0, at);
+                let vector = self.vertex(1, at).sub(&a);
+                Primitives::Segments(a, vector, vector.square().reciprocal())
+            }
+            Kind::Point => Primitives::Points(self.vertex(0, at)),
+            Kind::Box => Primitives::Boxes(self.vertex(0, at), self.vertex(1, at)),
         }
     }
 
@@ -110,6 +158,121 @@ impl Packet {
     fn vertex<L: Lanes>(&self, v: usize, at: usize) -> V3<L> {
         let [x, y, z] = [&self.rows[3 * v], &self.rows[3 * v + 1], &self.rows[3 * v + 2]];
         V3 { x: L::load_u16(&x[at..]), y: L::load_u16(&y[at..]), z: L::load_u16(&z[at..]) }
+    }
+}
+
+/// The primitives of some lanes, with what their distances from all query points need.
+#[allow(clippy::large_enum_variant, reason = "it stays in registers and on the stack")]
+enum Primitives<L> {
+    Triangles(Triangles<L>),
+    /// The first ends, the vectors to the other ends, and the inverses of their squares.
+    Segments(V3<L>, V3<L>, L),
+    Points(V3<L>),
+    /// The lower and the upper corners.
+    Boxes(V3<L>, V3<L>),
+}
+
+impl<L: Lanes> Primitives<L> {
+    /// The squared distances from a query point.
+    #[inline(always)]
+    fn squares(&self, query: &V3<L>, margin_squared: f32) -> L {
+        match self {
+            Self::Triangles(triangles) => triangles.squares(query, margin_squared),
+            Self::Segments(a, vector, inverse_square) => square_from_edge(&a.sub(query), vector, *inverse_square),
+            Self::Points(point) => point.sub(query).square(),
+            Self::Boxes(low, high) => {
+                let (below, above) = (low.sub(query), query.sub(high));
+                below.max(&above).max(&V3::splat([0.0; 3])).square()
+            }
+        }
+    }
+}
+
+/// The number of query points in [`Locals`].
+pub const PLACES: usize = 16;
+
+/// Query points with the packets that they are compared with, one pair in each place, row by row.
+#[derive(Clone, Debug)]
+pub struct Locals {
+    /// The query points, in coordinates of the scene.
+    pub position: [[f64; PLACES]; 3],
+    origin: [[f64; PLACES]; 3],
+    /// The units of the frames of the packets.
+    pub unit: [f64; PLACES],
+    /// The inverses of the units.
+    pub per_unit: [f64; PLACES],
+    /// The query points in the frames of the packets.
+    query: [[f32; PLACES]; 3],
+    /// The excess of each place, as in [`Local`].
+    pub excess: [f32; PLACES],
+    /// The deficit of each place, as in [`Local`].
+    pub deficit: [f32; PLACES],
+    /// The squared margin of each place, as in [`Local`].
+    margin_squared: [f32; PLACES],
+    /// One bit for each place whose query point is not in the frame, as [`Packet::local`] returns `None` for it.
+    pub far: u32,
+}
+
+impl Default for Locals {
+    /// Returns places without query points.
+    fn default() -> Self {
+        Self {
+            position: [[0.0; PLACES]; 3],
+            origin: [[0.0; PLACES]; 3],
+            unit: [0.0; PLACES],
+            per_unit: [0.0; PLACES],
+            query: [[0.0; PLACES]; 3],
+            excess: [0.0; PLACES],
+            deficit: [0.0; PLACES],
+            margin_squared: [0.0; PLACES],
+            far: 0,
+        }
+    }
+}
+
+impl Locals {
+    /// Sets the query point and the packet in a place.
+    #[inline(always)]
+    pub fn set(&mut self, place: usize, position: &[f64; 3], packet: &Packet) {
+        for (k, (position, origin)) in position.iter().zip(&packet.origin).enumerate() {
+            (self.position[k][place], self.origin[k][place]) = (*position, *origin);
+        }
+        (self.unit[place], self.per_unit[place]) = (packet.unit, packet.per_unit);
+    }
+
+    /// Converts all query points to the frames of their packets, as [`Packet::local`] does.
+    #[inline(always)]
+    pub fn convert<I: InstructionSet>(&mut self) {
+        self.far = 0;
+        let mut largest_in_f32 = [0.0; PLACES];
+        let mut at = 0;
+        while at < PLACES {
+            let per_unit = I::Doubles::load(&self.per_unit[at..]);
+            let mut largest = I::Doubles::splat(0.0);
+            for k in 0..3 {
+                let offset = I::Doubles::load(&self.position[k][at..]) - I::Doubles::load(&self.origin[k][at..]);
+                let q = offset * per_unit;
+                q.store_f32(&mut self.query[k][at..]);
+                // Only an infinite difference times an inverse of 0 is NaN, and then the unit is 0 as well.
+                largest = q.abs().max(largest);
+            }
+            largest.store_f32(&mut largest_in_f32[at..]);
+            let is_near = largest.is_at_most(I::Doubles::splat(MAX_QUERY_UNITS))
+                & I::Doubles::splat(0.0).is_below(I::Doubles::load(&self.unit[at..]));
+            self.far |= u32::from(!I::Doubles::bits(is_near)) << at;
+            at += 8;
+        }
+        let mut at = 0;
+        while at < PLACES {
+            let (one, up) = (I::Wide::splat(1.0), I::Wide::splat(ROUND_UP));
+            let largest = I::Wide::load(&largest_in_f32[at..]);
+            let ux = largest.add(I::Wide::splat(65536.0)).mul(I::Wide::splat(U)).mul(up);
+            ux.mul(I::Wide::splat(88.0)).add(one).mul(up).store(&mut self.excess[at..]);
+            ux.mul(I::Wide::splat(32.0)).add(one).mul(up).store(&mut self.deficit[at..]);
+            let margin = ux.mul(I::Wide::splat(32.0));
+            margin.mul(margin).store(&mut self.margin_squared[at..]);
+            at += I::Wide::LEN;
+        }
     }
 }
 

@@ -13,7 +13,7 @@ mod line_filter;
 mod member;
 mod squared_distance;
 
-pub use distance_filter::{Local, ROUND_UP, at_most, smallest};
+pub use distance_filter::{Local, Locals, PLACES, ROUND_UP, at_most, smallest};
 pub use layout::{LANES, Packet, frame_unit};
 pub use line::RayLine;
 pub use member::{Kind, Member, Members};

@@ -60,21 +60,97 @@ impl<L: Lanes> V3<L> {
     }
 }
 
-/// The squared distance from the origin to the segment from `a` along `e`, and |e|^2.
+/// The squared distance from the origin to the segment from `a` along `e`, given 1 / |e|^2.
 #[inline(always)]
-pub(super) fn edge<L: Lanes>(a: &V3<L>, e: &V3<L>) -> (L, L) {
-    let length_squared = e.square();
-    let t = L::splat(0.0).sub(a.dot(e)).mul(length_squared.reciprocal());
+pub(super) fn square_from_edge<L: Lanes>(a: &V3<L>, e: &V3<L>, inverse_square: L) -> L {
+    let t = L::splat(0.0).sub(a.dot(e)).mul(inverse_square);
     // An edge without length gives NaN, which `max` replaces by 0.
     let t = t.max(L::splat(0.0)).min(L::splat(1.0));
     let p = V3 { x: t.mul_add(e.x, a.x), y: t.mul_add(e.y, a.y), z: t.mul_add(e.z, a.z) };
-    (p.square(), length_squared)
+    p.square()
+}
+
+/// Triangles, with what the distances of all query points from them need.
+pub(super) struct Triangles<L> {
+    vertices: [V3<L>; 3],
+    edges: [EdgeOfTriangle<L>; 3],
+    normal: V3<L>,
+    /// The number 1 / |normal|^2.
+    inverse_square: L,
+    /// The squared length of the normal.
+    normal_squared: L,
+}
+
+/// An edge of triangles.
+struct EdgeOfTriangle<L> {
+    /// The vector from the vertex with the same number to the next one.
+    vector: V3<L>,
+    length_squared: L,
+    /// The number 1 / |vector|^2.
+    inverse_square: L,
+    /// A vector in the plane that is perpendicular to the edge and leads out of the triangle.
+    outwards: V3<L>,
+}
+
+impl<L: Lanes> EdgeOfTriangle<L> {
+    #[inline(always)]
+    fn new(vector: V3<L>, normal: &V3<L>) -> Self {
+        let length_squared = vector.square();
+        let outwards = vector.cross(normal);
+        Self { length_squared, inverse_square: length_squared.reciprocal(), outwards, vector }
+    }
+}
+
+impl<L: Lanes> Triangles<L> {
+    /// Prepares triangles whose vertices are whole numbers, of which exact edges are made.
+    #[inline(always)]
+    pub(super) fn new(vertices: [V3<L>; 3]) -> Self {
+        let [a, b, c] = &vertices;
+        let vectors = [b.sub(a), c.sub(b), a.sub(c)];
+        // The scale keeps all the squares below from overflowing.
+        let normal = vectors[0].scaled(L::splat(EDGE_SCALE)).cross_of_integers(&vectors[1]);
+        let normal_squared = normal.square();
+        let [e, f, g] = vectors;
+        let edges = [EdgeOfTriangle::new(e, &normal), EdgeOfTriangle::new(f, &normal), EdgeOfTriangle::new(g, &normal)];
+        Self { edges, inverse_square: normal_squared.reciprocal(), normal_squared, normal, vertices }
+    }
+
+    /// Returns whether all triangles are certainly farther than `limit` from a query point: all vertices lie behind the
+    /// plane at this distance that is orthogonal to `towards`.
+    #[inline(always)]
+    pub(super) fn are_beyond_plane(vertices: &[V3<L>; 3], query: &V3<L>, towards: [f32; 3], limit: f32) -> bool {
+        let [a, b, c] = vertices;
+        is_beyond_plane(&[a.sub(query), b.sub(query), c.sub(query)], towards, limit)
+    }
+
+    /// The squared distances from a query point.
+    #[inline(always)]
+    pub(super) fn squares(&self, query: &V3<L>, margin_squared: f32) -> L {
+        let margin = L::splat(margin_squared).mul(self.normal_squared);
+        let mut nearest = L::splat(f32::INFINITY);
+        // This is below zero where the projection onto the plane is inside of all three edges by more than the margin.
+        let mut outside = L::splat(f32::NEG_INFINITY);
+        let mut height = L::splat(0.0);
+        for i in 0..3 {
+            let (edge, a) = (&self.edges[i], self.vertices[i].sub(query));
+            nearest = square_from_edge(&a, &edge.vector, edge.inverse_square).min(nearest);
+            // If the query is inside, the vertex lies ahead in the direction that leaves the triangle across this edge.
+            let ahead = a.dot(&edge.outwards);
+            let beyond = margin.mul(edge.length_squared).sub(ahead.mul(ahead.max(L::splat(0.0))));
+            outside = beyond.max(outside);
+            if i == 0 {
+                height = a.dot(&self.normal);
+            }
+        }
+        let face = height.mul(height).mul(self.inverse_square);
+        outside.if_below(L::splat(0.0), face, nearest)
+    }
 }
 
 /// Whether all triangles are certainly farther than `limit`: all vertices lie behind the plane that is orthogonal to
 /// `towards` at this distance.
 #[inline(always)]
-pub(super) fn is_beyond_plane<L: Lanes>(offsets: &[V3<L>; 3], towards: [f32; 3], limit: f32) -> bool {
+fn is_beyond_plane<L: Lanes>(offsets: &[V3<L>; 3], towards: [f32; 3], limit: f32) -> bool {
     let [x, y, z] = towards;
     let length = (x * x + y * y + z * z).sqrt();
     let towards = V3::splat(towards);
@@ -82,31 +158,6 @@ pub(super) fn is_beyond_plane<L: Lanes>(offsets: &[V3<L>; 3], towards: [f32; 3],
     // Vectors shorter than a unit exclude little, and their squares may underflow.
     let threshold = if length >= 1.0 { length * limit } else { f32::INFINITY };
     a.dot(&towards).min(b.dot(&towards)).min(c.dot(&towards)).at_most(L::splat(threshold)) == 0
-}
-
-/// The squared distance from the origin to triangles. `offsets` are the vertices as seen from the query point, and the
-/// second argument has the same vertices as whole numbers, of which exact edges are made.
-#[inline(always)]
-pub(super) fn triangle<L: Lanes>(offsets: [V3<L>; 3], [a, b, c]: [V3<L>; 3], margin_squared: f32) -> L {
-    let edges = [b.sub(&a), c.sub(&b), a.sub(&c)];
-    // The scale keeps all the squares below from overflowing.
-    let normal = edges[0].scaled(L::splat(EDGE_SCALE)).cross_of_integers(&edges[1]);
-    let normal_squared = normal.square();
-    let margin = L::splat(margin_squared).mul(normal_squared);
-    let mut nearest = L::splat(f32::INFINITY);
-    // This is below zero where the projection onto the plane is inside of all three edges by more than the margin.
-    let mut outside = L::splat(f32::NEG_INFINITY);
-    for (a, e) in offsets.iter().zip(&edges) {
-        let (square, length_squared) = edge(a, e);
-        nearest = square.min(nearest);
-        // If the query is inside, the vertex lies ahead in the direction that leaves the triangle across this edge.
-        let ahead = a.dot(&e.cross(&normal));
-        let beyond = margin.mul(length_squared).sub(ahead.mul(ahead.max(L::splat(0.0))));
-        outside = beyond.max(outside);
-    }
-    let height = offsets[0].dot(&normal);
-    let face = height.mul(height).mul(normal_squared.reciprocal());
-    outside.if_below(L::splat(0.0), face, nearest)
 }
 
 /// A scale of edges, 2^-34, with which products of two edges are about 1 at most.

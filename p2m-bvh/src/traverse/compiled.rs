@@ -2,6 +2,8 @@
 
 use crate::traverse::evaluate::{finish, finish_nearest};
 use crate::traverse::primitive_fn::{EvaluateFn, IntersectFn, evaluation, intersection};
+use crate::traverse::several::Several;
+use crate::traverse::walkers::Walkers;
 use crate::tree::PacketTree;
 use crate::tree::wide_node::VolumeNodes;
 use nalgebra::Point3;
@@ -17,6 +19,14 @@ use p2m_core::{Aabb, Best, Hits, Near, PrimitiveSet, Ray, RayCollector, Real};
 pub trait CompiledSearches: VolumeNodes {
     /// Searches for the nearest primitive.
     fn nearest(tree: &PacketTree<Self>, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>);
+
+    /// Searches for the nearest primitives of several query points, those of the first `count` searches.
+    fn nearest_of_several(
+        tree: &PacketTree<Self>,
+        walkers: &mut Walkers<Self>,
+        several: &mut Several<'_, Self>,
+        count: usize,
+    );
 
     /// Searches for the primitives near a point.
     fn near<'n>(tree: &PacketTree<Self>, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>);
@@ -34,6 +44,15 @@ pub trait CompiledSearches: VolumeNodes {
 impl CompiledSearches for Aabb<f64> {
     fn nearest(tree: &PacketTree, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
         tree.run(query, minimum, evaluate, finish_nearest);
+    }
+
+    fn nearest_of_several(
+        tree: &PacketTree,
+        walkers: &mut Walkers<Self>,
+        several: &mut Several<'_, Self>,
+        count: usize,
+    ) {
+        walkers.search(tree, several, count);
     }
 
     fn near<'n>(tree: &PacketTree, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {

@@ -6,8 +6,8 @@ use crate::traverse::search_state::{Candidate, SearchState};
 use crate::tree::Leaves;
 use p2m_core::Collector;
 use p2m_core::engine::query::BestF64;
+use p2m_core::engine::side_by_side::{Eight, SIDE_BY_SIDE, certain_vertex_squares};
 use p2m_core::engine::simd::{InstructionSet, SimdKernel};
-use p2m_core::engine::vertices::{SIDE_BY_SIDE, certain_vertices};
 
 /// Above this number of pending candidates, ties at shared vertices are sorted out before any candidate is evaluated.
 const SORT_TIES_ABOVE_CANDIDATES: usize = 3;
@@ -37,26 +37,22 @@ pub(super) fn offer<C: Collector>(
 impl<C: Collector> SearchState<'_, C> {
     /// Drops pending triangles that cannot win because they tie or lose at a vertex.
     ///
-    /// Among the triangles whose nearest point is provably a vertex, only the nearest one is kept, and of several the
-    /// one with the lowest id. Keys of vertices are exact to a few u, so dropping the others does not affect the
-    /// certified lower bound either.
+    /// For a query far from a mesh, all triangles around the nearest vertex are tied. Among those whose nearest point is
+    /// certainly a vertex, only the nearest one is kept, and of several the one with the lowest id. Keys of vertices are
+    /// exact to a few u, so dropping the others does not affect the certified lower bound either.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "ties are equality of bits")]
-    fn drop_shared_vertex_ties(&mut self) {
-        let mut corners = [[[0.0; SIDE_BY_SIDE]; 3]; 3];
+    fn drop_shared_vertex_ties<I: InstructionSet>(&mut self) {
+        let mut eight = Eight::<3>::default();
         let count = self.pending_len.min(SIDE_BY_SIDE);
-        for (i, candidate) in self.pending[..count].iter().enumerate() {
+        for (lane, candidate) in self.pending[..count].iter().enumerate() {
             let packet = &self.leaves.packets[candidate.packet as usize];
+            // A primitive of another kind leaves three equal corners, for which no vertex is certain.
             if let Some(vertices) = packet.triangle_corners(candidate.lane as usize, &self.leaves.vertices) {
-                for v in 0..3 {
-                    for k in 0..3 {
-                        corners[v][k][i] = vertices[v][k];
-                    }
-                }
+                eight.set(lane, &self.query, vertices);
             }
         }
-        // Candidates that are no triangles have three equal corners here, for which no vertex is certain.
-        let squares = certain_vertices(self.query, &corners);
+        let squares = certain_vertex_squares::<I::Doubles>(&eight);
         let mut winner = (f64::INFINITY, u32::MAX, 0);
         for (i, candidate) in self.pending[..count].iter().enumerate() {
             let id = self.leaves.packets[candidate.packet as usize].ids()[candidate.lane as usize].number();
@@ -73,7 +69,7 @@ impl<C: Collector> SearchState<'_, C> {
 
     /// Evaluates the pending candidates, the one with the least bound first, and clears the list.
     #[inline(always)]
-    fn evaluate_pending_inline(&mut self) {
+    fn evaluate_pending_inline<I: InstructionSet>(&mut self) {
         if self.is_approximate {
             self.evaluate_incumbent();
         }
@@ -88,7 +84,7 @@ impl<C: Collector> SearchState<'_, C> {
             && self.collector.is_single_nearest()
             && !self.collector.keeps_near_ties()
         {
-            self.drop_shared_vertex_ties();
+            self.drop_shared_vertex_ties::<I>();
         }
         for i in 0..self.pending_len {
             let Candidate { lower_bound, packet, lane } = self.pending[i];
@@ -149,6 +145,6 @@ impl<C: Collector> SimdKernel for EvaluatePending<'_, '_, C> {
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        self.0.evaluate_pending_inline();
+        self.0.evaluate_pending_inline::<I>();
     }
 }

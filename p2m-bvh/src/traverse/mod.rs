@@ -3,11 +3,14 @@
 pub(crate) mod box_query;
 pub(crate) mod compiled;
 pub(crate) mod evaluate;
+pub(crate) mod groups;
 pub(crate) mod nearest;
 pub(crate) mod primitive_fn;
 pub(crate) mod range;
 pub(crate) mod ray;
 pub(crate) mod search_state;
+pub(crate) mod several;
+pub(crate) mod walkers;
 
 use crate::tree::node_ref::{NodeRef, WIDTH};
 use crate::tree::wide_node::{VolumeNodes, WideNode};

@@ -2,6 +2,7 @@
 
 use nalgebra::Point3;
 use p2m_core::Aabb;
+use p2m_core::engine::simd::Doubles;
 use p2m_core::engine::vector::{exponent, power_of_two};
 
 /// A box in the frame: its lower and its upper corner.
@@ -92,5 +93,14 @@ impl Frame {
         // underflow in either.
         let square = square * (self.per_unit * self.per_unit) * (1.0 + power_of_two(-19)) + power_of_two(-120);
         if square < f64::from(f32::MAX) { square as f32 } else { f32::MAX }
+    }
+
+    /// Converts lengths of the scene to squares that can be compared with bounds of nodes, as
+    /// [`square_above`](Self::square_above) does for one square.
+    #[inline(always)]
+    pub fn squares_above<D: Doubles>(&self, lengths: D, to: &mut [f32]) {
+        let factor = self.per_unit * self.per_unit * (1.0 + power_of_two(-19));
+        let squares = lengths * lengths * D::splat(factor) + D::splat(power_of_two(-120));
+        squares.min(D::splat(f64::from(f32::MAX))).store_f32(to);
     }
 }

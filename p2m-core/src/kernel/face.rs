@@ -2,11 +2,12 @@
 
 use super::arithmetic;
 use super::double_double::Double;
-use super::edge::{EDGES, EdgeLine, Foot};
+use super::edge::{EDGES, EdgeLine};
 use super::vector::{
     V3, add, add_scaled, clamp, combine, dot, exponent, larger, largest, lexicographically_less, norm_squared,
     power_of_two, scale_by_power, smaller, sub,
 };
+use crate::simd::Float;
 
 /// The greatest ratio, 2^-10, of height and longest edge of a sliver. The height of a sliver is computed in
 /// double-double, which takes longer.
@@ -17,7 +18,7 @@ const SLIVER_SINE_SQUARED: f64 = power_of_two(-20);
 /// no point of its face is farther from them than the height, which is at most u M / 8.
 const NEEDLE_SINE_SQUARED: f64 = power_of_two(-114);
 /// The weight 2^-49 below which the sign of a weight may be due to rounding.
-const MIN_CERTAIN_WEIGHT: f64 = power_of_two(-49);
+pub(super) const MIN_CERTAIN_WEIGHT: f64 = power_of_two(-49);
 /// The square of the margin by which a face is rejected. First weights of ordinary faces have errors below 2^-38 of the
 /// size of the offsets over the height, and the margin is wider. The errors of a sliver are larger by the ratio of
 /// [`SLIVER_SINE`] and its own sine.
@@ -30,149 +31,219 @@ const MAX_ERROR_FACTOR: f64 = power_of_two(24);
 /// They are orthogonal, so the weights are independent, and the error of a sliver is not multiplied by the inverse of
 /// its sine. Only the height needs more precision, see [`sliver_axes`].
 #[derive(Clone, Copy)]
-struct Axes {
+struct Axes<T> {
     /// The vector from the nearer end of the longest edge to the farther one.
-    direction: V3,
+    direction: [T; 3],
     /// The number 1 / |direction|^2.
-    inverse: f64,
+    inverse: T,
     /// The vector from the longest edge to the apex, perpendicular to the edge.
-    height: V3,
+    height: [T; 3],
     /// The number 1 / |height|^2.
-    inverse_height: f64,
+    inverse_height: T,
     /// The position of the height on the edge: 0 at the nearer end, 1 at the farther one.
-    along: f64,
+    along: T,
 }
 
-impl Axes {
+impl<T: Float> Axes<T> {
     /// Returns first weights of the foot for the nearer end `n`, the farther one and the apex, and n . height. `t` is
     /// the position of the foot on the longest edge.
     #[inline(always)]
-    fn weights(&self, n: V3, t: f64) -> ([f64; 3], f64) {
+    fn weights(&self, n: [T; 3], t: T) -> ([T; 3], T) {
         let projected = dot(n, self.height);
         let wa = -(projected * self.inverse_height);
         let wf = t - self.along * wa;
-        ([(1.0 - wf) - wa, wf, wa], projected)
+        ([(T::splat(1.0) - wf) - wa, wf, wa], projected)
+    }
+
+    /// Returns the point n + first direction + wa second, and the steps along both axes that lead from it to the foot.
+    #[inline(always)]
+    fn improve(&self, n: [T; 3], first: T, wa: T, second: [T; 3]) -> ([T; 3], [T; 2]) {
+        let point = add(n, combine(first, self.direction, wa, second));
+        let step_d = -(dot(point, self.direction) * self.inverse);
+        let step_h = -(dot(point, self.height) * self.inverse_height);
+        (point, [step_d, step_h])
+    }
+
+    /// Returns the foot, given a point near it and the steps that lead from there to the foot.
+    #[inline(always)]
+    fn finish(
+        &self,
+        point: [T; 3],
+        [step_d, step_h]: [T; 2],
+        [low, high]: [[T; 3]; 2],
+        weights: [T; 3],
+    ) -> FaceFoot<T> {
+        let point = add(point, combine(step_d, self.direction, step_h, self.height));
+        let offset = clamp(point, low, high);
+        FaceFoot { offset, square: norm_squared(offset), weights }
     }
 }
 
 /// The plane of a face, and a first estimate of the foot of the perpendicular from the origin.
-pub(super) struct FacePlane {
-    /// The nearer and the farther end of the longest edge, and the apex opposite to it.
-    corners: [usize; 3],
+///
+/// Its vertices are in the order of [`Corners`]: the nearer end n and the farther end f of the longest edge, and
+/// the apex a.
+pub(super) struct FacePlane<T> {
     /// The axes in f64. They suffice for estimates, and for the foot unless the triangle is a sliver.
-    axes: Axes,
+    axes: Axes<T>,
     /// The vector from the nearer end to the apex.
-    side: V3,
+    side: [T; 3],
     /// The position of the foot on the longest edge.
-    t: f64,
-    /// First weights of the foot, in the order of `corners`.
-    weights: [f64; 3],
+    t: T,
+    /// First weights of the foot.
+    weights: [T; 3],
     /// A first estimate of the squared length of the foot.
-    square: f64,
+    square: T,
     /// The factor by which errors of the estimates exceed those of ordinary faces: 1, or for slivers the square of the
     /// ratio of [`SLIVER_SINE`] and their own sine.
-    error_factor: f64,
+    error_factor: T,
 }
 
-impl FacePlane {
-    /// Estimates the foot, or returns `None` if it is certainly not inside of the face.
+impl<T: Float> FacePlane<T> {
+    /// Estimates the foot, given the longest edge, its nearer end and the apex. Also returns whether the foot is
+    /// certainly not inside of the face.
     #[inline(always)]
-    pub(super) fn new(vertices: [V3; 3], lines: &[EdgeLine; 3], size: f64) -> Option<Self> {
-        let base = longest_edge(vertices, lines);
-        let line = &lines[base];
-        let near = EDGES[base][line.near];
-        let far = EDGES[base][1 - line.near];
-        let apex = 3 - near - far;
-        let n = vertices[near];
-
-        let side = sub(vertices[apex], n);
+    pub(super) fn new(line: &EdgeLine<T>, n: [T; 3], apex: [T; 3], size: T) -> (Self, T::Mask) {
+        let side = sub(apex, n);
         let along = dot(side, line.direction) * line.inverse;
         let height = add_scaled(side, -along, line.direction);
         let height_squared = norm_squared(height);
-        let error_factor = larger(SLIVER_SINE_SQUARED / (height_squared * line.inverse), 1.0);
+        let error_factor = larger(T::splat(SLIVER_SINE_SQUARED) / (height_squared * line.inverse), T::splat(1.0));
         let axes = Axes {
             direction: line.direction,
             inverse: line.inverse,
             height,
-            inverse_height: 1.0 / height_squared,
+            inverse_height: T::splat(1.0) / height_squared,
             along,
         };
         let (weights, projected) = axes.weights(n, line.t);
         let least = smaller(smaller(weights[0], weights[1]), weights[2]);
-        let plane = Self {
-            corners: [near, far, apex],
-            axes,
-            side,
-            t: line.t,
-            weights,
-            square: line.square + weights[2] * projected,
-            error_factor,
-        };
-        let is_outside = plane.can_estimate()
-            && least < 0.0
-            && least * least * height_squared > REJECT_MARGIN_SQUARED * error_factor * (size * size);
-        (!is_outside).then_some(plane)
+        let square = line.square + weights[2] * projected;
+        let plane = Self { axes, side, t: line.t, weights, square, error_factor };
+        let margin = T::splat(REJECT_MARGIN_SQUARED) * error_factor * (size * size);
+        let is_outside =
+            plane.can_estimate() & least.is_below(T::splat(0.0)) & margin.is_below(least * least * height_squared);
+        (plane, is_outside)
     }
 
     /// Returns whether weights and square are usable estimates. They are not if the height may be rounding error alone.
     #[inline(always)]
-    fn can_estimate(&self) -> bool {
-        self.error_factor <= MAX_ERROR_FACTOR
+    fn can_estimate(&self) -> T::Mask {
+        self.error_factor.is_at_most(T::splat(MAX_ERROR_FACTOR))
+    }
+
+    /// Returns whether the triangle is a sliver.
+    #[inline(always)]
+    pub(super) fn is_sliver(&self) -> T::Mask {
+        T::splat(1.0).is_below(self.error_factor)
     }
 
     /// Returns the estimated squared length of the foot, which is infinite if the foot seems to be outside, and
     /// the factor by which margins have to be wider than those of ordinary faces. Without an estimate the foot
     /// may be anywhere.
     #[inline(always)]
-    pub(super) fn estimate(&self) -> (f64, f64) {
-        if !self.can_estimate() {
-            return (0.0, f64::INFINITY);
-        }
-        let is_inside = smaller(smaller(self.weights[0], self.weights[1]), self.weights[2]) > 0.0;
-        (if is_inside { self.square } else { f64::INFINITY }, self.error_factor)
+    pub(super) fn estimate(&self) -> (T, T) {
+        let is_inside = T::splat(0.0).is_below(smaller(smaller(self.weights[0], self.weights[1]), self.weights[2]));
+        let square = T::select(is_inside, self.square, T::splat(f64::INFINITY));
+        let can_estimate = self.can_estimate();
+        (
+            T::select(can_estimate, square, T::splat(0.0)),
+            T::select(can_estimate, self.error_factor, T::splat(f64::INFINITY)),
+        )
     }
 
     /// Returns whether the squared length of the foot may be at most `limit`.
     #[inline(always)]
-    pub(super) fn may_be_within(&self, limit: f64) -> bool {
-        self.square <= limit || !self.can_estimate()
+    pub(super) fn may_be_within(&self, limit: T) -> T::Mask {
+        self.square.is_at_most(limit) | !self.can_estimate()
     }
 
-    /// Returns the foot if it lies strictly inside of the face: the point of the first weights, improved by one step
-    /// along its residual.
+    /// Returns the foot on a face that is no sliver: the point of the first weights, improved by one step along its
+    /// residual. Also returns the least weight, whose sign tells whether the foot is inside of the face unless it is
+    /// below [`MIN_CERTAIN_WEIGHT`].
     #[inline(always)]
-    pub(super) fn foot(&self, vertices: [V3; 3], [low, high]: [V3; 2]) -> Option<Foot<3>> {
-        let [n, f, a] = [vertices[self.corners[0]], vertices[self.corners[1]], vertices[self.corners[2]]];
-        let is_sliver = self.error_factor > 1.0;
-        let axes = if is_sliver { sliver_axes(&self.axes, n, f, a)? } else { self.axes };
-        // The first weights of a sliver have large errors, since its height is small. Along the sides of the triangle
-        // they would give large vectors that cancel; along the orthogonal axes nothing cancels.
-        let (t, [_, wf, wa]) = (self.t, if is_sliver { axes.weights(n, self.t).0 } else { self.weights });
-        let (first, second) = if is_sliver { (t, axes.height) } else { (wf, self.side) };
-        let point = add(n, combine(first, axes.direction, wa, second));
-        let step_d = -(dot(point, axes.direction) * axes.inverse);
-        let step_h = -(dot(point, axes.height) * axes.inverse_height);
-        let corrected_wa = wa + step_h;
-        let wf = if is_sliver { (t + step_d) - axes.along * corrected_wa } else { wf + (step_d - axes.along * step_h) };
-        let wa = corrected_wa;
+    pub(super) fn ordinary_foot(&self, n: [T; 3], bounds: [[T; 3]; 2]) -> (FaceFoot<T>, T) {
+        let [_, wf, wa] = self.weights;
+        let (point, [step_d, step_h]) = self.axes.improve(n, wf, wa, self.side);
+        let wa = wa + step_h;
+        let wf = wf + (step_d - self.axes.along * step_h);
+        let wn = (T::splat(1.0) - wf) - wa;
+        let least = smaller(smaller(wn, wf), wa);
+        (self.axes.finish(point, [step_d, step_h], bounds, [wn, wf, wa]), least)
+    }
+}
+
+impl FacePlane<f64> {
+    /// Returns the foot if it lies strictly inside of the face. `corners` are n, f and a.
+    #[inline(always)]
+    pub(super) fn foot(&self, corners: [V3; 3], bounds: [V3; 2]) -> Option<FaceFoot<f64>> {
+        let [n, f, a] = corners;
+        if self.is_sliver() {
+            return self.sliver_foot(corners, bounds);
+        }
+        let (foot, least) = self.ordinary_foot(n, bounds);
+        let is_inside = least > 0.0 && (least >= MIN_CERTAIN_WEIGHT || is_strictly_inside(n, f, a));
+        is_inside.then_some(foot)
+    }
+
+    /// Returns the foot on a sliver if it lies strictly inside of the face. The first weights of a sliver have large
+    /// errors, since its height is small. Along the sides of the triangle they would give large vectors that cancel;
+    /// along the orthogonal axes nothing cancels.
+    #[inline(always)]
+    fn sliver_foot(&self, [n, f, a]: [V3; 3], bounds: [V3; 2]) -> Option<FaceFoot<f64>> {
+        let axes = sliver_axes(&self.axes, n, f, a)?;
+        let ([_, _, wa], _) = axes.weights(n, self.t);
+        let (point, [step_d, step_h]) = axes.improve(n, self.t, wa, axes.height);
+        let wa = wa + step_h;
+        let wf = (self.t + step_d) - axes.along * wa;
         let wn = (1.0 - wf) - wa;
         let least = smaller(smaller(wn, wf), wa);
-        let is_inside = least > 0.0 && (least >= MIN_CERTAIN_WEIGHT || is_sliver || is_strictly_inside(n, f, a));
-        if !is_inside {
-            return None;
-        }
-        let point = add(point, combine(step_d, axes.direction, step_h, axes.height));
-        let offset = clamp(point, low, high);
+        (least > 0.0).then(|| axes.finish(point, [step_d, step_h], bounds, [wn, wf, wa]))
+    }
+}
+
+/// The foot of the perpendicular from the origin on a face.
+#[derive(Clone, Copy)]
+pub(super) struct FaceFoot<T> {
+    /// The vector from the origin to the foot.
+    pub(super) offset: [T; 3],
+    /// The squared length of the offset.
+    pub(super) square: T,
+    /// The weights of the nearer and the farther end of the longest edge, and of the apex.
+    pub(super) weights: [T; 3],
+}
+
+/// The vertices of a triangle in the order that [`FacePlane`] needs.
+pub(super) struct Corners {
+    /// The index of the longest edge.
+    pub(super) base: usize,
+    /// The indices of the nearer and the farther end of that edge, and of the apex opposite to it.
+    pub(super) order: [usize; 3],
+}
+
+impl Corners {
+    /// Returns the order for a triangle with these edges.
+    #[inline(always)]
+    pub(super) fn new(vertices: [V3; 3], lines: &[EdgeLine<f64>; 3]) -> Self {
+        let base = longest_edge(vertices, lines);
+        let second = usize::from(lines[base].is_second_nearer);
+        let (near, far) = (EDGES[base][second], EDGES[base][1 - second]);
+        Self { base, order: [near, far, 3 - near - far] }
+    }
+
+    /// Returns the weights of a foot in the order of the vertices.
+    #[inline(always)]
+    pub(super) fn in_order(&self, [wn, wf, wa]: [f64; 3]) -> V3 {
         let mut weights = [0.0; 3];
-        (weights[self.corners[0]], weights[self.corners[1]], weights[self.corners[2]]) = (wn, wf, wa);
-        Some(Foot { offset, square: norm_squared(offset), weights })
+        (weights[self.order[0]], weights[self.order[1]], weights[self.order[2]]) = (wn, wf, wa);
+        weights
     }
 }
 
 /// Returns the longest edge. Of equal edges it is the one whose opposite vertex comes first in lexicographic order, so
 /// that the choice does not depend on the order of the vertices.
 #[inline(always)]
-fn longest_edge(vertices: [V3; 3], lines: &[EdgeLine; 3]) -> usize {
+fn longest_edge(vertices: [V3; 3], lines: &[EdgeLine<f64>; 3]) -> usize {
     let mut best = 0;
     for i in 1..3 {
         // The longer edge has the smaller inverse square.
@@ -187,7 +258,7 @@ fn longest_edge(vertices: [V3; 3], lines: &[EdgeLine; 3]) -> usize {
 /// Returns the axes with a height that is computed in double-double, or `None` for a needle, which is replaced by its
 /// edges. The relative error of the height is below 2^-43.
 #[cold]
-fn sliver_axes(plain: &Axes, n: V3, f: V3, a: V3) -> Option<Axes> {
+fn sliver_axes(plain: &Axes<f64>, n: V3, f: V3, a: V3) -> Option<Axes<f64>> {
     let d: [Double; 3] = std::array::from_fn(|k| Double::difference(f[k], n[k]));
     let side: [Double; 3] = std::array::from_fn(|k| Double::difference(a[k], n[k]));
     let along = arithmetic::dot(side, d) / arithmetic::dot(d, d);

@@ -8,7 +8,7 @@ const PLAIN_SQUARE_BITS: i32 = 800;
 /// The least plain square.
 pub(super) const SQUARE_MIN: f64 = power_of_two(-PLAIN_SQUARE_BITS);
 /// The least square above the plain ones.
-const SQUARE_MAX: f64 = power_of_two(PLAIN_SQUARE_BITS);
+pub(super) const SQUARE_MAX: f64 = power_of_two(PLAIN_SQUARE_BITS);
 /// The exponent of two by which squares of neighbouring tiers are scaled.
 const TIER_SHIFT: i32 = 2 * PLAIN_SQUARE_BITS;
 
@@ -46,6 +46,12 @@ impl Key {
     #[inline(always)]
     pub(super) fn plain(square: f64) -> Option<Self> {
         (SQUARE_MIN..SQUARE_MAX).contains(&square).then_some(Self { square, tier: 0 })
+    }
+
+    /// Returns the key of a plain square or of zero.
+    #[inline(always)]
+    pub(super) fn of_plain_square(square: f64) -> Self {
+        Self { square, tier: 0 }
     }
 
     /// Returns the key of `offset` * 2^`exponent`.

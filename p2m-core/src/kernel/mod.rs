@@ -12,9 +12,9 @@ mod face;
 mod key;
 mod nearest;
 mod rescaled;
+pub(crate) mod side_by_side;
 pub(crate) mod triangle;
 pub(crate) mod vector;
-pub(crate) mod vertices;
 
 pub use face::SLIVER_SINE;
 pub use key::Key;

@@ -53,6 +53,33 @@ pub(super) fn edge_feature(i: usize, [a, b]: [f64; 2]) -> (Feature, V3) {
     (Feature::Edge(i as u8), weights)
 }
 
+/// The code of the face among features.
+pub(super) const FACE_CODE: f64 = 6.0;
+
+/// Returns the code of edge i among features. The codes of vertices are their indices.
+pub(super) fn edge_feature_code(i: usize) -> f64 {
+    [3.0, 4.0, 5.0][i]
+}
+
+/// Returns the feature with a code.
+#[inline(always)]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small whole number")]
+pub(super) fn feature_of_code(code: f64) -> Feature {
+    match code as u8 {
+        vertex @ 0..=2 => Feature::Vertex(vertex),
+        edge @ 3..=5 => Feature::Edge(edge - 3),
+        _ => Feature::Face,
+    }
+}
+
+/// The bound on the error of a distance for each unit of the largest component of an offset to a vertex, apart from
+/// eta: `ERROR_CONSTANT` u M with M <= sqrt(3) size.
+pub(super) const ERROR_PER_SIZE: f64 = {
+    /// An upper bound on sqrt(3) 2^-53, by a margin above the rounding of the product.
+    const SQRT_3_U: f64 = 1.7321 * (f64::EPSILON / 2.0);
+    ERROR_CONSTANT * SQRT_3_U
+};
+
 impl Nearest {
     /// Returns the nearest point of a primitive with these vertices. It lies in the box of the primitive, and a vertex
     /// is returned verbatim.
@@ -101,12 +128,9 @@ impl Nearest {
         })
     }
 
-    /// Returns a bound on the error of the computed distance, apart from eta: `ERROR_CONSTANT` u M with M
-    /// <= sqrt(3) size.
+    /// Returns a bound on the error of the computed distance, apart from eta.
     #[inline(always)]
     pub(crate) fn error(&self) -> f64 {
-        /// An upper bound on sqrt(3) 2^-53, by a margin above the rounding of the product.
-        const SQRT_3_U: f64 = 1.7321 * (f64::EPSILON / 2.0);
-        (ERROR_CONSTANT * SQRT_3_U) * self.size
+        ERROR_PER_SIZE * self.size
     }
 }

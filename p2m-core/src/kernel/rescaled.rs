@@ -4,8 +4,8 @@
 //! kernel and hence with the same bits. It is slow but rarely used: never for f32 scenes, and for f64 scenes only
 //! beyond 2^-250..2^250, for repeated vertices, and for distances that are tiny relative to the primitive.
 
-use super::edge::{EDGES, EdgeLine, Foot, edge_precedes};
-use super::face::FacePlane;
+use super::edge::{EDGES, EdgeLine, edge_precedes};
+use super::face::{Corners, FacePlane};
 use super::key::Key;
 use super::nearest::{Nearest, edge_feature, vertex_feature};
 use super::vector::{
@@ -51,12 +51,12 @@ impl<const N: usize> ScaledOffsets<N> {
     /// Scaling down may have lost small components, so that the key could be below the bound of the box. Such a
     /// foot is scaled back and clamped to the box of the unscaled offsets. Scaling up loses nothing, so such a
     /// foot remains scaled.
-    fn candidate<const M: usize>(&self, foot: &Foot<M>, (feature, weights): (Feature, V3), size: f64) -> Nearest {
+    fn candidate(&self, foot: V3, (feature, weights): (Feature, V3), size: f64) -> Nearest {
         let (offset, exponent) = if self.exponent > 0 {
             let [low, high] = bounds(&self.raw);
-            (clamp(foot.offset.map(|x| scale_by_power(x, self.exponent)), low, high), self.base)
+            (clamp(foot.map(|x| scale_by_power(x, self.exponent)), low, high), self.base)
         } else {
-            (foot.offset, self.base + self.exponent)
+            (foot, self.base + self.exponent)
         };
         Nearest { key: Key::from_scaled_offset(offset, exponent), offset, exponent, feature, weights, size }
     }
@@ -103,8 +103,9 @@ fn edge_candidate(query: V3, index: usize, ends: [V3; 2], size: f64) -> Option<N
     if largest(&[sub(ends[1], ends[0])]) < MIN_EDGE_PER_DISTANCE {
         return None;
     }
-    let foot = EdgeLine::new(ends, ends.map(norm_squared)).foot(ends)?;
-    Some(scaled.candidate(&foot, edge_feature(index, foot.weights), size))
+    let line = EdgeLine::new(ends, ends.map(norm_squared));
+    let (foot, is_inside) = line.foot(ends);
+    is_inside.then(|| scaled.candidate(foot.offset, edge_feature(index, line.weights(foot.t)), size))
 }
 
 /// Returns the nearest point of a segment.
@@ -129,8 +130,14 @@ fn face_candidate(query: V3, vertices: [V3; 3], size: f64) -> Option<Nearest> {
     }
     let squares = offsets.map(norm_squared);
     let lines = EDGES.map(|[i, j]| EdgeLine::new([offsets[i], offsets[j]], [squares[i], squares[j]]));
-    let foot = FacePlane::new(offsets, &lines, largest(&offsets))?.foot(offsets, bounds(&offsets))?;
-    Some(scaled.candidate(&foot, (Feature::Face, foot.weights), size))
+    let corners = Corners::new(offsets, &lines);
+    let ordered = corners.order.map(|i| offsets[i]);
+    let (plane, is_outside) = FacePlane::new(&lines[corners.base], ordered[0], ordered[2], largest(&offsets));
+    if is_outside {
+        return None;
+    }
+    let foot = plane.foot(ordered, bounds(&offsets))?;
+    Some(scaled.candidate(foot.offset, (Feature::Face, corners.in_order(foot.weights)), size))
 }
 
 /// Returns the nearest point of a triangle.

@@ -27,7 +27,7 @@
 //! depends on ratios of lengths, and so on the shape but never on the scale.
 
 use super::edge::{EDGES, EdgeLine, edge_precedes};
-use super::face::FacePlane;
+use super::face::{Corners, FacePlane};
 use super::key::{Key, SQUARE_MIN};
 use super::nearest::{Nearest, edge_feature, vertex_feature};
 use super::rescaled;
@@ -38,14 +38,14 @@ use crate::Feature;
 
 /// The largest ratio of the squares of size and shortest edge for which the plain kernel is used. The rescaled kernel
 /// replaces edges below 2^-100 of the distance by their ends; this limit is stricter, so that the two kernels agree.
-const MAX_SIZE_PER_EDGE_SQUARED: f64 = power_of_two(196);
+pub(super) const MAX_SIZE_PER_EDGE_SQUARED: f64 = power_of_two(196);
 /// The least size of offsets whose squares, and squares of squares, are well inside of the range of f64.
 pub(super) const MIN_PLAIN_SIZE: f64 = power_of_two(-250);
 /// The largest size of offsets whose squares, and squares of squares, are well inside of the range of f64.
 pub(super) const MAX_PLAIN_SIZE: f64 = power_of_two(250);
 /// The margin, relative to the squared size of the offsets, by which a feature with a larger rough square cannot win.
 /// Rough squares of edges and faces of ordinary shape have errors below 2^-37 of the squared size.
-const ROUGH_SQUARE_MARGIN: f64 = power_of_two(-34);
+pub(super) const ROUGH_SQUARE_MARGIN: f64 = power_of_two(-34);
 /// The margin, relative to the squared size of the offsets, by which an edge certainly leads away from the query. A
 /// foot that is accepted wrongly because of rounding is within 2^-40 of the squared size of a correct foot.
 pub(super) const OUTWARD_MARGIN: f64 = power_of_two(-38);
@@ -124,10 +124,9 @@ fn segment_features(query: V3, vertices: &[V3; 2], offsets: &[V3; 2], prune: f64
         if line.square - ROUGH_SQUARE_MARGIN * (size * size) > prune {
             return None;
         }
-        if let Some(foot) = line.foot(*offsets)
-            && foot.square < best.0
-        {
-            best = (foot.square, foot.offset, edge_feature(0, foot.weights));
+        let (foot, is_inside) = line.foot(*offsets);
+        if is_inside && foot.square < best.0 {
+            best = (foot.square, foot.offset, edge_feature(0, line.weights(foot.t)));
         }
     } else if best.0 > prune {
         return None;
@@ -196,7 +195,10 @@ fn triangle_features(query: V3, vertices: &[V3; 3], offsets: &[V3; 3], bounds: [
     if !has_plain_scale(size, larger(larger(lines[0].inverse, lines[1].inverse), lines[2].inverse)) {
         return Some(rescaled::triangle(query, *vertices));
     }
-    let plane = FacePlane::new(*offsets, &lines, size);
+    let corners = Corners::new(*offsets, &lines);
+    let ordered = [offsets[corners.order[0]], offsets[corners.order[1]], offsets[corners.order[2]]];
+    let (plane, is_outside) = FacePlane::new(&lines[corners.base], ordered[0], ordered[2], size);
+    let plane = (!is_outside).then_some(plane);
     let (face, error_factor) = match &plane {
         Some(plane) => plane.estimate(),
         None => (f64::INFINITY, 1.0),
@@ -216,18 +218,18 @@ fn triangle_features(query: V3, vertices: &[V3; 3], offsets: &[V3; 3], bounds: [
     for (i, [j, k]) in EDGES.into_iter().enumerate() {
         if lines[i].t > 0.0
             && lines[i].square <= limit
-            && let Some(foot) = lines[i].foot([offsets[j], offsets[k]])
+            && let (foot, true) = lines[i].foot([offsets[j], offsets[k]])
             && (foot.square < best.0 || (foot.square == best.0 && edge_precedes(vertices, i, best.2.0)))
         {
-            best = (foot.square, foot.offset, edge_feature(i, foot.weights));
+            best = (foot.square, foot.offset, edge_feature(i, lines[i].weights(foot.t)));
         }
     }
     if let Some(plane) = plane
         && plane.may_be_within(limit)
-        && let Some(foot) = plane.foot(*offsets, bounds)
+        && let Some(foot) = plane.foot(ordered, bounds)
         && foot.square < best.0
     {
-        best = (foot.square, foot.offset, (Feature::Face, foot.weights));
+        best = (foot.square, foot.offset, (Feature::Face, corners.in_order(foot.weights)));
     }
     match plain_nearest(best, size) {
         Some(nearest) => Some(nearest),

@@ -4,67 +4,66 @@
 
 #![allow(clippy::inline_always, reason = "the kernels are one expression; calls would hide it from the optimiser")]
 
+use super::arithmetic::Number;
+use crate::simd::Float;
+
+pub use super::arithmetic::dot;
+
 /// A vector of three f64.
 pub type V3 = [f64; 3];
 
 /// Returns a - b.
 #[inline(always)]
-pub fn sub(a: V3, b: V3) -> V3 {
+pub fn sub<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-/// Returns the dot product (a0 b0 + a1 b1) + a2 b2, summed in this order.
-#[inline(always)]
-pub fn dot(a: V3, b: V3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Returns the squared length.
 #[inline(always)]
-pub fn norm_squared(a: V3) -> f64 {
+pub fn norm_squared<T: Number>(a: [T; 3]) -> T {
     dot(a, a)
 }
 
 /// Returns a + b.
 #[inline(always)]
-pub fn add(a: V3, b: V3) -> V3 {
+pub fn add<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 /// Returns s a + t b.
 #[inline(always)]
-pub fn combine(s: f64, a: V3, t: f64, b: V3) -> V3 {
+pub fn combine<T: Number>(s: T, a: [T; 3], t: T, b: [T; 3]) -> [T; 3] {
     [s * a[0] + t * b[0], s * a[1] + t * b[1], s * a[2] + t * b[2]]
 }
 
 /// Returns a + s b.
 #[inline(always)]
-pub fn add_scaled(a: V3, s: f64, b: V3) -> V3 {
+pub fn add_scaled<T: Number>(a: [T; 3], s: T, b: [T; 3]) -> [T; 3] {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
 }
 
 /// Returns the smaller number by a comparison, which compiles to one instruction. The operands must not be NaN.
 #[inline(always)]
-pub fn smaller(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
+pub fn smaller<T: Float>(a: T, b: T) -> T {
+    a.min(b)
 }
 
 /// Returns the larger number by a comparison, which compiles to one instruction. The operands must not be NaN.
 #[inline(always)]
-pub fn larger(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
+pub fn larger<T: Float>(a: T, b: T) -> T {
+    a.max(b)
 }
 
 /// Returns the point of the box from `low` to `high` that is nearest to `x`.
 #[inline(always)]
-pub fn clamp(x: V3, low: V3, high: V3) -> V3 {
+pub fn clamp<T: Float>(x: [T; 3], low: [T; 3], high: [T; 3]) -> [T; 3] {
     let x = [smaller(x[0], high[0]), smaller(x[1], high[1]), smaller(x[2], high[2])];
     [larger(x[0], low[0]), larger(x[1], low[1]), larger(x[2], low[2])]
 }
 
 /// Returns the lower and the upper corner of the smallest box around some vectors.
 #[inline(always)]
-pub fn bounds<const N: usize>(vectors: &[V3; N]) -> [V3; 2] {
+pub fn bounds<T: Float, const N: usize>(vectors: &[[T; 3]; N]) -> [[T; 3]; 2] {
     let (mut low, mut high) = (vectors[0], vectors[0]);
     for v in &vectors[1..] {
         for k in 0..3 {
@@ -77,12 +76,18 @@ pub fn bounds<const N: usize>(vectors: &[V3; N]) -> [V3; 2] {
 
 /// Returns the largest magnitude of all components, none of which may be NaN.
 #[inline(always)]
-pub fn largest(vectors: &[V3]) -> f64 {
-    let mut largest = 0.0;
+pub fn largest<T: Float>(vectors: &[[T; 3]]) -> T {
+    let mut largest = T::splat(0.0);
     for x in vectors.as_flattened() {
         largest = larger(x.abs(), largest);
     }
     largest
+}
+
+/// Selects `yes` where a mask is true, and `no` elsewhere.
+#[inline(always)]
+pub fn select<T: Float>(mask: T::Mask, yes: [T; 3], no: [T; 3]) -> [T; 3] {
+    [T::select(mask, yes[0], no[0]), T::select(mask, yes[1], no[1]), T::select(mask, yes[2], no[2])]
 }
 
 /// Returns whether `a` comes before `b` in lexicographic order. Neither has a NaN component.

@@ -3,7 +3,9 @@
 use super::answer::{ROUND_DOWN, ROUND_UP, answer, square_within};
 use super::closest::Closest;
 use super::collector::Collector;
+use super::found::Found;
 use super::options::QueryOptions;
+use crate::kernel::side_by_side::EightNearest;
 use crate::{Key, Primitive, PrimitiveId, PrimitiveSet, Projection, Real};
 use nalgebra::Point3;
 use std::marker::PhantomData;
@@ -89,18 +91,23 @@ impl<T: Real> Best<T> {
         &mut self.minimum
     }
 
+    /// Returns the running minimum in f64, without the hint.
+    #[inline(always)]
+    #[doc(hidden)]
+    pub fn minimum_ref(&self) -> &BestF64 {
+        &self.minimum
+    }
+
+    /// Returns the answer so far, which converts to the parts that are asked for.
+    #[must_use]
+    pub fn found(&self) -> Found<'_, T> {
+        Found::new(&self.minimum)
+    }
+
     /// Returns the answer, or `None` if no candidate was within the radius.
     #[must_use]
     pub fn finish(self) -> Option<Closest<T>> {
-        let BestF64 { certified, shrink, best, .. } = self.minimum;
-        let (primitive, p) = best?;
-        if !self.minimum.is_within_radius(p.key) {
-            return None;
-        }
-        // Pruned parts are farther than the limit that they exceeded, whose square is exact to 5 u.
-        let exact = p.key.distance();
-        let pruned = exact * shrink.sqrt() * ROUND_DOWN;
-        Some(answer(primitive, &p, if certified < pruned { certified } else { pruned }))
+        self.minimum.finish()
     }
 }
 
@@ -114,6 +121,46 @@ impl<T: Real> Collector for Best<T> {
 }
 
 impl BestF64 {
+    /// Returns the answer, or `None` if no candidate was within the radius.
+    #[must_use]
+    pub fn finish<T: Real>(&self) -> Option<Closest<T>> {
+        let Self { certified, shrink, best, .. } = self;
+        let (primitive, p) = best.as_ref()?;
+        if !self.is_within_radius(p.key) {
+            return None;
+        }
+        // Pruned parts are farther than the limit that they exceeded, whose square is exact to 5 u.
+        let exact = p.key.distance();
+        let pruned = exact * shrink.sqrt() * ROUND_DOWN;
+        Some(answer(*primitive, p, if *certified < pruned { *certified } else { pruned }))
+    }
+
+    /// Takes a candidate whose key is the square in a lane, unless the single kernel has to compute it. Returns whether it
+    /// was taken. This does what [`offer`](Collector::offer) does for an exact search, but makes the projection
+    /// only if the candidate is the best one so far.
+    #[inline(always)]
+    #[allow(clippy::float_cmp, reason = "ties are equality of bits")]
+    pub fn offer_lane(&mut self, id: PrimitiveId, found: &EightNearest, lane: usize) -> bool {
+        let Some((square, lower_bound)) = found.square_and_lower_bound(lane) else { return false };
+        self.certified = if lower_bound < self.certified { lower_bound } else { self.certified };
+        let best_square = self.key.square_above();
+        if (square < best_square || (square == best_square && self.best.is_some_and(|(best, _)| id < best)))
+            && let Some(projection) = found.projection(lane)
+        {
+            self.offer(id, projection);
+        }
+        true
+    }
+
+    /// Returns the distance and the primitive of the answer, or `None` if no candidate was within the radius.
+    #[inline]
+    #[must_use]
+    pub fn distance_and_primitive(&self) -> Option<(f64, PrimitiveId)> {
+        let (primitive, p) = self.best.as_ref()?;
+        let distance = p.key.distance();
+        (distance <= self.radius).then_some((distance, *primitive))
+    }
+
     /// Returns whether a distance is within the radius, as it will be reported.
     #[inline]
     fn is_within_radius(&self, key: Key) -> bool {

@@ -20,9 +20,11 @@ pub(crate) mod answer;
 mod best;
 mod closest;
 mod collector;
+mod found;
 mod options;
 
 pub use best::{Best, BestF64};
 pub use closest::Closest;
 pub use collector::Collector;
+pub use found::Found;
 pub use options::QueryOptions;

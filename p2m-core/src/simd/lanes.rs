@@ -1,5 +1,8 @@
 //! Lanes of numbers, instruction sets, and the kernels that are compiled for them.
 
+use crate::kernel::arithmetic::Number;
+use std::ops::{BitAnd, BitOr, Div, Neg, Not};
+
 /// Several f32 that are computed with at once.
 ///
 /// Addition, subtraction and multiplication round to nearest; [`mul_add`](Self::mul_add) rounds once or twice.
@@ -24,6 +27,8 @@ pub trait Lanes: Copy {
     fn mul(self, other: Self) -> Self;
     /// Returns self * factor + summand.
     fn mul_add(self, factor: Self, summand: Self) -> Self;
+    /// Returns the square root, rounded to nearest.
+    fn sqrt(self) -> Self;
     /// Returns a b - c d with a relative error of at most 2^-22, if both products are integers times the same power of
     /// two, below 2^48 of it.
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self;
@@ -52,30 +57,95 @@ pub trait EightLanes: Lanes {
     fn sorted_keys(self, limit: f32, keys: &mut [u32; 8]) -> usize;
 }
 
-/// Eight f64 that are computed with at once, with roundings as of [`Lanes`].
-pub trait Doubles: Copy {
+/// An f64, or several that are computed with at once.
+///
+/// The operators and the methods of this trait round every lane to nearest, as those of f64 do. So a formula over this
+/// trait has the same bits in a lane and as a single number.
+pub trait Float: Number + Div<Output = Self> + Neg<Output = Self> {
+    /// A truth value for each lane.
+    type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
     /// Returns `x` in every lane.
     fn splat(x: f64) -> Self;
+    /// Returns the magnitude.
+    fn abs(self) -> Self;
+    /// Returns self where self < other, and `other` where it is not or either is NaN.
+    fn min(self, other: Self) -> Self;
+    /// Returns self where self > other, and `other` where it is not or either is NaN.
+    fn max(self, other: Self) -> Self;
+    /// Returns whether self < other. It is false if either is NaN.
+    fn is_below(self, other: Self) -> Self::Mask;
+    /// Returns whether self <= other. It is false if either is NaN.
+    fn is_at_most(self, other: Self) -> Self::Mask;
+    /// Returns whether self == other. It is false if either is NaN.
+    fn equals(self, other: Self) -> Self::Mask;
+    /// Selects `yes` where the mask is true, and `no` elsewhere.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+}
+
+impl Float for f64 {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn is_below(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn is_at_most(self, other: Self) -> bool {
+        self <= other
+    }
+    #[inline(always)]
+    #[allow(clippy::float_cmp, reason = "ties are equality of bits")]
+    fn equals(self, other: Self) -> bool {
+        self == other
+    }
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
+    }
+}
+
+/// Eight f64 that are computed with at once.
+pub trait Doubles: Float {
     /// Loads the first eight values of a slice, which must have that many.
     fn load(from: &[f64]) -> Self;
     /// Writes the lanes to the front of a slice.
     fn store(self, to: &mut [f64]);
-    /// Returns self - other.
-    fn sub(self, other: Self) -> Self;
-    /// Returns self * other.
-    fn mul(self, other: Self) -> Self;
-    /// Returns self * factor + summand.
+    /// Loads the first eight values of a slice of f32, which must have that many.
+    fn load_f32(from: &[f32]) -> Self;
+    /// Writes the lanes to the front of a slice, rounded to f32.
+    fn store_f32(self, to: &mut [f32]);
+    /// Returns self * factor + summand, rounded once or twice.
     fn mul_add(self, factor: Self, summand: Self) -> Self;
-    /// Returns the smaller value, or `other` if either is NaN.
-    fn min(self, other: Self) -> Self;
-    /// Returns the larger value, or `other` if either is NaN.
-    fn max(self, other: Self) -> Self;
     /// Returns the square root, rounded to nearest.
     fn sqrt(self) -> Self;
     /// Selects `yes` where self <= limit, and `no` where it is not or either is NaN.
-    fn if_at_most(self, limit: Self, yes: Self, no: Self) -> Self;
+    #[inline(always)]
+    fn if_at_most(self, limit: Self, yes: Self, no: Self) -> Self {
+        Self::select(self.is_at_most(limit), yes, no)
+    }
     /// Returns one bit for each lane, the first lane lowest: whether self <= limit. It is 0 if either is NaN.
-    fn at_most(self, limit: Self) -> u8;
+    #[inline(always)]
+    fn at_most(self, limit: Self) -> u8 {
+        Self::bits(self.is_at_most(limit))
+    }
+    /// Returns one bit for each lane of a mask, the first lane lowest.
+    fn bits(mask: Self::Mask) -> u8;
 }
 
 /// Returns a lower bound on the value that a key was made of.

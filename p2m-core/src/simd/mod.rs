@@ -9,10 +9,11 @@
 
 mod isa;
 mod lanes;
+mod operators;
 mod portable;
 
 pub use isa::{Isa, prefetch, prefetch_lines};
-pub use lanes::{Doubles, EightLanes, InstructionSet, Lanes, SimdKernel, lane_of_key, value_of_key};
+pub use lanes::{Doubles, EightLanes, Float, InstructionSet, Lanes, SimdKernel, lane_of_key, value_of_key};
 pub use portable::Portable;
 
 #[cfg(test)]
@@ -127,8 +128,12 @@ mod tests {
             let (nan, zero) = (I::Doubles::splat(f64::NAN), I::Doubles::splat(0.0));
             let results = [
                 a.mul_add(b, c),
-                a.sub(b),
-                a.mul(b),
+                a + b,
+                a - b,
+                a * b,
+                a / c,
+                -a,
+                a.abs(),
                 a.min(b),
                 a.max(b),
                 a.if_at_most(b, c, d),
@@ -136,6 +141,9 @@ mod tests {
                 nan.min(a),
                 nan.max(a),
                 nan.if_at_most(a, c, d),
+                I::Doubles::select(a.is_below(b), c, d),
+                I::Doubles::select(a.equals(b), c, d),
+                I::Doubles::select(!(a.is_below(b) | a.equals(c) & b.equals(b)), c, d),
             ];
             let mut numbers = vec![[0.0; 8]; results.len()];
             for (to, from) in numbers.iter_mut().zip(results) {
@@ -155,7 +163,24 @@ mod tests {
             let (expected, expected_mask) = Isa::PORTABLE.run(AllDoubles(&x));
             let by_hand = (0..8).fold(0, |mask, i| mask | u8::from(x[0][i] <= x[1][i]) << i);
             assert_eq!(expected_mask, by_hand);
-            assert_eq!(expected[3][0], x[0][0].min(x[1][0]));
+            let single = |i: usize| {
+                let [a, b, c, d] = [x[0][i], x[1][i], x[2][i], x[3][i]];
+                let select = <f64 as Float>::select;
+                let zero_or_more = Float::max(a, 0.0).sqrt();
+                [
+                    [a * b + c, a + b, a - b, a * b, a / c, -a, Float::abs(a), Float::min(a, b), Float::max(a, b)]
+                        .as_slice(),
+                    &[if a <= b { c } else { d }, zero_or_more, a, a, d, select(a.is_below(b), c, d)],
+                    &[select(a.equals(b), c, d), select(!(a.is_below(b) | a.equals(c) & b.equals(b)), c, d)],
+                ]
+                .concat()
+            };
+            for i in 0..8 {
+                // All methods but the fused one have the bits of f64.
+                let found: Vec<u64> = expected[1..].iter().map(|row| row[i].to_bits()).collect();
+                let by_hand: Vec<u64> = single(i)[1..].iter().map(|x| x.to_bits()).collect();
+                assert_eq!(found, by_hand, "lane {i}");
+            }
             for isa in Isa::available() {
                 let (found, mask) = isa.run(AllDoubles(&x));
                 assert_eq!(mask, expected_mask, "{isa}");

@@ -1,7 +1,8 @@
 //! Lanes of the crate `wide`, for processors of any kind: the vector instructions that every processor of an
 //! architecture has (SSE2, NEON), or arrays.
 
-use super::lanes::{Doubles, EightLanes, InstructionSet, Lanes};
+use super::lanes::{Doubles, EightLanes, Float, InstructionSet, Lanes};
+use super::operators::{float_operators, mask_operators};
 use wide::{f32x8, f64x4};
 
 /// Eight f32 in a vector of the crate `wide`.
@@ -77,6 +78,10 @@ impl Lanes for Eight {
         Self(self.0 * factor.0 + summand.0)
     }
     #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
+    #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounds to nearest, as promised")]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
         let ([a, e], [b, f], [c, g], [d, h]) = (a.widen(), b.widen(), c.widen(), d.widen());
@@ -133,11 +138,62 @@ impl EightLanes for Eight {
     }
 }
 
-impl Doubles for EightDoubles {
+float_operators!(EightDoubles, |a, b| {
+    add: Self(a.0 + b.0, a.1 + b.1),
+    sub: Self(a.0 - b.0, a.1 - b.1),
+    mul: Self(a.0 * b.0, a.1 * b.1),
+    div: Self(a.0 / b.0, a.1 / b.1),
+    neg: Self(-a.0, -a.1),
+});
+
+/// A truth value for each of eight f64: all bits of a number are one or zero.
+#[derive(Clone, Copy)]
+pub struct EightMasks(f64x4, f64x4);
+
+mask_operators!(EightMasks, |a, b| {
+    and: Self(a.0 & b.0, a.1 & b.1),
+    or: Self(a.0 | b.0, a.1 | b.1),
+    not: Self(!a.0, !a.1),
+});
+
+impl Float for EightDoubles {
+    type Mask = EightMasks;
+
     #[inline(always)]
     fn splat(x: f64) -> Self {
         Self(f64x4::splat(x), f64x4::splat(x))
     }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.abs(), self.1.abs())
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::select(self.is_below(other), self, other)
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::select(other.is_below(self), self, other)
+    }
+    #[inline(always)]
+    fn is_below(self, other: Self) -> EightMasks {
+        EightMasks(self.0.simd_lt(other.0), self.1.simd_lt(other.1))
+    }
+    #[inline(always)]
+    fn is_at_most(self, other: Self) -> EightMasks {
+        EightMasks(self.0.simd_le(other.0), self.1.simd_le(other.1))
+    }
+    #[inline(always)]
+    fn equals(self, other: Self) -> EightMasks {
+        EightMasks(self.0.simd_eq(other.0), self.1.simd_eq(other.1))
+    }
+    #[inline(always)]
+    fn select(mask: EightMasks, yes: Self, no: Self) -> Self {
+        Self(mask.0.bitselect(yes.0, no.0), mask.1.bitselect(yes.1, no.1))
+    }
+}
+
+impl Doubles for EightDoubles {
     #[inline(always)]
     fn load(from: &[f64]) -> Self {
         let from: &[f64; 8] = from[..8].try_into().expect("eight numbers");
@@ -150,39 +206,28 @@ impl Doubles for EightDoubles {
         to[4..8].copy_from_slice(&self.1.to_array());
     }
     #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self(self.0 - other.0, self.1 - other.1)
+    fn load_f32(from: &[f32]) -> Self {
+        let [a, b] = Eight::load(from).widen();
+        Self(a, b)
     }
     #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        Self(self.0 * other.0, self.1 * other.1)
+    #[allow(clippy::cast_possible_truncation, reason = "rounds to nearest, as promised")]
+    fn store_f32(self, to: &mut [f32]) {
+        let to: &mut [f32; 8] = (&mut to[..8]).try_into().expect("eight numbers");
+        let ([a, b, c, d], [e, f, g, h]) = (self.0.to_array(), self.1.to_array());
+        *to = [a as f32, b as f32, c as f32, d as f32, e as f32, f as f32, g as f32, h as f32];
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, summand: Self) -> Self {
-        Self(self.0 * factor.0 + summand.0, self.1 * factor.1 + summand.1)
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        let [a, b] = [self.0.simd_lt(other.0), self.1.simd_lt(other.1)];
-        Self(a.bitselect(self.0, other.0), b.bitselect(self.1, other.1))
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        let [a, b] = [other.0.simd_lt(self.0), other.1.simd_lt(self.1)];
-        Self(a.bitselect(self.0, other.0), b.bitselect(self.1, other.1))
+        self * factor + summand
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
         Self(self.0.sqrt(), self.1.sqrt())
     }
     #[inline(always)]
-    fn if_at_most(self, limit: Self, yes: Self, no: Self) -> Self {
-        let [a, b] = [self.0.simd_le(limit.0), self.1.simd_le(limit.1)];
-        Self(a.bitselect(yes.0, no.0), b.bitselect(yes.1, no.1))
-    }
-    #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "eight bits")]
-    fn at_most(self, limit: Self) -> u8 {
-        (self.0.simd_le(limit.0).to_bitmask() | self.1.simd_le(limit.1).to_bitmask() << 4) as u8
+    fn bits(mask: EightMasks) -> u8 {
+        (mask.0.to_bitmask() | mask.1.to_bitmask() << 4) as u8
     }
 }

@@ -4,7 +4,7 @@ use super::candidates::Candidates;
 use super::error_bounds::{ERROR_PER_REACH, INSIDE_MARGIN_PER_REACH, UNDERFLOW_ERROR};
 use super::groups::Groups;
 use super::squared_distances::squared_distances;
-use p2m_core::engine::simd::{Doubles, InstructionSet, SimdKernel};
+use p2m_core::engine::simd::{Doubles, Float, InstructionSet, SimdKernel};
 
 /// Evaluates candidates at the points of a grid with these coordinates along its axes.
 pub(crate) struct Evaluate<'a> {

@@ -8,7 +8,7 @@ use super::error_bounds::{ERROR_PER_REACH, INSIDE_MARGIN_PER_REACH, UNDERFLOW_ER
 use super::groups::{Entry, Group, Groups};
 use super::squared_distances::{squared_distances, squared_distances_from_box};
 use p2m_core::Aabb;
-use p2m_core::engine::simd::{Doubles, InstructionSet, SimdKernel};
+use p2m_core::engine::simd::{Doubles, Float, InstructionSet, SimdKernel};
 use p2m_core::engine::vector::{V3, larger, norm_squared, sub};
 
 /// The bounding ball of a box, which bounds the distances of its points.

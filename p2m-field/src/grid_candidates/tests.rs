@@ -2,7 +2,7 @@ use super::error_bounds::{ERROR_PER_REACH, INSIDE_MARGIN_PER_REACH};
 use super::local_primitive::LocalPrimitive;
 use super::squared_distances::squared_distances;
 use super::*;
-use p2m_core::engine::simd::{Doubles, InstructionSet, SimdKernel};
+use p2m_core::engine::simd::{Doubles, Float, InstructionSet, SimdKernel};
 use p2m_core::engine::vector::{V3, largest, norm_squared, sub};
 use p2m_core::{BruteForce, ClosestPoint, Element, PrimitiveId, Soup};
 use p2m_testkit::cases;

@@ -92,6 +92,17 @@ pub(crate) struct Block {
 
 const _: () = assert!(size_of::<Block>() == 128);
 
+/// Zero for each entry in use and infinity for the others, from position `BLOCK_WIDTH` - `len` on.
+const UNUSED: [f32; 2 * BLOCK_WIDTH] = {
+    let mut row = [0.0; 2 * BLOCK_WIDTH];
+    let mut i = BLOCK_WIDTH;
+    while i < 2 * BLOCK_WIDTH {
+        row[i] = f32::INFINITY;
+        i += 1;
+    }
+    row
+};
+
 /// A query point in the forms that blocks need.
 #[derive(Clone, Copy)]
 pub(crate) struct BlockQuery {
@@ -245,6 +256,13 @@ impl Block {
 }
 
 impl Block {
+    /// Returns the [`lower_bounds`](Self::lower_bounds), which are infinite for unused entries.
+    #[inline(always)]
+    pub(crate) fn lower_bounds_of_used<L: Lanes>(&self, query: &BlockQuery) -> L {
+        let len = usize::from(self.len);
+        self.lower_bounds::<L>(query).max(L::load(&UNUSED[BLOCK_WIDTH - len..]))
+    }
+
     /// Returns whether the fields of a block from a file are within their ranges, over packets with these
     /// [lanes in use](p2m_bvh::PacketTree::lane_masks). It does not check the number of blocks that follow.
     pub(crate) fn has_valid_fields(&self, lane_masks: &[u16]) -> bool {
@@ -265,6 +283,10 @@ impl Block {
 }
 
 impl BlockQuery {
+    /// A query at the origin of the frame, which stands for none.
+    pub(crate) const NOWHERE: Self =
+        Self { rounded: Rounded { low: [0.0; 3], high: [0.0; 3] }, local: [0.0; 3], cells: [0.0; 3] };
+
     /// Returns the position of the query point in its cell of a level, from 0 to 1 on each axis.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "fewer than 2^30 cells")]

@@ -7,3 +7,4 @@
 pub(crate) mod block;
 pub(crate) mod corner_test;
 pub(crate) mod search;
+pub(crate) mod several;

@@ -35,15 +35,6 @@ impl Block {
     }
 }
 
-/// Prefetches the packets that a search of a list visits first.
-#[inline(always)]
-pub(crate) fn prefetch_packets<I: InstructionSet>(tree: &PacketTree, first: &Block, query: &BlockQuery) {
-    let bounds: I::Eight = first.lower_bounds(query);
-    let mut keys = [0u32; BLOCK_WIDTH];
-    let count = bounds.sorted_keys(f32::INFINITY, &mut keys);
-    first.prefetch_packets(tree, &keys, count);
-}
-
 /// Searches a list: the packets that can hold the answer are given to `state`, the nearest ones of each block first.
 /// `rest` begins with the blocks that follow `first` in the list and may be longer.
 #[inline(always)]

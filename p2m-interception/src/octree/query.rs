@@ -2,18 +2,20 @@
 
 use crate::list::block::{Block, BlockQuery, MAX_LEVEL};
 use crate::list::search;
+use crate::list::several::Lists;
 use crate::octree::Octree;
 use crate::octree::code::{CellCode, FALLBACK_CODE, KIND_LIST, KIND_ONE_LEVEL, KIND_SHIFT, KIND_SINGLE};
 use crate::partition::CellQuery;
 use nalgebra::Point3;
 use p2m_bvh::engine::nearest::{EvaluateFn, SearchState, finish, finish_nearest};
 use p2m_bvh::engine::packet::LANES;
+use p2m_bvh::engine::several::Several;
 use p2m_bvh::engine::volume::Rounded;
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::simd::{InstructionSet, SimdKernel, prefetch_lines};
 use p2m_core::engine::vector::V3;
-use p2m_core::{Collector, Near};
+use p2m_core::{Aabb, Collector, Near};
 
 impl Octree {
     /// Returns the code of the leaf at a position, which is given in units of the cells of [`MAX_LEVEL`].
@@ -95,6 +97,49 @@ impl CellQuery for Octree {
 
     fn query_near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
         self.query_with(query, near, evaluate, finish);
+    }
+
+    fn search_several(&self, count: usize, several: &mut Several<'_, Aabb<f64>>, lists: &mut Lists) {
+        self.tree.isa().run(SearchSeveral { octree: self, count, several, lists });
+    }
+}
+
+/// A SIMD kernel that answers several queries, which take turns.
+struct SearchSeveral<'a, 'b> {
+    octree: &'a Octree,
+    count: usize,
+    several: &'a mut Several<'b, Aabb<f64>>,
+    lists: &'a mut Lists,
+}
+
+impl SimdKernel for SearchSeveral<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        let Self { octree, count, several, lists } = self;
+        let tree = &octree.tree;
+        lists.clear();
+        for i in 0..count {
+            let query = *several.query(i);
+            let (code, cells) = octree.locate_cell(&query);
+            let local = tree.frame.local(&query);
+            let number = (code & !(7 << KIND_SHIFT)) as usize;
+            match (code >> KIND_SHIFT, local) {
+                (KIND_SINGLE, Some(_)) => {
+                    let (packet, lane) = (number / LANES, number % LANES);
+                    tree.leaves.prefetch(packet);
+                    several.add(i, packet, lane);
+                }
+                (KIND_LIST, Some(local)) => {
+                    prefetch_lines(octree.blocks.as_ptr().wrapping_add(number), size_of::<Block>());
+                    lists.push(i, number, number + 1, BlockQuery { rounded: Rounded::of(local), local, cells });
+                }
+                _ => several.search_tree(i),
+            }
+        }
+        lists.search::<I>(tree, &octree.blocks, several);
+        several.evaluate_candidates();
     }
 }
 

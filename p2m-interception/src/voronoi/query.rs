@@ -6,7 +6,8 @@
 
 use crate::list::block::{Block, BlockQuery};
 use crate::list::search;
-use crate::partition::{CellQuery, QUERIES_SIDE_BY_SIDE};
+use crate::list::several::Lists;
+use crate::partition::CellQuery;
 use crate::voronoi::Voronoi;
 use crate::voronoi::list_filter::{ListFilter, ListFilters};
 use crate::voronoi::neighbours::{LocatedSite, NeighbourTable};
@@ -15,6 +16,7 @@ use nalgebra::Point3;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::nearest::{EvaluateFn, Search, SearchState, finish, finish_nearest};
 use p2m_bvh::engine::packet::LANES;
+use p2m_bvh::engine::several::{SEARCHES, Several};
 use p2m_bvh::engine::volume::Rounded;
 use p2m_core::engine::adaptive::RANGE;
 use p2m_core::engine::query::BestF64;
@@ -59,13 +61,8 @@ impl CellQuery for Voronoi {
         self.query_with(query, near, evaluate, finish);
     }
 
-    fn query_several(
-        &self,
-        queries: &[V3; QUERIES_SIDE_BY_SIDE],
-        minimums: [&mut BestF64; QUERIES_SIDE_BY_SIDE],
-        evaluates: [EvaluateFn<'_, BestF64>; QUERIES_SIDE_BY_SIDE],
-    ) {
-        self.tree.isa().run(SearchSeveral { index: self, queries, minimums, evaluates });
+    fn search_several(&self, count: usize, several: &mut Several<'_, Aabb<f64>>, lists: &mut Lists) {
+        self.tree.isa().run(SearchSeveral { index: self, count, several, lists });
     }
 }
 
@@ -237,40 +234,46 @@ fn block_query(tree: &PacketTree, query: &V3) -> BlockQuery {
     BlockQuery { rounded: Rounded::of(local), local, cells: [0.0; 3] }
 }
 
-/// A SIMD kernel that answers several queries side by side.
-struct SearchSeveral<'a> {
+/// A SIMD kernel that answers several queries, which take turns.
+struct SearchSeveral<'a, 'b> {
     index: &'a Voronoi,
-    queries: &'a [V3; QUERIES_SIDE_BY_SIDE],
-    minimums: [&'a mut BestF64; QUERIES_SIDE_BY_SIDE],
-    evaluates: [EvaluateFn<'a, BestF64>; QUERIES_SIDE_BY_SIDE],
+    count: usize,
+    several: &'a mut Several<'b, Aabb<f64>>,
+    lists: &'a mut Lists,
 }
 
-impl SimdKernel for SearchSeveral<'_> {
+impl SimdKernel for SearchSeveral<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        let Self { index, queries, minimums, evaluates } = self;
-        let mut positions = [None; QUERIES_SIDE_BY_SIDE];
-        if let Some(locator) = &index.locator {
-            for (to, query) in positions.iter_mut().zip(queries) {
-                *to = index.to_site_units(query);
-                to.iter().for_each(|position| locator.prefetch(position));
-            }
-            positions.iter().flatten().for_each(|position| locator.prefetch_more(position));
+        let Self { index, count, several, lists } = self;
+        lists.clear();
+        let Some(locator) = &index.locator else {
+            (0..count).for_each(|i| several.search_tree(i));
+            return;
+        };
+        let mut positions = [None; SEARCHES];
+        for (i, to) in positions[..count].iter_mut().enumerate() {
+            *to = index.to_site_units(several.query(i));
+            to.iter().for_each(|position| locator.prefetch(position));
         }
-        let mut locations: [Option<LocatedSite>; QUERIES_SIDE_BY_SIDE] = [None; QUERIES_SIDE_BY_SIDE];
-        let mut walking = 0u32;
-        for (i, (to, position)) in locations.iter_mut().zip(&positions).enumerate() {
-            let start = position.as_ref().and_then(|position| index.locator.as_ref()?.start(position));
-            *to = start.map(|site| LocatedSite { site, is_certainly_nearest: false });
-            if let Some(site) = start {
-                index.neighbours.prefetch(site);
-                walking |= 1 << i;
+        positions.iter().flatten().for_each(|position| locator.prefetch_more(position));
+        let mut locations: [Option<LocatedSite>; SEARCHES] = [None; SEARCHES];
+        let mut walking = 0u64;
+        for (i, position) in positions[..count].iter().enumerate() {
+            let start = position.as_ref().and_then(|position| locator.start(position));
+            locations[i] = start.map(|site| LocatedSite { site, is_certainly_nearest: false });
+            match start {
+                Some(site) => {
+                    index.neighbours.prefetch(site);
+                    walking |= 1 << i;
+                }
+                None => several.search_tree(i),
             }
         }
         // Only a table from a file with wrong offsets has walks that take more work.
-        let mut work_left = QUERIES_SIDE_BY_SIDE * index.neighbours.max_walk_work();
+        let mut work_left = SEARCHES * index.neighbours.max_walk_work();
         while walking != 0 && work_left > 0 {
             let mut rest = walking;
             while rest != 0 {
@@ -281,7 +284,7 @@ impl SimdKernel for SearchSeveral<'_> {
                     if next == located.site {
                         located.is_certainly_nearest = is_certainly_nearest;
                         walking &= !(1 << i);
-                        index.prefetch_answer(located, position);
+                        index.prefetch_block(next);
                     } else {
                         work_left = work_left.saturating_sub(index.neighbours.step_work(located.site));
                         located.site = next;
@@ -290,54 +293,40 @@ impl SimdKernel for SearchSeveral<'_> {
                 }
             }
         }
-        for ((located, position), query) in locations.iter().zip(&positions).zip(queries) {
+        for (i, (located, position)) in locations.iter().zip(&positions).enumerate() {
             if let (Some(located), Some(position)) = (located, position) {
-                index.prefetch_packets::<I>(located, query, position);
+                index.begin_cell(i, located, position, several, lists);
             }
         }
-        let finish = finish_nearest;
-        let (tree, isa) = (&index.tree, index.tree.isa());
-        for (i, (minimum, evaluate)) in minimums.into_iter().zip(evaluates).enumerate() {
-            let (query, collector) = (queries[i], minimum);
-            match (locations[i], positions[i]) {
-                (Some(located), Some(position)) => {
-                    isa.run(SearchCell(LocateAndSearch {
-                        index,
-                        located,
-                        query,
-                        position,
-                        collector,
-                        evaluate,
-                        finish,
-                    }));
-                }
-                _ => isa.run(Search { tree, query, reach: f64::INFINITY, held: None, collector, evaluate, finish }),
-            }
-        }
+        lists.search::<I>(&index.tree, &index.blocks, several);
+        several.evaluate_candidates();
     }
 }
 
 impl Voronoi {
-    /// Prefetches what a query reads first in its cell.
+    /// Begins the search of a query in its cell: its list is added to `lists`, unless something else answers.
     #[inline(always)]
-    fn prefetch_answer(&self, located: &LocatedSite, position: &V3) {
+    fn begin_cell(
+        &self,
+        search: usize,
+        located: &LocatedSite,
+        position: &V3,
+        several: &mut Several<'_, Aabb<f64>>,
+        lists: &mut Lists,
+    ) {
         let site = &self.neighbours.sites[located.site];
-        if let Some((packet, _)) = Self::known_answer(located, site, position) {
+        if let Some((packet, lane)) = Self::known_answer(located, site, position).filter(|_| site.has_list()) {
             self.tree.leaves.prefetch(packet);
-        } else if site.has_list() {
-            self.prefetch_block(located.site);
-            self.prefetch_block(site.list as usize);
+            return several.add(search, packet, lane);
         }
-    }
-
-    /// Prefetches the packets and vertices that a query reads after that.
-    #[inline(always)]
-    fn prefetch_packets<I: InstructionSet>(&self, located: &LocatedSite, query: &V3, position: &V3) {
-        let (tree, site) = (&self.tree, &self.neighbours.sites[located.site]);
-        if let Some((packet, lane)) = Self::known_answer(located, site, position) {
-            tree.leaves.packets[packet].prefetch_vertices(lane, &tree.leaves.vertices);
-        } else if site.has_list() {
-            search::prefetch_packets::<I>(tree, &self.blocks[located.site], &block_query(tree, query));
+        let query = *several.query(search);
+        several.limit_to(search, self.upper_bound(site, &query, position));
+        if !site.has_list() {
+            several.search_tree(search);
+        } else if let Some(filter) = self.filters.get(located.site) {
+            several.filter_all(search, &ListFilters::packets(filter, &query));
+        } else {
+            lists.push(search, located.site, site.list as usize, block_query(&self.tree, &query));
         }
     }
 }

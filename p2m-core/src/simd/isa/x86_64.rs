@@ -4,7 +4,8 @@
 //! functions `run_avx2` and `run_avx512` runs, whose callers have checked the processor. That makes every `unsafe`
 //! block below sound.
 
-use crate::simd::lanes::{Doubles, EightLanes, InstructionSet, Lanes, SimdKernel};
+use crate::simd::lanes::{Doubles, EightLanes, Float, InstructionSet, Lanes, SimdKernel};
+use crate::simd::operators::{float_operators, mask_operators};
 use std::arch::x86_64::*;
 
 /// Returns whether the processor has the instructions of [`run_avx2`].
@@ -128,6 +129,7 @@ impl Lanes for Eight {
         sub(self: Self, other: Self) -> Self { Self(_mm256_sub_ps(self.0, other.0)) }
         mul(self: Self, other: Self) -> Self { Self(_mm256_mul_ps(self.0, other.0)) }
         mul_add(self: Self, factor: Self, summand: Self) -> Self { Self(_mm256_fmadd_ps(self.0, factor.0, summand.0)) }
+        sqrt(self: Self) -> Self { Self(_mm256_sqrt_ps(self.0)) }
         min(self: Self, other: Self) -> Self { Self(_mm256_min_ps(self.0, other.0)) }
         max(self: Self, other: Self) -> Self { Self(_mm256_max_ps(self.0, other.0)) }
         difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {{
@@ -223,6 +225,7 @@ impl Lanes for Sixteen {
         sub(self: Self, other: Self) -> Self { Self(_mm512_sub_ps(self.0, other.0)) }
         mul(self: Self, other: Self) -> Self { Self(_mm512_mul_ps(self.0, other.0)) }
         mul_add(self: Self, factor: Self, summand: Self) -> Self { Self(_mm512_fmadd_ps(self.0, factor.0, summand.0)) }
+        sqrt(self: Self) -> Self { Self(_mm512_sqrt_ps(self.0)) }
         min(self: Self, other: Self) -> Self { Self(_mm512_min_ps(self.0, other.0)) }
         max(self: Self, other: Self) -> Self { Self(_mm512_max_ps(self.0, other.0)) }
         difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {{
@@ -244,6 +247,84 @@ impl Lanes for Sixteen {
     }
 }
 
+/// A truth value for each of eight f64: all bits of a number are one or zero.
+#[derive(Clone, Copy)]
+pub(super) struct PairMask(__m256d, __m256d);
+
+/// A truth value for each of eight f64, as one bit.
+#[derive(Clone, Copy)]
+pub(super) struct BitMask(__mmask8);
+
+/// Makes an expression of intrinsics safe.
+macro_rules! intrinsic {
+    ($body:expr) => {
+        // SAFETY: the processor has the instructions, see the head of the file.
+        unsafe { $body }
+    };
+}
+
+float_operators!(Pair, |a, b| {
+    add: intrinsic!(Self(_mm256_add_pd(a.0, b.0), _mm256_add_pd(a.1, b.1))),
+    sub: intrinsic!(Self(_mm256_sub_pd(a.0, b.0), _mm256_sub_pd(a.1, b.1))),
+    mul: intrinsic!(Self(_mm256_mul_pd(a.0, b.0), _mm256_mul_pd(a.1, b.1))),
+    div: intrinsic!(Self(_mm256_div_pd(a.0, b.0), _mm256_div_pd(a.1, b.1))),
+    neg: intrinsic!({
+        let sign = _mm256_set1_pd(-0.0);
+        Self(_mm256_xor_pd(a.0, sign), _mm256_xor_pd(a.1, sign))
+    }),
+});
+
+mask_operators!(PairMask, |a, b| {
+    and: intrinsic!(Self(_mm256_and_pd(a.0, b.0), _mm256_and_pd(a.1, b.1))),
+    or: intrinsic!(Self(_mm256_or_pd(a.0, b.0), _mm256_or_pd(a.1, b.1))),
+    not: intrinsic!({
+        let ones = _mm256_castsi256_pd(_mm256_set1_epi64x(-1));
+        Self(_mm256_xor_pd(a.0, ones), _mm256_xor_pd(a.1, ones))
+    }),
+});
+
+float_operators!(EightDoubles, |a, b| {
+    add: intrinsic!(Self(_mm512_add_pd(a.0, b.0))),
+    sub: intrinsic!(Self(_mm512_sub_pd(a.0, b.0))),
+    mul: intrinsic!(Self(_mm512_mul_pd(a.0, b.0))),
+    div: intrinsic!(Self(_mm512_div_pd(a.0, b.0))),
+    neg: intrinsic!({
+        let sign = _mm512_castpd_si512(_mm512_set1_pd(-0.0));
+        Self(_mm512_castsi512_pd(_mm512_xor_si512(_mm512_castpd_si512(a.0), sign)))
+    }),
+});
+
+mask_operators!(BitMask, |a, b| {
+    and: Self(a.0 & b.0),
+    or: Self(a.0 | b.0),
+    not: Self(!a.0),
+});
+
+impl Float for Pair {
+    type Mask = PairMask;
+    intrinsics! {
+        splat(x: f64) -> Self { Self(_mm256_set1_pd(x), _mm256_set1_pd(x)) }
+        abs(self: Self) -> Self {{
+            let sign = _mm256_set1_pd(-0.0);
+            Self(_mm256_andnot_pd(sign, self.0), _mm256_andnot_pd(sign, self.1))
+        }}
+        min(self: Self, b: Self) -> Self { Self(_mm256_min_pd(self.0, b.0), _mm256_min_pd(self.1, b.1)) }
+        max(self: Self, b: Self) -> Self { Self(_mm256_max_pd(self.0, b.0), _mm256_max_pd(self.1, b.1)) }
+        is_below(self: Self, b: Self) -> PairMask {
+            PairMask(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, b.0), _mm256_cmp_pd::<_CMP_LT_OQ>(self.1, b.1))
+        }
+        is_at_most(self: Self, b: Self) -> PairMask {
+            PairMask(_mm256_cmp_pd::<_CMP_LE_OQ>(self.0, b.0), _mm256_cmp_pd::<_CMP_LE_OQ>(self.1, b.1))
+        }
+        equals(self: Self, b: Self) -> PairMask {
+            PairMask(_mm256_cmp_pd::<_CMP_EQ_OQ>(self.0, b.0), _mm256_cmp_pd::<_CMP_EQ_OQ>(self.1, b.1))
+        }
+        select(mask: PairMask, yes: Self, no: Self) -> Self {
+            Self(_mm256_blendv_pd(no.0, yes.0, mask.0), _mm256_blendv_pd(no.1, yes.1, mask.1))
+        }
+    }
+}
+
 impl Doubles for Pair {
     #[inline(always)]
     fn load(from: &[f64]) -> Self {
@@ -260,25 +341,43 @@ impl Doubles for Pair {
             _mm256_storeu_pd(to[4..].as_mut_ptr(), self.1);
         }
     }
+    #[inline(always)]
+    fn load_f32(from: &[f32]) -> Self {
+        let from: &[f32; 8] = from[..8].try_into().expect("eight numbers");
+        // SAFETY: the processor has the instructions, see the head of the file; the array has twice 16 bytes to read.
+        unsafe { Self(_mm256_cvtps_pd(_mm_loadu_ps(from.as_ptr())), _mm256_cvtps_pd(_mm_loadu_ps(from[4..].as_ptr()))) }
+    }
+    #[inline(always)]
+    fn store_f32(self, to: &mut [f32]) {
+        let to: &mut [f32; 8] = (&mut to[..8]).try_into().expect("eight numbers");
+        // SAFETY: the processor has the instructions, see the head of the file; the array has twice 16 bytes to write.
+        unsafe {
+            _mm_storeu_ps(to.as_mut_ptr(), _mm256_cvtpd_ps(self.0));
+            _mm_storeu_ps(to[4..].as_mut_ptr(), _mm256_cvtpd_ps(self.1));
+        }
+    }
     intrinsics! {
-        splat(x: f64) -> Self { Self(_mm256_set1_pd(x), _mm256_set1_pd(x)) }
-        sub(self: Self, b: Self) -> Self { Self(_mm256_sub_pd(self.0, b.0), _mm256_sub_pd(self.1, b.1)) }
-        mul(self: Self, b: Self) -> Self { Self(_mm256_mul_pd(self.0, b.0), _mm256_mul_pd(self.1, b.1)) }
         mul_add(self: Self, b: Self, c: Self) -> Self {
             Self(_mm256_fmadd_pd(self.0, b.0, c.0), _mm256_fmadd_pd(self.1, b.1, c.1))
         }
-        min(self: Self, b: Self) -> Self { Self(_mm256_min_pd(self.0, b.0), _mm256_min_pd(self.1, b.1)) }
-        max(self: Self, b: Self) -> Self { Self(_mm256_max_pd(self.0, b.0), _mm256_max_pd(self.1, b.1)) }
         sqrt(self: Self) -> Self { Self(_mm256_sqrt_pd(self.0), _mm256_sqrt_pd(self.1)) }
-        if_at_most(self: Self, limit: Self, yes: Self, no: Self) -> Self { Self(
-            _mm256_blendv_pd(no.0, yes.0, _mm256_cmp_pd::<_CMP_LE_OQ>(self.0, limit.0)),
-            _mm256_blendv_pd(no.1, yes.1, _mm256_cmp_pd::<_CMP_LE_OQ>(self.1, limit.1)),
-        ) }
-        at_most(self: Self, limit: Self) -> u8 {{
-            let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(self.0, limit.0));
-            let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(self.1, limit.1));
-            (low | high << 4).to_le_bytes()[0]
-        }}
+        bits(mask: PairMask) -> u8 {
+            (_mm256_movemask_pd(mask.0) | _mm256_movemask_pd(mask.1) << 4).to_le_bytes()[0]
+        }
+    }
+}
+
+impl Float for EightDoubles {
+    type Mask = BitMask;
+    intrinsics! {
+        splat(x: f64) -> Self { Self(_mm512_set1_pd(x)) }
+        abs(self: Self) -> Self { Self(_mm512_abs_pd(self.0)) }
+        min(self: Self, other: Self) -> Self { Self(_mm512_min_pd(self.0, other.0)) }
+        max(self: Self, other: Self) -> Self { Self(_mm512_max_pd(self.0, other.0)) }
+        is_below(self: Self, other: Self) -> BitMask { BitMask(_mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0)) }
+        is_at_most(self: Self, other: Self) -> BitMask { BitMask(_mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, other.0)) }
+        equals(self: Self, other: Self) -> BitMask { BitMask(_mm512_cmp_pd_mask::<_CMP_EQ_OQ>(self.0, other.0)) }
+        select(mask: BitMask, yes: Self, no: Self) -> Self { Self(_mm512_mask_blend_pd(mask.0, no.0, yes.0)) }
     }
 }
 
@@ -295,17 +394,24 @@ impl Doubles for EightDoubles {
         // SAFETY: the processor has the instructions, see the head of the file; the array has 64 bytes to write.
         unsafe { _mm512_storeu_pd(to.as_mut_ptr(), self.0) }
     }
+    #[inline(always)]
+    fn load_f32(from: &[f32]) -> Self {
+        let from: &[f32; 8] = from[..8].try_into().expect("eight numbers");
+        // SAFETY: the processor has the instructions, see the head of the file; the array has 32 bytes to read.
+        Self(unsafe { _mm512_cvtps_pd(_mm256_loadu_ps(from.as_ptr())) })
+    }
+    #[inline(always)]
+    fn store_f32(self, to: &mut [f32]) {
+        let to: &mut [f32; 8] = (&mut to[..8]).try_into().expect("eight numbers");
+        // SAFETY: the processor has the instructions, see the head of the file; the array has 32 bytes to write.
+        unsafe { _mm256_storeu_ps(to.as_mut_ptr(), _mm512_cvtpd_ps(self.0)) }
+    }
+    #[inline(always)]
+    fn bits(mask: BitMask) -> u8 {
+        mask.0
+    }
     intrinsics! {
-        splat(x: f64) -> Self { Self(_mm512_set1_pd(x)) }
-        sub(self: Self, other: Self) -> Self { Self(_mm512_sub_pd(self.0, other.0)) }
-        mul(self: Self, other: Self) -> Self { Self(_mm512_mul_pd(self.0, other.0)) }
         mul_add(self: Self, factor: Self, summand: Self) -> Self { Self(_mm512_fmadd_pd(self.0, factor.0, summand.0)) }
-        min(self: Self, other: Self) -> Self { Self(_mm512_min_pd(self.0, other.0)) }
-        max(self: Self, other: Self) -> Self { Self(_mm512_max_pd(self.0, other.0)) }
         sqrt(self: Self) -> Self { Self(_mm512_sqrt_pd(self.0)) }
-        if_at_most(self: Self, limit: Self, yes: Self, no: Self) -> Self {
-            Self(_mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, limit.0), no.0, yes.0))
-        }
-        at_most(self: Self, limit: Self) -> u8 { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, limit.0) }
     }
 }

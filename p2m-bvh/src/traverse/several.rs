@@ -1,0 +1,500 @@
+//! The state of several searches for the nearest primitive that take turns, and the filters of packets in it.
+//!
+//! A single search spends much of its time on branches that the processor mispredicts, and on the latency of memory
+//! and of divisions. Here each step is made for all searches before the next one: loops over packets and candidates
+//! have long bodies without such branches, and the processor works on several of them at a time.
+
+use crate::packet::{LANES, Locals, PLACES, ROUND_UP, at_most, smallest};
+use crate::traverse::evaluate::{finish_nearest, offer};
+use crate::tree::PacketTree;
+use crate::tree::frame::Frame;
+use crate::tree::wide_node::VolumeNodes;
+use p2m_core::engine::query::BestF64;
+use p2m_core::engine::side_by_side::{Eight, EightNearest, SIDE_BY_SIDE, segments, triangles};
+use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Lanes, SimdKernel};
+use p2m_core::engine::vector::V3;
+use p2m_core::{Collector, PrimitiveId};
+
+/// The number of searches that take turns. With more of them, packets and nodes of some are displaced from the cache
+/// before the others are done; with fewer, few share a packet.
+pub const SEARCHES: usize = PLACES;
+/// The number of candidates of a search above which they are evaluated at once.
+const MAX_CANDIDATES: u32 = 32;
+/// The room for candidates: what passes a filter is added before the number is checked.
+const CANDIDATE_ROOM: usize = SEARCHES * (MAX_CANDIDATES as usize + LANES);
+
+/// A packet that a search filters.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PacketVisit {
+    /// The number of the search.
+    pub search: u32,
+    /// The number of the packet.
+    pub packet: u32,
+    /// The lanes that may hold the answer, as bits.
+    pub lanes: u32,
+}
+
+/// A primitive that may be the answer of a search.
+#[derive(Clone, Copy, Default)]
+struct Candidate {
+    /// A lower bound on the distance of the primitive, in the frame of the tree.
+    lower_bound: f32,
+    search: u32,
+    packet: u32,
+    lane: u32,
+}
+
+/// The limits of the searches whose packets are filtered, row by row.
+struct LimitRows {
+    /// The distances above which primitives are no candidates.
+    candidate: [f64; SEARCHES],
+    /// The least of the squares that the filter of a packet found, in its frame. It is infinite for a packet of boxes,
+    /// whose filter bounds no distance from above.
+    nearest_square: [f32; SEARCHES],
+    /// The squares of the distances above which nodes are skipped, in the frame of the tree.
+    node: [f32; SEARCHES],
+    /// The distances above which primitives are no candidates, in the frames of the packets.
+    limit: [f32; SEARCHES],
+}
+
+impl LimitRows {
+    fn new() -> Self {
+        Self {
+            candidate: [0.0; SEARCHES],
+            nearest_square: [0.0; SEARCHES],
+            node: [0.0; SEARCHES],
+            limit: [0.0; SEARCHES],
+        }
+    }
+
+    /// Computes the limits after the filters from those before them and the least squares.
+    #[inline(always)]
+    fn update<I: InstructionSet>(&mut self, locals: &Locals, frame: &Frame) {
+        let mut nearest = [0.0; SEARCHES];
+        let mut old_limit = [0.0; SEARCHES];
+        let up = I::Wide::splat(ROUND_UP);
+        let mut at = 0;
+        while at < SEARCHES {
+            let root = I::Wide::load(&self.nearest_square[at..]).sqrt();
+            root.add(I::Wide::load(&locals.deficit[at..])).mul(up).store(&mut nearest[at..]);
+            at += I::Wide::LEN;
+        }
+        let mut at = 0;
+        while at < SEARCHES {
+            let candidate = I::Doubles::load(&self.candidate[at..]);
+            (candidate * I::Doubles::load(&locals.per_unit[at..])).store_f32(&mut old_limit[at..]);
+            let upper_bound = I::Doubles::load_f32(&nearest[at..]) * I::Doubles::load(&locals.unit[at..]);
+            upper_bound.min(candidate).store(&mut self.candidate[at..]);
+            frame.squares_above::<I::Doubles>(upper_bound, &mut self.node[at..]);
+            at += 8;
+        }
+        let mut at = 0;
+        while at < SEARCHES {
+            let excess = I::Wide::load(&locals.excess[at..]);
+            let new = I::Wide::load(&nearest[at..]).add(excess).mul(up);
+            let old = I::Wide::load(&old_limit[at..]).add(excess).mul(up);
+            new.min(old).store(&mut self.limit[at..]);
+            at += I::Wide::LEN;
+        }
+    }
+}
+
+/// The limits of a search.
+#[derive(Clone, Copy)]
+struct Limits {
+    query: V3,
+    /// The distance above which primitives are no candidates.
+    candidate: f64,
+    /// The square of the distance above which packets are skipped, in the frame of the tree.
+    node: f32,
+}
+
+/// The state of several searches. It is large, so a batch makes one and uses it for all of its queries.
+pub struct Several<'a, V: VolumeNodes> {
+    tree: &'a PacketTree<V>,
+    /// The function that evaluates primitives of which the tree has only a box.
+    evaluate: EvaluateSearchFn<'a>,
+    limits: [Limits; SEARCHES],
+    /// The collectors of the searches.
+    pub minimums: [BestF64; SEARCHES],
+    candidates: [Candidate; CANDIDATE_ROOM],
+    candidate_count: usize,
+    /// The number of candidates of each search.
+    counts: [u32; SEARCHES],
+    /// One bit for each search whose candidates are evaluated after the filters of this round: those with many
+    /// candidates, and those whose packet has boxes, which limit a search by their evaluation alone. It depends on the
+    /// search alone, so answers do not depend on the other searches, not even in their lower bounds.
+    early: u32,
+    locals: Locals,
+    rows: LimitRows,
+    /// The squared distances that the filters found, in the frames of their packets.
+    squares: [[f32; LANES]; SEARCHES],
+    triangles: Waiting<3>,
+    segments: Waiting<2>,
+}
+
+/// A function that offers a primitive to the collector of the search with this number, unless its key exceeds a square.
+/// It is called for primitives of which the tree has only a box.
+pub(crate) type EvaluateSearchFn<'a> = &'a dyn Fn(usize, &mut BestF64, PrimitiveId, f64);
+
+/// A factor for bounds that are computed in f64 with a few roundings of their own.
+const ROUND_UP_F64: f64 = 1.0 + 4.0 * f64::EPSILON;
+
+impl<'a, V: VolumeNodes> Several<'a, V> {
+    /// Creates the state of searches that have not begun. `template` is a collector without a candidate.
+    pub fn new(tree: &'a PacketTree<V>, template: &BestF64, evaluate: EvaluateSearchFn<'a>) -> Self {
+        Self {
+            tree,
+            evaluate,
+            limits: [Limits { query: [0.0; 3], candidate: 0.0, node: 0.0 }; SEARCHES],
+            minimums: std::array::from_fn(|_| template.clone()),
+            candidates: [Candidate::default(); CANDIDATE_ROOM],
+            candidate_count: 0,
+            counts: [0; SEARCHES],
+            early: 0,
+            locals: Locals::default(),
+            rows: LimitRows::new(),
+            squares: [[0.0; LANES]; SEARCHES],
+            triangles: Waiting::default(),
+            segments: Waiting::default(),
+        }
+    }
+
+    /// Begins the search with this number for the nearest primitive to `query`. Its collector has to be set before.
+    #[inline(always)]
+    pub fn begin(&mut self, search: usize, query: V3) {
+        self.limits[search] = Limits { query, candidate: f64::INFINITY, node: f32::INFINITY };
+        self.update_limit(search);
+    }
+
+    /// Limits a search to an upper bound on the distance of its nearest primitive.
+    #[inline(always)]
+    pub fn limit_to(&mut self, search: usize, upper_bound: f64) {
+        let limits = &mut self.limits[search];
+        limits.candidate = if upper_bound < limits.candidate { upper_bound } else { limits.candidate };
+        let node = self.tree.frame.square_above(upper_bound * upper_bound * ROUND_UP_F64);
+        limits.node = if node < limits.node { node } else { limits.node };
+    }
+
+    /// The query point of a search.
+    #[inline(always)]
+    pub fn query(&self, search: usize) -> &V3 {
+        &self.limits[search].query
+    }
+
+    /// Computes the limits of a search from its collector as well.
+    #[inline(always)]
+    fn update_limit(&mut self, search: usize) {
+        let prune = self.minimums[search].prune_above();
+        let limits = &mut self.limits[search];
+        let bound = prune.sqrt() * ROUND_UP_F64;
+        limits.candidate = if limits.candidate < bound { limits.candidate } else { bound };
+        let square = limits.candidate * limits.candidate * ROUND_UP_F64;
+        let node = self.tree.frame.square_above(if square < prune { square } else { prune });
+        limits.node = if node < limits.node { node } else { limits.node };
+    }
+
+    /// The square of the distance above which a search skips packets, in the frame of the tree.
+    #[inline(always)]
+    pub fn limit(&self, search: usize) -> f32 {
+        self.limits[search].node
+    }
+
+    /// Adds a primitive that is evaluated whatever its filter would find.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "searches, packets and lanes fit")]
+    pub fn add(&mut self, search: usize, packet: usize, lane: usize) {
+        let candidate = Candidate { lower_bound: 0.0, search: search as u32, packet: packet as u32, lane: lane as u32 };
+        self.candidates[self.candidate_count] = candidate;
+        self.candidate_count += 1;
+    }
+
+    /// Searches the whole tree for one of the queries, apart from this state.
+    #[cold]
+    #[inline(never)]
+    pub fn search_tree(&mut self, search: usize) {
+        let (tree, query, evaluate) = (self.tree, self.limits[search].query, self.evaluate);
+        let evaluate = |collector: &mut BestF64, id, square| evaluate(search, collector, id, square);
+        tree.run(query, &mut self.minimums[search], &evaluate, finish_nearest);
+    }
+
+    /// Filters packets of one search, which are given by their numbers and lanes.
+    #[cold]
+    #[inline(never)]
+    #[allow(clippy::cast_possible_truncation, reason = "at most sixteen searches")]
+    pub fn filter_all(&mut self, search: usize, packets: &[(u32, u16)]) {
+        for &(packet, lanes) in packets {
+            let visit = PacketVisit { search: search as u32, packet, lanes: u32::from(lanes) };
+            self.tree.isa.run(Filter { several: self, visits: &[visit] });
+        }
+    }
+
+    /// Filters at most [`SEARCHES`] packets. Primitives that may be the answer become candidates.
+    ///
+    /// No branch depends on what the filters find until all of them have run. Searches that are near each other often
+    /// visit the same packet one after the other, and what depends on the packet alone is then computed once.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "rounded up")]
+    pub fn filter<I: InstructionSet>(&mut self, visits: &[PacketVisit]) {
+        let leaves = &self.tree.leaves;
+        for (i, visit) in visits.iter().enumerate() {
+            let packet = &leaves.packets[visit.packet as usize];
+            let limits = &self.limits[visit.search as usize % SEARCHES];
+            self.locals.set(i % SEARCHES, &limits.query, packet);
+            self.rows.candidate[i % SEARCHES] = limits.candidate;
+            self.early |= u32::from(!packet.has_vertices()) << visit.search;
+        }
+        self.locals.convert::<I>();
+        let (candidates, locals) = (&self.rows.candidate, &self.locals);
+        let limit = |i: usize| {
+            let distance = candidates[i % SEARCHES] * locals.per_unit[i % SEARCHES];
+            (distance as f32 + locals.excess[i % SEARCHES]) * ROUND_UP
+        };
+        let mut start = 0;
+        while start < visits.len() {
+            let packet = visits[start].packet;
+            let mut end = start + 1;
+            while end < visits.len() && visits[end].packet == packet {
+                end += 1;
+            }
+            leaves.packets[packet as usize].squares_of_several::<I>(locals, start..end, limit, &mut self.squares);
+            start = end;
+        }
+        for (i, (squares, visit)) in self.squares.iter().zip(visits).enumerate() {
+            let has_vertices = leaves.packets[visit.packet as usize].has_vertices();
+            let nearest = smallest::<I::Wide>(squares);
+            self.rows.nearest_square[i % SEARCHES] = if has_vertices { nearest } else { f32::INFINITY };
+        }
+        self.rows.update::<I>(&self.locals, &self.tree.frame);
+        for (i, visit) in visits.iter().enumerate() {
+            self.push_candidates::<I>(visit, i % SEARCHES);
+        }
+        if self.early != 0 {
+            self.evaluate_early();
+        }
+    }
+
+    /// Takes the new limits of a search, and makes the primitives that passed the filter of a packet candidates.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "`distance_below` allows for the rounding")]
+    fn push_candidates<I: InstructionSet>(&mut self, visit: &PacketVisit, place: usize) {
+        let packet = &self.tree.leaves.packets[visit.packet as usize];
+        let squares = &self.squares[place];
+        let mut passed = visit.lanes & packet.lanes();
+        if self.locals.far >> place & 1 == 0 {
+            let limits = &mut self.limits[visit.search as usize % SEARCHES];
+            limits.candidate = self.rows.candidate[place];
+            let node = self.rows.node[place];
+            limits.node = if node < limits.node { node } else { limits.node };
+            let limit = self.rows.limit[place];
+            passed &= at_most::<I::Wide>(squares, limit * limit);
+        }
+        let scale = packet.unit() * self.tree.frame.per_unit;
+        let count = &mut self.counts[visit.search as usize % SEARCHES];
+        *count += passed.count_ones();
+        self.early |= u32::from(*count >= MAX_CANDIDATES) << visit.search;
+        while passed != 0 {
+            let lane = passed.trailing_zeros();
+            passed &= passed - 1;
+            packet.prefetch_vertices(lane as usize, &self.tree.leaves.vertices);
+            let is_far = self.locals.far >> place & 1 == 1;
+            let distance = squares[lane as usize].sqrt() * (1.0 - f32::EPSILON) - self.locals.excess[place];
+            let lower_bound = if is_far { 0.0 } else { (f64::from(distance) * scale) as f32 };
+            self.candidates[self.candidate_count] =
+                Candidate { lower_bound, search: visit.search, packet: visit.packet, lane };
+            self.candidate_count += 1;
+        }
+    }
+
+    /// Evaluates the candidates of some searches before all packets were visited, and limits them by the results.
+    #[cold]
+    #[inline(never)]
+    fn evaluate_early(&mut self) {
+        let early = std::mem::take(&mut self.early);
+        self.evaluate(early);
+        (0..SEARCHES).filter(|search| early >> search & 1 == 1).for_each(|search| self.update_limit(search));
+    }
+
+    /// Evaluates all candidates.
+    #[inline(always)]
+    pub fn evaluate_candidates(&mut self) {
+        self.evaluate(u32::MAX);
+    }
+
+    /// Evaluates the candidates of the searches with a bit in `searches` that are within the limits of their searches,
+    /// and offers them to the collectors.
+    #[inline(always)]
+    fn evaluate(&mut self, searches: u32) {
+        let leaves = &self.tree.leaves;
+        for i in 0..std::mem::take(&mut self.candidate_count) {
+            if searches >> self.candidates[i].search & 1 == 0 {
+                self.candidates[self.candidate_count] = self.candidates[i];
+                self.candidate_count += 1;
+                continue;
+            }
+            let candidate = self.candidates[i];
+            let limits = &self.limits[candidate.search as usize];
+            let distance = f64::from(candidate.lower_bound) * (1.0 - f64::from(f32::EPSILON)) * self.tree.frame.unit;
+            if distance > limits.candidate {
+                continue;
+            }
+            let packet = &leaves.packets[candidate.packet as usize];
+            let (indices, count) = packet.vertices_of(candidate.lane as usize);
+            match count {
+                3 => {
+                    let vertices = indices.map(|index| &leaves.vertices[index]);
+                    if self.triangles.push(&limits.query, vertices, candidate) {
+                        self.evaluate_triangles(true);
+                    }
+                }
+                2 => {
+                    let vertices = [&leaves.vertices[indices[0]], &leaves.vertices[indices[1]]];
+                    if self.segments.push(&limits.query, vertices, candidate) {
+                        self.evaluate_segments();
+                    }
+                }
+                _ => self.offer_single(candidate),
+            }
+        }
+        for (search, count) in self.counts.iter_mut().enumerate() {
+            *count = if searches >> search & 1 == 1 { 0 } else { *count };
+        }
+        if self.triangles.len > 0 {
+            self.evaluate_triangles(false);
+        }
+        if self.segments.len > 0 {
+            self.evaluate_segments();
+        }
+    }
+
+    /// Evaluates the triangles that wait. If `may_skip`, some of them may go on waiting.
+    #[inline(never)]
+    fn evaluate_triangles(&mut self, may_skip: bool) {
+        let waiting = &mut self.triangles;
+        let found = self.tree.isa.run(EvaluateTriangles(&waiting.eight, may_skip));
+        let len = std::mem::take(&mut waiting.len);
+        take(self.tree, &mut self.minimums, self.evaluate, &self.limits, &waiting.candidates[..len], &found);
+        for lane in 0..len {
+            if found.was_skipped(lane) {
+                waiting.eight.copy_lane(lane, waiting.len);
+                waiting.candidates[waiting.len] = waiting.candidates[lane];
+                waiting.len += 1;
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn evaluate_segments(&mut self) {
+        let found = self.tree.isa.run(EvaluateSegments(&self.segments.eight));
+        let len = std::mem::take(&mut self.segments.len);
+        take(self.tree, &mut self.minimums, self.evaluate, &self.limits, &self.segments.candidates[..len], &found);
+    }
+
+    /// Evaluates a candidate by the kernel for single primitives.
+    fn offer_single(&mut self, candidate: Candidate) {
+        offer_single(self.tree, &mut self.minimums, self.evaluate, &self.limits, candidate);
+    }
+}
+
+/// A SIMD kernel that filters packets.
+struct Filter<'a, 'b, V: VolumeNodes> {
+    several: &'a mut Several<'b, V>,
+    visits: &'a [PacketVisit],
+}
+
+impl<V: VolumeNodes> SimdKernel for Filter<'_, '_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        self.several.filter::<I>(self.visits);
+    }
+}
+
+/// Offers results to the collectors of their searches. Those that are not certain are computed by the kernel for
+/// single primitives.
+#[inline(always)]
+fn take<V: VolumeNodes>(
+    tree: &PacketTree<V>,
+    minimums: &mut [BestF64; SEARCHES],
+    evaluate: EvaluateSearchFn<'_>,
+    limits: &[Limits; SEARCHES],
+    candidates: &[Candidate],
+    found: &EightNearest,
+) {
+    for (i, candidate) in candidates.iter().enumerate() {
+        if found.was_skipped(i) {
+            continue;
+        }
+        let id = tree.leaves.packets[candidate.packet as usize].ids()[candidate.lane as usize];
+        if !minimums[candidate.search as usize].offer_lane(id, found, i) {
+            offer_single(tree, minimums, evaluate, limits, *candidate);
+        }
+    }
+}
+
+/// Evaluates a candidate by the kernel for single primitives.
+#[cold]
+#[inline(never)]
+fn offer_single<V: VolumeNodes>(
+    tree: &PacketTree<V>,
+    minimums: &mut [BestF64; SEARCHES],
+    evaluate: EvaluateSearchFn<'_>,
+    limits: &[Limits; SEARCHES],
+    candidate: Candidate,
+) {
+    let (search, lane) = (candidate.search as usize, candidate.lane as usize);
+    let packet = &tree.leaves.packets[candidate.packet as usize];
+    let minimum = &mut minimums[search];
+    let square = minimum.prune_above();
+    let evaluate = |collector: &mut BestF64, id, square| evaluate(search, collector, id, square);
+    offer(&tree.leaves, packet, lane, limits[search].query, square, minimum, &evaluate);
+}
+
+/// Candidates of one kind that wait for evaluation: those in the first `len` lanes.
+struct Waiting<const N: usize> {
+    eight: Eight<N>,
+    candidates: [Candidate; SIDE_BY_SIDE],
+    len: usize,
+}
+
+impl<const N: usize> Default for Waiting<N> {
+    fn default() -> Self {
+        Self { eight: Eight::default(), candidates: [Candidate::default(); SIDE_BY_SIDE], len: 0 }
+    }
+}
+
+impl<const N: usize> Waiting<N> {
+    /// Adds a candidate, and returns whether all lanes are full.
+    #[inline(always)]
+    fn push(&mut self, query: &V3, vertices: [&V3; N], candidate: Candidate) -> bool {
+        self.eight.set(self.len, query, vertices);
+        self.candidates[self.len] = candidate;
+        self.len += 1;
+        self.len == SIDE_BY_SIDE
+    }
+}
+
+/// Evaluates eight triangles with an instruction set.
+struct EvaluateTriangles<'a>(&'a Eight<3>, bool);
+
+impl SimdKernel for EvaluateTriangles<'_> {
+    type Output = EightNearest;
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> EightNearest {
+        triangles::<I::Doubles>(self.0, self.1)
+    }
+}
+
+/// Evaluates eight segments with an instruction set.
+struct EvaluateSegments<'a>(&'a Eight<2>);
+
+impl SimdKernel for EvaluateSegments<'_> {
+    type Output = EightNearest;
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> EightNearest {
+        segments::<I::Doubles>(self.0)
+    }
+}

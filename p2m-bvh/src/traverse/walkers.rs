@@ -1,0 +1,123 @@
+//! The traversal of a tree by several searches that take turns.
+//!
+//! In each round every search takes the nearest of its pending children and requests its memory. Then all nodes are
+//! bounded, and then all packets are filtered, so the memory has arrived and the loops have no branch that depends on
+//! the kind of a child.
+
+use crate::traverse::several::{PacketVisit, SEARCHES, Several};
+use crate::traverse::{SHORT_STACK_DEPTH, SHORT_STACK_LEN};
+use crate::tree::PacketTree;
+use crate::tree::node_ref::{NodeRef, WIDTH};
+use crate::tree::wide_node::{VolumeNodes, WideNode};
+use p2m_core::engine::simd::{EightLanes, InstructionSet, SimdKernel, lane_of_key, value_of_key};
+
+/// The pending children of a search.
+#[derive(Clone, Copy)]
+struct Stack {
+    /// The key of each pending child, which combines its bound and its slot.
+    keys: [u32; SHORT_STACK_LEN],
+    /// The node of which it is a child.
+    parents: [u32; SHORT_STACK_LEN],
+    len: usize,
+    /// The child that is visited next.
+    next: NodeRef,
+}
+
+/// The traversals of several searches. They are large, so a batch makes them once for all of its queries.
+pub struct Walkers<V: VolumeNodes> {
+    stacks: [Stack; SEARCHES],
+    /// The query point of each search in the frame of the tree.
+    queries: Vec<Option<<V::Node as WideNode>::Query>>,
+}
+
+impl<V: VolumeNodes> Walkers<V> {
+    /// Creates traversals that have not begun, or returns `None` for a tree that is too deep for them.
+    pub fn new(tree: &PacketTree<V>) -> Option<Self> {
+        let stack = Stack { keys: [0; SHORT_STACK_LEN], parents: [0; SHORT_STACK_LEN], len: 0, next: NodeRef::NONE };
+        let walkers = || Self { stacks: [stack; SEARCHES], queries: Vec::with_capacity(SEARCHES) };
+        (tree.depth <= SHORT_STACK_DEPTH && tree.root != NodeRef::NONE).then(walkers)
+    }
+
+    /// Searches the tree for the queries of the first `count` searches of `several`.
+    #[inline(always)]
+    pub fn search(&mut self, tree: &PacketTree<V>, several: &mut Several<'_, V>, count: usize) {
+        tree.isa.run(Walk { walkers: self, tree, several, count });
+    }
+}
+
+/// The traversals as a kernel that is compiled for each instruction set.
+struct Walk<'a, 'b, V: VolumeNodes> {
+    walkers: &'a mut Walkers<V>,
+    tree: &'a PacketTree<V>,
+    several: &'a mut Several<'b, V>,
+    count: usize,
+}
+
+impl<V: VolumeNodes> SimdKernel for Walk<'_, '_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "at most sixteen searches")]
+    fn run<I: InstructionSet>(self) {
+        let Self { walkers, tree, several, count } = self;
+        let Walkers { stacks, queries } = walkers;
+        queries.clear();
+        // The first `active_count` of these are the searches that go on.
+        let mut active = [0u8; SEARCHES];
+        let mut active_count = 0;
+        for (i, stack) in stacks[..count].iter_mut().enumerate() {
+            let query = V::Node::query(&tree.shared, &tree.frame, several.query(i));
+            active[active_count] = i as u8;
+            active_count += usize::from(query.is_some());
+            (stack.len, stack.next) = (0, tree.root);
+            if query.is_none() {
+                several.search_tree(i);
+            }
+            queries.push(query);
+        }
+        let (mut visits, mut nodes) = ([PacketVisit::default(); SEARCHES], [0u8; SEARCHES]);
+        while active_count > 0 {
+            let (mut visit_count, mut node_count) = (0, 0);
+            for &search in &active[..active_count] {
+                let child = stacks[usize::from(search) % SEARCHES].next;
+                nodes[node_count % SEARCHES] = search;
+                node_count += usize::from(!child.is_packet());
+                visits[visit_count % SEARCHES] =
+                    PacketVisit { search: u32::from(search), packet: child.number() as u32, lanes: u32::MAX };
+                visit_count += usize::from(child.is_packet());
+            }
+            for &search in &nodes[..node_count] {
+                let stack = &mut stacks[usize::from(search) % SEARCHES];
+                let Some(query) = &queries[usize::from(search)] else { continue };
+                let node = &tree.nodes[stack.next.number()];
+                let bounds: I::Eight = node.lower_bounds(&tree.shared, query);
+                let top = stack.len;
+                let keys: &mut [u32; WIDTH] = (&mut stack.keys[top..top + WIDTH]).try_into().expect("eight keys");
+                stack.len += bounds.sorted_keys(several.limit(usize::from(search)), keys);
+                stack.parents[top..top + WIDTH].fill(stack.next.0);
+            }
+            several.filter::<I>(&visits[..visit_count]);
+            let mut still_active = 0;
+            for at in 0..active_count {
+                let search = active[at];
+                let stack = &mut stacks[usize::from(search) % SEARCHES];
+                let limit = several.limit(usize::from(search));
+                let mut is_within = false;
+                while stack.len > 0 && !is_within {
+                    stack.len -= 1;
+                    is_within = value_of_key(stack.keys[stack.len % SHORT_STACK_LEN]) <= limit;
+                }
+                if is_within {
+                    let top = stack.len % SHORT_STACK_LEN;
+                    let parent = &tree.nodes[NodeRef(stack.parents[top]).number()];
+                    stack.next = parent.children()[lane_of_key(stack.keys[top])];
+                    tree.prefetch(stack.next);
+                    active[still_active] = search;
+                    still_active += 1;
+                }
+            }
+            active_count = still_active;
+        }
+        several.evaluate_candidates();
+    }
+}

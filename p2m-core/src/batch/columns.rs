@@ -1,0 +1,162 @@
+//! The columns of the answers of a batch.
+
+use crate::{Feature, Found, Real};
+use nalgebra::Point3;
+
+/// The columns of the answers that a caller asks for, each with one value for each query.
+///
+/// A query without an answer, because nothing lies within the largest distance or because it is not finite, has an
+/// infinite distance and lower bound, the primitive [`NO_PRIMITIVE`](Self::NO_PRIMITIVE), a point and weights of NaN,
+/// and the feature `Vertex(0)`.
+///
+/// ```
+/// use p2m_core::batch::ClosestColumns;
+///
+/// let (mut distance, mut primitive) = ([0.0; 3], [0; 3]);
+/// let columns = ClosestColumns::<f64>::default().with_distance(&mut distance).with_primitive(&mut primitive);
+/// assert_eq!(columns.len(), Some(3));
+/// ```
+#[derive(Debug, Default)]
+#[non_exhaustive]
+pub struct ClosestColumns<'a, T: Real> {
+    /// The distances, as in [`Closest::distance`](crate::Closest::distance).
+    pub distance: Option<&'a mut [T]>,
+    /// The indices of the primitives, as in [`Closest::primitive`](crate::Closest::primitive).
+    pub primitive: Option<&'a mut [u32]>,
+    /// The closest points.
+    pub point: Option<&'a mut [Point3<T>]>,
+    /// The features of the primitives that contain the closest points.
+    pub feature: Option<&'a mut [Feature]>,
+    /// The weights of the vertices, as in [`Closest::barycentric`](crate::Closest::barycentric).
+    pub barycentric: Option<&'a mut [[T; 3]]>,
+    /// The certified lower bounds, as in [`Closest::lower_bound`](crate::Closest::lower_bound).
+    pub lower_bound: Option<&'a mut [T]>,
+}
+
+/// Implements the methods that set a column.
+macro_rules! setters {
+    ($($method:ident, $field:ident: $type:ty, $what:literal;)*) => {
+        impl<'a, T: Real> ClosestColumns<'a, T> {
+            $(
+                #[doc = concat!("Asks for ", $what, ".")]
+                #[must_use]
+                pub fn $method(self, column: &'a mut [$type]) -> Self {
+                    Self { $field: Some(column), ..self }
+                }
+            )*
+
+            /// Returns the lengths of all columns.
+            fn lengths(&self) -> impl Iterator<Item = usize> {
+                [$(self.$field.as_ref().map(|column| column.len())),*].into_iter().flatten()
+            }
+
+            /// Divides all columns in two, the first with `len` values.
+            pub(super) fn split_at(self, len: usize) -> (Self, Self) {
+                let (mut first, mut second) = (Self::default(), Self::default());
+                $(
+                    if let Some((a, b)) = self.$field.map(|column| column.split_at_mut(len)) {
+                        (first.$field, second.$field) = (Some(a), Some(b));
+                    }
+                )*
+                (first, second)
+            }
+        }
+    };
+}
+
+setters! {
+    with_distance, distance: T, "distances";
+    with_primitive, primitive: u32, "indices of primitives";
+    with_point, point: Point3<T>, "closest points";
+    with_feature, feature: Feature, "features";
+    with_barycentric, barycentric: [T; 3], "weights of the vertices";
+    with_lower_bound, lower_bound: T, "certified lower bounds";
+}
+
+impl<T: Real> ClosestColumns<'_, T> {
+    /// The index that stands for no primitive, which no primitive has.
+    pub const NO_PRIMITIVE: u32 = u32::MAX;
+
+    /// Returns the length of the columns, and `None` if there are none.
+    ///
+    /// # Panics
+    /// It panics if the columns differ in length.
+    #[must_use]
+    pub fn len(&self) -> Option<usize> {
+        let len = self.lengths().next()?;
+        assert!(self.lengths().all(|other| other == len), "columns of one length");
+        Some(len)
+    }
+
+    /// Returns whether no column is asked for.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.lengths().next().is_none()
+    }
+}
+
+/// A place for answers.
+pub(super) trait Sink<T: Real>: Send + Sized {
+    /// Stores the answer to the query at a position.
+    fn set(&mut self, position: usize, found: Found<'_, T>);
+    /// Divides the place in two, the first for `len` answers.
+    fn split(self, len: usize) -> (Self, Self);
+}
+
+impl<T: Real> Sink<T> for ClosestColumns<'_, T> {
+    #[inline(always)]
+    fn set(&mut self, i: usize, found: Found<'_, T>) {
+        if let (None, None, None, None) = (&self.point, &self.feature, &self.barycentric, &self.lower_bound) {
+            // The rest of an answer need not be computed.
+            let (distance, primitive) = found.distance_and_index().unwrap_or((T::INFINITY, Self::NO_PRIMITIVE));
+            if let Some(column) = &mut self.distance {
+                column[i] = distance;
+            }
+            if let Some(column) = &mut self.primitive {
+                column[i] = primitive;
+            }
+            return;
+        }
+        self.set_all(i, found);
+    }
+
+    fn split(self, len: usize) -> (Self, Self) {
+        self.split_at(len)
+    }
+}
+
+impl<T: Real> ClosestColumns<'_, T> {
+    fn set_all(&mut self, i: usize, found: Found<'_, T>) {
+        let nan = T::round_from_f64(f64::NAN);
+        let closest = found.closest();
+        if let Some(column) = &mut self.distance {
+            column[i] = closest.map_or(T::INFINITY, |c| c.distance);
+        }
+        if let Some(column) = &mut self.primitive {
+            column[i] = closest.map_or(Self::NO_PRIMITIVE, |c| c.primitive.number());
+        }
+        if let Some(column) = &mut self.point {
+            column[i] = closest.map_or(Point3::new(nan, nan, nan), |c| c.point);
+        }
+        if let Some(column) = &mut self.feature {
+            column[i] = closest.map_or(Feature::Vertex(0), |c| c.feature);
+        }
+        if let Some(column) = &mut self.barycentric {
+            column[i] = closest.map_or([nan; 3], |c| c.barycentric);
+        }
+        if let Some(column) = &mut self.lower_bound {
+            column[i] = closest.map_or(T::INFINITY, |c| c.lower_bound);
+        }
+    }
+}
+
+impl<T: Real> Sink<T> for &mut [Option<crate::Closest<T>>] {
+    #[inline(always)]
+    fn set(&mut self, i: usize, found: Found<'_, T>) {
+        self[i] = found.closest();
+    }
+
+    fn split(self, len: usize) -> (Self, Self) {
+        self.split_at_mut(len)
+    }
+}

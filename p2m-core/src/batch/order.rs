@@ -1,0 +1,118 @@
+//! The order in which the queries of a batch are answered: along a curve that fills their box.
+
+use super::QueryPoint;
+use crate::real::to_f64_array;
+use crate::{Real, curve};
+
+/// The largest number of bits of a coordinate on the curve: a cell for each query of the largest part of a batch.
+const MAX_BITS_PER_AXIS: u32 = 8;
+/// The number of bits of a digit of the radix sort, which sorts by two digits.
+const DIGIT_BITS: u32 = 3 * MAX_BITS_PER_AXIS / 2;
+/// The number of values of a digit.
+const DIGITS: usize = 1 << DIGIT_BITS;
+
+/// Returns the positions of queries, sorted along the curve. Queries that are not finite come at any place.
+///
+/// The cells of the curve are about as many as the queries, since queries of one cell are as near as any.
+#[allow(clippy::cast_possible_truncation, reason = "a part of a batch has at most 2^32 queries")]
+pub(super) fn sorted_along_curve<T: Real>(queries: &[impl QueryPoint<T>]) -> Vec<u32> {
+    let bits = (queries.len().max(1).ilog2() / 3 + 2).min(MAX_BITS_PER_AXIS);
+    let cells = CurveCells::around(queries, bits);
+    let mut starts = [[0u32; DIGITS]; 2];
+    let mut keys = Vec::with_capacity(queries.len());
+    for query in queries {
+        let key = cells.position(&to_f64_array(&query.point()));
+        let [low, high] = digits(key);
+        starts[0][low] += 1;
+        starts[1][high] += 1;
+        keys.push(key);
+    }
+    for starts in &mut starts {
+        let mut sum = 0;
+        for start in starts {
+            sum += std::mem::replace(start, sum);
+        }
+    }
+    // The sort is stable, so sorting by the low digit and then by the high one sorts by both.
+    let mut by_low_digit = vec![(0u32, 0u32); keys.len()];
+    for (position, key) in keys.into_iter().enumerate() {
+        let [low, high] = digits(key);
+        let to = &mut starts[0][low];
+        by_low_digit[*to as usize] = (high as u32, position as u32);
+        *to += 1;
+    }
+    let mut sorted = vec![0; by_low_digit.len()];
+    for (high, position) in by_low_digit {
+        let to = &mut starts[1][high as usize % DIGITS];
+        sorted[*to as usize] = position;
+        *to += 1;
+    }
+    sorted
+}
+
+/// Returns the low and the high digit of a key.
+#[inline(always)]
+fn digits(key: u32) -> [usize; 2] {
+    [key as usize % DIGITS, (key >> DIGIT_BITS) as usize % DIGITS]
+}
+
+/// The cells of a curve through the box around some queries.
+struct CurveCells {
+    low: [f64; 3],
+    scale: [f64; 3],
+    bits: u32,
+}
+
+impl CurveCells {
+    /// Divides the box around the finite queries into 2^bits cells on each axis.
+    fn around<T: Real>(queries: &[impl QueryPoint<T>], bits: u32) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for query in queries {
+            let query = to_f64_array(&query.point());
+            if query.iter().all(|x| x.is_finite()) {
+                for k in 0..3 {
+                    low[k] = if query[k] < low[k] { query[k] } else { low[k] };
+                    high[k] = if query[k] > high[k] { query[k] } else { high[k] };
+                }
+            }
+        }
+        // Coordinates are halved first, since the difference of two finite numbers may be infinite.
+        let scale = [0, 1, 2].map(|k: usize| f64::from(1u32 << bits) / (high[k] * 0.5 - low[k] * 0.5));
+        Self { low, scale, bits }
+    }
+
+    /// Returns the position of a query on the curve.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, which keeps the order")]
+    fn position(&self, query: &[f64; 3]) -> u32 {
+        // NaN becomes 0, which also arises on an axis without extent.
+        let cell = |k: usize| (((query[k] * 0.5 - self.low[k] * 0.5) * self.scale[k]) as u32).min((1 << self.bits) - 1);
+        curve::position([cell(0), cell(1), cell(2)], self.bits) as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point3;
+
+    #[test]
+    fn the_curve_contains_every_query_once_and_neighbours_together() {
+        let queries: Vec<Point3<f64>> =
+            (0..4096u32).map(|i| Point3::new(f64::from(i % 16), f64::from(i / 16 % 16), f64::from(i / 256))).collect();
+        let mut positions = sorted_along_curve::<f64>(&queries);
+        let steps: f64 = positions.windows(2).map(|w| (queries[w[0] as usize] - queries[w[1] as usize]).norm()).sum();
+        assert!(steps / 4095.0 < 1.7, "{steps}");
+        positions.sort_unstable();
+        assert!(positions.into_iter().eq(0..4096));
+    }
+
+    #[test]
+    fn queries_of_all_kinds_have_a_position() {
+        let queries = [f64::NAN, f64::INFINITY, f64::MAX, -f64::MAX, 0.0].map(|x| Point3::new(x, x, 1.0));
+        let mut positions = sorted_along_curve::<f64>(&queries);
+        positions.sort_unstable();
+        assert_eq!(positions, [0, 1, 2, 3, 4]);
+        assert!(sorted_along_curve::<f64>(&[[0.0f64; 3]; 0]).is_empty());
+    }
+}

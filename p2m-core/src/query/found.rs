@@ -1,0 +1,35 @@
+//! The answer to one query of a batch, before it is converted.
+
+use super::best::BestF64;
+use crate::{Closest, Real};
+use std::marker::PhantomData;
+
+/// The answer to one query of a batch. It converts to [`Closest`], or to those parts of it that are asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Found<'a, T: Real> {
+    minimum: &'a BestF64,
+    scalar: PhantomData<T>,
+}
+
+impl<'a, T: Real> Found<'a, T> {
+    /// Wraps the running minimum of a search that has ended.
+    #[inline(always)]
+    #[doc(hidden)]
+    pub fn new(minimum: &'a BestF64) -> Self {
+        Self { minimum, scalar: PhantomData }
+    }
+
+    /// Returns the answer, or `None` if nothing lies within the largest distance, or if the query is not finite.
+    #[inline]
+    #[must_use]
+    pub fn closest(&self) -> Option<Closest<T>> {
+        self.minimum.finish()
+    }
+
+    /// Returns the distance and the index of the primitive of [`closest`](Self::closest), without computing the rest.
+    #[inline]
+    #[must_use]
+    pub fn distance_and_index(&self) -> Option<(T, u32)> {
+        self.minimum.distance_and_primitive().map(|(distance, id)| (T::round_from_f64(distance), id.number()))
+    }
+}
