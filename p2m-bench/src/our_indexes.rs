@@ -78,11 +78,21 @@ where
     I: ClosestPoint<f64> + Sync + 'a,
     E: Display,
 {
+    Ok(prepared(set, borrowed, build, OneByOne))
+}
+
+/// Prepares an index over a set, to be queried in the way of `harness`.
+fn prepared<'a, S: 'a, I: 'a, E: Display, H: BenchIndex + 'a>(
+    set: S,
+    borrowed: usize,
+    build: impl FnOnce(S) -> Result<I, E> + 'a,
+    harness: fn(I) -> H,
+) -> Prepared<'a> {
     let build = move || {
         let index = build(set).map_err(|error| Unavailable(error.to_string()))?;
-        Ok(Box::new(OneByOne(index)) as BoxedIndex<'a>)
+        Ok(Box::new(harness(index)) as BoxedIndex<'a>)
     };
-    Ok(Prepared { build: Box::new(build), borrowed })
+    Prepared { build: Box::new(build), borrowed }
 }
 
 /// Prepares an index that borrows the scene as it is.
@@ -183,12 +193,7 @@ where
     I: ClosestPoint<f64> + Sync + 'a,
     E: Display,
 {
-    let (soup, borrowed) = f64::soup(scene)?;
-    let build = move || {
-        let index = build(soup).map_err(|error| Unavailable(error.to_string()))?;
-        Ok(Box::new(InOneBatch(index)) as BoxedIndex<'a>)
-    };
-    Ok(Prepared { build: Box::new(build), borrowed })
+    Ok(prepared(&scene.double, scene.double_bytes, build, InOneBatch))
 }
 
 /// Prepares the AABB tree with the instruction set of that name for one batch call.

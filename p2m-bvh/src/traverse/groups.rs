@@ -39,11 +39,11 @@ pub fn answer_in_groups<T: Real, S: PrimitiveSet<T>, V: VolumeNodes>(
                 answered(number, template.found());
                 continue;
             }
-            several.minimums[count].clone_from(template.minimum_ref());
+            several.minimums()[count].clone_from(template.minimum_ref());
             if options.hint.is_some() {
                 let mut best = template.clone();
                 best.offer_hint(set, query);
-                several.minimums[count].clone_from(best.minimum_ref());
+                several.minimums()[count].clone_from(best.minimum_ref());
             }
             group[count] = number;
             points[count].set(*query);
@@ -54,7 +54,7 @@ pub fn answer_in_groups<T: Real, S: PrimitiveSet<T>, V: VolumeNodes>(
             }
         }
         search(count, &mut several);
-        for (number, minimum) in group[..count].iter().zip(&several.minimums) {
+        for (number, minimum) in group[..count].iter().zip(several.minimums()) {
             answered(*number, Found::new(minimum));
         }
         if count < SEARCHES {

@@ -109,14 +109,47 @@ struct Limits {
     node: f32,
 }
 
-/// The state of several searches. It is large, so a batch makes one and uses it for all of its queries.
-pub struct Several<'a, V: VolumeNodes> {
+/// What the evaluation of candidates needs of several searches.
+struct Searches<'a, V: VolumeNodes> {
     tree: &'a PacketTree<V>,
     /// The function that evaluates primitives of which the tree has only a box.
     evaluate: EvaluateSearchFn<'a>,
     limits: [Limits; SEARCHES],
-    /// The collectors of the searches.
-    pub minimums: [BestF64; SEARCHES],
+    minimums: [BestF64; SEARCHES],
+}
+
+impl<V: VolumeNodes> Searches<'_, V> {
+    /// Offers results to the collectors of their searches. The kernel for single primitives computes those that are
+    /// not certain.
+    #[inline(always)]
+    fn take(&mut self, candidates: &[Candidate], found: &EightNearest) {
+        for (i, candidate) in candidates.iter().enumerate() {
+            if found.was_skipped(i) {
+                continue;
+            }
+            let id = self.tree.leaves.packets[candidate.packet as usize].ids()[candidate.lane as usize];
+            if !self.minimums[candidate.search as usize].offer_lane(id, found, i) {
+                self.offer_single(*candidate);
+            }
+        }
+    }
+
+    /// Evaluates a candidate by the kernel for single primitives.
+    #[cold]
+    #[inline(never)]
+    fn offer_single(&mut self, candidate: Candidate) {
+        let (search, lane) = (candidate.search as usize, candidate.lane as usize);
+        let packet = &self.tree.leaves.packets[candidate.packet as usize];
+        let (minimum, evaluate) = (&mut self.minimums[search], self.evaluate);
+        let square = minimum.prune_above();
+        let evaluate = |collector: &mut BestF64, id, square| evaluate(search, collector, id, square);
+        offer(&self.tree.leaves, packet, lane, self.limits[search].query, square, minimum, &evaluate);
+    }
+}
+
+/// The state of several searches. It is large, so a batch makes one and uses it for all of its queries.
+pub struct Several<'a, V: VolumeNodes> {
+    searches: Searches<'a, V>,
     candidates: [Candidate; CANDIDATE_ROOM],
     candidate_count: usize,
     /// The number of candidates of each search.
@@ -144,10 +177,12 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
     /// Creates the state of searches that have not begun. `template` is a collector without a candidate.
     pub fn new(tree: &'a PacketTree<V>, template: &BestF64, evaluate: EvaluateSearchFn<'a>) -> Self {
         Self {
-            tree,
-            evaluate,
-            limits: [Limits { query: [0.0; 3], candidate: 0.0, node: 0.0 }; SEARCHES],
-            minimums: std::array::from_fn(|_| template.clone()),
+            searches: Searches {
+                tree,
+                evaluate,
+                limits: [Limits { query: [0.0; 3], candidate: 0.0, node: 0.0 }; SEARCHES],
+                minimums: std::array::from_fn(|_| template.clone()),
+            },
             candidates: [Candidate::default(); CANDIDATE_ROOM],
             candidate_count: 0,
             counts: [0; SEARCHES],
@@ -163,41 +198,47 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
     /// Begins the search with this number for the nearest primitive to `query`. Its collector has to be set before.
     #[inline(always)]
     pub fn begin(&mut self, search: usize, query: V3) {
-        self.limits[search] = Limits { query, candidate: f64::INFINITY, node: f32::INFINITY };
+        self.searches.limits[search] = Limits { query, candidate: f64::INFINITY, node: f32::INFINITY };
         self.update_limit(search);
     }
 
     /// Limits a search to an upper bound on the distance of its nearest primitive.
     #[inline(always)]
     pub fn limit_to(&mut self, search: usize, upper_bound: f64) {
-        let limits = &mut self.limits[search];
+        let limits = &mut self.searches.limits[search];
         limits.candidate = if upper_bound < limits.candidate { upper_bound } else { limits.candidate };
-        let node = self.tree.frame.square_above(upper_bound * upper_bound * ROUND_UP_F64);
+        let node = self.searches.tree.frame.square_above(upper_bound * upper_bound * ROUND_UP_F64);
         limits.node = if node < limits.node { node } else { limits.node };
+    }
+
+    /// The collectors of the searches.
+    #[inline(always)]
+    pub fn minimums(&mut self) -> &mut [BestF64; SEARCHES] {
+        &mut self.searches.minimums
     }
 
     /// The query point of a search.
     #[inline(always)]
     pub fn query(&self, search: usize) -> &V3 {
-        &self.limits[search].query
+        &self.searches.limits[search].query
     }
 
     /// Computes the limits of a search from its collector as well.
     #[inline(always)]
     fn update_limit(&mut self, search: usize) {
-        let prune = self.minimums[search].prune_above();
-        let limits = &mut self.limits[search];
+        let prune = self.searches.minimums[search].prune_above();
+        let limits = &mut self.searches.limits[search];
         let bound = prune.sqrt() * ROUND_UP_F64;
         limits.candidate = if limits.candidate < bound { limits.candidate } else { bound };
         let square = limits.candidate * limits.candidate * ROUND_UP_F64;
-        let node = self.tree.frame.square_above(if square < prune { square } else { prune });
+        let node = self.searches.tree.frame.square_above(if square < prune { square } else { prune });
         limits.node = if node < limits.node { node } else { limits.node };
     }
 
     /// The square of the distance above which a search skips packets, in the frame of the tree.
     #[inline(always)]
     pub fn limit(&self, search: usize) -> f32 {
-        self.limits[search].node
+        self.searches.limits[search].node
     }
 
     /// Adds a primitive that is evaluated whatever its filter would find.
@@ -213,9 +254,9 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
     #[cold]
     #[inline(never)]
     pub fn search_tree(&mut self, search: usize) {
-        let (tree, query, evaluate) = (self.tree, self.limits[search].query, self.evaluate);
+        let (tree, query, evaluate) = (self.searches.tree, self.searches.limits[search].query, self.searches.evaluate);
         let evaluate = |collector: &mut BestF64, id, square| evaluate(search, collector, id, square);
-        tree.run(query, &mut self.minimums[search], &evaluate, finish_nearest);
+        tree.run(query, &mut self.searches.minimums[search], &evaluate, finish_nearest);
     }
 
     /// Filters packets of one search, which are given by their numbers and lanes.
@@ -225,7 +266,7 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
     pub fn filter_all(&mut self, search: usize, packets: &[(u32, u16)]) {
         for &(packet, lanes) in packets {
             let visit = PacketVisit { search: search as u32, packet, lanes: u32::from(lanes) };
-            self.tree.isa.run(Filter { several: self, visits: &[visit] });
+            self.searches.tree.isa.run(Filter { several: self, visits: &[visit] });
         }
     }
 
@@ -236,10 +277,10 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded up")]
     pub fn filter<I: InstructionSet>(&mut self, visits: &[PacketVisit]) {
-        let leaves = &self.tree.leaves;
+        let leaves = &self.searches.tree.leaves;
         for (i, visit) in visits.iter().enumerate() {
             let packet = &leaves.packets[visit.packet as usize];
-            let limits = &self.limits[visit.search as usize % SEARCHES];
+            let limits = &self.searches.limits[visit.search as usize % SEARCHES];
             self.locals.set(i % SEARCHES, &limits.query, packet);
             self.rows.candidate[i % SEARCHES] = limits.candidate;
             self.early |= u32::from(!packet.has_vertices()) << visit.search;
@@ -265,7 +306,7 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
             let nearest = smallest::<I::Wide>(squares);
             self.rows.nearest_square[i % SEARCHES] = if has_vertices { nearest } else { f32::INFINITY };
         }
-        self.rows.update::<I>(&self.locals, &self.tree.frame);
+        self.rows.update::<I>(&self.locals, &self.searches.tree.frame);
         for (i, visit) in visits.iter().enumerate() {
             self.push_candidates::<I>(visit, i % SEARCHES);
         }
@@ -278,25 +319,25 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "`distance_below` allows for the rounding")]
     fn push_candidates<I: InstructionSet>(&mut self, visit: &PacketVisit, place: usize) {
-        let packet = &self.tree.leaves.packets[visit.packet as usize];
+        let packet = &self.searches.tree.leaves.packets[visit.packet as usize];
         let squares = &self.squares[place];
         let mut passed = visit.lanes & packet.lanes();
         if self.locals.far >> place & 1 == 0 {
-            let limits = &mut self.limits[visit.search as usize % SEARCHES];
+            let limits = &mut self.searches.limits[visit.search as usize % SEARCHES];
             limits.candidate = self.rows.candidate[place];
             let node = self.rows.node[place];
             limits.node = if node < limits.node { node } else { limits.node };
             let limit = self.rows.limit[place];
             passed &= at_most::<I::Wide>(squares, limit * limit);
         }
-        let scale = packet.unit() * self.tree.frame.per_unit;
+        let scale = packet.unit() * self.searches.tree.frame.per_unit;
         let count = &mut self.counts[visit.search as usize % SEARCHES];
         *count += passed.count_ones();
         self.early |= u32::from(*count >= MAX_CANDIDATES) << visit.search;
         while passed != 0 {
             let lane = passed.trailing_zeros();
             passed &= passed - 1;
-            packet.prefetch_vertices(lane as usize, &self.tree.leaves.vertices);
+            packet.prefetch_vertices(lane as usize, &self.searches.tree.leaves.vertices);
             let is_far = self.locals.far >> place & 1 == 1;
             let distance = squares[lane as usize].sqrt() * (1.0 - f32::EPSILON) - self.locals.excess[place];
             let lower_bound = if is_far { 0.0 } else { (f64::from(distance) * scale) as f32 };
@@ -325,7 +366,7 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
     /// and offers them to the collectors.
     #[inline(always)]
     fn evaluate(&mut self, searches: u32) {
-        let leaves = &self.tree.leaves;
+        let leaves = &self.searches.tree.leaves;
         for i in 0..std::mem::take(&mut self.candidate_count) {
             if searches >> self.candidates[i].search & 1 == 0 {
                 self.candidates[self.candidate_count] = self.candidates[i];
@@ -333,8 +374,9 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
                 continue;
             }
             let candidate = self.candidates[i];
-            let limits = &self.limits[candidate.search as usize];
-            let distance = f64::from(candidate.lower_bound) * (1.0 - f64::from(f32::EPSILON)) * self.tree.frame.unit;
+            let limits = &self.searches.limits[candidate.search as usize];
+            let distance =
+                f64::from(candidate.lower_bound) * (1.0 - f64::from(f32::EPSILON)) * self.searches.tree.frame.unit;
             if distance > limits.candidate {
                 continue;
             }
@@ -353,7 +395,7 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
                         self.evaluate_segments();
                     }
                 }
-                _ => self.offer_single(candidate),
+                _ => self.searches.offer_single(candidate),
             }
         }
         for (search, count) in self.counts.iter_mut().enumerate() {
@@ -371,9 +413,9 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
     #[inline(never)]
     fn evaluate_triangles(&mut self, may_skip: bool) {
         let waiting = &mut self.triangles;
-        let found = self.tree.isa.run(EvaluateTriangles(&waiting.eight, may_skip));
+        let found = self.searches.tree.isa.run(EvaluateTriangles(&waiting.eight, may_skip));
         let len = std::mem::take(&mut waiting.len);
-        take(self.tree, &mut self.minimums, self.evaluate, &self.limits, &waiting.candidates[..len], &found);
+        self.searches.take(&waiting.candidates[..len], &found);
         for lane in 0..len {
             if found.was_skipped(lane) {
                 waiting.eight.copy_lane(lane, waiting.len);
@@ -385,14 +427,9 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
 
     #[inline(never)]
     fn evaluate_segments(&mut self) {
-        let found = self.tree.isa.run(EvaluateSegments(&self.segments.eight));
+        let found = self.searches.tree.isa.run(EvaluateSegments(&self.segments.eight));
         let len = std::mem::take(&mut self.segments.len);
-        take(self.tree, &mut self.minimums, self.evaluate, &self.limits, &self.segments.candidates[..len], &found);
-    }
-
-    /// Evaluates a candidate by the kernel for single primitives.
-    fn offer_single(&mut self, candidate: Candidate) {
-        offer_single(self.tree, &mut self.minimums, self.evaluate, &self.limits, candidate);
+        self.searches.take(&self.segments.candidates[..len], &found);
     }
 }
 
@@ -409,46 +446,6 @@ impl<V: VolumeNodes> SimdKernel for Filter<'_, '_, V> {
     fn run<I: InstructionSet>(self) {
         self.several.filter::<I>(self.visits);
     }
-}
-
-/// Offers results to the collectors of their searches. Those that are not certain are computed by the kernel for
-/// single primitives.
-#[inline(always)]
-fn take<V: VolumeNodes>(
-    tree: &PacketTree<V>,
-    minimums: &mut [BestF64; SEARCHES],
-    evaluate: EvaluateSearchFn<'_>,
-    limits: &[Limits; SEARCHES],
-    candidates: &[Candidate],
-    found: &EightNearest,
-) {
-    for (i, candidate) in candidates.iter().enumerate() {
-        if found.was_skipped(i) {
-            continue;
-        }
-        let id = tree.leaves.packets[candidate.packet as usize].ids()[candidate.lane as usize];
-        if !minimums[candidate.search as usize].offer_lane(id, found, i) {
-            offer_single(tree, minimums, evaluate, limits, *candidate);
-        }
-    }
-}
-
-/// Evaluates a candidate by the kernel for single primitives.
-#[cold]
-#[inline(never)]
-fn offer_single<V: VolumeNodes>(
-    tree: &PacketTree<V>,
-    minimums: &mut [BestF64; SEARCHES],
-    evaluate: EvaluateSearchFn<'_>,
-    limits: &[Limits; SEARCHES],
-    candidate: Candidate,
-) {
-    let (search, lane) = (candidate.search as usize, candidate.lane as usize);
-    let packet = &tree.leaves.packets[candidate.packet as usize];
-    let minimum = &mut minimums[search];
-    let square = minimum.prune_above();
-    let evaluate = |collector: &mut BestF64, id, square| evaluate(search, collector, id, square);
-    offer(&tree.leaves, packet, lane, limits[search].query, square, minimum, &evaluate);
 }
 
 /// Candidates of one kind that wait for evaluation: those in the first `len` lanes.

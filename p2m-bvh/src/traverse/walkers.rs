@@ -41,19 +41,19 @@ impl<V: VolumeNodes> Walkers<V> {
     /// Searches the tree for the queries of the first `count` searches of `several`.
     #[inline(always)]
     pub fn search(&mut self, tree: &PacketTree<V>, several: &mut Several<'_, V>, count: usize) {
-        tree.isa.run(Walk { walkers: self, tree, several, count });
+        tree.isa.run(SearchInTurns { walkers: self, tree, several, count });
     }
 }
 
-/// The traversals as a kernel that is compiled for each instruction set.
-struct Walk<'a, 'b, V: VolumeNodes> {
+/// The traversals of several searches as a kernel that is compiled for each instruction set.
+struct SearchInTurns<'a, 'b, V: VolumeNodes> {
     walkers: &'a mut Walkers<V>,
     tree: &'a PacketTree<V>,
     several: &'a mut Several<'b, V>,
     count: usize,
 }
 
-impl<V: VolumeNodes> SimdKernel for Walk<'_, '_, V> {
+impl<V: VolumeNodes> SimdKernel for SearchInTurns<'_, '_, V> {
     type Output = ();
 
     #[inline(always)]

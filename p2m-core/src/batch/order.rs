@@ -1,6 +1,6 @@
 //! The order in which the queries of a batch are answered: along a curve that fills their box.
 
-use super::QueryPoint;
+use super::query_point::QueryPoint;
 use crate::real::to_f64_array;
 use crate::{Real, curve};
 

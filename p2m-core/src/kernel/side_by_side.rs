@@ -246,7 +246,8 @@ struct NearestVertices<D: Doubles> {
     vertices: [[D; 3]; 3],
     /// The vectors from the query points to the vertices.
     offsets: [[D; 3]; 3],
-    /// The largest component of the offsets.
+    /// The box around the offsets, and the largest component.
+    offset_bounds: [[D; 3]; 2],
     size: D,
     /// The squared lengths of the offsets.
     squares: [D; 3],
@@ -265,7 +266,8 @@ impl<D: Doubles> NearestVertices<D> {
     fn new(eight: &Eight<3>) -> Self {
         let (query, vertices) = eight.load::<D>();
         let offsets = [sub(vertices[0], query), sub(vertices[1], query), sub(vertices[2], query)];
-        let size = largest(&bounds(&offsets));
+        let offset_bounds = bounds(&offsets);
+        let size = largest(&offset_bounds);
         let squares = [norm_squared(offsets[0]), norm_squared(offsets[1]), norm_squared(offsets[2])];
         let are_tied = squares[0].equals(squares[1]) | squares[1].equals(squares[2]) | squares[2].equals(squares[0]);
         let nearest = Choice::smallest(squares);
@@ -280,7 +282,7 @@ impl<D: Doubles> NearestVertices<D> {
         };
         let least = smaller(dot(offset, next), dot(offset, last));
         let is_vertex = (D::splat(OUTWARD_MARGIN) * (size * size)).is_below(least);
-        Self { query, vertices, offsets, size, squares, nearest, vertex, are_tied, is_vertex }
+        Self { query, vertices, offsets, offset_bounds, size, squares, nearest, vertex, are_tied, is_vertex }
     }
 
     /// Returns whether the nearest point is certainly a vertex.
@@ -325,9 +327,19 @@ pub fn triangles<D: Doubles>(eight: &Eight<3>, may_skip: bool) -> EightNearest {
     if may_skip && around.uncertain_lanes().count_ones() <= MAX_SKIPPED {
         return around.certain();
     }
-    let NearestVertices { query, vertices, offsets, size, squares, nearest, vertex, are_tied, is_vertex } = around;
+    let NearestVertices {
+        query,
+        vertices,
+        offsets,
+        offset_bounds,
+        size,
+        squares,
+        nearest,
+        vertex,
+        are_tied,
+        is_vertex,
+    } = around;
     let zero = D::splat(0.0);
-    let offset_bounds = bounds(&offsets);
 
     let lines = [line(&offsets, &squares, 0), line(&offsets, &squares, 1), line(&offsets, &squares, 2)];
     let inverses = [lines[0].inverse, lines[1].inverse, lines[2].inverse];

@@ -3,7 +3,6 @@
 use super::answer::{ROUND_DOWN, ROUND_UP, answer, square_within};
 use super::closest::Closest;
 use super::collector::Collector;
-use super::found::Found;
 use super::options::QueryOptions;
 use crate::kernel::side_by_side::EightNearest;
 use crate::{Key, Primitive, PrimitiveId, PrimitiveSet, Projection, Real};
@@ -96,12 +95,6 @@ impl<T: Real> Best<T> {
     #[doc(hidden)]
     pub fn minimum_ref(&self) -> &BestF64 {
         &self.minimum
-    }
-
-    /// Returns the answer so far, which converts to the parts that are asked for.
-    #[must_use]
-    pub fn found(&self) -> Found<'_, T> {
-        Found::new(&self.minimum)
     }
 
     /// Returns the answer, or `None` if no candidate was within the radius.

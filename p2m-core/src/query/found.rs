@@ -1,6 +1,6 @@
 //! The answer to one query of a batch, before it is converted.
 
-use super::best::BestF64;
+use super::best::{Best, BestF64};
 use crate::{Closest, Real};
 use std::marker::PhantomData;
 
@@ -31,5 +31,13 @@ impl<'a, T: Real> Found<'a, T> {
     #[must_use]
     pub fn distance_and_index(&self) -> Option<(T, u32)> {
         self.minimum.distance_and_primitive().map(|(distance, id)| (T::round_from_f64(distance), id.number()))
+    }
+}
+
+impl<T: Real> Best<T> {
+    /// Returns the answer so far, which converts to the parts that are asked for.
+    #[must_use]
+    pub fn found(&self) -> Found<'_, T> {
+        Found::new(self.minimum_ref())
     }
 }

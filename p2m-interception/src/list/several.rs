@@ -21,6 +21,15 @@ struct Cursor {
     query: BlockQuery,
 }
 
+/// The search of several queries, which take turns, in a partition. Each partition implements the SIMD kernel.
+pub(crate) struct SearchSeveral<'a, 'b, P> {
+    pub(crate) partition: &'a P,
+    /// The number of searches of `several` that have begun.
+    pub(crate) count: usize,
+    pub(crate) several: &'a mut Several<'b, Aabb<f64>>,
+    pub(crate) lists: &'a mut Lists,
+}
+
 /// The lists that several queries search. It is large, so a batch makes one and uses it for all of its queries.
 pub(crate) struct Lists {
     cursors: [Cursor; SEARCHES],

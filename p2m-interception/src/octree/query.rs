@@ -2,7 +2,7 @@
 
 use crate::list::block::{Block, BlockQuery, MAX_LEVEL};
 use crate::list::search;
-use crate::list::several::Lists;
+use crate::list::several::{Lists, SearchSeveral};
 use crate::octree::Octree;
 use crate::octree::code::{CellCode, FALLBACK_CODE, KIND_LIST, KIND_ONE_LEVEL, KIND_SHIFT, KIND_SINGLE};
 use crate::partition::CellQuery;
@@ -100,24 +100,16 @@ impl CellQuery for Octree {
     }
 
     fn search_several(&self, count: usize, several: &mut Several<'_, Aabb<f64>>, lists: &mut Lists) {
-        self.tree.isa().run(SearchSeveral { octree: self, count, several, lists });
+        self.tree.isa().run(SearchSeveral { partition: self, count, several, lists });
     }
 }
 
-/// A SIMD kernel that answers several queries, which take turns.
-struct SearchSeveral<'a, 'b> {
-    octree: &'a Octree,
-    count: usize,
-    several: &'a mut Several<'b, Aabb<f64>>,
-    lists: &'a mut Lists,
-}
-
-impl SimdKernel for SearchSeveral<'_, '_> {
+impl SimdKernel for SearchSeveral<'_, '_, Octree> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        let Self { octree, count, several, lists } = self;
+        let Self { partition: octree, count, several, lists } = self;
         let tree = &octree.tree;
         lists.clear();
         for i in 0..count {

@@ -6,7 +6,7 @@
 
 use crate::list::block::{Block, BlockQuery};
 use crate::list::search;
-use crate::list::several::Lists;
+use crate::list::several::{Lists, SearchSeveral};
 use crate::partition::CellQuery;
 use crate::voronoi::Voronoi;
 use crate::voronoi::list_filter::{ListFilter, ListFilters};
@@ -62,7 +62,7 @@ impl CellQuery for Voronoi {
     }
 
     fn search_several(&self, count: usize, several: &mut Several<'_, Aabb<f64>>, lists: &mut Lists) {
-        self.tree.isa().run(SearchSeveral { index: self, count, several, lists });
+        self.tree.isa().run(SearchSeveral { partition: self, count, several, lists });
     }
 }
 
@@ -234,20 +234,12 @@ fn block_query(tree: &PacketTree, query: &V3) -> BlockQuery {
     BlockQuery { rounded: Rounded::of(local), local, cells: [0.0; 3] }
 }
 
-/// A SIMD kernel that answers several queries, which take turns.
-struct SearchSeveral<'a, 'b> {
-    index: &'a Voronoi,
-    count: usize,
-    several: &'a mut Several<'b, Aabb<f64>>,
-    lists: &'a mut Lists,
-}
-
-impl SimdKernel for SearchSeveral<'_, '_> {
+impl SimdKernel for SearchSeveral<'_, '_, Voronoi> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        let Self { index, count, several, lists } = self;
+        let Self { partition: index, count, several, lists } = self;
         lists.clear();
         let Some(locator) = &index.locator else {
             (0..count).for_each(|i| several.search_tree(i));
