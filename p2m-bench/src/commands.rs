@@ -10,8 +10,8 @@ use crate::measure::Effort;
 use crate::report::provenance;
 use crate::scene::Scene;
 use crate::{
-    adversaries, advise, backends, batch, delaunay, extremes, field, kdop, measure, octree, paper, program, rays,
-    report, saved, splits, tradeoff, verify,
+    adversaries, advise, backends, batch, candidates, delaunay, extremes, field, kdop, measure, octree, paper, program,
+    rays, report, saved, splits, tradeoff, verify,
 };
 use anyhow::{Context, Result};
 use p2m_testkit::queries::QuerySet;
@@ -199,7 +199,9 @@ fn time_batches(arguments: &BatchArguments) -> Result<bool> {
     let BatchArguments { rounds, sets, threads } = arguments;
     let effort = rounds.effort(1_000_000);
     let about = in_rounds("Wall time", &effort);
-    let is_good = all_good(&rounds.scenes, &about, |scene| batch::print(&scene, &sets.sets, threads, &effort))?;
+    let is_good = all_good(&rounds.scenes, &about, |scene| {
+        Ok(batch::print(&scene, &sets.sets, threads, &effort)? & candidates::print(&scene, &sets.sets, &effort)?)
+    })?;
     println!(
         "{}",
         if is_good { "All answers are those of single queries." } else { "DIFFERENCES from single queries." }

@@ -19,6 +19,7 @@ mod backends;
 mod batch;
 mod blocks;
 mod bvh_crate;
+mod candidates;
 mod commands;
 mod delaunay;
 mod external;

@@ -3,8 +3,8 @@
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 
 use nalgebra::Point3;
-use p2m::batch::{BatchOptions, ClosestColumns, closest_columns_into, closest_points_into, distances};
-use p2m::{AabbTree, BuildIndex, Closest, ClosestPoint, Feature, Isa, KdopTree, OctreeIndex, P2mIndex};
+use p2m::batch::{BatchOptions, ClosestColumns, closest_columns_into, closest_points_into, distances, map};
+use p2m::{AabbTree, BuildIndex, Closest, ClosestPoint, Feature, Isa, KdopTree, NearQuery, OctreeIndex, P2mIndex};
 use p2m::{PrimitiveId, PrimitiveSet, QueryOptions, Real, Soup};
 use p2m_advisor::{BACKENDS, BuildSettings};
 use p2m_testkit::scenes::{self, Kinds, Layout, narrow};
@@ -167,5 +167,20 @@ fn a_large_batch_on_several_threads_is_single_queries() {
             pool.install(|| closest_points_into(index, &all, &Default::default(), &Default::default(), &mut out));
             assert!(out.into_iter().map(|closest| closest.map(fields)).eq(expected.iter().copied()), "{threads}");
         }
+    }
+}
+
+#[test]
+fn other_queries_are_mapped_to_their_results_in_order() {
+    let mut rng = rng("mapped batches", 0);
+    let soup = scenes::soup(&mut rng, Kinds::Mixed, Layout::Strewn, 1000);
+    let all = queries(&mut rng, &soup, amount(100_000, 5000));
+    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let nearest = |query: &Point3<f64>| tree.k_nearest(query, 3, f64::INFINITY).into_iter().map(fields).collect();
+    let expected: Vec<Vec<_>> = all.iter().map(nearest).collect();
+    for bits in 0..4 {
+        let batch = BatchOptions::default().with_reorder(bits & 1 == 1).with_parallel(bits & 2 == 2);
+        assert!(map(&all, &batch, |query| *query, nearest) == expected, "{batch:?}");
+        assert!(map(&all[..0], &batch, |query| *query, nearest).is_empty());
     }
 }

@@ -18,13 +18,15 @@
 
 use super::layout::{LANES, Packet};
 use super::member::Kind;
-use super::squared_distance::{Triangles, V3, square_from_edge};
+use super::squared_distance::{Triangles, V3, lanes_before_plane, square_from_edge};
 use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Lanes};
 use p2m_core::engine::vector::power_of_two;
-use std::ops::Range;
 
 /// If the query point is more units of the frame away than this, the filter lets every primitive pass.
 const MAX_QUERY_UNITS: f64 = power_of_two(40);
+/// The square of the length of the shortest normal with which a plane is placed: shorter ones exclude little, and their
+/// squares may underflow.
+const SHORTEST_NORMAL: f32 = 1.0;
 /// The unit roundoff u of f32.
 const U: f32 = f32::EPSILON / 2.0;
 /// A factor for bounds that are computed in f32 with a few roundings of their own.
@@ -79,49 +81,64 @@ impl Packet {
     }
 
     /// Computes the squared distances of several query points, those in the given places of `locals`. What depends on
-    /// the packet alone is computed once. Squares that certainly exceed those of `limits`, distances in the frame, may
-    /// be infinite instead.
+    /// the packet alone is computed once. Squares of lanes whose bit in `near` is 0 may be infinite instead.
     #[inline(always)]
     pub fn squares_of_several<I: InstructionSet>(
         &self,
         locals: &Locals,
-        places: Range<usize>,
-        limits: impl Fn(usize) -> f32,
+        places: &[u8],
+        near: &[u32; PLACES],
         squares: &mut [[f32; LANES]; PLACES],
     ) {
-        // Where the lanes hold a whole packet, distances cost less than the branch.
-        let tests_planes = I::Wide::LEN < LANES;
-        let [x, y, z] = &locals.query;
-        let query = |i: usize| [x[i % PLACES], y[i % PLACES], z[i % PLACES]];
         let mut at = 0;
         while at < LANES {
-            let mut near = 0u32;
-            for i in places.start..places.end {
-                let is_beyond = tests_planes && self.is_beyond::<I::Wide>(at, &query(i), limits(i));
-                near |= u32::from(!is_beyond) << i;
-                I::Wide::splat(f32::INFINITY).store(&mut squares[i % PLACES][at..]);
-            }
-            if near != 0 {
+            let lanes = ((1 << I::Wide::LEN) - 1) << at;
+            // Lanes that hold a whole packet were found to be near before.
+            if I::Wide::LEN >= LANES || places.iter().any(|&place| near[usize::from(place) % PLACES] & lanes != 0) {
                 let primitives: Primitives<I::Wide> = self.prepare(at);
-                for i in places.start..places.end {
-                    if near >> i & 1 == 1 {
-                        let margin = locals.margin_squared[i % PLACES];
-                        primitives.squares(&V3::splat(query(i)), margin).store(&mut squares[i % PLACES][at..]);
-                    }
+                for place in places.iter().map(|&place| usize::from(place) % PLACES) {
+                    let query = [0, 1, 2].map(|k: usize| locals.query[k][place]);
+                    primitives
+                        .squares(&V3::splat(query), locals.margin_squared[place])
+                        .store(&mut squares[place][at..]);
+                }
+            } else {
+                for place in places.iter().map(|&place| usize::from(place) % PLACES) {
+                    I::Wide::splat(f32::INFINITY).store(&mut squares[place][at..]);
                 }
             }
             at += I::Wide::LEN;
         }
     }
 
+    /// Returns one bit for each lane: whether its triangle may be before the plane of a place, which
+    /// [`Locals::place_planes`] sets. All bits are 1 for other primitives.
+    #[inline(always)]
+    pub fn lanes_before_plane<L: Lanes>(&self, locals: &Locals, place: usize) -> u32 {
+        if self.kind() != Kind::Triangle {
+            return u32::MAX;
+        }
+        let [query, normal] = [&locals.query, &locals.normal].map(|rows| [0, 1, 2].map(|k: usize| rows[k][place]));
+        let mut mask = 0;
+        let mut at = 0;
+        while at < LANES {
+            let vertices: [V3<L>; 3] = [self.vertex(0, at), self.vertex(1, at), self.vertex(2, at)];
+            mask |= lanes_before_plane(&vertices, &V3::splat(query), normal, locals.offset[place]) << at;
+            at += L::LEN;
+        }
+        mask
+    }
+
     /// Returns whether the triangles in the lanes from `at` on are certainly farther from a query point than `limit`. It
     /// is false for other primitives.
     #[inline(always)]
     fn is_beyond<L: Lanes>(&self, at: usize, query: &[f32; 3], limit: f32) -> bool {
-        let is_of_triangles = self.kind() == Kind::Triangle;
-        is_of_triangles && {
-            let vertices = [self.vertex(0, at), self.vertex(1, at), self.vertex(2, at)];
-            Triangles::<L>::are_beyond_plane(&vertices, &V3::splat(*query), self.towards(query), limit)
+        self.kind() == Kind::Triangle && {
+            let vertices: [V3<L>; 3] = [self.vertex(0, at), self.vertex(1, at), self.vertex(2, at)];
+            let normal @ [x, y, z] = self.normal_of_plane(query);
+            let square = x * x + y * y + z * z;
+            let offset = if square < SHORTEST_NORMAL { f32::INFINITY } else { square.sqrt() * limit };
+            lanes_before_plane(&vertices, &V3::splat(*query), normal, offset) == 0
         }
     }
 
@@ -144,13 +161,16 @@ impl Packet {
 
     /// The vector from the query point to one of the vertices, both in the frame.
     #[inline(always)]
-    fn towards(&self, [x, y, z]: &[f32; 3]) -> [f32; 3] {
+    fn normal_of_plane(&self, [x, y, z]: &[f32; 3]) -> [f32; 3] {
+        let [a, b, c] = self.sample();
+        [a - x, b - y, c - z]
+    }
+
+    /// One of the vertices in the frame.
+    #[inline(always)]
+    fn sample(&self) -> [f32; 3] {
         const SAMPLE_LANE: usize = LANES / 2;
-        [
-            f32::from(self.rows[0][SAMPLE_LANE]) - x,
-            f32::from(self.rows[1][SAMPLE_LANE]) - y,
-            f32::from(self.rows[2][SAMPLE_LANE]) - z,
-        ]
+        [0, 1, 2].map(|k: usize| f32::from(self.rows[k][SAMPLE_LANE]))
     }
 
     /// Vertex v of the lanes from `at` on.
@@ -209,6 +229,11 @@ pub struct Locals {
     pub deficit: [f32; PLACES],
     /// The squared margin of each place, as in [`Local`].
     margin_squared: [f32; PLACES],
+    /// The normals of planes between the query points and the packets. Until the planes are placed, they are a vertex of
+    /// each packet in its frame.
+    normal: [[f32; PLACES]; 3],
+    /// The offsets of the planes: the product of the normal with the vector from the query point to a point of the plane.
+    offset: [f32; PLACES],
     /// One bit for each place whose query point is not in the frame, as [`Packet::local`] returns `None` for it.
     pub far: u32,
 }
@@ -225,6 +250,8 @@ impl Default for Locals {
             excess: [0.0; PLACES],
             deficit: [0.0; PLACES],
             margin_squared: [0.0; PLACES],
+            normal: [[0.0; PLACES]; 3],
+            offset: [0.0; PLACES],
             far: 0,
         }
     }
@@ -238,6 +265,28 @@ impl Locals {
             (self.position[k][place], self.origin[k][place]) = (*position, *origin);
         }
         (self.unit[place], self.per_unit[place]) = (packet.unit, packet.per_unit);
+        for (row, coordinate) in self.normal.iter_mut().zip(packet.sample()) {
+            row[place] = coordinate;
+        }
+    }
+
+    /// Places a plane before each query point, at the distance `limits` from it in the frame of its packet, towards a
+    /// vertex of the packet.
+    #[inline(always)]
+    pub fn place_planes<I: InstructionSet>(&mut self, limits: &[f32; PLACES]) {
+        let mut at = 0;
+        while at < PLACES {
+            let mut square = I::Wide::splat(0.0);
+            for k in 0..3 {
+                let normal = I::Wide::load(&self.normal[k][at..]).sub(I::Wide::load(&self.query[k][at..]));
+                normal.store(&mut self.normal[k][at..]);
+                square = normal.mul_add(normal, square);
+            }
+            let offset = square.sqrt().mul(I::Wide::load(&limits[at..]));
+            let everywhere = I::Wide::splat(f32::INFINITY);
+            square.if_below(I::Wide::splat(SHORTEST_NORMAL), everywhere, offset).store(&mut self.offset[at..]);
+            at += I::Wide::LEN;
+        }
     }
 
     /// Converts all query points to the frames of their packets, as [`Packet::local`] does.

@@ -115,14 +115,6 @@ impl<L: Lanes> Triangles<L> {
         Self { edges, inverse_square: normal_squared.reciprocal(), normal_squared, normal, vertices }
     }
 
-    /// Returns whether all triangles are certainly farther than `limit` from a query point: all vertices lie behind the
-    /// plane at this distance that is orthogonal to `towards`.
-    #[inline(always)]
-    pub(super) fn are_beyond_plane(vertices: &[V3<L>; 3], query: &V3<L>, towards: [f32; 3], limit: f32) -> bool {
-        let [a, b, c] = vertices;
-        is_beyond_plane(&[a.sub(query), b.sub(query), c.sub(query)], towards, limit)
-    }
-
     /// The squared distances from a query point.
     #[inline(always)]
     pub(super) fn squares(&self, query: &V3<L>, margin_squared: f32) -> L {
@@ -147,17 +139,14 @@ impl<L: Lanes> Triangles<L> {
     }
 }
 
-/// Whether all triangles are certainly farther than `limit`: all vertices lie behind the plane that is orthogonal to
-/// `towards` at this distance.
+/// Returns one bit for each lane: whether a vertex of its triangle does not lie behind a plane. The plane is orthogonal to
+/// `normal`, and its offset is the product of the normal with the vector from the query point to a point of the plane.
 #[inline(always)]
-fn is_beyond_plane<L: Lanes>(offsets: &[V3<L>; 3], towards: [f32; 3], limit: f32) -> bool {
-    let [x, y, z] = towards;
-    let length = (x * x + y * y + z * z).sqrt();
-    let towards = V3::splat(towards);
-    let [a, b, c] = offsets;
-    // Vectors shorter than a unit exclude little, and their squares may underflow.
-    let threshold = if length >= 1.0 { length * limit } else { f32::INFINITY };
-    a.dot(&towards).min(b.dot(&towards)).min(c.dot(&towards)).at_most(L::splat(threshold)) == 0
+pub(super) fn lanes_before_plane<L: Lanes>(vertices: &[V3<L>; 3], query: &V3<L>, normal: [f32; 3], offset: f32) -> u32 {
+    let normal = V3::splat(normal);
+    let [a, b, c] = vertices;
+    let [a, b, c] = [a.sub(query).dot(&normal), b.sub(query).dot(&normal), c.sub(query).dot(&normal)];
+    a.min(b).min(c).at_most(L::splat(offset))
 }
 
 /// A scale of edges, 2^-34, with which products of two edges are about 1 at most.

@@ -11,7 +11,7 @@ use crate::tree::frame::Frame;
 use crate::tree::wide_node::VolumeNodes;
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::side_by_side::{Eight, EightNearest, SIDE_BY_SIDE, segments, triangles};
-use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Lanes, SimdKernel};
+use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Isa, Lanes, SimdKernel};
 use p2m_core::engine::vector::V3;
 use p2m_core::{Collector, PrimitiveId};
 
@@ -55,6 +55,8 @@ struct LimitRows {
     node: [f32; SEARCHES],
     /// The distances above which primitives are no candidates, in the frames of the packets.
     limit: [f32; SEARCHES],
+    /// The limits before the filters, in the frames of the packets.
+    old_limit: [f32; SEARCHES],
 }
 
 impl LimitRows {
@@ -64,6 +66,24 @@ impl LimitRows {
             nearest_square: [0.0; SEARCHES],
             node: [0.0; SEARCHES],
             limit: [0.0; SEARCHES],
+            old_limit: [0.0; SEARCHES],
+        }
+    }
+
+    /// Converts the limits before the filters to the frames of the packets.
+    #[inline(always)]
+    fn convert<I: InstructionSet>(&mut self, locals: &Locals) {
+        let mut at = 0;
+        while at < SEARCHES {
+            let candidate = I::Doubles::load(&self.candidate[at..]);
+            (candidate * I::Doubles::load(&locals.per_unit[at..])).store_f32(&mut self.old_limit[at..]);
+            at += 8;
+        }
+        let mut at = 0;
+        while at < SEARCHES {
+            let limit = I::Wide::load(&self.old_limit[at..]).add(I::Wide::load(&locals.excess[at..]));
+            limit.mul(I::Wide::splat(ROUND_UP)).store(&mut self.old_limit[at..]);
+            at += I::Wide::LEN;
         }
     }
 
@@ -71,7 +91,6 @@ impl LimitRows {
     #[inline(always)]
     fn update<I: InstructionSet>(&mut self, locals: &Locals, frame: &Frame) {
         let mut nearest = [0.0; SEARCHES];
-        let mut old_limit = [0.0; SEARCHES];
         let up = I::Wide::splat(ROUND_UP);
         let mut at = 0;
         while at < SEARCHES {
@@ -82,7 +101,6 @@ impl LimitRows {
         let mut at = 0;
         while at < SEARCHES {
             let candidate = I::Doubles::load(&self.candidate[at..]);
-            (candidate * I::Doubles::load(&locals.per_unit[at..])).store_f32(&mut old_limit[at..]);
             let upper_bound = I::Doubles::load_f32(&nearest[at..]) * I::Doubles::load(&locals.unit[at..]);
             upper_bound.min(candidate).store(&mut self.candidate[at..]);
             frame.squares_above::<I::Doubles>(upper_bound, &mut self.node[at..]);
@@ -92,8 +110,7 @@ impl LimitRows {
         while at < SEARCHES {
             let excess = I::Wide::load(&locals.excess[at..]);
             let new = I::Wide::load(&nearest[at..]).add(excess).mul(up);
-            let old = I::Wide::load(&old_limit[at..]).add(excess).mul(up);
-            new.min(old).store(&mut self.limit[at..]);
+            new.min(I::Wide::load(&self.old_limit[at..])).store(&mut self.limit[at..]);
             at += I::Wide::LEN;
         }
     }
@@ -135,7 +152,6 @@ impl<V: VolumeNodes> Searches<'_, V> {
     }
 
     /// Evaluates a candidate by the kernel for single primitives.
-    #[cold]
     #[inline(never)]
     fn offer_single(&mut self, candidate: Candidate) {
         let (search, lane) = (candidate.search as usize, candidate.lane as usize);
@@ -272,11 +288,14 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
 
     /// Filters at most [`SEARCHES`] packets. Primitives that may be the answer become candidates.
     ///
+    /// If `PLANES`, packets that a plane excludes are left out first. That pays where many packets are far, as in trees;
+    /// lists have few such packets.
+    ///
     /// No branch depends on what the filters find until all of them have run. Searches that are near each other often
     /// visit the same packet one after the other, and what depends on the packet alone is then computed once.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded up")]
-    pub fn filter<I: InstructionSet>(&mut self, visits: &[PacketVisit]) {
+    pub fn filter<I: InstructionSet, const PLANES: bool>(&mut self, visits: &[PacketVisit]) {
         let leaves = &self.searches.tree.leaves;
         for (i, visit) in visits.iter().enumerate() {
             let packet = &leaves.packets[visit.packet as usize];
@@ -286,29 +305,38 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
             self.early |= u32::from(!packet.has_vertices()) << visit.search;
         }
         self.locals.convert::<I>();
-        let (candidates, locals) = (&self.rows.candidate, &self.locals);
-        let limit = |i: usize| {
-            let distance = candidates[i % SEARCHES] * locals.per_unit[i % SEARCHES];
-            (distance as f32 + locals.excess[i % SEARCHES]) * ROUND_UP
-        };
-        let mut start = 0;
-        while start < visits.len() {
-            let packet = visits[start].packet;
-            let mut end = start + 1;
-            while end < visits.len() && visits[end].packet == packet {
-                end += 1;
+        self.rows.convert::<I>(&self.locals);
+        let mut near = [u32::MAX; SEARCHES];
+        if PLANES || I::Wide::LEN < LANES {
+            self.locals.place_planes::<I>(&self.rows.old_limit);
+            for (i, (near, visit)) in near.iter_mut().zip(visits).enumerate() {
+                let packet = &leaves.packets[visit.packet as usize];
+                let is_far = self.locals.far >> i & 1 == 1;
+                let lanes = packet.lanes_before_plane::<I::Wide>(&self.locals, i) & visit.lanes;
+                *near = if is_far { u32::MAX } else { lanes };
             }
-            leaves.packets[packet as usize].squares_of_several::<I>(locals, start..end, limit, &mut self.squares);
-            start = end;
         }
-        for (i, (squares, visit)) in self.squares.iter().zip(visits).enumerate() {
-            let has_vertices = leaves.packets[visit.packet as usize].has_vertices();
-            let nearest = smallest::<I::Wide>(squares);
-            self.rows.nearest_square[i % SEARCHES] = if has_vertices { nearest } else { f32::INFINITY };
+        // The first `count` of these are the places with a lane that may be near enough.
+        let (mut places, mut count) = ([0u8; SEARCHES], 0);
+        for (i, near) in near[..visits.len()].iter().enumerate() {
+            places[count % SEARCHES] = i as u8;
+            count += usize::from(*near != 0);
+        }
+        let places = &places[..count];
+        let packet_of = |place: u8| visits[usize::from(place) % SEARCHES].packet;
+        for run in places.chunk_by(|a, b| packet_of(*a) == packet_of(*b)) {
+            let packet = &leaves.packets[packet_of(run[0]) as usize];
+            packet.squares_of_several::<I>(&self.locals, run, &near, &mut self.squares);
+        }
+        for &place in places {
+            let has_vertices = leaves.packets[packet_of(place) as usize].has_vertices();
+            let place = usize::from(place) % SEARCHES;
+            let nearest = smallest::<I::Wide>(&self.squares[place]);
+            self.rows.nearest_square[place] = if has_vertices { nearest } else { f32::INFINITY };
         }
         self.rows.update::<I>(&self.locals, &self.searches.tree.frame);
-        for (i, visit) in visits.iter().enumerate() {
-            self.push_candidates::<I>(visit, i % SEARCHES);
+        for &place in places {
+            self.push_candidates::<I>(&visits[usize::from(place) % SEARCHES], usize::from(place) % SEARCHES);
         }
         if self.early != 0 {
             self.evaluate_early();
@@ -367,6 +395,8 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
     #[inline(always)]
     fn evaluate(&mut self, searches: u32) {
         let leaves = &self.searches.tree.leaves;
+        // Portable instructions have no lanes that are faster than one primitive at a time.
+        let computes_in_lanes = self.searches.tree.isa != Isa::PORTABLE;
         for i in 0..std::mem::take(&mut self.candidate_count) {
             if searches >> self.candidates[i].search & 1 == 0 {
                 self.candidates[self.candidate_count] = self.candidates[i];
@@ -383,13 +413,13 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
             let packet = &leaves.packets[candidate.packet as usize];
             let (indices, count) = packet.vertices_of(candidate.lane as usize);
             match count {
-                3 => {
+                3 if computes_in_lanes => {
                     let vertices = indices.map(|index| &leaves.vertices[index]);
                     if self.triangles.push(&limits.query, vertices, candidate) {
                         self.evaluate_triangles(true);
                     }
                 }
-                2 => {
+                2 if computes_in_lanes => {
                     let vertices = [&leaves.vertices[indices[0]], &leaves.vertices[indices[1]]];
                     if self.segments.push(&limits.query, vertices, candidate) {
                         self.evaluate_segments();
@@ -444,7 +474,7 @@ impl<V: VolumeNodes> SimdKernel for Filter<'_, '_, V> {
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        self.several.filter::<I>(self.visits);
+        self.several.filter::<I, true>(self.visits);
     }
 }
 

@@ -96,7 +96,7 @@ impl<V: VolumeNodes> SimdKernel for SearchInTurns<'_, '_, V> {
                 stack.len += bounds.sorted_keys(several.limit(usize::from(search)), keys);
                 stack.parents[top..top + WIDTH].fill(stack.next.0);
             }
-            several.filter::<I>(&visits[..visit_count]);
+            several.filter::<I, true>(&visits[..visit_count]);
             let mut still_active = 0;
             for at in 0..active_count {
                 let search = active[at];

@@ -1,5 +1,6 @@
 //! The columns of the answers of a batch.
 
+use super::parts::Split;
 use crate::{Feature, Found, Real};
 use nalgebra::Point3;
 
@@ -95,12 +96,10 @@ impl<T: Real> ClosestColumns<'_, T> {
     }
 }
 
-/// A place for answers.
-pub(super) trait Sink<T: Real>: Send + Sized {
+/// A place for answers to queries for the closest point.
+pub(super) trait Sink<T: Real>: Split {
     /// Stores the answer to the query at a position.
     fn set(&mut self, position: usize, found: Found<'_, T>);
-    /// Divides the place in two, the first for `len` answers.
-    fn split(self, len: usize) -> (Self, Self);
 }
 
 impl<T: Real> Sink<T> for ClosestColumns<'_, T> {
@@ -119,7 +118,9 @@ impl<T: Real> Sink<T> for ClosestColumns<'_, T> {
         }
         self.set_all(i, found);
     }
+}
 
+impl<T: Real> Split for ClosestColumns<'_, T> {
     fn split(self, len: usize) -> (Self, Self) {
         self.split_at(len)
     }
@@ -154,9 +155,5 @@ impl<T: Real> Sink<T> for &mut [Option<crate::Closest<T>>] {
     #[inline(always)]
     fn set(&mut self, i: usize, found: Found<'_, T>) {
         self[i] = found.closest();
-    }
-
-    fn split(self, len: usize) -> (Self, Self) {
-        self.split_at_mut(len)
     }
 }

@@ -9,14 +9,18 @@
 
 mod columns;
 mod order;
+mod parts;
 mod query_point;
 
 pub use columns::ClosestColumns;
 pub use query_point::QueryPoint;
 
+use crate::real::to_f64_array;
 use crate::{Closest, ClosestPoint, QueryOptions, Real};
 use columns::Sink;
+use nalgebra::Point3;
 use order::sorted_along_curve;
+use parts::answer_parts;
 
 /// Options of a batch. They affect its speed alone, apart from the last bits of lower bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,12 +53,6 @@ impl BatchOptions {
     }
 }
 
-/// The largest number of queries that are ordered and answered at a time by one thread.
-const MAX_QUERIES_PER_PART: usize = 1 << 20;
-/// The number of queries below which a batch is not divided among threads any further.
-const MIN_QUERIES_PER_PART: usize = 1 << 10;
-/// The number of parts for each thread, so that none waits long for the others.
-const PARTS_PER_THREAD: usize = 4;
 /// The number of ordered queries that are handed to the index at a time.
 const QUERIES_PER_BLOCK: usize = 1 << 10;
 
@@ -91,7 +89,7 @@ pub fn closest_points_into<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(
     out: &mut [Option<Closest<T>>],
 ) {
     assert_eq!(queries.len(), out.len(), "one answer for each query");
-    BatchRunner::new(index, options, batch).answer(queries, out);
+    answer_closest(index, queries, options, batch, out);
 }
 
 /// Answers `queries` into columns, in their order: only what is asked for is computed and written.
@@ -126,7 +124,7 @@ pub fn closest_columns_into<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(
 ) {
     if let Some(len) = columns.len() {
         assert_eq!(queries.len(), len, "one value for each query");
-        BatchRunner::new(index, options, batch).answer(queries, columns);
+        answer_closest(index, queries, options, batch, columns);
     }
 }
 
@@ -147,66 +145,61 @@ pub fn distances<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(index: &I, queries
     distance
 }
 
-/// An index with the options of a batch.
-struct BatchRunner<'a, T: Real, I: ?Sized> {
-    index: &'a I,
-    options: &'a QueryOptions<T>,
-    reorder: bool,
-    parallel: bool,
+/// Answers queries of any kind by a function, on all threads, and returns the results in the order of the queries.
+///
+/// The function is called once for each query, along a curve through the positions of the queries, so queries that are
+/// near each other find what they visit in the cache. That serves queries for the k nearest, for all within a distance,
+/// for certified answers, signs, and rays, whose position is the origin. Positions that are not finite come at any
+/// place.
+///
+/// ```
+/// use p2m_core::{BruteForce, NearQuery, Point, batch};
+/// use nalgebra::Point3;
+///
+/// let index = BruteForce::new([0.0, 1.0, 10.0].map(|x| Point::new(Point3::new(x, 0.0, 0.0)))).unwrap();
+/// let queries = [7.0, 0.4].map(|x| Point3::new(x, 0.0, 0.0));
+/// let nearest_two = batch::map(&queries, &Default::default(), |q| *q, |q| index.k_nearest(q, 2, f64::INFINITY));
+/// assert_eq!(nearest_two[1].iter().map(|c| c.primitive.index()).collect::<Vec<_>>(), [0, 1]);
+/// ```
+///
+/// # Complexity
+/// Ordering n queries takes O(n) time. A result takes the memory of an `Option` until all are known.
+pub fn map<Q: Sync, R: Send>(
+    queries: &[Q],
+    batch: &BatchOptions,
+    position: impl Fn(&Q) -> Point3<f64> + Sync,
+    answer: impl Fn(&Q) -> R + Sync,
+) -> Vec<R> {
+    let mut out: Vec<Option<R>> = std::iter::repeat_with(|| None).take(queries.len()).collect();
+    answer_parts(queries, out.as_mut_slice(), batch.parallel, &|queries, out| {
+        for i in order(queries, batch, |query| position(query).coords.into()) {
+            out[i as usize] = Some(answer(&queries[i as usize]));
+        }
+    });
+    out.into_iter().map(|result| result.expect("each query was answered")).collect()
 }
 
-impl<'a, T: Real, I: ClosestPoint<T> + Sync + ?Sized> BatchRunner<'a, T, I> {
-    fn new(index: &'a I, options: &'a QueryOptions<T>, batch: &BatchOptions) -> Self {
-        Self { index, options, reorder: batch.reorder, parallel: batch.parallel }
-    }
-
-    /// Answers queries, divided among the threads.
-    fn answer(&self, queries: &[impl QueryPoint<T>], out: impl Sink<T>) {
-        #[cfg(feature = "rayon")]
-        if self.parallel {
-            let threads = rayon::current_num_threads();
-            let part = queries.len().div_ceil(threads * PARTS_PER_THREAD);
-            return self.answer_in_parallel(queries, out, part.clamp(MIN_QUERIES_PER_PART, MAX_QUERIES_PER_PART));
-        }
-        let _ = (self.parallel, PARTS_PER_THREAD, MIN_QUERIES_PER_PART);
-        self.answer_parts(queries, out);
-    }
-
-    /// Halves the queries until a part is small enough for one thread.
-    #[cfg(feature = "rayon")]
-    fn answer_in_parallel(&self, queries: &[impl QueryPoint<T>], out: impl Sink<T>, part: usize) {
-        if queries.len() <= part {
-            return self.answer_parts(queries, out);
-        }
-        let middle = queries.len() / 2;
-        let (first_out, second_out) = out.split(middle);
-        let (first, second) = queries.split_at(middle);
-        rayon::join(
-            || self.answer_in_parallel(first, first_out, part),
-            || self.answer_in_parallel(second, second_out, part),
-        );
-    }
-
-    /// Answers queries on this thread, part by part.
-    fn answer_parts(&self, mut queries: &[impl QueryPoint<T>], mut out: impl Sink<T>) {
-        while queries.len() > MAX_QUERIES_PER_PART {
-            let (part, rest) = queries.split_at(MAX_QUERIES_PER_PART);
-            let (mut part_out, rest_out) = out.split(MAX_QUERIES_PER_PART);
-            self.answer_part(part, &mut part_out);
-            (queries, out) = (rest, rest_out);
-        }
-        self.answer_part(queries, &mut out);
-    }
-
-    /// Answers at most [`MAX_QUERIES_PER_PART`] queries.
-    #[allow(clippy::cast_possible_truncation, reason = "a part has fewer than 2^32 queries")]
-    fn answer_part(&self, queries: &[impl QueryPoint<T>], out: &mut impl Sink<T>) {
-        let order = if self.reorder { sorted_along_curve(queries) } else { (0..queries.len() as u32).collect() };
+/// Answers queries for the closest point into any place for answers.
+fn answer_closest<T: Real, Q: QueryPoint<T>, O: Sink<T>>(
+    index: &(impl ClosestPoint<T> + Sync + ?Sized),
+    queries: &[Q],
+    options: &QueryOptions<T>,
+    batch: &BatchOptions,
+    out: O,
+) {
+    answer_parts(queries, out, batch.parallel, &|queries: &[Q], out: &mut O| {
+        let order = order(queries, batch, |query| to_f64_array(&query.point()));
         let mut block = Vec::with_capacity(QUERIES_PER_BLOCK.min(queries.len()));
         for positions in order.chunks(QUERIES_PER_BLOCK) {
             block.clear();
             block.extend(positions.iter().map(|&position| queries[position as usize].point()));
-            self.index.answer_queries(&block, self.options, &mut |i, found| out.set(positions[i] as usize, found));
+            index.answer_queries(&block, options, &mut |i, found| out.set(positions[i] as usize, found));
         }
-    }
+    });
+}
+
+/// Returns the order in which the queries of a part are answered.
+#[allow(clippy::cast_possible_truncation, reason = "a part has fewer than 2^32 queries")]
+fn order<Q>(queries: &[Q], batch: &BatchOptions, position: impl Fn(&Q) -> [f64; 3]) -> Vec<u32> {
+    if batch.reorder { sorted_along_curve(queries, position) } else { (0..queries.len() as u32).collect() }
 }

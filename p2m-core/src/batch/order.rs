@@ -1,8 +1,6 @@
 //! The order in which the queries of a batch are answered: along a curve that fills their box.
 
-use super::query_point::QueryPoint;
-use crate::real::to_f64_array;
-use crate::{Real, curve};
+use crate::curve;
 
 /// The largest number of bits of a coordinate on the curve: a cell for each query of the largest part of a batch.
 const MAX_BITS_PER_AXIS: u32 = 8;
@@ -15,13 +13,13 @@ const DIGITS: usize = 1 << DIGIT_BITS;
 ///
 /// The cells of the curve are about as many as the queries, since queries of one cell are as near as any.
 #[allow(clippy::cast_possible_truncation, reason = "a part of a batch has at most 2^32 queries")]
-pub(super) fn sorted_along_curve<T: Real>(queries: &[impl QueryPoint<T>]) -> Vec<u32> {
+pub(super) fn sorted_along_curve<Q>(queries: &[Q], position: impl Fn(&Q) -> [f64; 3]) -> Vec<u32> {
     let bits = (queries.len().max(1).ilog2() / 3 + 2).min(MAX_BITS_PER_AXIS);
-    let cells = CurveCells::around(queries, bits);
+    let cells = CurveCells::around(queries.iter().map(&position), bits);
     let mut starts = [[0u32; DIGITS]; 2];
     let mut keys = Vec::with_capacity(queries.len());
     for query in queries {
-        let key = cells.position(&to_f64_array(&query.point()));
+        let key = cells.position(&position(query));
         let [low, high] = digits(key);
         starts[0][low] += 1;
         starts[1][high] += 1;
@@ -64,11 +62,10 @@ struct CurveCells {
 }
 
 impl CurveCells {
-    /// Divides the box around the finite queries into 2^bits cells on each axis.
-    fn around<T: Real>(queries: &[impl QueryPoint<T>], bits: u32) -> Self {
+    /// Divides the box around the finite positions into 2^bits cells on each axis.
+    fn around(positions: impl Iterator<Item = [f64; 3]>, bits: u32) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for query in queries {
-            let query = to_f64_array(&query.point());
+        for query in positions {
             if query.iter().all(|x| x.is_finite()) {
                 for k in 0..3 {
                     low[k] = if query[k] < low[k] { query[k] } else { low[k] };
@@ -100,7 +97,7 @@ mod tests {
     fn the_curve_contains_every_query_once_and_neighbours_together() {
         let queries: Vec<Point3<f64>> =
             (0..4096u32).map(|i| Point3::new(f64::from(i % 16), f64::from(i / 16 % 16), f64::from(i / 256))).collect();
-        let mut positions = sorted_along_curve::<f64>(&queries);
+        let mut positions = sorted_along_curve(&queries, |query| query.coords.into());
         let steps: f64 = positions.windows(2).map(|w| (queries[w[0] as usize] - queries[w[1] as usize]).norm()).sum();
         assert!(steps / 4095.0 < 1.7, "{steps}");
         positions.sort_unstable();
@@ -110,9 +107,9 @@ mod tests {
     #[test]
     fn queries_of_all_kinds_have_a_position() {
         let queries = [f64::NAN, f64::INFINITY, f64::MAX, -f64::MAX, 0.0].map(|x| Point3::new(x, x, 1.0));
-        let mut positions = sorted_along_curve::<f64>(&queries);
+        let mut positions = sorted_along_curve(&queries, |query| query.coords.into());
         positions.sort_unstable();
         assert_eq!(positions, [0, 1, 2, 3, 4]);
-        assert!(sorted_along_curve::<f64>(&[[0.0f64; 3]; 0]).is_empty());
+        assert!(sorted_along_curve(&[[0.0; 3]; 0], |query| *query).is_empty());
     }
 }

@@ -115,7 +115,7 @@ impl Lists {
                 active[still_active % SEARCHES] = i;
                 still_active += usize::from(is_within | opens_next);
             }
-            several.filter::<I>(&visits[..visit_count]);
+            several.filter::<I, false>(&visits[..visit_count]);
             count = still_active;
         }
     }
