@@ -73,7 +73,8 @@
 //! | `rstar` | `RegionTree`, the paper's filter of long lists, for [`P2mOptions`]; `scene::adapters::RstarIndex` | no |
 //! | `parry` | shapes of parry3d-f64 in [`scene`]s; its tree as an index, `scene::adapters::ParryIndex` | no |
 //! | `parry-f32` | shapes of parry3d in [`scene`]s | no |
-//! | `mint` | positions of the crate mint in [`scene`] | no |
+//! | `glam` | [`Position`]s of the crate glam in scenes and batches | no |
+//! | `mint` | [`Position`]s of the crate mint in scenes and batches | no |
 //! | `kdop` | [`KdopTree`] | yes |
 //! | `advisor` | `advisor`: which index a scene and its queries call for | no |
 //! | `field` | [`field`]: distances on grids, signs, winding numbers | yes |
@@ -81,6 +82,8 @@
 //! | `mixed` | [`scene`]: reading scenes and points from files | yes |
 #![forbid(unsafe_code)]
 
+/// The library of points and vectors that the interface uses, so that programs need not match its version.
+pub use nalgebra;
 /// Which index a scene and its queries call for.
 #[cfg(feature = "advisor")]
 pub use p2m_advisor as advisor;
@@ -94,9 +97,9 @@ pub use p2m_bvh::{AabbOptions, AabbTree, SplitOptions, SplitRule};
 pub use p2m_core as backend;
 pub use p2m_core::{
     Aabb, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestLeaf,
-    ClosestPoint, Element, Feature, Hit, Indexed, Inspect, Isa, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet,
-    Projection, QueryCost, QueryOptions, Ray, RayError, RayQuery, Real, Segment, Shape, Side, Soup, Triangle, batch,
-    storage,
+    ClosestPoint, Element, Feature, Hit, Index, Indexed, Inspect, Isa, NearQuery, Point, Position, Primitive,
+    PrimitiveDefect, PrimitiveId, PrimitiveSet, Projection, QueryCost, QueryOptions, Ray, RayError, RayHit, RayQuery,
+    Real, Segment, Shape, Side, Soup, Triangle, batch, check_primitive, storage,
 };
 /// Distance fields, and on which side of a surface a point is.
 #[cfg(feature = "field")]

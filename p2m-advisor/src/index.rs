@@ -1,76 +1,10 @@
-//! An index of any backend behind one pointer, and the settings that it is built with.
+//! An index of any backend with the details of its backend, and the settings that it is built with.
 
 use crate::kdop_directions::{ChosenDirections, KdopDirections};
-use p2m_bvh::{SplitOptions, TreeIndex, Volume};
-use p2m_core::storage::{Saved, Writer};
-use p2m_core::{BoxQuery, BruteForce, CertifiedQuery, ClosestPoint, Inspect, RayQuery, Real, Soup};
-use p2m_interception::{InterceptionIndex, OctreeReport, P2mReport, Partition, Progress};
-
-/// An index of any backend over a scene that it borrows.
-///
-/// Every index answers closest-point, near and certified queries and reports its costs. Rays and boxes are optional.
-pub trait Index<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + Inspect<T> + Send + Sync {
-    /// Adds the index to a file, without its scene. Indexes of backends that are not
-    /// [saveable](crate::BackendEntry::is_saveable) add nothing.
-    fn save<'s>(&'s self, writer: &mut Writer<'s>);
-
-    /// Returns the heap memory that the index owns besides its scene, in bytes.
-    fn memory_bytes(&self) -> usize;
-
-    /// Returns the index as one that rays can be cast at, if it is one.
-    fn as_ray_query(&self) -> Option<&(dyn RayQuery<T> + Sync)> {
-        None
-    }
-
-    /// Returns the index as one that boxes can be queried with, if it is one.
-    fn as_box_query(&self) -> Option<&(dyn BoxQuery<T> + Sync)> {
-        None
-    }
-}
-
-impl<T: Real> Index<T> for BruteForce<&Soup<T>> {
-    fn save<'s>(&'s self, _: &mut Writer<'s>) {}
-
-    fn memory_bytes(&self) -> usize {
-        0
-    }
-
-    fn as_ray_query(&self) -> Option<&(dyn RayQuery<T> + Sync)> {
-        Some(self)
-    }
-
-    fn as_box_query(&self) -> Option<&(dyn BoxQuery<T> + Sync)> {
-        Some(self)
-    }
-}
-
-impl<T: Real, V: Volume> Index<T> for TreeIndex<T, &Soup<T>, V> {
-    fn save<'s>(&'s self, writer: &mut Writer<'s>) {
-        self.save(writer);
-    }
-
-    fn memory_bytes(&self) -> usize {
-        self.memory()
-    }
-
-    fn as_ray_query(&self) -> Option<&(dyn RayQuery<T> + Sync)> {
-        Some(self)
-    }
-
-    fn as_box_query(&self) -> Option<&(dyn BoxQuery<T> + Sync)> {
-        Some(self)
-    }
-}
-
-impl<T: Real, P: Partition + Saved + Send + Sync> Index<T> for InterceptionIndex<T, &Soup<T>, P> {
-    fn save<'s>(&'s self, writer: &mut Writer<'s>) {
-        self.save(writer);
-    }
-
-    fn memory_bytes(&self) -> usize {
-        self.memory()
-    }
-}
+use p2m_bvh::SplitOptions;
+use p2m_core::storage::Writer;
+use p2m_core::{Index, Real};
+use p2m_interception::{OctreeReport, P2mReport, Progress};
 
 /// An index that was built or loaded, with the details that reports have about it.
 pub struct BuiltIndex<'a, T: Real = f64> {

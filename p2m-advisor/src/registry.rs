@@ -12,11 +12,11 @@
 
 use crate::backend_entry::{BackendEntry, SavedFormat, SearchStructure};
 use crate::cost_model::CostModel;
-use crate::index::{BuildSettings, BuiltIndex, Index, IndexDetails};
+use crate::index::{BuildSettings, BuiltIndex, IndexDetails};
 use crate::kdop_directions::{KdopDirections, KdopVisitor};
 use p2m_bvh::AabbTree;
 use p2m_core::storage::{self, Reader, Saved};
-use p2m_core::{BruteForce, BuildError, BuildIndex, Real, Soup};
+use p2m_core::{BruteForce, BuildError, BuildIndex, Index, Real, Soup};
 use p2m_interception::{Octree, OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, Voronoi};
 use p2m_kdop::KdopTree;
 

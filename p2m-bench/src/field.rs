@@ -113,7 +113,7 @@ fn mean(times: &[f64]) -> f64 {
 }
 
 /// Adds a sign to the distances of a tree.
-type Sided<'a> = fn(Tree<'a>, &'a Soup<f64>) -> Result<SignedDistance<'a, Tree<'a>>, SignError>;
+type Sided<'a> = fn(Tree<'a>, &'a Soup<f64>) -> Result<SignedDistance<Tree<'a>, &'a Soup<f64>>, SignError>;
 type Tree<'a> = AabbTree<f64, &'a Soup<f64>>;
 
 /// Returns a value with the seconds and the bytes that it took.

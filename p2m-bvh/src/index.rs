@@ -9,7 +9,7 @@ use p2m_core::engine::answer_one_by_one;
 use p2m_core::storage::{self, LoadError, Reader, Writer};
 use p2m_core::{
     Aabb, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Collector, Found,
-    Hits, Inspect, Isa, Near, NearQuery, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector,
+    Hits, Index, Inspect, Isa, Near, NearQuery, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector,
     RayQuery, Real, Shape, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
@@ -54,6 +54,11 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         &self.set
     }
 
+    /// Returns the set and drops the tree.
+    pub fn into_set(self) -> S {
+        self.set
+    }
+
     /// The tree without its set.
     pub fn tree(&self) -> &PacketTree<V> {
         &self.tree
@@ -87,6 +92,64 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         self.tree.refit(&set, options);
         self.set = set;
         Ok(())
+    }
+
+    /// Changes the set in place, and fits the tree to it as [`refit`](Self::refit) does, so no second set is needed.
+    ///
+    /// ```
+    /// use nalgebra::{Point3, Vector3};
+    /// use p2m_bvh::AabbTree;
+    /// use p2m_core::{BuildIndex, ClosestPoint, Soup};
+    ///
+    /// let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let soup: Soup<f64> = Soup::from_arrays(&positions, &[[0u32, 1, 2]])?;
+    /// let mut tree = AabbTree::build(soup, &Default::default())?;
+    /// let raised = |soup: &mut Soup<f64>| soup.map_positions(|p| p + Vector3::new(0.0, 0.0, 2.0));
+    /// tree.refit_in_place(&Default::default(), raised)?;
+    /// assert_eq!(tree.closest_point(&Point3::origin()).unwrap().distance, 2.0);
+    /// # Ok::<(), p2m_core::BuildError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Returns the error of `change`, which then must not have changed the set; [`Soup::set_positions`] and
+    /// [`Soup::map_positions`] keep this rule. The tree stays as it was.
+    ///
+    /// # Panics
+    /// Panics if `change` succeeds and the set then has another number of primitives or a coordinate that is not
+    /// finite, because the tree fits no such set.
+    ///
+    /// # Complexity
+    /// O(n).
+    ///
+    /// [`Soup::set_positions`]: p2m_core::Soup::set_positions
+    /// [`Soup::map_positions`]: p2m_core::Soup::map_positions
+    pub fn refit_in_place<E>(
+        &mut self,
+        options: &V::Options,
+        change: impl FnOnce(&mut S) -> Result<(), E>,
+    ) -> Result<(), E>
+    where
+        S: Sync,
+    {
+        let len = self.set.len();
+        change(&mut self.set)?;
+        assert_eq!(self.set.len(), len, "the number of primitives stays the same");
+        assert_eq!(check_set(&self.set), Ok(()), "the changed set is finite");
+        self.tree.refit(&self.set, options);
+        Ok(())
+    }
+
+    /// Returns the surface area of the bounding boxes of all nodes and packets, relative to that of the whole scene.
+    ///
+    /// This is the number of boxes that a random line through the box of the scene intersects on average, so it is a
+    /// measure of the quality of the tree. A refit keeps the shape of the tree, so the area rises as neighbours move
+    /// apart. Compare it with its value after the build: docs/guide.md has figures that tell when to build anew. It is
+    /// 0 for an empty set.
+    ///
+    /// # Complexity
+    /// O(n).
+    pub fn relative_surface_area(&self) -> f64 {
+        self.tree.relative_surface_area()
     }
 
     /// Adds the tree to a file, without the set.
@@ -167,6 +230,24 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestPoint<T> for TreeIndex<T, S,
             }
             _ => answer_one_by_one(self, queries, options, answered),
         }
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T> + Send + Sync, V: Volume> Index<T> for TreeIndex<T, S, V> {
+    fn save<'s>(&'s self, writer: &mut Writer<'s>) {
+        self.save(writer);
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.memory()
+    }
+
+    fn as_ray_query(&self) -> Option<&(dyn RayQuery<T> + Sync)> {
+        Some(self)
+    }
+
+    fn as_box_query(&self) -> Option<&(dyn BoxQuery<T> + Sync)> {
+        Some(self)
     }
 }
 

@@ -9,6 +9,10 @@ use p2m_core::Aabb;
 ///
 /// The trait is sealed, because searches rest on proofs about the rounding of the nodes. Everything else about a tree
 /// is the same for all volumes.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a bounding volume of trees",
+    note = "volumes are `Aabb<f64>` and k-DOPs with an even K from 6 to 26"
+)]
 pub trait Volume: CompiledSearches {
     /// The options with which a tree is built.
     type Options: TreeOptions<Self::Shared>;

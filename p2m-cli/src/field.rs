@@ -290,7 +290,7 @@ fn candidate_lists<'a>(
 enum FieldIndex<'a> {
     Unsigned(&'a dyn Index),
     /// The signs, and the name of the rule that decides them.
-    Signed(SignedDistance<'a, &'a dyn Index>, &'static str),
+    Signed(SignedDistance<&'a dyn Index, &'a Soup<f64>>, &'static str),
 }
 
 impl FieldIndex<'_> {

@@ -28,7 +28,7 @@ impl SignRule {
         streams: &Streams,
         index: &'a dyn Index,
         soup: &'a Soup<f64>,
-    ) -> Result<(SignedDistance<'a, &'a dyn Index>, &'static str), SignError> {
+    ) -> Result<(SignedDistance<&'a dyn Index, &'a Soup<f64>>, &'static str), SignError> {
         let _progress = Progress::start(streams, "looking for inside and outside", None, Unit::None);
         if self != Self::Winding {
             match SignedDistance::new(index, soup) {

@@ -32,6 +32,10 @@ use std::ops::ControlFlow;
 /// # References
 /// The queries are `BoxIntersectsAPrimitive` and `GetPrimitivesInABox` of \[Cavarga2021\], but the latter does not test
 /// the primitives of the leaves there.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` answers no queries by boxes with coordinates of type `{T}`",
+    note = "`AabbTree`, `KdopTree` and `BruteForce` do; the octree and the P2M index answer closest-point queries only"
+)]
 pub trait BoxQuery<T: Real> {
     /// Calls `visit` once for every primitive that intersects `bounds`, in any order, until it breaks, and returns
     /// whether it did.

@@ -33,6 +33,11 @@ impl<S> BruteForce<S> {
     pub fn set(&self) -> &S {
         &self.set
     }
+
+    /// Returns the set and drops the index.
+    pub fn into_set(self) -> S {
+        self.set
+    }
 }
 
 impl<T: Real, S: PrimitiveSet<T>> ClosestPoint<T> for BruteForce<S> {

@@ -13,7 +13,7 @@ pub enum BuildError {
         id: PrimitiveId,
     },
     /// A primitive refers to a position that does not exist.
-    #[error("primitive {id} uses position {index}, but there are {len}")]
+    #[error("primitive {id} uses position {index}, but {}", describe_positions(*len))]
     IndexOutOfRange {
         /// The id of that primitive.
         id: PrimitiveId,
@@ -21,6 +21,20 @@ pub enum BuildError {
         index: u32,
         /// The number of positions.
         len: usize,
+    },
+    /// A flat array of coordinates or indices has a length that is not a multiple of three.
+    #[error("an array has {len} numbers, but triples need a multiple of three; for points of the plane append z = 0")]
+    NotTriples {
+        /// The length of the array.
+        len: usize,
+    },
+    /// Positions should be replaced by another number of positions.
+    #[error("{len} positions, but the scene has {expected}")]
+    OtherPositionCount {
+        /// The number of new positions.
+        len: usize,
+        /// The number of positions of the scene.
+        expected: usize,
     },
     /// There are more primitives than the 2^30 that have ids.
     #[error("{len} primitives are more than the {} that an id can name", crate::PrimitiveId::MAX_COUNT)]
@@ -36,4 +50,13 @@ pub enum BuildError {
         /// The number of primitives that the index was built over.
         expected: usize,
     },
+}
+
+/// Returns which positions there are.
+fn describe_positions(len: usize) -> String {
+    match len {
+        0 => "there are no positions".to_owned(),
+        1 => "there is only position 0".to_owned(),
+        _ => format!("positions are numbered 0 to {}", len - 1),
+    }
 }

@@ -49,6 +49,11 @@ use nalgebra::Point3;
 /// let near = QueryOptions::default().with_max_distance(0.5);
 /// assert!(index.closest_point_with(&Point3::origin(), &near).is_none());
 /// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` answers no closest-point queries with coordinates of type `{T}`",
+    note = "indexes do, such as `AabbTree` and `BruteForce`, and references, `Box`, `Rc` and `Arc` to them",
+    note = "an index over a scene in f32 answers `Point3<f32>`, and one over a scene in f64 answers `Point3<f64>`"
+)]
 pub trait ClosestPoint<T: Real> {
     /// Offers to `best` every primitive that could be the answer. `query` is finite.
     fn search(&self, query: &Point3<T>, best: &mut Best<T>);
@@ -113,26 +118,6 @@ pub fn answer_one_by_one<T: Real, I: ClosestPoint<T> + ?Sized>(
     }
 }
 
-/// A borrowed index answers as the index itself.
-impl<T: Real, I: ClosestPoint<T> + ?Sized> ClosestPoint<T> for &I {
-    fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
-        (**self).search(query, best);
-    }
-
-    fn closest_point_with(&self, query: &Point3<T>, options: &QueryOptions<T>) -> Option<Closest<T>> {
-        (**self).closest_point_with(query, options)
-    }
-
-    fn answer_queries(
-        &self,
-        queries: &[Point3<T>],
-        options: &QueryOptions<T>,
-        answered: &mut dyn FnMut(usize, Found<'_, T>),
-    ) {
-        (**self).answer_queries(queries, options, answered);
-    }
-}
-
 /// Building an index. It is not part of [`ClosestPoint`], so that that trait can be used as `dyn`.
 ///
 /// ```
@@ -147,6 +132,10 @@ impl<T: Real, I: ClosestPoint<T> + ?Sized> ClosestPoint<T> for &I {
 /// let scene = [p2m_core::Point::new(Point3::new(0.0, 0.0, 4.0))];
 /// assert_eq!(height::<_, BruteForce<_>>(&scene).unwrap(), Some(6.0));
 /// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be built over `{S}` with coordinates of type `{T}`",
+    note = "a scene is a `PrimitiveSet<{T}>`, owned, borrowed or in an `Arc`, and has to be `Sync`"
+)]
 pub trait BuildIndex<T: Real, S: PrimitiveSet<T>>: ClosestPoint<T> + Sized {
     /// The options of building.
     type Options: Default;
@@ -154,7 +143,8 @@ pub trait BuildIndex<T: Real, S: PrimitiveSet<T>>: ClosestPoint<T> + Sized {
     type Error: std::error::Error;
 
     /// Builds the index over `set`, which it keeps. Pass a reference to borrow the scene, or the scene itself to have
-    /// both in one value. The set may be empty.
+    /// both in one value. An `Arc` shares the scene with other
+    /// owners. The set may be empty.
     ///
     /// # Errors
     /// The indexes of this project return [`BuildError::NonFinite`](crate::BuildError::NonFinite) for a coordinate that

@@ -7,6 +7,10 @@ use crate::{Aabb, BuildError, Primitive, PrimitiveId, Real};
 /// An index is generic over the set. So an index over a homogeneous set, such as a slice of
 /// [`Triangle`](crate::Triangle)s, compiles to the kernel of that primitive alone. A [`Soup`](crate::Soup) returns
 /// [`Shape`](crate::Shape)s at the cost of one `match`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a scene with coordinates of type `{T}`",
+    note = "scenes are `Soup<{T}>`, slices, arrays and vectors of primitives, and `&`, `Box`, `Rc` and `Arc` of them"
+)]
 pub trait PrimitiveSet<T: Real> {
     /// The type of primitives that [`get`](Self::get) returns.
     type Primitive<'a>: Primitive<T>
@@ -81,22 +85,6 @@ impl<T: Real, P: Primitive<T>> PrimitiveSet<T> for Vec<P> {
     #[inline(always)]
     fn get(&self, id: PrimitiveId) -> &P {
         &self[id.index()]
-    }
-}
-
-impl<T: Real, S: PrimitiveSet<T> + ?Sized> PrimitiveSet<T> for &S {
-    type Primitive<'a>
-        = S::Primitive<'a>
-    where
-        Self: 'a;
-
-    #[inline(always)]
-    fn len(&self) -> usize {
-        (**self).len()
-    }
-    #[inline(always)]
-    fn get(&self, id: PrimitiveId) -> Self::Primitive<'_> {
-        (**self).get(id)
     }
 }
 

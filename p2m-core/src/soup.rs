@@ -1,6 +1,6 @@
 //! Soups: sets of points, segments and triangles over shared positions.
 
-use crate::{BuildError, Point, PrimitiveId, PrimitiveSet, Real, Segment, Shape, Triangle};
+use crate::{BuildError, Point, Position, PrimitiveId, PrimitiveSet, Real, Segment, Shape, Triangle};
 use nalgebra::Point3;
 
 /// One primitive of a [`Soup`], given by the indices of its positions.
@@ -123,6 +123,86 @@ impl<T: Real> Soup<T> {
             soup.check(PrimitiveId::new(i), t)?;
         }
         Ok(soup)
+    }
+
+    /// Creates a soup of triangles from arrays, which are copied: positions of any type of [`Position`], such as
+    /// `[f32; 3]`, and indices of any type of integers, such as `u32` and `usize`.
+    ///
+    /// ```
+    /// use p2m_core::{PrimitiveSet, Soup};
+    ///
+    /// let positions: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let soup: Soup<f64> = Soup::from_arrays(&positions, &[[0usize, 1, 2]])?;
+    /// assert_eq!(soup.len(), 1);
+    /// # Ok::<(), p2m_core::BuildError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// It returns the errors of [`Soup::new`]. An index that is negative or too large for `u32` is reported as
+    /// `u32::MAX`.
+    pub fn from_arrays<P: Position<T>, I: TryInto<u32> + Copy>(
+        positions: &[P],
+        triangles: &[[I; 3]],
+    ) -> Result<Self, BuildError> {
+        let index = |i: I| i.try_into().unwrap_or(u32::MAX);
+        let triangles = triangles.iter().map(|triangle| triangle.map(index)).collect();
+        Self::from_triangles(positions.iter().map(Position::point).collect(), triangles)
+    }
+
+    /// Creates a soup of triangles from flat arrays of coordinates (x, y, z, x, ..) and of indices, which are copied.
+    ///
+    /// ```
+    /// use p2m_core::{BuildError, PrimitiveSet, Soup};
+    ///
+    /// let coordinates = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    /// let soup: Soup<f32> = Soup::from_flat_arrays(&coordinates, &[0u32, 1, 2])?;
+    /// assert_eq!(soup.len(), 1);
+    /// let plane: Result<Soup<f32>, _> = Soup::from_flat_arrays(&coordinates[..8], &[0u32, 1, 2]);
+    /// assert_eq!(plane.unwrap_err(), BuildError::NotTriples { len: 8 });
+    /// # Ok::<(), BuildError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// It returns [`BuildError::NotTriples`] for an array whose length is not a multiple of three, and the errors of
+    /// [`Soup::from_arrays`].
+    pub fn from_flat_arrays<X: Copy, I: TryInto<u32> + Copy>(
+        coordinates: &[X],
+        indices: &[I],
+    ) -> Result<Self, BuildError>
+    where
+        [X; 3]: Position<T>,
+    {
+        Self::from_arrays(triples(coordinates)?, triples(indices)?)
+    }
+
+    /// Replaces all positions, in their order. Primitives keep their ids and corners.
+    ///
+    /// # Errors
+    /// It returns [`BuildError::OtherPositionCount`] for another number of positions and [`BuildError::NonFinite`] for
+    /// a primitive with a position that is not finite. The soup is then unchanged.
+    pub fn set_positions(&mut self, positions: Vec<Point3<T>>) -> Result<(), BuildError> {
+        if positions.len() != self.positions.len() {
+            return Err(BuildError::OtherPositionCount { len: positions.len(), expected: self.positions.len() });
+        }
+        let old = std::mem::replace(&mut self.positions, positions);
+        let first_bad = (0..self.len()).map(PrimitiveId::new).find_map(|id| {
+            let element = self.element(id);
+            self.check(id, element.indices()).err()
+        });
+        if let Some(error) = first_bad {
+            self.positions = old;
+            return Err(error);
+        }
+        Ok(())
+    }
+
+    /// Replaces each position by its image.
+    ///
+    /// # Errors
+    /// It returns [`BuildError::NonFinite`] for a primitive with an image that is not finite. The soup is then
+    /// unchanged.
+    pub fn map_positions(&mut self, image: impl FnMut(Point3<T>) -> Point3<T>) -> Result<(), BuildError> {
+        self.set_positions(self.positions.iter().copied().map(image).collect())
     }
 
     /// Checks the positions of a primitive.
@@ -251,6 +331,14 @@ impl<T: Real> Soup<T> {
     }
 }
 
+/// Returns a flat array as triples.
+fn triples<X>(flat: &[X]) -> Result<&[[X; 3]], BuildError> {
+    match flat.as_chunks() {
+        (triples, []) => Ok(triples),
+        _ => Err(BuildError::NotTriples { len: flat.len() }),
+    }
+}
+
 /// Appends to a list whose capacity grows by half instead of doubling, so that a soup that is filled one by one needs
 /// less memory at its peak.
 fn push_growing_by_half<X>(list: &mut Vec<X>, item: X) {
@@ -327,6 +415,26 @@ mod tests {
         }
         soup.shrink_to_fit();
         assert_eq!(soup, Soup::new(positions(), elements).unwrap());
+    }
+
+    #[test]
+    fn refused_positions_leave_the_soup_as_it_was() {
+        let mut soup = Soup::new(positions(), [Element::Segment([0, 1])]).unwrap();
+        let before = soup.clone();
+        let count = BuildError::OtherPositionCount { len: 1, expected: 4 };
+        assert_eq!(soup.set_positions(vec![Point3::origin()]), Err(count));
+        let id = PrimitiveId::new(0);
+        assert_eq!(soup.map_positions(|p| p * f64::NAN), Err(BuildError::NonFinite { id }));
+        assert_eq!(soup, before);
+        soup.map_positions(|p| if p.x == 3.0 { p * f64::INFINITY } else { p * 2.0 }).unwrap();
+        assert_eq!(soup.positions()[1], Point3::new(2.0, 0.0, 2.0));
+    }
+
+    #[test]
+    fn indices_that_are_no_u32_are_out_of_range() {
+        let bad = |error: BuildError| matches!(error, BuildError::IndexOutOfRange { index: u32::MAX, .. });
+        assert!(bad(Soup::<f64>::from_arrays(&positions(), &[[0i64, 1, -1]]).unwrap_err()));
+        assert!(bad(Soup::<f64>::from_arrays(&positions(), &[[0usize, 1, 1 << 32]]).unwrap_err()));
     }
 
     #[test]

@@ -16,7 +16,7 @@ use crate::grid::{Grid, GridError};
 use crate::grid_candidates::{CandidateLists, Candidates, Detail, MAX_COORDINATE};
 use crate::layers::Layers;
 use crate::options::{FieldOptions, signed_value};
-use crate::sign::{Sign, SignedDistance};
+use crate::sign::{SharedSoup, Sign, SignedDistance};
 use nalgebra::Point3;
 use p2m_core::{Aabb, ClosestPoint, PrimitiveSet};
 
@@ -47,9 +47,9 @@ pub fn distances_by_lists<S: PrimitiveSet<f64> + Sync + ?Sized>(
 ///
 /// # Errors
 /// [`GridError::Memory`] if the values do not fit into memory, and [`GridError::Range`] for coordinates above 2^250.
-pub fn signed_distances_by_lists<S: PrimitiveSet<f64> + Sync + ?Sized, I: ClosestPoint<f64> + Sync>(
+pub fn signed_distances_by_lists<S: PrimitiveSet<f64> + Sync + ?Sized, I: ClosestPoint<f64> + Sync, R: SharedSoup>(
     lists: &CandidateLists<'_, S>,
-    signed: &SignedDistance<'_, I>,
+    signed: &SignedDistance<I, R>,
     grid: &Grid,
     options: &FieldOptions,
     progress: &(dyn Fn(usize) + Sync),

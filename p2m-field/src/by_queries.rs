@@ -13,7 +13,7 @@
 use crate::grid::{Grid, GridError};
 use crate::layers::Layers;
 use crate::options::{FieldOptions, signed_value};
-use crate::sign::{Sign, SignedDistance};
+use crate::sign::{SharedSoup, Sign, SignedDistance};
 use nalgebra::Point3;
 use p2m_core::{Closest, ClosestPoint, QueryOptions};
 
@@ -45,8 +45,8 @@ pub fn distances<I: ClosestPoint<f64> + Sync + ?Sized>(
 ///
 /// # Errors
 /// [`GridError::Memory`] if the values do not fit into memory.
-pub fn signed_distances<I: ClosestPoint<f64> + Sync>(
-    signed: &SignedDistance<'_, I>,
+pub fn signed_distances<I: ClosestPoint<f64> + Sync, R: SharedSoup>(
+    signed: &SignedDistance<I, R>,
     grid: &Grid,
     options: &FieldOptions,
     progress: &(dyn Fn(usize) + Sync),

@@ -10,7 +10,7 @@ use p2m_bvh::engine::several::answer_in_groups;
 use p2m_core::engine::answer_one_by_one;
 use p2m_core::storage::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{
-    Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Found, Inspect, Isa, Near, NearQuery,
+    Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Found, Index, Inspect, Isa, Near, NearQuery,
     PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
@@ -110,6 +110,11 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> InterceptionIndex<T, S, P> {
         &self.set
     }
 
+    /// Returns the set and drops the index.
+    pub fn into_set(self) -> S {
+        self.set
+    }
+
     /// Returns the cells with their lists, without the set.
     pub fn partition(&self) -> &P {
         &self.partition
@@ -203,6 +208,18 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> ClosestPoint<T> for Interception
         answer_in_groups(partition.tree(), &self.set, queries, options, answered, |count, several| {
             partition.search_several(count, several, &mut lists);
         });
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T> + Send + Sync, P: Partition + Saved + Send + Sync> Index<T>
+    for InterceptionIndex<T, S, P>
+{
+    fn save<'s>(&'s self, writer: &mut Writer<'s>) {
+        self.save(writer);
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.memory()
     }
 }
 

@@ -73,7 +73,7 @@ pub use polytope::{Polytope, write_polytopes_ply};
 /// Queries are methods of the traits that it implements: [`ClosestPoint`](p2m_core::ClosestPoint),
 /// [`NearQuery`](p2m_core::NearQuery), [`BoxQuery`](p2m_core::BoxQuery), [`RayQuery`](p2m_core::RayQuery),
 /// [`ClosestLeaf`](p2m_core::ClosestLeaf) and [`CertifiedQuery`](p2m_core::CertifiedQuery).
-pub type KdopTree<T, S, const K: usize> = p2m_bvh::TreeIndex<T, S, Kdop<K>>;
+pub type KdopTree<T, S, const K: usize = 14> = p2m_bvh::TreeIndex<T, S, Kdop<K>>;
 
 /// The internals of this crate that its sibling crates use. They may change at any time.
 #[doc(hidden)]

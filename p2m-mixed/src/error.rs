@@ -11,8 +11,7 @@ use std::fmt;
 /// assert!(matches!(error.reason, p2m_mixed::Reason::IndexOutOfRange { index: 2, count: 1 }));
 /// ```
 ///
-/// The message of the operating system is not part of the message, but the [`source`](std::error::Error::source)
-/// of the error.
+/// The message includes that of the operating system, so `println!("{error}")` tells the whole reason.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct ReadError {
@@ -72,14 +71,14 @@ impl fmt::Display for FileLocation {
 #[non_exhaustive]
 pub enum Reason {
     /// The operating system returned an error.
-    #[error("cannot be read")]
-    Io(#[source] std::io::Error),
+    #[error("cannot be read: {0}")]
+    Io(std::io::Error),
     /// The file is not a saved index, or a damaged one.
     #[error(transparent)]
     Saved(p2m_core::storage::LoadError),
     /// The primitives do not make a scene, because there are too many.
-    #[error("no scene can be made of it")]
-    Build(#[source] BuildError),
+    #[error("no scene can be made of it: {0}")]
+    Build(BuildError),
     /// The extension of the file belongs to no format.
     #[error("unknown extension '{extension}', expected one of {}", supported.join(", "))]
     UnknownExtension {

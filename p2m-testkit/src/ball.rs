@@ -1,7 +1,7 @@
 //! A user-defined primitive.
 
 use nalgebra::{Point3, Vector3};
-use p2m_core::{Aabb, Feature, Primitive, Projection};
+use p2m_core::{Aabb, Feature, Primitive, Projection, Ray, RayHit};
 
 /// A solid ball, which has no vertices.
 #[derive(Clone, Copy, Debug)]
@@ -23,5 +23,8 @@ impl Primitive<f64> for Ball {
         let point = if outside { self.centre + v * (self.radius / v.norm()) } else { *query };
         let error = 1e-14 * (v.norm() + self.radius);
         Projection::new(query, self.aabb().clamp(point), Feature::Face, [1.0, 0.0, 0.0], error)
+    }
+    fn intersect_ray(&self, _: &Ray) -> Option<RayHit> {
+        unreachable!("tests cast no rays at balls")
     }
 }

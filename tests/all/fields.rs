@@ -116,6 +116,9 @@ fn there_are_no_lists_of_what_is_out_of_range_or_not_its_vertices() {
         fn project(&self, query: &Point3<f64>) -> p2m::Projection {
             p2m::Projection::new(query, *query, p2m::Feature::Face, [1.0, 0.0, 0.0], 0.0)
         }
+        fn intersect_ray(&self, _: &p2m::Ray) -> Option<p2m::backend::RayHit> {
+            unreachable!("no rays are cast")
+        }
     }
     assert!(CandidateLists::new(&[Ball]).is_none());
 }
@@ -153,7 +156,11 @@ impl<I: ClosestPoint<f64>> ClosestPoint<f64> for Counted<'_, I> {
 }
 
 /// Checks that fields have the signs of single answers, with and without a band.
-fn has_signs_of_answers(soup: &Soup<f64>, signed: &SignedDistance<'_, AabbTree<f64, &Soup<f64>>>, min_inside: usize) {
+fn has_signs_of_answers(
+    soup: &Soup<f64>,
+    signed: &SignedDistance<AabbTree<f64, &Soup<f64>>, &Soup<f64>>,
+    min_inside: usize,
+) {
     // The grid passes through the middle, where the sign of an open surface changes far from it.
     let grid = Grid::around(&soup.aabb(), amount(47, 9), 1.2).expect("a box");
     let value = |sample: Point3<f64>, band: f64| {

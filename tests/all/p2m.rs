@@ -246,6 +246,9 @@ impl Primitive<f64> for Mixed {
             Self::Ball(ball) => ball.project(query),
         }
     }
+    fn intersect_ray(&self, _: &p2m::Ray) -> Option<p2m::backend::RayHit> {
+        unreachable!("no rays are cast")
+    }
 }
 
 /// A primitive without vertices may be large, far from all vertices, and the last of all.

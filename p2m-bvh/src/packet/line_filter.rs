@@ -268,6 +268,9 @@ mod tests {
         fn project(&self, query: &Point3<f64>) -> p2m_core::Projection {
             self.0.project(query)
         }
+        fn intersect_ray(&self, _: &p2m_core::Ray) -> Option<p2m_core::RayHit> {
+            unreachable!("boxes are tested alone")
+        }
     }
 
     /// Returns sixteen primitives of a kind, of random sizes and shapes, at a random position.

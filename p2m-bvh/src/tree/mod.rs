@@ -90,7 +90,7 @@ impl<V: VolumeNodes> PacketTree<V> {
     }
 
     /// A box around the child in a slot of a node.
-    fn child_box(&self, node: &V::Node, slot: usize) -> Aabb<f64> {
+    pub(crate) fn child_box(&self, node: &V::Node, slot: usize) -> Aabb<f64> {
         V::Node::scene_box(&node.bounds(slot), &self.shared, &self.frame)
     }
 

@@ -10,13 +10,11 @@
 mod columns;
 mod order;
 mod parts;
-mod query_point;
 
 pub use columns::ClosestColumns;
-pub use query_point::QueryPoint;
 
 use crate::real::to_f64_array;
-use crate::{Closest, ClosestPoint, QueryOptions, Real};
+use crate::{Closest, ClosestPoint, Position, QueryOptions, Real};
 use columns::Sink;
 use nalgebra::Point3;
 use order::sorted_along_curve;
@@ -83,7 +81,7 @@ const QUERIES_PER_BLOCK: usize = 1 << 10;
 /// at most 2^20 queries.
 pub fn closest_points_into<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(
     index: &I,
-    queries: &[impl QueryPoint<T>],
+    queries: &[impl Position<T>],
     options: &QueryOptions<T>,
     batch: &BatchOptions,
     out: &mut [Option<Closest<T>>],
@@ -117,7 +115,7 @@ pub fn closest_points_into<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(
 /// at most 2^20 queries.
 pub fn closest_columns_into<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(
     index: &I,
-    queries: &[impl QueryPoint<T>],
+    queries: &[impl Position<T>],
     options: &QueryOptions<T>,
     batch: &BatchOptions,
     columns: ClosestColumns<'_, T>,
@@ -138,7 +136,7 @@ pub fn closest_columns_into<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(
 /// assert_eq!(batch::distances(&index, &[[4.0, 4.0, 0.0], [f64::NAN; 3]]), [5.0, f64::INFINITY]);
 /// ```
 #[must_use]
-pub fn distances<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(index: &I, queries: &[impl QueryPoint<T>]) -> Vec<T> {
+pub fn distances<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(index: &I, queries: &[impl Position<T>]) -> Vec<T> {
     let mut distance = vec![T::INFINITY; queries.len()];
     let columns = ClosestColumns::default().with_distance(&mut distance);
     closest_columns_into(index, queries, &QueryOptions::default(), &BatchOptions::default(), columns);
@@ -176,11 +174,12 @@ pub fn map<Q: Sync, R: Send>(
             out[i as usize] = Some(answer(&queries[i as usize]));
         }
     });
-    out.into_iter().map(|result| result.expect("each query was answered")).collect()
+    // Each query was answered, so none is left out.
+    out.into_iter().flatten().collect()
 }
 
 /// Answers queries for the closest point into any place for answers.
-fn answer_closest<T: Real, Q: QueryPoint<T>, O: Sink<T>>(
+fn answer_closest<T: Real, Q: Position<T>, O: Sink<T>>(
     index: &(impl ClosestPoint<T> + Sync + ?Sized),
     queries: &[Q],
     options: &QueryOptions<T>,

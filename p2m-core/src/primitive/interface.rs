@@ -18,7 +18,7 @@ use nalgebra::Point3;
 /// arithmetic has it. Use a tree for them: the lists of `P2mIndex` contain triangles, segments and points only.
 ///
 /// ```
-/// use p2m_core::{Aabb, BruteForce, ClosestPoint, Feature, Primitive, Projection};
+/// use p2m_core::{Aabb, BruteForce, ClosestPoint, Feature, Primitive, Projection, Ray, RayHit, check_primitive};
 /// use nalgebra::Point3;
 ///
 /// struct Ball { centre: Point3<f64>, radius: f64 }
@@ -34,13 +34,21 @@ use nalgebra::Point3;
 ///         let point = self.aabb().clamp(point);
 ///         Projection::new(query, point, Feature::Face, [1.0, 0.0, 0.0], 1e-15 * (v.norm() + self.radius))
 ///     }
+///     fn intersect_ray(&self, _: &Ray) -> Option<RayHit> {
+///         unreachable!("no rays are cast at this scene")
+///     }
 /// }
 ///
 /// let ball = |x, radius| Ball { centre: Point3::new(x, 0.0, 0.0), radius };
 /// let scene = [ball(0.0, 1.0), ball(5.0, 2.0)];
 /// let answer = BruteForce::new(&scene).unwrap().closest_point(&Point3::new(2.5, 0.0, 0.0)).unwrap();
 /// assert_eq!(answer.primitive.index(), 1);
+/// check_primitive(&scene[0], &[Point3::origin(), Point3::new(0.0, 3.0, 1.0), Point3::new(-9.0, 0.5, 0.0)]).unwrap();
 /// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a primitive with coordinates of type `{T}`",
+    note = "primitives are `Triangle<{T}>`, `Segment<{T}>`, `Point<{T}>`, `Shape<{T}>` and types of your own"
+)]
 pub trait Primitive<T: Real> {
     /// Returns the smallest box that contains the primitive. It is not finite if a coordinate is not.
     fn aabb(&self) -> Aabb<T>;
@@ -77,13 +85,11 @@ pub trait Primitive<T: Real> {
 
     /// Returns the hit of a ray on a primitive that has no [`vertices`](Self::vertices).
     ///
-    /// It has to be a pure function. The point lies in `aabb()` and the parameter in the range of the ray. The default
-    /// returns `None`, so rays miss a primitive that does not override it. Primitives with vertices are hit as the
-    /// contract of [`RayQuery`](crate::RayQuery) says.
-    fn intersect_ray(&self, ray: &Ray) -> Option<RayHit> {
-        let _ = ray;
-        None
-    }
+    /// It has to be a pure function. The point lies in `aabb()` and the parameter in the range of the ray. Rays miss a
+    /// primitive that returns `None`, so there is no default: a program that casts no rays may write `unreachable!()`.
+    /// Primitives with vertices are hit as the contract of [`RayQuery`](crate::RayQuery) says, and this method is not
+    /// called for them.
+    fn intersect_ray(&self, ray: &Ray) -> Option<RayHit>;
 
     /// Returns whether all coordinates are finite.
     fn is_finite(&self) -> bool {

@@ -1,6 +1,7 @@
 //! The primitives of a scene, and the interface of primitives of your own.
 
 mod box_intersection;
+mod check;
 mod feature;
 mod interface;
 mod point;
@@ -9,6 +10,7 @@ mod segment;
 mod shape;
 mod triangle;
 
+pub use check::{PrimitiveDefect, check_primitive};
 pub use feature::Feature;
 pub use interface::Primitive;
 pub use point::Point;

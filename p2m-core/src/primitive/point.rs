@@ -4,7 +4,7 @@ use super::box_intersection;
 use super::interface::Primitive;
 use super::projection::Projection;
 use crate::real::to_f64_array;
-use crate::{Aabb, Real};
+use crate::{Aabb, Ray, RayHit, Real};
 use nalgebra::Point3;
 
 /// A point of a scene.
@@ -48,5 +48,9 @@ impl<T: Real> Primitive<T> for Point<T> {
 
     fn intersects_box(&self, bounds: &Aabb<T>) -> bool {
         box_intersection::intersects_box(std::array::from_ref(&self.position), bounds)
+    }
+
+    fn intersect_ray(&self, _: &Ray) -> Option<RayHit> {
+        None
     }
 }

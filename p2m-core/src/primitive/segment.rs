@@ -4,7 +4,7 @@ use super::box_intersection;
 use super::interface::Primitive;
 use super::projection::Projection;
 use crate::real::to_f64_array;
-use crate::{Aabb, Real};
+use crate::{Aabb, Ray, RayHit, Real};
 use nalgebra::Point3;
 
 /// A line segment. It is a point if its vertices are equal.
@@ -44,5 +44,9 @@ impl<T: Real> Primitive<T> for Segment<T> {
 
     fn intersects_box(&self, bounds: &Aabb<T>) -> bool {
         box_intersection::intersects_box(&self.vertices, bounds)
+    }
+
+    fn intersect_ray(&self, _: &Ray) -> Option<RayHit> {
+        None
     }
 }

@@ -5,7 +5,7 @@ use super::point::Point;
 use super::projection::Projection;
 use super::segment::Segment;
 use super::triangle::Triangle;
-use crate::{Aabb, Real};
+use crate::{Aabb, Ray, RayHit, Real};
 use nalgebra::Point3;
 
 /// One primitive of a mixed scene.
@@ -71,6 +71,10 @@ impl<T: Real> Primitive<T> for Shape<T> {
             Self::Segment(s) => s.intersects_box(bounds),
             Self::Triangle(t) => t.intersects_box(bounds),
         }
+    }
+
+    fn intersect_ray(&self, _: &Ray) -> Option<RayHit> {
+        None
     }
 }
 

@@ -52,6 +52,10 @@ use std::ops::ControlFlow;
 ///
 /// # References
 /// The functions are those of the trees of CGAL (manual of its k-DOP tree, section Ray Intersection).
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` answers no queries by rays with coordinates of type `{T}`",
+    note = "`AabbTree`, `KdopTree` and `BruteForce` do; the octree and the P2M index answer closest-point queries only"
+)]
 pub trait RayQuery<T: Real> {
     /// Offers to `hits` every hit that it could need.
     fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>);

@@ -3,10 +3,11 @@
 use bytemuck::AnyBitPattern;
 use std::fmt;
 use std::ops::Deref;
+use std::panic::{RefUnwindSafe, UnwindSafe};
 use std::sync::Arc;
 
 /// The bytes of a file, whose address does not change.
-pub(super) type FileBytes = Arc<dyn AsRef<[u8]> + Send + Sync>;
+pub(super) type FileBytes = Arc<dyn AsRef<[u8]> + Send + Sync + UnwindSafe + RefUnwindSafe>;
 
 /// An array that is owned or part of a file in memory. Reading it is as fast as reading a slice in both cases.
 pub struct Array<T> {

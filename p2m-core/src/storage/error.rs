@@ -2,13 +2,13 @@
 
 use super::section::VERSION;
 
-/// An error of loading an index from a file.
+/// An error of loading an index from a file. Its message includes that of the operating system.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LoadError {
     /// The file cannot be opened or read.
-    #[error("cannot be read")]
-    Io(#[from] std::io::Error),
+    #[error("cannot be read: {0}")]
+    Io(std::io::Error),
     /// The file does not begin with the bytes that mark a saved index.
     #[error("is not a saved index")]
     Foreign,
@@ -67,5 +67,11 @@ impl LoadError {
     #[must_use]
     pub fn inconsistent(section: &str, reason: &'static str) -> Self {
         Self::Inconsistent { section: section.to_owned(), reason }
+    }
+}
+
+impl From<std::io::Error> for LoadError {
+    fn from(error: std::io::Error) -> Self {
+        Self::Io(error)
     }
 }

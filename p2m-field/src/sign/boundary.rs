@@ -16,6 +16,7 @@ use std::f64::consts::PI;
 const MIN_TRIANGLES_PER_EDGE: usize = 4;
 
 /// The edges through which triangles run more often in one direction than in the other.
+#[derive(Clone)]
 pub(super) struct Boundary {
     /// A tree of the edges, or `None` if there are so many edges that they are near to every point.
     edges: Option<TreeIndex<f64, Soup<f64>, Aabb<f64>>>,

@@ -30,39 +30,93 @@ mod topology;
 mod types;
 mod winding;
 
-pub use types::{Sign, SignError, Signed};
+pub use types::{SharedSoup, Sign, SignError, Signed};
 pub use winding::WindingNumbers;
 
 use nalgebra::Point3;
-use p2m_core::{BuildIndex, Closest, ClosestPoint, PrimitiveId, QueryOptions, Soup};
+use p2m_bvh::TreeIndex;
+use p2m_core::batch::{self, BatchOptions};
+use p2m_core::{Aabb, BuildIndex, Closest, ClosestPoint, PrimitiveId, QueryOptions, Real, Soup};
 use pseudonormal::Pseudonormals;
+use std::sync::Arc;
 use topology::{RayTree, Topology};
 
 /// An index over triangles whose answers have signs.
-pub struct SignedDistance<'a, I> {
+///
+/// `I` is the index, and `S` a pointer to its scene: `&Soup<f64>` to borrow it, or `Arc<Soup<f64>>` to share it, so that
+/// one value has everything and can be moved, cloned and sent to other threads:
+///
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::Soup;
+/// use p2m_field::sign::{Sign, SharedDistance, SignedDistance};
+/// use p2m_mixed::generate::{IcoSphere, ico_sphere};
+/// use std::sync::Arc;
+///
+/// struct World {
+///     walls: SharedDistance,
+/// }
+///
+/// let ball: Arc<Soup<f64>> = Arc::new(ico_sphere(&IcoSphere::default()).unwrap());
+/// let world = World { walls: SignedDistance::build(ball)? };
+/// let inside = std::thread::spawn(move || world.walls.closest_point(&Point3::origin()).unwrap().sign);
+/// assert_eq!(inside.join().unwrap(), Sign::Inside);
+/// # Ok::<(), p2m_field::sign::SignError>(())
+/// ```
+///
+/// An index in f32 has signs as well: give it the scene converted to f64, which is exact, and queries in f32.
+#[derive(Clone)]
+pub struct SignedDistance<I, S> {
     index: I,
-    rule: SignRule<'a>,
+    rule: SignRule<S>,
+}
+
+/// Signed distances by an AABB tree over a scene that is shared.
+pub type SharedDistance = SignedDistance<TreeIndex<f64, Arc<Soup<f64>>, Aabb<f64>>, Arc<Soup<f64>>>;
+
+impl<I, S> std::fmt::Debug for SignedDistance<I, S> {
+    /// Writes the name of the rule. The index and its tables are left out, because they are as large as the scene.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let rule = match &self.rule {
+            SignRule::Closed(_) => "closed surface",
+            SignRule::Winding(_) => "winding numbers",
+        };
+        f.debug_struct("SignedDistance").field("rule", &rule).finish_non_exhaustive()
+    }
 }
 
 /// The rule that decides the sign.
-enum SignRule<'a> {
-    Closed(Box<Pseudonormals<'a>>),
-    Winding(Box<WindingNumbers<'a>>),
+#[derive(Clone)]
+enum SignRule<S> {
+    Closed(Box<Pseudonormals<S>>),
+    Winding(Box<WindingNumbers<S>>),
 }
 
-impl SignRule<'_> {
-    fn sign(&self, query: &Point3<f64>, closest: &Closest<f64>) -> Sign {
-        if closest.distance == 0.0 {
+impl<S: SharedSoup> SignRule<S> {
+    fn sign<T: Real>(&self, query: &Point3<T>, closest: &Closest<T>) -> Sign {
+        if closest.distance == T::zero() {
             return Sign::Boundary;
         }
+        let query = query.map(Real::to_f64);
         match self {
-            Self::Closed(normals) => normals.sign(query, closest),
-            Self::Winding(winding) => winding.sign(query),
+            Self::Closed(normals) => normals.sign(&query, &closest.into()),
+            Self::Winding(winding) => winding.sign(&query),
         }
     }
 }
 
-impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
+impl SharedDistance {
+    /// Builds an AABB tree over a closed surface, with signs as [`SignedDistance::new`] makes them. A scene of its own
+    /// is shared by `Arc::new(soup)`.
+    ///
+    /// # Errors
+    /// The errors of [`SignedDistance::new`].
+    pub fn build(soup: Arc<Soup<f64>>) -> Result<Self, SignError> {
+        Self::new(TreeIndex::build(Arc::clone(&soup), &Default::default())?, soup)
+    }
+}
+
+impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// Makes signs for a closed surface. `index` has to be an index over `soup`.
     ///
     /// The orientation of the surface is irrelevant, and parts of it may be inside of others. Vertices are welded where
@@ -82,7 +136,10 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
     /// # Complexity
     /// O(n log n) time. Memory is 13 bytes for each triangle, 28 bytes for each vertex, and a tree of boxes
     /// for ambiguous queries.
-    pub fn new(index: I, soup: &'a Soup<f64>) -> Result<Self, SignError> {
+    pub fn new<T: Real>(index: I, soup: S) -> Result<Self, SignError>
+    where
+        I: ClosestPoint<T>,
+    {
         let normals = Pseudonormals::new(soup, &index)?;
         Ok(Self { index, rule: SignRule::Closed(Box::new(normals)) })
     }
@@ -98,7 +155,7 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
     ///
     /// # Complexity
     /// The complexity is that of [`WindingNumbers::new`].
-    pub fn with_winding_numbers(index: I, soup: &'a Soup<f64>, accuracy: f64) -> Result<Self, SignError> {
+    pub fn with_winding_numbers(index: I, soup: S, accuracy: f64) -> Result<Self, SignError> {
         Ok(Self { index, rule: SignRule::Winding(Box::new(WindingNumbers::new(soup, accuracy)?)) })
     }
 
@@ -108,24 +165,48 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
     }
 
     /// Returns the closest point and the sign of a query.
-    pub fn closest_point(&self, query: &Point3<f64>) -> Option<Signed> {
+    pub fn closest_point<T: Real>(&self, query: &Point3<T>) -> Option<Signed<T>>
+    where
+        I: ClosestPoint<T>,
+    {
         self.closest_point_with(query, &QueryOptions::default())
     }
 
     /// Returns the closest point within the limits of `options`, and the sign of a query. With an epsilon the sign
     /// follows from the approximate closest point.
-    pub fn closest_point_with(&self, query: &Point3<f64>, options: &QueryOptions<f64>) -> Option<Signed> {
+    pub fn closest_point_with<T: Real>(&self, query: &Point3<T>, options: &QueryOptions<T>) -> Option<Signed<T>>
+    where
+        I: ClosestPoint<T>,
+    {
         let closest = self.index.closest_point_with(query, options)?;
         Some(Signed { closest, sign: self.rule.sign(query, &closest) })
     }
 
+    /// Returns the closest points and the signs of queries, in their order, computed as a [`batch`].
+    pub fn closest_points<T: Real>(
+        &self,
+        queries: &[Point3<T>],
+        options: &QueryOptions<T>,
+        batch: &BatchOptions,
+    ) -> Vec<Option<Signed<T>>>
+    where
+        I: ClosestPoint<T> + Sync,
+        S: Send,
+    {
+        let mut closest = vec![None; queries.len()];
+        batch::closest_points_into(&self.index, queries, options, batch, &mut closest);
+        let pairs: Vec<(Point3<T>, Option<Closest<T>>)> = queries.iter().copied().zip(closest).collect();
+        let position = |pair: &(Point3<T>, _)| pair.0.map(Real::to_f64);
+        batch::map(&pairs, batch, position, |(query, closest)| closest.map(|closest| self.with_sign(query, closest)))
+    }
+
     /// Returns the answer to a query whose closest point is known, with its sign.
-    pub fn with_sign(&self, query: &Point3<f64>, closest: Closest<f64>) -> Signed {
+    pub fn with_sign<T: Real>(&self, query: &Point3<T>, closest: Closest<T>) -> Signed<T> {
         Signed { closest, sign: self.sign(query, &closest) }
     }
 
     /// Returns the sign of a query by its closest point.
-    pub(crate) fn sign(&self, query: &Point3<f64>, closest: &Closest<f64>) -> Sign {
+    pub(crate) fn sign<T: Real>(&self, query: &Point3<T>, closest: &Closest<T>) -> Sign {
         self.rule.sign(query, closest)
     }
 
@@ -148,7 +229,10 @@ impl<'a, I: ClosestPoint<f64>> SignedDistance<'a, I> {
 
     /// Returns the common sign of all points within `radius` of a centre that the surface does not separate from it, or
     /// `None` if their signs may differ. The centre is not on the surface.
-    pub(crate) fn sign_within(&self, radius: f64, centre: &Point3<f64>) -> Option<Sign> {
+    pub(crate) fn sign_within(&self, radius: f64, centre: &Point3<f64>) -> Option<Sign>
+    where
+        I: ClosestPoint<f64>,
+    {
         match &self.rule {
             SignRule::Closed(_) => Some(self.closest_point(centre)?.sign),
             SignRule::Winding(winding) => winding.sign_within(radius, centre),

@@ -12,12 +12,11 @@
 //! agree on surfaces that are inside out, and on components inside of others.
 
 use super::topology::{NO_TRIANGLE, RayTree, Topology};
-use super::types::{Sign, SignError};
+use super::types::{ClosestFeature, Counter, SharedSoup, Sign, SignError};
 use nalgebra::{Point3, Vector3};
 use p2m_bvh::TreeIndex;
-use p2m_core::{Aabb, BuildIndex, Closest, ClosestPoint, Feature, PrimitiveSet, Ray, RayQuery, Soup};
+use p2m_core::{Aabb, BuildIndex, ClosestPoint, Feature, Ray, RayQuery, Real, Soup};
 use p2m_mixed::engine::vector::{V3, add, cross, dot, largest, length, scaled, sub};
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The smallest sine that is not ambiguous: 2^-20. The limit applies to the angle between the offset and the tangent
 /// plane, and to the angle of a triangle at its first vertex.
@@ -29,8 +28,9 @@ const MIN_PRODUCT_PER_OFFSET: f64 = 1.0 / (1 << 26) as f64;
 const RAY_DIRECTION: [f64; 3] = [0.539_217, 0.283_165, 0.793_121];
 
 /// The pseudonormals of a closed surface, and the tree in which rays are cast.
-pub(crate) struct Pseudonormals<'a> {
-    soup: &'a Soup<f64>,
+#[derive(Clone)]
+pub(crate) struct Pseudonormals<S> {
+    soup: S,
     /// The triangle beyond each edge, or [`NO_TRIANGLE`].
     neighbours: Vec<[u32; 3]>,
     /// The vertex id of each position.
@@ -39,9 +39,9 @@ pub(crate) struct Pseudonormals<'a> {
     vertex_normals: Vec<V3>,
     /// The side of the surface that the front of each triangle is on.
     fronts: Vec<Front>,
-    rays: RayTree<'a>,
+    rays: RayTree<S>,
     bounds: Aabb<f64>,
-    ambiguous_count: AtomicU64,
+    ambiguous_count: Counter,
 }
 
 /// The side of the surface that the front of a triangle is on.
@@ -52,14 +52,14 @@ enum Front {
     Unknown,
 }
 
-impl<'a> Pseudonormals<'a> {
-    pub(super) fn new(soup: &'a Soup<f64>, index: &impl ClosestPoint<f64>) -> Result<Self, SignError> {
-        let Topology { welder, neighbours, components, is_fan } = Topology::new(soup)?;
-        let rays = TreeIndex::build(soup, &Default::default())?;
+impl<S: SharedSoup> Pseudonormals<S> {
+    pub(super) fn new<T: Real>(soup: S, index: &impl ClosestPoint<T>) -> Result<Self, SignError> {
+        let Topology { welder, neighbours, components, is_fan } = Topology::new(&soup)?;
+        let rays = TreeIndex::build(soup.clone(), &Default::default())?;
         let mut vertex_normals = vec![[0.0; 3]; welder.vertex_count];
         let mut is_unambiguous = is_fan;
         for triangle in soup.triangles() {
-            let corners = corners(soup, *triangle);
+            let corners = corners(&soup, *triangle);
             let normal = unit_normal(corners);
             for (i, vertex) in welder.weld(*triangle).into_iter().enumerate() {
                 match normal {
@@ -75,7 +75,7 @@ impl<'a> Pseudonormals<'a> {
             *normal = [0.0; 3];
         }
         let fronts = vec![Front::Unknown; soup.triangles().len()];
-        let ambiguous_count = AtomicU64::new(0);
+        let ambiguous_count = Counter::default();
         let bounds = soup.aabb();
         let vertex_ids = welder.vertex_ids;
         let mut normals = Self { soup, neighbours, vertex_ids, vertex_normals, fronts, rays, bounds, ambiguous_count };
@@ -84,10 +84,10 @@ impl<'a> Pseudonormals<'a> {
     }
 
     /// Determines the front of each component by its largest triangle. `components` has the component of each triangle.
-    fn find_fronts(&mut self, components: &[u32], index: &impl ClosestPoint<f64>) {
+    fn find_fronts<T: Real>(&mut self, components: &[u32], index: &impl ClosestPoint<T>) {
         let mut largest_triangles = vec![(0.0, NO_TRIANGLE); components.len()];
         for (t, (triangle, component)) in self.soup.triangles().iter().zip(components).enumerate() {
-            let corners = corners(self.soup, *triangle);
+            let corners = corners(&self.soup, *triangle);
             let edges = [sub(corners[1], corners[0]), sub(corners[2], corners[0])];
             let unit = 1.0 / largest(&edges);
             let size = length(cross(scaled(edges[0], unit), scaled(edges[1], unit))).sqrt() / unit;
@@ -103,18 +103,19 @@ impl<'a> Pseudonormals<'a> {
 
     /// Determines the front of a triangle by points on both sides of it, whose heights decrease until the component of
     /// the triangle is closest to them.
-    fn front(&self, size: f64, triangle: u32, components: &[u32], index: &impl ClosestPoint<f64>) -> Front {
+    fn front<T: Real>(&self, size: f64, triangle: u32, components: &[u32], index: &impl ClosestPoint<T>) -> Front {
         let Some(corner_numbers) = self.soup.triangles().get(triangle as usize) else { return Front::Unknown };
-        let corners = corners(self.soup, *corner_numbers);
+        let corners = corners(&self.soup, *corner_numbers);
         let Some(normal) = unit_normal(corners) else { return Front::Unknown };
         let centre = corners.iter().fold([0.0; 3], |sum, corner| add(sum, scaled(*corner, 1.0 / 3.0)));
         // Returns whether a ray finds the point at some height above the triangle inside, or `None` unless the closest
         // point confirms on which side of the component the point is.
         let is_inside = |height: f64| {
-            let point = Point3::from(add(centre, scaled(normal, height)));
-            let closest = index.closest_point(&point)?;
+            let query = Point3::from(add(centre, scaled(normal, height))).map(T::round_from_f64);
+            let (point, closest) = (query.map(Real::to_f64), index.closest_point(&query)?);
             let is_same_component = components[closest.primitive.index()] == components[triangle as usize];
-            (is_same_component && self.is_in_front(&point, &closest)? == (height > 0.0)).then(|| self.is_inside(&point))
+            (is_same_component && self.is_in_front(&point, &ClosestFeature::from(&closest))? == (height > 0.0))
+                .then(|| self.is_inside(&point))
         };
         let mut height = size / 16.0;
         for _ in 0..20 {
@@ -129,7 +130,7 @@ impl<'a> Pseudonormals<'a> {
     }
 
     /// Returns the sign of a query by its closest point, whose distance is not 0.
-    pub(super) fn sign(&self, query: &Point3<f64>, closest: &Closest<f64>) -> Sign {
+    pub(super) fn sign(&self, query: &Point3<f64>, closest: &ClosestFeature) -> Sign {
         if (0..3).any(|k| query[k] < self.bounds.min[k] || query[k] > self.bounds.max[k]) {
             return Sign::Outside;
         }
@@ -137,7 +138,7 @@ impl<'a> Pseudonormals<'a> {
             (Front::Outside, Some(is_in_front)) => is_in_front,
             (Front::Inside, Some(is_in_front)) => !is_in_front,
             _ => {
-                self.ambiguous_count.fetch_add(1, Ordering::Relaxed);
+                self.ambiguous_count.increment();
                 if closest.lower_bound <= 0.0 && self.is_on_surface(query) {
                     return Sign::Boundary;
                 }
@@ -148,20 +149,20 @@ impl<'a> Pseudonormals<'a> {
     }
 
     pub(super) fn ambiguous_count(&self) -> u64 {
-        self.ambiguous_count.load(Ordering::Relaxed)
+        self.ambiguous_count.get()
     }
 
     /// Returns whether the query is in front of the surface at its closest point, or `None` if that is ambiguous.
-    fn is_in_front(&self, query: &Point3<f64>, closest: &Closest<f64>) -> Option<bool> {
+    fn is_in_front(&self, query: &Point3<f64>, closest: &ClosestFeature) -> Option<bool> {
         let triangle = closest.primitive.index();
         let numbers = self.soup.triangles()[triangle];
-        let corners = corners(self.soup, numbers);
+        let corners = corners(&self.soup, numbers);
         let normal = match closest.feature {
             Feature::Face => unit_normal(corners)?,
             Feature::Edge(i) => {
                 let neighbour = self.neighbours[triangle][usize::from(i)];
                 let neighbour = self.soup.triangles().get(neighbour as usize)?;
-                add(unit_normal(corners)?, unit_normal(self::corners(self.soup, *neighbour))?)
+                add(unit_normal(corners)?, unit_normal(self::corners(&self.soup, *neighbour))?)
             }
             Feature::Vertex(i) => self.vertex_normals[self.vertex_ids[numbers[usize::from(i)] as usize] as usize],
         };

@@ -8,7 +8,7 @@ use p2m_mixed::engine::weld::{UNUSED, UnionFind, VertexWelder, group_by_vertex};
 use std::ops::ControlFlow;
 
 /// The tree in which rays are cast.
-pub(super) type RayTree<'a> = TreeIndex<f64, &'a Soup<f64>, Aabb<f64>>;
+pub(super) type RayTree<S> = TreeIndex<f64, S, Aabb<f64>>;
 
 /// The neighbour of an edge that has none, because more than two triangles have the edge or the triangle
 /// has equal corners.
@@ -86,7 +86,7 @@ impl Topology {
 
     /// Returns the lowest triangle with an edge that intersects a triangle which does not touch the ends of the edge,
     /// and the lowest such triangle.
-    pub(super) fn find_self_intersection(&self, soup: &Soup<f64>, rays: &RayTree<'_>) -> Option<[usize; 2]> {
+    pub(super) fn find_self_intersection(&self, soup: &Soup<f64>, rays: &RayTree<&Soup<f64>>) -> Option<[usize; 2]> {
         let at = |position: u32| -> Point3<f64> { soup.positions()[position as usize] };
         for (t, corners) in soup.triangles().iter().enumerate() {
             for (i, neighbour) in self.neighbours[t].iter().enumerate() {

@@ -1,6 +1,8 @@
 //! The sign of a query, and the reasons why a scene has none.
 
-use p2m_core::{Closest, Soup};
+use p2m_core::{Closest, Feature, PrimitiveId, PrimitiveSet, Real, Soup};
+use std::ops::Deref;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The side of the surface that a point is on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -66,23 +68,62 @@ pub enum SignError {
 /// A closest point, and the side of the surface that the query is on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Signed {
+pub struct Signed<T: Real = f64> {
     /// The closest point; its distance has no sign.
-    pub closest: Closest<f64>,
+    pub closest: Closest<T>,
     /// The sign of the query.
     pub sign: Sign,
 }
 
-impl Signed {
+impl<T: Real> Signed<T> {
     /// Returns the distance, negative inside, or `None` where the sign is not defined.
     #[must_use]
-    pub fn distance(&self) -> Option<f64> {
+    pub fn distance(&self) -> Option<T> {
         match self.sign {
             Sign::Outside => Some(self.closest.distance),
             Sign::Inside => Some(-self.closest.distance),
-            Sign::Boundary => Some(0.0),
+            Sign::Boundary => Some(T::zero()),
             Sign::Undefined => None,
         }
+    }
+}
+
+/// A pointer to a scene: `&Soup<f64>` to borrow it, or `Arc<Soup<f64>>` to share it.
+pub trait SharedSoup: Deref<Target = Soup<f64>> + PrimitiveSet<f64> + Clone + Sync {}
+
+impl<S: Deref<Target = Soup<f64>> + PrimitiveSet<f64> + Clone + Sync> SharedSoup for S {}
+
+/// What a sign needs of a closest point, in f64.
+pub(super) struct ClosestFeature {
+    pub(super) primitive: PrimitiveId,
+    pub(super) feature: Feature,
+    pub(super) distance: f64,
+    pub(super) lower_bound: f64,
+}
+
+impl<T: Real> From<&Closest<T>> for ClosestFeature {
+    fn from(closest: &Closest<T>) -> Self {
+        let (distance, lower_bound) = (closest.distance.to_f64(), closest.lower_bound.to_f64());
+        Self { primitive: closest.primitive, feature: closest.feature, distance, lower_bound }
+    }
+}
+
+/// A counter that threads share. A clone begins with the count of its original.
+#[derive(Default)]
+pub(super) struct Counter(AtomicU64);
+
+impl Counter {
+    pub(super) fn increment(&self) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+    pub(super) fn get(&self) -> u64 {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+impl Clone for Counter {
+    fn clone(&self) -> Self {
+        Self(AtomicU64::new(self.get()))
     }
 }
 

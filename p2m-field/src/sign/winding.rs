@@ -12,14 +12,12 @@
 //! of q from the node, which is computed at build.
 
 use super::boundary::Boundary;
-use super::types::{Sign, SignError, check_kinds};
+use super::types::{Counter, SharedSoup, Sign, SignError, check_kinds};
 use nalgebra::Point3;
 use p2m_core::kernel::power_of_two;
-use p2m_core::{PrimitiveSet, Soup};
 use p2m_mixed::engine::vector::{V3, add, cross, dot, length, scaled, sub};
 use std::f64::consts::PI;
 use std::ops::Range;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The generalised winding numbers of a set of triangles.
 ///
@@ -34,8 +32,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// assert!(winding.number(&Point3::new(3.0, 0.0, 0.0)).abs() <= 0.01);
 /// # Ok::<(), p2m_field::sign::SignError>(())
 /// ```
-pub struct WindingNumbers<'a> {
-    soup: &'a Soup<f64>,
+#[derive(Clone)]
+pub struct WindingNumbers<S> {
+    soup: S,
     /// The power of two that coordinates are multiplied by, so that the largest is about 1.
     scale: f64,
     accuracy: f64,
@@ -48,10 +47,11 @@ pub struct WindingNumbers<'a> {
     order: Vec<u32>,
     /// The nodes in depth-first order. The first child of a node follows it.
     nodes: Vec<Node>,
-    ambiguous_count: AtomicU64,
+    ambiguous_count: Counter,
 }
 
 /// A group of triangles that a dipole approximates from far away.
+#[derive(Clone)]
 struct Node {
     centre: V3,
     /// An upper bound on the distance of the vertices from the centre.
@@ -78,7 +78,7 @@ const SHARED_SIGN_ACCURACY: f64 = 0.2;
 /// An upper bound on the rounding error of a winding number (observed). Closer to a half the sign is not defined.
 const ROUNDING_ERROR: f64 = 1e-9;
 
-impl<'a> WindingNumbers<'a> {
+impl<S: SharedSoup> WindingNumbers<S> {
     /// Builds the tree of dipoles of a soup.
     ///
     /// # Errors
@@ -87,8 +87,8 @@ impl<'a> WindingNumbers<'a> {
     ///
     /// # Complexity
     /// O(n log n) time; 40 to 70 bytes for each triangle.
-    pub fn new(soup: &'a Soup<f64>, accuracy: f64) -> Result<Self, SignError> {
-        check_kinds(soup)?;
+    pub fn new(soup: S, accuracy: f64) -> Result<Self, SignError> {
+        check_kinds(&soup)?;
         if !(accuracy > 0.0 && accuracy < 0.5) {
             return Err(SignError::Accuracy(accuracy));
         }
@@ -99,9 +99,9 @@ impl<'a> WindingNumbers<'a> {
         // Coordinates are scaled to about 1, so that areas and products of lengths stay within the range of f64.
         #[allow(clippy::cast_possible_truncation, reason = "exponents of f64")]
         let exponent = if largest > 0.0 { (largest.log2() as i32).clamp(-1000, 1000) } else { 0 };
-        let boundary = Boundary::new(soup)?;
+        let boundary = Boundary::new(&soup)?;
         let count = u32::try_from(soup.triangles().len()).unwrap_or(u32::MAX);
-        let (order, nodes, ambiguous_count) = ((0..count).collect(), Vec::new(), AtomicU64::new(0));
+        let (order, nodes, ambiguous_count) = ((0..count).collect(), Vec::new(), Counter::default());
         let [rough_distance_factor, shared_distance_factor] =
             [ROUGH_ACCURACY, SHARED_SIGN_ACCURACY].map(|a| (accuracy / a).sqrt().sqrt().min(1.0) * (1.0 + 1e-12));
         let mut numbers = Self {
@@ -248,7 +248,7 @@ impl<'a> WindingNumbers<'a> {
             above_half = self.number(query).abs() - 0.5;
         }
         if above_half.abs() <= self.accuracy + ROUNDING_ERROR {
-            self.ambiguous_count.fetch_add(1, Ordering::Relaxed);
+            self.ambiguous_count.increment();
             above_half = self.exact_number(query).abs() - 0.5;
         }
         if above_half > ROUNDING_ERROR {
@@ -281,7 +281,7 @@ impl<'a> WindingNumbers<'a> {
     }
 
     pub(super) fn ambiguous_count(&self) -> u64 {
-        self.ambiguous_count.load(Ordering::Relaxed)
+        self.ambiguous_count.get()
     }
 }
 

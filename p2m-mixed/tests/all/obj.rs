@@ -274,8 +274,10 @@ fn extensions_select_the_format() {
     for name in ["/nonexistent/a.OBJ", "/nonexistent/a.Ply"] {
         let error = read_scene(Path::new(name)).unwrap_err();
         assert!(matches!(&error.reason, Reason::Io(e) if e.kind() == std::io::ErrorKind::NotFound), "{error}");
-        assert_eq!(error.to_string(), format!("{name}: cannot be read"));
-        assert!(error.source().is_some_and(|e| e.is::<std::io::Error>()));
+        let message = error.to_string();
+        assert!(message.starts_with(&format!("{name}: cannot be read: ")) && message.len() > name.len() + 20);
+        // The message has the reason, which a chain of sources would repeat.
+        assert!(error.source().is_none());
     }
     // The error has no line, whatever error the system returns for a directory.
     let folder = std::env::temp_dir().join(format!("p2m-mixed-{}.obj", std::process::id()));

@@ -161,6 +161,9 @@ fn what_cannot_be_certified_is_told() {
             let point = Point3::from(query.coords.normalize());
             Projection::new(query, self.aabb().clamp(point), Feature::Face, [1.0, 0.0, 0.0], 1e-15)
         }
+        fn intersect_ray(&self, _: &p2m::Ray) -> Option<p2m::backend::RayHit> {
+            unreachable!("no rays are cast")
+        }
     }
     let tree = AabbTree::build([Ball], &Default::default()).expect("valid");
     let query = Point3::new(3.0, 0.0, 0.0);

@@ -1,0 +1,88 @@
+//! Everything that an index can do, behind one pointer.
+
+use crate::storage::Writer;
+use crate::{BoxQuery, BruteForce, CertifiedQuery, ClosestPoint, Inspect, PrimitiveSet, RayQuery, Real};
+use std::sync::Arc;
+
+/// Everything that an index can do, as a trait that can be used as `dyn Index<T>`.
+///
+/// Every index answers closest-point, near and certified queries, and reports its costs. Rays and boxes are optional.
+/// Indexes can be sent to other threads and shared among them.
+///
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::{BruteForce, ClosestPoint, Index, NearQuery, Point, RayQuery, Soup};
+/// use std::sync::Arc;
+///
+/// let soup: Arc<Soup<f64>> = Arc::default();
+/// let index: Box<dyn Index> = Box::new(BruteForce::new(soup)?);
+/// let index = std::thread::spawn(move || {
+///     assert!(index.closest_point(&Point3::origin()).is_none());
+///     index
+/// });
+/// let index = index.join().expect("no panic");
+/// assert!(index.k_nearest(&Point3::origin(), 3, 1.0).is_empty());
+/// assert!(index.as_ray_query().is_some());
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not an index that can be used as `dyn Index<{T}>`",
+    note = "the scene of an index has to be `Send` and `Sync`, so share it by `Arc` and not by `Rc`"
+)]
+pub trait Index<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + Inspect<T> + Send + Sync {
+    /// Adds the index to a file, without its scene. An index without a saved form adds nothing.
+    fn save<'s>(&'s self, writer: &mut Writer<'s>);
+
+    /// Returns the heap memory that the index owns besides its scene, in bytes.
+    fn memory_bytes(&self) -> usize;
+
+    /// Returns the index as one that rays can be cast at, if it is one.
+    fn as_ray_query(&self) -> Option<&(dyn RayQuery<T> + Sync)> {
+        None
+    }
+
+    /// Returns the index as one that boxes can be queried with, if it is one.
+    fn as_box_query(&self) -> Option<&(dyn BoxQuery<T> + Sync)> {
+        None
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T> + Send + Sync> Index<T> for BruteForce<S> {
+    fn save<'s>(&'s self, _: &mut Writer<'s>) {}
+
+    fn memory_bytes(&self) -> usize {
+        0
+    }
+
+    fn as_ray_query(&self) -> Option<&(dyn RayQuery<T> + Sync)> {
+        Some(self)
+    }
+
+    fn as_box_query(&self) -> Option<&(dyn BoxQuery<T> + Sync)> {
+        Some(self)
+    }
+}
+
+/// Implements the trait for a pointer type by its target.
+macro_rules! index_behind {
+    ($target:ident, $pointer:ty) => {
+        impl<T: Real, $target: Index<T> + ?Sized> Index<T> for $pointer {
+            fn save<'s>(&'s self, writer: &mut Writer<'s>) {
+                (**self).save(writer);
+            }
+            fn memory_bytes(&self) -> usize {
+                (**self).memory_bytes()
+            }
+            fn as_ray_query(&self) -> Option<&(dyn RayQuery<T> + Sync)> {
+                (**self).as_ray_query()
+            }
+            fn as_box_query(&self) -> Option<&(dyn BoxQuery<T> + Sync)> {
+                (**self).as_box_query()
+            }
+        }
+    };
+}
+
+index_behind!(I, &I);
+index_behind!(I, Box<I>);
+index_behind!(I, Arc<I>);

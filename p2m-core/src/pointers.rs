@@ -1,0 +1,106 @@
+//! Sets and indexes behind references and smart pointers, which stand for what they point to.
+//!
+//! So an index can own its scene, borrow it, or share it with others (`Arc<Soup<f64>>`), and a function over `impl
+//! ClosestPoint<T>` also takes `&I`, `Box<dyn ClosestPoint<T>>` and `Arc<I>`.
+
+use crate::{
+    Aabb, Best, BoxQuery, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Found, Hits, Inspect, Near, NearQuery,
+    PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayQuery, Real, Shape, StatsCollector,
+};
+use nalgebra::Point3;
+use std::ops::ControlFlow;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Implements the traits of sets and indexes for a pointer type by those of its target. Methods that no backend
+/// overrides keep their defaults.
+macro_rules! point_to {
+    ($target:ident, $pointer:ty) => {
+        impl<T: Real, $target: PrimitiveSet<T> + ?Sized> PrimitiveSet<T> for $pointer {
+            type Primitive<'a>
+                = $target::Primitive<'a>
+            where
+                Self: 'a;
+
+            #[inline(always)]
+            fn len(&self) -> usize {
+                (**self).len()
+            }
+            #[inline(always)]
+            fn get(&self, id: PrimitiveId) -> Self::Primitive<'_> {
+                (**self).get(id)
+            }
+        }
+
+        impl<T: Real, $target: ClosestPoint<T> + ?Sized> ClosestPoint<T> for $pointer {
+            fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
+                (**self).search(query, best);
+            }
+            fn closest_point_with(&self, query: &Point3<T>, options: &QueryOptions<T>) -> Option<Closest<T>> {
+                (**self).closest_point_with(query, options)
+            }
+            fn answer_queries(
+                &self,
+                queries: &[Point3<T>],
+                options: &QueryOptions<T>,
+                answered: &mut dyn FnMut(usize, Found<'_, T>),
+            ) {
+                (**self).answer_queries(queries, options, answered);
+            }
+        }
+
+        impl<T: Real, $target: NearQuery<T> + ?Sized> NearQuery<T> for $pointer {
+            fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>) {
+                (**self).search_near(query, near);
+            }
+        }
+
+        impl<T: Real, $target: CertifiedQuery<T> + ?Sized> CertifiedQuery<T> for $pointer {
+            fn shape(&self, id: PrimitiveId) -> Option<Shape<T>> {
+                (**self).shape(id)
+            }
+        }
+
+        impl<T: Real, $target: Inspect<T> + ?Sized> Inspect<T> for $pointer {
+            fn inspect(&self, query: &Point3<T>, stats: &mut StatsCollector<T>) {
+                (**self).inspect(query, stats);
+            }
+            fn parts(&self) -> Vec<(&'static str, usize)> {
+                (**self).parts()
+            }
+            fn list_lengths(&self) -> Vec<usize> {
+                (**self).list_lengths()
+            }
+            fn list_length(&self, point: &Point3<T>) -> Option<usize> {
+                (**self).list_length(point)
+            }
+        }
+
+        impl<T: Real, $target: RayQuery<T> + ?Sized> RayQuery<T> for $pointer {
+            fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>) {
+                (**self).search_ray(ray, hits);
+            }
+        }
+
+        impl<T: Real, $target: BoxQuery<T> + ?Sized> BoxQuery<T> for $pointer {
+            fn visit_box(
+                &self,
+                bounds: &Aabb<T>,
+                visit: &mut dyn FnMut(PrimitiveId) -> ControlFlow<()>,
+            ) -> ControlFlow<()> {
+                (**self).visit_box(bounds, visit)
+            }
+        }
+
+        impl<T: Real, $target: ClosestLeaf<T> + ?Sized> ClosestLeaf<T> for $pointer {
+            fn closest_leaf(&self, query: &Point3<T>) -> Option<Closest<T>> {
+                (**self).closest_leaf(query)
+            }
+        }
+    };
+}
+
+point_to!(I, &I);
+point_to!(I, Box<I>);
+point_to!(I, Rc<I>);
+point_to!(I, Arc<I>);

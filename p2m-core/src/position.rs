@@ -1,0 +1,91 @@
+//! Positions in space, as vertices of scenes and as query points.
+
+use crate::Real;
+use nalgebra::Point3;
+
+/// Three coordinates that are a position in the scalar `T`: a point or an array of that scalar. Those of f32 are positions
+/// in f64 as well, to which they convert exactly. Features add the types of the crates glam and mint.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a position in space with coordinates of type `{T}`",
+    note = "positions are `Point3<{T}>`, `[{T}; 3]`, and for `f64` also those of `f32`",
+    note = "for points of the plane append the coordinate z = 0"
+)]
+pub trait Position<T: Real>: Sync {
+    /// Returns the position as a point.
+    fn point(&self) -> Point3<T>;
+}
+
+impl<T: Real> Position<T> for Point3<T> {
+    #[inline(always)]
+    fn point(&self) -> Self {
+        *self
+    }
+}
+
+impl Position<f64> for [f64; 3] {
+    #[inline(always)]
+    fn point(&self) -> Point3<f64> {
+        Point3::from(*self)
+    }
+}
+
+impl Position<f32> for [f32; 3] {
+    #[inline(always)]
+    fn point(&self) -> Point3<f32> {
+        Point3::from(*self)
+    }
+}
+
+impl Position<f64> for [f32; 3] {
+    #[inline(always)]
+    fn point(&self) -> Point3<f64> {
+        Point3::from(self.map(f64::from))
+    }
+}
+
+impl Position<f64> for Point3<f32> {
+    #[inline(always)]
+    fn point(&self) -> Point3<f64> {
+        self.map(f64::from)
+    }
+}
+
+/// Implements the trait for a type with the coordinates x, y and z.
+#[cfg(any(feature = "glam", feature = "mint"))]
+macro_rules! position_of_fields {
+    ($type:ty, $scalar:ty) => {
+        impl Position<$scalar> for $type {
+            #[inline(always)]
+            fn point(&self) -> Point3<$scalar> {
+                Point3::new(self.x.into(), self.y.into(), self.z.into())
+            }
+        }
+    };
+}
+
+#[cfg(feature = "glam")]
+position_of_fields!(glam::Vec3, f32);
+#[cfg(feature = "glam")]
+position_of_fields!(glam::Vec3, f64);
+#[cfg(feature = "glam")]
+position_of_fields!(glam::DVec3, f64);
+#[cfg(feature = "mint")]
+position_of_fields!(mint::Point3<f32>, f32);
+#[cfg(feature = "mint")]
+position_of_fields!(mint::Point3<f32>, f64);
+#[cfg(feature = "mint")]
+position_of_fields!(mint::Point3<f64>, f64);
+
+#[cfg(all(test, feature = "glam", feature = "mint"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_of_other_crates_are_points() {
+        let point = Point3::new(1.0, 2.0, 3.0);
+        assert_eq!(Position::<f64>::point(&glam::Vec3::new(1.0, 2.0, 3.0)), point);
+        assert_eq!(Position::<f64>::point(&glam::DVec3::new(1.0, 2.0, 3.0)), point);
+        assert_eq!(Position::<f64>::point(&mint::Point3 { x: 1.0f32, y: 2.0, z: 3.0 }), point);
+        assert_eq!(Position::<f32>::point(&mint::Point3 { x: 1.0f32, y: 2.0, z: 3.0 }), point.cast());
+    }
+}
