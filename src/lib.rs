@@ -79,6 +79,7 @@
 //! | `field` | [`field`]: distances on grids, signs, winding numbers | yes |
 //! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `mixed` | [`scene`]: reading scenes and points from files | yes |
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
 /// Which index a scene and its queries call for.
