@@ -80,6 +80,7 @@
 //! | `field` | [`field`]: distances on grids, signs, winding numbers | yes |
 //! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `mixed` | [`scene`]: reading scenes and points from files | yes |
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
 /// The library of points and vectors that the interface uses, so that programs need not match its version.

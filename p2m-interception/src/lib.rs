@@ -38,6 +38,7 @@
 //! let answer = index.closest_point(&Point3::new(1.0, 2.0, 0.0)).unwrap();
 //! assert_eq!((answer.primitive.index(), answer.distance), (1, 1.0));
 //! ```
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
 pub mod delaunay;

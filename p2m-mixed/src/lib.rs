@@ -27,6 +27,7 @@
 //! # Ok::<(), p2m_mixed::ReadError>(())
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
 #[cfg(any(feature = "parry", feature = "parry-f32", feature = "rstar"))]

@@ -4,7 +4,9 @@
 #![forbid(unsafe_code)]
 
 mod deep;
+mod licences;
 mod memory;
+mod package;
 mod promises;
 
 use std::path::Path;
@@ -21,7 +23,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 11] = [
+const TASKS: [Task; 12] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -52,6 +54,12 @@ const TASKS: [Task; 11] = [
         arguments: "",
         about: "Check what the manifests promise: lock files, Rust versions, features, targets",
         run: |_| promises::check(),
+    },
+    Task {
+        name: "package",
+        arguments: "",
+        about: "Pack the crates as for publishing, and check what is in them and the licences of dependencies",
+        run: |_| package::run(),
     },
     Task {
         name: "bench",
@@ -151,4 +159,14 @@ fn start(command: &mut Command) -> Outcome {
     println!("\n== {line}");
     let status = command.status().map_err(|e| format!("{line}: cannot be started: {e}"))?;
     if status.success() { Ok(()) } else { Err(format!("{line}: ended with {status}")) }
+}
+
+/// Returns the standard output of a command that succeeds.
+fn output(program: &str, arguments: &[&str]) -> Result<String, String> {
+    let line = format!("{program} {}", arguments.join(" "));
+    let output = Command::new(program).args(arguments).output().map_err(|e| format!("{line}: {e}"))?;
+    if !output.status.success() {
+        return Err(format!("{line}: {}", String::from_utf8_lossy(&output.stderr).trim()));
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }

@@ -1,9 +1,8 @@
 //! Checks the promises that the manifests make to users of p2m.
 
-use crate::{Outcome, cargo};
+use crate::{Outcome, cargo, output};
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 /// The targets for which the library is checked if their standard library is installed: 32 bits, and other processors.
 const TARGETS: [&str; 3] = ["i686-unknown-linux-gnu", "aarch64-unknown-linux-gnu", "wasm32-unknown-unknown"];
@@ -92,16 +91,6 @@ fn check_targets() -> Outcome {
         }
     }
     Ok(())
-}
-
-/// Returns the standard output of a command that succeeds.
-fn output(program: &str, arguments: &[&str]) -> Result<String, String> {
-    let line = format!("{program} {}", arguments.join(" "));
-    let output = Command::new(program).args(arguments).output().map_err(|e| format!("{line}: {e}"))?;
-    if !output.status.success() {
-        return Err(format!("{line}: {}", String::from_utf8_lossy(&output.stderr).trim()));
-    }
-    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
 #[cfg(test)]
