@@ -17,6 +17,7 @@ mod kdop;
 mod models;
 mod near;
 mod octree;
+mod ownership;
 mod p2m;
 mod packets;
 mod paper_route;

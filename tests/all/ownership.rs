@@ -1,0 +1,190 @@
+//! Indexes own, borrow and share their scenes, stand behind pointers, move between threads and follow moving scenes.
+
+#![cfg(all(feature = "bvh", feature = "field", feature = "interception", feature = "kdop", feature = "mixed"))]
+
+use nalgebra::{Point3, Rotation3, Vector3};
+use p2m::batch::BatchOptions;
+use p2m::field::sign::{Sign, SignedDistance};
+use p2m::scene::generate::{IcoSphere, ico_sphere};
+use p2m::{
+    AabbTree, BruteForce, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Index, Inspect, KdopTree, NearQuery,
+    OctreeIndex, P2mIndex, PrimitiveSet, Soup,
+};
+use p2m_testkit::rng;
+use p2m_testkit::scenes::narrow;
+use rand::RngExt;
+use std::rc::Rc;
+use std::sync::Arc;
+
+fn ball() -> Soup<f64> {
+    ico_sphere(&IcoSphere::default()).expect("valid")
+}
+
+fn queries(count: usize) -> Vec<Point3<f64>> {
+    let mut rng = rng("ownership", 0);
+    (0..count).map(|_| Point3::from([(); 3].map(|()| rng.random_range(-1.5..1.5)))).collect()
+}
+
+/// A struct that is generic over its index, as programs have them.
+struct Collider<I> {
+    index: I,
+}
+
+impl<I: ClosestPoint<f64>> Collider<I> {
+    fn distance(&self, query: &Point3<f64>) -> f64 {
+        self.index.closest_point(query).expect("not empty").distance
+    }
+}
+
+#[test]
+fn pointers_answer_as_what_they_point_to() {
+    let soup = Arc::new(ball());
+    let expected = BruteForce::new(&*soup).expect("valid");
+    let tree: AabbTree<f64, Arc<Soup<f64>>> = AabbTree::build(Arc::clone(&soup), &Default::default()).expect("valid");
+    let boxed: AabbTree<f64, Box<Soup<f64>>> = AabbTree::build(Box::new(ball()), &Default::default()).expect("valid");
+    let counted = BruteForce::new(Rc::new(ball())).expect("valid");
+    let shared: Arc<dyn ClosestPoint<f64> + Send + Sync> =
+        Arc::new(OctreeIndex::build(Arc::clone(&soup), &Default::default()).expect("valid"));
+    let dynamic: Box<dyn ClosestPoint<f64>> =
+        Box::new(KdopTree::<f64, _, 14>::build(Arc::clone(&soup), &Default::default()).expect("valid"));
+    for query in queries(200) {
+        let distance = expected.closest_point(&query).expect("not empty").distance;
+        assert_eq!(Collider { index: &tree }.distance(&query), distance);
+        assert_eq!(Collider { index: &boxed }.distance(&query), distance);
+        assert_eq!(Collider { index: Rc::new(&counted) }.distance(&query), distance);
+        assert_eq!(Collider { index: Arc::clone(&shared) }.distance(&query), distance);
+        assert_eq!(Collider { index: &dynamic }.distance(&query), distance);
+    }
+    assert!(Arc::ptr_eq(&soup, &tree.into_set()), "the scene comes back");
+}
+
+#[test]
+fn one_trait_object_does_everything_in_any_thread() {
+    let soup = Arc::new(ball());
+    let all: Vec<Box<dyn Index>> = vec![
+        Box::new(BruteForce::new(Arc::clone(&soup)).expect("valid")),
+        Box::new(AabbTree::build(Arc::clone(&soup), &Default::default()).expect("valid")),
+        Box::new(KdopTree::<f64, _>::build(Arc::clone(&soup), &Default::default()).expect("valid")),
+        Box::new(OctreeIndex::build(Arc::clone(&soup), &Default::default()).expect("valid")),
+        Box::new(P2mIndex::build(Arc::clone(&soup), &Default::default()).expect("valid")),
+    ];
+    let ray = p2m::Ray::new(&Point3::new(0.1, 0.2, 9.0), &Vector3::new(0.0, 0.0, -1.0)).expect("a direction");
+    let answers = all.into_iter().map(|index| {
+        let work = move || {
+            let query = Point3::new(0.3, 0.2, 1.7);
+            let closest = index.closest_point(&query).expect("not empty");
+            let certified = index.certified_closest_point(&query, &Default::default()).expect("triangles");
+            let near = index.k_nearest(&query, 2, f64::INFINITY);
+            let hit = index.as_ray_query().and_then(|index| index.first_intersection(&ray)).map(|hit| hit.primitive);
+            let boxes = index.as_box_query().map(|index| index.intersects_box(&p2m::Aabb::from_points(&[query])));
+            assert!(!index.parts().is_empty() || index.memory_bytes() == 0);
+            (closest.distance, closest.primitive, certified.map(|c| c.primitive), near.len(), hit, boxes)
+        };
+        std::thread::spawn(move || std::panic::catch_unwind(std::panic::AssertUnwindSafe(work))).join()
+    });
+    let answers: Vec<_> = answers.map(|answer| answer.expect("joined").expect("no panic")).collect();
+    let (distance, primitive, certified, ..) = answers[0];
+    assert_eq!(certified, Some(primitive));
+    for (i, answer) in answers.iter().enumerate() {
+        assert_eq!((answer.0, answer.1, answer.2, answer.3), (distance, primitive, certified, 2));
+        let has_rays = i < 3;
+        assert_eq!((answer.4.is_some(), answer.5), (has_rays, has_rays.then_some(false)));
+    }
+}
+
+#[test]
+fn indexes_are_unwind_safe() {
+    fn is_unwind_safe<X: std::panic::UnwindSafe + std::panic::RefUnwindSafe>(_: &X) {}
+    is_unwind_safe(&AabbTree::build(Arc::new(ball()), &Default::default()).expect("valid"));
+    is_unwind_safe(&OctreeIndex::build(ball(), &Default::default()).expect("valid"));
+}
+
+#[test]
+fn signs_are_owned_cloned_sent_and_batched() {
+    let soup = Arc::new(ball());
+    let signed = SignedDistance::build(Arc::clone(&soup)).expect("closed");
+    let borrowed = SignedDistance::new(AabbTree::build(&*soup, &Default::default()).expect("valid"), &*soup).unwrap();
+    let queries = queries(3000);
+    let expected: Vec<_> = queries.iter().map(|query| borrowed.closest_point(query)).collect();
+    assert!(expected.iter().flatten().any(|signed| signed.sign == Sign::Inside));
+    let copy = signed.clone();
+    assert_eq!(format!("{copy:?}"), "SignedDistance { rule: \"closed surface\", .. }");
+    let of_thread = std::thread::spawn({
+        let queries = queries.clone();
+        move || queries.iter().map(|query| copy.closest_point(query)).collect::<Vec<_>>()
+    });
+    assert_eq!(of_thread.join().expect("no panic"), expected);
+    let batch = signed.closest_points(&queries, &Default::default(), &BatchOptions::default());
+    let fields = |all: &[Option<p2m::field::sign::Signed>]| -> Vec<_> {
+        all.iter().map(|one| one.map(|one| (one.sign, one.closest.primitive, one.distance()))).collect()
+    };
+    assert_eq!(fields(&batch), fields(&expected));
+}
+
+#[test]
+fn a_scene_in_f32_has_the_signs_of_the_same_scene_in_f64() {
+    let single: Soup<f32> = narrow(&ball()).expect("fits f32");
+    let positions: Vec<Point3<f64>> = single.positions().iter().map(|p| p.map(f64::from)).collect();
+    let double = Arc::new(Soup::from_triangles(positions, single.triangles().to_vec()).expect("valid"));
+    let tree = AabbTree::build(Arc::new(single), &Default::default()).expect("valid");
+    let signed = SignedDistance::new(tree, Arc::clone(&double)).expect("closed");
+    let expected = SignedDistance::build(double).expect("closed");
+    let mut inside = 0;
+    for query in queries(3000) {
+        let query = query.map(|x| x as f32);
+        let answer = signed.closest_point(&query).expect("not empty");
+        assert_eq!(answer.sign, expected.closest_point(&query.map(f64::from)).expect("not empty").sign);
+        let distance = answer.distance().expect("defined");
+        assert_eq!(distance < 0.0, answer.sign == Sign::Inside);
+        inside += usize::from(distance < 0.0);
+    }
+    assert!(inside > 300, "{inside}");
+}
+
+#[test]
+fn a_tree_follows_a_scene_in_place_and_tells_what_it_lost() {
+    let mut tree = AabbTree::build(ball(), &Default::default()).expect("valid");
+    let area = tree.relative_surface_area();
+    assert!(area > 1.0 && area < 100.0, "{area}");
+    // A rigid motion by a right angle keeps the quality.
+    let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2);
+    tree.refit_in_place(&Default::default(), |soup| soup.map_positions(|p| turn * p)).expect("finite");
+    assert!((tree.relative_surface_area() / area - 1.0).abs() < 1e-3);
+    // Scattered vertices ruin it, and a new build is better again.
+    let mut rng = rng("scattered", 0);
+    let scatter = |_| Point3::from([(); 3].map(|()| rng.random_range(-1.0..1.0)));
+    tree.refit_in_place(&Default::default(), |soup| soup.map_positions(scatter)).expect("finite");
+    let scattered = tree.relative_surface_area();
+    assert!(scattered > 2.0 * area, "{scattered} {area}");
+    let brute = BruteForce::new(tree.set().clone()).expect("valid");
+    for query in queries(100) {
+        let fields = |index: &dyn ClosestPoint<f64>| index.closest_point(&query).map(|c| (c.distance, c.primitive));
+        assert_eq!(fields(&tree), fields(&brute));
+    }
+    let rebuilt = AabbTree::build(tree.into_set(), &Default::default()).expect("valid");
+    assert!(rebuilt.relative_surface_area() < scattered);
+    // A motion that fails leaves scene and tree as they were.
+    let mut tree = rebuilt;
+    let before = tree.set().clone();
+    let failed = tree.refit_in_place(&Default::default(), |soup| soup.map_positions(|p| p * f64::NAN));
+    assert!(matches!(failed, Err(BuildError::NonFinite { .. })));
+    assert_eq!(tree.set(), &before);
+    let short = tree.refit_in_place(&Default::default(), |soup| soup.set_positions(Vec::new()));
+    assert_eq!(short, Err(BuildError::OtherPositionCount { len: 0, expected: before.positions().len() }));
+    let empty: AabbTree<f64, Soup<f64>> = AabbTree::build(Soup::default(), &Default::default()).expect("valid");
+    assert_eq!(empty.relative_surface_area(), 0.0);
+}
+
+#[test]
+fn messages_tell_the_reason() {
+    let message = |positions: usize| {
+        let positions = vec![Point3::origin(); positions];
+        Soup::<f64>::from_triangles(positions, vec![[0, 1, 2]]).unwrap_err().to_string()
+    };
+    assert_eq!(message(0), "primitive 0 uses position 0, but there are no positions");
+    assert_eq!(message(1), "primitive 0 uses position 1, but there is only position 0");
+    assert_eq!(message(2), "primitive 0 uses position 2, but positions are numbered 0 to 1");
+    let error = p2m::scene::read_scene(std::path::Path::new("missing.obj")).unwrap_err().to_string();
+    assert!(error.starts_with("missing.obj: cannot be read: ") && error.len() > 40, "{error}");
+    assert_eq!(ball().len(), ball().triangles().len());
+}
