@@ -58,6 +58,8 @@ pub(crate) enum Command {
     Delaunay(DelaunayArguments),
     /// Times batches on the AABB tree by order and threads, in wall time
     Batch(BatchArguments),
+    /// Compares a tree that follows a twisted scene with trees that are built anew
+    Refit(BatchArguments),
     /// Compares the program, from the first query to the complete file, with one batch of the library, in wall time
     Program(ProgramArguments),
 }

@@ -11,7 +11,7 @@ use crate::report::provenance;
 use crate::scene::Scene;
 use crate::{
     adversaries, advise, backends, batch, candidates, delaunay, extremes, field, kdop, measure, octree, paper, program,
-    rays, report, saved, splits, tradeoff, verify,
+    rays, refit, report, saved, splits, tradeoff, verify,
 };
 use anyhow::{Context, Result};
 use p2m_testkit::queries::QuerySet;
@@ -29,6 +29,7 @@ pub(crate) fn run(command: Command) -> Result<bool> {
         Command::Octree(arguments) => compare_octrees(&arguments),
         Command::Delaunay(arguments) => triangulate(&arguments),
         Command::Batch(arguments) => time_batches(&arguments),
+        Command::Refit(arguments) => time_refits(&arguments),
         Command::Program(arguments) => time_program(&arguments),
         Command::Advise(arguments) => check_advice(&arguments),
         Command::Field(arguments) => fill_fields(&arguments),
@@ -207,6 +208,13 @@ fn time_batches(arguments: &BatchArguments) -> Result<bool> {
         if is_good { "All answers are those of single queries." } else { "DIFFERENCES from single queries." }
     );
     Ok(is_good)
+}
+
+/// Times refits, and returns whether refitted trees answer as those that are built anew.
+fn time_refits(arguments: &BatchArguments) -> Result<bool> {
+    let BatchArguments { rounds, sets, .. } = arguments;
+    let effort = rounds.effort(100_000);
+    all_good(&rounds.scenes, &in_rounds("CPU time", &effort), |scene| refit::print(&scene, &sets.sets, &effort))
 }
 
 /// Times the program beside its library. No result counts as bad.

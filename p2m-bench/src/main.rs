@@ -35,6 +35,7 @@ mod paper;
 mod plot;
 mod program;
 mod rays;
+mod refit;
 mod report;
 mod rounds;
 mod saved;
