@@ -1,8 +1,9 @@
-//! What is the closest point of this scene?
+//! Closest points of scenes of triangles, segments and points.
 //!
-//! A scene is any mix of triangles, segments and points. An index answers closest-point queries over it; which index,
-//! is a type. All of them implement [`ClosestPoint`], keep one accuracy contract (stated there, derived in
-//! docs/proofs/accuracy.md) and return the same bits.
+//! A scene is any mix of triangles, segments and points. An index is built over a scene and answers closest-point
+//! queries. The type of the index is chosen at compile time, or at run time through `dyn ClosestPoint`. All indexes
+//! implement [`ClosestPoint`], which states their accuracy (docs/proofs/accuracy.md has the proof). Exact queries
+//! return the same primitive and, bit for bit, the same distance from every index.
 //!
 //! ```
 //! use nalgebra::Point3;
@@ -34,34 +35,33 @@
 //! # Ok::<(), p2m::BuildError>(())
 //! ```
 //!
-//! # Which question
+//! # Which query
 //!
-//! | what | trait | of |
+//! | you want | trait or module | available for |
 //! |---|---|---|
-//! | the closest point, within a distance, from a hint | [`ClosestPoint`] | every index |
-//! | the same with an approximation of a stated error | [`QueryOptions`] | every index |
-//! | the same proved: the nearest primitive of the real numbers, the distance rounded once | [`CertifiedQuery`] | every index |
-//! | the same for many places, on all cores | [`batch`] | every index |
-//! | the k nearest, all within a distance, any, the closest of some | [`NearQuery`] | every index |
-//! | what a ray intersects | [`RayQuery`] | trees and brute force |
-//! | what intersects a box | [`BoxQuery`] | trees and brute force |
-//! | what a query costs | [`Inspect`] | every index |
+//! | the closest point, optionally with a largest distance or a hint | [`ClosestPoint`] | every index |
+//! | the closest point with an approximation of a stated error | [`QueryOptions`] | every index |
+//! | the certainly closest primitive, with a distance that is rounded once | [`CertifiedQuery`] | every index |
+//! | the closest points to many queries, on all cores | [`batch`] | every index |
+//! | the k nearest, all within a distance, whether there is any, the closest that a filter admits | [`NearQuery`] | every index |
+//! | the hits of a ray | [`RayQuery`] | trees and brute force |
+//! | the primitives that intersect a box | [`BoxQuery`] | trees and brute force |
+//! | the cost of a query | [`Inspect`] | every index |
 //!
 //! # Which index
 //!
-//! If in doubt, [`AabbTree`]: it is built in no time and fast everywhere.
+//! [`AabbTree`] is a good first choice, because it is built in a fraction of a second and is fast everywhere.
 //!
-//! | type | what it is | feature |
+//! | type | structure | feature |
 //! |---|---|---|
-//! | [`BruteForce`] | every primitive, every time: the oracle, and right for a handful of queries | |
-//! | [`AabbTree`] | boxes split by surface area, searched nearest first | `bvh` |
-//! | [`OctreeIndex`] | cells with short lists of what can be nearest in them, a tree elsewhere: no search, for more memory | `interception` |
-//! | [`P2mIndex`] | the same with the cells of the vertices: fastest far away, for still more memory | `interception` |
-//! | [`KdopTree`] | trees of polytopes of K faces: closer to what does not lie along the axes | `kdop` |
+//! | [`BruteForce`] | no structure: it tests every primitive, which is best for one or two queries | |
+//! | [`AabbTree`] | a tree of boxes, split by the surface-area heuristic and searched nearest first | `bvh` |
+//! | [`OctreeIndex`] | cubic cells with short lists of the primitives that can be nearest in them; faster for many queries, and takes more memory | `interception` |
+//! | [`P2mIndex`] | Voronoi cells of the vertices with such lists; fastest far away, and takes the most memory | `interception` |
+//! | [`KdopTree`] | a tree of polytopes of K faces, which fit primitives askew to the axes more closely than boxes | `kdop` |
 //!
-//! Write functions over `I: ClosestPoint<T>` to leave the choice to the caller, or take `&dyn ClosestPoint<T>`. The
-//! page "Which type do I need" (module `guide`, docs/guide.md) has an example for every choice of scene, index and
-//! question.
+//! Functions over `I: ClosestPoint<T>` or `&dyn ClosestPoint<T>` leave the choice to the caller. The module `guide`
+//! (docs/guide.md) has an example for every choice of scene, index and query, and lists platforms and limits.
 //!
 //! # Cargo features
 //!
