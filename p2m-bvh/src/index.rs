@@ -143,7 +143,8 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     ///
     /// This is the number of boxes that a random line through the box of the scene intersects on average, so it is a
     /// measure of the quality of the tree. A refit keeps the shape of the tree, so the area rises as neighbours move
-    /// apart. Compare it with its value after the build: docs/guide.md has figures that tell when to build anew. It is
+    /// apart. Compare it with its value after the build, and build anew when it has grown by a fifth: the guide of
+    /// the crate p2m (docs/guide.md) has the figures. It is
     /// 0 for an empty set.
     ///
     /// # Complexity
