@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use nalgebra::{Point3, Rotation3, Vector3};
 use p2m_bvh::AabbTree;
 use p2m_core::{BuildIndex, ClosestPoint, PrimitiveSet, Soup};
-use p2m_interception::{OctreeIndex, OctreeOptions, P2mIndex, P2mOptions};
+use p2m_interception::{OctreeIndex, P2mIndex};
 use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 use std::hint::black_box;
@@ -69,8 +69,9 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> Result
         }
         table.push(row);
     }
-    let octree = thread_seconds(|| OctreeIndex::build(soup, &OctreeOptions::default().with_parallel(false))).1;
-    let p2m = thread_seconds(|| P2mIndex::build(soup, &P2mOptions::default().with_parallel(false))).1;
+    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let octree = one_thread.install(|| thread_seconds(|| OctreeIndex::build(soup, &Default::default())).1);
+    let p2m = one_thread.install(|| thread_seconds(|| P2mIndex::build(soup, &Default::default())).1);
     println!(
         "\n## {}\n\nThe surface area is relative to that of the tree before the motion. Queries are in ns.\n\n{table}\n\
          The octree and the P2M index have no refit: a build takes {octree:.2} s and {p2m:.2} s of CPU time.\n",

@@ -8,7 +8,7 @@ use crate::json;
 use crate::output::Output;
 use crate::picture::write_png;
 use crate::progress::{Progress, Unit};
-use crate::sign_rule::SignRule;
+use crate::sign_rule::{SignRule, SignedIndex};
 use crate::streams::Streams;
 use crate::summary::IndexSummary;
 use crate::usage::{not_negative, one_of, positive, usage};
@@ -18,7 +18,7 @@ use p2m_advisor::{Index, IndexDetails};
 use p2m_core::{Aabb, PrimitiveSet, Soup};
 use p2m_field::FieldFormat;
 use p2m_field::grid_candidates::{CandidateLists, MAX_COORDINATE};
-use p2m_field::sign::SignedDistance;
+
 use p2m_field::{
     FieldOptions, Grid, RefineOptions, distances, distances_by_lists, refined, signed_distances,
     signed_distances_by_lists, slice, write_cells, write_field,
@@ -290,7 +290,7 @@ fn candidate_lists<'a>(
 enum FieldIndex<'a> {
     Unsigned(&'a dyn Index),
     /// The signs, and the name of the rule that decides them.
-    Signed(SignedDistance<&'a dyn Index, &'a Soup<f64>>, &'static str),
+    Signed(SignedIndex<'a>, &'static str),
 }
 
 impl FieldIndex<'_> {

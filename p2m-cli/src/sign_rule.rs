@@ -18,6 +18,9 @@ pub(crate) enum SignRule {
     Winding,
 }
 
+/// An index with signs, which borrows its scene.
+pub(crate) type SignedIndex<'a> = SignedDistance<&'a dyn Index, &'a Soup<f64>>;
+
 /// The largest error of winding numbers.
 const WINDING_NUMBER_ERROR: f64 = 0.01;
 
@@ -28,7 +31,7 @@ impl SignRule {
         streams: &Streams,
         index: &'a dyn Index,
         soup: &'a Soup<f64>,
-    ) -> Result<(SignedDistance<&'a dyn Index, &'a Soup<f64>>, &'static str), SignError> {
+    ) -> Result<(SignedIndex<'a>, &'static str), SignError> {
         let _progress = Progress::start(streams, "looking for inside and outside", None, Unit::None);
         if self != Self::Winding {
             match SignedDistance::new(index, soup) {
