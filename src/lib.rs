@@ -75,6 +75,7 @@
 //! | `parry-f32` | shapes of parry3d in [`scene`]s | no |
 //! | `glam` | [`Position`]s of the crate glam in scenes and batches | no |
 //! | `mint` | [`Position`]s of the crate mint in scenes and batches | no |
+//! | `serde` | [`Soup`] and indexes as values of serde, in the form of saved files | no |
 //! | `kdop` | [`KdopTree`] | yes |
 //! | `advisor` | `advisor`: which index a scene and its queries call for | no |
 //! | `field` | [`field`]: distances on grids, signs, winding numbers | yes |

@@ -302,3 +302,20 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> RayQuery<T> for TreeIndex<T, S, V> 
         self.tree.search_hits(&self.set, ray, hits);
     }
 }
+
+#[cfg(feature = "serde")]
+impl<T: Real, S: PrimitiveSet<T> + serde::Serialize, V: Volume> serde::Serialize for TreeIndex<T, S, V> {
+    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        storage::serialize_index(&self.tree, &self.set, serializer)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de, T: Real, S: PrimitiveSet<T> + serde::Deserialize<'de>, V: Volume> serde::Deserialize<'de>
+    for TreeIndex<T, S, V>
+{
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (set, tree) = storage::deserialize_index(deserializer)?;
+        Ok(Self { set, scalar: PhantomData, tree })
+    }
+}

@@ -5,6 +5,7 @@ use nalgebra::Point3;
 
 /// One primitive of a [`Soup`], given by the indices of its positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Element {
     /// A point at a position.
     Point(u32),

@@ -243,3 +243,20 @@ impl<T: Real, S: PrimitiveSet<T> + Sync, P: Partition> BuildIndex<T, S> for Inte
         Self::build_with_progress(set, options, &|_| ())
     }
 }
+
+#[cfg(feature = "serde")]
+impl<T: Real, S: PrimitiveSet<T> + serde::Serialize, P: Saved> serde::Serialize for InterceptionIndex<T, S, P> {
+    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        storage::serialize_index(&self.partition, &self.set, serializer)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de, T: Real, S: PrimitiveSet<T> + serde::Deserialize<'de>, P: Saved> serde::Deserialize<'de>
+    for InterceptionIndex<T, S, P>
+{
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (set, partition) = storage::deserialize_index(deserializer)?;
+        Ok(Self { set, scalar: PhantomData, partition })
+    }
+}

@@ -64,6 +64,8 @@ mod ids;
 mod index;
 mod reader;
 mod section;
+#[cfg(feature = "serde")]
+mod serde_form;
 mod validate;
 mod writer;
 
@@ -75,5 +77,8 @@ pub use ids::as_ids;
 pub use index::{Saved, kind, load, save};
 pub use reader::Reader;
 pub use section::VERSION;
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+pub use serde_form::{deserialize_index, serialize_index};
 pub use validate::{check_chunks, require};
 pub use writer::Writer;
