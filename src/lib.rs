@@ -57,6 +57,7 @@
 //! | [`AabbTree`] | boxes split by surface area, searched nearest first | `bvh` |
 //! | [`OctreeIndex`] | cells with short lists of what can be nearest in them, a tree elsewhere: no search, for more memory | `interception` |
 //! | [`P2mIndex`] | the same with the cells of the vertices: fastest far away, for still more memory | `interception` |
+//! | `PaperIndex` | that with the KD-tree, the R-trees and the long lists of the paper, for comparison | `kiddo`, `rstar` |
 //! | [`KdopTree`] | trees of polytopes of K faces: closer to what does not lie along the axes | `kdop` |
 //!
 //! Write functions over `I: ClosestPoint<T>` to leave the choice to the caller, or take `&dyn ClosestPoint<T>`. The
@@ -69,8 +70,8 @@
 //! |---|---|---|
 //! | `bvh` | [`AabbTree`] | yes |
 //! | `interception` | [`OctreeIndex`], [`P2mIndex`] | yes |
-//! | `kiddo` | `KdTreeLocator`, the paper's way to the nearest vertex, for [`P2mOptions`] | no |
-//! | `rstar` | `RegionTree`, the paper's filter of long lists, for [`P2mOptions`]; `scene::adapters::RstarIndex` | no |
+//! | `kiddo` | `KdTreeLocator`, the paper's way to the nearest vertex, for [`P2mOptions`]: slower than the default | yes |
+//! | `rstar` | `RegionTree`, the paper's filter of long lists, for [`P2mOptions`]: slower than the default; with `kiddo` also `PaperIndex`; `scene::adapters::RstarIndex` | yes |
 //! | `parry` | shapes of parry3d-f64 in [`scene`]s; its tree as an index, `scene::adapters::ParryIndex` | no |
 //! | `parry-f32` | shapes of parry3d in [`scene`]s | no |
 //! | `mint` | positions of the crate mint in [`scene`] | no |
@@ -109,7 +110,12 @@ pub use p2m_interception::KdTreeLocator;
 #[cfg(feature = "rstar")]
 pub use p2m_interception::RegionTree;
 #[cfg(feature = "interception")]
-pub use p2m_interception::{Domain, OctreeIndex, OctreeOptions, OctreeReport, P2mIndex, P2mOptions, P2mReport};
+pub use p2m_interception::{
+    BuildListFilter, BuildLocator, Domain, InterceptionIndex, ListFilter, Locator, LocatorSites, OctreeIndex,
+    OctreeOptions, OctreeReport, P2mIndex, P2mOptions, P2mReport, Region, Voronoi,
+};
+#[cfg(all(feature = "kiddo", feature = "rstar"))]
+pub use p2m_interception::{PaperIndex, PaperOptions};
 /// Everything else about k-DOPs: polytopes, overlap of trees, directions from a scene.
 #[cfg(feature = "kdop")]
 pub use p2m_kdop as kdop;
