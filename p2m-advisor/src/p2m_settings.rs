@@ -10,7 +10,7 @@ use p2m_interception::RegionTree;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LocatorKind {
-    /// A grid, which is the fastest, and the only one that can be saved.
+    /// A grid. This is the fastest, and the only kind that can be saved.
     #[default]
     Grid,
     /// The KD-tree of the crate kiddo, which is that of the paper. Queries take up to three times as long.
@@ -22,8 +22,7 @@ pub enum LocatorKind {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ListFilterKind {
-    /// Lists in the order of the lower bounds on their packets, which are the fastest, and the only ones that can be
-    /// saved.
+    /// Lists in the order of the lower bounds on their packets. This is the fastest, and the only kind that can be saved.
     #[default]
     Sorted,
     /// An R-tree of the crate rstar for each list, which is that of the paper. Queries take up to ten times as long
@@ -36,9 +35,9 @@ pub enum ListFilterKind {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct P2mSettings {
-    /// The locator.
+    /// The kind of the locator.
     pub locator: LocatorKind,
-    /// The filter of long lists.
+    /// The kind of the filter of long lists.
     pub list_filter: ListFilterKind,
 }
 

@@ -73,13 +73,13 @@ pub type OctreeIndex<T, S> = InterceptionIndex<T, S, Octree>;
 /// \[Zong2023\]
 pub type P2mIndex<T, S> = InterceptionIndex<T, S, Voronoi>;
 
-/// The index of the P2M paper: a [`P2mIndex`] whose options are [`P2mOptions::as_in_paper`](crate::P2mOptions::as_in_paper)
-/// by default.
+/// The index of the P2M paper, which is a [`P2mIndex`] with other default options.
 ///
-/// A KD-tree of the crate kiddo finds the nearest site ([`KdTreeLocator`](crate::KdTreeLocator)), no site is added to
-/// the vertices, lists may be long, and an R-tree of the crate rstar filters each list of more than 64 primitives
-/// ([`RegionTree`](crate::RegionTree)). It exists for comparison with the paper. [`P2mIndex`] has the same cells and the
-/// same answers, and is faster: docs/p2m.md and docs/paper.md have figures of both.
+/// These are [`P2mOptions::as_in_paper`](crate::P2mOptions::as_in_paper): a KD-tree of the crate kiddo finds a site
+/// near the query ([`KdTreeLocator`](crate::KdTreeLocator)), no site is added to the vertices, lists may be long, and an
+/// R-tree of the crate rstar filters each list of more than 64 primitives ([`RegionTree`](crate::RegionTree)). The index
+/// exists for comparison with the paper. A [`P2mIndex`] gives the same answers faster: docs/p2m.md and docs/paper.md
+/// have figures of both.
 ///
 /// The methods are those of [`P2mIndex`], but the index cannot be saved. The options are
 /// [`PaperOptions`](crate::PaperOptions).
@@ -100,8 +100,8 @@ pub type P2mIndex<T, S> = InterceptionIndex<T, S, Voronoi>;
 /// ```
 ///
 /// # Complexity
-/// A build takes as long as that of a [`P2mIndex`] where lists are short. Between slivers, where lists are long, it takes
-/// up to 70 times as long and 2000 times the memory.
+/// Where lists are short, a build takes as long as that of a [`P2mIndex`]. Between slivers, where lists are long, it
+/// takes up to 70 times as long and 2000 times the memory.
 ///
 /// # References
 /// \[Zong2023\]

@@ -14,8 +14,9 @@
 //! - The [`Octree`] has cubes as cells. It is refined where a split saves the most time for its memory.
 //! - The partition [`Voronoi`] has the Voronoi cells of the scene's vertices and of some added points
 //!   (docs/proofs/p2m.md). A [`Locator`] returns a site near the query, and a walk over Delaunay neighbours ends at the
-//!   nearest site. A [`ListFilter`] may shorten the search of long lists. The [`delaunay`] tetrahedra are exact. With the features
-//!   `kiddo` and `rstar`, `PaperIndex` is this partition with the locator, the filter and the lists of the paper.
+//!   nearest site. A [`ListFilter`] may shorten the search of long lists. The [`delaunay`] tetrahedra are exact. With
+//!   the features `kiddo` and `rstar`, `PaperIndex` has this partition with the locator, the filter and the lists of the
+//!   paper.
 //!
 //! Lists are stored in blocks: up to eight packets, the lanes of each packet that can be the answer, and lower bounds
 //! on the distances to the packets.

@@ -6,14 +6,13 @@ use std::sync::Arc;
 
 /// A locator that keeps the sites in a KD-tree of the crate `kiddo` \[Zong2023\].
 ///
-/// A search descends to the leaf whose part of space contains the query point and returns the nearest of the at most 32
-/// sites in it. It does not backtrack to other leaves, because the walk over Delaunay neighbours goes on from any site to
-/// the nearest one. Far from the scene, backtracking would have to visit hundreds of leaves, since all distances differ
-/// by little.
+/// A search descends to the leaf whose part of space contains the query point and returns the nearest of the at most
+/// 32 sites in it. It does not backtrack to other leaves, because the walk over Delaunay neighbours goes on from any
+/// site to the nearest one. Far from the scene all distances differ by little, so backtracking would visit many leaves.
 ///
 /// # Complexity
-/// A search takes O(log n) steps for n sites. The memory is about 29 bytes a site. Queries take up to three times as long
-/// as with the grid, which is the default (docs/p2m.md has figures).
+/// A search takes O(log n) steps for n sites. The memory is about 29 bytes a site. Queries take up to three times as
+/// long as with the grid, which is the default (docs/p2m.md has figures).
 ///
 /// ```
 /// use nalgebra::Point3;
