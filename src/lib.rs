@@ -58,6 +58,7 @@
 //! | [`AabbTree`] | a tree of boxes, split by the surface-area heuristic and searched nearest first | `bvh` |
 //! | [`OctreeIndex`] | cubic cells with short lists of the primitives that can be nearest in them; faster for many queries, and takes more memory | `interception` |
 //! | [`P2mIndex`] | Voronoi cells of the vertices with such lists; fastest far away, and takes the most memory | `interception` |
+//! | `PaperIndex` | the P2M index with the KD-tree, the R-trees and the long lists of the paper, for comparison | `kiddo`, `rstar` |
 //! | [`KdopTree`] | a tree of polytopes of K faces, which fit primitives askew to the axes more closely than boxes | `kdop` |
 //!
 //! Functions over `I: ClosestPoint<T>` or `&dyn ClosestPoint<T>` leave the choice to the caller. The module `guide`
@@ -69,8 +70,8 @@
 //! |---|---|---|
 //! | `bvh` | [`AabbTree`] | yes |
 //! | `interception` | [`OctreeIndex`], [`P2mIndex`] | yes |
-//! | `kiddo` | `KdTreeLocator`, the paper's way to the nearest vertex, for [`P2mOptions`] | no |
-//! | `rstar` | `RegionTree`, the paper's filter of long lists, for [`P2mOptions`]; `scene::adapters::RstarIndex` | no |
+//! | `kiddo` | `KdTreeLocator`, the paper's way to the nearest vertex, for [`P2mOptions`]: slower than the default | yes |
+//! | `rstar` | `RegionTree`, the paper's filter of long lists, for [`P2mOptions`]: slower than the default; with `kiddo` also `PaperIndex`; `scene::adapters::RstarIndex` | yes |
 //! | `parry` | shapes of parry3d-f64 in [`scene`]s; its tree as an index, `scene::adapters::ParryIndex` | no |
 //! | `parry-f32` | shapes of parry3d in [`scene`]s | no |
 //! | `glam` | [`Position`]s of the crate glam in scenes and batches | no |
@@ -114,7 +115,12 @@ pub use p2m_interception::KdTreeLocator;
 #[cfg(feature = "rstar")]
 pub use p2m_interception::RegionTree;
 #[cfg(feature = "interception")]
-pub use p2m_interception::{Domain, OctreeIndex, OctreeOptions, OctreeReport, P2mIndex, P2mOptions, P2mReport};
+pub use p2m_interception::{
+    BuildListFilter, BuildLocator, Domain, InterceptionIndex, ListFilter, Locator, LocatorSites, OctreeIndex,
+    OctreeOptions, OctreeReport, P2mIndex, P2mOptions, P2mReport, Region, Voronoi,
+};
+#[cfg(all(feature = "kiddo", feature = "rstar"))]
+pub use p2m_interception::{PaperIndex, PaperOptions};
 /// Everything else about k-DOPs: polytopes, overlap of trees, directions from a scene.
 #[cfg(feature = "kdop")]
 pub use p2m_kdop as kdop;

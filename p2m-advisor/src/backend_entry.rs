@@ -56,6 +56,8 @@ pub struct BackendEntry {
     pub reports_progress: bool,
     /// Whether it uses [`BuildSettings::kdop_directions`].
     pub has_kdop_directions: bool,
+    /// Whether it uses [`BuildSettings::p2m`].
+    pub has_p2m_settings: bool,
     /// The expected cost.
     pub cost: CostModel,
     pub(crate) build: BuildFn<f64>,

@@ -1,6 +1,7 @@
 //! An index of any backend with the details of its backend, and the settings that it is built with.
 
 use crate::kdop_directions::{ChosenDirections, KdopDirections};
+use crate::p2m_settings::P2mSettings;
 use p2m_bvh::SplitOptions;
 use p2m_core::storage::Writer;
 use p2m_core::{Index, Real};
@@ -54,6 +55,8 @@ pub struct BuildSettings<'p> {
     pub is_parallel: bool,
     /// The directions of k-DOPs; `None` for those with 14 faces.
     pub kdop_directions: Option<KdopDirections>,
+    /// The locator and the list filter of a P2M index; a grid and sorted lists by default.
+    pub p2m: P2mSettings,
     /// The factor of the memory and work budgets of an octree, 1 by default. These budgets have a minimum, which is
     /// too large for a small sample of a scene.
     pub octree_budget_scale: f64,
@@ -64,7 +67,13 @@ pub struct BuildSettings<'p> {
 
 impl Default for BuildSettings<'_> {
     fn default() -> Self {
-        Self { is_parallel: true, kdop_directions: None, octree_budget_scale: 1.0, progress: &|_| () }
+        Self {
+            is_parallel: true,
+            kdop_directions: None,
+            p2m: P2mSettings::default(),
+            octree_budget_scale: 1.0,
+            progress: &|_| (),
+        }
     }
 }
 
@@ -79,6 +88,12 @@ impl<'p> BuildSettings<'p> {
     #[must_use]
     pub fn with_kdop_directions(self, kdop_directions: Option<KdopDirections>) -> Self {
         Self { kdop_directions, ..self }
+    }
+
+    /// Sets the locator and the list filter of a P2M index.
+    #[must_use]
+    pub fn with_p2m(self, p2m: P2mSettings) -> Self {
+        Self { p2m, ..self }
     }
 
     /// Sets the factor of the budgets of an octree.

@@ -17,7 +17,7 @@ use crate::kdop_directions::{KdopDirections, KdopVisitor};
 use p2m_bvh::AabbTree;
 use p2m_core::storage::{self, Reader, Saved};
 use p2m_core::{BruteForce, BuildError, BuildIndex, Index, Real, Soup};
-use p2m_interception::{Octree, OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, Voronoi};
+use p2m_interception::{Octree, OctreeIndex, OctreeOptions, P2mIndex, Voronoi};
 use p2m_kdop::KdopTree;
 
 /// All backends, the simplest one first. Tables and estimates keep this order.
@@ -29,6 +29,7 @@ pub static BACKENDS: &[BackendEntry] = &[
         casts_rays: true,
         reports_progress: false,
         has_kdop_directions: false,
+        has_p2m_settings: false,
         cost: CostModel {
             build_seconds_per_primitive: 0.04e-6,
             near_query_seconds: 0.0,
@@ -50,6 +51,7 @@ pub static BACKENDS: &[BackendEntry] = &[
         casts_rays: true,
         reports_progress: false,
         has_kdop_directions: false,
+        has_p2m_settings: false,
         cost: CostModel {
             build_seconds_per_primitive: 0.75e-6,
             near_query_seconds: 700e-9,
@@ -74,6 +76,7 @@ pub static BACKENDS: &[BackendEntry] = &[
         casts_rays: true,
         reports_progress: false,
         has_kdop_directions: true,
+        has_p2m_settings: false,
         cost: CostModel {
             build_seconds_per_primitive: 0.8e-6,
             near_query_seconds: 750e-9,
@@ -102,6 +105,7 @@ pub static BACKENDS: &[BackendEntry] = &[
         casts_rays: false,
         reports_progress: true,
         has_kdop_directions: false,
+        has_p2m_settings: false,
         cost: CostModel {
             build_seconds_per_primitive: 10e-6,
             near_query_seconds: 640e-9,
@@ -130,6 +134,7 @@ pub static BACKENDS: &[BackendEntry] = &[
         casts_rays: false,
         reports_progress: true,
         has_kdop_directions: false,
+        has_p2m_settings: true,
         cost: CostModel {
             build_seconds_per_primitive: 32e-6,
             near_query_seconds: 430e-9,
@@ -181,7 +186,7 @@ fn build_octree<'a, T: Real>(soup: &'a Soup<T>, settings: &BuildSettings<'_>) ->
 }
 
 fn build_p2m<'a, T: Real>(soup: &'a Soup<T>, settings: &BuildSettings<'_>) -> Built<'a, T> {
-    let options = P2mOptions::default().with_splits(settings.splits());
+    let options = settings.p2m.options().with_splits(settings.splits());
     let index = P2mIndex::build_with_progress(soup, &options, settings.progress)?;
     let report = index.report();
     Ok(BuiltIndex::new(index, IndexDetails::P2m(report)))
@@ -264,5 +269,23 @@ mod tests {
             }
         }
         assert_eq!(BackendEntry::default_backend().name, "aabb");
+    }
+    #[cfg(all(feature = "kiddo", feature = "rstar"))]
+    #[test]
+    fn every_locator_and_filter_gives_the_same_answers() {
+        use crate::p2m_settings::{ListFilterKind, LocatorKind, P2mSettings};
+        let soup = ico_sphere(&IcoSphere::default()).unwrap();
+        let queries: Vec<_> = (0..100).map(|i| Point3::new(0.1 * f64::from(i), 0.2, 3.0 - f64::from(i % 7))).collect();
+        let backend = BackendEntry::find("p2m").unwrap();
+        let expected = backend.build(&soup, &BuildSettings::default()).unwrap();
+        for locator in [LocatorKind::Grid, LocatorKind::KdTree] {
+            for list_filter in [ListFilterKind::Sorted, ListFilterKind::RTree] {
+                let p2m = P2mSettings { locator, list_filter };
+                let built = backend.build(&soup, &BuildSettings::default().with_p2m(p2m)).unwrap();
+                for query in &queries {
+                    assert_eq!(built.index.closest_point(query), expected.index.closest_point(query), "{p2m:?}");
+                }
+            }
+        }
     }
 }

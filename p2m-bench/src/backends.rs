@@ -9,7 +9,7 @@ use crate::our_indexes::{
     over_soup_with, p2m, p2m_in_batch, p2m_options, registered,
 };
 use p2m_advisor::{BACKENDS, BackendEntry, SearchStructure};
-use p2m_interception::{KdTreeLocator, RegionTree};
+use p2m_interception::{KdTreeLocator, P2mOptions, RegionTree};
 use p2m_mixed::adapters::{ParryIndex, RstarIndex};
 use std::sync::LazyLock;
 
@@ -53,6 +53,7 @@ fn settings() -> Vec<Backend> {
         Backend::new("p2m-rstar", |s| p2m(s, None, p2m_options().with_list_filter(RegionTree::build))),
         Backend::new("p2m-long", |s| p2m(s, None, long_lists())),
         Backend::new("p2m-long-rstar", |s| p2m(s, None, long_lists().with_list_filter(RegionTree::build))),
+        Backend::new("p2m-paper", |s| p2m(s, None, P2mOptions::as_in_paper().with_splits(p2m_options().splits))),
         Backend::new("aabb-batch", |s| aabb_in_batch(s, None)),
         Backend::new("aabb-batch-avx2", |s| aabb_in_batch(s, Some("avx2"))),
         Backend::new("aabb-batch-portable", |s| aabb_in_batch(s, Some("portable"))),

@@ -169,7 +169,7 @@ pub(crate) fn p2m_options() -> P2mOptions {
 
 /// Returns options as in the paper: no site is added, and lists may be long.
 pub(crate) fn long_lists() -> P2mOptions {
-    p2m_options().with_max_list_packets(2048).with_max_extra_sites(0.0).with_memory(1e5).with_work(1e6)
+    p2m_options().with_long_lists()
 }
 
 /// Prepares the octree with an instruction set and a multiple of the default resolution.

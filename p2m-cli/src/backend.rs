@@ -3,7 +3,9 @@
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use p2m_advisor::{BACKENDS, BackendEntry, BuildSettings, BuiltIndex, KdopDirections, Workload, recommend};
+use p2m_advisor::{
+    BACKENDS, BackendEntry, BuildSettings, BuiltIndex, KdopDirections, P2mSettings, Workload, recommend,
+};
 use p2m_core::Soup;
 use p2m_core::storage::Reader;
 use p2m_interception::{BuildStage, StageTimes};
@@ -88,6 +90,8 @@ pub(crate) struct SceneSource<'a> {
     pub(crate) soup: &'a Soup<f64>,
     /// The directions of k-DOPs that are requested; `None` for those of the file, or else the default ones.
     pub(crate) kdop_directions: Option<KdopDirections>,
+    /// The requested parts of a P2M index. A saved one has the default parts.
+    pub(crate) p2m: P2mSettings,
     /// The file that has the scene, if it is one that may have an index as well.
     pub(crate) saved: Option<&'a Reader>,
 }
@@ -101,7 +105,8 @@ impl<'a> SceneSource<'a> {
         backend: Backend,
         pool: &ThreadPool,
     ) -> anyhow::Result<PreparedIndex<'a>> {
-        if let Some(reader) = self.saved.filter(|reader| backend.is_in(reader, self.kdop_directions)) {
+        let may_be_saved = self.p2m == P2mSettings::default();
+        if let Some(reader) = self.saved.filter(|reader| may_be_saved && backend.is_in(reader, self.kdop_directions)) {
             let _progress = Progress::start(streams, "loading the index", None, Unit::None);
             return Ok(PreparedIndex {
                 built: pool.install(|| backend.load(self.soup, reader))?,
@@ -109,7 +114,7 @@ impl<'a> SceneSource<'a> {
                 stages: Stages::new(),
             });
         }
-        let settings = BuildSettings::default().with_kdop_directions(self.kdop_directions);
+        let settings = BuildSettings::default().with_kdop_directions(self.kdop_directions).with_p2m(self.p2m);
         let start = Instant::now();
         let times = StageTimes::new(move || start.elapsed());
         let built = if backend.reports_progress {

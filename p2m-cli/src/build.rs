@@ -57,6 +57,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if let Some(backend) = args.index_args.named().filter(|backend| !backend.is_saveable()) {
         return Err(usage(format!("--backend {backend} has no index to save")));
     }
+    args.index_args.p2m.check_saveable()?;
     if args.json && crate::input::is_standard(&args.out) {
         return Err(usage("--json reports on the standard output, so the index has to go to a file"));
     }
@@ -71,8 +72,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
     let pool = args.index_args.threads.pool()?;
     let start = Instant::now();
-    let (backend, kdop_directions) = args.index_args.choice(None, &scene.soup, DEFAULT_QUERY_COUNT, &pool)?;
-    let source = SceneSource { soup: &scene.soup, kdop_directions, saved: None };
+    let (backend, kdop_directions, p2m) = args.index_args.choice(None, &scene.soup, DEFAULT_QUERY_COUNT, &pool)?;
+    let source = SceneSource { soup: &scene.soup, kdop_directions, p2m, saved: None };
     let PreparedIndex { built, is_loaded, .. } =
         source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
     let build_time = start.elapsed();

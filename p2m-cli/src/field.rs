@@ -14,7 +14,7 @@ use crate::summary::IndexSummary;
 use crate::usage::{not_negative, one_of, positive, usage};
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
-use p2m_advisor::{Index, IndexDetails};
+use p2m_advisor::{Index, IndexDetails, P2mSettings};
 use p2m_core::{Aabb, PrimitiveSet, Soup};
 use p2m_field::FieldFormat;
 use p2m_field::grid_candidates::{CandidateLists, MAX_COORDINATE};
@@ -142,12 +142,12 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let (mut details, mut is_loaded) = (IndexDetails::None, false);
     let mut index = None;
     if lists.is_none() || args.signed.is_some() {
-        let (backend, kdop_directions) = match lists {
+        let (backend, kdop_directions, p2m) = match lists {
             // With lists the index decides signs alone.
-            Some(_) => (saved_or_default(saved.as_ref()), None),
+            Some(_) => (saved_or_default(saved.as_ref()), None, P2mSettings::default()),
             None => args.index_args.choice(saved.as_ref(), soup, grid.len() as u64, &pool)?,
         };
-        let source = SceneSource { soup, kdop_directions, saved: saved.as_ref() };
+        let source = SceneSource { soup, kdop_directions, p2m, saved: saved.as_ref() };
         let prepared = source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
         if lists.is_none() {
             backend_name = backend.name;

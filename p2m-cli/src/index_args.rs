@@ -3,8 +3,9 @@
 use crate::backend::{Backend, BackendChoice, backend_choices};
 use crate::input::SceneArgs;
 use crate::kdop_directions::{KdopFaces, requested};
+use crate::p2m_args::P2mArgs;
 use crate::threads::ThreadArgs;
-use p2m_advisor::{KdopDirections, QueryRegion, Workload};
+use p2m_advisor::{KdopDirections, P2mSettings, QueryRegion, Workload};
 use p2m_core::Soup;
 use p2m_core::storage::Reader;
 use rayon::ThreadPool;
@@ -23,6 +24,9 @@ pub(crate) struct IndexArgs {
     k: Option<KdopFaces>,
 
     #[command(flatten)]
+    pub(crate) p2m: P2mArgs,
+
+    #[command(flatten)]
     pub(crate) threads: ThreadArgs,
 }
 
@@ -30,13 +34,15 @@ pub(crate) struct IndexArgs {
 pub(crate) const DEFAULT_QUERY_COUNT: u64 = 10_000_000;
 
 impl IndexArgs {
-    /// Refuses `--k` for a backend without k-DOPs, as far as the backend is known before any work.
+    /// Refuses `--k` for a backend without k-DOPs, and `--locator` and `--filter` for another one than p2m, as far as the
+    /// backend is known before any work.
     pub(crate) fn check(&self) -> anyhow::Result<()> {
-        let may_have_kdops = match self.backend {
-            Some(BackendChoice::Auto) => true,
-            Some(BackendChoice::Named(backend)) => backend.has_kdop_directions,
-            None => false,
+        let (may_have_kdops, may_have_p2m_settings) = match self.backend {
+            Some(BackendChoice::Auto) => (true, true),
+            Some(BackendChoice::Named(backend)) => (backend.has_kdop_directions, backend.has_p2m_settings),
+            None => (false, false),
         };
+        self.p2m.settings(may_have_p2m_settings)?;
         requested(may_have_kdops, self.k).map(|_| ())
     }
 
@@ -50,23 +56,24 @@ impl IndexArgs {
 
     /// Whether the user left the choice of the index to the program.
     pub(crate) fn is_unspecified(&self) -> bool {
-        self.named().is_none() && self.k.is_none()
+        self.named().is_none() && self.k.is_none() && self.p2m.is_unspecified()
     }
 
-    /// Returns the backend and the directions of its k-DOPs. Without a named backend it is that of the file, or with
+    /// Returns the backend, the directions of its k-DOPs and its settings as a P2M index. Without a named backend it is that of the file, or with
     /// `auto` the best one for this number of queries in the box of the scene.
     ///
     /// # Errors
-    /// For directions with a backend that has no k-DOPs.
+    /// For directions with a backend that has no k-DOPs, and for settings of a P2M index with another one.
     pub(crate) fn choice(
         &self,
         saved: Option<&Reader>,
         soup: &Soup<f64>,
         queries: u64,
         pool: &ThreadPool,
-    ) -> anyhow::Result<(Backend, Option<KdopDirections>)> {
+    ) -> anyhow::Result<(Backend, Option<KdopDirections>, P2mSettings)> {
         let workload = Workload::new(queries, QueryRegion::SceneBox);
         let backend = BackendChoice::resolve(self.backend, saved, soup, &workload, pool)?;
-        Ok((backend, requested(backend.has_kdop_directions, self.k)?))
+        let p2m = self.p2m.settings(backend.has_p2m_settings)?;
+        Ok((backend, requested(backend.has_kdop_directions, self.k)?, p2m))
     }
 }

@@ -22,6 +22,7 @@ mod json;
 mod kdop_directions;
 mod modify;
 mod output;
+mod p2m_args;
 mod picture;
 mod progress;
 mod query;

@@ -7,6 +7,7 @@ use crate::input::{self, SceneArgs, point_format, read_points, read_scene_and_in
 use crate::json;
 use crate::kdop_directions::requested;
 use crate::output::Output;
+use crate::p2m_args::P2mArgs;
 use crate::query_args::QueryArgs;
 use crate::sampling::{Queries, Region};
 use crate::sign_rule::SignRule;
@@ -115,6 +116,9 @@ pub(crate) struct Args {
     #[arg(long, value_parser = backend_choices())]
     backend: Option<BackendChoice>,
 
+    #[command(flatten)]
+    p2m: P2mArgs,
+
     /// Answer with the N nearest primitives of each query, nearest first, one row each
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true, conflicts_with_all = ["within", "certified", "epsilon", "max_visits"])]
     k_nearest: Option<u32>,
@@ -159,7 +163,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let backend = BackendChoice::resolve(args.backend, saved, &scene.soup, &workload, &pool);
     let backend = backend.with_context(|| scene_args.name())?;
     let kdop_directions = requested(backend.has_kdop_directions, query_args.k)?;
-    let source = SceneSource { soup: &scene.soup, kdop_directions, saved };
+    let p2m = args.p2m.settings(backend.has_p2m_settings)?;
+    let source = SceneSource { soup: &scene.soup, kdop_directions, p2m, saved };
     let PreparedIndex { built: BuiltIndex { index, details }, is_loaded, .. } =
         source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
     let build_time = start.elapsed();

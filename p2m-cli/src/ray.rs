@@ -15,7 +15,7 @@ use crate::usage::{finite_not_negative, number, one_of, positive, usage, whole_n
 use anyhow::Context;
 use clap::{ArgGroup, ValueEnum};
 use nalgebra::{Point3, Vector3};
-use p2m_advisor::{BackendEntry, BuiltIndex};
+use p2m_advisor::{BackendEntry, BuiltIndex, P2mSettings};
 use p2m_core::storage::Reader;
 use p2m_core::{Hit, Ray, RayError, RayQuery};
 use p2m_mixed::{AnswerFormat, HitWriter, NumberWriter, Object, PointFormat, Scene};
@@ -180,7 +180,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         streams.print_summary(format_args!("note     the saved index ({other}) answers no rays: {backend} is built\n"));
     }
     let kdop_directions = requested(backend.has_kdop_directions, query_args.k)?;
-    let source = SceneSource { soup: &scene.soup, kdop_directions, saved };
+    let source = SceneSource { soup: &scene.soup, kdop_directions, p2m: P2mSettings::default(), saved };
     let PreparedIndex { built: BuiltIndex { index, details }, is_loaded, .. } =
         source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
     let build_time = start.elapsed();

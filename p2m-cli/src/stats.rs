@@ -101,8 +101,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let pool = args.index_args.threads.pool()?;
     let start = Instant::now();
     let saved = saved.as_ref();
-    let (backend, kdop_directions) = args.index_args.choice(saved, &scene.soup, DEFAULT_QUERY_COUNT, &pool)?;
-    let source = SceneSource { soup: &scene.soup, kdop_directions, saved };
+    let (backend, kdop_directions, p2m) = args.index_args.choice(saved, &scene.soup, DEFAULT_QUERY_COUNT, &pool)?;
+    let source = SceneSource { soup: &scene.soup, kdop_directions, p2m, saved };
     let PreparedIndex { built: BuiltIndex { index, details }, is_loaded, stages } =
         source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
     let build_time = start.elapsed();

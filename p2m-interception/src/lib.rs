@@ -14,7 +14,9 @@
 //! - The [`Octree`] has cubes as cells. It is refined where a split saves the most time for its memory.
 //! - The partition [`Voronoi`] has the Voronoi cells of the scene's vertices and of some added points
 //!   (docs/proofs/p2m.md). A [`Locator`] returns a site near the query, and a walk over Delaunay neighbours ends at the
-//!   nearest site. A [`ListFilter`] may shorten the search of long lists. The [`delaunay`] tetrahedra are exact.
+//!   nearest site. A [`ListFilter`] may shorten the search of long lists. The [`delaunay`] tetrahedra are exact. With
+//!   the features `kiddo` and `rstar`, `PaperIndex` has this partition with the locator, the filter and the lists of the
+//!   paper.
 //!
 //! Lists are stored in blocks: up to eight packets, the lanes of each packet that can be the answer, and lower bounds
 //! on the distances to the packets.
@@ -51,6 +53,8 @@ mod partition;
 mod progress;
 mod voronoi;
 
+#[cfg(all(feature = "kiddo", feature = "rstar"))]
+pub use index::PaperIndex;
 pub use index::{InterceptionIndex, OctreeIndex, P2mIndex};
 pub use octree::Octree;
 pub use options::{Domain, OctreeOptions, OctreeReport, P2mOptions, P2mReport};
@@ -58,6 +62,8 @@ pub use partition::Partition;
 pub use progress::{BuildStage, Progress, StageTimes};
 #[cfg(feature = "kiddo")]
 pub use voronoi::kd_tree_locator::KdTreeLocator;
+#[cfg(all(feature = "kiddo", feature = "rstar"))]
+pub use voronoi::paper::{PaperOptions, PaperVoronoi};
 #[cfg(feature = "rstar")]
 pub use voronoi::region_tree::RegionTree;
 pub use voronoi::{BuildListFilter, BuildLocator, ListFilter, Locator, LocatorSites, Region, Voronoi};

@@ -1,5 +1,6 @@
 //! The options of the indexes, and the statistics of what was built.
 
+use crate::voronoi::MAX_LIST_PACKETS;
 use crate::voronoi::list_filter::BuildListFilter;
 use crate::voronoi::locator::BuildLocator;
 use p2m_bvh::SplitOptions;
@@ -196,12 +197,36 @@ impl P2mOptions {
     pub fn with_max_extra_sites(self, max_extra_sites: f64) -> Self {
         Self { max_extra_sites, ..self }
     }
+    /// Sets that lists may be as long as in the paper: no site is added, a list may have 2048 packets, and the budgets
+    /// of memory and work are 100,000 bytes and 1,000,000 tests for each primitive. Between slivers a build takes up to
+    /// 40 times as long as by default (docs/p2m.md has figures).
+    #[must_use]
+    pub fn with_long_lists(self) -> Self {
+        self.with_max_extra_sites(0.0).with_max_list_packets(MAX_LIST_PACKETS).with_memory(1e5).with_work(1e6)
+    }
+    /// Returns the options of the paper \[Zong2023\]: [long lists](Self::with_long_lists), the locator
+    /// [`KdTreeLocator`](crate::KdTreeLocator), and the filter [`RegionTree`](crate::RegionTree) for each list of more
+    /// than 64 primitives.
+    #[cfg(all(feature = "kiddo", feature = "rstar"))]
+    #[must_use]
+    pub fn as_in_paper() -> Self {
+        let long = Self::default().with_long_lists();
+        long.with_locator(crate::KdTreeLocator::build).with_list_filter(crate::RegionTree::build).with_filter_above(64)
+    }
     /// Sets the function that makes the locator. Answers do not depend on it. A saved index has a grid instead.
+    ///
+    /// A query calls the locator through a pointer, and begins its walk at the site that it returns. The grid, which is
+    /// the default, is the fastest locator that was measured. With a `KdTreeLocator` a query takes up to three times as
+    /// long.
     #[must_use]
     pub fn with_locator(self, build: BuildLocator) -> Self {
         Self { locator: Some(FnPointer(build)), ..self }
     }
     /// Sets the function that makes filters of long lists. Answers do not depend on it. A saved index has no filters.
+    ///
+    /// Without filters, which is the default, a search bounds eight packets of a list at a time and begins with the
+    /// nearest. With a `RegionTree` for each long list, a query takes up to ten times as long where lists are long, and
+    /// the index takes up to 70 times the memory.
     #[must_use]
     pub fn with_list_filter(self, build: BuildListFilter) -> Self {
         Self { list_filter: Some(FnPointer(build)), ..self }

@@ -2,12 +2,12 @@
 
 use nalgebra::Point3;
 use p2m_core::storage::{SavedFile, Writer};
-use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Soup, StatsCollector};
+use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Element, Soup, StatsCollector};
 use p2m_interception::{
-    BuildListFilter, BuildLocator, KdTreeLocator, ListFilter, Locator, LocatorSites, P2mIndex, P2mOptions, Region,
-    RegionTree,
+    BuildListFilter, BuildLocator, KdTreeLocator, ListFilter, Locator, LocatorSites, P2mIndex, P2mOptions, PaperIndex,
+    Region, RegionTree,
 };
-use p2m_testkit::scenes::{self, kinds_and_layout};
+use p2m_testkit::scenes::{self, Kinds, Layout, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng, vector};
 use std::sync::Arc;
 
@@ -124,7 +124,7 @@ fn every_locator_leads_to_the_answer() {
         queries.extend(soup.positions().iter().take(amount(50, 10)));
         let expected = answers(&BruteForce::new(&soup).expect("valid"), &queries);
         let locators: [(&str, BuildLocator); 3] =
-            [("k-d tree", KdTreeLocator::build), ("first site", first_site), ("no site", no_site)];
+            [("KD-tree", KdTreeLocator::build), ("first site", first_site), ("no site", no_site)];
         for (name, locator) in locators {
             let index = Index::build(&soup, &P2mOptions::default().with_locator(locator)).expect("valid");
             assert_eq!(index.report().filtered, 0);
@@ -155,4 +155,67 @@ fn a_saved_index_has_a_grid_instead_of_another_locator() {
     assert_eq!(answers(&loaded, &queries), answers(&built, &queries));
     // Queries visit the same packets, so the lists and the sites at which queries end are the same.
     assert_eq!(packets(&loaded, &queries), packets(&built, &queries));
+}
+
+/// Returns queries on the positions of a scene, near them, and at 10 and at 1e9 times their distance from the origin.
+fn queries_at_all_distances(soup: &Soup<f64>, case: u64) -> Vec<Point3<f64>> {
+    let mut rng = rng("distances", case);
+    let scaled = |rng: &mut _, factor| Point3::from(vector(rng) * factor);
+    let mut queries: Vec<_> = (0..60).map(|i| scaled(&mut rng, [1.0, 3.0, 10.0, 1e9][i % 4])).collect();
+    queries.extend(soup.positions().iter().take(60));
+    queries.extend(soup.positions().iter().take(60).map(|p| p + vector(&mut rng) * 1e-3));
+    queries
+}
+
+/// Makes points of a curve or a grid, with segments between consecutive points and a triangle for every third one.
+fn chain(count: u32, position: impl Fn(f64, f64) -> [f64; 3]) -> Soup<f64> {
+    let points = (0..count).map(|i| Point3::from(position(f64::from(i % 20) / 20.0, f64::from(i / 20) / 20.0)));
+    let elements = (2..count).flat_map(|i| {
+        let triangle = (i % 3 == 0).then_some(Element::Triangle([i - 2, i - 1, i]));
+        [Element::Segment([i - 1, i]), Element::Point(i)].into_iter().chain(triangle)
+    });
+    Soup::new(points.collect(), elements).expect("valid")
+}
+
+#[test]
+fn the_kd_tree_leads_to_the_answer_in_degenerate_scenes() {
+    let scenes = [
+        ("a plane", chain(400, |x, y| [x, y, 0.25])),
+        ("a slanted plane", chain(400, |x, y| [x, y, x + y])),
+        ("a line", chain(400, |x, y| [20.0 * y + x, 0.0, 0.0])),
+        ("a slanted line", chain(400, |x, y| [20.0 * y + x; 3])),
+        ("one point", chain(400, |_, _| [0.5, 0.25, 0.125])),
+        ("duplicates", chain(400, |x, y| [(4.0 * x).floor(), (4.0 * y).floor(), (x * y * 4.0).floor()])),
+        ("three points", chain(3, |x, _| [x, x * x, 1.0])),
+    ];
+    for (case, (name, soup)) in (0..).zip(&scenes) {
+        let queries = queries_at_all_distances(soup, case);
+        let expected = answers(&BruteForce::new(soup).expect("valid"), &queries);
+        let options = P2mOptions::default().with_locator(KdTreeLocator::build);
+        assert_eq!(answers(&Index::build(soup, &options).expect("valid"), &queries), expected, "{name}");
+        let paper = PaperIndex::build(soup, &Default::default()).expect("valid");
+        assert_eq!(answers(&paper, &queries), expected, "{name}, as in the paper");
+    }
+}
+
+/// Far queries begin near their site, so walks stay short, and they end where those from the grid end.
+#[test]
+fn walks_from_the_kd_tree_are_short_and_end_at_the_same_site() {
+    let mut rng = rng("walks from the KD-tree", 0);
+    let soup = scenes::soup(&mut rng, Kinds::Triangles, Layout::Uniform, 600);
+    let kd_tree = P2mOptions::default().with_locator(KdTreeLocator::build);
+    let [grid, kd_tree] = [P2mOptions::default(), kd_tree].map(|options| Index::build(&soup, &options).expect("valid"));
+    assert!(kd_tree.report().lists > 100, "{}", kd_tree.report());
+    let bounds = soup.positions().iter().fold(0.0f64, |all, p| all.max(p.coords.amax()));
+    for scale in [1.0, 3.0, 9.0] {
+        let queries: Vec<_> = (0..300).map(|_| Point3::from(vector(&mut rng) * (bounds * scale))).collect();
+        for query in &queries {
+            assert_eq!(kd_tree.partition().locate_site(query), grid.partition().locate_site(query), "{query:?}");
+        }
+        let visited = |index: &Index<'_>| {
+            StatsCollector::count_queries(&queries, |query, counting| index.visit(query, counting))[0] as f64
+        };
+        let (from_kd_tree, from_grid) = (visited(&kd_tree), visited(&grid));
+        assert!(from_kd_tree < 2.0 * from_grid, "{scale}: {from_kd_tree} and {from_grid} sites");
+    }
 }

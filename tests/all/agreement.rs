@@ -6,6 +6,8 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
+#[cfg(all(feature = "kiddo", feature = "rstar"))]
+use p2m::PaperIndex;
 use p2m::backend::{Best, Key};
 use p2m::kdop::Directions;
 use p2m::{
@@ -149,6 +151,18 @@ backends! {
     kdop_14: Kdop14,
     octree: OctreeIndex,
     p2m_index: P2mIndex,
+}
+
+#[cfg(all(feature = "kiddo", feature = "rstar"))]
+backends! {
+    paper_index: PaperIndex,
+}
+
+/// Generates the tests of scenes, too, because the registry has no entry for the index of the paper.
+#[cfg(all(feature = "kiddo", feature = "rstar"))]
+mod paper_index_on_scenes {
+    use super::*;
+    on_soups!(PaperIndex);
 }
 
 // Few sets are used, because these variants take long to compile.

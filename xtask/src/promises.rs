@@ -16,6 +16,8 @@ pub(crate) fn check() -> Outcome {
         cargo(&[&library[..], &["--features", &feature]].concat(), &[])?;
     }
     cargo(&["check", "--locked", "--package", "p2m-mixed", "--features", "rstar"], &[])?;
+    // Without its features the program has no parts of the paper.
+    cargo(&["check", "--locked", "--package", "p2m-cli", "--no-default-features"], &[])?;
     check_targets()
 }
 

@@ -370,3 +370,53 @@ fn accuracy_is_traded_within_what_is_told() {
         assert_eq!(p2m(&[&["query", SCENE, "--random", "3"], wrong].concat()).code, 2, "{wrong:?}");
     }
 }
+
+#[cfg(all(feature = "kiddo", feature = "rstar"))]
+#[test]
+fn the_parts_of_a_p2m_index_may_be_chosen() {
+    let folder = TempDir::new().unwrap();
+    let saved = path(&folder, "scene.p2m");
+    table(&["build", SCENE, "--backend", "p2m", "--out", &saved]);
+    let expected = table(&["query", SCENE, "--random", "200", "--box-scale", "9"]);
+    for scene in [SCENE, &saved] {
+        for parts in [
+            &["--locator", "kd-tree"][..],
+            &["--filter", "r-tree"],
+            &["--locator", "KD-tree", "--filter", "R-tree"],
+            &["--locator", "grid", "--filter", "sorted"],
+        ] {
+            let query = ["query", scene, "--random", "200", "--box-scale", "9", "--backend", "p2m"];
+            let run = p2m(&[&query[..], parts].concat());
+            assert_eq!(text(&run.stdout), expected, "{parts:?}");
+            // A saved index has the default parts, so others are built.
+            let is_loaded = scene == saved && parts.contains(&"grid");
+            let verb = if is_loaded { "loaded in" } else { "built in" };
+            assert!(text(&run.stderr).contains(&format!("backend  p2m, {verb}")), "{}", text(&run.stderr));
+        }
+    }
+    let stats = p2m(&["stats", SCENE, "--backend", "p2m", "--locator", "kd-tree", "--filter", "r-tree"]);
+    assert_eq!(stats.code, 0, "{}", text(&stats.stderr));
+    for (arguments, message) in [
+        (&["query", SCENE, "--random", "5", "--locator", "grid"][..], "--locator is for --backend p2m"),
+        (
+            &["query", SCENE, "--random", "5", "--backend", "octree", "--filter", "r-tree"],
+            "--filter is for --backend p2m",
+        ),
+        (&["stats", SCENE, "--backend", "aabb", "--locator", "kd-tree"], "--locator is for --backend p2m"),
+        (
+            &["build", SCENE, "--backend", "kdop", "--locator", "grid", "--out", &saved],
+            "--locator is for --backend p2m",
+        ),
+        (
+            &["build", SCENE, "--backend", "p2m", "--filter", "r-tree", "--out", &saved],
+            "a saved index has --locator grid",
+        ),
+        (
+            &["query", SCENE, "--random", "5", "--backend", "p2m", "--locator", "tree"],
+            "[possible values: grid, kd-tree]",
+        ),
+    ] {
+        let wrong = failure(arguments, 2);
+        assert!(wrong.contains(message), "{arguments:?}: {wrong}");
+    }
+}

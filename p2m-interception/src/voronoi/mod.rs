@@ -31,6 +31,8 @@ pub(crate) mod list_filter;
 pub(crate) mod locator;
 pub(crate) mod neighbour_block;
 pub(crate) mod neighbours;
+#[cfg(all(feature = "kiddo", feature = "rstar"))]
+pub(crate) mod paper;
 pub(crate) mod primitive_frame;
 pub(crate) mod query;
 #[cfg(feature = "rstar")]
@@ -64,7 +66,7 @@ use p2m_core::storage::Array;
 use p2m_core::{Aabb, Isa, PrimitiveId, PrimitiveSet, Real};
 
 /// The largest number of packets that a list can have.
-const MAX_LIST_PACKETS: usize = 2048;
+pub(crate) const MAX_LIST_PACKETS: usize = 2048;
 /// The tree answers everything, and no cells are stored, if more than one of this many cells would be left
 /// to the tree.
 const FALLBACK_CELLS_DIVISOR: usize = 4;
