@@ -11,7 +11,7 @@ use std::sync::Arc;
 ///
 /// Any site will do: the index walks from there to the nearest site, whose cell contains the query point. So answers
 /// do not depend on the locator. If the number is not that of a site, searches panic.
-pub trait Locator: Debug + Send + Sync + UnwindSafe + RefUnwindSafe {
+pub trait Locator: Debug + Send + Sync {
     /// Returns the number of a site near a point of the domain, or `None` if the tree should answer. The point is in
     /// the units of [`LocatorSites::positions`].
     fn start(&self, position: &[f64; 3]) -> Option<usize>;
