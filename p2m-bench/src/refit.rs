@@ -22,7 +22,7 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> Result
     let soup = &scene.double;
     let checked = "the scene was checked when it was read";
     let mut tree = AabbTree::build(soup.clone(), &Default::default()).context(checked)?;
-    let area = tree.relative_surface_area();
+    let area = tree.surface_area();
     let head = ["twist", "area", "refit ms", "build ms"].map(str::to_owned).into_iter();
     let mut table = Table::new(head.chain(sets.iter().map(|set| format!("{}, refit / built", set.name()))));
     let mut equal = true;
@@ -44,7 +44,7 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> Result
         let median = |times: &[f64]| MedianRange::of(times).map_or(f64::NAN, |range| range.median);
         let mut row = vec![
             format!("{degrees}"),
-            format!("{:.2}", tree.relative_surface_area() / area),
+            format!("{:.2}", tree.surface_area() / area),
             format!("{:.0}", median(&times[0]) * 1e3),
             format!("{:.0}", median(&times[1]) * 1e3),
         ];

@@ -9,8 +9,8 @@ use p2m_core::engine::answer_one_by_one;
 use p2m_core::storage::{self, LoadError, Reader, Writer};
 use p2m_core::{
     Aabb, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Collector, Found,
-    Hits, Index, Inspect, Isa, Near, NearQuery, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector,
-    RayQuery, Real, Shape, StatsCollector, check_set, shape_of,
+    Hits, Index, Inspect, Isa, Near, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray,
+    RayCollector, RayQuery, Real, Shape, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
@@ -85,9 +85,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     where
         S: Sync,
     {
-        if set.len() != self.set.len() {
-            return Err(BuildError::OtherLength { len: set.len(), expected: self.set.len() });
-        }
+        self.check_fit(set.len())?;
         check_set(&set)?;
         self.tree.refit(&set, options);
         self.set = set;
@@ -110,47 +108,51 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// # Ok::<(), p2m_core::BuildError>(())
     /// ```
     ///
-    /// # Errors
-    /// Returns the error of `change`, which then must not have changed the set; [`Soup::set_positions`] and
-    /// [`Soup::map_positions`] keep this rule. The tree stays as it was.
+    /// The tree is fitted to what `change` left, also if it returns an error or panics, so answers are always those of
+    /// the set.
     ///
-    /// # Panics
-    /// Panics if `change` succeeds and the set then has another number of primitives or a coordinate that is not
-    /// finite, because the tree fits no such set.
+    /// # Errors
+    /// Returns the error of `change`. Returns [`BuildError::OtherLength`] or [`BuildError::NonFinite`] if `change` left
+    /// another number of primitives or a coordinate that is not finite. No tree fits such a set, so queries then find
+    /// nothing, and the index has to be built anew.
     ///
     /// # Complexity
     /// O(n).
-    ///
-    /// [`Soup::set_positions`]: p2m_core::Soup::set_positions
-    /// [`Soup::map_positions`]: p2m_core::Soup::map_positions
-    pub fn refit_in_place<E>(
+    pub fn refit_in_place(
         &mut self,
         options: &V::Options,
-        change: impl FnOnce(&mut S) -> Result<(), E>,
-    ) -> Result<(), E>
+        change: impl FnOnce(&mut S) -> Result<(), BuildError>,
+    ) -> Result<(), BuildError>
     where
         S: Sync,
     {
-        let len = self.set.len();
-        change(&mut self.set)?;
-        assert_eq!(self.set.len(), len, "the number of primitives stays the same");
-        assert_eq!(check_set(&self.set), Ok(()), "the changed set is finite");
-        self.tree.refit(&self.set, options);
-        Ok(())
+        let refit = RefitOnDrop { index: self, options };
+        let changed = change(&mut refit.index.set);
+        let fits = refit.index.check_fit(refit.index.set.len());
+        drop(refit);
+        fits?;
+        check_set(&self.set)?;
+        changed
     }
 
-    /// Returns the surface area of the bounding boxes of all nodes and packets, relative to that of the whole scene.
+    /// Checks whether a set of this length has the primitives that the tree was built over.
+    fn check_fit(&self, len: usize) -> Result<(), BuildError> {
+        let expected = self.tree.packets().1;
+        if len == expected { Ok(()) } else { Err(BuildError::OtherLength { len, expected }) }
+    }
+
+    /// Returns the sum of the surface areas of the bounding boxes of all nodes and packets, in squared units of the
+    /// scene.
     ///
-    /// This is the number of boxes that a random line through the box of the scene intersects on average, so it is a
-    /// measure of the quality of the tree. A refit keeps the shape of the tree, so the area rises as neighbours move
-    /// apart. Compare it with its value after the build, and build anew when it has grown by a fifth: the guide of
-    /// the crate p2m (docs/guide.md) has the figures. It is
-    /// 0 for an empty set.
+    /// The area is a measure of the quality of the tree for one scene. A refit keeps the shape of the tree, so the area
+    /// grows as neighbours move apart. Compare it with its value after the build, and build anew when it has grown by a
+    /// fifth: the guide of the crate p2m (docs/guide.md) has the figures. If the scene grows as a whole, divide the area
+    /// by the square of that growth. It is 0 for an empty set.
     ///
     /// # Complexity
     /// O(n).
-    pub fn relative_surface_area(&self) -> f64 {
-        self.tree.relative_surface_area()
+    pub fn surface_area(&self) -> f64 {
+        self.tree.surface_area()
     }
 
     /// Adds the tree to a file, without the set.
@@ -198,6 +200,24 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// The directions of the faces of all bounding volumes of a k-DOP tree; `()` for an AABB tree.
     pub fn directions(&self) -> &V::Directions {
         self.tree.directions()
+    }
+}
+
+/// Fits the tree of an index to its set when it is dropped, so that this also happens if a change of the set panics.
+struct RefitOnDrop<'a, T: Real, S: PrimitiveSet<T> + Sync, V: Volume> {
+    index: &'a mut TreeIndex<T, S, V>,
+    options: &'a V::Options,
+}
+
+impl<T: Real, S: PrimitiveSet<T> + Sync, V: Volume> Drop for RefitOnDrop<'_, T, S, V> {
+    fn drop(&mut self) {
+        let TreeIndex { set, tree, .. } = &mut *self.index;
+        if set.len() == tree.packets().1 && check_set(&*set).is_ok() {
+            tree.refit(&*set, self.options);
+        } else {
+            let nothing: [Point<f64>; 0] = [];
+            *tree = PacketTree::build(&nothing, self.options);
+        }
     }
 }
 

@@ -12,8 +12,8 @@ use std::ops::ControlFlow;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Implements the traits of sets and indexes for a pointer type by those of its target. Methods that no backend
-/// overrides keep their defaults.
+/// Implements the traits of sets and indexes for a pointer type by those of its target. Methods that no backend of this
+/// project overrides keep their defaults, so an override of yours is not called through a pointer.
 macro_rules! point_to {
     ($target:ident, $pointer:ty) => {
         impl<T: Real, $target: PrimitiveSet<T> + ?Sized> PrimitiveSet<T> for $pointer {

@@ -9,7 +9,7 @@ use crate::{Aabb, BuildError, Primitive, PrimitiveId, Real};
 /// [`Shape`](crate::Shape)s at the cost of one `match`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a scene with coordinates of type `{T}`",
-    note = "scenes are `Soup<{T}>`, slices, arrays and vectors of primitives, and `&`, `Box`, `Rc` and `Arc` of them"
+    note = "scenes are `Soup<{T}>`, slices, arrays and vectors of primitives, and `&`, `Box` and `Arc` of them"
 )]
 pub trait PrimitiveSet<T: Real> {
     /// The type of primitives that [`get`](Self::get) returns.

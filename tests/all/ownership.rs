@@ -4,7 +4,7 @@
 
 use nalgebra::{Point3, Rotation3, Vector3};
 use p2m::batch::BatchOptions;
-use p2m::field::sign::{Sign, SignedDistance};
+use p2m::field::sign::{Sign, SignError, SignedDistance};
 use p2m::scene::generate::{IcoSphere, ico_sphere};
 use p2m::{
     AabbTree, BruteForce, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Index, Inspect, KdopTree, NearQuery,
@@ -144,17 +144,17 @@ fn a_scene_in_f32_has_the_signs_of_the_same_scene_in_f64() {
 #[test]
 fn a_tree_follows_a_scene_in_place_and_tells_what_it_lost() {
     let mut tree = AabbTree::build(ball(), &Default::default()).expect("valid");
-    let area = tree.relative_surface_area();
-    assert!(area > 1.0 && area < 100.0, "{area}");
+    let area = tree.surface_area();
+    assert!(area > 10.0 && area < 1000.0, "{area}");
     // A rigid motion by a right angle keeps the quality.
     let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2);
     tree.refit_in_place(&Default::default(), |soup| soup.map_positions(|p| turn * p)).expect("finite");
-    assert!((tree.relative_surface_area() / area - 1.0).abs() < 1e-3);
+    assert!((tree.surface_area() / area - 1.0).abs() < 1e-3);
     // Scattered vertices ruin it, and a new build is better again.
     let mut rng = rng("scattered", 0);
     let scatter = |_| Point3::from([(); 3].map(|()| rng.random_range(-1.0..1.0)));
     tree.refit_in_place(&Default::default(), |soup| soup.map_positions(scatter)).expect("finite");
-    let scattered = tree.relative_surface_area();
+    let scattered = tree.surface_area();
     assert!(scattered > 2.0 * area, "{scattered} {area}");
     let brute = BruteForce::new(tree.set().clone()).expect("valid");
     for query in queries(100) {
@@ -162,7 +162,7 @@ fn a_tree_follows_a_scene_in_place_and_tells_what_it_lost() {
         assert_eq!(fields(&tree), fields(&brute));
     }
     let rebuilt = AabbTree::build(tree.into_set(), &Default::default()).expect("valid");
-    assert!(rebuilt.relative_surface_area() < scattered);
+    assert!(rebuilt.surface_area() < scattered);
     // A motion that fails leaves scene and tree as they were.
     let mut tree = rebuilt;
     let before = tree.set().clone();
@@ -172,7 +172,80 @@ fn a_tree_follows_a_scene_in_place_and_tells_what_it_lost() {
     let short = tree.refit_in_place(&Default::default(), |soup| soup.set_positions(Vec::new()));
     assert_eq!(short, Err(BuildError::OtherPositionCount { len: 0, expected: before.positions().len() }));
     let empty: AabbTree<f64, Soup<f64>> = AabbTree::build(Soup::default(), &Default::default()).expect("valid");
-    assert_eq!(empty.relative_surface_area(), 0.0);
+    assert_eq!(empty.surface_area(), 0.0);
+}
+
+#[test]
+fn one_primitive_that_flies_away_does_not_hide_what_a_tree_lost() {
+    let mut rng = rng("outlier", 0);
+    let mut point = move || Point3::from([(); 3].map(|()| rng.random_range(-1.0..1.0)));
+    let mut tree = AabbTree::build(scattered(&mut point, 5000), &Default::default()).expect("valid");
+    let area = tree.surface_area();
+    let mut soup = scattered(&mut point, 5000);
+    let positions = soup.positions().iter().enumerate().map(|(i, p)| if i < 3 { p * 100.0 } else { *p }).collect();
+    soup.set_positions(positions).expect("finite");
+    tree.refit(soup, &Default::default()).expect("as many primitives");
+    assert!(tree.surface_area() > 2.0 * area);
+}
+
+/// Returns small triangles at random places.
+fn scattered(point: &mut impl FnMut() -> Point3<f64>, count: usize) -> Soup<f64> {
+    let positions = (0..count).flat_map(|_| {
+        let corner = point();
+        [corner, corner + Vector3::new(0.01, 0.0, 0.0), corner + Vector3::new(0.0, 0.01, 0.0)]
+    });
+    let triangles = (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    Soup::from_triangles(positions.collect(), triangles).expect("valid")
+}
+
+#[test]
+fn a_tree_answers_for_whatever_a_change_left() {
+    let same = |tree: &AabbTree<f64, Soup<f64>>| {
+        let brute = BruteForce::new(tree.set().clone()).expect("valid");
+        queries(30).iter().all(|q| {
+            let distance = |index: &dyn ClosestPoint<f64>| index.closest_point(q).map(|c| c.distance);
+            distance(tree) == distance(&brute)
+        })
+    };
+    let mut tree = AabbTree::build(ball(), &Default::default()).expect("valid");
+    let up = |p: Point3<f64>| p + Vector3::new(0.0, 0.0, 2.0);
+    // The first motion is legal, the second one is not.
+    let failed = tree.refit_in_place(&Default::default(), |soup| {
+        soup.map_positions(up)?;
+        soup.map_positions(|p| p * f64::NAN)
+    });
+    assert!(failed.is_err() && same(&tree));
+    let panicked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+        tree.refit_in_place(&Default::default(), |soup| {
+            soup.map_positions(up)?;
+            panic!("after a motion")
+        })
+    }));
+    assert!(panicked.is_err() && same(&tree));
+    // No tree fits a scene of another size, so nothing is found.
+    let other = Soup::from_triangles(ball().positions().to_vec(), vec![[0, 1, 2]]).expect("valid");
+    let error = tree.refit_in_place(&Default::default(), |soup| {
+        *soup = other;
+        Ok(())
+    });
+    assert_eq!(error, Err(BuildError::OtherLength { len: 1, expected: ball().len() }));
+    assert!(tree.closest_point(&Point3::origin()).is_none());
+    assert!(tree.refit(ball(), &Default::default()).is_err());
+}
+
+#[test]
+fn an_index_of_another_scene_has_no_signs() {
+    let shifted = Arc::new({
+        let mut soup = ball();
+        soup.map_positions(|p| p + Vector3::new(5.0, 0.0, 0.0)).expect("finite");
+        soup
+    });
+    let index = || AabbTree::build(ball(), &Default::default()).expect("valid");
+    let other = SignError::OtherScene { triangle: 0, vertex: 0 };
+    assert_eq!(SignedDistance::new(index(), Arc::clone(&shifted)).unwrap_err(), other);
+    assert_eq!(SignedDistance::with_winding_numbers(index(), Arc::clone(&shifted), 0.01).unwrap_err(), other);
+    let empty = AabbTree::<f64, Soup<f64>>::build(Soup::default(), &Default::default()).expect("valid");
+    assert_eq!(SignedDistance::new(empty, shifted).unwrap_err(), other);
 }
 
 #[test]

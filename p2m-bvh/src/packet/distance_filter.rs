@@ -93,7 +93,7 @@ impl Packet {
         let mut at = 0;
         while at < LANES {
             let lanes = ((1 << I::Wide::LEN) - 1) << at;
-            // Lanes that hold a whole packet were found to be near before.
+            // Places whose whole packet is left out are not among `places`.
             if I::Wide::LEN >= LANES || places.iter().any(|&place| near[usize::from(place) % PLACES] & lanes != 0) {
                 let primitives: Primitives<I::Wide> = self.prepare(at);
                 for place in places.iter().map(|&place| usize::from(place) % PLACES) {

@@ -288,8 +288,8 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
 
     /// Filters at most [`SEARCHES`] packets. Primitives that may be the answer become candidates.
     ///
-    /// If `PLANES`, packets that a plane excludes are left out first. That pays where many packets are far, as in trees;
-    /// lists have few such packets.
+    /// If `PLANES`, or if lanes hold a part of a packet only, what a plane excludes is left out first. That pays where
+    /// many packets are far, as in trees; lists have few such packets.
     ///
     /// No branch depends on what the filters find until all of them have run. Searches that are near each other often
     /// visit the same packet one after the other, and what depends on the packet alone is then computed once.
@@ -336,7 +336,10 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
         }
         self.rows.update::<I>(&self.locals, &self.searches.tree.frame);
         for &place in places {
-            self.push_candidates::<I>(&visits[usize::from(place) % SEARCHES], usize::from(place) % SEARCHES);
+            let place = usize::from(place) % SEARCHES;
+            // Lanes behind the plane are left out whether their squares were computed for another search or not.
+            let visit = PacketVisit { lanes: visits[place].lanes & near[place], ..visits[place] };
+            self.push_candidates::<I>(&visit, place);
         }
         if self.early != 0 {
             self.evaluate_early();

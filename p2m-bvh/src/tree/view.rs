@@ -41,20 +41,14 @@ impl<V: VolumeNodes> PacketTree<V> {
         node.reference.is_packet().then(|| self.leaves.packets[node.reference.number()].ids())
     }
 
-    /// The surface area of the boxes of all nodes and packets, relative to that of the box of the scene. It is 0 for an
-    /// empty set and for a scene on one line along an axis, which has no area.
-    pub fn relative_surface_area(&self) -> f64 {
-        let extent = |bounds: &Aabb<f64>| (bounds.max * 0.5 - bounds.min * 0.5).map(|x| x * self.frame.per_unit);
-        let area = |bounds: &Aabb<f64>| {
-            let size = extent(bounds);
-            size.x * size.y + size.y * size.z + size.z * size.x
+    /// The sum of the surface areas of the boxes of all nodes and packets below the root.
+    pub fn surface_area(&self) -> f64 {
+        let area = |bounds: Aabb<f64>| {
+            let size = bounds.max - bounds.min;
+            2.0 * (size.x * size.y + size.y * size.z + size.z * size.x)
         };
-        let scene_area = area(&self.bounds);
-        if self.root == NodeRef::NONE || scene_area.is_nan() || scene_area <= 0.0 {
-            return 0.0;
-        }
         let children = self.nodes.iter().flat_map(|node| node.used_slots().map(|slot| self.child_box(node, slot)));
-        1.0 + children.map(|bounds| area(&bounds)).sum::<f64>() / scene_area
+        children.map(area).sum()
     }
 
     /// All nodes and packets of the tree, parents before children.

@@ -3,6 +3,7 @@
 use super::interface::Primitive;
 use super::projection::Projection;
 use crate::Real;
+use crate::kernel::Key;
 use crate::real::to_f64_array;
 use nalgebra::Point3;
 
@@ -19,7 +20,13 @@ pub enum PrimitiveDefect {
         /// The query.
         query: [f64; 3],
     },
-    /// The nearest point lies outside of the box of the primitive, or is NaN.
+    /// A coordinate of the nearest point or a weight is NaN.
+    #[error("the nearest point or a weight is NaN for the query {query:?}")]
+    Nan {
+        /// The query.
+        query: [f64; 3],
+    },
+    /// The nearest point lies outside of the box of the primitive.
     #[error("the nearest point {point:?} to the query {query:?} lies outside of the box of the primitive")]
     OutsideBox {
         /// The query.
@@ -27,8 +34,8 @@ pub enum PrimitiveDefect {
         /// The nearest point that `project` returns.
         point: [f64; 3],
     },
-    /// The key is not the one that [`Projection::new`] makes of the query and the point.
-    #[error("the key for the query {query:?} is not that of Projection::new")]
+    /// The key differs from the one that [`Projection::new`] makes of the query and the point by more than rounding.
+    #[error("the key for the query {query:?} is not the distance of the point, which Projection::new computes")]
     Key {
         /// The query.
         query: [f64; 3],
@@ -60,8 +67,8 @@ pub enum PrimitiveDefect {
 
 /// Checks whether a primitive of your own keeps what [`Primitive`] requires, at some finite queries. Call it in a test.
 ///
-/// Queries should lie inside of the primitive, on it, beside it and far away. The check finds most mistakes, but it
-/// proves nothing about other queries.
+/// Queries should lie inside of the primitive, on it, beside it and far away. The check adds six queries beyond the
+/// faces of the box. It proves nothing about other queries.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -95,23 +102,37 @@ pub fn check_primitive<T: Real>(primitive: &impl Primitive<T>, queries: &[Point3
         return Err(PrimitiveDefect::Box);
     }
     let bounds = bounds.to_f64();
-    let mut all: Vec<([f64; 3], Projection)> = Vec::with_capacity(queries.len());
-    for point in queries {
+    let mut all: Vec<([f64; 3], Projection)> = Vec::with_capacity(queries.len() + 6);
+    let centre = nalgebra::center(&bounds.min, &bounds.max);
+    let size = (bounds.max - bounds.min).norm();
+    let beyond = (0..6).map(|face| {
+        let mut query = centre;
+        query[face / 2] += if face % 2 == 0 { size } else { -size };
+        query.map(T::round_from_f64)
+    });
+    for point in &queries.iter().copied().chain(beyond.filter(|p| p.iter().all(|x| x.is_finite()))).collect::<Vec<_>>()
+    {
         let query = to_f64_array(point);
         let found = primitive.project(point);
+        if found.point.iter().chain(&found.barycentric).any(|x| x.is_nan()) {
+            return Err(PrimitiveDefect::Nan { query });
+        }
         if primitive.project(point) != found {
             return Err(PrimitiveDefect::NotPure { query });
         }
         if !(0..3).all(|k| (bounds.min[k]..=bounds.max[k]).contains(&found.point[k])) {
             return Err(PrimitiveDefect::OutsideBox { query, point: found.point.coords.into() });
         }
-        // The kernel makes the keys of primitives with vertices, and those may be more precise.
-        let expected = Projection::new(point, found.point, found.feature, found.barycentric, found.error).key;
-        if primitive.vertices().is_empty() && expected != found.key {
-            return Err(PrimitiveDefect::Key { query });
-        }
         if !(0.0..f64::INFINITY).contains(&found.error) {
             return Err(PrimitiveDefect::ErrorBound { query, error: found.error });
+        }
+        // The kernel of p2m makes more precise keys than `Projection::new`.
+        let expected =
+            Projection::new(point, found.point, found.feature, found.barycentric, found.error).key.distance();
+        let largest = query.iter().chain(found.point.iter()).fold(0.0f64, |largest, x| largest.max(x.abs()));
+        let rounding = 16.0 * f64::EPSILON * largest + found.error + f64::MIN_POSITIVE;
+        if (expected - found.key.distance()).abs() > rounding {
+            return Err(PrimitiveDefect::Key { query });
         }
         let is_same = |within: Option<Projection>| within == Some(found);
         let square = found.key.distance() * found.key.distance() * (1.0 + 8.0 * f64::EPSILON) + f64::MIN_POSITIVE;
@@ -120,7 +141,7 @@ pub fn check_primitive<T: Real>(primitive: &impl Primitive<T>, queries: &[Point3
             return Err(PrimitiveDefect::Within { query });
         }
         for (other, earlier) in &all {
-            let apart = (0..3).map(|k| (query[k] - other[k]).powi(2)).sum::<f64>().sqrt();
+            let apart = Key::from_offset([0, 1, 2].map(|k: usize| query[k] - other[k])).distance();
             let difference = (found.key.distance() - earlier.key.distance()).abs();
             let rounding = 8.0 * f64::EPSILON * (apart + found.key.distance() + earlier.key.distance());
             if difference > apart + found.error + earlier.error + rounding {
@@ -136,6 +157,7 @@ pub fn check_primitive<T: Real>(primitive: &impl Primitive<T>, queries: &[Point3
 mod tests {
     use super::*;
     use crate::{Aabb, Feature, Ray, RayHit, Triangle};
+    use rand::RngExt;
     use std::cell::Cell;
 
     /// A ball of radius 1 with one of several mistakes.
@@ -185,6 +207,21 @@ mod tests {
         }
     }
 
+    /// A primitive that leaves its projection to another one.
+    struct Delegate(Triangle<f64>);
+
+    impl Primitive<f64> for Delegate {
+        fn aabb(&self) -> Aabb<f64> {
+            self.0.aabb()
+        }
+        fn project(&self, query: &Point3<f64>) -> Projection {
+            self.0.project(query)
+        }
+        fn intersect_ray(&self, _: &Ray) -> Option<RayHit> {
+            None
+        }
+    }
+
     #[test]
     fn mistakes_of_primitives_are_found() {
         let queries: Vec<Point3<f64>> = (0..64)
@@ -193,13 +230,21 @@ mod tests {
         let defect = |mistake| check_primitive(&Ball(mistake, Cell::new(0)), &queries);
         assert_eq!(defect(Mistake::None), Ok(()));
         assert!(matches!(defect(Mistake::Changes), Err(PrimitiveDefect::NotPure { .. })));
-        assert!(matches!(defect(Mistake::NanPoint), Err(PrimitiveDefect::NotPure { .. })), "NaN differs from itself");
+        assert!(matches!(defect(Mistake::NanPoint), Err(PrimitiveDefect::Nan { .. })));
         assert!(matches!(defect(Mistake::WrongKey), Err(PrimitiveDefect::Key { .. })));
         assert!(matches!(defect(Mistake::NegativeError), Err(PrimitiveDefect::ErrorBound { .. })));
         assert!(matches!(defect(Mistake::FarPoint), Err(PrimitiveDefect::NotNearest { .. })));
         assert!(matches!(defect(Mistake::NeverWithin), Err(PrimitiveDefect::Within { .. })));
+        let mut rng = p2m_testkit::rng("primitives are checked", 0);
+        for case in 0..300 {
+            let scale = 2f64.powi([0, -560, 40, 500][case % 4]);
+            let mut point = || Point3::from([(); 3].map(|()| scale * rng.random_range(-1.0..1.0)));
+            let queries: Vec<Point3<f64>> = (0..20).map(|_| point()).collect();
+            let triangle = Triangle::new(point(), point(), point());
+            assert_eq!(check_primitive(&triangle, &queries), Ok(()), "{triangle:?}");
+            assert_eq!(check_primitive(&Delegate(triangle), &queries), Ok(()), "{triangle:?}");
+        }
         let [a, b, c] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.5]].map(Point3::from);
-        assert_eq!(check_primitive(&Triangle::new(a, b, c), &queries), Ok(()));
         assert_eq!(check_primitive(&Triangle::new(a, b, c * f64::NAN), &queries), Err(PrimitiveDefect::Box));
     }
 }

@@ -4,6 +4,7 @@
 //! checked here as well.
 
 use super::{Saved, SavedFile, Writer, load, save};
+use crate::real::to_f64_array;
 use crate::{Element, PrimitiveSet, Real, Soup};
 use nalgebra::Point3;
 use serde::de::{Error as _, Visitor};
@@ -76,8 +77,8 @@ pub fn serialize_index<T: Real, S: PrimitiveSet<T> + Serialize, I: Saved, Z: Ser
 /// Deserialises an index and its scene.
 ///
 /// # Errors
-/// It returns the errors of the deserialiser, and those of loading a file with a wrong checksum, another kind of index or
-/// another scene.
+/// It returns the errors of the deserialiser, and those of loading a file with a wrong checksum, another kind of index
+/// or another scene.
 pub fn deserialize_index<'de, T: Real, S: PrimitiveSet<T> + Deserialize<'de>, I: Saved, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<(S, I), D::Error> {
@@ -87,24 +88,26 @@ pub fn deserialize_index<'de, T: Real, S: PrimitiveSet<T> + Deserialize<'de>, I:
     Ok((scene, index))
 }
 
-/// A soup in the form that is serialised.
+/// A soup in the form that is serialised. Coordinates are the bits of f64, since formats of text may round decimals and
+/// have none for NaN, which a position that no primitive uses may be.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "Soup")]
-struct SoupForm<T> {
-    positions: Vec<[T; 3]>,
+struct SoupForm {
+    positions: Vec<[u64; 3]>,
     elements: Vec<Element>,
 }
 
-impl<T: Real + Serialize> Serialize for Soup<T> {
+impl<T: Real> Serialize for Soup<T> {
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        let positions = self.positions().iter().map(|p| p.coords.into()).collect();
+        let positions = self.positions().iter().map(|p| to_f64_array(p).map(f64::to_bits)).collect();
         SoupForm { positions, elements: self.elements().collect() }.serialize(serializer)
     }
 }
 
-impl<'de, T: Real + Deserialize<'de>> Deserialize<'de> for Soup<T> {
+impl<'de, T: Real> Deserialize<'de> for Soup<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let SoupForm { positions, elements } = SoupForm::deserialize(deserializer)?;
-        Self::new(positions.into_iter().map(Point3::from).collect(), elements).map_err(D::Error::custom)
+        let position = |bits: [u64; 3]| Point3::from(bits.map(|x| T::round_from_f64(f64::from_bits(x))));
+        Self::new(positions.into_iter().map(position).collect(), elements).map_err(D::Error::custom)
     }
 }

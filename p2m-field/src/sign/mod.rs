@@ -126,12 +126,13 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// Signs are those of an exact count of crossings under two conditions. The surface does not intersect itself,
     /// which [`find_self_intersection`] checks; otherwise the sign is that of the nearest part, which differs where
     /// that part is inside of others. And no two sheets of the surface are closer to each other than the error of a
-    /// distance, which is 16 u M if the farthest vertex of the closest triangle has the distance M. This is cited
+    /// distance, which is 16 u M, with the u of the index, if the farthest vertex of the closest triangle has the distance M. This is cited
     /// \[Baerentzen2005\] for distances without rounding, and observed on all models that are closed and do not
     /// intersect themselves (`cargo test --test all signs::`).
     ///
     /// # Errors
-    /// [`SignError::OtherKinds`], [`SignError::Open`], [`SignError::NotOriented`] and [`SignError::Build`].
+    /// [`SignError::OtherKinds`], [`SignError::Open`], [`SignError::NotOriented`], [`SignError::OtherScene`] and
+    /// [`SignError::Build`].
     ///
     /// # Complexity
     /// O(n log n) time. Memory is 13 bytes for each triangle, 28 bytes for each vertex, and a tree of boxes
@@ -140,6 +141,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     where
         I: ClosestPoint<T>,
     {
+        check_scene(&index, &soup)?;
         let normals = Pseudonormals::new(soup, &index)?;
         Ok(Self { index, rule: SignRule::Closed(Box::new(normals)) })
     }
@@ -155,7 +157,11 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     ///
     /// # Complexity
     /// The complexity is that of [`WindingNumbers::new`].
-    pub fn with_winding_numbers(index: I, soup: S, accuracy: f64) -> Result<Self, SignError> {
+    pub fn with_winding_numbers<T: Real>(index: I, soup: S, accuracy: f64) -> Result<Self, SignError>
+    where
+        I: ClosestPoint<T>,
+    {
+        check_scene(&index, &soup)?;
         Ok(Self { index, rule: SignRule::Winding(Box::new(WindingNumbers::new(soup, accuracy)?)) })
     }
 
@@ -247,6 +253,26 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
             SignRule::Winding(winding) => winding.ambiguous_count(),
         }
     }
+}
+
+/// Checks at vertices of some triangles whether an index can be over a scene.
+///
+/// A vertex is at the distance 0 from its scene, so no lower bound on its distance is above 0.
+fn check_scene<T: Real>(index: &impl ClosestPoint<T>, soup: &Soup<f64>) -> Result<(), SignError> {
+    const TRIANGLES: usize = 64;
+    let triangles = soup.triangles();
+    for triangle in (0..triangles.len()).step_by(triangles.len().div_ceil(TRIANGLES).max(1)) {
+        for (vertex, position) in triangles[triangle].into_iter().enumerate() {
+            let query = soup.positions()[position as usize].map(T::round_from_f64);
+            let is_on_scene = index
+                .closest_point(&query)
+                .is_some_and(|c| c.lower_bound <= T::zero() && c.primitive.index() < triangles.len());
+            if !is_on_scene && query.iter().all(|x| x.is_finite()) {
+                return Err(SignError::OtherScene { triangle, vertex });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Searches a closed surface for two triangles that intersect each other elsewhere than at common vertices.

@@ -113,7 +113,7 @@ impl<S: SharedSoup> Pseudonormals<S> {
         let is_inside = |height: f64| {
             let query = Point3::from(add(centre, scaled(normal, height))).map(T::round_from_f64);
             let (point, closest) = (query.map(Real::to_f64), index.closest_point(&query)?);
-            let is_same_component = components[closest.primitive.index()] == components[triangle as usize];
+            let is_same_component = components.get(closest.primitive.index()) == components.get(triangle as usize);
             (is_same_component && self.is_in_front(&point, &ClosestFeature::from(&closest))? == (height > 0.0))
                 .then(|| self.is_inside(&point))
         };

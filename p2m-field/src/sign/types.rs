@@ -57,6 +57,14 @@ pub enum SignError {
         /// The edge of that triangle, which runs from the vertex of this index to the next.
         edge: usize,
     },
+    /// The index is over another scene than the one that is given.
+    #[error("the index is over another scene: vertex {vertex} of triangle {triangle} is not on its scene")]
+    OtherScene {
+        /// The triangle of the given scene.
+        triangle: usize,
+        /// The vertex of that triangle, from 0 to 2.
+        vertex: usize,
+    },
     /// An index of the scene cannot be built.
     #[error(transparent)]
     Build(#[from] p2m_core::BuildError),
