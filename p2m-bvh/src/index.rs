@@ -146,7 +146,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     ///
     /// The area is a measure of the quality of the tree for one scene. A refit keeps the shape of the tree, so the area
     /// grows as neighbours move apart. Compare it with its value after the build, and build anew when it has grown by a
-    /// fifth: the guide of the crate p2m (docs/guide.md) has the figures. If the scene grows as a whole, divide the area
+    /// third: the guide of the crate p2m (docs/guide.md) has the figures. If the scene grows as a whole, divide the area
     /// by the square of that growth. It is 0 for an empty set.
     ///
     /// # Complexity

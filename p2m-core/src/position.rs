@@ -3,8 +3,8 @@
 use crate::Real;
 use nalgebra::Point3;
 
-/// Three coordinates that are a position in the scalar `T`: a point or an array of that scalar. Those of f32 are positions
-/// in f64 as well, to which they convert exactly. Features add the types of the crates glam and mint.
+/// Three coordinates that are a position in the scalar `T`: a point or an array of that scalar. Those of f32 are
+/// positions in f64 as well, to which they convert exactly. Features add the types of the crates glam and mint.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a position in space with coordinates of type `{T}`",
     note = "positions are `Point3<{T}>`, `[{T}; 3]`, and for `f64` also those of `f32`",

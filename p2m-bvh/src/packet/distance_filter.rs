@@ -129,8 +129,8 @@ impl Packet {
         mask
     }
 
-    /// Returns whether the triangles in the lanes from `at` on are certainly farther from a query point than `limit`. It
-    /// is false for other primitives.
+    /// Returns whether the triangles in the lanes from `at` on are certainly farther from a query point than `limit`.
+    /// It is false for other primitives.
     #[inline(always)]
     fn is_beyond<L: Lanes>(&self, at: usize, query: &[f32; 3], limit: f32) -> bool {
         self.kind() == Kind::Triangle && {
@@ -229,10 +229,11 @@ pub struct Locals {
     pub deficit: [f32; PLACES],
     /// The squared margin of each place, as in [`Local`].
     margin_squared: [f32; PLACES],
-    /// The normals of planes between the query points and the packets. Until the planes are placed, they are a vertex of
-    /// each packet in its frame.
+    /// The normals of planes between the query points and the packets. Until the planes are placed, they are a vertex
+    /// of each packet in its frame.
     normal: [[f32; PLACES]; 3],
-    /// The offsets of the planes: the product of the normal with the vector from the query point to a point of the plane.
+    /// The offsets of the planes: the product of the normal with the vector from the query point to a point of the
+    /// plane.
     offset: [f32; PLACES],
     /// One bit for each place whose query point is not in the frame, as [`Packet::local`] returns `None` for it.
     pub far: u32,

@@ -43,8 +43,8 @@ use topology::{RayTree, Topology};
 
 /// An index over triangles whose answers have signs.
 ///
-/// `I` is the index, and `S` a pointer to its scene: `&Soup<f64>` to borrow it, or `Arc<Soup<f64>>` to share it, so that
-/// one value has everything and can be moved, cloned and sent to other threads:
+/// `I` is the index, and `S` a pointer to its scene: `&Soup<f64>` to borrow it, or `Arc<Soup<f64>>` to share it, so
+/// that one value has everything and can be moved, cloned and sent to other threads:
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -126,9 +126,9 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// Signs are those of an exact count of crossings under two conditions. The surface does not intersect itself,
     /// which [`find_self_intersection`] checks; otherwise the sign is that of the nearest part, which differs where
     /// that part is inside of others. And no two sheets of the surface are closer to each other than the error of a
-    /// distance, which is 16 u M, with the u of the index, if the farthest vertex of the closest triangle has the distance M. This is cited
-    /// \[Baerentzen2005\] for distances without rounding, and observed on all models that are closed and do not
-    /// intersect themselves (`cargo test --test all signs::`).
+    /// distance, which is 16 u M, with the u of the index, if the farthest vertex of the closest triangle has the
+    /// distance M. This is cited \[Baerentzen2005\] for distances without rounding, and observed on all models that are
+    /// closed and do not intersect themselves (`cargo test --test all signs::`).
     ///
     /// # Errors
     /// [`SignError::OtherKinds`], [`SignError::Open`], [`SignError::NotOriented`], [`SignError::OtherScene`] and
