@@ -141,13 +141,13 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         if len == expected { Ok(()) } else { Err(BuildError::OtherLength { len, expected }) }
     }
 
-    /// Returns the sum of the surface areas of the bounding boxes of all nodes and packets, in squared units of the
-    /// scene.
+    /// Returns the sum of the surface areas of the bounding boxes of all nodes and packets below the root, in squared
+    /// units of the scene.
     ///
     /// The area is a measure of the quality of the tree for one scene. A refit keeps the shape of the tree, so the area
     /// grows as neighbours move apart. Compare it with its value after the build, and build anew when it has grown by a
     /// third: the guide of the crate p2m (docs/guide.md) has the figures. If the scene grows as a whole, divide the area
-    /// by the square of that growth. It is 0 for an empty set.
+    /// by the square of that growth. It is 0 for a set of up to sixteen primitives, which are one packet.
     ///
     /// # Complexity
     /// O(n).
