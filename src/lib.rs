@@ -100,7 +100,7 @@ pub use p2m_bvh::{AabbOptions, AabbTree, SplitOptions, SplitRule};
 pub use p2m_core as backend;
 pub use p2m_core::{
     Aabb, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestLeaf,
-    ClosestPoint, Element, Feature, Hit, Index, Indexed, Inspect, Isa, NearQuery, Point, Position, Primitive,
+    ClosestPoint, Element, Feature, Hit, Index, Indexed, Inspect, Isa, NearQuery, OfKind, Point, Position, Primitive,
     PrimitiveDefect, PrimitiveId, PrimitiveSet, Projection, QueryCost, QueryOptions, Ray, RayError, RayHit, RayQuery,
     Real, Segment, Shape, Side, Soup, Triangle, batch, check_primitive, storage,
 };

@@ -2,6 +2,7 @@
 
 use crate::{Point, PrimitiveId, PrimitiveSet, Real, Segment, Soup, Triangle};
 use nalgebra::Point3;
+use std::ops::Deref;
 
 /// The primitives of one kind of a borrowed [`Soup`]: triangles for N = 3, segments for N = 2, points for N = 1.
 ///
@@ -36,10 +37,45 @@ impl<T: Real, const N: usize> Indexed<'_, T, N> {
     }
 }
 
-/// Implements the set of primitives of one kind, given their number of vertices, their type, and an expression that
-/// makes a primitive of its vertices.
+/// The primitives of one kind of a soup that the set owns or shares, as [`Indexed`] has those of a borrowed one.
+///
+/// `S` is a pointer to the soup, such as `Arc<Soup<f64>>` or `Box<Soup<f64>>`.
+///
+/// ```
+/// use p2m_core::{BruteForce, ClosestPoint, OfKind, Soup};
+/// use nalgebra::Point3;
+/// use std::sync::Arc;
+///
+/// struct Walls {
+///     index: BruteForce<OfKind<Arc<Soup<f64>>, 3>>,
+/// }
+///
+/// let soup = Soup::from_arrays(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0u32, 1, 2]])?;
+/// let walls = Walls { index: BruteForce::new(OfKind::new(Arc::new(soup)))? };
+/// assert_eq!(walls.index.closest_point(&Point3::new(0.2, 0.2, 3.0)).unwrap().distance, 3.0);
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct OfKind<S, const N: usize> {
+    soup: S,
+}
+
+impl<S, const N: usize> OfKind<S, N> {
+    /// Creates the set of the primitives with N vertices.
+    pub fn new(soup: S) -> Self {
+        Self { soup }
+    }
+
+    /// Returns the pointer to the soup.
+    pub fn soup(&self) -> &S {
+        &self.soup
+    }
+}
+
+/// Implements the set of primitives of one kind, given their number of vertices, their type, the method of a soup that
+/// returns them as a set, and an expression that makes a primitive of its vertices.
 macro_rules! set_of_kind {
-    ($n:literal, $primitive:ident, $vertices:pat, $value:expr) => {
+    ($n:literal, $primitive:ident, $set:ident, $vertices:pat, $value:expr) => {
         impl<T: Real> PrimitiveSet<T> for Indexed<'_, T, $n> {
             type Primitive<'b>
                 = $primitive<T>
@@ -57,12 +93,29 @@ macro_rules! set_of_kind {
                 $value
             }
         }
+
+        impl<T: Real, S: Deref<Target = Soup<T>>> PrimitiveSet<T> for OfKind<S, $n> {
+            type Primitive<'b>
+                = $primitive<T>
+            where
+                Self: 'b;
+
+            #[inline(always)]
+            fn len(&self) -> usize {
+                self.soup.$set().len()
+            }
+
+            #[inline(always)]
+            fn get(&self, id: PrimitiveId) -> $primitive<T> {
+                self.soup.$set().get(id)
+            }
+        }
     };
 }
 
-set_of_kind!(1, Point, [a], Point::new(a));
-set_of_kind!(2, Segment, [a, b], Segment::new(a, b));
-set_of_kind!(3, Triangle, [a, b, c], Triangle::new(a, b, c));
+set_of_kind!(1, Point, point_set, [a], Point::new(a));
+set_of_kind!(2, Segment, segment_set, [a, b], Segment::new(a, b));
+set_of_kind!(3, Triangle, triangle_set, [a, b, c], Triangle::new(a, b, c));
 
 impl<T: Real> Soup<T> {
     /// Returns the triangles of the soup as a set.
@@ -135,6 +188,15 @@ mod tests {
         for (i, point) in points.into_iter().enumerate() {
             assert_eq!(Shape::Point(soup.point_set().get(PrimitiveId::new(i))), point);
         }
+        let shared = std::sync::Arc::new(soup.clone());
+        let owned: OfKind<_, 2> = OfKind::new(Box::new(soup.clone()));
+        assert_eq!(PrimitiveSet::<f64>::len(&owned), 2);
+        let id = PrimitiveId::new(1);
+        assert_eq!(PrimitiveSet::<f64>::get(&owned, id), soup.segment_set().get(id));
+        let points: OfKind<_, 1> = OfKind::new(std::sync::Arc::clone(&shared));
+        assert_eq!(PrimitiveSet::<f64>::get(&points, id), soup.point_set().get(id));
+        let triangles: OfKind<_, 3> = OfKind::new(&*shared);
+        assert_eq!(PrimitiveSet::<f64>::len(&triangles), 1);
         assert_eq!((soup.triangle_set().len(), soup.segment_set().len(), soup.point_set().len()), (1, 2, 2));
     }
 }

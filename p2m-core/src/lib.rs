@@ -65,7 +65,7 @@ pub use certified::{CertifiedQuery, CertifyError, shape_of};
 pub use dyn_index::Index;
 pub use error::BuildError;
 pub use index::{BuildIndex, ClosestPoint};
-pub use indexed::Indexed;
+pub use indexed::{Indexed, OfKind};
 pub use kernel::Key;
 pub use near_query::{Near, NearQuery};
 pub use position::Position;
