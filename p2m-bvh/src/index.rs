@@ -126,13 +126,26 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     where
         S: Sync,
     {
-        let refit = RefitOnDrop { index: self, options };
-        let changed = change(&mut refit.index.set);
-        let fits = refit.index.check_fit(refit.index.set.len());
-        drop(refit);
-        fits?;
-        check_set(&self.set)?;
+        let on_panic = RefitOnDrop { index: self, options };
+        let changed = change(&mut on_panic.index.set);
+        std::mem::forget(on_panic);
+        self.refit_to_set(options)?;
         changed
+    }
+
+    /// Fits the tree to the set of the index. If no tree fits the set, the tree becomes empty.
+    fn refit_to_set(&mut self, options: &V::Options) -> Result<(), BuildError>
+    where
+        S: Sync,
+    {
+        let fits = self.check_fit(self.set.len()).and_then(|()| check_set(&self.set));
+        if fits.is_ok() {
+            self.tree.refit(&self.set, options);
+        } else {
+            let nothing: [Point<f64>; 0] = [];
+            self.tree = PacketTree::build(&nothing, options);
+        }
+        fits
     }
 
     /// Checks whether a set of this length has the primitives that the tree was built over.
@@ -203,7 +216,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     }
 }
 
-/// Fits the tree of an index to its set when it is dropped, so that this also happens if a change of the set panics.
+/// Fits the tree of an index to its set when it is dropped, which happens if a change of the set panics.
 struct RefitOnDrop<'a, T: Real, S: PrimitiveSet<T> + Sync, V: Volume> {
     index: &'a mut TreeIndex<T, S, V>,
     options: &'a V::Options,
@@ -211,13 +224,8 @@ struct RefitOnDrop<'a, T: Real, S: PrimitiveSet<T> + Sync, V: Volume> {
 
 impl<T: Real, S: PrimitiveSet<T> + Sync, V: Volume> Drop for RefitOnDrop<'_, T, S, V> {
     fn drop(&mut self) {
-        let TreeIndex { set, tree, .. } = &mut *self.index;
-        if set.len() == tree.packets().1 && check_set(&*set).is_ok() {
-            tree.refit(&*set, self.options);
-        } else {
-            let nothing: [Point<f64>; 0] = [];
-            *tree = PacketTree::build(&nothing, self.options);
-        }
+        // The panic goes on, so nobody could be told that no tree fits.
+        let _ = self.index.refit_to_set(self.options);
     }
 }
 

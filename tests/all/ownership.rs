@@ -244,6 +244,11 @@ fn an_index_of_another_scene_has_no_signs() {
     let other = SignError::OtherScene { triangle: 0, vertex: 0 };
     assert_eq!(SignedDistance::new(index(), Arc::clone(&shifted)).unwrap_err(), other);
     assert_eq!(SignedDistance::with_winding_numbers(index(), Arc::clone(&shifted), 0.01).unwrap_err(), other);
+    // A scene of other kinds has that error, whatever the ids of its triangles are.
+    let elements = [p2m::Element::Segment([2, 3]), p2m::Element::Point(3), p2m::Element::Triangle([0, 1, 2])];
+    let mixed = Soup::new(ball().positions()[..4].to_vec(), elements).expect("valid");
+    let over_mixed = AabbTree::build(&mixed, &Default::default()).expect("valid");
+    assert_eq!(SignedDistance::new(over_mixed, &mixed).unwrap_err(), SignError::OtherKinds { others: 2 });
     let empty = AabbTree::<f64, Soup<f64>>::build(Soup::default(), &Default::default()).expect("valid");
     assert_eq!(SignedDistance::new(empty, shifted).unwrap_err(), other);
 }

@@ -266,6 +266,11 @@ impl Locals {
             (self.position[k][place], self.origin[k][place]) = (*position, *origin);
         }
         (self.unit[place], self.per_unit[place]) = (packet.unit, packet.per_unit);
+    }
+
+    /// Sets the packet towards which the plane of a place is placed.
+    #[inline(always)]
+    pub fn set_plane(&mut self, place: usize, packet: &Packet) {
         for (row, coordinate) in self.normal.iter_mut().zip(packet.sample()) {
             row[place] = coordinate;
         }

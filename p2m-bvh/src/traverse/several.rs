@@ -126,7 +126,7 @@ struct Limits {
     node: f32,
 }
 
-/// What the evaluation of candidates needs of several searches.
+/// The part of the state of several searches that the evaluation of their candidates needs.
 struct Searches<'a, V: VolumeNodes> {
     tree: &'a PacketTree<V>,
     /// The function that evaluates primitives of which the tree has only a box.
@@ -308,6 +308,9 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
         self.rows.convert::<I>(&self.locals);
         let mut near = [u32::MAX; SEARCHES];
         if PLANES || I::Wide::LEN < LANES {
+            for (i, visit) in visits.iter().enumerate() {
+                self.locals.set_plane(i % SEARCHES, &leaves.packets[visit.packet as usize]);
+            }
             self.locals.place_planes::<I>(&self.rows.old_limit);
             for (i, (near, visit)) in near.iter_mut().zip(visits).enumerate() {
                 let packet = &leaves.packets[visit.packet as usize];

@@ -7,55 +7,18 @@ use super::{Saved, SavedFile, Writer, load, save};
 use crate::real::to_f64_array;
 use crate::{Element, PrimitiveSet, Real, Soup};
 use nalgebra::Point3;
-use serde::de::{Error as _, Visitor};
+use serde::de::Error as _;
 use serde::ser::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::borrow::Cow;
-use std::fmt;
 
 /// An index and its scene, in the form that is serialised.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "Index")]
-struct IndexForm<'a, S> {
+struct IndexForm<S> {
     scene: S,
-    index: Bytes<'a>,
-}
-
-/// Bytes, which binary formats store as such.
-struct Bytes<'a>(Cow<'a, [u8]>);
-
-impl Serialize for Bytes<'_> {
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        serializer.serialize_bytes(&self.0)
-    }
-}
-
-impl<'de> Deserialize<'de> for Bytes<'_> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Collect;
-        impl<'de> Visitor<'de> for Collect {
-            type Value = Vec<u8>;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("the bytes of a saved index")
-            }
-            fn visit_bytes<E>(self, bytes: &[u8]) -> Result<Vec<u8>, E> {
-                Ok(bytes.to_vec())
-            }
-            fn visit_byte_buf<E>(self, bytes: Vec<u8>) -> Result<Vec<u8>, E> {
-                Ok(bytes)
-            }
-            // Formats of text have sequences of numbers instead of bytes.
-            fn visit_seq<A: serde::de::SeqAccess<'de>>(self, mut sequence: A) -> Result<Vec<u8>, A::Error> {
-                let mut bytes = Vec::new();
-                while let Some(byte) = sequence.next_element()? {
-                    bytes.push(byte);
-                }
-                Ok(bytes)
-            }
-        }
-        Ok(Self(Cow::Owned(deserializer.deserialize_byte_buf(Collect)?)))
-    }
+    /// The bytes of the saved file.
+    #[serde(with = "serde_bytes")]
+    index: Vec<u8>,
 }
 
 /// Serialises an index with its scene.
@@ -71,7 +34,7 @@ pub fn serialize_index<T: Real, S: PrimitiveSet<T> + Serialize, I: Saved, Z: Ser
     save(index, set, &mut writer);
     let mut bytes = Vec::new();
     writer.write(&mut bytes).map_err(Z::Error::custom)?;
-    IndexForm { scene: set, index: Bytes(Cow::Owned(bytes)) }.serialize(serializer)
+    IndexForm { scene: set, index: bytes }.serialize(serializer)
 }
 
 /// Deserialises an index and its scene.
@@ -82,8 +45,8 @@ pub fn serialize_index<T: Real, S: PrimitiveSet<T> + Serialize, I: Saved, Z: Ser
 pub fn deserialize_index<'de, T: Real, S: PrimitiveSet<T> + Deserialize<'de>, I: Saved, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<(S, I), D::Error> {
-    let IndexForm { scene, index }: IndexForm<'_, S> = IndexForm::deserialize(deserializer)?;
-    let file = SavedFile::read(&*index.0).map_err(D::Error::custom)?;
+    let IndexForm { scene, index }: IndexForm<S> = IndexForm::deserialize(deserializer)?;
+    let file = SavedFile::read(&*index).map_err(D::Error::custom)?;
     let index = load(&scene, file.checked().map_err(D::Error::custom)?).map_err(D::Error::custom)?;
     Ok((scene, index))
 }

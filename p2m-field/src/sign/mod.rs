@@ -40,6 +40,7 @@ use p2m_core::{Aabb, BuildIndex, Closest, ClosestPoint, PrimitiveId, QueryOption
 use pseudonormal::Pseudonormals;
 use std::sync::Arc;
 use topology::{RayTree, Topology};
+use types::check_kinds;
 
 /// An index over triangles whose answers have signs.
 ///
@@ -110,7 +111,7 @@ impl SharedDistance {
     /// is shared by `Arc::new(soup)`.
     ///
     /// # Errors
-    /// The errors of [`SignedDistance::new`].
+    /// It returns the errors of [`SignedDistance::new`].
     pub fn build(soup: Arc<Soup<f64>>) -> Result<Self, SignError> {
         Self::new(TreeIndex::build(Arc::clone(&soup), &Default::default())?, soup)
     }
@@ -153,7 +154,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// opposite signs, and a surface may be inside out as a whole.
     ///
     /// # Errors
-    /// [`SignError::OtherKinds`], [`SignError::Accuracy`] and [`SignError::Build`].
+    /// [`SignError::OtherKinds`], [`SignError::OtherScene`], [`SignError::Accuracy`] and [`SignError::Build`].
     ///
     /// # Complexity
     /// The complexity is that of [`WindingNumbers::new`].
@@ -255,11 +256,12 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     }
 }
 
-/// Checks at vertices of some triangles whether an index can be over a scene.
+/// Checks at vertices of some triangles whether an index can be over a scene of triangles.
 ///
 /// A vertex is at the distance 0 from its scene, so no lower bound on its distance is above 0.
 fn check_scene<T: Real>(index: &impl ClosestPoint<T>, soup: &Soup<f64>) -> Result<(), SignError> {
     const TRIANGLES: usize = 64;
+    check_kinds(soup)?;
     let triangles = soup.triangles();
     for triangle in (0..triangles.len()).step_by(triangles.len().div_ceil(TRIANGLES).max(1)) {
         for (vertex, position) in triangles[triangle].into_iter().enumerate() {

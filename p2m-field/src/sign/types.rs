@@ -101,7 +101,7 @@ pub trait SharedSoup: Deref<Target = Soup<f64>> + PrimitiveSet<f64> + Clone + Sy
 
 impl<S: Deref<Target = Soup<f64>> + PrimitiveSet<f64> + Clone + Sync> SharedSoup for S {}
 
-/// What a sign needs of a closest point, in f64.
+/// The part of a closest point that the rule of signs needs, in f64.
 pub(super) struct ClosestFeature {
     pub(super) primitive: PrimitiveId,
     pub(super) feature: Feature,
