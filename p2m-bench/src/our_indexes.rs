@@ -153,13 +153,7 @@ pub(crate) fn instruction_set(name: Option<&str>) -> Result<Isa, Unavailable> {
 
 /// Returns options for one thread with `factor` times the default resolution of the octree and budgets to match.
 pub(crate) fn octree_options(factor: f64) -> OctreeOptions {
-    let default = OctreeOptions::default();
-    let budget = factor.max(1.0);
-    default
-        .with_splits(aabb_options())
-        .with_resolution(default.resolution * factor)
-        .with_memory(default.memory * budget)
-        .with_work(default.work * budget)
+    OctreeOptions::default().with_splits(aabb_options()).with_finer_cells(factor)
 }
 
 /// Returns options that build the P2M index on one thread.
@@ -209,9 +203,14 @@ pub(crate) fn kdop_in_batch(scene: &Scene) -> Result<Prepared<'_>, Unavailable> 
 }
 
 /// Prepares the octree with the instruction set of that name for one batch call.
-pub(crate) fn octree_in_batch<'a>(scene: &'a Scene, isa: Option<&str>) -> Result<Prepared<'a>, Unavailable> {
+pub(crate) fn octree_in_batch<'a>(
+    scene: &'a Scene,
+    isa: Option<&str>,
+    factor: f64,
+) -> Result<Prepared<'a>, Unavailable> {
     let isa = instruction_set(isa)?;
-    in_one_batch(scene, move |soup| Ok::<_, BuildError>(OctreeIndex::build(soup, &octree_options(1.0))?.with_isa(isa)))
+    let options = octree_options(factor);
+    in_one_batch(scene, move |soup| Ok::<_, BuildError>(OctreeIndex::build(soup, &options)?.with_isa(isa)))
 }
 
 /// Prepares the P2M index with the instruction set of that name for one batch call.

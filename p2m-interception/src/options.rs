@@ -75,6 +75,17 @@ impl OctreeOptions {
     pub fn with_work(self, work: f64) -> Self {
         Self { work, ..self }
     }
+    /// Multiplies the resolution by a factor, and the budgets of memory and work as well if the factor is above 1.
+    ///
+    /// Finer cells have shorter lists, so less is computed, but more lies in memory. A single query waits for memory, so
+    /// it gains little. A batch fetches the memory of one query while it computes others, so it gains more:
+    /// docs/batches.md has the time, the memory and the build of a factor of 30.
+    #[must_use]
+    pub fn with_finer_cells(self, factor: f64) -> Self {
+        let Self { resolution, memory, work, .. } = self;
+        let budget = factor.max(1.0);
+        Self { resolution: resolution * factor, memory: memory * budget, work: work * budget, ..self }
+    }
     /// Sets the splits of the tree.
     #[must_use]
     pub fn with_splits(self, splits: SplitOptions) -> Self {

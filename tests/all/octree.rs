@@ -6,8 +6,8 @@
 use nalgebra::{Point3, Vector3};
 use p2m::backend::{Collector, StatsCollector};
 use p2m::{
-    Aabb, BruteForce, BuildIndex, ClosestPoint, Domain, Isa, OctreeIndex, OctreeOptions, Point, PrimitiveId,
-    PrimitiveSet, Projection, Segment, Shape, Soup,
+    Aabb, BruteForce, BuildIndex, ClosestPoint, Domain, Isa, OctreeIndex, OctreeOptions, OctreeReport, Point,
+    PrimitiveId, PrimitiveSet, Projection, Segment, Shape, Soup,
 };
 use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng};
@@ -111,6 +111,11 @@ fn budgets_are_kept() {
     }
     let fine = built(&soup, &OctreeOptions::default().with_resolution(1.0).with_memory(1e4).with_work(1e5)).report();
     assert!(fine.bytes > default_report.bytes && fine.resolution == 1.0, "{fine}");
+    // Thirty times the default resolution fits into thirty times the budgets, and has shorter lists.
+    let finer = built(&soup, &OctreeOptions::default().with_finer_cells(30.0)).report();
+    let mean_length = |report: &OctreeReport| report.entries as f64 / report.lists as f64;
+    assert_eq!(finer.resolution, 30.0 * OctreeOptions::default().resolution);
+    assert!(mean_length(&finer) < 0.8 * mean_length(&default_report), "{finer}, {default_report}");
 }
 
 #[test]
