@@ -62,11 +62,11 @@ impl Fraction {
     }
 }
 
-/// The exact squared distance from a query to the convex hull of one to three vertices.
+/// The exact squared distance from a query to the convex hull of one to three vertices, or between two such hulls.
 #[derive(Clone, Debug)]
 pub struct Distance {
     square: Fraction,
-    /// The largest squared distance from the query to a vertex.
+    /// The largest squared distance from the query to a vertex, or between vertices of the two hulls.
     max_vertex_distance_squared: IBig,
     /// The exponent of the unit: lengths are multiples of 2^unit.
     unit: i64,
@@ -77,45 +77,39 @@ impl Distance {
     /// coordinates must be finite.
     #[must_use]
     pub fn new(query: [f64; 3], vertices: &[[f64; 3]]) -> Self {
-        let unit = vertices.as_flattened().iter().chain(&query).map(|x| lowest_bit(*x)).min().expect("coordinates");
-        let exact = |p: [f64; 3]| p.map(|x| integer(x, unit));
-        let q = exact(query);
-        let offsets: Vec<V> = vertices.iter().map(|v| sub(&exact(*v), &q)).collect();
-        let squares: Vec<IBig> = offsets.iter().map(|v| dot(v, v)).collect();
-        let mut candidates: Vec<Fraction> =
-            squares.iter().map(|s| Fraction { numerator: s.clone(), denominator: IBig::ONE }).collect();
-        let n = offsets.len();
-        let edges = match n {
-            1 => 0,
-            2 => 1,
-            _ => 3,
-        };
-        for i in 0..edges {
-            let (a, b) = (&offsets[i], &offsets[(i + 1) % n]);
-            let d = sub(b, a);
-            let length = dot(&d, &d);
-            let along = -dot(a, &d);
-            if along > IBig::ZERO && along < length {
-                let numerator = &squares[i] * &length - &along * &along;
-                candidates.push(Fraction { numerator, denominator: length });
-            }
+        Self::between(&[query], vertices)
+    }
+
+    /// Computes the distance between two points, segments or triangles, degenerate or not. All coordinates must be
+    /// finite.
+    ///
+    /// The distance is 0 if an edge of one pierces the other. Otherwise the nearest points are a vertex and a point of
+    /// the other hull, or they are inside of two edges that are not parallel.
+    #[must_use]
+    pub fn between(a: &[[f64; 3]], b: &[[f64; 3]]) -> Self {
+        let unit = a.iter().chain(b).flatten().map(|x| lowest_bit(*x)).min().expect("coordinates");
+        let exact = |hull: &[[f64; 3]]| -> Vec<V> { hull.iter().map(|v| v.map(|x| integer(x, unit))).collect() };
+        let (a, b) = (exact(a), exact(b));
+        let from_vertices =
+            |from: &[V], to: &[V]| -> Vec<Fraction> { from.iter().map(|v| from_vertex(v, to)).collect() };
+        let mut candidates = from_vertices(&a, &b);
+        candidates.extend(from_vertices(&b, &a));
+        for p in edges(&a) {
+            candidates.extend(edges(&b).into_iter().filter_map(|q| inside_of_edges(p, q)));
         }
-        if n == 3 {
-            let normal = cross(&sub(&offsets[1], &offsets[0]), &sub(&offsets[2], &offsets[0]));
-            let inside = (0..3).all(|i| {
-                let (a, b) = (&offsets[i], &offsets[(i + 1) % 3]);
-                // The query is the origin: (b - a) x (0 - a) must not point against the normal.
-                dot(&normal, &cross(a, &sub(b, a))) >= IBig::ZERO
-            });
-            let denominator = dot(&normal, &normal);
-            if inside && denominator > IBig::ZERO {
-                let height = dot(&normal, &offsets[0]);
-                candidates.push(Fraction { numerator: &height * &height, denominator });
-            }
+        if edges(&a).into_iter().any(|edge| pierces(edge, &b)) || edges(&b).into_iter().any(|edge| pierces(edge, &a)) {
+            candidates.push(Fraction { numerator: IBig::ZERO, denominator: IBig::ONE });
         }
+        let squares = a.iter().flat_map(|v| b.iter().map(|w| sub(w, v))).map(|d| dot(&d, &d));
+        let max_vertex_distance_squared = squares.max().expect("at least one vertex");
         let square = candidates.into_iter().min_by(Fraction::cmp).expect("at least one vertex");
-        let max_vertex_distance_squared = squares.into_iter().max().expect("at least one vertex");
         Self { square, max_vertex_distance_squared, unit }
+    }
+
+    /// Returns whether the distance is zero.
+    #[must_use]
+    pub fn is_zero(&self) -> bool {
+        self.square.numerator == IBig::ZERO
     }
 
     /// Compares two exact distances.
@@ -223,6 +217,75 @@ impl Distance {
     }
 }
 
+/// Returns the edges of a hull of one to three vertices.
+fn edges(hull: &[V]) -> Vec<[&V; 2]> {
+    match hull {
+        [a, b] => vec![[a, b]],
+        [a, b, c] => vec![[a, b], [b, c], [c, a]],
+        _ => Vec::new(),
+    }
+}
+
+/// Returns the squared distance from a query to the hull of one to three vertices.
+fn from_vertex(query: &V, vertices: &[V]) -> Fraction {
+    let offsets: Vec<V> = vertices.iter().map(|v| sub(v, query)).collect();
+    let mut candidates: Vec<Fraction> =
+        offsets.iter().map(|v| Fraction { numerator: dot(v, v), denominator: IBig::ONE }).collect();
+    for [a, b] in edges(&offsets) {
+        let d = sub(b, a);
+        let length = dot(&d, &d);
+        let along = -dot(a, &d);
+        if along > IBig::ZERO && along < length {
+            let numerator = dot(a, a) * &length - &along * &along;
+            candidates.push(Fraction { numerator, denominator: length });
+        }
+    }
+    if let [a, b, c] = &offsets[..] {
+        let normal = cross(&sub(b, a), &sub(c, a));
+        // The query is the origin: (b - a) x (0 - a) must not point against the normal.
+        let inside = edges(&offsets).iter().all(|[a, b]| dot(&normal, &cross(a, &sub(b, a))) >= IBig::ZERO);
+        let denominator = dot(&normal, &normal);
+        if inside && denominator > IBig::ZERO {
+            let height = dot(&normal, a);
+            candidates.push(Fraction { numerator: &height * &height, denominator });
+        }
+    }
+    candidates.into_iter().min_by(Fraction::cmp).expect("at least one vertex")
+}
+
+/// Returns the squared distance between the lines of two edges if the nearest points are on the edges and unique.
+fn inside_of_edges(p: [&V; 2], q: [&V; 2]) -> Option<Fraction> {
+    let (d, e, r) = (sub(p[1], p[0]), sub(q[1], q[0]), sub(q[0], p[0]));
+    let normal = cross(&d, &e);
+    let denominator = dot(&normal, &normal);
+    // The parameters of the nearest points, times the denominator.
+    let parameters = [dot(&cross(&r, &e), &normal), dot(&cross(&r, &d), &normal)];
+    let is_inside = |t: &IBig| *t >= IBig::ZERO && *t <= denominator;
+    if denominator == IBig::ZERO || !parameters.iter().all(is_inside) {
+        return None;
+    }
+    let height = dot(&r, &normal);
+    Some(Fraction { numerator: &height * &height, denominator })
+}
+
+/// Returns whether the ends of an edge are on different sides of a triangle, and a point of it is in the triangle.
+fn pierces([p, q]: [&V; 2], triangle: &[V]) -> bool {
+    let [a, b, c] = triangle else { return false };
+    let normal = cross(&sub(b, a), &sub(c, a));
+    let (at_p, at_q) = (dot(&normal, &sub(p, a)), dot(&normal, &sub(q, a)));
+    let crosses = (at_p > IBig::ZERO && at_q < IBig::ZERO) || (at_p < IBig::ZERO && at_q > IBig::ZERO);
+    if !crosses {
+        return false;
+    }
+    // The edge meets the plane at p + (q - p) at_p / (at_p - at_q); the sign of the denominator is that of at_p.
+    let weight = &at_p - &at_q;
+    let sign = if at_p > IBig::ZERO { IBig::ONE } else { -IBig::ONE };
+    edges(triangle).iter().all(|[from, to]| {
+        let point: V = std::array::from_fn(|k| (&p[k] - &from[k]) * &weight + (&q[k] - &p[k]) * &at_p);
+        dot(&normal, &cross(&sub(to, from), &point)) * &sign >= IBig::ZERO
+    })
+}
+
 /// Returns whether the convex hull of one to three vertices has a point in a closed box. All coordinates
 /// must be finite.
 ///
@@ -309,6 +372,63 @@ mod tests {
         assert!(
             intersects_box(&T[..1], &[[-1.0; 3], [0.0; 3]]) && !intersects_box(&T[..1], &[[-1.0; 3], [-1e-300; 3]])
         );
+    }
+
+    #[test]
+    fn distances_between_hulls_in_closed_forms() {
+        let is = |a: &[[f64; 3]], b: &[[f64; 3]], expected: f64| {
+            let both = [Distance::between(a, b), Distance::between(b, a)];
+            both.iter().all(|d| d.relative_error(expected, 53, 0.0) < 1e-5 && d.is_zero() == (expected == 0.0))
+        };
+        let lifted = |t: [[f64; 3]; 3], z: f64| t.map(|[x, y, _]| [x, y, z]);
+        assert!(is(&T, &lifted(T, 3.0), 3.0), "parallel triangles");
+        assert!(is(&[[0.0, 0.0, 2.0], [0.0, 4.0, 2.0]], &[[-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]], 2.0), "inside of both");
+        assert!(is(&[[0.0, 0.0, 2.0], [0.0, 4.0, 2.0]], &[[3.0, 1.0, 0.0], [3.0, 1.0, 2.0]], 3.0), "at an end");
+        assert!(is(&[[1.0, 1.0, -1.0], [1.0, 1.0, 1.0]], &T, 0.0), "an edge pierces the face");
+        assert!(is(&[[-2.0, 1.0, -1.0], [-2.0, 1.0, 1.0]], &T, 2.0), "an edge passes the face");
+        assert!(is(&[[5.0, 0.0, 0.0], [1.0, 1.0, 0.0]], &T, 0.0), "within the plane");
+        assert!(is(&[[-1.0, 2.0, 0.0], [2.0, -1.0, 0.0]], &T, 0.0), "across a corner within the plane");
+        assert!(is(&T, &[[1.0, 1.0, 0.0], [1.0, 1.0, 5.0], [2.0, 1.0, 5.0]], 0.0), "touching with a vertex");
+        assert!(is(&T, &[[1.0, 1.0, 0.5], [1.0, 1.0, 5.0], [2.0, 1.0, 5.0]], 0.5), "above with a vertex");
+        let line = [[0.0; 3], [1.0, 0.0, 0.0], [3.0, 0.0, 0.0]];
+        assert!(is(&line, &[[1.5, -1.0, 2.0], [1.5, 1.0, 2.0]], 2.0), "a flat triangle");
+    }
+
+    /// No two points of the hulls are nearer than the distance, and some are hardly farther.
+    #[test]
+    fn no_sampled_points_are_nearer_than_the_distance_between_hulls() {
+        use rand::RngExt;
+        for case in crate::cases(3_000, 200) {
+            let mut rng = crate::rng("distances between hulls", case);
+            let mut hull = |shift: f64| -> Vec<[f64; 3]> {
+                let count = rng.random_range(1..=3);
+                let mut vertex = || [0; 3].map(|_| f64::from(rng.random_range(-3..=3)) + shift);
+                (0..count).map(|_| vertex()).collect()
+            };
+            let (a, b) = (hull(0.0), hull(if case % 2 == 0 { 0.0 } else { 2.5 }));
+            let [distance, _] = Distance::between(&a, &b).length();
+            // Points move towards each other by projecting in turns, which ends at the nearest points.
+            let mut nearest = f64::INFINITY;
+            for start in 0..12 {
+                let weights = [0; 3].map(|_| rng.random_range(0.0..1.0f64));
+                let sum: f64 = weights[..a.len()].iter().sum();
+                let mut point = [0, 1, 2].map(|k: usize| a.iter().zip(weights).map(|(v, w)| v[k] * w / sum).sum());
+                for _ in 0..if start < 4 { 400 } else { 20 } {
+                    point = nearest_point(point, &b);
+                    let other = nearest_point(point, &a);
+                    let length = (0..3).map(|k: usize| (point[k] - other[k]).powi(2)).sum::<f64>().sqrt();
+                    nearest = nearest.min(length);
+                    point = other;
+                }
+            }
+            assert!(nearest >= distance - 1e-12 && nearest <= distance + 0.02, "{nearest} {distance}: {a:?} {b:?}");
+        }
+    }
+
+    fn nearest_point(query: [f64; 3], hull: &[[f64; 3]]) -> [f64; 3] {
+        let shape = crate::families::shape(hull);
+        let projection = p2m_core::Primitive::project(&shape, &query.into());
+        projection.point.coords.into()
     }
 
     #[test]
