@@ -125,6 +125,20 @@ impl<T: Real> Aabb<T> {
         let (x, y, z) = (gap(0), gap(1), gap(2));
         x * x + y * y + z * z
     }
+
+    /// Returns a lower bound on the squared distance between points of two boxes, in f64.
+    ///
+    /// # Accuracy
+    /// The bound never exceeds the key of a pair of primitives in the boxes ([`pair`](crate::pair)), rounding included,
+    /// for the reason that [`lower_bound`](Self::lower_bound) states.
+    #[must_use]
+    pub fn gap_squared(&self, other: &Self) -> f64 {
+        let [[min, max], [other_min, other_max]] =
+            [self, other].map(|bounds| [&bounds.min, &bounds.max].map(to_f64_array));
+        let gap = |k: usize| (other_min[k] - max[k]).max(min[k] - other_max[k]).max(0.0);
+        let (x, y, z) = (gap(0), gap(1), gap(2));
+        x * x + y * y + z * z
+    }
 }
 
 #[cfg(test)]

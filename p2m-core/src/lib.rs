@@ -42,6 +42,7 @@ mod index;
 mod indexed;
 pub mod kernel;
 mod near_query;
+pub mod pair;
 mod pointers;
 mod position;
 pub mod predicates;

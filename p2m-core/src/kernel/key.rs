@@ -56,7 +56,7 @@ impl Key {
 
     /// Returns the key of `offset` * 2^`exponent`.
     #[cold]
-    pub(super) fn from_scaled_offset(offset: V3, exponent: i32) -> Self {
+    pub(crate) fn from_scaled_offset(offset: V3, exponent: i32) -> Self {
         if !offset.iter().all(|x| x.is_finite()) {
             return Self::INFINITY;
         }

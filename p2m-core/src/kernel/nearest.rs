@@ -72,13 +72,11 @@ pub(super) fn feature_of_code(code: f64) -> Feature {
     }
 }
 
+/// An upper bound on sqrt(3) u, by a margin above the rounding of products with it.
+pub(crate) const SQRT_3_U: f64 = 1.7321 * (f64::EPSILON / 2.0);
 /// The bound on the error of a distance for each unit of the largest component of an offset to a vertex, apart from
 /// eta: `ERROR_CONSTANT` u M with M <= sqrt(3) size.
-pub(super) const ERROR_PER_SIZE: f64 = {
-    /// An upper bound on sqrt(3) 2^-53, by a margin above the rounding of the product.
-    const SQRT_3_U: f64 = 1.7321 * (f64::EPSILON / 2.0);
-    ERROR_CONSTANT * SQRT_3_U
-};
+pub(super) const ERROR_PER_SIZE: f64 = ERROR_CONSTANT * SQRT_3_U;
 
 impl Nearest {
     /// Returns the nearest point of a primitive with these vertices. It lies in the box of the primitive, and a vertex
@@ -126,6 +124,12 @@ impl Nearest {
                 query[k] + offset
             }
         })
+    }
+
+    /// Returns the vector from the query to the nearest point.
+    #[inline]
+    pub(crate) fn unscaled_offset(&self) -> V3 {
+        if self.exponent == 0 { self.offset } else { self.offset.map(|x| scale_by_power(x, self.exponent)) }
     }
 
     /// Returns a bound on the error of the computed distance, apart from eta.

@@ -1,0 +1,267 @@
+//! The nearest points of two primitives, and whether two primitives intersect.
+//!
+//! # Method
+//!
+//! The nearest points of two points, segments or triangles are, if these do not intersect,
+//!
+//! - a vertex of one and its nearest point on the other, which the kernel for query points finds, or
+//! - points inside of two edges that are not parallel (the file `edges`).
+//!
+//! So the distance is the smallest key of up to six vertices and nine pairs of edges. Whether the primitives intersect
+//! is decided by exact predicates (the file `intersection`), and then the distance is 0.
+//!
+//! # Accuracy
+//!
+//! [`ERROR_CONSTANT_OF_PAIRS`] states the bound, and docs/proofs/pairs.md derives it. A key is a pure function of two
+//! features: it depends neither on the order of the primitives nor on that of their vertices, and it is never below the
+//! square of the gap between their boxes, which is computed in the same arithmetic ([`Aabb::gap_squared`]). So a search
+//! may prune by boxes without any slack, and equal distances are equal bits.
+//!
+//! [`Aabb::gap_squared`]: crate::Aabb::gap_squared
+
+mod edges;
+mod intersection;
+#[cfg(test)]
+mod tests;
+
+use crate::kernel::vector::{V3, bounds, clamp, largest, sub};
+use crate::kernel::{Key, SQRT_3_U};
+use crate::primitive::{Feature, Primitive, Projection};
+use crate::real::to_f64_array;
+use crate::{Aabb, Real};
+use edges::nearest_on_edges;
+pub use intersection::intersect;
+use nalgebra::Point3;
+
+/// The bound on the error of the distance between two primitives in units of u M, where M is the largest distance
+/// between a vertex of one and a vertex of the other: |computed - true| <= `ERROR_CONSTANT_OF_PAIRS` u M + eta.
+///
+/// It is proved in docs/proofs/pairs.md. For a vertex and its nearest point the constant is that of query points, 8.
+pub const ERROR_CONSTANT_OF_PAIRS: f64 = 24.0;
+
+/// The nearest points of two primitives.
+///
+/// All numbers are in f64 and in units of the scene, for both scalars. Arrays of two have the first primitive first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestPair {
+    /// The squared distance, by which pairs are compared. It is zero if the primitives intersect.
+    pub key: Key,
+    /// The nearest points. If the primitives intersect, both are near a common point.
+    pub points: [Point3<f64>; 2],
+    /// The features of the lowest dimension that contain the points.
+    pub features: [Feature; 2],
+    /// The weights of the vertices of each primitive for its point.
+    pub barycentric: [[f64; 3]; 2],
+    /// A bound on the error of [`Key::distance`], apart from one smallest subnormal.
+    pub error: f64,
+    /// Whether the primitives have a common point. It is exact.
+    pub intersect: bool,
+}
+
+impl NearestPair {
+    /// Returns the pair with its primitives exchanged.
+    #[must_use]
+    pub fn swapped(mut self) -> Self {
+        self.points.swap(0, 1);
+        self.features.swap(0, 1);
+        self.barycentric.swap(0, 1);
+        self
+    }
+}
+
+/// Returns the nearest points of two primitives that have vertices, which may be degenerate.
+///
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::pair::nearest_pair;
+/// use p2m_core::{Feature, Segment, Triangle};
+///
+/// let floor = Triangle::new(Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 0.0, 0.0), Point3::new(0.0, 4.0, 0.0));
+/// let pole = Segment::new(Point3::new(1.0, 1.0, 2.0), Point3::new(1.0, 1.0, 9.0));
+/// let pair = nearest_pair(&floor, &pole);
+/// assert_eq!((pair.key.distance(), pair.intersect), (2.0, false));
+/// assert_eq!(pair.features, [Feature::Face, Feature::Vertex(0)]);
+/// assert_eq!(pair.points, [Point3::new(1.0, 1.0, 0.0), Point3::new(1.0, 1.0, 2.0)]);
+/// ```
+///
+/// # Panics
+/// Panics if one has no [vertices](Primitive::vertices), as primitives of your own may.
+///
+/// # Accuracy
+/// The error of the distance is at most [`ERROR_CONSTANT_OF_PAIRS`] u M + eta (proved). Whether the primitives intersect
+/// is exact.
+#[must_use]
+pub fn nearest_pair<T: Real>(a: &impl Primitive<T>, b: &impl Primitive<T>) -> NearestPair {
+    nearest_pair_within(a, b, f64::INFINITY).expect("no key exceeds infinity")
+}
+
+/// Returns the nearest points of two primitives, or `None` if their key certainly exceeds `square`.
+///
+/// # Panics
+/// Panics if one has no vertices.
+#[must_use]
+pub fn nearest_pair_within<T: Real>(a: &impl Primitive<T>, b: &impl Primitive<T>, square: f64) -> Option<NearestPair> {
+    let converted = |vertices: &[Point3<T>]| {
+        assert!(!vertices.is_empty(), "distances between primitives are defined for those that have vertices");
+        let mut array = [[0.0; 3]; 3];
+        array.iter_mut().zip(vertices).for_each(|(to, vertex)| *to = to_f64_array(vertex));
+        (array, vertices.len())
+    };
+    let ((a, a_len), (b, b_len)) = (converted(a.vertices()), converted(b.vertices()));
+    nearest_of_hulls(&a[..a_len], &b[..b_len], square)
+}
+
+/// Returns the nearest points of the hulls of one to three vertices each, or `None` if their key certainly exceeds
+/// `square`.
+pub(crate) fn nearest_of_hulls(a: &[V3], b: &[V3], square: f64) -> Option<NearestPair> {
+    let bounds = [a, b].map(|hull| bounds_of(hull));
+    let gap = bounds[0].gap_squared(&bounds[1]);
+    if gap > square {
+        return None;
+    }
+    let intersect = gap == 0.0 && intersect(a, b);
+    // The key will be zero, wherever rounding places the candidates.
+    let square = if intersect { f64::INFINITY } else { square };
+    let mut best = Candidate::NONE;
+    for (i, vertex) in a.iter().enumerate() {
+        best.offer_vertex(i, *vertex, b, square, false);
+    }
+    for (i, vertex) in b.iter().enumerate() {
+        best.offer_vertex(i, *vertex, a, square, true);
+    }
+    for (i, p) in edges_of(a) {
+        for (j, q) in edges_of(b) {
+            best.offer_edges([i, j], [p, q], square);
+        }
+    }
+    if intersect {
+        // A point inside of a face is not among the candidates yet.
+        for (i, edge) in edges_of(a) {
+            best.offer_piercing(i, edge, b, false);
+        }
+        for (i, edge) in edges_of(b) {
+            best.offer_piercing(i, edge, a, true);
+        }
+        best.pair.key = Key::ZERO;
+    }
+    best.is_some.then(|| {
+        let size = a.iter().flat_map(|v| b.iter().map(|w| largest(&[sub(*w, *v)]))).fold(0.0, f64::max);
+        let error = ERROR_CONSTANT_OF_PAIRS * SQRT_3_U * size;
+        NearestPair { intersect, error, ..best.pair }
+    })
+}
+
+/// Returns the box around some vertices.
+fn bounds_of(vertices: &[V3]) -> Aabb<f64> {
+    vertices.iter().fold(Aabb::empty(), |all, vertex| all.union(&Aabb { min: (*vertex).into(), max: (*vertex).into() }))
+}
+
+/// Returns the edges of a hull of one to three vertices, with their numbers.
+fn edges_of(hull: &[V3]) -> impl Iterator<Item = (u8, [V3; 2])> + Clone + '_ {
+    let count: u8 = match hull.len() {
+        1 => 0,
+        2 => 1,
+        _ => 3,
+    };
+    (0..count).map(|i| (i, [hull[usize::from(i)], hull[(usize::from(i) + 1) % hull.len()]]))
+}
+
+/// The best pair of points so far.
+struct Candidate {
+    pair: NearestPair,
+    is_some: bool,
+}
+
+impl Candidate {
+    const NONE: Self = Self {
+        pair: NearestPair {
+            key: Key::INFINITY,
+            points: [Point3::new(0.0, 0.0, 0.0); 2],
+            features: [Feature::Vertex(0); 2],
+            barycentric: [[1.0, 0.0, 0.0]; 2],
+            error: 0.0,
+            intersect: false,
+        },
+        is_some: false,
+    };
+
+    /// Returns the square above which a candidate is of no use.
+    fn limit(&self, square: f64) -> f64 {
+        self.pair.key.square_above().min(square)
+    }
+
+    /// Takes a pair if it is nearer than the best so far.
+    fn offer(&mut self, pair: NearestPair) {
+        if !self.is_some || pair.key < self.pair.key {
+            *self = Self { pair, is_some: true };
+        }
+    }
+
+    /// Offers vertex i of one hull and its nearest point on the other. `is_second` tells whether the vertex is of the
+    /// second hull.
+    #[allow(clippy::cast_possible_truncation, reason = "a primitive has at most three vertices")]
+    fn offer_vertex(&mut self, i: usize, vertex: V3, other: &[V3], square: f64, is_second: bool) {
+        let Some(projection) = project(vertex, other, self.limit(square)) else { return };
+        let mut weights = [0.0; 3];
+        weights[i] = 1.0;
+        self.offer_projection(vertex, (Feature::Vertex(i as u8), weights), &projection, is_second);
+    }
+
+    /// Offers a point of one hull, with its feature and weights, and its projection onto the other.
+    fn offer_projection(&mut self, point: V3, at: (Feature, V3), projection: &Projection, is_second: bool) {
+        let pair = NearestPair {
+            key: projection.key,
+            points: [point.into(), projection.point],
+            features: [at.0, projection.feature],
+            barycentric: [at.1, projection.barycentric],
+            ..Self::NONE.pair
+        };
+        self.offer(if is_second { pair.swapped() } else { pair });
+    }
+
+    /// Offers the nearest points inside of two edges.
+    fn offer_edges(&mut self, numbers: [u8; 2], edges: [[V3; 2]; 2], square: f64) {
+        let [p, q] = edges.map(|edge| bounds_of(&edge));
+        if p.gap_squared(&q) > self.limit(square) {
+            return;
+        }
+        let Some(nearest) = nearest_on_edges(&edges[0], &edges[1]) else { return };
+        let weights = [0, 1].map(|k: usize| edge_weights(numbers[k], nearest.parameters[k]));
+        self.offer(NearestPair {
+            key: nearest.key,
+            points: nearest.points.map(Point3::from),
+            features: numbers.map(Feature::Edge),
+            barycentric: weights,
+            ..Self::NONE.pair
+        });
+    }
+
+    /// Offers the point in which an edge of one hull pierces the face of the other, if it does.
+    fn offer_piercing(&mut self, number: u8, edge: [V3; 2], other: &[V3], is_second: bool) {
+        let Some(t) = intersection::piercing_parameter(&edge, other) else { return };
+        let [p, q] = edge;
+        let [low, high] = bounds(&edge);
+        let point = clamp(std::array::from_fn(|k| p[k] * (1.0 - t) + q[k] * t), low, high);
+        let Some(projection) = project(point, other, f64::INFINITY) else { return };
+        self.offer_projection(point, (Feature::Edge(number), edge_weights(number, t)), &projection, is_second);
+    }
+}
+
+/// Returns the weights of the vertices of a primitive for the point at parameter `t` of edge i.
+fn edge_weights(i: u8, t: f64) -> V3 {
+    match i {
+        0 => [1.0 - t, t, 0.0],
+        1 => [0.0, 1.0 - t, t],
+        _ => [t, 0.0, 1.0 - t],
+    }
+}
+
+/// Projects a point onto the hull of one to three vertices.
+fn project(query: V3, hull: &[V3], square: f64) -> Option<Projection> {
+    match hull {
+        [a] => Projection::onto_point(query, &[*a], square),
+        [a, b] => Projection::onto_segment(query, &[*a, *b], square),
+        [a, b, c] => Projection::onto_triangle(query, &[*a, *b, *c], square),
+        _ => None,
+    }
+}

@@ -1,0 +1,161 @@
+//! Pairs of primitives against exact rational arithmetic.
+
+use super::*;
+use crate::kernel::vector::scale_by_power;
+use p2m_testkit::families::{Case, Family, case};
+use p2m_testkit::oracle::Distance;
+use p2m_testkit::{cases, rng};
+use rand::{Rng, RngExt};
+
+/// The smallest subnormal number.
+const ETA: f64 = f64::from_bits(1);
+
+/// Returns two hulls of one to three vertices: of one family side by side, or moved against each other so that they
+/// touch, cross, lie in parallel, or share vertices.
+fn hulls(rng: &mut impl Rng) -> (Family, [Vec<V3>; 2]) {
+    let Case { family, query, vertices: a } = case(rng);
+    let mut b = match rng.random_range(0..4) {
+        0 => case(rng).vertices,
+        _ => {
+            // A hull of the same family and scale: the query and points between it and the first hull.
+            let point = |rng: &mut dyn Rng| -> V3 {
+                let (v, t) = (a[rng.random_range(0..a.len())], [0.0, 0.5, 1.0, 1.5][rng.random_range(0..4)]);
+                std::array::from_fn(|k| query[k] * (1.0 - t) + v[k] * t)
+            };
+            (0..rng.random_range(1..=3)).map(|_| point(rng)).collect::<Vec<_>>()
+        }
+    };
+    let i = rng.random_range(0..a.len());
+    let direction = |k: usize| -> V3 { sub(a[(i + k) % a.len()], a[i]) };
+    match rng.random_range(0..8) {
+        // Edges are exactly or nearly parallel.
+        0 if b.len() >= 2 => b[1] = add3(b[0], direction(1)),
+        1 if b.len() >= 2 => {
+            let tiny = 2f64.powi(-rng.random_range(20..60));
+            let aside: V3 = std::array::from_fn(|k| direction(1)[(k + 1) % 3] * tiny);
+            b[1] = add3(add3(b[0], direction(1)), aside);
+        }
+        // The hulls share a vertex, or one begins on an edge of the other.
+        2 => b[0] = a[i],
+        3 => b[0] = std::array::from_fn(|k| a[i][k] + 0.5 * direction(1)[k]),
+        // An edge passes through the face or close to it.
+        4 if b.len() >= 2 && a.len() == 3 => {
+            let inside: V3 = std::array::from_fn(|k| a[0][k] * 0.5 + a[1][k] * 0.25 + a[2][k] * 0.25);
+            b[1] = std::array::from_fn(|k| 2.0 * inside[k] - b[0][k]);
+        }
+        _ => {}
+    }
+    for v in b.iter_mut().flatten() {
+        *v = if v.is_finite() { *v } else { f64::MAX };
+    }
+    (family, [a, b])
+}
+
+fn add3(a: V3, b: V3) -> V3 {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+#[test]
+fn distances_are_within_the_bound_and_intersections_are_exact() {
+    let mut worst: f64 = 0.0;
+    let mut intersecting = 0;
+    let all = cases(10_000_000, 40_000);
+    for number in all.clone() {
+        let mut rng = rng("pairs of primitives", number);
+        let (family, [a, b]) = hulls(&mut rng);
+        let exact = Distance::between(&a, &b);
+        let pair = nearest_of_hulls(&a, &b, f64::INFINITY).expect("no limit");
+        assert_eq!(pair.intersect, exact.is_zero(), "{number}: {family}: {a:?} {b:?}");
+        let distance = pair.key.distance();
+        let error = exact.error(distance, 53, ETA);
+        assert!(error <= ERROR_CONSTANT_OF_PAIRS, "{number}: {error} u M, {family}: {distance:e} {a:?} {b:?}");
+        worst = worst.max(error);
+        intersecting += usize::from(pair.intersect);
+    }
+    println!("largest error: {worst} u M; {intersecting} intersect");
+    assert!(all.have_more_than(1000, intersecting), "{intersecting}");
+}
+
+#[test]
+fn keys_depend_neither_on_order_nor_on_scale() {
+    for number in cases(200_000, 10_000) {
+        let mut rng = rng("orders of pairs", number);
+        let (family, [mut a, mut b]) = hulls(&mut rng);
+        let within = |pair: Option<NearestPair>| pair.expect("no limit");
+        let pair = within(nearest_of_hulls(&a, &b, f64::INFINITY));
+        let swapped = within(nearest_of_hulls(&b, &a, f64::INFINITY));
+        assert_eq!(pair.key, swapped.key, "{number}: {family}: {a:?} {b:?}");
+        let by = 1 % a.len();
+        a.rotate_left(by);
+        b.reverse();
+        let permuted = within(nearest_of_hulls(&a, &b, f64::INFINITY));
+        assert_eq!(pair.key, permuted.key, "{number}: {family}: {a:?} {b:?}");
+        // A limit at the key keeps the pair.
+        let limited = nearest_of_hulls(&a, &b, pair.key.square_above());
+        assert_eq!(limited.map(|pair| pair.key), Some(pair.key), "{number}: {family}: {a:?} {b:?}");
+        let is_ordinary = |x: &f64| *x == 0.0 || (1e-30..1e30).contains(&x.abs());
+        if a.iter().chain(&b).flatten().all(is_ordinary) {
+            let [a, b] = [&a, &b].map(|hull| hull.iter().map(|v| v.map(|x| scale_by_power(x, 70))).collect::<Vec<_>>());
+            let scaled = within(nearest_of_hulls(&a, &b, f64::INFINITY));
+            assert_eq!(scale_by_power(pair.key.distance(), 70), scaled.key.distance(), "{number}: {family}");
+        }
+    }
+}
+
+#[test]
+fn points_are_those_of_the_weights_and_as_far_apart_as_the_distance() {
+    for number in cases(50_000, 5_000) {
+        let mut rng = rng("points of pairs", number);
+        let (family, [a, b]) = hulls(&mut rng);
+        let pair = nearest_of_hulls(&a, &b, f64::INFINITY).expect("no limit");
+        let size = largest(&a).max(largest(&b));
+        if !(1e-100..1e100).contains(&size) {
+            continue;
+        }
+        let text = || format!("{number}: {family}: {pair:?} {a:?} {b:?}");
+        let offset: V3 = std::array::from_fn(|k| pair.points[1][k] - pair.points[0][k]);
+        let length = Key::from_offset(offset).distance();
+        assert!((length - pair.key.distance()).abs() <= 40.0 * f64::EPSILON * size, "{length:e} {}", text());
+        for (hull, k) in [(&a, 0), (&b, 1)] {
+            let weights = pair.barycentric[k];
+            assert!(weights.iter().all(|w| *w >= 0.0), "{}", text());
+            assert!((weights.iter().sum::<f64>() - 1.0).abs() <= 8.0 * f64::EPSILON, "{}", text());
+            let bounds = bounds_of(hull);
+            assert_eq!(bounds.clamp(pair.points[k]), pair.points[k], "{}", text());
+            let on_hull = project(pair.points[k].coords.into(), hull, f64::INFINITY).expect("no limit");
+            assert!(on_hull.key.distance() <= 20.0 * f64::EPSILON * size, "{}", text());
+            let used = match pair.features[k] {
+                Feature::Vertex(i) => vec![usize::from(i)],
+                Feature::Edge(i) => vec![usize::from(i), (usize::from(i) + 1) % hull.len()],
+                Feature::Face => vec![0, 1, 2],
+            };
+            assert!((0..3).all(|i| weights[i] == 0.0 || used.contains(&i)), "{}", text());
+        }
+    }
+}
+
+#[test]
+fn gaps_of_boxes_never_exceed_the_keys_inside() {
+    for number in cases(200_000, 10_000) {
+        let mut rng = rng("gaps of boxes", number);
+        let (family, [a, b]) = hulls(&mut rng);
+        let pair = nearest_of_hulls(&a, &b, f64::INFINITY).expect("no limit");
+        let mut boxes = [bounds_of(&a), bounds_of(&b)];
+        // A box may be larger than the hull.
+        boxes[0] = boxes[0].union(&bounds_of(&[case(&mut rng).query]));
+        for gap in [bounds_of(&a).gap_squared(&boxes[1]), boxes[0].gap_squared(&boxes[1])] {
+            assert!(gap <= pair.key.square_above(), "{number}: {family}: {gap:e} {pair:?} {a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn primitives_of_both_scalars_have_pairs() {
+    let point = |x: f32, y: f32, z: f32| Point3::new(x, y, z);
+    let a = crate::Triangle::new(point(0.0, 0.0, 0.0), point(4.0, 0.0, 0.0), point(0.0, 4.0, 0.0));
+    let b = crate::Point::new(point(1.0, 1.0, 3.0));
+    let pair = nearest_pair(&a, &b);
+    assert_eq!((pair.key.distance(), pair.features), (3.0, [Feature::Face, Feature::Vertex(0)]));
+    assert_eq!(nearest_pair(&b, &a), pair.swapped());
+    assert_eq!(nearest_pair_within(&a, &b, 8.9), None);
+}
