@@ -37,7 +37,7 @@ use nalgebra::Point3;
 /// between a vertex of one and a vertex of the other: |computed - true| <= `ERROR_CONSTANT_OF_PAIRS` u M + eta.
 ///
 /// It is proved in docs/proofs/pairs.md. For a vertex and its nearest point the constant is that of query points, 8.
-pub const ERROR_CONSTANT_OF_PAIRS: f64 = 24.0;
+pub const ERROR_CONSTANT_OF_PAIRS: f64 = 32.0;
 
 /// The nearest points of two primitives.
 ///
