@@ -28,6 +28,7 @@
 mod build;
 mod index;
 mod packet;
+mod pairs;
 mod traverse;
 mod tree;
 mod volume;

@@ -20,6 +20,7 @@ mod octree;
 mod ownership;
 mod p2m;
 mod packets;
+mod pairs;
 mod paper_route;
 mod pruning;
 mod ray_collectors;

@@ -5,6 +5,7 @@ pub(crate) mod compiled;
 pub(crate) mod evaluate;
 pub(crate) mod groups;
 pub(crate) mod nearest;
+pub(crate) mod pairs;
 pub(crate) mod primitive_fn;
 pub(crate) mod range;
 pub(crate) mod ray;

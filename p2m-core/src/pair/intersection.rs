@@ -4,6 +4,8 @@
 //! hulls intersect if a vertex of one is on the other, if two edges cross, or if an edge of one pierces the face of the
 //! other. Each case is a question of signs of determinants, which the exact predicates answer.
 
+#![allow(clippy::float_cmp, reason = "equal coordinates are what is meant")]
+
 use crate::kernel::arithmetic::cross;
 use crate::kernel::double_double::Double;
 use crate::kernel::vector::{V3, dot, exponent, largest, lexicographically_less, scale_by_power};

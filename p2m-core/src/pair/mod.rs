@@ -19,19 +19,25 @@
 //!
 //! [`Aabb::gap_squared`]: crate::Aabb::gap_squared
 
+mod collector;
 mod edges;
 mod intersection;
+mod motion;
+mod query;
 #[cfg(test)]
 mod tests;
 
 use crate::kernel::vector::{V3, bounds, clamp, largest, sub};
 use crate::kernel::{Key, SQRT_3_U};
 use crate::primitive::{Feature, Primitive, Projection};
-use crate::real::to_f64_array;
 use crate::{Aabb, Real};
+pub use collector::{ClosestPair, PairOptions, Pairs};
 use edges::nearest_on_edges;
 pub use intersection::intersect;
+pub use motion::Motion;
 use nalgebra::Point3;
+pub(crate) use query::offer_of_set;
+pub use query::{PairQuery, hull_of, offer_all_pairs, offer_hint_of_set};
 
 /// The bound on the error of the distance between two primitives in units of u M, where M is the largest distance
 /// between a vertex of one and a vertex of the other: |computed - true| <= `ERROR_CONSTANT_OF_PAIRS` u M + eta.
@@ -101,20 +107,18 @@ pub fn nearest_pair<T: Real>(a: &impl Primitive<T>, b: &impl Primitive<T>) -> Ne
 /// Panics if one has no vertices.
 #[must_use]
 pub fn nearest_pair_within<T: Real>(a: &impl Primitive<T>, b: &impl Primitive<T>, square: f64) -> Option<NearestPair> {
-    let converted = |vertices: &[Point3<T>]| {
-        assert!(!vertices.is_empty(), "distances between primitives are defined for those that have vertices");
-        let mut array = [[0.0; 3]; 3];
-        array.iter_mut().zip(vertices).for_each(|(to, vertex)| *to = to_f64_array(vertex));
-        (array, vertices.len())
-    };
-    let ((a, a_len), (b, b_len)) = (converted(a.vertices()), converted(b.vertices()));
+    let ((a, a_len), (b, b_len)) = (hull_of(a, None), hull_of(b, None));
     nearest_of_hulls(&a[..a_len], &b[..b_len], square)
 }
 
 /// Returns the nearest points of the hulls of one to three vertices each, or `None` if their key certainly exceeds
 /// `square`.
-pub(crate) fn nearest_of_hulls(a: &[V3], b: &[V3], square: f64) -> Option<NearestPair> {
-    let bounds = [a, b].map(|hull| bounds_of(hull));
+///
+/// # Panics
+/// Panics if a hull has no vertex, or more than three.
+#[doc(hidden)]
+pub fn nearest_of_hulls(a: &[V3], b: &[V3], square: f64) -> Option<NearestPair> {
+    let bounds = [a, b].map(bounds_of);
     let gap = bounds[0].gap_squared(&bounds[1]);
     if gap > square {
         return None;
@@ -152,7 +156,9 @@ pub(crate) fn nearest_of_hulls(a: &[V3], b: &[V3], square: f64) -> Option<Neares
 }
 
 /// Returns the box around some vertices.
-fn bounds_of(vertices: &[V3]) -> Aabb<f64> {
+#[doc(hidden)]
+#[must_use]
+pub fn bounds_of(vertices: &[V3]) -> Aabb<f64> {
     vertices.iter().fold(Aabb::empty(), |all, vertex| all.union(&Aabb { min: (*vertex).into(), max: (*vertex).into() }))
 }
 

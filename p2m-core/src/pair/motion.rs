@@ -1,0 +1,49 @@
+//! The motion of a scene, applied to vertices and boxes.
+
+use crate::Aabb;
+use crate::kernel::vector::V3;
+use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
+
+/// A rotation and a translation, as they are applied to coordinates.
+///
+/// # Accuracy
+/// A moved vertex differs from the exact one by at most 20 u (|v| + |t|), where v is the vertex before and t the
+/// translation: the entries of the matrix are within 4 u, and three products and three sums are rounded.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion {
+    matrix: Matrix3<f64>,
+    translation: Vector3<f64>,
+}
+
+impl Motion {
+    /// Creates the motion of an isometry.
+    #[must_use]
+    pub fn new(isometry: &Isometry3<f64>) -> Self {
+        let matrix = isometry.rotation.to_rotation_matrix().into_inner();
+        Self { matrix, translation: isometry.translation.vector }
+    }
+
+    /// Returns the moved vertex, each coordinate rounded.
+    #[must_use]
+    pub fn apply(&self, vertex: V3) -> V3 {
+        let m = &self.matrix;
+        std::array::from_fn(|k| {
+            m[(k, 0)] * vertex[0] + m[(k, 1)] * vertex[1] + m[(k, 2)] * vertex[2] + self.translation[k]
+        })
+    }
+
+    /// Returns a box around the moved vertices of a box, as [`apply`](Self::apply) rounds them.
+    #[must_use]
+    pub fn apply_to_box(&self, bounds: &Aabb<f64>) -> Aabb<f64> {
+        /// A bound on all roundings of a coordinate, relative to the largest magnitudes that are summed.
+        const MARGIN: f64 = 64.0 * f64::EPSILON;
+        let (low, high) = (bounds.min.coords * 0.5, bounds.max.coords * 0.5);
+        let (centre, half) = (low + high, high - low);
+        let moved = Point3::from(self.apply(centre.into()));
+        let magnitudes = self.matrix.abs();
+        let size = magnitudes * (centre.abs() + half) + self.translation.abs();
+        // The smallest normal number covers what underflows.
+        let reach = magnitudes * half + size * MARGIN + Vector3::repeat(f64::MIN_POSITIVE);
+        Aabb { min: moved - reach, max: moved + reach }
+    }
+}

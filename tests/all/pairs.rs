@@ -1,0 +1,176 @@
+//! Tests the nearest pairs of scenes, and of scenes and shapes, against all pairs, which p2m-core tests against rational
+//! arithmetic.
+#![cfg(all(feature = "bvh", feature = "kdop"))]
+#![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
+
+use nalgebra::{Isometry3, Vector3};
+use p2m::backend::pair::{ClosestPair, Motion, PairOptions, PairQuery, Pairs, offer_all_pairs};
+use p2m::{AabbTree, BruteForce, BuildIndex, KdopTree, PrimitiveId, PrimitiveSet, Real, Shape, Soup};
+use p2m_testkit::scenes::{self, kinds_and_layout};
+use p2m_testkit::{amount, cases, rng, vector};
+use rand::{Rng, RngExt};
+use std::ops::ControlFlow;
+
+/// Returns the answer for two scenes by all pairs.
+fn by_all_pairs<T: Real>(a: &Soup<T>, b: &Soup<T>, options: &PairOptions<T>) -> Option<ClosestPair<T>> {
+    let mut pairs = Pairs::nearest(options.max_distance);
+    offer_all_pairs(a, b, options.motion.as_ref().map(Motion::new).as_ref(), &mut pairs);
+    pairs.finish()
+}
+
+/// Returns a motion: none, a translation, or a rotation with a translation; small, about as large as the scene, or far.
+fn motion(rng: &mut impl Rng, size: f64) -> Option<Isometry3<f64>> {
+    let far = [0.0, 0.01, 0.5, 1.0, 1.5, 30.0][rng.random_range(0..6)] * size;
+    let turn = [Vector3::zeros(), vector(rng) * 3.0][rng.random_range(0..2)];
+    (rng.random_range(0..4) > 0).then(|| Isometry3::new(vector(rng) * far, turn))
+}
+
+/// Asserts that two answers are equal but for their lower bounds, which depend on what a search evaluated.
+fn assert_same<T: Real>(found: Option<ClosestPair<T>>, expected: Option<ClosestPair<T>>, text: &str) {
+    let bits = |pair: &ClosestPair<T>| {
+        (
+            pair.distance.to_f64().to_bits(),
+            pair.primitives,
+            pair.points,
+            pair.features,
+            pair.barycentric,
+            pair.intersect,
+        )
+    };
+    assert_eq!(found.as_ref().map(bits), expected.as_ref().map(bits), "{text}");
+    if let (Some(found), Some(expected)) = (found, expected) {
+        assert!(found.lower_bound <= expected.distance && found.lower_bound >= T::zero(), "{text}");
+    }
+}
+
+fn check_scenes<T: Real>(case: u64, soups: [&Soup<T>; 2], moved: Option<Isometry3<f64>>, limit: T) -> bool {
+    let [a, b] = soups;
+    let mut options = PairOptions::default().with_max_distance(limit);
+    options.motion = moved;
+    let expected = by_all_pairs(a, b, &options);
+    let [aabb_a, aabb_b] = soups.map(|soup| AabbTree::build(soup, &Default::default()).expect("valid"));
+    let kdop_b: KdopTree<T, _> = KdopTree::build(b, &Default::default()).expect("valid");
+    let text = format!("{case}: {options:?}");
+    assert_same(aabb_a.closest_pair(&aabb_b, &options), expected, &text);
+    assert_same(aabb_a.closest_pair(&kdop_b, &options), expected, &text);
+    let hint = [PrimitiveId::new(a.len() / 2), PrimitiveId::new(b.len() / 3)];
+    assert_same(aabb_a.closest_pair(&aabb_b, &options.with_hint(hint)), expected, &text);
+    assert_eq!(aabb_a.is_any_pair_near(&aabb_b, &options), expected.is_some(), "{text}");
+    // All pairs within a distance are those of the brute force.
+    if let Some(nearest) = expected {
+        let factor = T::round_from_f64(1.05);
+        let within = options.with_max_distance(nearest.distance * factor);
+        let mut found = Vec::new();
+        let _ = aabb_a.visit_pairs_within(&aabb_b, &within, &mut |pair| {
+            found.push((pair.primitives, pair.distance.to_f64().to_bits()));
+            ControlFlow::Continue(())
+        });
+        let mut all = Vec::new();
+        let mut each = |ids, pair: &p2m::backend::pair::NearestPair| {
+            all.push((ids, T::round_from_f64(pair.key.distance()).to_f64().to_bits()));
+            ControlFlow::Continue(())
+        };
+        let motion = options.motion.as_ref().map(Motion::new);
+        offer_all_pairs(a, b, motion.as_ref(), &mut Pairs::each(within.max_distance, &mut each));
+        found.sort_unstable();
+        all.sort_unstable();
+        assert_eq!(found, all, "{text}");
+    }
+    expected.is_some_and(|pair| pair.intersect)
+}
+
+#[test]
+fn pairs_of_scenes_are_those_of_brute_force() {
+    let mut intersecting = 0;
+    let all = cases(10_000, 300);
+    for case in all.clone() {
+        let (mut rng, (kinds, layout)) = (rng("pairs of scenes", case), kinds_and_layout(case));
+        let (other_kinds, other_layout) = kinds_and_layout(rng.random());
+        let len = rng.random_range(1..90);
+        let a = scenes::soup(&mut rng, kinds, layout, len);
+        let b = match rng.random_range(0..3) {
+            0 => a.clone(),
+            1 => scenes::soup(&mut rng, kinds, layout, 40),
+            _ => scenes::soup(&mut rng, other_kinds, other_layout, 60),
+        };
+        let bounds = a.aabb();
+        let moved = motion(&mut rng, (bounds.max - bounds.min).amax());
+        let limit = if rng.random_range(0..4) == 0 { (bounds.max - bounds.min).amax() * 0.3 } else { f64::INFINITY };
+        intersecting += usize::from(check_scenes(case, [&a, &b], moved, limit));
+    }
+    assert!(all.have_more_than(50, intersecting), "{intersecting}");
+}
+
+#[test]
+fn pairs_in_f32_are_those_of_brute_force() {
+    for case in cases(1_000, 60) {
+        let (mut rng, (kinds, layout)) = (rng("pairs in f32", case), kinds_and_layout(case));
+        let [a, b] = [50, 70].map(|len| single(&scenes::soup(&mut rng, kinds, layout, len)));
+        let bounds = a.aabb().to_f64();
+        let moved = motion(&mut rng, (bounds.max - bounds.min).amax());
+        check_scenes(case, [&a, &b], moved, f32::INFINITY);
+    }
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "a scene in f32")]
+fn single(soup: &Soup<f64>) -> Soup<f32> {
+    let positions = soup.positions().iter().map(|p| p.map(|x| x as f32)).collect();
+    Soup::new(positions, (0..soup.len()).map(|i| soup.element(PrimitiveId::new(i)))).expect("valid")
+}
+
+#[test]
+fn shapes_against_scenes_are_those_of_brute_force() {
+    for case in cases(3_000, 200) {
+        let (mut rng, (kinds, layout)) = (rng("shapes against scenes", case), kinds_and_layout(case));
+        let soup = scenes::soup(&mut rng, kinds, layout, amount(400, 120));
+        let other_kinds = kinds_and_layout(rng.random()).0;
+        let shapes = scenes::soup(&mut rng, other_kinds, layout, 6);
+        let bounds = soup.aabb();
+        let size = (bounds.max - bounds.min).amax();
+        let brute = BruteForce::new(&soup).expect("valid");
+        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let kdop: KdopTree<f64, _> = KdopTree::build(&soup, &Default::default()).expect("valid");
+        for id in (0..shapes.len()).map(PrimitiveId::new) {
+            let shape: Shape<f64> = shapes.get(id);
+            let mut options = PairOptions::default();
+            options.motion = motion(&mut rng, size);
+            let expected = brute.closest_to(&shape, &options);
+            let text = format!("{case}: {shape:?}, {options:?}");
+            assert!(expected.is_some(), "{text}");
+            assert_same(tree.closest_to(&shape, &options), expected, &text);
+            assert_same(kdop.closest_to(&shape, &options), expected, &text);
+            let distance = expected.map_or(0.0, |pair| pair.distance);
+            for limit in [distance, distance.next_down(), distance * 0.5] {
+                let limited = options.with_max_distance(limit).with_hint([PrimitiveId::new(7), PrimitiveId::new(0)]);
+                let is_within = distance <= limit;
+                assert_eq!(tree.is_any_near(&shape, &limited), is_within, "{text} {limit:e}");
+                assert_same(tree.closest_to(&shape, &limited), expected.filter(|_| is_within), &text);
+            }
+        }
+    }
+}
+
+#[test]
+fn nothing_is_near_an_empty_scene_or_beyond_the_range() {
+    let soup = scenes::soup(&mut rng("pairs of nothing", 0), scenes::Kinds::Triangles, scenes::Layout::Sheet, 20);
+    let empty: Soup<f64> = Soup::new(Vec::new(), []).expect("valid");
+    let [full, nothing] = [&soup, &empty].map(|soup| AabbTree::build(soup, &Default::default()).expect("valid"));
+    let options = PairOptions::default();
+    assert_eq!(full.closest_pair(&nothing, &options), None);
+    assert_eq!(nothing.closest_pair(&full, &options), None);
+    for motion in [f64::INFINITY, f64::NAN].map(|x| Isometry3::translation(x, 0.0, 0.0)) {
+        assert_eq!(full.closest_pair(&full, &options.with_motion(motion)), None);
+        assert_eq!(full.closest_to(&soup.get(PrimitiveId::new(0)), &options.with_motion(motion)), None);
+    }
+    // The distance is beyond the range of numbers, and its bound is not.
+    let far = options.with_motion(Isometry3::translation(f64::MAX, 0.0, f64::MAX));
+    let answer = full.closest_to(&soup.get(PrimitiveId::new(0)), &far).expect("a finite shape");
+    assert!(answer.distance == f64::INFINITY && answer.lower_bound < f64::INFINITY, "{answer:?}");
+    for limit in [f64::NAN, -1.0] {
+        assert_eq!(full.closest_pair(&full, &options.with_max_distance(limit)), None);
+        assert!(!full.is_any_near(&soup.get(PrimitiveId::new(0)), &options.with_max_distance(limit)));
+    }
+    // Equal scenes intersect in their first triangle.
+    let same = full.closest_pair(&full, &options.with_max_distance(0.0)).expect("equal scenes intersect");
+    assert_eq!((same.distance, same.intersect, same.primitives), (0.0, true, [PrimitiveId::new(0); 2]));
+}
