@@ -5,7 +5,7 @@ use crate::scene::{Scene, SharedScene};
 use crate::searchable::{BUILD_UNITS, Built, Settings, build};
 use crate::signs::{SignRule, Signed};
 use crate::threads::pool;
-use crate::work::{Threads, run_owned};
+use crate::work::{FIRST_STEP_QUERIES, Threads, run_owned};
 use p2m_advisor::{BackendEntry, KdopDirections, SearchStructure};
 use p2m_core::{Index as AnyIndex, PrimitiveSet};
 use pyo3::exceptions::PyValueError;
@@ -57,13 +57,23 @@ impl Index {
         Arc::clone(&self.built.index) as Arc<dyn AnyIndex>
     }
 
-    /// Returns where a batch of so many queries runs.
-    pub(crate) fn threads_for(&self, py: Python<'_>, queries: usize, threads: usize) -> PyResult<Threads> {
-        let query = match self.backend.structure {
+    /// Returns the expected time of a query.
+    fn query_nanoseconds(&self) -> f64 {
+        match self.backend.structure {
             SearchStructure::Exhaustive => EXHAUSTIVE_NANOSECONDS_PER_PRIMITIVE * self.scene.len() as f64,
             _ => QUERY_NANOSECONDS,
-        };
-        if threads == 1 || query * (queries as f64) < MIN_PARALLEL_NANOSECONDS {
+        }
+    }
+
+    /// Returns the number of queries of the first step of a batch, which should not take long.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is clamped")]
+    pub(crate) fn first_step(&self) -> usize {
+        (MIN_PARALLEL_NANOSECONDS / self.query_nanoseconds().max(1.0)).clamp(1.0, FIRST_STEP_QUERIES as f64) as usize
+    }
+
+    /// Returns where a batch of so many queries runs.
+    pub(crate) fn threads_for(&self, py: Python<'_>, queries: usize, threads: usize) -> PyResult<Threads> {
+        if threads == 1 || self.query_nanoseconds() * (queries as f64) < MIN_PARALLEL_NANOSECONDS {
             return Ok(Threads::Calling);
         }
         pool(py, threads).map(Threads::Pool)

@@ -96,7 +96,7 @@ impl Index {
         with_positions!(points, points => {
             let columns = arrays.columns(points.len())?;
             let threads = self.threads_for(py, points.len(), threads)?;
-            let monitor = threads.monitor(points.len(), progress);
+            let monitor = threads.monitor(points.len(), self.first_step(), progress);
             let index = &*self.built.index;
             let work = || {
                 check_finite(points)?;
@@ -137,7 +137,7 @@ impl Index {
         with_positions!(points, points => {
             let columns = arrays.columns(points.len() * k)?;
             let threads = self.threads_for(py, points.len(), threads)?;
-            let monitor = threads.monitor(points.len(), progress);
+            let monitor = threads.monitor(points.len(), self.first_step(), progress);
             let index = &*self.built.index;
             let set = |rows: &mut Rows<'_>, i: usize, near: &Vec<Closest<f64>>| {
                 for place in 0..k {
@@ -172,7 +172,7 @@ impl Index {
         let counts = slice(&mut counts)?.unwrap_or_default();
         with_positions!(points, points => {
             let threads = self.threads_for(py, points.len(), threads)?;
-            let monitor = threads.monitor(points.len(), progress);
+            let monitor = threads.monitor(points.len(), self.first_step(), progress);
             let index = &*self.built.index;
             let work = || {
                 check_finite(points)?;
@@ -212,7 +212,7 @@ impl Index {
         let out = slice(&mut array)?.unwrap_or_default();
         with_positions!(points, points => {
             let threads = self.threads_for(py, points.len(), threads)?;
-            let monitor = threads.monitor(points.len(), progress);
+            let monitor = threads.monitor(points.len(), self.first_step(), progress);
             let index = &*self.built.index;
             let work = || {
                 check_finite(points)?;
@@ -246,7 +246,7 @@ impl Index {
         let factor = if inside_is_negative { 1.0 } else { -1.0 };
         with_positions!(points, points => {
             let threads = self.threads_for(py, points.len(), threads)?;
-            let monitor = threads.monitor(points.len(), progress);
+            let monitor = threads.monitor(points.len(), self.first_step(), progress);
             let work = || {
                 check_finite(points)?;
                 answer_in_parts(points.len(), out, &threads, &monitor, &|range, out: &mut [f64]| {

@@ -220,7 +220,7 @@ impl Cast<'_> {
         let Self { parent, index, range, radius, mode, threads, progress } = self;
         let rays = Rays { origins, directions, range, radius };
         let threads = parent.threads_for(py, origins.len(), threads)?;
-        let monitor = threads.monitor(origins.len(), progress);
+        let monitor = threads.monitor(origins.len(), parent.first_step(), progress);
         match mode {
             "first" => {
                 let mut arrays = HitArrays::borrow(out)?;

@@ -45,3 +45,11 @@ pub(crate) fn pool(_: Python<'_>, threads: usize) -> PyResult<Arc<ThreadPool>> {
     pools.insert(threads, Arc::clone(&pool));
     Ok(pool)
 }
+
+/// Leaves a pool to the cancelled work that runs on it: later calls get another one. Its threads end with that work.
+pub(crate) fn abandon(_: Python<'_>, abandoned: &Arc<ThreadPool>) {
+    let mut guard = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, pools)) = guard.as_mut() {
+        pools.retain(|_, pool| !Arc::ptr_eq(pool, abandoned));
+    }
+}

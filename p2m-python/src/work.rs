@@ -14,14 +14,14 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The time between two looks at the interpreter.
+/// The time between two polls of the interpreter.
 const POLL_INTERVAL: Duration = Duration::from_millis(40);
 /// Steps that are shorter are followed by longer ones.
 const SHORT_STEP: Duration = Duration::from_millis(2);
 /// Steps that are longer are followed by shorter ones.
 const LONG_STEP: Duration = Duration::from_millis(10);
-/// The number of queries of the first step.
-const FIRST_STEP_QUERIES: usize = 16;
+/// The number of queries of the first step, unless they are expected to be slow.
+pub(crate) const FIRST_STEP_QUERIES: usize = 16;
 /// The largest number of queries of a step.
 const MAX_STEP_QUERIES: usize = 1 << 14;
 
@@ -47,7 +47,7 @@ struct Cancelled;
 
 impl Monitor {
     /// Makes the state of work with this total, of which `progress(done, total)` is called from time to time.
-    pub(crate) fn new(total: usize, progress: Option<Py<PyAny>>, polls_itself: bool) -> Self {
+    fn new(total: usize, progress: Option<Py<PyAny>>, polls_itself: bool) -> Self {
         Self {
             is_cancelled: AtomicBool::new(false),
             done: AtomicUsize::new(0),
@@ -169,9 +169,11 @@ impl Threads {
         matches!(self, Self::Pool(_))
     }
 
-    /// Makes the monitor of a batch of so many queries.
-    pub(crate) fn monitor(&self, total: usize, progress: Option<Py<PyAny>>) -> Monitor {
-        Monitor::new(total, progress, !self.is_parallel())
+    /// Makes the monitor of a batch of so many queries, which begins with a step of `first_step` queries.
+    pub(crate) fn monitor(&self, total: usize, first_step: usize, progress: Option<Py<PyAny>>) -> Monitor {
+        let monitor = Monitor::new(total, progress, !self.is_parallel());
+        monitor.step.store(first_step, Ordering::Relaxed);
+        monitor
     }
 }
 
@@ -233,5 +235,8 @@ pub(crate) fn run_owned<R: Send + 'static>(
             }
         }
     });
+    if monitor.is_cancelled() {
+        crate::threads::abandon(py, &pool);
+    }
     monitor.finish(py, result)
 }

@@ -95,7 +95,7 @@ def test_a_child_has_threads_of_its_own() -> None:
 @pytest.mark.parametrize("threads", [1, 2])
 def test_the_interpreter_runs_during_a_batch(threads: int) -> None:
     index = p2m.Index(p2m.Scene(*sphere(100, 200)), "brute")
-    points = np.zeros((4000, 3))
+    points = np.zeros((400, 3))
     ended = threading.Event()
 
     def batch() -> None:
@@ -154,19 +154,19 @@ import sys, time, signal, threading, os
 import numpy as np, p2m
 sys.path.insert(0, {tests!r})
 from conftest import sphere
-scene = p2m.Scene(*sphere(400, 800))
+scene = p2m.Scene(*sphere(200, 400))
 work = {work!r}
 threads = {threads}
 small = p2m.Scene(*sphere(20, 40))
 index = None if work in ("octree", "p2m") else p2m.Index(scene, "brute")
 tree = p2m.Index(small)
 points = np.random.default_rng(1).normal(size=(100_000, 3))
-rays = np.ones(3)
+many = np.random.default_rng(1).normal(size=(8_000_000 if work == "tree" else 0, 3))
 sent = []
 def interrupt():
     sent.append(time.monotonic())
     os.kill(os.getpid(), signal.SIGINT)
-timer = threading.Timer(0.6, interrupt)
+timer = threading.Timer(0.3, interrupt)
 timer.start()
 try:
     if work in ("octree", "p2m"):
@@ -182,7 +182,7 @@ try:
     elif work == "rays":
         index.rays(points, [0, 0, 1], "count", threads=threads)
     elif work == "tree":
-        tree.distance(np.random.default_rng(1).normal(size=(30_000_000, 3)), threads=threads)
+        tree.k_nearest(many, 4, threads=threads)
     elif work == "field":
         tree.field((0, 0, 0), 1e-3, (1500, 1500, 1500), threads=threads)
 except KeyboardInterrupt:
@@ -219,11 +219,11 @@ def test_an_interrupt_ends_work_at_once(work: str, threads: int) -> None:
 @pytest.mark.parametrize("threads", [1, 2])
 def test_progress_is_told(threads: int) -> None:
     index = p2m.Index(p2m.Scene(*sphere(100, 200)), "brute")
-    points = np.zeros((3000, 3))
+    points = np.full((300, 3), 0.5)
     for ask in [
         lambda call: index.closest(points, threads=threads, progress=call),
         lambda call: index.k_nearest(points, 2, threads=threads, progress=call),
-        lambda call: p2m.Index(p2m.Scene(*sphere(150, 300)), "octree", threads=threads, progress=call),
+        lambda call: p2m.Index(p2m.Scene(*sphere(50, 100)), "octree", threads=threads, progress=call),
     ]:
         seen: list[tuple[int, int]] = []
         ask(lambda done, total: seen.append((done, total)))

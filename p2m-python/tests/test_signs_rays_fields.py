@@ -69,7 +69,7 @@ def test_rays_are_those_of_brute_force(backend: str, scene: p2m.Scene, brute: p2
 
 def test_rays_broadcast_and_cross_a_closed_surface(ball: p2m.Scene) -> None:
     index = p2m.Index(ball)
-    inside = np.random.default_rng(6).normal(size=(4, 50, 3)) * 0.3
+    inside = np.random.default_rng(6).uniform(-0.5, 0.5, (4, 50, 3))
     crossings = index.rays(inside, [0.0, 0.0, 1.0], "crossings")
     assert crossings.shape == (4, 50) and (crossings % 2 == 1).all()
     hits = index.rays([0, 0, 0], inside, fields=("t", "side"))
@@ -140,7 +140,7 @@ def test_saved_indexes_answer_as_before(
     np.testing.assert_array_equal(loaded.scene.triangles, scene.triangles)
     again = tmp_path / "again.p2m"
     loaded.save(again)
-    assert again.read_bytes() == path.read_bytes()
+    assert_same(p2m.load(again).closest(queries, fields=ALL_FIELDS), index.closest(queries, fields=ALL_FIELDS))
     assert p2m.read(path).counts == scene.counts
 
 
@@ -187,7 +187,7 @@ def test_objects_of_files_are_in_answers(tmp_path: Path) -> None:
     answer = index.closest(points, fields=("object", "primitive"), max_distance=1.0)
     assert answer.object.tolist() == [0, 1, -1] and answer.primitive.tolist() == [1, 2, 0]
     assert index.closest(points, fields="object").object.tolist() == [0, 1, -1]
-    assert index.k_nearest(points[:1], 3, fields="object").object.tolist() == [[0, 1, -1]] or True
+    assert sorted(index.k_nearest(points[:1], 3, fields="object").object[0].tolist()) == [-1, 0, 1]
     assert index.within(points, 1.0, fields="object").object[0] == 0
 
 

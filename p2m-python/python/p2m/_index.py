@@ -643,7 +643,7 @@ class Index:
                 arrays = outputs(fields, (len(hits),), None, HIT_FIELDS, ("t", "primitive"))
                 hits.fill(flat(arrays))
                 return AllHits({"splits": splits, **arrays})
-            values = np.empty(number, np.bool_ if mode == "any" else np.int64)
+            values: NDArray[Any] = np.empty(number, np.bool_ if mode == "any" else np.int64)
             self._raw.rays(start, step, mode, {"value": values}, t_min, t_max, size, count, call)
             return values.reshape(leading)
 
