@@ -42,16 +42,16 @@ pub(crate) fn borrowed<'py, T: Element>(
     let Some(array) = arrays.get_item(name)? else { return Ok(None) };
     let array = array.cast_into::<PyArray1<T>>().map_err(|_| PyTypeError::new_err(format!("{name}: wrong array")))?;
     let borrowed = array.try_readwrite().map_err(|_| {
-        value_error(format!("out: the array of {name} is read-only, or another array of this call or of a running one \
-                             has parts of its memory"))
+        value_error(format!(
+            "out: the array of {name} is read-only, or another array of this call or of a running one \
+                             has parts of its memory"
+        ))
     })?;
     Ok(Some(borrowed))
 }
 
 /// Returns an array as a slice.
-pub(crate) fn slice<'a, T: Element>(
-    array: &'a mut Option<PyReadwriteArray1<'_, T>>,
-) -> PyResult<Option<&'a mut [T]>> {
+pub(crate) fn slice<'a, T: Element>(array: &'a mut Option<PyReadwriteArray1<'_, T>>) -> PyResult<Option<&'a mut [T]>> {
     let contiguous = |_| PyTypeError::new_err("an array of answers is not contiguous");
     array.as_mut().map(|array| array.as_slice_mut().map_err(contiguous)).transpose()
 }

@@ -131,9 +131,8 @@ impl Index {
         let entry = self::backend(backend)?;
         let settings = Settings { directions: directions.map(kdop_directions).transpose()?, resolution };
         let shared = scene.shared.clone();
-        let built = run_owned(py, threads, BUILD_UNITS, progress, move |monitor| {
-            build(entry, shared, &settings, monitor)
-        })?;
+        let built =
+            run_owned(py, threads, BUILD_UNITS, progress, move |monitor| build(entry, shared, &settings, monitor))?;
         let unknown = || PyValueError::new_err(format!("backend: '{backend}' has no Python form"));
         let built = built.ok_or_else(unknown)?.map_err(build_error)?;
         Ok(Self::new(scene.shared.clone(), built, entry, None))

@@ -33,6 +33,10 @@ mod _p2m {
     #[pymodule_export]
     use super::index::Index;
     #[pymodule_export]
+    use super::queries::NearList;
+    #[pymodule_export]
+    use super::rays::HitList;
+    #[pymodule_export]
     use super::saved::{checksum, load, load_bytes};
     #[pymodule_export]
     use super::scene::Scene;

@@ -9,7 +9,9 @@ use p2m_advisor::{BackendEntry, ChosenDirections, KdopDirections};
 use p2m_bvh::{AabbTree, SplitOptions, TreeIndex, Volume};
 use p2m_core::storage::{LoadError, Reader};
 use p2m_core::{BruteForce, BuildError, BuildIndex, Index};
-use p2m_interception::{InterceptionIndex, Octree, OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, Progress, Voronoi};
+use p2m_interception::{
+    InterceptionIndex, Octree, OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, Progress, Voronoi,
+};
 use p2m_kdop::{DirectionChoice, Directions, Kdop, KdopOptions, KdopTree};
 use std::fmt;
 use std::sync::Arc;
@@ -166,11 +168,7 @@ where
 }
 
 /// Loads the index of a backend of the registry from a file, and returns nothing for one that is not known here.
-pub(crate) fn load(
-    backend: &BackendEntry,
-    scene: SharedScene,
-    reader: &Reader,
-) -> Option<Result<Built, LoadError>> {
+pub(crate) fn load(backend: &BackendEntry, scene: SharedScene, reader: &Reader) -> Option<Result<Built, LoadError>> {
     Some(match backend.name {
         "aabb" => AabbTree::load(scene, reader).map(Built::new),
         "kdop" => load_kdop(scene, reader),

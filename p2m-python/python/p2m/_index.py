@@ -29,8 +29,8 @@ from ._scene import Scene
 _FLOAT64 = np.dtype(np.float64)
 _BOOL = np.dtype(np.bool_)
 
-Sign = Literal["auto", "closed", "winding"]
-RayMode = Literal["first", "all", "count", "any", "crossings"]
+_Sign = Literal["auto", "closed", "winding"]
+_RayMode = Literal["first", "all", "count", "any", "crossings"]
 
 
 class Index:
@@ -312,7 +312,7 @@ class Index:
         self,
         points: ArrayLike,
         *,
-        sign: Sign = "auto",
+        sign: _Sign = "auto",
         inside: Literal["negative", "positive"] = "negative",
         out: NDArray[np.float64] | None = None,
         threads: int | None = None,
@@ -565,7 +565,7 @@ class Index:
         self,
         origins: ArrayLike,
         directions: ArrayLike,
-        mode: RayMode = "first",
+        mode: _RayMode = "first",
         *,
         t_min: float = 0.0,
         t_max: float = float("inf"),
@@ -654,7 +654,7 @@ class Index:
         shape: Sequence[int],
         *,
         signed: bool = False,
-        sign: Sign = "auto",
+        sign: _Sign = "auto",
         band: float | None = None,
         out: NDArray[Any] | None = None,
         threads: int | None = None,

@@ -5,6 +5,20 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = [
+    "HitList",
+    "Index",
+    "NearList",
+    "Scene",
+    "__version__",
+    "advise",
+    "backends",
+    "checksum",
+    "default_threads",
+    "load",
+    "load_bytes",
+]
+
 __version__: str
 
 _Coordinates = NDArray[np.float64] | NDArray[np.float32]

@@ -1,0 +1,92 @@
+//! Builds the Python package, installs it into a virtual environment, and runs its tests there.
+
+use crate::{Outcome, cargo, output, run};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The oldest version of Python that the package supports.
+const MIN_VERSION: (u32, u32) = (3, 11);
+/// The folder of the package.
+const PACKAGE: &str = "p2m-python";
+/// The packages that build the wheel and test it. They are those of `[project.optional-dependencies]`, and maturin.
+const NEEDED: [&str; 7] = [
+    "maturin>=1.10,<2",
+    "numpy>=1.26",
+    "hypothesis>=6.100",
+    "mypy>=1.15",
+    "pytest>=8",
+    "tqdm>=4.66",
+    "types-tqdm>=4.66",
+];
+
+/// Tests the package, or says why it cannot be tested here. A filter selects tests of pytest.
+pub(crate) fn check(filter: &[String]) -> Outcome {
+    let Some(python) = find_python() else {
+        println!("\n== skipped: there is no Python {}.{} or newer with venv", MIN_VERSION.0, MIN_VERSION.1);
+        return Ok(());
+    };
+    let target = PathBuf::from(std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()));
+    let target = std::path::absolute(&target).map_err(|error| format!("{}: {error}", target.display()))?;
+    let environment = target.join("python-env");
+    let bin = environment.join(if cfg!(windows) { "Scripts" } else { "bin" });
+    let own_python = text(&bin.join("python"))?;
+    if output(&own_python, &["--version"]).is_err() {
+        run(&python, &["-m", "venv", &text(&environment)?], &[])?;
+    }
+    if let Err(why) = install_needed(&own_python) {
+        println!("\n== skipped: the packages that the tests need cannot be installed\n{why}");
+        return Ok(());
+    }
+    let wheels = target.join("wheels");
+    // A wheel of an earlier version would be installed as well.
+    if wheels.exists() {
+        fs::remove_dir_all(&wheels).map_err(|error| format!("{}: {error}", wheels.display()))?;
+    }
+    // The crates that search are optimised in this profile, and were compiled by other tests already.
+    let manifest = format!("{PACKAGE}/Cargo.toml");
+    let build = ["-m", "maturin", "build", "--locked", "--profile", "dev", "--manifest-path", &manifest, "--out"];
+    run(&own_python, &[&build[..], &[&text(&wheels)?]].concat(), &[])?;
+    let install = ["-m", "pip", "install", "--quiet", "--no-deps", "--force-reinstall", "--no-index", "--find-links"];
+    run(&own_python, &[&install[..], &[&text(&wheels)?, "p2m"]].concat(), &[])?;
+    // The program answers the same queries.
+    cargo(&["build", "--locked", "--package", "p2m-cli", "--bin", "p2m"], &[])?;
+    let program = target.join("debug").join(format!("p2m{}", std::env::consts::EXE_SUFFIX));
+    let mut tests = Command::new(&own_python);
+    tests.args(["-m", "pytest", "-rs", "--durations=5", "tests"]).args(filter).env("P2M_PROGRAM", &program);
+    crate::start(tests.current_dir(PACKAGE))?;
+    if !filter.is_empty() {
+        return Ok(());
+    }
+    let mut examples = Command::new(&own_python);
+    examples.args(["-m", "pytest", "--doctest-modules", "--doctest-glob=README.md", "--pyargs", "p2m", "README.md"]);
+    crate::start(examples.current_dir(PACKAGE))?;
+    let mut types = Command::new(&own_python);
+    crate::start(types.args(["-m", "mypy"]).current_dir(PACKAGE))?;
+    let mut stubs = Command::new(&own_python);
+    crate::start(stubs.args(["-m", "mypy.stubtest", "p2m"]).current_dir(PACKAGE))
+}
+
+/// Returns the first Python of the path that is new enough and can make virtual environments.
+fn find_python() -> Option<String> {
+    let (major, minor) = MIN_VERSION;
+    let check = format!("import sys, venv, ensurepip; assert sys.version_info >= ({major}, {minor})");
+    let names = ["python3", "python", "python3.14", "python3.13", "python3.12", "python3.11"];
+    names.into_iter().find(|name| output(name, &["-c", &check]).is_ok()).map(str::to_owned)
+}
+
+/// Installs what is missing, without a look at the registry if nothing is.
+fn install_needed(python: &str) -> Result<(), String> {
+    let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+    let offline = [&install[..], &["--no-index"], &NEEDED].concat();
+    if output(python, &offline).is_ok() {
+        return Ok(());
+    }
+    println!("\n== {python} -m pip install {}", NEEDED.join(" "));
+    output(python, &[&install[..], &NEEDED].concat()).map(drop)
+}
+
+/// Returns a path as text.
+fn text(path: &Path) -> Result<String, String> {
+    path.to_str().map(str::to_owned).ok_or_else(|| format!("{}: is not Unicode", path.display()))
+}
