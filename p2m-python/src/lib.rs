@@ -2,7 +2,7 @@
 //!
 //! The classes here take and fill contiguous arrays of NumPy. Shapes, other types of arrays, records of answers and
 //! the documentation for users are in Python (`python/p2m`). Every build and every batch runs detached from the
-//! interpreter, on threads that never call it ([`work`]).
+//! interpreter, on threads that never call it (the module `work`).
 //!
 //! `unsafe` stands in one place, the mapping of a saved file that the user asked for.
 #![deny(unsafe_code)]

@@ -44,9 +44,12 @@ impl From<BadRow> for PyErr {
     }
 }
 
-/// The options of a batch on these threads. Parts that were divided already are not divided again.
-fn batch_options(parallel: bool) -> BatchOptions {
-    BatchOptions::default().with_parallel(parallel)
+/// The number of queries from which on their order along a curve saves more time than finding it takes.
+const MIN_ORDERED_QUERIES: usize = 256;
+
+/// The options of a batch of so many queries. Parts that were divided already are not divided again.
+pub(crate) fn batch_options(queries: usize, parallel: bool) -> BatchOptions {
+    BatchOptions::default().with_parallel(parallel).with_reorder(queries >= MIN_ORDERED_QUERIES)
 }
 
 /// Answers queries with several columns by a function of one query, in parts.
@@ -61,7 +64,8 @@ fn answer_rows<P: Position<f64>, A: Send>(
     answer_in_parts(points.len(), rows, threads, monitor, &|range, mut rows: Rows<'_>| {
         // Queries of brute force take so long that each asks whether to go on.
         let answer = |query: &P| answer(&query.point());
-        let answers = batch::map(&points[range], &batch_options(false), Position::point, answer);
+        let options = batch_options(range.len(), false);
+        let answers = batch::map(&points[range], &options, Position::point, answer);
         answers.iter().enumerate().for_each(|(i, answer)| set(&mut rows, i, answer));
     });
 }
@@ -111,7 +115,7 @@ impl Index {
                     });
                 } else {
                     let watched = Watched { index, monitor: &monitor };
-                    let batch = batch_options(threads.is_parallel());
+                    let batch = batch_options(points.len(), threads.is_parallel());
                     columns.fill(|columns| closest_columns_into(&watched, points, &options, &batch, columns));
                 }
                 Ok::<(), BadRow>(())
@@ -178,7 +182,8 @@ impl Index {
                 check_finite(points)?;
                 let parts = answer_in_parts(points.len(), (), &threads, &monitor, &|range, ()| {
                     let all = |query: &_| index.all_within(&Position::point(query), radius);
-                    let answers = batch::map(&points[range], &batch_options(false), Position::point, all);
+                    let options = batch_options(range.len(), false);
+                    let answers = batch::map(&points[range], &options, Position::point, all);
                     Flat { counts: answers.iter().map(Vec::len).collect(), answers: answers.concat() }
                 });
                 let total = parts.iter().map(|part| part.answers.len()).sum();
@@ -218,7 +223,8 @@ impl Index {
                 check_finite(points)?;
                 answer_in_parts(points.len(), out, &threads, &monitor, &|range, out: &mut [bool]| {
                     let any = |query: &_| index.is_any_within(&Position::point(query), radius);
-                    let answers = batch::map(&points[range], &batch_options(false), Position::point, any);
+                    let options = batch_options(range.len(), false);
+                    let answers = batch::map(&points[range], &options, Position::point, any);
                     out.copy_from_slice(&answers);
                 });
                 Ok::<(), BadRow>(())
@@ -250,8 +256,9 @@ impl Index {
             let work = || {
                 check_finite(points)?;
                 answer_in_parts(points.len(), out, &threads, &monitor, &|range, out: &mut [f64]| {
+                    let options = batch_options(range.len(), false);
                     let queries: Vec<Point3<f64>> = points[range].iter().map(Position::point).collect();
-                    let answers = signed.closest_points(&queries, &QueryOptions::default(), &batch_options(false));
+                    let answers = signed.closest_points(&queries, &QueryOptions::default(), &options);
                     for (value, answer) in out.iter_mut().zip(&answers) {
                         // Without primitives there is nothing inside.
                         *value = match answer {

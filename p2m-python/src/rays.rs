@@ -4,12 +4,12 @@ use crate::columns::{NO_PRIMITIVE, borrowed, slice};
 use crate::errors::value_error;
 use crate::index::Index;
 use crate::parts::{Split, answer_in_parts};
-use crate::queries::not_finite;
+use crate::queries::{batch_options, not_finite};
 use crate::scene::triples;
 use crate::work::{Monitor, Threads, run_batch};
 use nalgebra::{Point3, Vector3};
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
-use p2m_core::batch::{self, BatchOptions};
+use p2m_core::batch;
 use p2m_core::{Hit, Ray, RayError, RayQuery, Side};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -58,11 +58,11 @@ impl Rays<'_> {
         answer: impl Fn(&Ray) -> A + Sync,
         store: impl Fn(Vec<A>, O) -> R + Sync,
     ) -> Vec<R> {
-        let batch = BatchOptions::default().with_parallel(false);
         answer_in_parts(self.origins.len(), out, threads, monitor, &|range, out: O| {
             // All rays were checked.
             let rays: Vec<Ray> = range.filter_map(|row| self.ray(row).ok()).collect();
-            store(batch::map(&rays, &batch, |ray| ray.at(0.0), &answer), out)
+            let options = batch_options(rays.len(), false);
+            store(batch::map(&rays, &options, |ray| ray.at(0.0), &answer), out)
         })
     }
 }

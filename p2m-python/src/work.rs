@@ -82,7 +82,7 @@ impl Monitor {
         let now = Instant::now();
         let elapsed = now - start;
         if elapsed < SHORT_STEP {
-            // Only a full step tells that a longer one would be short enough.
+            // After a shorter step than planned, such as the last one, a longer one might not be short enough.
             if queries >= self.step() {
                 self.step.store((2 * queries).min(MAX_STEP_QUERIES), Ordering::Relaxed);
             }

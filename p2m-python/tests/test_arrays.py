@@ -189,7 +189,7 @@ def test_wrong_arguments_are_named() -> None:
         (TypeError, "progress: 7", lambda: INDEX.closest(points, progress=7)),
         (ValueError, r"vertices: the shape is \(3,\)", lambda: p2m.Scene([1, 2, 3])),
         (ValueError, r"triangles: the shape is \(1, 2\)", lambda: p2m.Scene(np.eye(3), [[0, 1]])),
-        (ValueError, "triangles: row 1 is .0, 1, 3., but there are 3", lambda: p2m.Scene(np.eye(3), [[0, 1, 2], [0, 1, 3]])),
+        (ValueError, "row 1 is .0, 1, 3., but there are 3", lambda: p2m.Scene(np.eye(3), [[0, 1, 2], [0, 1, 3]])),
         (ValueError, "segments: row 0 is .-1, 1.", lambda: p2m.Scene(np.eye(3), segments=[[-1, 1]])),
         (ValueError, "points: row 0", lambda: p2m.Scene(np.eye(3), points=[2**40])),
         (TypeError, "triangles: the type is float64", lambda: p2m.Scene(np.eye(3), [[0.0, 1.0, 2.0]])),

@@ -9,16 +9,9 @@ use std::process::Command;
 const MIN_VERSION: (u32, u32) = (3, 11);
 /// The folder of the package.
 const PACKAGE: &str = "p2m-python";
-/// The packages that build the wheel and test it. They are those of `[project.optional-dependencies]`, and maturin.
-const NEEDED: [&str; 7] = [
-    "maturin>=1.10,<2",
-    "numpy>=1.26",
-    "hypothesis>=6.100",
-    "mypy>=1.15",
-    "pytest>=8",
-    "tqdm>=4.66",
-    "types-tqdm>=4.66",
-];
+/// The packages that the tests need. They are those of the extra `test` in pyproject.toml.
+const NEEDED: [&str; 6] =
+    ["numpy>=1.26", "hypothesis>=6.100", "mypy>=1.15", "pytest>=8", "tqdm>=4.66", "types-tqdm>=4.66"];
 
 /// Tests the package, or says why it cannot be tested here. A filter selects tests of pytest.
 pub(crate) fn check(filter: &[String]) -> Outcome {
@@ -38,19 +31,11 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
         println!("\n== skipped: the packages that the tests need cannot be installed\n{why}");
         return Ok(());
     }
-    let wheels = target.join("wheels");
-    // A wheel of an earlier version would be installed as well.
-    if wheels.exists() {
-        fs::remove_dir_all(&wheels).map_err(|error| format!("{}: {error}", wheels.display()))?;
-    }
-    // The crates that search are optimised in this profile, and were compiled by other tests already.
-    let manifest = format!("{PACKAGE}/Cargo.toml");
-    let build = ["-m", "maturin", "build", "--locked", "--profile", "dev", "--manifest-path", &manifest, "--out"];
-    run(&own_python, &[&build[..], &[&text(&wheels)?]].concat(), &[])?;
-    let install = ["-m", "pip", "install", "--quiet", "--no-deps", "--force-reinstall", "--no-index", "--find-links"];
-    run(&own_python, &[&install[..], &[&text(&wheels)?, "p2m"]].concat(), &[])?;
+    // With the features of `cargo test --workspace`, which examples need as well, only this package is compiled after
+    // the other tests. The crates that search are optimised in this profile.
+    cargo(&["build", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"], &[])?;
+    install_package(&own_python, &target.join("debug"))?;
     // The program answers the same queries.
-    cargo(&["build", "--locked", "--package", "p2m-cli", "--bin", "p2m"], &[])?;
     let program = target.join("debug").join(format!("p2m{}", std::env::consts::EXE_SUFFIX));
     let mut tests = Command::new(&own_python);
     tests.args(["-m", "pytest", "-rs", "--durations=5", "tests"]).args(filter).env("P2M_PROGRAM", &program);
@@ -84,6 +69,27 @@ fn install_needed(python: &str) -> Result<(), String> {
     }
     println!("\n== {python} -m pip install {}", NEEDED.join(" "));
     output(python, &[&install[..], &NEEDED].concat()).map(drop)
+}
+
+/// Copies the package with its library into the virtual environment, as pip would install it.
+fn install_package(python: &str, libraries: &Path) -> Result<(), String> {
+    let site = output(python, &["-c", "import sysconfig; print(sysconfig.get_paths()['platlib'])"])?;
+    let package = Path::new(site.trim()).join("p2m");
+    let failed = |error| format!("{}: {error}", package.display());
+    if package.exists() {
+        fs::remove_dir_all(&package).map_err(failed)?;
+    }
+    fs::create_dir_all(&package).map_err(failed)?;
+    for entry in fs::read_dir(format!("{PACKAGE}/python/p2m")).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if let Some(name) = path.file_name().filter(|_| path.is_file()) {
+            fs::copy(&path, package.join(name)).map_err(failed)?;
+        }
+    }
+    let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let library = libraries.join(format!("{prefix}_p2m{suffix}"));
+    let module = package.join(if cfg!(windows) { "_p2m.pyd" } else { "_p2m.abi3.so" });
+    fs::copy(&library, module).map(drop).map_err(|error| format!("{}: {error}", library.display()))
 }
 
 /// Returns a path as text.

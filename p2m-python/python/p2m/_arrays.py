@@ -122,7 +122,9 @@ def outputs(
     if isinstance(fields, str):
         fields = (fields,)
     given: Mapping[str, Any] | None = None
-    if isinstance(out, np.ndarray):
+    if out is None:
+        pass
+    elif isinstance(out, np.ndarray):
         names = tuple(fields) if fields is not None else tuple(default)
         if len(names) != 1:
             raise ValueError(f"out: one array was given for the fields {', '.join(names)}: give a dictionary of arrays")
@@ -131,7 +133,7 @@ def outputs(
         given = out.asdict()
     elif isinstance(out, Mapping):
         given = out
-    elif out is not None:
+    else:
         raise TypeError(f"out: {type(out).__name__} is neither an array nor a dictionary of arrays")
     if fields is None:
         fields = tuple(given) if given is not None else default
@@ -155,7 +157,7 @@ def outputs(
 
 def flat(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     """Return flat views of contiguous arrays."""
-    return {name: array.reshape(-1) for name, array in arrays.items()}
+    return {name: array if array.ndim == 1 else array.reshape(-1) for name, array in arrays.items()}
 
 
 @contextlib.contextmanager

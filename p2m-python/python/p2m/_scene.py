@@ -152,7 +152,8 @@ class Scene:
         """
         if hasattr(geometry, "to_legacy"):
             lists = {}
-            for name, key in (("vertex", "positions"), ("point", "positions"), ("triangle", "indices"), ("line", "indices")):
+            for name in ("vertex", "point", "triangle", "line"):
+                key = "positions" if name in ("vertex", "point") else "indices"
                 attributes = getattr(geometry, name, None)
                 if attributes is not None and key in attributes:
                     lists[name] = attributes[key].cpu().numpy()
