@@ -177,16 +177,19 @@ def test_files_that_cannot_be_used_are_errors(scene: p2m.Scene, tmp_path: Path) 
 
 def test_objects_of_files_are_in_answers(tmp_path: Path) -> None:
     path = tmp_path / "two.obj"
-    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nl 1 4\no floor\nf 1 2 3\nusemtl red\no pole\nl 3 4\n")
+    path.write_text(
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nv 9 9 8\nv 9 9 9\nl 1 4\n"
+        "o floor\nf 1 2 3\nusemtl red\no pole\nl 3 4\no\nl 5 6\n"
+    )
     scene = p2m.read(path)
     assert [tuple(o) for o in scene.objects] == [("floor", 1, 2), ("pole", 2, 3)]
-    assert scene.skipped == ["1 x usemtl"] and scene.sources.tolist() == [0, 0, 1]
-    assert scene.triangle_ids.tolist() == [1] and scene.segment_ids.tolist() == [0, 2]
+    assert scene.skipped == ["1 x usemtl"] and scene.sources.tolist() == [0, 0, 1, 2]
+    assert scene.triangle_ids.tolist() == [1] and scene.segment_ids.tolist() == [0, 2, 3]
     index = p2m.Index(scene)
-    points = [[0.2, 0.2, -1], [0.1, 1, 0.1], [4, 3.9, 4]]
+    points = [[0.2, 0.2, -1], [0.1, 1, 0.1], [4, 3.9, 4], [9, 9, 8.5]]
     answer = index.closest(points, fields=("object", "primitive"), max_distance=1.0)
-    assert answer.object.tolist() == [0, 1, -1] and answer.primitive.tolist() == [1, 2, 0]
-    assert index.closest(points, fields="object").object.tolist() == [0, 1, -1]
+    assert answer.object.tolist() == [0, 1, -1, -1] and answer.primitive.tolist() == [1, 2, 0, 3]
+    assert index.closest(points, fields="object").object.tolist() == [0, 1, -1, -1]
     assert sorted(index.k_nearest(points[:1], 3, fields="object").object[0].tolist()) == [-1, 0, 1]
     assert index.within(points, 1.0, fields="object").object[0] == 0
 
