@@ -155,6 +155,8 @@ import numpy as np, p2m
 sys.path.insert(0, {tests!r})
 from conftest import sphere
 scene = p2m.Scene(*sphere(200, 400))
+# A process that runs in the background may have been started with the signal ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 work = {work!r}
 threads = {threads}
 small = p2m.Scene(*sphere(20, 40))
