@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from typing import Any, Literal, NamedTuple, Union, overload
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,8 +29,9 @@ from ._scene import Scene
 _FLOAT64 = np.dtype(np.float64)
 _BOOL = np.dtype(np.bool_)
 
-_Sign = Literal["auto", "closed", "winding"]
-_RayMode = Literal["first", "all", "count", "any", "crossings"]
+if TYPE_CHECKING:
+    _Sign = Literal["auto", "closed", "winding"]
+    _RayMode = Literal["first", "all", "count", "any", "crossings"]
 
 
 class Index:
