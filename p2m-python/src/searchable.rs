@@ -130,8 +130,8 @@ pub(crate) fn build(
         "kdop" => build_kdop(scene, settings.directions.unwrap_or(KdopDirections::Fourteen)),
         "octree" => {
             let options = OctreeOptions::default();
-            let resolution = settings.resolution.unwrap_or(options.resolution);
-            let options = options.with_resolution(resolution);
+            let factor = settings.resolution.map_or(1.0, |resolution| resolution / options.resolution);
+            let options = options.with_finer_cells(factor);
             InterceptionIndex::<f64, _, Octree>::build_with_progress(scene, &options, &progress).map(Built::new)
         }
         "p2m" => {
