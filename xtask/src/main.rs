@@ -8,6 +8,7 @@ mod licences;
 mod memory;
 mod package;
 mod promises;
+mod python;
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -23,7 +24,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 12] = [
+const TASKS: [Task; 13] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -60,6 +61,12 @@ const TASKS: [Task; 12] = [
         arguments: "",
         about: "Pack the crates as for publishing, and check what is in them and the licences of dependencies",
         run: |_| package::run(),
+    },
+    Task {
+        name: "python",
+        arguments: "[TESTS]",
+        about: "Build the Python package and run its tests in a virtual environment",
+        run: python::check,
     },
     Task {
         name: "bench",

@@ -1,0 +1,41 @@
+"""Closest points, signed distances and rays in scenes of triangles, segments and points.
+
+All numbers are float64, answers are the same bits on every machine, and ties go to the lowest id.
+
+>>> import numpy as np, p2m
+>>> scene = p2m.Scene([[0, 0, 0], [4, 0, 0], [0, 4, 0]], triangles=[[0, 1, 2]])
+>>> index = p2m.Index(scene)
+>>> answer = index.closest(np.array([[1.0, 1.0, 2.0], [9.0, 0.0, 0.0]]), fields=("distance", "primitive", "point"))
+>>> answer.distance
+array([2., 5.])
+>>> answer.point.tolist()
+[[1.0, 1.0, 0.0], [4.0, 0.0, 0.0]]
+
+`read` reads scenes from files, and `Scene.of` takes meshes of trimesh, Open3D, PyVista and meshio. `Index` has the
+queries. `load` loads saved indexes, and `advise` tells which backend a scene calls for.
+"""
+
+from __future__ import annotations
+
+from ._index import Estimate, Index, advise, load
+from ._p2m import __version__, backends
+from ._records import AllHits, ClosestPoints, FirstHits, NearPrimitives, Record
+from ._scene import Counts, Object, Scene, read
+
+__all__ = [
+    "AllHits",
+    "ClosestPoints",
+    "Counts",
+    "Estimate",
+    "FirstHits",
+    "Index",
+    "NearPrimitives",
+    "Object",
+    "Record",
+    "Scene",
+    "__version__",
+    "advise",
+    "backends",
+    "load",
+    "read",
+]

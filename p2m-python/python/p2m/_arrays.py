@@ -1,0 +1,183 @@
+"""Checks and conversions of arguments."""
+
+from __future__ import annotations
+
+import contextlib
+import operator
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, Literal, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _p2m
+from ._records import Record
+
+Progress = Union[Callable[[int, int], object], bool, Literal["tqdm"], None]
+"""``callback(done, total)``, or ``True`` or ``"tqdm"`` for a bar of tqdm."""
+
+Out = Union[Mapping[str, NDArray[Any]], Record, NDArray[Any], None]
+"""Arrays that receive answers, by name, or one array for one answer."""
+
+_FLOAT64 = np.dtype(np.float64)
+_FLOAT32 = np.dtype(np.float32)
+
+FIELDS: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
+    "distance": (_FLOAT64, ()),
+    "primitive": (np.dtype(np.int64), ()),
+    "point": (_FLOAT64, (3,)),
+    "feature": (np.dtype(np.uint8), ()),
+    "barycentric": (_FLOAT64, (3,)),
+    "lower_bound": (_FLOAT64, ()),
+    "object": (np.dtype(np.int64), ()),
+}
+"""The type and the last axes of the columns of closest points."""
+
+HIT_FIELDS: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
+    "t": (_FLOAT64, ()),
+    "primitive": (np.dtype(np.int64), ()),
+    "point": (_FLOAT64, (3,)),
+    "barycentric": (_FLOAT64, (3,)),
+    "side": (np.dtype(np.int8), ()),
+}
+"""The type and the last axes of the columns of hits."""
+
+
+def coordinates(values: ArrayLike, name: str, *, only_float64: bool = False) -> NDArray[Any]:
+    """Return coordinates as a contiguous array of float64 or float32, which is not copied if it is one."""
+    array = np.asarray(values)
+    if array.dtype is not _FLOAT64 and array.dtype != _FLOAT64 and (only_float64 or array.dtype != _FLOAT32):
+        if array.dtype.kind not in "iuf":
+            raise TypeError(f"{name}: the type is {array.dtype}, but coordinates are real numbers")
+        array = array.astype(_FLOAT64)
+    if array.ndim == 0 or array.shape[-1] != 3:
+        raise ValueError(f"{name}: the shape is {array.shape}, but the last axis has x, y and z")
+    flags = array.flags
+    if not (flags.c_contiguous and flags.aligned):
+        array = array.copy()
+    return array
+
+
+def indices(values: ArrayLike | None, name: str, width: int, vertices: int) -> NDArray[np.uint32]:
+    """Return indices of vertices as a flat array, `width` for each primitive."""
+    if values is None:
+        return np.empty(0, np.uint32)
+    array = np.asarray(values)
+    if array.size == 0:
+        return np.empty(0, np.uint32)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"{name}: the type is {array.dtype}, but indices are integers")
+    shape = (array.shape[0], width) if width > 1 else (array.shape[0],)
+    if array.shape != shape:
+        expected = f"(m, {width})" if width > 1 else "(m,)"
+        raise ValueError(f"{name}: the shape is {array.shape} instead of {expected}")
+    if int(array.min()) < 0 or int(array.max()) >= vertices:
+        wrong = (array < 0) | (array >= vertices)
+        row = int(np.nonzero(wrong.reshape(len(array), -1).any(axis=1))[0][0])
+        raise ValueError(f"{name}: row {row} is {array[row].tolist()}, but there are {vertices} vertices")
+    return np.ascontiguousarray(array, np.uint32).reshape(-1)
+
+
+def thread_count(threads: int | None, default: int | None = None) -> int:
+    """Return the number of threads to use."""
+    if threads is None:
+        return default if default is not None else _p2m.default_threads()
+    count = operator.index(threads)
+    if not 1 <= count <= 1024:
+        raise ValueError(f"threads: {count} is not from 1 to 1024")
+    return count
+
+
+def not_negative(value: float, name: str) -> float:
+    """Return a number that is not negative; it may be infinite."""
+    number = float(value)
+    if not number >= 0.0:
+        raise ValueError(f"{name}: {number} is negative or no number")
+    return number
+
+
+def checked_out(array: Any, name: str, dtype: np.dtype[Any], shape: tuple[int, ...]) -> NDArray[Any]:
+    """Return an array that answers can be written to."""
+    if not isinstance(array, np.ndarray):
+        raise TypeError(f"out: {name} is no array of NumPy but {type(array).__name__}")
+    if array.dtype != dtype:
+        raise TypeError(f"out: {name} has the type {array.dtype} instead of {dtype}")
+    if array.shape != shape:
+        raise ValueError(f"out: {name} has the shape {array.shape} instead of {shape}")
+    if not (array.flags.c_contiguous and array.flags.aligned):
+        raise ValueError(f"out: {name} is not contiguous")
+    if not array.flags.writeable:
+        raise ValueError(f"out: {name} is read-only")
+    return array
+
+
+def outputs(
+    fields: Sequence[str] | None,
+    shape: tuple[int, ...],
+    out: Out,
+    known: Mapping[str, tuple[np.dtype[Any], tuple[int, ...]]],
+    default: Sequence[str],
+) -> dict[str, NDArray[Any]]:
+    """Return the arrays for the fields, new ones or those of `out`."""
+    if isinstance(fields, str):
+        fields = (fields,)
+    given: Mapping[str, Any] | None = None
+    if out is None:
+        pass
+    elif isinstance(out, np.ndarray):
+        names = tuple(fields) if fields is not None else tuple(default)
+        if len(names) != 1:
+            raise ValueError(f"out: one array was given for the fields {', '.join(names)}: give a dictionary of arrays")
+        given = {names[0]: out}
+    elif isinstance(out, Record):
+        given = out.asdict()
+    elif isinstance(out, Mapping):
+        given = out
+    else:
+        raise TypeError(f"out: {type(out).__name__} is neither an array nor a dictionary of arrays")
+    if fields is None:
+        fields = tuple(given) if given is not None else default
+    arrays = {}
+    for name in fields:
+        if name not in known:
+            raise ValueError(f"fields: {name!r} is none of {', '.join(known)}")
+        dtype, tail = known[name]
+        if given is None:
+            arrays[name] = np.empty(shape + tail, dtype)
+        elif name in given:
+            arrays[name] = checked_out(given[name], name, dtype, shape + tail)
+        else:
+            raise ValueError(f"out: there is no array for the field {name!r}")
+    if given is not None and len(given) != len(arrays):
+        raise ValueError(f"out: there are arrays for {', '.join(given)}, but the fields are {', '.join(arrays)}")
+    if not arrays:
+        raise ValueError("fields: none is asked for")
+    return arrays
+
+
+def flat(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Return flat views of contiguous arrays."""
+    return {name: array if array.ndim == 1 else array.reshape(-1) for name, array in arrays.items()}
+
+
+@contextlib.contextmanager
+def callback(progress: Progress, what: str, unit: str) -> Iterator[Callable[[int, int], object] | None]:
+    """Yield the function that receives progress, and close its bar afterwards."""
+    if progress is None or progress is False:
+        yield None
+    elif progress is True or progress == "tqdm":
+        try:
+            from tqdm.auto import tqdm
+        except ImportError as error:
+            raise ImportError(f"progress={progress!r} needs the package tqdm") from error
+        with tqdm(desc=what, unit=unit, unit_scale=True, total=0) as bar:
+
+            def update(done: int, total: int) -> None:
+                bar.total = total
+                bar.update(done - bar.n)
+
+            yield update
+    elif callable(progress):
+        yield progress
+    else:
+        raise TypeError(f"progress: {progress!r} is neither a function nor True nor 'tqdm'")

@@ -1,0 +1,902 @@
+"""Indexes and their queries."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Union, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _p2m
+from ._arrays import (
+    FIELDS,
+    HIT_FIELDS,
+    Out,
+    Progress,
+    callback,
+    checked_out,
+    coordinates,
+    flat,
+    not_negative,
+    outputs,
+    thread_count,
+)
+from ._records import AllHits, ClosestPoints, FirstHits, NearPrimitives
+from ._scene import Scene
+
+_FLOAT64 = np.dtype(np.float64)
+_BOOL = np.dtype(np.bool_)
+
+if TYPE_CHECKING:
+    _Sign = Literal["auto", "closed", "winding"]
+    _RayMode = Literal["first", "all", "count", "any", "crossings"]
+
+
+class Index:
+    """An index over a scene, which answers queries and never changes.
+
+    Queries from several Python threads run at the same time, because the interpreter is released while an index is
+    built and while a batch is answered. Answers do not depend on the backend, the number of threads, the order of
+    queries or the processor: distances and primitives are the same bits, and of equally near primitives the one with
+    the lowest id is the answer.
+
+    Parameters
+    ----------
+    scene : Scene or object
+        The scene, or an object that `Scene.of` makes one of.
+    backend : str
+        ``"aabb"``, a tree of boxes; ``"kdop"``, a tree of polytopes, for scenes askew to the axes; ``"octree"`` and
+        ``"p2m"``, cells with lists, which take longer to build and answer many queries faster; ``"brute"``, no
+        structure. ``"auto"`` is the tree of boxes, or with `queries` the backend that `p2m.advise` recommends.
+    threads : int, optional
+        The number of threads for the build and, unless they have their own, for queries. By default it is the
+        environment variable ``RAYON_NUM_THREADS``, or else the number of processors that this process may use.
+    progress : callable, True or "tqdm", optional
+        It is called as ``progress(done, total)`` about 25 times a second during a build that takes longer, or a bar of
+        tqdm is shown. Trees report only their end.
+    queries : int, optional
+        The number of queries that are expected, for the choice of ``"auto"``.
+    directions : {6, 14, 18, 26, "scene"}, optional
+        The number of faces of the polytopes of ``"kdop"``, by default 14; ``"scene"`` for 14 along axes of the scene.
+    resolution : float, optional
+        The fineness of the cells of ``"octree"``, by default 0.3. With 9 a large batch takes a quarter less time; the
+        index takes three to four times the memory and the build three times as long (docs/batches.md).
+
+    Raises
+    ------
+    ValueError
+        For an unknown backend or a wrong option.
+    KeyboardInterrupt
+        At once. What was running ends in the background: cells within about a per cent of their build, and a tree when
+        it is finished.
+
+    Notes
+    -----
+    An empty scene has an index: its queries have no answer, as those have that find nothing within `max_distance`.
+
+    ``copy.copy`` and ``copy.deepcopy`` return the same object. An index that was loaded from a file is pickled as the
+    path and the checksum of the file, any other as its bytes together with the scene.
+
+    Examples
+    --------
+    >>> import numpy as np, p2m
+    >>> scene = p2m.Scene([[0, 0, 0], [4, 0, 0], [0, 4, 0]], triangles=[[0, 1, 2]])
+    >>> index = p2m.Index(scene)
+    >>> index.distance([[1.0, 1.0, 2.0], [1.0, 1.0, -3.0]])
+    array([2., 3.])
+    >>> index.closest([4.0, 4.0, 0.0], fields="point").point
+    array([2., 2., 0.])
+    """
+
+    __slots__ = ("__weakref__", "_raw", "_threads")
+
+    _raw: _p2m.Index
+    _threads: int | None
+
+    def __init__(
+        self,
+        scene: Any,
+        backend: str = "auto",
+        *,
+        threads: int | None = None,
+        progress: Progress = None,
+        queries: int | None = None,
+        directions: int | Literal["scene"] | None = None,
+        resolution: float | None = None,
+    ) -> None:
+        made = Scene.of(scene)
+        self._threads = None if threads is None else thread_count(threads)
+        count = thread_count(threads)
+        if backend == "auto":
+            backend = "aabb" if queries is None else advise(made, queries, threads=count)[0].backend
+        if directions is not None and backend != "kdop":
+            raise ValueError(f"directions: the backend {backend!r} has none")
+        if resolution is not None and backend != "octree":
+            raise ValueError(f"resolution: the backend {backend!r} has none")
+        if resolution is not None and not 0.0 < resolution < float("inf"):
+            raise ValueError(f"resolution: {resolution} is not positive and finite")
+        named = None if directions is None else str(directions)
+        with callback(progress, "building", "%") as call:
+            self._raw = _p2m.Index.build(made._raw, backend, count, call, named, resolution)
+
+    @classmethod
+    def _from_raw(cls, raw: _p2m.Index, threads: int | None) -> Index:
+        index = cls.__new__(cls)
+        index._raw = raw
+        index._threads = threads
+        return index
+
+    @property
+    def scene(self) -> Scene:
+        """The scene that the index was built over."""
+        return Scene._from_raw(self._raw.scene())
+
+    @property
+    def backend(self) -> str:
+        """The name of the backend."""
+        return self._raw.backend()
+
+    @property
+    def info(self) -> dict[str, Any]:
+        """What is known of the index, by names.
+
+        ``backend`` and ``summary`` describe the backend. ``primitives`` is the number of primitives. ``memory_bytes``
+        is the memory of the index besides the scene, and ``parts`` has it by parts. ``casts_rays`` and ``is_saveable``
+        tell what it can do. ``surface_area`` is that of all boxes of a tree: build anew when it has grown by a third
+        in refits. ``cells`` describes cells, ``directions`` is the number of faces of k-DOPs, and ``path`` the file
+        that the index was loaded from. What a backend does not have is None.
+        """
+        return self._raw.info()
+
+    def __len__(self) -> int:
+        return len(self.scene)
+
+    def __repr__(self) -> str:
+        return f"<p2m.Index {self.backend!r} of {len(self)} primitives>"
+
+    def __copy__(self) -> Index:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Index:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        origin = self._raw.origin()
+        if origin is not None:
+            path, checksum, is_mapped = origin
+            return _load_pickled, (os.fspath(path), checksum, is_mapped, self._threads)
+        return _load_bytes, (self._raw.to_bytes(), self.backend, self._threads)
+
+    def _count(self, threads: int | None) -> int:
+        return thread_count(threads, self._threads)
+
+    def closest(
+        self,
+        points: ArrayLike,
+        *,
+        max_distance: float | None = None,
+        epsilon: float = 0.0,
+        max_visits: int | None = None,
+        certified: bool = False,
+        fields: str | Sequence[str] | None = None,
+        out: Out = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> ClosestPoints:
+        """Return the closest points of the scene to query points.
+
+        Parameters
+        ----------
+        points : array_like, shape {.., 3}
+            The query points, with any leading axes: (3,) for one point, (n, 3), or (x, y, z, 3) for a grid. Contiguous
+            arrays of float64 and float32 are not copied. Nobody may write to the array during the call.
+        max_distance : float, optional
+            The largest distance of an answer, inclusive. Where nothing is as near, the primitive is -1 and the distance
+            infinite. Without it every query of a scene that is not empty has an answer.
+        epsilon : float, optional
+            The largest relative error of distances: with 0.01 they may be too large by one per cent.
+        max_visits : int, optional
+            The largest number of nodes and packets that a query visits, besides those that find any answer at all. The
+            best answer until then counts, and its ``lower_bound`` is valid.
+        certified : bool, optional
+            Whether the primitive is certainly the nearest one and the distance is the true one, rounded once.
+        fields : str or sequence of str, optional
+            The arrays of the answer, by default those of `out` or else ``("distance", "primitive")``: any of
+            ``distance``, ``primitive``, ``point``, ``feature``, ``barycentric``, ``lower_bound`` and ``object``, which
+            `ClosestPoints` describes. What is not asked for is not computed.
+        out : dict of ndarray, ndarray or ClosestPoints, optional
+            Contiguous arrays of the right type and shape, by field, that receive the answers; one array for one field.
+            After an exception their content is undefined.
+        threads : int, optional
+            The number of threads; by default that of the index. Small batches run on the calling thread.
+        progress : callable, True or "tqdm", optional
+            It is called as ``progress(done, total)`` about 25 times a second, or a bar of tqdm is shown.
+
+        Returns
+        -------
+        ClosestPoints
+            A record with the arrays of `fields`, each with the leading axes of `points`.
+
+        Raises
+        ------
+        ValueError
+            If a coordinate is not finite (the message has the row of the flattened points), or for a wrong shape or
+            option.
+        TypeError
+            For a wrong type of an argument or of an array in `out`.
+        KeyboardInterrupt
+            Within a tenth of a second.
+
+        Examples
+        --------
+        >>> import numpy as np, p2m
+        >>> index = p2m.Index(p2m.Scene([[0, 0, 0], [10, 0, 0]], points=[0, 1]))
+        >>> answer = index.closest([[1, 0, 0], [7, 0, 0]], max_distance=2.0)
+        >>> answer.primitive
+        array([ 0, -1])
+        >>> answer.distance
+        array([ 1., inf])
+        >>> distances = np.empty((5, 4))
+        >>> index.closest(np.zeros((5, 4, 3)), out={"distance": distances})
+        ClosestPoints(distance: float64[5, 4])
+        """
+        queries = coordinates(points, "points")
+        shape = queries.shape[:-1]
+        arrays = outputs(fields, shape, out, FIELDS, ("distance", "primitive"))
+        largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
+        error = not_negative(epsilon, "epsilon")
+        if max_visits is not None and not 0 <= max_visits < 2**32:
+            raise ValueError(f"max_visits: {max_visits} is not from 0 to {2**32 - 1}")
+        if certified and (error > 0.0 or max_visits is not None):
+            raise ValueError("certified: certified answers have neither epsilon nor max_visits")
+        columns = flat(arrays)
+        objects = columns.pop("object", None)
+        if objects is not None and "primitive" not in columns:
+            columns["primitive"] = np.empty(len(objects), np.int64)
+        count = thread_count(threads, self._threads)
+        if progress is None:
+            raw = self._raw
+            raw.closest(queries.reshape(-1), columns, largest, error, max_visits, certified, count, None)
+        else:
+            with callback(progress, "answering", "points") as call:
+                raw = self._raw
+                raw.closest(queries.reshape(-1), columns, largest, error, max_visits, certified, count, call)
+        if objects is not None:
+            self._fill_objects(columns["primitive"], objects)
+        return ClosestPoints(arrays)
+
+    def _fill_objects(self, primitive: NDArray[np.int64], objects: NDArray[np.int64]) -> None:
+        """Write the numbers of the objects that primitives belong to."""
+        named = self._raw.scene().objects()
+        starts = np.array([start for _, start, _ in named], np.int64)
+        stops = np.array([stop for _, _, stop in named] + [0], np.int64)
+        number = np.searchsorted(starts, primitive, side="right") - 1
+        objects[:] = np.where((number >= 0) & (primitive < stops[number]), number, -1)
+
+    def distance(
+        self,
+        points: ArrayLike,
+        *,
+        max_distance: float | None = None,
+        out: NDArray[np.float64] | None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> NDArray[np.float64]:
+        """Return the distances of query points from the scene.
+
+        Parameters
+        ----------
+        points, max_distance, threads, progress
+            As for `closest`.
+        out : ndarray of float64, shape {..}, optional
+            The array that receives the distances.
+
+        Returns
+        -------
+        ndarray of float64, shape {..}
+            The distances, infinite beyond `max_distance` and for an empty scene.
+
+        Examples
+        --------
+        >>> import p2m
+        >>> index = p2m.Index(p2m.Scene([[0, 0, 0]], points=[0]))
+        >>> float(index.distance([0, 3, 4]))
+        5.0
+        """
+        answer = self.closest(
+            points, max_distance=max_distance, fields=("distance",), out=out, threads=threads, progress=progress
+        )
+        return answer.distance
+
+    def signed_distance(
+        self,
+        points: ArrayLike,
+        *,
+        sign: _Sign = "auto",
+        inside: Literal["negative", "positive"] = "negative",
+        out: NDArray[np.float64] | None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> NDArray[np.float64]:
+        """Return the distances of query points with a sign that tells inside from outside.
+
+        Parameters
+        ----------
+        points, threads, progress
+            As for `closest`.
+        sign : {"auto", "closed", "winding"}, optional
+            ``"closed"``: the scene is a closed surface, and a point is inside if a ray from it crosses the surface an
+            odd number of times; pseudonormals decide most points, and exact rays the rest. ``"winding"``: a point is
+            inside if its generalised winding number exceeds a half in magnitude; the triangles may have holes and
+            intersect each other. ``"auto"``: as a closed surface if it is one, otherwise by winding numbers.
+        inside : {"negative", "positive"}, optional
+            The sign inside. trimesh has positive numbers there; Open3D, libigl and point-cloud-utils negative ones.
+        out : ndarray of float64, shape {..}, optional
+            The array that receives the distances.
+
+        Returns
+        -------
+        ndarray of float64, shape {..}
+            The signed distances: 0 on the surface, nan where the side is not defined because the winding number is a
+            half within the accuracy of float64.
+
+        Raises
+        ------
+        ValueError
+            If the scene has segments or points, which have no sides; with ``sign="closed"`` also if it is not closed.
+
+        Notes
+        -----
+        The first call prepares the signs, which takes about as long as a build of the tree.
+
+        Examples
+        --------
+        >>> import p2m
+        >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        >>> solid = p2m.Scene(corners, triangles=[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+        >>> index = p2m.Index(solid)
+        >>> index.signed_distance([[0.125, 0.25, 0.25], [0.5, -2.0, 0.25], [0.0, 0.0, 0.0]])
+        array([-0.125,  2.   ,  0.   ])
+        """
+        queries = coordinates(points, "points")
+        array = _one_output(out, "signed_distance", _FLOAT64, queries.shape[:-1])
+        if inside not in ("negative", "positive"):
+            raise ValueError(f"inside: {inside!r} is none of 'negative', 'positive'")
+        count = self._count(threads)
+        with callback(progress, "answering", "points") as call:
+            columns = {"signed_distance": array.reshape(-1)}
+            self._raw.signed_distance(queries.reshape(-1), columns, sign, inside == "negative", count, call)
+        return array
+
+    def k_nearest(
+        self,
+        points: ArrayLike,
+        k: int,
+        *,
+        max_distance: float | None = None,
+        fields: str | Sequence[str] | None = None,
+        out: Out = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> ClosestPoints:
+        """Return the k nearest primitives of each query point, nearest first.
+
+        Parameters
+        ----------
+        points, max_distance, fields, out, threads, progress
+            As for `closest`. ``lower_bound`` is that of the primitive and not of the scene.
+        k : int
+            The number of primitives, at least 1.
+
+        Returns
+        -------
+        ClosestPoints
+            A record with arrays of shape {.., k} or {.., k, 3}. Where there are fewer primitives, the rest has the
+            primitive -1 and an infinite distance.
+
+        Examples
+        --------
+        >>> import p2m
+        >>> index = p2m.Index(p2m.Scene([[0, 0, 0], [5, 0, 0], [2, 0, 0]], points=[0, 1, 2]))
+        >>> index.k_nearest([[1.5, 0, 0]], 2).primitive
+        array([[2, 0]])
+        """
+        queries = coordinates(points, "points")
+        if not 1 <= k < 2**31:
+            raise ValueError(f"k: {k} is not at least 1")
+        arrays = outputs(fields, (*queries.shape[:-1], int(k)), out, FIELDS, ("distance", "primitive"))
+        largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
+        columns = flat(arrays)
+        objects = columns.pop("object", None)
+        if objects is not None and "primitive" not in columns:
+            columns["primitive"] = np.empty(len(objects), np.int64)
+        with callback(progress, "answering", "points") as call:
+            self._raw.k_nearest(queries.reshape(-1), int(k), columns, largest, self._count(threads), call)
+        if objects is not None:
+            self._fill_objects(columns["primitive"], objects)
+        return ClosestPoints(arrays)
+
+    def within(
+        self,
+        points: ArrayLike,
+        radius: float,
+        *,
+        fields: str | Sequence[str] | None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> NearPrimitives:
+        """Return all primitives within a distance of each query point, nearest first.
+
+        Parameters
+        ----------
+        points, fields, threads, progress
+            As for `closest`.
+        radius : float
+            The distance, inclusive.
+
+        Returns
+        -------
+        NearPrimitives
+            A record with ``splits`` and the arrays of `fields`: those of query i, in the order of the flattened
+            queries, are at ``splits[i]:splits[i + 1]``.
+
+        Examples
+        --------
+        >>> import p2m
+        >>> index = p2m.Index(p2m.Scene([[0, 0, 0], [5, 0, 0], [2, 0, 0]], points=[0, 1, 2]))
+        >>> near = index.within([[1.5, 0, 0], [9, 9, 9], [5, 0, 0]], 3.0)
+        >>> near.splits, near.primitive
+        (array([0, 2, 2, 4]), array([2, 0, 1, 2]))
+        """
+        queries = coordinates(points, "points")
+        number = not_negative(radius, "radius")
+        outputs(fields, (0,), None, FIELDS, ("distance", "primitive"))
+        rows = queries.reshape(-1)
+        splits = np.zeros(len(rows) // 3 + 1, np.int64)
+        with callback(progress, "answering", "points") as call:
+            found = self._raw.within(rows, number, splits[1:], self._count(threads), call)
+        np.cumsum(splits, out=splits)
+        arrays = outputs(fields, (len(found),), None, FIELDS, ("distance", "primitive"))
+        columns = flat(arrays)
+        objects = columns.pop("object", None)
+        if objects is not None and "primitive" not in columns:
+            columns["primitive"] = np.empty(len(objects), np.int64)
+        found.fill(columns)
+        if objects is not None:
+            self._fill_objects(columns["primitive"], objects)
+        return NearPrimitives({"splits": splits, **arrays})
+
+    def is_any_within(
+        self,
+        points: ArrayLike,
+        radius: float,
+        *,
+        out: NDArray[np.bool_] | None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> NDArray[np.bool_]:
+        """Return whether any primitive is within a distance of each query point.
+
+        Parameters
+        ----------
+        points, threads, progress
+            As for `closest`.
+        radius : float
+            The distance, inclusive.
+        out : ndarray of bool, shape {..}, optional
+            The array that receives the answers.
+
+        Returns
+        -------
+        ndarray of bool, shape {..}
+
+        Examples
+        --------
+        >>> import p2m
+        >>> index = p2m.Index(p2m.Scene([[0, 0, 0]], points=[0]))
+        >>> index.is_any_within([[1, 0, 0], [2, 0, 0]], 1.0)
+        array([ True, False])
+        """
+        queries = coordinates(points, "points")
+        number = not_negative(radius, "radius")
+        array = _one_output(out, "is_within", _BOOL, queries.shape[:-1])
+        with callback(progress, "answering", "points") as call:
+            columns = {"is_within": array.reshape(-1)}
+            self._raw.is_any_within(queries.reshape(-1), number, columns, self._count(threads), call)
+        return array
+
+    @overload
+    def rays(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        mode: Literal["first"] = "first",
+        *,
+        t_min: float = 0.0,
+        t_max: float = ...,
+        radius: float = 0.0,
+        fields: str | Sequence[str] | None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> FirstHits: ...
+    @overload
+    def rays(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        mode: Literal["all"],
+        *,
+        t_min: float = 0.0,
+        t_max: float = ...,
+        radius: float = 0.0,
+        fields: str | Sequence[str] | None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> AllHits: ...
+    @overload
+    def rays(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        mode: Literal["count", "crossings"],
+        *,
+        t_min: float = 0.0,
+        t_max: float = ...,
+        radius: float = 0.0,
+        fields: None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> NDArray[np.int64]: ...
+    @overload
+    def rays(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        mode: Literal["any"],
+        *,
+        t_min: float = 0.0,
+        t_max: float = ...,
+        radius: float = 0.0,
+        fields: None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> NDArray[np.bool_]: ...
+    def rays(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        mode: _RayMode = "first",
+        *,
+        t_min: float = 0.0,
+        t_max: float = float("inf"),
+        radius: float = 0.0,
+        fields: str | Sequence[str] | None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> Union[FirstHits, AllHits, NDArray[np.int64], NDArray[np.bool_]]:
+        """Cast rays at the scene. Hits are exact: no ray passes between two triangles with a common edge.
+
+        Parameters
+        ----------
+        origins, directions : array_like, shape {.., 3}
+            The origins and directions of the rays, which are broadcast against each other. Directions have any length
+            but zero.
+        mode : {"first", "all", "count", "any", "crossings"}, optional
+            What to return: the first hit, all hits, their number, whether there is one, or how often the ray crosses
+            the surface, which is odd for a ray that begins inside of a closed one, at edges and vertices as well.
+        t_min, t_max : float, optional
+            The range of parameters, inclusive, in lengths of the direction. Minus infinity to infinity is a line.
+        radius : float, optional
+            The distance within which segments and points are hit. It does not affect triangles.
+        fields : str or sequence of str, optional
+            The arrays of hits, by default ``("t", "primitive")``: any of ``t``, ``primitive``, ``point``,
+            ``barycentric`` and ``side``, which `FirstHits` describes.
+        threads, progress
+            As for `closest`.
+
+        Returns
+        -------
+        FirstHits, AllHits, ndarray of int64 or ndarray of bool
+            For ``"first"`` a record of arrays with the leading axes of the rays, and for ``"all"`` a record with
+            ``splits``. For ``"count"`` and ``"crossings"`` an array of int64, and for ``"any"`` one of bool.
+
+        Raises
+        ------
+        ValueError
+            If a coordinate is not finite, a direction is zero, or the backend casts no rays: use ``"aabb"``,
+            ``"kdop"`` or ``"brute"``.
+
+        Examples
+        --------
+        >>> import p2m
+        >>> index = p2m.Index(p2m.Scene([[0, 0, 0], [4, 0, 0], [0, 4, 0]], triangles=[[0, 1, 2]]))
+        >>> origins = [[1, 1, 3], [1, 1, -3], [9, 9, 3]]
+        >>> hits = index.rays(origins, [0, 0, -2], fields=("t", "primitive", "side"))
+        >>> hits.t, hits.primitive, hits.side
+        (array([1.5, inf, inf]), array([ 0, -1, -1]), array([1, 0, 0], dtype=int8))
+        >>> index.rays(origins, [0, 0, -2], "count", t_min=-9)
+        array([1, 1, 0])
+        """
+        starts = coordinates(origins, "origins", only_float64=True)
+        steps = coordinates(directions, "directions", only_float64=True)
+        shape = np.broadcast_shapes(starts.shape, steps.shape)
+        start = np.ascontiguousarray(np.broadcast_to(starts, shape)).reshape(-1)
+        step = np.ascontiguousarray(np.broadcast_to(steps, shape)).reshape(-1)
+        leading, number = shape[:-1], len(start) // 3
+        size = not_negative(radius, "radius")
+        if not t_min <= t_max:
+            raise ValueError(f"t_min, t_max: no parameter lies between {t_min} and {t_max}")
+        if fields is not None and mode not in ("first", "all"):
+            raise ValueError(f"fields: the mode {mode!r} has none")
+        count = self._count(threads)
+        with callback(progress, "casting", "rays") as call:
+            if mode == "first":
+                arrays = outputs(fields, leading, None, HIT_FIELDS, ("t", "primitive"))
+                self._raw.rays(start, step, mode, flat(arrays), t_min, t_max, size, count, call)
+                return FirstHits(arrays)
+            if mode == "all":
+                outputs(fields, (0,), None, HIT_FIELDS, ("t", "primitive"))
+                splits = np.zeros(number + 1, np.int64)
+                hits = self._raw.rays(start, step, mode, {"value": splits[1:]}, t_min, t_max, size, count, call)
+                np.cumsum(splits, out=splits)
+                assert hits is not None
+                arrays = outputs(fields, (len(hits),), None, HIT_FIELDS, ("t", "primitive"))
+                hits.fill(flat(arrays))
+                return AllHits({"splits": splits, **arrays})
+            values: NDArray[Any] = np.empty(number, np.bool_ if mode == "any" else np.int64)
+            self._raw.rays(start, step, mode, {"value": values}, t_min, t_max, size, count, call)
+            return values.reshape(leading)
+
+    def field(
+        self,
+        origin: ArrayLike,
+        spacing: float,
+        shape: Sequence[int],
+        *,
+        signed: bool = False,
+        sign: _Sign = "auto",
+        band: float | None = None,
+        out: NDArray[Any] | None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> NDArray[Any]:
+        """Return distances at the points of a regular grid.
+
+        Parameters
+        ----------
+        origin : array_like, shape (3,)
+            The point with the indices (0, 0, 0).
+        spacing : float
+            The distance of neighbouring points.
+        shape : sequence of three int
+            The number of points along each axis.
+        signed : bool, optional
+            Whether distances are negative inside.
+        sign : {"auto", "closed", "winding"}, optional
+            The rule of signs, as for `signed_distance`.
+        band : float, optional
+            The largest distance that is computed. Beyond it the field has this value, with the right sign.
+        out : ndarray of float32 or float64, shape (x, y, z), optional
+            The array that receives the field, with any strides; it may be mapped from a file.
+        threads, progress
+            As for `closest`.
+
+        Returns
+        -------
+        ndarray of float32, shape (x, y, z), or out
+            ``field[i, j, k]`` belongs to the point ``origin + spacing * (i, j, k)``. A new array is in Fortran order,
+            with x running fastest.
+
+        Raises
+        ------
+        ValueError
+            For a grid without points or outside of the range of numbers, and as `signed_distance` does.
+
+        Examples
+        --------
+        >>> import p2m
+        >>> index = p2m.Index(p2m.Scene([[0, 0, 0]], points=[0]))
+        >>> index.field((0, 0, 0), 3.0, (2, 1, 2))[:, 0, :].tolist()
+        [[0.0, 3.0], [3.0, 4.242640495300293]]
+        """
+        first = coordinates(origin, "origin", only_float64=True)
+        if first.shape != (3,):
+            raise ValueError(f"origin: the shape is {first.shape} instead of (3,)")
+        counts = tuple(int(count) for count in shape)
+        if len(counts) != 3 or min(counts) < 1:
+            raise ValueError(f"shape: {tuple(shape)} are not three numbers of points")
+        if out is not None:
+            if not isinstance(out, np.ndarray):
+                raise TypeError(f"out: {type(out).__name__} is no array of NumPy")
+            if out.shape != counts:
+                raise ValueError(f"out: the shape is {out.shape} instead of {counts}")
+            if out.dtype not in (np.dtype(np.float32), _FLOAT64):
+                raise TypeError(f"out: the type is {out.dtype} instead of float32 or float64")
+            if not out.flags.writeable:
+                raise ValueError("out: the array is read-only")
+        width = float("inf") if band is None else not_negative(band, "band")
+        x, y, z = (float(value) for value in first)
+        with callback(progress, "filling the grid", "points") as call:
+            values = self._raw.field(
+                (x, y, z),
+                float(spacing),
+                (counts[0], counts[1], counts[2]),
+                sign if signed else None,
+                width,
+                self._count(threads),
+                call,
+            )
+        grid = values.reshape(counts[::-1]).transpose()
+        if out is None:
+            return grid
+        out[...] = grid
+        return out
+
+    def refit(self, vertices: ArrayLike, *, threads: int | None = None) -> Index:
+        """Return an index over the same primitives at other positions, in a fraction of the time of a build.
+
+        This index stays as it is. Answers of the new one are those of an index that is built anew. Its tree keeps its
+        shape, so queries get slower the farther neighbours have moved apart (``info["surface_area"]``).
+
+        Parameters
+        ----------
+        vertices : array_like, shape (n, 3)
+            The new coordinates of all vertices.
+        threads : int, optional
+            The number of threads; by default that of the index.
+
+        Raises
+        ------
+        ValueError
+            For another number of vertices, coordinates that are not finite, and for the backends ``"octree"`` and
+            ``"p2m"``, whose cells have to be built anew.
+
+        Examples
+        --------
+        >>> import p2m
+        >>> index = p2m.Index(p2m.Scene([[0, 0, 0], [4, 0, 0], [0, 4, 0]], triangles=[[0, 1, 2]]))
+        >>> raised = index.refit(index.scene.vertices + [0, 0, 2])
+        >>> float(raised.distance([1, 1, 0])), float(index.distance([1, 1, 0]))
+        (2.0, 0.0)
+        """
+        moved = self.scene.moved(vertices)
+        return Index._from_raw(self._raw.refitted(moved._raw, self._count(threads)), self._threads)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Save the index and its scene to a file, which appears under its name only when it is complete.
+
+        Parameters
+        ----------
+        path : path-like
+            The file; the extension is usually ``.p2m``.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written.
+        ValueError
+            For the backend ``"brute"``, which has no structure.
+
+        Examples
+        --------
+        >>> import os, p2m, tempfile
+        >>> path = os.path.join(tempfile.mkdtemp(), "point.p2m")
+        >>> p2m.Index(p2m.Scene([[0, 0, 0]], points=[0])).save(path)
+        >>> p2m.load(path)
+        <p2m.Index 'aabb' of 1 primitives>
+        """
+        self._raw.save(os.fspath(path))
+
+
+def _one_output(out: Any, name: str, dtype: np.dtype[Any], shape: tuple[int, ...]) -> NDArray[Any]:
+    """Return the array for one answer to each query."""
+    return np.empty(shape, dtype) if out is None else checked_out(out, name, dtype, shape)
+
+
+def load(path: str | os.PathLike[str], map: bool = False, *, threads: int | None = None) -> Index:
+    """Load an index that `Index.save` or the program ``p2m build`` wrote.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+    map : bool, optional
+        Whether the file is mapped into memory, which processes that map it share, instead of being copied. Nobody may
+        change or truncate the file while the index is in use: what happens then is undefined. `Index.save` replaces
+        a file and does not change it.
+    threads : int, optional
+        The number of threads for queries, as for `Index`.
+
+    Returns
+    -------
+    Index
+        The index, which is pickled as the path and the checksum of its file.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    ValueError
+        If it is damaged or not a saved index.
+    """
+    absolute = os.path.abspath(os.fspath(path))
+    own = None if threads is None else thread_count(threads)
+    return Index._from_raw(_p2m.load(absolute, map, None, thread_count(threads)), own)
+
+
+def _load_pickled(path: str, checksum: str, is_mapped: bool, threads: int | None) -> Index:
+    return Index._from_raw(_p2m.load(path, is_mapped, checksum, thread_count(threads)), threads)
+
+
+def _load_bytes(data: bytes, backend: str, threads: int | None) -> Index:
+    return Index._from_raw(_p2m.load_bytes(data, backend, thread_count(threads)), threads)
+
+
+class Estimate(NamedTuple):
+    """The costs that are expected of a backend, on one thread."""
+
+    backend: str
+    """The name of the backend."""
+    build_seconds: float
+    """The time of the build."""
+    query_seconds: float
+    """The time of one query."""
+    memory_bytes: float
+    """The memory of the index besides the scene."""
+    total_seconds: float
+    """The time of the build and of all queries."""
+    is_measured: bool
+    """Whether the backend was measured on a sample of the scene."""
+    break_even_queries: float | None
+    """The number of queries at which this backend and the recommended one take the same time, if there is one."""
+    reason: str
+    """The reason for its rank, as a phrase."""
+
+
+def advise(
+    scene: Any,
+    queries: int = 1_000_000,
+    *,
+    region: Literal["near", "box"] = "box",
+    points: ArrayLike | None = None,
+    max_bytes: int | None = None,
+    max_seconds: float | None = None,
+    threads: int | None = None,
+) -> list[Estimate]:
+    """Return the expected costs of all backends for a scene and a number of queries, the recommended one first.
+
+    The backends that may be best are measured on a sample of the scene, which takes some per cent of the time of the
+    job.
+
+    Parameters
+    ----------
+    scene : Scene or object
+        The scene, or an object that `Scene.of` makes one of.
+    queries : int, optional
+        The number of queries.
+    region : {"box", "near"}, optional
+        Where queries are: anywhere in the box of the scene, or about a hundredth of its diagonal from the surface.
+    points : array_like, shape {.., 3}, optional
+        Queries that are like those to come, in place of a region.
+    max_bytes : int, optional
+        The memory that the index may take besides the scene.
+    max_seconds : float, optional
+        The time that the advice may take.
+    threads : int, optional
+        The number of threads for the measurements.
+
+    Examples
+    --------
+    >>> import p2m
+    >>> scene = p2m.Scene([[0, 0, 0], [4, 0, 0], [0, 4, 0]], triangles=[[0, 1, 2]])
+    >>> p2m.advise(scene, 1)[0].backend
+    'brute'
+    """
+    if not 0 <= queries < 2**63:
+        raise ValueError(f"queries: {queries} is no number of queries")
+    like = None if points is None else coordinates(points, "points").reshape(-1)
+    raw = Scene.of(scene)._raw
+    rows = _p2m.advise(raw, int(queries), region, like, max_bytes, max_seconds, thread_count(threads))
+    return [Estimate(**row) for row in rows]

@@ -1,0 +1,163 @@
+from collections.abc import Callable
+from os import PathLike
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "HitList",
+    "Index",
+    "NearList",
+    "Scene",
+    "__version__",
+    "advise",
+    "backends",
+    "checksum",
+    "default_threads",
+    "load",
+    "load_bytes",
+]
+
+__version__: str
+
+_Coordinates = NDArray[np.float64] | NDArray[np.float32]
+_Progress = Callable[[int, int], object] | None
+_Arrays = dict[str, NDArray[Any]]
+_Path = str | PathLike[str]
+
+def backends() -> list[str]: ...
+def default_threads() -> int: ...
+def checksum(path: _Path) -> str: ...
+def load(path: _Path, map: bool, checksum: str | None, threads: int) -> Index: ...
+def load_bytes(bytes: bytes, backend: str, threads: int) -> Index: ...
+def advise(
+    scene: Scene,
+    queries: int,
+    region: str,
+    points: _Coordinates | None,
+    max_bytes: int | None,
+    max_seconds: float | None,
+    threads: int,
+) -> list[dict[str, Any]]: ...
+@final
+class Scene:
+    def __new__(
+        cls,
+        vertices: _Coordinates,
+        triangles: NDArray[np.uint32],
+        segments: NDArray[np.uint32],
+        points: NDArray[np.uint32],
+    ) -> Scene: ...
+    @staticmethod
+    def read(path: _Path) -> Scene: ...
+    @staticmethod
+    def from_bytes(bytes: bytes) -> Scene: ...
+    def to_bytes(self) -> bytes: ...
+    def moved(self, vertices: _Coordinates) -> Scene: ...
+    def counts(self) -> tuple[int, int, int, int]: ...
+    def bounds(self) -> list[list[float]] | None: ...
+    def vertices(self) -> NDArray[np.float64]: ...
+    def triangles(self) -> NDArray[np.int64]: ...
+    def segments(self) -> NDArray[np.int64]: ...
+    def points(self) -> NDArray[np.int64]: ...
+    def ids(self, vertices: int) -> NDArray[np.int64]: ...
+    def sources(self) -> NDArray[np.int64]: ...
+    def objects(self) -> list[tuple[str, int, int]]: ...
+    def skipped(self) -> list[str]: ...
+
+@final
+class NearList:
+    def __len__(self) -> int: ...
+    def fill(self, out: _Arrays) -> None: ...
+
+@final
+class HitList:
+    def __len__(self) -> int: ...
+    def fill(self, out: _Arrays) -> None: ...
+
+@final
+class Index:
+    @staticmethod
+    def build(
+        scene: Scene,
+        backend: str,
+        threads: int,
+        progress: _Progress,
+        directions: str | None = None,
+        resolution: float | None = None,
+    ) -> Index: ...
+    def refitted(self, scene: Scene, threads: int) -> Index: ...
+    def scene(self) -> Scene: ...
+    def backend(self) -> str: ...
+    def origin(self) -> tuple[PathLike[str], str, bool] | None: ...
+    def info(self) -> dict[str, Any]: ...
+    def save(self, path: _Path) -> None: ...
+    def to_bytes(self) -> bytes: ...
+    def closest(
+        self,
+        points: _Coordinates,
+        out: _Arrays,
+        max_distance: float,
+        epsilon: float,
+        max_visits: int | None,
+        certified: bool,
+        threads: int,
+        progress: _Progress,
+    ) -> None: ...
+    def k_nearest(
+        self,
+        points: _Coordinates,
+        k: int,
+        out: _Arrays,
+        max_distance: float,
+        threads: int,
+        progress: _Progress,
+    ) -> None: ...
+    def within(
+        self,
+        points: _Coordinates,
+        radius: float,
+        counts: NDArray[np.int64],
+        threads: int,
+        progress: _Progress,
+    ) -> NearList: ...
+    def is_any_within(
+        self,
+        points: _Coordinates,
+        radius: float,
+        out: _Arrays,
+        threads: int,
+        progress: _Progress,
+    ) -> None: ...
+    def signed_distance(
+        self,
+        points: _Coordinates,
+        out: _Arrays,
+        sign: str,
+        inside_is_negative: bool,
+        threads: int,
+        progress: _Progress,
+    ) -> None: ...
+    def rays(
+        self,
+        origins: NDArray[np.float64],
+        directions: NDArray[np.float64],
+        mode: str,
+        out: _Arrays,
+        t_min: float,
+        t_max: float,
+        radius: float,
+        threads: int,
+        progress: _Progress,
+    ) -> HitList | None: ...
+    def field(
+        self,
+        origin: tuple[float, float, float],
+        spacing: float,
+        counts: tuple[int, int, int],
+        sign: str | None,
+        band: float,
+        threads: int,
+        progress: _Progress,
+    ) -> NDArray[np.float32]: ...

@@ -1,0 +1,145 @@
+"""Records of arrays: the answers to batches of queries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Record:
+    """Named arrays, of which only those exist that were asked for.
+
+    A record has its arrays as attributes, by name (``record["distance"]``), and in order, so it can be unpacked as a
+    tuple.
+
+    Examples
+    --------
+    >>> import p2m
+    >>> index = p2m.Index(p2m.Scene([[0.0, 0.0, 0.0]], points=[0]))
+    >>> answer = index.closest([[3.0, 4.0, 0.0]], fields=("distance", "primitive"))
+    >>> distance, primitive = answer
+    >>> distance.tolist(), primitive.tolist()
+    ([5.0], [0])
+    >>> answer.point
+    Traceback (most recent call last):
+        ...
+    AttributeError: the answer has no 'point': it has distance, primitive
+    """
+
+    def __init__(self, arrays: dict[str, NDArray[Any]]) -> None:
+        self.__dict__.update(arrays)
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """The names of the arrays, in their order."""
+        return tuple(self.__dict__)
+
+    def asdict(self) -> dict[str, NDArray[Any]]:
+        """Return the arrays by their names."""
+        return dict(self.__dict__)
+
+    def __getattr__(self, name: str) -> NDArray[Any]:
+        raise AttributeError(f"the answer has no {name!r}: it has {', '.join(self.__dict__)}")
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        array: NDArray[Any] = self.__dict__[name]
+        return array
+
+    def __iter__(self) -> Iterator[NDArray[Any]]:
+        return iter(self.__dict__.values())
+
+    def __len__(self) -> int:
+        return len(self.__dict__)
+
+    def __repr__(self) -> str:
+        arrays = ", ".join(f"{name}: {array.dtype}{list(array.shape)}" for name, array in self.__dict__.items())
+        return f"{type(self).__name__}({arrays})"
+
+
+class ClosestPoints(Record):
+    """The answers to queries for the closest point or for the k nearest primitives.
+
+    Attributes
+    ----------
+    distance : ndarray of float64, shape {..}
+        The distances, in the unit of the scene; infinite where there is no answer.
+    primitive : ndarray of int64, shape {..}
+        The ids of the primitives; -1 where there is no answer.
+    point : ndarray of float64, shape {.., 3}
+        The closest points; nan where there is no answer.
+    feature : ndarray of uint8, shape {..}
+        The part of the primitive that contains the closest point: its vertex 0, 1, 2, its edge 3, 4, 5 (from vertex 0
+        to 1, from 1 to 2, from 2 to 0), or its inside 6; 255 where there is no answer.
+    barycentric : ndarray of float64, shape {.., 3}
+        The weights of the vertices of the primitive; nan where there is no answer.
+    lower_bound : ndarray of float64, shape {..}
+        Certified lower bounds on the true distances; infinite where there is no answer.
+    object : ndarray of int64, shape {..}
+        The numbers of the objects in ``scene.objects``; -1 for a primitive without object and where there is no answer.
+    """
+
+    distance: NDArray[np.float64]
+    primitive: NDArray[np.int64]
+    point: NDArray[np.float64]
+    feature: NDArray[np.uint8]
+    barycentric: NDArray[np.float64]
+    lower_bound: NDArray[np.float64]
+    object: NDArray[np.int64]
+
+
+class NearPrimitives(ClosestPoints):
+    """All primitives within a distance of some queries.
+
+    The primitives of query i, in the order of the flattened queries, are at ``splits[i]:splits[i + 1]`` of the other
+    arrays, nearest first.
+
+    Attributes
+    ----------
+    splits : ndarray of int64, shape (n + 1,)
+        Where the primitives of each of n queries begin.
+    """
+
+    splits: NDArray[np.int64]
+
+
+class FirstHits(Record):
+    """The first hits of rays.
+
+    Attributes
+    ----------
+    t : ndarray of float64, shape {..}
+        The parameters of the hits, in lengths of the direction; infinite where nothing is hit.
+    primitive : ndarray of int64, shape {..}
+        The ids of the primitives; -1 where nothing is hit.
+    point : ndarray of float64, shape {.., 3}
+        The points that are hit; nan where nothing is hit.
+    barycentric : ndarray of float64, shape {.., 3}
+        The weights of the vertices of the primitive; nan where nothing is hit.
+    side : ndarray of int8, shape {..}
+        1 if the ray comes from the side to which the normal of the triangle points, -1 if it comes from the other side,
+        0 if the ray runs along the primitive, and where nothing is hit.
+    """
+
+    t: NDArray[np.float64]
+    primitive: NDArray[np.int64]
+    point: NDArray[np.float64]
+    barycentric: NDArray[np.float64]
+    side: NDArray[np.int8]
+
+
+class AllHits(FirstHits):
+    """All hits of rays.
+
+    The hits of ray i, in the order of the flattened rays, are at ``splits[i]:splits[i + 1]`` of the other arrays,
+    ordered by their parameters.
+
+    Attributes
+    ----------
+    splits : ndarray of int64, shape (n + 1,)
+        Where the hits of each of n rays begin.
+    """
+
+    splits: NDArray[np.int64]

@@ -1,0 +1,371 @@
+"""Scenes, and their conversion from the objects of other packages."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _p2m
+from ._arrays import coordinates, indices
+
+
+class Counts(NamedTuple):
+    """The numbers of vertices and primitives of a scene."""
+
+    vertices: int
+    triangles: int
+    segments: int
+    points: int
+
+
+class Object(NamedTuple):
+    """Consecutive primitives under one name: those with the ids from `start` to `stop` - 1."""
+
+    name: str
+    start: int
+    stop: int
+
+
+class Scene:
+    """A set of triangles, segments and points over shared vertices, which never changes.
+
+    Primitives are numbered from 0: first the triangles, then the segments, then the points. In a scene that was read
+    from a file they are in the order of the file. Primitives may be degenerate, intersect each other and occur twice.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (n, 3)
+        The coordinates of the vertices, in any unit that is the same on all axes. They are copied as float64.
+    triangles : array_like of integers, shape (m, 3), optional
+        The vertices of each triangle.
+    segments : array_like of integers, shape (m, 2), optional
+        The vertices of each segment.
+    points : array_like of integers, shape (m,), optional
+        The vertex of each point.
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong, an index has no vertex, or a vertex that a primitive uses is not finite.
+    TypeError
+        If indices are not integers, or coordinates are no real numbers.
+
+    Examples
+    --------
+    >>> import p2m
+    >>> scene = p2m.Scene([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 2]], triangles=[[0, 1, 2]], segments=[[0, 3]])
+    >>> len(scene), scene.counts.segments
+    (2, 1)
+    >>> scene.bounds.tolist()
+    [[0.0, 0.0, 0.0], [1.0, 1.0, 2.0]]
+    """
+
+    __slots__ = ("__weakref__", "_raw")
+
+    _raw: _p2m.Scene
+
+    def __init__(
+        self,
+        vertices: ArrayLike,
+        triangles: ArrayLike | None = None,
+        segments: ArrayLike | None = None,
+        points: ArrayLike | None = None,
+    ) -> None:
+        positions = np.asarray(vertices)
+        if positions.size == 0:
+            positions = positions.reshape(0, 3)
+        if positions.ndim != 2:
+            raise ValueError(f"vertices: the shape is {positions.shape} instead of (n, 3)")
+        flat = coordinates(positions, "vertices").reshape(-1)
+        count = len(positions)
+        corners = indices(triangles, "triangles", 3, count)
+        ends = indices(segments, "segments", 2, count)
+        self._raw = _p2m.Scene(flat, corners, ends, indices(points, "points", 1, count))
+
+    @classmethod
+    def _from_raw(cls, raw: _p2m.Scene) -> Scene:
+        scene = cls.__new__(cls)
+        scene._raw = raw
+        return scene
+
+    @staticmethod
+    def of(obj: Any) -> Scene:
+        """Make a scene of an object of another package, which is recognized by its attributes.
+
+        Parameters
+        ----------
+        obj : object
+            A mesh, point cloud or set of lines of trimesh, Open3D, PyVista or meshio, a tuple ``(vertices,
+            triangles)``, or a `Scene`, which is returned as it is.
+
+        Raises
+        ------
+        TypeError
+            If the object is not recognized.
+
+        Examples
+        --------
+        >>> import p2m
+        >>> len(p2m.Scene.of(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])))
+        1
+        """
+        if isinstance(obj, Scene):
+            return obj
+        if isinstance(obj, tuple) and len(obj) == 2:
+            return Scene(obj[0], triangles=obj[1])
+        if type(obj).__module__.partition(".")[0] == "open3d":
+            return Scene.from_open3d(obj)
+        if hasattr(obj, "cells_dict") and hasattr(obj, "points"):
+            return Scene.from_meshio(obj)
+        if hasattr(obj, "n_points") and hasattr(obj, "GetNumberOfCells"):
+            return Scene.from_pyvista(obj)
+        if hasattr(obj, "geometry") or hasattr(obj, "vertices"):
+            return Scene.from_trimesh(obj)
+        raise TypeError(f"{type(obj).__name__} is no scene: give arrays, or a mesh of trimesh, Open3D, PyVista, meshio")
+
+    @staticmethod
+    def from_trimesh(mesh: Any) -> Scene:
+        """Make a scene of a mesh, a point cloud, a path or a scene of trimesh.
+
+        The faces of a mesh are triangles, the entities of a path are segments, and the vertices of a point cloud are
+        points. A scene of trimesh becomes one mesh, with all of its transformations.
+        """
+        if hasattr(mesh, "geometry"):
+            mesh = mesh.to_mesh() if hasattr(mesh, "to_mesh") else mesh.dump(concatenate=True)
+        vertices = np.asarray(mesh.vertices, np.float64)
+        if hasattr(mesh, "faces"):
+            return Scene(vertices, triangles=np.asarray(mesh.faces))
+        if hasattr(mesh, "entities"):
+            lines = [np.asarray(entity.discrete(vertices), np.float64) for entity in mesh.entities]
+            return _polylines(lines)
+        return Scene(vertices, points=np.arange(len(vertices)))
+
+    @staticmethod
+    def from_open3d(geometry: Any) -> Scene:
+        """Make a scene of a mesh, a point cloud or a set of lines of Open3D, legacy or tensor.
+
+        Coordinates in float32, as those of tensor meshes are by default, convert exactly.
+        """
+        if hasattr(geometry, "to_legacy"):
+            lists = {}
+            for name in ("vertex", "point", "triangle", "line"):
+                key = "positions" if name in ("vertex", "point") else "indices"
+                attributes = getattr(geometry, name, None)
+                if attributes is not None and key in attributes:
+                    lists[name] = attributes[key].cpu().numpy()
+            vertices = lists.get("vertex", lists.get("point", np.empty((0, 3))))
+            triangles, lines = lists.get("triangle"), lists.get("line")
+        else:
+            has_vertices = hasattr(geometry, "vertices")
+            vertices = np.asarray(geometry.vertices if has_vertices else geometry.points)
+            triangles = np.asarray(geometry.triangles) if hasattr(geometry, "triangles") else None
+            lines = np.asarray(geometry.lines) if hasattr(geometry, "lines") else None
+        if triangles is None and lines is None:
+            return Scene(vertices, points=np.arange(len(vertices)))
+        return Scene(vertices, triangles=triangles, segments=lines)
+
+    @staticmethod
+    def from_pyvista(mesh: Any) -> Scene:
+        """Make a scene of a mesh of PyVista: of its polygons, lines and vertex cells.
+
+        Polygons are triangulated and polylines divided into segments. Of a grid the surface is taken.
+        """
+        if not hasattr(mesh, "GetPolys"):
+            mesh = mesh.extract_surface()
+        triangles = np.asarray(mesh.triangulate().faces).reshape(-1, 4)[:, 1:]
+        vertices = np.asarray(mesh.points)
+        lines = _runs(np.asarray(mesh.lines))
+        segments = [np.stack([line[:-1], line[1:]], axis=1) for line in lines]
+        points = _runs(np.asarray(mesh.verts))
+        return Scene(
+            vertices,
+            triangles=triangles,
+            segments=np.concatenate(segments) if segments else None,
+            points=np.concatenate(points) if points else None,
+        )
+
+    @staticmethod
+    def from_meshio(mesh: Any) -> Scene:
+        """Make a scene of a mesh of meshio: of its cells of the types vertex, line, triangle and quad.
+
+        Quads are divided into triangles along the diagonal of their first and third corner. Cells of other types are
+        an error, because they have no surface of their own.
+        """
+        triangles, segments, points = [], [], []
+        for block in mesh.cells:
+            cells = np.asarray(block.data)
+            if block.type == "triangle":
+                triangles.append(cells)
+            elif block.type == "quad":
+                triangles.append(cells[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3))
+            elif block.type == "line":
+                segments.append(cells)
+            elif block.type == "vertex":
+                points.append(cells.reshape(-1))
+            else:
+                raise ValueError(f"cells: there are cells of the type {block.type!r}, which are no triangles or lines")
+        return Scene(
+            _in_space(np.asarray(mesh.points)),
+            triangles=np.concatenate(triangles) if triangles else None,
+            segments=np.concatenate(segments) if segments else None,
+            points=np.concatenate(points) if points else None,
+        )
+
+    @property
+    def counts(self) -> Counts:
+        """The numbers of vertices, triangles, segments and points."""
+        return Counts(*self._raw.counts())
+
+    def __len__(self) -> int:
+        counts = self.counts
+        return counts.triangles + counts.segments + counts.points
+
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """The corners of the box around all primitives, shape (2, 3); nan for an empty scene."""
+        bounds = self._raw.bounds()
+        return np.full((2, 3), np.nan) if bounds is None else np.array(bounds)
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """A copy of the vertices, shape (n, 3)."""
+        return self._raw.vertices()
+
+    @property
+    def triangles(self) -> NDArray[np.int64]:
+        """A copy of the vertices of the triangles, shape (m, 3)."""
+        return self._raw.triangles()
+
+    @property
+    def segments(self) -> NDArray[np.int64]:
+        """A copy of the vertices of the segments, shape (m, 2)."""
+        return self._raw.segments()
+
+    @property
+    def points(self) -> NDArray[np.int64]:
+        """A copy of the vertices of the points, shape (m,)."""
+        return self._raw.points()
+
+    @property
+    def triangle_ids(self) -> NDArray[np.int64]:
+        """The ids of the triangles as primitives, shape (m,)."""
+        return self._raw.ids(3)
+
+    @property
+    def segment_ids(self) -> NDArray[np.int64]:
+        """The ids of the segments as primitives, shape (m,)."""
+        return self._raw.ids(2)
+
+    @property
+    def point_ids(self) -> NDArray[np.int64]:
+        """The ids of the points as primitives, shape (m,)."""
+        return self._raw.ids(1)
+
+    @property
+    def sources(self) -> NDArray[np.int64]:
+        """For each primitive the number of its statement among those of its kind in the file, shape (m,).
+
+        A polygon is one statement and becomes several triangles.
+        """
+        return self._raw.sources()
+
+    @property
+    def objects(self) -> list[Object]:
+        """The named parts of the file, in the order of their ids."""
+        return [Object(*parts) for parts in self._raw.objects()]
+
+    @property
+    def skipped(self) -> list[str]:
+        """What the reader of the file left out, such as ``'2 x usemtl'``."""
+        return self._raw.skipped()
+
+    def moved(self, vertices: ArrayLike) -> Scene:
+        """Return a scene with the same primitives and names over other positions of all vertices.
+
+        Parameters
+        ----------
+        vertices : array_like, shape (n, 3)
+            The new coordinates.
+
+        Raises
+        ------
+        ValueError
+            If there is another number of vertices, or one that a primitive uses is not finite.
+        """
+        return Scene._from_raw(self._raw.moved(coordinates(vertices, "vertices").reshape(-1)))
+
+    def __repr__(self) -> str:
+        counts = self.counts
+        return f"<p2m.Scene of {counts.triangles} triangles, {counts.segments} segments, {counts.points} points>"
+
+    def __copy__(self) -> Scene:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Scene:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _scene_from_bytes, (self._raw.to_bytes(),)
+
+
+def _scene_from_bytes(data: bytes) -> Scene:
+    return Scene._from_raw(_p2m.Scene.from_bytes(data))
+
+
+def _in_space(points: NDArray[Any]) -> NDArray[Any]:
+    """Return points with three coordinates; those of the plane get z = 0."""
+    if points.ndim == 2 and points.shape[1] == 2:
+        return np.column_stack([points, np.zeros(len(points))])
+    return points
+
+
+def _polylines(lines: Iterable[NDArray[Any]]) -> Scene:
+    """Return a scene of the segments between consecutive points of each line."""
+    points = [_in_space(line) for line in lines]
+    starts = np.cumsum([0] + [len(line) for line in points])
+    segments = [np.arange(start, start + len(line) - 1) for start, line in zip(starts, points)]
+    first = np.concatenate(segments) if segments else np.empty(0, np.int64)
+    vertices = np.concatenate(points) if points else np.empty((0, 3))
+    return Scene(vertices, segments=np.stack([first, first + 1], axis=1))
+
+
+def _runs(padded: NDArray[Any]) -> list[NDArray[Any]]:
+    """Return the parts of an array in which each part follows its length."""
+    runs, at = [], 0
+    while at < len(padded):
+        stop = at + 1 + int(padded[at])
+        runs.append(padded[at + 1 : stop])
+        at = stop
+    return runs
+
+
+def read(path: str | os.PathLike[str]) -> Scene:
+    """Read a scene from a file. Its extension selects the format: obj, ply, stl, off, or p2m for a saved index.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    ValueError
+        If its content is not a scene; the message has the line.
+
+    Examples
+    --------
+    >>> import os, p2m, tempfile
+    >>> folder = tempfile.mkdtemp()
+    >>> path = os.path.join(folder, "court.obj")
+    >>> _ = open(path, "w").write("o court\\nv 0 0 0\\nv 2 0 0\\nv 2 2 0\\nv 0 2 0\\nf 1 2 3 4\\n")
+    >>> scene = p2m.read(path)
+    >>> scene, scene.objects[0].name
+    (<p2m.Scene of 2 triangles, 0 segments, 0 points>, 'court')
+    """
+    return Scene._from_raw(_p2m.Scene.read(os.fspath(path)))

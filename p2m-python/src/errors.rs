@@ -1,0 +1,65 @@
+//! Exceptions of Python for the errors of the library.
+
+use p2m_core::BuildError;
+use p2m_core::storage::LoadError;
+use p2m_field::GridError;
+use p2m_field::sign::SignError;
+use p2m_mixed::{ReadError, Reason};
+use pyo3::PyErr;
+use pyo3::exceptions::{PyMemoryError, PyOSError, PyValueError};
+use std::io;
+use std::path::Path;
+
+/// A `ValueError` with the message of an error.
+pub(crate) fn value_error(error: impl std::fmt::Display) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+/// The exception for a scene or an index that cannot be made.
+pub(crate) fn build_error(error: BuildError) -> PyErr {
+    value_error(error)
+}
+
+/// The exception for signs that a scene does not have.
+pub(crate) fn sign_error(error: SignError) -> PyErr {
+    value_error(error)
+}
+
+/// The exception for a grid or a field that cannot be made.
+pub(crate) fn grid_error(error: GridError) -> PyErr {
+    match error {
+        GridError::Memory(_) => PyMemoryError::new_err(error.to_string()),
+        _ => value_error(error),
+    }
+}
+
+/// The exception for an error of the operating system: an `OSError` of its subclass, with the name of the file.
+pub(crate) fn io_error(error: &io::Error, path: &Path) -> PyErr {
+    match error.raw_os_error() {
+        // Python chooses the subclass by the number.
+        Some(number) => PyOSError::new_err((number, plain_message(error), path.display().to_string())),
+        None => PyOSError::new_err(format!("{}: {error}", path.display())),
+    }
+}
+
+/// Returns the message of an error of the operating system without its number.
+fn plain_message(error: &io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error").next().unwrap_or(&text).to_owned()
+}
+
+/// The exception for a scene that cannot be read.
+pub(crate) fn read_error(error: &ReadError, path: &Path) -> PyErr {
+    match &error.reason {
+        Reason::Io(source) | Reason::Saved(LoadError::Io(source)) => io_error(source, path),
+        _ => value_error(error),
+    }
+}
+
+/// The exception for a saved index that cannot be loaded.
+pub(crate) fn load_error(error: &LoadError, name: &str) -> PyErr {
+    match error {
+        LoadError::Io(source) => io_error(source, Path::new(name)),
+        _ => value_error(format!("{name} {error}")),
+    }
+}

@@ -1,0 +1,60 @@
+//! Distance fields on grids.
+
+use crate::errors::grid_error;
+use crate::index::Index;
+use crate::signs::SignRule;
+use crate::work::run_owned;
+use nalgebra::Point3;
+use numpy::{IntoPyArray, PyArray1};
+use p2m_core::PrimitiveSet;
+use p2m_field::grid_candidates::MAX_COORDINATE;
+use p2m_field::{
+    CandidateLists, FieldOptions, Grid, distances, distances_by_lists, signed_distances, signed_distances_by_lists,
+};
+use pyo3::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+#[pymethods]
+impl Index {
+    /// Returns the distances at the points of a grid, with x running fastest.
+    #[pyo3(signature = (origin, spacing, counts, sign, band, threads, progress))]
+    #[allow(clippy::too_many_arguments, reason = "the Python layer passes them all")]
+    fn field<'py>(
+        &self,
+        py: Python<'py>,
+        origin: [f64; 3],
+        spacing: f64,
+        counts: [usize; 3],
+        sign: Option<&str>,
+        band: f64,
+        threads: usize,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let grid = Grid::new(Point3::from(origin), spacing, counts).map_err(grid_error)?;
+        let signed = match sign {
+            Some(name) => Some(self.signs(py, SignRule::from_name(name)?, threads)?),
+            None => None,
+        };
+        let (index, scene) = (self.any(), self.scene.clone());
+        let values = run_owned(py, threads, grid.len(), progress, move |monitor| {
+            let options = FieldOptions::default().with_band(band);
+            let done = AtomicUsize::new(0);
+            let report = |points: usize| {
+                monitor.set_done(done.fetch_add(points, Ordering::Relaxed) + points);
+                monitor.unwind_if_cancelled();
+            };
+            // Both ways return the same bits. Lists pay for grids that are finer than the scene.
+            let last = grid.point(grid.counts().map(|n| n - 1));
+            let is_in_range = [grid.origin(), last].iter().flat_map(|p| p.iter()).all(|x| x.abs() <= MAX_COORDINATE);
+            let has_lists = is_in_range && grid.len() >= scene.len();
+            let lists = if has_lists { CandidateLists::new(&scene) } else { None };
+            match (&lists, &signed) {
+                (Some(lists), Some(signed)) => signed_distances_by_lists(lists, signed, &grid, &options, &report),
+                (Some(lists), None) => distances_by_lists(lists, &grid, &options, &report),
+                (None, Some(signed)) => signed_distances(signed, &grid, &options, &report),
+                (None, None) => distances(&*index, &grid, &options, &report),
+            }
+        })?;
+        Ok(values.map_err(grid_error)?.into_pyarray(py))
+    }
+}

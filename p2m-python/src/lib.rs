@@ -1,0 +1,59 @@
+//! The native part of the Python package `p2m`.
+//!
+//! The classes here take and fill contiguous arrays of NumPy. Shapes, other types of arrays, records of answers and
+//! the documentation for users are in Python (`python/p2m`). Every build and every batch runs detached from the
+//! interpreter, on threads that never call it (the module `work`).
+//!
+//! `unsafe` stands in one place, the mapping of a saved file that the user asked for.
+#![deny(unsafe_code)]
+
+mod advise;
+mod columns;
+mod errors;
+mod fields;
+mod index;
+mod parts;
+mod queries;
+mod rays;
+mod saved;
+mod scene;
+mod searchable;
+mod signs;
+mod threads;
+mod watched;
+mod work;
+
+use pyo3::prelude::*;
+
+/// The functions and classes that the Python files of the package use.
+#[pymodule]
+mod _p2m {
+    #[pymodule_export]
+    use super::advise::advise;
+    #[pymodule_export]
+    use super::index::Index;
+    #[pymodule_export]
+    use super::queries::NearList;
+    #[pymodule_export]
+    use super::rays::HitList;
+    #[pymodule_export]
+    use super::saved::{checksum, load, load_bytes};
+    #[pymodule_export]
+    use super::scene::Scene;
+    #[pymodule_export]
+    use super::threads::default_threads;
+
+    use p2m_advisor::BACKENDS;
+    use pyo3::prelude::*;
+
+    /// Returns the names of all backends.
+    #[pyfunction]
+    fn backends() -> Vec<&'static str> {
+        BACKENDS.iter().map(|backend| backend.name).collect()
+    }
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

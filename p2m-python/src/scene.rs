@@ -1,0 +1,225 @@
+//! Scenes as objects of Python.
+
+use crate::errors::{build_error, read_error, value_error};
+use crate::work::run_owned;
+use nalgebra::Point3;
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
+use p2m_core::{Aabb, Element, Position, PrimitiveId, PrimitiveSet, Shape, Soup};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use std::ops::Deref;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A scene that indexes share: a pointer to its primitives with their names.
+#[derive(Clone)]
+pub(crate) struct SharedScene(pub(crate) Arc<p2m_mixed::Scene>);
+
+impl Deref for SharedScene {
+    type Target = Soup<f64>;
+
+    #[inline(always)]
+    fn deref(&self) -> &Soup<f64> {
+        &self.0.soup
+    }
+}
+
+impl PrimitiveSet<f64> for SharedScene {
+    type Primitive<'a> = Shape<f64>;
+
+    #[inline(always)]
+    fn len(&self) -> usize {
+        self.0.soup.len()
+    }
+
+    #[inline(always)]
+    fn get(&self, id: PrimitiveId) -> Shape<f64> {
+        self.0.soup.get(id)
+    }
+}
+
+/// Coordinates in one of the two types that positions may have, three for each.
+#[derive(FromPyObject)]
+pub(crate) enum Coordinates<'py> {
+    F64(PyReadonlyArray1<'py, f64>),
+    F32(PyReadonlyArray1<'py, f32>),
+}
+
+/// Evaluates an expression with the coordinates as a slice of arrays of three, in either type.
+macro_rules! with_positions {
+    ($coordinates:expr, $slice:ident => $body:expr) => {
+        match &$coordinates {
+            $crate::scene::Coordinates::F64(array) => {
+                let $slice: &[[f64; 3]] = $crate::scene::triples(array.as_slice())?;
+                $body
+            }
+            $crate::scene::Coordinates::F32(array) => {
+                let $slice: &[[f32; 3]] = $crate::scene::triples(array.as_slice())?;
+                $body
+            }
+        }
+    };
+}
+pub(crate) use with_positions;
+
+/// Returns a contiguous array as arrays of three.
+pub(crate) fn triples<T, E>(slice: Result<&[T], E>) -> PyResult<&[[T; 3]]> {
+    match slice.map(<[T]>::as_chunks) {
+        Ok((triples, [])) => Ok(triples),
+        _ => Err(PyTypeError::new_err("an array is not contiguous, or its length is not a multiple of three")),
+    }
+}
+
+/// The coordinates and indices of a scene that is not checked yet.
+struct Parts {
+    positions: Vec<Point3<f64>>,
+    triangles: Vec<[u32; 3]>,
+    segments: Vec<[u32; 2]>,
+    points: Vec<u32>,
+}
+
+impl Parts {
+    /// Makes the scene of the parts: triangles, then segments, then points.
+    fn soup(self) -> Result<Soup<f64>, p2m_core::BuildError> {
+        let Self { positions, triangles, segments, points } = self;
+        if segments.is_empty() && points.is_empty() {
+            return Soup::from_triangles(positions, triangles);
+        }
+        let triangles = triangles.into_iter().map(Element::Triangle);
+        let segments = segments.into_iter().map(Element::Segment);
+        Soup::new(positions, triangles.chain(segments).chain(points.into_iter().map(Element::Point)))
+    }
+}
+
+/// A scene. `p2m.Scene` has its documentation.
+#[pyclass(frozen, module = "p2m._p2m", from_py_object)]
+#[derive(Clone)]
+pub(crate) struct Scene {
+    pub(crate) shared: SharedScene,
+}
+
+impl Scene {
+    pub(crate) fn new(scene: p2m_mixed::Scene) -> Self {
+        Self { shared: SharedScene(Arc::new(scene)) }
+    }
+}
+
+#[pymethods]
+impl Scene {
+    #[new]
+    fn from_arrays(
+        py: Python<'_>,
+        vertices: Coordinates<'_>,
+        triangles: PyReadonlyArray1<'_, u32>,
+        segments: PyReadonlyArray1<'_, u32>,
+        points: PyReadonlyArray1<'_, u32>,
+    ) -> PyResult<Self> {
+        let contiguous = |_| PyTypeError::new_err("an array of indices is not contiguous");
+        let positions = with_positions!(vertices, slice => slice.iter().map(Position::<f64>::point).collect());
+        let (segments, rest) = segments.as_slice().map_err(contiguous)?.as_chunks();
+        if !rest.is_empty() {
+            return Err(value_error("segments have two indices each"));
+        }
+        let parts = Parts {
+            positions,
+            triangles: triples(triangles.as_slice())?.to_vec(),
+            segments: segments.to_vec(),
+            points: points.as_slice().map_err(contiguous)?.to_vec(),
+        };
+        let scene = py.detach(|| parts.soup().map(p2m_mixed::Scene::from)).map_err(build_error)?;
+        Ok(Self::new(scene))
+    }
+
+    /// Reads a file.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let file = path.clone();
+        let scene = run_owned(py, 1, 1, None, move |_| p2m_mixed::read_scene(&file))?;
+        scene.map(Self::new).map_err(|error| read_error(&error, &path))
+    }
+
+    /// Makes the scene of `to_bytes`.
+    #[staticmethod]
+    fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        let scene = py.detach(|| p2m_mixed::read_p2m(bytes, "the pickled scene"));
+        scene.map(Self::new).map_err(|error| value_error(&error))
+    }
+
+    /// Returns the scene in the format of saved indexes.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let mut bytes = Vec::new();
+        py.detach(|| p2m_mixed::write_p2m(&self.shared.0, &mut bytes)).map_err(value_error)?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// Returns a scene with the same primitives and names over other positions.
+    fn moved(&self, py: Python<'_>, vertices: Coordinates<'_>) -> PyResult<Self> {
+        let positions: Vec<Point3<f64>> =
+            with_positions!(vertices, slice => slice.iter().map(Position::<f64>::point).collect());
+        let moved = py.detach(|| {
+            let mut scene = (*self.shared.0).clone();
+            scene.soup.set_positions(positions).map(|()| scene)
+        });
+        moved.map(Self::new).map_err(build_error)
+    }
+
+    /// Returns the number of vertices, triangles, segments and points.
+    fn counts(&self) -> (usize, usize, usize, usize) {
+        let soup = &self.shared.0.soup;
+        (soup.positions().len(), soup.triangles().len(), soup.segments().len(), soup.points().len())
+    }
+
+    /// Returns the corners of the box around all primitives, or nothing for an empty scene.
+    fn bounds(&self, py: Python<'_>) -> Option<[[f64; 3]; 2]> {
+        let soup = &self.shared.0.soup;
+        let Aabb { min, max } = py.detach(|| soup.aabb());
+        (soup.len() > 0).then(|| [min.coords.into(), max.coords.into()])
+    }
+
+    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let positions = self.shared.0.soup.positions();
+        PyArray1::from_slice(py, bytemuck::cast_slice(positions)).reshape([positions.len(), 3])
+    }
+
+    fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        index_rows(py, self.shared.0.soup.triangles())
+    }
+
+    fn segments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        index_rows(py, self.shared.0.soup.segments())
+    }
+
+    fn points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        PyArray1::from_iter(py, self.shared.0.soup.points().iter().map(|&i| i64::from(i)))
+    }
+
+    /// Returns the ids of the primitives with so many vertices.
+    fn ids<'py>(&self, py: Python<'py>, vertices: usize) -> Bound<'py, PyArray1<i64>> {
+        let elements = self.shared.0.soup.elements().enumerate();
+        let ids = elements.filter(|(_, element)| element.indices().len() == vertices);
+        PyArray1::from_iter(py, ids.map(|(id, _)| i64::try_from(id).unwrap_or(-1)))
+    }
+
+    /// Returns the number of the statement that each primitive comes from.
+    fn sources<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        PyArray1::from_iter(py, self.shared.0.sources.iter().map(|&source| i64::from(source)))
+    }
+
+    /// Returns the names of the objects, with their first id and the one after their last.
+    fn objects(&self) -> Vec<(String, usize, usize)> {
+        self.shared.0.objects.iter().map(|object| (object.name.clone(), object.ids.start, object.ids.end)).collect()
+    }
+
+    /// Returns what the reader left out.
+    fn skipped(&self) -> Vec<String> {
+        self.shared.0.skipped.iter().map(ToString::to_string).collect()
+    }
+}
+
+/// Returns indices as rows of an array.
+fn index_rows<'py, const N: usize>(py: Python<'py>, rows: &[[u32; N]]) -> PyResult<Bound<'py, PyArray2<i64>>> {
+    let flat = PyArray1::from_iter(py, rows.as_flattened().iter().map(|&i| i64::from(i)));
+    debug_assert_eq!(flat.len(), N * rows.len());
+    flat.reshape([rows.len(), N])
+}

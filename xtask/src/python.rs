@@ -1,0 +1,98 @@
+//! Builds the Python package, installs it into a virtual environment, and runs its tests there.
+
+use crate::{Outcome, cargo, output, run};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The oldest version of Python that the package supports.
+const MIN_VERSION: (u32, u32) = (3, 11);
+/// The folder of the package.
+const PACKAGE: &str = "p2m-python";
+/// The packages that the tests need. They are those of the extra `test` in pyproject.toml.
+const NEEDED: [&str; 6] =
+    ["numpy>=1.26", "hypothesis>=6.100", "mypy>=1.15", "pytest>=8", "tqdm>=4.66", "types-tqdm>=4.66"];
+
+/// Tests the package, or says why it cannot be tested here. A filter selects tests of pytest.
+pub(crate) fn check(filter: &[String]) -> Outcome {
+    let Some(python) = find_python() else {
+        println!("\n== skipped: there is no Python {}.{} or newer with venv", MIN_VERSION.0, MIN_VERSION.1);
+        return Ok(());
+    };
+    let target = PathBuf::from(std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()));
+    let target = std::path::absolute(&target).map_err(|error| format!("{}: {error}", target.display()))?;
+    let environment = target.join("python-env");
+    let bin = environment.join(if cfg!(windows) { "Scripts" } else { "bin" });
+    let own_python = text(&bin.join("python"))?;
+    if output(&own_python, &["--version"]).is_err() {
+        run(&python, &["-m", "venv", &text(&environment)?], &[])?;
+    }
+    if let Err(why) = install_needed(&own_python) {
+        println!("\n== skipped: the packages that the tests need cannot be installed\n{why}");
+        return Ok(());
+    }
+    // With the features of `cargo test --workspace`, which examples need as well, only this package is compiled after
+    // the other tests. The crates that search are optimised in this profile.
+    cargo(&["build", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"], &[])?;
+    install_package(&own_python, &target.join("debug"))?;
+    // The program answers the same queries.
+    let program = target.join("debug").join(format!("p2m{}", std::env::consts::EXE_SUFFIX));
+    let mut tests = Command::new(&own_python);
+    tests.args(["-m", "pytest", "-rs", "--durations=5", "tests"]).args(filter).env("P2M_PROGRAM", &program);
+    crate::start(tests.current_dir(PACKAGE))?;
+    if !filter.is_empty() {
+        return Ok(());
+    }
+    let mut examples = Command::new(&own_python);
+    examples.args(["-m", "pytest", "--doctest-modules", "--doctest-glob=README.md", "--pyargs", "p2m", "README.md"]);
+    crate::start(examples.current_dir(PACKAGE))?;
+    let mut types = Command::new(&own_python);
+    crate::start(types.args(["-m", "mypy"]).current_dir(PACKAGE))?;
+    let mut stubs = Command::new(&own_python);
+    crate::start(stubs.args(["-m", "mypy.stubtest", "p2m"]).current_dir(PACKAGE))
+}
+
+/// Returns the first Python of the path that is new enough and can make virtual environments.
+fn find_python() -> Option<String> {
+    let (major, minor) = MIN_VERSION;
+    let check = format!("import sys, venv, ensurepip; assert sys.version_info >= ({major}, {minor})");
+    let names = ["python3", "python", "python3.14", "python3.13", "python3.12", "python3.11"];
+    names.into_iter().find(|name| output(name, &["-c", &check]).is_ok()).map(str::to_owned)
+}
+
+/// Installs what is missing, without a look at the registry if nothing is.
+fn install_needed(python: &str) -> Result<(), String> {
+    let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+    let offline = [&install[..], &["--no-index"], &NEEDED].concat();
+    if output(python, &offline).is_ok() {
+        return Ok(());
+    }
+    println!("\n== {python} -m pip install {}", NEEDED.join(" "));
+    output(python, &[&install[..], &NEEDED].concat()).map(drop)
+}
+
+/// Copies the package with its library into the virtual environment, as pip would install it.
+fn install_package(python: &str, libraries: &Path) -> Result<(), String> {
+    let site = output(python, &["-c", "import sysconfig; print(sysconfig.get_paths()['platlib'])"])?;
+    let package = Path::new(site.trim()).join("p2m");
+    let failed = |error| format!("{}: {error}", package.display());
+    if package.exists() {
+        fs::remove_dir_all(&package).map_err(failed)?;
+    }
+    fs::create_dir_all(&package).map_err(failed)?;
+    for entry in fs::read_dir(format!("{PACKAGE}/python/p2m")).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if let Some(name) = path.file_name().filter(|_| path.is_file()) {
+            fs::copy(&path, package.join(name)).map_err(failed)?;
+        }
+    }
+    let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let library = libraries.join(format!("{prefix}_p2m{suffix}"));
+    let module = package.join(if cfg!(windows) { "_p2m.pyd" } else { "_p2m.abi3.so" });
+    fs::copy(&library, module).map(drop).map_err(|error| format!("{}: {error}", library.display()))
+}
+
+/// Returns a path as text.
+fn text(path: &Path) -> Result<String, String> {
+    path.to_str().map(str::to_owned).ok_or_else(|| format!("{}: is not Unicode", path.display()))
+}
