@@ -46,6 +46,8 @@
 //! | the k nearest, all within a distance, whether there is any, the closest that a filter admits | [`NearQuery`] | every index |
 //! | the hits of a ray | [`RayQuery`] | trees and brute force |
 //! | the primitives that intersect a box | [`BoxQuery`] | trees and brute force |
+//! | the primitive nearest to a segment or a triangle, or whether one is near | [`pair::PairQuery`] | trees and brute force |
+//! | the nearest points of two scenes, one of which may move | [`bvh::TreeIndex::closest_pair`] | trees |
 //! | the cost of a query | [`Inspect`] | every index |
 //!
 //! # Which index
@@ -98,6 +100,8 @@ pub use p2m_bvh::{AabbOptions, AabbTree, SplitOptions, SplitRule};
 /// The parts of an index of your own, and of what examines others: collectors, the kernel, predicates. This is the
 /// crate `p2m-core` as a whole.
 pub use p2m_core as backend;
+/// The nearest points of two scenes, one of which may have moved, and of a scene and a shape.
+pub use p2m_core::pair;
 pub use p2m_core::{
     Aabb, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestLeaf,
     ClosestPoint, Element, Feature, Hit, Index, Indexed, Inspect, Isa, NearQuery, OfKind, Point, Position, Primitive,

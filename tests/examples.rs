@@ -46,13 +46,10 @@ fn a_cloud_is_wrapped_onto_the_scene() {
 fn cables_have_room_beside_the_tube() {
     let text = output("clearance", &[]);
     assert!(text.starts_with("480 pipes beside 3600 triangles"), "{text}");
-    assert!(text.contains("already at an end: true"), "{text}");
     // The clearance of wider pipes is smaller by the difference of the radii.
     let clearance = |text: &str| numbers(text.lines().nth(1).expect("a line"))[0];
     let wide = output("clearance", &["scenes/knot_and_cables.obj", "0.03"]);
     assert!((clearance(&text) - clearance(&wide) - 0.01).abs() < 2e-6, "{text}{wide}");
-    let asked = numbers(text.lines().nth(3).expect("a line"))[0];
-    assert!(asked > 2.0 && asked < 100.0, "{text}");
     // The clearance is not below the distance of points of the axes, and barely above it.
     let scene = p2m::scene::read_scene("scenes/knot_and_cables.obj".as_ref()).expect("carried").soup;
     let index = AabbTree::build(scene.triangle_set(), &Default::default()).expect("valid");
@@ -62,7 +59,7 @@ fn cables_have_room_beside_the_tube() {
     });
     let sampled = distances.filter_map(|p| index.closest_point(&p)).map(|c| c.distance).fold(f64::MAX, f64::min);
     let found = clearance(&text) + 0.02;
-    assert!(found <= sampled + 1e-3 && found > sampled - 1e-2, "{found} and {sampled}");
+    assert!(found <= sampled + 1e-6 && found > sampled - 1e-2, "{found} and {sampled}");
 }
 
 #[test]

@@ -156,7 +156,8 @@ impl<'a> Pairs<'a> {
     pub fn finish<T: Real>(self) -> Option<ClosestPair<T>> {
         let Mode::Nearest { best: Some((primitives, pair)), certified } = self.mode else { return None };
         // What was pruned is farther than the best pair, whose square is exact to 5 u.
-        let bound = certified.min(pair.key.distance().min(f64::MAX) * ROUND_DOWN) * ROUND_DOWN - 2.0 * f64::from_bits(1);
+        let bound =
+            certified.min(pair.key.distance().min(f64::MAX) * ROUND_DOWN) * ROUND_DOWN - 2.0 * f64::from_bits(1);
         Some(ClosestPair {
             points: pair.points.map(|point| from_f64_array(point.coords.into())),
             distance: T::round_from_f64(pair.key.distance()),
