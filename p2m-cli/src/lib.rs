@@ -11,6 +11,7 @@ mod backend;
 mod boxes;
 mod build;
 mod convert;
+mod distance;
 mod field;
 mod field_summary;
 mod generate;
@@ -76,6 +77,7 @@ the signal after an interruption (130 for Ctrl-C), which leaves no half-written 
 enum Command {
     Query(query::Args),
     Build(build::Args),
+    Distance(distance::Args),
     Stats(stats::Args),
     Field(field::Args),
     Advise(advise::Args),
@@ -95,6 +97,7 @@ impl Command {
         match self {
             Self::Query(_) => "p2m query".to_owned(),
             Self::Build(_) => "p2m build".to_owned(),
+            Self::Distance(_) => "p2m distance".to_owned(),
             Self::Stats(_) => "p2m stats".to_owned(),
             Self::Field(_) => "p2m field".to_owned(),
             Self::Advise(_) => "p2m advise".to_owned(),
@@ -113,6 +116,7 @@ impl Command {
         match self {
             Self::Query(args) => query::run(streams, args),
             Self::Build(args) => build::run(streams, args),
+            Self::Distance(args) => distance::run(streams, args),
             Self::Stats(args) => stats::run(streams, args),
             Self::Field(args) => field::run(streams, args),
             Self::Advise(args) => advise::run(streams, args),

@@ -41,6 +41,7 @@ fn every_key_is_documented() {
         &["field", &scene, "--refine", "1", "--signed", "--out", &field, "--json"],
         &["advise", &scene, "--queries", "2", "--near", "--json"],
         &["build", &scene, "--backend", "p2m", "--out", &saved, "--json"],
+        &["distance", &scene, &scene, "--json"],
     ] {
         keys(&json(arguments), &mut found);
     }

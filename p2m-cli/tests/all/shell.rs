@@ -7,6 +7,7 @@ use tempfile::TempDir;
 const COMMANDS: [&str; 13] = [
     "query",
     "build",
+    "distance",
     "stats",
     "field",
     "advise",

@@ -1,0 +1,53 @@
+//! Tests of `p2m distance`.
+
+use crate::common::*;
+use tempfile::TempDir;
+
+const LOW: &str = "v 0 0 0\nv 4 0 0\nv 0 4 0\no floor\nf 1 2 3\n";
+const HIGH: &str = "v 1 1 2\nv 1 2 3\nl 1 2\n";
+
+#[test]
+fn the_nearest_points_of_two_scenes_are_named() {
+    let folder = TempDir::new().unwrap();
+    let (low, high) = (write(&folder, "low.obj", LOW), write(&folder, "high.obj", HIGH));
+    let text = table(&["distance", &low, &high]);
+    let lines: Vec<_> = text.lines().collect();
+    assert!(lines[0].starts_with("distance 2, certainly at least 1.99999999999999"), "{text}");
+    assert_eq!(lines[1], format!("{low}: 1 1 0, triangle 0 (face) of floor"));
+    assert_eq!(lines[2], format!("{high}: 1 1 2, segment 0 (vertex0)"));
+    let report = json(&["distance", &low, &high, "--json"]);
+    assert_eq!((report["distance"].as_f64(), report["intersect"].as_bool()), (Some(2.0), Some(false)));
+    assert_eq!(report["scenes"][0]["nearest"]["object"], "floor");
+}
+
+#[test]
+fn the_second_scene_moves() {
+    let folder = TempDir::new().unwrap();
+    let (low, high) = (write(&folder, "low.obj", LOW), write(&folder, "high.obj", HIGH));
+    let down = "1 0 0 0  0 1 0 0  0 0 1 -2.5";
+    let file = write(&folder, "down.txt", format!("{down}\n0 0 0 1\n"));
+    for transform in [down, &file] {
+        let report = json(&["distance", &low, &high, "--transform", transform, "--json"]);
+        assert_eq!((report["distance"].as_f64(), report["intersect"].as_bool()), (Some(0.0), Some(true)));
+        assert!(table(&["distance", &low, &high, "--transform", transform]).starts_with("the scenes intersect\n"));
+    }
+    // A quarter turn about x: the segment then ends at (1, -2, 1).
+    let turned = json(&["distance", &low, &high, "--transform", "1 0 0 0, 0 0 -1 0, 0 1 0 0", "--json"]);
+    assert!((turned["distance"].as_f64().unwrap() - 5f64.sqrt()).abs() < 1e-15, "{turned}");
+}
+
+#[test]
+fn limits_and_wrong_arguments_are_told() {
+    let folder = TempDir::new().unwrap();
+    let (low, high) = (write(&folder, "low.obj", LOW), write(&folder, "high.obj", HIGH));
+    assert_eq!(table(&["distance", &low, &high, "--max-distance", "1.5"]), "nothing is within 1.5\n");
+    assert_eq!(json(&["distance", &low, &high, "--max-distance", "2", "--json"])["distance"], 2.0);
+    let empty = write(&folder, "empty.obj", "v 0 0 0\n");
+    assert_eq!(table(&["distance", &low, &empty]), "a scene is empty\n");
+    let wrong = |transform: &str| failure(&["distance", &low, &high, "--transform", transform], 2);
+    assert!(wrong("1 0 0").contains("3 numbers are no matrix"), "{}", wrong("1 0 0"));
+    assert!(wrong("2 0 0 0 0 1 0 0 0 0 1 0").contains("no rotation"));
+    assert!(wrong("1 0 0 nan 0 1 0 0 0 0 1 0").contains("not finite"));
+    assert!(failure(&["distance", &low, &high, "--transform", "missing.txt"], 1).contains("missing.txt"));
+    failure(&["distance", &low, &high, "--max-distance", "-1"], 2);
+}
