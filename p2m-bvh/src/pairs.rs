@@ -4,7 +4,7 @@ use crate::traverse::pairs::{MovedSide, ShapeSide, TreeSide, search_pairs};
 use crate::{TreeIndex, Volume};
 use nalgebra::Isometry3;
 use p2m_core::pair::{
-    ClosestPair, Motion, PairOptions, PairQuery, Pairs, hull_of, nearest_of_hulls, offer_hint_of_set,
+    ClosestPair, Motion, NearestPair, PairOptions, PairQuery, Pairs, hull_of, nearest_of_hulls, offer_hint_of_set,
 };
 use p2m_core::{PrimitiveId, PrimitiveSet, Real};
 use std::ops::ControlFlow;
@@ -21,7 +21,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> PairQuery<T> for TreeIndex<T, S, V>
 
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// Returns the nearest points of this scene and another one, which the options may move; `None` if one is empty, if
-    /// nothing is within the largest distance, or if the motion moves the other scene beyond the range of f64.
+    /// nothing is within the largest distance, or if the box of the moved scene is beyond the range of f64.
     ///
     /// ```
     /// use nalgebra::{Isometry3, Point3, Vector3};
@@ -33,11 +33,11 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// let scene = AabbTree::build(&triangle, &Default::default())?;
     /// let raised = PairOptions::default().with_motion(Isometry3::translation(0.0, 0.0, 2.0));
     /// let nearest = scene.closest_pair(&scene, &raised).expect("both have a triangle");
-    /// assert_eq!((nearest.distance, nearest.intersect), (2.0, false));
+    /// assert_eq!((nearest.distance, nearest.is_intersecting), (2.0, false));
     /// // The next search begins with this pair.
     /// let turned = Isometry3::new(Vector3::new(0.0, 0.0, 0.5), Vector3::y());
     /// let next = scene.closest_pair(&scene, &raised.with_motion(turned).with_hint(nearest.primitives));
-    /// assert!(next.is_some_and(|pair| pair.intersect));
+    /// assert!(next.is_some_and(|pair| pair.is_intersecting));
     /// # Ok::<(), p2m_core::BuildError>(())
     /// ```
     ///
@@ -47,8 +47,8 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// # Accuracy
     /// The answer is that of all pairs of primitives, bit for bit, where vertices of the other scene are moved and
     /// rounded first ([`Motion`]). The error of a distance is at most
-    /// [`ERROR_CONSTANT_OF_PAIRS`](p2m_core::pair::ERROR_CONSTANT_OF_PAIRS) u M + eta, and 20 u (|v| + |t|) for the
-    /// rounding of moved vertices.
+    /// [`ERROR_CONSTANT_OF_PAIRS`](p2m_core::pair::ERROR_CONSTANT_OF_PAIRS) u M + 4 eta, and 32 u (|v| + |t|) for
+    /// the rounding of moved vertices.
     ///
     /// # Complexity
     /// It takes expected O(log n) steps for scenes that are apart, and O(n) where they are about equally near in many
@@ -64,8 +64,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     }
 
     /// Returns whether a primitive of this scene and one of another are within the largest distance. The search ends at
-    /// the first pair. With a largest distance of 0 it tests whether the scenes intersect, which is exact but for pairs
-    /// whose distance is below the range of numbers.
+    /// the first pair. With a largest distance of 0 it tests whether scenes in f64 intersect, which is exact.
     ///
     /// # Panics
     /// Panics if there are primitives without vertices.
@@ -74,11 +73,14 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         other: &TreeIndex<T, R, U>,
         options: &PairOptions<T>,
     ) -> bool {
-        self.visit_pairs_within(other, options, &mut |_| ControlFlow::Break(())).is_break()
+        let mut end = |_: [PrimitiveId; 2], _: &NearestPair| ControlFlow::Break(());
+        let mut pairs = Pairs::each(options.max_distance, &mut end);
+        self.search_pairs(other, options.motion.as_ref(), options.hint, &mut pairs);
+        pairs.has_ended()
     }
 
     /// Calls a function for each pair of primitives within the largest distance of the options, until it breaks, and
-    /// returns whether it did. The order is that of the search.
+    /// returns whether it did. The order is that of the search. The hint is not used.
     ///
     /// # Panics
     /// Panics if there are primitives without vertices.
@@ -118,8 +120,10 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         {
             let (a, a_len) = hull_of(&self.set().get(i), None);
             let (b, b_len) = hull_of(&other.set().get(j), motion.as_ref());
-            if let Some(pair) = nearest_of_hulls(&a[..a_len], &b[..b_len], pairs.prune_above()) {
-                pairs.offer([i, j], &pair);
+            let result = nearest_of_hulls(&a[..a_len], &b[..b_len], pairs.prune_above());
+            pairs.offer_result([i, j], result);
+            if pairs.is_done() {
+                return;
             }
         }
         let (a, b) = (TreeSide(self.tree()), TreeSide(other.tree()));

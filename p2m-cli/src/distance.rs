@@ -150,7 +150,7 @@ fn text(names: &[String; 2], scenes: &[Scene; 2], found: Option<&ClosestPair<f64
         let is_empty = scenes.iter().any(|scene| scene.soup.elements().next().is_none());
         return if is_empty { "a scene is empty\n".to_owned() } else { format!("nothing is within {limit}\n") };
     };
-    let mut lines = if pair.intersect {
+    let mut lines = if pair.is_intersecting {
         "the scenes intersect\n".to_owned()
     } else {
         format!("distance {}, certainly at least {}\n", pair.distance, pair.lower_bound)
@@ -193,6 +193,6 @@ fn report(
         "max_distance": json::number(limit),
         "distance": found.map(|pair| json::number(pair.distance)),
         "lower_bound": found.map(|pair| json::number(pair.lower_bound)),
-        "intersect": found.map(|pair| pair.intersect),
+        "intersect": found.map(|pair| pair.is_intersecting),
     })
 }

@@ -3,6 +3,7 @@
 //! So an index can own its scene, borrow it, or share it with others (`Arc<Soup<f64>>`), and a function over `impl
 //! ClosestPoint<T>` also takes `&I`, `Box<dyn ClosestPoint<T>>` and `Arc<I>`.
 
+use crate::pair::{PairQuery, Pairs};
 use crate::{
     Aabb, Best, BoxQuery, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Found, Hits, Inspect, Near, NearQuery,
     PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayQuery, Real, Shape, StatsCollector,
@@ -52,6 +53,15 @@ macro_rules! point_to {
         impl<T: Real, $target: NearQuery<T> + ?Sized> NearQuery<T> for $pointer {
             fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>) {
                 (**self).search_near(query, near);
+            }
+        }
+
+        impl<T: Real, $target: PairQuery<T> + ?Sized> PairQuery<T> for $pointer {
+            fn search_hull(&self, hull: &[[f64; 3]], pairs: &mut Pairs<'_>) {
+                (**self).search_hull(hull, pairs);
+            }
+            fn offer_hint(&self, primitive: PrimitiveId, hull: &[[f64; 3]], pairs: &mut Pairs<'_>) {
+                (**self).offer_hint(primitive, hull, pairs);
             }
         }
 

@@ -217,14 +217,13 @@ fn search_packets(a: &Hulls, b: &Hulls, boxes: &[Aabb<f64>; 2], pairs: &mut Pair
     for i in (0..a.len).filter(|i| is_near(&a.boxes[*i], &boxes[1])) {
         for &j in &near_b[..near_b_len] {
             let prune = pairs.prune_above();
-            if a.boxes[i].gap_squared(&b.boxes[j]) > prune {
+            let ids = [a.ids[i], b.ids[j]];
+            if a.boxes[i].gap_squared(&b.boxes[j]) > prune || !pairs.can_change(ids) {
                 continue;
             }
-            if let Some(pair) = nearest_of_hulls(a.hull(i), b.hull(j), prune) {
-                pairs.offer([a.ids[i], b.ids[j]], &pair);
-                if pairs.is_done() {
-                    return;
-                }
+            pairs.offer_result(ids, nearest_of_hulls(a.hull(i), b.hull(j), prune));
+            if pairs.is_done() {
+                return;
             }
         }
     }

@@ -4,7 +4,7 @@ use crate::common::*;
 use std::fs;
 use tempfile::TempDir;
 
-const COMMANDS: [&str; 13] = [
+const COMMANDS: [&str; 14] = [
     "query",
     "build",
     "distance",

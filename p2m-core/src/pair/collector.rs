@@ -54,7 +54,8 @@ pub struct ClosestPair<T: Real> {
     pub points: [Point3<T>; 2],
     /// The distance of the scenes, which is 0 if they intersect.
     pub distance: T,
-    /// A certified lower bound on the true distance.
+    /// A certified lower bound on the true distance, for the second scene as its motion has rounded it
+    /// ([`Motion`](super::Motion)).
     pub lower_bound: T,
     /// The primitives that contain the points: of several pairs with equal keys the one with the lowest id in the first
     /// scene, then in the second. A shape has the id 0.
@@ -64,7 +65,7 @@ pub struct ClosestPair<T: Real> {
     /// The weights of the vertices of each primitive.
     pub barycentric: [[T; 3]; 2],
     /// Whether the two primitives intersect, which is exact. If no two primitives do, it is false.
-    pub intersect: bool,
+    pub is_intersecting: bool,
 }
 
 /// Receives the pairs that a search finds, and decides what it may leave out.
@@ -129,6 +130,24 @@ impl<'a> Pairs<'a> {
         self.is_ended
     }
 
+    /// Returns whether a pair of these primitives could still change the answer. It could not if a pair with lower ids
+    /// intersects.
+    #[inline]
+    #[must_use]
+    pub fn can_change(&self, ids: [PrimitiveId; 2]) -> bool {
+        let Mode::Nearest { best: Some((others, pair)), .. } = &self.mode else { return true };
+        !(pair.is_intersecting && *others < ids)
+    }
+
+    /// Takes the result of the kernel for a pair of primitives.
+    pub fn offer_result(&mut self, ids: [PrimitiveId; 2], result: Result<NearestPair, f64>) {
+        match (result, &mut self.mode) {
+            (Ok(pair), _) => self.offer(ids, &pair),
+            (Err(bound), Mode::Nearest { certified, .. }) => *certified = certified.min(bound),
+            (Err(_), Mode::Each(_)) => {}
+        }
+    }
+
     /// Takes a pair of primitives.
     pub fn offer(&mut self, ids: [PrimitiveId; 2], pair: &NearestPair) {
         let distance = pair.key.distance();
@@ -157,7 +176,7 @@ impl<'a> Pairs<'a> {
         let Mode::Nearest { best: Some((primitives, pair)), certified } = self.mode else { return None };
         // What was pruned is farther than the best pair, whose square is exact to 5 u.
         let bound =
-            certified.min(pair.key.distance().min(f64::MAX) * ROUND_DOWN) * ROUND_DOWN - 2.0 * f64::from_bits(1);
+            certified.min(pair.key.distance().min(f64::MAX) * ROUND_DOWN) * ROUND_DOWN - 8.0 * f64::from_bits(1);
         Some(ClosestPair {
             points: pair.points.map(|point| from_f64_array(point.coords.into())),
             distance: T::round_from_f64(pair.key.distance()),
@@ -165,7 +184,7 @@ impl<'a> Pairs<'a> {
             primitives,
             features: pair.features,
             barycentric: pair.barycentric.map(|weights| weights.map(T::round_from_f64)),
-            intersect: pair.intersect,
+            is_intersecting: pair.is_intersecting,
         })
     }
 }

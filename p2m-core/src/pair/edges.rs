@@ -21,10 +21,10 @@ use crate::kernel::{Key, triangle};
 
 /// The sizes of edges and offsets for which products of four of them, and of the smallest sine, are in range.
 const PLAIN_SIZES: std::ops::RangeInclusive<f64> = power_of_two(-100)..=power_of_two(100);
-/// Coordinates from here on are scaled down, so that their differences are finite.
-const HUGE: f64 = power_of_two(1000);
-/// The exponent of the scale of huge coordinates.
-const HUGE_SHIFT: i32 = 40;
+/// Edges with differences of vertices from here on are scaled down, so that sums of such differences are finite.
+const HUGE: f64 = power_of_two(1020);
+/// The exponent of the scale of such edges. The digits that they lose are far below the error of their distance.
+const HUGE_SHIFT: i32 = 6;
 
 /// The nearest points inside of two edges.
 pub(super) struct NearestOnEdges {
@@ -36,7 +36,8 @@ pub(super) struct NearestOnEdges {
 
 /// Returns the nearest points of two edges, if both are strictly inside and the edges are not parallel.
 pub(super) fn nearest_on_edges(p: &[V3; 2], q: &[V3; 2]) -> Option<NearestOnEdges> {
-    let is_huge = largest(&[p[0], p[1], q[0], q[1]]) >= HUGE;
+    let differences = [sub(p[1], p[0]), sub(q[1], q[0]), sub(q[0], p[0]), sub(q[1], p[0])];
+    let is_huge = largest(&differences) >= HUGE;
     let shift = if is_huge { HUGE_SHIFT } else { 0 };
     let scaled = |edge: &[V3; 2]| if is_huge { edge.map(|v| v.map(|x| scale_by_power(x, -shift))) } else { *edge };
     let sorted = |[a, b]: [V3; 2]| {

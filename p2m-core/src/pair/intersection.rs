@@ -21,7 +21,7 @@ use std::cmp::Ordering;
 /// It takes a few hundred multiplications for two triangles that intersect in their interiors, and more if signs are
 /// uncertain in f64.
 #[must_use]
-pub fn intersect(a: &[V3], b: &[V3]) -> bool {
+pub fn do_intersect(a: &[V3], b: &[V3]) -> bool {
     let (a, b) = (Hull::new(a), Hull::new(b));
     match (a, b) {
         (Hull::Point(p), hull) | (hull, Hull::Point(p)) => hull.contains(p),

@@ -30,17 +30,18 @@ mod tests;
 use crate::kernel::vector::{V3, bounds, clamp, largest, sub};
 use crate::kernel::{Key, SQRT_3_U};
 use crate::primitive::{Feature, Primitive, Projection};
+use crate::query::answer::ROUND_DOWN;
 use crate::{Aabb, Real};
 pub use collector::{ClosestPair, PairOptions, Pairs};
 use edges::nearest_on_edges;
-pub use intersection::intersect;
+pub use intersection::do_intersect;
 pub use motion::Motion;
 use nalgebra::Point3;
 pub(crate) use query::offer_of_set;
 pub use query::{PairQuery, hull_of, offer_all_pairs, offer_hint_of_set};
 
 /// The bound on the error of the distance between two primitives in units of u M, where M is the largest distance
-/// between a vertex of one and a vertex of the other: |computed - true| <= `ERROR_CONSTANT_OF_PAIRS` u M + eta.
+/// between a vertex of one and a vertex of the other: |computed - true| <= `ERROR_CONSTANT_OF_PAIRS` u M + 4 eta.
 ///
 /// It is proved in docs/proofs/pairs.md. For a vertex and its nearest point the constant is that of query points, 8.
 pub const ERROR_CONSTANT_OF_PAIRS: f64 = 32.0;
@@ -49,8 +50,9 @@ pub const ERROR_CONSTANT_OF_PAIRS: f64 = 32.0;
 ///
 /// All numbers are in f64 and in units of the scene, for both scalars. Arrays of two have the first primitive first.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct NearestPair {
-    /// The squared distance, by which pairs are compared. It is zero if the primitives intersect.
+    /// The squared distance, by which pairs are compared. It is zero if and only if the primitives intersect.
     pub key: Key,
     /// The nearest points. If the primitives intersect, both are near a common point.
     pub points: [Point3<f64>; 2],
@@ -58,10 +60,10 @@ pub struct NearestPair {
     pub features: [Feature; 2],
     /// The weights of the vertices of each primitive for its point.
     pub barycentric: [[f64; 3]; 2],
-    /// A bound on the error of [`Key::distance`], apart from one smallest subnormal.
+    /// A bound on the error of [`Key::distance`], apart from four smallest subnormals.
     pub error: f64,
     /// Whether the primitives have a common point. It is exact.
-    pub intersect: bool,
+    pub is_intersecting: bool,
 }
 
 impl NearestPair {
@@ -85,7 +87,7 @@ impl NearestPair {
 /// let floor = Triangle::new(Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 0.0, 0.0), Point3::new(0.0, 4.0, 0.0));
 /// let pole = Segment::new(Point3::new(1.0, 1.0, 2.0), Point3::new(1.0, 1.0, 9.0));
 /// let pair = nearest_pair(&floor, &pole);
-/// assert_eq!((pair.key.distance(), pair.intersect), (2.0, false));
+/// assert_eq!((pair.key.distance(), pair.is_intersecting), (2.0, false));
 /// assert_eq!(pair.features, [Feature::Face, Feature::Vertex(0)]);
 /// assert_eq!(pair.points, [Point3::new(1.0, 1.0, 0.0), Point3::new(1.0, 1.0, 2.0)]);
 /// ```
@@ -94,38 +96,39 @@ impl NearestPair {
 /// Panics if one has no [vertices](Primitive::vertices), as primitives of your own may.
 ///
 /// # Accuracy
-/// The error of the distance is at most [`ERROR_CONSTANT_OF_PAIRS`] u M + eta (proved). Whether the primitives intersect
-/// is exact.
+/// The error of the distance is at most [`ERROR_CONSTANT_OF_PAIRS`] u M + 4 eta (proved) if all coordinates are finite;
+/// otherwise the result means nothing. Whether the primitives intersect is exact.
 #[must_use]
 pub fn nearest_pair<T: Real>(a: &impl Primitive<T>, b: &impl Primitive<T>) -> NearestPair {
     nearest_pair_within(a, b, f64::INFINITY).expect("no key exceeds infinity")
 }
 
-/// Returns the nearest points of two primitives, or `None` if their key certainly exceeds `square`.
+/// Returns the nearest points of two primitives, or `None` if their key certainly exceeds `square`, which is the
+/// [square above](Key::square_above) another key.
 ///
 /// # Panics
 /// Panics if one has no vertices.
 #[must_use]
 pub fn nearest_pair_within<T: Real>(a: &impl Primitive<T>, b: &impl Primitive<T>, square: f64) -> Option<NearestPair> {
     let ((a, a_len), (b, b_len)) = (hull_of(a, None), hull_of(b, None));
-    nearest_of_hulls(&a[..a_len], &b[..b_len], square)
+    nearest_of_hulls(&a[..a_len], &b[..b_len], square).ok()
 }
 
-/// Returns the nearest points of the hulls of one to three vertices each, or `None` if their key certainly exceeds
-/// `square`.
+/// Returns the nearest points of the hulls of one to three vertices each. If their key certainly exceeds `square`, it
+/// returns a lower bound on the true distance instead, which is infinite if the hulls are farther than `square` allows.
 ///
 /// # Panics
 /// Panics if a hull has no vertex, or more than three.
 #[doc(hidden)]
-pub fn nearest_of_hulls(a: &[V3], b: &[V3], square: f64) -> Option<NearestPair> {
+pub fn nearest_of_hulls(a: &[V3], b: &[V3], square: f64) -> Result<NearestPair, f64> {
     let bounds = [a, b].map(bounds_of);
     let gap = bounds[0].gap_squared(&bounds[1]);
     if gap > square {
-        return None;
+        return Err(f64::INFINITY);
     }
-    let intersect = gap == 0.0 && intersect(a, b);
+    let is_intersecting = gap == 0.0 && do_intersect(a, b);
     // The key will be zero, wherever rounding places the candidates.
-    let square = if intersect { f64::INFINITY } else { square };
+    let square = if is_intersecting { f64::INFINITY } else { square };
     let mut best = Candidate::NONE;
     for (i, vertex) in a.iter().enumerate() {
         best.offer_vertex(i, *vertex, b, square, false);
@@ -138,7 +141,7 @@ pub fn nearest_of_hulls(a: &[V3], b: &[V3], square: f64) -> Option<NearestPair> 
             best.offer_edges([i, j], [p, q], square);
         }
     }
-    if intersect {
+    if is_intersecting {
         // A point inside of a face is not among the candidates yet.
         for (i, edge) in edges_of(a) {
             best.offer_piercing(i, edge, b, false);
@@ -147,12 +150,18 @@ pub fn nearest_of_hulls(a: &[V3], b: &[V3], square: f64) -> Option<NearestPair> 
             best.offer_piercing(i, edge, a, true);
         }
         best.pair.key = Key::ZERO;
+    } else if best.is_some && best.pair.key == Key::ZERO {
+        // The distance is positive, though less than its error. No search may take the pair for one that intersects.
+        best.pair.key = Key::from_offset([f64::from_bits(1), 0.0, 0.0]);
     }
-    best.is_some.then(|| {
-        let size = a.iter().flat_map(|v| b.iter().map(|w| largest(&[sub(*w, *v)]))).fold(0.0, f64::max);
-        let error = ERROR_CONSTANT_OF_PAIRS * SQRT_3_U * size;
-        NearestPair { intersect, error, ..best.pair }
-    })
+    let size = a.iter().flat_map(|v| b.iter().map(|w| largest(&[sub(*w, *v)]))).fold(0.0, f64::max);
+    let error = ERROR_CONSTANT_OF_PAIRS * SQRT_3_U * size;
+    if best.is_some && best.pair.key.square_above() <= square.max(Key::ZERO.square_above()) {
+        Ok(NearestPair { is_intersecting, error, ..best.pair })
+    } else {
+        // Rounding may have dropped points inside of edges for an end that is farther by as much as the error.
+        Err(square.sqrt() * ROUND_DOWN - error)
+    }
 }
 
 /// Returns the box around some vertices.
@@ -186,7 +195,7 @@ impl Candidate {
             features: [Feature::Vertex(0); 2],
             barycentric: [[1.0, 0.0, 0.0]; 2],
             error: 0.0,
-            intersect: false,
+            is_intersecting: false,
         },
         is_some: false,
     };

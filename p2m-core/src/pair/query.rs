@@ -46,8 +46,8 @@ pub trait PairQuery<T: Real> {
     /// Panics if the scene or the shape has primitives without vertices.
     ///
     /// # Accuracy
-    /// The error of the distance is at most [`ERROR_CONSTANT_OF_PAIRS`](super::ERROR_CONSTANT_OF_PAIRS) u M + eta, and
-    /// indexes agree bit for bit.
+    /// The error of the distance is at most [`ERROR_CONSTANT_OF_PAIRS`](super::ERROR_CONSTANT_OF_PAIRS) u M + 4 eta,
+    /// and indexes agree bit for bit.
     fn closest_to<P: Primitive<T>>(&self, shape: &P, options: &PairOptions<T>) -> Option<ClosestPair<T>>
     where
         Self: Sized,
@@ -116,9 +116,8 @@ pub(crate) fn offer_of_set<T: Real, S: PrimitiveSet<T> + ?Sized>(
     pairs: &mut Pairs<'_>,
 ) {
     let (vertices, len) = hull_of(&set.get(id), None);
-    if let Some(pair) = nearest_of_hulls(&vertices[..len], hull, pairs.prune_above()) {
-        pairs.offer([id, PrimitiveId::new(0)], &pair);
-    }
+    let result = nearest_of_hulls(&vertices[..len], hull, pairs.prune_above());
+    pairs.offer_result([id, PrimitiveId::new(0)], result);
 }
 
 /// Offers the pair of a primitive of a set and a hull, if the set has the primitive.
@@ -134,7 +133,8 @@ pub fn offer_hint_of_set<T: Real, S: PrimitiveSet<T> + ?Sized>(
     }
 }
 
-/// Offers all pairs of two sets, of which the second is moved. All searches of trees are tested against it.
+/// Offers all pairs of two sets, of which the second is moved. All searches of trees are tested against it. What the
+/// motion moves beyond the range of f64 is left out.
 ///
 /// # Panics
 /// Panics if there are primitives without vertices.
@@ -149,14 +149,16 @@ pub fn offer_all_pairs<T: Real>(
 ) {
     for j in (0..b.len()).map(PrimitiveId::new) {
         let (hull, len) = hull_of(&b.get(j), motion);
+        if !hull.as_flattened().iter().all(|x| x.is_finite()) {
+            continue;
+        }
         for i in (0..a.len()).map(PrimitiveId::new) {
             let (other, other_len) = hull_of(&a.get(i), None);
             if pairs.is_done() {
                 return;
             }
-            if let Some(pair) = nearest_of_hulls(&other[..other_len], &hull[..len], pairs.prune_above()) {
-                pairs.offer([i, j], &pair);
-            }
+            let result = nearest_of_hulls(&other[..other_len], &hull[..len], pairs.prune_above());
+            pairs.offer_result([i, j], result);
         }
     }
 }
