@@ -75,21 +75,29 @@ fn install_needed(python: &str) -> Result<(), String> {
 fn install_package(python: &str, libraries: &Path) -> Result<(), String> {
     let site = output(python, &["-c", "import sysconfig; print(sysconfig.get_paths()['platlib'])"])?;
     let package = Path::new(site.trim()).join("p2m");
-    let failed = |error| format!("{}: {error}", package.display());
     if package.exists() {
-        fs::remove_dir_all(&package).map_err(failed)?;
+        fs::remove_dir_all(&package).map_err(|error| format!("{}: {error}", package.display()))?;
     }
-    fs::create_dir_all(&package).map_err(failed)?;
-    for entry in fs::read_dir(format!("{PACKAGE}/python/p2m")).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        if let Some(name) = path.file_name().filter(|_| path.is_file()) {
-            fs::copy(&path, package.join(name)).map_err(failed)?;
-        }
-    }
+    copy_files(&Path::new(PACKAGE).join("python/p2m"), &package)?;
     let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     let library = libraries.join(format!("{prefix}_p2m{suffix}"));
     let module = package.join(if cfg!(windows) { "_p2m.pyd" } else { "_p2m.abi3.so" });
     fs::copy(&library, module).map(drop).map_err(|error| format!("{}: {error}", library.display()))
+}
+
+/// Copies the files of a folder and of those in it, apart from what Python caches.
+fn copy_files(from: &Path, to: &Path) -> Result<(), String> {
+    let failed = |error| format!("{}: {error}", to.display());
+    fs::create_dir_all(to).map_err(failed)?;
+    for entry in fs::read_dir(from).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        match path.file_name() {
+            Some(name) if path.is_dir() && name != "__pycache__" => copy_files(&path, &to.join(name))?,
+            Some(name) if path.is_file() => fs::copy(&path, to.join(name)).map(drop).map_err(failed)?,
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// Returns a path as text.
