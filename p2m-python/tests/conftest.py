@@ -24,6 +24,19 @@ CUBE_TRIANGLES = np.array(
 )
 """The cube from 0 to 1, whose normals point outwards."""
 
+DIFFERENCES: list[tuple[str, str, str, str, int, str]] = []
+"""Differences from other packages: the package, what differs, the model, how many, how many were decided, and why."""
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Print the differences from other packages as a table."""
+    if DIFFERENCES:
+        terminalreporter.section("differences from other packages, in which p2m is right")
+        terminalreporter.line("| package | what | model | differences | decided | reason |")
+        terminalreporter.line("|---|---|---|---|---|---|")
+        for row in sorted(DIFFERENCES):
+            terminalreporter.line("| " + " | ".join(map(str, row)) + " |")
+
 
 def models() -> Path | None:
     """Return the folder of real meshes, if there is one."""

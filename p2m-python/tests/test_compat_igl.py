@@ -22,6 +22,8 @@ def test_squared_distances_of_triangles_edges_and_points() -> None:
     assert (D.tolist(), I.tolist(), C.tolist()) == ([9], [0], [[0, 0, 0]])
     D, I, C = igl.point_mesh_squared_distance([[5, 0, 0]], [[0, 0, 0], [4, 0, 0]], np.array([[0], [1]], np.uint8))
     assert (D.tolist(), I.tolist(), C.tolist()) == ([1], [1], [[4, 0, 0]])
+    # Elements may occur twice.
+    assert igl.point_mesh_squared_distance([[5, 0, 0]], [[0, 0, 0], [4, 0, 0]], [[0], [1], [1]])[1].tolist() == [1]
     # Degenerate triangles are edges, and points of the plane have two coordinates.
     D, I, C = igl.point_mesh_squared_distance([[0.5, 2.0]], [[0.0, 0.0], [1.0, 0.0]], [[0, 1, 1]])
     assert (D.tolist(), I.tolist(), C.tolist()) == ([4], [0], [[0.5, 0]])
@@ -67,7 +69,7 @@ def test_surfaces_with_holes() -> None:
     for rule, scale in [(0, 1), (1, 1), (2, 1), (4, 1)]:
         S = igl.signed_distance(points, vertices, opened, rule)[0]
         assert S[0] < -0.85 * scale and S[1] == 2.0
-    # With pseudonormals, the sides of a sheet are told apart.
+    # With pseudonormals, the side of a sheet decides.
     sheet = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0]])
     S, _, _, N = igl.signed_distance([[1, 1, 1], [1, 1, -1], [-3, 0, 4]], sheet, [[0, 1, 2]], 0)
     assert S.tolist() == [1, -1, 5] and N[:2].tolist() == [[0, 0, 1]] * 2
@@ -124,3 +126,22 @@ def test_wrong_arguments() -> None:
         igl.signed_distance(POINTS, CUBE_VERTICES, CUBE_TRIANGLES[:, :2])
     with pytest.raises(ValueError, match="SignedDistanceType"):
         igl.signed_distance(POINTS, CUBE_VERTICES, CUBE_TRIANGLES, 7)
+
+
+def test_rules_differ_where_a_surface_is_wound_twice() -> None:
+    vertices = np.concatenate([CUBE_VERTICES, CUBE_VERTICES * 0.5 + [0.75, 0.25, 0.25]])
+    triangles = np.concatenate([CUBE_TRIANGLES, CUBE_TRIANGLES + 8])
+    rng = np.random.default_rng(8)
+    points = np.concatenate([rng.random((500, 3)) * [1.6, 1.2, 1.2] - 0.1, [[0.875, 0.5, 0.5], [-1.0, 0.5, 0.5]]])
+    first = ((points > 0) & (points < 1)).all(axis=1)
+    second = ((points > [0.75, 0.25, 0.25]) & (points < [1.25, 0.75, 0.75])).all(axis=1)
+    for flip in [1, -1]:
+        faces = triangles[:, ::flip]
+        by_winding = igl.signed_distance(points, vertices, faces)[0] < 0
+        by_crossings = igl.signed_distance(points, vertices, faces, igl.SIGNED_DISTANCE_TYPE_PSEUDONORMAL)[0] < 0
+        np.testing.assert_array_equal(by_winding, first | second)
+        np.testing.assert_array_equal(by_crossings, first ^ second)
+    # A cube that is inside out, in another one.
+    faces = np.concatenate([CUBE_TRIANGLES, CUBE_TRIANGLES[:, ::-1] + 8])
+    by_winding = igl.signed_distance(points, vertices, faces)[0] < 0
+    np.testing.assert_array_equal(by_winding, first ^ second)

@@ -79,9 +79,7 @@ def test_rays() -> None:
     assert hits["t_hit"].tolist() == [1, 2, np.inf, 0.75, np.inf]
     assert hits["geometry_ids"].tolist() == [0, 1, INVALID_ID, 0, INVALID_ID]
     assert (hits["primitive_ids"][[2, 4]] == RaycastingScene.INVALID_ID).all() and INVALID_ID == 2**32 - 1
-    np.testing.assert_array_equal(
-        hits["primitive_normals"], [[0, 0, -1], [0, 0, 1], [0, 0, 0], [1, 0, 0], [0, 0, 0]]
-    )
+    np.testing.assert_array_equal(hits["primitive_normals"], [[0, 0, -1], [0, 0, 1], [0, 0, 0], [1, 0, 0], [0, 0, 0]])
     assert hits["primitive_uvs"].shape == (5, 2) and (hits["primitive_uvs"][2] == 0).all()
     assert (hits["t_hit"].dtype, hits["primitive_ids"].dtype) == (np.float32, np.uint32)
     counts = scene.count_intersections(RAYS)

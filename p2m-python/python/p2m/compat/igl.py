@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._index import Index
 from .._scene import Scene
-from ._shared import ContentCache, Hits, all_hits, first_hits
+from ._shared import ContentCache, Hits, SignedIndex, all_hits, first_hits
 
 __all__ = [
     "AABB",
@@ -72,6 +72,7 @@ class _Mesh:
             points=elements[:, 0] if width == 1 else None,
         )
         self.index = Index(scene)
+        self.signed = SignedIndex(self.index)
         self._normals: _Pseudonormals | None = None
 
     @property
@@ -122,7 +123,8 @@ def point_mesh_squared_distance(
 
     Notes
     -----
-    Without elements the distances are infinite, I is -1 and C is nan. libigl crashes.
+    Without elements the distances are infinite, I is -1 and C is nan. There libigl 2.6.3 crashes, as it does if points
+    occur twice.
     """
     points, mesh = _points_and_mesh(P, V, Ele)
     return _squared_distance(mesh, points, np.asarray(P).shape[1])
@@ -205,13 +207,13 @@ def signed_distance(
     if is_normal:
         N = np.full((len(S), 3), np.nan)
         N[is_answered] = mesh.normals.at(I[is_answered], answer.feature[is_answered])
-        if mesh.normals.is_closed:
-            S[is_in] = mesh.index.signed_distance(points[is_in], sign="auto")
+        if mesh.signed.is_closed():
+            S[is_in] = mesh.signed.signed_distance(points[is_in])
         else:
             behind = np.einsum("ij,ij->i", points - C, np.nan_to_num(N)) < 0.0
             S[behind & is_answered] *= -1.0
     elif rule is not SIGNED_DISTANCE_TYPE_UNSIGNED:
-        S[is_in] = mesh.index.signed_distance(points[is_in], sign="winding")
+        S[is_in] = mesh.signed.signed_distance(points[is_in], by_winding=True)
     return S, I, C, N
 
 
@@ -348,9 +350,6 @@ class _Pseudonormals:
         self._edges = _unit(at_edges)[number.reshape(-1, 3)]
         self._vertices = _unit(at_vertices)
         self._triangles = triangles
-        ascending = np.where(ends[:, 0] < ends[:, 1], 1, -1)
-        balance = np.bincount(number.reshape(-1), weights=ascending, minlength=len(unique))
-        self.is_closed = bool((balance == 0.0).all()) and len(triangles) > 0
 
     def at(self, triangle: NDArray[np.int64], feature: NDArray[np.uint8]) -> NDArray[np.float64]:
         """Return the normals at features of triangles: vertices 0 to 2, edges 3 to 5, or the face 6."""

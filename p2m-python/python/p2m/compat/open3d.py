@@ -26,7 +26,7 @@ from numpy.typing import DTypeLike, NDArray
 from .._arrays import indices
 from .._index import Index
 from .._scene import Scene
-from ._shared import all_hits, first_hits, rays_with_direction
+from ._shared import SignedIndex, all_hits, first_hits, rays_with_direction
 
 __all__ = ["INVALID_ID", "Array", "RaycastingScene"]
 
@@ -61,6 +61,7 @@ class _Geometry(NamedTuple):
 
 class _Built(NamedTuple):
     tree: Index
+    signed: SignedIndex
     first: NDArray[np.int64]
     """The id of the first triangle of each geometry, and the number of all triangles."""
 
@@ -92,8 +93,9 @@ class RaycastingScene:
 
     - Everything is computed in float64, and rounded once at the end to `dtype`. Open3D has only float32. Inputs may be
       arrays and sequences of any real type, and meshes with float64 keep it.
-    - Signs are exact for closed surfaces, so `nsamples` has no effect. A surface with holes has winding numbers, where
-      Open3D counts the hits of a ray. A point whose side is not defined has the distance nan and the occupancy 0.
+    - Crossings are counted exactly for closed surfaces, so `nsamples` has no effect. A surface with holes has winding
+      numbers, where Open3D counts the hits of a ray. A point whose side is not defined has the distance nan and the
+      occupancy 0.
     - Hits are decided exactly. A ray through an edge or a vertex hits each of its triangles, and the first of equal
       hits is that with the lowest id.
     - In an empty scene distances are infinite and closest points nan, where Open3D answers with the origin.
@@ -183,7 +185,8 @@ class RaycastingScene:
                 vertices = np.concatenate([np.empty((0, 3)), *(vertices for vertices, _ in self._geometries)])
                 triangles = np.concatenate([np.empty((0, 3), np.int64), *corners])
                 first = np.concatenate([[0], np.cumsum([len(part) for part in corners], dtype=np.int64)])
-                self._built = _Built(Index(Scene(vertices, triangles=triangles), threads=self._threads), first)
+                tree = Index(Scene(vertices, triangles=triangles), threads=self._threads)
+                self._built = _Built(tree, SignedIndex(tree), first)
             return self._built
 
     def compute_closest_points(self, query_points: Any, nthreads: int = 0) -> dict[str, Any]:
@@ -275,7 +278,7 @@ class RaycastingScene:
         if nsamples < 1 or nsamples % 2 == 0:
             raise ValueError(f"nsamples: {nsamples} is not odd and positive")
         points = _rows(query_points, 3, "query_points")
-        return self._index().tree.signed_distance(points, threads=_threads(nthreads))
+        return self._index().signed.signed_distance(points, _threads(nthreads))
 
     def cast_rays(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
         """Return the first hits of rays.

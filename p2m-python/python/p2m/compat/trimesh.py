@@ -37,7 +37,7 @@ from numpy.typing import ArrayLike, NDArray
 from .._arrays import coordinates
 from .._index import Index
 from .._scene import Scene
-from ._shared import ContentCache, ObjectCache, all_hits, first_hits, rays_with_direction
+from ._shared import ContentCache, ObjectCache, SignedIndex, all_hits, first_hits, rays_with_direction
 
 __all__ = [
     "ProximityQuery",
@@ -57,6 +57,7 @@ class _Indexes:
         if faces.size == 0:
             raise ValueError("mesh: there are no faces")
         self.surface = Index(Scene(vertices, triangles=faces))
+        self.signed = SignedIndex(self.surface)
         self._vertices: Index | None = None
         self._lock = threading.Lock()
 
@@ -98,9 +99,7 @@ def _points(values: ArrayLike) -> NDArray[Any]:
     return coordinates(array, "points")
 
 
-def closest_point(
-    mesh: Any, points: ArrayLike
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+def closest_point(mesh: Any, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
     """Return the closest points of a mesh to query points.
 
     This replaces ``trimesh.proximity.closest_point``.
@@ -166,7 +165,9 @@ def signed_distance(mesh: Any, points: ArrayLike) -> NDArray[np.float64]:
     is nan where it is a half within the accuracy of float64. In trimesh, points within 1e-8 of the surface have a
     positive distance on either side.
     """
-    return _indexes(mesh).surface.signed_distance(_points(points), inside="positive")
+    distance = _indexes(mesh).signed.signed_distance(_points(points))
+    np.negative(distance, out=distance, where=distance != 0.0)
+    return distance
 
 
 class ProximityQuery:
@@ -189,9 +190,7 @@ class ProximityQuery:
         self._mesh = mesh
         self.replaced: Any = None
 
-    def on_surface(
-        self, points: ArrayLike
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+    def on_surface(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
         """Return the closest points of the mesh, their distances and their faces, as `closest_point` does."""
         return closest_point(self._mesh, points)
 
@@ -212,7 +211,9 @@ class ProximityQuery:
             near vertices the first is the answer, and in trimesh any of them.
         """
         answer = _indexes(self._mesh).vertices().closest(points, fields=("distance", "primitive"))
-        return answer.distance[()], answer.primitive[()]
+        if answer.distance.ndim == 0:
+            return answer.distance.item(), answer.primitive.item()
+        return answer.distance, answer.primitive
 
     def signed_distance(self, points: ArrayLike) -> NDArray[np.float64]:
         """Return the distances of points from the mesh, positive inside, as the function `signed_distance` does."""
