@@ -17,6 +17,27 @@ EXACT_FIELDS = ("distance", "primitive", "point", "feature", "barycentric")
 """The fields that are the same bits in every backend; lower bounds depend on the search."""
 
 
+CUBE_VERTICES = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
+CUBE_TRIANGLES = np.array(
+    [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4],
+     [1, 5, 7], [1, 7, 3]]
+)
+"""The cube from 0 to 1, whose normals point outwards."""
+
+DIFFERENCES: list[tuple[str, str, str, str, int, str]] = []
+"""Differences from other packages: the package, what differs, the model, how many, how many were decided, and why."""
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Print the differences from other packages as a table."""
+    if DIFFERENCES:
+        terminalreporter.section("differences from other packages, in which p2m is right")
+        terminalreporter.line("| package | what | model | differences | decided | reason |")
+        terminalreporter.line("|---|---|---|---|---|---|")
+        for row in sorted(DIFFERENCES):
+            terminalreporter.line("| " + " | ".join(map(str, row)) + " |")
+
+
 def models() -> Path | None:
     """Return the folder of real meshes, if there is one."""
     folder = os.environ.get("P2M_MODELS")

@@ -64,8 +64,8 @@ const TASKS: [Task; 13] = [
     },
     Task {
         name: "python",
-        arguments: "[TESTS]",
-        about: "Build the Python package and run its tests in a virtual environment",
+        arguments: "[--rivals] [TESTS]",
+        about: "Build the Python package and run its tests in a virtual environment, or compare it with others",
         run: python::check,
     },
     Task {

@@ -13,28 +13,50 @@ const PACKAGE: &str = "p2m-python";
 const NEEDED: [&str; 6] =
     ["numpy>=1.26", "hypothesis>=6.100", "mypy>=1.15", "pytest>=8", "tqdm>=4.66", "types-tqdm>=4.66"];
 
-/// Tests the package, or says why it cannot be tested here. A filter selects tests of pytest.
+/// The packages that p2m is compared with. They are those of the extra `compare` in pyproject.toml.
+const RIVALS: [&str; 6] =
+    ["trimesh==5.2.0", "rtree>=1.3", "scipy>=1.11", "libigl==2.6.3", "point-cloud-utils==0.34.0", "open3d==0.20.0"];
+
+/// Tests the package, or says why it cannot be tested here. A filter selects tests of pytest. With `--rivals` first, the
+/// package is compared with others, which are installed into an environment of their own.
 pub(crate) fn check(filter: &[String]) -> Outcome {
+    let compares = filter.first().is_some_and(|first| first == "--rivals");
+    let filter = if compares { &filter[1..] } else { filter };
     let Some(python) = find_python() else {
         println!("\n== skipped: there is no Python {}.{} or newer with venv", MIN_VERSION.0, MIN_VERSION.1);
         return Ok(());
     };
     let target = PathBuf::from(std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()));
     let target = std::path::absolute(&target).map_err(|error| format!("{}: {error}", target.display()))?;
-    let environment = target.join("python-env");
+    let environment = target.join(if compares { "python-rivals-env" } else { "python-env" });
     let bin = environment.join(if cfg!(windows) { "Scripts" } else { "bin" });
     let own_python = text(&bin.join("python"))?;
     if output(&own_python, &["--version"]).is_err() {
         run(&python, &["-m", "venv", &text(&environment)?], &[])?;
     }
-    if let Err(why) = install_needed(&own_python) {
+    if let Err(why) = install_needed(&own_python, &NEEDED) {
         println!("\n== skipped: the packages that the tests need cannot be installed\n{why}");
         return Ok(());
+    }
+    if compares {
+        for rival in RIVALS {
+            if let Err(why) = install_needed(&own_python, &[rival]) {
+                println!("\n== not compared with {rival}, which cannot be installed\n{why}");
+            }
+        }
     }
     // With the features of `cargo test --workspace`, which examples need as well, only this package is compiled after
     // the other tests. The crates that search are optimised in this profile.
     cargo(&["build", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"], &[])?;
     install_package(&own_python, &target.join("debug"))?;
+    if compares {
+        let mut tests = Command::new(&own_python);
+        tests
+            .args(["-m", "pytest", "-rs", "--durations=5", "tests/test_rivals.py"])
+            .args(filter)
+            .env("P2M_RIVALS", "1");
+        return crate::start(tests.current_dir(PACKAGE));
+    }
     // The program answers the same queries.
     let program = target.join("debug").join(format!("p2m{}", std::env::consts::EXE_SUFFIX));
     let mut tests = Command::new(&own_python);
@@ -61,35 +83,43 @@ fn find_python() -> Option<String> {
 }
 
 /// Installs what is missing, without a look at the registry if nothing is.
-fn install_needed(python: &str) -> Result<(), String> {
+fn install_needed(python: &str, needed: &[&str]) -> Result<(), String> {
     let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
-    let offline = [&install[..], &["--no-index"], &NEEDED].concat();
+    let offline = [&install[..], &["--no-index"], needed].concat();
     if output(python, &offline).is_ok() {
         return Ok(());
     }
-    println!("\n== {python} -m pip install {}", NEEDED.join(" "));
-    output(python, &[&install[..], &NEEDED].concat()).map(drop)
+    println!("\n== {python} -m pip install {}", needed.join(" "));
+    output(python, &[&install[..], needed].concat()).map(drop)
 }
 
 /// Copies the package with its library into the virtual environment, as pip would install it.
 fn install_package(python: &str, libraries: &Path) -> Result<(), String> {
     let site = output(python, &["-c", "import sysconfig; print(sysconfig.get_paths()['platlib'])"])?;
     let package = Path::new(site.trim()).join("p2m");
-    let failed = |error| format!("{}: {error}", package.display());
     if package.exists() {
-        fs::remove_dir_all(&package).map_err(failed)?;
+        fs::remove_dir_all(&package).map_err(|error| format!("{}: {error}", package.display()))?;
     }
-    fs::create_dir_all(&package).map_err(failed)?;
-    for entry in fs::read_dir(format!("{PACKAGE}/python/p2m")).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        if let Some(name) = path.file_name().filter(|_| path.is_file()) {
-            fs::copy(&path, package.join(name)).map_err(failed)?;
-        }
-    }
+    copy_files(&Path::new(PACKAGE).join("python/p2m"), &package)?;
     let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     let library = libraries.join(format!("{prefix}_p2m{suffix}"));
     let module = package.join(if cfg!(windows) { "_p2m.pyd" } else { "_p2m.abi3.so" });
     fs::copy(&library, module).map(drop).map_err(|error| format!("{}: {error}", library.display()))
+}
+
+/// Copies the files of a folder and of those in it, apart from what Python caches.
+fn copy_files(from: &Path, to: &Path) -> Result<(), String> {
+    let failed = |error| format!("{}: {error}", to.display());
+    fs::create_dir_all(to).map_err(failed)?;
+    for entry in fs::read_dir(from).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        match path.file_name() {
+            Some(name) if path.is_dir() && name != "__pycache__" => copy_files(&path, &to.join(name))?,
+            Some(name) if path.is_file() => fs::copy(&path, to.join(name)).map(drop).map_err(failed)?,
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// Returns a path as text.

@@ -1,0 +1,222 @@
+"""What the replacements of several packages need: caches of indexes, and rays of which some have no direction."""
+
+from __future__ import annotations
+
+import threading
+import weakref
+from collections.abc import Callable, Sequence
+from typing import Any, Generic, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._index import Index
+
+_T = TypeVar("_T")
+
+MESHES_PER_CONTENT_CACHE = 4
+"""The number of meshes of which a cache keeps what was made of them."""
+
+
+class ContentCache(Generic[_T]):
+    """What was made of arrays, found again by their content.
+
+    The cache has copies of the arrays and compares all of their bytes, which takes about a millisecond for a mesh of
+    100,000 triangles and is never mistaken. It forgets the mesh that was not used for the longest time.
+    """
+
+    def __init__(self, make: Callable[..., _T]) -> None:
+        self._make = make
+        self._entries: list[tuple[list[NDArray[Any]], _T]] = []
+        self._lock = threading.Lock()
+
+    def get(self, *arrays: NDArray[Any]) -> _T:
+        """Return what belongs to contiguous arrays, and make it if there is nothing."""
+        value: _T
+        with self._lock:
+            for entry in reversed(self._entries):
+                if all(_is_same(a, b) for a, b in zip(entry[0], arrays, strict=True)):
+                    self._entries = [other for other in self._entries if other is not entry]
+                    self._entries.append(entry)
+                    value = entry[1]
+                    return value
+        # Others may use the cache meanwhile. Two threads may make the same, of which the later one is found first.
+        copies = [array.copy() for array in arrays]
+        value = self._make(*copies)
+        with self._lock:
+            self._entries.append((copies, value))
+            del self._entries[:-MESHES_PER_CONTENT_CACHE]
+        return value
+
+    def clear(self) -> None:
+        """Forget everything."""
+        with self._lock:
+            self._entries.clear()
+
+
+def _is_same(kept: NDArray[Any], array: NDArray[Any]) -> bool:
+    """Return whether contiguous arrays of numbers with 8 bytes are the same bits."""
+    if kept.shape != array.shape or kept.dtype != array.dtype:
+        return False
+    a, b = kept.reshape(-1).view(np.int64), array.reshape(-1).view(np.int64)
+    # The first numbers of other meshes differ, so these are found out without a look at all of them.
+    return bool(np.array_equal(a[:64], b[:64]) and np.array_equal(a, b))
+
+
+class _Made(NamedTuple):
+    mesh: weakref.ref[Any]
+    content: object
+    value: Any
+
+
+class ObjectCache(Generic[_T]):
+    """What was made of objects that change, kept until they change or cease to exist."""
+
+    def __init__(self, make: Callable[[Any], _T], content: Callable[[Any], object]) -> None:
+        self._make = make
+        self._content = content
+        self._made: dict[int, _Made] = {}
+        self._lock = threading.RLock()
+
+    def get(self, mesh: Any) -> _T:
+        """Return what belongs to an object in its present state, and make it if there is nothing."""
+        key, content = id(mesh), self._content(mesh)
+        with self._lock:
+            made = self._made.get(key)
+        if made is None or made.mesh() is not mesh or made.content != content:
+            made = _Made(weakref.ref(mesh, lambda old: self._forget(key, old)), content, self._make(mesh))
+            with self._lock:
+                self._made[key] = made
+        value: _T = made.value
+        return value
+
+    def _forget(self, key: int, old: weakref.ref[Any]) -> None:
+        with self._lock:
+            made = self._made.get(key)
+            if made is not None and made.mesh is old:
+                del self._made[key]
+
+    def clear(self) -> None:
+        """Forget everything."""
+        with self._lock:
+            self._made.clear()
+
+    def __len__(self) -> int:
+        return len(self._made)
+
+
+DIRECTION = np.array([0.4395064, 0.6175986, 0.6522316])
+"""The direction of rays that tell inside from outside. Any one would do, and few surfaces have edges along this one."""
+
+
+class SignedIndex:
+    """An index over triangles, with the signs that a count of crossings gives.
+
+    `Index.signed_distance` takes the side of the nearest part of a closed surface. That is wrong where a surface that
+    intersects itself has this part inside of another one, and users of other packages have such surfaces.
+    """
+
+    def __init__(self, index: Index) -> None:
+        self.index = index
+        self._is_closed: bool | None = None
+
+    def is_closed(self) -> bool:
+        """Return whether the surface is closed and its triangles are oriented alike."""
+        if self._is_closed is None:
+            try:
+                self.index.signed_distance(np.empty((0, 3)), sign="closed")
+                self._is_closed = True
+            except ValueError:
+                self._is_closed = False
+        return self._is_closed
+
+    def signed_distance(
+        self, points: NDArray[Any], threads: int | None = None, *, by_winding: bool = False
+    ) -> NDArray[np.float64]:
+        """Return distances that are negative inside; nan where the side is not defined.
+
+        Inside of a closed surface is where a ray crosses it an odd number of times, or with `by_winding` where the
+        crossings in both directions are not equally many. Inside of other surfaces is where the winding number exceeds
+        a half in magnitude.
+        """
+        if not self.is_closed():
+            return self.index.signed_distance(points, sign="winding", threads=threads)
+        distance = self.index.distance(points, threads=threads)
+        crossings = self.index.rays(points, DIRECTION, "crossings", threads=threads)
+        np.negative(distance, out=distance, where=(crossings % 2 == 1) & (distance > 0.0))
+        if by_winding:
+            # Odd winding numbers are not 0. Only even numbers of crossings need a closer look.
+            rows = np.nonzero((crossings % 2 == 0) & (crossings > 0) & (distance > 0.0))[0]
+            wound = rows[self._is_wound(points[rows], crossings[rows], threads)]
+            distance[wound] *= -1.0
+        return distance
+
+    def _is_wound(self, points: NDArray[Any], crossings: NDArray[np.int64], threads: int | None) -> NDArray[np.bool_]:
+        """Return whether the winding number of a closed surface around points is not 0."""
+        hits = self.index.rays(points, DIRECTION, "all", fields="side", threads=threads)
+        side = hits.side.astype(np.int64)
+        sums = np.concatenate([[0], np.cumsum(side)])
+        number = sums[hits.splits[1:]] - sums[hits.splits[:-1]]
+        zeros = np.concatenate([[0], np.cumsum(side == 0)])
+        # A ray through an edge hits several triangles in one crossing.
+        is_clear = (np.diff(hits.splits) == crossings) & (zeros[hits.splits[1:]] == zeros[hits.splits[:-1]])
+        wound: NDArray[np.bool_] = number != 0
+        if not is_clear.all():
+            wound[~is_clear] = self.index.signed_distance(points[~is_clear], sign="winding", threads=threads) < 0.0
+        return wound
+
+
+class Hits(NamedTuple):
+    """All hits of rays, ray by ray, nearest first."""
+
+    ray: NDArray[np.int64]
+    columns: dict[str, NDArray[Any]]
+    splits: NDArray[np.int64]
+
+
+def rays_with_direction(directions: NDArray[np.float64]) -> NDArray[np.bool_] | None:
+    """Return which rays have a direction, or None if all have one. A ray without direction hits nothing."""
+    zero = (directions == 0.0).all(axis=-1)
+    return ~zero if zero.any() else None
+
+
+def first_hits(
+    index: Index,
+    origins: NDArray[np.float64],
+    directions: NDArray[np.float64],
+    fields: Sequence[str],
+    threads: int | None,
+) -> dict[str, NDArray[Any]]:
+    """Return the first hits of rays with one leading axis; the primitive is -1 where there is none."""
+    some = rays_with_direction(directions)
+    if some is None:
+        return index.rays(origins, directions, fields=fields, threads=threads).asdict()
+    found = index.rays(origins[some], directions[some], fields=fields, threads=threads).asdict()
+    columns = {}
+    for name, array in found.items():
+        missing = {"primitive": -1, "t": np.inf, "side": 0}.get(name, np.nan)
+        columns[name] = np.full((len(origins), *array.shape[1:]), missing, array.dtype)
+        columns[name][some] = array
+    return columns
+
+
+def all_hits(
+    index: Index,
+    origins: NDArray[np.float64],
+    directions: NDArray[np.float64],
+    fields: Sequence[str],
+    threads: int | None,
+) -> Hits:
+    """Return all hits of rays with one leading axis."""
+    some = rays_with_direction(directions)
+    if some is not None:
+        origins, directions = origins[some], directions[some]
+    found = index.rays(origins, directions, "all", fields=fields, threads=threads).asdict()
+    counts = np.diff(found.pop("splits"))
+    if some is not None:
+        every = np.zeros(len(some), np.int64)
+        every[some] = counts
+        counts = every
+    splits = np.zeros(len(counts) + 1, np.int64)
+    np.cumsum(counts, out=splits[1:])
+    return Hits(np.repeat(np.arange(len(counts)), counts), found, splits)
