@@ -28,7 +28,7 @@ are nearer.
 
 Examples:
   p2m distance robot.ply cell.ply
-  p2m distance arm.obj cell.obj --transform '1 0 0 0.25  0 1 0 0  0 0 1 -0.1'
+  p2m distance arm.obj cell.obj --transform pose.txt
   p2m distance a.stl b.stl --max-distance 0.01 --json",
         json::STABILITY
     )
