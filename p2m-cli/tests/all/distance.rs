@@ -12,7 +12,7 @@ fn the_nearest_points_of_two_scenes_are_named() {
     let (low, high) = (write(&folder, "low.obj", LOW), write(&folder, "high.obj", HIGH));
     let text = table(&["distance", &low, &high]);
     let lines: Vec<_> = text.lines().collect();
-    assert!(lines[0].starts_with("distance 2, certainly at least 1.99999999999999"), "{text}");
+    assert!(lines[0].starts_with("distance 2, certainly at least 1.9999999999999"), "{text}");
     assert_eq!(lines[1], format!("{low}: 1 1 0, triangle 0 (face) of floor"));
     assert_eq!(lines[2], format!("{high}: 1 1 2, segment 0 (vertex0)"));
     let report = json(&["distance", &low, &high, "--json"]);
@@ -42,7 +42,7 @@ fn limits_and_wrong_arguments_are_told() {
     let (low, high) = (write(&folder, "low.obj", LOW), write(&folder, "high.obj", HIGH));
     assert_eq!(table(&["distance", &low, &high, "--max-distance", "1.5"]), "nothing is within 1.5\n");
     assert_eq!(json(&["distance", &low, &high, "--max-distance", "2", "--json"])["distance"], 2.0);
-    let empty = write(&folder, "empty.obj", "v 0 0 0\n");
+    let empty = write(&folder, "empty.off", "OFF\n0 0 0\n");
     assert_eq!(table(&["distance", &low, &empty]), "a scene is empty\n");
     let wrong = |transform: &str| failure(&["distance", &low, &high, "--transform", transform], 2);
     assert!(wrong("1 0 0").contains("3 numbers are no matrix"), "{}", wrong("1 0 0"));
