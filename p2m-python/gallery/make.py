@@ -509,7 +509,9 @@ def units() -> str:
         }
         errors = [f"{np.abs(d / true - 1).max():.0e}" for d in others.values()]
         wrong = int((relative > 1e-6).sum())
-        rows.append([name, f"{wrong:,}", f"{theirs[worst]:.4g} m, but {true[worst]:.4g} m", *errors])
+        digits = 4 if relative[worst] > 1e-3 else 9
+        example = f"{theirs[worst]:.{digits}g} m instead of {true[worst]:.{digits}g} m"
+        rows.append([name, f"{wrong:,}", example, *errors])
     head = ["length of the tube", f"trimesh, wrong by more than 1e-6 of {len(local):,}", "trimesh, its worst answer"]
     return markdown(head + [f"{library}, largest relative error" for library in others], rows)
 
