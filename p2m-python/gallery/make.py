@@ -135,8 +135,8 @@ def deviation() -> str:
     save(figure, "deviation")
     within = float(np.quantile(np.abs(signed), 0.95))
     return (
-        f"Of the {len(scan):,} points 95 % are within {within:.4f} of the mesh. The dent is {-signed.min():.3f} deep and "
-        f"the bulge {signed.max():.3f} high."
+        f"Of the {len(scan):,} points 95 % are within {within:.4f} of the mesh. "
+        f"The dent is {-signed.min():.3f} deep and the bulge {signed.max():.3f} high."
     )
 
 
