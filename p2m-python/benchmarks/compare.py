@@ -51,6 +51,8 @@ class Library:
     """The largest number of queries of a round."""
     rounds = 1000
     """The largest number of rounds."""
+    builds = 1000
+    """The largest number of rounds of builds."""
 
     def build(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
         """Build what the library keeps between calls."""
@@ -170,6 +172,7 @@ class Trimesh(Library):
     packages = ("trimesh", "rtree")
     points = 2_000
     rounds = 3
+    builds = 1
 
     def build(self, vertices, triangles):
         import trimesh
@@ -305,8 +308,10 @@ def measure(model: Path, arguments: argparse.Namespace) -> dict[str, Any]:
 
     log(f"{model.name}: building")
     builds: list[list[tuple[float, float]]] = [[] for _ in entrants]
-    for _ in range(arguments.builds):
+    for number in range(arguments.builds):
         for i, library in enumerate(entrants):
+            if number >= library.builds:
+                continue
             cpu, wall, _ = timed(lambda library=library: library.build(vertices, triangles))
             builds[i].append((cpu, wall))
     for library, times in zip(entrants, builds):
@@ -446,13 +451,15 @@ def main() -> None:
         return print_peak_memory(arguments.memory_of, arguments.arrays)
     if not arguments.models:
         parser.error("no models")
-    results = [measure(model, arguments) for model in arguments.models]
-    if arguments.json is not None:
-        arguments.json.write_text(json.dumps(results, indent=1) + "\n")
     print("python p2m-python/benchmarks/compare.py " + " ".join(sys.argv[1:]))
     print(versions())
-    for result in results:
-        print(f"\n{result['model']}, {result['triangles']:,} triangles\n\n{table(result)}")
+    results = []
+    for model in arguments.models:
+        result = measure(model, arguments)
+        results.append(result)
+        if arguments.json is not None:
+            arguments.json.write_text(json.dumps(results, indent=1) + "\n")
+        print(f"\n{result['model']}, {result['triangles']:,} triangles\n\n{table(result)}", flush=True)
     if arguments.rust is not None:
         print(f"\n{rust_table(results)}")
 
