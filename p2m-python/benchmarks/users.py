@@ -1,158 +1,116 @@
-"""Programs of users that took too much time or memory with other packages, as a table of time and peak memory.
+"""Runs the programs of users who reported that other libraries are slow or run out of memory, in one call each.
 
-usage: python users.py [--rivals] [--threads N] [--dragon FILE]
+    pip install ./p2m-python[compare]
+    python p2m-python/benchmarks/users.py
 
-    ten triangles       500,000 points and a mesh of ten triangles (trimesh issue 1116)
-    signed distances    a million of them for a scanned mesh of 100,000 triangles (trimesh issue 976)
-    small calls         10,000 calls of ten points each for the same mesh (libigl issue 623)
-
-Each row runs in a process of its own. Times are those after the imports and the reading of the mesh, and include the
-build of the index. Peak memory is what the process needs beyond that. Rivals answer the share of the queries that is
-printed; their times are for these alone.
+It needs Linux, whose kernel tells the peak memory. Each program runs in a process of its own, on one thread. Libraries
+that are slow get fewer points.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
 import os
-import resource
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+
+os.environ["IGL_NUM_THREADS"] = "1"
 
 import numpy as np
 
 import p2m
 
-PROGRAMS = ["ten triangles", "signed distances", "small calls"]
-QUERIES = {"ten triangles": 500_000, "signed distances": 1_000_000, "small calls": 100_000}
-PACKAGES = ["p2m", "p2m.compat.trimesh", "p2m.compat.open3d", "p2m.compat.igl", "trimesh", "open3d", "igl"]
-SHARES = {
-    "trimesh": {"ten triangles": 0.1, "signed distances": 0.002, "small calls": 0.005},
-    "open3d": {"ten triangles": 1.0, "signed distances": 0.1, "small calls": 1.0},
-    "igl": {"ten triangles": 1.0, "signed distances": 0.01, "small calls": 0.005},
-}
-"""The share of the queries that other packages answer, which takes seconds to a minute. trimesh needs 11 GB for 2,000
-signed distances."""
+CARRIED = Path(__file__).resolve().parents[2] / "scenes" / "knot_and_cables.obj"
+SMALL_CALL_POINTS = 10
 
 
-def dragon(path: str | None) -> Path:
-    """Return the file of the mesh."""
-    if path is not None:
-        return Path(path)
-    folders = [os.environ.get("P2M_MODELS")] + [str(p / "shared" / "models") for p in Path(__file__).resolve().parents]
-    for folder in folders:
-        if folder and (Path(folder) / "dragon_100k.obj").exists():
-            return Path(folder) / "dragon_100k.obj"
-    raise SystemExit("name a mesh by --dragon, or its folder by P2M_MODELS")
-
-
-def mesh_and_points(program: str, count: int, path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the vertices and triangles of a program and its points."""
+def few_triangles() -> tuple[np.ndarray, np.ndarray]:
+    """Return ten triangles."""
     rng = np.random.default_rng(1)
-    if program == "ten triangles":
-        vertices, triangles = rng.random((12, 3)), np.array([[i, i + 1, i + 2] for i in range(10)])
-    else:
-        scene = p2m.read(path)
-        vertices, triangles = scene.vertices, scene.triangles
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    return vertices, triangles, low + (rng.random((count, 3)) * 1.1 - 0.05) * (high - low)
+    return rng.normal(size=(12, 3)), np.array([[i, i + 1, i + 2] for i in range(10)])
 
 
-def calls(package: str, vertices: np.ndarray, triangles: np.ndarray, threads: int) -> tuple[Any, Any]:
-    """Return the functions for closest points and for signed distances; building the index is part of their use."""
-    if package == "p2m":
-        index = p2m.Index(p2m.Scene(vertices, triangles), threads=threads)
-        return index.closest, index.signed_distance
-    if package.endswith("trimesh"):
-        import trimesh
-
-        mesh = trimesh.Trimesh(vertices, triangles, process=False)
-        if package.startswith("p2m"):
-            from p2m.compat.trimesh import ProximityQuery
-
-            mesh.nearest = ProximityQuery(mesh)
-        return mesh.nearest.on_surface, mesh.nearest.signed_distance
-    if package.endswith("open3d"):
-        if package.startswith("p2m"):
-            from p2m.compat.open3d import RaycastingScene
-        else:
-            from open3d.t.geometry import RaycastingScene
-        scene = RaycastingScene(nthreads=threads)
-        scene.add_triangles(vertices.astype(np.float32), triangles.astype(np.uint32))
-        return (
-            lambda points: scene.compute_closest_points(points.astype(np.float32), nthreads=threads),
-            lambda points: scene.compute_signed_distance(points.astype(np.float32), nthreads=threads),
-        )
-    if package.startswith("p2m"):
-        from p2m.compat import igl
-    else:
-        import igl  # type: ignore[no-redef]
-    return (
-        lambda points: igl.point_mesh_squared_distance(points, vertices, triangles),
-        lambda points: igl.signed_distance(points, vertices, triangles),
-    )
+def tube() -> tuple[np.ndarray, np.ndarray]:
+    """Return the closed tube of the carried scene, of 3,600 triangles."""
+    scene = p2m.read(CARRIED)
+    return scene.vertices, scene.triangles
 
 
-def imported(package: str) -> bool:
-    """Import a package, and return whether it is there."""
-    try:
-        __import__(package.removeprefix("p2m.compat.") if package.endswith("trimesh") else package)
-    except ImportError as reason:
-        print(f"{package} is left out: {reason}", file=sys.stderr)
-        return False
-    return True
+def p2m_closest(mesh: Any, points: np.ndarray) -> Any:
+    return p2m.Index(mesh, threads=1).closest(points, fields=("distance", "primitive", "point"))
 
 
-def run(program: str, package: str, threads: int, path: Path) -> dict[str, float] | None:
-    """Run one program, and return its time, its peak memory and the number of its queries."""
-    if not imported(package):
-        return None
-    count = int(QUERIES[program] * SHARES.get(package, {}).get(program, 1.0))
-    vertices, triangles, points = mesh_and_points(program, count, path)
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    start = time.perf_counter()
-    closest, signed = calls(package, vertices, triangles, threads)
-    if program == "small calls":
-        for first in range(0, count, 10):
-            closest(points[first : first + 10])
-    else:
-        function: Callable[[np.ndarray], object] = closest if program == "ten triangles" else signed
-        function(points)
-    seconds = time.perf_counter() - start
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return {"queries": count, "seconds": seconds, "megabytes": (peak - before) / 1024}
+def trimesh_closest(mesh: Any, points: np.ndarray) -> Any:
+    import trimesh
+
+    return trimesh.proximity.closest_point(trimesh.Trimesh(*mesh, process=False), points)
+
+
+def p2m_signed(mesh: Any, points: np.ndarray) -> Any:
+    return p2m.Index(mesh, threads=1).signed_distance(points)
+
+
+def trimesh_signed(mesh: Any, points: np.ndarray) -> Any:
+    import trimesh
+
+    return trimesh.proximity.signed_distance(trimesh.Trimesh(*mesh, process=False), points)
+
+
+def p2m_small_calls(mesh: Any, points: np.ndarray) -> Any:
+    index = p2m.Index(mesh, threads=1)
+    return [index.signed_distance(few) for few in points.reshape(-1, SMALL_CALL_POINTS, 3)]
+
+
+def igl_small_calls(mesh: Any, points: np.ndarray) -> Any:
+    import igl
+
+    return [igl.signed_distance(few, *mesh) for few in points.reshape(-1, SMALL_CALL_POINTS, 3)]
+
+
+PROGRAMS: list[tuple[str, str, Any, Any, int]] = [
+    ("closest points on ten triangles", "p2m", p2m_closest, few_triangles, 500_000),
+    ("closest points on ten triangles", "trimesh", trimesh_closest, few_triangles, 500_000),
+    ("signed distances from the tube", "p2m", p2m_signed, tube, 1_000_000),
+    ("signed distances from the tube", "trimesh", trimesh_signed, tube, 20_000),
+    ("signed distances, ten points a call", "p2m", p2m_small_calls, tube, 100_000),
+    ("signed distances, ten points a call", "libigl", igl_small_calls, tube, 1_000),
+]
+
+
+def status(key: str) -> int:
+    """Return a number of bytes from the status of this process."""
+    line = next(line for line in Path("/proc/self/status").read_text().splitlines() if line.startswith(key))
+    return int(line.split()[1]) * 1024
+
+
+def run(number: int) -> None:
+    """Run one program and print its CPU time in seconds and its peak memory in bytes, besides the points."""
+    _, _, program, make, count = PROGRAMS[number]
+    mesh = make()
+    low, high = mesh[0].min(axis=0), mesh[0].max(axis=0)
+    points = np.random.default_rng(2).uniform(low, high, (count, 3))
+    # The first call imports the library.
+    program(mesh, points[:SMALL_CALL_POINTS])
+    Path("/proc/self/clear_refs").write_text("5")
+    before = status("VmRSS:")
+    start = time.process_time()
+    program(mesh, points)
+    print(time.process_time() - start, status("VmHWM:") - before)
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rivals", action="store_true", help="measure the other packages as well")
-    parser.add_argument("--threads", type=int, default=1, help="the number of threads (trimesh and libigl have theirs)")
-    parser.add_argument("--dragon", help="the mesh of 100,000 triangles")
-    parser.add_argument("--one", nargs=2, metavar=("PROGRAM", "PACKAGE"), help=argparse.SUPPRESS)
-    options = parser.parse_args()
-    path = dragon(options.dragon)
-    if options.one:
-        print(json.dumps(run(*options.one, options.threads, path)))
-        return
-    print(f"| program | package | queries | seconds | microseconds a query | peak memory, MB |\n|{'---|' * 6}")
-    for program in PROGRAMS:
-        for package in PACKAGES:
-            if not options.rivals and not package.startswith("p2m"):
-                continue
-            command = [sys.executable, __file__, "--threads", str(options.threads), "--dragon", str(path), "--one"]
-            done = subprocess.run([*command, program, package], stdout=subprocess.PIPE, check=False, text=True)
-            row = json.loads(done.stdout) if done.returncode == 0 else None
-            if row is not None:
-                micros = row["seconds"] / row["queries"] * 1e6
-                numbers = f"{row['queries']:,} | {row['seconds']:.2f} | {micros:.2f} | {row['megabytes']:.0f}"
-                print(f"| {program} | {package} | {numbers} |", flush=True)
-            elif done.returncode != 0:
-                print(f"| {program} | {package} | - | it ended with the status {done.returncode} | - | - |", flush=True)
+    if len(sys.argv) > 1:
+        return run(int(sys.argv[1]))
+    print("| program | library | points | CPU time, s | time a point, us | peak memory, MB |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    for number, (name, library, _, _, count) in enumerate(PROGRAMS):
+        command = [sys.executable, __file__, str(number)]
+        output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        seconds, memory = map(float, output.split())
+        each = f"{seconds / count * 1e6:,.2f}"
+        print(f"| {name} | {library} | {count:,} | {seconds:.2f} | {each} | {memory / 1e6:,.0f} |", flush=True)
 
 
 if __name__ == "__main__":

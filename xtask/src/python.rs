@@ -68,6 +68,8 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
     let mut examples = Command::new(&own_python);
     examples.args(["-m", "pytest", "--doctest-modules", "--doctest-glob=README.md", "--pyargs", "p2m", "README.md"]);
     crate::start(examples.current_dir(PACKAGE))?;
+    let mut manual = Command::new(&own_python);
+    crate::start(manual.args(["-m", "pytest", "-q", "--doctest-glob=python.md", "docs/python.md"]))?;
     let mut types = Command::new(&own_python);
     crate::start(types.args(["-m", "mypy"]).current_dir(PACKAGE))?;
     let mut stubs = Command::new(&own_python);

@@ -328,11 +328,11 @@ class Index:
             As for `closest`.
         sign : {"auto", "closed", "winding"}, optional
             ``"closed"``: the scene is a closed surface, and a point is inside if a ray from it crosses the surface an
-            odd number of times; pseudonormals decide most points, and exact rays the rest. If the surface intersects
-            itself, the side of its nearest part counts, and ``rays(points, direction, "crossings") % 2`` counts
-            crossings. ``"winding"``: a point is
-            inside if its generalised winding number exceeds a half in magnitude; the triangles may have holes and
-            intersect each other. ``"auto"``: as a closed surface if it is one, otherwise by winding numbers.
+            odd number of times; pseudonormals decide most points, and exact rays the rest. Pseudonormals may be wrong
+            if the surface intersects itself, or if parts of it lie on each other without being the same triangles;
+            ``rays(points, direction, "crossings") % 2`` counts crossings. ``"winding"``: a point is inside if its
+            generalised winding number exceeds a half in magnitude; the triangles may have holes and intersect each
+            other. ``"auto"``: as a closed surface if it is one, otherwise by winding numbers.
         inside : {"negative", "positive"}, optional
             The sign inside. trimesh has positive numbers there; Open3D, libigl and point-cloud-utils negative ones.
         out : ndarray of float64, shape {..}, optional
