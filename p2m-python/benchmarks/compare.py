@@ -194,7 +194,6 @@ def libraries() -> list[Library]:
     """Return all libraries, in the order of the table."""
     return [
         P2m("octree"),
-        P2m("octree", resolution=1.0),
         P2m("aabb"),
         Open3d(1),
         IglFunction(),
