@@ -46,6 +46,14 @@ impl ChosenDirections {
             writer.put_copy(REASON_SECTION, reason.as_bytes());
         }
     }
+
+    /// Returns the directions of a saved tree with this number of faces, with the reason that [`save`](Self::save)
+    /// wrote.
+    #[must_use]
+    pub fn of_saved(faces: usize, reader: &Reader) -> Self {
+        let reason = reader.copy::<u8>(REASON_SECTION).ok().map(|text| String::from_utf8_lossy(&text).into_owned());
+        Self { faces, reason }
+    }
 }
 
 /// A function of a k-DOP tree that is compiled once for each K.
@@ -102,8 +110,7 @@ impl KdopDirections {
             18 => visitor.visit::<18>(KdopTree::load(soup, reader)?),
             _ => visitor.visit::<26>(KdopTree::load(soup, reader)?),
         };
-        let reason = reader.copy::<u8>(REASON_SECTION).ok().map(|text| String::from_utf8_lossy(&text).into_owned());
-        Ok((output, ChosenDirections { faces, reason }))
+        Ok((output, ChosenDirections::of_saved(faces, reader)))
     }
 
     /// Builds a tree with these directions, and passes it to the visitor.

@@ -3,9 +3,7 @@
 use crate::traverse::pairs::{MovedSide, ShapeSide, TreeSide, search_pairs};
 use crate::{TreeIndex, Volume};
 use nalgebra::Isometry3;
-use p2m_core::pair::{
-    ClosestPair, Motion, NearestPair, PairOptions, PairQuery, Pairs, hull_of, nearest_of_hulls, offer_hint_of_set,
-};
+use p2m_core::pair::{ClosestPair, Motion, NearestPair, PairOptions, PairQuery, Pairs, hull_of, offer_hint_of_set};
 use p2m_core::{PrimitiveId, PrimitiveSet, Real};
 use std::ops::ControlFlow;
 
@@ -15,7 +13,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> PairQuery<T> for TreeIndex<T, S, V>
     }
 
     fn offer_hint(&self, primitive: PrimitiveId, hull: &[[f64; 3]], pairs: &mut Pairs<'_>) {
-        offer_hint_of_set(self.set(), primitive, hull, pairs);
+        offer_hint_of_set(self.set(), [primitive, PrimitiveId::new(0)], hull, pairs);
     }
 }
 
@@ -115,16 +113,10 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
             return;
         }
         if let Some([i, j]) = hint
-            && i.index() < self.set().len()
             && j.index() < other.set().len()
         {
-            let (a, a_len) = hull_of(&self.set().get(i), None);
-            let (b, b_len) = hull_of(&other.set().get(j), motion.as_ref());
-            let result = nearest_of_hulls(&a[..a_len], &b[..b_len], pairs.prune_above());
-            pairs.offer_result([i, j], result);
-            if pairs.is_done() {
-                return;
-            }
+            let (hull, len) = hull_of(&other.set().get(j), motion.as_ref());
+            offer_hint_of_set(self.set(), [i, j], &hull[..len], pairs);
         }
         let (a, b) = (TreeSide(self.tree()), TreeSide(other.tree()));
         match motion {

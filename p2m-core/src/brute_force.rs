@@ -66,12 +66,12 @@ impl<T: Real, S: PrimitiveSet<T>> PairQuery<T> for BruteForce<S> {
             if pairs.is_done() {
                 return;
             }
-            pair::offer_of_set(&self.set, id, hull, pairs);
+            pair::offer_of_set(&self.set, [id, PrimitiveId::new(0)], hull, pairs);
         }
     }
 
     fn offer_hint(&self, primitive: PrimitiveId, hull: &[[f64; 3]], pairs: &mut Pairs<'_>) {
-        pair::offer_hint_of_set(&self.set, primitive, hull, pairs);
+        pair::offer_hint_of_set(&self.set, [primitive, PrimitiveId::new(0)], hull, pairs);
     }
 }
 

@@ -205,9 +205,11 @@ impl Split for Rows<'_> {
     }
 }
 
+/// The two parts of a column, if there is one.
 type Halves<'a, T> = (Option<&'a mut [T]>, Option<&'a mut [T]>);
 
-fn halves<T>(column: Option<&mut [T]>, at: usize) -> Halves<'_, T> {
+/// Divides a column in two, the first of so many places.
+pub(crate) fn halves<T>(column: Option<&mut [T]>, at: usize) -> Halves<'_, T> {
     column.map_or((None, None), |column| {
         let (first, second) = column.split_at_mut(at);
         (Some(first), Some(second))

@@ -5,7 +5,7 @@ use crate::scene::{Scene, SharedScene};
 use crate::searchable::{BUILD_UNITS, Built, Settings, build};
 use crate::signs::{SignRule, Signed};
 use crate::threads::pool;
-use crate::work::{FIRST_STEP_QUERIES, Threads, run_owned};
+use crate::work::{FIRST_STEP_QUERIES, Monitor, Threads, run_batch, run_owned};
 use p2m_advisor::{BackendEntry, KdopDirections, SearchStructure};
 use p2m_core::{Index as AnyIndex, PrimitiveSet};
 use pyo3::exceptions::PyValueError;
@@ -77,6 +77,23 @@ impl Index {
             return Ok(Threads::Calling);
         }
         pool(py, threads).map(Threads::Pool)
+    }
+
+    /// Runs a batch of so many queries, detached from the interpreter, where [`threads_for`](Self::threads_for) says.
+    pub(crate) fn run<R: Send, E: Send>(
+        &self,
+        py: Python<'_>,
+        queries: usize,
+        threads: usize,
+        progress: Option<Py<PyAny>>,
+        work: impl FnOnce(&Threads, &Monitor) -> Result<R, E> + Send,
+    ) -> PyResult<R>
+    where
+        PyErr: From<E>,
+    {
+        let threads = self.threads_for(py, queries, threads)?;
+        let monitor = threads.monitor(queries, self.first_step(), progress);
+        run_batch(py, &threads, &monitor, || work(&threads, &monitor))?.map_err(PyErr::from)
     }
 
     /// Returns the signs of a rule, which are prepared by the first call.

@@ -37,7 +37,7 @@ mod _p2m {
     #[pymodule_export]
     use super::rays::HitList;
     #[pymodule_export]
-    use super::saved::{checksum, load, load_bytes};
+    use super::saved::{load, load_bytes};
     #[pymodule_export]
     use super::scene::Scene;
     #[pymodule_export]

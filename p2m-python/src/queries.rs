@@ -7,7 +7,7 @@ use crate::parts::answer_in_parts;
 use crate::scene::{Coordinates, with_positions};
 use crate::signs::SignRule;
 use crate::watched::Watched;
-use crate::work::{Monitor, Threads, run_batch};
+use crate::work::{Monitor, Threads};
 use nalgebra::Point3;
 use numpy::PyArray1;
 use p2m_core::batch::{self, BatchOptions, closest_columns_into};
@@ -99,10 +99,8 @@ impl Index {
         let mut arrays = Arrays::borrow(out)?;
         with_positions!(points, points => {
             let columns = arrays.columns(points.len())?;
-            let threads = self.threads_for(py, points.len(), threads)?;
-            let monitor = threads.monitor(points.len(), self.first_step(), progress);
             let index = &*self.built.index;
-            let work = || {
+            let work = |threads: &Threads, monitor: &Monitor| {
                 check_finite(points)?;
                 if certified {
                     let certify = |query: &Point3<f64>| {
@@ -110,17 +108,17 @@ impl Index {
                         index.certified_closest_point(query, &options).ok().flatten()
                     };
                     let rows = Rows { columns, width: 1 };
-                    answer_rows(points, rows, &threads, &monitor, certify, |rows, i, answer| {
+                    answer_rows(points, rows, threads, monitor, certify, |rows, i, answer| {
                         rows.columns.set(i, answer.as_ref());
                     });
                 } else {
-                    let watched = Watched { index, monitor: &monitor };
+                    let watched = Watched { index, monitor };
                     let batch = batch_options(points.len(), threads.is_parallel());
                     columns.fill(|columns| closest_columns_into(&watched, points, &options, &batch, columns));
                 }
                 Ok::<(), BadRow>(())
             };
-            run_batch(py, &threads, &monitor, work)?.map_err(PyErr::from)
+            self.run(py, points.len(), threads, progress, work)
         })
     }
 
@@ -140,21 +138,19 @@ impl Index {
         let mut arrays = Arrays::borrow(out)?;
         with_positions!(points, points => {
             let columns = arrays.columns(points.len() * k)?;
-            let threads = self.threads_for(py, points.len(), threads)?;
-            let monitor = threads.monitor(points.len(), self.first_step(), progress);
             let index = &*self.built.index;
             let set = |rows: &mut Rows<'_>, i: usize, near: &Vec<Closest<f64>>| {
                 for place in 0..k {
                     rows.columns.set(i * k + place, near.get(place));
                 }
             };
-            let work = || {
+            let work = |threads: &Threads, monitor: &Monitor| {
                 check_finite(points)?;
                 let nearest = |query: &Point3<f64>| index.k_nearest(query, k, max_distance);
-                answer_rows(points, Rows { columns, width: k }, &threads, &monitor, nearest, set);
+                answer_rows(points, Rows { columns, width: k }, threads, monitor, nearest, set);
                 Ok::<(), BadRow>(())
             };
-            run_batch(py, &threads, &monitor, work)?.map_err(PyErr::from)
+            self.run(py, points.len(), threads, progress, work)
         })
     }
 
@@ -175,12 +171,10 @@ impl Index {
         let mut counts = borrowed::<i64>(&dictionary, "counts")?;
         let counts = slice(&mut counts)?.unwrap_or_default();
         with_positions!(points, points => {
-            let threads = self.threads_for(py, points.len(), threads)?;
-            let monitor = threads.monitor(points.len(), self.first_step(), progress);
             let index = &*self.built.index;
-            let work = || {
+            let work = |threads: &Threads, monitor: &Monitor| {
                 check_finite(points)?;
-                let parts = answer_in_parts(points.len(), (), &threads, &monitor, &|range, ()| {
+                let parts = answer_in_parts(points.len(), (), threads, monitor, &|range, ()| {
                     let all = |query: &_| index.all_within(&Position::point(query), radius);
                     let options = batch_options(range.len(), false);
                     let answers = batch::map(&points[range], &options, Position::point, all);
@@ -198,7 +192,7 @@ impl Index {
                 }
                 Ok::<_, BadRow>(NearList { list })
             };
-            run_batch(py, &threads, &monitor, work)?.map_err(PyErr::from)
+            self.run(py, points.len(), threads, progress, work)
         })
     }
 
@@ -216,12 +210,10 @@ impl Index {
         let mut array = borrowed::<bool>(out, "is_within")?;
         let out = slice(&mut array)?.unwrap_or_default();
         with_positions!(points, points => {
-            let threads = self.threads_for(py, points.len(), threads)?;
-            let monitor = threads.monitor(points.len(), self.first_step(), progress);
             let index = &*self.built.index;
-            let work = || {
+            let work = |threads: &Threads, monitor: &Monitor| {
                 check_finite(points)?;
-                answer_in_parts(points.len(), out, &threads, &monitor, &|range, out: &mut [bool]| {
+                answer_in_parts(points.len(), out, threads, monitor, &|range, out: &mut [bool]| {
                     let any = |query: &_| index.is_any_within(&Position::point(query), radius);
                     let options = batch_options(range.len(), false);
                     let answers = batch::map(&points[range], &options, Position::point, any);
@@ -229,7 +221,7 @@ impl Index {
                 });
                 Ok::<(), BadRow>(())
             };
-            run_batch(py, &threads, &monitor, work)?.map_err(PyErr::from)
+            self.run(py, points.len(), threads, progress, work)
         })
     }
 
@@ -251,11 +243,9 @@ impl Index {
         let out = slice(&mut array)?.unwrap_or_default();
         let factor = if inside_is_negative { 1.0 } else { -1.0 };
         with_positions!(points, points => {
-            let threads = self.threads_for(py, points.len(), threads)?;
-            let monitor = threads.monitor(points.len(), self.first_step(), progress);
-            let work = || {
+            let work = |threads: &Threads, monitor: &Monitor| {
                 check_finite(points)?;
-                answer_in_parts(points.len(), out, &threads, &monitor, &|range, out: &mut [f64]| {
+                answer_in_parts(points.len(), out, threads, monitor, &|range, out: &mut [f64]| {
                     let options = batch_options(range.len(), false);
                     let queries: Vec<Point3<f64>> = points[range].iter().map(Position::point).collect();
                     let answers = signed.closest_points(&queries, &QueryOptions::default(), &options);
@@ -269,7 +259,7 @@ impl Index {
                 });
                 Ok::<(), BadRow>(())
             };
-            run_batch(py, &threads, &monitor, work)?.map_err(PyErr::from)
+            self.run(py, points.len(), threads, progress, work)
         })
     }
 }

@@ -1,12 +1,12 @@
 //! Batches of rays.
 
-use crate::columns::{NO_PRIMITIVE, borrowed, slice};
+use crate::columns::{NO_PRIMITIVE, borrowed, halves, slice};
 use crate::errors::value_error;
 use crate::index::Index;
 use crate::parts::{Split, answer_in_parts};
 use crate::queries::{batch_options, not_finite};
 use crate::scene::triples;
-use crate::work::{Monitor, Threads, run_batch};
+use crate::work::{Monitor, Threads};
 use nalgebra::{Point3, Vector3};
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
 use p2m_core::batch;
@@ -103,9 +103,6 @@ impl HitColumns<'_> {
 
 impl Split for HitColumns<'_> {
     fn split(self, len: usize) -> (Self, Self) {
-        fn halves<T>(column: Option<&mut [T]>, at: usize) -> (Option<&mut [T]>, Option<&mut [T]>) {
-            column.map(|column| column.split_at_mut(at)).map_or((None, None), |(a, b)| (Some(a), Some(b)))
-        }
         let (mut first, mut second) = (Self::default(), Self::default());
         (first.t, second.t) = halves(self.t, len);
         (first.primitive, second.primitive) = halves(self.primitive, len);
@@ -219,61 +216,59 @@ impl Cast<'_> {
     ) -> PyResult<Option<HitList>> {
         let Self { parent, index, range, radius, mode, threads, progress } = self;
         let rays = Rays { origins, directions, range, radius };
-        let threads = parent.threads_for(py, origins.len(), threads)?;
-        let monitor = threads.monitor(origins.len(), parent.first_step(), progress);
         match mode {
             "first" => {
                 let mut arrays = HitArrays::borrow(out)?;
                 let columns = arrays.columns()?;
-                let work = || {
+                let work = |threads: &Threads, monitor: &Monitor| {
                     rays.check()?;
                     let first = |ray: &Ray| index.first_intersection(ray);
-                    rays.answer(columns, &threads, &monitor, first, |hits, mut columns: HitColumns<'_>| {
+                    rays.answer(columns, threads, monitor, first, |hits, mut columns: HitColumns<'_>| {
                         hits.iter().enumerate().for_each(|(i, hit)| columns.set(i, hit.as_ref()));
                     });
                     Ok::<(), BadRay>(())
                 };
-                run_batch(py, &threads, &monitor, work)??;
+                parent.run(py, origins.len(), threads, progress, work)?;
                 Ok(None)
             }
             "any" => {
                 let mut array = borrowed::<bool>(out, "value")?;
                 let values = slice(&mut array)?.unwrap_or_default();
-                let work = || {
+                let work = |threads: &Threads, monitor: &Monitor| {
                     rays.check()?;
                     let hits = |ray: &Ray| index.do_intersect(ray);
-                    rays.answer(values, &threads, &monitor, hits, |hits, values: &mut [bool]| {
+                    rays.answer(values, threads, monitor, hits, |hits, values: &mut [bool]| {
                         values.copy_from_slice(&hits);
                     });
                     Ok::<(), BadRay>(())
                 };
-                run_batch(py, &threads, &monitor, work)??;
+                parent.run(py, origins.len(), threads, progress, work)?;
                 Ok(None)
             }
             "count" | "crossings" => {
                 let mut array = borrowed::<i64>(out, "value")?;
                 let values = slice(&mut array)?.unwrap_or_default();
                 let crosses = mode == "crossings";
-                let work = || {
+                let work = |threads: &Threads, monitor: &Monitor| {
                     rays.check()?;
                     let count = |ray: &Ray| if crosses { index.crossings(ray) } else { index.count(ray) };
-                    rays.answer(values, &threads, &monitor, count, |counts, values: &mut [i64]| {
+                    rays.answer(values, threads, monitor, count, |counts, values: &mut [i64]| {
                         for (value, count) in values.iter_mut().zip(counts) {
                             *value = i64::try_from(count).unwrap_or(i64::MAX);
                         }
                     });
                     Ok::<(), BadRay>(())
                 };
-                run_batch(py, &threads, &monitor, work)??;
+                parent.run(py, origins.len(), threads, progress, work)?;
                 Ok(None)
             }
             "all" => {
                 let mut array = borrowed::<i64>(out, "value")?;
                 let values = slice(&mut array)?.unwrap_or_default();
-                let work = || {
+                let work = |threads: &Threads, monitor: &Monitor| {
                     rays.check()?;
                     let all = |ray: &Ray| index.all_intersections(ray);
-                    let parts = rays.answer(values, &threads, &monitor, all, |hits, values: &mut [i64]| {
+                    let parts = rays.answer(values, threads, monitor, all, |hits, values: &mut [i64]| {
                         for (value, hits) in values.iter_mut().zip(&hits) {
                             *value = i64::try_from(hits.len()).unwrap_or(i64::MAX);
                         }
@@ -281,7 +276,7 @@ impl Cast<'_> {
                     });
                     Ok::<_, BadRay>(HitList { list: parts.concat() })
                 };
-                Ok(Some(run_batch(py, &threads, &monitor, work)??))
+                parent.run(py, origins.len(), threads, progress, work).map(Some)
             }
             _ => Err(value_error(format!("mode: '{mode}' is none of 'first', 'all', 'count', 'any', 'crossings'"))),
         }

@@ -12,27 +12,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::fs::File;
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// The number of bytes of the header of a saved file.
-const HEADER_BYTES: usize = 64;
-/// The bytes of the header with the checksum of the table, which has the checksums of all sections.
-const CHECKSUM: std::ops::Range<usize> = 24..32;
-
-/// Returns the checksum of a saved file, which stands for its whole content: that of the table of its sections.
-#[pyfunction]
-pub(crate) fn checksum(path: PathBuf) -> PyResult<String> {
-    file_checksum(&path).map_err(|error| io_error(&error, &path))
-}
-
-fn file_checksum(path: &Path) -> io::Result<String> {
-    let mut header = [0; HEADER_BYTES];
-    // A file that is shorter is no saved index, which is reported when it is loaded.
-    File::open(path)?.read_exact(&mut header)?;
-    Ok(header[CHECKSUM].iter().rev().map(|byte| format!("{byte:02x}")).collect())
-}
 
 /// Maps the file at a path.
 #[allow(unsafe_code, reason = "the user asked for it and was told what it needs")]
@@ -74,10 +56,9 @@ pub(crate) fn load(
     let loaded = run_owned(py, threads, 1, None, move |_| {
         let saved = if map { self::map(&file) } else { SavedFile::open(&file) }?;
         let loaded = load_file(&saved)?;
-        Ok::<_, LoadError>((loaded, file_checksum(&file)))
+        Ok::<_, LoadError>((loaded, format!("{:016x}", saved.checksum())))
     })?;
     let ((scene, index), found) = loaded.map_err(|error| load_error(&error, &name))?;
-    let found = found.map_err(|error| io_error(&error, &path))?;
     if let Some(expected) = checksum.filter(|expected| *expected != found) {
         return Err(PyValueError::new_err(format!(
             "{name} is not the file that the pickled index came from: its checksum is {found} instead of {expected}"

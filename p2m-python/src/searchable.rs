@@ -186,13 +186,7 @@ fn load_kdop(scene: SharedScene, reader: &Reader) -> Result<Built, LoadError> {
         18 => KdopTree::<f64, _, 18>::load(scene, reader).map(Built::new),
         _ => KdopTree::<f64, _, 26>::load(scene, reader).map(Built::new),
     }?;
-    Ok(Built { directions: Some(ChosenDirections { faces, reason: saved_reason(reader) }), ..built })
-}
-
-/// Returns the reason for the directions of a saved k-DOP tree, as `ChosenDirections::save` writes it.
-fn saved_reason(reader: &Reader) -> Option<String> {
-    let text = reader.copy::<u8>("kdop/choice").ok()?;
-    Some(String::from_utf8_lossy(&text).into_owned())
+    Ok(Built { directions: Some(ChosenDirections::of_saved(faces, reader)), ..built })
 }
 
 impl fmt::Debug for Built {

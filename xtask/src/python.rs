@@ -49,31 +49,27 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
     // the other tests. The crates that search are optimised in this profile.
     cargo(&["build", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"], &[])?;
     install_package(&own_python, &target.join("debug"))?;
-    if compares {
-        let mut tests = Command::new(&own_python);
-        tests
-            .args(["-m", "pytest", "-rs", "--durations=5", "tests/test_rivals.py"])
-            .args(filter)
-            .env("P2M_RIVALS", "1");
-        return crate::start(tests.current_dir(PACKAGE));
-    }
+    let in_folder = |folder: &str, arguments: &[&str], variable: (&str, &Path)| {
+        let mut command = Command::new(&own_python);
+        crate::start(command.arg("-m").args(arguments).env(variable.0, variable.1).current_dir(folder))
+    };
     // The program answers the same queries.
     let program = target.join("debug").join(format!("p2m{}", std::env::consts::EXE_SUFFIX));
-    let mut tests = Command::new(&own_python);
-    tests.args(["-m", "pytest", "-rs", "--durations=5", "tests"]).args(filter).env("P2M_PROGRAM", &program);
-    crate::start(tests.current_dir(PACKAGE))?;
+    let program = ("P2M_PROGRAM", program.as_path());
+    let filter: Vec<&str> = filter.iter().map(String::as_str).collect();
+    let tests = |of: &'static str| [&["pytest", "-rs", "--durations=5", of], &filter[..]].concat();
+    if compares {
+        return in_folder(PACKAGE, &tests("tests/test_rivals.py"), ("P2M_RIVALS", Path::new("1")));
+    }
+    in_folder(PACKAGE, &tests("tests"), program)?;
     if !filter.is_empty() {
         return Ok(());
     }
-    let mut examples = Command::new(&own_python);
-    examples.args(["-m", "pytest", "--doctest-modules", "--doctest-glob=README.md", "--pyargs", "p2m", "README.md"]);
-    crate::start(examples.current_dir(PACKAGE))?;
-    let mut manual = Command::new(&own_python);
-    crate::start(manual.args(["-m", "pytest", "-q", "--doctest-glob=python.md", "docs/python.md"]))?;
-    let mut types = Command::new(&own_python);
-    crate::start(types.args(["-m", "mypy"]).current_dir(PACKAGE))?;
-    let mut stubs = Command::new(&own_python);
-    crate::start(stubs.args(["-m", "mypy.stubtest", "p2m"]).current_dir(PACKAGE))
+    let examples = ["pytest", "--doctest-modules", "--doctest-glob=README.md", "--pyargs", "p2m", "README.md"];
+    in_folder(PACKAGE, &examples, program)?;
+    in_folder(".", &["pytest", "-q", "--doctest-glob=python.md", "docs/python.md"], program)?;
+    in_folder(PACKAGE, &["mypy"], program)?;
+    in_folder(PACKAGE, &["mypy.stubtest", "p2m"], program)
 }
 
 /// Returns the first Python of the path that is new enough and can make virtual environments.

@@ -75,9 +75,10 @@ pub struct Pairs<'a> {
     /// The square that lower bounds must not exceed.
     prune: f64,
     mode: Mode<'a>,
-    is_done: bool,
+    /// Whether nothing can be within the radius.
+    is_empty: bool,
     /// Whether the visitor ended the search.
-    is_ended: bool,
+    has_ended: bool,
 }
 
 enum Mode<'a> {
@@ -92,7 +93,7 @@ impl<'a> Pairs<'a> {
         let radius = radius.to_f64_above();
         // Nothing is within NaN.
         let is_empty = radius.is_nan() || radius < 0.0;
-        Self { radius, prune: square_within(radius), mode, is_done: is_empty, is_ended: false }
+        Self { radius, prune: square_within(radius), mode, is_empty, has_ended: false }
     }
 
     /// Creates the collector of the nearest pair within a distance.
@@ -121,13 +122,13 @@ impl<'a> Pairs<'a> {
     #[inline]
     #[must_use]
     pub fn is_done(&self) -> bool {
-        self.is_done
+        self.is_empty || self.has_ended
     }
 
     /// Returns whether the function that was given to [`each`](Self::each) has ended the search.
     #[must_use]
     pub fn has_ended(&self) -> bool {
-        self.is_ended
+        self.has_ended
     }
 
     /// Returns whether a pair of these primitives could still change the answer. It could not if a pair with lower ids
@@ -163,8 +164,7 @@ impl<'a> Pairs<'a> {
             }
             Mode::Each(visit) => {
                 if distance <= self.radius {
-                    self.is_ended |= visit(ids, pair).is_break();
-                    self.is_done |= self.is_ended;
+                    self.has_ended |= visit(ids, pair).is_break();
                 }
             }
         }

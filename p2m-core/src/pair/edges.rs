@@ -36,8 +36,8 @@ pub(super) struct NearestOnEdges {
 
 /// Returns the nearest points of two edges, if both are strictly inside and the edges are not parallel.
 pub(super) fn nearest_on_edges(p: &[V3; 2], q: &[V3; 2]) -> Option<NearestOnEdges> {
-    let differences = [sub(p[1], p[0]), sub(q[1], q[0]), sub(q[0], p[0]), sub(q[1], p[0])];
-    let is_huge = largest(&differences) >= HUGE;
+    let [low, high] = bounds(&[p[0], p[1], q[0], q[1]]);
+    let is_huge = largest(&[sub(high, low)]) >= HUGE;
     let shift = if is_huge { HUGE_SHIFT } else { 0 };
     let scaled = |edge: &[V3; 2]| if is_huge { edge.map(|v| v.map(|x| scale_by_power(x, -shift))) } else { *edge };
     let sorted = |[a, b]: [V3; 2]| {

@@ -129,7 +129,7 @@ pub fn nearest_of_hulls(a: &[V3], b: &[V3], square: f64) -> Result<NearestPair, 
     let is_intersecting = gap == 0.0 && do_intersect(a, b);
     // The key will be zero, wherever rounding places the candidates.
     let square = if is_intersecting { f64::INFINITY } else { square };
-    let mut best = Candidate::NONE;
+    let mut best = Candidate(None);
     for (i, vertex) in a.iter().enumerate() {
         best.offer_vertex(i, *vertex, b, square, false);
     }
@@ -149,18 +149,19 @@ pub fn nearest_of_hulls(a: &[V3], b: &[V3], square: f64) -> Result<NearestPair, 
         for (i, edge) in edges_of(b) {
             best.offer_piercing(i, edge, a, true);
         }
-        best.pair.key = Key::ZERO;
-    } else if best.is_some && best.pair.key == Key::ZERO {
-        // The distance is positive, though less than its error. No search may take the pair for one that intersects.
-        best.pair.key = Key::from_offset([f64::from_bits(1), 0.0, 0.0]);
     }
     let size = a.iter().flat_map(|v| b.iter().map(|w| largest(&[sub(*w, *v)]))).fold(0.0, f64::max);
     let error = ERROR_CONSTANT_OF_PAIRS * SQRT_3_U * size;
-    if best.is_some && best.pair.key.square_above() <= square.max(Key::ZERO.square_above()) {
-        Ok(NearestPair { is_intersecting, error, ..best.pair })
-    } else {
+    match best.0 {
+        Some(pair) if is_intersecting => Ok(NearestPair { key: Key::ZERO, is_intersecting, error, ..pair }),
+        Some(pair) if pair.key.square_above() <= square.max(Key::ZERO.square_above()) => {
+            // If the offset cancels, the distance is still positive, though less than its error. No search may take the
+            // pair for one that intersects.
+            let key = if pair.key == Key::ZERO { Key::from_offset([f64::from_bits(1), 0.0, 0.0]) } else { pair.key };
+            Ok(NearestPair { key, error, ..pair })
+        }
         // Rounding may have dropped points inside of edges for an end that is farther by as much as the error.
-        Err(square.sqrt() * ROUND_DOWN - error)
+        _ => Err(square.sqrt() * ROUND_DOWN - error),
     }
 }
 
@@ -182,33 +183,18 @@ fn edges_of(hull: &[V3]) -> impl Iterator<Item = (u8, [V3; 2])> + Clone + '_ {
 }
 
 /// The best pair of points so far.
-struct Candidate {
-    pair: NearestPair,
-    is_some: bool,
-}
+struct Candidate(Option<NearestPair>);
 
 impl Candidate {
-    const NONE: Self = Self {
-        pair: NearestPair {
-            key: Key::INFINITY,
-            points: [Point3::new(0.0, 0.0, 0.0); 2],
-            features: [Feature::Vertex(0); 2],
-            barycentric: [[1.0, 0.0, 0.0]; 2],
-            error: 0.0,
-            is_intersecting: false,
-        },
-        is_some: false,
-    };
-
     /// Returns the square above which a candidate is of no use.
     fn limit(&self, square: f64) -> f64 {
-        self.pair.key.square_above().min(square)
+        self.0.map_or(square, |best| best.key.square_above().min(square))
     }
 
     /// Takes a pair if it is nearer than the best so far.
-    fn offer(&mut self, pair: NearestPair) {
-        if !self.is_some || pair.key < self.pair.key {
-            *self = Self { pair, is_some: true };
+    fn offer(&mut self, key: Key, points: [Point3<f64>; 2], features: [Feature; 2], barycentric: [V3; 2]) {
+        if self.0.is_none_or(|best| key < best.key) {
+            self.0 = Some(NearestPair { key, points, features, barycentric, error: 0.0, is_intersecting: false });
         }
     }
 
@@ -224,14 +210,15 @@ impl Candidate {
 
     /// Offers a point of one hull, with its feature and weights, and its projection onto the other.
     fn offer_projection(&mut self, point: V3, at: (Feature, V3), projection: &Projection, is_second: bool) {
-        let pair = NearestPair {
-            key: projection.key,
-            points: [point.into(), projection.point],
-            features: [at.0, projection.feature],
-            barycentric: [at.1, projection.barycentric],
-            ..Self::NONE.pair
-        };
-        self.offer(if is_second { pair.swapped() } else { pair });
+        let mut points = [point.into(), projection.point];
+        let mut features = [at.0, projection.feature];
+        let mut barycentric = [at.1, projection.barycentric];
+        if is_second {
+            points.swap(0, 1);
+            features.swap(0, 1);
+            barycentric.swap(0, 1);
+        }
+        self.offer(projection.key, points, features, barycentric);
     }
 
     /// Offers the nearest points inside of two edges.
@@ -242,13 +229,7 @@ impl Candidate {
         }
         let Some(nearest) = nearest_on_edges(&edges[0], &edges[1]) else { return };
         let weights = [0, 1].map(|k: usize| edge_weights(numbers[k], nearest.parameters[k]));
-        self.offer(NearestPair {
-            key: nearest.key,
-            points: nearest.points.map(Point3::from),
-            features: numbers.map(Feature::Edge),
-            barycentric: weights,
-            ..Self::NONE.pair
-        });
+        self.offer(nearest.key, nearest.points.map(Point3::from), numbers.map(Feature::Edge), weights);
     }
 
     /// Offers the point in which an edge of one hull pierces the face of the other, if it does.

@@ -87,9 +87,7 @@ fn search<T: Real>(
     if let Some([primitive, _]) = options.hint {
         index.offer_hint(primitive, hull, pairs);
     }
-    if !pairs.is_done() {
-        index.search_hull(hull, pairs);
-    }
+    index.search_hull(hull, pairs);
 }
 
 /// Returns the vertices of a primitive in f64 and after a motion, and their number.
@@ -108,28 +106,28 @@ pub fn hull_of<T: Real>(primitive: &impl Primitive<T>, motion: Option<&Motion>) 
     (hull, vertices.len())
 }
 
-/// Offers the pair of a primitive of a set and a hull.
+/// Offers the pair of a primitive of a set and the hull of the primitive with the id `other`.
 pub(crate) fn offer_of_set<T: Real, S: PrimitiveSet<T> + ?Sized>(
     set: &S,
-    id: PrimitiveId,
+    [id, other]: [PrimitiveId; 2],
     hull: &[V3],
     pairs: &mut Pairs<'_>,
 ) {
     let (vertices, len) = hull_of(&set.get(id), None);
-    let result = nearest_of_hulls(&vertices[..len], hull, pairs.prune_above());
-    pairs.offer_result([id, PrimitiveId::new(0)], result);
+    pairs.offer_result([id, other], nearest_of_hulls(&vertices[..len], hull, pairs.prune_above()));
 }
 
-/// Offers the pair of a primitive of a set and a hull, if the set has the primitive.
+/// Offers the pair of a primitive of a set and the hull of the primitive with the id `other`, if the set has the
+/// primitive.
 #[doc(hidden)]
 pub fn offer_hint_of_set<T: Real, S: PrimitiveSet<T> + ?Sized>(
     set: &S,
-    id: PrimitiveId,
+    ids: [PrimitiveId; 2],
     hull: &[V3],
     pairs: &mut Pairs<'_>,
 ) {
-    if id.index() < set.len() {
-        offer_of_set(set, id, hull, pairs);
+    if ids[0].index() < set.len() {
+        offer_of_set(set, ids, hull, pairs);
     }
 }
 
@@ -153,12 +151,10 @@ pub fn offer_all_pairs<T: Real>(
             continue;
         }
         for i in (0..a.len()).map(PrimitiveId::new) {
-            let (other, other_len) = hull_of(&a.get(i), None);
             if pairs.is_done() {
                 return;
             }
-            let result = nearest_of_hulls(&other[..other_len], &hull[..len], pairs.prune_above());
-            pairs.offer_result([i, j], result);
+            offer_of_set(a, [i, j], &hull[..len], pairs);
         }
     }
 }

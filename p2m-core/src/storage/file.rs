@@ -103,6 +103,12 @@ impl SavedFile {
         Ok(Self(Reader::new(Arc::new(AlignedBytes { lines, len }))?))
     }
 
+    /// Returns the checksum of the table, which has the checksums of all sections, so it stands for the whole content.
+    #[must_use]
+    pub fn checksum(&self) -> u64 {
+        self.0.table_checksum()
+    }
+
     /// Verifies the checksums of all sections and returns the sections.
     ///
     /// # Errors

@@ -41,6 +41,11 @@ impl Reader {
         Ok(Self { file, table })
     }
 
+    /// Returns the checksum of the table, which the header has as well.
+    pub(super) fn table_checksum(&self) -> u64 {
+        checksum(bytemuck::cast_slice(&self.table))
+    }
+
     /// Verifies the checksums of all sections, in the order of the file.
     pub(super) fn check(&self) -> Result<(), LoadError> {
         let bytes = (*self.file).as_ref();

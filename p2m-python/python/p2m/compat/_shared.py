@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import weakref
 from collections.abc import Callable, Sequence
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -174,7 +174,7 @@ class Hits(NamedTuple):
     splits: NDArray[np.int64]
 
 
-def rays_with_direction(directions: NDArray[np.float64]) -> NDArray[np.bool_] | None:
+def _rays_with_direction(directions: NDArray[np.float64]) -> NDArray[np.bool_] | None:
     """Return which rays have a direction, or None if all have one. A ray without direction hits nothing."""
     zero = (directions == 0.0).all(axis=-1)
     return ~zero if zero.any() else None
@@ -188,7 +188,7 @@ def first_hits(
     threads: int | None,
 ) -> dict[str, NDArray[Any]]:
     """Return the first hits of rays with one leading axis; the primitive is -1 where there is none."""
-    some = rays_with_direction(directions)
+    some = _rays_with_direction(directions)
     if some is None:
         return index.rays(origins, directions, fields=fields, threads=threads).asdict()
     found = index.rays(origins[some], directions[some], fields=fields, threads=threads).asdict()
@@ -208,7 +208,7 @@ def all_hits(
     threads: int | None,
 ) -> Hits:
     """Return all hits of rays with one leading axis."""
-    some = rays_with_direction(directions)
+    some = _rays_with_direction(directions)
     if some is not None:
         origins, directions = origins[some], directions[some]
     found = index.rays(origins, directions, "all", fields=fields, threads=threads).asdict()
@@ -220,3 +220,22 @@ def all_hits(
     splits = np.zeros(len(counts) + 1, np.int64)
     np.cumsum(counts, out=splits[1:])
     return Hits(np.repeat(np.arange(len(counts)), counts), found, splits)
+
+
+def ray_values(
+    index: Index,
+    origins: NDArray[np.float64],
+    directions: NDArray[np.float64],
+    mode: Literal["any", "count"],
+    threads: int | None,
+    *,
+    t_min: float = 0.0,
+    t_max: float = float("inf"),
+) -> NDArray[Any]:
+    """Return whether rays with one leading axis hit anything, or the number of their hits."""
+    some = _rays_with_direction(directions)
+    if some is None:
+        return index.rays(origins, directions, mode, t_min=t_min, t_max=t_max, threads=threads)
+    values = np.zeros(len(origins), np.bool_ if mode == "any" else np.int64)
+    values[some] = index.rays(origins[some], directions[some], mode, t_min=t_min, t_max=t_max, threads=threads)
+    return values

@@ -26,7 +26,7 @@ from numpy.typing import DTypeLike, NDArray
 from .._arrays import indices
 from .._index import Index
 from .._scene import Scene
-from ._shared import SignedIndex, all_hits, first_hits, rays_with_direction
+from ._shared import SignedIndex, all_hits, first_hits, ray_values
 
 __all__ = ["INVALID_ID", "Array", "RaycastingScene"]
 
@@ -325,12 +325,8 @@ class RaycastingScene:
             The numbers. A ray through an edge hits two triangles there.
         """
         origins, directions, shape = _split(rays)
-        some = rays_with_direction(directions)
-        counts = np.zeros(len(origins), np.int32)
-        every = slice(None) if some is None else some
-        index = self._index().tree
-        counts[every] = index.rays(origins[every], directions[every], "count", threads=_threads(nthreads))
-        return _result(counts.reshape(shape), rays)
+        counts = ray_values(self._index().tree, origins, directions, "count", _threads(nthreads))
+        return _result(counts.astype(np.int32).reshape(shape), rays)
 
     def test_occlusions(self, rays: Any, tnear: float = 0.0, tfar: float = float("inf"), nthreads: int = 0) -> Any:
         """Return whether rays hit anything.
@@ -347,13 +343,10 @@ class RaycastingScene:
         Array or Tensor of bool, shape {..}
         """
         origins, directions, shape = _split(rays)
-        some = rays_with_direction(directions)
         hit = np.zeros(len(origins), np.bool_)
-        every = slice(None) if some is None else some
         if tnear <= tfar:
-            index = self._index().tree
-            hit[every] = index.rays(
-                origins[every], directions[every], "any", t_min=tnear, t_max=tfar, threads=_threads(nthreads)
+            hit = ray_values(
+                self._index().tree, origins, directions, "any", _threads(nthreads), t_min=tnear, t_max=tfar
             )
         return _result(hit.reshape(shape), rays)
 

@@ -37,7 +37,7 @@ from numpy.typing import ArrayLike, NDArray
 from .._arrays import coordinates
 from .._index import Index
 from .._scene import Scene
-from ._shared import ContentCache, ObjectCache, SignedIndex, all_hits, first_hits, rays_with_direction
+from ._shared import ContentCache, ObjectCache, SignedIndex, all_hits, first_hits, ray_values
 
 __all__ = [
     "ProximityQuery",
@@ -394,12 +394,7 @@ class RayMeshIntersector:
         ndarray of bool, shape (n,)
         """
         origins, directions = _rays(ray_origins, ray_directions)
-        index, some = _indexes(self.mesh).surface, rays_with_direction(directions)
-        if some is None:
-            return index.rays(origins, directions, "any")
-        hit = np.zeros(len(origins), np.bool_)
-        hit[some] = index.rays(origins[some], directions[some], "any")
-        return hit
+        return ray_values(_indexes(self.mesh).surface, origins, directions, "any", None)
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Return whether each point is inside of the mesh.
