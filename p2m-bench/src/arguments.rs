@@ -62,6 +62,8 @@ pub(crate) enum Command {
     Refit(BatchArguments),
     /// Compares the program, from the first query to the complete file, with one batch of the library, in wall time
     Program(ProgramArguments),
+    /// Times distances between two scenes at many poses, and between a scene and an arm of capsules, against parry3d
+    Pairs(PairsArguments),
 }
 
 /// The arguments that `query` and `verify` share.
@@ -222,6 +224,26 @@ pub(crate) struct ProgramArguments {
     /// Number of threads
     #[arg(long, default_value_t = 2)]
     pub(crate) threads: usize,
+}
+
+#[derive(Args)]
+pub(crate) struct PairsArguments {
+    /// File of the scene that stays
+    pub(crate) scene: PathBuf,
+    /// File of the scene that is moved
+    pub(crate) other: PathBuf,
+    /// Number of poses in each set
+    #[arg(long, default_value_t = 1000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) poses: usize,
+    /// Number of poses of the arm
+    #[arg(long, default_value_t = 100_000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) arms: usize,
+    /// Rounds; another competitor begins in each
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) rounds: usize,
+    /// Seed of the poses
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
 }
 
 #[derive(Args)]

@@ -2,16 +2,16 @@
 
 use crate::arguments::{
     AdversariesArguments, AdviseArguments, BatchArguments, Command, Common, CompareArguments, DelaunayArguments,
-    ExtremesArguments, FieldArguments, KdopArguments, PaperArguments, ProgramArguments, QueryArguments, RayArguments,
-    ReportArguments, RivalArguments, SavedArguments, SplitsArguments, VerifyArguments,
+    ExtremesArguments, FieldArguments, KdopArguments, PairsArguments, PaperArguments, ProgramArguments, QueryArguments,
+    RayArguments, ReportArguments, RivalArguments, SavedArguments, SplitsArguments, VerifyArguments,
 };
 use crate::backend::Backend;
 use crate::measure::Effort;
 use crate::report::provenance;
 use crate::scene::Scene;
 use crate::{
-    adversaries, advise, backends, batch, candidates, delaunay, extremes, field, kdop, measure, octree, paper, program,
-    rays, refit, report, saved, splits, tradeoff, verify,
+    adversaries, advise, backends, batch, candidates, delaunay, extremes, field, kdop, measure, octree, pairs, paper,
+    program, rays, refit, report, saved, splits, tradeoff, verify,
 };
 use anyhow::{Context, Result};
 use p2m_testkit::queries::QuerySet;
@@ -31,6 +31,7 @@ pub(crate) fn run(command: Command) -> Result<bool> {
         Command::Batch(arguments) => time_batches(&arguments),
         Command::Refit(arguments) => time_refits(&arguments),
         Command::Program(arguments) => time_program(&arguments),
+        Command::Pairs(arguments) => time_pairs(&arguments),
         Command::Advise(arguments) => check_advice(&arguments),
         Command::Field(arguments) => fill_fields(&arguments),
         Command::Adversaries(arguments) => run_adversaries(&arguments),
@@ -226,6 +227,14 @@ fn time_program(arguments: &ProgramArguments) -> Result<bool> {
         program::print(&Scene::read(path)?, path, *threads, &effort)?;
     }
     Ok(true)
+}
+
+/// Times distances between scenes, and returns whether our exact answers agree.
+fn time_pairs(arguments: &PairsArguments) -> Result<bool> {
+    let PairsArguments { scene, other, poses, arms, rounds, seed } = arguments;
+    let effort = Effort { rounds: *rounds, queries: *poses, builds: 1, seed: *seed };
+    println!("{}\n{}", provenance(None), in_rounds("One thread, thread CPU time", &effort));
+    pairs::print(&Scene::read(scene)?, &Scene::read(other)?, *arms, &effort)
 }
 
 /// Returns the scene alone, or in seven orientations.

@@ -31,6 +31,7 @@ mod measure;
 mod memory;
 mod octree;
 mod our_indexes;
+mod pairs;
 mod paper;
 mod plot;
 mod program;

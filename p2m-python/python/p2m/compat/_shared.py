@@ -236,6 +236,6 @@ def ray_values(
     some = _rays_with_direction(directions)
     if some is None:
         return index.rays(origins, directions, mode, t_min=t_min, t_max=t_max, threads=threads)
-    values = np.zeros(len(origins), np.bool_ if mode == "any" else np.int64)
+    values: NDArray[Any] = np.zeros(len(origins), np.bool_ if mode == "any" else np.int64)
     values[some] = index.rays(origins[some], directions[some], mode, t_min=t_min, t_max=t_max, threads=threads)
     return values

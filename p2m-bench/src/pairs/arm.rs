@@ -1,0 +1,85 @@
+//! An arm of six capsules that moves beside a scene.
+
+use super::poses::direction;
+use super::{Competitor, ours};
+use nalgebra::{Point3, Vector3};
+use p2m_core::pair::{PairOptions, PairQuery};
+use p2m_core::{PrimitiveSet, Segment, Soup};
+use p2m_testkit::{rng, vector};
+
+/// The number of capsules of an arm.
+const LINKS: usize = 6;
+
+/// The axes of the capsules of an arm, and their radius.
+#[derive(Clone, Copy)]
+pub(super) struct Arm {
+    pub(super) axes: [[Point3<f64>; 2]; LINKS],
+    pub(super) radius: f64,
+}
+
+/// Returns an arm at consecutive poses. It stands beside the scene, and each joint turns a little from one pose to the
+/// next.
+pub(super) fn walk(soup: &Soup<f64>, count: usize, seed: u64) -> Vec<Arm> {
+    let mut rng = rng("arm", seed);
+    let bounds = soup.aabb();
+    let size = bounds.max - bounds.min;
+    let diagonal = size.norm();
+    let centre = nalgebra::center(&bounds.min, &bounds.max);
+    let base = centre + Vector3::new(0.6 * diagonal, 0.0, 0.0);
+    let mut directions: [Vector3<f64>; LINKS] = std::array::from_fn(|_| direction(&mut rng));
+    (0..count)
+        .map(|_| {
+            for direction in &mut directions {
+                *direction = (*direction + vector(&mut rng) * 0.03).normalize();
+            }
+            let mut from = base;
+            let axes = directions.map(|direction| {
+                let axis = [from, from + direction * (0.15 * diagonal)];
+                from = axis[1];
+                axis
+            });
+            Arm { axes, radius: 0.01 * diagonal }
+        })
+        .collect()
+}
+
+/// Returns our competitors. Each computes the least distance of the capsules of an arm.
+pub(super) fn competitors<'a>(ours: &'a ours::Scenes<'_>) -> Vec<Competitor<'a, Arm>> {
+    let tree = &ours.trees[0];
+    vec![
+        Competitor::new("AABB tree", true, |arms: &[Arm], out: &mut [f64]| {
+            for (arm, out) in arms.iter().zip(out) {
+                let distances = arm.axes.iter().map(|[a, b]| {
+                    let nearest = tree.closest_to(&Segment::new(*a, *b), &PairOptions::default());
+                    nearest.map_or(f64::INFINITY, |pair| (pair.distance - arm.radius).max(0.0))
+                });
+                *out = distances.fold(f64::INFINITY, f64::min);
+            }
+        }),
+        Competitor::new("AABB tree, begun with the last pairs", true, |arms: &[Arm], out: &mut [f64]| {
+            let mut last = [None; LINKS];
+            for (arm, out) in arms.iter().zip(out) {
+                let distances = arm.axes.iter().zip(&mut last).map(|([a, b], last)| {
+                    let mut options = PairOptions::default();
+                    options.hint = *last;
+                    let nearest = tree.closest_to(&Segment::new(*a, *b), &options);
+                    *last = nearest.map(|pair| pair.primitives);
+                    nearest.map_or(f64::INFINITY, |pair| (pair.distance - arm.radius).max(0.0))
+                });
+                *out = distances.fold(f64::INFINITY, f64::min);
+            }
+        }),
+        Competitor::new("AABB tree, each capsule within the last", true, |arms: &[Arm], out: &mut [f64]| {
+            for (arm, out) in arms.iter().zip(out) {
+                let mut least = f64::INFINITY;
+                for [a, b] in &arm.axes {
+                    let options = PairOptions::default().with_max_distance(least);
+                    if let Some(pair) = tree.closest_to(&Segment::new(*a, *b), &options) {
+                        least = pair.distance;
+                    }
+                }
+                *out = (least - arm.radius).max(0.0);
+            }
+        }),
+    ]
+}
