@@ -85,6 +85,10 @@ pub mod engine {
         pub use crate::tree::frame::Frame;
         pub use crate::tree::node_ref::{NodeRef, WIDTH};
     }
+    /// The sides of a search for pairs.
+    pub mod pairs {
+        pub use crate::traverse::pairs::{PairSide, TreeSide};
+    }
     /// Packets and their filters.
     pub mod packet {
         pub use crate::packet::*;
@@ -103,6 +107,7 @@ pub mod engine {
     pub mod volume {
         pub use crate::build::TreeOptions;
         pub use crate::traverse::compiled::CompiledSearches;
+        pub use crate::tree::height::Height;
         pub use crate::tree::rounded::Rounded;
         pub use crate::tree::wide_node::{VolumeNodes, WideNode};
     }

@@ -1,19 +1,35 @@
 //! Queries for near pairs of primitives: of a tree and a shape, and of two trees.
 
-use crate::traverse::pairs::{MovedSide, ShapeSide, TreeSide, search_pairs};
+use crate::traverse::pairs::{ShapeSide, search_pairs};
 use crate::{TreeIndex, Volume};
 use nalgebra::Isometry3;
-use p2m_core::pair::{ClosestPair, Motion, NearestPair, PairOptions, PairQuery, Pairs, hull_of, offer_hint_of_set};
-use p2m_core::{PrimitiveId, PrimitiveSet, Real};
+use p2m_core::engine::real::{from_f64_array, to_f64_array};
+use p2m_core::engine::vector::{V3, dot, sub};
+use p2m_core::pair::{
+    ClosestPair, Motion, NearestPair, PairOptions, PairQuery, Pairs, bounds_of, hull_of, offer_hint_of_set, project,
+};
+use p2m_core::{Aabb, ClosestPoint, PrimitiveId, PrimitiveSet, Real};
 use std::ops::ControlFlow;
+
+/// Returns the id of a shape.
+fn shape_id() -> PrimitiveId {
+    PrimitiveId::new(0)
+}
 
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> PairQuery<T> for TreeIndex<T, S, V> {
     fn search_hull(&self, hull: &[[f64; 3]], pairs: &mut Pairs<'_>) {
-        search_pairs(&TreeSide(self.tree()), &ShapeSide(hull), pairs);
+        if pairs.is_nearest() {
+            let on_shape = |point| project(point, hull, f64::INFINITY).map(|p| (p.point.coords.into(), shape_id()));
+            let guess = guess_pair(centre(&bounds_of(hull)), |point| self.closest_for_guess(point), on_shape);
+            if let Some([primitive, _]) = guess {
+                self.offer_hint(primitive, hull, pairs);
+            }
+        }
+        V::as_pair_side(self.tree(), None, &mut |side| search_pairs(side, &ShapeSide(hull), pairs));
     }
 
     fn offer_hint(&self, primitive: PrimitiveId, hull: &[[f64; 3]], pairs: &mut Pairs<'_>) {
-        offer_hint_of_set(self.set(), [primitive, PrimitiveId::new(0)], hull, pairs);
+        offer_hint_of_set(self.set(), [primitive, shape_id()], hull, pairs);
     }
 }
 
@@ -112,16 +128,63 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         if pairs.is_done() || !moved.is_finite() {
             return;
         }
-        if let Some([i, j]) = hint
-            && j.index() < other.set().len()
-        {
-            let (hull, len) = hull_of(&other.set().get(j), motion.as_ref());
-            offer_hint_of_set(self.set(), [i, j], &hull[..len], pairs);
+        let guess = pairs.is_nearest().then(|| {
+            let apply = |point: V3| motion.map_or(point, |motion| motion.apply(point));
+            let undo = |point: V3| motion.map_or(point, |motion| motion.turn_back(sub(point, motion.translation())));
+            let on_second = |point| other.closest_for_guess(undo(point)).map(|(point, id)| (apply(point), id));
+            guess_pair(centre(&moved), |point| self.closest_for_guess(point), on_second)
+        });
+        for [i, j] in hint.into_iter().chain(guess.flatten()) {
+            if j.index() < other.set().len() {
+                let (hull, len) = hull_of(&other.set().get(j), motion.as_ref());
+                offer_hint_of_set(self.set(), [i, j], &hull[..len], pairs);
+            }
         }
-        let (a, b) = (TreeSide(self.tree()), TreeSide(other.tree()));
-        match motion {
-            Some(motion) => search_pairs(&a, &MovedSide { tree: b, motion }, pairs),
-            None => search_pairs(&a, &b, pairs),
-        }
+        V::as_pair_side(self.tree(), None, &mut |a| {
+            U::as_pair_side(other.tree(), motion, &mut |b| search_pairs(a, b, pairs));
+        });
     }
+
+    /// Returns the closest point of the scene and its primitive, for a guess: the query is rounded.
+    fn closest_for_guess(&self, point: V3) -> Option<(V3, PrimitiveId)> {
+        let closest = self.closest_point(&from_f64_array(point))?;
+        Some((to_f64_array(&closest.point), closest.primitive))
+    }
+}
+
+/// The largest number of turns of a guess.
+const MAX_TURNS: usize = 32;
+/// A turn is worthwhile if it makes the distance smaller by this factor.
+const WORTHWHILE: f64 = 0.999;
+
+/// Returns a pair that is probably near: the closest point of each scene to that of the other, in turns, beginning with
+/// the closest point of the first one to `point`. The distance falls with each turn, to a local minimum. With a good
+/// pair, a search cuts few nodes.
+fn guess_pair(
+    mut point: V3,
+    on_first: impl Fn(V3) -> Option<(V3, PrimitiveId)>,
+    on_second: impl Fn(V3) -> Option<(V3, PrimitiveId)>,
+) -> Option<[PrimitiveId; 2]> {
+    let mut best = f64::INFINITY;
+    let mut pair = None;
+    for _ in 0..MAX_TURNS {
+        let (on_a, a) = on_first(point)?;
+        let (on_b, b) = on_second(on_a)?;
+        point = on_b;
+        let offset = sub(on_b, on_a);
+        let square = dot(offset, offset);
+        // The comparison is false for what is not a number.
+        if square < best {
+            pair = Some([a, b]);
+        }
+        if !(square < best * WORTHWHILE) {
+            break;
+        }
+        best = square;
+    }
+    pair
+}
+
+fn centre(bounds: &Aabb<f64>) -> V3 {
+    nalgebra::center(&bounds.min, &bounds.max).coords.into()
 }

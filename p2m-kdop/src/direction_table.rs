@@ -49,6 +49,14 @@ impl<const K: usize> DirectionTable<K> {
         j < 3 && self.is_orthogonal && !self.is_rounded[2 * j]
     }
 
+    /// Returns a direction as the sum of three heights, given by their numbers and factors that are not negative.
+    pub(crate) fn as_sum_of_heights(&self, direction: &[f64; 3]) -> [(usize, f64); 3] {
+        std::array::from_fn(|j| {
+            let weight: f64 = (0..3).map(|axis| direction[axis] * self.axes[(j, axis)]).sum();
+            (2 * j + usize::from(weight < 0.0), weight.abs())
+        })
+    }
+
     /// A box around the k-DOP with these heights.
     pub(crate) fn enclosing_box(&self, heights: &[f64; K]) -> Aabb<f64> {
         let extent = |axis: usize, sign: f64| {

@@ -7,7 +7,7 @@ use nalgebra::{Point3, Vector3};
 use p2m_bvh::engine::node::{Frame, NodeRef, WIDTH};
 use p2m_bvh::engine::packet::Member;
 use p2m_bvh::engine::ray::{FrameLine, RayInterval, SlabRay};
-use p2m_bvh::engine::volume::WideNode;
+use p2m_bvh::engine::volume::{Height, WideNode};
 use p2m_core::Aabb;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::simd::Lanes;
@@ -56,8 +56,9 @@ impl<const K: usize> WideNode for KdopNode<K> {
         &self.children
     }
 
-    fn rows(&self) -> impl Iterator<Item = [f32; WIDTH]> {
-        self.heights.into_iter()
+    #[inline(always)]
+    fn row(&self, number: usize) -> &[f32; WIDTH] {
+        &self.heights[number]
     }
 
     fn from_rows(rows: &[[f32; WIDTH]], children: [NodeRef; WIDTH]) -> Self {
@@ -121,6 +122,10 @@ impl<const K: usize> WideNode for KdopNode<K> {
     #[inline(always)]
     fn lower_bounds<L: Lanes>(&self, table: &DirectionTable<K>, query: &[f32; K]) -> L {
         squared_lower_bounds(&self.heights, table, query)
+    }
+
+    fn height(table: &DirectionTable<K>, direction: &[f64; 3]) -> Height {
+        Height::new(table.as_sum_of_heights(direction))
     }
 
     fn ray(table: &DirectionTable<K>, line: &FrameLine) -> [SlabRay; K] {

@@ -9,12 +9,14 @@ use crate::node::KdopNode;
 use crate::{Directions, Kdop, KdopOptions};
 use nalgebra::Vector3;
 use p2m_bvh::engine::nearest::{EvaluateFn, finish, finish_nearest};
+use p2m_bvh::engine::pairs::{PairSide, TreeSide};
 use p2m_bvh::engine::ray::IntersectFn;
 use p2m_bvh::engine::several::{Several, Walkers};
 use p2m_bvh::engine::volume::{CompiledSearches, TreeOptions, VolumeNodes};
 use p2m_bvh::{PacketTree, SplitOptions, Volume};
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::vector::V3;
+use p2m_core::pair::Motion;
 use p2m_core::storage::{LoadError, Reader, Writer, require};
 use p2m_core::{Aabb, Hits, Near, Ray};
 
@@ -96,17 +98,23 @@ impl<const K: usize> CompiledSearches for Kdop<K> {
     ) {
         tree.run_ray(ray, radius, hits, intersect);
     }
+
+    #[inline(never)]
+    fn as_pair_side(tree: &PacketTree<Self>, motion: Option<Motion>, search: &mut dyn FnMut(&dyn PairSide)) {
+        search(&TreeSide::new(tree, motion));
+    }
 }
 
-/// The three searches of a tree of k-DOPs with K faces.
+/// The searches of a tree of k-DOPs with K faces.
 type Searches<const K: usize> = (
     fn(&PacketTree<Kdop<K>>, V3, &mut BestF64, EvaluateFn<'_, BestF64>),
     for<'n> fn(&PacketTree<Kdop<K>>, V3, &mut Near<'n>, EvaluateFn<'_, Near<'n>>),
     for<'r> fn(&PacketTree<Kdop<K>>, &'r Ray, f64, &mut Hits<'r>, IntersectFn<'_, 'r>),
+    fn(&PacketTree<Kdop<K>>, Option<Motion>, &mut dyn FnMut(&dyn PairSide)),
 );
 
 const fn searches<const K: usize>() -> Searches<K> {
-    (Kdop::<K>::nearest, Kdop::<K>::near, Kdop::<K>::rays)
+    (Kdop::<K>::nearest, Kdop::<K>::near, Kdop::<K>::rays, Kdop::<K>::as_pair_side)
 }
 
 /// The searches that this crate compiles: those for 6, 14, 18 and 26 faces, which have default directions.

@@ -1,6 +1,7 @@
 //! Searches that are compiled once for each bounding volume.
 
 use crate::traverse::evaluate::{finish, finish_nearest};
+use crate::traverse::pairs::{PairSide, TreeSide};
 use crate::traverse::primitive_fn::{EvaluateFn, IntersectFn, evaluation, intersection};
 use crate::traverse::several::Several;
 use crate::traverse::walkers::Walkers;
@@ -10,6 +11,7 @@ use nalgebra::Point3;
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
+use p2m_core::pair::Motion;
 use p2m_core::{Aabb, Best, Hits, Near, PrimitiveSet, Ray, RayCollector, Real};
 
 /// The searches of a tree with the collectors of the library.
@@ -39,6 +41,9 @@ pub trait CompiledSearches: VolumeNodes {
         hits: &mut Hits<'r>,
         intersect: IntersectFn<'_, 'r>,
     );
+
+    /// Passes a tree, which may have moved, to a search for pairs.
+    fn as_pair_side(tree: &PacketTree<Self>, motion: Option<Motion>, search: &mut dyn FnMut(&dyn PairSide));
 }
 
 impl CompiledSearches for Aabb<f64> {
@@ -61,6 +66,10 @@ impl CompiledSearches for Aabb<f64> {
 
     fn rays<'r>(tree: &PacketTree, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: IntersectFn<'_, 'r>) {
         tree.run_ray(ray, radius, hits, intersect);
+    }
+
+    fn as_pair_side(tree: &PacketTree, motion: Option<Motion>, search: &mut dyn FnMut(&dyn PairSide)) {
+        search(&TreeSide::new(tree, motion));
     }
 }
 

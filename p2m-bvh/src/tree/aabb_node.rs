@@ -3,6 +3,7 @@
 use crate::packet::Member;
 use crate::tree::frame::{Frame, FrameBox};
 use crate::tree::frame_line::FrameLine;
+use crate::tree::height::Height;
 use crate::tree::node_ref::{NodeRef, WIDTH};
 use crate::tree::ray_slab::{RayInterval, SlabRay};
 use crate::tree::rounded::Rounded;
@@ -42,8 +43,9 @@ impl WideNode for BoxNode {
         &self.children
     }
 
-    fn rows(&self) -> impl Iterator<Item = [f32; WIDTH]> {
-        self.min.into_iter().chain(self.max)
+    #[inline(always)]
+    fn row(&self, number: usize) -> &[f32; WIDTH] {
+        if number < 3 { &self.min[number] } else { &self.max[number - 3] }
     }
 
     fn from_rows(rows: &[[f32; WIDTH]], children: [NodeRef; WIDTH]) -> Self {
@@ -81,6 +83,11 @@ impl WideNode for BoxNode {
             sum = query.squared_gap(k, L::load(&self.min[k]), L::load(&self.max[k]), sum);
         }
         sum
+    }
+
+    fn height((): &(), direction: &[f64; 3]) -> Height {
+        // The lower side is the highest along a direction with a negative component.
+        Height::new(std::array::from_fn(|k| (if direction[k] < 0.0 { k } else { k + 3 }, direction[k])))
     }
 
     fn ray((): &(), line: &FrameLine) -> [SlabRay; 3] {

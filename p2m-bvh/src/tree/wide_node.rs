@@ -3,6 +3,7 @@
 use crate::packet::Member;
 use crate::tree::frame::Frame;
 use crate::tree::frame_line::FrameLine;
+use crate::tree::height::Height;
 use crate::tree::node_ref::{NodeRef, WIDTH};
 use p2m_core::Aabb;
 use p2m_core::engine::simd::Lanes;
@@ -33,8 +34,12 @@ pub trait WideNode: Copy + Debug + Send + Sync {
     fn new(children: [NodeRef; WIDTH]) -> Self;
     /// The children of the node; unused slots have [`NodeRef::NONE`].
     fn children(&self) -> &[NodeRef; WIDTH];
+    /// The row of this number of the bounds of the children.
+    fn row(&self, number: usize) -> &[f32; WIDTH];
     /// The bounds of the children as rows of numbers, as files store them.
-    fn rows(&self) -> impl Iterator<Item = [f32; WIDTH]>;
+    fn rows(&self) -> impl Iterator<Item = [f32; WIDTH]> {
+        (0..Self::ROWS).map(|number| *self.row(number))
+    }
     /// Makes a node from the rows of a file.
     fn from_rows(rows: &[[f32; WIDTH]], children: [NodeRef; WIDTH]) -> Self;
     /// Sets the bounds of the child in a slot.
@@ -53,6 +58,9 @@ pub trait WideNode: Copy + Debug + Send + Sync {
     /// The squares of lower bounds on the distances to the contents of the eight children, in the frame. A square may
     /// be too large by at most 2^-20 of itself, apart from underflow.
     fn lower_bounds<L: Lanes>(&self, shared: &Self::Shared, query: &Self::Query) -> L;
+
+    /// Converts a direction of the frame, a vector of length 1, to the form in which heights along it are computed.
+    fn height(shared: &Self::Shared, direction: &[f64; 3]) -> Height;
 
     /// Converts a ray to the form in which nodes are intersected.
     fn ray(shared: &Self::Shared, line: &FrameLine) -> Self::Ray;

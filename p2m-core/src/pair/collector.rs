@@ -131,6 +131,23 @@ impl<'a> Pairs<'a> {
         self.has_ended
     }
 
+    /// Returns whether only the nearest pair counts.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn is_nearest(&self) -> bool {
+        matches!(self.mode, Mode::Nearest { .. })
+    }
+
+    /// Returns the vector from the nearest point of the first scene to that of the second, for the nearest pair so far.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn separation(&self) -> Option<[f64; 3]> {
+        match &self.mode {
+            Mode::Nearest { best: Some((_, pair)), .. } => Some((pair.points[1] - pair.points[0]).into()),
+            _ => None,
+        }
+    }
+
     /// Returns whether a pair of these primitives could still change the answer. It could not if a pair with lower ids
     /// intersects.
     #[inline]

@@ -252,8 +252,10 @@ fn edge_weights(i: u8, t: f64) -> V3 {
     }
 }
 
-/// Projects a point onto the hull of one to three vertices.
-fn project(query: V3, hull: &[V3], square: f64) -> Option<Projection> {
+/// Projects a point onto the hull of one to three vertices, unless the key certainly exceeds `square`.
+#[doc(hidden)]
+#[must_use]
+pub fn project(query: V3, hull: &[V3], square: f64) -> Option<Projection> {
     match hull {
         [a] => Projection::onto_point(query, &[*a], square),
         [a, b] => Projection::onto_segment(query, &[*a, *b], square),

@@ -34,6 +34,27 @@ impl Motion {
         })
     }
 
+    /// Returns a turned vector.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn turn(&self, vector: V3) -> V3 {
+        (self.matrix * Vector3::from(vector)).into()
+    }
+
+    /// Returns a vector turned by the inverse.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn turn_back(&self, vector: V3) -> V3 {
+        self.matrix.tr_mul(&Vector3::from(vector)).into()
+    }
+
+    /// Returns the translation.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn translation(&self) -> V3 {
+        self.translation.into()
+    }
+
     /// Returns a box around the moved vertices of a box, as [`apply`](Self::apply) rounds them.
     #[must_use]
     pub fn apply_to_box(&self, bounds: &Aabb<f64>) -> Aabb<f64> {

@@ -1,0 +1,146 @@
+//! The primitives of a packet as hulls, and the pairs of those of two packets.
+
+use super::directions::unit;
+use super::support::Supports;
+use crate::packet::LANES;
+use crate::tree::node_ref::NodeRef;
+use p2m_core::engine::arithmetic::cross;
+use p2m_core::engine::vector::{V3, dot, sub};
+use p2m_core::pair::{Pairs, bounds_of, nearest_of_hulls};
+use p2m_core::{Aabb, PrimitiveId};
+
+/// The primitives of a packet, as hulls of vertices.
+pub struct Hulls {
+    /// The packet that is loaded.
+    pub(super) packet: NodeRef,
+    len: usize,
+    /// The number of vertices of each hull.
+    vertex_counts: [usize; LANES],
+    vertices: [[V3; 3]; LANES],
+    boxes: [Aabb<f64>; LANES],
+    /// The normals of triangles, of length 1, or zero for what has none.
+    normals: [V3; LANES],
+    ids: [PrimitiveId; LANES],
+}
+
+impl Hulls {
+    pub(super) fn new() -> Self {
+        Self {
+            packet: NodeRef::NONE,
+            len: 0,
+            vertex_counts: [0; LANES],
+            vertices: [[[0.0; 3]; 3]; LANES],
+            boxes: [Aabb::empty(); LANES],
+            normals: [[0.0; 3]; LANES],
+            ids: [PrimitiveId::new(0); LANES],
+        }
+    }
+
+    /// Forgets the primitives of the last packet.
+    pub(super) fn start(&mut self, packet: NodeRef) {
+        (self.packet, self.len) = (packet, 0);
+    }
+
+    /// Adds a primitive.
+    pub(super) fn push(&mut self, id: PrimitiveId, vertices: &[V3]) {
+        let i = self.len;
+        self.vertices[i][..vertices.len()].copy_from_slice(vertices);
+        (self.vertex_counts[i], self.boxes[i], self.ids[i]) = (vertices.len(), bounds_of(vertices), id);
+        self.normals[i] = match vertices {
+            [a, b, c] => unit(cross(sub(*b, *a), sub(*c, *a))).unwrap_or_default(),
+            _ => [0.0; 3],
+        };
+        self.len += 1;
+    }
+
+    fn hull(&self, i: usize) -> &[V3] {
+        &self.vertices[i][..self.vertex_counts[i]]
+    }
+
+    /// Returns the box around all hulls.
+    fn bounds(&self) -> Aabb<f64> {
+        self.boxes[..self.len].iter().fold(Aabb::empty(), |all, bounds| all.union(bounds))
+    }
+
+    /// Returns the numbers of the hulls whose boxes are near a box.
+    fn near(&self, bounds: &Aabb<f64>, prune: f64) -> Vec<usize> {
+        (0..self.len).filter(|i| self.boxes[*i].gap_squared(bounds) <= prune).collect()
+    }
+}
+
+/// Offers the pairs of the primitives of two packets. `supports` tells whether heights may be compared, and in which
+/// direction.
+pub(super) fn search_packets(a: &Hulls, b: &Hulls, supports: &Supports, pairs: &mut Pairs<'_>) {
+    let prune = pairs.prune_above();
+    let (near_a, near_b) = (a.near(&b.bounds(), prune), b.near(&a.bounds(), prune));
+    let offer = |i: usize, j: usize, pairs: &mut Pairs<'_>| {
+        let prune = pairs.prune_above();
+        let ids = [a.ids[i], b.ids[j]];
+        if a.boxes[i].gap_squared(&b.boxes[j]) > prune || !pairs.can_change(ids) {
+            return;
+        }
+        if supports.margin.is_some_and(|margin| is_apart(a, i, b, j, supports.direction, prune.sqrt() + margin)) {
+            return;
+        }
+        pairs.offer_result(ids, nearest_of_hulls(a.hull(i), b.hull(j), prune));
+    };
+    // Two vertices that are nearer than the best pair belong to a pair that is nearer. It is offered first, so that
+    // others are excluded.
+    let first = if pairs.is_nearest() { nearest_vertices(a, b, &near_a, &near_b, prune) } else { None };
+    if let Some((i, j)) = first {
+        offer(i, j, pairs);
+    }
+    for i in near_a {
+        for &j in &near_b {
+            if Some((i, j)) != first {
+                offer(i, j, pairs);
+            }
+            if pairs.is_done() {
+                return;
+            }
+        }
+    }
+}
+
+/// Returns whether two hulls are farther apart than `reach` along a direction from the first to the second, along the
+/// normal of one of them, or along the line through their first vertices.
+fn is_apart(a: &Hulls, i: usize, b: &Hulls, j: usize, direction: Option<V3>, reach: f64) -> bool {
+    let (p, q) = (a.hull(i), b.hull(j));
+    let gap = |direction: V3| {
+        let [_, end] = extent(p.iter().map(|vertex| dot(sub(*vertex, p[0]), direction)));
+        let [start, _] = extent(q.iter().map(|vertex| dot(sub(*vertex, p[0]), direction)));
+        start - end
+    };
+    if direction.is_some_and(|direction| gap(direction) > reach) {
+        return true;
+    }
+    let is_outside = |normal: &V3, plane: &V3, hull: &[V3]| {
+        let heights = extent(hull.iter().map(|vertex| dot(sub(*vertex, *plane), *normal)));
+        heights[0] > reach || heights[1] < -reach
+    };
+    if is_outside(&a.normals[i], &p[0], q) || is_outside(&b.normals[j], &q[0], p) {
+        return true;
+    }
+    let line = sub(q[0], p[0]);
+    gap(line) > reach * dot(line, line).sqrt()
+}
+
+/// Returns the least and the largest of some numbers.
+fn extent(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
+    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+}
+
+/// Returns the hulls whose first vertices are nearest, if these are nearer than `prune` allows.
+fn nearest_vertices(a: &Hulls, b: &Hulls, near_a: &[usize], near_b: &[usize], prune: f64) -> Option<(usize, usize)> {
+    let mut best = (prune, None);
+    for &i in near_a {
+        for &j in near_b {
+            let offset = sub(b.vertices[j][0], a.vertices[i][0]);
+            let square = dot(offset, offset);
+            if square < best.0 {
+                best = (square, Some((i, j)));
+            }
+        }
+    }
+    best.1
+}

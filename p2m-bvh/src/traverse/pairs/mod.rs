@@ -1,0 +1,181 @@
+//! Searches for near pairs of primitives: of a tree and a shape, or of two trees, one of which may have moved.
+//!
+//! # Method
+//!
+//! A search holds pairs of nodes, of which one is cut into its children at a time: the one with the larger box. Pairs
+//! that are certainly farther apart than the best pair so far are left out. Two bounds tell that.
+//!
+//! - **Directions** ([`directions`]). The other node of the pair is between two planes in each of a few directions: the
+//!   axes of both frames, and for a shape those that are orthogonal to its edges and to an axis. The distances of eight
+//!   children from what is between the planes are bounded side by side, in f32.
+//! - **The direction of the best pair** ([`support`]). Where two surfaces are nearest, they face each other and are
+//!   nearly flat. A box around such a part reaches towards the other surface by as much as the box is wide, but the
+//!   part itself does so by the square of that only. So the extents of nodes along the direction of the best pair are
+//!   those of their vertices, which a search through the node finds. Without this bound, the number of pairs of nodes
+//!   that no box tells apart grows with the number of triangles; with it, few are left on each level.
+//!
+//! In frames in which f32 does not resolve the other node, the gap between boxes in f64 is the only bound.
+//!
+//! # Correctness
+//!
+//! The gap of two boxes never exceeds the key of primitives in them (docs/proofs/pairs.md). The other bounds are
+//! computed with a margin above their rounding and above the error of keys. So the answer is that of all pairs, bit for
+//! bit. The motion of a tree is applied to the vertices of its packets, each coordinate rounded, and to directions and
+//! boxes with a margin above all roundings.
+
+mod directions;
+mod hulls;
+mod side;
+mod support;
+
+use crate::tree::node_ref::{NodeRef, WIDTH};
+use directions::{Directions, Slab};
+use hulls::{Hulls, search_packets};
+use p2m_core::pair::Pairs;
+pub(crate) use side::ShapeSide;
+pub use side::{PairSide, TreeSide};
+use support::Supports;
+
+/// A node or packet, with the place where its bounds are: a slot of its parent.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    pub(crate) node: NodeRef,
+    /// The number of the parent; [`Place::NO_PARENT`] for the root.
+    pub(crate) parent: u32,
+    pub(crate) slot: u8,
+    /// The sum of the sides of its box, in coordinates of the scene, rounded.
+    pub(crate) size: f32,
+}
+
+impl Place {
+    pub(crate) const NO_PARENT: u32 = u32::MAX;
+
+    pub(crate) fn root(node: NodeRef) -> Self {
+        Self { node, parent: Self::NO_PARENT, slot: 0, size: f32::INFINITY }
+    }
+}
+
+/// Bounds on the distances of the eight children of a node from something.
+#[derive(Clone, Copy, Debug)]
+pub struct Children {
+    /// Squares of lower bounds, in coordinates of the scene; infinite for what is farther than the limit.
+    pub(crate) squares: [f64; WIDTH],
+    /// The widest gap in any direction, by which children are ordered. It is negative for what overlaps.
+    pub(crate) gaps: [f32; WIDTH],
+    /// The sums of the sides of the boxes, in coordinates of the scene.
+    pub(crate) sizes: [f32; WIDTH],
+    pub(crate) nodes: [NodeRef; WIDTH],
+}
+
+impl Children {
+    /// No children.
+    pub(crate) const NONE: Self = Self {
+        squares: [f64::INFINITY; WIDTH],
+        gaps: [f32::INFINITY; WIDTH],
+        sizes: [0.0; WIDTH],
+        nodes: [NodeRef::NONE; WIDTH],
+    };
+}
+
+/// Two nodes that may contain a near pair.
+#[derive(Clone, Copy)]
+struct NodePair {
+    /// The square of a lower bound on the distance.
+    square: f64,
+    gap: f32,
+    places: [Place; 2],
+}
+
+/// A search for pairs of two sides.
+struct Search<'a, 'p, 'v> {
+    sides: [&'a dyn PairSide; 2],
+    /// The directions, unless f32 does not resolve one side in the frame of the other.
+    directions: Option<Directions>,
+    supports: Supports,
+    pending: Vec<NodePair>,
+    /// The side and the node for which `slabs` were computed.
+    fixed: Option<(usize, NodeRef)>,
+    slabs: Vec<Slab>,
+    pairs: &'p mut Pairs<'v>,
+}
+
+/// Offers every pair of primitives that may be near.
+pub(crate) fn search_pairs(a: &dyn PairSide, b: &dyn PairSide, pairs: &mut Pairs<'_>) {
+    let (Some(root_a), Some(root_b)) = (a.root(), b.root()) else { return };
+    let sides = [a, b];
+    let directions = Directions::new(sides);
+    let supports = Supports::new(directions.as_ref().map(|all| all.margin));
+    let mut search = Search { sides, directions, supports, pending: Vec::new(), fixed: None, slabs: Vec::new(), pairs };
+    search.pending.push(NodePair { square: 0.0, gap: 0.0, places: [root_a, root_b] });
+    search.run();
+}
+
+impl Search<'_, '_, '_> {
+    fn run(&mut self) {
+        let mut loaded = [Hulls::new(), Hulls::new()];
+        while let Some(NodePair { square, places, .. }) = self.pending.pop() {
+            if square > self.pairs.prune_above() {
+                continue;
+            }
+            if self.pairs.is_done() {
+                return;
+            }
+            match places.map(|place| place.node.is_packet()) {
+                [true, true] => {
+                    let least = [0, 1].map(|i| self.sides[i].first_id(places[i].node));
+                    if !self.pairs.can_change(least) {
+                        continue;
+                    }
+                    for ((side, place), hulls) in self.sides.iter().zip(places).zip(&mut loaded) {
+                        if hulls.packet != place.node {
+                            side.load(place.node, hulls);
+                        }
+                    }
+                    let [a, b] = &loaded;
+                    search_packets(a, b, &self.supports, self.pairs);
+                    self.supports.follow(self.pairs);
+                }
+                [_, true] => self.cut(0, places),
+                [true, _] => self.cut(1, places),
+                _ => self.cut(usize::from(places[0].size < places[1].size), places),
+            }
+        }
+    }
+
+    /// Adds the pairs of the children of one node and the other node.
+    fn cut(&mut self, side: usize, places: [Place; 2]) {
+        let prune = self.pairs.prune_above();
+        let other = places[1 - side];
+        let children = match &self.directions {
+            Some(directions) => {
+                if self.fixed != Some((1 - side, other.node)) {
+                    directions.slabs(1 - side, self.sides[1 - side], &other, &mut self.slabs);
+                    self.fixed = Some((1 - side, other.node));
+                }
+                self.sides[side].cut(places[side].node, &self.slabs, directions.triples)
+            }
+            None => {
+                let bounds = self.sides[1 - side].box_of(&other);
+                self.sides[side].cut_by_box(places[side].node, &bounds)
+            }
+        };
+        let first = self.pending.len();
+        for slot in 0..WIDTH {
+            let square = children.squares[slot];
+            // The comparison is false for unused slots.
+            if square > prune || children.nodes[slot] == NodeRef::NONE {
+                continue;
+            }
+            let parent = u32::try_from(places[side].node.number()).expect("a number of 32 bits");
+            #[allow(clippy::cast_possible_truncation, reason = "below eight")]
+            let child = Place { node: children.nodes[slot], parent, slot: slot as u8, size: children.sizes[slot] };
+            let mut pair = NodePair { square, gap: children.gaps[slot], places };
+            pair.places[side] = child;
+            if self.supports.is_near(self.sides, &pair.places, prune) {
+                self.pending.push(pair);
+            }
+        }
+        // The nearest pair is visited first.
+        self.pending[first..].sort_unstable_by(|p, q| q.gap.total_cmp(&p.gap));
+    }
+}

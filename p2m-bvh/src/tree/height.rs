@@ -1,0 +1,55 @@
+//! Heights: upper bounds on the contents of nodes along a direction.
+
+use crate::tree::wide_node::WideNode;
+use p2m_core::engine::simd::Lanes;
+use p2m_core::engine::vector::power_of_two;
+
+/// The part of the sum of all factors that is added as slack. Coordinates of a frame are at most 4, and there are at
+/// most four roundings of 2^-24 of each term.
+const SLACK: f64 = power_of_two(-19);
+
+/// A direction of a frame, as the weighted sum of three rows of numbers of a node.
+///
+/// The height of a child along the direction is the largest product of the direction and a point of the child. The sum
+/// is an upper bound on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Height {
+    rows: [usize; 3],
+    factors: [f32; 3],
+    /// The sum may be too small by at most this.
+    pub(crate) slack: f32,
+}
+
+impl Height {
+    /// Makes the sum of three rows with these factors.
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation, reason = "the slack covers the rounding")]
+    pub fn new(terms: [(usize, f64); 3]) -> Self {
+        // A factor of zero would make a NaN of the infinite bounds of an unused slot.
+        let factor =
+            |x: f64| if (x as f32).abs() < f32::MIN_POSITIVE { f32::MIN_POSITIVE.copysign(x as f32) } else { x as f32 };
+        let sum: f64 = terms.iter().map(|(_, factor)| factor.abs()).sum();
+        Self {
+            rows: terms.map(|(row, _)| row),
+            factors: terms.map(|(_, x)| factor(x)),
+            slack: ((sum * SLACK) as f32).next_up(),
+        }
+    }
+
+    /// Returns the heights of the eight children of a node; those of unused slots are negative and infinite.
+    #[inline(always)]
+    pub(crate) fn of_children<L: Lanes>(&self, node: &impl WideNode) -> L {
+        // There is no closure here, because one would be compiled without the instruction set.
+        let [x, y, z] = self.factors;
+        let sum = L::load(node.row(self.rows[0])).mul(L::splat(x));
+        let sum = L::load(node.row(self.rows[1])).mul_add(L::splat(y), sum);
+        L::load(node.row(self.rows[2])).mul_add(L::splat(z), sum)
+    }
+
+    /// Returns the height of the child in a slot, with slack.
+    #[inline(always)]
+    pub(crate) fn of_child(&self, node: &impl WideNode, slot: usize) -> f64 {
+        let term = |i: usize| f64::from(node.row(self.rows[i])[slot]) * f64::from(self.factors[i]);
+        term(0) + term(1) + term(2) + f64::from(self.slack)
+    }
+}
