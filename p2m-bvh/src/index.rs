@@ -6,6 +6,7 @@ use crate::{PacketTree, Volume};
 
 use nalgebra::Point3;
 use p2m_core::engine::answer_one_by_one;
+use p2m_core::pair::PairQuery;
 use p2m_core::storage::{self, LoadError, Reader, Writer};
 use p2m_core::{
     Aabb, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Collector, Found,
@@ -276,6 +277,10 @@ impl<T: Real, S: PrimitiveSet<T> + Send + Sync, V: Volume> Index<T> for TreeInde
     }
 
     fn as_box_query(&self) -> Option<&(dyn BoxQuery<T> + Sync)> {
+        Some(self)
+    }
+
+    fn as_pair_query(&self) -> Option<&(dyn PairQuery<T> + Sync)> {
         Some(self)
     }
 }

@@ -87,7 +87,7 @@ pub mod engine {
     }
     /// The sides of a search for pairs.
     pub mod pairs {
-        pub use crate::traverse::pairs::{PairSide, TreeSide};
+        pub use crate::traverse::pairs::TreeSide;
     }
     /// Packets and their filters.
     pub mod packet {
@@ -107,7 +107,6 @@ pub mod engine {
     pub mod volume {
         pub use crate::build::TreeOptions;
         pub use crate::traverse::compiled::CompiledSearches;
-        pub use crate::tree::height::Height;
         pub use crate::tree::rounded::Rounded;
         pub use crate::tree::wide_node::{VolumeNodes, WideNode};
     }

@@ -1,6 +1,5 @@
 //! Brute force: every query evaluates every primitive. All other indexes are tested against it.
 
-use crate::pair::{self, PairQuery, Pairs};
 use crate::{
     Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Inspect, Near, NearQuery, Primitive,
     PrimitiveId, PrimitiveSet, Real, Shape, StatsCollector, check_set, shape_of,
@@ -57,21 +56,6 @@ impl<T: Real, S: PrimitiveSet<T>> NearQuery<T> for BruteForce<S> {
             }
             near.offer(id, self.set.get(id).project(query));
         }
-    }
-}
-
-impl<T: Real, S: PrimitiveSet<T>> PairQuery<T> for BruteForce<S> {
-    fn search_hull(&self, hull: &[[f64; 3]], pairs: &mut Pairs<'_>) {
-        for id in (0..self.set.len()).map(PrimitiveId::new) {
-            if pairs.is_done() {
-                return;
-            }
-            pair::offer_of_set(&self.set, [id, PrimitiveId::new(0)], hull, pairs);
-        }
-    }
-
-    fn offer_hint(&self, primitive: PrimitiveId, hull: &[[f64; 3]], pairs: &mut Pairs<'_>) {
-        pair::offer_hint_of_set(&self.set, [primitive, PrimitiveId::new(0)], hull, pairs);
     }
 }
 

@@ -1,12 +1,13 @@
 //! Everything that an index can do, behind one pointer.
 
+use crate::pair::PairQuery;
 use crate::storage::Writer;
 use crate::{BoxQuery, BruteForce, CertifiedQuery, ClosestPoint, Inspect, PrimitiveSet, RayQuery, Real};
 use std::sync::Arc;
 
 /// Everything that an index can do, as a trait that can be used as `dyn Index<T>`.
 ///
-/// Every index answers closest-point, near and certified queries, and reports its costs. Rays and boxes are optional.
+/// Every index answers closest-point, near and certified queries, and reports its costs. Rays, boxes and pairs are optional.
 /// Indexes can be sent to other threads and shared among them.
 ///
 /// ```
@@ -45,6 +46,11 @@ pub trait Index<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + Inspect<T>
     fn as_box_query(&self) -> Option<&(dyn BoxQuery<T> + Sync)> {
         None
     }
+
+    /// Returns the index as one that pairs can be searched in, if it is one.
+    fn as_pair_query(&self) -> Option<&(dyn PairQuery<T> + Sync)> {
+        None
+    }
 }
 
 impl<T: Real, S: PrimitiveSet<T> + Send + Sync> Index<T> for BruteForce<S> {
@@ -59,6 +65,10 @@ impl<T: Real, S: PrimitiveSet<T> + Send + Sync> Index<T> for BruteForce<S> {
     }
 
     fn as_box_query(&self) -> Option<&(dyn BoxQuery<T> + Sync)> {
+        Some(self)
+    }
+
+    fn as_pair_query(&self) -> Option<&(dyn PairQuery<T> + Sync)> {
         Some(self)
     }
 }
@@ -78,6 +88,9 @@ macro_rules! index_behind {
             }
             fn as_box_query(&self) -> Option<&(dyn BoxQuery<T> + Sync)> {
                 (**self).as_box_query()
+            }
+            fn as_pair_query(&self) -> Option<&(dyn PairQuery<T> + Sync)> {
+                (**self).as_pair_query()
             }
         }
     };

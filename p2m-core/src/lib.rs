@@ -89,6 +89,10 @@ pub use stats_collector::StatsCollector;
 pub mod engine {
     pub use crate::index::answer_one_by_one;
 
+    /// Searches for near pairs of two trees.
+    pub mod pairs {
+        pub use crate::pair::search::*;
+    }
     /// Orders along a Hilbert curve.
     pub mod curve {
         pub use crate::curve::*;

@@ -3,7 +3,8 @@
 //! So an index can own its scene, borrow it, or share it with others (`Arc<Soup<f64>>`), and a function over `impl
 //! ClosestPoint<T>` also takes `&I`, `Box<dyn ClosestPoint<T>>` and `Arc<I>`.
 
-use crate::pair::{PairQuery, Pairs};
+use crate::pair::search::PairSide;
+use crate::pair::{Motion, PairQuery};
 use crate::{
     Aabb, Best, BoxQuery, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Found, Hits, Inspect, Near, NearQuery,
     PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayQuery, Real, Shape, StatsCollector,
@@ -57,11 +58,17 @@ macro_rules! point_to {
         }
 
         impl<T: Real, $target: PairQuery<T> + ?Sized> PairQuery<T> for $pointer {
-            fn search_hull(&self, hull: &[[f64; 3]], pairs: &mut Pairs<'_>) {
-                (**self).search_hull(hull, pairs);
+            fn primitive_count(&self) -> usize {
+                (**self).primitive_count()
             }
-            fn offer_hint(&self, primitive: PrimitiveId, hull: &[[f64; 3]], pairs: &mut Pairs<'_>) {
-                (**self).offer_hint(primitive, hull, pairs);
+            fn hull(&self, id: PrimitiveId) -> ([[f64; 3]; 3], usize) {
+                (**self).hull(id)
+            }
+            fn with_pair_side(&self, motion: Option<Motion>, search: &mut dyn FnMut(&dyn PairSide)) -> bool {
+                (**self).with_pair_side(motion, search)
+            }
+            fn guess_closest(&self, point: [f64; 3]) -> Option<([f64; 3], PrimitiveId)> {
+                (**self).guess_closest(point)
             }
         }
 

@@ -7,8 +7,9 @@ use nalgebra::{Point3, Vector3};
 use p2m_bvh::engine::node::{Frame, NodeRef, WIDTH};
 use p2m_bvh::engine::packet::Member;
 use p2m_bvh::engine::ray::{FrameLine, RayInterval, SlabRay};
-use p2m_bvh::engine::volume::{Height, WideNode};
+use p2m_bvh::engine::volume::WideNode;
 use p2m_core::Aabb;
+use p2m_core::engine::pairs::{Height, Rows};
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::simd::Lanes;
 use p2m_core::engine::vector::power_of_two;
@@ -35,6 +36,13 @@ const HEIGHT_SLACK: f64 = power_of_two(-48);
 /// 2^-19. Tests therefore do not fail without it.
 const QUERY_SLACK: f64 = 20.0 * power_of_two(-24);
 
+impl<const K: usize> Rows for KdopNode<K> {
+    #[inline(always)]
+    fn row(&self, number: usize) -> &[f32; WIDTH] {
+        &self.heights[number]
+    }
+}
+
 impl<const K: usize> WideNode for KdopNode<K> {
     type Volume = Kdop<K>;
     type Shared = DirectionTable<K>;
@@ -54,11 +62,6 @@ impl<const K: usize> WideNode for KdopNode<K> {
     #[inline(always)]
     fn children(&self) -> &[NodeRef; WIDTH] {
         &self.children
-    }
-
-    #[inline(always)]
-    fn row(&self, number: usize) -> &[f32; WIDTH] {
-        &self.heights[number]
     }
 
     fn from_rows(rows: &[[f32; WIDTH]], children: [NodeRef; WIDTH]) -> Self {

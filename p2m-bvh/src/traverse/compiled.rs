@@ -1,13 +1,14 @@
 //! Searches that are compiled once for each bounding volume.
 
 use crate::traverse::evaluate::{finish, finish_nearest};
-use crate::traverse::pairs::{PairSide, TreeSide};
+use crate::traverse::pairs::TreeSide;
 use crate::traverse::primitive_fn::{EvaluateFn, IntersectFn, evaluation, intersection};
 use crate::traverse::several::Several;
 use crate::traverse::walkers::Walkers;
 use crate::tree::PacketTree;
 use crate::tree::wide_node::VolumeNodes;
 use nalgebra::Point3;
+use p2m_core::engine::pairs::PairSide;
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;

@@ -3,13 +3,13 @@
 use crate::packet::Member;
 use crate::tree::frame::{Frame, FrameBox};
 use crate::tree::frame_line::FrameLine;
-use crate::tree::height::Height;
 use crate::tree::node_ref::{NodeRef, WIDTH};
 use crate::tree::ray_slab::{RayInterval, SlabRay};
 use crate::tree::rounded::Rounded;
 use crate::tree::wide_node::{VolumeNodes, WideNode};
 use nalgebra::Point3;
 use p2m_core::Aabb;
+use p2m_core::engine::pairs::{Height, Rows};
 use p2m_core::engine::simd::Lanes;
 use p2m_core::storage::{LoadError, Reader, Writer};
 
@@ -23,6 +23,13 @@ pub struct BoxNode {
 }
 
 const _: () = assert!(size_of::<BoxNode>() == 256);
+
+impl Rows for BoxNode {
+    #[inline(always)]
+    fn row(&self, number: usize) -> &[f32; WIDTH] {
+        if number < 3 { &self.min[number] } else { &self.max[number - 3] }
+    }
+}
 
 impl WideNode for BoxNode {
     type Volume = Aabb<f64>;
@@ -41,11 +48,6 @@ impl WideNode for BoxNode {
     #[inline(always)]
     fn children(&self) -> &[NodeRef; WIDTH] {
         &self.children
-    }
-
-    #[inline(always)]
-    fn row(&self, number: usize) -> &[f32; WIDTH] {
-        if number < 3 { &self.min[number] } else { &self.max[number - 3] }
     }
 
     fn from_rows(rows: &[[f32; WIDTH]], children: [NodeRef; WIDTH]) -> Self {

@@ -8,7 +8,6 @@
 pub(crate) mod aabb_node;
 pub(crate) mod frame;
 pub(crate) mod frame_line;
-pub(crate) mod height;
 pub(crate) mod node_ref;
 pub(crate) mod ray_slab;
 pub(crate) mod rounded;

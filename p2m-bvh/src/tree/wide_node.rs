@@ -3,9 +3,9 @@
 use crate::packet::Member;
 use crate::tree::frame::Frame;
 use crate::tree::frame_line::FrameLine;
-use crate::tree::height::Height;
 use crate::tree::node_ref::{NodeRef, WIDTH};
 use p2m_core::Aabb;
+use p2m_core::engine::pairs::{Height, Rows};
 use p2m_core::engine::simd::Lanes;
 use p2m_core::storage::{LoadError, Reader, Writer};
 use std::fmt::Debug;
@@ -13,7 +13,7 @@ use std::fmt::Debug;
 /// A node of eight children with their bounds in f32, in the frame of the tree.
 ///
 /// A child stands in one of eight slots, which are the lanes of its bounds.
-pub trait WideNode: Copy + Debug + Send + Sync {
+pub trait WideNode: Rows + Copy + Debug + Send + Sync {
     /// The bounding volume of a child, in coordinates of the scene.
     type Volume;
     /// The data that all nodes of a tree share, such as the directions of k-DOPs.
@@ -34,8 +34,6 @@ pub trait WideNode: Copy + Debug + Send + Sync {
     fn new(children: [NodeRef; WIDTH]) -> Self;
     /// The children of the node; unused slots have [`NodeRef::NONE`].
     fn children(&self) -> &[NodeRef; WIDTH];
-    /// The row of this number of the bounds of the children.
-    fn row(&self, number: usize) -> &[f32; WIDTH];
     /// The bounds of the children as rows of numbers, as files store them.
     fn rows(&self) -> impl Iterator<Item = [f32; WIDTH]> {
         (0..Self::ROWS).map(|number| *self.row(number))

@@ -29,10 +29,12 @@ mod decide;
 mod double_double;
 mod feature;
 mod feature_certificate;
+mod pairs;
 mod query;
 mod rational;
 mod rounded;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use pairs::{PairCandidate, decide_pairs};
 pub use query::{CertifiedQuery, CertifyError, shape_of};

@@ -33,6 +33,41 @@ impl Square {
         Self { fraction: exact.square(feature), unit: exact.unit }
     }
 
+    /// Computes the squared distance of two hulls of one to three vertices that do not intersect: the least of those of
+    /// a vertex and the other hull, and of the insides of two edges that are not parallel.
+    pub(super) fn between(a: &[V3], b: &[V3]) -> Self {
+        let of_vertices = |vertices: &[V3], other: &[V3]| -> Vec<Self> {
+            vertices.iter().map(|vertex| Self::new(*vertex, other, Feature::Vertex(0), false)).collect()
+        };
+        let edges = |hull: &[V3]| -> Vec<[V3; 2]> {
+            let count = if hull.len() < 3 { hull.len() - 1 } else { 3 };
+            (0..count).map(|i| [hull[i], hull[(i + 1) % hull.len()]]).collect()
+        };
+        let mut all = of_vertices(a, b);
+        all.extend(of_vertices(b, a));
+        for p in edges(a) {
+            all.extend(edges(b).iter().filter_map(|q| Self::inside_of_edges(&p, q)));
+        }
+        all.into_iter().min_by(Self::cmp).expect("a hull has a vertex")
+    }
+
+    /// Computes the squared distance of the lines of two edges, if they are nearest inside of both edges. With the edges
+    /// D and E, the vector R between their first ends, and N = D x E, the parameters are (R x E).N / N.N and
+    /// (R x D).N / N.N, and the square is (R.N)^2 / N.N.
+    fn inside_of_edges(p: &[V3; 2], q: &[V3; 2]) -> Option<Self> {
+        let unit = common_exponent(p.as_flattened().iter().chain(q.as_flattened()));
+        let vector = |to: V3, from: V3| difference(to, from, unit);
+        let (d, e, r) = (vector(p[1], p[0]), vector(q[1], q[0]), vector(q[0], p[0]));
+        let normal = cross(&d, &e);
+        let square = dot(&normal, &normal);
+        let is_inside = |x: IBig| sign(&x).is_gt() && x < square;
+        if !(is_inside(dot(&cross(&r, &e), &normal)) && is_inside(dot(&cross(&r, &d), &normal))) {
+            return None;
+        }
+        let height = dot(&r, &normal);
+        Some(Self { fraction: Fraction { numerator: &height * &height, denominator: square }, unit })
+    }
+
     /// Computes the square of a length.
     pub(super) fn from_length(x: f64) -> Self {
         let unit = common_exponent([&x]);

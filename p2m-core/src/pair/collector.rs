@@ -16,6 +16,9 @@ pub struct PairOptions<T: Real> {
     /// The motion of the second scene. It is applied to each vertex in f64, and each coordinate is rounded: the answer
     /// is that of the scene of these vertices. `None`, the default, leaves the scene where it is.
     pub motion: Option<Isometry3<f64>>,
+    /// The radius around the shape or the second scene, in units of the scene: all points within this distance belong
+    /// to it, so a segment becomes a capsule. It is 0 by default. Nothing is near a shape with a negative radius, or NaN.
+    pub radius: T,
     /// A pair that is probably near, such as the answer for the last motion. It is evaluated first, so a good one saves
     /// most of the search; it never changes the answer. Ids that a scene does not have are ignored.
     pub hint: Option<[PrimitiveId; 2]>,
@@ -23,7 +26,7 @@ pub struct PairOptions<T: Real> {
 
 impl<T: Real> Default for PairOptions<T> {
     fn default() -> Self {
-        Self { max_distance: T::INFINITY, motion: None, hint: None }
+        Self { max_distance: T::INFINITY, motion: None, radius: T::zero(), hint: None }
     }
 }
 
@@ -38,6 +41,11 @@ impl<T: Real> PairOptions<T> {
     pub fn with_motion(self, motion: Isometry3<f64>) -> Self {
         Self { motion: Some(motion), ..self }
     }
+    /// Sets the radius around the shape or the second scene.
+    #[must_use]
+    pub fn with_radius(self, radius: T) -> Self {
+        Self { radius, ..self }
+    }
     /// Sets a pair that is probably near.
     #[must_use]
     pub fn with_hint(self, hint: [PrimitiveId; 2]) -> Self {
@@ -50,9 +58,11 @@ impl<T: Real> PairOptions<T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ClosestPair<T: Real> {
-    /// The nearest points, that of the second scene after its motion.
+    /// The nearest points, that of the second scene after its motion. With a radius the second one is moved towards the
+    /// first by the radius, or is the first one if the scenes intersect.
     pub points: [Point3<T>; 2],
-    /// The distance of the scenes, which is 0 if they intersect.
+    /// The distance of the scenes, which is 0 if they intersect. With a radius it is the distance of the primitives less
+    /// the radius, rounded.
     pub distance: T,
     /// A certified lower bound on the true distance, for the second scene as its motion has rounded it
     /// ([`Motion`](super::Motion)).
@@ -64,51 +74,94 @@ pub struct ClosestPair<T: Real> {
     pub features: [Feature; 2],
     /// The weights of the vertices of each primitive.
     pub barycentric: [[T; 3]; 2],
-    /// Whether the two primitives intersect, which is exact. If no two primitives do, it is false.
+    /// Whether the two primitives intersect, which is exact. If no two primitives do, it is false. With a radius it is
+    /// whether the computed distance of the primitives is at most the radius.
     pub is_intersecting: bool,
 }
 
 /// Receives the pairs that a search finds, and decides what it may leave out.
 pub struct Pairs<'a> {
-    /// The largest f64 distance that is reported within the largest one.
+    /// The largest f64 distance of primitives that is reported within the largest one.
+    reach: f64,
+    /// The radius around the second scene.
     radius: f64,
     /// The square that lower bounds must not exceed.
     prune: f64,
     mode: Mode<'a>,
-    /// Whether nothing can be within the radius.
+    /// Whether nothing can be within reach.
     is_empty: bool,
     /// Whether the visitor ended the search.
     has_ended: bool,
 }
 
+/// Pairs with the ids of their primitives.
+type Found = Vec<([PrimitiveId; 2], NearestPair)>;
+
 enum Mode<'a> {
     /// The nearest pair so far, and the smallest certified bound of all.
     Nearest { best: Option<([PrimitiveId; 2], NearestPair)>, certified: f64 },
-    /// All pairs within the radius.
+    /// All pairs within reach.
     Each(&'a mut dyn FnMut([PrimitiveId; 2], &NearestPair) -> ControlFlow<()>),
+    /// All pairs that may be nearest once the errors of the kernel are allowed for. The true distance of some pair is at
+    /// most `upper_bound`.
+    Certification { upper_bound: f64, best: Option<([PrimitiveId; 2], NearestPair)>, found: Found },
 }
 
 impl<'a> Pairs<'a> {
-    fn new<T: Real>(radius: T, mode: Mode<'a>) -> Self {
-        let radius = radius.to_f64_above();
-        // Nothing is within NaN.
-        let is_empty = radius.is_nan() || radius < 0.0;
-        Self { radius, prune: square_within(radius), mode, is_empty, has_ended: false }
+    fn new<T: Real>(options: &PairOptions<T>, mode: Mode<'a>) -> Self {
+        let (largest, radius) = (options.max_distance.to_f64(), options.radius.to_f64());
+        let reach = if radius > 0.0 { largest + radius } else { options.max_distance.to_f64_above() };
+        // Nothing is within NaN or below 0.
+        let is_valid = largest >= 0.0 && radius >= 0.0;
+        Self { reach, radius, prune: square_within(reach), mode, is_empty: !is_valid, has_ended: false }
     }
 
-    /// Creates the collector of the nearest pair within a distance.
+    /// Creates the collector of the nearest pair within the largest distance of the options.
     #[must_use]
-    pub fn nearest<T: Real>(max_distance: T) -> Self {
-        Self::new(max_distance, Mode::Nearest { best: None, certified: f64::INFINITY })
+    pub fn nearest<T: Real>(options: &PairOptions<T>) -> Self {
+        Self::new(options, Mode::Nearest { best: None, certified: f64::INFINITY })
     }
 
-    /// Creates the collector that calls a function for each pair within a distance until it breaks.
+    /// Creates the collector that calls a function for each pair within the largest distance of the options until it
+    /// breaks.
     #[must_use]
     pub fn each<T: Real>(
-        max_distance: T,
+        options: &PairOptions<T>,
         visit: &'a mut dyn FnMut([PrimitiveId; 2], &NearestPair) -> ControlFlow<()>,
     ) -> Self {
-        Self::new(max_distance, Mode::Each(visit))
+        Self::new(options, Mode::Each(visit))
+    }
+
+    /// Creates a collector of all pairs that may be nearest, if the nearest one is within the largest distance of the
+    /// options, to which the radius is not added.
+    pub(crate) fn for_certification<T: Real>(options: &PairOptions<T>) -> Self {
+        let options = PairOptions { radius: T::zero(), ..*options };
+        let upper_bound = options.max_distance.to_f64_above();
+        Self::new(&options, Mode::Certification { upper_bound, best: None, found: Vec::new() })
+    }
+
+    /// Returns the pairs that may be nearest, each once, from a collector [for certification](Self::for_certification).
+    pub(crate) fn certification_candidates(self) -> Found {
+        let Mode::Certification { upper_bound, mut found, .. } = self.mode else { return Vec::new() };
+        found.retain(|(_, pair)| lower_bound(pair) <= upper_bound);
+        found.sort_unstable_by_key(|(ids, _)| *ids);
+        found.dedup_by_key(|(ids, _)| *ids);
+        found
+    }
+
+    /// Returns the nearest pair so far.
+    fn best(&self) -> Option<&([PrimitiveId; 2], NearestPair)> {
+        match &self.mode {
+            Mode::Nearest { best, .. } | Mode::Certification { best, .. } => best.as_ref(),
+            Mode::Each(_) => None,
+        }
+    }
+
+    /// Returns the square above which the kernel need not evaluate a pair that no bound excludes. Rounding may let a key
+    /// exceed a limit that the true distance does not, so all such pairs are evaluated for certified answers.
+    #[inline]
+    pub(crate) fn kernel_limit(&self) -> f64 {
+        if matches!(self.mode, Mode::Certification { .. }) { f64::INFINITY } else { self.prune }
     }
 
     /// Returns the square above which a lower bound excludes a pair.
@@ -135,17 +188,14 @@ impl<'a> Pairs<'a> {
     #[doc(hidden)]
     #[must_use]
     pub fn is_nearest(&self) -> bool {
-        matches!(self.mode, Mode::Nearest { .. })
+        !matches!(self.mode, Mode::Each(_))
     }
 
     /// Returns the vector from the nearest point of the first scene to that of the second, for the nearest pair so far.
     #[doc(hidden)]
     #[must_use]
     pub fn separation(&self) -> Option<[f64; 3]> {
-        match &self.mode {
-            Mode::Nearest { best: Some((_, pair)), .. } => Some((pair.points[1] - pair.points[0]).into()),
-            _ => None,
-        }
+        self.best().map(|(_, pair)| (pair.points[1] - pair.points[0]).into())
     }
 
     /// Returns whether a pair of these primitives could still change the answer. It could not if a pair with lower ids
@@ -153,8 +203,7 @@ impl<'a> Pairs<'a> {
     #[inline]
     #[must_use]
     pub fn can_change(&self, ids: [PrimitiveId; 2]) -> bool {
-        let Mode::Nearest { best: Some((others, pair)), .. } = &self.mode else { return true };
-        !(pair.is_intersecting && *others < ids)
+        !self.best().is_some_and(|(others, pair)| pair.is_intersecting && *others < ids)
     }
 
     /// Takes the result of the kernel for a pair of primitives.
@@ -162,7 +211,7 @@ impl<'a> Pairs<'a> {
         match (result, &mut self.mode) {
             (Ok(pair), _) => self.offer(ids, &pair),
             (Err(bound), Mode::Nearest { certified, .. }) => *certified = certified.min(bound),
-            (Err(_), Mode::Each(_)) => {}
+            (Err(_), Mode::Each(_) | Mode::Certification { .. }) => {}
         }
     }
 
@@ -174,34 +223,64 @@ impl<'a> Pairs<'a> {
                 // A distance beyond the range of f64 is at least the largest number.
                 *certified = certified.min(distance.min(f64::MAX) - pair.error);
                 let is_better = best.as_ref().is_none_or(|(others, other)| (pair.key, ids) < (other.key, *others));
-                if is_better && distance <= self.radius {
+                if is_better && distance <= self.reach {
                     *best = Some((ids, *pair));
                     self.prune = self.prune.min(pair.key.square_above());
                 }
             }
             Mode::Each(visit) => {
-                if distance <= self.radius {
+                if distance <= self.reach {
                     self.has_ended |= visit(ids, pair).is_break();
+                }
+            }
+            Mode::Certification { upper_bound, best, found } => {
+                if best.as_ref().is_none_or(|(others, other)| (pair.key, ids) < (other.key, *others)) {
+                    *best = Some((ids, *pair));
+                }
+                if lower_bound(pair) <= *upper_bound {
+                    found.push((ids, *pair));
+                }
+                // The sum is rounded up, with a smallest subnormal for the rounding of the distance. The comparison is
+                // false for NaN.
+                let at_most = (distance + pair.error) * (1.0 + 4.0 * f64::EPSILON) + 8.0 * f64::from_bits(1);
+                if at_most < *upper_bound {
+                    *upper_bound = at_most;
+                    self.prune = self.prune.min(square_within(at_most));
                 }
             }
         }
     }
 
-    /// Returns the nearest pair, or `None` if there was none within the radius.
+    /// Returns the nearest pair, or `None` if there was none within reach.
     #[must_use]
     pub fn finish<T: Real>(self) -> Option<ClosestPair<T>> {
         let Mode::Nearest { best: Some((primitives, pair)), certified } = self.mode else { return None };
+        let between = pair.key.distance();
         // What was pruned is farther than the best pair, whose square is exact to 5 u.
         let bound =
-            certified.min(pair.key.distance().min(f64::MAX) * ROUND_DOWN) * ROUND_DOWN - 8.0 * f64::from_bits(1);
+            certified.min(between.min(f64::MAX) * ROUND_DOWN) * ROUND_DOWN - 8.0 * f64::from_bits(1) - self.radius;
+        let [on_first, on_second] = pair.points;
+        let on_second = if self.radius == 0.0 {
+            on_second
+        } else if between <= self.radius {
+            on_first
+        } else {
+            on_second + (on_first - on_second) * (self.radius / between)
+        };
         Some(ClosestPair {
-            points: pair.points.map(|point| from_f64_array(point.coords.into())),
-            distance: T::round_from_f64(pair.key.distance()),
-            lower_bound: if bound > 0.0 { T::round_down_from_f64(bound) } else { T::zero() },
+            points: [on_first, on_second].map(|point| from_f64_array(point.coords.into())),
+            distance: T::round_from_f64((between - self.radius).max(0.0)),
+            lower_bound: if bound > 0.0 { T::round_down_from_f64(bound.next_down()) } else { T::zero() },
             primitives,
             features: pair.features,
             barycentric: pair.barycentric.map(|weights| weights.map(T::round_from_f64)),
-            is_intersecting: pair.is_intersecting,
+            is_intersecting: pair.is_intersecting || (self.radius > 0.0 && between <= self.radius),
         })
     }
+}
+
+/// Returns a lower bound on the true distance of a pair.
+fn lower_bound(pair: &NearestPair) -> f64 {
+    // A distance beyond the range of f64 is at least the largest number.
+    pair.key.distance().min(f64::MAX) * ROUND_DOWN - pair.error - 8.0 * f64::from_bits(1)
 }

@@ -19,11 +19,14 @@
 //!
 //! [`Aabb::gap_squared`]: crate::Aabb::gap_squared
 
+mod batch;
 mod collector;
 mod edges;
 mod intersection;
 mod motion;
 mod query;
+#[doc(hidden)]
+pub mod search;
 #[cfg(test)]
 mod tests;
 
@@ -32,13 +35,13 @@ use crate::kernel::{Key, SQRT_3_U};
 use crate::primitive::{Feature, Primitive, Projection};
 use crate::query::answer::ROUND_DOWN;
 use crate::{Aabb, Real};
+pub use batch::{closest_pair_at_each, closest_to_each};
 pub use collector::{ClosestPair, PairOptions, Pairs};
 use edges::nearest_on_edges;
 pub use intersection::do_intersect;
 pub use motion::Motion;
 use nalgebra::Point3;
-pub(crate) use query::offer_of_set;
-pub use query::{PairQuery, hull_of, offer_all_pairs, offer_hint_of_set};
+pub use query::{PairQuery, hull_of};
 
 /// The bound on the error of the distance between two primitives in units of u M, where M is the largest distance
 /// between a vertex of one and a vertex of the other: |computed - true| <= `ERROR_CONSTANT_OF_PAIRS` u M + 4 eta.

@@ -55,6 +55,13 @@ impl Motion {
         self.translation.into()
     }
 
+    /// Returns the point that is moved to `point`, rounded.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn undo(&self, point: V3) -> V3 {
+        self.turn_back((Vector3::from(point) - self.translation).into())
+    }
+
     /// Returns a box around the moved vertices of a box, as [`apply`](Self::apply) rounds them.
     #[must_use]
     pub fn apply_to_box(&self, bounds: &Aabb<f64>) -> Aabb<f64> {

@@ -1,8 +1,8 @@
 //! Heights: upper bounds on the contents of nodes along a direction.
 
-use crate::tree::wide_node::WideNode;
-use p2m_core::engine::simd::Lanes;
-use p2m_core::engine::vector::power_of_two;
+use super::side::WIDTH;
+use crate::kernel::vector::power_of_two;
+use crate::simd::Lanes;
 
 /// The part of the sum of all factors that is added as slack. Coordinates of a frame are at most 4, and there are at
 /// most four roundings of 2^-24 of each term.
@@ -17,7 +17,7 @@ pub struct Height {
     rows: [usize; 3],
     factors: [f32; 3],
     /// The sum may be too small by at most this.
-    pub(crate) slack: f32,
+    pub slack: f32,
 }
 
 impl Height {
@@ -36,9 +36,10 @@ impl Height {
         }
     }
 
-    /// Returns the heights of the eight children of a node; those of unused slots are negative and infinite.
+    /// Returns the heights of the eight children of a node, given by its rows; those of unused slots are negative and
+    /// infinite if their bounds are those of the empty set.
     #[inline(always)]
-    pub(crate) fn of_children<L: Lanes>(&self, node: &impl WideNode) -> L {
+    pub fn of_children<L: Lanes, N: Rows>(&self, node: &N) -> L {
         // There is no closure here, because one would be compiled without the instruction set.
         let [x, y, z] = self.factors;
         let sum = L::load(node.row(self.rows[0])).mul(L::splat(x));
@@ -48,8 +49,14 @@ impl Height {
 
     /// Returns the height of the child in a slot, with slack.
     #[inline(always)]
-    pub(crate) fn of_child(&self, node: &impl WideNode, slot: usize) -> f64 {
+    pub fn of_child<N: Rows>(&self, node: &N, slot: usize) -> f64 {
         let term = |i: usize| f64::from(node.row(self.rows[i])[slot]) * f64::from(self.factors[i]);
         term(0) + term(1) + term(2) + f64::from(self.slack)
     }
+}
+
+/// The rows of numbers that bound the children of a node.
+pub trait Rows {
+    /// Returns a row.
+    fn row(&self, number: usize) -> &[f32; WIDTH];
 }

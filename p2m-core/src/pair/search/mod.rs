@@ -24,58 +24,20 @@
 //! boxes with a margin above all roundings.
 
 mod directions;
+mod height;
 mod hulls;
 mod side;
 mod support;
 
-use crate::tree::node_ref::{NodeRef, WIDTH};
-use directions::{Directions, Slab};
-use hulls::{Hulls, search_packets};
-use p2m_core::pair::Pairs;
-pub(crate) use side::ShapeSide;
-pub use side::{PairSide, TreeSide};
+use super::Pairs;
+use directions::Directions;
+pub use directions::{ChildBounds, Slab, bound_children};
+pub use height::{Height, Rows};
+pub use hulls::Hulls;
+use hulls::search_packets;
+pub(super) use side::ShapeSide;
+pub use side::{Children, NO_NODE, PairSide, Place, Placement, WIDTH};
 use support::Supports;
-
-/// A node or packet, with the place where its bounds are: a slot of its parent.
-#[derive(Clone, Copy, Debug)]
-pub struct Place {
-    pub(crate) node: NodeRef,
-    /// The number of the parent; [`Place::NO_PARENT`] for the root.
-    pub(crate) parent: u32,
-    pub(crate) slot: u8,
-    /// The sum of the sides of its box, in coordinates of the scene, rounded.
-    pub(crate) size: f32,
-}
-
-impl Place {
-    pub(crate) const NO_PARENT: u32 = u32::MAX;
-
-    pub(crate) fn root(node: NodeRef) -> Self {
-        Self { node, parent: Self::NO_PARENT, slot: 0, size: f32::INFINITY }
-    }
-}
-
-/// Bounds on the distances of the eight children of a node from something.
-#[derive(Clone, Copy, Debug)]
-pub struct Children {
-    /// Squares of lower bounds, in coordinates of the scene; infinite for what is farther than the limit.
-    pub(crate) squares: [f64; WIDTH],
-    /// The widest gap in any direction, by which children are ordered. It is negative for what overlaps.
-    pub(crate) gaps: [f32; WIDTH],
-    /// The sums of the sides of the boxes, in coordinates of the scene.
-    pub(crate) sizes: [f32; WIDTH],
-    pub(crate) nodes: [NodeRef; WIDTH],
-}
-
-impl Children {
-    /// No children.
-    pub(crate) const NONE: Self = Self {
-        squares: [f64::INFINITY; WIDTH],
-        gaps: [f32::INFINITY; WIDTH],
-        sizes: [0.0; WIDTH],
-        nodes: [NodeRef::NONE; WIDTH],
-    };
-}
 
 /// Two nodes that may contain a near pair.
 #[derive(Clone, Copy)]
@@ -94,13 +56,13 @@ struct Search<'a, 'p, 'v> {
     supports: Supports,
     pending: Vec<NodePair>,
     /// The side and the node for which `slabs` were computed.
-    fixed: Option<(usize, NodeRef)>,
+    fixed: Option<(usize, u32)>,
     slabs: Vec<Slab>,
     pairs: &'p mut Pairs<'v>,
 }
 
 /// Offers every pair of primitives that may be near.
-pub(crate) fn search_pairs(a: &dyn PairSide, b: &dyn PairSide, pairs: &mut Pairs<'_>) {
+pub fn search_pairs(a: &dyn PairSide, b: &dyn PairSide, pairs: &mut Pairs<'_>) {
     let (Some(root_a), Some(root_b)) = (a.root(), b.root()) else { return };
     let sides = [a, b];
     let directions = Directions::new(sides);
@@ -120,7 +82,7 @@ impl Search<'_, '_, '_> {
             if self.pairs.is_done() {
                 return;
             }
-            match places.map(|place| place.node.is_packet()) {
+            match [0, 1].map(|i| self.sides[i].is_packet(places[i].node)) {
                 [true, true] => {
                     let least = [0, 1].map(|i| self.sides[i].first_id(places[i].node));
                     if !self.pairs.can_change(least) {
@@ -163,10 +125,10 @@ impl Search<'_, '_, '_> {
         for slot in 0..WIDTH {
             let square = children.squares[slot];
             // The comparison is false for unused slots.
-            if square > prune || children.nodes[slot] == NodeRef::NONE {
+            if square > prune || children.nodes[slot] == NO_NODE {
                 continue;
             }
-            let parent = u32::try_from(places[side].node.number()).expect("a number of 32 bits");
+            let parent = places[side].node;
             #[allow(clippy::cast_possible_truncation, reason = "below eight")]
             let child = Place { node: children.nodes[slot], parent, slot: slot as u8, size: children.sizes[slot] };
             let mut pair = NodePair { square, gap: children.gaps[slot], places };

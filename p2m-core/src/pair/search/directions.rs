@@ -1,13 +1,9 @@
 //! The directions in which a search compares two nodes.
 
-use super::side::PairSide;
-use super::{Children, Place};
-use crate::tree::PacketTree;
-use crate::tree::height::Height;
-use crate::tree::node_ref::{NodeRef, WIDTH};
-use crate::tree::wide_node::{VolumeNodes, WideNode};
-use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
-use p2m_core::engine::vector::{V3, dot, power_of_two};
+use super::height::{Height, Rows};
+use super::side::{PairSide, Place};
+use crate::kernel::vector::{V3, dot, power_of_two};
+use crate::simd::Lanes;
 
 /// A frame resolves what is at most this many units away from its centre.
 const MAX_UNITS: f64 = power_of_two(10);
@@ -104,60 +100,46 @@ impl Directions {
     }
 }
 
-/// Bounds the distances of the children of a node from what is in some slabs.
-pub(super) struct Cut<'a, V: VolumeNodes> {
-    pub(super) tree: &'a PacketTree<V>,
-    pub(super) node: NodeRef,
-    pub(super) slabs: &'a [Slab],
-    pub(super) triples: usize,
+/// Bounds on the distances of the eight children of a node from what is in some slabs, in units of its frame.
+#[derive(Clone, Copy)]
+pub struct ChildBounds<L> {
+    /// Squares of lower bounds.
+    pub squares: L,
+    /// The widest gaps in any direction, negative for what overlaps.
+    pub gaps: L,
+    /// The sums of the widths along the first three directions.
+    pub sizes: L,
 }
 
-impl<V: VolumeNodes> SimdKernel for Cut<'_, V> {
-    type Output = Children;
-
-    #[inline(always)]
-    fn run<I: InstructionSet>(self) -> Children {
-        let node = &self.tree.nodes[self.node.number()];
-        let zero = I::Eight::splat(0.0);
-        let mut best = zero;
-        let mut widest = I::Eight::splat(f32::NEG_INFINITY);
-        let (mut size, mut sum) = (zero, zero);
-        let mut i = 0;
-        while i < self.slabs.len() {
-            let (gap, width) = self.slabs[i].gap_and_width::<I::Eight>(node);
-            widest = gap.max(widest);
-            let gap = gap.max(zero);
-            if i < 3 {
-                size = size.add(width);
-            }
-            // The gaps in orthogonal directions add up.
-            sum = if i % 3 == 0 || i >= 3 * self.triples { gap.mul(gap) } else { gap.mul_add(gap, sum) };
-            best = sum.max(best);
-            i += 1;
+/// Bounds the distances of the children of a node from what is in some slabs, of which the given number of leading
+/// triples are orthogonal.
+#[inline(always)]
+pub fn bound_children<L: Lanes, N: Rows>(node: &N, slabs: &[Slab], triples: usize) -> ChildBounds<L> {
+    let zero = L::splat(0.0);
+    let mut bounds = ChildBounds { squares: zero, gaps: L::splat(f32::NEG_INFINITY), sizes: zero };
+    let mut sum = zero;
+    let mut i = 0;
+    while i < slabs.len() {
+        let (gap, width) = slabs[i].gap_and_width::<L, N>(node);
+        bounds.gaps = gap.max(bounds.gaps);
+        let gap = gap.max(zero);
+        if i < 3 {
+            bounds.sizes = bounds.sizes.add(width);
         }
-        let (mut squares, mut gaps, mut sizes) = ([0.0f32; WIDTH], [0.0f32; WIDTH], [0.0f32; WIDTH]);
-        best.store(&mut squares);
-        widest.store(&mut gaps);
-        size.store(&mut sizes);
-        let frame = &self.tree.frame;
-        #[allow(clippy::cast_possible_truncation, reason = "sizes and gaps only order pairs")]
-        let unit = frame.unit as f32;
-        let mut children = Children { nodes: *node.children(), ..Children::NONE };
-        for slot in 0..WIDTH {
-            children.squares[slot] = frame.square_below(squares[slot]);
-            children.gaps[slot] = gaps[slot] * unit;
-            children.sizes[slot] = sizes[slot] * unit;
-        }
-        children
+        // The gaps in orthogonal directions add up.
+        sum = if i % 3 == 0 || i >= 3 * triples { gap.mul(gap) } else { gap.mul_add(gap, sum) };
+        bounds.squares = sum.max(bounds.squares);
+        i += 1;
     }
+    bounds
 }
 
 impl Slab {
     /// Returns the gaps between the slab and the children of a node, negative where they overlap, and the widths of the
     /// children.
     #[inline(always)]
-    fn gap_and_width<L: Lanes>(&self, node: &impl WideNode) -> (L, L) {
-        let (above, below) = (self.heights[0].of_children::<L>(node), self.heights[1].of_children::<L>(node));
+    fn gap_and_width<L: Lanes, N: Rows>(&self, node: &N) -> (L, L) {
+        let (above, below) = (self.heights[0].of_children::<L, N>(node), self.heights[1].of_children::<L, N>(node));
         let gap = L::splat(self.low).sub(above).max(L::splat(0.0).sub(below).sub(L::splat(self.high)));
         (gap, above.add(below))
     }

@@ -1,18 +1,20 @@
 //! The primitives of a packet as hulls, and the pairs of those of two packets.
 
 use super::directions::unit;
+use super::side::NO_NODE;
 use super::support::Supports;
-use crate::packet::LANES;
-use crate::tree::node_ref::NodeRef;
-use p2m_core::engine::arithmetic::cross;
-use p2m_core::engine::vector::{V3, dot, sub};
-use p2m_core::pair::{Pairs, bounds_of, nearest_of_hulls};
-use p2m_core::{Aabb, PrimitiveId};
+use crate::kernel::arithmetic::cross;
+use crate::kernel::vector::{V3, dot, sub};
+use crate::pair::{Pairs, bounds_of, nearest_of_hulls};
+use crate::{Aabb, PrimitiveId};
+
+/// The largest number of primitives of a packet.
+const LANES: usize = 16;
 
 /// The primitives of a packet, as hulls of vertices.
 pub struct Hulls {
     /// The packet that is loaded.
-    pub(super) packet: NodeRef,
+    pub(super) packet: u32,
     len: usize,
     /// The number of vertices of each hull.
     vertex_counts: [usize; LANES],
@@ -26,7 +28,7 @@ pub struct Hulls {
 impl Hulls {
     pub(super) fn new() -> Self {
         Self {
-            packet: NodeRef::NONE,
+            packet: NO_NODE,
             len: 0,
             vertex_counts: [0; LANES],
             vertices: [[[0.0; 3]; 3]; LANES],
@@ -37,12 +39,12 @@ impl Hulls {
     }
 
     /// Forgets the primitives of the last packet.
-    pub(super) fn start(&mut self, packet: NodeRef) {
+    pub fn start(&mut self, packet: u32) {
         (self.packet, self.len) = (packet, 0);
     }
 
     /// Adds a primitive.
-    pub(super) fn push(&mut self, id: PrimitiveId, vertices: &[V3]) {
+    pub fn push(&mut self, id: PrimitiveId, vertices: &[V3]) {
         let i = self.len;
         self.vertices[i][..vertices.len()].copy_from_slice(vertices);
         (self.vertex_counts[i], self.boxes[i], self.ids[i]) = (vertices.len(), bounds_of(vertices), id);
@@ -82,7 +84,7 @@ pub(super) fn search_packets(a: &Hulls, b: &Hulls, supports: &Supports, pairs: &
         if supports.margin.is_some_and(|margin| is_apart(a, i, b, j, supports.direction, prune.sqrt() + margin)) {
             return;
         }
-        pairs.offer_result(ids, nearest_of_hulls(a.hull(i), b.hull(j), prune));
+        pairs.offer_result(ids, nearest_of_hulls(a.hull(i), b.hull(j), pairs.kernel_limit()));
     };
     // Two vertices that are nearer than the best pair belong to a pair that is nearer. It is offered first, so that
     // others are excluded.

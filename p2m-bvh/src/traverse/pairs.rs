@@ -1,0 +1,212 @@
+//! Trees as sides of a search for pairs.
+
+use crate::tree::PacketTree;
+use crate::tree::node_ref::NodeRef;
+use crate::tree::wide_node::{VolumeNodes, WideNode};
+use p2m_core::engine::pairs::{
+    Children, Height, Hulls, NO_NODE, PairSide, Place, Placement, Slab, WIDTH, bound_children,
+};
+use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
+use p2m_core::engine::vector::{V3, dot};
+use p2m_core::pair::Motion;
+use p2m_core::{Aabb, PrimitiveId};
+
+/// A tree, which may have moved.
+pub struct TreeSide<'a, V: VolumeNodes> {
+    tree: &'a PacketTree<V>,
+    motion: Option<Motion>,
+    /// A node with the root in its first slot.
+    above_root: V::Node,
+}
+
+impl<'a, V: VolumeNodes> TreeSide<'a, V> {
+    /// Makes a side of a tree.
+    pub fn new(tree: &'a PacketTree<V>, motion: Option<Motion>) -> Self {
+        let mut above_root = V::Node::new([NodeRef::NONE; WIDTH]);
+        above_root.set_bounds(0, &tree.root_bounds);
+        Self { tree, motion, above_root }
+    }
+
+    fn parent(&self, place: &Place) -> &V::Node {
+        if place.parent == NO_NODE { &self.above_root } else { &self.tree.nodes[NodeRef(place.parent).number()] }
+    }
+
+    /// Converts a direction of the scene to that of the tree before its motion.
+    fn turned_back(&self, direction: &V3) -> V3 {
+        self.motion.map_or(*direction, |motion| motion.turn_back(*direction))
+    }
+
+    /// Returns the height of the origin of the coordinates of the tree.
+    fn shift(&self, direction: &V3) -> f64 {
+        self.motion.map_or(0.0, |motion| dot(motion.translation(), *direction))
+    }
+
+    fn moved_box(&self, bounds: &Aabb<f64>) -> Aabb<f64> {
+        self.motion.map_or(*bounds, |motion| motion.apply_to_box(bounds))
+    }
+}
+
+impl<V: VolumeNodes> PairSide for TreeSide<'_, V> {
+    fn root(&self) -> Option<Place> {
+        (self.tree.root != NodeRef::NONE).then_some(Place::root(self.tree.root.0))
+    }
+
+    fn is_packet(&self, node: u32) -> bool {
+        NodeRef(node).is_packet()
+    }
+
+    fn bounds(&self) -> Aabb<f64> {
+        self.moved_box(&self.tree.bounds)
+    }
+
+    fn placement(&self) -> Placement {
+        let frame = &self.tree.frame;
+        let centre = self.motion.map_or(frame.centre, |motion| motion.apply(frame.centre));
+        Placement { centre, unit: frame.unit, is_plain: frame.is_plain(), is_tree: true }
+    }
+
+    fn directions(&self) -> Vec<V3> {
+        self.motion.map_or(Vec::new(), |motion| {
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| motion.turn(axis)).into()
+        })
+    }
+
+    fn height(&self, direction: &V3) -> Height {
+        V::Node::height(&self.tree.shared, &self.turned_back(direction))
+    }
+
+    fn extent(&self, place: &Place, _: &V3, offset: f64, heights: &[Height; 2]) -> [f64; 2] {
+        let node = self.parent(place);
+        let [above, below] = [0, 1].map(|i| heights[i].of_child(node, usize::from(place.slot)) * self.tree.frame.unit);
+        [offset - below, offset + above]
+    }
+
+    fn support(&self, node: u32, direction: &V3) -> f64 {
+        let local = self.turned_back(direction);
+        support(self.tree, NodeRef(node), &local) + self.shift(direction)
+    }
+
+    fn cut(&self, node: u32, slabs: &[Slab], triples: usize) -> Children {
+        self.tree.isa.run(Cut { tree: self.tree, node: NodeRef(node), slabs, triples })
+    }
+
+    fn cut_by_box(&self, node: u32, bounds: &Aabb<f64>) -> Children {
+        let wide = &self.tree.nodes[NodeRef(node).number()];
+        let mut children = Children { nodes: wide.children().map(|child| child.0), ..Children::NONE };
+        for slot in wide.used_slots() {
+            let child = self.moved_box(&self.tree.child_box(wide, slot));
+            children.squares[slot] = child.gap_squared(bounds);
+            #[allow(clippy::cast_possible_truncation, reason = "gaps and sizes only order pairs")]
+            {
+                children.gaps[slot] = children.squares[slot].sqrt() as f32;
+                children.sizes[slot] = (child.max - child.min).sum() as f32;
+            }
+        }
+        children
+    }
+
+    fn box_of(&self, place: &Place) -> Aabb<f64> {
+        if place.parent == NO_NODE {
+            return self.bounds();
+        }
+        self.moved_box(&self.tree.child_box(self.parent(place), usize::from(place.slot)))
+    }
+
+    fn first_id(&self, packet: u32) -> PrimitiveId {
+        self.tree.leaves.packets[NodeRef(packet).number()].ids().iter().copied().min().expect("a packet has primitives")
+    }
+
+    fn load(&self, number: u32, hulls: &mut Hulls) {
+        let leaves = &self.tree.leaves;
+        let packet = &leaves.packets[NodeRef(number).number()];
+        hulls.start(number);
+        for (lane, id) in packet.ids().iter().enumerate() {
+            let (indices, count) = packet.vertices_of(lane);
+            assert!(count > 0, "distances between primitives are defined for those that have vertices");
+            let moved = |index: usize| self.motion.map_or(leaves.vertices[index], |m| m.apply(leaves.vertices[index]));
+            hulls.push(*id, &indices.map(moved)[..count]);
+        }
+    }
+}
+
+/// Bounds the distances of the children of a node from what is in some slabs.
+struct Cut<'a, V: VolumeNodes> {
+    tree: &'a PacketTree<V>,
+    node: NodeRef,
+    slabs: &'a [Slab],
+    triples: usize,
+}
+
+impl<V: VolumeNodes> SimdKernel for Cut<'_, V> {
+    type Output = Children;
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> Children {
+        let node = &self.tree.nodes[self.node.number()];
+        let bounds = bound_children::<I::Eight, _>(node, self.slabs, self.triples);
+        let (mut squares, mut gaps, mut sizes) = ([0.0f32; WIDTH], [0.0f32; WIDTH], [0.0f32; WIDTH]);
+        bounds.squares.store(&mut squares);
+        bounds.gaps.store(&mut gaps);
+        bounds.sizes.store(&mut sizes);
+        let frame = &self.tree.frame;
+        #[allow(clippy::cast_possible_truncation, reason = "sizes and gaps only order pairs")]
+        let unit = frame.unit as f32;
+        let mut children = Children::NONE;
+        for slot in 0..WIDTH {
+            children.squares[slot] = frame.square_below(squares[slot]);
+            children.gaps[slot] = gaps[slot] * unit;
+            children.sizes[slot] = sizes[slot] * unit;
+            children.nodes[slot] = node.children()[slot].0;
+        }
+        children
+    }
+}
+
+/// Returns the largest product of a vertex of a node and a direction, in coordinates of the tree.
+fn support<V: VolumeNodes>(tree: &PacketTree<V>, node: NodeRef, direction: &V3) -> f64 {
+    let height = V::Node::height(&tree.shared, direction);
+    tree.isa.run(Support { tree, node, direction: *direction, height })
+}
+
+struct Support<'a, V: VolumeNodes> {
+    tree: &'a PacketTree<V>,
+    node: NodeRef,
+    direction: V3,
+    height: Height,
+}
+
+impl<V: VolumeNodes> SimdKernel for Support<'_, V> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> f64 {
+        let Self { tree, node, direction, height } = self;
+        let offset = dot(direction, tree.frame.centre);
+        let mut pending = vec![(f64::INFINITY, node)];
+        let mut best = f64::NEG_INFINITY;
+        while let Some((bound, node)) = pending.pop() {
+            if bound <= best {
+                continue;
+            }
+            if node.is_packet() {
+                let [first, end] = [0, 1].map(|i| tree.leaves.vertex_offsets[node.number() + i] as usize);
+                for vertex in &tree.leaves.vertices[first..end] {
+                    best = dot(*vertex, direction).max(best);
+                }
+                continue;
+            }
+            let wide = &tree.nodes[node.number()];
+            let mut heights = [0.0f32; WIDTH];
+            height.of_children::<I::Eight, _>(wide).store(&mut heights);
+            let from = pending.len();
+            for (x, child) in heights.iter().zip(wide.children()) {
+                let bound = (f64::from(*x) + f64::from(height.slack)) * tree.frame.unit + offset;
+                if *child != NodeRef::NONE && bound > best {
+                    pending.push((bound, *child));
+                }
+            }
+            pending[from..].sort_unstable_by(|p, q| p.0.total_cmp(&q.0));
+        }
+        best
+    }
+}

@@ -1,0 +1,48 @@
+//! Which of some pairs of primitives is nearest in real arithmetic.
+
+use super::rational::Square;
+use crate::kernel::vector::V3;
+use crate::pair::NearestPair;
+use crate::{PrimitiveId, Real};
+
+/// A pair of primitives that may be nearest.
+pub(crate) struct PairCandidate {
+    /// The ids of the primitives.
+    pub(crate) ids: [PrimitiveId; 2],
+    /// The vertices of both, of which the first ones are used.
+    pub(crate) hulls: [([V3; 3], usize); 2],
+    /// The nearest points as the kernel computed them.
+    pub(crate) pair: NearestPair,
+}
+
+/// The nearest of some pairs.
+pub(crate) struct PairDecision {
+    /// The index of the nearest candidate; of exactly equal distances it is the one with the lowest ids.
+    pub(crate) winner: usize,
+    /// The true distance, rounded to the nearest f64.
+    pub(crate) distance: f64,
+    /// A lower bound on the true distance: `distance` or the f64 before it.
+    pub(crate) lower: f64,
+}
+
+/// Returns the nearest of some pairs, in any order; `None` if there is none, or if it is farther than the limit.
+///
+/// # Complexity
+/// It takes some ten microseconds for each pair that does not intersect, in big integers.
+pub(crate) fn decide_pairs<T: Real>(candidates: &[PairCandidate], limit: T) -> Option<PairDecision> {
+    let touching = candidates.iter().enumerate().filter(|(_, one)| one.pair.is_intersecting);
+    if let Some((winner, _)) = touching.min_by_key(|(_, one)| one.ids) {
+        return Some(PairDecision { winner, distance: 0.0, lower: 0.0 });
+    }
+    let square = |one: &PairCandidate| {
+        let [(a, a_len), (b, b_len)] = &one.hulls;
+        Square::between(&a[..*a_len], &b[..*b_len])
+    };
+    let all = candidates.iter().map(square).enumerate();
+    let (winner, least) = all.min_by(|(i, a), (j, b)| a.cmp(b).then(candidates[*i].ids.cmp(&candidates[*j].ids)))?;
+    if limit < T::INFINITY && least.cmp(&Square::from_length(limit.to_f64())).is_gt() {
+        return None;
+    }
+    let distance = least.distance();
+    Some(PairDecision { winner, distance: distance.nearest, lower: distance.lower })
+}

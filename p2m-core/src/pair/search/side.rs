@@ -1,0 +1,175 @@
+//! The two sides of a search for pairs: trees, which other crates implement, and single shapes.
+
+use super::directions::{Slab, unit};
+use super::height::Height;
+use super::hulls::Hulls;
+use crate::kernel::arithmetic::cross;
+use crate::kernel::vector::{V3, dot, sub};
+use crate::pair::bounds_of;
+use crate::{Aabb, PrimitiveId};
+
+/// The number of children of a node.
+pub const WIDTH: usize = 8;
+
+/// The number that stands for no node, which unused slots have.
+pub const NO_NODE: u32 = u32::MAX;
+
+/// A node or a packet of primitives, given by a number of its side, with the place where its bounds are.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// The number of the node.
+    pub node: u32,
+    /// The number of its parent; [`NO_NODE`] for the root.
+    pub parent: u32,
+    /// The slot of the parent.
+    pub slot: u8,
+    /// The sum of the sides of its box, rounded.
+    pub size: f32,
+}
+
+impl Place {
+    /// Makes the place of a root.
+    #[must_use]
+    pub fn root(node: u32) -> Self {
+        Self { node, parent: NO_NODE, slot: 0, size: f32::INFINITY }
+    }
+}
+
+/// The eight children of a node, with bounds on their distances from something.
+#[derive(Clone, Copy, Debug)]
+pub struct Children {
+    /// Squares of lower bounds on the distances.
+    pub squares: [f64; WIDTH],
+    /// The widest gap in any direction, by which children are ordered. It is negative for what overlaps.
+    pub gaps: [f32; WIDTH],
+    /// The sums of the sides of the boxes.
+    pub sizes: [f32; WIDTH],
+    /// The numbers of the children.
+    pub nodes: [u32; WIDTH],
+}
+
+impl Children {
+    /// No children.
+    pub const NONE: Self = Self {
+        squares: [f64::INFINITY; WIDTH],
+        gaps: [f32::INFINITY; WIDTH],
+        sizes: [0.0; WIDTH],
+        nodes: [NO_NODE; WIDTH],
+    };
+}
+
+/// One of the two sides of a search for pairs: a tree of nodes with eight children over packets of primitives. It is
+/// used as `dyn`, so that a search is compiled once. Lengths and heights are in units of the scene.
+pub trait PairSide {
+    /// Returns the root; `None` if there is nothing.
+    fn root(&self) -> Option<Place>;
+    /// Returns whether a node is a packet of primitives.
+    fn is_packet(&self, node: u32) -> bool;
+    /// Returns a box around everything.
+    fn bounds(&self) -> Aabb<f64>;
+    /// Returns where the frame of the nodes is in the scene.
+    fn placement(&self) -> Placement;
+    /// Returns directions of length 1 along which the contents of this side are often narrower than along the axes.
+    /// Those of a tree are three orthogonal ones.
+    fn directions(&self) -> Vec<V3>;
+    /// Converts a direction of the scene to the form in which heights of nodes along it are computed.
+    fn height(&self, direction: &V3) -> Height;
+    /// Returns the least and the largest height of a node along a direction, which is also given by the heights of it
+    /// and its opposite. `offset` is the height of the centre of the frame.
+    fn extent(&self, place: &Place, direction: &V3, offset: f64, heights: &[Height; 2]) -> [f64; 2];
+    /// Returns the largest height of a vertex of a node along a direction.
+    fn support(&self, node: u32, direction: &V3) -> f64;
+    /// Bounds the distances of the children of a node from what is in some slabs, of which the given number of leading
+    /// triples are orthogonal.
+    fn cut(&self, node: u32, slabs: &[Slab], triples: usize) -> Children;
+    /// Bounds the distances of the children of a node from a box.
+    fn cut_by_box(&self, node: u32, bounds: &Aabb<f64>) -> Children;
+    /// Returns a box around a node.
+    fn box_of(&self, place: &Place) -> Aabb<f64>;
+    /// Returns the least id of a packet.
+    fn first_id(&self, packet: u32) -> PrimitiveId;
+    /// Loads the primitives of a packet.
+    fn load(&self, packet: u32, hulls: &mut Hulls);
+}
+
+/// Where the frame of a tree is in the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Placement {
+    /// The origin of the frame.
+    pub centre: V3,
+    /// The unit of the frame.
+    pub unit: f64,
+    /// Whether squares of lengths are in range.
+    pub is_plain: bool,
+    /// Whether there is a frame. A shape has coordinates of the scene.
+    pub is_tree: bool,
+}
+
+/// A single shape of one to three vertices, which is a tree of one packet.
+pub(crate) struct ShapeSide<'a>(pub(crate) &'a [V3]);
+
+impl PairSide for ShapeSide<'_> {
+    fn root(&self) -> Option<Place> {
+        Some(Place { size: 0.0, ..Place::root(0) })
+    }
+
+    fn is_packet(&self, _: u32) -> bool {
+        true
+    }
+
+    fn bounds(&self) -> Aabb<f64> {
+        bounds_of(self.0)
+    }
+
+    fn placement(&self) -> Placement {
+        Placement { centre: [0.0; 3], unit: 1.0, is_plain: true, is_tree: false }
+    }
+
+    fn directions(&self) -> Vec<V3> {
+        let edges: Vec<V3> = match self.0 {
+            [a, b] => vec![sub(*b, *a)],
+            [a, b, c] => vec![sub(*b, *a), sub(*c, *b), sub(*a, *c)],
+            _ => Vec::new(),
+        };
+        let mut vectors: Vec<V3> =
+            edges.iter().flat_map(|[x, y, z]| [[0.0, *z, -y], [-z, 0.0, *x], [*y, -x, 0.0]]).collect();
+        if let [d, e, _] = edges[..] {
+            vectors.push(cross(d, e));
+        }
+        vectors.into_iter().filter_map(unit).collect()
+    }
+
+    fn height(&self, direction: &V3) -> Height {
+        Height::new(std::array::from_fn(|k| (k, direction[k])))
+    }
+
+    fn extent(&self, _: &Place, direction: &V3, _: f64, _: &[Height; 2]) -> [f64; 2] {
+        let heights = self.0.iter().map(|vertex| dot(*vertex, *direction));
+        heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+    }
+
+    fn support(&self, _: u32, direction: &V3) -> f64 {
+        self.0.iter().map(|vertex| dot(*vertex, *direction)).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    fn cut(&self, _: u32, _: &[Slab], _: usize) -> Children {
+        Children::NONE
+    }
+
+    fn cut_by_box(&self, _: u32, _: &Aabb<f64>) -> Children {
+        Children::NONE
+    }
+
+    fn box_of(&self, _: &Place) -> Aabb<f64> {
+        bounds_of(self.0)
+    }
+
+    fn first_id(&self, _: u32) -> PrimitiveId {
+        PrimitiveId::new(0)
+    }
+
+    fn load(&self, packet: u32, hulls: &mut Hulls) {
+        hulls.start(packet);
+        hulls.push(PrimitiveId::new(0), self.0);
+    }
+}
