@@ -23,6 +23,7 @@ mod collector;
 mod edges;
 mod intersection;
 mod motion;
+mod moving_ball;
 mod query;
 #[cfg(test)]
 mod tests;
@@ -36,6 +37,7 @@ pub use collector::{ClosestPair, PairOptions, Pairs};
 use edges::nearest_on_edges;
 pub use intersection::do_intersect;
 pub use motion::Motion;
+pub use moving_ball::{BallContact, MovingBall};
 use nalgebra::Point3;
 pub(crate) use query::offer_of_set;
 pub use query::{PairQuery, hull_of, offer_all_pairs, offer_hint_of_set};
