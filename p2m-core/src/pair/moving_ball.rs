@@ -17,7 +17,7 @@
 //! R, so this ends.
 //!
 //! Let s be the largest magnitude of a coordinate of the path. A component of the centre a (1 - t) + b t is computed
-//! with at most 4 u s + 2 eta of error, which is less than [`MovingBall::path_error`] = 8 u s + 4 eta for all three. The
+//! with at most 4 u s + 2 eta of error, so the centre is off by less than 8 u s + 4 eta. The
 //! certified bound is reduced by that.
 
 use super::{NearestPair, PairQuery, Pairs};

@@ -54,7 +54,7 @@ use p2m_core::{CertifiedQuery, CertifyError, ClosestPoint, PrimitiveId, Real, So
 use search::{Search, Side};
 use std::ops::ControlFlow;
 
-/// What an index needs in order to be the target of a Hausdorff distance. Every index of this project has it.
+/// The queries that a Hausdorff distance asks of an index. Every index of this project answers them.
 pub trait HausdorffIndex<T: Real>: ClosestPoint<T> + CertifiedQuery<T> + Sync {}
 
 impl<T: Real, I: ClosestPoint<T> + CertifiedQuery<T> + Sync + ?Sized> HausdorffIndex<T> for I {}

@@ -77,7 +77,7 @@ impl Ord for Piece {
     }
 }
 
-/// What is asked in order to improve the bound of a piece.
+/// A query that improves the bound of a piece.
 struct Step<T: Real> {
     piece: Piece,
     point: Point3<T>,

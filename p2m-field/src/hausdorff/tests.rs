@@ -3,7 +3,9 @@
 use super::*;
 use nalgebra::Vector3;
 use p2m_bvh::AabbTree;
-use p2m_core::{BruteForce, BuildIndex, Element, Primitive, PrimitiveSet, QueryOptions};
+use p2m_core::{
+    Aabb, BruteForce, BuildIndex, Element, Feature, Primitive, PrimitiveSet, Projection, QueryOptions, Ray, RayHit,
+};
 use p2m_testkit::scenes::{self, extreme_soups, kinds_and_layout, narrow};
 use p2m_testkit::{amount, cases, rng};
 use rand::RngExt;
@@ -265,6 +267,28 @@ fn empty_scenes_have_no_distance() {
         assert_eq!(both(a, b, &options), None);
         assert_eq!(one_sided(a, b, &options), None);
     }
+}
+
+/// A primitive without vertices: the point at the origin.
+struct Origin;
+
+impl Primitive<f64> for Origin {
+    fn aabb(&self) -> Aabb<f64> {
+        Aabb::from_points(&[Point3::origin()])
+    }
+    fn project(&self, query: &Point3<f64>) -> Projection {
+        Projection::new(query, Point3::origin(), Feature::Vertex(0), [1.0, 0.0, 0.0], 0.0)
+    }
+    fn intersect_ray(&self, _: &Ray) -> Option<RayHit> {
+        None
+    }
+}
+
+#[test]
+fn primitives_without_vertices_are_an_error() {
+    let index = BruteForce::new([Origin]).expect("valid");
+    let found = one_sided_hausdorff_distance(&cube(1.0), &index, &HausdorffOptions::new(0.1), &mut go_on);
+    assert_eq!(found, Err(CertifyError::NoVertices { id: PrimitiveId::new(0) }));
 }
 
 #[test]
