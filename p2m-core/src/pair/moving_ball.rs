@@ -40,7 +40,7 @@ use std::ops::ControlFlow;
 /// let ball = MovingBall::new(Point3::new(0.0, 0.0, 5.0), Point3::new(0.0, 0.0, -5.0), 1.0);
 /// let contact = ball.first_contact(&scene).expect("the ball falls through the floor");
 /// assert!(contact.parameter <= 0.4 && 0.4 - contact.parameter < 1e-12);
-/// assert_eq!(contact.point, Point3::new(0.0, 0.0, 0.0));
+/// assert!(contact.point.coords.norm() < 1e-12);
 /// assert!(MovingBall::new(Point3::new(0.0, 0.0, 5.0), Point3::new(9.0, 9.0, 5.0), 1.0).first_contact(&scene).is_none());
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```
