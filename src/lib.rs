@@ -47,6 +47,8 @@
 //! | the hits of a ray | [`RayQuery`] | trees and brute force |
 //! | the primitives that intersect a box | [`BoxQuery`] | trees and brute force |
 //! | the primitive nearest to a segment or a triangle, or whether one is near | [`pair::PairQuery`] | trees and brute force |
+//! | the first contact of a moving ball | [`pair::MovingBall`] | trees and brute force |
+//! | the Hausdorff distance of two scenes | `field::hausdorff_distance` | every index |
 //! | the nearest points of two scenes, one of which may move | [`bvh::TreeIndex::closest_pair`] | trees |
 //! | the cost of a query | [`Inspect`] | every index |
 //!
@@ -81,7 +83,7 @@
 //! | `serde` | [`Soup`] and indexes as values of serde, in the form of saved files | no |
 //! | `kdop` | [`KdopTree`] | yes |
 //! | `advisor` | `advisor`: which index a scene and its queries call for | no |
-//! | `field` | [`field`]: distances on grids, signs, winding numbers | yes |
+//! | `field` | [`field`]: distances on grids, signs, winding numbers, Hausdorff distances | yes |
 //! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `mixed` | [`scene`]: reading scenes and points from files | yes |
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -108,7 +110,7 @@ pub use p2m_core::{
     PrimitiveDefect, PrimitiveId, PrimitiveSet, Projection, QueryCost, QueryOptions, Ray, RayError, RayHit, RayQuery,
     Real, Segment, Shape, Side, Soup, Triangle, batch, check_primitive, storage,
 };
-/// Distance fields, and on which side of a surface a point is.
+/// Distance fields, on which side of a surface a point is, and Hausdorff distances.
 #[cfg(feature = "field")]
 pub use p2m_field as field;
 /// Everything else about interception indexes: partitions, locators, Delaunay tetrahedra.

@@ -15,6 +15,7 @@ mod distance;
 mod field;
 mod field_summary;
 mod generate;
+mod hausdorff;
 mod index_args;
 mod info;
 mod input;
@@ -31,6 +32,7 @@ mod query_args;
 mod ray;
 mod ray_summary;
 mod sampling;
+mod scene_pair;
 mod shell;
 mod sign_rule;
 mod stats;
@@ -78,6 +80,7 @@ enum Command {
     Query(query::Args),
     Build(build::Args),
     Distance(distance::Args),
+    Hausdorff(hausdorff::Args),
     Stats(stats::Args),
     Field(field::Args),
     Advise(advise::Args),
@@ -98,6 +101,7 @@ impl Command {
             Self::Query(_) => "p2m query".to_owned(),
             Self::Build(_) => "p2m build".to_owned(),
             Self::Distance(_) => "p2m distance".to_owned(),
+            Self::Hausdorff(_) => "p2m hausdorff".to_owned(),
             Self::Stats(_) => "p2m stats".to_owned(),
             Self::Field(_) => "p2m field".to_owned(),
             Self::Advise(_) => "p2m advise".to_owned(),
@@ -117,6 +121,7 @@ impl Command {
             Self::Query(args) => query::run(streams, args),
             Self::Build(args) => build::run(streams, args),
             Self::Distance(args) => distance::run(streams, args),
+            Self::Hausdorff(args) => hausdorff::run(streams, args),
             Self::Stats(args) => stats::run(streams, args),
             Self::Field(args) => field::run(streams, args),
             Self::Advise(args) => advise::run(streams, args),

@@ -1,4 +1,4 @@
-//! Distance fields, signed distances and winding numbers of scenes.
+//! Distance fields, signed distances, winding numbers and Hausdorff distances of scenes.
 //!
 //! - **Fields** are distances at the points of a regular [`Grid`], or on an octree whose cells are small near the
 //!   surface ([`refined`]). [`distances`] and [`signed_distances`] query an index for each point.
@@ -8,6 +8,8 @@
 //! - **Signs** tell inside from outside ([`sign`]): by pseudonormals and exact rays for closed surfaces
 //!   \[Baerentzen2005\], or by generalised winding numbers for any triangles \[Jacobson2013\], which a tree of dipoles
 //!   approximates within a bound \[Barill2018\].
+//! - **Hausdorff distances** are the largest values of the distance field of one scene on another scene, between
+//!   certified bounds ([`hausdorff_distance`]).
 //! - **Output**: [`write_field`] writes NPY, VTI or raw values, [`write_cells`] writes the cells of an octree, and
 //!   [`slice()`] draws a layer of a grid.
 //!
@@ -37,6 +39,7 @@ mod by_queries;
 mod format;
 mod grid;
 pub mod grid_candidates;
+mod hausdorff;
 mod layers;
 mod options;
 mod refined;
@@ -49,6 +52,10 @@ pub use by_queries::{distances, signed_distances};
 pub use format::FieldFormat;
 pub use grid::{Grid, GridError};
 pub use grid_candidates::CandidateLists;
+pub use hausdorff::{
+    Direction, HausdorffDistance, HausdorffIndex, HausdorffOptions, HausdorffProgress, ReportProgress,
+    hausdorff_distance, one_sided_hausdorff_distance,
+};
 pub use options::FieldOptions;
 pub use refined::{Cell, RefineOptions, refined};
 pub use slice::slice;

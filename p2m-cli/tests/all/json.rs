@@ -42,6 +42,7 @@ fn every_key_is_documented() {
         &["advise", &scene, "--queries", "2", "--near", "--json"],
         &["build", &scene, "--backend", "p2m", "--out", &saved, "--json"],
         &["distance", &scene, &scene, "--json"],
+        &["hausdorff", &scene, &scene, "--json"],
     ] {
         keys(&json(arguments), &mut found);
     }

@@ -10,6 +10,7 @@ mod distance;
 mod field;
 mod files;
 mod generate;
+mod hausdorff;
 mod info;
 mod interrupt;
 mod json;

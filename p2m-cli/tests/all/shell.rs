@@ -4,10 +4,11 @@ use crate::common::*;
 use std::fs;
 use tempfile::TempDir;
 
-const COMMANDS: [&str; 14] = [
+const COMMANDS: [&str; 15] = [
     "query",
     "build",
     "distance",
+    "hausdorff",
     "stats",
     "field",
     "advise",

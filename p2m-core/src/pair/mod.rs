@@ -24,6 +24,7 @@ mod collector;
 mod edges;
 mod intersection;
 mod motion;
+mod moving_ball;
 mod query;
 #[doc(hidden)]
 pub mod search;
@@ -40,6 +41,7 @@ pub use collector::{ClosestPair, PairOptions, Pairs};
 use edges::nearest_on_edges;
 pub use intersection::do_intersect;
 pub use motion::Motion;
+pub use moving_ball::{BallContact, MovingBall};
 use nalgebra::Point3;
 pub use query::{PairQuery, hull_of};
 

@@ -1,0 +1,376 @@
+//! The first contact of a ball that moves along a segment, which is also known as a sphere cast.
+//!
+//! # Method
+//!
+//! The distance of the centre from a primitive is a convex function of the parameter, because primitives are convex. So
+//! the first parameter at which a primitive is within a distance R is found by bisection between the start and the
+//! parameter at which the primitive is nearest. The search of pairs finds some primitive within R of the path, the path
+//! is cut at its parameter, and so on until no primitive is within R of what is left. If primitives are found in a
+//! random order, the expected number of searches is logarithmic in the number of primitives near the path.
+//!
+//! # Rounding
+//!
+//! R is the radius plus a margin: the tolerance, or a few roundings of the coordinates if that is more. In the end one
+//! search of the nearest pair returns a certified lower bound on the distance of the scene from the path up to the
+//! parameter. If it is not above the radius, because the primitives have errors beyond the margin, then the margin is
+//! multiplied by 8 and all is done again. The margin grows until the bound is above the radius or the start is within
+//! R, so this ends.
+//!
+//! Let s be the largest magnitude of a coordinate of the path. A component of the centre a (1 - t) + b t is computed
+//! with at most 4 u s + 2 eta of error, so the centre is off by less than 8 u s + 4 eta. The
+//! certified bound is reduced by that.
+
+use super::{NearestPair, PairQuery, Pairs};
+use crate::kernel::vector::{V3, largest};
+use crate::query::answer::ROUND_UP;
+use crate::real::{from_f64_array, to_f64_array};
+use crate::{Feature, PrimitiveId, Real};
+use nalgebra::Point3;
+use std::ops::ControlFlow;
+
+/// A ball whose centre moves along a segment.
+///
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::pair::MovingBall;
+/// use p2m_core::{BruteForce, Triangle};
+///
+/// let floor = [Triangle::new(Point3::new(-9.0, -9.0, 0.0), Point3::new(9.0, -9.0, 0.0), Point3::new(0.0, 9.0, 0.0))];
+/// let scene = BruteForce::new(&floor)?;
+/// let ball = MovingBall::new(Point3::new(0.0, 0.0, 5.0), Point3::new(0.0, 0.0, -5.0), 1.0);
+/// let contact = ball.first_contact(&scene).expect("the ball falls through the floor");
+/// assert!(contact.parameter <= 0.4 && 0.4 - contact.parameter < 1e-12);
+/// assert!(contact.point.coords.norm() < 1e-12);
+/// assert!(MovingBall::new(Point3::new(0.0, 0.0, 5.0), Point3::new(9.0, 9.0, 5.0), 1.0).first_contact(&scene).is_none());
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MovingBall<T: Real> {
+    /// The centre at the parameter 0.
+    pub start: Point3<T>,
+    /// The centre at the parameter 1.
+    pub end: Point3<T>,
+    /// The radius, in units of the scene.
+    pub radius: T,
+    /// The distance within which a contact may be reported too early, in units of the scene. The default is 0, which
+    /// leaves a few roundings. A negative number and NaN count as 0.
+    pub tolerance: T,
+}
+
+/// The first contact of a moving ball with a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct BallContact<T: Real> {
+    /// The parameter of the contact, from 0 to 1, rounded down. The ball certainly touches nothing before it.
+    pub parameter: T,
+    /// A parameter at which the scene is certainly within [`distance_bound`](Self::distance_bound) of the centre. It is
+    /// above `parameter` by about 2^-48, and rounded up.
+    pub upper_parameter: T,
+    /// A certified upper bound on the distance of the scene from the centre at the upper parameter. It exceeds the
+    /// radius by the tolerance and some roundings at most, unless the ball starts nearer.
+    pub distance_bound: T,
+    /// The point of the scene that is nearest to the centre at the upper parameter.
+    pub point: Point3<T>,
+    /// The primitive that contains the point; of several with equal keys it is the one with the lowest id.
+    pub primitive: PrimitiveId,
+    /// The feature of the primitive that contains the point.
+    pub feature: Feature,
+}
+
+/// Parameters that differ by less are not told apart.
+const PARAMETER_RESOLUTION: f64 = f64::EPSILON * 4.0;
+/// The number of searches that end at the first primitive with an earlier contact. A later one evaluates all primitives
+/// near the path, so that no order of primitives makes the search long.
+const SHORT_SEARCHES: usize = 64;
+
+impl<T: Real> MovingBall<T> {
+    /// Creates a ball that moves from one centre to another.
+    #[must_use]
+    pub fn new(start: Point3<T>, end: Point3<T>, radius: T) -> Self {
+        Self { start, end, radius, tolerance: T::zero() }
+    }
+    /// Sets the distance within which a contact may be reported too early.
+    #[must_use]
+    pub fn with_tolerance(self, tolerance: T) -> Self {
+        Self { tolerance, ..self }
+    }
+
+    /// Returns the first contact with the scene of an index. It is `None` if the ball touches nothing, if the radius is
+    /// negative, and if a coordinate or the radius is not finite.
+    ///
+    /// A ball that touches at the start has the parameter 0. A ball that does not move touches there or nowhere. Only
+    /// surfaces count: a ball inside of a closed one touches it from inside.
+    ///
+    /// # Panics
+    /// Panics if the scene has primitives without vertices.
+    ///
+    /// # Accuracy
+    /// There is certainly no contact before the parameter, and none at all if the answer is `None`. At the upper
+    /// parameter the distance exceeds the radius by at most the tolerance, or 64 u (s + radius) if that is more, and the
+    /// error of a distance between primitives; s is the largest coordinate of the path. If rounding needs a larger
+    /// margin than that, because primitives near the path have errors beyond it, it is at most 8 times as large as it
+    /// has to be. A ball that passes the scene at a distance within this margin of its radius may be reported as a
+    /// contact. Where the path is nearly tangential, such an error of the distance is a larger one of the parameter.
+    /// Indexes agree within the same errors, but not bit for bit.
+    ///
+    /// # Complexity
+    /// It takes a logarithmic number of searches for pairs, and some fifty evaluations of a distance for each.
+    pub fn first_contact<I: PairQuery<T> + ?Sized>(&self, index: &I) -> Option<BallContact<T>> {
+        let path = Path { index, start: to_f64_array(&self.start), end: to_f64_array(&self.end) };
+        let radius = self.radius.to_f64();
+        // The comparison is false for NaN.
+        let is_valid = [path.start, path.end].as_flattened().iter().all(|x| x.is_finite()) && radius.is_finite();
+        if !(is_valid && radius >= 0.0) {
+            return None;
+        }
+        let size = largest(&[path.start, path.end]);
+        // NaN becomes the other number.
+        let mut margin =
+            self.tolerance.to_f64().max(64.0 * f64::UNIT_ROUNDOFF * (size + radius) + 64.0 * f64::SMALLEST_SUBNORMAL);
+        loop {
+            let contact = path.first_within(radius + margin);
+            let parameter = contact.map_or(1.0, |[low, _]| low);
+            if parameter == 0.0 || path.lower_bound_until(parameter)? - self.path_error() > radius {
+                return contact.and_then(|contact| self.contact(&path, contact));
+            }
+            margin *= 8.0;
+        }
+    }
+
+    /// Returns the centre at a parameter, rounded.
+    #[must_use]
+    pub fn centre_at(&self, parameter: T) -> Point3<T> {
+        from_f64_array(centre_at(to_f64_array(&self.start), to_f64_array(&self.end), parameter.to_f64()))
+    }
+
+    /// Returns a bound on the distance between a computed centre in f64 and the exact one.
+    fn path_error(&self) -> f64 {
+        let size = largest(&[to_f64_array(&self.start), to_f64_array(&self.end)]);
+        8.0 * f64::UNIT_ROUNDOFF * size + 4.0 * f64::SMALLEST_SUBNORMAL
+    }
+
+    /// Returns the answer for a bracket of the first contact.
+    fn contact<I: PairQuery<T> + ?Sized>(&self, path: &Path<'_, I>, [low, high]: [f64; 2]) -> Option<BallContact<T>> {
+        let upper_parameter: T = -T::round_down_from_f64(-high);
+        // In f32 the centre of the rounded parameter counts.
+        let hull = [path.centre_at(upper_parameter.to_f64())];
+        let mut pairs = Pairs::nearest(f64::INFINITY);
+        path.index.search_hull(&hull, &mut pairs);
+        let nearest = pairs.finish::<f64>()?;
+        // The certified distance of the nearest primitive is that of its own pair.
+        let mut upper = f64::INFINITY;
+        path.visit_pair::<T>(nearest.primitives[0], &hull, &mut |pair| upper = pair.key.distance() + pair.error);
+        let upper = (upper + self.path_error()) * ROUND_UP + 8.0 * f64::SMALLEST_SUBNORMAL;
+        Some(BallContact {
+            parameter: T::round_down_from_f64(low),
+            upper_parameter,
+            distance_bound: -T::round_down_from_f64(-upper),
+            point: from_f64_array(nearest.points[0].coords.into()),
+            primitive: nearest.primitives[0],
+            feature: nearest.features[0],
+        })
+    }
+}
+
+fn centre_at(start: V3, end: V3, t: f64) -> V3 {
+    std::array::from_fn(|k| start[k] * (1.0 - t) + end[k] * t)
+}
+
+/// The path of a centre in a scene.
+struct Path<'a, I: ?Sized> {
+    index: &'a I,
+    start: V3,
+    end: V3,
+}
+
+impl<I: ?Sized> Path<'_, I> {
+    fn centre_at(&self, t: f64) -> V3 {
+        centre_at(self.start, self.end, t)
+    }
+
+    /// Returns the path until a parameter.
+    fn until(&self, t: f64) -> [V3; 2] {
+        [self.start, self.centre_at(t)]
+    }
+
+    /// Calls a function with the pair of a primitive and a hull.
+    fn visit_pair<T: Real>(&self, primitive: PrimitiveId, hull: &[V3], visit: &mut dyn FnMut(&NearestPair))
+    where
+        I: PairQuery<T>,
+    {
+        let mut each = |_: [PrimitiveId; 2], pair: &NearestPair| {
+            visit(pair);
+            ControlFlow::Break(())
+        };
+        self.index.offer_hint(primitive, hull, &mut Pairs::each(f64::INFINITY, &mut each));
+    }
+
+    /// Returns a certified lower bound on the distance of the scene from the path until a parameter; `None` for an
+    /// empty scene.
+    fn lower_bound_until<T: Real>(&self, t: f64) -> Option<f64>
+    where
+        I: PairQuery<T>,
+    {
+        let mut pairs = Pairs::nearest(f64::INFINITY);
+        self.index.search_hull(&self.until(t), &mut pairs);
+        Some(pairs.finish::<f64>()?.lower_bound)
+    }
+
+    /// Returns a bracket of the first parameter at which the scene is within a distance, up to rounding; `None` if it
+    /// never is.
+    fn first_within<T: Real>(&self, distance: f64) -> Option<[f64; 2]>
+    where
+        I: PairQuery<T>,
+    {
+        let (mut best, mut last): (Option<[f64; 2]>, _) = (None, None);
+        for search in 0.. {
+            let end = best.map_or(1.0, |[_, high]| high);
+            let mut is_improved = false;
+            let mut visit = |ids: [PrimitiveId; 2], pair: &NearestPair| {
+                // The primitive of the last contact touches the end of the path.
+                if last == Some(ids[0]) {
+                    return ControlFlow::Continue(());
+                }
+                let [low, high] = self.first_within_of(ids[0], distance, end * pair.barycentric[1][1]);
+                if best.is_some_and(|[_, best]| high >= best - PARAMETER_RESOLUTION) {
+                    return ControlFlow::Continue(());
+                }
+                (best, last, is_improved) = (Some([low, high]), Some(ids[0]), true);
+                if search < SHORT_SEARCHES || high == 0.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            };
+            self.index.search_hull(&self.until(end), &mut Pairs::each(distance, &mut visit));
+            let is_at_start = best.is_some_and(|[_, high]| high == 0.0);
+            if !is_improved || is_at_start || search >= SHORT_SEARCHES {
+                break;
+            }
+        }
+        // Contacts that are earlier by less than the resolution were passed over.
+        best.map(|[low, high]| [(low - 2.0 * PARAMETER_RESOLUTION).max(0.0), high])
+    }
+
+    /// Returns a bracket of the first parameter at which a primitive is within a distance. At `nearest` it is, up to
+    /// rounding.
+    fn first_within_of<T: Real>(&self, primitive: PrimitiveId, distance: f64, nearest: f64) -> [f64; 2]
+    where
+        I: PairQuery<T>,
+    {
+        let is_within = |t: f64| {
+            let mut found = f64::INFINITY;
+            self.visit_pair::<T>(primitive, &[self.centre_at(t)], &mut |pair| found = pair.key.distance());
+            found <= distance
+        };
+        if is_within(0.0) {
+            return [0.0; 2];
+        }
+        let (mut low, mut high) = (0.0, nearest);
+        while high - low > PARAMETER_RESOLUTION / 8.0 {
+            let middle = low * 0.5 + high * 0.5;
+            *(if is_within(middle) { &mut high } else { &mut low }) = middle;
+        }
+        [low, high]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{BruteForce, Segment, Triangle};
+
+    fn point(x: f64, y: f64, z: f64) -> Point3<f64> {
+        Point3::new(x, y, z)
+    }
+
+    fn floor() -> [Triangle<f64>; 1] {
+        [Triangle::new(point(-90.0, -90.0, 0.0), point(90.0, -90.0, 0.0), point(0.0, 90.0, 0.0))]
+    }
+
+    fn contact(scene: &[impl crate::Primitive<f64>], ball: &MovingBall<f64>) -> Option<BallContact<f64>> {
+        ball.first_contact(&BruteForce::new(scene).expect("valid"))
+    }
+
+    #[test]
+    fn contacts_are_those_of_closed_forms() {
+        let post = [crate::Point::new(point(0.0, 0.0, 0.0))];
+        let pipe = [Segment::new(point(-5.0, 0.0, 0.0), point(5.0, 0.0, 0.0))];
+        let falls = |radius| MovingBall::new(point(0.0, 0.0, 8.0), point(0.0, 0.0, -8.0), radius);
+        // The ball flies past at a distance of 0.6, and touches 0.8 before the middle.
+        let passes = MovingBall::new(point(-4.0, 0.6, 0.0), point(4.0, 0.6, 0.0), 1.0);
+        let slides = MovingBall::new(point(-20.0, 0.0, 3.0), point(20.0, 0.0, 1.0), 2.0);
+        let cases = [
+            (contact(&floor(), &falls(2.0)), 6.0 / 16.0),
+            (contact(&pipe, &falls(2.0)), 6.0 / 16.0),
+            (contact(&post, &falls(0.0)), 0.5),
+            (contact(&post, &passes), 3.2 / 8.0),
+            (contact(&floor(), &slides), 0.5),
+        ];
+        for (number, (found, expected)) in cases.into_iter().enumerate() {
+            let found = found.expect("a contact");
+            assert!(found.parameter <= expected && expected - found.parameter <= 1e-11, "{number}: {found:?}");
+            assert!(found.upper_parameter >= found.parameter, "{number}: {found:?}");
+            assert!(found.upper_parameter - found.parameter <= 1e-14, "{number}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_contact_at_the_start_has_the_parameter_zero() {
+        for z in [-0.5, 0.0, 1.0] {
+            let ball = MovingBall::new(point(0.0, 0.0, z), point(0.0, 9.0, 9.0), 1.0);
+            let found = contact(&floor(), &ball).expect("in contact");
+            assert_eq!((found.parameter, found.upper_parameter, found.point), (0.0, 0.0, point(0.0, 0.0, 0.0)));
+        }
+    }
+
+    #[test]
+    fn a_ball_at_rest_touches_at_the_start_or_nowhere() {
+        let at_rest = |z: f64| MovingBall::new(point(0.0, 0.0, z), point(0.0, 0.0, z), 1.0);
+        assert_eq!(contact(&floor(), &at_rest(0.5)).map(|found| found.parameter), Some(0.0));
+        assert_eq!(contact(&floor(), &at_rest(1.0 + 1e-11)), None);
+    }
+
+    #[test]
+    fn a_ball_that_rolls_touches_and_one_above_it_does_not() {
+        let along = |z: f64| MovingBall::new(point(-5.0, 0.0, z), point(5.0, 0.0, z), 1.0);
+        assert_eq!(contact(&floor(), &along(1.0)).map(|found| found.parameter), Some(0.0));
+        assert_eq!(contact(&floor(), &along(1.0 + 1e-11)), None);
+        assert_eq!(
+            contact(&floor(), &along(1.0 + 1e-11).with_tolerance(1e-10)).map(|found| found.parameter),
+            Some(0.0)
+        );
+        // It grazes a sphere around a point at the middle of its path.
+        let post = [crate::Point::new(point(0.0, 0.0, 0.0))];
+        let found = contact(&post, &along(1.0)).expect("a contact within rounding");
+        assert!(found.parameter <= 0.5 && found.parameter > 0.5 - 1e-7, "{found:?}");
+        assert_eq!(contact(&post, &along(1.0 + 1e-11)), None);
+    }
+
+    #[test]
+    fn what_is_not_finite_touches_nothing() {
+        let (low, high) = (point(0.0, 0.0, -5.0), point(0.0, 0.0, 5.0));
+        let nan = point(f64::NAN, 0.0, 0.0);
+        assert!(contact(&floor(), &MovingBall::new(low, high, 1.0)).is_some());
+        for ball in [
+            MovingBall::new(nan, high, 1.0),
+            MovingBall::new(low, nan, 1.0),
+            MovingBall::new(low, high, f64::NAN),
+            MovingBall::new(low, high, f64::INFINITY),
+            MovingBall::new(low, high, -1.0),
+        ] {
+            assert_eq!(contact(&floor(), &ball), None);
+        }
+        let empty: [Triangle<f64>; 0] = [];
+        assert_eq!(contact(&empty, &MovingBall::new(low, high, 1.0)), None);
+        let anywhere = MovingBall::new(low, high, 1.0).with_tolerance(f64::INFINITY);
+        assert_eq!(contact(&floor(), &anywhere).map(|found| found.parameter), Some(0.0));
+    }
+
+    #[test]
+    fn many_primitives_in_the_worst_order_take_few_searches() {
+        // Each wall is touched before all that come before it.
+        let wall = |x: f64| Segment::new(point(x, -1.0, 0.0), point(x, 1.0, 0.0));
+        let walls: Vec<_> = (0..3_000).map(|i| wall(3_000.0 - f64::from(i))).collect();
+        let ball = MovingBall::new(point(-1.0, 0.0, 0.0), point(4e3, 0.0, 0.0), 0.5);
+        let found = contact(&walls, &ball).expect("a wall");
+        assert_eq!((found.primitive.index(), found.point), (2_999, point(1.0, 0.0, 0.0)));
+    }
+}
