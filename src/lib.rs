@@ -49,7 +49,7 @@
 //! | the primitive nearest to a segment or a triangle, or whether one is near | [`pair::PairQuery`] | trees and brute force |
 //! | the first contact of a moving ball | [`pair::MovingBall`] | trees and brute force |
 //! | the Hausdorff distance of two scenes | `field::hausdorff_distance` | every index |
-//! | the nearest points of two scenes, one of which may move | [`bvh::TreeIndex::closest_pair`] | trees |
+//! | the nearest points of two scenes, one of which may move | [`pair::PairQuery::closest_pair`] | trees and brute force |
 //! | the cost of a query | [`Inspect`] | every index |
 //!
 //! # Which index

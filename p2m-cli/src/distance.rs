@@ -9,7 +9,7 @@ use crate::threads::ThreadArgs;
 use crate::usage::usage;
 use anyhow::Context;
 use p2m_bvh::AabbTree;
-use p2m_core::pair::{ClosestPair, PairOptions};
+use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
 use p2m_core::{BuildIndex, Soup};
 use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};

@@ -4,7 +4,7 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Isometry3, Vector3};
-use p2m::backend::pair::{ClosestPair, Motion, PairOptions, PairQuery, Pairs, offer_all_pairs};
+use p2m::pair::{ClosestPair, Motion, PairOptions, PairQuery};
 use p2m::{AabbTree, BruteForce, BuildIndex, KdopTree, PrimitiveId, PrimitiveSet, Real, Shape, Soup};
 use p2m_testkit::scenes::{self, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng, vector};
@@ -13,9 +13,8 @@ use std::ops::ControlFlow;
 
 /// Returns the answer for two scenes by all pairs.
 fn by_all_pairs<T: Real>(a: &Soup<T>, b: &Soup<T>, options: &PairOptions<T>) -> Option<ClosestPair<T>> {
-    let mut pairs = Pairs::nearest(options.max_distance);
-    offer_all_pairs(a, b, options.motion.as_ref().map(Motion::new).as_ref(), &mut pairs);
-    pairs.finish()
+    let [a, b] = [a, b].map(|soup| BruteForce::new(soup).expect("valid"));
+    a.closest_pair(&b, options)
 }
 
 /// Returns a motion: none, a translation, or a rotation with a translation; small, about as large as the scene, or far.
@@ -66,12 +65,11 @@ fn check_scenes<T: Real>(case: u64, soups: [&Soup<T>; 2], moved: Option<Isometry
             ControlFlow::Continue(())
         });
         let mut all = Vec::new();
-        let mut each = |ids, pair: &p2m::backend::pair::NearestPair| {
-            all.push((ids, T::round_from_f64(pair.key.distance()).to_f64().to_bits()));
+        let [brute_a, brute_b] = soups.map(|soup| BruteForce::new(soup).expect("valid"));
+        let _ = brute_a.visit_pairs_within(&brute_b, &within, &mut |pair| {
+            all.push((pair.primitives, pair.distance.to_f64().to_bits()));
             ControlFlow::Continue(())
-        };
-        let motion = options.motion.as_ref().map(Motion::new);
-        offer_all_pairs(a, b, motion.as_ref(), &mut Pairs::each(within.max_distance, &mut each));
+        });
         found.sort_unstable();
         all.sort_unstable();
         assert_eq!(found, all, "{text}");
@@ -200,4 +198,145 @@ fn nothing_is_near_an_empty_scene_or_beyond_the_range() {
     // Equal scenes intersect in their first triangle.
     let same = full.closest_pair(&full, &options.with_max_distance(0.0)).expect("equal scenes intersect");
     assert_eq!((same.distance, same.is_intersecting, same.primitives), (0.0, true, [PrimitiveId::new(0); 2]));
+}
+
+/// Returns the vertices of a primitive after a motion, as the contract moves them.
+fn vertices(soup: &Soup<f64>, id: PrimitiveId, motion: Option<&Isometry3<f64>>) -> Vec<[f64; 3]> {
+    let motion = motion.map(Motion::new);
+    let shape = soup.get(id);
+    let corners = shape.vertices().iter().map(|v| <[f64; 3]>::from(v.coords));
+    corners.map(|x| motion.as_ref().map_or(x, |motion| motion.apply(x))).collect()
+}
+
+#[test]
+fn trees_of_many_levels_are_those_of_brute_force() {
+    for case in cases(60, 4) {
+        let mut rng = rng("large pairs of scenes", case);
+        let layout = [scenes::Layout::Sheet, scenes::Layout::Strewn][usize::from(case % 2 == 1)];
+        let a = scenes::soup(&mut rng, scenes::Kinds::Triangles, layout, 2_000);
+        let b = scenes::soup(&mut rng, scenes::Kinds::Triangles, layout, 1_500);
+        let size = (a.aabb().max - a.aabb().min).amax();
+        let turn = vector(&mut rng) * 3.0;
+        let shift = vector(&mut rng) * size * [0.0, 0.5, 1.2, 4.0][rng.random_range(0..4)];
+        check_scenes(case, [&a, &b], Some(Isometry3::new(shift, turn)), f64::INFINITY);
+    }
+}
+
+#[test]
+fn a_radius_is_taken_from_the_distance() {
+    for case in cases(3_000, 300) {
+        let (mut rng, (kinds, layout)) = (rng("shapes with a radius", case), kinds_and_layout(case));
+        let soup = scenes::soup(&mut rng, kinds, layout, 40);
+        let shapes = scenes::soup(&mut rng, kinds, layout, 3);
+        let size = (soup.aabb().max - soup.aabb().min).amax();
+        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let brute = BruteForce::new(&soup).expect("valid");
+        for id in (0..shapes.len()).map(PrimitiveId::new) {
+            let shape = shapes.get(id);
+            let alone = brute.closest_to(&shape, &PairOptions::default()).expect("not empty");
+            let radius = alone.distance * [0.5, 1.0, 1.5, 0.0][rng.random_range(0..4)];
+            let options = PairOptions::default().with_radius(radius);
+            let thick = tree.closest_to(&shape, &options).expect("not empty");
+            let text = format!("{case}: {shape:?} {radius:e}");
+            assert_same(brute.closest_to(&shape, &options), Some(thick), &text);
+            assert_eq!(thick.distance, (alone.distance - radius).max(0.0), "{text}");
+            assert_eq!(thick.primitives, alone.primitives, "{text}");
+            let exact = p2m_testkit::oracle::Distance::between(
+                &vertices(&soup, thick.primitives[0], None),
+                &vertices(&shapes, id, None),
+            );
+            assert!(exact.is_at_least(thick.lower_bound), "{text}");
+            assert_eq!(
+                thick.is_intersecting,
+                alone.is_intersecting || radius > 0.0 && alone.distance <= radius,
+                "{text}"
+            );
+            if radius > 0.0 && alone.distance.is_normal() && alone.distance < 1e100 {
+                let between = nalgebra::distance(&thick.points[0], &thick.points[1]);
+                assert!((between - thick.distance).abs() <= 1e-10 * (size + radius), "{text} {between:e}");
+            }
+            // The largest distance is inclusive.
+            let limited = options.with_max_distance(thick.distance);
+            if alone.distance <= thick.distance + radius {
+                assert!(tree.is_any_near(&shape, &limited), "{text}");
+            }
+        }
+    }
+    let tree = AabbTree::build([p2m::Point::new([0.0; 3].into())], &Default::default()).expect("valid");
+    for radius in [-1.0, f64::NAN] {
+        let options = PairOptions::default().with_radius(radius);
+        assert_eq!(tree.closest_to(&p2m::Point::new([0.0; 3].into()), &options), None, "{radius}");
+    }
+}
+
+#[test]
+fn certified_pairs_are_nearest_in_rational_arithmetic() {
+    use p2m_testkit::oracle::Distance;
+    let mut ties = 0;
+    let all = cases(2_000, 150);
+    for case in all.clone() {
+        let (mut rng, (kinds, layout)) = (rng("certified pairs", case), kinds_and_layout(case));
+        let a = scenes::soup(&mut rng, kinds, layout, 12);
+        let b = if case % 3 == 0 { a.clone() } else { scenes::soup(&mut rng, kinds, layout, 12) };
+        let moved = motion(&mut rng, (a.aabb().max - a.aabb().min).amax());
+        let mut options = PairOptions::default();
+        options.motion = moved;
+        let text = format!("{case}: {options:?}");
+        let (mut best, mut equal): (Option<(Distance, [PrimitiveId; 2])>, usize) = (None, 0);
+        for i in (0..a.len()).map(PrimitiveId::new) {
+            for j in (0..b.len()).map(PrimitiveId::new) {
+                let exact = Distance::between(&vertices(&a, i, None), &vertices(&b, j, moved.as_ref()));
+                match best.as_ref().map(|(least, _)| exact.compare(least)) {
+                    None | Some(std::cmp::Ordering::Less) => (best, equal) = (Some((exact, [i, j])), 0),
+                    Some(std::cmp::Ordering::Equal) => equal += 1,
+                    Some(std::cmp::Ordering::Greater) => {}
+                }
+            }
+        }
+        let (exact, ids) = best.expect("neither is empty");
+        ties += usize::from(equal > 0);
+        let [tree_a, tree_b] = [&a, &b].map(|soup| AabbTree::build(soup, &Default::default()).expect("valid"));
+        let found = tree_a.certified_closest_pair(&tree_b, &options).expect("neither is empty");
+        assert_eq!(found.primitives, ids, "{text} {found:?}");
+        // The length is the nearest f64 and the rest.
+        assert_eq!(found.distance, exact.length()[0], "{text} {found:?}");
+        assert!(exact.is_at_least(found.lower_bound), "{text} {found:?}");
+        assert!(found.lower_bound >= found.distance.next_down(), "{text} {found:?}");
+        let [brute_a, brute_b] = [&a, &b].map(|soup| BruteForce::new(soup).expect("valid"));
+        assert_eq!(brute_a.certified_closest_pair(&brute_b, &options), Some(found), "{text}");
+        // The limit is compared without rounding.
+        let below = options.with_max_distance(found.distance.next_down());
+        assert_eq!(tree_a.certified_closest_pair(&tree_b, &below), None, "{text}");
+    }
+    assert!(all.have_more_than(20, ties), "{ties}");
+}
+
+#[test]
+fn pairs_are_found_behind_pointers_and_in_batches() {
+    let mut rng = rng("pairs behind pointers", 0);
+    let soup = scenes::soup(&mut rng, scenes::Kinds::Triangles, scenes::Layout::Strewn, 60);
+    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let kdop: KdopTree<f64, _> = KdopTree::build(&soup, &Default::default()).expect("valid");
+    let brute = BruteForce::new(&soup).expect("valid");
+    let indexes: [&dyn p2m::Index; 3] = [&tree, &kdop, &brute];
+    let pairs = indexes.map(|index| index.as_pair_query().expect("it answers queries for pairs"));
+    let motions: Vec<_> = (0..20).map(|_| Isometry3::new(vector(&mut rng) * 3.0, vector(&mut rng))).collect();
+    let expected: Vec<_> =
+        motions.iter().map(|motion| brute.closest_pair(&brute, &PairOptions::default().with_motion(*motion))).collect();
+    for a in pairs {
+        for b in pairs {
+            let found = p2m::pair::closest_pair_at_each(&a, b, &motions, &PairOptions::default(), &Default::default());
+            for (found, expected) in found.iter().zip(&expected) {
+                assert_same(*found, *expected, "a batch");
+            }
+        }
+        let shapes: Vec<Shape<f64>> = (0..soup.len()).map(|i| soup.get(PrimitiveId::new(i))).collect();
+        let options = PairOptions::default().with_motion(motions[0]);
+        let found = p2m::pair::closest_to_each(&a, &shapes, &options, &Default::default());
+        for (found, shape) in found.iter().zip(&shapes) {
+            assert_same(*found, brute.closest_to(shape, &options), "a batch of shapes");
+        }
+    }
+    let octree = p2m::OctreeIndex::build(&soup, &Default::default()).expect("valid");
+    assert!((&octree as &dyn p2m::Index).as_pair_query().is_none());
 }

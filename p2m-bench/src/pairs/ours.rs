@@ -6,7 +6,7 @@ use crate::scene::Scene;
 use anyhow::Result;
 use nalgebra::Isometry3;
 use p2m_bvh::AabbTree;
-use p2m_core::pair::{ClosestPair, PairOptions};
+use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
 use p2m_core::{BuildIndex, Real, Soup};
 use p2m_kdop::KdopTree;
 

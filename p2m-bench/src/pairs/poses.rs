@@ -4,7 +4,7 @@ use crate::measure::Effort;
 use anyhow::Result;
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use p2m_bvh::AabbTree;
-use p2m_core::pair::PairOptions;
+use p2m_core::pair::{PairOptions, PairQuery};
 use p2m_core::{PrimitiveSet, Soup};
 use p2m_testkit::{rng, vector};
 use rand::Rng;

@@ -20,7 +20,8 @@
 //! with at most 4 u s + 2 eta of error, so the centre is off by less than 8 u s + 4 eta. The
 //! certified bound is reduced by that.
 
-use super::{NearestPair, PairQuery, Pairs};
+use super::query::search_hull;
+use super::{NearestPair, PairOptions, PairQuery, Pairs, nearest_of_hulls};
 use crate::kernel::vector::{V3, largest};
 use crate::query::answer::ROUND_UP;
 use crate::real::{from_f64_array, to_f64_array};
@@ -155,13 +156,12 @@ impl<T: Real> MovingBall<T> {
         let upper_parameter: T = -T::round_down_from_f64(-high);
         // In f32 the centre of the rounded parameter counts.
         let hull = [path.centre_at(upper_parameter.to_f64())];
-        let mut pairs = Pairs::nearest(f64::INFINITY);
-        path.index.search_hull(&hull, &mut pairs);
+        let mut pairs = Pairs::nearest(&PairOptions::<f64>::default());
+        search_hull(path.index, &hull, None, &mut pairs);
         let nearest = pairs.finish::<f64>()?;
         // The certified distance of the nearest primitive is that of its own pair.
-        let mut upper = f64::INFINITY;
-        path.visit_pair::<T>(nearest.primitives[0], &hull, &mut |pair| upper = pair.key.distance() + pair.error);
-        let upper = (upper + self.path_error()) * ROUND_UP + 8.0 * f64::SMALLEST_SUBNORMAL;
+        let pair = path.pair_of::<T>(nearest.primitives[0], hull[0]);
+        let upper = (pair.key.distance() + pair.error + self.path_error()) * ROUND_UP + 8.0 * f64::SMALLEST_SUBNORMAL;
         Some(BallContact {
             parameter: T::round_down_from_f64(low),
             upper_parameter,
@@ -194,16 +194,13 @@ impl<I: ?Sized> Path<'_, I> {
         [self.start, self.centre_at(t)]
     }
 
-    /// Calls a function with the pair of a primitive and a hull.
-    fn visit_pair<T: Real>(&self, primitive: PrimitiveId, hull: &[V3], visit: &mut dyn FnMut(&NearestPair))
+    /// Returns the nearest points of a primitive and a point.
+    fn pair_of<T: Real>(&self, primitive: PrimitiveId, point: V3) -> NearestPair
     where
         I: PairQuery<T>,
     {
-        let mut each = |_: [PrimitiveId; 2], pair: &NearestPair| {
-            visit(pair);
-            ControlFlow::Break(())
-        };
-        self.index.offer_hint(primitive, hull, &mut Pairs::each(f64::INFINITY, &mut each));
+        let (hull, len) = self.index.hull(primitive);
+        nearest_of_hulls(&hull[..len], &[point], f64::INFINITY).expect("no key exceeds infinity")
     }
 
     /// Returns a certified lower bound on the distance of the scene from the path until a parameter; `None` for an
@@ -212,8 +209,8 @@ impl<I: ?Sized> Path<'_, I> {
     where
         I: PairQuery<T>,
     {
-        let mut pairs = Pairs::nearest(f64::INFINITY);
-        self.index.search_hull(&self.until(t), &mut pairs);
+        let mut pairs = Pairs::nearest(&PairOptions::<f64>::default());
+        search_hull(self.index, &self.until(t), None, &mut pairs);
         Some(pairs.finish::<f64>()?.lower_bound)
     }
 
@@ -239,7 +236,8 @@ impl<I: ?Sized> Path<'_, I> {
                 (best, last, is_improved) = (Some([low, high]), Some(ids[0]), true);
                 if search < SHORT_SEARCHES || high == 0.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
-            self.index.search_hull(&self.until(end), &mut Pairs::each(distance, &mut visit));
+            let within = PairOptions::default().with_max_distance(distance);
+            search_hull(self.index, &self.until(end), None, &mut Pairs::each(&within, &mut visit));
             let is_at_start = best.is_some_and(|[_, high]| high == 0.0);
             if !is_improved || is_at_start || search >= SHORT_SEARCHES {
                 break;
@@ -255,11 +253,7 @@ impl<I: ?Sized> Path<'_, I> {
     where
         I: PairQuery<T>,
     {
-        let is_within = |t: f64| {
-            let mut found = f64::INFINITY;
-            self.visit_pair::<T>(primitive, &[self.centre_at(t)], &mut |pair| found = pair.key.distance());
-            found <= distance
-        };
+        let is_within = |t: f64| self.pair_of::<T>(primitive, self.centre_at(t)).key.distance() <= distance;
         if is_within(0.0) {
             return [0.0; 2];
         }

@@ -216,7 +216,7 @@ fn visit_each<T: Real>(
 }
 
 /// Offers the pairs of a scene and a shape that may be near. The id of the shape is 0.
-pub(crate) fn search_shape<T: Real>(
+fn search_shape<T: Real>(
     index: &(impl PairQuery<T> + ?Sized),
     shape: &impl Primitive<T>,
     options: &PairOptions<T>,
@@ -224,14 +224,26 @@ pub(crate) fn search_shape<T: Real>(
 ) {
     let motion = options.motion.as_ref().map(Motion::new);
     let (vertices, len) = hull_of(shape, motion.as_ref());
-    let hull = &vertices[..len];
+    search_hull(index, &vertices[..len], options.hint, pairs);
+}
+
+/// Offers the pairs of a scene and the hull of one to three vertices that may be near. There are none if a coordinate is
+/// not finite.
+pub(super) fn search_hull<T: Real>(
+    index: &(impl PairQuery<T> + ?Sized),
+    hull: &[V3],
+    hint: Option<[PrimitiveId; 2]>,
+    pairs: &mut Pairs<'_>,
+) {
     if pairs.is_done() || !hull.as_flattened().iter().all(|x| x.is_finite()) {
         return;
     }
     let shape_id = PrimitiveId::new(0);
     let on_shape = |point| project(point, hull, f64::INFINITY).map(|p| (p.point.coords.into(), shape_id));
     let guess = || guess_pair(centre(&bounds_of(hull)), &|point| index.guess_closest(point), &on_shape);
-    offer_hints(index, options.hint, guess, pairs, &mut |id| (id == shape_id).then_some((vertices, len)));
+    let mut vertices = [[0.0; 3]; 3];
+    vertices[..hull.len()].copy_from_slice(hull);
+    offer_hints(index, hint, guess, pairs, &mut |id| (id == shape_id).then_some((vertices, hull.len())));
     let is_tree = index.with_pair_side(None, &mut |side| search_pairs(side, &ShapeSide(hull), pairs));
     if !is_tree {
         for id in (0..index.primitive_count()).map(PrimitiveId::new) {
@@ -244,7 +256,7 @@ pub(crate) fn search_shape<T: Real>(
 }
 
 /// Offers the pairs of two scenes that may be near.
-pub(crate) fn search_scenes<T: Real>(
+fn search_scenes<T: Real>(
     first: &(impl PairQuery<T> + ?Sized),
     second: &(impl PairQuery<T> + ?Sized),
     options: &PairOptions<T>,
