@@ -14,6 +14,7 @@ use p2m_bvh::engine::several::{Several, Walkers};
 use p2m_bvh::engine::volume::{CompiledSearches, TreeOptions, VolumeNodes};
 use p2m_bvh::{PacketTree, SplitOptions, Volume};
 use p2m_core::engine::query::BestF64;
+use p2m_core::engine::ray::RayCandidates;
 use p2m_core::engine::vector::V3;
 use p2m_core::storage::{LoadError, Reader, Writer, require};
 use p2m_core::{Aabb, Hits, Near, Ray};
@@ -96,17 +97,23 @@ impl<const K: usize> CompiledSearches for Kdop<K> {
     ) {
         tree.run_ray(ray, radius, hits, intersect);
     }
+
+    #[inline(never)]
+    fn ray_candidates(tree: &PacketTree<Self>, ray: &Ray, radius: f64, candidates: &mut RayCandidates<'_>) {
+        tree.run_ray(ray, radius, candidates, &|_, _| None);
+    }
 }
 
-/// The three searches of a tree of k-DOPs with K faces.
+/// The four searches of a tree of k-DOPs with K faces.
 type Searches<const K: usize> = (
     fn(&PacketTree<Kdop<K>>, V3, &mut BestF64, EvaluateFn<'_, BestF64>),
     for<'n> fn(&PacketTree<Kdop<K>>, V3, &mut Near<'n>, EvaluateFn<'_, Near<'n>>),
     for<'r> fn(&PacketTree<Kdop<K>>, &'r Ray, f64, &mut Hits<'r>, IntersectFn<'_, 'r>),
+    fn(&PacketTree<Kdop<K>>, &Ray, f64, &mut RayCandidates<'_>),
 );
 
 const fn searches<const K: usize>() -> Searches<K> {
-    (Kdop::<K>::nearest, Kdop::<K>::near, Kdop::<K>::rays)
+    (Kdop::<K>::nearest, Kdop::<K>::near, Kdop::<K>::rays, Kdop::<K>::ray_candidates)
 }
 
 /// The searches that this crate compiles: those for 6, 14, 18 and 26 faces, which have default directions.

@@ -8,9 +8,10 @@ use crate::tree::PacketTree;
 use crate::tree::wide_node::VolumeNodes;
 use nalgebra::Point3;
 use p2m_core::engine::query::BestF64;
+use p2m_core::engine::ray::RayCandidates;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
-use p2m_core::{Aabb, Best, Hits, Near, PrimitiveSet, Ray, RayCollector, Real};
+use p2m_core::{Aabb, Best, Hits, Near, PrimitiveId, PrimitiveSet, Ray, RayCollector, Real};
 
 /// The searches of a tree with the collectors of the library.
 ///
@@ -39,6 +40,9 @@ pub trait CompiledSearches: VolumeNodes {
         hits: &mut Hits<'r>,
         intersect: IntersectFn<'_, 'r>,
     );
+
+    /// Searches for the primitives that a ray may hit.
+    fn ray_candidates(tree: &PacketTree<Self>, ray: &Ray, radius: f64, candidates: &mut RayCandidates<'_>);
 }
 
 impl CompiledSearches for Aabb<f64> {
@@ -61,6 +65,10 @@ impl CompiledSearches for Aabb<f64> {
 
     fn rays<'r>(tree: &PacketTree, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: IntersectFn<'_, 'r>) {
         tree.run_ray(ray, radius, hits, intersect);
+    }
+
+    fn ray_candidates(tree: &PacketTree, ray: &Ray, radius: f64, candidates: &mut RayCandidates<'_>) {
+        tree.run_ray(ray, radius, candidates, &|_, _| None);
     }
 }
 
@@ -86,5 +94,13 @@ impl<V: CompiledSearches> PacketTree<V> {
         let only_crossings = hits.only_crossings();
         let Some(radius) = self.search_radius(ray, only_crossings) else { return };
         V::rays(self, ray, radius, hits, &intersection(set, ray, only_crossings));
+    }
+
+    /// Calls `visit` for the primitives that a ray may hit.
+    #[inline]
+    #[doc(hidden)]
+    pub fn search_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId) -> f64) {
+        let Some(radius) = self.search_radius(ray, false) else { return };
+        V::ray_candidates(self, ray, radius, &mut RayCandidates::new(visit));
     }
 }

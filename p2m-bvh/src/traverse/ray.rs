@@ -45,7 +45,7 @@ impl<V: VolumeNodes> PacketTree<V> {
     #[inline(always)]
     pub(super) fn search_radius(&self, ray: &Ray, only_crossings: bool) -> Option<f64> {
         let radius = if self.leaves.has_non_triangles && !only_crossings { ray.radius } else { 0.0 };
-        (self.root != NodeRef::NONE && !misses_scene(ray, radius, &self.frame, &self.half_extent)).then_some(radius)
+        (self.root != NodeRef::NONE && !misses_scene(ray, radius + ray.origin_error, &self.frame, &self.half_extent)).then_some(radius)
     }
 }
 
@@ -100,6 +100,9 @@ impl<'r, C: RayCollector<'r>> ExactTests<'_, 'r, C> {
             return ControlFlow::Continue(());
         }
         self.hits.visit_primitive();
+        if let Some(flow) = self.hits.take_candidate(id) {
+            return flow;
+        }
         let limit = self.hits.limit();
         let (indices, count) = packet.vertices_of(lane);
         let crossing = if count == 0 {

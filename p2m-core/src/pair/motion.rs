@@ -34,6 +34,34 @@ impl Motion {
         })
     }
 
+    /// Returns the vertex that the motion moves to `point`, each coordinate rounded. It differs from the exact one by at
+    /// most 32 u (|p| + |t|), where p is the point and t the translation.
+    #[must_use]
+    pub fn apply_inverse(&self, point: V3) -> V3 {
+        let t = &self.translation;
+        self.apply_inverse_to_vector([point[0] - t[0], point[1] - t[1], point[2] - t[2]])
+    }
+
+    /// Returns the vector that the motion turns into `vector`, each component rounded. The translation has no effect on
+    /// vectors. The result differs from the exact one by at most 32 u |v|.
+    #[must_use]
+    pub fn apply_inverse_to_vector(&self, vector: V3) -> V3 {
+        let m = &self.matrix;
+        std::array::from_fn(|k| m[(0, k)] * vector[0] + m[(1, k)] * vector[1] + m[(2, k)] * vector[2])
+    }
+
+    /// Returns the translation.
+    #[must_use]
+    pub fn translation(&self) -> V3 {
+        self.translation.into()
+    }
+
+    /// Returns whether the rotation and the translation are finite. The rotation of a zero quaternion is not.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.matrix.iter().chain(&self.translation).all(|x| x.is_finite())
+    }
+
     /// Returns a box around the moved vertices of a box, as [`apply`](Self::apply) rounds them.
     #[must_use]
     pub fn apply_to_box(&self, bounds: &Aabb<f64>) -> Aabb<f64> {

@@ -41,6 +41,14 @@ pub trait Collector {
         false
     }
 
+    /// Returns the distance by which a primitive may be farther than the nearest one and is still needed, for a
+    /// collector that [keeps near ties](Self::keeps_near_ties). A search adds it to the upper bounds that its filters
+    /// find, before it passes them on. The default is 0.
+    #[inline(always)]
+    fn near_tie_slack(&self) -> f64 {
+        0.0
+    }
+
     /// Returns whether the collector may accept less than the exact result. A search then asks
     /// [`prune_given_incumbent`](Self::prune_given_incumbent) and [`may_stop`](Self::may_stop). The default is `false`.
     #[inline(always)]

@@ -24,6 +24,12 @@ pub trait RayCollector<'r> {
         true
     }
 
+    /// Takes a primitive that the filters of a search let pass, in place of its exact test, and breaks if no other one is
+    /// needed. It returns `None`, as by default, if the primitive is to be tested.
+    fn take_candidate(&mut self, _primitive: PrimitiveId) -> Option<ControlFlow<()>> {
+        None
+    }
+
     /// Takes a hit, in any order, and breaks if no other hit is needed.
     fn offer(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()>;
 
@@ -51,6 +57,36 @@ pub struct Hits<'r> {
     /// The number of hits, in the modes that count.
     #[doc(hidden)]
     pub count: usize,
+}
+
+/// A collector that passes all primitives which a ray may hit to a function, and tests none of them.
+#[doc(hidden)]
+pub struct RayCandidates<'a> {
+    limit: f64,
+    visit: &'a mut dyn FnMut(PrimitiveId) -> f64,
+}
+
+impl<'a> RayCandidates<'a> {
+    /// Creates the collector of [`RayQuery::visit_ray_candidates`](super::RayQuery::visit_ray_candidates).
+    pub fn new(visit: &'a mut dyn FnMut(PrimitiveId) -> f64) -> Self {
+        Self { limit: f64::INFINITY, visit }
+    }
+}
+
+impl<'r> RayCollector<'r> for RayCandidates<'_> {
+    fn limit(&self) -> f64 {
+        self.limit
+    }
+
+    fn take_candidate(&mut self, primitive: PrimitiveId) -> Option<ControlFlow<()>> {
+        self.limit = self.limit.min((self.visit)(primitive));
+        let is_done = self.limit == f64::NEG_INFINITY;
+        Some(if is_done { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    }
+
+    fn offer(&mut self, _: PrimitiveId, _: &Crossing<'r>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 }
 
 /// The hits that a query needs.

@@ -61,6 +61,9 @@ pub struct Ray {
     /// The distance within which segments and points are hit, in units of the scene.
     #[doc(hidden)]
     pub radius: f64,
+    /// A bound on the error of the origin, which [`RayQuery::visit_ray_candidates`](super::RayQuery) allows for.
+    #[doc(hidden)]
+    pub origin_error: f64,
 }
 
 impl Ray {
@@ -76,7 +79,7 @@ impl Ray {
         if direction == [0.0; 3] {
             return Err(RayError::ZeroDirection);
         }
-        Ok(Self { origin, direction, min: 0.0, max: f64::INFINITY, radius: 0.0 })
+        Ok(Self { origin, direction, min: 0.0, max: f64::INFINITY, radius: 0.0, origin_error: 0.0 })
     }
 
     /// Creates the ray from a point through another one, which has the parameter 1 up to the rounding
@@ -115,6 +118,13 @@ impl Ray {
     /// It returns [`RayError::Radius`] if the radius is negative or not finite.
     pub fn with_radius(self, radius: f64) -> Result<Self, RayError> {
         if radius >= 0.0 && radius.is_finite() { Ok(Self { radius, ..self }) } else { Err(RayError::Radius(radius)) }
+    }
+
+    /// Sets a bound on the error of the origin, in units of the scene.
+    /// [`visit_ray_candidates`](super::RayQuery::visit_ray_candidates) allows for it, and hits do not depend on it.
+    #[must_use]
+    pub fn with_origin_error(self, origin_error: f64) -> Self {
+        Self { origin_error, ..self }
     }
 
     /// Returns the point of parameter 0.
