@@ -48,6 +48,7 @@
 //! | the primitives that intersect a box | [`BoxQuery`] | trees and brute force |
 //! | the primitive nearest to a segment or a triangle, or whether one is near | [`pair::PairQuery`] | trees and brute force |
 //! | the nearest points of two scenes, one of which may move | [`bvh::TreeIndex::closest_pair`] | trees |
+//! | any of these in a scene of moving objects | [`instances::Instances`] | objects of every index |
 //! | the cost of a query | [`Inspect`] | every index |
 //!
 //! # Which index
@@ -82,6 +83,7 @@
 //! | `kdop` | [`KdopTree`] | yes |
 //! | `advisor` | `advisor`: which index a scene and its queries call for | no |
 //! | `field` | [`field`]: distances on grids, signs, winding numbers | yes |
+//! | `instances` | [`instances`]: scenes of moving objects | yes |
 //! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `mixed` | [`scene`]: reading scenes and points from files | yes |
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -111,6 +113,9 @@ pub use p2m_core::{
 /// Distance fields, and on which side of a surface a point is.
 #[cfg(feature = "field")]
 pub use p2m_field as field;
+/// Scenes of moving objects: instances of indexes, each with a rotation and a translation.
+#[cfg(feature = "instances")]
+pub use p2m_instances as instances;
 /// Everything else about interception indexes: partitions, locators, Delaunay tetrahedra.
 #[cfg(feature = "interception")]
 pub use p2m_interception as interception;

@@ -40,7 +40,15 @@ impl RayLine {
         };
         let divisor = d[axis].abs();
         let direction = [d[0] / divisor, d[1] / divisor, d[2] / divisor];
-        Self { origin: ray.origin, direction, axis, divisor, origin_length: 0.0, radius, origin_error: ray.origin_error }
+        Self {
+            origin: ray.origin,
+            direction,
+            axis,
+            divisor,
+            origin_length: 0.0,
+            radius,
+            origin_error: ray.origin_error,
+        }
     }
 
     /// The line of a ray, with the projection of a point onto it as its origin.

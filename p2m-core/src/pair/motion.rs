@@ -65,15 +65,35 @@ impl Motion {
     /// Returns a box around the moved vertices of a box, as [`apply`](Self::apply) rounds them.
     #[must_use]
     pub fn apply_to_box(&self, bounds: &Aabb<f64>) -> Aabb<f64> {
-        /// A bound on all roundings of a coordinate, relative to the largest magnitudes that are summed.
-        const MARGIN: f64 = 64.0 * f64::EPSILON;
-        let (low, high) = (bounds.min.coords * 0.5, bounds.max.coords * 0.5);
-        let (centre, half) = (low + high, high - low);
-        let moved = Point3::from(self.apply(centre.into()));
+        let (centre, half) = centre_and_half(bounds);
         let magnitudes = self.matrix.abs();
         let size = magnitudes * (centre.abs() + half) + self.translation.abs();
-        // The smallest normal number covers what underflows.
-        let reach = magnitudes * half + size * MARGIN + Vector3::repeat(f64::MIN_POSITIVE);
-        Aabb { min: moved - reach, max: moved + reach }
+        box_around(self.apply(centre.into()), magnitudes * half, size)
     }
+
+    /// Returns a box around the vertices of a box after the inverse of the motion, as
+    /// [`apply_inverse`](Self::apply_inverse) rounds them.
+    #[must_use]
+    pub fn apply_inverse_to_box(&self, bounds: &Aabb<f64>) -> Aabb<f64> {
+        let (centre, half) = centre_and_half(bounds);
+        let magnitudes = self.matrix.abs().transpose();
+        let size = magnitudes * (centre.abs() + half + self.translation.abs());
+        box_around(self.apply_inverse(centre.into()), magnitudes * half, size)
+    }
+}
+
+/// Returns the centre of a box and half of its diagonal.
+fn centre_and_half(bounds: &Aabb<f64>) -> (Vector3<f64>, Vector3<f64>) {
+    let (low, high) = (bounds.min.coords * 0.5, bounds.max.coords * 0.5);
+    (low + high, high - low)
+}
+
+/// Returns the box of a centre and half of a diagonal, enlarged for the roundings of sums of magnitudes up to `size`.
+fn box_around(centre: V3, half: Vector3<f64>, size: Vector3<f64>) -> Aabb<f64> {
+    /// A bound on all roundings of a coordinate, relative to the largest magnitudes that are summed.
+    const MARGIN: f64 = 64.0 * f64::EPSILON;
+    // The smallest normal number covers what underflows.
+    let reach = half + size * MARGIN + Vector3::repeat(f64::MIN_POSITIVE);
+    let centre = Point3::from(centre);
+    Aabb { min: centre - reach, max: centre + reach }
 }

@@ -151,6 +151,12 @@ impl Ray {
         self.radius
     }
 
+    /// Returns the bound on the error of the origin.
+    #[must_use]
+    pub fn origin_error(&self) -> f64 {
+        self.origin_error
+    }
+
     /// Returns the point of a parameter, rounded. It is NaN if the parameter is infinite and the direction has a zero.
     #[must_use]
     pub fn at(&self, parameter: f64) -> Point3<f64> {

@@ -1,0 +1,1 @@
+//! Queries for the primitives nearest to a shape.
