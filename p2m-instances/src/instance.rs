@@ -42,7 +42,8 @@ pub struct Instance<I: ?Sized> {
 /// Let q be the query, t the translation and v a vertex. A moved vertex errs by at most 32 u (|v| + |t|) and a query
 /// that is moved back by 32 u (|q| + |t|). The kernel errs by 8 u (|q| + |t| + |v|) in either frame. That is less than 80
 /// u (|q| + |t| + |v|). For rays, whose tests are exact, the direction errs by 32 u of itself, which is 32 u (|q| + |t| +
-/// |v|) where the ray reaches the object, and a radius changes by less than 32 u of itself; together 96 u.
+/// |v|) where the ray reaches the object, and a radius changes by less than 32 u of itself; together 96 u. Both leave room
+/// for another two errors of the kernel and for the rounding of the margin.
 const MARGIN: f64 = 64.0 * f64::EPSILON;
 
 impl<I: ?Sized> Instance<I> {

@@ -16,7 +16,7 @@ pub(crate) type Expected = (InstanceId, usize, Isometry3<f64>);
 
 /// Returns a motion: none, a translation, or a rotation with a translation; small, about as large as an object, or far.
 pub(crate) fn motion(rng: &mut impl Rng, size: f64) -> Isometry3<f64> {
-    let far = [0.0, 0.01, 0.5, 1.0, 3.0, 1e3][rng.random_range(0..6)] * size;
+    let far = [0.0, 0.01, 0.5, 1.0, 3.0, 1e3, 1e12][rng.random_range(0..7)] * size;
     let quarter = std::f64::consts::FRAC_PI_2;
     let turn = [Vector3::zeros(), Vector3::z() * quarter, vector(rng) * 3.0][rng.random_range(0..3)];
     Isometry3::new(vector(rng) * far, turn)
