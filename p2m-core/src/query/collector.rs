@@ -43,7 +43,7 @@ pub trait Collector {
 
     /// Returns the distance by which a primitive may be farther than the nearest one and is still needed, for a
     /// collector that [keeps near ties](Self::keeps_near_ties). A search adds it to the upper bounds that its filters
-    /// find, before it passes them on. The default is 0.
+    /// find, before it passes them on, and does not rely on lists of the primitives that can be nearest. The default is 0.
     #[inline(always)]
     fn near_tie_slack(&self) -> f64 {
         0.0
