@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use p2m_bvh::AabbTree;
-use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Index, NearQuery, PrimitiveId, Ray, RayQuery, Soup};
+use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Element, Index, NearQuery, PrimitiveId, Ray, RayQuery, Soup};
 use p2m_instances::{InstanceError, Instances};
 use std::sync::Arc;
 
@@ -198,4 +198,32 @@ fn an_index_is_measured_once_for_all_of_its_instances() {
     ids.into_iter().for_each(|id| edit.remove(id).expect("in the scene"));
     drop(edit);
     assert_eq!(Arc::strong_count(&index), 1);
+}
+
+/// The points of a small grid are moved so far that rounding puts many of them into the same place. The nearest one is
+/// found by the margin alone, at the first level of instances and through a scene that is an instance itself.
+#[test]
+fn points_that_a_far_motion_rounds_together_are_told_apart_by_their_ids() {
+    let grid = |i: u32| f64::from(i % 12) * 3e-5;
+    let points: Vec<_> = (0..1728).map(|i| [grid(i), grid(i / 12), grid(i / 144)]).collect();
+    let ids: Vec<u32> = (0..1728).rev().collect();
+    let soup = Soup::new(points.iter().map(|p| Point3::from(*p)).collect(), ids.iter().map(|i| Element::Point(*i)));
+    let soup = soup.expect("valid");
+    let tree: Arc<dyn Index + '_> = Arc::new(AabbTree::build(&soup, &Default::default()).expect("valid"));
+    let turned = Isometry3::new(Vector3::new(-7e11, 1e12, 3e11), Vector3::new(0.3, 0.2, 0.1));
+    let mut inner = Instances::new();
+    inner.edit().add("grid", &tree, Isometry3::identity()).expect("valid");
+    let inner: Arc<dyn Index + '_> = Arc::new(inner);
+    for index in [&tree, &inner] {
+        let mut scene = Instances::new();
+        scene.edit().add("far", index, turned).expect("valid");
+        let truth = BruteForce::new(&scene).expect("finite");
+        for i in 0..60 {
+            let near = turned * Point3::new(grid(i), grid(2 * i), 4e-4 * f64::from(i % 3));
+            let ids = |found: Vec<p2m_core::Closest<f64>>| found.iter().map(|c| c.primitive).collect::<Vec<_>>();
+            let nearest = scene.closest_point(&near).map(|found| found.primitive);
+            assert_eq!(nearest, truth.closest_point(&near).map(|found| found.primitive), "{i}");
+            assert_eq!(ids(scene.k_nearest(&near, 5, 1.0)), ids(truth.k_nearest(&near, 5, 1.0)), "{i}");
+        }
+    }
 }
