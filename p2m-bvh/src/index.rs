@@ -334,7 +334,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> RayQuery<T> for TreeIndex<T, S, V> 
         self.tree.search_hits(&self.set, ray, hits);
     }
 
-    fn visit_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId) -> f64) {
+    fn visit_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64) {
         self.tree.search_ray_candidates(ray, visit);
     }
 }

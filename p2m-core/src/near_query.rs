@@ -126,7 +126,7 @@ enum NearMode<'a> {
     All(&'a mut dyn FnMut(PrimitiveId, &Projection) -> ControlFlow<()>),
     /// Passes every primitive to a function, which returns the radius from then on. With a finite slack only primitives
     /// that are farther than the nearest one by at most that distance are needed.
-    Shrinking { slack: f64, visit: &'a mut dyn FnMut(PrimitiveId, &Projection) -> f64 },
+    Shrinking { slack: f64, visit: &'a mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64 },
     /// Keeps all primitives that may be nearest once the errors of the kernel are allowed for. The true distance of
     /// some primitive is at most `upper_bound`.
     Certification { upper_bound: f64, found: Vec<NearCandidate> },
@@ -182,23 +182,24 @@ impl<'a> Near<'a> {
         Self::within(radius, NearMode::All(visit))
     }
 
-    /// Creates a collector that calls `visit` for the primitives within a radius that shrinks during the search, for
-    /// [`NearQuery::search_near`] of another index.
+    /// Creates a collector that calls `visit` for all primitives within a radius that shrinks during the search, for an
+    /// index that is made of others. Some primitives beyond the radius may be visited as well.
     ///
-    /// `visit` returns the radius from then on. A larger one than before has no effect, and a negative one ends the
-    /// search. `slack` is the distance by which a primitive may be farther than the nearest one of the index and is
-    /// still needed; it is infinite if all primitives within the radius are. Lengths are in units of the scene and in
-    /// f64, and the radius is inclusive.
+    /// `visit` gets the id of a primitive, and its vertices if the search has them at hand; otherwise it gets no vertices.
+    /// It returns the radius from then on. A larger one than before has no effect, and a negative one ends the search.
+    /// `slack` is the distance by which a primitive may be farther than the nearest one of the index and is still needed;
+    /// it is infinite if all primitives within the radius are. Lengths are in units of the scene and in f64, and the
+    /// radius is inclusive.
     ///
     /// ```
     /// use nalgebra::Point3;
-    /// use p2m_core::{BruteForce, Near, NearQuery, Point};
+    /// use p2m_core::{BruteForce, Near, NearQuery, Point, PrimitiveId};
     ///
     /// let index = BruteForce::new([3.0, 1.0, 2.0].map(|x| Point::new(Point3::new(x, 0.0, 0.0))))?;
     /// let mut visited = Vec::new();
-    /// let mut visit = |id: p2m_core::PrimitiveId, projection: &p2m_core::Projection| {
+    /// let mut visit = |id: PrimitiveId, _: &[[f64; 3]]| {
     ///     visited.push(id.index());
-    ///     projection.key.distance()
+    ///     index.set()[id.index()].position.x
     /// };
     /// index.search_near(&Point3::origin(), &mut Near::shrinking(f64::INFINITY, f64::INFINITY, &mut visit));
     /// // The last point is farther than the second, to whose distance the radius has shrunk.
@@ -206,7 +207,7 @@ impl<'a> Near<'a> {
     /// # Ok::<(), p2m_core::BuildError>(())
     /// ```
     #[must_use]
-    pub fn shrinking(radius: f64, slack: f64, visit: &'a mut dyn FnMut(PrimitiveId, &Projection) -> f64) -> Self {
+    pub fn shrinking(radius: f64, slack: f64, visit: &'a mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64) -> Self {
         let mut near = Self::within(radius, NearMode::Shrinking { slack, visit });
         near.shrink(radius);
         near
@@ -293,6 +294,16 @@ impl Collector for Near<'_> {
         self.is_single_nearest()
     }
 
+    fn take_vertices(&mut self, id: PrimitiveId, vertices: &[[f64; 3]]) -> bool {
+        let is_done = self.is_done();
+        let NearMode::Shrinking { visit, .. } = &mut self.mode else { return false };
+        if !is_done {
+            let radius = visit(id, vertices);
+            self.shrink(radius);
+        }
+        true
+    }
+
     fn offer(&mut self, id: PrimitiveId, projection: Projection) {
         let key = projection.key;
         if let NearMode::Certification { upper_bound, found } = &mut self.mode {
@@ -340,7 +351,7 @@ impl Collector for Near<'_> {
                 }
             }
             NearMode::Shrinking { visit, .. } => {
-                let radius = visit(id, &projection);
+                let radius = visit(id, &[]);
                 self.shrink(radius);
             }
             NearMode::Certification { .. } => {}

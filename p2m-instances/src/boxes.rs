@@ -30,7 +30,7 @@ fn visit_instance<T: Real, I: Index<T> + ?Sized>(
         return ControlFlow::Continue(());
     }
     let mut test = |id| {
-        let intersects = instance.moved_shape::<T>(id).intersects_box(bounds);
+        let intersects = instance.moved::<T>(id, &[]).shape().intersects_box(bounds);
         if intersects { visit(instance.scene_id(id)) } else { ControlFlow::Continue(()) }
     };
     match instance.object.index.as_box_query() {

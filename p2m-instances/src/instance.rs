@@ -123,21 +123,48 @@ impl<I: ?Sized> Instance<I> {
         MARGIN * (query_size + self.reach) + f64::MIN_POSITIVE
     }
 
-    /// Returns a primitive of the object after the motion.
+    /// Returns a primitive of the object after the motion. `vertices` are those in the frame of the object, if they are
+    /// known.
     ///
     /// # Panics
     /// Panics if the index has lost a primitive that it had when the instance was added.
-    pub(crate) fn moved_shape<T: Real>(&self, local: PrimitiveId) -> Shape<f64>
+    pub(crate) fn moved<T: Real>(&self, local: PrimitiveId, vertices: &[[f64; 3]]) -> MovedPrimitive
     where
         I: Index<T>,
     {
-        let vertex = |v: &Point3<T>| Point3::from(self.motion.apply([v.x.to_f64(), v.y.to_f64(), v.z.to_f64()]));
-        let shape = self.object.index.shape(local);
-        match shape.as_ref().map(Shape::vertices) {
-            Some([a]) => Point::new(vertex(a)).into(),
-            Some([a, b]) => Segment::new(vertex(a), vertex(b)).into(),
-            Some([a, b, c]) => Triangle::new(vertex(a), vertex(b), vertex(c)).into(),
-            _ => panic!("all primitives had vertices when the instance was added"),
+        let mut moved = MovedPrimitive { vertices: [[0.0; 3]; 3], len: vertices.len() };
+        if moved.len > 0 {
+            moved.vertices.iter_mut().zip(vertices).for_each(|(to, v)| *to = self.motion.apply(*v));
+        } else {
+            let shape = self.object.index.shape(local).expect("the index has all primitives that it was added with");
+            let vertices = shape.vertices();
+            let vertex = |v: &Point3<T>| self.motion.apply([v.x.to_f64(), v.y.to_f64(), v.z.to_f64()]);
+            moved.vertices.iter_mut().zip(vertices).for_each(|(to, v)| *to = vertex(v));
+            moved.len = vertices.len();
+        }
+        moved
+    }
+}
+
+/// The vertices of a primitive after a motion.
+pub(crate) struct MovedPrimitive {
+    vertices: [[f64; 3]; 3],
+    len: usize,
+}
+
+impl MovedPrimitive {
+    /// Returns the one to three vertices.
+    pub(crate) fn vertices(&self) -> &[[f64; 3]] {
+        &self.vertices[..self.len]
+    }
+
+    /// Returns the primitive as a shape.
+    pub(crate) fn shape(&self) -> Shape<f64> {
+        let [a, b, c] = self.vertices.map(Point3::from);
+        match self.len {
+            1 => Point::new(a).into(),
+            2 => Segment::new(a, b).into(),
+            _ => Triangle::new(a, b, c).into(),
         }
     }
 }

@@ -163,6 +163,6 @@ impl<T: Real, I: Index<T> + ?Sized> PrimitiveSet<f64> for Instances<T, I> {
 
     fn get(&self, id: PrimitiveId) -> Shape<f64> {
         let (instance, local) = self.owner_of(id).expect("the id of a primitive of the scene");
-        instance.moved_shape(local)
+        instance.moved(local, &[]).shape()
     }
 }

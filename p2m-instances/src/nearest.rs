@@ -6,8 +6,8 @@ use nalgebra::Point3;
 use p2m_core::kernel::power_of_two;
 use p2m_core::storage::Writer;
 use p2m_core::{
-    Best, BoxQuery, CertifiedQuery, ClosestPoint, Collector, Index, Inspect, Near, NearQuery, Primitive, PrimitiveId,
-    RayQuery, Real, Shape, StatsCollector,
+    Best, BoxQuery, CertifiedQuery, ClosestPoint, Collector, Found, Index, Inspect, Near, NearQuery, Primitive,
+    PrimitiveId, QueryOptions, RayQuery, Real, Shape, StatsCollector,
 };
 
 /// The factor 1 + 16 u, by which a value of a few roundings becomes an upper bound.
@@ -23,12 +23,21 @@ impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
             return self.instances.iter().for_each(|instance| search_instance::<T, I, C>(instance, &query, collector));
         };
         let boxes = tree.tree.set();
-        let mut visit = |id: PrimitiveId, _: &_| {
+        let mut visit = |id: PrimitiveId, _: &[[f64; 3]]| {
             search_instance::<T, I, C>(&self.instances[boxes[id.index()].position], &query, collector);
             distance_limit(collector)
         };
         // The box of an instance is not above the key of a primitive inside, so its distance needs no margin.
         tree.tree.search_near(&query, &mut Near::shrinking(f64::INFINITY, f64::INFINITY, &mut visit));
+    }
+}
+
+impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
+    /// Offers the primitive of an id, if the scene has it.
+    fn offer_primitive(&self, id: Option<PrimitiveId>, query: &Point3<T>, best: &mut Best<T>) {
+        if let Some((instance, local)) = id.and_then(|id| self.owner_of(id)) {
+            offer::<T, I, _>(instance, local, &[], &query.map(T::to_f64), best);
+        }
     }
 }
 
@@ -49,7 +58,7 @@ fn search_instance<T: Real, I: Index<T> + ?Sized, C: Collector>(
     let margin = instance.margin(size((*query).into())) + size((rounded - moved_back).into()) * ROUND_UP;
     // A query or a margin beyond the range of the scalar leaves nothing to search by.
     if !(rounded.iter().all(|x| x.is_finite()) && margin.is_finite()) {
-        return instance.local_ids().for_each(|id| offer(instance, id, query, collector));
+        return instance.local_ids().for_each(|id| offer(instance, id, &[], query, collector));
     }
     let radius = distance_limit(collector) + margin;
     // The comparison is false for a radius of NaN, whose search ends before it begins.
@@ -61,33 +70,57 @@ fn search_instance<T: Real, I: Index<T> + ?Sized, C: Collector>(
     // have room.
     let is_single = collector.is_single_nearest();
     let slack = if is_single { 2.0 * margin + collector.near_tie_slack() } else { f64::INFINITY };
-    let mut visit = |id: PrimitiveId, _: &_| {
-        offer(instance, id, query, collector);
+    let mut visit = |id: PrimitiveId, vertices: &[[f64; 3]]| {
+        offer(instance, id, vertices, query, collector);
         distance_limit(collector) + margin
     };
     instance.object.index.search_near(&local, &mut Near::shrinking(radius, slack, &mut visit));
 }
 
-/// Offers a moved primitive to a collector.
+/// Offers a moved primitive to a collector. `vertices` are those in the frame of the object, if they are known.
 fn offer<T: Real, I: Index<T> + ?Sized, C: Collector>(
     instance: &Instance<I>,
     local: PrimitiveId,
+    vertices: &[[f64; 3]],
     query: &Point3<f64>,
     collector: &mut C,
 ) {
     let id = instance.scene_id(local);
+    let moved = instance.moved(local, vertices);
+    if collector.take_vertices(id, moved.vertices()) {
+        return;
+    }
     let square = if collector.keeps_near_ties() { f64::INFINITY } else { collector.prune_above_for_id(id) };
-    if let Some(projection) = instance.moved_shape::<T>(local).project_within(query, square) {
+    if let Some(projection) = moved.shape().project_within(query, square) {
         collector.offer(id, projection);
     }
 }
 
 impl<T: Real, I: Index<T> + ?Sized> ClosestPoint<T> for Instances<T, I> {
     fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
-        if let Some((instance, local)) = best.hint().and_then(|hint| self.owner_of(hint)) {
-            offer::<T, I, _>(instance, local, &query.map(T::to_f64), best);
-        }
+        self.offer_primitive(best.hint(), query, best);
         self.visit(query, best.minimum());
+    }
+
+    /// Each search begins with the primitive of the last answer, which is near if the queries are in a spatial order.
+    fn answer_queries(
+        &self,
+        queries: &[Point3<T>],
+        options: &QueryOptions<T>,
+        answered: &mut dyn FnMut(usize, Found<'_, T>),
+    ) {
+        let template = Best::new(options);
+        let mut last = None;
+        for (i, query) in queries.iter().enumerate() {
+            let mut best = template.clone();
+            if query.iter().all(|x| x.is_finite()) {
+                // Another candidate may change an approximate answer.
+                self.offer_primitive(last.filter(|_| !options.is_approximate()), query, &mut best);
+                self.search(query, &mut best);
+                last = best.minimum().distance_and_primitive().map(|(_, id)| id);
+            }
+            answered(i, best.found());
+        }
     }
 }
 
@@ -99,7 +132,7 @@ impl<T: Real, I: Index<T> + ?Sized> NearQuery<T> for Instances<T, I> {
 
 impl<I: Index<f64> + ?Sized> CertifiedQuery<f64> for Instances<f64, I> {
     fn shape(&self, id: PrimitiveId) -> Option<Shape<f64>> {
-        self.owner_of(id).map(|(instance, local)| instance.moved_shape(local))
+        self.owner_of(id).map(|(instance, local)| instance.moved(local, &[]).shape())
     }
 }
 

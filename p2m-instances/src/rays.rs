@@ -13,9 +13,9 @@ impl<T: Real, I: Index<T> + ?Sized> RayQuery<T> for Instances<T, I> {
         let only_crossings = hits.only_crossings();
         self.visit_instances(ray, &mut |instance, limit| {
             let mut limit = limit.min(hits.limit());
-            visit_instance(instance, ray, limit, &mut |id| {
-                let shape = instance.moved_shape::<T>(id);
-                if let Some(crossing) = Crossing::from_primitive(&shape, ray, hits.limit(), only_crossings) {
+            visit_instance(instance, ray, limit, &mut |id, vertices| {
+                let moved = instance.moved::<T>(id, vertices);
+                if let Some(crossing) = Crossing::from_vertices(ray, moved.vertices(), hits.limit(), only_crossings) {
                     let flow = hits.offer(instance.scene_id(id), &crossing);
                     limit = if flow.is_break() { f64::NEG_INFINITY } else { hits.limit() };
                 }
@@ -25,10 +25,11 @@ impl<T: Real, I: Index<T> + ?Sized> RayQuery<T> for Instances<T, I> {
         });
     }
 
-    fn visit_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId) -> f64) {
+    fn visit_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64) {
         self.visit_instances(ray, &mut |instance, mut limit| {
-            visit_instance(instance, ray, limit, &mut |id| {
-                limit = limit.min(visit(instance.scene_id(id)));
+            visit_instance(instance, ray, limit, &mut |id, vertices| {
+                let moved = instance.moved::<T>(id, vertices);
+                limit = limit.min(visit(instance.scene_id(id), moved.vertices()));
                 limit
             });
             limit
@@ -48,7 +49,7 @@ impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
         match &self.tree {
             Some(tree) => {
                 let boxes = tree.tree.set();
-                tree.tree.visit_ray_candidates(ray, &mut |id| visit(&self.instances[boxes[id.index()].position]));
+                tree.tree.visit_ray_candidates(ray, &mut |id, _| visit(&self.instances[boxes[id.index()].position]));
             }
             None => {
                 let _ = self.instances.iter().find(|instance| visit(instance) == f64::NEG_INFINITY);
@@ -63,7 +64,7 @@ fn visit_instance<T: Real, I: Index<T> + ?Sized>(
     instance: &Instance<I>,
     ray: &Ray,
     limit: f64,
-    visit: &mut dyn FnMut(PrimitiveId) -> f64,
+    visit: &mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64,
 ) {
     if limit < ray.range()[0] {
         return;
@@ -71,7 +72,7 @@ fn visit_instance<T: Real, I: Index<T> + ?Sized>(
     match (instance.object.index.as_ray_query(), local_ray(instance, ray, limit)) {
         (Some(index), Some(local)) => index.visit_ray_candidates(&local, visit),
         _ => {
-            let _ = instance.local_ids().find(|id| visit(*id) == f64::NEG_INFINITY);
+            let _ = instance.local_ids().find(|id| visit(*id, &[]) == f64::NEG_INFINITY);
         }
     }
 }

@@ -99,7 +99,7 @@ impl<V: CompiledSearches> PacketTree<V> {
     /// Calls `visit` for the primitives that a ray may hit.
     #[inline]
     #[doc(hidden)]
-    pub fn search_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId) -> f64) {
+    pub fn search_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[V3]) -> f64) {
         let Some(radius) = self.search_radius(ray, false) else { return };
         V::ray_candidates(self, ray, radius, &mut RayCandidates::new(visit));
     }

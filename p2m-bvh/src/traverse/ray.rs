@@ -101,15 +101,18 @@ impl<'r, C: RayCollector<'r>> ExactTests<'_, 'r, C> {
             return ControlFlow::Continue(());
         }
         self.hits.visit_primitive();
-        if let Some(flow) = self.hits.take_candidate(id) {
-            return flow;
-        }
         let limit = self.hits.limit();
         let (indices, count) = packet.vertices_of(lane);
         let crossing = if count == 0 {
+            if let Some(flow) = self.hits.take_candidate(id, &[]) {
+                return flow;
+            }
             (self.intersect)(id, limit)
         } else {
             let vertices = indices.map(|index| self.leaves.vertices[index]);
+            if let Some(flow) = self.hits.take_candidate(id, &vertices[..count]) {
+                return flow;
+            }
             Crossing::from_vertices(self.ray, &vertices[..count], limit, self.only_crossings)
         };
         match crossing {

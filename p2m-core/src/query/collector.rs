@@ -89,6 +89,14 @@ pub trait Collector {
         false
     }
 
+    /// Takes a primitive by its one to three vertices, in place of the projection of the query, and returns whether it did.
+    /// A search that has vertices at hand calls it before it evaluates a candidate. The default takes none.
+    #[inline(always)]
+    fn take_vertices(&mut self, id: PrimitiveId, vertices: &[[f64; 3]]) -> bool {
+        let _ = (id, vertices);
+        false
+    }
+
     /// Takes a candidate.
     fn offer(&mut self, id: PrimitiveId, projection: Projection);
 

@@ -3,6 +3,7 @@
 use super::crossing::Crossing;
 use super::hit::Hit;
 use crate::PrimitiveId;
+use crate::kernel::vector::V3;
 use std::ops::ControlFlow;
 
 /// A collector of hits: it decides which hits a search has to find, and takes them.
@@ -25,8 +26,9 @@ pub trait RayCollector<'r> {
     }
 
     /// Takes a primitive that the filters of a search let pass, in place of its exact test, and breaks if no other one is
-    /// needed. It returns `None`, as by default, if the primitive is to be tested.
-    fn take_candidate(&mut self, _primitive: PrimitiveId) -> Option<ControlFlow<()>> {
+    /// needed. It returns `None`, as by default, if the primitive is to be tested. `vertices` are those of the primitive,
+    /// or none if the search does not have them.
+    fn take_candidate(&mut self, _primitive: PrimitiveId, _vertices: &[V3]) -> Option<ControlFlow<()>> {
         None
     }
 
@@ -63,12 +65,12 @@ pub struct Hits<'r> {
 #[doc(hidden)]
 pub struct RayCandidates<'a> {
     limit: f64,
-    visit: &'a mut dyn FnMut(PrimitiveId) -> f64,
+    visit: &'a mut dyn FnMut(PrimitiveId, &[V3]) -> f64,
 }
 
 impl<'a> RayCandidates<'a> {
     /// Creates the collector of [`RayQuery::visit_ray_candidates`](super::RayQuery::visit_ray_candidates).
-    pub fn new(visit: &'a mut dyn FnMut(PrimitiveId) -> f64) -> Self {
+    pub fn new(visit: &'a mut dyn FnMut(PrimitiveId, &[V3]) -> f64) -> Self {
         Self { limit: f64::INFINITY, visit }
     }
 }
@@ -78,8 +80,8 @@ impl<'r> RayCollector<'r> for RayCandidates<'_> {
         self.limit
     }
 
-    fn take_candidate(&mut self, primitive: PrimitiveId) -> Option<ControlFlow<()>> {
-        self.limit = self.limit.min((self.visit)(primitive));
+    fn take_candidate(&mut self, primitive: PrimitiveId, vertices: &[V3]) -> Option<ControlFlow<()>> {
+        self.limit = self.limit.min((self.visit)(primitive, vertices));
         let is_done = self.limit == f64::NEG_INFINITY;
         Some(if is_done { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     }

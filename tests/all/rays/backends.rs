@@ -59,7 +59,7 @@ impl<T: Real, S: PrimitiveSet<T>> RayQuery<T> for Reversed<T, S> {
         let _ = offered.all.iter().try_for_each(|(id, crossing)| hits.offer(*id, crossing));
     }
 
-    fn visit_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId) -> f64) {
+    fn visit_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64) {
         self.0.visit_ray_candidates(ray, visit);
     }
 }
