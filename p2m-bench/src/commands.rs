@@ -223,7 +223,9 @@ fn time_instances(arguments: &InstancesArguments) -> Result<bool> {
     let &InstancesArguments { ref rounds, instances, triangles, rays } = arguments;
     let effort = rounds.effort(1_000_000);
     println!("{}\n{}", provenance(None), in_rounds("CPU time of one thread", &effort));
-    let is_good = instances::print(&rounds.scenes, &instances::Size { instances, triangles, rays }, &effort)?;
+    let size = instances::Size { instances, triangles, rays };
+    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let is_good = one_thread.install(|| instances::print(&rounds.scenes, &size, &effort))?;
     println!("{}", if is_good { "All answers are equal." } else { "DIFFERENT answers." });
     Ok(is_good)
 }

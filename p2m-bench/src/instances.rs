@@ -20,7 +20,8 @@ use std::sync::Arc;
 
 /// One index over all is left out if there are more triangles than this, for lack of memory.
 const MAX_TRIANGLES_OF_ONE_INDEX: usize = 25_000_000;
-/// The part of a ray's direction by which all instances move between two frames, in diagonals of an object.
+/// The largest distance by which an instance moves along an axis between two frames, in diagonals of an object, and the
+/// largest angle by which it turns about an axis, in radians.
 const STEP: f64 = 0.02;
 
 type Tree<S> = AabbTree<f64, S>;
@@ -37,7 +38,7 @@ pub(crate) struct Size {
 }
 
 /// Times updates, points and rays in a scene of instances of meshes. Returns whether all answers are equal.
-pub(crate) fn print(scenes: &[impl AsRef<Path>], size: &Size, effort: &Effort) -> Result<bool> {
+pub(crate) fn print(scenes: &[impl AsRef<Path> + Sync], size: &Size, effort: &Effort) -> Result<bool> {
     let objects: Vec<Arc<Tree<Soup<f64>>>> = (scenes.iter())
         .map(|path| {
             let soup = object(&p2m_mixed::read_scene(path.as_ref())?.soup, size.triangles)?;

@@ -54,6 +54,24 @@ fn check(
             assert!(about.lower_bound <= certified.distance && about.distance <= found.distance * 1.3 * 1.000_001);
         }
     }
+    // A batch begins each search with the last answer, and skips queries that are not finite.
+    let mut batch = [queries, &[Point3::new(0.0, f64::INFINITY, 0.0)], queries].concat();
+    batch.reverse();
+    for options in [exact, exact.with_hint(PrimitiveId::new(moved.len() / 2))] {
+        let mut answers = vec![None; batch.len()];
+        scene.closest_points_into(&batch, &options, &mut answers);
+        let expected: Vec<_> = batch.iter().map(|q| truth.closest_point(q).as_ref().map(compared_fields)).collect();
+        assert_eq!(
+            answers.iter().map(|a| a.as_ref().map(compared_fields)).collect::<Vec<_>>(),
+            expected,
+            "case {case}"
+        );
+    }
+    let about = exact.with_epsilon(0.2);
+    let mut answers = vec![None; batch.len()];
+    scene.closest_points_into(&batch, &about, &mut answers);
+    let single: Vec<_> = batch.iter().map(|q| scene.closest_point_with(q, &about)).collect();
+    assert_eq!(answers, single, "case {case}");
     assert_eq!(scene.closest_point(&Point3::new(f64::NAN, 0.0, 0.0)), None);
     let visited = QueryCost::measure(scene, queries).primitives.mean;
     assert!(visited <= moved.len() as f64 && (moved.is_empty() || queries.is_empty() || visited >= 1.0), "{visited}");
