@@ -140,7 +140,7 @@ pub use p2m_kdop::{KdopOptions, KdopTree};
 pub use p2m_mixed as scene;
 
 #[doc = include_str!("../docs/guide.md")]
-#[cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
+#[cfg(all(feature = "bvh", feature = "instances", feature = "interception", feature = "kdop", feature = "mixed"))]
 pub mod guide {}
 
 /// The README's example, compiled and run.

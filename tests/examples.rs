@@ -1,5 +1,5 @@
 //! Runs the example programs and checks their output.
-#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
+#![cfg(all(feature = "bvh", feature = "instances", feature = "interception", feature = "kdop", feature = "mixed"))]
 
 use p2m::{AabbTree, BuildIndex, ClosestPoint};
 use std::path::{Path, PathBuf};
@@ -100,6 +100,19 @@ fn a_sphere_that_is_moved_is_as_far_as_it_was_moved() {
     assert!((there - back).abs() <= more && distance == there.max(back), "{text}");
     let same = output("hausdorff", &["scenes/knot_and_cables.obj", "scenes/knot_and_cables.obj"]);
     assert!(numbers(&same)[2] == 0.0, "{same}");
+}
+
+#[test]
+fn boxes_on_circles_pass_a_sensor_and_a_beam() {
+    // The only box starts at a distance of 2 from the post and turns once in two seconds.
+    let text = output("moving_boxes", &["1", "61"]);
+    assert!(text.starts_with("box 0 comes nearest to the sensor: 0.400000 in step 0\n"), "{text}");
+    let steps = numbers(text.lines().nth(1).expect("a line"));
+    assert_eq!(steps[1], 61.0);
+    // The beam passes 0.3 beside the axis, and the box is 0.1 thick across its circle: it passes there in both turns.
+    assert!((3.0..12.0).contains(&steps[0]), "{text}");
+    let many = output("moving_boxes", &[]);
+    assert!(numbers(many.lines().nth(1).expect("a line"))[0] > steps[0], "{many}");
 }
 
 #[test]

@@ -13,8 +13,7 @@ use std::marker::PhantomData;
 /// indexes of different types. [The crate](crate) has the contract and an example.
 ///
 /// Queries are methods of [`ClosestPoint`](p2m_core::ClosestPoint), [`NearQuery`](p2m_core::NearQuery),
-/// [`RayQuery`](p2m_core::RayQuery) and [`BoxQuery`](p2m_core::BoxQuery), and of
-/// [`PairQuery`](p2m_core::pair::PairQuery) if `I` implements it. A scene in f64 is also a
+/// [`RayQuery`](p2m_core::RayQuery) and [`BoxQuery`](p2m_core::BoxQuery). A scene in f64 is also a
 /// [`CertifiedQuery`](p2m_core::CertifiedQuery) and an [`Index`], so instances of it can be part of another scene.
 /// Certified answers in f32 are left out, because the moved vertices are not in f32.
 ///
@@ -28,7 +27,7 @@ use std::marker::PhantomData;
 /// # Complexity
 /// A query searches the tree of boxes in expected O(log n) for n instances, and the index of each instance whose box it
 /// reaches before the answer is known. Rays and boxes test all primitives of an object whose index does not answer
-/// them. A scene takes about 500 bytes for each instance besides its name.
+/// them. A scene takes at most 400 bytes for each instance besides its name.
 #[derive(Debug)]
 pub struct Instances<T: Real = f64, I: ?Sized = dyn Index<T>> {
     /// The instances in the order of their ids.

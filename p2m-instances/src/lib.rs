@@ -53,7 +53,6 @@ mod instance;
 mod instances;
 mod nearest;
 mod object;
-mod pairs;
 mod rays;
 
 pub use edit::Edit;

@@ -1,1 +1,0 @@
-//! Queries for the primitives nearest to a shape.
