@@ -29,7 +29,7 @@ fn main() -> anyhow::Result<()> {
     let mut arguments = std::env::args().skip(1);
     let count: usize = arguments.next().map_or(Ok(200), |text| text.parse())?;
     let steps: usize = arguments.next().map_or(Ok(90), |text| text.parse())?;
-    let (small, post) = (cuboid([0.1, 0.05, 0.2])?, cuboid([0.3, 0.3, 3.0])?);
+    let (small, post) = (cuboid([0.1, 0.15, 0.2])?, cuboid([0.3, 0.3, 3.0])?);
 
     // All boxes share one index.
     let mut scene = Instances::new();
@@ -41,7 +41,7 @@ fn main() -> anyhow::Result<()> {
     drop(edit);
 
     let sensor = Point3::new(1.5, 0.0, 0.0);
-    let beam = Ray::new(&Point3::new(12.0, 0.3, 0.1), &-Vector3::x())?;
+    let beam = Ray::new(&Point3::new(12.0, 0.2, 0.1), &-Vector3::x())?;
     let (mut nearest, mut interruptions): (Option<(f64, String, usize)>, usize) = (None, 0);
     for step in 0..steps {
         let time = step as f64 / 30.0;
