@@ -185,11 +185,11 @@ impl<'a> Near<'a> {
     /// Creates a collector that calls `visit` for all primitives within a radius that shrinks during the search, for an
     /// index that is made of others. Some primitives beyond the radius may be visited as well.
     ///
-    /// `visit` gets the id of a primitive, and its vertices if the search has them at hand; otherwise it gets no vertices.
-    /// It returns the radius from then on. A larger one than before has no effect, and a negative one ends the search.
-    /// `slack` is the distance by which a primitive may be farther than the nearest one of the index and is still needed;
-    /// it is infinite if all primitives within the radius are. Lengths are in units of the scene and in f64, and the
-    /// radius is inclusive.
+    /// `visit` gets the id of a primitive, and its vertices if the search has them at hand; otherwise it gets no
+    /// vertices. It returns the radius from then on. A larger one than before has no effect, and a negative one ends
+    /// the search. `slack` is the distance by which a primitive may be farther than the nearest one of the index and is
+    /// still needed; it is infinite if all primitives within the radius are. Lengths are in units of the scene and in
+    /// f64, and the radius is inclusive.
     ///
     /// ```
     /// use nalgebra::Point3;

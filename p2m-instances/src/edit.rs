@@ -35,8 +35,8 @@ impl<'a, T: Real, I: Index<T> + ?Sized> Edit<'a, T, I> {
         Self { scene, tree, has_moved: false }
     }
 
-    /// Adds an instance of an index, whose motion is applied to its vertices, and returns its id. Its primitives get the
-    /// ids behind those of all other instances.
+    /// Adds an instance of an index, whose motion is applied to its vertices, and returns its id. Its primitives get
+    /// the ids behind those of all other instances.
     ///
     /// The index has to answer as if its scene never changed, which all indexes of this project do.
     ///

@@ -40,10 +40,10 @@ pub struct Instance<I: ?Sized> {
 /// units of the largest magnitudes: 128 u.
 ///
 /// Let q be the query, t the translation and v a vertex. A moved vertex errs by at most 32 u (|v| + |t|) and a query
-/// that is moved back by 32 u (|q| + |t|). The kernel errs by 8 u (|q| + |t| + |v|) in either frame. That is less than 80
-/// u (|q| + |t| + |v|). For rays, whose tests are exact, the direction errs by 32 u of itself, which is 32 u (|q| + |t| +
-/// |v|) where the ray reaches the object, and a radius changes by less than 32 u of itself; together 96 u. Both leave room
-/// for another two errors of the kernel and for the rounding of the margin.
+/// that is moved back by 32 u (|q| + |t|). The kernel errs by 8 u (|q| + |t| + |v|) in either frame. That is less than
+/// 80 u (|q| + |t| + |v|). For rays, whose tests are exact, the direction errs by 32 u of itself, which is at most 32 u
+/// (|q| + |t| + |v|) where the ray reaches the object, and a radius changes by less than 32 u of itself; together 96 u.
+/// Both leave room for another two errors of the kernel and for the rounding of the margin.
 const MARGIN: f64 = 64.0 * f64::EPSILON;
 
 impl<I: ?Sized> Instance<I> {
@@ -88,8 +88,8 @@ impl<I: ?Sized> Instance<I> {
         &self.object.index
     }
 
-    /// Returns a box around the moved vertices, which is empty for an empty object. It is the moved box of the object, so
-    /// it may be larger than the smallest one.
+    /// Returns a box around the moved vertices, which is empty for an empty object. It is the moved box of the object,
+    /// so it may be larger than the smallest one.
     #[must_use]
     pub fn bounds(&self) -> Aabb<f64> {
         self.bounds
@@ -116,8 +116,8 @@ impl<I: ?Sized> Instance<I> {
         (0..self.object.count).map(PrimitiveId::new)
     }
 
-    /// Returns the distance within which an answer in the frame of the object is that of the moved vertices, for a query
-    /// of this size, which is at least the distances of its points from the origin.
+    /// Returns the distance within which an answer in the frame of the object is that of the moved vertices, for a
+    /// query of this size, which is at least the distances of its points from the origin.
     pub(crate) fn margin(&self, query_size: f64) -> f64 {
         // The smallest normal number covers all that underflows.
         MARGIN * (query_size + self.reach) + f64::MIN_POSITIVE

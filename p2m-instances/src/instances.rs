@@ -9,8 +9,8 @@ use std::marker::PhantomData;
 
 /// A scene of instances of indexes, which is an index itself.
 ///
-/// `I` is the type of the indexes, such as `AabbTree<f64, Soup<f64>>`. Instances of `dyn Index<T>`, the default, may have
-/// indexes of different types. [The crate](crate) has the contract and an example.
+/// `I` is the type of the indexes, such as `AabbTree<f64, Soup<f64>>`. Instances of `dyn Index<T>`, the default, may
+/// have indexes of different types. [The crate](crate) has the contract and an example.
 ///
 /// Queries are methods of [`ClosestPoint`](p2m_core::ClosestPoint), [`NearQuery`](p2m_core::NearQuery),
 /// [`RayQuery`](p2m_core::RayQuery) and [`BoxQuery`](p2m_core::BoxQuery). A scene in f64 is also a
@@ -119,8 +119,8 @@ impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
         self.owner_of(primitive).map(|(instance, local)| (instance.id, local))
     }
 
-    /// Returns a box around the moved vertices of all instances, which is empty if there are none. It may be larger than
-    /// the smallest one.
+    /// Returns a box around the moved vertices of all instances, which is empty if there are none. It may be larger
+    /// than the smallest one.
     ///
     /// # Complexity
     /// It takes O(n) for n instances.

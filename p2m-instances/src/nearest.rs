@@ -65,9 +65,9 @@ fn search_instance<T: Real, I: Index<T> + ?Sized, C: Collector>(
     if instance.object.bounds.lower_bound(&rounded) > (radius * radius * ROUND_UP).max(MIN_SQUARE) {
         return;
     }
-    // A primitive of the object bounds the best distance up to one margin, and another one needs one as well. The collector
-    // may want what is farther still. Near ties that it keeps differ by two errors of the kernel, for which the margins
-    // have room.
+    // A primitive of the object bounds the best distance up to one margin, and another one needs one as well. The
+    // collector may want what is farther still. Near ties that it keeps differ by two errors of the kernel, for which
+    // the margins have room.
     let is_single = collector.is_single_nearest();
     let slack = if is_single { 2.0 * margin + collector.near_tie_slack() } else { f64::INFINITY };
     let mut visit = |id: PrimitiveId, vertices: &[[f64; 3]]| {

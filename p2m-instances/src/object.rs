@@ -12,7 +12,7 @@ pub(crate) struct Object<I: ?Sized> {
     pub(crate) count: usize,
     /// The box around all primitives in the frame of the object.
     pub(crate) bounds: Aabb<f64>,
-    /// The sum of the largest magnitudes of the three coordinates, which no distance of a vertex from the origin exceeds.
+    /// The sum of the largest magnitudes of the three coordinates. No vertex is farther from the origin.
     pub(crate) reach: f64,
     pub(crate) index: Arc<I>,
 }
@@ -35,7 +35,8 @@ impl<I: ?Sized> Object<I> {
     }
 }
 
-/// The objects of a scene by the addresses of their indexes, so that an index which has many instances is measured once.
+/// The objects of a scene by the addresses of their indexes, so that an index which has many instances is measured
+/// once.
 #[derive(Debug)]
 pub(crate) struct Objects<I: ?Sized>(HashMap<usize, Weak<Object<I>>>);
 

@@ -79,8 +79,8 @@ fn visit_instance<T: Real, I: Index<T> + ?Sized>(
 
 /// Returns a ray up to a parameter in the frame of an object, or `None` where that leaves the range of f64.
 ///
-/// Where the ray hits a moved primitive, a ray of the same direction from an origin that is moved by less than the error
-/// of the origin hits the primitive in the frame of the object, with the same parameter.
+/// Where the ray hits a moved primitive, a ray of the same direction from an origin that is moved by less than the
+/// error of the origin hits the primitive in the frame of the object, with the same parameter.
 fn local_ray<I: ?Sized>(instance: &Instance<I>, ray: &Ray, limit: f64) -> Option<Ray> {
     let origin = instance.motion.apply_inverse(ray.origin().into());
     let direction = instance.motion.apply_inverse_to_vector(ray.direction().into());

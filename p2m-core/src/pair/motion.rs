@@ -34,8 +34,8 @@ impl Motion {
         })
     }
 
-    /// Returns the vertex that the motion moves to `point`, each coordinate rounded. It differs from the exact one by at
-    /// most 32 u (|p| + |t|), where p is the point and t the translation.
+    /// Returns the vertex that the motion moves to `point`, each coordinate rounded. It differs from the exact one by
+    /// at most 32 u (|p| + |t|), where p is the point and t the translation.
     #[must_use]
     pub fn apply_inverse(&self, point: V3) -> V3 {
         let t = &self.translation;

@@ -25,9 +25,9 @@ pub trait RayCollector<'r> {
         true
     }
 
-    /// Takes a primitive that the filters of a search let pass, in place of its exact test, and breaks if no other one is
-    /// needed. It returns `None`, as by default, if the primitive is to be tested. `vertices` are those of the primitive,
-    /// or none if the search does not have them.
+    /// Takes a primitive that the filters of a search let pass, in place of its exact test, and breaks if no other one
+    /// is needed. It returns `None`, as by default, if the primitive is to be tested. `vertices` are those of the
+    /// primitive, or none if the search does not have them.
     fn take_candidate(&mut self, _primitive: PrimitiveId, _vertices: &[V3]) -> Option<ControlFlow<()>> {
         None
     }

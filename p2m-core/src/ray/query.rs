@@ -64,9 +64,9 @@ pub trait RayQuery<T: Real> {
     /// Calls `visit` for every primitive that the ray hits, or would hit if its origin were moved by up to its
     /// [error](Ray::with_origin_error), at most once for each. Other primitives may be visited as well.
     ///
-    /// `visit` gets the id of a primitive, and its vertices if the search has them at hand; otherwise it gets no vertices.
-    /// It returns the parameter above which hits are not needed from then on, and minus infinity ends the search. An index
-    /// that is made of others uses this to find what a ray may hit in one of them.
+    /// `visit` gets the id of a primitive, and its vertices if the search has them at hand; otherwise it gets no
+    /// vertices. It returns the parameter above which hits are not needed from then on, and minus infinity ends the
+    /// search. An index that is made of others uses this to find what a ray may hit in one of them.
     fn visit_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64);
 
     /// Returns whether the ray hits any primitive.
