@@ -50,6 +50,7 @@
 //! | the first contact of a moving ball | [`pair::MovingBall`] | trees and brute force |
 //! | the Hausdorff distance of two scenes | `field::hausdorff_distance` | every index |
 //! | the nearest points of two scenes, one of which may move | [`pair::PairQuery::closest_pair`] | trees and brute force |
+//! | any of these in a scene of moving objects | [`instances::Instances`] | objects of every index |
 //! | the cost of a query | [`Inspect`] | every index |
 //!
 //! # Which index
@@ -84,6 +85,7 @@
 //! | `kdop` | [`KdopTree`] | yes |
 //! | `advisor` | `advisor`: which index a scene and its queries call for | no |
 //! | `field` | [`field`]: distances on grids, signs, winding numbers, Hausdorff distances | yes |
+//! | `instances` | [`instances`]: scenes of moving objects | yes |
 //! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `mixed` | [`scene`]: reading scenes and points from files | yes |
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -113,6 +115,9 @@ pub use p2m_core::{
 /// Distance fields, on which side of a surface a point is, and Hausdorff distances.
 #[cfg(feature = "field")]
 pub use p2m_field as field;
+/// Scenes of moving objects: instances of indexes, each with a rotation and a translation.
+#[cfg(feature = "instances")]
+pub use p2m_instances as instances;
 /// Everything else about interception indexes: partitions, locators, Delaunay tetrahedra.
 #[cfg(feature = "interception")]
 pub use p2m_interception as interception;
@@ -137,7 +142,7 @@ pub use p2m_kdop::{KdopOptions, KdopTree};
 pub use p2m_mixed as scene;
 
 #[doc = include_str!("../docs/guide.md")]
-#[cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
+#[cfg(all(feature = "bvh", feature = "instances", feature = "interception", feature = "kdop", feature = "mixed"))]
 pub mod guide {}
 
 /// The README's example, compiled and run.

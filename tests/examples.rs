@@ -1,5 +1,5 @@
 //! Runs the example programs and checks their output.
-#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
+#![cfg(all(feature = "bvh", feature = "instances", feature = "interception", feature = "kdop", feature = "mixed"))]
 
 use p2m::{AabbTree, BuildIndex, ClosestPoint};
 use std::path::{Path, PathBuf};
@@ -98,6 +98,17 @@ fn a_sphere_that_is_moved_is_as_far_as_it_was_moved() {
     assert_bounds(&output("hausdorff", &[]), 0.5, 1e-3);
     let scene = "scenes/knot_and_cables.obj";
     assert_bounds(&output("hausdorff", &[scene, scene, "0"]), 0.0, 1e-14);
+}
+
+#[test]
+fn boxes_on_circles_pass_a_sensor_and_a_beam() {
+    // The only box begins on the axis, with its inner face 0.4 from the sensor, and turns once, by 6 degrees in a step.
+    let text = output("moving_boxes", &["1", "61"]);
+    assert!(text.starts_with("box 0 comes nearest to the sensor: 0.400000 in step 0\n"), "{text}");
+    // The beam runs 0.2 beside the axis. After one step the box is 0.209 beside it, and after two 0.416.
+    assert_eq!(numbers(text.lines().nth(1).expect("a line")), [1.0, 61.0], "{text}");
+    let many = output("moving_boxes", &[]);
+    assert!(numbers(many.lines().nth(1).expect("a line"))[0] > 1.0, "{many}");
 }
 
 #[test]

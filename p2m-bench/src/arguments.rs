@@ -60,6 +60,8 @@ pub(crate) enum Command {
     Batch(BatchArguments),
     /// Compares a tree that follows a twisted scene with trees that are built anew
     Refit(BatchArguments),
+    /// Compares a scene of moving instances of meshes with one index over all of them; fails if an answer differs
+    Instances(InstancesArguments),
     /// Compares the program, from the first query to the complete file, with one batch of the library, in wall time
     Program(ProgramArguments),
     /// Times distances between two scenes at many poses, and between a scene and an arm of capsules, against parry3d
@@ -128,7 +130,8 @@ pub(crate) struct Rounds {
     /// Rounds; another backend begins in each
     #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
     pub(crate) rounds: usize,
-    /// Queries in a round [default: 50,000 for splits, 100,000 for kdop, 1,000,000 for octree and batch]
+    /// Queries in a round [default: 50,000 for splits, 100,000 for kdop, 1,000,000 for octree, batch and
+    /// instances]
     #[arg(long)]
     pub(crate) queries: Option<usize>,
     /// Seed of the query sets
@@ -215,6 +218,21 @@ pub(crate) struct BatchArguments {
     /// Numbers of threads
     #[arg(long, value_delimiter = ',', default_values_t = [1, 2])]
     pub(crate) threads: Vec<usize>,
+}
+
+#[derive(Args)]
+pub(crate) struct InstancesArguments {
+    #[command(flatten)]
+    pub(crate) rounds: Rounds,
+    /// Instances
+    #[arg(long, default_value_t = 10_000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) instances: usize,
+    /// Largest number of triangles of an object; larger meshes are simplified [default: no limit]
+    #[arg(long)]
+    pub(crate) triangles: Option<usize>,
+    /// Rays in a round
+    #[arg(long, default_value_t = 200_000)]
+    pub(crate) rays: usize,
 }
 
 #[derive(Args)]

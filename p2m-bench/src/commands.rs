@@ -2,16 +2,17 @@
 
 use crate::arguments::{
     AdversariesArguments, AdviseArguments, BatchArguments, Command, Common, CompareArguments, DelaunayArguments,
-    ExtremesArguments, FieldArguments, KdopArguments, PairsArguments, PaperArguments, ProgramArguments, QueryArguments,
-    RayArguments, ReportArguments, RivalArguments, SavedArguments, SplitsArguments, VerifyArguments,
+    ExtremesArguments, FieldArguments, InstancesArguments, KdopArguments, PairsArguments, PaperArguments,
+    ProgramArguments, QueryArguments, RayArguments, ReportArguments, RivalArguments, SavedArguments, SplitsArguments,
+    VerifyArguments,
 };
 use crate::backend::Backend;
 use crate::measure::Effort;
 use crate::report::provenance;
 use crate::scene::Scene;
 use crate::{
-    adversaries, advise, backends, batch, candidates, delaunay, extremes, field, kdop, measure, octree, pairs, paper,
-    program, rays, refit, report, saved, splits, tradeoff, verify,
+    adversaries, advise, backends, batch, candidates, delaunay, extremes, field, instances, kdop, measure, octree,
+    pairs, paper, program, rays, refit, report, saved, splits, tradeoff, verify,
 };
 use anyhow::{Context, Result};
 use p2m_testkit::queries::QuerySet;
@@ -30,6 +31,7 @@ pub(crate) fn run(command: Command) -> Result<bool> {
         Command::Delaunay(arguments) => triangulate(&arguments),
         Command::Batch(arguments) => time_batches(&arguments),
         Command::Refit(arguments) => time_refits(&arguments),
+        Command::Instances(arguments) => time_instances(&arguments),
         Command::Program(arguments) => time_program(&arguments),
         Command::Pairs(arguments) => time_pairs(&arguments),
         Command::Advise(arguments) => check_advice(&arguments),
@@ -216,6 +218,18 @@ fn time_refits(arguments: &BatchArguments) -> Result<bool> {
     let BatchArguments { rounds, sets, .. } = arguments;
     let effort = rounds.effort(100_000);
     all_good(&rounds.scenes, &in_rounds("CPU time", &effort), |scene| refit::print(&scene, &sets.sets, &effort))
+}
+
+/// Times a scene of instances, and returns whether it answers as one index over all of them.
+fn time_instances(arguments: &InstancesArguments) -> Result<bool> {
+    let &InstancesArguments { ref rounds, instances, triangles, rays } = arguments;
+    let effort = rounds.effort(1_000_000);
+    println!("{}\n{}", provenance(None), in_rounds("CPU time of one thread", &effort));
+    let size = instances::Size { instances, triangles, rays };
+    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let is_good = one_thread.install(|| instances::print(&rounds.scenes, &size, &effort))?;
+    println!("{}", if is_good { "All answers are equal." } else { "DIFFERENT answers." });
+    Ok(is_good)
 }
 
 /// Times the program beside its library. No result counts as bad.

@@ -25,6 +25,7 @@ mod delaunay;
 mod external;
 mod extremes;
 mod field;
+mod instances;
 mod kdop;
 mod kinds;
 mod measure;

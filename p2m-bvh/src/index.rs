@@ -268,6 +268,10 @@ impl<T: Real, S: PrimitiveSet<T> + Send + Sync, V: Volume> Index<T> for TreeInde
         self.save(writer);
     }
 
+    fn primitive_count(&self) -> usize {
+        self.set.len()
+    }
+
     fn memory_bytes(&self) -> usize {
         self.memory()
     }
@@ -333,6 +337,10 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestLeaf<T> for TreeIndex<T, S, 
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> RayQuery<T> for TreeIndex<T, S, V> {
     fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>) {
         self.tree.search_hits(&self.set, ray, hits);
+    }
+
+    fn visit_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64) {
+        self.tree.search_ray_candidates(ray, visit);
     }
 }
 

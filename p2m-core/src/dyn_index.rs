@@ -34,6 +34,9 @@ pub trait Index<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + Inspect<T>
     /// Adds the index to a file, without its scene. An index without a saved form adds nothing.
     fn save<'s>(&'s self, writer: &mut Writer<'s>);
 
+    /// Returns the number of primitives, whose ids are all numbers below it.
+    fn primitive_count(&self) -> usize;
+
     /// Returns the heap memory that the index owns besides its scene, in bytes.
     fn memory_bytes(&self) -> usize;
 
@@ -55,6 +58,10 @@ pub trait Index<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + Inspect<T>
 
 impl<T: Real, S: PrimitiveSet<T> + Send + Sync> Index<T> for BruteForce<S> {
     fn save<'s>(&'s self, _: &mut Writer<'s>) {}
+
+    fn primitive_count(&self) -> usize {
+        self.set().len()
+    }
 
     fn memory_bytes(&self) -> usize {
         0
@@ -79,6 +86,9 @@ macro_rules! index_behind {
         impl<T: Real, $target: Index<T> + ?Sized> Index<T> for $pointer {
             fn save<'s>(&'s self, writer: &mut Writer<'s>) {
                 (**self).save(writer);
+            }
+            fn primitive_count(&self) -> usize {
+                (**self).primitive_count()
             }
             fn memory_bytes(&self) -> usize {
                 (**self).memory_bytes()

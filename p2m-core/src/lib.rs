@@ -115,7 +115,7 @@ pub mod engine {
     }
     /// Exact projection onto rays, and the margin of ray filters.
     pub mod ray {
-        pub use crate::ray::{UNDERFLOW_MARGIN as TINY, project_onto_ray as foot};
+        pub use crate::ray::{RayCandidates, UNDERFLOW_MARGIN as TINY, project_onto_ray as foot};
     }
     /// Conversion of points to and from f64.
     pub mod real {

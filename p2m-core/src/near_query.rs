@@ -124,6 +124,9 @@ enum NearMode<'a> {
     Nearest(usize, BinaryHeap<NearCandidate>),
     /// Passes every primitive to a function.
     All(&'a mut dyn FnMut(PrimitiveId, &Projection) -> ControlFlow<()>),
+    /// Passes every primitive to a function, which returns the radius from then on. With a finite slack only primitives
+    /// that are farther than the nearest one by at most that distance are needed.
+    Shrinking { slack: f64, visit: &'a mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64 },
     /// Keeps all primitives that may be nearest once the errors of the kernel are allowed for. The true distance of
     /// some primitive is at most `upper_bound`.
     Certification { upper_bound: f64, found: Vec<NearCandidate> },
@@ -179,6 +182,47 @@ impl<'a> Near<'a> {
         Self::within(radius, NearMode::All(visit))
     }
 
+    /// Creates a collector that calls `visit` for all primitives within a radius that shrinks during the search, for an
+    /// index that is made of others. Some primitives beyond the radius may be visited as well.
+    ///
+    /// `visit` gets the id of a primitive, and its vertices if the search has them at hand; otherwise it gets no
+    /// vertices. It returns the radius from then on. A larger one than before has no effect, and a negative one ends
+    /// the search. `slack` is the distance by which a primitive may be farther than the nearest one of the index and is
+    /// still needed; it is infinite if all primitives within the radius are. Lengths are in units of the scene and in
+    /// f64, and the radius is inclusive.
+    ///
+    /// ```
+    /// use nalgebra::Point3;
+    /// use p2m_core::{BruteForce, Near, NearQuery, Point, PrimitiveId};
+    ///
+    /// let index = BruteForce::new([3.0, 1.0, 2.0].map(|x| Point::new(Point3::new(x, 0.0, 0.0))))?;
+    /// let mut visited = Vec::new();
+    /// let mut visit = |id: PrimitiveId, _: &[[f64; 3]]| {
+    ///     visited.push(id.index());
+    ///     index.set()[id.index()].position.x
+    /// };
+    /// index.search_near(&Point3::origin(), &mut Near::shrinking(f64::INFINITY, f64::INFINITY, &mut visit));
+    /// // The last point is farther than the second, to whose distance the radius has shrunk.
+    /// assert_eq!(visited, [0, 1]);
+    /// # Ok::<(), p2m_core::BuildError>(())
+    /// ```
+    #[must_use]
+    pub fn shrinking(radius: f64, slack: f64, visit: &'a mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64) -> Self {
+        let mut near = Self::within(radius, NearMode::Shrinking { slack, visit });
+        near.shrink(radius);
+        near
+    }
+
+    /// Reduces the radius, if the new one is less. A negative radius and NaN end the search.
+    fn shrink(&mut self, radius: f64) {
+        if radius >= 0.0 {
+            self.radius = self.radius.min(radius);
+            self.prune = self.prune.min(square_within(radius));
+        } else {
+            self.prune = PRUNE_ALL;
+        }
+    }
+
     /// Creates a collector of all primitives that may be nearest, if the nearest one is within the radius.
     pub(crate) fn for_certification<T: Real>(radius: T) -> Self {
         Self::within(radius, NearMode::Certification { upper_bound: radius.to_f64_above(), found: Vec::new() })
@@ -209,7 +253,7 @@ impl<'a> Near<'a> {
             NearMode::Nearest(_, found) => {
                 found.into_sorted_vec().iter().map(|one| answer_alone(one.id, &one.projection)).collect()
             }
-            NearMode::All(_) | NearMode::Certification { .. } => Vec::new(),
+            NearMode::All(_) | NearMode::Shrinking { .. } | NearMode::Certification { .. } => Vec::new(),
         }
     }
 }
@@ -235,11 +279,29 @@ impl Collector for Near<'_> {
     }
 
     fn is_single_nearest(&self) -> bool {
-        matches!(self.mode, NearMode::Certification { .. })
+        match self.mode {
+            NearMode::Certification { .. } => true,
+            NearMode::Shrinking { slack, .. } => slack < f64::INFINITY,
+            NearMode::Nearest(..) | NearMode::All(_) => false,
+        }
+    }
+
+    fn near_tie_slack(&self) -> f64 {
+        if let NearMode::Shrinking { slack, .. } = self.mode { slack } else { 0.0 }
     }
 
     fn keeps_near_ties(&self) -> bool {
         self.is_single_nearest()
+    }
+
+    fn take_vertices(&mut self, id: PrimitiveId, vertices: &[[f64; 3]]) -> bool {
+        let is_done = self.is_done();
+        let NearMode::Shrinking { visit, .. } = &mut self.mode else { return false };
+        if !is_done {
+            let radius = visit(id, vertices);
+            self.shrink(radius);
+        }
+        true
     }
 
     fn offer(&mut self, id: PrimitiveId, projection: Projection) {
@@ -287,6 +349,10 @@ impl Collector for Near<'_> {
                 if visit(id, &projection).is_break() {
                     self.prune = PRUNE_ALL;
                 }
+            }
+            NearMode::Shrinking { visit, .. } => {
+                let radius = visit(id, &[]);
+                self.shrink(radius);
             }
             NearMode::Certification { .. } => {}
         }

@@ -97,6 +97,9 @@ macro_rules! point_to {
             fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>) {
                 (**self).search_ray(ray, hits);
             }
+            fn visit_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64) {
+                (**self).visit_ray_candidates(ray, visit);
+            }
         }
 
         impl<T: Real, $target: BoxQuery<T> + ?Sized> BoxQuery<T> for $pointer {

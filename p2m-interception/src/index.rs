@@ -255,6 +255,10 @@ impl<T: Real, S: PrimitiveSet<T> + Send + Sync, P: Partition + Saved + Send + Sy
         self.save(writer);
     }
 
+    fn primitive_count(&self) -> usize {
+        self.set.len()
+    }
+
     fn memory_bytes(&self) -> usize {
         self.memory()
     }

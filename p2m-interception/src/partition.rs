@@ -73,6 +73,13 @@ pub trait Partition: CellQuery + Sized {
     fn with_isa(self, isa: Isa) -> Self;
 }
 
+/// Returns whether a list has all primitives that a collector may need. It has those that can be nearest, and what is
+/// farther by no more than rounding.
+#[inline(always)]
+pub(crate) fn are_lists_enough(collector: &impl Collector) -> bool {
+    collector.is_single_nearest() && collector.near_tie_slack() <= 0.0
+}
+
 /// The search of a query's cell. Its methods are not generic over the set, so that most of them are compiled once,
 /// in this crate.
 pub(crate) trait CellQuery {

@@ -16,6 +16,7 @@ use p2m_bvh::engine::volume::{CompiledSearches, TreeOptions, VolumeNodes};
 use p2m_bvh::{PacketTree, SplitOptions, Volume};
 use p2m_core::engine::pairs::PairSide;
 use p2m_core::engine::query::BestF64;
+use p2m_core::engine::ray::RayCandidates;
 use p2m_core::engine::vector::V3;
 use p2m_core::pair::Motion;
 use p2m_core::storage::{LoadError, Reader, Writer, require};
@@ -101,6 +102,11 @@ impl<const K: usize> CompiledSearches for Kdop<K> {
     }
 
     #[inline(never)]
+    fn ray_candidates(tree: &PacketTree<Self>, ray: &Ray, radius: f64, candidates: &mut RayCandidates<'_>) {
+        tree.run_ray(ray, radius, candidates, &|_, _| None);
+    }
+
+    #[inline(never)]
     fn as_pair_side(tree: &PacketTree<Self>, motion: Option<Motion>, search: &mut dyn FnMut(&dyn PairSide)) {
         search(&TreeSide::new(tree, motion));
     }
@@ -111,11 +117,12 @@ type Searches<const K: usize> = (
     fn(&PacketTree<Kdop<K>>, V3, &mut BestF64, EvaluateFn<'_, BestF64>),
     for<'n> fn(&PacketTree<Kdop<K>>, V3, &mut Near<'n>, EvaluateFn<'_, Near<'n>>),
     for<'r> fn(&PacketTree<Kdop<K>>, &'r Ray, f64, &mut Hits<'r>, IntersectFn<'_, 'r>),
+    fn(&PacketTree<Kdop<K>>, &Ray, f64, &mut RayCandidates<'_>),
     fn(&PacketTree<Kdop<K>>, Option<Motion>, &mut dyn FnMut(&dyn PairSide)),
 );
 
 const fn searches<const K: usize>() -> Searches<K> {
-    (Kdop::<K>::nearest, Kdop::<K>::near, Kdop::<K>::rays, Kdop::<K>::as_pair_side)
+    (Kdop::<K>::nearest, Kdop::<K>::near, Kdop::<K>::rays, Kdop::<K>::ray_candidates, Kdop::<K>::as_pair_side)
 }
 
 /// The searches that this crate compiles: those for 6, 14, 18 and 26 faces, which have default directions.

@@ -124,16 +124,25 @@ impl Packet {
         // Each kind has a call of its own, so that the projection stays in registers and is not copied.
         match self.kind() {
             Kind::Triangle => {
+                if collector.take_vertices(id, &[*a, *b, *c]) {
+                    return;
+                }
                 if let Some(projection) = Projection::onto_near_triangle(query, &[*a, *b, *c], square) {
                     collector.offer(id, projection);
                 }
             }
             Kind::Segment => {
+                if collector.take_vertices(id, &[*a, *b]) {
+                    return;
+                }
                 if let Some(projection) = Projection::onto_segment(query, &[*a, *b], square) {
                     collector.offer(id, projection);
                 }
             }
             Kind::Point => {
+                if collector.take_vertices(id, &[*a]) {
+                    return;
+                }
                 if let Some(projection) = Projection::onto_point(query, &[*a], square) {
                     collector.offer(id, projection);
                 }

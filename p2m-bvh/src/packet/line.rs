@@ -40,7 +40,15 @@ impl RayLine {
         };
         let divisor = d[axis].abs();
         let direction = [d[0] / divisor, d[1] / divisor, d[2] / divisor];
-        Self { origin: ray.origin, direction, axis, divisor, origin_length: 0.0, radius, origin_error: 0.0 }
+        Self {
+            origin: ray.origin,
+            direction,
+            axis,
+            divisor,
+            origin_length: 0.0,
+            radius,
+            origin_error: ray.origin_error,
+        }
     }
 
     /// The line of a ray, with the projection of a point onto it as its origin.
@@ -52,6 +60,7 @@ impl RayLine {
         let line = Self::from_ray(ray, radius);
         let (origin, origin_length) = foot(ray, point, line.axis);
         let origin_error = origin.iter().fold(0.0, |a: f64, x| a.max(x.abs())) * LENGTH_ROUNDING + TINY;
+        let origin_error = origin_error + ray.origin_error;
         Self { origin, origin_length, origin_error, ..line }
     }
 

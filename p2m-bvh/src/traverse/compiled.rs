@@ -10,10 +10,11 @@ use crate::tree::wide_node::VolumeNodes;
 use nalgebra::Point3;
 use p2m_core::engine::pairs::PairSide;
 use p2m_core::engine::query::BestF64;
+use p2m_core::engine::ray::RayCandidates;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
 use p2m_core::pair::Motion;
-use p2m_core::{Aabb, Best, Hits, Near, PrimitiveSet, Ray, RayCollector, Real};
+use p2m_core::{Aabb, Best, Hits, Near, PrimitiveId, PrimitiveSet, Ray, RayCollector, Real};
 
 /// The searches of a tree with the collectors of the library.
 ///
@@ -43,6 +44,9 @@ pub trait CompiledSearches: VolumeNodes {
         intersect: IntersectFn<'_, 'r>,
     );
 
+    /// Searches for the primitives that a ray may hit.
+    fn ray_candidates(tree: &PacketTree<Self>, ray: &Ray, radius: f64, candidates: &mut RayCandidates<'_>);
+
     /// Passes a tree, which may have moved, to a search for pairs.
     fn as_pair_side(tree: &PacketTree<Self>, motion: Option<Motion>, search: &mut dyn FnMut(&dyn PairSide));
 }
@@ -67,6 +71,10 @@ impl CompiledSearches for Aabb<f64> {
 
     fn rays<'r>(tree: &PacketTree, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: IntersectFn<'_, 'r>) {
         tree.run_ray(ray, radius, hits, intersect);
+    }
+
+    fn ray_candidates(tree: &PacketTree, ray: &Ray, radius: f64, candidates: &mut RayCandidates<'_>) {
+        tree.run_ray(ray, radius, candidates, &|_, _| None);
     }
 
     fn as_pair_side(tree: &PacketTree, motion: Option<Motion>, search: &mut dyn FnMut(&dyn PairSide)) {
@@ -96,5 +104,13 @@ impl<V: CompiledSearches> PacketTree<V> {
         let only_crossings = hits.only_crossings();
         let Some(radius) = self.search_radius(ray, only_crossings) else { return };
         V::rays(self, ray, radius, hits, &intersection(set, ray, only_crossings));
+    }
+
+    /// Calls `visit` for the primitives that a ray may hit.
+    #[inline]
+    #[doc(hidden)]
+    pub fn search_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[V3]) -> f64) {
+        let Some(radius) = self.search_radius(ray, false) else { return };
+        V::ray_candidates(self, ray, radius, &mut RayCandidates::new(visit));
     }
 }

@@ -33,7 +33,7 @@ impl<'a, V: VolumeNodes> TreeSide<'a, V> {
 
     /// Converts a direction of the scene to that of the tree before its motion.
     fn turned_back(&self, direction: &V3) -> V3 {
-        self.motion.map_or(*direction, |motion| motion.turn_back(*direction))
+        self.motion.map_or(*direction, |motion| motion.apply_inverse_to_vector(*direction))
     }
 
     /// Returns the height of the origin of the coordinates of the tree.

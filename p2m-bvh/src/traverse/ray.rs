@@ -45,7 +45,8 @@ impl<V: VolumeNodes> PacketTree<V> {
     #[inline(always)]
     pub(super) fn search_radius(&self, ray: &Ray, only_crossings: bool) -> Option<f64> {
         let radius = if self.leaves.has_non_triangles && !only_crossings { ray.radius } else { 0.0 };
-        (self.root != NodeRef::NONE && !misses_scene(ray, radius, &self.frame, &self.half_extent)).then_some(radius)
+        (self.root != NodeRef::NONE && !misses_scene(ray, radius + ray.origin_error, &self.frame, &self.half_extent))
+            .then_some(radius)
     }
 }
 
@@ -103,9 +104,15 @@ impl<'r, C: RayCollector<'r>> ExactTests<'_, 'r, C> {
         let limit = self.hits.limit();
         let (indices, count) = packet.vertices_of(lane);
         let crossing = if count == 0 {
+            if let Some(flow) = self.hits.take_candidate(id, &[]) {
+                return flow;
+            }
             (self.intersect)(id, limit)
         } else {
             let vertices = indices.map(|index| self.leaves.vertices[index]);
+            if let Some(flow) = self.hits.take_candidate(id, &vertices[..count]) {
+                return flow;
+            }
             Crossing::from_vertices(self.ray, &vertices[..count], limit, self.only_crossings)
         };
         match crossing {

@@ -181,7 +181,10 @@ impl<'a, C: Collector> SearchState<'a, C> {
             return;
         }
         if self.collector.is_single_nearest() && packet.has_vertices() {
-            let nearest = (smallest::<I::Wide>(&squares).sqrt() + local.deficit) * ROUND_UP;
+            let mut nearest = (smallest::<I::Wide>(&squares).sqrt() + local.deficit) * ROUND_UP;
+            if self.collector.keeps_near_ties() {
+                nearest = (nearest + (self.collector.near_tie_slack() * packet.per_unit()) as f32) * ROUND_UP;
+            }
             let upper_bound = f64::from(nearest) * packet.unit();
             if upper_bound < self.upper_bound {
                 self.upper_bound = upper_bound;

@@ -275,7 +275,7 @@ fn search_scenes<T: Real>(
                 return;
             }
             let apply = |point: V3| motion.map_or(point, |motion| motion.apply(point));
-            let undo = |point: V3| motion.map_or(point, |motion| motion.undo(point));
+            let undo = |point: V3| motion.map_or(point, |motion| motion.apply_inverse(point));
             let on_second = |point| second.guess_closest(undo(point)).map(|(point, id)| (apply(point), id));
             let guess = || guess_pair(centre(&bounds), &|point| first.guess_closest(point), &on_second);
             offer_hints(first, options.hint, guess, pairs, &mut |id| {

@@ -66,6 +66,12 @@ impl<T: Real> Best<T> {
         Self { hint: options.hint, minimum, scalar: PhantomData }
     }
 
+    /// Returns the hint of the options, for an index without a [`PrimitiveSet`]. The scene may lack that primitive.
+    #[must_use]
+    pub fn hint(&self) -> Option<PrimitiveId> {
+        self.hint
+    }
+
     /// Offers the primitive of the hint, if the options name one that the set has.
     pub fn offer_hint<S: PrimitiveSet<T> + ?Sized>(&mut self, set: &S, query: &Point3<T>) {
         if let Some(id) = self.hint.filter(|id| id.index() < set.len()) {

@@ -41,6 +41,15 @@ pub trait Collector {
         false
     }
 
+    /// Returns the distance by which a primitive may be farther than the nearest one and is still needed, for a
+    /// collector that [keeps near ties](Self::keeps_near_ties). A search adds it to the upper bounds that its filters
+    /// find, before it passes them on, and does not rely on lists of the primitives that can be nearest. It is 0 by
+    /// default.
+    #[inline(always)]
+    fn near_tie_slack(&self) -> f64 {
+        0.0
+    }
+
     /// Returns whether the collector may accept less than the exact result. A search then asks
     /// [`prune_given_incumbent`](Self::prune_given_incumbent) and [`may_stop`](Self::may_stop). The default is `false`.
     #[inline(always)]
@@ -78,6 +87,14 @@ pub trait Collector {
     /// primitive need not be offered. The default is `false`.
     #[inline(always)]
     fn is_single_nearest(&self) -> bool {
+        false
+    }
+
+    /// Takes a primitive by its one to three vertices, in place of the projection of the query, and returns whether it
+    /// did. A search that has vertices at hand calls it before it evaluates a candidate. The default takes none.
+    #[inline(always)]
+    fn take_vertices(&mut self, id: PrimitiveId, vertices: &[[f64; 3]]) -> bool {
+        let _ = (id, vertices);
         false
     }
 

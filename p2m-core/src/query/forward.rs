@@ -30,6 +30,7 @@ macro_rules! forward_collector_decisions {
             fn prune_above_for_id(self: &Self, id: $crate::PrimitiveId) -> f64;
             fn is_single_nearest(self: &Self) -> bool;
             fn keeps_near_ties(self: &Self) -> bool;
+            fn near_tie_slack(self: &Self) -> f64;
             fn is_approximate(self: &Self) -> bool;
             fn may_stop(self: &Self, has_incumbent: bool) -> bool;
             fn record_skipped(self: &mut Self, square: f64);

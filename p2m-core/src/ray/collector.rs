@@ -3,6 +3,7 @@
 use super::crossing::Crossing;
 use super::hit::Hit;
 use crate::PrimitiveId;
+use crate::kernel::vector::V3;
 use std::ops::ControlFlow;
 
 /// A collector of hits: it decides which hits a search has to find, and takes them.
@@ -22,6 +23,13 @@ pub trait RayCollector<'r> {
     /// default is `true`.
     fn wants(&self, _primitive: PrimitiveId) -> bool {
         true
+    }
+
+    /// Takes a primitive that the filters of a search let pass, in place of its exact test, and breaks if no other one
+    /// is needed. It returns `None`, as by default, if the primitive is to be tested. `vertices` are those of the
+    /// primitive, or none if the search does not have them.
+    fn take_candidate(&mut self, _primitive: PrimitiveId, _vertices: &[V3]) -> Option<ControlFlow<()>> {
+        None
     }
 
     /// Takes a hit, in any order, and breaks if no other hit is needed.
@@ -51,6 +59,36 @@ pub struct Hits<'r> {
     /// The number of hits, in the modes that count.
     #[doc(hidden)]
     pub count: usize,
+}
+
+/// A collector that passes all primitives which a ray may hit to a function, and tests none of them.
+#[doc(hidden)]
+pub struct RayCandidates<'a> {
+    limit: f64,
+    visit: &'a mut dyn FnMut(PrimitiveId, &[V3]) -> f64,
+}
+
+impl<'a> RayCandidates<'a> {
+    /// Creates the collector of [`RayQuery::visit_ray_candidates`](super::RayQuery::visit_ray_candidates).
+    pub fn new(visit: &'a mut dyn FnMut(PrimitiveId, &[V3]) -> f64) -> Self {
+        Self { limit: f64::INFINITY, visit }
+    }
+}
+
+impl<'r> RayCollector<'r> for RayCandidates<'_> {
+    fn limit(&self) -> f64 {
+        self.limit
+    }
+
+    fn take_candidate(&mut self, primitive: PrimitiveId, vertices: &[V3]) -> Option<ControlFlow<()>> {
+        self.limit = self.limit.min((self.visit)(primitive, vertices));
+        let is_done = self.limit == f64::NEG_INFINITY;
+        Some(if is_done { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    }
+
+    fn offer(&mut self, _: PrimitiveId, _: &Crossing<'r>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 }
 
 /// The hits that a query needs.

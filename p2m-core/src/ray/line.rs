@@ -61,6 +61,9 @@ pub struct Ray {
     /// The distance within which segments and points are hit, in units of the scene.
     #[doc(hidden)]
     pub radius: f64,
+    /// A bound on the error of the origin, which [`RayQuery::visit_ray_candidates`](super::RayQuery) allows for.
+    #[doc(hidden)]
+    pub origin_error: f64,
 }
 
 impl Ray {
@@ -76,7 +79,7 @@ impl Ray {
         if direction == [0.0; 3] {
             return Err(RayError::ZeroDirection);
         }
-        Ok(Self { origin, direction, min: 0.0, max: f64::INFINITY, radius: 0.0 })
+        Ok(Self { origin, direction, min: 0.0, max: f64::INFINITY, radius: 0.0, origin_error: 0.0 })
     }
 
     /// Creates the ray from a point through another one, which has the parameter 1 up to the rounding
@@ -117,6 +120,13 @@ impl Ray {
         if radius >= 0.0 && radius.is_finite() { Ok(Self { radius, ..self }) } else { Err(RayError::Radius(radius)) }
     }
 
+    /// Sets a bound on the error of the origin, in units of the scene.
+    /// [`visit_ray_candidates`](super::RayQuery::visit_ray_candidates) allows for it, and hits do not depend on it.
+    #[must_use]
+    pub fn with_origin_error(self, origin_error: f64) -> Self {
+        Self { origin_error, ..self }
+    }
+
     /// Returns the point of parameter 0.
     #[must_use]
     pub fn origin(&self) -> Point3<f64> {
@@ -139,6 +149,12 @@ impl Ray {
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
+    }
+
+    /// Returns the bound on the error of the origin.
+    #[must_use]
+    pub fn origin_error(&self) -> f64 {
+        self.origin_error
     }
 
     /// Returns the point of a parameter, rounded. It is NaN if the parameter is infinite and the direction has a zero.

@@ -7,7 +7,8 @@ use super::line::Ray;
 use crate::{BruteForce, PrimitiveId, PrimitiveSet, Real};
 use std::ops::ControlFlow;
 
-/// Intersections of a scene and a ray. A backend writes one method, [`search_ray`](Self::search_ray).
+/// Intersections of a scene and a ray. A backend writes two methods, [`search_ray`](Self::search_ray) and
+/// [`visit_ray_candidates`](Self::visit_ray_candidates).
 ///
 /// # Contract
 ///
@@ -59,6 +60,14 @@ use std::ops::ControlFlow;
 pub trait RayQuery<T: Real> {
     /// Offers to `hits` every hit that it could need.
     fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>);
+
+    /// Calls `visit` for every primitive that the ray hits, or would hit if its origin were moved by up to its
+    /// [error](Ray::with_origin_error), at most once for each. Other primitives may be visited as well.
+    ///
+    /// `visit` gets the id of a primitive, and its vertices if the search has them at hand; otherwise it gets no
+    /// vertices. It returns the parameter above which hits are not needed from then on, and minus infinity ends the
+    /// search. An index that is made of others uses this to find what a ray may hit in one of them.
+    fn visit_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64);
 
     /// Returns whether the ray hits any primitive.
     fn do_intersect(&self, ray: &Ray) -> bool {
@@ -122,5 +131,10 @@ impl<T: Real, S: PrimitiveSet<T>> RayQuery<T> for BruteForce<S> {
                 None => ControlFlow::Continue(()),
             }
         });
+    }
+
+    fn visit_ray_candidates(&self, _: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64) {
+        let mut ids = (0..self.set().len()).map(PrimitiveId::new);
+        let _ = ids.find(|id| visit(*id, &[]) == f64::NEG_INFINITY);
     }
 }

@@ -5,7 +5,7 @@ use crate::list::search;
 use crate::list::several::{Lists, SearchSeveral};
 use crate::octree::Octree;
 use crate::octree::code::{CellCode, FALLBACK_CODE, KIND_LIST, KIND_ONE_LEVEL, KIND_SHIFT, KIND_SINGLE};
-use crate::partition::CellQuery;
+use crate::partition::{CellQuery, are_lists_enough};
 use nalgebra::Point3;
 use p2m_bvh::engine::nearest::{EvaluateFn, SearchState, finish, finish_nearest};
 use p2m_bvh::engine::packet::LANES;
@@ -83,7 +83,7 @@ impl CellQuery for Octree {
         let tree = &self.tree;
         let (code, cells) = self.locate_cell(&query);
         match tree.frame.local(&query) {
-            Some(local) if code != FALLBACK_CODE && collector.is_single_nearest() => {
+            Some(local) if code != FALLBACK_CODE && are_lists_enough(collector) => {
                 let block_query = BlockQuery { rounded: Rounded::of(local), local, cells };
                 tree.isa().run(SearchCell { octree: self, code, query, block_query, collector, evaluate, finish });
             }

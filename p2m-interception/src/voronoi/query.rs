@@ -7,7 +7,7 @@
 use crate::list::block::{Block, BlockQuery};
 use crate::list::search;
 use crate::list::several::{Lists, SearchSeveral};
-use crate::partition::CellQuery;
+use crate::partition::{CellQuery, are_lists_enough};
 use crate::voronoi::Voronoi;
 use crate::voronoi::list_filter::{ListFilter, ListFilters};
 use crate::voronoi::neighbours::{LocatedSite, NeighbourTable};
@@ -35,7 +35,7 @@ impl CellQuery for Voronoi {
         finish: fn(&mut SearchState<'_, C>),
     ) {
         let tree = &self.tree;
-        if collector.is_single_nearest()
+        if are_lists_enough(collector)
             && let Some(position) = self.to_site_units(&query)
             && let Some(site) = self.locator.as_ref().and_then(|locator| locator.start(&position))
         {

@@ -58,6 +58,10 @@ impl<T: Real, S: PrimitiveSet<T>> RayQuery<T> for Reversed<T, S> {
         offered.all.sort_by_key(|(id, _)| std::cmp::Reverse(*id));
         let _ = offered.all.iter().try_for_each(|(id, crossing)| hits.offer(*id, crossing));
     }
+
+    fn visit_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64) {
+        self.0.visit_ray_candidates(ray, visit);
+    }
 }
 
 /// Returns brute force first, then every tree with every instruction set.

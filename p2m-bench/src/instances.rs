@@ -1,0 +1,259 @@
+//! `p2m-bench instances`: compares a scene of moving instances with one index over all of its moved triangles.
+
+use crate::measure::{Effort, MedianRange};
+use crate::our_indexes::aabb_options;
+use crate::rounds::{checksum, rotated, thread_seconds};
+use anyhow::{Context, Result, bail};
+use nalgebra::{Isometry3, Point3, Vector3};
+use p2m_bvh::AabbTree;
+use p2m_core::batch::{BatchOptions, closest_points_into};
+use p2m_core::pair::Motion;
+use p2m_core::{BuildError, BuildIndex, Closest, ClosestPoint, Element, PrimitiveSet, Ray, RayQuery, Soup};
+use p2m_instances::{InstanceId, Instances};
+use p2m_testkit::{rng, vector};
+use p2m_tradeoff::Table;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// One index over all is left out if there are more triangles than this, for lack of memory.
+const MAX_TRIANGLES_OF_ONE_INDEX: usize = 25_000_000;
+/// The largest distance by which an instance moves along an axis between two frames, in diagonals of an object, and the
+/// largest angle by which it turns about an axis, in radians.
+const STEP: f64 = 0.02;
+
+type Tree<S> = AabbTree<f64, S>;
+type InstanceScene = Instances<f64, Tree<Soup<f64>>>;
+
+/// The size of a measurement.
+pub(crate) struct Size {
+    /// The number of instances.
+    pub(crate) instances: usize,
+    /// The largest number of triangles of an object; larger meshes are simplified.
+    pub(crate) triangles: Option<usize>,
+    /// The number of rays in a round.
+    pub(crate) rays: usize,
+}
+
+/// Times updates, points and rays in a scene of instances of meshes. Returns whether all answers are equal.
+pub(crate) fn print(scenes: &[impl AsRef<Path> + Sync], size: &Size, effort: &Effort) -> Result<bool> {
+    let objects: Vec<Arc<Tree<Soup<f64>>>> = (scenes.iter())
+        .map(|path| {
+            let soup = object(&p2m_mixed::read_scene(path.as_ref())?.soup, size.triangles)?;
+            Ok(Arc::new(AabbTree::build(soup, &aabb_options())?))
+        })
+        .collect::<Result<_>>()?;
+    let mut bench = Bench::new(objects, size.instances, effort.seed)?;
+    let total: usize = bench.scene.instances().map(|instance| instance.primitives().len()).sum();
+    println!(
+        "\n{} instances of {} objects of {} triangles, {total} triangles in all.\n",
+        size.instances,
+        bench.objects.len(),
+        bench.objects.iter().map(|object| object.set().len().to_string()).collect::<Vec<_>>().join(", "),
+    );
+    let mut whole = match total <= MAX_TRIANGLES_OF_ONE_INDEX {
+        true => Some(AabbTree::build(bench.moved_soup()?, &aabb_options())?),
+        false => None,
+    };
+    let bounds = bench.scene.bounds();
+    let mut at = || Point3::from(std::array::from_fn(|k| bench.rng.random_range(bounds.min[k]..bounds.max[k])));
+    let queries: Vec<_> = (0..effort.queries).map(|_| at()).collect();
+    let origins: Vec<_> = (0..size.rays).map(|_| at()).collect();
+    let rays = origins.iter().map(|origin| Ray::new(origin, &vector(&mut bench.rng)));
+    let rays = rays.collect::<Result<Vec<_>, _>>().context("directions are not zero")?;
+    // Each row has the times of the scene of instances, then those of the one index.
+    let rows = ["build", "move", "points, one by one", "points, batch", "first hits of rays"];
+    let mut seconds: Vec<[Vec<f64>; 2]> = vec![Default::default(); rows.len()];
+    let mut equal = true;
+    for round in 0..effort.rounds {
+        bench.step();
+        seconds[0][0].push(thread_seconds(|| bench.build()).1);
+        seconds[1][0].push(thread_seconds(|| bench.update()).1);
+        if let Some(whole) = &mut whole {
+            let positions = bench.moved_positions();
+            let (refitted, time) =
+                thread_seconds(|| whole.refit_in_place(&aabb_options(), |soup| soup.set_positions(positions)));
+            refitted?;
+            seconds[1][1].push(time);
+            let soup = bench.moved_soup()?;
+            let (built, time) = thread_seconds(|| AabbTree::build(soup, &aabb_options()));
+            seconds[0][1].push(time);
+            *whole = built?;
+        }
+        let mut sums = [[None; 2]; 3];
+        for at in rotated(2, round) {
+            let (index, rays_of): (&(dyn ClosestPoint<f64> + Sync), &dyn RayQuery<f64>) = match (at, &whole) {
+                (0, _) => (&bench.scene, &bench.scene),
+                (_, Some(whole)) => (whole, whole),
+                (_, None) => continue,
+            };
+            let mut answers: Vec<Option<Closest<f64>>> = vec![None; queries.len()];
+            let single = thread_seconds(|| index.closest_points_one_by_one(&queries, &mut answers)).1;
+            sums[0][at] = Some(sum_of(&answers));
+            let batch = BatchOptions::default().with_parallel(false);
+            let batch =
+                thread_seconds(|| closest_points_into(index, &queries, &Default::default(), &batch, &mut answers)).1;
+            sums[1][at] = Some(sum_of(&answers));
+            let mut sum = 0;
+            let hits = thread_seconds(|| {
+                for ray in &rays {
+                    let hit = rays_of.first_intersection(ray).map(|hit| (hit.parameter, hit.primitive.index() as u64));
+                    sum = checksum(sum, hit.map(|(t, id)| (t.to_bits(), id)).into_iter());
+                }
+            });
+            sums[2][at] = Some(sum);
+            for (row, time) in [single, batch, hits.1].into_iter().enumerate() {
+                seconds[2 + row][at].push(time);
+            }
+        }
+        equal &= sums[0] == sums[1] && sums.iter().all(|[ours, other]| other.is_none() || ours == other);
+    }
+    let mut table = Table::new(["", "instances", "one index"].map(str::to_owned));
+    for (row, (name, times)) in rows.iter().zip(&seconds).enumerate() {
+        let (scale, unit) = match row {
+            0 | 1 => (1e3, "ms"),
+            4 => (1e9 / rays.len() as f64, "ns"),
+            _ => (1e9 / queries.len() as f64, "ns"),
+        };
+        let cell = |times: &Vec<f64>| MedianRange::of(times).map(|range| format!("{:.3} {unit}", range.median * scale));
+        let [ours, other] = [&times[0], &times[1]].map(|times| cell(times).unwrap_or_else(|| "-".to_owned()));
+        table.push(vec![(*name).to_owned(), ours, other]);
+    }
+    println!("{table}");
+    Ok(equal)
+}
+
+fn sum_of(answers: &[Option<Closest<f64>>]) -> u64 {
+    let answers = answers.iter().flatten();
+    checksum(0, answers.map(|answer| (answer.distance.to_bits(), answer.primitive.index() as u64)))
+}
+
+/// Answers to single queries, as a method that dispatches once for each.
+trait OneByOne {
+    fn closest_points_one_by_one(&self, queries: &[Point3<f64>], answers: &mut [Option<Closest<f64>>]);
+}
+
+impl OneByOne for dyn ClosestPoint<f64> + Sync + '_ {
+    fn closest_points_one_by_one(&self, queries: &[Point3<f64>], answers: &mut [Option<Closest<f64>>]) {
+        for (query, answer) in queries.iter().zip(answers) {
+            *answer = self.closest_point(query);
+        }
+    }
+}
+
+/// A scene of instances in motion.
+struct Bench {
+    objects: Vec<Arc<Tree<Soup<f64>>>>,
+    scene: InstanceScene,
+    ids: Vec<InstanceId>,
+    motions: Vec<Isometry3<f64>>,
+    rng: ChaCha8Rng,
+}
+
+impl Bench {
+    /// Scatters instances over a cube, one for each unit of volume.
+    fn new(objects: Vec<Arc<Tree<Soup<f64>>>>, instances: usize, seed: u64) -> Result<Self> {
+        if objects.is_empty() {
+            bail!("there is no object");
+        }
+        let mut rng = rng("p2m-bench instances", seed);
+        let side = (instances as f64).cbrt();
+        let at = |rng: &mut ChaCha8Rng| Vector3::from_fn(|_, _| rng.random_range(0.0..side));
+        let motions = (0..instances).map(|_| Isometry3::new(at(&mut rng), vector(&mut rng) * 3.0)).collect();
+        let mut bench = Self { objects, scene: Instances::new(), ids: Vec::new(), motions, rng };
+        bench.build()?;
+        Ok(bench)
+    }
+
+    /// Makes the scene anew.
+    fn build(&mut self) -> Result<()> {
+        let mut scene = Instances::new();
+        let mut edit = scene.edit();
+        let added = self.motions.iter().enumerate().map(|(i, motion)| {
+            let object = i % self.objects.len();
+            Ok(edit.add("object", &self.objects[object], *motion)?)
+        });
+        self.ids = added.collect::<Result<_>>()?;
+        drop(edit);
+        self.scene = scene;
+        Ok(())
+    }
+
+    /// Moves all instances a little, without an update of the scene.
+    fn step(&mut self) {
+        for motion in &mut self.motions {
+            let step = Isometry3::new(vector(&mut self.rng) * STEP, vector(&mut self.rng) * STEP);
+            *motion = Isometry3::from_parts(
+                (motion.translation.vector + step.translation.vector).into(),
+                step.rotation * motion.rotation,
+            );
+        }
+    }
+
+    /// Gives all instances their motions.
+    fn update(&mut self) -> Result<()> {
+        let mut edit = self.scene.edit();
+        for (id, motion) in self.ids.iter().zip(&self.motions) {
+            edit.set_motion(*id, *motion)?;
+        }
+        Ok(())
+    }
+
+    /// Returns the positions of all vertices after their motions.
+    fn moved_positions(&self) -> Vec<Point3<f64>> {
+        let moved = self.motions.iter().enumerate().flat_map(|(i, motion)| {
+            let motion = Motion::new(motion);
+            let positions = self.objects[i % self.objects.len()].set().positions();
+            positions.iter().map(move |p| Point3::from(motion.apply([p.x, p.y, p.z])))
+        });
+        moved.collect()
+    }
+
+    /// Returns all triangles after their motions.
+    fn moved_soup(&self) -> Result<Soup<f64>, BuildError> {
+        let mut elements = Vec::new();
+        let mut first = 0;
+        for i in 0..self.motions.len() {
+            let soup = self.objects[i % self.objects.len()].set();
+            elements.extend(soup.triangles().iter().map(|corners| Element::Triangle(corners.map(|i| i + first))));
+            first += u32::try_from(soup.positions().len()).unwrap_or(u32::MAX);
+        }
+        Soup::new(self.moved_positions(), elements)
+    }
+}
+
+/// Returns the triangles of a mesh, scaled to a box with a diagonal of 1 about the origin, and simplified to at most
+/// some triangles by merging the vertices in each cell of a grid.
+fn object(soup: &Soup<f64>, most: Option<usize>) -> Result<Soup<f64>> {
+    let bounds = soup.aabb();
+    let (centre, diagonal) = (nalgebra::center(&bounds.min, &bounds.max), (bounds.max - bounds.min).norm());
+    let positions: Vec<_> = soup.positions().iter().map(|p| Point3::from((p - centre) / diagonal)).collect();
+    let triangles = soup.triangles();
+    let Some(most) = most.filter(|most| triangles.len() > *most) else {
+        return Ok(Soup::new(positions, triangles.iter().map(|t| Element::Triangle(*t)))?);
+    };
+    let mut merged = Vec::new();
+    let mut kept: Vec<Point3<f64>> = Vec::new();
+    for cells in 2..4096 {
+        let mut of_cell = HashMap::new();
+        let mut vertices = Vec::new();
+        #[allow(clippy::cast_possible_truncation, reason = "the coordinates of cells are small")]
+        let representative: Vec<u32> = (positions.iter())
+            .map(|p| {
+                *of_cell.entry(<[i32; 3]>::from(p.coords.map(|x| (x * f64::from(cells)) as i32))).or_insert_with(|| {
+                    vertices.push(*p);
+                    vertices.len() as u32 - 1
+                })
+            })
+            .collect();
+        let moved = triangles.iter().map(|t| t.map(|i| representative[i as usize]));
+        let next: Vec<_> = moved.filter(|[a, b, c]| a != b && b != c && c != a).collect();
+        if next.len() > most {
+            break;
+        }
+        (merged, kept) = (next, vertices);
+    }
+    Ok(Soup::new(kept, merged.into_iter().map(Element::Triangle))?)
+}

@@ -1,0 +1,6 @@
+//! Compares scenes of instances with indexes over all moved vertices, bit for bit.
+
+mod agreement;
+mod edges;
+mod models;
+mod reference;
