@@ -5,7 +5,7 @@ use p2m_core::engine::pairs::PairSide;
 use p2m_core::engine::real::{from_f64_array, to_f64_array};
 use p2m_core::engine::vector::V3;
 use p2m_core::pair::{Motion, PairQuery, hull_of};
-use p2m_core::{ClosestPoint, PrimitiveId, PrimitiveSet, Real};
+use p2m_core::{Aabb, ClosestPoint, PrimitiveId, PrimitiveSet, Real};
 
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> PairQuery<T> for TreeIndex<T, S, V> {
     fn primitive_count(&self) -> usize {
@@ -16,8 +16,19 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> PairQuery<T> for TreeIndex<T, S, V>
         hull_of(&self.set().get(id), None)
     }
 
-    fn with_pair_side(&self, motion: Option<Motion>, search: &mut dyn FnMut(&dyn PairSide)) -> bool {
-        V::as_pair_side(self.tree(), motion, search);
+    fn pair_bounds(&self) -> Aabb<f64> {
+        *self.tree().bounds()
+    }
+
+    fn visit_pair_sides(
+        &self,
+        motions: &[Motion],
+        _: &Aabb<f64>,
+        search: &mut dyn FnMut(&dyn PairSide, usize) -> f64,
+    ) -> bool {
+        V::as_pair_side(self.tree(), motions, &mut |side| {
+            search(side, 0);
+        });
         true
     }
 

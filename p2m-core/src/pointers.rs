@@ -64,8 +64,16 @@ macro_rules! point_to {
             fn hull(&self, id: PrimitiveId) -> ([[f64; 3]; 3], usize) {
                 (**self).hull(id)
             }
-            fn with_pair_side(&self, motion: Option<Motion>, search: &mut dyn FnMut(&dyn PairSide)) -> bool {
-                (**self).with_pair_side(motion, search)
+            fn pair_bounds(&self) -> Aabb<f64> {
+                (**self).pair_bounds()
+            }
+            fn visit_pair_sides(
+                &self,
+                motions: &[Motion],
+                near: &Aabb<f64>,
+                search: &mut dyn FnMut(&dyn PairSide, usize) -> f64,
+            ) -> bool {
+                (**self).visit_pair_sides(motions, near, search)
             }
             fn guess_closest(&self, point: [f64; 3]) -> Option<([f64; 3], PrimitiveId)> {
                 (**self).guess_closest(point)

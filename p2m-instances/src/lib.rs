@@ -54,6 +54,7 @@ mod instance;
 mod instances;
 mod nearest;
 mod object;
+mod pairs;
 mod rays;
 
 pub use edit::Edit;

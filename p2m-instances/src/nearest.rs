@@ -4,6 +4,7 @@ use crate::instance::{Instance, size};
 use crate::instances::Instances;
 use nalgebra::Point3;
 use p2m_core::kernel::power_of_two;
+use p2m_core::pair::PairQuery;
 use p2m_core::storage::Writer;
 use p2m_core::{
     Best, BoxQuery, CertifiedQuery, ClosestPoint, Collector, Found, Index, Inspect, Near, NearQuery, Primitive,
@@ -171,6 +172,10 @@ impl<I: Index<f64> + ?Sized> Index<f64> for Instances<f64, I> {
     }
 
     fn as_box_query(&self) -> Option<&(dyn BoxQuery<f64> + Sync)> {
+        Some(self)
+    }
+
+    fn as_pair_query(&self) -> Option<&(dyn PairQuery<f64> + Sync)> {
         Some(self)
     }
 }

@@ -107,8 +107,8 @@ impl<const K: usize> CompiledSearches for Kdop<K> {
     }
 
     #[inline(never)]
-    fn as_pair_side(tree: &PacketTree<Self>, motion: Option<Motion>, search: &mut dyn FnMut(&dyn PairSide)) {
-        search(&TreeSide::new(tree, motion));
+    fn as_pair_side(tree: &PacketTree<Self>, motions: &[Motion], search: &mut dyn FnMut(&dyn PairSide)) {
+        search(&TreeSide::new(tree, motions));
     }
 }
 
@@ -118,7 +118,7 @@ type Searches<const K: usize> = (
     for<'n> fn(&PacketTree<Kdop<K>>, V3, &mut Near<'n>, EvaluateFn<'_, Near<'n>>),
     for<'r> fn(&PacketTree<Kdop<K>>, &'r Ray, f64, &mut Hits<'r>, IntersectFn<'_, 'r>),
     fn(&PacketTree<Kdop<K>>, &Ray, f64, &mut RayCandidates<'_>),
-    fn(&PacketTree<Kdop<K>>, Option<Motion>, &mut dyn FnMut(&dyn PairSide)),
+    fn(&PacketTree<Kdop<K>>, &[Motion], &mut dyn FnMut(&dyn PairSide)),
 );
 
 const fn searches<const K: usize>() -> Searches<K> {

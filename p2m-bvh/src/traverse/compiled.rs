@@ -47,8 +47,8 @@ pub trait CompiledSearches: VolumeNodes {
     /// Searches for the primitives that a ray may hit.
     fn ray_candidates(tree: &PacketTree<Self>, ray: &Ray, radius: f64, candidates: &mut RayCandidates<'_>);
 
-    /// Passes a tree, which may have moved, to a search for pairs.
-    fn as_pair_side(tree: &PacketTree<Self>, motion: Option<Motion>, search: &mut dyn FnMut(&dyn PairSide));
+    /// Passes a tree, after some motions in their order, to a search for pairs.
+    fn as_pair_side(tree: &PacketTree<Self>, motions: &[Motion], search: &mut dyn FnMut(&dyn PairSide));
 }
 
 impl CompiledSearches for Aabb<f64> {
@@ -77,8 +77,8 @@ impl CompiledSearches for Aabb<f64> {
         tree.run_ray(ray, radius, candidates, &|_, _| None);
     }
 
-    fn as_pair_side(tree: &PacketTree, motion: Option<Motion>, search: &mut dyn FnMut(&dyn PairSide)) {
-        search(&TreeSide::new(tree, motion));
+    fn as_pair_side(tree: &PacketTree, motions: &[Motion], search: &mut dyn FnMut(&dyn PairSide)) {
+        search(&TreeSide::new(tree, motions));
     }
 }
 

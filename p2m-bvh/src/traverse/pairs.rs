@@ -4,45 +4,49 @@ use crate::tree::PacketTree;
 use crate::tree::node_ref::NodeRef;
 use crate::tree::wide_node::{VolumeNodes, WideNode};
 use p2m_core::engine::pairs::{
-    Children, Height, Hulls, NO_NODE, PairSide, Place, Placement, Slab, WIDTH, bound_children,
+    Children, Height, Hulls, NO_NODE, PairSide, Place, Placement, Slab, WIDTH, bound_children, largest_coordinate,
 };
 use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
 use p2m_core::engine::vector::{V3, dot};
 use p2m_core::pair::Motion;
 use p2m_core::{Aabb, PrimitiveId};
 
-/// A tree, which may have moved.
+/// A tree, after some motions in their order. Each of them rounds the coordinates of vertices.
 pub struct TreeSide<'a, V: VolumeNodes> {
     tree: &'a PacketTree<V>,
-    motion: Option<Motion>,
+    motions: &'a [Motion],
     /// A node with the root in its first slot.
     above_root: V::Node,
 }
 
 impl<'a, V: VolumeNodes> TreeSide<'a, V> {
     /// Makes a side of a tree.
-    pub fn new(tree: &'a PacketTree<V>, motion: Option<Motion>) -> Self {
+    pub fn new(tree: &'a PacketTree<V>, motions: &'a [Motion]) -> Self {
         let mut above_root = V::Node::new([NodeRef::NONE; WIDTH]);
         above_root.set_bounds(0, &tree.root_bounds);
-        Self { tree, motion, above_root }
+        Self { tree, motions, above_root }
     }
 
     fn parent(&self, place: &Place) -> &V::Node {
         if place.parent == NO_NODE { &self.above_root } else { &self.tree.nodes[NodeRef(place.parent).number()] }
     }
 
-    /// Converts a direction of the scene to that of the tree before its motion.
+    /// Converts a direction of the scene to that of the tree before its motions.
     fn turned_back(&self, direction: &V3) -> V3 {
-        self.motion.map_or(*direction, |motion| motion.apply_inverse_to_vector(*direction))
+        self.motions.iter().rev().fold(*direction, |direction, motion| motion.apply_inverse_to_vector(direction))
     }
 
     /// Returns the height of the origin of the coordinates of the tree.
     fn shift(&self, direction: &V3) -> f64 {
-        self.motion.map_or(0.0, |motion| dot(motion.translation(), *direction))
+        dot(self.moved([0.0; 3]), *direction)
+    }
+
+    fn moved(&self, point: V3) -> V3 {
+        self.motions.iter().fold(point, |point, motion| motion.apply(point))
     }
 
     fn moved_box(&self, bounds: &Aabb<f64>) -> Aabb<f64> {
-        self.motion.map_or(*bounds, |motion| motion.apply_to_box(bounds))
+        self.motions.iter().fold(*bounds, |bounds, motion| motion.apply_to_box(&bounds))
     }
 }
 
@@ -61,14 +65,21 @@ impl<V: VolumeNodes> PairSide for TreeSide<'_, V> {
 
     fn placement(&self) -> Placement {
         let frame = &self.tree.frame;
-        let centre = self.motion.map_or(frame.centre, |motion| motion.apply(frame.centre));
-        Placement { centre, unit: frame.unit, is_plain: frame.is_plain(), is_tree: true }
+        let centre = self.moved(frame.centre);
+        // A motion makes no coordinate larger than the length of the vertex and the translation.
+        let grow = |size: f64, motion: &Motion| {
+            2.0 * size + motion.translation().into_iter().fold(0.0, |t: f64, x| t.max(x.abs()))
+        };
+        let size = self.motions.iter().fold(largest_coordinate(&self.tree.bounds), grow);
+        Placement { centre, unit: frame.unit, size, is_plain: frame.is_plain(), is_tree: true }
     }
 
     fn directions(&self) -> Vec<V3> {
-        self.motion.map_or(Vec::new(), |motion| {
-            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| motion.turn(axis)).into()
-        })
+        if self.motions.is_empty() {
+            return Vec::new();
+        }
+        let turned = |axis| self.motions.iter().fold(axis, |axis, motion| motion.turn(axis));
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(turned).into()
     }
 
     fn height(&self, direction: &V3) -> Height {
@@ -123,7 +134,7 @@ impl<V: VolumeNodes> PairSide for TreeSide<'_, V> {
         for (lane, id) in packet.ids().iter().enumerate() {
             let (indices, count) = packet.vertices_of(lane);
             assert!(count > 0, "distances between primitives are defined for those that have vertices");
-            let moved = |index: usize| self.motion.map_or(leaves.vertices[index], |m| m.apply(leaves.vertices[index]));
+            let moved = |index: usize| self.moved(leaves.vertices[index]);
             hulls.push(*id, &indices.map(moved)[..count]);
         }
     }

@@ -88,6 +88,8 @@ pub struct Pairs<'a> {
     /// The square that lower bounds must not exceed.
     prune: f64,
     mode: Mode<'a>,
+    /// The numbers that are added to the ids that a search offers.
+    offsets: [usize; 2],
     /// Whether nothing can be within reach.
     is_empty: bool,
     /// Whether the visitor ended the search.
@@ -113,7 +115,15 @@ impl<'a> Pairs<'a> {
         let reach = if radius > 0.0 { largest + radius } else { options.max_distance.to_f64_above() };
         // Nothing is within NaN or below 0.
         let is_valid = largest >= 0.0 && radius >= 0.0;
-        Self { reach, radius, prune: square_within(reach), mode, is_empty: !is_valid, has_ended: false }
+        Self {
+            reach,
+            radius,
+            prune: square_within(reach),
+            mode,
+            offsets: [0, 0],
+            is_empty: !is_valid,
+            has_ended: false,
+        }
     }
 
     /// Creates the collector of the nearest pair within the largest distance of the options.
@@ -171,6 +181,23 @@ impl<'a> Pairs<'a> {
         self.prune
     }
 
+    /// Sets the numbers that are added to the ids that a search offers, for scenes of several trees.
+    pub(crate) fn set_offsets(&mut self, offsets: [usize; 2]) {
+        self.offsets = offsets;
+    }
+
+    /// Returns the ids of primitives of the trees that are searched as ids of their scenes.
+    fn scene_ids(&self, ids: [PrimitiveId; 2]) -> [PrimitiveId; 2] {
+        [0, 1].map(|i| PrimitiveId::new(ids[i].index() + self.offsets[i]))
+    }
+
+    /// Returns the distance beyond which nothing can change the answer. It is NaN when the search is over.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        if self.is_done() { f64::NAN } else { self.prune.sqrt() * (1.0 + 8.0 * f64::EPSILON) }
+    }
+
     /// Returns whether the search is over.
     #[inline]
     #[must_use]
@@ -203,6 +230,7 @@ impl<'a> Pairs<'a> {
     #[inline]
     #[must_use]
     pub fn can_change(&self, ids: [PrimitiveId; 2]) -> bool {
+        let ids = self.scene_ids(ids);
         !self.best().is_some_and(|(others, pair)| pair.is_intersecting && *others < ids)
     }
 
@@ -218,6 +246,7 @@ impl<'a> Pairs<'a> {
     /// Takes a pair of primitives.
     pub fn offer(&mut self, ids: [PrimitiveId; 2], pair: &NearestPair) {
         let distance = pair.key.distance();
+        let ids = self.scene_ids(ids);
         match &mut self.mode {
             Mode::Nearest { best, certified } => {
                 // A distance beyond the range of f64 is at least the largest number.

@@ -35,6 +35,9 @@ use std::ops::ControlFlow;
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```
 ///
+/// A pointer to an index is an index, so a trait object answers through a reference to the pointer: if `index` is a
+/// `&dyn PairQuery<T>`, then `(&index).closest_to(..)`.
+///
 /// # Accuracy
 /// Answers of all indexes are those of all pairs of primitives, bit for bit, where vertices that move are rounded first
 /// ([`Motion`]); lower bounds alone depend on the index. The error of a distance is at most
@@ -58,11 +61,30 @@ pub trait PairQuery<T: Real> {
     /// Returns the vertices of a primitive in f64, and their number.
     fn hull(&self, id: PrimitiveId) -> ([V3; 3], usize);
 
-    /// Calls `search` with the index as a tree, which may have moved, and returns `true`. The default, for an index
-    /// that is no tree, returns `false`.
+    /// Returns a box around the scene. The default takes the vertices of all primitives.
     #[doc(hidden)]
-    fn with_pair_side(&self, motion: Option<Motion>, search: &mut dyn FnMut(&dyn PairSide)) -> bool {
-        let _ = (motion, search);
+    fn pair_bounds(&self) -> Aabb<f64> {
+        let of_primitive = |id| {
+            let (hull, len) = self.hull(id);
+            bounds_of(&hull[..len])
+        };
+        let ids = (0..self.primitive_count()).map(PrimitiveId::new);
+        ids.fold(Aabb::empty(), |all, id| all.union(&of_primitive(id)))
+    }
+
+    /// Calls `search` with the trees that the index consists of, after some motions in their order, and returns `true`.
+    /// The default, for an index that is no tree, returns `false`.
+    ///
+    /// `search` gets a tree and the number that is added to the ids of its primitives. It returns the distance from the
+    /// box `near` beyond which no other tree is needed. The nearest trees come first.
+    #[doc(hidden)]
+    fn visit_pair_sides(
+        &self,
+        motions: &[Motion],
+        near: &Aabb<f64>,
+        search: &mut dyn FnMut(&dyn PairSide, usize) -> f64,
+    ) -> bool {
+        let _ = (motions, near, search);
         false
     }
 
@@ -244,7 +266,12 @@ pub(super) fn search_hull<T: Real>(
     let mut vertices = [[0.0; 3]; 3];
     vertices[..hull.len()].copy_from_slice(hull);
     offer_hints(index, hint, guess, pairs, &mut |id| (id == shape_id).then_some((vertices, hull.len())));
-    let is_tree = index.with_pair_side(None, &mut |side| search_pairs(side, &ShapeSide(hull), pairs));
+    let is_tree = index.visit_pair_sides(&[], &bounds_of(hull), &mut |side, offset| {
+        pairs.set_offsets([offset, 0]);
+        search_pairs(side, &ShapeSide(hull), pairs);
+        pairs.reach()
+    });
+    pairs.set_offsets([0, 0]);
     if !is_tree {
         for id in (0..index.primitive_count()).map(PrimitiveId::new) {
             if pairs.is_done() {
@@ -267,24 +294,30 @@ fn search_scenes<T: Real>(
     }
     let motion = options.motion.as_ref().map(Motion::new);
     let moved_hull = |id: PrimitiveId| moved_hull(second, motion.as_ref(), id);
-    let mut are_trees = false;
-    first.with_pair_side(None, &mut |a| {
-        are_trees = second.with_pair_side(motion, &mut |b| {
-            let bounds = b.bounds();
-            if !bounds.is_finite() {
-                return;
-            }
-            let apply = |point: V3| motion.map_or(point, |motion| motion.apply(point));
-            let undo = |point: V3| motion.map_or(point, |motion| motion.apply_inverse(point));
-            let on_second = |point| second.guess_closest(undo(point)).map(|(point, id)| (apply(point), id));
-            let guess = || guess_pair(centre(&bounds), &|point| first.guess_closest(point), &on_second);
-            offer_hints(first, options.hint, guess, pairs, &mut |id| {
-                (id.index() < second.primitive_count()).then(|| moved_hull(id))
-            });
-            search_pairs(a, b, pairs);
-        });
+    let bounds = second.pair_bounds();
+    let bounds = motion.map_or(bounds, |motion| motion.apply_to_box(&bounds));
+    if !bounds.is_finite() {
+        return;
+    }
+    let apply = |point: V3| motion.map_or(point, |motion| motion.apply(point));
+    let undo = |point: V3| motion.map_or(point, |motion| motion.apply_inverse(point));
+    let on_second = |point| second.guess_closest(undo(point)).map(|(point, id)| (apply(point), id));
+    let guess = || guess_pair(centre(&bounds), &|point| first.guess_closest(point), &on_second);
+    offer_hints(first, options.hint, guess, pairs, &mut |id| {
+        (id.index() < second.primitive_count()).then(|| moved_hull(id))
     });
-    if are_trees {
+    // Both are trees, unless one of the calls returns `false`, which it does before it searches anything.
+    let mut is_second_tree = true;
+    let is_first_tree = first.visit_pair_sides(&[], &bounds, &mut |a, offset_a| {
+        is_second_tree = second.visit_pair_sides(motion.as_slice(), &a.bounds(), &mut |b, offset_b| {
+            pairs.set_offsets([offset_a, offset_b]);
+            search_pairs(a, b, pairs);
+            pairs.reach()
+        });
+        if is_second_tree { pairs.reach() } else { f64::NAN }
+    });
+    pairs.set_offsets([0, 0]);
+    if is_first_tree && is_second_tree {
         return;
     }
     for j in (0..second.primitive_count()).map(PrimitiveId::new) {

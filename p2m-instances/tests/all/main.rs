@@ -3,4 +3,5 @@
 mod agreement;
 mod edges;
 mod models;
+mod pairs;
 mod reference;

@@ -7,7 +7,8 @@ use crate::simd::Lanes;
 
 /// A frame resolves what is at most this many units away from its centre.
 const MAX_UNITS: f64 = power_of_two(10);
-/// The part of all magnitudes by which heights are wrong that are computed in f64.
+/// The part of all magnitudes by which heights are wrong that are computed in f64, the vertices of which a motion has
+/// rounded, and keys.
 const ROUNDING: f64 = power_of_two(-46);
 
 /// The lengths of vectors that have a direction.
@@ -53,9 +54,7 @@ impl Directions {
     pub(super) fn new(sides: [&dyn PairSide; 2]) -> Option<Self> {
         let bounds = sides.map(PairSide::bounds);
         let frames = sides.map(PairSide::placement);
-        let size =
-            bounds.iter().flat_map(|b| b.min.iter().chain(b.max.iter())).fold(0.0, |size: f64, x| size.max(x.abs()));
-        let margin = size * ROUNDING;
+        let margin = (frames[0].size + frames[1].size) * ROUNDING;
         for (frame, other) in frames.iter().zip([&bounds[1], &bounds[0]]) {
             let reach = |k: usize| (other.min[k] - frame.centre[k]).abs().max((other.max[k] - frame.centre[k]).abs());
             let farthest = reach(0).max(reach(1)).max(reach(2));

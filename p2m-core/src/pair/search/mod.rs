@@ -35,8 +35,7 @@ pub use directions::{ChildBounds, Slab, bound_children};
 pub use height::{Height, Rows};
 pub use hulls::Hulls;
 use hulls::search_packets;
-pub(super) use side::ShapeSide;
-pub use side::{Children, NO_NODE, PairSide, Place, Placement, WIDTH};
+pub use side::{Children, NO_NODE, PairSide, Place, Placement, ShapeSide, WIDTH, largest_coordinate};
 use support::Supports;
 
 /// Two nodes that may contain a near pair.
@@ -65,6 +64,9 @@ struct Search<'a, 'p, 'v> {
 pub fn search_pairs(a: &dyn PairSide, b: &dyn PairSide, pairs: &mut Pairs<'_>) {
     let (Some(root_a), Some(root_b)) = (a.root(), b.root()) else { return };
     let sides = [a, b];
+    if a.bounds().gap_squared(&b.bounds()) > pairs.prune_above() {
+        return;
+    }
     let directions = Directions::new(sides);
     let supports = Supports::new(directions.as_ref().map(|all| all.margin));
     let mut search = Search { sides, directions, supports, pending: Vec::new(), fixed: None, slabs: Vec::new(), pairs };

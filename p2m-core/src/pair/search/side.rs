@@ -99,6 +99,8 @@ pub struct Placement {
     pub centre: V3,
     /// The unit of the frame.
     pub unit: f64,
+    /// A bound on the magnitudes of all coordinates of vertices, before, between and after motions.
+    pub size: f64,
     /// Whether squares of lengths are in range.
     pub is_plain: bool,
     /// Whether there is a frame. A shape has coordinates of the scene.
@@ -106,7 +108,7 @@ pub struct Placement {
 }
 
 /// A single shape of one to three vertices, which is a tree of one packet.
-pub(crate) struct ShapeSide<'a>(pub(crate) &'a [V3]);
+pub struct ShapeSide<'a>(pub &'a [V3]);
 
 impl PairSide for ShapeSide<'_> {
     fn root(&self) -> Option<Place> {
@@ -122,7 +124,13 @@ impl PairSide for ShapeSide<'_> {
     }
 
     fn placement(&self) -> Placement {
-        Placement { centre: [0.0; 3], unit: 1.0, is_plain: true, is_tree: false }
+        Placement {
+            centre: [0.0; 3],
+            unit: 1.0,
+            size: largest_coordinate(&self.bounds()),
+            is_plain: true,
+            is_tree: false,
+        }
     }
 
     fn directions(&self) -> Vec<V3> {
@@ -172,4 +180,10 @@ impl PairSide for ShapeSide<'_> {
         hulls.start(packet);
         hulls.push(PrimitiveId::new(0), self.0);
     }
+}
+
+/// Returns the largest magnitude of a coordinate of a box.
+#[must_use]
+pub fn largest_coordinate(bounds: &Aabb<f64>) -> f64 {
+    bounds.min.iter().chain(bounds.max.iter()).fold(0.0, |size, x| size.max(x.abs()))
 }

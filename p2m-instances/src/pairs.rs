@@ -1,0 +1,211 @@
+//! Queries for pairs of primitives.
+
+use crate::instance::{Instance, InstanceId};
+use crate::instances::Instances;
+use nalgebra::Point3;
+use p2m_core::engine::pairs::{PairSide, ShapeSide};
+use p2m_core::engine::real::{from_f64_array, to_f64_array};
+use p2m_core::pair::{ClosestPair, Motion, PairOptions, PairQuery};
+use p2m_core::{Aabb, ClosestPoint, Index, Near, NearQuery, PrimitiveId, Real};
+use std::ops::ControlFlow;
+
+impl<T: Real, I: Index<T> + ?Sized> PairQuery<T> for Instances<T, I> {
+    fn primitive_count(&self) -> usize {
+        self.count_primitives()
+    }
+
+    fn hull(&self, id: PrimitiveId) -> ([[f64; 3]; 3], usize) {
+        let (instance, local) = self.owner_of(id).expect("the id is one of the scene");
+        hull_of(instance, local)
+    }
+
+    fn pair_bounds(&self) -> Aabb<f64> {
+        self.bounds()
+    }
+
+    fn visit_pair_sides(
+        &self,
+        motions: &[Motion],
+        near: &Aabb<f64>,
+        search: &mut dyn FnMut(&dyn PairSide, usize) -> f64,
+    ) -> bool {
+        let mut visit = |instance: &Instance<I>| visit_instance(instance, motions, near, search);
+        // The box in the frame of the scene. Its centre and half of its diagonal tell how far an instance may be from a
+        // point.
+        let near = motions.iter().rev().fold(*near, |near, motion| motion.apply_inverse_to_box(&near));
+        let centre = nalgebra::center(&near.min, &near.max);
+        let half = nalgebra::distance(&near.min, &near.max) * 0.5;
+        let size = half + centre.coords.amax() + motions.iter().map(|motion| norm(motion.translation())).sum::<f64>();
+        let margin = half + size * ROUNDING;
+        let ordered = self.tree.as_ref().filter(|_| margin.is_finite());
+        match ordered {
+            Some(tree) => {
+                let boxes = tree.tree.set();
+                let mut visit_box =
+                    |id: PrimitiveId, _: &[[f64; 3]]| visit(&self.instances[boxes[id.index()].position]) + margin;
+                let all = f64::INFINITY;
+                tree.tree.search_near(&centre, &mut Near::shrinking(all, all, &mut visit_box));
+            }
+            None => {
+                let _ = self.instances.iter().find(|instance| visit(instance).is_nan());
+            }
+        }
+        true
+    }
+
+    fn guess_closest(&self, point: [f64; 3]) -> Option<([f64; 3], PrimitiveId)> {
+        let closest = self.closest_point(&from_f64_array(point))?;
+        Some((to_f64_array(&closest.point), closest.primitive))
+    }
+}
+
+/// Calls `search` with the trees of an instance, or with each of its primitives if it has none, and returns the last
+/// result.
+fn visit_instance<T: Real, I: Index<T> + ?Sized>(
+    instance: &Instance<I>,
+    motions: &[Motion],
+    near: &Aabb<f64>,
+    search: &mut dyn FnMut(&dyn PairSide, usize) -> f64,
+) -> f64 {
+    let chain: Vec<Motion> = std::iter::once(instance.motion).chain(motions.iter().copied()).collect();
+    let mut reach = f64::INFINITY;
+    let mut search = |side: &dyn PairSide, id: usize| {
+        reach = search(side, id);
+        reach
+    };
+    let index = instance.object.index.as_pair_query();
+    let has_trees = index.is_some_and(|index| {
+        index.visit_pair_sides(&chain, near, &mut |side, offset| search(side, instance.first + offset))
+    });
+    if !has_trees {
+        for id in instance.local_ids() {
+            let (mut hull, len) = hull_of(instance, id);
+            hull.iter_mut().for_each(|v| *v = motions.iter().fold(*v, |v, motion| motion.apply(v)));
+            if search(&ShapeSide(&hull[..len]), instance.scene_id(id).index()).is_nan() {
+                break;
+            }
+        }
+    }
+    reach
+}
+
+/// The part of all magnitudes that is added to distances for the rounding of motions.
+const ROUNDING: f64 = 1024.0 * f64::EPSILON;
+
+fn norm(vector: [f64; 3]) -> f64 {
+    Point3::from(vector).coords.norm()
+}
+
+fn hull_of<T: Real, I: Index<T> + ?Sized>(instance: &Instance<I>, local: PrimitiveId) -> ([[f64; 3]; 3], usize) {
+    let moved = instance.moved(local, &[]);
+    let mut hull = [[0.0; 3]; 3];
+    hull[..moved.vertices().len()].copy_from_slice(moved.vertices());
+    (hull, moved.vertices().len())
+}
+
+/// One instance of a scene, as a scene of its own whose ids are those of the object.
+struct Alone<'a, I: ?Sized>(&'a Instance<I>);
+
+impl<T: Real, I: Index<T> + ?Sized> PairQuery<T> for Alone<'_, I> {
+    fn primitive_count(&self) -> usize {
+        self.0.primitives().len()
+    }
+
+    fn hull(&self, id: PrimitiveId) -> ([[f64; 3]; 3], usize) {
+        hull_of(self.0, id)
+    }
+
+    fn pair_bounds(&self) -> Aabb<f64> {
+        self.0.bounds
+    }
+
+    fn visit_pair_sides(
+        &self,
+        motions: &[Motion],
+        near: &Aabb<f64>,
+        search: &mut dyn FnMut(&dyn PairSide, usize) -> f64,
+    ) -> bool {
+        visit_instance(self.0, motions, near, &mut |side, id| search(side, id - self.0.first));
+        true
+    }
+
+    fn guess_closest(&self, point: [f64; 3]) -> Option<([f64; 3], PrimitiveId)> {
+        let local = self.0.motion.apply_inverse(point);
+        let closest = self.0.object.index.closest_point(&from_f64_array(local))?;
+        Some((self.0.motion.apply(to_f64_array(&closest.point)), closest.primitive))
+    }
+}
+
+impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
+    /// Calls a function with each two instances that are within a distance of each other, and their nearest pair, until
+    /// it breaks, and returns whether it did. The distance is inclusive, in units of the scene. With the distance 0 it
+    /// finds the instances that intersect. The ids of the pair are those of the scene, and the first instance was added
+    /// before the second.
+    ///
+    /// ```
+    /// use nalgebra::{Isometry3, Point3};
+    /// use p2m_bvh::AabbTree;
+    /// use p2m_core::{BuildIndex, Segment};
+    /// use p2m_instances::Instances;
+    /// use std::ops::ControlFlow;
+    /// use std::sync::Arc;
+    ///
+    /// let rod = [Segment::new(Point3::new(0.0, 0.0, 0.0), Point3::new(1.0, 0.0, 0.0))];
+    /// let rod = Arc::new(AabbTree::build(rod, &Default::default())?);
+    /// let mut scene = Instances::new();
+    /// for (i, x) in [0.0, 1.5, 9.0].into_iter().enumerate() {
+    ///     scene.edit().add(&format!("rod {i}"), &rod, Isometry3::translation(x, 0.0, 0.0))?;
+    /// }
+    /// let mut near = Vec::new();
+    /// let _ = scene.visit_near_instances(1.0, &mut |a, b, pair| {
+    ///     near.push((a, b, pair.distance));
+    ///     ControlFlow::Continue(())
+    /// });
+    /// let ids: Vec<_> = scene.instances().map(|instance| instance.id()).collect();
+    /// assert_eq!(near, [(ids[0], ids[1], 0.5)]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Complexity
+    /// It takes a query of the tree of boxes for each instance, and a search for the nearest pair of each two whose
+    /// boxes are near.
+    pub fn visit_near_instances(
+        &self,
+        max_distance: T,
+        visit: &mut dyn FnMut(InstanceId, InstanceId, &ClosestPair<T>) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let options = PairOptions::default().with_max_distance(max_distance);
+        // Rounded up, with room for the rounding of a distance to the scalar.
+        let reach = max_distance.to_f64() * (1.0 + 4.0 * T::UNIT_ROUNDOFF);
+        let limit = reach * reach * (1.0 + 8.0 * f64::EPSILON) + f64::MIN_POSITIVE;
+        let mut test = |a: &Instance<I>, b: &Instance<I>| {
+            if a.bounds.gap_squared(&b.bounds) > limit {
+                return ControlFlow::Continue(());
+            }
+            let Some(mut pair) = Alone(a).closest_pair(&Alone(b), &options) else { return ControlFlow::Continue(()) };
+            let [i, j] = pair.primitives;
+            pair.primitives = [a.scene_id(i), b.scene_id(j)];
+            visit(a.id(), b.id(), &pair)
+        };
+        for (i, a) in self.instances.iter().enumerate() {
+            let centre = nalgebra::center(&a.bounds.min, &a.bounds.max);
+            let radius = nalgebra::distance(&a.bounds.min, &a.bounds.max) * 0.5;
+            let around = (radius + reach) * (1.0 + 8.0 * f64::EPSILON) + f64::MIN_POSITIVE;
+            match self.tree.as_ref().filter(|_| around.is_finite()) {
+                Some(tree) => {
+                    let boxes = tree.tree.set();
+                    let mut near: Vec<usize> = Vec::new();
+                    let mut take = |id: PrimitiveId, _: &[[f64; 3]]| {
+                        near.push(boxes[id.index()].position);
+                        around
+                    };
+                    tree.tree.search_near(&centre, &mut Near::shrinking(around, f64::INFINITY, &mut take));
+                    near.sort_unstable();
+                    near.into_iter().filter(|j| *j > i).try_for_each(|j| test(a, &self.instances[j]))?;
+                }
+                None => self.instances[i + 1..].iter().try_for_each(|b| test(a, b))?,
+            }
+        }
+        ControlFlow::Continue(())
+    }
+}
