@@ -4,8 +4,9 @@
 use crate::reference::{Expected, Object, motion, moved_soup, scene};
 use nalgebra::Isometry3;
 use p2m_advisor::{BACKENDS, BuildSettings};
+use p2m_bvh::AabbTree;
 use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
-use p2m_core::{BruteForce, Index, PrimitiveId, PrimitiveSet, Shape, Soup};
+use p2m_core::{BruteForce, BuildIndex, Index, PrimitiveId, PrimitiveSet, Shape, Soup};
 use p2m_instances::Instances;
 use p2m_testkit::scenes::{self, kinds_and_layout};
 use p2m_testkit::{cases, rng};
@@ -133,5 +134,30 @@ fn pairs_are_those_of_the_moved_scene() {
         }
     }
     assert!(all.have_more_than(60, found), "{found}");
+    assert!(all.have_more_than(100, near), "{near}");
+}
+
+/// An object without a tree is searched by primitives, before or after one with a tree that was turned.
+#[test]
+fn instances_with_and_without_trees_are_compared() {
+    let mut near = 0;
+    let all = cases(4_000, 300);
+    for case in all.clone() {
+        let mut rng = rng("instances without trees", case);
+        let (kinds, layout) = kinds_and_layout(case);
+        let soups = [0, 1].map(|_| scenes::soup(&mut rng, kinds, layout, 12));
+        let size = soups.iter().map(|soup| (soup.aabb().max - soup.aabb().min).amax()).fold(0.0, f64::max);
+        let brute = Arc::new(BruteForce::new(&soups[0]).expect("valid")) as Arc<dyn Index<f64> + '_>;
+        let tree = AabbTree::build(&soups[1], &Default::default()).expect("valid");
+        let tree = Arc::new(tree) as Arc<dyn Index<f64> + '_>;
+        let objects: Vec<Object<'_, f64>> = vec![(&soups[0], brute), (&soups[1], tree)];
+        let (scene, expected) = scene(&mut rng, &objects, size);
+        near += check_instances(case, &scene, &objects, &expected, f64::INFINITY);
+        // All pairs within a distance have no guess to begin with.
+        let truth = moved_soup(&objects, &expected);
+        let truth = BruteForce::new(&truth).expect("valid");
+        let options = PairOptions::default().with_max_distance(size * 0.5);
+        assert_eq!(within(&scene, &scene, &options), within(&truth, &truth, &options), "case {case}");
+    }
     assert!(all.have_more_than(100, near), "{near}");
 }

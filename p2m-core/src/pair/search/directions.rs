@@ -65,10 +65,13 @@ impl Directions {
         }
         let mut vectors: Vec<V3> = vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let mut triples = 1;
-        for (side, frame) in sides.iter().zip(&frames) {
-            let own = side.directions();
-            triples += usize::from(frame.is_tree && !own.is_empty());
-            vectors.extend(own);
+        // The orthogonal directions of trees come before those of shapes.
+        for wants_trees in [true, false] {
+            for (side, _) in sides.iter().zip(&frames).filter(|(_, frame)| frame.is_tree == wants_trees) {
+                let own = side.directions();
+                triples += usize::from(wants_trees && !own.is_empty());
+                vectors.extend(own);
+            }
         }
         let direction = |vector: &V3| Direction {
             vector: *vector,
