@@ -157,12 +157,12 @@ impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
     ///     scene.edit().add(&format!("rod {i}"), &rod, Isometry3::translation(x, 0.0, 0.0))?;
     /// }
     /// let mut near = Vec::new();
-    /// let _ = scene.visit_near_instances(1.0, &mut |a, b, pair| {
-    ///     near.push((a, b, pair.distance));
+    /// let _ = scene.visit_near_instances(1.0, &mut |instances, pair| {
+    ///     near.push((instances, pair.distance));
     ///     ControlFlow::Continue(())
     /// });
     /// let ids: Vec<_> = scene.instances().map(|instance| instance.id()).collect();
-    /// assert_eq!(near, [(ids[0], ids[1], 0.5)]);
+    /// assert_eq!(near, [([ids[0], ids[1]], 0.5)]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -172,7 +172,7 @@ impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
     pub fn visit_near_instances(
         &self,
         max_distance: T,
-        visit: &mut dyn FnMut(InstanceId, InstanceId, &ClosestPair<T>) -> ControlFlow<()>,
+        visit: &mut dyn FnMut([InstanceId; 2], &ClosestPair<T>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let options = PairOptions::default().with_max_distance(max_distance);
         // Rounded up, with room for the rounding of a distance to the scalar.
@@ -185,7 +185,7 @@ impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
             let Some(mut pair) = Alone(a).closest_pair(&Alone(b), &options) else { return ControlFlow::Continue(()) };
             let [i, j] = pair.primitives;
             pair.primitives = [a.scene_id(i), b.scene_id(j)];
-            visit(a.id(), b.id(), &pair)
+            visit([a.id(), b.id()], &pair)
         };
         for (i, a) in self.instances.iter().enumerate() {
             let centre = nalgebra::center(&a.bounds.min, &a.bounds.max);

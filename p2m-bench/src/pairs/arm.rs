@@ -50,8 +50,8 @@ pub(super) fn competitors<'a>(ours: &'a ours::Scenes<'_>) -> Vec<Competitor<'a, 
         Competitor::new("AABB tree", true, |arms: &[Arm], out: &mut [f64]| {
             for (arm, out) in arms.iter().zip(out) {
                 let distances = arm.axes.iter().map(|[a, b]| {
-                    let nearest = tree.closest_to(&Segment::new(*a, *b), &PairOptions::default());
-                    nearest.map_or(f64::INFINITY, |pair| (pair.distance - arm.radius).max(0.0))
+                    let options = PairOptions::default().with_radius(arm.radius);
+                    tree.closest_to(&Segment::new(*a, *b), &options).map_or(f64::INFINITY, |pair| pair.distance)
                 });
                 *out = distances.fold(f64::INFINITY, f64::min);
             }
@@ -60,11 +60,11 @@ pub(super) fn competitors<'a>(ours: &'a ours::Scenes<'_>) -> Vec<Competitor<'a, 
             let mut last = [None; LINKS];
             for (arm, out) in arms.iter().zip(out) {
                 let distances = arm.axes.iter().zip(&mut last).map(|([a, b], last)| {
-                    let mut options = PairOptions::default();
+                    let mut options = PairOptions::default().with_radius(arm.radius);
                     options.hint = *last;
                     let nearest = tree.closest_to(&Segment::new(*a, *b), &options);
                     *last = nearest.map(|pair| pair.primitives);
-                    nearest.map_or(f64::INFINITY, |pair| (pair.distance - arm.radius).max(0.0))
+                    nearest.map_or(f64::INFINITY, |pair| pair.distance)
                 });
                 *out = distances.fold(f64::INFINITY, f64::min);
             }
@@ -73,12 +73,12 @@ pub(super) fn competitors<'a>(ours: &'a ours::Scenes<'_>) -> Vec<Competitor<'a, 
             for (arm, out) in arms.iter().zip(out) {
                 let mut least = f64::INFINITY;
                 for [a, b] in &arm.axes {
-                    let options = PairOptions::default().with_max_distance(least);
+                    let options = PairOptions::default().with_radius(arm.radius).with_max_distance(least);
                     if let Some(pair) = tree.closest_to(&Segment::new(*a, *b), &options) {
                         least = pair.distance;
                     }
                 }
-                *out = (least - arm.radius).max(0.0);
+                *out = least;
             }
         }),
     ]

@@ -57,8 +57,8 @@ fn check_instances(
     distance: f64,
 ) -> usize {
     let mut found = Vec::new();
-    let _ = scene.visit_near_instances(distance, &mut |a, b, pair| {
-        found.push((a, b, fields(Some(*pair))));
+    let _ = scene.visit_near_instances(distance, &mut |instances, pair| {
+        found.push((instances, fields(Some(*pair))));
         ControlFlow::Continue(())
     });
     let mut all = Vec::new();
@@ -71,7 +71,7 @@ fn check_instances(
             if let Some(mut pair) = fields(one.closest_pair(&other, &options)) {
                 let [p, q] = pair.primitives.map(PrimitiveId::index);
                 pair.primitives = [PrimitiveId::new(first + p), PrimitiveId::new(second + q)];
-                all.push((a.0, b.0, Some(pair)));
+                all.push(([a.0, b.0], Some(pair)));
             }
         }
     }

@@ -9,7 +9,7 @@ use crate::simd::Lanes;
 const MAX_UNITS: f64 = power_of_two(10);
 /// The part of all magnitudes by which heights are wrong that are computed in f64, the vertices of which a motion has
 /// rounded, and keys.
-const ROUNDING: f64 = power_of_two(-46);
+const ROUNDING: f64 = power_of_two(-44);
 
 /// The lengths of vectors that have a direction.
 const PLAIN_LENGTHS: std::ops::RangeInclusive<f64> = power_of_two(-400)..=power_of_two(400);
