@@ -7,7 +7,6 @@ use p2m_core::engine::pairs::{PairSide, ShapeSide};
 use p2m_core::engine::real::{from_f64_array, to_f64_array};
 use p2m_core::pair::{ClosestPair, Motion, PairOptions, PairQuery};
 use p2m_core::{Aabb, ClosestPoint, Index, Near, NearQuery, PrimitiveId, Real};
-use std::ops::ControlFlow;
 
 impl<T: Real, I: Index<T> + ?Sized> PairQuery<T> for Instances<T, I> {
     fn primitive_count(&self) -> usize {
@@ -137,17 +136,15 @@ impl<T: Real, I: Index<T> + ?Sized> PairQuery<T> for Alone<'_, I> {
 }
 
 impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
-    /// Calls a function with each two instances that are within a distance of each other, and their nearest pair, until
-    /// it breaks, and returns whether it did. The distance is inclusive, in units of the scene. With the distance 0 it
-    /// finds the instances that intersect. The ids of the pair are those of the scene, and the first instance was added
-    /// before the second.
+    /// Returns each two instances that are within a distance of each other, with their nearest pair. The distance is
+    /// inclusive, in units of the scene. With the distance 0 it finds the instances that intersect. The ids of a pair
+    /// are those of the scene. The first instance was added before the second, and pairs are in the order of instances.
     ///
     /// ```
     /// use nalgebra::{Isometry3, Point3};
     /// use p2m_bvh::AabbTree;
     /// use p2m_core::{BuildIndex, Segment};
     /// use p2m_instances::Instances;
-    /// use std::ops::ControlFlow;
     /// use std::sync::Arc;
     ///
     /// let rod = [Segment::new(Point3::new(0.0, 0.0, 0.0), Point3::new(1.0, 0.0, 0.0))];
@@ -156,36 +153,30 @@ impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
     /// for (i, x) in [0.0, 1.5, 9.0].into_iter().enumerate() {
     ///     scene.edit().add(&format!("rod {i}"), &rod, Isometry3::translation(x, 0.0, 0.0))?;
     /// }
-    /// let mut near = Vec::new();
-    /// let _ = scene.visit_near_instances(1.0, &mut |instances, pair| {
-    ///     near.push((instances, pair.distance));
-    ///     ControlFlow::Continue(())
-    /// });
-    /// let ids: Vec<_> = scene.instances().map(|instance| instance.id()).collect();
-    /// assert_eq!(near, [([ids[0], ids[1]], 0.5)]);
+    /// let near = scene.near_instances(1.0);
+    /// let [first, second] = near[0].0.map(|id| scene.instance(id).expect("in the scene").name());
+    /// assert_eq!((near.len(), first, second, near[0].1.distance), (1, "rod 0", "rod 1", 0.5));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Complexity
     /// It takes a query of the tree of boxes for each instance, and a search for the nearest pair of each two whose
     /// boxes are near.
-    pub fn visit_near_instances(
-        &self,
-        max_distance: T,
-        visit: &mut dyn FnMut([InstanceId; 2], &ClosestPair<T>) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
+    #[must_use]
+    pub fn near_instances(&self, max_distance: T) -> Vec<([InstanceId; 2], ClosestPair<T>)> {
         let options = PairOptions::default().with_max_distance(max_distance);
         // Rounded up, with room for the rounding of a distance to the scalar.
         let reach = max_distance.to_f64() * (1.0 + 4.0 * T::UNIT_ROUNDOFF);
         let limit = reach * reach * (1.0 + 8.0 * f64::EPSILON) + f64::MIN_POSITIVE;
+        let mut found = Vec::new();
         let mut test = |a: &Instance<I>, b: &Instance<I>| {
-            if a.bounds.gap_squared(&b.bounds) > limit {
-                return ControlFlow::Continue(());
+            if a.bounds.gap_squared(&b.bounds) <= limit
+                && let Some(mut pair) = Alone(a).closest_pair(&Alone(b), &options)
+            {
+                let [i, j] = pair.primitives;
+                pair.primitives = [a.scene_id(i), b.scene_id(j)];
+                found.push(([a.id(), b.id()], pair));
             }
-            let Some(mut pair) = Alone(a).closest_pair(&Alone(b), &options) else { return ControlFlow::Continue(()) };
-            let [i, j] = pair.primitives;
-            pair.primitives = [a.scene_id(i), b.scene_id(j)];
-            visit([a.id(), b.id()], &pair)
         };
         for (i, a) in self.instances.iter().enumerate() {
             let centre = nalgebra::center(&a.bounds.min, &a.bounds.max);
@@ -201,11 +192,11 @@ impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
                     };
                     tree.tree.search_near(&centre, &mut Near::shrinking(around, f64::INFINITY, &mut take));
                     near.sort_unstable();
-                    near.into_iter().filter(|j| *j > i).try_for_each(|j| test(a, &self.instances[j]))?;
+                    near.into_iter().filter(|j| *j > i).for_each(|j| test(a, &self.instances[j]));
                 }
-                None => self.instances[i + 1..].iter().try_for_each(|b| test(a, b))?,
+                None => self.instances[i + 1..].iter().for_each(|b| test(a, b)),
             }
         }
-        ControlFlow::Continue(())
+        found
     }
 }

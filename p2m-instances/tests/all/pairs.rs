@@ -56,11 +56,8 @@ fn check_instances(
     expected: &[Expected],
     distance: f64,
 ) -> usize {
-    let mut found = Vec::new();
-    let _ = scene.visit_near_instances(distance, &mut |instances, pair| {
-        found.push((instances, fields(Some(*pair))));
-        ControlFlow::Continue(())
-    });
+    let found = scene.near_instances(distance).into_iter().map(|(instances, pair)| (instances, fields(Some(pair))));
+    let found: Vec<_> = found.collect();
     let mut all = Vec::new();
     let options = PairOptions::default().with_max_distance(distance);
     for (i, a) in expected.iter().enumerate() {
