@@ -1,7 +1,7 @@
 //! An arm of six capsules that moves beside a scene.
 
 use super::poses::direction;
-use super::{Competitor, ours};
+use super::{Competitor, Kind, ours};
 use nalgebra::{Point3, Vector3};
 use p2m_core::pair::{PairOptions, PairQuery};
 use p2m_core::{PrimitiveSet, Segment, Soup};
@@ -47,7 +47,7 @@ pub(super) fn walk(soup: &Soup<f64>, count: usize, seed: u64) -> Vec<Arm> {
 pub(super) fn competitors<'a>(ours: &'a ours::Scenes<'_>) -> Vec<Competitor<'a, Arm>> {
     let tree = &ours.trees[0];
     vec![
-        Competitor::new("AABB tree", true, |arms: &[Arm], out: &mut [f64]| {
+        Competitor::new("AABB tree", Kind::Exact, |arms: &[Arm], out: &mut [f64]| {
             for (arm, out) in arms.iter().zip(out) {
                 let distances = arm.axes.iter().map(|[a, b]| {
                     let options = PairOptions::default().with_radius(arm.radius);
@@ -56,7 +56,7 @@ pub(super) fn competitors<'a>(ours: &'a ours::Scenes<'_>) -> Vec<Competitor<'a, 
                 *out = distances.fold(f64::INFINITY, f64::min);
             }
         }),
-        Competitor::new("AABB tree, begun with the last pairs", true, |arms: &[Arm], out: &mut [f64]| {
+        Competitor::new("AABB tree, begun with the last pairs", Kind::Exact, |arms: &[Arm], out: &mut [f64]| {
             let mut last = [None; LINKS];
             for (arm, out) in arms.iter().zip(out) {
                 let distances = arm.axes.iter().zip(&mut last).map(|([a, b], last)| {
@@ -69,7 +69,7 @@ pub(super) fn competitors<'a>(ours: &'a ours::Scenes<'_>) -> Vec<Competitor<'a, 
                 *out = distances.fold(f64::INFINITY, f64::min);
             }
         }),
-        Competitor::new("AABB tree, each capsule within the last", true, |arms: &[Arm], out: &mut [f64]| {
+        Competitor::new("AABB tree, each capsule within the last", Kind::Exact, |arms: &[Arm], out: &mut [f64]| {
             for (arm, out) in arms.iter().zip(out) {
                 let mut least = f64::INFINITY;
                 for [a, b] in &arm.axes {

@@ -1,8 +1,8 @@
 //! The library parry3d in both scalars: `query::distance` of two `TriMesh`es, and of a `TriMesh` and a `Capsule`.
 
-use super::Competitor;
 use super::arm::Arm;
 use super::poses::Set;
+use super::{Competitor, Kind};
 use crate::scene::Scene;
 use anyhow::Result;
 use nalgebra::Isometry3;
@@ -19,20 +19,19 @@ impl Scenes {
     }
 
     pub(super) fn competitors(&self, set: Set) -> Vec<Competitor<'_, Isometry3<f64>>> {
-        let is_exact = false;
         let mut all = vec![
-            Competitor::new("parry3d-f64", is_exact, |poses: &[Isometry3<f64>], out: &mut [f64]| {
+            Competitor::new("parry3d-f64", Kind::External, |poses: &[Isometry3<f64>], out: &mut [f64]| {
                 poses.iter().zip(out).for_each(|(pose, out)| *out = self.double.distance(pose));
             }),
-            Competitor::new("parry3d", is_exact, |poses: &[Isometry3<f64>], out: &mut [f64]| {
+            Competitor::new("parry3d", Kind::External, |poses: &[Isometry3<f64>], out: &mut [f64]| {
                 poses.iter().zip(out).for_each(|(pose, out)| *out = self.single.distance(pose));
             }),
         ];
         if set == Set::Deep {
-            all.push(Competitor::new("parry3d-f64, whether they intersect", is_exact, |poses, out| {
+            all.push(Competitor::new("parry3d-f64, whether they intersect", Kind::External, |poses, out| {
                 poses.iter().zip(out).for_each(|(pose, out)| *out = self.double.intersects(pose));
             }));
-            all.push(Competitor::new("parry3d, whether they intersect", is_exact, |poses, out| {
+            all.push(Competitor::new("parry3d, whether they intersect", Kind::External, |poses, out| {
                 poses.iter().zip(out).for_each(|(pose, out)| *out = self.single.intersects(pose));
             }));
         }
@@ -41,10 +40,10 @@ impl Scenes {
 
     pub(super) fn arm_competitors(&self) -> Vec<Competitor<'_, Arm>> {
         vec![
-            Competitor::new("parry3d-f64", false, |arms: &[Arm], out: &mut [f64]| {
+            Competitor::new("parry3d-f64", Kind::External, |arms: &[Arm], out: &mut [f64]| {
                 arms.iter().zip(out).for_each(|(arm, out)| *out = self.double.arm_distance(arm));
             }),
-            Competitor::new("parry3d", false, |arms: &[Arm], out: &mut [f64]| {
+            Competitor::new("parry3d", Kind::External, |arms: &[Arm], out: &mut [f64]| {
                 arms.iter().zip(out).for_each(|(arm, out)| *out = self.single.arm_distance(arm));
             }),
         ]

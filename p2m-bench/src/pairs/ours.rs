@@ -1,7 +1,7 @@
 //! The indexes of this project.
 
-use super::Competitor;
 use super::poses::{Set, Trees};
+use super::{Competitor, Kind};
 use crate::scene::Scene;
 use anyhow::Result;
 use nalgebra::Isometry3;
@@ -39,38 +39,50 @@ impl<'a> Scenes<'a> {
         let [c, d] = &self.kdops;
         let exact = set != Set::Deep;
         let mut all = vec![
-            Competitor::new("AABB tree", true, |poses: &Poses, out: &mut [f64]| {
+            Competitor::new("AABB tree", Kind::Exact, |poses: &Poses, out: &mut [f64]| {
                 each(poses, out, |motion| distance(a.closest_pair(b, &moved(motion))));
             }),
-            Competitor::new("14-DOP tree", true, |poses: &Poses, out: &mut [f64]| {
+            Competitor::new("14-DOP tree", Kind::Exact, |poses: &Poses, out: &mut [f64]| {
                 each(poses, out, |motion| distance(c.closest_pair(d, &moved(motion))));
             }),
         ];
         if exact {
-            all.push(Competitor::new("AABB tree, begun with the last pair", true, |poses: &Poses, out: &mut [f64]| {
-                let mut last = None;
-                each(poses, out, |motion| {
-                    let mut options = moved(motion);
-                    options.hint = last;
-                    let pair = a.closest_pair(b, &options);
-                    last = pair.map(|pair| pair.primitives);
-                    distance(pair)
-                });
-            }));
+            all.push(Competitor::new(
+                "AABB tree, begun with the last pair",
+                Kind::Exact,
+                |poses: &Poses, out: &mut [f64]| {
+                    let mut last = None;
+                    each(poses, out, |motion| {
+                        let mut options = moved(motion);
+                        options.hint = last;
+                        let pair = a.closest_pair(b, &options);
+                        last = pair.map(|pair| pair.primitives);
+                        distance(pair)
+                    });
+                },
+            ));
         }
         let limit = diagonal * 0.1;
-        all.push(Competitor::new("AABB tree, within 0.1 diagonals", false, move |poses: &Poses, out: &mut [f64]| {
-            each(poses, out, |motion| {
-                a.closest_pair(b, &moved(motion).with_max_distance(limit)).map_or(f64::NAN, |pair| pair.distance)
-            });
-        }));
-        all.push(Competitor::new("AABB tree, whether they intersect", false, |poses: &Poses, out: &mut [f64]| {
-            each(poses, out, |motion| {
-                f64::from(u8::from(!a.is_any_pair_near(b, &moved(motion).with_max_distance(0.0)))) * f64::NAN
-            });
-        }));
+        all.push(Competitor::new(
+            "AABB tree, within 0.1 diagonals",
+            Kind::Other,
+            move |poses: &Poses, out: &mut [f64]| {
+                each(poses, out, |motion| {
+                    a.closest_pair(b, &moved(motion).with_max_distance(limit)).map_or(f64::NAN, |pair| pair.distance)
+                });
+            },
+        ));
+        all.push(Competitor::new(
+            "AABB tree, whether they intersect",
+            Kind::Other,
+            |poses: &Poses, out: &mut [f64]| {
+                each(poses, out, |motion| {
+                    f64::from(u8::from(!a.is_any_pair_near(b, &moved(motion).with_max_distance(0.0)))) * f64::NAN
+                });
+            },
+        ));
         if let Some([a, b]) = &self.single {
-            all.push(Competitor::new("AABB tree in f32", false, |poses: &Poses, out: &mut [f64]| {
+            all.push(Competitor::new("AABB tree in f32", Kind::Other, |poses: &Poses, out: &mut [f64]| {
                 each(poses, out, |motion| distance(a.closest_pair(b, &moved(motion))));
             }));
         }
