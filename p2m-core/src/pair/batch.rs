@@ -47,7 +47,7 @@ pub fn closest_to_each<T: Real, P: Primitive<T> + Sync, I: PairQuery<T> + Sync>(
 /// use p2m_core::pair::{PairOptions, closest_pair_at_each};
 /// use p2m_core::{BruteForce, Point};
 ///
-/// let scene = BruteForce::new([Point::new(Point3::origin())])?;
+/// let scene = BruteForce::new([Point::new(Point3::new(0.0, 0.0, 0.0))])?;
 /// let motions = [1.0, 2.0].map(|x| Isometry3::translation(x, 0.0, 0.0));
 /// let pairs = closest_pair_at_each(&scene, &scene, &motions, &PairOptions::default(), &Default::default());
 /// assert_eq!(pairs.iter().flatten().map(|pair| pair.distance).collect::<Vec<_>>(), [1.0, 2.0]);
