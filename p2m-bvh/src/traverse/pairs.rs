@@ -4,10 +4,10 @@ use crate::tree::PacketTree;
 use crate::tree::node_ref::NodeRef;
 use crate::tree::wide_node::{VolumeNodes, WideNode};
 use p2m_core::engine::pairs::{
-    Children, Height, Hulls, NO_NODE, PairSide, Place, Placement, Slab, WIDTH, bound_children, largest_coordinate,
+    Children, Height, Hulls, NO_NODE, PairSide, Place, Placement, Slab, WIDTH, bound_children,
 };
 use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
-use p2m_core::engine::vector::{V3, dot};
+use p2m_core::engine::vector::{V3, dot, largest};
 use p2m_core::pair::Motion;
 use p2m_core::{Aabb, PrimitiveId};
 
@@ -67,10 +67,8 @@ impl<V: VolumeNodes> PairSide for TreeSide<'_, V> {
         let frame = &self.tree.frame;
         let centre = self.moved(frame.centre);
         // A motion makes no coordinate larger than the length of the vertex and the translation.
-        let grow = |size: f64, motion: &Motion| {
-            2.0 * size + motion.translation().into_iter().fold(0.0, |t: f64, x| t.max(x.abs()))
-        };
-        let size = self.motions.iter().fold(largest_coordinate(&self.tree.bounds), grow);
+        let grow = |size: f64, motion: &Motion| 2.0 * size + largest(&[motion.translation()]);
+        let size = self.motions.iter().fold(largest(&[self.tree.bounds.min.into(), self.tree.bounds.max.into()]), grow);
         Placement { centre, unit: frame.unit, size, is_plain: frame.is_plain(), is_tree: true }
     }
 

@@ -35,7 +35,7 @@ pub use directions::{ChildBounds, Slab, bound_children};
 pub use height::{Height, Rows};
 pub use hulls::Hulls;
 use hulls::search_packets;
-pub use side::{Children, NO_NODE, PairSide, Place, Placement, ShapeSide, WIDTH, largest_coordinate};
+pub use side::{Children, NO_NODE, PairSide, Place, Placement, ShapeSide, WIDTH};
 use support::Supports;
 
 /// Two nodes that may contain a near pair.

@@ -4,7 +4,7 @@ use super::directions::{Slab, unit};
 use super::height::Height;
 use super::hulls::Hulls;
 use crate::kernel::arithmetic::cross;
-use crate::kernel::vector::{V3, dot, sub};
+use crate::kernel::vector::{V3, dot, largest, sub};
 use crate::pair::bounds_of;
 use crate::{Aabb, PrimitiveId};
 
@@ -124,13 +124,7 @@ impl PairSide for ShapeSide<'_> {
     }
 
     fn placement(&self) -> Placement {
-        Placement {
-            centre: [0.0; 3],
-            unit: 1.0,
-            size: largest_coordinate(&self.bounds()),
-            is_plain: true,
-            is_tree: false,
-        }
+        Placement { centre: [0.0; 3], unit: 1.0, size: largest(self.0), is_plain: true, is_tree: false }
     }
 
     fn directions(&self) -> Vec<V3> {
@@ -180,10 +174,4 @@ impl PairSide for ShapeSide<'_> {
         hulls.start(packet);
         hulls.push(PrimitiveId::new(0), self.0);
     }
-}
-
-/// Returns the largest magnitude of a coordinate of a box.
-#[must_use]
-pub fn largest_coordinate(bounds: &Aabb<f64>) -> f64 {
-    bounds.min.iter().chain(bounds.max.iter()).fold(0.0, |size, x| size.max(x.abs()))
 }
