@@ -5,10 +5,10 @@
 //! A search holds pairs of nodes, of which one is cut into its children at a time: the one with the larger box. Pairs
 //! that are certainly farther apart than the best pair so far are left out. Two bounds tell that.
 //!
-//! - **Directions** ([`directions`]). The other node of the pair is between two planes in each of a few directions: the
+//! - **Directions** (the file `directions`). The other node of the pair is between two planes in each of a few directions: the
 //!   axes of both frames, and for a shape those that are orthogonal to its edges and to an axis. The distances of eight
 //!   children from what is between the planes are bounded side by side, in f32.
-//! - **The direction of the best pair** ([`support`]). Where two surfaces are nearest, they face each other and are
+//! - **The direction of the best pair** (the file `support`). Where two surfaces are nearest, they face each other and are
 //!   nearly flat. A box around such a part reaches towards the other surface by as much as the box is wide, but the
 //!   part itself does so by the square of that only. So the extents of nodes along the direction of the best pair are
 //!   those of their vertices, which a search through the node finds. Without this bound, the number of pairs of nodes
