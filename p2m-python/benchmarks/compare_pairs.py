@@ -5,7 +5,8 @@
         --hausdorff ../shared/models/dragon_48k_nonmanifold.ply ../shared/models/dragon_871k.ply
 
 The second mesh is scaled to the diagonal of the first one. `far` poses have random rotations and centres at a distance
-of two diagonals, and `near` poses are moved along the line of the centres to a gap of about a hundredth of the diagonal.
+of two diagonals, and `near` poses are moved
+along the line of the centres to a gap of about a hundredth of the diagonal.
 Capsules have a length of a tenth of the diagonal and a radius of a hundredth, and lie anywhere in the box of the mesh.
 
 In each round every library answers the same queries once, and another one begins. All have one thread. Tables have
@@ -18,7 +19,6 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable
-from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -32,6 +32,7 @@ import importlib.metadata
 
 import numpy as np
 from exact import root, squared_distance_of_hulls, vector
+from motions import random_rotation
 
 import p2m
 
@@ -171,13 +172,6 @@ class Coal(Library):
             coal.distance(mesh, identity, coal.Capsule(radius, length), pose, coal.DistanceRequest(), result)
             answers.append((max(result.min_distance, 0.0), result.b1))
         return answers
-
-
-def random_rotation(rng: np.random.Generator) -> np.ndarray:
-    q, r = np.linalg.qr(rng.normal(size=(3, 3)))
-    q *= np.sign(np.diag(r))
-    q[:, 0] *= np.sign(np.linalg.det(q))
-    return q
 
 
 def poses(a: Mesh, b: Mesh, count: int, rng: np.random.Generator) -> dict[str, np.ndarray]:

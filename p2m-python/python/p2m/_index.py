@@ -144,10 +144,10 @@ class Index(PairQueries):
         """What is known of the index, by names.
 
         ``backend`` and ``summary`` describe the backend. ``primitives`` is the number of primitives. ``memory_bytes``
-        is the memory of the index besides the scene, and ``parts`` has it by parts. ``casts_rays``,
-        ``answers_pairs`` and ``is_saveable`` tell what it can do. ``surface_area`` is that of all boxes of a tree: build anew when it has grown by a third
-        in refits. ``cells`` describes cells, ``directions`` is the number of faces of k-DOPs, and ``path`` the file
-        that the index was loaded from. What a backend does not have is None.
+        is the memory of the index besides the scene, and ``parts`` has it by parts. ``casts_rays``, ``answers_pairs``
+        and ``is_saveable`` tell what it can do. ``surface_area`` is that of all boxes of a tree: build anew when it has
+        grown by a third in refits. ``cells`` describes cells, ``directions`` is the number of faces of k-DOPs, and
+        ``path`` the file that the index was loaded from. What a backend does not have is None.
         """
         return self._raw.info()
 
