@@ -422,6 +422,11 @@ def test_hausdorff_of_libigl_is_a_lower_bound() -> None:
     assert found.lower_bound - 1e-3 < distance <= found.upper_bound
     assert igl.hausdorff(roof, flat, roof, bent, tolerance=np.inf) <= distance
     assert igl.hausdorff(roof, bent, roof, bent) == 0.0
+    # The corners of a triangle, as degenerate ones, are far from the points inside, though no vertex is.
+    corners = np.array([[0, 0, 0], [1, 1, 1], [3, 3, 3]])
+    assert abs(igl.hausdorff(roof, flat, roof, corners, tolerance=1e-6) - 13 / 6) < 1e-6
+    assert 13 / 6 - 1e-3 < igl.hausdorff(roof, flat, roof, corners) <= 13 / 6 + 1e-14
+    assert igl.hausdorff(roof, flat, roof, corners, tolerance=np.inf) == 0.0
     with pytest.raises(ValueError, match="a scene is empty"):
         igl.hausdorff(roof, flat, roof, np.empty((0, 3), int))
 
