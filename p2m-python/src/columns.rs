@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 /// The number that stands for no primitive.
 pub(crate) const NO_PRIMITIVE: i64 = -1;
 /// The number that stands for no feature.
-const NO_FEATURE: u8 = 255;
+pub(crate) const NO_FEATURE: u8 = 255;
 
 /// Returns the number of a feature: vertices are 0 to 2, edges 3 to 5, and the face is 6.
 pub(crate) fn feature_number(feature: Feature) -> u8 {

@@ -195,6 +195,7 @@ impl Index {
         info.set_item("memory_bytes", index.memory_bytes())?;
         info.set_item("parts", index.parts().into_iter().collect::<HashMap<_, _>>())?;
         info.set_item("casts_rays", index.as_ray_query().is_some())?;
+        info.set_item("answers_pairs", index.as_pair_query().is_some())?;
         info.set_item("is_saveable", self.backend.is_saveable())?;
         info.set_item("surface_area", index.surface_area())?;
         info.set_item("cells", index.cells())?;

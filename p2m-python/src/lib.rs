@@ -9,9 +9,13 @@
 
 mod advise;
 mod columns;
+mod contacts;
 mod errors;
 mod fields;
+mod hausdorff;
 mod index;
+mod pair_columns;
+mod pairs;
 mod parts;
 mod queries;
 mod rays;
@@ -31,7 +35,11 @@ mod _p2m {
     #[pymodule_export]
     use super::advise::advise;
     #[pymodule_export]
+    use super::hausdorff::hausdorff;
+    #[pymodule_export]
     use super::index::Index;
+    #[pymodule_export]
+    use super::pair_columns::PairList;
     #[pymodule_export]
     use super::queries::NearList;
     #[pymodule_export]

@@ -16,13 +16,13 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// A row of query points that is not finite.
-struct BadRow(usize);
+pub(crate) struct BadRow(pub(crate) usize);
 
 /// The number of rows that are checked at a time.
 const ROWS_PER_CHECK: usize = 1 << 10;
 
 /// Checks that all coordinates are finite. A block of rows is checked without branches.
-fn check_finite<P: Position<f64>>(points: &[P]) -> Result<(), BadRow> {
+pub(crate) fn check_finite<P: Position<f64>>(points: &[P]) -> Result<(), BadRow> {
     let is_finite = |point: &P| point.point().iter().fold(true, |all, x| all & x.is_finite());
     for (block, rows) in points.chunks(ROWS_PER_CHECK).enumerate() {
         if !rows.iter().fold(true, |all, row| all & is_finite(row)) {
@@ -226,7 +226,7 @@ impl Index {
     }
 
     /// Writes signed distances to `out`.
-    #[pyo3(signature = (points, out, sign, inside_is_negative, threads, progress))]
+    #[pyo3(signature = (points, out, sign, inside_is_negative, max_distance, threads, progress))]
     #[allow(clippy::too_many_arguments, reason = "the Python layer passes them all")]
     fn signed_distance(
         &self,
@@ -235,6 +235,7 @@ impl Index {
         out: &Bound<'_, PyDict>,
         sign: &str,
         inside_is_negative: bool,
+        max_distance: f64,
         threads: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<()> {
@@ -242,18 +243,20 @@ impl Index {
         let mut array = borrowed::<f64>(out, "signed_distance")?;
         let out = slice(&mut array)?.unwrap_or_default();
         let factor = if inside_is_negative { 1.0 } else { -1.0 };
+        let options = QueryOptions::default().with_max_distance(max_distance);
+        // Without primitives there is nothing inside. The side of a point beyond the largest distance is not known.
+        let missing = if max_distance < f64::INFINITY { f64::NAN } else { factor * f64::INFINITY };
         with_positions!(points, points => {
             let work = |threads: &Threads, monitor: &Monitor| {
                 check_finite(points)?;
                 answer_in_parts(points.len(), out, threads, monitor, &|range, out: &mut [f64]| {
-                    let options = batch_options(range.len(), false);
+                    let batch = batch_options(range.len(), false);
                     let queries: Vec<Point3<f64>> = points[range].iter().map(Position::point).collect();
-                    let answers = signed.closest_points(&queries, &QueryOptions::default(), &options);
+                    let answers = signed.closest_points(&queries, &options, &batch);
                     for (value, answer) in out.iter_mut().zip(&answers) {
-                        // Without primitives there is nothing inside.
                         *value = match answer {
                             Some(answer) => answer.distance().map_or(f64::NAN, |distance| factor * distance),
-                            None => factor * f64::INFINITY,
+                            None => missing,
                         };
                     }
                 });

@@ -1,9 +1,11 @@
 //! Scenes as objects of Python.
 
 use crate::errors::{build_error, read_error, value_error};
+use crate::pairs::motions;
 use crate::work::run_owned;
 use nalgebra::Point3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
+use p2m_core::pair::Motion;
 use p2m_core::{Aabb, Element, Position, PrimitiveId, PrimitiveSet, Shape, Soup};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -160,6 +162,19 @@ impl Scene {
         let moved = py.detach(|| {
             let mut scene = (*self.shared.0).clone();
             scene.soup.set_positions(positions).map(|()| scene)
+        });
+        moved.map(Self::new).map_err(build_error)
+    }
+
+    /// Returns a scene that a motion has moved, given as a flat matrix of 4 x 4 numbers. Coordinates are rounded.
+    fn transformed(&self, py: Python<'_>, transform: PyReadonlyArray1<'_, f64>) -> PyResult<Self> {
+        let motions = motions(&transform)?;
+        let moved = py.detach(|| {
+            let mut scene = (*self.shared.0).clone();
+            for motion in motions.iter().map(Motion::new) {
+                scene.soup.map_positions(|position| motion.apply(position.coords.into()).into())?;
+            }
+            Ok(scene)
         });
         moved.map(Self::new).map_err(build_error)
     }

@@ -76,6 +76,11 @@ impl Monitor {
         self.step.load(Ordering::Relaxed)
     }
 
+    /// Sets the number of queries of the next step.
+    pub(crate) fn set_step(&self, queries: usize) {
+        self.step.store(queries, Ordering::Relaxed);
+    }
+
     /// Records that so many queries were answered in a step that began at this time.
     pub(crate) fn end_step(&self, queries: usize, start: Instant) {
         self.done.fetch_add(queries, Ordering::Relaxed);
@@ -172,7 +177,7 @@ impl Threads {
     /// Makes the monitor of a batch of so many queries, which begins with a step of `first_step` queries.
     pub(crate) fn monitor(&self, total: usize, first_step: usize, progress: Option<Py<PyAny>>) -> Monitor {
         let monitor = Monitor::new(total, progress, !self.is_parallel());
-        monitor.step.store(first_step, Ordering::Relaxed);
+        monitor.set_step(first_step);
         monitor
     }
 }

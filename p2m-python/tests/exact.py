@@ -56,6 +56,46 @@ def squared_distance(q: Vector, triangle: Sequence[Vector]) -> Fraction:
     return min(squared_distance_of_segment(q, start, end) for start, end in pairs)
 
 
+def squared_distance_of_segments(p: Sequence[Vector], q: Sequence[Vector]) -> Fraction:
+    """Return the squared distance of two segments, which may be degenerate."""
+    u, v, w = minus(p[1], p[0]), minus(q[1], q[0]), minus(p[0], q[0])
+    a, b, c, d, e = dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w)
+    determinant = a * c - b * b
+    if determinant:
+        s, t = (b * e - c * d) / determinant, (a * e - b * d) / determinant
+        if 0 <= s <= 1 and 0 <= t <= 1:
+            gap = (w[0] + s * u[0] - t * v[0], w[1] + s * u[1] - t * v[1], w[2] + s * u[2] - t * v[2])
+            return dot(gap, gap)
+    ends = [squared_distance_of_segment(end, *q) for end in p] + [squared_distance_of_segment(end, *p) for end in q]
+    return min(ends)
+
+
+def is_pierced(segment: Sequence[Vector], triangle: Sequence[Vector]) -> bool:
+    """Return whether a segment crosses the plane of a triangle in a point of the triangle."""
+    a, b, c = triangle
+    normal = cross(minus(b, a), minus(c, a))
+    start, end = (dot(minus(point, a), normal) for point in segment)
+    if start == end or start * end > 0:
+        return False
+    t = start / (start - end)
+    u = minus(segment[1], segment[0])
+    point = (segment[0][0] + t * u[0], segment[0][1] + t * u[1], segment[0][2] + t * u[2])
+    return squared_distance(point, triangle) == 0
+
+
+def squared_distance_of_hulls(a: Sequence[Vector], b: Sequence[Vector]) -> Fraction:
+    """Return the squared distance of the hulls of one to three points each: points, segments and triangles."""
+    # A hull with fewer points is a degenerate triangle.
+    first, second = ([*hull, *[hull[-1]] * (3 - len(hull))] for hull in (a, b))
+    edges = [[(hull[i], hull[(i + 1) % 3]) for i in range(3)] for hull in (first, second)]
+    if any(is_pierced(edge, second) for edge in edges[0]) or any(is_pierced(edge, first) for edge in edges[1]):
+        return Fraction(0)
+    squares = [squared_distance(vertex, second) for vertex in first]
+    squares += [squared_distance(vertex, first) for vertex in second]
+    squares += [squared_distance_of_segments(p, q) for p in edges[0] for q in edges[1]]
+    return min(squares)
+
+
 class Mesh:
     """Triangles with what the filters need."""
 

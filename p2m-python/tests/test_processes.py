@@ -162,6 +162,7 @@ threads = {threads}
 small = p2m.Scene(*sphere(20, 40))
 index = None if work in ("octree", "p2m") else p2m.Index(scene, "brute")
 tree = p2m.Index(small)
+slow = p2m.Index(small, "brute")
 points = np.random.default_rng(1).normal(size=(100_000, 3))
 many = np.random.default_rng(1).normal(size=(8_000_000 if work == "tree" else 0, 3))
 sent = []
@@ -185,6 +186,16 @@ try:
         index.rays(points, [0, 0, 1], "count", threads=threads)
     elif work == "tree":
         tree.k_nearest(many, 4, threads=threads)
+    elif work == "shapes":
+        slow.closest_to(points.reshape(-1, 2, 3), threads=threads)
+    elif work == "contacts":
+        slow.first_contact(points, points[::-1], 0.1, threads=threads)
+    elif work == "pair":
+        index.closest_pair(tree, threads=threads)
+    elif work == "pairs":
+        index.closest_pairs(tree, np.tile(np.eye(4), (9, 1, 1)), threads=threads)
+    elif work == "hausdorff":
+        p2m.hausdorff(scene, (scene.vertices * 1.001, scene.triangles), 0.0, threads=threads)
     elif work == "field":
         tree.field((0, 0, 0), 1e-3, (1500, 1500, 1500), threads=threads)
 except KeyboardInterrupt:
@@ -199,10 +210,12 @@ print("works")
 
 @pytest.mark.parametrize("threads", [1, 2])
 @pytest.mark.parametrize(
-    "work", ["octree", "p2m", "closest", "certified", "k_nearest", "within", "rays", "tree", "field"]
+    "work",
+    ["octree", "p2m", "closest", "certified", "k_nearest", "within", "rays", "shapes", "contacts", "pair", "pairs",
+     "hausdorff", "tree", "field"],
 )
 def test_an_interrupt_ends_work_at_once(work: str, threads: int) -> None:
-    if threads == 2 and work in ("certified", "within", "p2m"):
+    if threads == 2 and work in ("certified", "within", "p2m", "contacts", "pair"):
         pytest.skip("as with one thread")
     code = INTERRUPTED.format(tests=str(Path(__file__).parent), work=work, threads=threads)
     for _ in range(3):

@@ -12,22 +12,37 @@ array([2., 5.])
 [[1.0, 1.0, 0.0], [4.0, 0.0, 0.0]]
 
 `read` reads scenes from files, and `Scene.of` takes meshes of trimesh, Open3D, PyVista and meshio. `Index` has the
-queries. `load` loads saved indexes, and `advise` tells which backend a scene calls for.
+queries. `hausdorff` returns the Hausdorff distance of two scenes. `load` loads saved indexes, and `advise` tells which
+backend a scene calls for.
 """
 
 from __future__ import annotations
 
+from ._hausdorff import HausdorffDistance, hausdorff
 from ._index import Estimate, Index, advise, load
 from ._p2m import __version__, backends
-from ._records import AllHits, ClosestPoints, FirstHits, NearPrimitives, Record
+from ._records import (
+    AllHits,
+    BallContacts,
+    ClosestPairs,
+    ClosestPoints,
+    ClosestToShapes,
+    FirstHits,
+    NearPrimitives,
+    Record,
+)
 from ._scene import Counts, Object, Scene, read
 
 __all__ = [
     "AllHits",
+    "BallContacts",
+    "ClosestPairs",
     "ClosestPoints",
+    "ClosestToShapes",
     "Counts",
     "Estimate",
     "FirstHits",
+    "HausdorffDistance",
     "Index",
     "NearPrimitives",
     "Object",
@@ -36,6 +51,7 @@ __all__ = [
     "__version__",
     "advise",
     "backends",
+    "hausdorff",
     "load",
     "read",
 ]

@@ -58,6 +58,37 @@ def coordinates(values: ArrayLike, name: str, *, only_float64: bool = False) -> 
     return array
 
 
+MAX_ROTATION_DEVIATION = 1e-6
+"""The largest deviation of an entry of ``R @ R.T`` from the identity for a rotation R."""
+
+
+def rigid_transforms(values: ArrayLike | None, name: str) -> NDArray[np.float64] | None:
+    """Return matrices of rotations and translations as a contiguous array of the shape {.., 4, 4}."""
+    if values is None:
+        return None
+    array = np.asarray(values)
+    if array.dtype.kind not in "iuf":
+        raise TypeError(f"{name}: the type is {array.dtype}, but matrices have real numbers")
+    if array.shape[-2:] != (4, 4):
+        raise ValueError(f"{name}: the shape is {array.shape}, but the last axes are (4, 4)")
+    matrices = np.ascontiguousarray(array, np.float64).reshape(array.shape)
+    rotation = matrices[..., :3, :3]
+    with np.errstate(all="ignore"):
+        deviation = np.abs(rotation @ np.swapaxes(rotation, -1, -2) - np.eye(3)).max(axis=(-1, -2))
+        is_orthogonal = deviation <= MAX_ROTATION_DEVIATION
+        for is_right, why in [
+            (np.isfinite(matrices).all(axis=(-1, -2)), "has a number that is not finite"),
+            ((matrices[..., 3, :] == [0.0, 0.0, 0.0, 1.0]).all(axis=-1), "has another last row than (0, 0, 0, 1)"),
+            (is_orthogonal, "is no rotation in its first three columns, but scales or shears"),
+            (np.linalg.det(rotation) > 0.0, "is no rotation in its first three columns, but reflects"),
+        ]:
+            if not np.all(is_right):
+                row = int(np.nonzero(~np.reshape(is_right, -1))[0][0])
+                which = f"matrix {row}" if array.ndim > 2 else "the matrix"
+                raise ValueError(f"{name}: {which} {why}")
+    return matrices
+
+
 def indices(values: ArrayLike | None, name: str, width: int, vertices: int) -> NDArray[np.uint32]:
     """Return indices of vertices as a flat array, `width` for each primitive."""
     if values is None:
@@ -109,6 +140,11 @@ def checked_out(array: Any, name: str, dtype: np.dtype[Any], shape: tuple[int, .
     if not array.flags.writeable:
         raise ValueError(f"out: {name} is read-only")
     return array
+
+
+def one_output(out: Any, name: str, dtype: np.dtype[Any], shape: tuple[int, ...]) -> NDArray[Any]:
+    """Return the array for one answer to each query."""
+    return np.empty(shape, dtype) if out is None else checked_out(out, name, dtype, shape)
 
 
 def outputs(

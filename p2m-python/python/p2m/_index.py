@@ -16,13 +16,14 @@ from ._arrays import (
     Out,
     Progress,
     callback,
-    checked_out,
     coordinates,
     flat,
     not_negative,
+    one_output,
     outputs,
     thread_count,
 )
+from ._pairs import PairQueries
 from ._records import AllHits, ClosestPoints, FirstHits, NearPrimitives
 from ._scene import Scene
 
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     _RayMode = Literal["first", "all", "count", "any", "crossings"]
 
 
-class Index:
+class Index(PairQueries):
     """An index over a scene, which answers queries and never changes.
 
     Queries from several Python threads run at the same time, because the interpreter is released while an index is
@@ -143,10 +144,10 @@ class Index:
         """What is known of the index, by names.
 
         ``backend`` and ``summary`` describe the backend. ``primitives`` is the number of primitives. ``memory_bytes``
-        is the memory of the index besides the scene, and ``parts`` has it by parts. ``casts_rays`` and ``is_saveable``
-        tell what it can do. ``surface_area`` is that of all boxes of a tree: build anew when it has grown by a third
-        in refits. ``cells`` describes cells, ``directions`` is the number of faces of k-DOPs, and ``path`` the file
-        that the index was loaded from. What a backend does not have is None.
+        is the memory of the index besides the scene, and ``parts`` has it by parts. ``casts_rays``, ``answers_pairs``
+        and ``is_saveable`` tell what it can do. ``surface_area`` is that of all boxes of a tree: build anew when it has
+        grown by a third in refits. ``cells`` describes cells, ``directions`` is the number of faces of k-DOPs, and
+        ``path`` the file that the index was loaded from. What a backend does not have is None.
         """
         return self._raw.info()
 
@@ -316,6 +317,7 @@ class Index:
         *,
         sign: _Sign = "auto",
         inside: Literal["negative", "positive"] = "negative",
+        max_distance: float | None = None,
         out: NDArray[np.float64] | None = None,
         threads: int | None = None,
         progress: Progress = None,
@@ -335,6 +337,8 @@ class Index:
             other. ``"auto"``: as a closed surface if it is one, otherwise by winding numbers.
         inside : {"negative", "positive"}, optional
             The sign inside. trimesh has positive numbers there; Open3D, libigl and point-cloud-utils negative ones.
+        max_distance : float, optional
+            The largest distance that is needed, inclusive, which makes the search shorter.
         out : ndarray of float64, shape {..}, optional
             The array that receives the distances.
 
@@ -342,7 +346,7 @@ class Index:
         -------
         ndarray of float64, shape {..}
             The signed distances: 0 on the surface, nan where the side is not defined because the winding number is a
-            half within the accuracy of float64.
+            half within the accuracy of float64, and beyond `max_distance`.
 
         Raises
         ------
@@ -363,13 +367,15 @@ class Index:
         array([-0.125,  2.   ,  0.   ])
         """
         queries = coordinates(points, "points")
-        array = _one_output(out, "signed_distance", _FLOAT64, queries.shape[:-1])
+        array = one_output(out, "signed_distance", _FLOAT64, queries.shape[:-1])
         if inside not in ("negative", "positive"):
             raise ValueError(f"inside: {inside!r} is none of 'negative', 'positive'")
+        largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
+        is_negative = inside == "negative"
         count = self._count(threads)
         with callback(progress, "answering", "points") as call:
             columns = {"signed_distance": array.reshape(-1)}
-            self._raw.signed_distance(queries.reshape(-1), columns, sign, inside == "negative", count, call)
+            self._raw.signed_distance(queries.reshape(-1), columns, sign, is_negative, largest, count, call)
         return array
 
     def k_nearest(
@@ -503,7 +509,7 @@ class Index:
         """
         queries = coordinates(points, "points")
         number = not_negative(radius, "radius")
-        array = _one_output(out, "is_within", _BOOL, queries.shape[:-1])
+        array = one_output(out, "is_within", _BOOL, queries.shape[:-1])
         with callback(progress, "answering", "points") as call:
             columns = {"is_within": array.reshape(-1)}
             self._raw.is_any_within(queries.reshape(-1), number, columns, self._count(threads), call)
@@ -790,11 +796,6 @@ class Index:
         <p2m.Index 'aabb' of 1 primitives>
         """
         self._raw.save(os.fspath(path))
-
-
-def _one_output(out: Any, name: str, dtype: np.dtype[Any], shape: tuple[int, ...]) -> NDArray[Any]:
-    """Return the array for one answer to each query."""
-    return np.empty(shape, dtype) if out is None else checked_out(out, name, dtype, shape)
 
 
 def load(path: str | os.PathLike[str], map: bool = False, *, threads: int | None = None) -> Index:

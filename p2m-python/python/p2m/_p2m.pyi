@@ -9,11 +9,13 @@ __all__ = [
     "HitList",
     "Index",
     "NearList",
+    "PairList",
     "Scene",
     "__version__",
     "advise",
     "backends",
     "default_threads",
+    "hausdorff",
     "load",
     "load_bytes",
 ]
@@ -38,6 +40,15 @@ def advise(
     max_seconds: float | None,
     threads: int,
 ) -> list[dict[str, Any]]: ...
+def hausdorff(
+    first: Scene,
+    first_index: Index | None,
+    second: Index,
+    tolerance: float,
+    max_queries: int,
+    threads: int,
+    progress: _Progress,
+) -> dict[str, Any] | None: ...
 @final
 class Scene:
     def __new__(
@@ -53,6 +64,7 @@ class Scene:
     def from_bytes(bytes: bytes) -> Scene: ...
     def to_bytes(self) -> bytes: ...
     def moved(self, vertices: _Coordinates) -> Scene: ...
+    def transformed(self, transform: NDArray[np.float64]) -> Scene: ...
     def counts(self) -> tuple[int, int, int, int]: ...
     def bounds(self) -> list[list[float]] | None: ...
     def vertices(self) -> NDArray[np.float64]: ...
@@ -71,6 +83,11 @@ class NearList:
 
 @final
 class HitList:
+    def __len__(self) -> int: ...
+    def fill(self, out: _Arrays) -> None: ...
+
+@final
+class PairList:
     def __len__(self) -> int: ...
     def fill(self, out: _Arrays) -> None: ...
 
@@ -134,6 +151,7 @@ class Index:
         out: _Arrays,
         sign: str,
         inside_is_negative: bool,
+        max_distance: float,
         threads: int,
         progress: _Progress,
     ) -> None: ...
@@ -159,3 +177,57 @@ class Index:
         threads: int,
         progress: _Progress,
     ) -> NDArray[np.float32]: ...
+    def closest_to(
+        self,
+        shapes: NDArray[np.float64],
+        width: int,
+        out: _Arrays,
+        radius: float,
+        max_distance: float,
+        certified: bool,
+        threads: int,
+        progress: _Progress,
+    ) -> None: ...
+    def is_any_near(
+        self,
+        shapes: NDArray[np.float64],
+        width: int,
+        out: _Arrays,
+        radius: float,
+        max_distance: float,
+        threads: int,
+        progress: _Progress,
+    ) -> None: ...
+    def closest_pairs(
+        self,
+        other: Index,
+        transforms: NDArray[np.float64] | None,
+        max_distance: float,
+        certified: bool,
+        threads: int,
+        progress: _Progress,
+    ) -> PairList: ...
+    def do_intersect(
+        self,
+        other: Index,
+        transforms: NDArray[np.float64] | None,
+        threads: int,
+        progress: _Progress,
+    ) -> NDArray[np.bool_]: ...
+    def pairs_within(
+        self,
+        other: Index,
+        transforms: NDArray[np.float64] | None,
+        max_distance: float,
+        threads: int,
+    ) -> PairList: ...
+    def first_contact(
+        self,
+        starts: NDArray[np.float64],
+        ends: NDArray[np.float64],
+        out: _Arrays,
+        radius: float,
+        tolerance: float,
+        threads: int,
+        progress: _Progress,
+    ) -> None: ...

@@ -143,3 +143,85 @@ class AllHits(FirstHits):
     """
 
     splits: NDArray[np.int64]
+
+
+class _Pairs(Record):
+    """Near pairs of primitives. Arrays with two places have the scene of the index first."""
+
+    distance: NDArray[np.float64]
+    points: NDArray[np.float64]
+    features: NDArray[np.uint8]
+    barycentric: NDArray[np.float64]
+    lower_bound: NDArray[np.float64]
+    is_intersecting: NDArray[np.bool_]
+
+
+class ClosestPairs(_Pairs):
+    """The nearest points of two scenes. Arrays with two places have the scene of the index first, then the other one.
+
+    Attributes
+    ----------
+    distance : ndarray of float64, shape {..}
+        The distances, 0 if the scenes intersect; infinite where there is no answer.
+    primitives : ndarray of int64, shape {.., 2}
+        The ids of both primitives; -1 where there is no answer. Of several equally near pairs it is the one with the
+        lowest id in the scene of the index, then in the other one.
+    points : ndarray of float64, shape {.., 2, 3}
+        The nearest points, that of the other scene after its motion; nan where there is no answer.
+    features : ndarray of uint8, shape {.., 2}
+        The parts of the primitives that contain the points, as in `ClosestPoints`; 255 where there is no answer.
+    barycentric : ndarray of float64, shape {.., 2, 3}
+        The weights of the vertices of both primitives; nan where there is no answer.
+    lower_bound : ndarray of float64, shape {..}
+        Certified lower bounds on the true distances; infinite where there is no answer. They depend on the backend.
+    is_intersecting : ndarray of bool, shape {..}
+        Whether the primitives intersect, which is decided without rounding.
+    """
+
+    primitives: NDArray[np.int64]
+
+
+class ClosestToShapes(_Pairs):
+    """The nearest points of a scene and of shapes. Arrays with two places have the scene first, then the shape.
+
+    The other arrays are those of `ClosestPairs`. With a radius the distance is that of the shape less the radius,
+    rounded, the second point is moved towards the first one by the radius, or is the first one if they intersect, and
+    ``is_intersecting`` is whether the computed distance of the shape is at most the radius.
+
+    Attributes
+    ----------
+    primitive : ndarray of int64, shape (n,)
+        The ids of the primitives of the scene; -1 where there is no answer.
+    """
+
+    primitive: NDArray[np.int64]
+
+
+class BallContacts(Record):
+    """The first contacts of moving balls.
+
+    Attributes
+    ----------
+    parameter : ndarray of float64, shape {..}
+        The parameters of the contacts, from 0 at the start to 1 at the end, rounded down; infinite without contact. A
+        ball certainly touches nothing before its parameter. A ball that touches at the start has the parameter 0.
+    primitive : ndarray of int64, shape {..}
+        The ids of the primitives that are touched; -1 without contact.
+    point : ndarray of float64, shape {.., 3}
+        The points of the scene that are nearest to the centre at the upper parameter; nan without contact.
+    feature : ndarray of uint8, shape {..}
+        The parts of the primitives that contain the points, as in `ClosestPoints`; 255 without contact.
+    upper_parameter : ndarray of float64, shape {..}
+        Parameters at which the scene is certainly within ``distance_bound`` of the centre, which exceed ``parameter``
+        by about 2**-48; infinite without contact.
+    distance_bound : ndarray of float64, shape {..}
+        Certified upper bounds on the distance of the scene from the centre at the upper parameter; infinite without
+        contact. They exceed the radius by the tolerance and some roundings at most, unless the ball starts nearer.
+    """
+
+    parameter: NDArray[np.float64]
+    primitive: NDArray[np.int64]
+    point: NDArray[np.float64]
+    feature: NDArray[np.uint8]
+    upper_parameter: NDArray[np.float64]
+    distance_bound: NDArray[np.float64]

@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .._hausdorff import hausdorff as _hausdorff
 from .._index import Index
 from .._scene import Scene
 from ._shared import ContentCache, Hits, SignedIndex, all_hits, first_hits
@@ -37,6 +38,7 @@ __all__ = [
     "SIGNED_DISTANCE_TYPE_WINDING_NUMBER",
     "SignedDistanceType",
     "clear_cache",
+    "hausdorff",
     "point_mesh_squared_distance",
     "signed_distance",
 ]
@@ -215,6 +217,39 @@ def signed_distance(
     elif rule is not SIGNED_DISTANCE_TYPE_UNSIGNED:
         S[is_in] = mesh.signed.signed_distance(points[is_in], by_winding=True)
     return S, I, C, N
+
+
+def hausdorff(
+    VA: ArrayLike, FA: ArrayLike, VB: ArrayLike, FB: ArrayLike, tolerance: float | None = None
+) -> float:
+    """Return the Hausdorff distance of two meshes: how far a point of either one is from the other one at most.
+
+    This replaces ``igl.hausdorff``, which asks vertices alone: it returns the largest distance of a vertex from the
+    other mesh, so it misses points inside of edges and triangles that are farther. Here all points count, within a
+    tolerance. ``tolerance=float("inf")`` asks vertices alone, as libigl does.
+
+    Parameters
+    ----------
+    VA, VB : array_like, shape (v, 3) or (v, 2)
+        The vertices of each mesh.
+    FA, FB : array_like of integers, shape (m, 3), (m, 2) or (m, 1)
+        The vertices of the triangles, edges or points of each mesh. Vertices of none do not count.
+    tolerance : float, optional
+        The result is certainly not above the distance, and below it by no more than this, by default the diagonal of
+        the box of both meshes divided by 10,000. libigl has no such argument.
+
+    Returns
+    -------
+    d : float
+        The distance. `p2m.hausdorff` also returns the points and an upper bound.
+
+    Raises
+    ------
+    ValueError
+        For a mesh without elements, wrong shapes, indices without vertex, and coordinates that are not finite.
+    """
+    meshes = [_cache.get(*_mesh_arrays(V, F)) for V, F in ((VA, FA), (VB, FB))]
+    return _hausdorff(meshes[0].index, meshes[1].index, tolerance).lower_bound
 
 
 class AABB:

@@ -1,0 +1,130 @@
+"""Hausdorff distances between certified bounds."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _p2m
+from ._arrays import Progress, callback, not_negative, rigid_transforms, thread_count
+from ._index import Index
+from ._scene import Scene
+
+
+class HausdorffDistance(NamedTuple):
+    """A Hausdorff distance between bounds. Arrays of two have the first scene first."""
+
+    lower_bound: float
+    """A certified lower bound, which a point of one scene attains."""
+    upper_bound: float
+    """A certified upper bound, which exceeds the lower one by the tolerance at most unless the limit of queries was
+    reached or rounding does not allow it."""
+    points: NDArray[np.float64]
+    """The point that attains the lower bound, and its closest point in the other scene: shape (2, 3)."""
+    primitives: NDArray[np.int64]
+    """The primitives that contain the points: shape (2,)."""
+    from_scene: int
+    """The scene that has the point which is farthest from the other one: 0 or 1."""
+    queries: int
+    """The number of queries that were asked."""
+
+
+def hausdorff(
+    a: Any,
+    b: Any,
+    tolerance: float | None = None,
+    *,
+    one_sided: bool = False,
+    transform: ArrayLike | None = None,
+    max_queries: int = 2**24,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> HausdorffDistance:
+    """Return the Hausdorff distance of two scenes: how far a point of either scene is from the other one at most.
+
+    All points of triangles, segments and points count, not only vertices.
+
+    Parameters
+    ----------
+    a, b : Index, Scene or object
+        The scenes. An index of any backend is used, and for other objects, of which `Scene.of` makes a scene, a tree of
+        boxes is built.
+    tolerance : float, optional
+        The largest difference of the bounds, in the unit of the scenes. By default it is the diagonal of the box of
+        both scenes divided by 10,000. With infinity only vertices are asked.
+    one_sided : bool, optional
+        Whether only points of `a` are measured, by their distance from `b`.
+    transform : array_like, shape (4, 4), optional
+        The rotation and the translation that move `b`, as for `Index.closest_pair`. A tree of the moved scene is built.
+    max_queries : int, optional
+        The largest number of queries besides those of vertices, each of which takes 80 bytes. The bounds are then those
+        that were reached.
+    threads : int, optional
+        The number of threads, as for `Index`.
+    progress : callable, True or "tqdm", optional
+        It is called with the number of queries and the largest possible one. Most searches end long before it.
+
+    Returns
+    -------
+    HausdorffDistance
+        The bounds and where they come from. They are the same for every backend and number of threads.
+
+    Raises
+    ------
+    ValueError
+        If a scene is empty, or for a wrong argument.
+    KeyboardInterrupt
+        At once.
+
+    Examples
+    --------
+    >>> import p2m
+    >>> beam = p2m.Scene([[0, 0, 0], [8, 0, 0]], segments=[[0, 1]])
+    >>> posts = p2m.Scene([[0, 0, 0], [8, 0, 0]], points=[0, 1])
+    >>> found = p2m.hausdorff(beam, posts, 0.001)
+    >>> found.lower_bound <= 4.0 <= found.upper_bound <= found.lower_bound + 0.001
+    True
+    >>> found.points[0].tolist(), found.from_scene
+    ([4.0, 0.0, 0.0], 0)
+    """
+    count = thread_count(threads)
+    matrix = rigid_transforms(transform, "transform")
+    if matrix is not None:
+        if matrix.ndim != 2:
+            raise ValueError(f"transform: the shape is {matrix.shape} instead of (4, 4)")
+        b = Scene._from_raw(_scene_of(b)._raw.transformed(matrix.reshape(-1)))
+    if not 0 <= max_queries < 2**64:
+        raise ValueError(f"max_queries: {max_queries} is no number of queries")
+    scenes = [_scene_of(a), _scene_of(b)]
+    if tolerance is None:
+        if len(scenes[0]) == 0 or len(scenes[1]) == 0:
+            raise ValueError("a scene is empty, so there is no Hausdorff distance")
+        low = np.minimum(scenes[0].bounds[0], scenes[1].bounds[0])
+        high = np.maximum(scenes[0].bounds[1], scenes[1].bounds[1])
+        tolerance = float(np.linalg.norm(high - low)) / 1e4
+    margin = not_negative(tolerance, "tolerance")
+    # The points of one side alone need no index of their scene.
+    first = None if one_sided else _index_of(a, scenes[0], count)._raw
+    second = _index_of(b, scenes[1], count)._raw
+    with callback(progress, "comparing", "queries") as call:
+        found = _p2m.hausdorff(scenes[0]._raw, first, second, margin, int(max_queries), count, call)
+    if found is None:
+        raise ValueError("a scene is empty, so there is no Hausdorff distance")
+    return HausdorffDistance(
+        lower_bound=found["lower_bound"],
+        upper_bound=found["upper_bound"],
+        points=np.array(found["points"], np.float64),
+        primitives=np.array(found["primitives"], np.int64),
+        from_scene=found["from_scene"],
+        queries=found["queries"],
+    )
+
+
+def _scene_of(obj: Any) -> Scene:
+    return obj.scene if isinstance(obj, Index) else Scene.of(obj)
+
+
+def _index_of(obj: Any, scene: Scene, threads: int) -> Index:
+    return obj if isinstance(obj, Index) else Index(scene, threads=threads)

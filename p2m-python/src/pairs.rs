@@ -1,0 +1,288 @@
+//! Queries for pairs: shapes near a scene, and two scenes, one of which may move.
+
+use crate::columns::{borrowed, slice};
+use crate::errors::value_error;
+use crate::index::Index;
+use crate::pair_columns::{PairArrays, PairColumns, PairList};
+use crate::parts::{Split, answer_in_parts};
+use crate::queries::{BadRow, batch_options, check_finite, not_finite};
+use crate::scene::triples;
+use crate::searchable::Searchable;
+use crate::work::{Monitor, Threads, run_owned};
+use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use numpy::{PyReadonlyArray1, ToPyArray};
+use p2m_core::batch;
+use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
+use p2m_core::{Point, Primitive, Segment, Shape, Triangle};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// An index that answers queries for pairs.
+type AnyPairQuery<'a> = &'a (dyn PairQuery<f64> + Sync);
+
+/// Returns the motion of a matrix of 4 x 4 numbers, row by row, whose first three columns are a rotation.
+fn motion(matrix: &[f64; 16]) -> Isometry3<f64> {
+    let rotation = Matrix3::from_fn(|row, column| matrix[4 * row + column]);
+    let translation = Vector3::from_fn(|row, _| matrix[4 * row + 3]);
+    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&rotation));
+    Isometry3::from_parts(Translation3::from(translation), rotation)
+}
+
+/// Returns the motions of flat matrices.
+pub(crate) fn motions(matrices: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<Isometry3<f64>>> {
+    match matrices.as_slice().map(<[f64]>::as_chunks) {
+        Ok((matrices, [])) => Ok(matrices.iter().map(motion).collect()),
+        _ => Err(PyTypeError::new_err("the transforms are not contiguous matrices of 4 x 4 numbers")),
+    }
+}
+
+/// Two indexes of which the second one may move.
+struct ScenePair {
+    first: Arc<dyn Searchable>,
+    second: Arc<dyn Searchable>,
+    /// The motions; without one the scenes are as they are, and there is one answer.
+    motions: Option<Vec<Isometry3<f64>>>,
+    options: PairOptions<f64>,
+}
+
+impl ScenePair {
+    /// Calls `answer` for each motion, in parts, and returns the answers in the order of the motions.
+    fn answer<R: Send>(
+        &self,
+        threads: &Threads,
+        monitor: &Monitor,
+        answer: impl Fn(AnyPairQuery<'_>, AnyPairQuery<'_>, &PairOptions<f64>) -> R + Sync,
+    ) -> Vec<R> {
+        let (Some(first), Some(second)) = (self.first.as_pair_query(), self.second.as_pair_query()) else {
+            return Vec::new();
+        };
+        let Some(motions) = &self.motions else { return vec![answer(first, second, &self.options)] };
+        let position = |motion: &Isometry3<f64>| Point3::from(motion.translation.vector);
+        // One motion may take long.
+        monitor.set_step(1);
+        let parts = answer_in_parts(motions.len(), (), threads, monitor, &|range, ()| {
+            batch::map(&motions[range.clone()], &batch_options(range.len(), false), position, |motion| {
+                answer(first, second, &self.options.with_motion(*motion))
+            })
+        });
+        parts.into_iter().flatten().collect()
+    }
+
+    /// Runs [`answer`](Self::answer) so that an interrupt abandons it at once.
+    fn run<R: Send + 'static>(
+        self,
+        py: Python<'_>,
+        threads: usize,
+        progress: Option<Py<PyAny>>,
+        answer: impl Fn(AnyPairQuery<'_>, AnyPairQuery<'_>, &PairOptions<f64>, &Monitor) -> R + Send + Sync + 'static,
+    ) -> PyResult<Vec<R>> {
+        let total = self.motions.as_ref().map_or(1, Vec::len);
+        let pool = Threads::Pool(crate::threads::pool(py, threads)?);
+        run_owned(py, threads, total, progress, move |monitor| {
+            self.answer(&pool, monitor, |first, second, options| answer(first, second, options, monitor))
+        })
+    }
+}
+
+/// Shapes with one to three vertices each, one after another.
+struct Shapes<'a> {
+    vertices: &'a [[f64; 3]],
+    width: usize,
+}
+
+impl Shapes<'_> {
+    /// Answers a query for each shape, in parts.
+    fn answer<O: Split, A: Send>(
+        &self,
+        out: O,
+        threads: &Threads,
+        monitor: &Monitor,
+        answer: impl Fn(&Shape<f64>) -> A + Sync,
+        store: impl Fn(&[A], O) + Sync,
+    ) -> Result<(), BadShape> {
+        check_finite(self.vertices).map_err(|BadRow(row)| BadShape(row / self.width))?;
+        let shape = |vertices: &[[f64; 3]]| match *vertices {
+            [a] => Shape::Point(Point::new(a.into())),
+            [a, b] => Shape::Segment(Segment::new(a.into(), b.into())),
+            [a, b, c, ..] => Shape::Triangle(Triangle::new(a.into(), b.into(), c.into())),
+            [] => unreachable!("a shape has a vertex"),
+        };
+        let centre = |shape: &Shape<f64>| nalgebra::center(&shape.aabb().min, &shape.aabb().max);
+        answer_in_parts(self.len(), out, threads, monitor, &|range, out| {
+            let vertices = &self.vertices[range.start * self.width..range.end * self.width];
+            let shapes: Vec<_> = vertices.chunks(self.width).map(shape).collect();
+            store(&batch::map(&shapes, &batch_options(shapes.len(), false), centre, &answer), out);
+        });
+        Ok(())
+    }
+
+    fn len(&self) -> usize {
+        self.vertices.len() / self.width
+    }
+}
+
+/// A shape that is not finite.
+struct BadShape(usize);
+
+impl From<BadShape> for PyErr {
+    fn from(BadShape(row): BadShape) -> Self {
+        not_finite("shapes", row)
+    }
+}
+
+impl Index {
+    /// Returns the index as one that answers queries for pairs, or an error if its backend does not.
+    pub(crate) fn pair_query(&self) -> PyResult<AnyPairQuery<'_>> {
+        self.built.index.as_pair_query().ok_or_else(|| {
+            value_error(format!(
+                "the backend '{}' answers no queries for pairs: use 'aabb', 'kdop' or 'brute'",
+                self.backend.name
+            ))
+        })
+    }
+
+    /// Returns this index with another one and its motions. Both answer queries for pairs.
+    fn with_other(
+        &self,
+        other: &Self,
+        transforms: Option<PyReadonlyArray1<'_, f64>>,
+        max_distance: f64,
+    ) -> PyResult<ScenePair> {
+        self.pair_query()?;
+        other.pair_query()?;
+        Ok(ScenePair {
+            first: Arc::clone(&self.built.index),
+            second: Arc::clone(&other.built.index),
+            motions: transforms.as_ref().map(motions).transpose()?,
+            options: PairOptions::default().with_max_distance(max_distance),
+        })
+    }
+}
+
+#[pymethods]
+impl Index {
+    /// Finds the nearest points of the scene and of shapes with so many vertices each, for the arrays of `out`.
+    #[pyo3(signature = (shapes, width, out, radius, max_distance, certified, threads, progress))]
+    #[allow(clippy::too_many_arguments, reason = "the Python layer passes them all")]
+    fn closest_to(
+        &self,
+        py: Python<'_>,
+        shapes: PyReadonlyArray1<'_, f64>,
+        width: usize,
+        out: &Bound<'_, PyDict>,
+        radius: f64,
+        max_distance: f64,
+        certified: bool,
+        threads: usize,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<()> {
+        let index = self.pair_query()?;
+        let shapes = Shapes { vertices: triples(shapes.as_slice())?, width };
+        let options = PairOptions::default().with_radius(radius).with_max_distance(max_distance);
+        let mut arrays = PairArrays::borrow(out)?;
+        let columns = arrays.columns(shapes.len())?;
+        let answer = |shape: &Shape<f64>| {
+            if certified {
+                PairQuery::certified_closest_to(&index, shape, &options)
+            } else {
+                PairQuery::closest_to(&index, shape, &options)
+            }
+        };
+        let store = |pairs: &[_], mut columns: PairColumns<'_>| columns.set_all(pairs);
+        let work = |threads: &Threads, monitor: &Monitor| shapes.answer(columns, threads, monitor, answer, store);
+        self.run(py, shapes.len(), threads, progress, work)
+    }
+
+    /// Writes to `out` whether any primitive is within a distance of each shape.
+    #[pyo3(signature = (shapes, width, out, radius, max_distance, threads, progress))]
+    #[allow(clippy::too_many_arguments, reason = "the Python layer passes them all")]
+    fn is_any_near(
+        &self,
+        py: Python<'_>,
+        shapes: PyReadonlyArray1<'_, f64>,
+        width: usize,
+        out: &Bound<'_, PyDict>,
+        radius: f64,
+        max_distance: f64,
+        threads: usize,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<()> {
+        let index = self.pair_query()?;
+        let shapes = Shapes { vertices: triples(shapes.as_slice())?, width };
+        let options = PairOptions::default().with_radius(radius).with_max_distance(max_distance);
+        let mut array = borrowed::<bool>(out, "is_near")?;
+        let out = slice(&mut array)?.unwrap_or_default();
+        let answer = |shape: &Shape<f64>| PairQuery::is_any_near(&index, shape, &options);
+        let store = |answers: &[bool], out: &mut [bool]| out.copy_from_slice(answers);
+        let work = |threads: &Threads, monitor: &Monitor| shapes.answer(out, threads, monitor, answer, store);
+        self.run(py, shapes.len(), threads, progress, work)
+    }
+
+    /// Returns the nearest pair of this scene and another one for each motion of the other one, or for none.
+    #[pyo3(signature = (other, transforms, max_distance, certified, threads, progress))]
+    #[allow(clippy::too_many_arguments, reason = "the Python layer passes them all")]
+    fn closest_pairs(
+        &self,
+        py: Python<'_>,
+        other: &Self,
+        transforms: Option<PyReadonlyArray1<'_, f64>>,
+        max_distance: f64,
+        certified: bool,
+        threads: usize,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<PairList> {
+        let scenes = self.with_other(other, transforms, max_distance)?;
+        let list = scenes.run(py, threads, progress, move |first, second, options, _| {
+            if certified {
+                PairQuery::certified_closest_pair(&first, second, options)
+            } else {
+                PairQuery::closest_pair(&first, second, options)
+            }
+        })?;
+        Ok(PairList { list })
+    }
+
+    /// Returns whether this scene and another one intersect, for each motion of the other one, or for none.
+    #[pyo3(signature = (other, transforms, threads, progress))]
+    fn do_intersect<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Self,
+        transforms: Option<PyReadonlyArray1<'_, f64>>,
+        threads: usize,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let scenes = self.with_other(other, transforms, 0.0)?;
+        let answers = scenes.run(py, threads, progress, |first, second, options, _| {
+            PairQuery::is_any_pair_near(&first, second, options)
+        })?;
+        Ok(answers.to_pyarray(py).into_any())
+    }
+
+    /// Returns all pairs of primitives within a distance, nearest first, and of equally near ones that with the lowest
+    /// ids. The other scene has at most one motion.
+    #[pyo3(signature = (other, transforms, max_distance, threads))]
+    fn pairs_within(
+        &self,
+        py: Python<'_>,
+        other: &Self,
+        transforms: Option<PyReadonlyArray1<'_, f64>>,
+        max_distance: f64,
+        threads: usize,
+    ) -> PyResult<PairList> {
+        let scenes = self.with_other(other, transforms, max_distance)?;
+        let lists = scenes.run(py, threads, None, |first, second, options, monitor| {
+            let mut list: Vec<ClosestPair<f64>> = Vec::new();
+            let _ = PairQuery::visit_pairs_within(&first, second, options, &mut |pair| {
+                list.push(*pair);
+                if monitor.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+            list.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.primitives.cmp(&b.primitives)));
+            list
+        })?;
+        Ok(PairList { list: lists.concat().into_iter().map(Some).collect() })
+    }
+}
