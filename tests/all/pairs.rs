@@ -3,9 +3,9 @@
 #![cfg(all(feature = "bvh", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
 use p2m::pair::{ClosestPair, Motion, PairOptions, PairQuery};
-use p2m::{AabbTree, BruteForce, BuildIndex, KdopTree, PrimitiveId, PrimitiveSet, Real, Shape, Soup};
+use p2m::{AabbTree, BruteForce, BuildIndex, Element, KdopTree, PrimitiveId, PrimitiveSet, Real, Shape, Soup};
 use p2m_testkit::scenes::{self, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng, vector};
 use rand::{Rng, RngExt};
@@ -145,6 +145,30 @@ fn shapes_against_scenes_are_those_of_brute_force() {
                 assert_same(tree.closest_to(&shape, &limited), expected.filter(|_| is_within), &text);
             }
         }
+    }
+}
+
+/// The vertices of the second scene are rounded where they come from, by far more than the roundings of a scene that is
+/// already in place, so of many pairs that are about equally near any one may be the nearest.
+#[test]
+fn a_scene_that_comes_from_far_away_has_the_pairs_of_its_rounded_vertices() {
+    for case in cases(300, 12) {
+        let mut rng = rng("scenes from far away", case);
+        let mut grid = || -> Vec<Point3<f64>> {
+            let noise = [0.0, 1e-9, 1e-6][rng.random_range(0..3)];
+            let square = |i: u32| [i % 20, i / 20].map(|x| f64::from(x) * 0.125);
+            let at = |i: u32| [square(i)[0], square(i)[1], noise * rng.random_range(-1.0..1.0)];
+            (0..400).map(|i| at(i).into()).collect()
+        };
+        let [a, b] = [grid(), grid()];
+        let turn = [Vector3::zeros(), Vector3::z(), Vector3::x() * std::f64::consts::PI][rng.random_range(0..3)];
+        let far = [1e3, 1e6, 1e9, 1e11][rng.random_range(0..4)];
+        let moved = Isometry3::new(vector(&mut rng) * far, turn);
+        let raised = Isometry3::translation(0.0, 0.0, [0.1, 1.0, 5.0][rng.random_range(0..3)]);
+        let back = moved.inverse() * raised;
+        let [a, b] = [a, b.iter().map(|point| back * point).collect()]
+            .map(|positions| Soup::new(positions, (0..400).map(Element::Point)).expect("valid"));
+        check_scenes(case, [&a, &b], Some(moved), f64::INFINITY);
     }
 }
 

@@ -7,7 +7,7 @@ use p2m_core::engine::pairs::{
     Children, Height, Hulls, NO_NODE, PairSide, Place, Placement, Slab, WIDTH, bound_children,
 };
 use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
-use p2m_core::engine::vector::{V3, dot};
+use p2m_core::engine::vector::{V3, dot, largest};
 use p2m_core::pair::Motion;
 use p2m_core::{Aabb, PrimitiveId};
 
@@ -62,7 +62,9 @@ impl<V: VolumeNodes> PairSide for TreeSide<'_, V> {
     fn placement(&self) -> Placement {
         let frame = &self.tree.frame;
         let centre = self.motion.map_or(frame.centre, |motion| motion.apply(frame.centre));
-        Placement { centre, unit: frame.unit, is_plain: frame.is_plain(), is_tree: true }
+        let size = largest(&[self.tree.bounds.min.into(), self.tree.bounds.max.into()]);
+        let motion_size = self.motion.map_or(0.0, |motion| size + largest(&[motion.translation()]));
+        Placement { centre, unit: frame.unit, is_plain: frame.is_plain(), is_tree: true, motion_size }
     }
 
     fn directions(&self) -> Vec<V3> {

@@ -2,12 +2,18 @@
 
 use super::height::{Height, Rows};
 use super::side::{PairSide, Place};
-use crate::kernel::vector::{V3, dot, power_of_two};
+use crate::kernel::vector::{V3, dot, largest, power_of_two};
 use crate::simd::Lanes;
 
 /// A frame resolves what is at most this many units away from its centre.
 const MAX_UNITS: f64 = power_of_two(10);
-/// The part of all magnitudes by which heights are wrong that are computed in f64.
+/// The part of all magnitudes by which heights are wrong that are computed in f64, together with the errors of keys.
+///
+/// Let s be the largest coordinate, r that before a motion and t that of the translation. A key is below the true
+/// distance by 19 u M at most (docs/proofs/pairs.md), which is 66 u s, and the gap of two primitives along a direction is
+/// computed with 30 u s of error. The height of a moved vertex and that of the vertex before the motion, along the
+/// direction that is turned back, differ by 40 u (r + t): 12 u r + 7 u t for the coordinates, 16 u r for the direction,
+/// and the rest for both sums. 2^-46 is 128 u.
 const ROUNDING: f64 = power_of_two(-46);
 
 /// The lengths of vectors that have a direction.
@@ -53,9 +59,8 @@ impl Directions {
     pub(super) fn new(sides: [&dyn PairSide; 2]) -> Option<Self> {
         let bounds = sides.map(PairSide::bounds);
         let frames = sides.map(PairSide::placement);
-        let size =
-            bounds.iter().flat_map(|b| b.min.iter().chain(b.max.iter())).fold(0.0, |size: f64, x| size.max(x.abs()));
-        let margin = size * ROUNDING;
+        let size = largest(&bounds.map(|b| [b.min.into(), b.max.into()]).concat());
+        let margin = frames.iter().map(|frame| frame.motion_size).fold(size, std::ops::Add::add) * ROUNDING;
         for (frame, other) in frames.iter().zip([&bounds[1], &bounds[0]]) {
             let reach = |k: usize| (other.min[k] - frame.centre[k]).abs().max((other.max[k] - frame.centre[k]).abs());
             let farthest = reach(0).max(reach(1)).max(reach(2));

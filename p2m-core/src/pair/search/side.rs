@@ -103,6 +103,9 @@ pub struct Placement {
     pub is_plain: bool,
     /// Whether there is a frame. A shape has coordinates of the scene.
     pub is_tree: bool,
+    /// The sum of the largest coordinate before a motion and the largest one of its translation, relative to which moved
+    /// vertices are rounded; 0 without a motion.
+    pub motion_size: f64,
 }
 
 /// A single shape of one to three vertices, which is a tree of one packet.
@@ -122,7 +125,7 @@ impl PairSide for ShapeSide<'_> {
     }
 
     fn placement(&self) -> Placement {
-        Placement { centre: [0.0; 3], unit: 1.0, is_plain: true, is_tree: false }
+        Placement { centre: [0.0; 3], unit: 1.0, is_plain: true, is_tree: false, motion_size: 0.0 }
     }
 
     fn directions(&self) -> Vec<V3> {
