@@ -3,9 +3,9 @@
 #![cfg(all(feature = "bvh", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
 use p2m::pair::{ClosestPair, Motion, PairOptions, PairQuery};
-use p2m::{AabbTree, BruteForce, BuildIndex, KdopTree, PrimitiveId, PrimitiveSet, Real, Shape, Soup};
+use p2m::{AabbTree, BruteForce, BuildIndex, Element, KdopTree, PrimitiveId, PrimitiveSet, Real, Shape, Soup};
 use p2m_testkit::scenes::{self, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng, vector};
 use rand::{Rng, RngExt};
@@ -52,8 +52,11 @@ fn check_scenes<T: Real>(case: u64, soups: [&Soup<T>; 2], moved: Option<Isometry
     let text = format!("{case}: {options:?}");
     assert_same(aabb_a.closest_pair(&aabb_b, &options), expected, &text);
     assert_same(aabb_a.closest_pair(&kdop_b, &options), expected, &text);
-    let hint = [PrimitiveId::new(a.len() / 2), PrimitiveId::new(b.len() / 3)];
-    assert_same(aabb_a.closest_pair(&aabb_b, &options.with_hint(hint)), expected, &text);
+    // Ids that a scene does not have are ignored.
+    for hint in [[a.len() / 2, b.len() / 3], [a.len(), 0], [0, b.len()]] {
+        let hinted = options.with_hint(hint.map(PrimitiveId::new));
+        assert_same(aabb_a.closest_pair(&aabb_b, &hinted), expected, &text);
+    }
     assert_eq!(aabb_a.is_any_pair_near(&aabb_b, &options), expected.is_some(), "{text}");
     // All pairs within a distance are those of the brute force.
     if let Some(nearest) = expected {
@@ -145,6 +148,69 @@ fn shapes_against_scenes_are_those_of_brute_force() {
                 assert_same(tree.closest_to(&shape, &limited), expected.filter(|_| is_within), &text);
             }
         }
+    }
+}
+
+/// Returns a scene that is stretched, flat, on a sphere or as it was, of another size, and at another place.
+fn deformed(rng: &mut impl Rng, soup: &Soup<f64>) -> Soup<f64> {
+    let scale = [[1.0; 3], [1000.0, 1.0, 1.0], [1.0, 1e-9, 1.0]][rng.random_range(0..3)];
+    let is_round = rng.random_range(0..4) == 0;
+    let size = [1.0, 1.0, 512.0, 4096.0, 2f64.powi(-12)][rng.random_range(0..5)];
+    let place = vector(rng) * [0.0, 0.0, 1e3, 1e9][rng.random_range(0..4)];
+    let mut soup = soup.clone();
+    let image = |p: Point3<f64>| {
+        let norm = p.coords.norm();
+        let at = if is_round && norm > 0.0 { p.coords / norm } else { p.coords.component_mul(&Vector3::from(scale)) };
+        Point3::from(at * size + place)
+    };
+    soup.map_positions(image).expect("finite");
+    soup
+}
+
+/// The motion brings the second scene to the first.
+#[test]
+fn scenes_of_other_shapes_sizes_and_places_have_the_pairs_of_brute_force() {
+    for case in cases(5_000, 200) {
+        let mut rng = rng("deformed scenes", case);
+        let [a, b] = [90, 60].map(|len| {
+            let (kinds, layout) = kinds_and_layout(rng.random());
+            let soup = scenes::soup(&mut rng, kinds, layout, len);
+            deformed(&mut rng, &soup)
+        });
+        let size = (a.aabb().max - a.aabb().min).amax();
+        let [centre_a, centre_b] = [&a, &b].map(|soup| nalgebra::center(&soup.aabb().min, &soup.aabb().max));
+        let turn = Isometry3::rotation([Vector3::zeros(), vector(&mut rng) * 3.0][rng.random_range(0..2)]);
+        let aside = vector(&mut rng) * size * [0.0, 0.1, 1.0, 2.5][rng.random_range(0..4)];
+        let shift = centre_a - turn * centre_b + aside;
+        check_scenes(case, [&a, &b], Some(Isometry3::from_parts(shift.into(), turn.rotation)), f64::INFINITY);
+    }
+}
+
+/// The vertices of the second scene are rounded where they come from, by far more than the roundings of a scene that is
+/// already in place, so of many pairs that are about equally near any one may be the nearest.
+#[test]
+fn a_scene_that_comes_from_far_away_has_the_pairs_of_its_rounded_vertices() {
+    for case in cases(300, 12) {
+        let mut rng = rng("scenes from far away", case);
+        let noise = [1e-9, 1e-6][rng.random_range(0..2)];
+        let mut grid = || -> Vec<Point3<f64>> {
+            let mut at = |i: u32| {
+                let [x, y] = [i % 25, i / 25].map(|k| f64::from(k) * 0.125);
+                [x, y, noise * rng.random_range(-1.0..1.0)]
+            };
+            (0..625).map(|i| at(i).into()).collect()
+        };
+        let [a, b] = [grid(), grid()];
+        let turn = [Vector3::zeros(), Vector3::z(), Vector3::x() * std::f64::consts::PI][rng.random_range(0..3)];
+        let far = vector(&mut rng) * [1e9, 3e10, 1e11][rng.random_range(0..3)];
+        let moved = Isometry3::new(far, turn);
+        let back = moved.inverse() * Isometry3::translation(0.0, 0.0, [0.1, 1.0, 5.0][rng.random_range(0..3)]);
+        let [a, b] = [a, b.iter().map(|point| back * point).collect()]
+            .map(|positions| Soup::new(positions, (0..625).map(Element::Point)).expect("valid"));
+        let options = PairOptions::default().with_motion(moved);
+        let expected = by_all_pairs(&a, &b, &options);
+        let [tree_a, tree_b] = [&a, &b].map(|soup| AabbTree::build(soup, &Default::default()).expect("valid"));
+        assert_same(tree_a.closest_pair(&tree_b, &options), expected, &format!("{case}"));
     }
 }
 
