@@ -2,7 +2,7 @@
 //! runs them on the seeds and on inputs that once failed.
 //!
 //! - [`readers`]: files of scenes and points.
-//! - [`queries`], [`rays`]: scenes and questions are made from the bytes, and answers are compared with brute force and
+//! - [`queries`], [`rays`], [`pairs`]: scenes and questions are made from the bytes, and answers are compared with brute force and
 //!   with rational arithmetic.
 //! - [`saved`]: files of saved indexes, damaged or made up.
 
@@ -13,6 +13,7 @@ mod boxes;
 mod bytes;
 mod exactness;
 mod memory;
+pub mod pairs;
 pub mod queries;
 pub mod rays;
 pub mod readers;

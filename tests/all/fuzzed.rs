@@ -10,7 +10,7 @@
 #[path = "../../fuzz/src/lib.rs"]
 mod fuzz;
 
-use fuzz::{QUESTIONS, backends, queries, rays, readers, saved, scene};
+use fuzz::{QUESTIONS, backends, pairs, queries, rays, readers, saved, scene};
 use p2m::scene::{Format, PointFormat};
 use rand::RngExt;
 use std::collections::BTreeSet;
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 type Check = fn(&[u8]);
 
-const TARGETS: [(&str, Check); 11] = [
+const TARGETS: [(&str, Check); 12] = [
     ("obj", |file| readers::scene(file, Format::Obj)),
     ("ply", |file| readers::scene(file, Format::Ply)),
     ("stl", |file| readers::scene(file, Format::Stl)),
@@ -33,6 +33,9 @@ const TARGETS: [(&str, Check); 11] = [
     }),
     ("rays", |input| {
         rays::check(input);
+    }),
+    ("pairs", |input| {
+        pairs::check(input);
     }),
     ("saved", |input| {
         saved::check(input);
@@ -69,6 +72,7 @@ fn every_seed_and_everything_that_once_failed_passes() {
                 let content = match target {
                     "queries" => queries::describe(&input),
                     "rays" => rays::describe(&input),
+                    "pairs" => pairs::describe(&input),
                     _ => String::new(),
                 };
                 eprintln!("{} fails\n{content}", file.display());
@@ -107,6 +111,8 @@ fn seeds_reach_every_backend_and_question() {
     all(&QUESTIONS, |r| if let Answers(.., question) = r { Some(question) } else { None });
     let trees: BTreeSet<_> = inputs("rays").iter().filter_map(|input| rays::check(input)).collect();
     assert!(backends::TREES.iter().all(|name| trees.iter().any(|(tree, rays)| tree == name && *rays > 0)));
+    let answered = inputs("pairs").iter().filter(|input| pairs::check(input) == Some(true)).count();
+    assert!(answered > 2, "{answered}");
     let reached: BTreeSet<_> = inputs("saved").iter().map(|input| saved::check(input)).collect();
     assert_eq!(reached.len(), 2, "{reached:?}");
 }
@@ -133,6 +139,12 @@ fn seeds_are_those_that_are_made_here() {
     for (m, mode) in scene::MODES.iter().enumerate() {
         for tree in 0..4 {
             random(format!("rays/{mode}-{tree}"), &[tree, tree, 0, 7, m as u8], 120);
+        }
+    }
+    for (m, mode) in scene::MODES.iter().enumerate() {
+        for motion in 0..4 {
+            // The head selects the scalar, the motion, the seed, and the mode.
+            random(format!("pairs/{mode}-{motion}"), &[motion, motion, 5, m as u8], 240);
         }
     }
     for kind in 0..5 {
