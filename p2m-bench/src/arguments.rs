@@ -39,6 +39,9 @@ pub(crate) enum Command {
     Report(ReportArguments),
     /// Checks the accuracy contract where other libraries fail, for docs/extremes.md; fails if ours break it
     Extremes(ExtremesArguments),
+    /// Checks distances between primitives where other libraries fail, for docs/extremes.md; fails if ours break the
+    /// contract
+    ExtremePairs(ExtremePairsArguments),
     /// Compares two records of `report`: times that changed beyond noise, and errors that changed
     Compare(CompareArguments),
     /// Compares the backend that is recommended for 10^5 and 10^7 queries with the best one
@@ -321,6 +324,18 @@ pub(crate) struct ExtremesArguments {
     /// Scenes of each family, which every backend queries
     #[arg(long, default_value_t = 4)]
     pub(crate) scenes: u64,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) document: Document,
+}
+
+#[derive(Args)]
+pub(crate) struct ExtremePairsArguments {
+    /// Pairs of primitives that are checked
+    #[arg(long, default_value_t = 1_000_000)]
+    pub(crate) cases: u64,
     /// Seed of all random numbers
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,

@@ -2,9 +2,9 @@
 
 use crate::arguments::{
     AdversariesArguments, AdviseArguments, BatchArguments, Command, Common, CompareArguments, DelaunayArguments,
-    ExtremesArguments, FieldArguments, InstancesArguments, KdopArguments, PairsArguments, PaperArguments,
-    ProgramArguments, QueryArguments, RayArguments, ReportArguments, RivalArguments, SavedArguments, SplitsArguments,
-    VerifyArguments,
+    ExtremePairsArguments, ExtremesArguments, FieldArguments, InstancesArguments, KdopArguments, PairsArguments,
+    PaperArguments, ProgramArguments, QueryArguments, RayArguments, ReportArguments, RivalArguments, SavedArguments,
+    SplitsArguments, VerifyArguments,
 };
 use crate::backend::Backend;
 use crate::measure::Effort;
@@ -41,6 +41,7 @@ pub(crate) fn run(command: Command) -> Result<bool> {
         Command::Saved(arguments) => compare_saved(&arguments),
         Command::Report(arguments) => write_report(&arguments),
         Command::Extremes(arguments) => check_extremes(&arguments),
+        Command::ExtremePairs(arguments) => check_extreme_pairs(&arguments),
         Command::Compare(arguments) => compare_records(&arguments),
         Command::Paper(arguments) => repeat_paper(&arguments),
     }
@@ -110,6 +111,11 @@ fn write_report(arguments: &ReportArguments) -> Result<bool> {
 fn check_extremes(arguments: &ExtremesArguments) -> Result<bool> {
     let &ExtremesArguments { cases, scenes, seed, ref document } = arguments;
     extremes::run(&extremes::Amount { cases, scenes, seed }, document.write.as_deref(), &provenance(None))
+}
+
+fn check_extreme_pairs(arguments: &ExtremePairsArguments) -> Result<bool> {
+    let &ExtremePairsArguments { cases, seed, ref document } = arguments;
+    extremes::pairs::run(cases, seed, document.write.as_deref(), &provenance(None))
 }
 
 /// Prints a table of differences. Only records that cannot be compared are an error.

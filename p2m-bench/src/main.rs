@@ -64,6 +64,7 @@ mod tests {
         let document = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs").join(name);
         crate::paper::BLOCKS.check(Some(&document("paper.md"))).unwrap();
         crate::extremes::BLOCKS.check(Some(&document("extremes.md"))).unwrap();
+        crate::extremes::pairs::BLOCKS.check(Some(&document("extremes.md"))).unwrap();
         crate::adversaries::BLOCKS.check(Some(&document("adversaries.md"))).unwrap();
     }
 }

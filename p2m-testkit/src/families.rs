@@ -263,6 +263,56 @@ pub fn case_in(rng: &mut impl Rng, span: &Span) -> Case {
     }
 }
 
+/// Generates two hulls as [`pair_in`] does, in the range of f64.
+pub fn pair(rng: &mut impl Rng) -> (Family, [Vec<V>; 2]) {
+    pair_in(rng, &Span::F64)
+}
+
+/// Generates two hulls of one to three vertices, in the range of a scalar: of one family side by side, or moved against
+/// each other so that they touch, cross, lie in parallel, or share vertices.
+pub fn pair_in(rng: &mut impl Rng, span: &Span) -> (Family, [Vec<V>; 2]) {
+    let Case { family, query, vertices: a } = case_in(rng, span);
+    let mut b = match rng.random_range(0..4) {
+        0 => case_in(rng, span).vertices,
+        _ => {
+            // A hull of the same family and scale: the query and points between it and the first hull.
+            let point = |rng: &mut dyn Rng| -> V {
+                let (v, t) = (a[rng.random_range(0..a.len())], [0.0, 0.5, 1.0, 1.5][rng.random_range(0..4)]);
+                std::array::from_fn(|k| query[k] * (1.0 - t) + v[k] * t)
+            };
+            (0..rng.random_range(1..=3)).map(|_| point(rng)).collect::<Vec<_>>()
+        }
+    };
+    let i = rng.random_range(0..a.len());
+    let direction = |k: usize| -> V { std::array::from_fn(|axis| a[(i + k) % a.len()][axis] - a[i][axis]) };
+    match rng.random_range(0..8) {
+        // Edges are exactly or nearly parallel.
+        0 if b.len() >= 2 => b[1] = sum(b[0], direction(1)),
+        1 if b.len() >= 2 => {
+            let tiny = 2f64.powi(-rng.random_range(20..60));
+            let aside: V = std::array::from_fn(|k| direction(1)[(k + 1) % 3] * tiny);
+            b[1] = sum(sum(b[0], direction(1)), aside);
+        }
+        // The hulls share a vertex, or one begins on an edge of the other.
+        2 => b[0] = a[i],
+        3 => b[0] = std::array::from_fn(|k| a[i][k] + 0.5 * direction(1)[k]),
+        // An edge passes through the face or close to it.
+        4 if b.len() >= 2 && a.len() == 3 => {
+            let inside: V = std::array::from_fn(|k| a[0][k] * 0.5 + a[1][k] * 0.25 + a[2][k] * 0.25);
+            b[1] = std::array::from_fn(|k| 2.0 * inside[k] - b[0][k]);
+        }
+        _ => {}
+    }
+    for v in b.iter_mut().flatten() {
+        *v = span.rounded(if v.is_finite() { *v } else { f64::MAX });
+    }
+    (family, [a, b])
+}
+
+fn sum(a: V, b: V) -> V {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
 fn drawn(rng: &mut impl Rng, span: &Span) -> Case {
     match rng.random_range(0..100) {
         0..10 => return lattice(rng),

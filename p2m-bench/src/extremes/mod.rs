@@ -4,6 +4,7 @@
 mod counts;
 mod examples;
 mod external;
+pub(crate) mod pairs;
 mod primitives;
 mod scenes;
 mod threads;

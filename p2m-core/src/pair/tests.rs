@@ -2,58 +2,12 @@
 
 use super::*;
 use crate::kernel::vector::{power_of_two, scale_by_power};
-use p2m_testkit::families::{Case, Family, case};
+use p2m_testkit::families::{case, pair};
 use p2m_testkit::oracle::Distance;
 use p2m_testkit::{cases, rng};
-use rand::{Rng, RngExt};
 
 /// Four times the smallest subnormal number.
 const FOUR_ETA: f64 = f64::from_bits(4);
-
-/// Returns two hulls of one to three vertices: of one family side by side, or moved against each other so that they
-/// touch, cross, lie in parallel, or share vertices.
-fn hulls(rng: &mut impl Rng) -> (Family, [Vec<V3>; 2]) {
-    let Case { family, query, vertices: a } = case(rng);
-    let mut b = match rng.random_range(0..4) {
-        0 => case(rng).vertices,
-        _ => {
-            // A hull of the same family and scale: the query and points between it and the first hull.
-            let point = |rng: &mut dyn Rng| -> V3 {
-                let (v, t) = (a[rng.random_range(0..a.len())], [0.0, 0.5, 1.0, 1.5][rng.random_range(0..4)]);
-                std::array::from_fn(|k| query[k] * (1.0 - t) + v[k] * t)
-            };
-            (0..rng.random_range(1..=3)).map(|_| point(rng)).collect::<Vec<_>>()
-        }
-    };
-    let i = rng.random_range(0..a.len());
-    let direction = |k: usize| -> V3 { sub(a[(i + k) % a.len()], a[i]) };
-    match rng.random_range(0..8) {
-        // Edges are exactly or nearly parallel.
-        0 if b.len() >= 2 => b[1] = add3(b[0], direction(1)),
-        1 if b.len() >= 2 => {
-            let tiny = 2f64.powi(-rng.random_range(20..60));
-            let aside: V3 = std::array::from_fn(|k| direction(1)[(k + 1) % 3] * tiny);
-            b[1] = add3(add3(b[0], direction(1)), aside);
-        }
-        // The hulls share a vertex, or one begins on an edge of the other.
-        2 => b[0] = a[i],
-        3 => b[0] = std::array::from_fn(|k| a[i][k] + 0.5 * direction(1)[k]),
-        // An edge passes through the face or close to it.
-        4 if b.len() >= 2 && a.len() == 3 => {
-            let inside: V3 = std::array::from_fn(|k| a[0][k] * 0.5 + a[1][k] * 0.25 + a[2][k] * 0.25);
-            b[1] = std::array::from_fn(|k| 2.0 * inside[k] - b[0][k]);
-        }
-        _ => {}
-    }
-    for v in b.iter_mut().flatten() {
-        *v = if v.is_finite() { *v } else { f64::MAX };
-    }
-    (family, [a, b])
-}
-
-fn add3(a: V3, b: V3) -> V3 {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
 
 #[test]
 fn distances_are_within_the_bound_and_intersections_are_exact() {
@@ -62,7 +16,7 @@ fn distances_are_within_the_bound_and_intersections_are_exact() {
     let all = cases(10_000_000, 40_000);
     for number in all.clone() {
         let mut rng = rng("pairs of primitives", number);
-        let (family, [a, b]) = hulls(&mut rng);
+        let (family, [a, b]) = pair(&mut rng);
         let exact = Distance::between(&a, &b);
         let pair = nearest_of_hulls(&a, &b, f64::INFINITY).expect("no limit");
         assert_eq!(
@@ -84,7 +38,7 @@ fn distances_are_within_the_bound_and_intersections_are_exact() {
 fn keys_depend_neither_on_order_nor_on_scale() {
     for number in cases(200_000, 10_000) {
         let mut rng = rng("orders of pairs", number);
-        let (family, [mut a, mut b]) = hulls(&mut rng);
+        let (family, [mut a, mut b]) = pair(&mut rng);
         let within = |pair: Result<NearestPair, f64>| pair.expect("no limit");
         let pair = within(nearest_of_hulls(&a, &b, f64::INFINITY));
         let swapped = within(nearest_of_hulls(&b, &a, f64::INFINITY));
@@ -112,7 +66,7 @@ fn keys_depend_neither_on_order_nor_on_scale() {
 fn points_are_those_of_the_weights_and_as_far_apart_as_the_distance() {
     for number in cases(50_000, 5_000) {
         let mut rng = rng("points of pairs", number);
-        let (family, [a, b]) = hulls(&mut rng);
+        let (family, [a, b]) = pair(&mut rng);
         let pair = nearest_of_hulls(&a, &b, f64::INFINITY).expect("no limit");
         let size = largest(&a).max(largest(&b));
         if !(1e-100..1e100).contains(&size) {
@@ -144,7 +98,7 @@ fn points_are_those_of_the_weights_and_as_far_apart_as_the_distance() {
 fn gaps_of_boxes_never_exceed_the_keys_inside() {
     for number in cases(200_000, 10_000) {
         let mut rng = rng("gaps of boxes", number);
-        let (family, [a, b]) = hulls(&mut rng);
+        let (family, [a, b]) = pair(&mut rng);
         let pair = nearest_of_hulls(&a, &b, f64::INFINITY).expect("no limit");
         let mut boxes = [bounds_of(&a), bounds_of(&b)];
         // A box may be larger than the hull.

@@ -1,0 +1,174 @@
+//! Checks distances between isolated primitives, and those of other libraries.
+
+use super::counts::Counts;
+use super::threads;
+use crate::blocks::Blocks;
+use anyhow::Result;
+use p2m_core::Real;
+use p2m_core::pair::{ERROR_CONSTANT_OF_PAIRS, NearestPair, nearest_pair};
+use p2m_testkit::families::{Family, Span, pair_in, shape};
+use p2m_testkit::oracle::Distance;
+use p2m_tradeoff::{Provenance, Table};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+/// The block of docs/extremes.md.
+pub(crate) const BLOCKS: Blocks<1> = Blocks { command: "extreme-pairs", names: ["pairs"] };
+
+/// The number of cases that a thread takes at a time.
+const CHUNK: u64 = 1_000;
+/// The names of the rows.
+const ROWS: [&str; 6] = [
+    "lattice",
+    "any magnitude",
+    "almost parallel to an axis",
+    "neighbours of an f32",
+    "shapes at the origin, of scale 1",
+    "shapes elsewhere, of any scale",
+];
+/// The names of the subjects, which compute in f64, f32, f64 and f32.
+const SUBJECTS: [&str; 4] = ["p2m f64", "p2m f32", "parry3d-f64", "parry3d"];
+
+/// The counts of a subject in a row.
+#[derive(Clone, Copy, Default)]
+struct PairCounts {
+    distances: Counts,
+    /// The number of answers that say 0 for primitives that do not intersect, or something else for those that do.
+    wrong_intersections: u64,
+}
+
+struct Findings {
+    rows: [[PairCounts; SUBJECTS.len()]; ROWS.len()],
+}
+
+impl threads::Findings for Findings {
+    fn new() -> Self {
+        Self { rows: Default::default() }
+    }
+
+    fn merge(&mut self, other: Self, _: u64) {
+        for (counts, others) in self.rows.as_flattened_mut().iter_mut().zip(other.rows.as_flattened()) {
+            counts.distances.merge(&others.distances);
+            counts.wrong_intersections += others.wrong_intersections;
+        }
+    }
+}
+
+fn row_of(family: &Family) -> usize {
+    match family {
+        Family::Lattice => 0,
+        Family::Wild => 1,
+        Family::AlmostFlat => 2,
+        Family::Neighbours => 3,
+        Family::Shaped { scale: 0, offset, .. } if *offset == 0.0 => 4,
+        Family::Shaped { .. } => 5,
+    }
+}
+
+/// Checks pairs of primitives, half of them in each scalar, and publishes the block. Returns whether ours are all within
+/// their bound.
+pub(crate) fn run(cases: u64, seed: u64, document: Option<&Path>, provenance: &Provenance) -> Result<bool> {
+    BLOCKS.check(document)?;
+    // Panics of external libraries are caught and counted; a message for each would bury the report.
+    let default_hook = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| ()));
+    let found = threads::run("distances of pairs", cases.div_ceil(2 * CHUNK), |chunk, found: &mut Findings| {
+        let mut rng = p2m_testkit::rng("extreme pairs", (seed << 32) + chunk);
+        for _ in 0..CHUNK {
+            for (scalar, span) in [Span::F64, Span::F32].iter().enumerate() {
+                let (family, [a, b]) = pair_in(&mut rng, span);
+                let truth = Distance::between(&a, &b);
+                let row = &mut found.rows[row_of(&family)];
+                let ours = if scalar == 0 { distance::<f64>(&a, &b) } else { distance::<f32>(&a, &b) };
+                judge(&mut row[scalar], scalar, &truth, Some(ours));
+                // Other libraries have no points.
+                if a.len() > 1 && b.len() > 1 {
+                    let theirs = catch_unwind(AssertUnwindSafe(|| {
+                        if scalar == 0 { parry_double(&a, &b) } else { parry_single(&a, &b) }
+                    }));
+                    judge(&mut row[2 + scalar], scalar, &truth, theirs.ok());
+                }
+            }
+        }
+    });
+    std::panic::set_hook(default_hook);
+    let mut table = Table::new([""].into_iter().chain(SUBJECTS));
+    for (name, row) in ROWS.iter().zip(&found.rows) {
+        table.push(std::iter::once((*name).to_owned()).chain(row.iter().map(cell)).collect());
+    }
+    let total: u64 = found.rows.as_flattened().iter().map(|counts| counts.distances.cases).sum();
+    let text = format!("{provenance}\n\n{table}\n{total} distances were compared with rational arithmetic.\n");
+    BLOCKS.publish(document, &[text])?;
+    let ours = found.rows.iter().flat_map(|row| &row[..2]);
+    Ok(ours.into_iter().all(|counts| {
+        let Counts { worst, failed, panicked, .. } = counts.distances;
+        worst <= ERROR_CONSTANT_OF_PAIRS && (failed, panicked, counts.wrong_intersections) == (0, 0, 0)
+    }))
+}
+
+/// Adds an answer, or a panic.
+fn judge(counts: &mut PairCounts, scalar: usize, truth: &Distance, answer: Option<f64>) {
+    let Some(distance) = answer else {
+        counts.distances.panicked += 1;
+        return;
+    };
+    let (bits, eta, limit) =
+        [(53, f64::from_bits(4), f64::MAX), (24, 4.0 * f64::from(f32::from_bits(1)), f64::from(f32::MAX))][scalar];
+    let beyond = distance == f64::INFINITY && truth.is_at_least(limit);
+    counts.distances.add(if beyond { 0.0 } else { truth.error(distance, bits, eta) });
+    counts.wrong_intersections += u64::from((distance == 0.0) != truth.is_zero() && !underflows(scalar, truth));
+}
+
+/// Returns whether the true distance is positive and may round to zero.
+fn underflows(scalar: usize, truth: &Distance) -> bool {
+    let smallest = [f64::from_bits(8), 8.0 * f64::from(f32::from_bits(1))][scalar];
+    !truth.is_zero() && !truth.is_at_least(smallest)
+}
+
+/// Formats the largest error, and the fraction of answers that are wrong in other ways.
+fn cell(counts: &PairCounts) -> String {
+    let all = counts.distances.cases.max(1) as f64;
+    let wrong = counts.wrong_intersections;
+    let wrong = if wrong == 0 { String::new() } else { format!(", wrong zero {:.1e}", wrong as f64 / all) };
+    counts.distances.cell() + &wrong
+}
+
+fn distance<T: Real>(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    let of = |hull: &[[f64; 3]]| shape(&hull.iter().map(|v| v.map(T::round_from_f64)).collect::<Vec<_>>());
+    let pair: NearestPair = nearest_pair(&of(a), &of(b));
+    if pair.is_intersecting { 0.0 } else { T::round_from_f64(pair.key.distance()).to_f64() }
+}
+
+/// Generates the adapter for one of the two crates of parry, which have the same names for different types.
+macro_rules! parry {
+    ($name:ident, $parry:ident, $scalar:ty) => {
+        #[allow(clippy::cast_possible_truncation, reason = "to the scalar of the crate; f32 is rounded to before")]
+        #[allow(clippy::useless_conversion, reason = "one of the scalars is f64")]
+        fn $name(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+            use $parry::math::{Pose, Vector};
+            use $parry::query::distance;
+            use $parry::shape::{Segment, Shape, Triangle};
+            let vector = |v: [f64; 3]| Vector::new(v[0] as $scalar, v[1] as $scalar, v[2] as $scalar);
+            let shape = |hull: &[[f64; 3]]| -> Box<dyn Shape> {
+                match *hull {
+                    [a, b] => Box::new(Segment::new(vector(a), vector(b))),
+                    [a, b, c] => Box::new(Triangle::new(vector(a), vector(b), vector(c))),
+                    _ => unreachable!("segments and triangles"),
+                }
+            };
+            let found = distance(&Pose::IDENTITY, &*shape(a), &Pose::IDENTITY, &*shape(b));
+            found.map_or(f64::NAN, |found| found.distance.into())
+        }
+    };
+}
+parry!(parry_double, parry3d_f64, f64);
+parry!(parry_single, parry3d, f32);
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn ours_are_within_their_bound() {
+        let provenance = crate::report::provenance(None);
+        assert!(super::run(4_000, 3, None, &provenance).unwrap());
+    }
+}
