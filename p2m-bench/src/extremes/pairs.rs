@@ -33,8 +33,15 @@ const SUBJECTS: [&str; 4] = ["p2m f64", "p2m f32", "parry3d-f64", "parry3d"];
 #[derive(Clone, Copy, Default)]
 struct PairCounts {
     distances: Counts,
-    /// The number of answers that say 0 for primitives that do not intersect, or something else for those that do.
+    /// The number of wrong answers to the question whether the primitives intersect.
     wrong_intersections: u64,
+}
+
+/// An answer to a pair.
+struct Answer {
+    distance: f64,
+    /// Whether the primitives intersect. parry3d says so by the distance 0.
+    is_intersecting: bool,
 }
 
 struct Findings {
@@ -79,7 +86,7 @@ pub(crate) fn run(cases: u64, seed: u64, document: Option<&Path>, provenance: &P
                 let (family, [a, b]) = pair_in(&mut rng, span);
                 let truth = Distance::between(&a, &b);
                 let row = &mut found.rows[row_of(&family)];
-                let ours = if scalar == 0 { distance::<f64>(&a, &b) } else { distance::<f32>(&a, &b) };
+                let ours = if scalar == 0 { answer::<f64>(&a, &b) } else { answer::<f32>(&a, &b) };
                 judge(&mut row[scalar], scalar, &truth, Some(ours));
                 // Other libraries have no points.
                 if a.len() > 1 && b.len() > 1 {
@@ -107,8 +114,8 @@ pub(crate) fn run(cases: u64, seed: u64, document: Option<&Path>, provenance: &P
 }
 
 /// Adds an answer, or a panic.
-fn judge(counts: &mut PairCounts, scalar: usize, truth: &Distance, answer: Option<f64>) {
-    let Some(distance) = answer else {
+fn judge(counts: &mut PairCounts, scalar: usize, truth: &Distance, answer: Option<Answer>) {
+    let Some(Answer { distance, is_intersecting }) = answer else {
         counts.distances.panicked += 1;
         return;
     };
@@ -116,27 +123,21 @@ fn judge(counts: &mut PairCounts, scalar: usize, truth: &Distance, answer: Optio
         [(53, f64::from_bits(4), f64::MAX), (24, 4.0 * f64::from(f32::from_bits(1)), f64::from(f32::MAX))][scalar];
     let beyond = distance == f64::INFINITY && truth.is_at_least(limit);
     counts.distances.add(if beyond { 0.0 } else { truth.error(distance, bits, eta) });
-    counts.wrong_intersections += u64::from((distance == 0.0) != truth.is_zero() && !underflows(scalar, truth));
-}
-
-/// Returns whether the true distance is positive and may round to zero.
-fn underflows(scalar: usize, truth: &Distance) -> bool {
-    let smallest = [f64::from_bits(8), 8.0 * f64::from(f32::from_bits(1))][scalar];
-    !truth.is_zero() && !truth.is_at_least(smallest)
+    counts.wrong_intersections += u64::from(is_intersecting != truth.is_zero());
 }
 
 /// Formats the largest error, and the fraction of answers that are wrong in other ways.
 fn cell(counts: &PairCounts) -> String {
     let all = counts.distances.cases.max(1) as f64;
     let wrong = counts.wrong_intersections;
-    let wrong = if wrong == 0 { String::new() } else { format!(", wrong zero {:.1e}", wrong as f64 / all) };
+    let wrong = if wrong == 0 { String::new() } else { format!(", wrong intersection {:.1e}", wrong as f64 / all) };
     counts.distances.cell() + &wrong
 }
 
-fn distance<T: Real>(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+fn answer<T: Real>(a: &[[f64; 3]], b: &[[f64; 3]]) -> Answer {
     let of = |hull: &[[f64; 3]]| shape(&hull.iter().map(|v| v.map(T::round_from_f64)).collect::<Vec<_>>());
     let pair: NearestPair = nearest_pair(&of(a), &of(b));
-    if pair.is_intersecting { 0.0 } else { T::round_from_f64(pair.key.distance()).to_f64() }
+    Answer { distance: T::round_from_f64(pair.key.distance()).to_f64(), is_intersecting: pair.is_intersecting }
 }
 
 /// Generates the adapter for one of the two crates of parry, which have the same names for different types.
@@ -144,7 +145,7 @@ macro_rules! parry {
     ($name:ident, $parry:ident, $scalar:ty) => {
         #[allow(clippy::cast_possible_truncation, reason = "to the scalar of the crate; f32 is rounded to before")]
         #[allow(clippy::useless_conversion, reason = "one of the scalars is f64")]
-        fn $name(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+        fn $name(a: &[[f64; 3]], b: &[[f64; 3]]) -> Answer {
             use $parry::math::{Pose, Vector};
             use $parry::query::distance;
             use $parry::shape::{Segment, Shape, Triangle};
@@ -157,7 +158,8 @@ macro_rules! parry {
                 }
             };
             let found = distance(&Pose::IDENTITY, &*shape(a), &Pose::IDENTITY, &*shape(b));
-            found.map_or(f64::NAN, |found| found.distance.into())
+            let distance: f64 = found.map_or(f64::NAN, |found| found.distance.into());
+            Answer { distance, is_intersecting: distance == 0.0 }
         }
     };
 }
