@@ -406,3 +406,35 @@ fn pairs_are_found_behind_pointers_and_in_batches() {
     let octree = p2m::OctreeIndex::build(&soup, &Default::default()).expect("valid");
     assert!((&octree as &dyn p2m::Index).as_pair_query().is_none());
 }
+
+/// The distances of a segment and a point from the shape differ by less than the error of the kernel, in either order.
+#[test]
+fn certified_pairs_distinguish_what_rounding_does_not() {
+    use p2m_testkit::oracle::Distance;
+    let mut different = 0;
+    let all = cases(5_000, 600);
+    for case in all.clone() {
+        let mut rng = rng("certified near ties", case);
+        let [a, b, centre] = [(); 3].map(|()| vector(&mut rng));
+        let segment = p2m::Segment::new(a.into(), b.into());
+        let shape = p2m::Point::new(centre.into());
+        let alone = BruteForce::new([segment]).expect("valid").closest_to(&shape, &PairOptions::default());
+        let distance = alone.expect("not empty").distance;
+        let away =
+            centre + vector(&mut rng).normalize() * (distance * (1.0 + f64::from(rng.random_range(-2..3)) * 1e-16));
+        let scene = [Shape::from(segment), Shape::from(p2m::Point::new(away.into()))];
+        let exact =
+            [vec![a.into(), b.into()], vec![away.into()]].map(|hull| Distance::between(&hull, &[centre.into()]));
+        let nearest = usize::from(exact[1].compare(&exact[0]).is_lt());
+        let text = format!("{case}: {scene:?} {shape:?}");
+        let tree = AabbTree::build(&scene, &Default::default()).expect("valid");
+        let found = tree.certified_closest_to(&shape, &PairOptions::default()).expect("not empty");
+        assert_eq!(found.primitives[0].index(), nearest, "{text}");
+        assert_eq!(found.distance, exact[nearest].length()[0], "{text}");
+        let other = BruteForce::new([shape]).expect("valid");
+        assert_eq!(tree.certified_closest_pair(&other, &PairOptions::default()), Some(found), "{text}");
+        let plain = tree.closest_to(&shape, &PairOptions::default()).expect("not empty");
+        different += usize::from(plain.primitives[0].index() != nearest);
+    }
+    assert!(all.have_more_than(20, different), "{different}");
+}

@@ -27,11 +27,14 @@ enum Kind {
     External,
 }
 
+/// A function that writes the distances of some questions.
+type Answer<'a, Q> = dyn Fn(&[Q], &mut [f64]) + 'a;
+
 /// A competitor that computes distances for questions of one kind.
 struct Competitor<'a, Q> {
     name: &'static str,
     kind: Kind,
-    answer: Box<dyn Fn(&[Q], &mut [f64]) + 'a>,
+    answer: Box<Answer<'a, Q>>,
 }
 
 impl<'a, Q> Competitor<'a, Q> {
@@ -86,6 +89,7 @@ fn measure<Q>(
     let time = |at: usize, count: usize, out: &mut [f64]| {
         thread_seconds(|| (competitors[at].answer)(black_box(&questions[..count]), out)).1
     };
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is not negative")]
     let counts: Vec<usize> = (0..competitors.len())
         .map(|at| {
             if competitors[at].kind != Kind::External {
