@@ -74,6 +74,22 @@ pub fn check(input: &[u8]) -> Option<bool> {
     }
 }
 
+/// Returns the ids of all pairs within the largest distance of the options, in order.
+fn ids_within<T: Real>(
+    a: &impl PairQuery<T>,
+    b: &impl PairQuery<T>,
+    options: &PairOptions<T>,
+) -> Vec<[PrimitiveId; 2]> {
+    let mut ids = Vec::new();
+    let flow = a.visit_pairs_within(b, options, &mut |pair| {
+        ids.push(pair.primitives);
+        ControlFlow::Continue(())
+    });
+    assert!(flow.is_continue());
+    ids.sort_unstable();
+    ids
+}
+
 /// All fields of an answer but its lower bound, with the bits of the distance.
 fn compared_fields<T: Real>(pair: &ClosestPair<T>) -> impl PartialEq + std::fmt::Debug + use<T> {
     let ClosestPair { points, distance, primitives, features, barycentric, is_intersecting, .. } = *pair;
@@ -108,18 +124,7 @@ fn check_in<T: Real>(soups: [&Soup<T>; 2], motion: Option<Isometry3<f64>>, seed:
         let within = brute_a.closest_pair(&brute_b, &limited);
         same(kdop_a.closest_pair(&tree_b, &limited), within, "within a distance");
         assert_eq!(tree_a.is_any_pair_near(&kdop_b, &limited), within.is_some(), "{limit:?}");
-        let list = |visit: &dyn Fn(&mut dyn FnMut(&ClosestPair<T>) -> ControlFlow<()>) -> ControlFlow<()>| {
-            let mut ids = Vec::new();
-            let flow = visit(&mut |pair| {
-                ids.push(pair.primitives);
-                ControlFlow::Continue(())
-            });
-            assert!(flow.is_continue());
-            ids.sort_unstable();
-            ids
-        };
-        let all = list(&|visit| brute_a.visit_pairs_within(&brute_b, &limited, visit));
-        assert_eq!(list(&|visit| tree_a.visit_pairs_within(&kdop_b, &limited, visit)), all, "{limit:?}");
+        assert_eq!(ids_within(&tree_a, &kdop_b, &limited), ids_within(&brute_a, &brute_b, &limited), "{limit:?}");
     }
     check_certified(soups, moved.as_ref(), &nearest, tree_a.certified_closest_pair(&tree_b, &options));
     for shape in (0..b.len().min(3)).map(|id| b.get(PrimitiveId::new(id))) {
