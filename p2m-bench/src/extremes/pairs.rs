@@ -120,8 +120,11 @@ fn judge(counts: &mut PairCounts, scalar: usize, truth: &Distance, answer: Optio
         return;
     };
     let (bits, eta, limit) =
-        [(53, f64::from_bits(4), f64::MAX), (24, 4.0 * f64::from(f32::from_bits(1)), f64::from(f32::MAX))][scalar];
-    let beyond = distance == f64::INFINITY && truth.is_at_least(limit);
+        [(53u32, f64::from_bits(4), f64::MAX), (24, 4.0 * f64::from(f32::from_bits(1)), f64::from(f32::MAX))][scalar];
+    // A distance may be infinite if it exceeds the range together with its error.
+    let unit_roundoff = 2f64.powi(-bits.cast_signed());
+    let error = truth.times_max_vertex_distance(ERROR_CONSTANT_OF_PAIRS * unit_roundoff);
+    let beyond = distance == f64::INFINITY && truth.is_at_least(limit - error);
     counts.distances.add(if beyond { 0.0 } else { truth.error(distance, bits, eta) });
     counts.wrong_intersections += u64::from(is_intersecting != truth.is_zero());
 }
