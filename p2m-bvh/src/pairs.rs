@@ -2,18 +2,17 @@
 
 use crate::{TreeIndex, Volume};
 use p2m_core::engine::pairs::PairSide;
-use p2m_core::engine::real::{from_f64_array, to_f64_array};
 use p2m_core::engine::vector::V3;
-use p2m_core::pair::{Motion, PairQuery, hull_of};
-use p2m_core::{Aabb, ClosestPoint, PrimitiveId, PrimitiveSet, Real};
+use p2m_core::pair::{Hull, Motion, PairQuery, closest_as_guess};
+use p2m_core::{Aabb, PrimitiveId, PrimitiveSet, Real};
 
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> PairQuery<T> for TreeIndex<T, S, V> {
     fn primitive_count(&self) -> usize {
         self.set().len()
     }
 
-    fn hull(&self, id: PrimitiveId) -> ([V3; 3], usize) {
-        hull_of(&self.set().get(id), None)
+    fn hull(&self, id: PrimitiveId) -> Hull {
+        Hull::of(&self.set().get(id))
     }
 
     fn pair_bounds(&self) -> Aabb<f64> {
@@ -33,7 +32,6 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> PairQuery<T> for TreeIndex<T, S, V>
     }
 
     fn guess_closest(&self, point: V3) -> Option<(V3, PrimitiveId)> {
-        let closest = self.closest_point(&from_f64_array(point))?;
-        Some((to_f64_array(&closest.point), closest.primitive))
+        closest_as_guess(self, point)
     }
 }

@@ -4,7 +4,8 @@ use crate::input::{name, read_scene_and_index, scene_format};
 use crate::streams::Streams;
 use crate::usage::{one_of, usage};
 use anyhow::Context;
-use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Point3};
+use p2m_core::pair::isometry_of_matrix;
 use p2m_core::storage::Reader;
 use p2m_core::{Feature, PrimitiveId};
 use p2m_mixed::{Format, Scene};
@@ -83,15 +84,13 @@ fn parse_motion(text: &str) -> anyhow::Result<Isometry3<f64>> {
         return Err(usage(format!("{place}: {count} numbers are no matrix of 12, or of 16 with the last row 0 0 0 1")));
     }
     let rotation = Matrix3::from_fn(|row, column| matrix[4 * row + column]);
-    let translation = Vector3::from_fn(|row, _| matrix[4 * row + 3]);
     let deviation = (rotation * rotation.transpose() - Matrix3::identity()).amax();
     // The comparison is false for NaN.
     let is_rotation = deviation <= 1e-6 && rotation.determinant() > 0.0;
-    if !is_rotation || !translation.iter().all(|x| x.is_finite()) {
+    if !is_rotation || !matrix.iter().all(|x| x.is_finite()) {
         return Err(usage(format!("{place}: the first three columns are no rotation, or a number is not finite")));
     }
-    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&rotation));
-    Ok(Isometry3::from_parts(Translation3::from(translation), rotation))
+    Ok(isometry_of_matrix(&matrix))
 }
 
 /// Returns the word for the kind of a primitive.

@@ -4,7 +4,7 @@
 //! ClosestPoint<T>` also takes `&I`, `Box<dyn ClosestPoint<T>>` and `Arc<I>`.
 
 use crate::pair::search::PairSide;
-use crate::pair::{Motion, PairQuery};
+use crate::pair::{Hull, Motion, PairQuery};
 use crate::{
     Aabb, Best, BoxQuery, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Found, Hits, Inspect, Near, NearQuery,
     PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayQuery, Real, Shape, StatsCollector,
@@ -61,7 +61,7 @@ macro_rules! point_to {
             fn primitive_count(&self) -> usize {
                 (**self).primitive_count()
             }
-            fn hull(&self, id: PrimitiveId) -> ([[f64; 3]; 3], usize) {
+            fn hull(&self, id: PrimitiveId) -> Hull {
                 (**self).hull(id)
             }
             fn pair_bounds(&self) -> Aabb<f64> {

@@ -1,7 +1,7 @@
 //! Queries by boxes.
 
 use crate::Instances;
-use crate::instance::{Instance, size};
+use crate::instance::{Instance, shape, size};
 use nalgebra::Point3;
 use p2m_core::{Aabb, BoxQuery, Index, Primitive, PrimitiveId, Real};
 use std::ops::ControlFlow;
@@ -30,7 +30,7 @@ fn visit_instance<T: Real, I: Index<T> + ?Sized>(
         return ControlFlow::Continue(());
     }
     let mut test = |id| {
-        let intersects = instance.moved::<T>(id, &[]).shape().intersects_box(bounds);
+        let intersects = shape(&instance.moved::<T>(id, &[])).intersects_box(bounds);
         if intersects { visit(instance.scene_id(id)) } else { ControlFlow::Continue(()) }
     };
     match instance.object.index.as_box_query() {

@@ -2,9 +2,9 @@
 
 use crate::InstanceError;
 use crate::object::Object;
-use nalgebra::{Isometry3, Point3};
-use p2m_core::pair::Motion;
-use p2m_core::{Aabb, Index, Point, PrimitiveId, Real, Segment, Shape, Triangle};
+use nalgebra::Isometry3;
+use p2m_core::pair::{Hull, Motion};
+use p2m_core::{Aabb, Index, PrimitiveId, Real, Shape};
 use std::fmt::{self, Display, Formatter};
 use std::ops::Range;
 use std::sync::Arc;
@@ -128,45 +128,22 @@ impl<I: ?Sized> Instance<I> {
     ///
     /// # Panics
     /// Panics if the index has lost a primitive that it had when the instance was added.
-    pub(crate) fn moved<T: Real>(&self, local: PrimitiveId, vertices: &[[f64; 3]]) -> MovedPrimitive
+    pub(crate) fn moved<T: Real>(&self, local: PrimitiveId, vertices: &[[f64; 3]]) -> Hull
     where
         I: Index<T>,
     {
-        let mut moved = MovedPrimitive { vertices: [[0.0; 3]; 3], len: vertices.len() };
-        if moved.len > 0 {
-            moved.vertices.iter_mut().zip(vertices).for_each(|(to, v)| *to = self.motion.apply(*v));
+        let hull = if vertices.is_empty() {
+            Hull::of(&self.object.index.shape(local).expect("the index has all primitives that it was added with"))
         } else {
-            let shape = self.object.index.shape(local).expect("the index has all primitives that it was added with");
-            let vertices = shape.vertices();
-            let vertex = |v: &Point3<T>| self.motion.apply([v.x.to_f64(), v.y.to_f64(), v.z.to_f64()]);
-            moved.vertices.iter_mut().zip(vertices).for_each(|(to, v)| *to = vertex(v));
-            moved.len = vertices.len();
-        }
-        moved
+            Hull::new(vertices)
+        };
+        hull.map(|vertex| self.motion.apply(vertex))
     }
 }
 
-/// The vertices of a primitive after a motion.
-pub(crate) struct MovedPrimitive {
-    vertices: [[f64; 3]; 3],
-    len: usize,
-}
-
-impl MovedPrimitive {
-    /// Returns the one to three vertices.
-    pub(crate) fn vertices(&self) -> &[[f64; 3]] {
-        &self.vertices[..self.len]
-    }
-
-    /// Returns the primitive as a shape.
-    pub(crate) fn shape(&self) -> Shape<f64> {
-        let [a, b, c] = self.vertices.map(Point3::from);
-        match self.len {
-            1 => Point::new(a).into(),
-            2 => Segment::new(a, b).into(),
-            _ => Triangle::new(a, b, c).into(),
-        }
-    }
+/// Returns a moved primitive as a shape.
+pub(crate) fn shape(hull: &Hull) -> Shape<f64> {
+    Shape::from_vertices(hull.vertices()).expect("one to three vertices")
 }
 
 /// Returns the motion of an isometry, the moved box of an object, and an upper bound on the distances of its vertices

@@ -1,5 +1,6 @@
 //! The scene of instances and the tree of their boxes.
 
+use crate::instance::shape;
 use crate::object::Objects;
 use crate::{Edit, Instance, InstanceId};
 use nalgebra::Point3;
@@ -162,6 +163,6 @@ impl<T: Real, I: Index<T> + ?Sized> PrimitiveSet<f64> for Instances<T, I> {
 
     fn get(&self, id: PrimitiveId) -> Shape<f64> {
         let (instance, local) = self.owner_of(id).expect("the id of a primitive of the scene");
-        instance.moved(local, &[]).shape()
+        shape(&instance.moved(local, &[]))
     }
 }

@@ -1,6 +1,6 @@
 //! Queries for near primitives.
 
-use crate::instance::{Instance, size};
+use crate::instance::{Instance, shape, size};
 use crate::instances::Instances;
 use nalgebra::Point3;
 use p2m_core::kernel::power_of_two;
@@ -92,7 +92,7 @@ fn offer<T: Real, I: Index<T> + ?Sized, C: Collector>(
         return;
     }
     let square = if collector.keeps_near_ties() { f64::INFINITY } else { collector.prune_above_for_id(id) };
-    if let Some(projection) = moved.shape().project_within(query, square) {
+    if let Some(projection) = shape(&moved).project_within(query, square) {
         collector.offer(id, projection);
     }
 }
@@ -133,7 +133,7 @@ impl<T: Real, I: Index<T> + ?Sized> NearQuery<T> for Instances<T, I> {
 
 impl<I: Index<f64> + ?Sized> CertifiedQuery<f64> for Instances<f64, I> {
     fn shape(&self, id: PrimitiveId) -> Option<Shape<f64>> {
-        self.owner_of(id).map(|(instance, local)| instance.moved(local, &[]).shape())
+        self.owner_of(id).map(|(instance, local)| shape(&instance.moved(local, &[])))
     }
 }
 

@@ -4,18 +4,17 @@ use crate::instance::{Instance, InstanceId};
 use crate::instances::Instances;
 use nalgebra::Point3;
 use p2m_core::engine::pairs::{PairSide, ShapeSide};
-use p2m_core::engine::real::{from_f64_array, to_f64_array};
-use p2m_core::pair::{ClosestPair, Motion, PairOptions, PairQuery};
-use p2m_core::{Aabb, ClosestPoint, Index, Near, NearQuery, PrimitiveId, Real};
+use p2m_core::pair::{ClosestPair, Hull, Motion, PairOptions, PairQuery, closest_as_guess};
+use p2m_core::{Aabb, Index, Near, NearQuery, PrimitiveId, Real};
 
 impl<T: Real, I: Index<T> + ?Sized> PairQuery<T> for Instances<T, I> {
     fn primitive_count(&self) -> usize {
         self.count_primitives()
     }
 
-    fn hull(&self, id: PrimitiveId) -> ([[f64; 3]; 3], usize) {
+    fn hull(&self, id: PrimitiveId) -> Hull {
         let (instance, local) = self.owner_of(id).expect("the id is one of the scene");
-        hull_of(instance, local)
+        instance.moved(local, &[])
     }
 
     fn pair_bounds(&self) -> Aabb<f64> {
@@ -53,8 +52,7 @@ impl<T: Real, I: Index<T> + ?Sized> PairQuery<T> for Instances<T, I> {
     }
 
     fn guess_closest(&self, point: [f64; 3]) -> Option<([f64; 3], PrimitiveId)> {
-        let closest = self.closest_point(&from_f64_array(point))?;
-        Some((to_f64_array(&closest.point), closest.primitive))
+        closest_as_guess(self, point)
     }
 }
 
@@ -78,9 +76,9 @@ fn visit_instance<T: Real, I: Index<T> + ?Sized>(
     });
     if !has_trees {
         for id in instance.local_ids() {
-            let (mut hull, len) = hull_of(instance, id);
-            hull.iter_mut().for_each(|v| *v = motions.iter().fold(*v, |v, motion| motion.apply(v)));
-            if search(&ShapeSide(&hull[..len]), instance.scene_id(id).index()).is_nan() {
+            let moved = |vertex| motions.iter().fold(vertex, |vertex, motion| motion.apply(vertex));
+            let hull = instance.moved(id, &[]).map(moved);
+            if search(&ShapeSide(hull.vertices()), instance.scene_id(id).index()).is_nan() {
                 break;
             }
         }
@@ -95,13 +93,6 @@ fn norm(vector: [f64; 3]) -> f64 {
     Point3::from(vector).coords.norm()
 }
 
-fn hull_of<T: Real, I: Index<T> + ?Sized>(instance: &Instance<I>, local: PrimitiveId) -> ([[f64; 3]; 3], usize) {
-    let moved = instance.moved(local, &[]);
-    let mut hull = [[0.0; 3]; 3];
-    hull[..moved.vertices().len()].copy_from_slice(moved.vertices());
-    (hull, moved.vertices().len())
-}
-
 /// One instance of a scene, as a scene of its own whose ids are those of the object.
 struct Alone<'a, I: ?Sized>(&'a Instance<I>);
 
@@ -110,8 +101,8 @@ impl<T: Real, I: Index<T> + ?Sized> PairQuery<T> for Alone<'_, I> {
         self.0.primitives().len()
     }
 
-    fn hull(&self, id: PrimitiveId) -> ([[f64; 3]; 3], usize) {
-        hull_of(self.0, id)
+    fn hull(&self, id: PrimitiveId) -> Hull {
+        self.0.moved(id, &[])
     }
 
     fn pair_bounds(&self) -> Aabb<f64> {
@@ -129,9 +120,9 @@ impl<T: Real, I: Index<T> + ?Sized> PairQuery<T> for Alone<'_, I> {
     }
 
     fn guess_closest(&self, point: [f64; 3]) -> Option<([f64; 3], PrimitiveId)> {
-        let local = self.0.motion.apply_inverse(point);
-        let closest = self.0.object.index.closest_point(&from_f64_array(local))?;
-        Some((self.0.motion.apply(to_f64_array(&closest.point)), closest.primitive))
+        let motion = &self.0.motion;
+        let (closest, id) = closest_as_guess(&*self.0.object.index, motion.apply_inverse(point))?;
+        Some((motion.apply(closest), id))
     }
 }
 

@@ -9,11 +9,11 @@ use crate::queries::{BadRow, batch_options, check_finite, not_finite};
 use crate::scene::triples;
 use crate::searchable::Searchable;
 use crate::work::{Monitor, Threads, run_owned};
-use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3};
 use numpy::{PyReadonlyArray1, ToPyArray};
 use p2m_core::batch;
-use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
-use p2m_core::{Point, Primitive, Segment, Shape, Triangle};
+use p2m_core::pair::{ClosestPair, PairOptions, PairQuery, isometry_of_matrix};
+use p2m_core::{Primitive, Shape};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -23,18 +23,10 @@ use std::sync::Arc;
 /// An index that answers queries for pairs.
 type AnyPairQuery<'a> = &'a (dyn PairQuery<f64> + Sync);
 
-/// Returns the motion of a matrix of 4 x 4 numbers, row by row, whose first three columns are a rotation.
-fn motion(matrix: &[f64; 16]) -> Isometry3<f64> {
-    let rotation = Matrix3::from_fn(|row, column| matrix[4 * row + column]);
-    let translation = Vector3::from_fn(|row, _| matrix[4 * row + 3]);
-    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&rotation));
-    Isometry3::from_parts(Translation3::from(translation), rotation)
-}
-
 /// Returns the motions of flat matrices.
 pub(crate) fn motions(matrices: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<Isometry3<f64>>> {
     match matrices.as_slice().map(<[f64]>::as_chunks) {
-        Ok((matrices, [])) => Ok(matrices.iter().map(motion).collect()),
+        Ok((matrices, [])) => Ok(matrices.iter().map(|matrix: &[f64; 16]| isometry_of_matrix(matrix)).collect()),
         _ => Err(PyTypeError::new_err("the transforms are not contiguous matrices of 4 x 4 numbers")),
     }
 }
@@ -104,12 +96,7 @@ impl Shapes<'_> {
         store: impl Fn(&[A], O) + Sync,
     ) -> Result<(), BadShape> {
         check_finite(self.vertices).map_err(|BadRow(row)| BadShape(row / self.width))?;
-        let shape = |vertices: &[[f64; 3]]| match *vertices {
-            [a] => Shape::Point(Point::new(a.into())),
-            [a, b] => Shape::Segment(Segment::new(a.into(), b.into())),
-            [a, b, c, ..] => Shape::Triangle(Triangle::new(a.into(), b.into(), c.into())),
-            [] => unreachable!("a shape has a vertex"),
-        };
+        let shape = |vertices: &[[f64; 3]]| Shape::from_vertices(vertices).expect("a shape has one to three vertices");
         let centre = |shape: &Shape<f64>| nalgebra::center(&shape.aabb().min, &shape.aabb().max);
         answer_in_parts(self.len(), out, threads, monitor, &|range, out| {
             let vertices = &self.vertices[range.start * self.width..range.end * self.width];

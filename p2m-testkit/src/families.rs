@@ -1,6 +1,6 @@
 //! Families of single primitives that break kernels: every scale, offset, sine and query position of the contract.
 
-use p2m_core::{Point, Real, Segment, Shape, Triangle};
+use p2m_core::{Real, Shape};
 use rand::{Rng, RngExt};
 
 type V = [f64; 3];
@@ -60,12 +60,7 @@ pub struct Case {
 /// Returns the primitive of one to three vertices.
 #[must_use]
 pub fn shape<T: Real>(vertices: &[[T; 3]]) -> Shape<T> {
-    match *vertices {
-        [a] => Point::new(a.into()).into(),
-        [a, b] => Segment::new(a.into(), b.into()).into(),
-        [a, b, c] => Triangle::new(a.into(), b.into(), c.into()).into(),
-        _ => unreachable!("one to three vertices"),
-    }
+    Shape::from_vertices(vertices).expect("one to three vertices")
 }
 
 /// Exponents of the power-of-two scales of f64, from subnormal coordinates to the edge of overflow.

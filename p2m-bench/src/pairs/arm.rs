@@ -1,9 +1,9 @@
 //! An arm of six capsules that moves beside a scene.
 
 use super::poses::direction;
-use super::{Competitor, Kind, ours};
+use super::{Competitor, Kind, each, ours};
 use nalgebra::{Point3, Vector3};
-use p2m_core::pair::{PairOptions, PairQuery};
+use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
 use p2m_core::{PrimitiveSet, Segment, Soup};
 use p2m_testkit::{rng, vector};
 
@@ -46,40 +46,40 @@ pub(super) fn walk(soup: &Soup<f64>, count: usize, seed: u64) -> Vec<Arm> {
 /// Returns our competitors. Each computes the least distance of the capsules of an arm.
 pub(super) fn competitors<'a>(ours: &'a ours::Scenes<'_>) -> Vec<Competitor<'a, Arm>> {
     let tree = &ours.trees[0];
+    let nearest = |[a, b]: &[Point3<f64>; 2], options: PairOptions<f64>, arm: &Arm| {
+        tree.closest_to(&Segment::new(*a, *b), &options.with_radius(arm.radius))
+    };
+    let distance = |pair: Option<ClosestPair<f64>>| pair.map_or(f64::INFINITY, |pair| pair.distance);
     vec![
-        Competitor::new("AABB tree", Kind::Exact, |arms: &[Arm], out: &mut [f64]| {
-            for (arm, out) in arms.iter().zip(out) {
-                let distances = arm.axes.iter().map(|[a, b]| {
-                    let options = PairOptions::default().with_radius(arm.radius);
-                    tree.closest_to(&Segment::new(*a, *b), &options).map_or(f64::INFINITY, |pair| pair.distance)
-                });
-                *out = distances.fold(f64::INFINITY, f64::min);
-            }
+        Competitor::new("AABB tree", Kind::Exact, move |arms: &[Arm], out: &mut [f64]| {
+            each(arms, out, |arm| {
+                let distances = arm.axes.iter().map(|axis| distance(nearest(axis, PairOptions::default(), arm)));
+                distances.fold(f64::INFINITY, f64::min)
+            });
         }),
-        Competitor::new("AABB tree, begun with the last pairs", Kind::Exact, |arms: &[Arm], out: &mut [f64]| {
+        Competitor::new("AABB tree, begun with the last pairs", Kind::Exact, move |arms: &[Arm], out: &mut [f64]| {
             let mut last = [None; LINKS];
-            for (arm, out) in arms.iter().zip(out) {
-                let distances = arm.axes.iter().zip(&mut last).map(|([a, b], last)| {
-                    let mut options = PairOptions::default().with_radius(arm.radius);
+            each(arms, out, |arm| {
+                let distances = arm.axes.iter().zip(&mut last).map(|(axis, last)| {
+                    let mut options = PairOptions::default();
                     options.hint = *last;
-                    let nearest = tree.closest_to(&Segment::new(*a, *b), &options);
-                    *last = nearest.map(|pair| pair.primitives);
-                    nearest.map_or(f64::INFINITY, |pair| pair.distance)
+                    let pair = nearest(axis, options, arm);
+                    *last = pair.map(|pair| pair.primitives);
+                    distance(pair)
                 });
-                *out = distances.fold(f64::INFINITY, f64::min);
-            }
+                distances.fold(f64::INFINITY, f64::min)
+            });
         }),
-        Competitor::new("AABB tree, each capsule within the last", Kind::Exact, |arms: &[Arm], out: &mut [f64]| {
-            for (arm, out) in arms.iter().zip(out) {
-                let mut least = f64::INFINITY;
-                for [a, b] in &arm.axes {
-                    let options = PairOptions::default().with_radius(arm.radius).with_max_distance(least);
-                    if let Some(pair) = tree.closest_to(&Segment::new(*a, *b), &options) {
-                        least = pair.distance;
-                    }
-                }
-                *out = least;
-            }
-        }),
+        Competitor::new(
+            "AABB tree, each capsule within the last",
+            Kind::Exact,
+            move |arms: &[Arm], out: &mut [f64]| {
+                each(arms, out, |arm| {
+                    arm.axes.iter().fold(f64::INFINITY, |least, axis| {
+                        distance(nearest(axis, PairOptions::default().with_max_distance(least), arm)).min(least)
+                    })
+                });
+            },
+        ),
     ]
 }

@@ -2,7 +2,7 @@
 
 use super::arm::Arm;
 use super::poses::Set;
-use super::{Competitor, Kind};
+use super::{Competitor, Kind, each};
 use crate::scene::Scene;
 use anyhow::Result;
 use nalgebra::Isometry3;
@@ -21,18 +21,18 @@ impl Scenes {
     pub(super) fn competitors(&self, set: Set) -> Vec<Competitor<'_, Isometry3<f64>>> {
         let mut all = vec![
             Competitor::new("parry3d-f64", Kind::External, |poses: &[Isometry3<f64>], out: &mut [f64]| {
-                poses.iter().zip(out).for_each(|(pose, out)| *out = self.double.distance(pose));
+                each(poses, out, |pose| self.double.distance(pose));
             }),
             Competitor::new("parry3d", Kind::External, |poses: &[Isometry3<f64>], out: &mut [f64]| {
-                poses.iter().zip(out).for_each(|(pose, out)| *out = self.single.distance(pose));
+                each(poses, out, |pose| self.single.distance(pose));
             }),
         ];
         if set == Set::Deep {
             all.push(Competitor::new("parry3d-f64, whether they intersect", Kind::External, |poses, out| {
-                poses.iter().zip(out).for_each(|(pose, out)| *out = self.double.intersects(pose));
+                each(poses, out, |pose| self.double.intersects(pose));
             }));
             all.push(Competitor::new("parry3d, whether they intersect", Kind::External, |poses, out| {
-                poses.iter().zip(out).for_each(|(pose, out)| *out = self.single.intersects(pose));
+                each(poses, out, |pose| self.single.intersects(pose));
             }));
         }
         all
@@ -41,10 +41,10 @@ impl Scenes {
     pub(super) fn arm_competitors(&self) -> Vec<Competitor<'_, Arm>> {
         vec![
             Competitor::new("parry3d-f64", Kind::External, |arms: &[Arm], out: &mut [f64]| {
-                arms.iter().zip(out).for_each(|(arm, out)| *out = self.double.arm_distance(arm));
+                each(arms, out, |arm| self.double.arm_distance(arm));
             }),
             Competitor::new("parry3d", Kind::External, |arms: &[Arm], out: &mut [f64]| {
-                arms.iter().zip(out).for_each(|(arm, out)| *out = self.single.arm_distance(arm));
+                each(arms, out, |arm| self.single.arm_distance(arm));
             }),
         ]
     }

@@ -16,7 +16,7 @@ use anyhow::Result;
 use p2m_tradeoff::Table;
 use std::hint::black_box;
 
-/// What a competitor answers.
+/// The kind of a competitor tells with what its answers are compared.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     /// It is ours, and its answers have to be those of the first competitor, bit for bit.
@@ -41,6 +41,11 @@ impl<'a, Q> Competitor<'a, Q> {
     fn new(name: &'static str, kind: Kind, answer: impl Fn(&[Q], &mut [f64]) + 'a) -> Self {
         Self { name, kind, answer: Box::new(answer) }
     }
+}
+
+/// Answers questions one after the other.
+fn each<Q>(questions: &[Q], out: &mut [f64], mut answer: impl FnMut(&Q) -> f64) {
+    questions.iter().zip(out).for_each(|(question, out)| *out = answer(question));
 }
 
 /// A competitor of another library that would need longer than this for a round answers the first questions of a set
@@ -117,12 +122,13 @@ fn measure<Q>(
     for ((competitor, spread), found) in competitors.iter().zip(&spreads).zip(&answers) {
         let count = found.len();
         let microseconds = |seconds: f64| significant(seconds * 1e6);
-        let differences = found.iter().zip(&answers[0]).map(|(x, y)| (x - y).abs());
         let agreement = if competitor.kind == Kind::Exact {
             let equal = found.iter().zip(&answers[0]).filter(|(x, y)| x.to_bits() == y.to_bits()).count();
             is_good &= equal == count;
             format!("{equal} of {count} equal bits")
         } else {
+            // A competitor that has no distance answers NaN, which is left out.
+            let differences = found.iter().zip(&answers[0]).map(|(x, y)| (x - y).abs());
             let largest = differences.fold(0.0, f64::max) / scene.diagonal();
             format!("differ by at most {largest:.1e} diagonals")
         };

@@ -1,7 +1,7 @@
 //! The indexes of this project.
 
 use super::poses::{Set, Trees};
-use super::{Competitor, Kind};
+use super::{Competitor, Kind, each};
 use crate::scene::Scene;
 use anyhow::Result;
 use nalgebra::Isometry3;
@@ -37,7 +37,6 @@ impl<'a> Scenes<'a> {
     pub(super) fn competitors(&self, set: Set, diagonal: f64) -> Vec<Competitor<'_, Isometry3<f64>>> {
         let [a, b] = &self.trees;
         let [c, d] = &self.kdops;
-        let exact = set != Set::Deep;
         let mut all = vec![
             Competitor::new("AABB tree", Kind::Exact, |poses: &Poses, out: &mut [f64]| {
                 each(poses, out, |motion| distance(a.closest_pair(b, &moved(motion))));
@@ -46,7 +45,7 @@ impl<'a> Scenes<'a> {
                 each(poses, out, |motion| distance(c.closest_pair(d, &moved(motion))));
             }),
         ];
-        if exact {
+        if set != Set::Deep {
             all.push(Competitor::new(
                 "AABB tree, begun with the last pair",
                 Kind::Exact,
@@ -77,7 +76,7 @@ impl<'a> Scenes<'a> {
             Kind::Other,
             |poses: &Poses, out: &mut [f64]| {
                 each(poses, out, |motion| {
-                    f64::from(u8::from(!a.is_any_pair_near(b, &moved(motion).with_max_distance(0.0)))) * f64::NAN
+                    if a.is_any_pair_near(b, &moved(motion).with_max_distance(0.0)) { 0.0 } else { f64::NAN }
                 });
             },
         ));
@@ -96,8 +95,4 @@ fn moved<T: Real>(motion: &Isometry3<f64>) -> PairOptions<T> {
 
 fn distance<T: Real>(pair: Option<ClosestPair<T>>) -> f64 {
     pair.map_or(f64::INFINITY, |pair| pair.distance.to_f64())
-}
-
-fn each(poses: &Poses, out: &mut [f64], mut answer: impl FnMut(&Isometry3<f64>) -> f64) {
-    poses.iter().zip(out).for_each(|(pose, out)| *out = answer(pose));
 }

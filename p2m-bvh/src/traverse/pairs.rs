@@ -1,15 +1,18 @@
 //! Trees as sides of a search for pairs.
 
+use crate::packet::LANES;
 use crate::tree::PacketTree;
 use crate::tree::node_ref::NodeRef;
 use crate::tree::wide_node::{VolumeNodes, WideNode};
 use p2m_core::engine::pairs::{
-    Children, Height, Hulls, NO_NODE, PairSide, Place, Placement, Slab, WIDTH, bound_children,
+    Children, Height, Hulls, MAX_HULLS, NO_NODE, PairSide, Place, Placement, Slab, WIDTH, bound_children,
 };
 use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
 use p2m_core::engine::vector::{V3, dot, largest};
-use p2m_core::pair::Motion;
+use p2m_core::pair::{Hull, Motion};
 use p2m_core::{Aabb, PrimitiveId};
+
+const _: () = assert!(LANES <= MAX_HULLS);
 
 /// A tree, after some motions in their order. Each of them rounds the coordinates of vertices.
 pub struct TreeSide<'a, V: VolumeNodes> {
@@ -132,8 +135,8 @@ impl<V: VolumeNodes> PairSide for TreeSide<'_, V> {
         for (lane, id) in packet.ids().iter().enumerate() {
             let (indices, count) = packet.vertices_of(lane);
             assert!(count > 0, "distances between primitives are defined for those that have vertices");
-            let moved = |index: usize| self.moved(leaves.vertices[index]);
-            hulls.push(*id, &indices.map(moved)[..count]);
+            let hull = Hull::new(&indices.map(|index| leaves.vertices[index])[..count]);
+            hulls.push(*id, hull.map(|vertex| self.moved(vertex)));
         }
     }
 }

@@ -1,16 +1,15 @@
 //! Which of some pairs of primitives is nearest in real arithmetic.
 
 use super::rational::Square;
-use crate::kernel::vector::V3;
-use crate::pair::NearestPair;
+use crate::pair::{Hull, NearestPair};
 use crate::{PrimitiveId, Real};
 
 /// A pair of primitives that may be nearest.
 pub(crate) struct PairCandidate {
     /// The ids of the primitives.
     pub(crate) ids: [PrimitiveId; 2],
-    /// The vertices of both, of which the first ones are used.
-    pub(crate) hulls: [([V3; 3], usize); 2],
+    /// The vertices of both.
+    pub(crate) hulls: [Hull; 2],
     /// The nearest points as the kernel computed them.
     pub(crate) pair: NearestPair,
 }
@@ -34,10 +33,7 @@ pub(crate) fn decide_pairs<T: Real>(candidates: &[PairCandidate], limit: T) -> O
     if let Some((winner, _)) = touching.min_by_key(|(_, one)| one.ids) {
         return Some(PairDecision { winner, distance: 0.0, lower: 0.0 });
     }
-    let square = |one: &PairCandidate| {
-        let [(a, a_len), (b, b_len)] = &one.hulls;
-        Square::between(&a[..*a_len], &b[..*b_len])
-    };
+    let square = |one: &PairCandidate| Square::between(one.hulls[0].vertices(), one.hulls[1].vertices());
     let all = candidates.iter().map(square).enumerate();
     let (winner, least) = all.min_by(|(i, a), (j, b)| a.cmp(b).then(candidates[*i].ids.cmp(&candidates[*j].ids)))?;
     if limit < T::INFINITY && least.cmp(&Square::from_length(limit.to_f64())).is_gt() {

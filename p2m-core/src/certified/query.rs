@@ -7,7 +7,7 @@ use super::candidate::Candidate;
 use super::decide::{decide, is_within};
 use crate::near_query::{Near, search_near_if_valid};
 use crate::real::to_f64_array;
-use crate::{Closest, NearQuery, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape};
+use crate::{Closest, NearQuery, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape};
 use nalgebra::Point3;
 
 /// An error of certifying an answer.
@@ -102,12 +102,5 @@ pub trait CertifiedQuery<T: Real>: NearQuery<T> {
 /// Returns a primitive of a set as a shape, by its vertices: the answer of [`CertifiedQuery::shape`] for that set. It
 /// is `None` for a primitive without vertices.
 pub fn shape_of<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S, id: PrimitiveId) -> Option<Shape<T>> {
-    use crate::{Point, Primitive, Segment, Triangle};
-    let primitive = set.get(id);
-    match *primitive.vertices() {
-        [a] => Some(Point::new(a).into()),
-        [a, b] => Some(Segment::new(a, b).into()),
-        [a, b, c] => Some(Triangle::new(a, b, c).into()),
-        _ => None,
-    }
+    Shape::from_vertices(set.get(id).vertices())
 }

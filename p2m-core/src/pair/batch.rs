@@ -1,7 +1,6 @@
 //! Batches of shapes and of motions.
 
-use super::query::hull_of;
-use super::{ClosestPair, PairOptions, PairQuery, bounds_of};
+use super::{ClosestPair, Hull, PairOptions, PairQuery, bounds_of};
 use crate::batch::{BatchOptions, map};
 use crate::{Primitive, Real};
 use nalgebra::{Isometry3, Point3};
@@ -32,8 +31,7 @@ pub fn closest_to_each<T: Real, P: Primitive<T> + Sync, I: PairQuery<T> + Sync>(
     batch: &BatchOptions,
 ) -> Vec<Option<ClosestPair<T>>> {
     let centre = |shape: &P| {
-        let (hull, len) = hull_of(shape, None);
-        let bounds = bounds_of(&hull[..len]);
+        let bounds = bounds_of(Hull::of(shape).vertices());
         nalgebra::center(&bounds.min, &bounds.max)
     };
     map(shapes, batch, centre, |shape| index.closest_to(shape, options))

@@ -225,6 +225,12 @@ impl<'a> Pairs<'a> {
         self.best().map(|(_, pair)| (pair.points[1] - pair.points[0]).into())
     }
 
+    /// Returns whether the nearest pair so far intersects.
+    #[inline]
+    pub(crate) fn has_intersection(&self) -> bool {
+        self.best().is_some_and(|(_, pair)| pair.is_intersecting)
+    }
+
     /// Returns whether a pair of these primitives could still change the answer. It could not if a pair with lower ids
     /// intersects.
     #[inline]

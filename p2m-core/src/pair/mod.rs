@@ -22,6 +22,7 @@
 mod batch;
 mod collector;
 mod edges;
+mod hull;
 mod intersection;
 mod motion;
 mod moving_ball;
@@ -39,11 +40,12 @@ use crate::{Aabb, Real};
 pub use batch::{closest_pair_at_each, closest_to_each};
 pub use collector::{ClosestPair, PairOptions, Pairs};
 use edges::nearest_on_edges;
+pub use hull::Hull;
 pub use intersection::do_intersect;
-pub use motion::Motion;
+pub use motion::{Motion, isometry_of_matrix};
 pub use moving_ball::{BallContact, MovingBall};
 use nalgebra::Point3;
-pub use query::{PairQuery, hull_of};
+pub use query::{PairQuery, closest_as_guess};
 
 /// The bound on the error of the distance between two primitives in units of u M, where M is the largest distance
 /// between a vertex of one and a vertex of the other: |computed - true| <= `ERROR_CONSTANT_OF_PAIRS` u M + 4 eta.
@@ -115,8 +117,7 @@ pub fn nearest_pair<T: Real>(a: &impl Primitive<T>, b: &impl Primitive<T>) -> Ne
 /// Panics if one has no vertices.
 #[must_use]
 pub fn nearest_pair_within<T: Real>(a: &impl Primitive<T>, b: &impl Primitive<T>, square: f64) -> Option<NearestPair> {
-    let ((a, a_len), (b, b_len)) = (hull_of(a, None), hull_of(b, None));
-    nearest_of_hulls(&a[..a_len], &b[..b_len], square).ok()
+    nearest_of_hulls(Hull::of(a).vertices(), Hull::of(b).vertices(), square).ok()
 }
 
 /// Returns the nearest points of the hulls of one to three vertices each. If their key certainly exceeds `square`, it

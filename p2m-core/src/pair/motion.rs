@@ -2,7 +2,19 @@
 
 use crate::Aabb;
 use crate::kernel::vector::V3;
-use nalgebra::{Isometry3, Matrix3, Point3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+
+/// Returns the isometry of a matrix of 12 numbers, row by row, of which the first three columns are a rotation.
+///
+/// # Panics
+/// Panics if there are fewer numbers. More of them are not used.
+#[must_use]
+pub fn isometry_of_matrix(matrix: &[f64]) -> Isometry3<f64> {
+    let rotation = Matrix3::from_fn(|row, column| matrix[4 * row + column]);
+    let translation = Vector3::from_fn(|row, _| matrix[4 * row + 3]);
+    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&rotation));
+    Isometry3::from_parts(Translation3::from(translation), rotation)
+}
 
 /// A rotation and a translation, as they are applied to coordinates.
 ///

@@ -199,8 +199,8 @@ impl<I: ?Sized> Path<'_, I> {
     where
         I: PairQuery<T>,
     {
-        let (hull, len) = self.index.hull(primitive);
-        nearest_of_hulls(&hull[..len], &[point], f64::INFINITY).expect("no key exceeds infinity")
+        nearest_of_hulls(self.index.hull(primitive).vertices(), &[point], f64::INFINITY)
+            .expect("no key exceeds infinity")
     }
 
     /// Returns a certified lower bound on the distance of the scene from the path until a parameter; `None` for an

@@ -1,11 +1,11 @@
 //! Queries for the nearest primitives of two scenes, and of a scene and a shape.
 
 use super::search::{PairSide, ShapeSide, search_pairs};
-use super::{ClosestPair, Motion, NearestPair, PairOptions, Pairs, bounds_of, nearest_of_hulls, project};
+use super::{ClosestPair, Hull, Motion, NearestPair, PairOptions, Pairs, bounds_of, nearest_of_hulls, project};
 use crate::certified::{PairCandidate, decide_pairs};
 use crate::kernel::vector::{V3, dot, sub};
-use crate::real::to_f64_array;
-use crate::{Aabb, Primitive, PrimitiveId, PrimitiveSet, Real};
+use crate::real::{from_f64_array, to_f64_array};
+use crate::{Aabb, ClosestPoint, Primitive, PrimitiveId, PrimitiveSet, Real};
 use std::ops::ControlFlow;
 
 /// Queries for the primitives of a scene that are nearest to a shape or to another scene.
@@ -58,18 +58,14 @@ pub trait PairQuery<T: Real> {
     /// Returns the number of primitives.
     fn primitive_count(&self) -> usize;
 
-    /// Returns the vertices of a primitive in f64, and their number.
-    fn hull(&self, id: PrimitiveId) -> ([V3; 3], usize);
+    /// Returns the vertices of a primitive in f64.
+    fn hull(&self, id: PrimitiveId) -> Hull;
 
     /// Returns a box around the scene. The default takes the vertices of all primitives.
     #[doc(hidden)]
     fn pair_bounds(&self) -> Aabb<f64> {
-        let of_primitive = |id| {
-            let (hull, len) = self.hull(id);
-            bounds_of(&hull[..len])
-        };
         let ids = (0..self.primitive_count()).map(PrimitiveId::new);
-        ids.fold(Aabb::empty(), |all, id| all.union(&of_primitive(id)))
+        ids.fold(Aabb::empty(), |all, id| all.union(&bounds_of(self.hull(id).vertices())))
     }
 
     /// Calls `search` with the trees that the index consists of, after some motions in their order, and returns `true`.
@@ -131,7 +127,7 @@ pub trait PairQuery<T: Real> {
         Self: Sized,
     {
         let motion = options.motion.as_ref().map(Motion::new);
-        let of_shape = hull_of(shape, motion.as_ref());
+        let of_shape = moved(Hull::of(shape), motion.as_ref());
         certify(options, |pairs| search_shape(self, shape, options, pairs), |[id, _]| [self.hull(id), of_shape])
     }
 
@@ -172,7 +168,7 @@ pub trait PairQuery<T: Real> {
         Self: Sized,
     {
         let motion = options.motion.as_ref().map(Motion::new);
-        let hulls = |[i, j]: [PrimitiveId; 2]| [self.hull(i), moved_hull(other, motion.as_ref(), j)];
+        let hulls = |[i, j]: [PrimitiveId; 2]| [self.hull(i), moved(other.hull(j), motion.as_ref())];
         certify(options, |pairs| search_scenes(self, other, options, pairs), hulls)
     }
 
@@ -207,7 +203,7 @@ pub trait PairQuery<T: Real> {
 fn certify<T: Real>(
     options: &PairOptions<T>,
     search: impl FnOnce(&mut Pairs<'_>),
-    hulls: impl Fn([PrimitiveId; 2]) -> [([V3; 3], usize); 2],
+    hulls: impl Fn([PrimitiveId; 2]) -> [Hull; 2],
 ) -> Option<ClosestPair<T>> {
     let mut pairs = Pairs::for_certification(options);
     search(&mut pairs);
@@ -245,8 +241,7 @@ fn search_shape<T: Real>(
     pairs: &mut Pairs<'_>,
 ) {
     let motion = options.motion.as_ref().map(Motion::new);
-    let (vertices, len) = hull_of(shape, motion.as_ref());
-    search_hull(index, &vertices[..len], options.hint, pairs);
+    search_hull(index, moved(Hull::of(shape), motion.as_ref()).vertices(), options.hint, pairs);
 }
 
 /// Offers the pairs of a scene and the hull of one to three vertices that may be near. There are none if a coordinate is
@@ -263,9 +258,7 @@ pub(super) fn search_hull<T: Real>(
     let shape_id = PrimitiveId::new(0);
     let on_shape = |point| project(point, hull, f64::INFINITY).map(|p| (p.point.coords.into(), shape_id));
     let guess = || guess_pair(centre(&bounds_of(hull)), &|point| index.guess_closest(point), &on_shape);
-    let mut vertices = [[0.0; 3]; 3];
-    vertices[..hull.len()].copy_from_slice(hull);
-    offer_hints(index, hint, guess, pairs, &mut |id| (id == shape_id).then_some((vertices, hull.len())));
+    offer_hints(index, hint, guess, pairs, &mut |id| (id == shape_id).then(|| Hull::new(hull)));
     let is_tree = index.visit_pair_sides(&[], &bounds_of(hull), &mut |side, offset| {
         pairs.set_offsets([offset, 0]);
         search_pairs(side, &ShapeSide(hull), pairs);
@@ -293,7 +286,7 @@ fn search_scenes<T: Real>(
         return;
     }
     let motion = options.motion.as_ref().map(Motion::new);
-    let moved_hull = |id: PrimitiveId| moved_hull(second, motion.as_ref(), id);
+    let moved_hull = |id: PrimitiveId| moved(second.hull(id), motion.as_ref());
     let bounds = second.pair_bounds();
     let bounds = motion.map_or(bounds, |motion| motion.apply_to_box(&bounds));
     if !bounds.is_finite() {
@@ -321,27 +314,19 @@ fn search_scenes<T: Real>(
         return;
     }
     for j in (0..second.primitive_count()).map(PrimitiveId::new) {
-        let (hull, len) = moved_hull(j);
-        if !hull[..len].as_flattened().iter().all(|x| x.is_finite()) {
-            continue;
-        }
+        let hull = moved_hull(j);
         for i in (0..first.primitive_count()).map(PrimitiveId::new) {
             if pairs.is_done() {
                 return;
             }
-            offer_of_index(first, [i, j], &hull[..len], pairs);
+            offer_of_index(first, [i, j], hull.vertices(), pairs);
         }
     }
 }
 
-/// Returns the vertices of a primitive after a motion, and their number.
-fn moved_hull<T: Real>(
-    index: &(impl PairQuery<T> + ?Sized),
-    motion: Option<&Motion>,
-    id: PrimitiveId,
-) -> ([V3; 3], usize) {
-    let (hull, len) = index.hull(id);
-    (motion.map_or(hull, |motion| hull.map(|vertex| motion.apply(vertex))), len)
+/// Returns a hull after a motion.
+fn moved(hull: Hull, motion: Option<&Motion>) -> Hull {
+    motion.map_or(hull, |motion| hull.map(|vertex| motion.apply(vertex)))
 }
 
 /// Offers the hint of the user and a guess, if the nearest pair is searched for. Ids that a scene does not have are
@@ -351,7 +336,7 @@ fn offer_hints<T: Real>(
     hint: Option<[PrimitiveId; 2]>,
     guess: impl FnOnce() -> Option<[PrimitiveId; 2]>,
     pairs: &mut Pairs<'_>,
-    hull_of_second: &mut dyn FnMut(PrimitiveId) -> Option<([V3; 3], usize)>,
+    hull_of_second: &mut dyn FnMut(PrimitiveId) -> Option<Hull>,
 ) {
     if !pairs.is_nearest() {
         return;
@@ -359,10 +344,10 @@ fn offer_hints<T: Real>(
     // A guess takes some closest-point queries. A hint that is good is better than a guess, and one that is not costs
     // little.
     for [i, j] in hint.into_iter().chain(guess()) {
-        if let Some((hull, len)) = hull_of_second(j)
+        if let Some(hull) = hull_of_second(j)
             && i.index() < first.primitive_count()
         {
-            offer_of_index(first, [i, j], &hull[..len], pairs);
+            offer_of_index(first, [i, j], hull.vertices(), pairs);
         }
     }
 }
@@ -374,8 +359,7 @@ fn offer_of_index<T: Real>(
     hull: &[V3],
     pairs: &mut Pairs<'_>,
 ) {
-    let (vertices, len) = index.hull(id);
-    pairs.offer_result([id, other], nearest_of_hulls(&vertices[..len], hull, pairs.kernel_limit()));
+    pairs.offer_result([id, other], nearest_of_hulls(index.hull(id).vertices(), hull, pairs.kernel_limit()));
 }
 
 /// The largest number of turns of a guess.
@@ -416,20 +400,15 @@ fn centre(bounds: &Aabb<f64>) -> V3 {
     nalgebra::center(&bounds.min, &bounds.max).coords.into()
 }
 
-/// Returns the vertices of a primitive in f64 and after a motion, and their number.
-///
-/// # Panics
-/// Panics if there are none.
+/// Returns the closest point of an index and its primitive, as [`PairQuery::guess_closest`] needs it: the query is
+/// rounded to the scalar of the index.
 #[doc(hidden)]
-pub fn hull_of<T: Real>(primitive: &impl Primitive<T>, motion: Option<&Motion>) -> ([V3; 3], usize) {
-    let vertices = primitive.vertices();
-    assert!(!vertices.is_empty(), "distances between primitives are defined for those that have vertices");
-    let mut hull = [[0.0; 3]; 3];
-    for (to, vertex) in hull.iter_mut().zip(vertices) {
-        let vertex = to_f64_array(vertex);
-        *to = motion.map_or(vertex, |motion| motion.apply(vertex));
-    }
-    (hull, vertices.len())
+pub fn closest_as_guess<T: Real>(
+    index: &(impl ClosestPoint<T> + ?Sized),
+    point: [f64; 3],
+) -> Option<(V3, PrimitiveId)> {
+    let closest = index.closest_point(&from_f64_array(point))?;
+    Some((to_f64_array(&closest.point), closest.primitive))
 }
 
 impl<T: Real, S: PrimitiveSet<T>> PairQuery<T> for crate::BruteForce<S> {
@@ -437,7 +416,7 @@ impl<T: Real, S: PrimitiveSet<T>> PairQuery<T> for crate::BruteForce<S> {
         self.set().len()
     }
 
-    fn hull(&self, id: PrimitiveId) -> ([V3; 3], usize) {
-        hull_of(&self.set().get(id), None)
+    fn hull(&self, id: PrimitiveId) -> Hull {
+        Hull::of(&self.set().get(id))
     }
 }

@@ -21,6 +21,17 @@ pub enum Shape<T: Real> {
 }
 
 impl<T: Real> Shape<T> {
+    /// Makes a point, a segment or a triangle of one to three vertices; `None` for another number.
+    #[must_use]
+    pub fn from_vertices<P: Copy + Into<Point3<T>>>(vertices: &[P]) -> Option<Self> {
+        match *vertices {
+            [a] => Some(Self::Point(Point::new(a.into()))),
+            [a, b] => Some(Self::Segment(Segment::new(a.into(), b.into()))),
+            [a, b, c] => Some(Self::Triangle(Triangle::new(a.into(), b.into(), c.into()))),
+            _ => None,
+        }
+    }
+
     /// Returns the one to three vertices.
     #[must_use]
     pub fn vertices(&self) -> &[Point3<T>] {

@@ -20,6 +20,11 @@ pub(super) fn unit(v: V3) -> Option<V3> {
     PLAIN_LENGTHS.contains(&length).then(|| v.map(|x| x / length))
 }
 
+/// Returns the least and the largest of some heights.
+pub(super) fn extent(heights: impl Iterator<Item = f64>) -> [f64; 2] {
+    heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+}
+
 /// The extent of something between two planes that are orthogonal to a direction, in the frame of a tree.
 #[derive(Clone, Copy, Debug)]
 pub struct Slab {

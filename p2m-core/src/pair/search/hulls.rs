@@ -1,28 +1,28 @@
 //! The primitives of a packet as hulls, and the pairs of those of two packets.
 
-use super::directions::unit;
+use super::directions::{extent, unit};
 use super::side::NO_NODE;
 use super::support::Supports;
 use crate::kernel::arithmetic::cross;
 use crate::kernel::vector::{V3, dot, sub};
-use crate::pair::{Pairs, bounds_of, nearest_of_hulls};
+use crate::pair::{Hull, Pairs, bounds_of, nearest_of_hulls};
 use crate::{Aabb, PrimitiveId};
 
 /// The largest number of primitives of a packet.
-const LANES: usize = 16;
+pub const MAX_HULLS: usize = 16;
 
 /// The primitives of a packet, as hulls of vertices.
 pub struct Hulls {
     /// The packet that is loaded.
     pub(super) packet: u32,
     len: usize,
-    /// The number of vertices of each hull.
-    vertex_counts: [usize; LANES],
-    vertices: [[V3; 3]; LANES],
-    boxes: [Aabb<f64>; LANES],
+    hulls: [Hull; MAX_HULLS],
+    boxes: [Aabb<f64>; MAX_HULLS],
+    /// The box around all hulls.
+    bounds: Aabb<f64>,
     /// The normals of triangles, of length 1, or zero for what has none.
-    normals: [V3; LANES],
-    ids: [PrimitiveId; LANES],
+    normals: [V3; MAX_HULLS],
+    ids: [PrimitiveId; MAX_HULLS],
 }
 
 impl Hulls {
@@ -30,25 +30,25 @@ impl Hulls {
         Self {
             packet: NO_NODE,
             len: 0,
-            vertex_counts: [0; LANES],
-            vertices: [[[0.0; 3]; 3]; LANES],
-            boxes: [Aabb::empty(); LANES],
-            normals: [[0.0; 3]; LANES],
-            ids: [PrimitiveId::new(0); LANES],
+            hulls: [Hull::new(&[]); MAX_HULLS],
+            boxes: [Aabb::empty(); MAX_HULLS],
+            bounds: Aabb::empty(),
+            normals: [[0.0; 3]; MAX_HULLS],
+            ids: [PrimitiveId::new(0); MAX_HULLS],
         }
     }
 
     /// Forgets the primitives of the last packet.
     pub fn start(&mut self, packet: u32) {
-        (self.packet, self.len) = (packet, 0);
+        (self.packet, self.len, self.bounds) = (packet, 0, Aabb::empty());
     }
 
     /// Adds a primitive.
-    pub fn push(&mut self, id: PrimitiveId, vertices: &[V3]) {
+    pub fn push(&mut self, id: PrimitiveId, hull: Hull) {
         let i = self.len;
-        self.vertices[i][..vertices.len()].copy_from_slice(vertices);
-        (self.vertex_counts[i], self.boxes[i], self.ids[i]) = (vertices.len(), bounds_of(vertices), id);
-        self.normals[i] = match vertices {
+        (self.hulls[i], self.boxes[i], self.ids[i]) = (hull, bounds_of(hull.vertices()), id);
+        self.bounds = self.bounds.union(&self.boxes[i]);
+        self.normals[i] = match hull.vertices() {
             [a, b, c] => unit(cross(sub(*b, *a), sub(*c, *a))).unwrap_or_default(),
             _ => [0.0; 3],
         };
@@ -56,17 +56,12 @@ impl Hulls {
     }
 
     fn hull(&self, i: usize) -> &[V3] {
-        &self.vertices[i][..self.vertex_counts[i]]
+        self.hulls[i].vertices()
     }
 
-    /// Returns the box around all hulls.
-    fn bounds(&self) -> Aabb<f64> {
-        self.boxes[..self.len].iter().fold(Aabb::empty(), |all, bounds| all.union(bounds))
-    }
-
-    /// Returns the numbers of the hulls whose boxes are near a box.
-    fn near(&self, bounds: &Aabb<f64>, prune: f64) -> Vec<usize> {
-        (0..self.len).filter(|i| self.boxes[*i].gap_squared(bounds) <= prune).collect()
+    /// Returns one bit for each hull, the first one lowest: whether its box is near another box.
+    fn near(&self, bounds: &Aabb<f64>, prune: f64) -> u16 {
+        (0..self.len).fold(0, |mask, i| mask | u16::from(self.boxes[i].gap_squared(bounds) <= prune) << i)
     }
 }
 
@@ -74,7 +69,7 @@ impl Hulls {
 /// direction.
 pub(super) fn search_packets(a: &Hulls, b: &Hulls, supports: &Supports, pairs: &mut Pairs<'_>) {
     let prune = pairs.prune_above();
-    let (near_a, near_b) = (a.near(&b.bounds(), prune), b.near(&a.bounds(), prune));
+    let (near_a, near_b) = (a.near(&b.bounds, prune), b.near(&a.bounds, prune));
     let offer = |i: usize, j: usize, pairs: &mut Pairs<'_>| {
         let prune = pairs.prune_above();
         let ids = [a.ids[i], b.ids[j]];
@@ -88,12 +83,12 @@ pub(super) fn search_packets(a: &Hulls, b: &Hulls, supports: &Supports, pairs: &
     };
     // Two vertices that are nearer than the best pair belong to a pair that is nearer. It is offered first, so that
     // others are excluded.
-    let first = if pairs.is_nearest() { nearest_vertices(a, b, &near_a, &near_b, prune) } else { None };
+    let first = if pairs.is_nearest() { nearest_vertices(a, b, [near_a, near_b], prune) } else { None };
     if let Some((i, j)) = first {
         offer(i, j, pairs);
     }
-    for i in near_a {
-        for &j in &near_b {
+    for i in ones(near_a) {
+        for j in ones(near_b) {
             if Some((i, j)) != first {
                 offer(i, j, pairs);
             }
@@ -127,17 +122,17 @@ fn is_apart(a: &Hulls, i: usize, b: &Hulls, j: usize, direction: Option<V3>, rea
     gap(line) > reach * dot(line, line).sqrt()
 }
 
-/// Returns the least and the largest of some numbers.
-fn extent(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
-    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+/// Returns the numbers of the bits that are set.
+fn ones(mask: u16) -> impl Iterator<Item = usize> {
+    (0..MAX_HULLS).filter(move |i| mask >> i & 1 == 1)
 }
 
-/// Returns the hulls whose first vertices are nearest, if these are nearer than `prune` allows.
-fn nearest_vertices(a: &Hulls, b: &Hulls, near_a: &[usize], near_b: &[usize], prune: f64) -> Option<(usize, usize)> {
+/// Returns the hulls of two masks whose first vertices are nearest, if these are nearer than `prune` allows.
+fn nearest_vertices(a: &Hulls, b: &Hulls, masks: [u16; 2], prune: f64) -> Option<(usize, usize)> {
     let mut best = (prune, None);
-    for &i in near_a {
-        for &j in near_b {
-            let offset = sub(b.vertices[j][0], a.vertices[i][0]);
+    for i in ones(masks[0]) {
+        for j in ones(masks[1]) {
+            let offset = sub(b.hull(j)[0], a.hull(i)[0]);
             let square = dot(offset, offset);
             if square < best.0 {
                 best = (square, Some((i, j)));

@@ -5,11 +5,11 @@
 //! A search holds pairs of nodes, of which one is cut into its children at a time: the one with the larger box. Pairs
 //! that are certainly farther apart than the best pair so far are left out. Two bounds tell that.
 //!
-//! - **Directions** (the file `directions`). The other node of the pair is between two planes in each of a few directions: the
-//!   axes of both frames, and for a shape those that are orthogonal to its edges and to an axis. The distances of eight
-//!   children from what is between the planes are bounded side by side, in f32.
-//! - **The direction of the best pair** (the file `support`). Where two surfaces are nearest, they face each other and are
-//!   nearly flat. A box around such a part reaches towards the other surface by as much as the box is wide, but the
+//! - **Directions** (the file `directions`). The other node of the pair is between two planes in each of a few
+//!   directions: the axes of both frames, and for a shape those that are orthogonal to its edges and to an axis. The
+//!   distances of eight children from what is between the planes are bounded side by side, in f32.
+//! - **The direction of the best pair** (the file `support`). Where two surfaces are nearest, they face each other and
+//!   are nearly flat. A box around such a part reaches towards the other surface by as much as the box is wide, but the
 //!   part itself does so by the square of that only. So the extents of nodes along the direction of the best pair are
 //!   those of their vertices, which a search through the node finds. Without this bound, the number of pairs of nodes
 //!   that no box tells apart grows with the number of triangles; with it, few are left on each level.
@@ -33,8 +33,8 @@ use super::Pairs;
 use directions::Directions;
 pub use directions::{ChildBounds, Slab, bound_children};
 pub use height::{Height, Rows};
-pub use hulls::Hulls;
 use hulls::search_packets;
+pub use hulls::{Hulls, MAX_HULLS};
 pub use side::{Children, NO_NODE, PairSide, Place, Placement, ShapeSide, WIDTH};
 use support::Supports;
 
@@ -86,8 +86,8 @@ impl Search<'_, '_, '_> {
             }
             match [0, 1].map(|i| self.sides[i].is_packet(places[i].node)) {
                 [true, true] => {
-                    let least = [0, 1].map(|i| self.sides[i].first_id(places[i].node));
-                    if !self.pairs.can_change(least) {
+                    let least_ids = || [0, 1].map(|i| self.sides[i].first_id(places[i].node));
+                    if self.pairs.has_intersection() && !self.pairs.can_change(least_ids()) {
                         continue;
                     }
                     for ((side, place), hulls) in self.sides.iter().zip(places).zip(&mut loaded) {

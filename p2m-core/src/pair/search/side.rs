@@ -1,11 +1,11 @@
 //! The two sides of a search for pairs: trees, which other crates implement, and single shapes.
 
-use super::directions::{Slab, unit};
+use super::directions::{Slab, extent, unit};
 use super::height::Height;
 use super::hulls::Hulls;
 use crate::kernel::arithmetic::cross;
 use crate::kernel::vector::{V3, dot, largest, sub};
-use crate::pair::bounds_of;
+use crate::pair::{Hull, bounds_of};
 use crate::{Aabb, PrimitiveId};
 
 /// The number of children of a node.
@@ -146,12 +146,12 @@ impl PairSide for ShapeSide<'_> {
     }
 
     fn extent(&self, _: &Place, direction: &V3, _: f64, _: &[Height; 2]) -> [f64; 2] {
-        let heights = self.0.iter().map(|vertex| dot(*vertex, *direction));
-        heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+        extent(self.0.iter().map(|vertex| dot(*vertex, *direction)))
     }
 
     fn support(&self, _: u32, direction: &V3) -> f64 {
-        self.0.iter().map(|vertex| dot(*vertex, *direction)).fold(f64::NEG_INFINITY, f64::max)
+        let [_, largest] = extent(self.0.iter().map(|vertex| dot(*vertex, *direction)));
+        largest
     }
 
     fn cut(&self, _: u32, _: &[Slab], _: usize) -> Children {
@@ -172,6 +172,6 @@ impl PairSide for ShapeSide<'_> {
 
     fn load(&self, packet: u32, hulls: &mut Hulls) {
         hulls.start(packet);
-        hulls.push(PrimitiveId::new(0), self.0);
+        hulls.push(PrimitiveId::new(0), Hull::new(self.0));
     }
 }

@@ -1,7 +1,8 @@
 //! Extents of nodes along the direction of the best pair, from their vertices.
 
+use super::directions::unit;
 use super::side::{PairSide, Place};
-use crate::kernel::vector::{V3, dot};
+use crate::kernel::vector::V3;
 use crate::pair::Pairs;
 use std::collections::HashMap;
 
@@ -25,8 +26,7 @@ impl Supports {
             return;
         }
         let Some(separation) = pairs.separation() else { return };
-        let length = dot(separation, separation).sqrt();
-        let direction = (length > 1e-150 && length < 1e150).then(|| separation.map(|x| x / length));
+        let direction = unit(separation);
         if direction != self.direction {
             self.direction = direction;
             self.known.iter_mut().for_each(HashMap::clear);
