@@ -50,6 +50,7 @@
 //! | the first contact of a moving ball | [`pair::MovingBall`] | trees and brute force |
 //! | the Hausdorff distance of two scenes | `field::hausdorff_distance` | every index |
 //! | the nearest points of two scenes, one of which may move | [`pair::PairQuery::closest_pair`] | trees and brute force |
+//! | most of these in a scene larger than memory | `shards::ShardedIndex` | shards of every index |
 //! | any of these in a scene of moving objects | [`instances::Instances`] | objects of every index |
 //! | the cost of a query | [`Inspect`] | every index |
 //!
@@ -86,6 +87,7 @@
 //! | `advisor` | `advisor`: which index a scene and its queries call for | no |
 //! | `field` | [`field`]: distances on grids, signs, winding numbers, Hausdorff distances | yes |
 //! | `instances` | [`instances`]: scenes of moving objects | yes |
+//! | `shards` | `shards`: scenes larger than memory, in shards that are loaded on demand | no |
 //! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `mixed` | [`scene`]: reading scenes and points from files | yes |
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -140,6 +142,9 @@ pub use p2m_kdop::{KdopOptions, KdopTree};
 /// Scenes from files and generators.
 #[cfg(feature = "mixed")]
 pub use p2m_mixed as scene;
+/// Scenes larger than memory: indexes in shards, which are loaded on demand.
+#[cfg(feature = "shards")]
+pub use p2m_shards as shards;
 
 #[doc = include_str!("../docs/guide.md")]
 #[cfg(all(feature = "bvh", feature = "instances", feature = "interception", feature = "kdop", feature = "mixed"))]

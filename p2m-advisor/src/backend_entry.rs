@@ -6,6 +6,7 @@ use crate::kdop_directions::KdopDirections;
 use p2m_core::storage::{self, LoadError, Reader};
 use p2m_core::{BuildError, Soup};
 use std::fmt;
+use std::sync::Arc;
 
 /// The structure that a backend searches, as far as it determines how costs grow with the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,8 +32,10 @@ impl SearchStructure {
 
 /// A function that builds an index over a scene.
 pub(crate) type BuildFn<T> = for<'a> fn(&'a Soup<T>, &BuildSettings<'_>) -> Result<BuiltIndex<'a, T>, BuildError>;
-/// A function that loads an index from a file with its scene.
+/// A function that loads an index over a borrowed scene.
 type LoadFn = for<'a> fn(&'a Soup<f64>, &Reader) -> Result<BuiltIndex<'a>, LoadError>;
+/// A function that loads an index over a shared scene.
+type LoadSharedFn = fn(Arc<Soup<f64>>, &Reader) -> Result<BuiltIndex<'static>, LoadError>;
 
 /// The functions that recognize and load saved indexes of a backend.
 #[derive(Clone, Copy)]
@@ -40,6 +43,7 @@ pub(crate) struct SavedFormat {
     /// Returns whether the file has an index of this backend with the requested directions of k-DOPs.
     pub(crate) is_in: fn(&Reader, Option<KdopDirections>) -> bool,
     pub(crate) load: LoadFn,
+    pub(crate) load_shared: LoadSharedFn,
 }
 
 /// An entry of [`BACKENDS`](crate::BACKENDS). Two entries are equal if their names are.
@@ -103,8 +107,21 @@ impl BackendEntry {
     /// # Errors
     /// [`LoadError`], and always if the file has no index of this backend.
     pub fn load<'a>(&self, soup: &'a Soup<f64>, reader: &Reader) -> Result<BuiltIndex<'a>, LoadError> {
+        (self.saved_format(reader)?.load)(soup, reader)
+    }
+
+    /// Loads the index of a saved file over the scene that it was built over, which the index shares.
+    ///
+    /// # Errors
+    /// The errors are those of [`load`](Self::load).
+    pub fn load_shared(&self, soup: Arc<Soup<f64>>, reader: &Reader) -> Result<BuiltIndex<'static>, LoadError> {
+        (self.saved_format(reader)?.load_shared)(soup, reader)
+    }
+
+    /// Returns the functions that load indexes of this backend.
+    fn saved_format(&self, reader: &Reader) -> Result<SavedFormat, LoadError> {
         match self.saved {
-            Some(saved) => (saved.load)(soup, reader),
+            Some(saved) => Ok(saved),
             None => Err(LoadError::OtherKind { found: storage::kind(reader)?, expected: self.name.to_owned() }),
         }
     }

@@ -5,7 +5,7 @@
 
 use p2m_bvh::SplitOptions;
 use p2m_core::storage::{self, LoadError, Reader, Writer};
-use p2m_core::{BuildError, Real, Soup};
+use p2m_core::{BuildError, PrimitiveSet, Real, Soup};
 use p2m_kdop::{DirectionChoice, Directions, KdopOptions, KdopTree};
 
 /// The prefix of the kinds of k-DOP trees in saved files.
@@ -56,12 +56,12 @@ impl ChosenDirections {
     }
 }
 
-/// A function of a k-DOP tree that is compiled once for each K.
-pub trait KdopVisitor<'a, T: Real = f64> {
+/// A function of a k-DOP tree over a set `S`, which is compiled once for each K.
+pub trait KdopVisitor<S, T: Real = f64> {
     /// The result of the visit.
     type Output;
     /// Receives the tree.
-    fn visit<const K: usize>(self, tree: KdopTree<T, &'a Soup<T>, K>) -> Self::Output;
+    fn visit<const K: usize>(self, tree: KdopTree<T, S, K>) -> Self::Output;
 }
 
 impl KdopDirections {
@@ -98,17 +98,17 @@ impl KdopDirections {
     ///
     /// # Errors
     /// The errors of [`TreeIndex::load`](p2m_bvh::TreeIndex::load).
-    pub fn load<'a, V: KdopVisitor<'a>>(
+    pub fn load<S: PrimitiveSet<f64>, V: KdopVisitor<S>>(
         faces: usize,
-        soup: &'a Soup<f64>,
+        set: S,
         reader: &Reader,
         visitor: V,
     ) -> Result<(V::Output, ChosenDirections), LoadError> {
         let output = match faces {
-            6 => visitor.visit::<6>(KdopTree::load(soup, reader)?),
-            14 => visitor.visit::<14>(KdopTree::load(soup, reader)?),
-            18 => visitor.visit::<18>(KdopTree::load(soup, reader)?),
-            _ => visitor.visit::<26>(KdopTree::load(soup, reader)?),
+            6 => visitor.visit::<6>(KdopTree::load(set, reader)?),
+            14 => visitor.visit::<14>(KdopTree::load(set, reader)?),
+            18 => visitor.visit::<18>(KdopTree::load(set, reader)?),
+            _ => visitor.visit::<26>(KdopTree::load(set, reader)?),
         };
         Ok((output, ChosenDirections::of_saved(faces, reader)))
     }
@@ -117,7 +117,7 @@ impl KdopDirections {
     ///
     /// # Errors
     /// The errors of [`TreeIndex::build_with`](p2m_bvh::TreeIndex::build_with).
-    pub fn build<'a, T: Real, V: KdopVisitor<'a, T>>(
+    pub fn build<'a, T: Real, V: KdopVisitor<&'a Soup<T>, T>>(
         self,
         soup: &'a Soup<T>,
         splits: SplitOptions,
@@ -135,7 +135,7 @@ impl KdopDirections {
     }
 }
 
-fn build_tree<'a, const K: usize, T: Real, V: KdopVisitor<'a, T>>(
+fn build_tree<'a, const K: usize, T: Real, V: KdopVisitor<&'a Soup<T>, T>>(
     soup: &'a Soup<T>,
     splits: SplitOptions,
     choice: Option<&DirectionChoice>,

@@ -15,10 +15,11 @@ use crate::cost_model::CostModel;
 use crate::index::{BuildSettings, BuiltIndex, IndexDetails};
 use crate::kdop_directions::{KdopDirections, KdopVisitor};
 use p2m_bvh::AabbTree;
-use p2m_core::storage::{self, Reader, Saved};
-use p2m_core::{BruteForce, BuildError, BuildIndex, Index, Real, Soup};
+use p2m_core::storage::{self, LoadError, Reader, Saved};
+use p2m_core::{BruteForce, BuildError, BuildIndex, Index, PrimitiveSet, Real, Soup};
 use p2m_interception::{Octree, OctreeIndex, OctreeOptions, P2mIndex, Voronoi};
 use p2m_kdop::KdopTree;
+use std::marker::PhantomData;
 
 /// All backends, the simplest one first. Tables and estimates keep this order.
 pub static BACKENDS: &[BackendEntry] = &[
@@ -66,7 +67,8 @@ pub static BACKENDS: &[BackendEntry] = &[
         build_f32: build_aabb,
         saved: Some(SavedFormat {
             is_in: |reader, _| has_kind(reader, "aabb"),
-            load: |soup, reader| Ok(BuiltIndex::new(AabbTree::load(soup, reader)?, IndexDetails::None)),
+            load: |soup, reader| load_aabb(soup, reader),
+            load_shared: load_aabb,
         }),
     },
     BackendEntry {
@@ -91,11 +93,8 @@ pub static BACKENDS: &[BackendEntry] = &[
         build_f32: build_kdop,
         saved: Some(SavedFormat {
             is_in: |reader, directions| KdopDirections::saved_faces(directions, reader).is_some(),
-            load: |soup, reader| {
-                let faces = KdopDirections::saved_faces(None, reader).unwrap_or(14);
-                let (index, directions) = KdopDirections::load(faces, soup, reader, BoxTree)?;
-                Ok(BuiltIndex { index, details: IndexDetails::Kdop(directions) })
-            },
+            load: |soup, reader| load_kdop(soup, reader),
+            load_shared: load_kdop,
         }),
     },
     BackendEntry {
@@ -120,11 +119,8 @@ pub static BACKENDS: &[BackendEntry] = &[
         build_f32: build_octree,
         saved: Some(SavedFormat {
             is_in: |reader, _| has_kind(reader, &Octree::kind()),
-            load: |soup, reader| {
-                let index = OctreeIndex::load(soup, reader)?;
-                let report = index.report();
-                Ok(BuiltIndex::new(index, IndexDetails::Octree(report)))
-            },
+            load: |soup, reader| load_octree(soup, reader),
+            load_shared: load_octree,
         }),
     },
     BackendEntry {
@@ -149,11 +145,8 @@ pub static BACKENDS: &[BackendEntry] = &[
         build_f32: build_p2m,
         saved: Some(SavedFormat {
             is_in: |reader, _| has_kind(reader, &Voronoi::kind()),
-            load: |soup, reader| {
-                let index = P2mIndex::load(soup, reader)?;
-                let report = index.report();
-                Ok(BuiltIndex::new(index, IndexDetails::P2m(report)))
-            },
+            load: |soup, reader| load_p2m(soup, reader),
+            load_shared: load_p2m,
         }),
     },
 ];
@@ -171,7 +164,7 @@ fn build_aabb<'a, T: Real>(soup: &'a Soup<T>, settings: &BuildSettings<'_>) -> B
 
 fn build_kdop<'a, T: Real>(soup: &'a Soup<T>, settings: &BuildSettings<'_>) -> Built<'a, T> {
     let directions = settings.kdop_directions.unwrap_or(KdopDirections::Fourteen);
-    let (index, directions) = directions.build(soup, settings.splits(), BoxTree)?;
+    let (index, directions) = directions.build(soup, settings.splits(), BoxTree(PhantomData))?;
     Ok(BuiltIndex { index, details: IndexDetails::Kdop(directions) })
 }
 
@@ -192,16 +185,41 @@ fn build_p2m<'a, T: Real>(soup: &'a Soup<T>, settings: &BuildSettings<'_>) -> Bu
     Ok(BuiltIndex::new(index, IndexDetails::P2m(report)))
 }
 
+/// The result of loading an index.
+type Loaded<'a> = Result<BuiltIndex<'a>, LoadError>;
+
+fn load_aabb<'a, S: PrimitiveSet<f64> + Send + Sync + 'a>(set: S, reader: &Reader) -> Loaded<'a> {
+    Ok(BuiltIndex::new(AabbTree::load(set, reader)?, IndexDetails::None))
+}
+
+fn load_kdop<'a, S: PrimitiveSet<f64> + Send + Sync + 'a>(set: S, reader: &Reader) -> Loaded<'a> {
+    let faces = KdopDirections::saved_faces(None, reader).unwrap_or(14);
+    let (index, directions) = KdopDirections::load(faces, set, reader, BoxTree(PhantomData))?;
+    Ok(BuiltIndex { index, details: IndexDetails::Kdop(directions) })
+}
+
+fn load_octree<'a, S: PrimitiveSet<f64> + Send + Sync + 'a>(set: S, reader: &Reader) -> Loaded<'a> {
+    let index = OctreeIndex::load(set, reader)?;
+    let report = index.report();
+    Ok(BuiltIndex::new(index, IndexDetails::Octree(report)))
+}
+
+fn load_p2m<'a, S: PrimitiveSet<f64> + Send + Sync + 'a>(set: S, reader: &Reader) -> Loaded<'a> {
+    let index = P2mIndex::load(set, reader)?;
+    let report = index.report();
+    Ok(BuiltIndex::new(index, IndexDetails::P2m(report)))
+}
+
 fn has_kind(reader: &Reader, kind: &str) -> bool {
     storage::kind(reader).is_ok_and(|found| found == kind)
 }
 
 /// Erases the number of faces of a k-DOP tree.
-struct BoxTree;
+struct BoxTree<'a>(PhantomData<&'a ()>);
 
-impl<'a, T: Real> KdopVisitor<'a, T> for BoxTree {
+impl<'a, T: Real, S: PrimitiveSet<T> + Send + Sync + 'a> KdopVisitor<S, T> for BoxTree<'a> {
     type Output = Box<dyn Index<T> + 'a>;
-    fn visit<const K: usize>(self, tree: KdopTree<T, &'a Soup<T>, K>) -> Self::Output {
+    fn visit<const K: usize>(self, tree: KdopTree<T, S, K>) -> Self::Output {
         Box::new(tree)
     }
 }
@@ -236,6 +254,7 @@ mod tests {
     use nalgebra::Point3;
     use p2m_core::storage::{SavedFile, Writer};
     use p2m_mixed::generate::{IcoSphere, ico_sphere};
+    use std::sync::Arc;
 
     #[test]
     fn entries_are_what_they_say_of_themselves() {
@@ -263,6 +282,8 @@ mod tests {
                 assert_eq!(BackendEntry::from_saved(reader), Some(backend));
                 let loaded = backend.load(&soup, reader).unwrap();
                 assert_eq!(loaded.index.closest_point(&query), answer, "{backend}");
+                let shared = backend.load_shared(Arc::new(soup.clone()), reader).unwrap();
+                assert_eq!(shared.index.closest_point(&query), answer, "{backend}");
                 assert_eq!(loaded.details, built.details, "{backend}");
             } else {
                 assert!(backend.load(&soup, reader).is_err());

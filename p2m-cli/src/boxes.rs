@@ -182,7 +182,7 @@ struct PolytopePanels {
     levels: usize,
 }
 
-impl KdopVisitor<'_> for PolytopePanels {
+impl KdopVisitor<&Soup<f64>> for PolytopePanels {
     type Output = Vec<(DrawnLevel, Panel)>;
     fn visit<const K: usize>(self, tree: KdopTree<f64, &Soup<f64>, K>) -> Self::Output {
         let edges = |kdop: &_| Polytope::new(kdop, tree.directions()).edges().collect();

@@ -31,5 +31,6 @@ mod ray_models;
 mod rays;
 mod registry;
 mod saved;
+mod shards;
 mod signs;
 mod trade;

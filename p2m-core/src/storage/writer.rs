@@ -57,14 +57,17 @@ impl<'a> Writer<'a> {
         self.sections.push((name.to_owned(), bytes, size));
     }
 
-    /// Writes the file.
+    /// Returns the checksum that [`SavedFile::checksum`](super::SavedFile::checksum) will return for the file.
     ///
-    /// # Errors
-    /// It returns the errors of `writer`, and [`io::ErrorKind::Unsupported`] on a processor that is not little-endian.
-    pub fn write(&self, mut writer: impl Write) -> io::Result<()> {
-        if cfg!(target_endian = "big") {
-            return Err(io::Error::new(io::ErrorKind::Unsupported, LoadError::BigEndian));
-        }
+    /// # Complexity
+    /// It reads all sections, as [`write`](Self::write) does.
+    #[must_use]
+    pub fn checksum(&self) -> u64 {
+        checksum(bytemuck::cast_slice(&self.table().0))
+    }
+
+    /// Returns the table of the sections and the length of the file.
+    fn table(&self) -> (Vec<Entry>, usize) {
         let mut end = ALIGNMENT * (1 + self.sections.len());
         let mut table = Vec::with_capacity(self.sections.len());
         for (name, bytes, size) in &self.sections {
@@ -76,6 +79,18 @@ impl<'a> Writer<'a> {
             end += bytes.len().next_multiple_of(ALIGNMENT);
             table.push(entry);
         }
+        (table, end)
+    }
+
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// It returns the errors of `writer`, and [`io::ErrorKind::Unsupported`] on a processor that is not little-endian.
+    pub fn write(&self, mut writer: impl Write) -> io::Result<()> {
+        if cfg!(target_endian = "big") {
+            return Err(io::Error::new(io::ErrorKind::Unsupported, LoadError::BigEndian));
+        }
+        let (table, end) = self.table();
         let table: &[u8] = bytemuck::cast_slice(&table);
         let sections = u32::try_from(self.sections.len()).map_err(io::Error::other)?;
         let header = Header {

@@ -1,0 +1,169 @@
+//! Batches of queries for the closest point, in two phases that load each shard once.
+
+use crate::nearest::{ShardClosest, is_finite, key, limit, reach};
+use crate::{ShardError, ShardedIndex};
+use nalgebra::Point3;
+use p2m_core::batch::{BatchOptions, closest_points_into};
+use p2m_core::{Aabb, Closest, Key, Position, QueryOptions};
+use rayon::prelude::*;
+
+/// The number that stands for no shard.
+const NONE: u32 = u32::MAX;
+
+/// The state of a query between the phases.
+#[derive(Clone, Copy)]
+struct Pending {
+    /// The shard with the nearest box, which the first phase asks.
+    nearest: u32,
+    /// The square above which a shard is not needed any more.
+    limit: f64,
+    /// The key of the answer so far, if another shard may have as near a primitive.
+    key: Option<Key>,
+}
+
+impl ShardedIndex {
+    /// Answers `queries` into `out`, in their order, on all threads of the current pool.
+    ///
+    /// The answers are those of [`closest_point_with`](Self::closest_point_with), apart from the last bits of lower
+    /// bounds, which do not depend on the other queries.
+    ///
+    /// # Errors
+    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file. The
+    /// content of `out` is then undefined.
+    ///
+    /// # Panics
+    /// It panics if the slices differ in length.
+    ///
+    /// # Complexity
+    /// Each shard is loaded at most twice, whatever the limit of memory is. Comparing n queries with the boxes of s
+    /// shards takes O(n s). Memory is 40 bytes for each query besides the answers, and about 200 bytes for each query
+    /// of the largest group that a shard answers.
+    pub fn closest_points_into(
+        &self,
+        queries: &[impl Position<f64>],
+        options: &QueryOptions<f64>,
+        out: &mut [Option<ShardClosest>],
+    ) -> Result<(), ShardError> {
+        assert_eq!(queries.len(), out.len(), "one answer for each query");
+        let mut options = *options;
+        // A hint is an id within one shard.
+        options.hint = None;
+        if options.is_approximate() {
+            // What a search leaves out on purpose depends on the order of shards, so each query has its own.
+            return queries.par_iter().zip(out).try_for_each(|(query, answer)| {
+                *answer = self.closest_point_with(&query.point(), &options)?;
+                Ok(())
+            });
+        }
+        let mut pending: Vec<Pending> = queries.par_iter().map(|query| self.begin(&query.point(), &options)).collect();
+        out.par_iter_mut().for_each(|answer| *answer = None);
+        self.ask_nearest(queries, &options, &mut pending, out)?;
+        self.ask_others(queries, &options, &mut pending, out)
+    }
+
+    /// Returns the shard that a query asks first.
+    fn begin(&self, query: &Point3<f64>, options: &QueryOptions<f64>) -> Pending {
+        let nothing = Pending { nearest: NONE, limit: f64::NEG_INFINITY, key: None };
+        if !is_finite(query) {
+            return nothing;
+        }
+        let largest = limit(options.max_distance);
+        let mut best = (NONE, f64::INFINITY);
+        for (number, bounds) in (0..).zip(&self.boxes) {
+            let bound = bounds.lower_bound(query);
+            if bound <= largest && (bound < best.1 || best.0 == NONE) {
+                best = (number, bound);
+            }
+        }
+        if best.0 == NONE { nothing } else { Pending { nearest: best.0, limit: largest, key: None } }
+    }
+
+    /// Asks for each query the shard with the nearest box.
+    fn ask_nearest(
+        &self,
+        queries: &[impl Position<f64>],
+        options: &QueryOptions<f64>,
+        pending: &mut [Pending],
+        out: &mut [Option<ShardClosest>],
+    ) -> Result<(), ShardError> {
+        let mut groups: Vec<Vec<usize>> = vec![Vec::new(); self.boxes.len()];
+        for (i, one) in pending.iter().enumerate() {
+            if one.nearest != NONE {
+                groups[one.nearest as usize].push(i);
+            }
+        }
+        for (number, group) in groups.into_iter().enumerate().filter(|(_, group)| !group.is_empty()) {
+            let shard = self.shard(number)?;
+            let asked: Vec<Point3<f64>> = group.par_iter().map(|i| queries[*i].point()).collect();
+            let mut answers: Vec<Option<Closest<f64>>> = vec![None; asked.len()];
+            closest_points_into(shard.index(), &asked, options, &BatchOptions::default(), &mut answers);
+            let rest = |(query, answer): (&Point3<f64>, &Option<Closest<f64>>)| {
+                let closest = answer.as_ref()?;
+                let limit = self.limit_of(query, closest, options);
+                let is_near =
+                    |(other, bounds): (usize, &Aabb<f64>)| other != number && bounds.lower_bound(query) <= limit;
+                let has_others = self.boxes.iter().enumerate().any(is_near);
+                Some((limit, has_others.then(|| key(&shard, closest, query))))
+            };
+            let rests: Vec<_> = asked.par_iter().zip(&answers).map(rest).collect();
+            for ((i, answer), rest) in group.into_iter().zip(answers).zip(rests) {
+                if let (Some(closest), Some((limit, key))) = (answer, rest) {
+                    pending[i] = Pending { limit, key, ..pending[i] };
+                    out[i] = Some(ShardClosest::new(number, &shard, closest));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Asks all other shards that may have something as near as what was found.
+    fn ask_others(
+        &self,
+        queries: &[impl Position<f64>],
+        options: &QueryOptions<f64>,
+        pending: &mut [Pending],
+        out: &mut [Option<ShardClosest>],
+    ) -> Result<(), ShardError> {
+        // Most queries need no other shard, so those that do are found once.
+        let may_need = |i: &usize| pending[*i].key.is_some() || (pending[*i].nearest != NONE && out[*i].is_none());
+        let open: Vec<usize> = (0..queries.len()).into_par_iter().filter(may_need).collect();
+        for (number, bounds) in self.boxes.iter().enumerate() {
+            let is_needed = |i: &usize| {
+                let one = &pending[*i];
+                one.nearest as usize != number && bounds.lower_bound(&queries[*i].point()) <= one.limit
+            };
+            let group: Vec<usize> = open.par_iter().copied().filter(is_needed).collect();
+            if group.is_empty() {
+                continue;
+            }
+            let shard = self.shard(number)?;
+            let ask = |i: &usize| {
+                let query = queries[*i].point();
+                let error = self.largest_error(&query);
+                let best = out[*i].map_or(f64::INFINITY, |best| reach(best.closest.distance, error));
+                let within = options.with_max_distance(options.max_distance.min(best));
+                let closest = shard.index().closest_point_with(&query, &within)?;
+                Some((closest, key(&shard, &closest, &query)))
+            };
+            let answers: Vec<Option<(Closest<f64>, Key)>> = group.par_iter().map(ask).collect();
+            for (i, answer) in group.into_iter().zip(answers) {
+                let Some((closest, key)) = answer else { continue };
+                let answer = ShardClosest::new(number, &shard, closest);
+                let best = out[i].zip(pending[i].key);
+                let bound = best.map_or(f64::INFINITY, |(best, _)| best.closest.lower_bound);
+                let is_winner = best.is_none_or(|(best, best_key)| (key, answer.id) < (best_key, best.id));
+                let (mut winner, key) = best.filter(|_| !is_winner).unwrap_or((answer, key));
+                winner.closest.lower_bound = bound.min(closest.lower_bound);
+                let limit = self.limit_of(&queries[i].point(), &winner.closest, options);
+                pending[i] = Pending { limit, key: Some(key), ..pending[i] };
+                out[i] = Some(winner);
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the square above which no shard is needed for a query with this answer.
+    fn limit_of(&self, query: &Point3<f64>, closest: &Closest<f64>, options: &QueryOptions<f64>) -> f64 {
+        limit(options.max_distance.min(reach(closest.distance, self.largest_error(query))))
+    }
+}

@@ -1,0 +1,100 @@
+//! The shards that are in memory: each is loaded when a query first needs it, and the one that was not used for the
+//! longest time makes room for others.
+
+use crate::shard::Shard;
+use crate::{ShardEntry, ShardError};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError, RwLock};
+
+/// The place of a shard.
+#[derive(Default)]
+struct Slot {
+    shard: RwLock<Option<Arc<Shard>>>,
+    /// The time of the last use, by the clock of the cache.
+    last_use: AtomicU64,
+}
+
+/// The shards of an index that are in memory.
+pub(crate) struct Cache {
+    folder: PathBuf,
+    is_mapped: bool,
+    /// The largest sum of the estimated bytes of all shards in memory.
+    max_bytes: u64,
+    slots: Vec<Slot>,
+    /// The number of uses so far, which orders them.
+    clock: AtomicU64,
+    /// The number of times that a shard was loaded.
+    loads: AtomicU64,
+    /// The sum of the estimated bytes of the shards in memory. Who holds it may remove shards.
+    used_bytes: Mutex<u64>,
+}
+
+impl Cache {
+    pub(crate) fn new(folder: &Path, len: usize, max_bytes: u64, is_mapped: bool) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            is_mapped,
+            max_bytes,
+            slots: std::iter::repeat_with(Slot::default).take(len).collect(),
+            clock: AtomicU64::new(0),
+            loads: AtomicU64::new(0),
+            used_bytes: Mutex::new(0),
+        }
+    }
+
+    /// Returns the number of times that a shard was loaded.
+    pub(crate) fn loads(&self) -> u64 {
+        self.loads.load(Ordering::Relaxed)
+    }
+
+    /// Returns a shard, which is loaded if it is not in memory. The entries are those of the manifest.
+    pub(crate) fn get(&self, number: usize, entries: &[ShardEntry]) -> Result<Arc<Shard>, ShardError> {
+        let slot = &self.slots[number];
+        slot.last_use.store(self.clock.fetch_add(1, Ordering::Relaxed), Ordering::Relaxed);
+        if let Some(shard) = &*slot.shard.read().unwrap_or_else(PoisonError::into_inner) {
+            return Ok(Arc::clone(shard));
+        }
+        // Other threads that need the same shard wait here until it is loaded.
+        let mut place = slot.shard.write().unwrap_or_else(PoisonError::into_inner);
+        if let Some(shard) = &*place {
+            return Ok(Arc::clone(shard));
+        }
+        self.reserve(number, entries);
+        match Shard::load(&self.folder, &entries[number], self.is_mapped) {
+            Ok(shard) => {
+                self.loads.fetch_add(1, Ordering::Relaxed);
+                Ok(Arc::clone(place.insert(Arc::new(shard))))
+            }
+            Err(error) => {
+                self.release(&entries[number]);
+                Err(error)
+            }
+        }
+    }
+
+    /// Counts the bytes of a shard that is about to be loaded, and removes others until all fit, if that is possible.
+    fn reserve(&self, number: usize, entries: &[ShardEntry]) {
+        let mut used = self.used_bytes.lock().unwrap_or_else(PoisonError::into_inner);
+        *used += Shard::estimated_bytes(&entries[number]);
+        let mut by_use: Vec<usize> = (0..self.slots.len()).filter(|other| *other != number).collect();
+        by_use.sort_unstable_by_key(|other| self.slots[*other].last_use.load(Ordering::Relaxed));
+        for other in by_use {
+            if *used <= self.max_bytes {
+                return;
+            }
+            // A shard that another thread is loading or looking at stays: waiting for it here might never end.
+            if let Ok(mut place) = self.slots[other].shard.try_write()
+                && place.take().is_some()
+            {
+                *used -= Shard::estimated_bytes(&entries[other]);
+            }
+        }
+    }
+
+    /// Takes back the bytes of a shard that could not be loaded.
+    fn release(&self, entry: &ShardEntry) {
+        let mut used = self.used_bytes.lock().unwrap_or_else(PoisonError::into_inner);
+        *used -= Shard::estimated_bytes(entry);
+    }
+}

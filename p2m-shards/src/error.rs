@@ -1,0 +1,78 @@
+//! Errors of writing shards, and of queries that have to load one.
+
+use p2m_core::BuildError;
+use p2m_core::storage::LoadError;
+use std::io;
+use std::path::PathBuf;
+
+/// An error of writing, opening or querying a sharded index. Its message begins with the name of the file.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ShardError {
+    /// A file cannot be read or written.
+    #[error("{}: {source}", file.display())]
+    Io {
+        /// The file or the folder.
+        file: PathBuf,
+        /// The error of the operating system.
+        source: io::Error,
+    },
+    /// The folder has the manifest of a sharded index already.
+    #[error("{}: there is a sharded index already", folder.display())]
+    Exists {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The manifest is not that of a sharded index, or contradicts itself.
+    #[error("{}: {reason}", file.display())]
+    Manifest {
+        /// The manifest.
+        file: PathBuf,
+        /// A clause that says what is wrong.
+        reason: String,
+    },
+    /// The file of a shard is missing, cut off, damaged, or of another version of the format.
+    #[error("{} {source}", file.display())]
+    Load {
+        /// The file of the shard.
+        file: PathBuf,
+        /// The error of loading it.
+        source: LoadError,
+    },
+    /// The file of a shard is a valid one, but not the one that the manifest describes.
+    #[error("{} is not the shard that the manifest describes: {reason}", file.display())]
+    OtherShard {
+        /// The file of the shard.
+        file: PathBuf,
+        /// A clause that says what differs.
+        reason: &'static str,
+    },
+    /// The index of a shard cannot be built.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// The backend of the shards has no saved form.
+    #[error("the backend {backend} has no saved form")]
+    NotSaveable {
+        /// The name of the backend.
+        backend: String,
+    },
+    /// The backend of the shards casts no rays.
+    #[error("the backend {backend} of the shards casts no rays")]
+    NoRays {
+        /// The name of the backend.
+        backend: String,
+    },
+    /// A scene with segments or points has no inside.
+    #[error("the scene has segments or points, which have no inside")]
+    NoInside,
+    /// Writing was cancelled.
+    #[error("writing the shards was cancelled")]
+    Cancelled,
+}
+
+impl ShardError {
+    /// Returns a function that makes the error of a file from an error of the operating system.
+    pub(crate) fn io(file: impl Into<PathBuf>) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self::Io { file: file.into(), source }
+    }
+}

@@ -1,0 +1,99 @@
+//! A sharded index: the manifest and the shards that are in memory.
+
+use crate::cache::Cache;
+use crate::{Manifest, Shard, ShardError};
+use p2m_core::Aabb;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// An index in shards, which are loaded when a query needs them. The crate documentation has the contract.
+///
+/// Queries from several threads run at the same time. One that needs a shard which another thread is loading waits for
+/// it.
+pub struct ShardedIndex {
+    folder: PathBuf,
+    manifest: Manifest,
+    pub(crate) boxes: Vec<Aabb<f64>>,
+    /// The box of the whole scene.
+    pub(crate) bounds: Aabb<f64>,
+    cache: Cache,
+}
+
+impl ShardedIndex {
+    /// Opens the sharded index of a folder. No shard is loaded.
+    ///
+    /// # Errors
+    /// It returns the errors of [`Manifest::read`].
+    pub fn open(folder: &Path) -> Result<Self, ShardError> {
+        Self::open_with(folder, u64::MAX, false)
+    }
+
+    /// Opens the sharded index of a folder, with a limit on the memory of the shards in bytes.
+    ///
+    /// The memory of a shard is estimated as the length of its file and 40 bytes for each primitive. Where a query needs
+    /// a shard that does not fit, those that were not used for the longest time are dropped. One shard is loaded
+    /// whatever the limit is, and shards that other threads are using stay until these have finished.
+    ///
+    /// # Errors
+    /// It returns the errors of [`Manifest::read`].
+    pub fn open_with_max_bytes(folder: &Path, max_bytes: u64) -> Result<Self, ShardError> {
+        Self::open_with(folder, max_bytes, false)
+    }
+
+    /// Opens the sharded index of a folder as [`open_with_max_bytes`](Self::open_with_max_bytes) does, and maps the
+    /// files of shards into memory, so that processes share it. The limit counts mapped files as well.
+    ///
+    /// # Safety
+    /// Nobody may change or truncate the file of a shard while the index, or a shard of it, is in use. A change is a
+    /// data race, and truncation ends the program. [`ShardWriter`](crate::ShardWriter) removes the files of an index
+    /// that it replaces and writes new ones, which is no change of a file.
+    ///
+    /// # Errors
+    /// It returns the errors of [`Manifest::read`].
+    #[allow(unsafe_code, reason = "a file may change while it is mapped; the caller has to prevent that")]
+    pub unsafe fn open_mapped(folder: &Path, max_bytes: u64) -> Result<Self, ShardError> {
+        Self::open_with(folder, max_bytes, true)
+    }
+
+    fn open_with(folder: &Path, max_bytes: u64, is_mapped: bool) -> Result<Self, ShardError> {
+        let manifest = Manifest::read(folder)?;
+        let boxes = manifest.shards.iter().map(crate::ShardEntry::bounds).collect();
+        let cache = Cache::new(folder, manifest.shards.len(), max_bytes, is_mapped);
+        Ok(Self { folder: folder.to_owned(), bounds: manifest.bounds(), manifest, boxes, cache })
+    }
+
+    /// Returns the folder of the index.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Returns the manifest.
+    #[must_use]
+    pub fn manifest(&self) -> &Manifest {
+        &self.manifest
+    }
+
+    /// Returns the box of the whole scene, which is empty if the scene is.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb<f64> {
+        self.bounds
+    }
+
+    /// Returns the number of times that a shard was loaded so far.
+    #[must_use]
+    pub fn loads(&self) -> u64 {
+        self.cache.loads()
+    }
+
+    /// Returns a shard by its number in the manifest, which is loaded if it is not in memory.
+    ///
+    /// # Errors
+    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] for a wrong file.
+    ///
+    /// # Panics
+    /// It panics if the manifest has no such shard.
+    pub fn shard(&self, number: usize) -> Result<Arc<Shard>, ShardError> {
+        self.cache.get(number, &self.manifest.shards)
+    }
+}

@@ -1,0 +1,67 @@
+//! Scenes larger than memory: an index in shards, each of which is a saved index of a part of the scene.
+//!
+//! [`ShardWriter`] divides a scene by space, builds the index of one part after the other, and writes a folder of files
+//! with a [`Manifest`]. [`ShardedIndex`] answers queries and loads a shard when a query first needs it.
+//!
+//! ```
+//! use nalgebra::Point3;
+//! use p2m_mixed::generate::{IcoSphere, ico_sphere};
+//! use p2m_shards::{ShardOptions, ShardWriter, ShardedIndex};
+//!
+//! let folder = tempfile::tempdir()?;
+//! let mut writer = ShardWriter::new(folder.path(), ShardOptions::default().with_max_bytes(20_000))?;
+//! writer.add_scene(&ico_sphere(&IcoSphere::default())?.into())?;
+//! writer.finish()?;
+//!
+//! let index = ShardedIndex::open(folder.path())?;
+//! assert!(index.manifest().shards.len() > 1);
+//! let answer = index.closest_point(&Point3::new(0.0, 0.0, 3.0))?.expect("the scene is not empty");
+//! assert!((answer.closest.distance - 2.0).abs() < 0.01);
+//! // Shards that are farther than the answer stay on the disk.
+//! assert!((index.loads() as usize) < index.manifest().shards.len());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Contract
+//!
+//! A primitive of the whole scene has an id, which counts from 0 in the order in which primitives were added. Every
+//! answer is that of one index over the whole scene: distances, points, features, weights and parameters have the same
+//! bits, and of equal keys the lowest id wins. So answers depend neither on how the scene was divided, nor on the order
+//! in which shards are loaded, nor on the memory that they may take. Lower bounds are certified, but in their last bits
+//! they depend on the primitives that a search evaluates, as they do between backends; those of certified answers and
+//! of the k nearest are equal as well.
+//!
+//! A query fails if it needs a shard whose file is missing, cut off, damaged, or not the one that the manifest
+//! describes. It never answers without such a shard.
+//!
+//! # Method
+//!
+//! The box of a shard bounds the distances of its primitives from below, by the arithmetic of the kernel
+//! ([`Aabb::lower_bound`](p2m_core::Aabb::lower_bound)), so a shard is left out if and only if its bound exceeds the
+//! best distance so far. Shards are asked in the order of these bounds, each with the best distance as the largest one.
+//! The nearest of the answers is the answer: distances are compared, where they are equal the keys, and where these are
+//! equal the ids. Crossings of a ray add up over the shards, because each triangle is in one of them.
+//!
+//! Two phases answer a batch: each query asks the shard with the nearest box, and then the shards whose bounds are
+//! within the distance that was found. In each phase a shard is loaded once and answers all queries that need it.
+
+#![deny(unsafe_code)]
+
+mod batch;
+mod cache;
+mod error;
+mod index;
+mod manifest;
+mod nearest;
+mod rays;
+mod shard;
+mod signs;
+mod write;
+
+pub use error::ShardError;
+pub use index::ShardedIndex;
+pub use manifest::{MANIFEST_FILE, Manifest, ObjectEntry, ShardEntry, folder_of};
+pub use nearest::ShardClosest;
+pub use rays::ShardHit;
+pub use shard::Shard;
+pub use write::{ShardOptions, ShardWriter};

@@ -1,0 +1,359 @@
+//! Writing a scene as shards, in memory for one of them.
+//!
+//! Primitives are written to a temporary file as they come. At the end that file is divided by space into parts, large
+//! parts are divided again, and the index of each part is built and saved by itself. Temporary files are in the folder
+//! of the shards and take 88 bytes for each primitive, and twice that while a file is divided.
+
+mod partition;
+mod spill;
+
+use crate::manifest::{MANIFEST_FILE, Manifest, ObjectEntry, ShardEntry};
+use crate::shard::IDS;
+use crate::{ShardError, ShardedIndex};
+use hashbrown::HashTable;
+use nalgebra::Point3;
+use p2m_advisor::{BackendEntry, BuildSettings};
+use p2m_core::storage::Writer;
+use p2m_core::{BuildError, Element, PrimitiveId, PrimitiveSet, Shape, Soup};
+use p2m_mixed::{Scene, save_scene};
+use partition::divide;
+use spill::{Record, Spill};
+use std::fs::{self, File};
+use std::io::{self, BufWriter};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use twox_hash::XxHash3_64;
+
+/// Options of writing shards.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct ShardOptions {
+    /// The largest length of the file of a shard in bytes, by default 1 GiB. Only a shard of one primitive may be
+    /// longer.
+    pub max_bytes: u64,
+    /// The backend of the shards, by default the tree of boxes.
+    pub backend: &'static BackendEntry,
+    /// Whether a sharded index in the folder is replaced. By default it is an error.
+    pub replace: bool,
+}
+
+impl Default for ShardOptions {
+    fn default() -> Self {
+        Self { max_bytes: 1 << 30, backend: BackendEntry::default_backend(), replace: false }
+    }
+}
+
+impl ShardOptions {
+    /// Sets the largest length of the file of a shard in bytes.
+    #[must_use]
+    pub fn with_max_bytes(self, max_bytes: u64) -> Self {
+        Self { max_bytes, ..self }
+    }
+
+    /// Sets the backend of the shards.
+    #[must_use]
+    pub fn with_backend(self, backend: &'static BackendEntry) -> Self {
+        Self { backend, ..self }
+    }
+
+    /// Sets whether a sharded index in the folder is replaced.
+    #[must_use]
+    pub fn with_replace(self, replace: bool) -> Self {
+        Self { replace, ..self }
+    }
+}
+
+/// The bytes of the scene of a shard, for each primitive, that a first division expects.
+const SCENE_BYTES_PER_PRIMITIVE: f64 = 52.0;
+/// The part of the largest length of a file that a division aims at. Parts are not equally large.
+const FILL: f64 = 0.85;
+
+/// The number of bytes of a shard that are written at a time.
+const WRITE_BUFFER_BYTES: usize = 1 << 20;
+
+/// A writer of shards. Scenes are added piece by piece, and [`finish`](Self::finish) builds the shards.
+///
+/// Ids count the primitives in the order in which they were added. A writer that is dropped removes its files.
+///
+/// ```
+/// use p2m_core::{Point, Soup};
+/// use p2m_shards::{ShardOptions, ShardWriter};
+/// use nalgebra::Point3;
+///
+/// let folder = tempfile::tempdir()?;
+/// let mut writer = ShardWriter::new(folder.path(), ShardOptions::default().with_max_bytes(4096))?;
+/// for tile in 0..4 {
+///     let corner = 10.0 * f64::from(tile);
+///     let positions = [[corner, 0.0, 0.0], [corner + 10.0, 0.0, 0.0], [corner, 10.0, 0.0]];
+///     writer.add_scene(&Soup::from_arrays(&positions, &[[0u32, 1, 2]])?.into())?;
+/// }
+/// let index = writer.finish()?;
+/// let answer = index.closest_point(&Point3::new(21.0, 1.0, 3.0))?.expect("the scene is not empty");
+/// assert_eq!((answer.id, answer.closest.distance), (2, 3.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Complexity
+/// Each primitive is written O(log n) times. Besides small buffers, [`finish`](Self::finish) has one shard in memory
+/// while it is built.
+pub struct ShardWriter {
+    folder: PathBuf,
+    options: ShardOptions,
+    /// The primitives, until they are divided.
+    spill: Option<Spill>,
+    manifest: Manifest,
+    /// The files to remove unless writing is finished.
+    written: Vec<PathBuf>,
+    /// Whether the folder is to be removed as well, because it was not there.
+    is_new_folder: bool,
+}
+
+impl ShardWriter {
+    /// Begins a sharded index in a folder, which is created if it is not there.
+    ///
+    /// # Errors
+    /// It returns [`ShardError::Exists`] if the folder has a sharded index that is not to be replaced,
+    /// [`ShardError::NotSaveable`] for a backend without a saved form, and [`ShardError::Io`].
+    pub fn new(folder: &Path, options: ShardOptions) -> Result<Self, ShardError> {
+        if !options.backend.is_saveable() {
+            return Err(ShardError::NotSaveable { backend: options.backend.name.to_owned() });
+        }
+        if folder.join(MANIFEST_FILE).exists() && !options.replace {
+            return Err(ShardError::Exists { folder: folder.to_owned() });
+        }
+        let is_new_folder = !folder.exists();
+        fs::create_dir_all(folder).map_err(ShardError::io(folder))?;
+        let spill = Spill::new(folder).map_err(ShardError::io(folder))?;
+        let manifest = Manifest {
+            backend: options.backend.name.to_owned(),
+            triangles: 0,
+            segments: 0,
+            points: 0,
+            shards: Vec::new(),
+            objects: Vec::new(),
+        };
+        Ok(Self {
+            folder: folder.to_owned(),
+            options,
+            spill: Some(spill),
+            manifest,
+            written: Vec::new(),
+            is_new_folder,
+        })
+    }
+
+    /// Adds the primitives of a scene after those that were added before. An object that continues the last one, by its
+    /// name and its ids, becomes a part of it.
+    ///
+    /// # Errors
+    /// It returns [`ShardError::Io`] if the temporary file cannot be written.
+    pub fn add_scene(&mut self, scene: &Scene) -> Result<(), ShardError> {
+        let first = self.manifest.primitive_count();
+        for object in &scene.objects {
+            let (start, len) = (first + object.ids.start as u64, object.ids.len() as u64);
+            match self.manifest.objects.last_mut() {
+                Some(last) if last.name == object.name && last.first + last.primitives == start => {
+                    last.primitives += len;
+                }
+                _ => {
+                    self.manifest.objects.push(ObjectEntry { name: object.name.clone(), first: start, primitives: len })
+                }
+            }
+        }
+        let soup = &scene.soup;
+        for (number, source) in (0..soup.len()).zip(scene.sources.iter().copied()) {
+            self.add(first + number as u64, source, soup.get(PrimitiveId::new(number)))?;
+        }
+        Ok(())
+    }
+
+    /// Returns the number of primitives that were added.
+    #[must_use]
+    pub fn primitive_count(&self) -> u64 {
+        self.manifest.primitive_count()
+    }
+
+    fn add(&mut self, id: u64, source: u32, shape: Shape<f64>) -> Result<(), ShardError> {
+        let mut record = Record { id, source, len: 0, vertices: [[0.0; 3]; 3] };
+        for (place, vertex) in record.vertices.iter_mut().zip(p2m_core::Primitive::vertices(&shape)) {
+            *place = vertex.coords.into();
+            record.len += 1;
+        }
+        *match record.len {
+            1 => &mut self.manifest.points,
+            2 => &mut self.manifest.segments,
+            _ => &mut self.manifest.triangles,
+        } += 1;
+        let spill = self.spill.as_mut().ok_or(ShardError::Cancelled)?;
+        spill.push(&record).map_err(ShardError::io(&self.folder))
+    }
+
+    /// Builds the shards, and returns the index that they make up.
+    ///
+    /// # Errors
+    /// It returns [`ShardError::Io`], and [`ShardError::Build`] for a shard of more than 2^30 primitives.
+    pub fn finish(self) -> Result<ShardedIndex, ShardError> {
+        self.finish_with_progress(&mut |_| ControlFlow::Continue(()))
+    }
+
+    /// Builds the shards, and calls `progress` with the number of primitives that are in finished shards, after each.
+    /// Breaking cancels the work.
+    ///
+    /// # Errors
+    /// It returns the errors of [`finish`](Self::finish), and [`ShardError::Cancelled`].
+    pub fn finish_with_progress(
+        mut self,
+        progress: &mut dyn FnMut(u64) -> ControlFlow<()>,
+    ) -> Result<ShardedIndex, ShardError> {
+        self.remove_replaced()?;
+        let expected = self.options.backend.cost.bytes_per_primitive + SCENE_BYTES_PER_PRIMITIVE;
+        let mut parts: Vec<Spill> = self.spill.take().into_iter().filter(|spill| spill.len() > 0).collect();
+        let (mut done, mut bytes_per_primitive, max_bytes) = (0, expected, self.options.max_bytes);
+        while let Some(mut part) = parts.pop() {
+            let len = part.len();
+            if len <= capacity(max_bytes, 1.0, bytes_per_primitive) || len == 1 {
+                let entry = self.write_shard(&mut part)?;
+                #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+                let found = entry.bytes as f64 / len as f64;
+                if entry.bytes <= max_bytes || len == 1 {
+                    done += len;
+                    self.manifest.shards.push(entry);
+                    if progress(done).is_break() {
+                        return Err(ShardError::Cancelled);
+                    }
+                    continue;
+                }
+                bytes_per_primitive = bytes_per_primitive.max(found);
+            }
+            let capacity = capacity(max_bytes, FILL, bytes_per_primitive);
+            let divided = divide(part, capacity, &self.folder).map_err(ShardError::io(&self.folder))?;
+            // The last one comes first, so that shards are numbered along the tree.
+            parts.extend(divided.into_iter().rev());
+        }
+        self.manifest.write(&self.folder)?;
+        self.written.clear();
+        self.is_new_folder = false;
+        ShardedIndex::open(&self.folder)
+    }
+
+    /// Builds the index of a part and writes its file, whose name is the next one.
+    fn write_shard(&mut self, part: &mut Spill) -> Result<ShardEntry, ShardError> {
+        let (scene, ids) = scene_of(part).map_err(|error| match error {
+            PartError::Io(source) => ShardError::Io { file: self.folder.clone(), source },
+            PartError::Build(error) => ShardError::Build(error),
+        })?;
+        let built = self.options.backend.build(&scene.soup, &BuildSettings::default())?;
+        let file = format!("{:05}.p2m", self.manifest.shards.len());
+        let path = self.folder.join(&file);
+        if self.written.last() != Some(&path) {
+            self.written.push(path.clone());
+        }
+        let mut writer = Writer::default();
+        save_scene(&scene, &mut writer);
+        built.save(&mut writer);
+        writer.put(IDS, &ids);
+        let checksum = format!("{:016x}", writer.checksum());
+        let write = || {
+            let out = File::create(&path)?;
+            writer.write(BufWriter::with_capacity(WRITE_BUFFER_BYTES, &out))?;
+            Ok(out.metadata()?.len())
+        };
+        let bytes = write().map_err(ShardError::io(&path))?;
+        let bounds = scene.soup.aabb();
+        let (min, max) = (bounds.min.coords.into(), bounds.max.coords.into());
+        Ok(ShardEntry { file, bytes, checksum, primitives: part.len(), min, max })
+    }
+
+    /// Removes the index that is replaced. Programs that have mapped its files are not disturbed.
+    fn remove_replaced(&self) -> Result<(), ShardError> {
+        if !self.folder.join(MANIFEST_FILE).exists() {
+            return Ok(());
+        }
+        // Files that an unreadable manifest names are not known, and those of the same names are overwritten.
+        let old = Manifest::read(&self.folder).map(|manifest| manifest.shards).unwrap_or_default();
+        let names = std::iter::once(MANIFEST_FILE).chain(old.iter().map(|shard| &*shard.file));
+        for path in names.map(|name| self.folder.join(name)) {
+            match fs::remove_file(&path) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(ShardError::io(path)(error)),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Drop for ShardWriter {
+    fn drop(&mut self) {
+        // What cannot be removed stays.
+        for path in &self.written {
+            let _ = fs::remove_file(path);
+        }
+        if self.is_new_folder {
+            let _ = fs::remove_dir(&self.folder);
+        }
+    }
+}
+
+/// Returns how many primitives are expected to fill a part of the largest length of a file.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "an estimate of a count"
+)]
+fn capacity(max_bytes: u64, fill: f64, bytes_per_primitive: f64) -> u64 {
+    ((fill * max_bytes as f64 / bytes_per_primitive) as u64).max(1)
+}
+
+/// An error of making the scene of a part.
+enum PartError {
+    Io(io::Error),
+    Build(BuildError),
+}
+
+impl From<io::Error> for PartError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+/// Returns the scene of a part and the ids of its primitives. Equal vertices become one, with the same bits.
+fn scene_of(part: &mut Spill) -> Result<(Scene, Vec<u64>), PartError> {
+    let mut soup = Soup::<f64>::default();
+    let (mut sources, mut ids) = (Vec::new(), Vec::new());
+    let mut vertices = HashTable::<u32>::new();
+    part.for_each(|record| {
+        let mut corners = [0; 3];
+        for (corner, vertex) in corners.iter_mut().zip(record.vertices()) {
+            *corner = weld(&mut soup, &mut vertices, vertex);
+        }
+        let element = match record.vertices().len() {
+            1 => Element::Point(corners[0]),
+            2 => Element::Segment([corners[0], corners[1]]),
+            _ => Element::Triangle(corners),
+        };
+        soup.push(element).map_err(PartError::Build)?;
+        sources.push(record.source);
+        ids.push(record.id);
+        Ok::<(), PartError>(())
+    })?;
+    drop(vertices);
+    soup.shrink_to_fit();
+    let mut scene = Scene::from(soup);
+    scene.sources = sources;
+    Ok((scene, ids))
+}
+
+/// Returns the index of a position with these bits, which is added if there is none.
+#[allow(clippy::cast_possible_truncation, reason = "a part of 2^30 primitives has fewer than 2^32 vertices")]
+fn weld(soup: &mut Soup<f64>, vertices: &mut HashTable<u32>, vertex: &[f64; 3]) -> u32 {
+    let bits = |p: &[f64; 3]| p.map(f64::to_bits);
+    let hash = |p: &[f64; 3]| XxHash3_64::oneshot(bytemuck::bytes_of(p));
+    let position = |soup: &Soup<f64>, number: u32| -> [f64; 3] { soup.positions()[number as usize].coords.into() };
+    if let Some(found) = vertices.find(hash(vertex), |other| bits(&position(soup, *other)) == bits(vertex)) {
+        return *found;
+    }
+    let number = soup.push_position(Point3::from(*vertex)) as u32;
+    vertices.insert_unique(hash(vertex), number, |other| hash(&position(soup, *other)));
+    number
+}

@@ -1,0 +1,325 @@
+//! An index in shards has the answers of one index over the whole scene, bit for bit, however the scene is divided and
+//! whatever memory shards may take; and it answers nothing if the file of a shard is wrong.
+
+use nalgebra::{Point3, Vector3};
+use p2m::scene::{Object, Scene};
+use p2m::shards::{
+    MANIFEST_FILE, Manifest, ShardClosest, ShardError, ShardHit, ShardOptions, ShardWriter, ShardedIndex,
+};
+use p2m::{
+    AabbTree, BruteForce, BuildIndex, CertifiedQuery, Closest, ClosestPoint, Element, Hit, NearQuery, PrimitiveId,
+    PrimitiveSet, QueryOptions, Ray, RayQuery, Soup,
+};
+use p2m_advisor::{BACKENDS, BackendEntry};
+use p2m_testkit::scenes::{self, KINDS, LAYOUTS, Layout};
+use p2m_testkit::{amount, cases, rng};
+use rand::{Rng, RngExt};
+use std::fs;
+use std::path::Path;
+
+/// Writes a scene as shards, in random pieces.
+fn write(rng: &mut impl Rng, folder: &Path, soup: &Soup<f64>, options: ShardOptions) -> ShardedIndex {
+    let mut writer = ShardWriter::new(folder, options).unwrap();
+    let mut first = 0;
+    while first < soup.len() {
+        let end = rng.random_range(first + 1..=soup.len());
+        let elements = (first..end).map(|i| soup.element(PrimitiveId::new(i)));
+        writer.add_scene(&Soup::new(soup.positions().to_vec(), elements).unwrap().into()).unwrap();
+        first = end;
+    }
+    writer.finish().unwrap()
+}
+
+/// Returns queries in, around, on and far from a scene, of which some are not finite.
+fn queries(rng: &mut impl Rng, soup: &Soup<f64>, count: usize) -> Vec<Point3<f64>> {
+    let bounds = soup.aabb();
+    let size = if soup.is_empty() { 1.0 } else { (bounds.max - bounds.min).norm().max(1e-30) };
+    let positions = if soup.is_empty() { &[Point3::new(0.0, 0.0, 0.0)] } else { soup.positions() };
+    let random = |_| {
+        let near = positions[rng.random_range(0..positions.len())];
+        let away = size * [0.0, 1e-6, 0.01, 0.3, 5.0, 1e9][rng.random_range(0..6)];
+        let mut query = near.map(|x| x + away * rng.random_range(-1.0..1.0));
+        if rng.random_range(0..16) == 0 {
+            query[rng.random_range(0..3)] = [f64::NAN, f64::INFINITY, 1e300][rng.random_range(0..3)];
+        }
+        query
+    };
+    (0..count).map(random).collect()
+}
+
+/// The bits of an answer, apart from its lower bound, with its id in the whole scene.
+type Fields = (u64, [u64; 7], String);
+
+fn fields(id: u64, closest: &Closest<f64>) -> Fields {
+    let [x, y, z]: [f64; 3] = closest.point.coords.into();
+    let [a, b, c] = closest.barycentric;
+    (id, [closest.distance, x, y, z, a, b, c].map(f64::to_bits), format!("{:?}", closest.feature))
+}
+
+fn of_index(closest: &Closest<f64>) -> Fields {
+    fields(closest.primitive.index() as u64, closest)
+}
+
+fn of_shards(closest: &ShardClosest) -> Fields {
+    fields(closest.id, &closest.closest)
+}
+
+/// The bits of a hit.
+fn of_hit(id: u64, hit: &Hit) -> (u64, u64, String) {
+    (id, hit.parameter.to_bits(), format!("{:?} {:?} {:?}", hit.side, hit.point(), hit.barycentric()))
+}
+
+fn of_shard_hit(hit: &ShardHit) -> (u64, u64, String) {
+    of_hit(hit.id, &hit.hit)
+}
+
+/// Compares all queries by points with those of brute force.
+fn check_points(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, name: &str) {
+    let brute = BruteForce::new(soup).unwrap();
+    let points = queries(rng, soup, 12);
+    let default = QueryOptions::default();
+    let radius = points.iter().find_map(|query| brute.closest_point(query)).map_or(1.0, |c| c.distance);
+    for options in [default, default.with_max_distance(radius)] {
+        let expected: Vec<_> = points.iter().map(|query| brute.closest_point_with(query, &options)).collect();
+        let mut batch = vec![None; points.len()];
+        shards.closest_points_into(&points, &options, &mut batch).unwrap();
+        for ((query, expected), batch) in points.iter().zip(&expected).zip(&batch) {
+            let found = shards.closest_point_with(query, &options).unwrap();
+            assert_eq!(found.as_ref().map(of_shards), expected.as_ref().map(of_index), "{name}, {query}");
+            assert_eq!(batch.as_ref().map(of_shards), expected.as_ref().map(of_index), "{name}, batch, {query}");
+            let certified = shards.certified_closest_point(query, &options).unwrap();
+            let expected = brute.certified_closest_point(query, &options).unwrap();
+            assert_eq!(certified.as_ref().map(of_shards), expected.as_ref().map(of_index), "{name}, {query}");
+            if let (Some(certified), Some(expected)) = (certified, expected) {
+                assert_eq!(certified.closest.lower_bound, expected.lower_bound, "{name}, {query}");
+                // The true distance is not below the lower bound, and rounding is monotone.
+                for found in [found, *batch].into_iter().flatten() {
+                    assert!(found.closest.lower_bound <= certified.closest.distance, "{name}, {query}");
+                }
+            }
+        }
+    }
+    for query in &points {
+        for k in [1, 3, 100] {
+            let found: Vec<_> = shards.k_nearest(query, k, radius * 3.0).unwrap();
+            let expected = brute.k_nearest(query, k, radius * 3.0);
+            let bounds = |closest: &Closest<f64>| closest.lower_bound.to_bits();
+            assert_eq!(
+                found.iter().map(|one| (of_shards(one), bounds(&one.closest))).collect::<Vec<_>>(),
+                expected.iter().map(|one| (of_index(one), bounds(one))).collect::<Vec<_>>(),
+                "{name}, {k} nearest, {query}"
+            );
+        }
+        let found: Vec<_> = shards.all_within(query, radius).unwrap().iter().map(of_shards).collect();
+        let expected: Vec<_> = brute.all_within(query, radius).iter().map(of_index).collect();
+        assert_eq!(found, expected, "{name}, {query}");
+        for radius in [0.0, radius / 2.0, radius, f64::NAN, -1.0] {
+            let expected = brute.is_any_within(query, radius);
+            assert_eq!(shards.is_any_within(query, radius).unwrap(), expected, "{name}, {query}, {radius}");
+        }
+        for options in [default.with_epsilon(0.3), default.with_max_visits(rng.random_range(0..9))] {
+            let found = shards.closest_point_with(query, &options).unwrap();
+            let truth = brute.certified_closest_point(query, &default).unwrap();
+            assert_eq!(found.is_some(), truth.is_some(), "{name}, {query}");
+            if let (Some(found), Some(truth)) = (found, truth) {
+                assert!(found.closest.lower_bound <= truth.distance, "{name}, {query}, {options:?}");
+                let largest = truth.distance * (1.0 + options.epsilon) * (1.0 + 1e-12) + 1e-9 * truth.distance.max(1.0);
+                assert!(options.epsilon == 0.0 || found.closest.distance <= largest, "{name}, {query}");
+            }
+        }
+    }
+}
+
+/// Compares all queries by rays with those of brute force.
+fn check_rays(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, name: &str) {
+    let brute = BruteForce::new(soup).unwrap();
+    let ends = queries(rng, soup, 24);
+    for pair in ends.chunks_exact(2) {
+        let Ok(ray) = Ray::through(&pair[0], &pair[1]) else { continue };
+        let axis = Vector3::from(std::array::from_fn(|k| if k == rng.random_range(0..3) { 1.0 } else { 0.0 }));
+        let along = Ray::new(&pair[0], &axis).unwrap_or(ray);
+        let part = ray.with_range(-0.5, rng.random_range(-0.5..2.0)).unwrap();
+        for ray in [ray, ray.line(), part, along, part.with_radius(0.05).unwrap()] {
+            let name = format!("{name}, {ray:?}");
+            let first = shards.first_intersection(&ray).unwrap();
+            let expected = brute.first_intersection(&ray).map(|hit| of_hit(hit.primitive.index() as u64, &hit));
+            assert_eq!(first.as_ref().map(of_shard_hit), expected, "{name}");
+            let all: Vec<_> = shards.all_intersections(&ray).unwrap().iter().map(of_shard_hit).collect();
+            let expected: Vec<_> =
+                brute.all_intersections(&ray).iter().map(|hit| of_hit(hit.primitive.index() as u64, hit)).collect();
+            assert_eq!(all, expected, "{name}");
+            assert_eq!(shards.count(&ray).unwrap(), brute.count(&ray), "{name}");
+            assert_eq!(shards.crossings(&ray).unwrap(), brute.crossings(&ray), "{name}");
+            assert_eq!(shards.do_intersect(&ray).unwrap(), brute.do_intersect(&ray), "{name}");
+        }
+    }
+}
+
+#[test]
+fn random_scenes_in_random_shards_have_the_answers_of_one_index() {
+    let saveable: Vec<&BackendEntry> = BACKENDS.iter().filter(|backend| backend.is_saveable()).collect();
+    let mut most = 0;
+    for case in cases(4_000, 60) {
+        let rng = &mut rng("shards", case);
+        let kinds = KINDS[rng.random_range(0..KINDS.len())];
+        let layout = LAYOUTS[rng.random_range(0..LAYOUTS.len())];
+        let len = [0, 1, 2, 10, 60, 200][rng.random_range(0..6)];
+        let (positions, elements) = scenes::scene(rng, kinds, layout, len);
+        let soup = Soup::new(positions.into_iter().map(Point3::from).collect(), elements).unwrap();
+        let backend = saveable[if rng.random_range(0..3) == 0 { rng.random_range(0..saveable.len()) } else { 0 }];
+        let max_bytes = [1, 3_000, 6_000, 20_000, 1 << 30][rng.random_range(0..5)];
+        let folder = tempfile::tempdir().unwrap();
+        let options = ShardOptions::default().with_max_bytes(max_bytes).with_backend(backend);
+        let shards = write(rng, folder.path(), &soup, options);
+        let files = &shards.manifest().shards;
+        assert!(files.iter().all(|shard| shard.bytes <= max_bytes || shard.primitives == 1));
+        assert_eq!(shards.manifest().primitive_count(), soup.len() as u64);
+        most = most.max(files.len());
+        let budget = [0, 20_000, u64::MAX][rng.random_range(0..3)];
+        let shards = ShardedIndex::open_with_max_bytes(folder.path(), budget).unwrap();
+        let name = format!("case {case}, {kinds:?}, {layout:?}, {len}, {backend}, {max_bytes}, {budget}");
+        check_points(rng, &shards, &soup, &name);
+        if backend.casts_rays {
+            check_rays(rng, &shards, &soup, &name);
+        }
+    }
+    assert!(most > 50, "scenes are divided: {most}");
+}
+
+#[test]
+fn many_queries_of_a_mesh_in_one_batch() {
+    let rng = &mut rng("shards of a mesh", 0);
+    let (positions, elements) = scenes::scene(rng, scenes::Kinds::Triangles, Layout::Sheet, amount(60_000, 3_000));
+    let soup = Soup::new(positions.into_iter().map(Point3::from).collect(), elements).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let shards = write(rng, folder.path(), &soup, ShardOptions::default().with_max_bytes(40_000));
+    assert!(shards.manifest().shards.len() > 4);
+    let index = AabbTree::build(&soup, &Default::default()).unwrap();
+    let points = queries(rng, &soup, amount(200_000, 5_000));
+    let mut found = vec![None; points.len()];
+    let shards = ShardedIndex::open_with_max_bytes(folder.path(), 0).unwrap();
+    shards.closest_points_into(&points, &QueryOptions::default(), &mut found).unwrap();
+    for (query, found) in points.iter().zip(&found) {
+        let expected = index.closest_point(query);
+        assert_eq!(found.as_ref().map(of_shards), expected.as_ref().map(of_index), "{query}");
+    }
+    // Each shard is loaded once for each phase.
+    assert!(shards.loads() <= 2 * shards.manifest().shards.len() as u64, "{}", shards.loads());
+}
+
+#[test]
+fn closed_surfaces_have_an_inside() {
+    let sphere = p2m::scene::generate::ico_sphere(&Default::default()).unwrap();
+    let rng = &mut rng("inside of shards", 0);
+    let folder = tempfile::tempdir().unwrap();
+    let shards = write(rng, folder.path(), &sphere, ShardOptions::default().with_max_bytes(20_000));
+    assert!(shards.manifest().shards.len() > 2);
+    for _ in 0..amount(10_000, 300) {
+        let query = Point3::from(std::array::from_fn(|_| rng.random_range(-1.2..1.2)));
+        let radius = query.coords.norm();
+        // The sphere is a polyhedron, whose faces are a little inside.
+        if !(0.98..=1.0).contains(&radius) {
+            assert_eq!(shards.is_inside(&query).unwrap(), radius < 0.98, "{query}");
+        }
+    }
+    assert!(!shards.is_inside(&Point3::new(f64::NAN, 0.0, 0.0)).unwrap());
+    let folder = tempfile::tempdir().unwrap();
+    let point = Soup::new(vec![Point3::origin()], [Element::Point(0)]).unwrap();
+    let shards = write(rng, folder.path(), &point, ShardOptions::default());
+    assert!(matches!(shards.is_inside(&Point3::origin()), Err(ShardError::NoInside)));
+}
+
+#[test]
+fn names_and_sources_are_kept() {
+    let triangle = |x: f64| {
+        let positions = [[x, 0.0, 0.0], [x + 1.0, 0.0, 0.0], [x, 1.0, 0.0]];
+        let mut scene = Scene::from(Soup::from_arrays(&positions, &[[0u32, 1, 2]]).unwrap());
+        scene.sources = vec![7];
+        scene.objects = vec![Object { name: if x < 20.0 { "a".to_owned() } else { "b".to_owned() }, ids: 0..1 }];
+        scene
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let mut writer = ShardWriter::new(folder.path(), ShardOptions::default().with_max_bytes(1)).unwrap();
+    (0..4).for_each(|i| writer.add_scene(&triangle(10.0 * f64::from(i))).unwrap());
+    let shards = writer.finish().unwrap();
+    let objects = shards.manifest().objects();
+    let named: Vec<_> = objects.iter().map(|object| (&*object.name, object.ids.clone())).collect();
+    assert_eq!(named, [("a", 0..2), ("b", 2..4)]);
+    assert_eq!(shards.manifest().shards.len(), 4);
+    let scene = p2m::scene::read_scene(&folder.path().join(&shards.manifest().shards[3].file)).unwrap();
+    assert_eq!((scene.soup.len(), scene.sources), (1, vec![7]));
+}
+
+/// Returns the message of the error of a query for which all shards are needed.
+fn error_of(folder: &Path) -> String {
+    match ShardedIndex::open(folder) {
+        Ok(shards) => shards.k_nearest(&Point3::origin(), usize::MAX, f64::INFINITY).unwrap_err().to_string(),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn a_wrong_file_is_an_error_that_names_it() {
+    let rng = &mut rng("wrong shards", 0);
+    let sphere = p2m::scene::generate::ico_sphere(&Default::default()).unwrap();
+    let options = ShardOptions::default().with_max_bytes(20_000);
+    let write = |rng: &mut _, folder: &Path| write(rng, folder, &sphere, options.with_replace(true));
+    let [folder, other] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    let (folder, other) = (folder.path(), other.path());
+    write(rng, folder);
+    let mut larger = sphere.clone();
+    larger.map_positions(|p| p * 2.0).unwrap();
+    super::shards::write(rng, other, &larger, options);
+    let file = folder.join("00001.p2m");
+    let bytes = fs::read(&file).unwrap();
+
+    fs::remove_file(&file).unwrap();
+    assert!(error_of(folder).contains("00001.p2m"), "{}", error_of(folder));
+    fs::write(&file, &bytes[..bytes.len() - 64]).unwrap();
+    let length = format!("00001.p2m has {} bytes instead of {}", bytes.len() - 64, bytes.len());
+    assert!(error_of(folder).ends_with(&length), "{}", error_of(folder));
+    let mut damaged = bytes.clone();
+    damaged[bytes.len() / 2] ^= 1;
+    fs::write(&file, &damaged).unwrap();
+    assert!(error_of(folder).contains("00001.p2m is damaged: the checksum of"), "{}", error_of(folder));
+    let mut version = bytes.clone();
+    version[8] = 250;
+    fs::write(&file, &version).unwrap();
+    assert!(error_of(folder).contains("00001.p2m has version 250 of the format"), "{}", error_of(folder));
+    // A shard of the same length that belongs to another scene.
+    let same = Manifest::read(other).unwrap().shards.iter().find(|shard| shard.bytes == bytes.len() as u64).cloned();
+    fs::copy(other.join(same.expect("both spheres are divided alike").file), &file).unwrap();
+    assert!(error_of(folder).ends_with("not the shard that the manifest describes: its checksum differs"));
+    fs::write(&file, &bytes).unwrap();
+    assert!(ShardedIndex::open(folder).unwrap().closest_point(&Point3::origin()).unwrap().is_some());
+
+    let manifest = folder.join(MANIFEST_FILE);
+    let text = fs::read_to_string(&manifest).unwrap();
+    fs::write(&manifest, text.replacen("\"primitives\": ", "\"primitives\": 1", 1)).unwrap();
+    assert!(error_of(folder).ends_with("the manifest is damaged: its checksum is wrong"), "{}", error_of(folder));
+    fs::write(&manifest, text.replacen("\"version\": 1", "\"version\": 2", 1)).unwrap();
+    assert!(error_of(folder).ends_with("the manifest has version 2, but this program reads version 1"));
+    fs::write(&manifest, "{}").unwrap();
+    assert!(error_of(folder).contains("not the manifest of a sharded index"), "{}", error_of(folder));
+    fs::remove_file(&manifest).unwrap();
+    assert!(error_of(folder).contains(MANIFEST_FILE), "{}", error_of(folder));
+}
+
+#[test]
+fn an_index_is_only_replaced_on_purpose_and_unfinished_ones_leave_nothing() {
+    let rng = &mut rng("replaced shards", 0);
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("site");
+    let sphere = p2m::scene::generate::ico_sphere(&Default::default()).unwrap();
+    let options = ShardOptions::default().with_max_bytes(20_000);
+    let mut writer = ShardWriter::new(&folder, options).unwrap();
+    writer.add_scene(&sphere.clone().into()).unwrap();
+    let cancelled = writer.finish_with_progress(&mut |_| std::ops::ControlFlow::Break(()));
+    assert!(matches!(cancelled, Err(ShardError::Cancelled)));
+    assert!(!folder.exists());
+    let count = write(rng, &folder, &sphere, options).manifest().shards.len();
+    assert!(matches!(ShardWriter::new(&folder, options), Err(ShardError::Exists { .. })));
+    let one = write(rng, &folder, &sphere, ShardOptions::default().with_replace(true));
+    assert_eq!(one.manifest().shards.len(), 1);
+    assert!(count > 1 && fs::read_dir(&folder).unwrap().count() == 2, "the shards that were replaced are gone");
+}
