@@ -28,8 +28,7 @@
 //! answer is that of one index over the whole scene: distances, points, features, weights and parameters have the same
 //! bits, and of equal keys the lowest id wins. So answers depend neither on how the scene was divided, nor on the order
 //! in which shards are loaded, nor on the memory that they may take. Lower bounds are certified, but in their last bits
-//! they depend on the primitives that a search evaluates, as they do between backends; those of certified answers and
-//! of the k nearest are equal as well.
+//! they depend on the primitives that a search evaluates, as they do between backends; those of the k nearest are equal.
 //!
 //! A query fails if it needs a shard whose file is missing, cut off, damaged, or not the one that the manifest
 //! describes. It never answers without such a shard.
