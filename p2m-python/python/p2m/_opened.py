@@ -176,8 +176,7 @@ def index_source(index: Any, map: bool) -> IndexFile | Index:
             if map:
                 raise ValueError("map: the index was not loaded from a file")
             return index
-        path, checksum, is_mapped = origin
-        return IndexFile(os.fspath(path), checksum, is_mapped or map)
+        return IndexFile(os.fspath(origin[0]), origin[1], origin[2] or map)
     if not isinstance(index, (str, os.PathLike)):
         raise TypeError(f"index: {type(index).__name__} is neither a path nor a p2m.Index")
     absolute = os.path.abspath(os.fspath(index))
