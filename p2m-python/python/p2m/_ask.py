@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +12,6 @@ from numpy.typing import NDArray
 from ._arrays import FIELDS, checked_limits, outputs, thread_count
 from ._index import Index
 from ._opened import index_source, opened
-
-if TYPE_CHECKING:
-    import pyarrow
 
 class Ask:
     """A function of batches of points that appends the closest points of one saved index.
@@ -185,8 +182,17 @@ class Ask:
         for batch in batches:
             yield self(batch)
 
-    def schema(self, schema: pyarrow.Schema) -> pyarrow.Schema:
+    def schema(self, schema: Any) -> Any:
         """Return the schema of the answers to batches of Arrow with a schema.
+
+        Parameters
+        ----------
+        schema : pyarrow.Schema
+            The schema of the batches with the points.
+
+        Returns
+        -------
+        pyarrow.Schema
 
         Examples
         --------

@@ -53,8 +53,8 @@ try:
     import dask
     import dask.array as da
     from dask.base import tokenize
-except ImportError as missing:
-    raise ImportError('p2m.dask needs Dask: pip install "dask[array]"') from missing
+except ImportError:
+    raise ImportError('p2m.dask needs Dask: pip install "dask[array]"')
 
 from ._arrays import FIELDS, HIT_FIELDS, checked_limits, coordinates, not_negative, outputs, thread_count
 from ._index import Index
@@ -441,6 +441,7 @@ def _columns(
     answers = da.map_blocks(
         _answer_block,
         *blocks,
+        chunks=_chunks(blocks),
         dtype=object,
         # The chunks of this array are dictionaries. It has the axes of the points, and nobody sees it.
         meta=np.empty((0,) * max(array.ndim for array in blocks), object),
@@ -485,6 +486,15 @@ def _aligned(arrays: list[da.Array]) -> list[da.Array]:
     return list(da.core.unify_chunks(*pairs)[1])
 
 
+def _chunks(arrays: Sequence[da.Array]) -> tuple[tuple[int, ...], ...]:
+    """Return the chunks of arrays that are broadcast against each other, which Dask knows only for one array."""
+    chunks: list[tuple[int, ...]] = []
+    for axis in range(-max(array.ndim for array in arrays), 0):
+        sizes = [array.chunks[axis] for array in arrays if array.ndim >= -axis]
+        chunks.append(max(sizes, key=lambda size: (size != (1,), len(size))))
+    return tuple(chunks)
+
+
 class _BlockGrid(NamedTuple):
     """Where the points of a block are among all points, if all chunks but the last one of an axis have one size."""
 
@@ -498,14 +508,11 @@ class _BlockGrid(NamedTuple):
         """Return the grid of the blocks of arrays that are broadcast against each other."""
         if not all(_is_known(array) for array in arrays):
             return None
-        shape = np.broadcast_shapes(*(array.shape for array in arrays))[:-1]
-        steps = []
-        for axis in range(1, len(shape) + 1):
-            chunks = max((array.chunks[-1 - axis] for array in arrays if array.ndim > axis), key=len)
-            if any(size != chunks[0] for size in chunks[:-1]) or chunks[-1] > chunks[0]:
+        leading = _chunks(arrays)[:-1]
+        for sizes in leading:
+            if any(size != sizes[0] for size in sizes[:-1]) or sizes[-1] > sizes[0]:
                 return None
-            steps.append(chunks[0])
-        return cls(shape, tuple(steps[::-1]))
+        return cls(tuple(sum(sizes) for sizes in leading), tuple(sizes[0] for sizes in leading))
 
     def row(self, row: int, block_shape: tuple[int, ...], block: tuple[int, ...]) -> int:
         """Return the row among all flattened points of a row of a block."""
