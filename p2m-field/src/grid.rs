@@ -26,11 +26,15 @@ pub enum GridError {
 
 /// Points at equal distances along the axes.
 ///
-/// The point with the indices (i, j, k) is origin + spacing * (i, j, k), rounded to f64.
+/// The point with the indices (i, j, k) is origin + spacing * (i, j, k), rounded to f64. In a [part](Self::part) of a
+/// grid it is the point of the whole grid, with the same coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
+    /// The origin of the whole grid.
     origin: Point3<f64>,
     spacing: f64,
+    /// The indices in the whole grid of the point with the indices (0, 0, 0).
+    first: [usize; 3],
     counts: [usize; 3],
 }
 
@@ -49,10 +53,33 @@ impl Grid {
         if !total.is_some_and(|n| (1..=Self::MAX_POINTS).contains(&(n as u64))) {
             return Err(GridError::Count(x, y, z));
         }
-        let grid = Self { origin, spacing, counts };
-        let last = grid.point(counts.map(|n| n - 1));
-        let is_in_range = spacing > 0.0 && [origin, last].iter().flat_map(|p| p.iter()).all(|x| x.is_finite());
-        if is_in_range { Ok(grid) } else { Err(GridError::Spacing(spacing)) }
+        Self { origin, spacing, first: [0; 3], counts }.checked()
+    }
+
+    /// Returns the grid of `counts` points of this one from the indices `first` on, which may lie beyond this grid.
+    ///
+    /// The coordinates of its points are the same bits as in this grid, so the field of a grid can be computed by parts.
+    /// A new grid with the origin `self.point(first)` has coordinates that may differ by their rounding.
+    ///
+    /// # Errors
+    /// The errors of [`new`](Self::new), and [`GridError::Count`] for indices above 2^40.
+    pub fn part(&self, first: [usize; 3], counts: [usize; 3]) -> Result<Self, GridError> {
+        let first: [Option<usize>; 3] = std::array::from_fn(|k| {
+            let sum = self.first[k].checked_add(first[k])?;
+            (sum as u64 <= Self::MAX_POINTS).then_some(sum)
+        });
+        let [Some(x), Some(y), Some(z)] = first else {
+            return Err(GridError::Count(counts[0], counts[1], counts[2]));
+        };
+        let whole = Self::new(self.origin, self.spacing, counts)?;
+        Self { first: [x, y, z], ..whole }.checked()
+    }
+
+    /// Returns the grid if its coordinates are finite and its points are apart.
+    fn checked(self) -> Result<Self, GridError> {
+        let ends = [self.point([0; 3]), self.point(self.counts.map(|n| n - 1))];
+        let is_in_range = self.spacing > 0.0 && ends.iter().flat_map(|p| p.iter()).all(|x| x.is_finite());
+        if is_in_range { Ok(self) } else { Err(GridError::Spacing(self.spacing)) }
     }
 
     /// Makes a grid that covers a box, scaled about its centre.
@@ -92,7 +119,7 @@ impl Grid {
     /// Returns the point with the indices (0, 0, 0).
     #[must_use]
     pub fn origin(&self) -> Point3<f64> {
-        self.origin
+        self.point([0; 3])
     }
 
     /// Returns the distance of neighbouring points, in units of the scene.
@@ -116,9 +143,9 @@ impl Grid {
 
     /// Returns the point with the indices (i, j, k).
     #[must_use]
-    #[allow(clippy::cast_precision_loss, reason = "below 2^40")]
+    #[allow(clippy::cast_precision_loss, reason = "at most 2^41")]
     pub fn point(&self, indices: [usize; 3]) -> Point3<f64> {
-        std::array::from_fn::<f64, 3, _>(|k| self.origin[k] + self.spacing * indices[k] as f64).into()
+        std::array::from_fn::<f64, 3, _>(|k| self.origin[k] + self.spacing * (self.first[k] + indices[k]) as f64).into()
     }
 
     /// Returns the number of the point (i, j, k) in a field, where x runs fastest and z slowest.
@@ -146,6 +173,29 @@ mod tests {
         let grid = Grid::around(&bounds([8.0, 3.5, 2.0]), 5, 2.0).unwrap();
         assert_eq!((grid.counts(), grid.spacing()), ([5, 3, 2], 4.0));
         assert_eq!(grid.origin(), Point3::new(-4.0, 1.75 - 4.0, -1.0));
+    }
+
+    #[test]
+    fn parts_of_a_grid_have_its_points() {
+        let whole = Grid::new(Point3::new(-0.3, 0.1, 7.7), 0.1, [50, 40, 30]).unwrap();
+        let part = whole.part([7, 3, 11], [30, 20, 10]).unwrap();
+        let inner = part.part([5, 4, 3], [2, 2, 2]).unwrap();
+        let mut rounded_otherwise = 0;
+        let moved = Grid::new(part.origin(), 0.1, part.counts()).unwrap();
+        for n in 0..part.len() {
+            let [i, j, k] = [n % 30, n / 30 % 20, n / 600];
+            assert_eq!(part.point([i, j, k]), whole.point([7 + i, 3 + j, 11 + k]));
+            rounded_otherwise += usize::from(moved.point([i, j, k]) != part.point([i, j, k]));
+        }
+        assert!(rounded_otherwise > 0);
+        assert_eq!(inner.point([1, 1, 1]), whole.point([13, 8, 15]));
+        assert_eq!((part.origin(), part.counts()), (whole.point([7, 3, 11]), [30, 20, 10]));
+        assert_eq!(whole.part([60, 0, 0], [1, 1, 1]).unwrap().origin(), whole.point([60, 0, 0]));
+        assert_eq!(whole.part([0; 3], [0, 1, 1]), Err(GridError::Count(0, 1, 1)));
+        assert_eq!(whole.part([usize::MAX; 3], [1, 1, 1]), Err(GridError::Count(1, 1, 1)));
+        assert_eq!(part.part([usize::MAX; 3], [1, 1, 1]), Err(GridError::Count(1, 1, 1)));
+        let wide = Grid::new(Point3::origin(), 1e300, [2, 2, 2]).unwrap();
+        assert!(matches!(wide.part([1 << 39, 0, 0], [1, 1, 1]), Err(GridError::Spacing(_))));
     }
 
     #[test]

@@ -16,21 +16,23 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 #[pymethods]
 impl Index {
-    /// Returns the distances at the points of a grid, with x running fastest.
-    #[pyo3(signature = (origin, spacing, counts, sign, band, threads, progress))]
+    /// Returns the distances at the points of a grid from the indices `first` on, with x running fastest.
+    #[pyo3(signature = (origin, spacing, first, counts, sign, band, threads, progress))]
     #[allow(clippy::too_many_arguments, reason = "the Python layer passes them all")]
     fn field<'py>(
         &self,
         py: Python<'py>,
         origin: [f64; 3],
         spacing: f64,
+        first: [usize; 3],
         counts: [usize; 3],
         sign: Option<&str>,
         band: f64,
         threads: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let grid = Grid::new(Point3::from(origin), spacing, counts).map_err(grid_error)?;
+        let grid = Grid::new(Point3::from(origin), spacing, counts);
+        let grid = grid.and_then(|grid| grid.part(first, counts)).map_err(grid_error)?;
         let signed = match sign {
             Some(name) => Some(self.signs(py, SignRule::from_name(name)?, threads)?),
             None => None,

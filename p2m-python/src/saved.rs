@@ -41,16 +41,10 @@ fn load_file(file: &SavedFile) -> Result<Loaded, LoadError> {
     Ok((scene, built.map(|built| (backend, built))))
 }
 
-/// Loads an index from the file at a path. With a checksum, the file has to be the one that had it.
+/// Loads an index from the file at a path.
 #[pyfunction]
-#[pyo3(signature = (path, map, checksum, threads))]
-pub(crate) fn load(
-    py: Python<'_>,
-    path: PathBuf,
-    map: bool,
-    checksum: Option<&str>,
-    threads: usize,
-) -> PyResult<Index> {
+#[pyo3(signature = (path, map, threads))]
+pub(crate) fn load(py: Python<'_>, path: PathBuf, map: bool, threads: usize) -> PyResult<Index> {
     let name = path.display().to_string();
     let file = path.clone();
     let loaded = run_owned(py, threads, 1, None, move |_| {
@@ -58,16 +52,11 @@ pub(crate) fn load(
         let loaded = load_file(&saved)?;
         Ok::<_, LoadError>((loaded, format!("{:016x}", saved.checksum())))
     })?;
-    let ((scene, index), found) = loaded.map_err(|error| load_error(&error, &name))?;
-    if let Some(expected) = checksum.filter(|expected| *expected != found) {
-        return Err(PyValueError::new_err(format!(
-            "{name} is not the file that the pickled index came from: its checksum is {found} instead of {expected}"
-        )));
-    }
+    let ((scene, index), checksum) = loaded.map_err(|error| load_error(&error, &name))?;
     let Some((backend, built)) = index else {
         return Err(PyValueError::new_err(format!("{name} has a scene but no index: read it with p2m.read")));
     };
-    Ok(Index::new(scene, built, backend, Some(Origin { path, checksum: found, is_mapped: map })))
+    Ok(Index::new(scene, built, backend, Some(Origin { path, checksum, is_mapped: map })))
 }
 
 /// Loads an index from the bytes of `Index.to_bytes`. An index of a backend that has no saved form is built anew.

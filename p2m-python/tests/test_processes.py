@@ -52,7 +52,7 @@ def test_indexes_of_files_are_pickled_as_their_path(tmp_path: Path, queries: np.
         assert_same(pickle.loads(data).closest(queries), index.closest(queries))
     copied = pickle.dumps(p2m.load(path))
     p2m.Index(mixed_scene(3)).save(path)
-    with pytest.raises(ValueError, match="is not the file that the pickled index came from: its checksum"):
+    with pytest.raises(ValueError, match="is not the file that the index came from: its checksum"):
         pickle.loads(copied)
     path.unlink()
     with pytest.raises(FileNotFoundError):

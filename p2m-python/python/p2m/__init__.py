@@ -13,13 +13,15 @@ array([2., 5.])
 
 `read` reads scenes from files, and `Scene.of` takes meshes of trimesh, Open3D, PyVista and meshio. `Index` has the
 queries. `hausdorff` returns the Hausdorff distance of two scenes. `load` loads saved indexes, and `advise` tells which
-backend a scene calls for.
+backend a scene calls for. `Ask` and the module `p2m.dask` ask a saved index from any number of processes.
 """
 
 from __future__ import annotations
 
+from ._ask import Ask
 from ._hausdorff import HausdorffDistance, hausdorff
 from ._index import Estimate, Index, advise, load
+from ._opened import clear_opened
 from ._p2m import __version__, backends
 from ._records import (
     AllHits,
@@ -35,6 +37,7 @@ from ._scene import Counts, Object, Scene, read
 
 __all__ = [
     "AllHits",
+    "Ask",
     "BallContacts",
     "ClosestPairs",
     "ClosestPoints",
@@ -51,6 +54,7 @@ __all__ = [
     "__version__",
     "advise",
     "backends",
+    "clear_opened",
     "hausdorff",
     "load",
     "read",

@@ -127,6 +127,19 @@ def not_negative(value: float, name: str) -> float:
     return number
 
 
+def checked_limits(
+    max_distance: float | None, epsilon: float, max_visits: int | None, certified: bool
+) -> tuple[float, float]:
+    """Return the largest distance and the relative error, after a check of all limits of a search."""
+    largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
+    error = not_negative(epsilon, "epsilon")
+    if max_visits is not None and not 0 <= max_visits < 2**32:
+        raise ValueError(f"max_visits: {max_visits} is not from 0 to {2**32 - 1}")
+    if certified and (error > 0.0 or max_visits is not None):
+        raise ValueError("certified: certified answers have neither epsilon nor max_visits")
+    return largest, error
+
+
 def checked_out(array: Any, name: str, dtype: np.dtype[Any], shape: tuple[int, ...]) -> NDArray[Any]:
     """Return an array that answers can be written to."""
     if not isinstance(array, np.ndarray):

@@ -16,6 +16,7 @@ from ._arrays import (
     Out,
     Progress,
     callback,
+    checked_limits,
     coordinates,
     flat,
     not_negative,
@@ -78,7 +79,8 @@ class Index(PairQueries):
     An empty scene has an index: its queries have no answer, as those have that find nothing within `max_distance`.
 
     ``copy.copy`` and ``copy.deepcopy`` return the same object. An index that was loaded from a file is pickled as the
-    path and the checksum of the file, any other as its bytes together with the scene.
+    path and the checksum of the file, any other as its bytes together with the scene. A process that unpickles an index
+    of a file several times opens the file once, and keeps the four indexes that it used last (`p2m.clear_opened`).
 
     Examples
     --------
@@ -246,12 +248,7 @@ class Index(PairQueries):
         queries = coordinates(points, "points")
         shape = queries.shape[:-1]
         arrays = outputs(fields, shape, out, FIELDS, ("distance", "primitive"))
-        largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
-        error = not_negative(epsilon, "epsilon")
-        if max_visits is not None and not 0 <= max_visits < 2**32:
-            raise ValueError(f"max_visits: {max_visits} is not from 0 to {2**32 - 1}")
-        if certified and (error > 0.0 or max_visits is not None):
-            raise ValueError("certified: certified answers have neither epsilon nor max_visits")
+        largest, error = checked_limits(max_distance, epsilon, max_visits, certified)
         columns = flat(arrays)
         objects = columns.pop("object", None)
         if objects is not None and "primitive" not in columns:
@@ -666,6 +663,7 @@ class Index(PairQueries):
         signed: bool = False,
         sign: _Sign = "auto",
         band: float | None = None,
+        first: Sequence[int] = (0, 0, 0),
         out: NDArray[Any] | None = None,
         threads: int | None = None,
         progress: Progress = None,
@@ -675,7 +673,7 @@ class Index(PairQueries):
         Parameters
         ----------
         origin : array_like, shape (3,)
-            The point with the indices (0, 0, 0).
+            The point of the grid with the indices (0, 0, 0).
         spacing : float
             The distance of neighbouring points.
         shape : sequence of three int
@@ -686,6 +684,9 @@ class Index(PairQueries):
             The rule of signs, as for `signed_distance`.
         band : float, optional
             The largest distance that is computed. Beyond it the field has this value, with the right sign.
+        first : sequence of three int, optional
+            The indices at which the field begins, for a field that is computed by parts. A part has the same bits as
+            the whole field, apart from wrong signs of surfaces that intersect themselves.
         out : ndarray of float32 or float64, shape (x, y, z), optional
             The array that receives the field, with any strides; it may be mapped from a file.
         threads, progress
@@ -694,8 +695,8 @@ class Index(PairQueries):
         Returns
         -------
         ndarray of float32, shape (x, y, z), or out
-            ``field[i, j, k]`` belongs to the point ``origin + spacing * (i, j, k)``. A new array is in Fortran order,
-            with x running fastest.
+            ``field[i, j, k]`` belongs to the point ``origin + spacing * (first + (i, j, k))``. A new array is in
+            Fortran order, with x running fastest.
 
         Raises
         ------
@@ -708,11 +709,16 @@ class Index(PairQueries):
         >>> index = p2m.Index(p2m.Scene([[0, 0, 0]], points=[0]))
         >>> index.field((0, 0, 0), 3.0, (2, 1, 2))[:, 0, :].tolist()
         [[0.0, 3.0], [3.0, 4.242640495300293]]
+        >>> index.field((0, 0, 0), 3.0, (1, 1, 2), first=(1, 0, 0))[0, 0].tolist()
+        [3.0, 4.242640495300293]
         """
-        first = coordinates(origin, "origin", only_float64=True)
-        if first.shape != (3,):
-            raise ValueError(f"origin: the shape is {first.shape} instead of (3,)")
+        corner = coordinates(origin, "origin", only_float64=True)
+        if corner.shape != (3,):
+            raise ValueError(f"origin: the shape is {corner.shape} instead of (3,)")
         counts = tuple(int(count) for count in shape)
+        starts = tuple(int(start) for start in first)
+        if len(starts) != 3 or not 0 <= min(starts) <= max(starts) <= 2**40:
+            raise ValueError(f"first: {starts} are not three indices from 0 to 2**40")
         if len(counts) != 3 or min(counts) < 1:
             raise ValueError(f"shape: {tuple(shape)} are not three numbers of points")
         if out is not None:
@@ -725,11 +731,12 @@ class Index(PairQueries):
             if not out.flags.writeable:
                 raise ValueError("out: the array is read-only")
         width = float("inf") if band is None else not_negative(band, "band")
-        x, y, z = (float(value) for value in first)
+        x, y, z = (float(value) for value in corner)
         with callback(progress, "filling the grid", "points") as call:
             values = self._raw.field(
                 (x, y, z),
                 float(spacing),
+                (starts[0], starts[1], starts[2]),
                 (counts[0], counts[1], counts[2]),
                 sign if signed else None,
                 width,
@@ -826,11 +833,13 @@ def load(path: str | os.PathLike[str], map: bool = False, *, threads: int | None
     """
     absolute = os.path.abspath(os.fspath(path))
     own = None if threads is None else thread_count(threads)
-    return Index._from_raw(_p2m.load(absolute, map, None, thread_count(threads)), own)
+    return Index._from_raw(_p2m.load(absolute, map, thread_count(threads)), own)
 
 
 def _load_pickled(path: str, checksum: str, is_mapped: bool, threads: int | None) -> Index:
-    return Index._from_raw(_p2m.load(path, is_mapped, checksum, thread_count(threads)), threads)
+    from ._opened import open_index
+
+    return open_index(path, checksum=checksum, map=is_mapped, threads=threads)
 
 
 def _load_bytes(data: bytes, backend: str, threads: int | None) -> Index:

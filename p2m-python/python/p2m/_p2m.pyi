@@ -29,7 +29,7 @@ _Path = str | PathLike[str]
 
 def backends() -> list[str]: ...
 def default_threads() -> int: ...
-def load(path: _Path, map: bool, checksum: str | None, threads: int) -> Index: ...
+def load(path: _Path, map: bool, threads: int) -> Index: ...
 def load_bytes(bytes: bytes, backend: str, threads: int) -> Index: ...
 def advise(
     scene: Scene,
@@ -171,6 +171,7 @@ class Index:
         self,
         origin: tuple[float, float, float],
         spacing: float,
+        first: tuple[int, int, int],
         counts: tuple[int, int, int],
         sign: str | None,
         band: float,

@@ -1,0 +1,193 @@
+"""Indexes of files, of which a process opens each once."""
+
+from __future__ import annotations
+
+import errno
+import os
+import threading
+from collections import OrderedDict
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from . import _p2m
+from ._arrays import thread_count
+from ._index import Index
+
+MAX_OPENED = 4
+"""The number of indexes that a process keeps open, which are those that it used last."""
+
+_HEADER_BYTES = 64
+_MAGIC = b"\x89P2M\r\n\x1a\n"
+_CHECKSUM = slice(24, 32)
+"""The bytes of the header with the checksum, which stands for the whole content of a file."""
+
+
+class _FileVersion(NamedTuple):
+    """What differs between a file and another one that replaces it, and whether it is mapped."""
+
+    path: str
+    size: int
+    modified_ns: int
+    inode: int
+    checksum: str | None
+    is_mapped: bool
+
+
+class _Entry:
+    """An index that is open, or that one thread opens while others wait for it."""
+
+    def __init__(self, raw: _p2m.Index | None = None) -> None:
+        self.lock = threading.Lock()
+        self.raw = raw
+
+
+_lock = threading.Lock()
+_entries: OrderedDict[_FileVersion, _Entry] = OrderedDict()
+
+
+def _after_fork() -> None:
+    """Replace locks in a child process, because threads that the child does not have may hold them."""
+    global _lock
+    _lock = threading.Lock()
+    for version, entry in list(_entries.items()):
+        if entry.raw is None:
+            del _entries[version]
+        else:
+            _entries[version] = _Entry(entry.raw)
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_after_fork)
+
+
+def clear_opened() -> None:
+    """Forget the indexes of files that this process keeps open.
+
+    A process keeps the four indexes that it used last among those that `Ask`, `p2m.dask` and `pickle` opened. Their
+    memory is free as soon as nothing else uses them.
+
+    Examples
+    --------
+    >>> import p2m
+    >>> p2m.clear_opened()
+    """
+    with _lock:
+        _entries.clear()
+
+
+def read_checksum(path: str) -> str | None:
+    """Return the checksum in the header of a saved index, or None if the file does not begin with such a header."""
+    with open(path, "rb") as file:
+        header = file.read(_HEADER_BYTES)
+    if len(header) < _HEADER_BYTES or not header.startswith(_MAGIC):
+        return None
+    return f"{int.from_bytes(header[_CHECKSUM], 'little'):016x}"
+
+
+def _version(path: str, is_mapped: bool) -> _FileVersion:
+    real = os.path.realpath(path)
+    status = os.stat(real)
+    return _FileVersion(real, status.st_size, status.st_mtime_ns, status.st_ino, read_checksum(real), is_mapped)
+
+
+def _open_version(version: _FileVersion, path: str, threads: int) -> _p2m.Index:
+    with _lock:
+        for other in [key for key in _entries if key.path == version.path and key.is_mapped == version.is_mapped]:
+            if other != version:
+                del _entries[other]
+        entry = _entries.setdefault(version, _Entry())
+        _entries.move_to_end(version)
+        while len(_entries) > MAX_OPENED:
+            _entries.popitem(last=False)
+    with entry.lock:
+        if entry.raw is None:
+            try:
+                entry.raw = _p2m.load(path, version.is_mapped, threads)
+            except BaseException:
+                with _lock:
+                    if _entries.get(version) is entry:
+                        del _entries[version]
+                raise
+        return entry.raw
+
+
+def open_index(
+    path: str | os.PathLike[str], *, checksum: str | None = None, map: bool = False, threads: int | None = None
+) -> Index:
+    """Return the index that is saved at a path, which this process opens once.
+
+    Later calls return the same index until another file is at the path. Two threads that ask for one path at the same
+    time open it once. The process keeps `MAX_OPENED` indexes.
+
+    Parameters
+    ----------
+    path : path-like
+        The file of a saved index.
+    checksum : str, optional
+        The checksum that the file has to have.
+    map : bool, optional
+        Whether the file is mapped, as for `p2m.load`.
+    threads : int, optional
+        The number of threads for queries, as for `p2m.load`.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read, or the path is a directory.
+    ValueError
+        If the file is damaged, is not a saved index, or has another checksum.
+    """
+    absolute = os.path.abspath(os.fspath(path))
+    if os.path.isdir(absolute):
+        raise IsADirectoryError(errno.EISDIR, "A saved index is a file, and this is a directory", absolute)
+    while True:
+        version = _version(absolute, map)
+        if checksum is not None and version.checksum not in (None, checksum):
+            raise ValueError(
+                f"{absolute} is not the file that the index came from: its checksum is {version.checksum} instead of "
+                f"{checksum}"
+            )
+        raw = _open_version(version, absolute, thread_count(threads))
+        origin = raw.origin()
+        # The file may have been replaced after its header was read.
+        if origin is not None and origin[1] == version.checksum:
+            return Index._from_raw(raw, threads)
+
+
+@dataclass(frozen=True)
+class IndexFile:
+    """The file of a saved index, which other processes open."""
+
+    path: str
+    checksum: str | None
+    """The checksum that the file has to have, or None for any."""
+    is_mapped: bool
+
+    def open(self, threads: int | None) -> Index:
+        """Return the index, which a process opens once."""
+        return open_index(self.path, checksum=self.checksum, map=self.is_mapped, threads=threads)
+
+
+def index_source(index: Any, map: bool) -> IndexFile | Index:
+    """Return the file of an index that was loaded from one or is named by its path, and any other index as it is."""
+    if isinstance(index, Index):
+        origin = index._raw.origin()
+        if origin is None:
+            if map:
+                raise ValueError("map: the index was not loaded from a file")
+            return index
+        return IndexFile(os.fspath(origin[0]), origin[1], origin[2] or map)
+    if not isinstance(index, (str, os.PathLike)):
+        raise TypeError(f"index: {type(index).__name__} is neither a path nor a p2m.Index")
+    absolute = os.path.abspath(os.fspath(index))
+    try:
+        checksum = read_checksum(absolute)
+    except OSError:
+        # Other machines may have a file system that this one has not.
+        checksum = None
+    return IndexFile(absolute, checksum, map)
+
+
+def opened(source: IndexFile | Index, threads: int | None) -> Index:
+    """Return the index of a source."""
+    return source.open(threads) if isinstance(source, IndexFile) else source

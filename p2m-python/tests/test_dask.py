@@ -1,0 +1,324 @@
+"""Lazy arrays of Dask have the bits of the eager answers, whatever the chunks and the processes."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import assert_same, mixed_scene, sphere
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import p2m
+
+dask = pytest.importorskip("dask")
+da = pytest.importorskip("dask.array")
+import p2m.dask
+
+FIELDS = ("distance", "primitive", "point", "feature", "barycentric", "lower_bound", "object")
+HIT_FIELDS = ("t", "primitive", "point", "barycentric", "side")
+POINTS = np.random.default_rng(5).normal(size=(1000, 3))
+
+
+@pytest.fixture(autouse=True)
+def one_process() -> Iterator[None]:
+    with dask.config.set(scheduler="threads"):
+        yield
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("dask") / "mixed.p2m"
+    p2m.Index(mixed_scene()).save(file)
+    return file
+
+
+@pytest.fixture(scope="module")
+def index(path: Path) -> p2m.Index:
+    return p2m.load(path)
+
+
+@pytest.fixture(scope="module")
+def ball_index() -> p2m.Index:
+    return p2m.Index(p2m.Scene(*sphere(8, 12)))
+
+
+@pytest.fixture
+def calls(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Record the number of points of each search."""
+    seen: list[int] = []
+    closest = p2m.Index.closest
+
+    def counted(self: p2m.Index, points: Any, **options: Any) -> Any:
+        seen.append(len(points))
+        return closest(self, points, **options)
+
+    monkeypatch.setattr(p2m.Index, "closest", counted)
+    return seen
+
+
+@st.composite
+def chunked(draw: st.DrawFn) -> tuple[p2m.Index, Any, np.ndarray]:
+    """Return an index, an array of points in any chunks, and the same points as an array of NumPy."""
+    seed = draw(st.integers(0, 1000))
+    scene = mixed_scene(seed, 40, draw(st.integers(8, 60)))
+    shape = draw(st.one_of(
+        st.tuples(st.integers(0, 40)), st.tuples(st.integers(1, 9), st.integers(1, 9)), st.just(()),
+        st.tuples(st.integers(1, 4), st.integers(1, 5), st.integers(1, 4)),
+    ))
+    dtype = draw(st.sampled_from([np.float64, np.float32, np.int64]))
+    points = (np.random.default_rng(seed).normal(size=(*shape, 3)) * 2).astype(dtype)
+    chunks = []
+    for size in (*shape, 3):
+        cuts = sorted(draw(st.sets(st.integers(1, size - 1), max_size=4))) if size > 1 else []
+        chunks.append(tuple(int(n) for n in np.diff([0, *cuts, size])))
+    return p2m.Index(scene), da.from_array(points, chunks=tuple(chunks)), points
+
+
+@given(chunked(), st.sampled_from([{}, {"max_distance": 0.5}, {"certified": True}, {"epsilon": 0.1}, {"max_visits": 3}]))
+@settings(max_examples=50, deadline=None, suppress_health_check=list(HealthCheck))
+def test_all_fields_are_the_same_bits_for_all_chunks(case: tuple[p2m.Index, Any, np.ndarray], options: Any) -> None:
+    index, array, points = case
+    answer = p2m.dask.closest(array, index, fields=FIELDS, **options)
+    expected = index.closest(points, fields=FIELDS, threads=1, **options)
+    found = answer.compute()
+    assert isinstance(found, p2m.ClosestPoints) and found.fields == FIELDS
+    assert_same(found, expected)
+    for name in FIELDS:
+        assert answer[name].dtype == expected[name].dtype and answer[name].shape == expected[name].shape
+    assert answer.distance.chunks == array.chunks[:-1]
+
+
+@given(chunked(), chunked(), st.sampled_from(["first", "any", "count", "crossings"]))
+@settings(max_examples=50, deadline=None, suppress_health_check=list(HealthCheck))
+def test_rays_are_the_same_bits_for_all_chunks(
+    case: tuple[p2m.Index, Any, np.ndarray], other: tuple[p2m.Index, Any, np.ndarray], mode: Any
+) -> None:
+    index, origins, starts = case
+    _, directions, steps = other
+    steps = np.where(np.abs(steps).sum(axis=-1, keepdims=True) == 0, 1, steps)
+    directions = da.from_array(steps, chunks=directions.chunks)
+    for lazy, eager in [(directions, steps), ([0.0, 1.0, -2.0], [0.0, 1.0, -2.0])]:
+        try:
+            shape = np.broadcast_shapes(starts.shape, np.shape(eager))
+        except ValueError:
+            with pytest.raises(ValueError, match="broadcast"):
+                p2m.dask.rays(origins, lazy, index, mode)
+            continue
+        fields = HIT_FIELDS if mode == "first" else None
+        answer = p2m.dask.rays(origins, lazy, index, mode, t_min=-0.5, t_max=9.0, radius=0.1, fields=fields)
+        expected = index.rays(starts, eager, mode, t_min=-0.5, t_max=9.0, radius=0.1, fields=fields)
+        if mode == "first":
+            assert answer.t.shape == shape[:-1]
+            assert_same(answer.compute(), expected)
+        else:
+            assert answer.dtype == expected.dtype
+            np.testing.assert_array_equal(answer.compute(), expected)
+
+
+@pytest.mark.parametrize("options", [{}, {"sign": "winding", "inside": "positive"}, {"max_distance": 0.5}])
+def test_signed_distances_are_the_same_bits(ball_index: p2m.Index, options: Any) -> None:
+    found = p2m.dask.signed_distance(da.from_array(POINTS, chunks=(170, 2)), ball_index, **options).compute()
+    assert found.tobytes() == ball_index.signed_distance(POINTS, **options).tobytes()
+
+
+@given(
+    st.tuples(*[st.integers(1, 14)] * 3), st.tuples(*[st.integers(1, 14)] * 3), st.floats(-2, 0), st.floats(0.05, 0.4),
+    st.sampled_from([{}, {"signed": True}, {"signed": True, "sign": "winding"}, {"signed": True, "band": 0.25}]),
+)
+@settings(max_examples=30, deadline=None, suppress_health_check=list(HealthCheck))
+def test_fields_are_the_same_bits_for_all_chunks(
+    ball_index: p2m.Index, shape: Any, chunks: Any, origin: float, spacing: float, options: Any
+) -> None:
+    corner = (origin, -1.1, origin / 3)
+    array = p2m.dask.field(ball_index, corner, spacing, shape, chunks=chunks, **options)
+    whole = ball_index.field(corner, spacing, shape, **options)
+    assert array.dtype == whole.dtype and array.shape == whole.shape
+    assert array.compute().tobytes() == whole.tobytes()
+
+
+def test_all_fields_are_searched_once(path: Path, index: p2m.Index, calls: list[int], tmp_path: Path) -> None:
+    answer = p2m.dask.closest(da.from_array(POINTS, chunks=(300, 3)), path, fields=("distance", "primitive", "point"))
+    blocks = [100, 300, 300, 300]
+    dask.compute(answer.distance, answer.primitive)
+    assert sorted(calls) == blocks
+    calls.clear()
+    answer.compute(scheduler="sync")
+    assert sorted(calls) == blocks
+    calls.clear()
+    (answer.distance.sum() + answer.point.sum()).compute()
+    assert sorted(calls) == blocks
+    calls.clear()
+    targets = [np.empty(1000), np.empty(1000, np.int64)]
+    da.store([answer.distance, answer.primitive], targets)
+    assert sorted(calls) == blocks
+    assert_same(dict(zip(["distance", "primitive"], targets)), index.closest(POINTS), ("distance", "primitive"))
+    calls.clear()
+    kept = answer.persist()
+    assert isinstance(kept, p2m.dask.LazyClosestPoints)
+    kept.distance.compute(), kept.primitive.compute()
+    assert sorted(calls) == blocks
+
+
+def test_indexes_with_and_without_a_file_answer(path: Path, index: p2m.Index, ball_index: p2m.Index) -> None:
+    points = da.from_array(POINTS, chunks=(300, 3))
+    names = set()
+    for source in [path, str(path), index]:
+        lazy = p2m.dask.distance(points, source)
+        names.add(lazy.name)
+        assert len(pickle.dumps(lazy.dask)) < 40_000
+        np.testing.assert_array_equal(lazy.compute(), index.distance(POINTS))
+    mapped = p2m.dask.distance(points, path, map=True)
+    np.testing.assert_array_equal(mapped.compute(), index.distance(POINTS))
+    # The same question has the same name, by which schedulers recognise what they have computed.
+    assert len(names) == 1 and mapped.name not in names
+    lazy = p2m.dask.distance(points, ball_index)
+    assert lazy.name == p2m.dask.distance(points, ball_index).name != p2m.dask.distance(points, mixed_ball()).name
+    np.testing.assert_array_equal(lazy.compute(), ball_index.distance(POINTS))
+    with pytest.raises(ValueError, match="not loaded from a file"):
+        p2m.dask.distance(points, ball_index, map=True)
+
+
+def mixed_ball() -> p2m.Index:
+    return p2m.Index(p2m.Scene(*sphere(8, 12)))
+
+
+def test_chunks_of_unknown_sizes(path: Path, index: p2m.Index) -> None:
+    points = da.from_array(POINTS, chunks=(300, 3))
+    some, expected = points[points[:, 0] > 0.5], POINTS[POINTS[:, 0] > 0.5]
+    answer = p2m.dask.closest(some, path, fields=FIELDS)
+    assert np.isnan(answer.distance.shape[0])
+    assert_same(answer.compute(), index.closest(expected, fields=FIELDS))
+    hits = p2m.dask.rays(some, some, path).compute()
+    assert_same(hits, index.rays(expected, expected))
+    frame = pytest.importorskip("dask.dataframe")
+    pandas = pytest.importorskip("pandas")
+    rows = frame.from_pandas(pandas.DataFrame(POINTS, columns=["x", "y", "z"]), npartitions=3)
+    found = p2m.dask.distance(rows[rows.x > 0.5].to_dask_array(), path).compute()
+    np.testing.assert_array_equal(found, index.distance(expected))
+
+
+def test_points_and_answers_in_files(path: Path, index: p2m.Index, tmp_path: Path) -> None:
+    expected = index.closest(POINTS)
+    np.save(tmp_path / "points.npy", POINTS)
+    mapped = np.load(tmp_path / "points.npy", mmap_mode="r")
+    found = p2m.dask.closest(da.from_array(mapped, chunks=(300, 3)), path)
+    da.to_npy_stack(str(tmp_path / "distance"), found.distance)
+    np.testing.assert_array_equal(da.from_npy_stack(str(tmp_path / "distance")).compute(), expected.distance)
+    np.testing.assert_array_equal(p2m.dask.distance(mapped, path).compute(), expected.distance)
+    zarr = pytest.importorskip("zarr")
+    da.from_array(POINTS, chunks=(300, 2)).to_zarr(str(tmp_path / "points.zarr"))
+    lazy = p2m.dask.closest(da.from_zarr(str(tmp_path / "points.zarr")), path)
+    lazy.distance.to_zarr(str(tmp_path / "distance.zarr"))
+    np.testing.assert_array_equal(zarr.open_array(str(tmp_path / "distance.zarr"))[:], expected.distance)
+    opened = zarr.open_array(str(tmp_path / "points.zarr"))
+    np.testing.assert_array_equal(p2m.dask.closest(opened, path).primitive.compute(), expected.primitive)
+
+
+def test_messages_have_the_row_of_all_points(path: Path) -> None:
+    bad = POINTS.copy()
+    bad[777, 1] = np.nan
+    for points, chunks, message in [
+        (bad, (300, 3), "points: row 777 has a coordinate that is not finite"),
+        (bad, ((300, 400, 300), 3), r"points: row 77 of the block \(2,\) has a coordinate that is not finite"),
+        (bad.reshape(20, 50, 3), (6, 7, 3), "points: row 777 has a coordinate"),
+        (bad.reshape(5, 20, 10, 3), (2, 3, 4, 3), "points: row 777 has a coordinate"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            p2m.dask.distance(da.from_array(points, chunks=chunks), path).compute()
+    steps = np.ones((1000, 3))
+    steps[512] = 0.0
+    with pytest.raises(ValueError, match="directions?.* 512 "):
+        p2m.dask.rays(POINTS, da.from_array(steps, chunks=(100, 3)), path).compute()
+
+
+def test_wrong_arguments_are_errors_at_once(path: Path, index: p2m.Index) -> None:
+    points = da.from_array(POINTS, chunks=(300, 3))
+    for call, error, message in [
+        (lambda: p2m.dask.distance(points[:, :2], path), ValueError, r"points: the shape is \(1000, 2\)"),
+        (lambda: p2m.dask.distance(points.astype(str), path), TypeError, "points: the type is"),
+        (lambda: p2m.dask.distance(points, 3), TypeError, "index: int is neither a path nor"),
+        (lambda: p2m.dask.distance(points, path, threads=0), ValueError, "threads: 0"),
+        (lambda: p2m.dask.distance(points, path, max_distance=-1.0), ValueError, "max_distance: -1"),
+        (lambda: p2m.dask.closest(points, path, fields=("distance", "colour")), ValueError, "'colour' is none of"),
+        (lambda: p2m.dask.closest(points, path, fields=()), ValueError, "fields: none"),
+        (lambda: p2m.dask.closest(points, path, certified=True, epsilon=0.1), ValueError, "certified: "),
+        (lambda: p2m.dask.signed_distance(points, path, sign="odd"), ValueError, "sign: 'odd'"),
+        (lambda: p2m.dask.rays(points, [0, 0, 1], path, "all"), ValueError, "mode: 'all' is none of"),
+        (lambda: p2m.dask.rays(points, [0, 0, 1], path, "any", fields="t"), ValueError, "fields: the mode"),
+        (lambda: p2m.dask.rays(points, [0, 0, 1], path, t_min=2, t_max=1), ValueError, "t_min, t_max"),
+        (lambda: p2m.dask.field(path, (0, 0), 1.0, (2, 2, 2)), ValueError, "origin: the shape"),
+        (lambda: p2m.dask.field(path, (0, 0, 0), 1.0, (2, 0, 2)), ValueError, "shape: "),
+    ]:
+        with pytest.raises(error, match=message):
+            call()
+
+
+def test_wrong_files_are_errors_of_the_computation(tmp_path: Path) -> None:
+    file = tmp_path / "index.p2m"
+    lazy = p2m.dask.distance(POINTS, file)
+    with pytest.raises(FileNotFoundError, match=r"index\.p2m"):
+        lazy.compute()
+    p2m.Index(mixed_scene()).save(file)
+    assert np.isfinite(lazy.compute()).all()
+    by_path, by_index = p2m.dask.distance(POINTS, file), p2m.dask.distance(POINTS, p2m.load(file))
+    p2m.Index(mixed_scene(3)).save(file)
+    for replaced in [by_path, by_index]:
+        with pytest.raises(ValueError, match="is not the file that the index came from"):
+            replaced.compute()
+    data = bytearray(file.read_bytes())
+    data[len(data) // 2] ^= 1
+    file.write_bytes(data)
+    with pytest.raises(ValueError, match="damaged"):
+        p2m.dask.distance(POINTS, file).compute()
+    with pytest.raises(IsADirectoryError):
+        p2m.dask.distance(POINTS, tmp_path).compute()
+
+
+def test_without_dask_the_message_names_the_package() -> None:
+    code = "import sys; sys.modules['dask'] = None; import p2m; import p2m.dask"
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert ended.stderr.rstrip().endswith('ImportError: p2m.dask needs Dask: pip install "dask[array]"')
+
+
+def kill_once(block: np.ndarray, flag: str) -> np.ndarray:
+    """Return a block, after ending the process where this is the first block that holds its point."""
+    if block[0, 0] == POINTS[500, 0]:
+        try:
+            os.close(os.open(flag, os.O_CREAT | os.O_EXCL))
+        except FileExistsError:
+            return block
+        os.kill(os.getpid(), signal.SIGKILL)
+    return block
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system has no SIGKILL")
+def test_processes_of_a_cluster_answer_and_one_may_end(path: Path, index: p2m.Index, tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0,
+            local_directory=str(tmp_path),
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        points = da.from_array(POINTS, chunks=(100, 3))
+        for source in [path, index, p2m.Index(mixed_scene())]:
+            answer = p2m.dask.closest(points, source, fields=FIELDS, map=source is path)
+            assert_same(answer.compute(), index.closest(POINTS, fields=FIELDS))
+        flag = tmp_path / "killed"
+        before = set(client.run(os.getpid).values())
+        dying = points.map_blocks(kill_once, flag=str(flag), dtype=points.dtype, meta=np.empty((0, 3)))
+        found = p2m.dask.closest(dying, path, fields=FIELDS).compute()
+        assert_same(found, index.closest(POINTS, fields=FIELDS))
+        client.wait_for_workers(2, timeout=30)
+        after = set(client.run(os.getpid).values())
+        assert flag.exists() and len(before) == 2 and len(before - after) == 1
