@@ -10,8 +10,17 @@ const MIN_VERSION: (u32, u32) = (3, 11);
 /// The folder of the package.
 const PACKAGE: &str = "p2m-python";
 /// The packages that the tests need. They are those of the extra `test` in pyproject.toml.
-const NEEDED: [&str; 6] =
-    ["numpy>=1.26", "hypothesis>=6.100", "mypy>=1.15", "pytest>=8", "tqdm>=4.66", "types-tqdm>=4.66"];
+const NEEDED: [&str; 9] = [
+    "numpy>=1.26",
+    "dask[array]>=2026.8",
+    "hypothesis>=6.100",
+    "mypy>=1.15",
+    "pyarrow>=21",
+    "pytest>=8",
+    "tqdm>=4.66",
+    "types-tqdm>=4.66",
+    "zarr>=3",
+];
 
 /// The packages that p2m is compared with. They are those of the extra `compare` in pyproject.toml.
 const RIVALS: [&str; 6] =
