@@ -78,7 +78,7 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
     in_folder(PACKAGE, &examples, program)?;
     in_folder(".", &["pytest", "-q", "--doctest-glob=python.md", "docs/python.md"], program)?;
     in_folder(PACKAGE, &["mypy"], program)?;
-    in_folder(PACKAGE, &["mypy.stubtest", "p2m"], program)
+    in_folder(PACKAGE, &["mypy.stubtest", "--mypy-config-file", "pyproject.toml", "p2m"], program)
 }
 
 /// Returns the first Python of the path that is new enough and can make virtual environments.
