@@ -2,7 +2,6 @@
 
 use crate::{Shard, ShardError, ShardedIndex};
 use p2m_core::{Aabb, Hit, Ray, RayQuery};
-use std::sync::Arc;
 
 /// A hit of a ray in a sharded index.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,12 +64,12 @@ impl ShardedIndex {
     fn visit_along(
         &self,
         ray: &Ray,
-        visit: &mut dyn FnMut(f64, usize, &Arc<Shard>, &dyn RayQuery<f64>) -> bool,
+        mut visit: impl FnMut(usize, &Shard, &dyn RayQuery<f64>) -> bool,
     ) -> Result<(), ShardError> {
-        for (entry, number) in self.shards_along(ray) {
+        for (_, number) in self.shards_along(ray) {
             let shard = self.shard(number)?;
             let no_rays = || ShardError::NoRays { backend: self.manifest().backend.clone() };
-            if !visit(entry, number, &shard, shard.index().as_ray_query().ok_or_else(no_rays)?) {
+            if !visit(number, &shard, shard.index().as_ray_query().ok_or_else(no_rays)?) {
                 break;
             }
         }
@@ -111,7 +110,7 @@ impl ShardedIndex {
     /// It returns the errors of [`first_intersection`](Self::first_intersection).
     pub fn all_intersections(&self, ray: &Ray) -> Result<Vec<ShardHit>, ShardError> {
         let mut all = Vec::new();
-        self.visit_along(ray, &mut |_, number, shard, rays| {
+        self.visit_along(ray, |number, shard, rays| {
             let hits = rays.all_intersections(ray).into_iter();
             all.extend(hits.map(|hit| ShardHit { id: shard.global_id(hit.primitive), shard: number, hit }));
             true
@@ -126,7 +125,7 @@ impl ShardedIndex {
     /// It returns the errors of [`first_intersection`](Self::first_intersection).
     pub fn count(&self, ray: &Ray) -> Result<usize, ShardError> {
         let mut count = 0;
-        self.visit_along(ray, &mut |_, _, _, rays| {
+        self.visit_along(ray, |_, _, rays| {
             count += rays.count(ray);
             true
         })?;
@@ -140,7 +139,7 @@ impl ShardedIndex {
     /// It returns the errors of [`first_intersection`](Self::first_intersection).
     pub fn crossings(&self, ray: &Ray) -> Result<usize, ShardError> {
         let mut count = 0;
-        self.visit_along(ray, &mut |_, _, _, rays| {
+        self.visit_along(ray, |_, _, rays| {
             count += rays.crossings(ray);
             true
         })?;
@@ -153,7 +152,7 @@ impl ShardedIndex {
     /// It returns the errors of [`first_intersection`](Self::first_intersection).
     pub fn do_intersect(&self, ray: &Ray) -> Result<bool, ShardError> {
         let mut is_hit = false;
-        self.visit_along(ray, &mut |_, _, _, rays| {
+        self.visit_along(ray, |_, _, rays| {
             is_hit = rays.do_intersect(ray);
             !is_hit
         })?;
