@@ -35,6 +35,11 @@ impl Accuracy {
             .with_max_visits(self.max_visits.unwrap_or(defaults.max_visits))
     }
 
+    /// Returns whether answers are certified.
+    pub(crate) fn is_certified(&self) -> bool {
+        self.certified
+    }
+
     /// Answers queries, certified or not, on all threads of the current pool.
     pub(crate) fn answer<I: ClosestPoint<f64> + CertifiedQuery<f64> + Sync + ?Sized>(
         &self,

@@ -9,7 +9,6 @@ use crate::streams::Streams;
 use indicatif::{DecimalBytes, HumanCount, HumanDuration};
 use rayon::ThreadPool;
 use rayon::prelude::*;
-use std::io;
 use std::time::{Duration, Instant};
 
 /// The largest number of queries of a block. The records of two blocks are in memory at a time.
@@ -19,6 +18,14 @@ const MAX_BLOCK: usize = 1 << 14;
 const BLOCK_TIME: Duration = Duration::from_millis(100);
 /// The number of bytes of the records of a block, above which the next block is smaller.
 const MAX_BLOCK_BYTES: usize = 1 << 25;
+/// The numbers of queries of blocks.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum BlockSize {
+    /// Blocks are as large as the time of the block before them allows.
+    Adaptive,
+    /// Every block has this number of queries, because what a block costs depends little on how many it has.
+    Fixed(usize),
+}
 /// The number of answers that one thread encodes at a time.
 const ANSWERS_PER_TASK: usize = 1 << 11;
 
@@ -29,6 +36,7 @@ pub(crate) struct QueryStream<I> {
     /// The number of queries that `iter` returns.
     pub(crate) count: u64,
     pub(crate) iter: I,
+    pub(crate) block_size: BlockSize,
 }
 
 /// The records of some answers.
@@ -65,21 +73,27 @@ pub(crate) struct Steps<Answer, Encode, Take, WriteRecords> {
 
 /// Answers queries on all threads of a pool and writes the records of their answers in order. Returns the time that the
 /// answers took.
-pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
+///
+/// # Errors
+/// It returns the first error of answering or writing, after which nothing more is answered.
+pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync, E: Send>(
     streams: &Streams,
     pool: &ThreadPool,
     mut queries: QueryStream<impl Iterator<Item = Q>>,
     steps: Steps<
-        impl Fn(&[Q]) -> Vec<A> + Sync,
+        impl Fn(&[Q]) -> Result<Vec<A>, E> + Sync,
         impl Fn(u64, &Q, &A, &mut Vec<u8>) -> u64 + Sync,
         impl FnMut(&Q, &A),
-        impl FnMut(u64, &[u8]) -> io::Result<()>,
+        impl FnMut(u64, &[u8]) -> Result<(), E>,
     >,
-) -> io::Result<Duration> {
+) -> Result<Duration, E> {
     let Steps { answer, encode, mut take, mut write } = steps;
     let progress = Progress::start(streams, "answering", Some(queries.count), Unit::Items(queries.name));
     // A query by brute force can take milliseconds, and one with many answers much memory.
-    let min_block = pool.current_num_threads();
+    let min_block = match queries.block_size {
+        BlockSize::Adaptive => pool.current_num_threads(),
+        BlockSize::Fixed(size) => size,
+    };
     let (mut time, mut first, mut size) = (Duration::ZERO, 0, min_block);
     let mut finished: Option<Block<Q, A>> = None;
     let mut pending: Vec<Q> = queries.iter.by_ref().take(size).collect();
@@ -95,14 +109,16 @@ pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
                 let start = Instant::now();
                 let answers = answer(&block);
                 let elapsed = start.elapsed();
-                let encoded = encode_all(first, &block, &answers, &encode);
-                *answered = Some((Block { queries: block, answers, encoded }, elapsed));
+                *answered = Some(answers.map(|answers| {
+                    let encoded = encode_all(first, &block, &answers, &encode);
+                    (Block { queries: block, answers, encoded }, elapsed)
+                }));
             });
             let written = finished.take().map_or(Ok(()), &mut write_block);
             (written, queries.iter.by_ref().take(size).collect())
         });
         written?;
-        let (block, elapsed) = answered.expect("the scope ends after its task");
+        let (block, elapsed) = answered.expect("the scope ends after its task")?;
         let (count, bytes) = (block.queries.len() as u64, block.bytes());
         if first == 0 {
             announce(streams, &queries, count, bytes, elapsed);
@@ -111,7 +127,9 @@ pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
         first += count;
         progress.add(count);
         let is_small = elapsed < BLOCK_TIME && bytes < MAX_BLOCK_BYTES;
-        size = if is_small { MAX_BLOCK.min(2 * size) } else { min_block.max(size / 2) };
+        if queries.block_size == BlockSize::Adaptive {
+            size = if is_small { MAX_BLOCK.min(2 * size) } else { min_block.max(size / 2) };
+        }
         (finished, pending) = (Some(block), next);
     }
     finished.map_or(Ok(()), write_block)?;

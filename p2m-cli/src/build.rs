@@ -6,7 +6,7 @@ use crate::input::read_scene;
 use crate::json;
 use crate::output::Output;
 use crate::streams::Streams;
-use crate::summary::IndexSummary;
+use crate::summary::{IndexSummary, SceneSummary};
 use crate::usage::usage;
 use anyhow::Context;
 use p2m_core::storage::Writer;
@@ -88,8 +88,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     output.finish()?;
     let write_time = start.elapsed();
 
-    let (scene_name, backend, details) = (scene_args.name(), backend.name, built.details.clone());
-    let index = IndexSummary { scene_name, scene: &scene, format, backend, details, is_loaded, read_time, build_time };
+    let summary = SceneSummary::new(scene_args.name(), format, &scene);
+    let (backend, details) = (backend.name, built.details.clone());
+    let index = IndexSummary { scene: summary, backend, details, is_loaded, read_time, build_time };
     let out = args.out.display();
     if args.json {
         let end = json!({

@@ -88,7 +88,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             "in": { "file": input::name(&args.from_file), "format": from.name(), "primitives": json::counts(&before) },
             "changes": args.modifiers.json(),
             "out": written.json(),
-            "skipped": json::skipped(&scene),
+            "skipped": json::skipped(&scene.skipped),
         });
         return json::print(streams, &report);
     }

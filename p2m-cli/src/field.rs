@@ -10,7 +10,7 @@ use crate::picture::write_png;
 use crate::progress::{Progress, Unit};
 use crate::sign_rule::{SignRule, SignedIndex};
 use crate::streams::Streams;
-use crate::summary::IndexSummary;
+use crate::summary::{IndexSummary, SceneSummary};
 use crate::usage::{not_negative, one_of, positive, usage};
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
@@ -189,8 +189,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         picture.finish()?;
     }
 
-    let (scene_name, backend) = (scene_args.name(), backend_name);
-    let index = IndexSummary { scene_name, scene: &scene, format, backend, details, is_loaded, read_time, build_time };
+    let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend_name);
+    let index = IndexSummary { scene: summary, backend, details, is_loaded, read_time, build_time };
     let report = FieldSummary {
         grid: &grid,
         field: &field,

@@ -112,7 +112,7 @@ fn report(
             "f32_step": s.location.f32_step(),
             "f64_step": json::number(s.location.f64_step()),
         },
-        "skipped": json::skipped(scene),
+        "skipped": json::skipped(&scene.skipped),
         "notes": s.notes().iter().map(|n| json!({ "name": n.name(), "text": n.to_string() })).collect::<Value>(),
     })
 }

@@ -44,6 +44,11 @@ impl SceneArgs {
         name(&self.path)
     }
 
+    /// Returns whether the user names the format.
+    pub(crate) fn has_format(&self) -> bool {
+        self.format.is_some()
+    }
+
     /// Returns the format of the scene.
     pub(crate) fn format(&self) -> anyhow::Result<Format> {
         scene_format(&self.path, self.format, "--format")

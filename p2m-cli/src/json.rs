@@ -6,8 +6,8 @@
 
 use crate::streams::Streams;
 use anyhow::Context;
+use p2m_mixed::Skipped;
 use p2m_mixed::statistics::Counts;
-use p2m_mixed::{Scene, Skipped};
 use p2m_tradeoff::RunningStats;
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -63,7 +63,7 @@ pub(crate) fn stats(stats: &RunningStats) -> Value {
 }
 
 /// Lists the records of a file that were skipped.
-pub(crate) fn skipped(scene: &Scene) -> Value {
+pub(crate) fn skipped(skipped: &[Skipped]) -> Value {
     let one = |s: &Skipped| json!({ "kind": s.what, "count": s.count });
-    scene.skipped.iter().map(one).collect()
+    skipped.iter().map(one).collect()
 }

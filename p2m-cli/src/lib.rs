@@ -10,6 +10,7 @@ mod answering;
 mod backend;
 mod boxes;
 mod build;
+mod closest_answers;
 mod convert;
 mod distance;
 mod field;
@@ -33,6 +34,8 @@ mod ray;
 mod ray_summary;
 mod sampling;
 mod scene_pair;
+mod shard;
+mod shard_query;
 mod shell;
 mod sign_rule;
 mod stats;
@@ -79,6 +82,7 @@ the signal after an interruption (130 for Ctrl-C), which leaves no half-written 
 enum Command {
     Query(query::Args),
     Build(build::Args),
+    Shard(shard::Args),
     Distance(distance::Args),
     Hausdorff(hausdorff::Args),
     Stats(stats::Args),
@@ -100,6 +104,7 @@ impl Command {
         match self {
             Self::Query(_) => "p2m query".to_owned(),
             Self::Build(_) => "p2m build".to_owned(),
+            Self::Shard(_) => "p2m shard".to_owned(),
             Self::Distance(_) => "p2m distance".to_owned(),
             Self::Hausdorff(_) => "p2m hausdorff".to_owned(),
             Self::Stats(_) => "p2m stats".to_owned(),
@@ -120,6 +125,7 @@ impl Command {
         match self {
             Self::Query(args) => query::run(streams, args),
             Self::Build(args) => build::run(streams, args),
+            Self::Shard(args) => shard::run(streams, args),
             Self::Distance(args) => distance::run(streams, args),
             Self::Hausdorff(args) => hausdorff::run(streams, args),
             Self::Stats(args) => stats::run(streams, args),

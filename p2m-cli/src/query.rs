@@ -1,8 +1,9 @@
 //! `p2m query`: closest points as a table.
 
 use crate::accuracy::Accuracy;
-use crate::answering::{QueryStream, Steps, answer_all, answer_each};
+use crate::answering::{BlockSize, answer_each};
 use crate::backend::{BackendChoice, PreparedIndex, SceneSource, backend_choices};
+use crate::closest_answers::{ClosestAnswer, Source, Task};
 use crate::input::{self, SceneArgs, point_format, read_points, read_scene_and_index};
 use crate::json;
 use crate::kdop_directions::requested;
@@ -10,21 +11,23 @@ use crate::output::Output;
 use crate::p2m_args::P2mArgs;
 use crate::query_args::QueryArgs;
 use crate::sampling::{Queries, Region};
-use crate::sign_rule::SignRule;
+use crate::shard_query;
+use crate::sign_rule::{SignRule, SignedIndex};
 use crate::streams::Streams;
-use crate::summary::{AnswerSummary, IndexSummary, RunSummary};
-use crate::usage::{not_negative, one_of, positive, usage, whole_number};
+use crate::summary::{AnswerSummary, IndexSummary, RunSummary, SceneSummary};
+use crate::usage::{bytes, not_negative, one_of, positive, usage, whole_number};
 use anyhow::Context;
 use clap::ArgGroup;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use nalgebra::Point3;
 use p2m_advisor::{BuiltIndex, Index, QueryRegion, Workload};
-use p2m_core::Closest;
-use p2m_mixed::{AnswerColumn, AnswerEncoder, AnswerFormat, AnswerRecord, AnswerWriter, PointFormat, Scene};
+use p2m_core::{Aabb, Closest, PrimitiveSet, QueryOptions};
+use p2m_mixed::{AnswerColumn, AnswerFormat, Object, PointFormat};
+use p2m_shards::folder_of;
+use rayon::prelude::*;
 use serde_json::{Value, json};
-use std::io;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// The text of the help. Each paragraph is one line, so that it wraps at the width of the terminal.
 fn help() -> String {
@@ -79,11 +82,11 @@ Examples:
 #[command(group = ArgGroup::new("queries").required(true).args(["points", "grid", "random"]))]
 pub(crate) struct Args {
     #[command(flatten)]
-    scene: SceneArgs,
+    pub(crate) scene: SceneArgs,
 
     /// Query the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
     #[arg(long, value_name = "FILE")]
-    points: Option<PathBuf>,
+    pub(crate) points: Option<PathBuf>,
 
     /// The format of the points, if the extension of their file does not name it
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, conflicts_with_all = ["grid", "random"])]
@@ -110,14 +113,14 @@ pub(crate) struct Args {
 
     /// Give no answers farther than this, in the unit of the scene; at exactly this distance there is one
     #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true)]
-    max_distance: Option<f64>,
+    pub(crate) max_distance: Option<f64>,
 
     /// The index to search [default: aabb, or as a saved index does]
     #[arg(long, value_parser = backend_choices())]
-    backend: Option<BackendChoice>,
+    pub(crate) backend: Option<BackendChoice>,
 
     #[command(flatten)]
-    p2m: P2mArgs,
+    pub(crate) p2m: P2mArgs,
 
     /// Answer with the N nearest primitives of each query, nearest first, one row each
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true, conflicts_with_all = ["within", "certified", "epsilon", "max_visits"])]
@@ -130,27 +133,37 @@ pub(crate) struct Args {
     /// Add a column of distances that are negative inside; needs a scene of triangles [possible values of RULE: auto,
     /// closed, winding]
     #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum, conflicts_with_all = ["k_nearest", "within"])]
-    signed: Option<SignRule>,
+    pub(crate) signed: Option<SignRule>,
 
     /// The columns of the answers in this order, separated by commas
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',', value_parser = columns())]
     columns: Vec<AnswerColumn>,
 
-    #[command(flatten)]
-    query_args: QueryArgs,
+    /// Keep at most this much of an index in shards in memory, such as 4GB or 500MiB; one shard is kept in any case
+    #[arg(long, value_name = "BYTES", value_parser = bytes)]
+    pub(crate) max_memory: Option<u64>,
 
     #[command(flatten)]
-    accuracy: Accuracy,
+    pub(crate) query_args: QueryArgs,
+
+    #[command(flatten)]
+    pub(crate) accuracy: Accuracy,
 }
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
+    if let Some(folder) = folder_of(&args.scene.path) {
+        return shard_query::run(streams, args, &folder);
+    }
+    if args.max_memory.is_some() {
+        return Err(usage("--max-memory needs the folder of an index in shards, which `p2m shard` writes"));
+    }
     let (scene_args, query_args) = (&args.scene, &args.query_args);
     query_args.check(scene_args, args.points.as_deref(), "points")?;
     args.check()?;
     let (format, out_format) = (scene_args.format()?, query_args.format(streams)?);
     let start = Instant::now();
     let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format, scene_args.map)?;
-    let (queries, sample) = queries(streams, args, &scene)?;
+    let (queries, sample) = queries(streams, args, &scene.soup.aabb())?;
     let read_time = start.elapsed();
     // The file is opened before the work, which would be lost if its name were wrong.
     let mut output = Output::open(streams, Some(&query_args.out))?;
@@ -171,63 +184,52 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
     let signed = args.signed.map(|rule| rule.prepare(streams, &*index, &scene.soup)).transpose();
     let signed = signed.with_context(|| scene_args.name())?.map(|(signed, _)| signed);
-    let mut summary = AnswerSummary::default();
-    let write = || -> io::Result<Duration> {
-        let encoder = AnswerEncoder::new(out_format, &scene.objects, &args.columns(out_format, &scene));
-        // Only with one answer for each query it is known before how many there are.
-        let count = Some(queries.len()).filter(|_| !args.has_many_answers());
-        let mut writer = AnswerWriter::with_columns(&mut output, encoder, count)?;
-        let encoder = writer.encoder();
-        let queries = QueryStream { name: "queries", count: queries.len(), iter: queries };
-        let write = |count, records: &[u8]| writer.write_encoded(count, records);
-        let time = if args.has_many_answers() {
-            let steps = Steps {
-                answer: |queries: &[_]| answer_each(queries, |query| args.near(&*index, query)),
-                encode: |number, query: &_, answers: &Vec<_>, out: &mut _| {
-                    for answer in answers {
-                        let record = AnswerRecord { number, query, answer: Some(answer), signed_distance: f64::NAN };
-                        encoder.encode(&record, out);
-                    }
-                    answers.len() as u64
-                },
-                take: |_: &_, answers: &Vec<_>| summary.add_all(answers),
-                write,
-            };
-            answer_all(streams, &pool, queries, steps)?
-        } else {
-            let (accuracy, options) = (&args.accuracy, args.accuracy.options(args.max_distance));
-            let steps = Steps {
-                answer: |queries: &[_]| accuracy.answer(&*index, queries, &options),
-                encode: |number, query: &_, answer: &Option<_>, out: &mut _| {
-                    let (answer, signed) = (answer.as_ref(), signed.as_ref());
-                    let signed_distance =
-                        signed.zip(answer).and_then(|(signed, answer)| signed.with_sign(query, *answer).distance());
-                    let signed_distance = signed_distance.unwrap_or(f64::NAN);
-                    encoder.encode(&AnswerRecord { number, query, answer, signed_distance }, out);
-                    1
-                },
-                take: |_: &_, answer: &Option<_>| summary.add(answer.as_ref()),
-                write,
-            };
-            answer_all(streams, &pool, queries, steps)?
-        };
-        writer.finish()?;
-        Ok(time)
-    };
-    let query_time = write().with_context(|| output.cannot_write())?;
+    let source = WholeIndex { index: &*index, signed: signed.as_ref(), args };
+    let objects = &scene.objects;
+    let task = Task { streams, args, pool: &pool, queries, output: &mut output, format: out_format, objects };
+    let (summary, query_time) = task.run(&source)?;
     let bytes = output.bytes();
     output.finish()?;
 
-    let (scene_name, backend, threads) = (scene_args.name(), backend.name, pool.current_num_threads());
-    let index = IndexSummary { scene_name, scene: &scene, format, backend, details, is_loaded, read_time, build_time };
+    let (backend, threads) = (backend.name, pool.current_num_threads());
+    let scene = SceneSummary::new(scene_args.name(), format, &scene);
+    let index = IndexSummary { scene, backend, details, is_loaded, read_time, build_time };
     let run = RunSummary { index, threads, query_time };
     if query_args.json {
-        let max_distance = args.max_distance.map_or(Value::Null, json::number);
-        let report = summary.json(&run.index.cells(), &max_distance, &args.accuracy.json(), &source_json(args));
+        let report = args.report(&summary, &run.index.cells());
         return json::print(streams, &run.json("query", report, &query_args.output_json(out_format, bytes)));
     }
     streams.print_summary(format_args!("{}{summary}", run.text("queries", "query", summary.queries())));
     Ok(())
+}
+
+/// An index over the whole scene, with signs if they are asked for.
+struct WholeIndex<'a> {
+    index: &'a dyn Index,
+    signed: Option<&'a SignedIndex<'a>>,
+    args: &'a Args,
+}
+
+impl Source for WholeIndex<'_> {
+    const BLOCK_SIZE: BlockSize = BlockSize::Adaptive;
+
+    fn closest(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<ClosestAnswer>> {
+        let answers = self.args.accuracy.answer(self.index, queries, &self.args.options());
+        let with_sign = |(query, answer): (&Point3<f64>, Option<Closest<f64>>)| {
+            let signed =
+                self.signed.zip(answer).and_then(|(signed, answer)| signed.with_sign(query, answer).distance());
+            (answer, signed.unwrap_or(f64::NAN))
+        };
+        Ok(queries.par_iter().zip(answers).map(with_sign).collect())
+    }
+
+    fn near(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Vec<Closest<f64>>>> {
+        let near = |query: &_| match self.args.near() {
+            (None, radius) => self.index.all_within(query, radius),
+            (Some(k), radius) => self.index.k_nearest(query, k, radius),
+        };
+        Ok(answer_each(queries, near))
+    }
 }
 
 /// Returns a parser of the names of columns.
@@ -239,28 +241,37 @@ fn columns() -> impl TypedValueParser<Value = AnswerColumn> {
 
 impl Args {
     /// Returns whether a query may have more than one answer.
-    fn has_many_answers(&self) -> bool {
+    pub(crate) fn has_many_answers(&self) -> bool {
         self.k_nearest.is_some() || self.within.is_some()
     }
 
-    /// Returns the answers to a query with many.
-    fn near(&self, index: &dyn Index, query: &Point3<f64>) -> Vec<Closest<f64>> {
+    /// Returns how many primitives to answer with at most, if that is limited, and the largest distance of them.
+    pub(crate) fn near(&self) -> (Option<usize>, f64) {
+        let largest = self.max_distance.unwrap_or(f64::INFINITY);
         match self.within {
-            Some(radius) => index.all_within(query, radius),
-            None => {
-                let k = self.k_nearest.map_or(1, |k| k as usize);
-                index.k_nearest(query, k, self.max_distance.unwrap_or(f64::INFINITY))
-            }
+            Some(radius) => (None, radius),
+            None => (Some(self.k_nearest.map_or(1, |k| k as usize)), largest),
         }
+    }
+
+    /// Returns the options of queries with one answer.
+    pub(crate) fn options(&self) -> QueryOptions<f64> {
+        self.accuracy.options(self.max_distance)
+    }
+
+    /// Returns the part of a report about the queries and their answers.
+    pub(crate) fn report(&self, summary: &AnswerSummary, cells: &Value) -> Value {
+        let max_distance = self.max_distance.map_or(Value::Null, json::number);
+        summary.json(cells, &max_distance, &self.accuracy.json(), &source_json(self))
     }
 
     /// Returns the columns that the arguments name, or else those of the format, with the numbers of queries if these
     /// may have many answers.
-    fn columns(&self, format: AnswerFormat, scene: &Scene) -> Vec<AnswerColumn> {
+    pub(crate) fn columns(&self, format: AnswerFormat, objects: &[Object]) -> Vec<AnswerColumn> {
         if !self.columns.is_empty() {
             return self.columns.clone();
         }
-        let mut columns = AnswerColumn::defaults(format, !scene.objects.is_empty());
+        let mut columns = AnswerColumn::defaults(format, !objects.is_empty());
         if self.has_many_answers() {
             columns.insert(0, AnswerColumn::Number);
         }
@@ -272,7 +283,7 @@ impl Args {
     }
 
     /// Refuses combinations of arguments that contradict each other.
-    fn check(&self) -> anyhow::Result<()> {
+    pub(crate) fn check(&self) -> anyhow::Result<()> {
         if self.columns.contains(&AnswerColumn::Signed) && self.signed.is_none() {
             return Err(usage("the column signed needs --signed"));
         }
@@ -284,13 +295,17 @@ impl Args {
 }
 
 /// Returns the queries and, if they come from a file, a sample of them.
-fn queries(streams: &Streams, args: &Args, scene: &Scene) -> anyhow::Result<(Queries, Option<Vec<Point3<f64>>>)> {
+pub(crate) fn queries(
+    streams: &Streams,
+    args: &Args,
+    bounds: &Aabb<f64>,
+) -> anyhow::Result<(Queries, Option<Vec<Point3<f64>>>)> {
     if let Some(path) = &args.points {
         let points = read_points(streams, path, point_format(path, args.points_format, "--points-format")?)?;
         let sample = points.iter().step_by(points.len().div_ceil(MAX_SAMPLE_POINTS).max(1)).copied().collect();
         return Ok((Queries::list(points), Some(sample)));
     }
-    let region = Region::around(&scene.soup, args.box_scale);
+    let region = Region::around(bounds, args.box_scale);
     let queries = match args.grid {
         Some(side) => Queries::grid(region, side),
         None => Queries::random(region, args.random.unwrap_or(0), args.seed),

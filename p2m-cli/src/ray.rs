@@ -1,6 +1,6 @@
 //! `p2m ray`: the hits of rays as a table.
 
-use crate::answering::{QueryStream, Steps, answer_all, answer_each};
+use crate::answering::{BlockSize, QueryStream, Steps, answer_all, answer_each};
 use crate::backend::{Backend, PreparedIndex, SceneSource, backends, saved_or_default};
 use crate::input::{self, SceneArgs, point_format, read_rays, read_scene_and_index};
 use crate::json;
@@ -10,14 +10,14 @@ use crate::query_args::QueryArgs;
 use crate::ray_summary::RaySummary;
 use crate::sampling::{Region, random_rays};
 use crate::streams::Streams;
-use crate::summary::{IndexSummary, RunSummary};
+use crate::summary::{IndexSummary, RunSummary, SceneSummary};
 use crate::usage::{finite_not_negative, number, one_of, positive, usage, whole_number};
 use anyhow::Context;
 use clap::{ArgGroup, ValueEnum};
 use nalgebra::{Point3, Vector3};
 use p2m_advisor::{BackendEntry, BuiltIndex, P2mSettings};
 use p2m_core::storage::Reader;
-use p2m_core::{Hit, Ray, RayError, RayQuery};
+use p2m_core::{Hit, PrimitiveSet, Ray, RayError, RayQuery};
 use p2m_mixed::{AnswerFormat, HitWriter, NumberWriter, Object, PointFormat, Scene};
 use rayon::ThreadPool;
 use serde_json::{Value, json};
@@ -192,8 +192,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let bytes = output.bytes();
     output.finish()?;
 
-    let (scene_name, backend, threads) = (scene_args.name(), backend.name, pool.current_num_threads());
-    let index = IndexSummary { scene_name, scene: &scene, format, backend, details, is_loaded, read_time, build_time };
+    let (backend, threads) = (backend.name, pool.current_num_threads());
+    let scene = SceneSummary::new(scene_args.name(), format, &scene);
+    let index = IndexSummary { scene, backend, details, is_loaded, read_time, build_time };
     let run = RunSummary { index, threads, query_time };
     if query_args.json {
         let report = args.report(summary.json());
@@ -254,11 +255,11 @@ fn rays<'a>(streams: &Streams, args: &'a Args, scene: &Scene) -> anyhow::Result<
         }
         None => {
             let count = args.random.unwrap_or(0);
-            (count, Box::new(random_rays(Region::around(&scene.soup, args.box_scale), count, args.seed)))
+            (count, Box::new(random_rays(Region::around(&scene.soup.aabb(), args.box_scale), count, args.seed)))
         }
     };
     let rays = rays.map(|ray| args.limited(&ray).expect("the limits fit every ray"));
-    Ok(QueryStream { name: "rays", count, iter: Box::new(rays) })
+    Ok(QueryStream { name: "rays", count, iter: Box::new(rays), block_size: BlockSize::Adaptive })
 }
 
 /// The rays to answer, and the file for their answers.
@@ -303,7 +304,7 @@ impl Task<'_, '_> {
         let mut writer = NumberWriter::new(self.output, self.format, name, self.rays.count)?;
         let (encoder, index) = (writer.encoder(), self.index);
         let steps = Steps {
-            answer: |rays: &[_]| answer_each(rays, |ray| count(index, ray)),
+            answer: |rays: &[_]| Ok(answer_each(rays, |ray| count(index, ray))),
             encode: |number, ray: &_, count: &u64, out: &mut _| {
                 encoder.encode(number, ray, *count, out);
                 1
@@ -328,7 +329,7 @@ impl Task<'_, '_> {
         let mut writer = HitWriter::with_objects(self.output, self.format, records, self.objects)?;
         let (encoder, index) = (writer.encoder(), self.index);
         let steps = Steps {
-            answer: |rays: &[_]| answer_each(rays, |ray| intersect(index, ray)),
+            answer: |rays: &[_]| Ok(answer_each(rays, |ray| intersect(index, ray))),
             encode: |number, ray: &_, answer: &A, out: &mut _| {
                 let hits = slice(answer);
                 if hits.is_empty() && records.is_some() {

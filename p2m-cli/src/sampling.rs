@@ -1,7 +1,7 @@
 //! Query points and rays: given points, a grid, or random points and rays around the scene.
 
 use nalgebra::{Point3, Vector3};
-use p2m_core::{PrimitiveSet, Ray, Soup};
+use p2m_core::{Aabb, Ray};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -15,16 +15,17 @@ pub(crate) struct Region {
 }
 
 impl Region {
-    /// Returns the box of the primitives of `soup`, scaled about its centre. For an empty scene it is the unit cube
-    /// around the origin.
+    /// Returns the box of a scene, scaled about its centre. For an empty one it is the unit cube around the origin.
     ///
     /// An axis without extent would put every query into the plane of the scene. The box is widened along it, to each
     /// side by as much as the scale adds to the longest axis, or for a single point by as much as it would add to an
     /// axis of length 1.
-    pub(crate) fn around(soup: &Soup<f64>, scale: f64) -> Self {
-        let bounds = soup.aabb();
-        let (min, max): ([f64; 3], [f64; 3]) =
-            if soup.is_empty() { ([-0.5; 3], [0.5; 3]) } else { (bounds.min.coords.into(), bounds.max.coords.into()) };
+    pub(crate) fn around(bounds: &Aabb<f64>, scale: f64) -> Self {
+        let (min, max): ([f64; 3], [f64; 3]) = if bounds.is_empty() {
+            ([-0.5; 3], [0.5; 3])
+        } else {
+            (bounds.min.coords.into(), bounds.max.coords.into())
+        };
         // Numbers are halved first, because the sum and the difference of two finite numbers may overflow.
         let half: [f64; 3] = std::array::from_fn(|k| max[k] / 2.0 - min[k] / 2.0);
         let longest = half.iter().fold(0.0f64, |a, &b| a.max(b));
@@ -148,14 +149,9 @@ fn fraction(a: u64, b: u64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use p2m_core::Element;
 
-    fn soup(points: &[[f64; 3]]) -> Soup<f64> {
-        let count = u32::try_from(points.len()).unwrap();
-        // One more position, which nothing uses and which therefore does not count.
-        let mut positions: Vec<_> = points.iter().map(|&p| Point3::from(p)).collect();
-        positions.push(Point3::new(1e9, 1e9, 1e9));
-        Soup::new(positions, (0..count).map(Element::Point)).unwrap()
+    fn bounds(points: &[[f64; 3]]) -> Aabb<f64> {
+        Aabb::from_points(&points.iter().map(|&point| Point3::from(point)).collect::<Vec<_>>())
     }
 
     /// Checks the number of points, and returns them.
@@ -168,23 +164,23 @@ mod tests {
 
     #[test]
     fn the_box_is_scaled_about_its_centre() {
-        let region = Region::around(&soup(&[[0.0, 0.0, 0.0], [2.0, 4.0, 8.0]]), 1.5);
+        let region = Region::around(&bounds(&[[0.0, 0.0, 0.0], [2.0, 4.0, 8.0]]), 1.5);
         assert_eq!(region, Region { min: [-0.5, -1.0, -2.0], max: [2.5, 5.0, 10.0], centre: [1.0, 2.0, 4.0] });
     }
 
     #[test]
     fn an_axis_without_extent_is_widened() {
-        let region = Region::around(&soup(&[[0.0, 7.0, 0.0], [2.0, 7.0, 8.0]]), 1.5);
+        let region = Region::around(&bounds(&[[0.0, 7.0, 0.0], [2.0, 7.0, 8.0]]), 1.5);
         assert_eq!(region, Region { min: [-0.5, 5.0, -2.0], max: [2.5, 9.0, 10.0], centre: [1.0, 7.0, 4.0] });
-        let region = Region::around(&soup(&[[3.0, 3.0, 3.0]]), 1.5);
+        let region = Region::around(&bounds(&[[3.0, 3.0, 3.0]]), 1.5);
         assert_eq!(region, Region { min: [2.75; 3], max: [3.25; 3], centre: [3.0; 3] });
-        let region = Region::around(&Soup::default(), 1.0);
+        let region = Region::around(&Aabb::empty(), 1.0);
         assert_eq!(region, Region { min: [-0.5; 3], max: [0.5; 3], centre: [0.0; 3] });
     }
 
     #[test]
     fn boxes_of_any_size_give_finite_queries() {
-        let far = Region::around(&soup(&[[f64::MIN; 3], [f64::MAX; 3]]), 1.05);
+        let far = Region::around(&bounds(&[[f64::MIN; 3], [f64::MAX; 3]]), 1.05);
         let queries = all(Queries::random(far, 100, 0));
         assert!(queries.iter().flat_map(|p| p.iter()).all(|x| x.is_finite()));
     }
@@ -204,7 +200,7 @@ mod tests {
         for (a, b) in [(0.0, 2.0), (0.1, 0.3), (1.0, 1.0 + 4.0 * f64::EPSILON), (1e300, 1.5e300), (f64::MAX, f64::MAX)]
         {
             for scale in [0.3, 1.0, 1.05, 7.7] {
-                let region = Region::around(&soup(&[[a; 3], [b; 3]]), scale);
+                let region = Region::around(&bounds(&[[a; 3], [b; 3]]), scale);
                 let expected = if a == f64::MAX { f64::MAX } else { (a + b) / 2.0 };
                 assert_eq!(all(Queries::grid(region, 1)), [Point3::from([expected; 3])], "{a} {b} {scale}");
             }

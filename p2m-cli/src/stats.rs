@@ -9,7 +9,7 @@ use crate::picture::write_png;
 use crate::progress::{Progress, Unit};
 use crate::sampling::{Queries, Region};
 use crate::streams::Streams;
-use crate::summary::IndexSummary;
+use crate::summary::{IndexSummary, SceneSummary};
 use crate::usage::{positive, whole_number};
 use anyhow::{Context, bail};
 use nalgebra::{Point3, Vector3};
@@ -108,7 +108,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let build_time = start.elapsed();
 
     let progress = Progress::start(streams, "querying", None, Unit::None);
-    let region = Region::around(&scene.soup, args.box_scale);
+    let region = Region::around(&scene.soup.aabb(), args.box_scale);
     let random: Vec<_> = Queries::random(region, args.queries, args.seed).collect();
     let stats = IndexStats {
         lists: ListStats::from_index(&*index),
@@ -131,8 +131,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
     drop(progress);
 
-    let (scene_name, backend) = (scene_args.name(), backend.name);
-    let index = IndexSummary { scene_name, scene: &scene, format, backend, details, is_loaded, read_time, build_time };
+    let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend.name);
+    let index = IndexSummary { scene: summary, backend, details, is_loaded, read_time, build_time };
     if args.json {
         let end = json!({
             "cells": index.cells(),

@@ -5,18 +5,31 @@ use crate::json::{self, stats};
 use p2m_advisor::{ChosenDirections, IndexDetails};
 use p2m_core::Closest;
 use p2m_mixed::statistics::Counts;
-use p2m_mixed::{Format, Scene};
+use p2m_mixed::{Format, Scene, Skipped};
 use p2m_tradeoff::RunningStats;
 use serde_json::{Value, json};
 use std::fmt::{self, Write};
 use std::time::Duration;
 
+/// The summary of a scene.
+pub(crate) struct SceneSummary<'a> {
+    pub(crate) name: String,
+    /// The name of the format of its file.
+    pub(crate) format: &'static str,
+    pub(crate) counts: Counts,
+    pub(crate) skipped: &'a [Skipped],
+}
+
+impl<'a> SceneSummary<'a> {
+    pub(crate) fn new(name: String, format: Format, scene: &'a Scene) -> Self {
+        Self { name, format: format.name(), counts: Counts::of(&scene.soup), skipped: &scene.skipped }
+    }
+}
+
 /// The summary of a scene and of the index over it.
 pub(crate) struct IndexSummary<'a> {
-    pub(crate) scene_name: String,
-    pub(crate) scene: &'a Scene,
-    pub(crate) format: Format,
-    pub(crate) backend: &'static str,
+    pub(crate) scene: SceneSummary<'a>,
+    pub(crate) backend: &'a str,
     pub(crate) details: IndexDetails,
     /// Whether the index was loaded from a file.
     pub(crate) is_loaded: bool,
@@ -37,10 +50,10 @@ impl IndexSummary<'_> {
             "p2m": command,
             "version": json::VERSION,
             "scene": {
-                "file": self.scene_name,
-                "format": self.format.name(),
-                "primitives": json::counts(&Counts::of(&self.scene.soup)),
-                "skipped": json::skipped(self.scene),
+                "file": self.scene.name,
+                "format": self.scene.format,
+                "primitives": json::counts(&self.scene.counts),
+                "skipped": json::skipped(self.scene.skipped),
             },
             "backend": self.backend,
             "loaded": self.is_loaded,
@@ -75,9 +88,9 @@ impl IndexSummary<'_> {
 
     /// Writes lines about the scene and the index, with a line for the note if there is one.
     pub(crate) fn write(&self, text: &mut String, note: Option<String>) -> fmt::Result {
-        writeln!(text, "scene    {}", self.scene_name)?;
-        writeln!(text, "         {}", counted(&Counts::of(&self.scene.soup)))?;
-        if p2m_core::PrimitiveSet::is_empty(&self.scene.soup) {
+        writeln!(text, "scene    {}", self.scene.name)?;
+        writeln!(text, "         {}", counted(&self.scene.counts))?;
+        if self.scene.counts.total() == 0 {
             writeln!(text, "note     the scene is empty: there is nothing to find")?;
         }
         if let Some(note) = note {

@@ -169,7 +169,7 @@ impl Args {
     /// Returns the queries and a sentence that describes them. Points that are not finite are left out, because they
     /// have no answers that could be compared.
     fn queries(&self, streams: &Streams, scene: &Scene) -> anyhow::Result<(Vec<Point3<f64>>, String)> {
-        let region = Region::around(&scene.soup, self.box_scale);
+        let region = Region::around(&scene.soup.aabb(), self.box_scale);
         let (queries, description) = match (&self.points, self.grid) {
             (Some(path), _) => {
                 let points = read_points(streams, path, point_format(path, self.points_format, "--points-format")?)?;

@@ -1,5 +1,6 @@
 //! Errors of usage that the grammar of the arguments does not detect, and parsers of values.
 
+use bytesize::ByteSize;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::fmt;
 use std::str::FromStr;
@@ -33,6 +34,14 @@ where
 /// Parses a whole number.
 pub(crate) fn whole_number(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| format!("not a whole number from 0 to {}", u64::MAX))
+}
+
+/// Parses an amount of memory, such as 4GB, 500 MiB or 1000000.
+pub(crate) fn bytes(text: &str) -> Result<u64, String> {
+    match text.parse::<ByteSize>() {
+        Ok(size) if size.as_u64() > 0 => Ok(size.as_u64()),
+        _ => Err("not an amount of memory, such as 4GB, 500MiB or 1000000".to_owned()),
+    }
 }
 
 /// Parses a positive finite number.

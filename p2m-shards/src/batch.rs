@@ -61,6 +61,35 @@ impl ShardedIndex {
         self.ask_others(queries, &options, &mut pending, out)
     }
 
+    /// Answers each query by a function, on all threads of the current pool, and returns the answers in the order of the
+    /// queries.
+    ///
+    /// The queries that are nearest to the box of one shard are answered together, so few shards are needed at a time.
+    /// It is for queries that [`closest_points_into`](Self::closest_points_into) does not answer.
+    ///
+    /// # Errors
+    /// It returns the first error of the function, after which nothing more is answered.
+    ///
+    /// # Complexity
+    /// Comparing n queries with the boxes of s shards takes O(n s).
+    pub fn map<A: Send + Sync>(
+        &self,
+        queries: &[impl Position<f64>],
+        answer: impl Fn(&Point3<f64>) -> Result<A, ShardError> + Sync,
+    ) -> Result<Vec<A>, ShardError> {
+        let nearest = |query: &_| self.begin(&Position::point(query), &QueryOptions::default()).nearest;
+        let nearest: Vec<u32> = queries.par_iter().map(nearest).collect();
+        let mut order: Vec<usize> = (0..queries.len()).collect();
+        order.par_sort_by_key(|i| nearest[*i]);
+        let mut answers: Vec<Option<A>> = std::iter::repeat_with(|| None).take(queries.len()).collect();
+        for group in order.chunk_by(|a, b| nearest[*a] == nearest[*b]) {
+            let found: Vec<A> =
+                group.par_iter().map(|i| answer(&queries[*i].point())).collect::<Result<_, ShardError>>()?;
+            group.iter().zip(found).for_each(|(i, found)| answers[*i] = Some(found));
+        }
+        Ok(answers.into_iter().flatten().collect())
+    }
+
     /// Returns the shard that a query asks first.
     fn begin(&self, query: &Point3<f64>, options: &QueryOptions<f64>) -> Pending {
         let nothing = Pending { nearest: NONE, limit: f64::NEG_INFINITY, key: None };

@@ -10,12 +10,12 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum ShardError {
     /// A file cannot be read or written.
-    #[error("{}: {source}", file.display())]
+    #[error("{}: {error}", file.display())]
     Io {
         /// The file or the folder.
         file: PathBuf,
-        /// The error of the operating system.
-        source: io::Error,
+        /// The error of the operating system, which the message repeats.
+        error: io::Error,
     },
     /// The folder has the manifest of a sharded index already.
     #[error("{}: there is a sharded index already", folder.display())]
@@ -32,12 +32,12 @@ pub enum ShardError {
         reason: String,
     },
     /// The file of a shard is missing, cut off, damaged, or of another version of the format.
-    #[error("{} {source}", file.display())]
+    #[error("{} {error}", file.display())]
     Load {
         /// The file of the shard.
         file: PathBuf,
-        /// The error of loading it.
-        source: LoadError,
+        /// The error of loading it, which the message repeats.
+        error: LoadError,
     },
     /// The file of a shard is a valid one, but not the one that the manifest describes.
     #[error("{} is not the shard that the manifest describes: {reason}", file.display())]
@@ -73,6 +73,6 @@ pub enum ShardError {
 impl ShardError {
     /// Returns a function that makes the error of a file from an error of the operating system.
     pub(crate) fn io(file: impl Into<PathBuf>) -> impl FnOnce(io::Error) -> Self {
-        move |source| Self::Io { file: file.into(), source }
+        move |error| Self::Io { file: file.into(), error }
     }
 }

@@ -63,4 +63,4 @@ pub use manifest::{MANIFEST_FILE, Manifest, ObjectEntry, ShardEntry, folder_of};
 pub use nearest::ShardClosest;
 pub use rays::ShardHit;
 pub use shard::Shard;
-pub use write::{ShardOptions, ShardWriter};
+pub use write::{ShardOptions, ShardWriter, shard_file};

@@ -60,6 +60,16 @@ impl ShardedIndex {
         self.boxes.iter().filter(|bounds| entry(ray, bounds).is_some()).count()
     }
 
+    /// Returns whether a ray may hit a shard.
+    pub(crate) fn meets(&self, ray: &Ray, number: usize) -> bool {
+        entry(ray, &self.boxes[number]).is_some()
+    }
+
+    /// Returns the queries of rays of a shard.
+    pub(crate) fn ray_query<'a>(&self, shard: &'a Shard) -> Result<&'a (dyn RayQuery<f64> + Sync), ShardError> {
+        shard.index().as_ray_query().ok_or_else(|| ShardError::NoRays { backend: self.manifest().backend.clone() })
+    }
+
     /// Calls a function with each shard that a ray may hit, in the order of their entries, until it returns `false`.
     fn visit_along(
         &self,
@@ -68,8 +78,7 @@ impl ShardedIndex {
     ) -> Result<(), ShardError> {
         for (_, number) in self.shards_along(ray) {
             let shard = self.shard(number)?;
-            let no_rays = || ShardError::NoRays { backend: self.manifest().backend.clone() };
-            if !visit(number, &shard, shard.index().as_ray_query().ok_or_else(no_rays)?) {
+            if !visit(number, &shard, self.ray_query(&shard)?) {
                 break;
             }
         }
@@ -88,8 +97,7 @@ impl ShardedIndex {
                 break;
             }
             let shard = self.shard(number)?;
-            let no_rays = || ShardError::NoRays { backend: self.manifest().backend.clone() };
-            let rays = shard.index().as_ray_query().ok_or_else(no_rays)?;
+            let rays = self.ray_query(&shard)?;
             // The range ends at the best hit, at which another one with a lower id may be.
             let end = best.map_or(ray.range()[1], |best| best.hit.parameter);
             let shorter = ray.with_range(ray.range()[0], end).unwrap_or(*ray);

@@ -26,7 +26,7 @@ impl Shard {
     pub(crate) fn load(folder: &Path, entry: &ShardEntry, is_mapped: bool) -> Result<Self, ShardError> {
         let file = folder.join(&entry.file);
         let other = |reason| ShardError::OtherShard { file: file.clone(), reason };
-        let load_error = |source| ShardError::Load { file: file.clone(), source };
+        let load_error = |error| ShardError::Load { file: file.clone(), error };
         let length = fs::metadata(&file).map_err(|error| load_error(error.into()))?.len();
         if length != entry.bytes {
             return Err(load_error(LoadError::Length { found: length, expected: entry.bytes }));

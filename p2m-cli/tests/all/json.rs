@@ -27,7 +27,7 @@ fn every_key_is_documented() {
     let text = "vn 0 0 1\nv 0 0 0\nv 0.1 0 0\nv 0 1 0\nv 9 9 9\no a\nf 1 2 3\nf 1 2 2\n";
     let (scene, out) = (write(&folder, "s.obj", text), path(&folder, "s.stl"));
     let (answers, saved, field) = (path(&folder, "a.csv"), path(&folder, "s.p2m"), path(&folder, "f.npy"));
-    let points = write(&folder, "q.xyz", "1 2 3\n");
+    let (points, site) = (write(&folder, "q.xyz", "1 2 3\n"), path(&folder, "site"));
     let mut found = BTreeSet::new();
     for arguments in [
         &["info", &scene, "--json"][..],
@@ -41,6 +41,8 @@ fn every_key_is_documented() {
         &["field", &scene, "--refine", "1", "--signed", "--out", &field, "--json"],
         &["advise", &scene, "--queries", "2", "--near", "--json"],
         &["build", &scene, "--backend", "p2m", "--out", &saved, "--json"],
+        &["shard", &scene, "--out", &site, "--json"],
+        &["query", &site, "--random", "2", "--out", &answers, "--json"],
         &["distance", &scene, &scene, "--json"],
         &["hausdorff", &scene, &scene, "--json"],
     ] {

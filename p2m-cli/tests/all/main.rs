@@ -18,6 +18,7 @@ mod program;
 mod query;
 mod query_options;
 mod ray;
+mod shard;
 mod shell;
 mod stats;
 mod terminal;

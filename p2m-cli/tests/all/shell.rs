@@ -4,9 +4,10 @@ use crate::common::*;
 use std::fs;
 use tempfile::TempDir;
 
-const COMMANDS: [&str; 15] = [
+const COMMANDS: [&str; 16] = [
     "query",
     "build",
+    "shard",
     "distance",
     "hausdorff",
     "stats",

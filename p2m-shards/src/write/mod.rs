@@ -239,11 +239,11 @@ impl ShardWriter {
     /// Builds the index of a part and writes its file, whose name is the next one.
     fn write_shard(&mut self, part: &mut Spill) -> Result<ShardEntry, ShardError> {
         let (scene, ids) = scene_of(part).map_err(|error| match error {
-            PartError::Io(source) => ShardError::Io { file: self.folder.clone(), source },
+            PartError::Io(error) => ShardError::Io { file: self.folder.clone(), error },
             PartError::Build(error) => ShardError::Build(error),
         })?;
         let built = self.options.backend.build(&scene.soup, &BuildSettings::default())?;
-        let file = format!("{:05}.p2m", self.manifest.shards.len());
+        let file = shard_file(self.manifest.shards.len());
         let path = self.folder.join(&file);
         if self.written.last() != Some(&path) {
             self.written.push(path.clone());
@@ -292,6 +292,12 @@ impl Drop for ShardWriter {
             let _ = fs::remove_dir(&self.folder);
         }
     }
+}
+
+/// Returns the name of the file of a shard by its number, for programs that remove what an interruption leaves.
+#[must_use]
+pub fn shard_file(number: usize) -> String {
+    format!("{number:05}.p2m")
 }
 
 /// Returns how many primitives are expected to fill a part of the largest length of a file.

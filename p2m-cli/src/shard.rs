@@ -1,0 +1,172 @@
+//! `p2m shard`: writes scenes as an index in shards.
+
+use crate::backend::{Backend, backends};
+use crate::input::{self, read_scene_and_index};
+use crate::interrupt::{Listed, unfinished};
+use crate::json;
+use crate::progress::{Progress, Unit};
+use crate::streams::Streams;
+use crate::threads::ThreadArgs;
+use crate::usage::{bytes, one_of};
+use p2m_advisor::BackendEntry;
+use p2m_mixed::Format;
+use p2m_shards::{ShardOptions, ShardWriter, ShardedIndex, shard_file};
+use serde_json::{Value, json};
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+fn help() -> String {
+    format!(
+        "\
+The scenes are joined in the order in which they are named: primitives are numbered on from one to the next. `p2m query` \
+takes the folder in place of a scene, loads a shard when a query needs it, and gives the answers of one index over all.
+
+Space is divided so that the file of a shard is at most as long as --max-bytes says. While the folder is written, one shard \
+is in memory at a time, and temporary files in the folder take 88 bytes for each primitive, and twice that for a while.
+
+The file manifest.json appears last, so a folder without it is unfinished. It has the box, the number of primitives and the \
+checksum of each shard; a query that needs a shard which is missing, damaged or another one fails.
+
+{}
+
+Examples:
+  p2m shard city.obj --max-bytes 500MB --out city/
+  p2m shard north.ply south.ply --out country/ --replace
+  p2m query city/ --points scan.xyz --max-memory 2GB --out answers.npy",
+        json::STABILITY
+    )
+}
+
+/// Divide scenes that are larger than memory into shards, each with its index, in a folder
+#[derive(clap::Args)]
+#[command(after_help = help())]
+pub(crate) struct Args {
+    /// Scenes: OBJ, PLY, STL or OFF files, or indexes that `p2m build` saved; `-` is the standard input
+    #[arg(value_name = "SCENE", required = true)]
+    scenes: Vec<PathBuf>,
+
+    /// The format of the scenes, if their extensions do not name it
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
+    format: Option<Format>,
+
+    /// The largest length of the file of a shard, such as 500MB or 2GiB
+    #[arg(long, value_name = "BYTES", default_value = "1GiB", value_parser = bytes)]
+    max_bytes: u64,
+
+    /// The index of each shard [default: aabb]
+    #[arg(long, value_parser = backends(BackendEntry::is_saveable))]
+    backend: Option<Backend>,
+
+    /// Where to write the files, a folder that is made if it is not there
+    #[arg(long, value_name = "FOLDER")]
+    out: PathBuf,
+
+    /// Replace the index in shards that the folder has
+    #[arg(long)]
+    replace: bool,
+
+    /// Report as one JSON object on the standard output, instead of a summary on the standard error
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    threads: ThreadArgs,
+}
+
+/// The times of a run.
+#[derive(Default)]
+struct Times {
+    read: Duration,
+    write: Duration,
+}
+
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
+    let format_of = |path: &PathBuf| input::scene_format(path, args.format, "--format");
+    let formats: Vec<Format> = args.scenes.iter().map(format_of).collect::<Result<_, _>>()?;
+    let backend = args.backend.unwrap_or_else(BackendEntry::default_backend);
+    let options =
+        ShardOptions::default().with_max_bytes(args.max_bytes).with_backend(backend).with_replace(args.replace);
+    let pool = args.threads.pool()?;
+
+    let start = Instant::now();
+    let mut writer = ShardWriter::new(&args.out, options)?;
+    let mut skipped = Vec::new();
+    for (path, format) in args.scenes.iter().zip(formats) {
+        let (scene, _) = read_scene_and_index(streams, path, format, false)?;
+        skipped.extend(scene.skipped.iter().map(|kind| (input::name(path), kind.clone())));
+        writer.add_scene(&scene)?;
+    }
+    let mut times = Times { read: start.elapsed(), ..Times::default() };
+
+    let start = Instant::now();
+    let index = finish(streams, args, writer, &pool)?;
+    times.write = start.elapsed();
+    report(streams, args, &index, &skipped, &times)
+}
+
+/// Builds all shards. Until the last one is written, an interruption removes those that are there.
+fn finish(
+    streams: &Streams,
+    args: &Args,
+    writer: ShardWriter,
+    pool: &rayon::ThreadPool,
+) -> anyhow::Result<ShardedIndex> {
+    let total = writer.primitive_count();
+    let bar = Progress::start(streams, "building shards", Some(total), Unit::Items("primitives"));
+    let list = |number| Listed::new(&mut unfinished(), &args.out.join(shard_file(number)));
+    let mut listed = vec![list(0)];
+    let mut progress = |done| {
+        bar.advance_to(done);
+        if done == total {
+            listed.clear();
+        } else {
+            listed.push(list(listed.len()));
+        }
+        ControlFlow::Continue(())
+    };
+    Ok(pool.install(|| writer.finish_with_progress(&mut progress))?)
+}
+
+fn report(
+    streams: &Streams,
+    args: &Args,
+    index: &ShardedIndex,
+    skipped: &[(String, p2m_mixed::Skipped)],
+    times: &Times,
+) -> anyhow::Result<()> {
+    let manifest = index.manifest();
+    let lengths = || manifest.shards.iter().map(|shard| shard.bytes);
+    let (count, total, largest) = (manifest.shards.len(), lengths().sum::<u64>(), lengths().max().unwrap_or(0));
+    let scenes: Vec<String> = args.scenes.iter().map(|path| input::name(path)).collect();
+    if args.json {
+        let skip = |(file, kind): &(String, p2m_mixed::Skipped)| json!({ "file": file, "kind": kind.what, "count": kind.count });
+        return json::print(
+            streams,
+            &json!({
+                "p2m": "shard",
+                "version": json::VERSION,
+                "scenes": scenes,
+                "primitives": json::counts(&manifest.counts()),
+                "skipped": skipped.iter().map(skip).collect::<Value>(),
+                "backend": manifest.backend,
+                "shards": { "count": count, "bytes": total, "largest_bytes": largest, "max_bytes": args.max_bytes },
+                "seconds": { "read": times.read.as_secs_f64(), "write": times.write.as_secs_f64() },
+                "out": { "folder": args.out.display().to_string() },
+            }),
+        );
+    }
+    for scene in &scenes {
+        streams.print_summary(format_args!("scene    {scene}\n"));
+    }
+    streams.print_summary(format_args!("         {}\n", crate::info::counted(&manifest.counts())));
+    for (file, kind) in skipped {
+        streams.print_summary(format_args!("skipped  {kind} in {file}\n"));
+    }
+    let (backend, folder) = (&manifest.backend, args.out.display());
+    streams.print_summary(format_args!(
+        "backend  {backend}\nread     in {:.3?}\nwritten  {folder}, {count} shards, {total} bytes, the largest {largest}, in {:.3?}\n",
+        times.read, times.write
+    ));
+    Ok(())
+}

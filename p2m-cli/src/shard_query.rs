@@ -1,0 +1,148 @@
+//! `p2m query` of an index in shards, which are loaded as queries need them.
+
+use crate::answering::BlockSize;
+use crate::closest_answers::{ClosestAnswer, Source, Task};
+use crate::json;
+use crate::output::Output;
+use crate::query::{Args, queries};
+use crate::sign_rule::SignRule;
+use crate::streams::Streams;
+use crate::summary::{IndexSummary, RunSummary, SceneSummary};
+use crate::usage::usage;
+use nalgebra::Point3;
+use p2m_advisor::IndexDetails;
+use p2m_core::{Closest, PrimitiveId};
+use p2m_shards::{ShardClosest, ShardError, ShardedIndex};
+use rayon::prelude::*;
+use serde_json::json;
+use std::path::Path;
+use std::time::Instant;
+
+pub(crate) fn run(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Result<()> {
+    let query_args = &args.query_args;
+    query_args.check(&args.scene, args.points.as_deref(), "points")?;
+    args.check()?;
+    refuse_options_of_builds(args)?;
+    let format = query_args.format(streams)?;
+    let start = Instant::now();
+    let index = open(folder, args.max_memory.unwrap_or(u64::MAX), args.scene.map)?;
+    let manifest = index.manifest();
+    if manifest.primitive_count() > PrimitiveId::MAX_COUNT as u64 {
+        anyhow::bail!("{}: has more than 2^30 primitives, whose numbers fit into no table", folder.display());
+    }
+    if args.signed.is_some() {
+        // Without points this checks that the scene has an inside.
+        index.are_inside(&[] as &[Point3<f64>])?;
+    }
+    let build_time = start.elapsed();
+    let start = Instant::now();
+    let (queries, _) = queries(streams, args, &index.bounds())?;
+    let read_time = start.elapsed();
+    let mut output = Output::open(streams, Some(&query_args.out))?;
+
+    let pool = query_args.threads.pool()?;
+    let objects = manifest.objects();
+    let source = Shards { index: &index, args };
+    let task = Task { streams, args, pool: &pool, queries, output: &mut output, format, objects: &objects };
+    let (summary, query_time) = task.run(&source)?;
+    let bytes = output.bytes();
+    output.finish()?;
+
+    let name = args.scene.name();
+    let scene = SceneSummary { name, format: "p2m-shards", counts: manifest.counts(), skipped: &[] };
+    let details = IndexDetails::None;
+    let index_summary =
+        IndexSummary { scene, backend: &manifest.backend, details, is_loaded: true, read_time, build_time };
+    let run = RunSummary { index: index_summary, threads: pool.current_num_threads(), query_time };
+    let (count, loads) = (manifest.shards.len(), index.loads());
+    if query_args.json {
+        let shards = json!({ "shards": { "count": count, "loads": loads, "max_memory": args.max_memory } });
+        let answers = json::joined([shards, args.report(&summary, &run.index.cells())]);
+        return json::print(streams, &run.json("query", answers, &query_args.output_json(format, bytes)));
+    }
+    let text = run.text("queries", "query", summary.queries());
+    let times = if loads == 1 { "time" } else { "times" };
+    streams.print_summary(format_args!("{text}shards   {count}, loaded {loads} {times}\n{summary}"));
+    if args.signed.is_some() {
+        streams.print_summary(format_args!("note     that the surface is closed was not checked\n"));
+    }
+    Ok(())
+}
+
+/// Refuses options that say how to build an index, and those that shards have not.
+fn refuse_options_of_builds(args: &Args) -> anyhow::Result<()> {
+    if args.scene.has_format() {
+        return Err(usage("--format is for files, but this is the folder of an index in shards"));
+    }
+    if args.backend.is_some() || args.query_args.k.is_some() || !args.p2m.is_unspecified() {
+        return Err(usage(
+            "--backend, --k, --locator and --filter have no effect on an index in shards: each is built",
+        ));
+    }
+    if args.signed == Some(SignRule::Winding) {
+        return Err(usage("an index in shards has no winding numbers: use --signed=closed for a closed surface"));
+    }
+    Ok(())
+}
+
+/// Opens an index in shards.
+fn open(folder: &Path, max_bytes: u64, is_mapped: bool) -> Result<ShardedIndex, ShardError> {
+    if !is_mapped {
+        return ShardedIndex::open_with_max_bytes(folder, max_bytes);
+    }
+    // SAFETY: `--map` says that the user has to keep the files unchanged.
+    #[allow(unsafe_code, reason = "the user asked for it and was told what it needs")]
+    unsafe {
+        ShardedIndex::open_mapped(folder, max_bytes)
+    }
+}
+
+/// An index in shards.
+struct Shards<'a> {
+    index: &'a ShardedIndex,
+    args: &'a Args,
+}
+
+impl Source for Shards<'_> {
+    // A block may load every shard, however few queries it has.
+    const BLOCK_SIZE: BlockSize = BlockSize::Fixed(1 << 19);
+
+    fn closest(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<ClosestAnswer>> {
+        let options = self.args.options();
+        let mut answers = vec![None; queries.len()];
+        if self.args.accuracy.is_certified() {
+            answers = self.index.map(queries, |query| self.index.certified_closest_point(query, &options))?;
+        } else {
+            self.index.closest_points_into(queries, &options, &mut answers)?;
+        }
+        if self.args.signed.is_none() {
+            return Ok(answers.into_par_iter().map(|answer| (answer.map(in_scene), f64::NAN)).collect());
+        }
+        let are_inside = self.index.are_inside(queries)?;
+        let with_sign = |(answer, is_inside): (Option<ShardClosest>, bool)| {
+            let distance = answer.map_or(f64::NAN, |answer| answer.closest.distance);
+            (answer.map(in_scene), if is_inside { -distance } else { distance })
+        };
+        Ok(answers.into_par_iter().zip(are_inside).map(with_sign).collect())
+    }
+
+    fn near(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Vec<Closest<f64>>>> {
+        let (k, radius) = self.args.near();
+        let near = |query: &Point3<f64>| {
+            let near = match k {
+                None => self.index.all_within(query, radius)?,
+                Some(k) => self.index.k_nearest(query, k, radius)?,
+            };
+            Ok(near.into_iter().map(in_scene).collect())
+        };
+        Ok(self.index.map(queries, near)?)
+    }
+}
+
+/// Returns an answer with the number of the primitive in the whole scene.
+#[allow(clippy::cast_possible_truncation, reason = "a scene has at most 2^30 primitives here")]
+fn in_scene(answer: ShardClosest) -> Closest<f64> {
+    let mut closest = answer.closest;
+    closest.primitive = PrimitiveId::new(answer.id as usize);
+    closest
+}

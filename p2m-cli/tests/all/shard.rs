@@ -1,0 +1,125 @@
+//! Tests of `p2m shard`, and of `p2m query` of an index in shards.
+
+use crate::common::{SCENE, failure, json, p2m, path, table, text, write};
+use std::fs;
+use tempfile::TempDir;
+
+/// Writes the carried scene in shards of at most 40 kB, and returns the folder.
+fn sharded(folder: &TempDir) -> String {
+    let out = path(folder, "site");
+    assert_eq!(table(&["shard", SCENE, "--max-bytes", "40kB", "--out", &out]), "");
+    let shards = fs::read_dir(&out).unwrap().count() - 1;
+    assert!(shards > 3, "{shards}");
+    out
+}
+
+#[test]
+fn a_folder_of_shards_gives_the_table_of_its_scene() {
+    let folder = TempDir::new().unwrap();
+    let site = sharded(&folder);
+    let columns = ["--columns", "number,query,point,distance,primitive,feature,object"];
+    for options in [
+        &["--random", "500"][..],
+        &["--grid", "7", "--box-scale", "3"],
+        &["--random", "100", "--certified"],
+        &["--random", "100", "--max-distance", "0.1"],
+        &["--random", "100", "--k-nearest", "3"],
+        &["--random", "100", "--within", "0.2"],
+    ] {
+        let ask = |scene: &str, more: &[&str]| table(&[&["query", scene], options, &columns, more].concat());
+        let expected = ask(SCENE, &[]);
+        assert!(expected.lines().count() > 30, "{options:?}");
+        for more in [&[][..], &["--max-memory", "1"], &["--map"], &["--threads", "1"]] {
+            assert_eq!(ask(&site, more), expected, "{options:?} {more:?}");
+        }
+        assert_eq!(ask(&format!("{site}/manifest.json"), &[]), expected, "the manifest stands for the folder");
+    }
+}
+
+#[test]
+fn signs_are_those_of_the_whole_surface() {
+    let folder = TempDir::new().unwrap();
+    let (scene, site) = (path(&folder, "sphere.obj"), path(&folder, "sphere"));
+    table(&["generate", "ico-sphere", "--out", &scene]);
+    table(&["shard", &scene, "--max-bytes", "20 kB", "--out", &site]);
+    let ask = |scene: &str, sign: &str| table(&["query", scene, "--random", "300", "--box-scale", "1.5", sign]);
+    let expected = ask(&scene, "--signed");
+    assert!(expected.contains(",-0."), "some points are inside");
+    assert_eq!(ask(&site, "--signed"), expected);
+    let run = p2m(&["query", &site, "--random", "3", "--signed=closed"]);
+    assert!(
+        text(&run.stderr).contains("note     that the surface is closed was not checked\n"),
+        "{}",
+        text(&run.stderr)
+    );
+    assert!(failure(&["query", &site, "--random", "1", "--signed=winding"], 2).contains("no winding numbers"));
+    let mixed = sharded(&folder);
+    assert!(failure(&["query", &mixed, "--random", "1", "--signed"], 1).contains("which have no inside"));
+}
+
+#[test]
+fn several_scenes_are_numbered_on() {
+    let folder = TempDir::new().unwrap();
+    let first = write(&folder, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1 2 3\n");
+    let second = write(&folder, "b.obj", "v 5 0 0\nv 6 0 0\nl 1 2\n");
+    let (site, points) = (path(&folder, "site"), write(&folder, "q.xyz", "5.5 0 2\n0.25 0.25 1\n"));
+    let report = json(&["shard", &first, &second, "--out", &site, "--json"]);
+    assert_eq!(report["primitives"]["triangles"], 1);
+    assert_eq!(report["primitives"]["segments"], 1);
+    assert_eq!(report["shards"]["count"], 1);
+    assert_eq!(report["skipped"][0]["count"], 1, "{report}");
+    let answers = table(&["query", &site, "--points", &points, "--columns", "primitive,distance"]);
+    assert_eq!(answers, "primitive,distance\n1,2.0\n0,1.0\n");
+}
+
+#[test]
+fn wrong_folders_and_files_are_named() {
+    let folder = TempDir::new().unwrap();
+    let site = sharded(&folder);
+    let out = path(&folder, "answers.csv");
+    let ask = |scene: &str, code| failure(&["query", scene, "--random", "500", "--out", &out], code);
+    assert!(failure(&["shard", SCENE, "--out", &site], 1).contains("there is a sharded index already"));
+    table(&["shard", SCENE, "--max-bytes", "40kB", "--out", &site, "--replace"]);
+    let shard = format!("{site}/00001.p2m");
+    let whole = fs::read(&shard).unwrap();
+    fs::write(&shard, &whole[..whole.len() / 2]).unwrap();
+    let message = ask(&site, 1);
+    assert_eq!(message.matches("bytes instead of").count(), 1, "{message}");
+    assert!(message.contains("00001.p2m"), "{message}");
+    fs::remove_file(&shard).unwrap();
+    assert!(ask(&site, 1).contains("00001.p2m"));
+    fs::copy(format!("{site}/00000.p2m"), &shard).unwrap();
+    assert!(ask(&site, 1).contains("00001.p2m"));
+    fs::write(format!("{site}/manifest.json"), "{}").unwrap();
+    assert!(ask(&site, 1).contains("manifest.json"));
+    fs::remove_file(format!("{site}/manifest.json")).unwrap();
+    assert!(ask(&site, 1).contains("is a directory"));
+    // A failed run leaves neither a file nor a folder.
+    assert!(!fs::exists(&out).unwrap());
+    let missing = path(&folder, "new");
+    assert!(failure(&["shard", "missing.obj", "--out", &missing], 1).contains("missing.obj"));
+    assert!(!fs::exists(&missing).unwrap());
+}
+
+#[test]
+fn options_that_have_no_effect_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let site = sharded(&folder);
+    for options in [&["--backend", "octree"][..], &["--k", "26"], &["--format", "obj"], &["--locator", "walk"]] {
+        let message = failure(&[&["query", &site, "--random", "1"], options].concat(), 2);
+        assert!(message.contains(options[0]), "{message}");
+    }
+    assert!(failure(&["query", SCENE, "--random", "1", "--max-memory", "1GB"], 2).contains("p2m shard"));
+    assert!(failure(&["shard", SCENE, "--out", &site, "--max-bytes", "0"], 2).contains("not an amount of memory"));
+    failure(&["shard", SCENE, "--out", &site, "--backend", "brute"], 2);
+}
+
+#[test]
+fn an_empty_scene_has_no_shards() {
+    let folder = TempDir::new().unwrap();
+    let (scene, site) = (write(&folder, "empty.off", "OFF 0 0 0\n"), path(&folder, "site"));
+    let report = json(&["shard", &scene, "--out", &site, "--json"]);
+    assert_eq!(report["shards"]["count"], 0);
+    let answers = table(&["query", &site, "--random", "2", "--columns", "distance"]);
+    assert_eq!(answers, table(&["query", &scene, "--random", "2", "--columns", "distance"]));
+}
